@@ -1,0 +1,21 @@
+"""What bladewright raises: every message says what was asked, the value, the limit and the cure."""
+
+
+class BladewrightError(Exception):
+    """Base of all errors a user can cause; the command line turns it into one paragraph and exit status 2."""
+
+
+class DesignError(BladewrightError):
+    """A design that cannot be built: a parameter out of its limits, or a shape that is impossible."""
+
+
+class FileError(BladewrightError):
+    """A file that cannot be read, understood or written."""
+
+
+class GeometryError(BladewrightError):
+    """A geometric operation asked of a curve or surface that cannot carry it out."""
+
+
+class CadError(BladewrightError):
+    """A solid that OpenCASCADE could not make, write or reopen."""

@@ -1,0 +1,57 @@
+"""Elementary functions that stay analytic, so that an imaginary step survives them."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[np.float64] | NDArray[np.complex128]
+
+
+def length(vectors: Array) -> Array:
+    """Euclidean length of vectors (..., d) as (...), analytic: sqrt(sum x^2) without conjugation."""
+    return np.sqrt(np.sum(vectors * vectors, axis=-1))
+
+
+def unit(vectors: Array) -> Array:
+    """Vectors (..., d) divided by their `length`."""
+    return vectors / length(vectors)[..., None]
+
+
+def dot(a: Array, b: Array) -> Array:
+    """Sum of products over the last axis, without conjugation."""
+    return np.sum(a * b, axis=-1)
+
+
+def cross2(a: Array, b: Array) -> Array:
+    """The scalar a_x b_y - a_y b_x of plane vectors (..., 2)."""
+    return a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0]
+
+
+def magnitude(values: Array) -> Array:
+    """|values| for real or complex values with a nonzero real part: the sign of the real part times the value."""
+    return np.where(np.real(values) < 0.0, -values, values)
+
+
+def angle(y: Array, x: Array) -> Array:
+    """atan2(y, x) [rad] that carries complex parts: the real angle plus the first-order imaginary part."""
+    real = np.arctan2(np.real(y), np.real(x))
+    if not (np.iscomplexobj(y) or np.iscomplexobj(x)):
+        return real
+    square = np.real(x) ** 2 + np.real(y) ** 2
+    return real + 1j * (np.real(x) * np.imag(y) - np.real(y) * np.imag(x)) / square
+
+
+def radians(degrees: Array) -> Array:
+    """Degrees to radians for real or complex values."""
+    return np.asarray(degrees) * (np.pi / 180.0)
+
+
+def degrees(values: Array) -> Array:
+    """Radians to degrees for real or complex values."""
+    return np.asarray(values) * (180.0 / np.pi)
+
+
+def frozen(values: object) -> Array:
+    """A read-only array of float64, or of complex128 where the values are complex."""
+    array = np.array(values, dtype=np.complex128 if np.iscomplexobj(values) else np.float64)
+    array.setflags(write=False)
+    return array
