@@ -1,0 +1,141 @@
+"""The unified blade as a design: camber and two thickness laws between hub and shroud (Agromayor et al. 2021)."""
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Literal
+
+from bladewright.blade.channel import Channel
+from bladewright.designs import ChordwiseLaw, Design, Law, parameter
+from bladewright.errors import DesignError
+from bladewright.section import checks
+
+if TYPE_CHECKING:
+    from bladewright.blade.blade import Blade
+    from bladewright.blade.knots import Knots
+
+ANGLES = ("stagger", "metal_angle_in", "metal_angle_out")
+FRACTIONS = ("leading_edge_radius", "trailing_edge_radius")
+TANGENTS = ("tangent_in", "tangent_out")
+
+
+@dataclass(frozen=True, kw_only=True)
+class UnifiedBlade(Design):
+    """A blade of the unified family, axial, radial or mixed, in an annulus or a linear cascade.
+
+    Every law is a number, or the control points of a clamped uniform B-spline of degree min(n - 1, 3) along the span.
+    Reference: Agromayor et al. 2021, sections 3 and 4.
+    """
+
+    name: str
+    """the part's name, used in files"""
+    length_unit: Literal["m", "cm", "mm", "um", "in", "ft"]
+    """unit of every length in the design"""
+    arrangement: Literal["annular", "linear"] = "annular"
+    """blades around the machine axis, or side by side in a cascade"""
+    blade_count: int | None = None
+    """number of blades of an annular row [-]"""
+    pitch: float | None = parameter("length", default=None)
+    """tangential distance of neighbours in a linear cascade [length]"""
+    leading_edge_theta: Law | None = parameter("deg", default=None)
+    """circumferential position of the leading edge, annular; 0 where not given [deg]"""
+    leading_edge_y: Law | None = parameter("length", default=None)
+    """tangential position of the leading edge, linear; 0 where not given [length]"""
+    stagger: Law = parameter("deg")
+    """atan(delta theta / delta m') of the camber's ends, from the meridional direction [deg]"""
+    metal_angle_in: Law = parameter("deg")
+    """camber angle at the leading edge, from the meridional direction [deg]"""
+    metal_angle_out: Law = parameter("deg")
+    """camber angle at the trailing edge, from the meridional direction [deg]"""
+    tangent_in: Law = parameter("-")
+    """length of the camber's tangent at the leading edge, of the meridional extent [-]"""
+    tangent_out: Law = parameter("-")
+    """length of the camber's tangent at the trailing edge, of the meridional extent [-]"""
+    leading_edge_radius: Law = parameter("-")
+    """radius of curvature at the leading edge, of the meridional length [-]"""
+    trailing_edge_radius: Law = parameter("-")
+    """radius of curvature at the trailing edge, of the meridional length [-]"""
+    thickness_upper: ChordwiseLaw = parameter("-")
+    """half thickness of the upper side, control points along the chord, of the meridional length [-]"""
+    thickness_lower: ChordwiseLaw = parameter("-")
+    """half thickness of the lower side, control points along the chord, of the meridional length [-]"""
+    weights_upper: ChordwiseLaw = parameter("-", default=())
+    """weights of the upper side's control points, a law along the chord; none: a B-spline [-]"""
+    weights_lower: ChordwiseLaw = parameter("-", default=())
+    """weights of the lower side's control points, a law along the chord; none: a B-spline [-]"""
+    channel: Channel
+    """the meridional channel"""
+    mapping: Literal["conformal", "paper"] = "conformal"
+    """sections laid in the plane (m', theta), or the mapping of Agromayor et al. 2021, eq. 28"""
+    samples: int = 16
+    """places along the chord where the thickness laws are taken, edges apart [-]"""
+    clustering: float = 1.0
+    """spacing of the samples: 0 uniform, 1 cosine towards both edges [-]"""
+    tolerance: float = 1e-6
+    """largest distance of the native surfaces from the exact blade, of the chord [-]"""
+    description: str = ""
+    """one line for the header of CAD files"""
+    author: str = ""
+    """for the header of CAD files"""
+    organisation: str = ""
+    """for the header of CAD files"""
+
+    def __post_init__(self) -> None:
+        put = object.__setattr__
+        for name in ("name", "description", "author", "organisation"):
+            checks.text(name, getattr(self, name))
+        if not self.name.strip() or any(sign in self.name for sign in '/\\:*?"<>|'):
+            raise DesignError(f"name is {self.name!r}: it names files, so it must not be empty nor hold / \\ : * ? \" < > |")
+        checks.choice("length_unit", self.length_unit, list(checks.UNITS))
+        checks.choice("arrangement", self.arrangement, ["annular", "linear"])
+        checks.choice("mapping", self.mapping, ["conformal", "paper"])
+        for name in (*ANGLES, *TANGENTS, *FRACTIONS):
+            put(self, name, checks.law(name, getattr(self, name)))
+        for name in ("thickness_upper", "thickness_lower"):
+            put(self, name, checks.chordwise(name, getattr(self, name)))
+            checks.between(name, getattr(self, name), 0.0, 10.0, "thickness must be positive, and below 10; raise it")
+        for name in ("weights_upper", "weights_lower"):
+            if getattr(self, name) != ():
+                put(self, name, checks.chordwise(name, getattr(self, name)))
+                checks.between(name, getattr(self, name), 0.0, 1e6, "a weight must be positive, and below 1e6")
+        for name in ANGLES:
+            checks.between(name, getattr(self, name), -90.0, 90.0, "an angle must lie between -90 and 90 deg")
+        for name in TANGENTS:
+            what = "a tangent proportion must lie above 0 and not above 1, or the camber turns back"
+            checks.between(name, getattr(self, name), 0.0, 1.0 + 1e-12, what)
+        for name in FRACTIONS:
+            checks.between(name, getattr(self, name), 0.0, 1.0, "an edge radius must lie between 0 and 1")
+        self._check_arrangement()
+        put(self, "samples", checks.integer("samples", self.samples, 3, 60, "a whole number is needed"))
+        for name, low, high in (("clustering", 0.0, 1.0), ("tolerance", 1e-9, 1e-2)):
+            put(self, name, checks.number(name, getattr(self, name)))
+            checks.between(name, getattr(self, name), low, high, f"it must lie from {low:g} to {high:g}", closed=True)
+        if not isinstance(self.channel, Channel):
+            raise DesignError(f"channel is {self.channel!r}: a Channel with leading_edge and trailing_edge is needed")
+
+    def _check_arrangement(self) -> None:
+        put = object.__setattr__
+        own, other = ("annular", "linear") if self.arrangement == "annular" else ("linear", "annular")
+        fields_of = {"annular": ("blade_count", "leading_edge_theta"), "linear": ("pitch", "leading_edge_y")}
+        for name in fields_of[other]:
+            if getattr(self, name) is not None:
+                mine = fields_of[own][fields_of[other].index(name)]
+                raise DesignError(f"{name} is given, but arrangement is '{own}': give {mine}, or arrangement = '{other}'")
+        count, place = fields_of[own]
+        if getattr(self, count) is None:
+            raise DesignError(f"{count} is missing: arrangement '{own}' needs it")
+        put(self, place, checks.law(place, 0.0 if getattr(self, place) is None else getattr(self, place)))
+        if own == "annular":
+            put(self, count, checks.integer(count, self.blade_count, 1, 10_000, "a whole number of blades is needed"))
+        else:
+            put(self, count, checks.number(count, self.pitch))
+            checks.between(count, self.pitch, 0.0, float("inf"), "the pitch must be positive")
+
+    def build(self, knots: "Knots | None" = None) -> "Blade":
+        """The native blade in metres; `knots=blade.knots` holds another build's knots and interpolation sites.
+
+        Raises DesignError where the shape is impossible or the tolerance cannot be reached within 200 x 100 poles.
+        """
+        from bladewright.blade.build import built
+
+        return built(self, knots)
+
+

@@ -1,0 +1,120 @@
+"""What every design is: a frozen record of plain numbers whose parameters have one dotted path each."""
+
+import re
+from abc import ABC
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field, fields, replace
+from typing import Any, NamedTuple, Self
+
+from bladewright.errors import DesignError
+
+
+class Point(NamedTuple):
+    """A control point of the meridional channel."""
+
+    x: float
+    """axial [length]"""
+    r: float
+    """radius, or span coordinate z of a linear cascade [length]"""
+
+
+Law = float | tuple[float, ...]
+"""A law of evolution along the span: a constant, or control points from hub to shroud."""
+ChordwiseLaw = tuple[Law, ...]
+"""Control points along the chord, each a law of evolution along the span."""
+Points = tuple[Point, ...]
+
+
+def parameter(unit: str, **options: Any) -> Any:
+    """A dataclass field whose numbers are differentiable parameters, measured in `unit`."""
+    return field(metadata={"unit": unit}, **options)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Design(ABC):
+    """Base of all designs: immutable, validated on construction, addressed by dotted paths."""
+
+    def parameters(self) -> dict[str, float]:
+        """Every differentiable leaf by its path, in the order of the fields, in the design's own units."""
+        return dict(_leaves_of(self, ""))
+
+    def changed(self, path: str | Mapping[str, Any], value: Any = None) -> Self:
+        """A new design with another value at a path such as `stagger[1]`, or at several given as a mapping.
+
+        Raises DesignError where the path does not exist or the value is refused.
+        """
+        changes = {path: value} if isinstance(path, str) else dict(path)
+        tree = self
+        for where, what in changes.items():
+            tree = _with(tree, _steps(where), what, where)
+        return tree
+
+
+def unit_of(design: Design, name: str) -> str | None:
+    """The unit of a field, such as 'deg', or None where the field is no parameter."""
+    return next((f.metadata.get("unit") for f in fields(design) if f.name == name), None)
+
+
+def _leaves_of(node: Any, path: str) -> Iterator[tuple[str, Any]]:
+    if isinstance(node, Design):
+        for each in fields(node):
+            if "unit" in each.metadata or isinstance(getattr(node, each.name), Design):
+                yield from _leaves_of(getattr(node, each.name), f"{path}.{each.name}" if path else each.name)
+    elif isinstance(node, Point):
+        yield f"{path}.x", node.x
+        yield f"{path}.r", node.r
+    elif isinstance(node, tuple):
+        for index, item in enumerate(node):
+            yield from _leaves_of(item, f"{path}[{index}]")
+    elif node is not None:
+        yield path, node
+
+
+_STEP = re.compile(r"\.?([A-Za-z_]\w*)|\[(-?\d+)\]")
+
+
+def _steps(path: str) -> list[str | int]:
+    steps: list[str | int] = []
+    position = 0
+    while position < len(path):
+        match = _STEP.match(path, position)
+        if match is None:
+            message = f"the path '{path}' is not understood at '{path[position:]}': write it like stagger[1]"
+            raise DesignError(f"{message} or channel.hub[0].x")
+        steps.append(match[1] if match[1] else int(match[2]))
+        position = match.end()
+    return steps
+
+
+def _with(node: Any, steps: list[str | int], value: Any, path: str) -> Any:
+    if not steps:
+        return value
+    step, rest = steps[0], steps[1:]
+    if isinstance(node, Design) and isinstance(step, str):
+        names = [each.name for each in fields(node)]
+        if step not in names:
+            raise DesignError(unknown(path, step, names))
+        return replace(node, **{step: _with(getattr(node, step), rest, value, path)})
+    if isinstance(node, Point) and isinstance(step, str):
+        if step not in Point._fields:
+            raise DesignError(unknown(path, step, list(Point._fields)))
+        return node._replace(**{step: _with(getattr(node, step), rest, value, path)})
+    if isinstance(node, tuple) and isinstance(step, int):
+        if not -len(node) <= step < len(node):
+            raise DesignError(f"{path} does not exist: it has {len(node)} entries, 0 to {len(node) - 1}")
+        items = list(node)
+        items[step] = _with(node[step], rest, value, path)
+        return tuple(items)
+    kind = "a single number" if not isinstance(node, tuple | Design) else "a list"
+    raise DesignError(f"{path} does not exist: what stands before '{step}' is {kind}; see design.parameters()")
+
+
+def unknown(path: str, name: str, known: list[str]) -> str:
+    """The message for a name that does not exist, with the nearest that does."""
+    from difflib import get_close_matches
+
+    near = get_close_matches(name, known, n=1, cutoff=0.5)
+    hint = f"did you mean '{near[0]}'?" if near else f"known are {', '.join(known)}"
+    return f"{path} does not exist: there is no '{name}'; {hint}"
+
+
