@@ -1,0 +1,54 @@
+"""Turbomachinery blades as native NURBS, exported as solids that are reopened and measured.
+
+The public names load on first use, so that `import bladewright` costs milliseconds; `bladewright.cad` is the first
+name that loads OpenCASCADE.
+"""
+
+import importlib
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from bladewright import cad as cad
+    from bladewright.blade.channel import Channel as Channel
+    from bladewright.blade.unified import UnifiedBlade as UnifiedBlade
+    from bladewright.errors import BladewrightError as BladewrightError
+    from bladewright.errors import CadError as CadError
+    from bladewright.errors import DesignError as DesignError
+    from bladewright.errors import FileError as FileError
+    from bladewright.errors import GeometryError as GeometryError
+    from bladewright.nurbs.curve import Curve as Curve
+    from bladewright.nurbs.surface import Surface as Surface
+    from bladewright.nurbs.trimmed import TrimmedSurface as TrimmedSurface
+
+__version__ = "0.1.0"
+
+_HOMES = {
+    "BladewrightError": "errors",
+    "CadError": "errors",
+    "Channel": "blade.channel",
+    "Curve": "nurbs.curve",
+    "DesignError": "errors",
+    "FileError": "errors",
+    "GeometryError": "errors",
+    "Surface": "nurbs.surface",
+    "TrimmedSurface": "nurbs.trimmed",
+    "UnifiedBlade": "blade.unified",
+}
+_ROOMS = ("cad",)
+
+__all__ = ["__version__", *_ROOMS, *_HOMES]  # noqa: PLE0604
+
+
+def __getattr__(name: str) -> Any:
+    if name in _HOMES:
+        value = getattr(importlib.import_module(f"bladewright.{_HOMES[name]}"), name)
+    elif name in _ROOMS:
+        value = importlib.import_module(f"bladewright.{name}")
+    else:
+        raise AttributeError(f"module 'bladewright' has no attribute {name!r}")
+    globals()[name] = value
+    return value
+
+
+def __dir__() -> list[str]:
+    return sorted(__all__)

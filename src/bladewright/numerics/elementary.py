@@ -1,9 +1,12 @@
 """Elementary functions that stay analytic, so that an imaginary step survives them."""
 
+from typing import Any
+
 import numpy as np
 from numpy.typing import NDArray
 
-Array = NDArray[np.float64] | NDArray[np.complex128]
+Array = NDArray[Any]
+"""float64, or complex128 where a step is carried: a type checker cannot follow which"""
 
 
 def length(vectors: Array) -> Array:
@@ -50,7 +53,7 @@ def degrees(values: Array) -> Array:
     return np.asarray(values) * (180.0 / np.pi)
 
 
-def frozen(values: object) -> Array:
+def frozen(values: Any) -> Array:
     """A read-only array of float64, or of complex128 where the values are complex."""
     array = np.array(values, dtype=np.complex128 if np.iscomplexobj(values) else np.float64)
     array.setflags(write=False)
