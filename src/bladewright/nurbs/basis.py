@@ -1,14 +1,24 @@
-"""B-spline basis functions on clamped knot vectors over [0, 1]."""
+"""B-spline basis functions on clamped knot vectors."""
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.interpolate import BSpline
 
+from bladewright.errors import GeometryError
+
 Reals = NDArray[np.float64]
 
 
 def uniform_knots(count: int, degree: int) -> Reals:
-    """Clamped uniform knots (count + degree + 1,) over [0, 1] for `count` control points."""
+    """Clamped uniform knots (count + degree + 1,) over [0, 1] for `count` control points.
+
+    Raises GeometryError where there are fewer control points than degree + 1.
+    """
+    if count < degree + 1:
+        raise GeometryError(
+            f"{count} control points were asked to carry degree {degree}: at least {degree + 1} are needed; "
+            "lower the degree or give more control points"
+        )
     inner = np.linspace(0.0, 1.0, count - degree + 1)
     return np.concatenate([np.zeros(degree), inner, np.ones(degree)])
 
@@ -19,10 +29,64 @@ def greville(knots: Reals, degree: int) -> Reals:
     return np.array([knots[i + 1 : i + degree + 1].mean() for i in range(count)])
 
 
+def breaks(knots: Reals) -> Reals:
+    """The distinct knots (k + 1,), between which lie the k knot spans; each span carries one polynomial."""
+    return np.unique(knots)
+
+
+def multiplicities(knots: Reals) -> tuple[Reals, NDArray[np.intp]]:
+    """The distinct knots and how often each occurs."""
+    return np.unique(knots, return_counts=True)
+
+
+def spans(knots: Reals, degree: int, u: ArrayLike) -> NDArray[np.intp]:
+    """Indices j (...) of the spans knots[j] <= u < knots[j + 1]; parameters past an end belong to the end's span."""
+    found = np.searchsorted(knots, np.asarray(u, dtype=np.float64), side="right") - 1
+    return np.clip(found, degree, len(knots) - degree - 2)
+
+
 def basis(knots: Reals, degree: int, u: ArrayLike, order: int = 0) -> Reals:
     """Dense matrix (len(u), n) of all basis functions' `order`-th derivatives at real parameters u (m,).
 
     Outside the knots' range the end polynomials are continued.
     """
     count = len(knots) - degree - 1
-    return BSpline(knots, np.eye(count), degree)(np.asarray(u, dtype=np.float64), nu=order)
+    matrix: Reals = BSpline(knots, np.eye(count), degree)(np.asarray(u, dtype=np.float64), nu=order)
+    return matrix
+
+
+def checked_knots(knots: ArrayLike, degree: int, count: int, name: str) -> Reals:
+    """The knots (count + degree + 1,) as a read-only array, when they can carry `count` control points.
+
+    Raises GeometryError where they are complex, not finite, decreasing, of the wrong number, not clamped, or where an
+    inner knot is repeated more than `degree` times.
+    """
+    if np.iscomplexobj(knots):
+        raise GeometryError(f"{name} are complex: knots must be real; hold them fixed while differentiating")
+    values = np.array(knots, dtype=np.float64)
+    if degree < 1:
+        raise GeometryError(f"degree {degree} was asked for with {name}: it must be at least 1")
+    if count < degree + 1:
+        raise GeometryError(
+            f"{count} control points were given with {name} of degree {degree}: at least {degree + 1} are needed; "
+            "lower the degree or give more control points"
+        )
+    if values.shape != (count + degree + 1,):
+        raise GeometryError(
+            f"{name} has shape {values.shape}: {count} control points of degree {degree} need ({count + degree + 1},)"
+        )
+    if not np.isfinite(values).all() or (np.diff(values) < 0.0).any():
+        raise GeometryError(f"{name} must be finite and non-decreasing, got {values.tolist()}; sort them")
+    if values[0] != values[degree] or values[-1] != values[-degree - 1] or values[0] >= values[-1]:
+        raise GeometryError(
+            f"{name} = {values.tolist()} are not clamped: the first and the last knot must each occur "
+            f"{degree + 1} times"
+        )
+    inner, repeats = multiplicities(values[degree + 1 : count])
+    if len(inner) and (repeats.max() > degree or inner[0] == values[0] or inner[-1] == values[-1]):
+        raise GeometryError(
+            f"{name} = {values.tolist()} repeat a knot too often: at most {degree} times inside, "
+            f"{degree + 1} times at the ends"
+        )
+    values.setflags(write=False)
+    return values

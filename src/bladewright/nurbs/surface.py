@@ -1,54 +1,131 @@
 """NURBS surface of any degrees and dimension."""
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import ArrayLike
 from scipy.interpolate import NdBSpline
 
-from bladewright.numerics.elementary import Array, frozen, unit
-from bladewright.nurbs.basis import basis
+from bladewright.errors import GeometryError
+from bladewright.numerics.elementary import Array, frozen
+from bladewright.nurbs.basis import basis, checked_knots
+from bladewright.nurbs.curve import checked_weights
+from bladewright.nurbs.normals import unit_normals
+from bladewright.nurbs.rational import homogeneous, surface_quotients
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Surface:
-    """A NURBS surface S(u, v) (Piegl and Tiller 1997, eq. 4.11) over [0, 1] x [0, 1]."""
+    """A NURBS surface S(u, v) (Piegl and Tiller 1997, eq. 4.11), usually over [0, 1] x [0, 1].
+
+    Its parameters run over [knots_u[0], knots_u[-1]] and [knots_v[0], knots_v[-1]]; outside, the end polynomials (the
+    end quotients of polynomials, where there are weights) are continued. An imaginary part of a parameter is carried to
+    first order, as a complex step needs. Scattered points come from scipy's NdBSpline, grids from products with the
+    bases' matrices: design/nurbs_evaluation.py measures both. Raises GeometryError where shapes, knots, degrees and
+    weights do not fit together.
+    """
 
     control_points: Array
     """(n_u, n_v, d), real or complex"""
     knots_u: Array
+    """(n_u + degree_u + 1,), clamped, non-decreasing"""
     knots_v: Array
+    """(n_v + degree_v + 1,), clamped, non-decreasing"""
     degree_u: int
     degree_v: int
     weights: Array | None = None
-    """(n_u, n_v) or None for a B-spline"""
+    """(n_u, n_v) with positive real parts, or None for a B-spline"""
 
     def __post_init__(self) -> None:
-        for field in ("control_points", "knots_u", "knots_v", "weights"):
-            value = getattr(self, field)
-            if value is not None:
-                object.__setattr__(self, field, frozen(value))
+        points = frozen(self.control_points)
+        if points.ndim < 2:
+            raise GeometryError(f"control points of a surface have shape {points.shape}: it must be (n_u, n_v, d)")
+        object.__setattr__(self, "control_points", points)
+        object.__setattr__(self, "knots_u", checked_knots(self.knots_u, self.degree_u, points.shape[0], "knots_u"))
+        object.__setattr__(self, "knots_v", checked_knots(self.knots_v, self.degree_v, points.shape[1], "knots_v"))
+        if self.weights is not None:
+            object.__setattr__(self, "weights", checked_weights(self.weights, points.shape[:-1]))
+
+    @property
+    def domain_u(self) -> tuple[float, float]:
+        """The first and the last u."""
+        return float(self.knots_u[0]), float(self.knots_u[-1])
+
+    @property
+    def domain_v(self) -> tuple[float, float]:
+        """The first and the last v."""
+        return float(self.knots_v[0]), float(self.knots_v[-1])
+
+    @cached_property
+    def homogeneous(self) -> Array:
+        """Control points (n_u, n_v, d), or (w P, w) of shape (n_u, n_v, d + 1) where there are weights."""
+        return frozen(homogeneous(self.control_points, self.weights))
+
+    @cached_property
+    def _spline(self) -> NdBSpline:
+        return NdBSpline((self.knots_u, self.knots_v), self.homogeneous, (self.degree_u, self.degree_v))
 
     def __call__(self, u: ArrayLike, v: ArrayLike) -> Array:
-        """Points (..., d) at real parameters u, v, which broadcast."""
+        """Points (..., d) at parameters u, v, which broadcast."""
         return self.derivative(u, v, du=0, dv=0)
 
     def derivative(self, u: ArrayLike, v: ArrayLike, du: int = 1, dv: int = 0) -> Array:
         """Partial derivatives (..., d), `du` times in u and `dv` times in v."""
+        if np.iscomplexobj(u) or np.iscomplexobj(v):
+            return self._stepped(u, v, du, dv)
         if self.weights is not None:
-            raise NotImplementedError
-        u, v = np.broadcast_arrays(np.asarray(u, dtype=float), np.asarray(v, dtype=float))
-        spline = NdBSpline((self.knots_u, self.knots_v), self.control_points, (self.degree_u, self.degree_v))
-        return spline(np.stack([u, v], axis=-1), nu=(du, dv))
+            return self._quotients(*self._parameters(u, v), du, dv)[du, dv]
+        found: Array = self._spline(self._sites(u, v), nu=(du, dv))
+        return found
+
+    def derivatives(self, u: ArrayLike, v: ArrayLike, order: int) -> dict[tuple[int, int], Array]:
+        """All partial derivatives {(du, dv): (..., d)} with du + dv <= order, the point among them; u and v real."""
+        u, v = self._parameters(u, v)
+        sites = self._sites(u, v)
+        orders = [(k, total - k) for total in range(order + 1) for k in range(total + 1)]
+        found = {both: self._spline(sites, nu=both) for both in orders}
+        return found if self.weights is None else surface_quotients(found)
 
     def grid(self, u: ArrayLike, v: ArrayLike, du: int = 0, dv: int = 0) -> Array:
-        """Points or derivatives (len(u), len(v), d) on the tensor grid of u (m,) and v (k,)."""
-        if self.weights is not None:
-            raise NotImplementedError
-        along_u = basis(self.knots_u, self.degree_u, u, du)
-        along_v = basis(self.knots_v, self.degree_v, v, dv)
-        return np.einsum("iu,uvd,jv->ijd", along_u, self.control_points, along_v, optimize=True)
+        """Points or derivatives (len(u), len(v), d) on the tensor grid of real u (m,) and v (k,)."""
+        if self.weights is None:
+            return self._grid(u, v, du, dv)
+        orders = [(k, l) for k in range(du + 1) for l in range(dv + 1)]  # noqa: E741 - the formula's letters
+        return surface_quotients({both: self._grid(u, v, *both) for both in orders})[du, dv]
 
     def normal(self, u: ArrayLike, v: ArrayLike) -> Array:
-        """Unit normals (..., 3): the direction of dS/du x dS/dv."""
-        return unit(np.cross(self.derivative(u, v, 1, 0), self.derivative(u, v, 0, 1)))
+        """Unit normals (..., 3) at real u, v: the direction of dS/du x dS/dv, or its limit at a collapsed edge."""
+        return unit_normals(self, *self._parameters(u, v))
+
+    def _parameters(self, u: ArrayLike, v: ArrayLike) -> tuple[Array, Array]:
+        if np.iscomplexobj(u) or np.iscomplexobj(v):
+            raise GeometryError("complex parameters were given where only real ones make sense; take their real parts")
+        u, v = np.broadcast_arrays(np.asarray(u, dtype=np.float64), np.asarray(v, dtype=np.float64))
+        return u, v
+
+    def _sites(self, u: ArrayLike, v: ArrayLike) -> Array:
+        return np.stack(self._parameters(u, v), axis=-1)
+
+    def _stepped(self, u: ArrayLike, v: ArrayLike, du: int, dv: int) -> Array:
+        real_u, real_v = np.real(u), np.real(v)
+        found = self.derivative(real_u, real_v, du, dv).astype(np.complex128)
+        for parameter, slope in ((u, (du + 1, dv)), (v, (du, dv + 1))):
+            if np.iscomplexobj(parameter):
+                step = np.reshape(np.imag(parameter), np.shape(parameter) + (1,) * (self.control_points.ndim - 2))
+                found = found + 1j * step * self.derivative(real_u, real_v, *slope)
+        return found
+
+    def _quotients(self, u: Array, v: Array, du: int, dv: int) -> dict[tuple[int, int], Array]:
+        sites = np.stack([u, v], axis=-1)
+        orders = [(k, l) for k in range(du + 1) for l in range(dv + 1)]  # noqa: E741 - the formula's letters
+        return surface_quotients({both: self._spline(sites, nu=both) for both in orders})
+
+    def _grid(self, u: ArrayLike, v: ArrayLike, du: int, dv: int) -> Array:
+        along_u = basis(self.knots_u, self.degree_u, u, du)
+        along_v = basis(self.knots_v, self.degree_v, v, dv)
+        net = self.homogeneous
+        rows = np.tensordot(along_u, net, axes=1)
+        flat = rows.reshape(*rows.shape[:2], -1)
+        points: Array = np.matmul(along_v, flat).reshape(len(along_u), len(along_v), *net.shape[2:])
+        return points
