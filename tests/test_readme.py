@@ -1,0 +1,58 @@
+"""The README's commands and its Python example do what they say."""
+
+import json
+import os
+import re
+import shlex
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+README = (Path(__file__).parents[1] / "README.md").read_text()
+
+
+def block(mark: str, language: str) -> str:
+    """The fenced text after `<!-- mark -->`."""
+    found = re.search(rf"<!-- {mark} -->\n```{language}\n(.*?)```", README, re.DOTALL)
+    assert found, f"README.md has no {language} block after <!-- {mark} -->"
+    return found[1].strip()
+
+
+@pytest.fixture(scope="module")
+def built(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A directory in which the build line ran, but for its installation."""
+    directory = tmp_path_factory.mktemp("readme")
+    steps = block("build", "bash").split(" && ")
+    assert steps[:2] == ["python3 -m venv .venv", ".venv/bin/pip install ."]
+    home = Path(sys.executable).parent
+    line = " && ".join(step.replace(".venv/bin/", f"{shlex.quote(str(home))}/") for step in steps[2:])
+    subprocess.run(
+        ["bash", "-c", line], cwd=directory, check=True, timeout=300, env={**os.environ, "MPLBACKEND": "Agg"}
+    )
+    return directory
+
+
+@pytest.mark.parametrize("suffix", ["step", "igs"])
+def test_the_build_line_makes_a_cad_file(built: Path, suffix: str) -> None:
+    assert (built / "out" / f"fan-rotor.{suffix}").stat().st_size > 10_000
+
+
+def test_the_build_line_proves_what_it_made(built: Path) -> None:
+    report = (built / "out" / "fan-rotor.roundtrip.json").read_text()
+    assert '"passed": true' in report
+    assert '"passed": false' not in report
+    json.loads(report)
+
+
+def test_the_python_example_runs(built: Path) -> None:
+    run = subprocess.run(
+        [sys.executable, "-c", block("python", "python")],
+        cwd=built,
+        capture_output=True,
+        text=True,
+        timeout=300,
+        check=True,
+    )
+    assert run.stdout
