@@ -1,0 +1,58 @@
+"""What the CAD room asks of anything it makes a solid of: named native surfaces that close up, and where outside is."""
+
+from collections.abc import Mapping
+from typing import Protocol
+
+import numpy as np
+
+from bladewright.numerics.elementary import Array
+from bladewright.nurbs.surface import Surface
+from bladewright.nurbs.trimmed import TrimmedSurface
+
+MM = 1000.0
+"""Millimetres in a metre: everything built is in metres, every CAD file in millimetres."""
+
+
+class Properties(Protocol):
+    """Properties of the body by quadrature on its native surfaces."""
+
+    @property
+    def volume(self) -> float:
+        """[m^3]"""
+
+    @property
+    def area(self) -> float:
+        """[m^2]"""
+
+    @property
+    def centroid(self) -> Array:
+        """(3,) [m]"""
+
+
+class Built(Protocol):
+    """A body bounded by native surfaces: a blade, a row's passage."""
+
+    @property
+    def name(self) -> str:
+        """Name of the product in a CAD file."""
+
+    @property
+    def surfaces(self) -> Mapping[str, Surface | TrimmedSurface]:
+        """Faces of the body [m] by name."""
+
+    @property
+    def orientations(self) -> Mapping[str, int]:
+        """+1 for a face whose dS/du x dS/dv points out of the body, -1 for the others."""
+
+    @property
+    def properties(self) -> Properties:
+        """Volume, area and centroid."""
+
+
+def extent(built: Built) -> float:
+    """The largest side [m] of the box around all control points of untrimmed faces, or of all where there is none."""
+    faces = built.surfaces.values()
+    nets = [face.control_points for face in faces if isinstance(face, Surface)]
+    nets = nets or [face.surface.control_points for face in faces if isinstance(face, TrimmedSurface)]
+    points = np.concatenate([np.real(net).reshape(-1, 3) for net in nets])
+    return float(np.ptp(points, axis=0).max())

@@ -1,0 +1,191 @@
+"""Which faces of a body share which edges, found from their native boundary curves."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from bladewright.cad.built import Built, extent
+from bladewright.errors import CadError
+from bladewright.numerics.elementary import Array
+from bladewright.nurbs.curve import Curve
+from bladewright.nurbs.surface import Surface
+from bladewright.nurbs.trimmed import TrimmedSurface
+
+COINCIDENT = 1e-12
+"""Distance, as a fraction of the body's extent, up to which two control points are the same point."""
+ALONG = 1e-6
+"""The same up to which a trimmed face's boundary runs along an edge; what is left is measured as the edge's gap."""
+
+SIDES = ("v = 0", "u = 1", "v = 1", "u = 0")
+"""The sides of an untrimmed face in the order of a counter-clockwise run around its parameter square."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Use:
+    """One side of a face that lies on an edge."""
+
+    face: str
+    """name of the face"""
+    side: int
+    """index into SIDES, or into the boundary curves of a trimmed face"""
+    along: bool
+    """whether the face's run along this side follows the edge's own parameter"""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Edge:
+    """An edge of the body: its space curve [m], and the faces that meet there."""
+
+    curve: Curve
+    uses: tuple[Use, ...]
+    start: int
+    """index of the vertex at the curve's first parameter"""
+    end: int
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Collapsed:
+    """A side of a face that is a single point."""
+
+    use: Use
+    vertex: int
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Topology:
+    """Edges and vertices of a closed body."""
+
+    edges: tuple[Edge, ...]
+    collapsed: tuple[Collapsed, ...]
+    vertices: Array
+    """(n, 3) [m]"""
+
+
+def topology(built: Built) -> Topology:
+    """The edges that the faces of a body share, and the vertices where those meet.
+
+    Untrimmed faces are neighbours where their boundary curves have the same control points, run either way; a trimmed
+    face is the neighbour of the edge that its boundary follows. Raises CadError where an edge does not belong to
+    exactly two faces.
+    """
+    size = extent(built)
+    runs: list[tuple[Curve, list[Use]]] = []
+    points: list[tuple[Array, Use]] = []
+    for name, face in built.surfaces.items():
+        if isinstance(face, Surface):
+            for side in range(4):
+                curve, along = side_curve(face, side)
+                use = Use(face=name, side=side, along=along)
+                net = curve.control_points
+                if np.ptp(net, axis=0).max() <= COINCIDENT * size:
+                    points.append((net[0], use))
+                else:
+                    _join(runs, curve, use, COINCIDENT * size)
+    for name, face in built.surfaces.items():
+        if isinstance(face, TrimmedSurface):
+            for side, boundary in enumerate(face.boundary):
+                _follow(runs, face, boundary, name, side, ALONG * size)
+    _require_pairs(runs)
+    vertices: list[Array] = []
+    edges = tuple(
+        Edge(
+            curve=curve,
+            uses=tuple(uses),
+            start=_vertex(vertices, curve.control_points[0], COINCIDENT * size),
+            end=_vertex(vertices, curve.control_points[-1], COINCIDENT * size),
+        )
+        for curve, uses in runs
+    )
+    collapsed = tuple(
+        Collapsed(use=use, vertex=_vertex(vertices, point, COINCIDENT * size)) for point, use in points
+    )
+    return Topology(edges=edges, collapsed=collapsed, vertices=np.array(vertices))
+
+
+def side_curve(face: Surface, side: int) -> tuple[Curve, bool]:
+    """The boundary curve of an untrimmed face on one of SIDES, and whether the counter-clockwise run follows it."""
+    along_u = side in {0, 2}
+    index = (slice(None), 0 if side == 0 else -1) if along_u else (0 if side == 3 else -1, slice(None))
+    curve = Curve(
+        control_points=face.control_points[index],
+        knots=face.knots_u if along_u else face.knots_v,
+        degree=face.degree_u if along_u else face.degree_v,
+        weights=None if face.weights is None else face.weights[index],
+    )
+    return curve, side in {0, 1}
+
+
+def _join(runs: list[tuple[Curve, list[Use]]], curve: Curve, use: Use, tolerance: float) -> None:
+    for known, uses in runs:
+        for backwards in (False, True):
+            if _same(known, curve, tolerance, backwards=backwards):
+                uses.append(Use(face=use.face, side=use.side, along=use.along != backwards))
+                return
+    runs.append((curve, [use]))
+
+
+def _same(one: Curve, other: Curve, tolerance: float, *, backwards: bool) -> bool:
+    if one.degree != other.degree or one.control_points.shape != other.control_points.shape:
+        return False
+    step = -1 if backwards else 1
+    knots = other.knots[0] + other.knots[-1] - other.knots[::-1] if backwards else other.knots
+    if not np.allclose(one.knots, knots, rtol=0.0, atol=1e-12):
+        return False
+    weights = [curve.weights if curve.weights is not None else np.ones(1) for curve in (one, other)]
+    if not np.allclose(weights[0], weights[1][::step], rtol=1e-12, atol=0.0):
+        return False
+    return bool(np.max(np.abs(one.control_points - other.control_points[::step])) <= tolerance)
+
+
+def _follow(
+    runs: list[tuple[Curve, list[Use]]], face: TrimmedSurface, boundary: Curve, name: str, side: int, tolerance: float
+) -> None:
+    """Give the boundary of a trimmed face to the edge that runs along it."""
+    s = np.linspace(boundary.knots[0], boundary.knots[-1], 2001)
+    trace = face.surface(*boundary(s).T)
+    best, nearest = None, np.inf
+    for known, uses in runs:
+        first, middle, last = known(known.knots[0] + np.array([0.0, 0.5, 1.0]) * (known.knots[-1] - known.knots[0]))
+        for ends, along in (((first, last), True), ((last, first), False)):
+            # the middle lies at another parameter of the boundary: its distance is measured to the polyline
+            miss = max(_distance(trace[0], ends[0]), _distance(trace[-1], ends[1]), _to_polyline(middle, trace))
+            if miss < nearest:
+                best, nearest = (uses, along), miss
+    if best is None or nearest > tolerance:
+        raise CadError(
+            f"boundary {side} of face {name!r} runs along no edge of another face: the nearest is {nearest:.3g} m "
+            f"away, and at most {tolerance:.3g} m is taken for the same; let the neighbour end on this boundary"
+        )
+    best[0].append(Use(face=name, side=side, along=best[1]))
+
+
+def _distance(a: Array, b: Array) -> float:
+    return float(np.sqrt(np.sum((a - b) ** 2)))
+
+
+def _to_polyline(point: Array, line: Array) -> float:
+    start, step = line[:-1], np.diff(line, axis=0)
+    share = np.clip(np.sum((point - start) * step, axis=-1) / np.sum(step * step, axis=-1), 0.0, 1.0)
+    return float(np.sqrt(np.min(np.sum((start + share[:, None] * step - point) ** 2, axis=-1))))
+
+
+def _vertex(vertices: list[Array], point: Array, tolerance: float) -> int:
+    for index, known in enumerate(vertices):
+        if np.max(np.abs(known - point)) <= tolerance:
+            return index
+    vertices.append(point)
+    return len(vertices) - 1
+
+
+def _require_pairs(runs: list[tuple[Curve, list[Use]]]) -> None:
+    for curve, uses in runs:
+        where = " and ".join(f"{use.face!r} ({use.side})" for use in uses)
+        if len(uses) != 2:
+            raise CadError(
+                f"the edge from {curve.control_points[0]} to {curve.control_points[-1]} m belongs to {where}: an edge "
+                "of a closed body belongs to exactly two faces; give the neighbours the same boundary control points"
+            )
+        if uses[0].face == uses[1].face:
+            raise CadError(
+                f"face {uses[0].face!r} meets itself along an edge: split it there, so that each edge has two faces"
+            )

@@ -1,0 +1,185 @@
+"""End faces as the CAD holds them: exact surfaces of revolution, planes, and the plane curves that trim them."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from OCP.Geom import Geom_Plane, Geom_Surface, Geom_SurfaceOfRevolution
+from OCP.gp import gp_Ax1, gp_Ax3, gp_Dir, gp_Pnt
+from scipy.interpolate import make_interp_spline
+
+from bladewright.cad.built import MM
+from bladewright.cad.geometry import space_curve, space_surface
+from bladewright.cad.topology import Edge, Use
+from bladewright.errors import CadError
+from bladewright.numerics.elementary import Array, unit
+from bladewright.nurbs.basis import greville
+from bladewright.nurbs.curve import Curve
+from bladewright.nurbs.trimmed import TrimmedSurface
+
+FOLLOWED = 1e-10
+"""Distance, as a fraction of the edge's extent, that a trimming curve may add to what the edge lies off its wall."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Wall:
+    """A trimmed face for the kernel."""
+
+    geometry: Geom_Surface
+    """[mm]"""
+    traces: tuple[Curve, ...]
+    """trimming curves in the parameters of `geometry`, one for each boundary, each at its edge's own parameter"""
+    swapped: bool
+    """whether the geometry's normal is opposite to the native one"""
+
+
+def wall(face: TrimmedSurface, edges: list[tuple[Edge, Use]]) -> Wall:
+    """The kernel's surface of a trimmed face and the traces on it of its edges, given in the order of its boundary."""
+    if face.revolution is not None:
+        return _revolved(face, edges)
+    net = face.surface.control_points
+    corner, along, across = net[0, 0], net[-1, 0] - net[0, 0], net[0, -1] - net[0, 0]
+    normal = unit(np.cross(along, across))
+    if np.max(np.abs((net - corner) @ normal)) <= 1e-14 * np.max(np.abs(net - corner)):
+        return _plane(corner, unit(along), normal, edges)
+    return _patch(face, edges)
+
+
+def _plane(corner: Array, along: Array, normal: Array, edges: list[tuple[Edge, Use]]) -> Wall:
+    axes = np.stack([along, np.cross(normal, along)])
+    frame = gp_Ax3(gp_Pnt(*(corner * MM).tolist()), gp_Dir(*normal.tolist()), gp_Dir(*along.tolist()))
+    traces = tuple(
+        Curve(
+            control_points=(edge.curve.control_points - corner) @ axes.T * MM,
+            knots=edge.curve.knots,
+            degree=edge.curve.degree,
+            weights=edge.curve.weights,
+        )
+        for edge, _ in edges
+    )
+    return Wall(geometry=Geom_Plane(frame), traces=traces, swapped=False)
+
+
+def _revolved(face: TrimmedSurface, edges: list[tuple[Edge, Use]]) -> Wall:
+    """A surface of revolution about -x, about which theta is right-handed.
+
+    The kernel's angle starts half a turn before the middle of the face, so that no trace comes near its seam.
+    """
+    revolution = face.revolution
+    line: Curve = revolution.meridian
+    angles = [np.asarray(revolution.theta(boundary(_spread(boundary.knots, 201))[:, 1])) for boundary in face.boundary]
+    low, high = min(float(a.min()) for a in angles), max(float(a.max()) for a in angles)
+    if high - low >= 2.0 * np.pi:
+        raise CadError(
+            f"an end face winds {np.degrees(high - low):.0f} deg around the axis: the kernel trims a surface of "
+            "revolution within one turn; close the blade with extended ends instead"
+        )
+    start = 0.5 * (low + high) - np.pi
+    x, r = (line.control_points * MM).T
+    meridian = Curve(
+        control_points=np.stack([x, r * np.sin(start), r * np.cos(start)], axis=-1) / MM,
+        knots=line.knots,
+        degree=line.degree,
+        weights=line.weights,
+    )
+    axis = gp_Ax1(gp_Pnt(0.0, 0.0, 0.0), gp_Dir(-1.0, 0.0, 0.0))
+
+    def trace(edge: Edge, use: Use) -> Curve:
+        boundary = face.boundary[use.side]
+        s = _spread(boundary.knots, 201)
+        guides = boundary(s if use.along else s[::-1])
+        reference = np.asarray(revolution.theta(guides[:, 1]))
+
+        def place(w: Array) -> Array:
+            points = edge.curve(w)
+            share = (w - edge.curve.knots[0]) / (edge.curve.knots[-1] - edge.curve.knots[0])
+            ahead = np.interp(share, np.linspace(0.0, 1.0, len(reference)), reference)
+            theta = np.arctan2(points[:, 1], points[:, 2])
+            theta = theta + 2.0 * np.pi * np.round((ahead - theta) / (2.0 * np.pi))
+            meridional = np.stack([points[:, 0], np.sqrt(points[:, 1] ** 2 + points[:, 2] ** 2)], axis=-1)
+            return np.stack([theta - start, _foot(line, meridional)], axis=-1)
+
+        def stretch(uv: Array) -> Array:
+            tangent = line.derivative(uv[:, 1])
+            return np.stack([line(uv[:, 1])[:, 1], np.sqrt(np.sum(tangent * tangent, axis=-1))], axis=-1)
+
+        return _interpolated(place, stretch, edge.curve)
+
+    return Wall(
+        geometry=Geom_SurfaceOfRevolution(space_curve(meridian), axis),
+        traces=tuple(trace(edge, use) for edge, use in edges),
+        swapped=True,
+    )
+
+
+def _patch(face: TrimmedSurface, edges: list[tuple[Edge, Use]]) -> Wall:
+    """Any other wall: its own B-spline surface, with the feet of its edges."""
+    surface = face.surface
+
+    def trace(edge: Edge, use: Use) -> Curve:
+        boundary = face.boundary[use.side]
+        s = _spread(boundary.knots, 2001)
+        guides = boundary(s)
+        ahead = surface(*guides.T)
+
+        def place(w: Array) -> Array:
+            points = edge.curve(w)
+            near = np.argmin(np.sum((points[:, None] - ahead[None]) ** 2, axis=-1), axis=1)
+            uv = guides[near]
+            for _ in range(20):
+                du, dv = surface.derivative(*uv.T, 1, 0), surface.derivative(*uv.T, 0, 1)
+                miss = points - surface(*uv.T)
+                a, b, c = (np.sum(p * q, axis=-1) for p, q in ((du, du), (du, dv), (dv, dv)))
+                e, f = np.sum(du * miss, axis=-1), np.sum(dv * miss, axis=-1)
+                uv = uv + np.stack([c * e - b * f, a * f - b * e], axis=-1) / (a * c - b * b)[:, None]
+            return uv
+
+        def stretch(uv: Array) -> Array:
+            tangents = (surface.derivative(*uv.T, 1, 0), surface.derivative(*uv.T, 0, 1))
+            return np.stack([np.sqrt(np.sum(t * t, axis=-1)) for t in tangents], axis=-1)
+
+        return _interpolated(place, stretch, edge.curve)
+
+    return Wall(geometry=space_surface(surface), traces=tuple(trace(e, u) for e, u in edges), swapped=False)
+
+
+def _spread(knots: Array, count: int) -> Array:
+    return np.linspace(knots[0], knots[-1], count)
+
+
+def _foot(line: Curve, points: Array) -> Array:
+    """Parameters (n,) of the points of a meridian curve that are nearest to points (n, 2)."""
+    spread = _spread(line.knots, 1001)
+    dense = line(spread)
+    t = spread[np.argmin(np.sum((points[:, None] - dense[None]) ** 2, axis=-1), axis=1)]
+    for _ in range(8):
+        miss, first, second = line(t) - points, line.derivative(t), line.derivative(t, 2)
+        slope = np.sum(first * first, axis=-1) + np.sum(miss * second, axis=-1)
+        t = np.clip(t - np.sum(miss * first, axis=-1) / slope, line.knots[0], line.knots[-1])
+    return t
+
+
+def _interpolated(place: object, stretch: object, along: Curve) -> Curve:
+    """A plane B-spline of degree 5 through `place(w)`, as smooth as the edge, its knots doubled until it follows.
+
+    `stretch` gives the metres that the two parameters are worth.
+    """
+    degree = max(5, along.degree)
+    inner, counts = np.unique(along.knots[along.degree + 1 : -along.degree - 1], return_counts=True)
+    counts = np.minimum(counts + degree - along.degree, degree)
+    size = float(np.ptp(along.control_points, axis=0).max())
+    for division in (1, 2, 4, 8, 16):
+        ends = np.concatenate([along.knots[:1], inner, along.knots[-1:]])
+        added = (ends[:-1, None] + np.diff(ends)[:, None] * np.arange(1, division) / division).ravel()
+        knots = np.sort(np.concatenate([np.repeat(ends[0], degree + 1), np.repeat(inner, counts), added,
+                                        np.repeat(ends[-1], degree + 1)]))  # fmt: skip
+        sites = greville(knots, degree)
+        spline = make_interp_spline(sites, place(sites), k=degree, t=knots)  # type: ignore[operator]
+        between = 0.5 * (sites[1:] + sites[:-1])
+        exact = place(between)  # type: ignore[operator]
+        miss = np.max(np.abs(spline(between) - exact) * stretch(exact))  # type: ignore[operator]
+        if miss <= FOLLOWED * size:
+            return Curve(control_points=spline.c, knots=knots, degree=degree)
+    raise CadError(
+        f"a trimming curve misses its edge by {miss:.3g} m with {len(sites)} control points, at most "
+        f"{FOLLOWED * size:.3g} m are allowed: the edge is not smooth enough on its wall; refine the surface there"
+    )
