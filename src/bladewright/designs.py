@@ -4,7 +4,7 @@ import re
 from abc import ABC
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, fields, replace
-from typing import Any, NamedTuple, Self
+from typing import Any, ClassVar, NamedTuple, Self
 
 from bladewright.errors import DesignError
 
@@ -34,20 +34,26 @@ def parameter(unit: str, **options: Any) -> Any:
 class Design(ABC):
     """Base of all designs: immutable, validated on construction, addressed by dotted paths."""
 
+    __pydantic_config__: ClassVar[dict[str, Any]] = {"extra": "forbid", "use_attribute_docstrings": True}
+
     def parameters(self) -> dict[str, float]:
         """Every differentiable leaf by its path, in the order of the fields, in the design's own units."""
         return dict(_leaves_of(self, ""))
 
     def changed(self, path: str | Mapping[str, Any], value: Any = None) -> Self:
-        """A new design with another value at a path such as `stagger[1]`, or at several given as a mapping.
+        """A new design with another value at a path such as `stagger[1]`, or at several at once given as a mapping.
 
         Raises DesignError where the path does not exist or the value is refused.
         """
-        changes = {path: value} if isinstance(path, str) else dict(path)
-        tree = self
-        for where, what in changes.items():
-            tree = _with(tree, _steps(where), what, where)
-        return tree
+        names = [each.name for each in fields(self)]
+        put: dict[str, Any] = {}
+        for where, what in ({path: value} if isinstance(path, str) else path).items():
+            name, *rest = _steps(where) or [""]
+            name = str(name)
+            if name not in names:
+                raise DesignError(unknown(where, name, names))
+            put[name] = _with(put.get(name, getattr(self, name)), rest, what, where)
+        return replace(self, **put)
 
 
 def unit_of(design: Design, name: str) -> str | None:

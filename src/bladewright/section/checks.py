@@ -94,9 +94,9 @@ def choice(path: str, value: Any, known: Sequence[str]) -> str:
 
 
 def text(path: str, value: Any) -> str:
-    """A string of one line."""
-    if not isinstance(value, str) or "\n" in value:
-        raise DesignError(f"{path} is {value!r}: a text of one line is needed")
+    """A string of one line of printable characters."""
+    if not isinstance(value, str) or not value.isprintable():
+        raise DesignError(f"{path} is {value!r}: a text of one line of printable characters is needed")
     return value
 
 

@@ -1,0 +1,19 @@
+"""The families of designs that a file can hold: one entry each."""
+
+from bladewright.blade.unified import UnifiedBlade
+from bladewright.designs import Design
+from bladewright.errors import FileError
+
+FAMILIES: dict[str, type[Design]] = {
+    "unified": UnifiedBlade,
+}
+"""Design class by the `family` of its files."""
+
+
+def family_of(design: Design) -> str:
+    """The `family` under which a design's file is written; FileError where its class has none."""
+    for family, kind in FAMILIES.items():
+        if type(design) is kind:
+            return family
+    known = ", ".join(kind.__name__ for kind in FAMILIES.values())
+    raise FileError(f"a {type(design).__name__} has no file format: designs that files hold are {known}")

@@ -1,0 +1,109 @@
+"""What pydantic found wrong in a design file, said as one paragraph: path, value, what is needed."""
+
+import json
+import math
+from collections.abc import Mapping
+from dataclasses import fields, is_dataclass
+from types import NoneType, UnionType
+from typing import Any, Literal, Union, get_args, get_origin, get_type_hints
+
+from pydantic import ValidationError
+from pydantic_core import ErrorDetails
+
+from bladewright.designs import Design, Point, unknown
+
+_RANKS = {"unexpected_keyword_argument": 0, "missing": 2}
+
+
+def paragraph(error: ValidationError, document: Mapping[str, Any], kind: type[Design]) -> str:
+    """The first thing that is wrong, unknown keys before wrong values before missing keys, and how many more."""
+    found: dict[str, tuple[int, int, str]] = {}
+    for each in error.errors(include_url=False):
+        place = _Place(each["loc"], document, kind)
+        rank = _RANKS.get(each["type"], 1) if place.depth_in_list == 0 else 1
+        # Of the arms of a union, the one that reached deepest into the value is the one that was meant.
+        candidate = (rank, -len(place.path), _said(each, place))
+        found[place.field] = min(found.get(place.field, candidate), candidate)
+    first = min(found.values(), key=lambda item: item[0])
+    more = len(found) - 1
+    return first[2] + (f" ({more} more to correct after that)" if more else "")
+
+
+def shown(value: Any) -> str:
+    """A value as a file would have it, shortened."""
+    if isinstance(value, float) and not math.isfinite(value):
+        return str(value)
+    text = json.dumps(value, default=str, ensure_ascii=False)
+    return text if len(text) <= 60 else f"{text[:57]}..."
+
+
+def needed(annotation: Any) -> str:
+    """In words, what a field of this type takes."""
+    origin, inner = get_origin(annotation), get_args(annotation)
+    if origin in (Union, UnionType):
+        return " or ".join(needed(each) for each in inner if each is not NoneType)
+    if origin is Literal:
+        return "one of " + ", ".join(shown(each) for each in inner)
+    if origin is tuple:
+        entry = needed(inner[0])
+        return f"a list of {entry[2:]}s" if entry == "a number" else f"a list with, for each entry, {entry}"
+    if is_dataclass(annotation):
+        return "a table of " + ", ".join(each.name for each in fields(annotation))
+    return {float: "a number", int: "a whole number", str: "a text in quotes", Point: "a pair of numbers"}[annotation]
+
+
+class _Place:
+    """Where in a file pydantic stopped: the dotted path, the field's type there, the table that holds it."""
+
+    def __init__(self, loc: tuple[int | str, ...], document: Mapping[str, Any], kind: type[Design]) -> None:
+        self.path = self.field = self.unit = ""
+        self.annotation: Any = kind
+        self.names: list[str] = [each.name for each in fields(kind)]
+        self.depth_in_list = 0
+        node: Any = document
+        for step in loc:
+            if isinstance(step, str) and self.depth_in_list == 0 and isinstance(node, Mapping):
+                self._enter(step)
+                node = node.get(step)
+            elif isinstance(step, int) and isinstance(node, list):
+                self._index(step)
+                node = node[step] if step < len(node) else None
+
+    def _enter(self, name: str) -> None:
+        if not is_dataclass(self.annotation):
+            return
+        self.names = [each.name for each in fields(self.annotation)]
+        self.unit = next((each.metadata.get("unit", "") for each in fields(self.annotation) if each.name == name), "")
+        self.annotation = get_type_hints(self.annotation).get(name)
+        self.path = self.field = f"{self.path}.{name}" if self.path else name
+
+    def _index(self, index: int) -> None:
+        self.depth_in_list += 1
+        if self.annotation is Point:
+            self.path += f".{Point._fields[index]}" if index < 2 else f"[{index}]"
+            self.annotation = float
+            return
+        self.path += f"[{index}]"
+        arms = get_args(self.annotation) if get_origin(self.annotation) in (Union, UnionType) else (self.annotation,)
+        self.annotation = next((get_args(arm)[0] for arm in arms if get_origin(arm) is tuple), float)
+
+
+def _said(error: ErrorDetails, place: _Place) -> str:
+    unit = f" [{place.unit}]" if place.unit else ""
+    if error["type"] == "unexpected_keyword_argument":
+        return unknown(place.path, place.path.rpartition(".")[2], place.names)
+    if error["type"] == "missing" and place.depth_in_list == 0:
+        return f"{place.path} is missing: {needed(place.annotation)}{unit} must be given"
+    if error["type"] == "missing":
+        return f"{place.path} is missing: a pair of numbers{unit} is needed"
+    value = shown(error["input"])
+    return f"{place.path or 'the file'} is {value}: {needed(place.annotation)}{unit} is needed{_nearest(error, place)}"
+
+
+def _nearest(error: ErrorDetails, place: _Place) -> str:
+    if error["type"] != "literal_error" or not isinstance(error["input"], str):
+        return ""
+    from difflib import get_close_matches
+
+    near = get_close_matches(error["input"], [str(each) for each in get_args(place.annotation)], n=1, cutoff=0.4)
+    return f"; did you mean '{near[0]}'?" if near else ""

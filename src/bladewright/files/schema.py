@@ -1,0 +1,49 @@
+"""The JSON Schema of design files, from the designs' own fields, units and docstrings."""
+
+from dataclasses import fields, is_dataclass
+from typing import Any, get_type_hints
+
+from pydantic import TypeAdapter
+
+from bladewright.designs import Design
+from bladewright.files.families import FAMILIES
+from bladewright.files.reading import adapter
+
+_DIALECT = "https://json-schema.org/draft/2020-12/schema"
+
+
+def schema() -> dict[str, Any]:
+    """A JSON Schema (2020-12) whose `oneOf` has an entry for each `family`; units stand under the key `unit`."""
+    inputs = [(family, "validation", adapter(kind)) for family, kind in FAMILIES.items()]
+    _, shared = TypeAdapter.json_schemas(inputs)  # type: ignore[arg-type]
+    definitions: dict[str, Any] = shared["$defs"]
+    for family, kind in FAMILIES.items():
+        own = definitions[kind.__name__]
+        own["properties"] = {"family": {"const": family, "description": own["description"]}, **own["properties"]}
+        own["required"] = ["family", *own["required"]]
+        _refine(kind, definitions)
+    return {
+        "$schema": _DIALECT,
+        "title": "bladewright design file",
+        "type": "object",
+        "oneOf": [{"$ref": f"#/$defs/{kind.__name__}"} for kind in FAMILIES.values()],
+        "$defs": definitions,
+    }
+
+
+def _refine(kind: type[Design], definitions: dict[str, Any]) -> None:
+    """Add units, and take away what a TOML file cannot say: null."""
+    properties = definitions[kind.__name__]["properties"]
+    hints = get_type_hints(kind)
+    for each in fields(kind):
+        entry = properties[each.name]
+        entry.pop("title", None)
+        if "unit" in each.metadata:
+            entry["unit"] = each.metadata["unit"]
+        if entry.get("default", 0) is None:
+            del entry["default"]
+            arms = [arm for arm in entry.pop("anyOf") if arm != {"type": "null"}]
+            entry.update(arms[0] if len(arms) == 1 else {"anyOf": arms})
+        hint = hints[each.name]
+        if isinstance(hint, type) and is_dataclass(hint) and issubclass(hint, Design):
+            _refine(hint, definitions)

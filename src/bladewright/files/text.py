@@ -1,0 +1,118 @@
+"""Text files: read within a limit of size and only as UTF-8, written whole or not at all."""
+
+import os
+import secrets
+from pathlib import Path
+
+from bladewright.errors import FileError
+
+LARGEST = 1_000_000
+"""Bytes beyond which a text file is refused before it is read; a design takes a few thousand."""
+
+_SIGNATURES = {
+    b"\x89PNG": "a PNG picture",
+    b"PK\x03\x04": "a ZIP archive",
+    b"\x1f\x8b": "a gzip archive",
+    b"%PDF": "a PDF",
+}
+_WIDE = (b"\xff\xfe", b"\xfe\xff")
+_MARK = b"\xef\xbb\xbf"
+
+
+def read_text(path: Path) -> str:
+    """The text of a UTF-8 file of at most `LARGEST` bytes, its line ends kept, without a byte-order mark.
+
+    Raises FileError where there is no such file, it is a directory, too large, not text or not UTF-8.
+    """
+    try:
+        with path.open("rb") as stream:
+            size = os.fstat(stream.fileno()).st_size
+            data = stream.read(LARGEST + 1) if size <= LARGEST else b""
+    except FileNotFoundError:
+        raise FileError(f"there is no file '{path}'{_near(path)}") from None
+    except IsADirectoryError:
+        raise FileError(f"'{path}' is a directory: name a file in it{_inside(path)}") from None
+    except (OSError, ValueError) as error:
+        raise FileError(f"'{path}' cannot be read: {_reason(error)}") from error
+    if max(size, len(data)) > LARGEST:
+        held = f"holds {size:,} bytes" if size > LARGEST else "does not end"
+        raise FileError(f"'{path}' {held}: at most {LARGEST:,} bytes are read; is it a design file?")
+    return _decoded(data, path)
+
+
+def write_text(path: Path, text: str) -> None:
+    """Write a text file that appears whole or not at all; a link stays a link, a device is written to directly.
+
+    Raises FileError where that is not possible, and leaves nothing behind.
+    """
+    path = Path(path)
+    try:
+        target = Path(os.path.realpath(path))
+        if target.is_dir():
+            raise FileError(f"'{path}' is a directory: name the file to write")
+        if target.exists() and not target.is_file():
+            target.write_text(text, encoding="utf-8", newline="")
+            return
+        _replace(target, text)
+    except (OSError, ValueError) as error:
+        raise FileError(f"'{path}' cannot be written: {_reason(error)}") from error
+
+
+def _replace(target: Path, text: str) -> None:
+    draft = target.with_name(f".{secrets.token_hex(8)}.tmp")
+    try:
+        with draft.open("x", encoding="utf-8", newline="") as stream:
+            stream.write(text)
+            stream.flush()
+            os.fsync(stream.fileno())
+        if target.exists():
+            draft.chmod(target.stat().st_mode & 0o7777)
+        draft.replace(target)
+    except BaseException:
+        draft.unlink(missing_ok=True)
+        raise
+
+
+def _decoded(data: bytes, path: Path) -> str:
+    what = next((what for start, what in _SIGNATURES.items() if data.startswith(start)), None)
+    if data.startswith(_WIDE):
+        raise FileError(f"'{path}' is UTF-16 text: save it as UTF-8")
+    if what or b"\0" in data:
+        raise FileError(f"'{path}' is {what or 'a binary file'}: a design file is UTF-8 text")
+    data = data.removeprefix(_MARK)
+    try:
+        return data.decode("utf-8")
+    except UnicodeDecodeError as error:
+        line = data.count(b"\n", 0, error.start) + 1
+        place = f"byte 0x{data[error.start]:02x} at offset {error.start}, line {line}"
+        guess = data[error.start : error.start + 1].decode("latin-1")
+        cure = f"save it as UTF-8 (in latin-1 that byte is '{guess}')" if guess.isprintable() else "save it as UTF-8"
+        raise FileError(f"'{path}' is not UTF-8 text: {place}; {cure}") from None
+
+
+def _reason(error: OSError | ValueError) -> str:
+    if isinstance(error, OSError) and error.strerror:
+        return error.strerror[0].lower() + error.strerror[1:]
+    return str(error)
+
+
+def _near(path: Path) -> str:
+    from difflib import get_close_matches
+
+    try:
+        names = [each.name for each in path.parent.iterdir() if each.is_file()]
+    except OSError:
+        return f", nor a directory '{path.parent}'"
+    near = get_close_matches(path.name, names, n=1, cutoff=0.5)
+    designs = sorted(name for name in names if name.endswith(".toml"))
+    if near:
+        return f"; did you mean '{path.with_name(near[0])}'?"
+    return f"; design files there are {', '.join(designs[:5])}" if designs else ""
+
+
+def _inside(path: Path) -> str:
+    try:
+        names = sorted(each.name for each in path.glob("*.toml"))
+    except OSError:
+        return ""
+    return f", such as {names[0]}" if names else ""

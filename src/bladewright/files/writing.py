@@ -1,0 +1,134 @@
+"""Writing a design to its file, the exact inverse of reading; a file that is there keeps its comments and layout."""
+
+from collections.abc import MutableMapping
+from dataclasses import MISSING, fields
+from os import PathLike
+from pathlib import Path
+from typing import Any
+
+import tomlkit
+from tomlkit.exceptions import TOMLKitError
+from tomlkit.items import Array
+
+from bladewright.designs import Design
+from bladewright.errors import BladewrightError, DesignError, FileError
+from bladewright.files.families import family_of
+from bladewright.files.literals import literal, plain, same
+from bladewright.files.reading import design_from, parsed
+from bladewright.files.text import read_text, write_text
+
+
+def write_design(design: Design, path: str | PathLike[str]) -> None:
+    """Write a design as TOML, so that reading it gives the same design to the bit.
+
+    Where the file already holds a design, only the values that differ are changed: comments and layout stay.
+    Raises FileError where the file cannot be written or holds something else, and DesignError where a leaf of the
+    design is complex or a batch.
+    """
+    path = Path(path)
+    fresh = text_of(design)
+    write_text(path, updated(design, read_text(path), str(path)) if path.is_file() else fresh)
+
+
+def text_of(design: Design) -> str:
+    """The text of a new design file; fields that have their default are left out, units stand in comments."""
+    length = _length_of(design)
+    lines = [f'family = "{family_of(design)}"', *_lines(design, "", length, parameters=False), ""]
+    lines += _lines(design, "", length, parameters=True)
+    for each in fields(design):
+        value = getattr(design, each.name)
+        if isinstance(value, Design):
+            lines += ["", f"[{each.name}]"]
+            lines += [
+                line for kind in (False, True) for line in _lines(value, f"{each.name}.", length, parameters=kind)
+            ]
+    return "\n".join(lines) + "\n"
+
+
+def updated(design: Design, text: str, where: str) -> str:
+    """The text of a design file with this design's values; FileError where it holds no design."""
+    try:
+        document = parsed(text, where)
+    except FileError as error:
+        raise FileError(f"{error}; so it is not overwritten: name another file") from error
+    if "family" not in document:
+        raise FileError(f"'{where}' exists and holds no design, so it is not overwritten: name another file")
+    family = family_of(design)
+    try:
+        before: Design | None = design_from(document, where)
+    except DesignError:
+        before = None
+    tree = tomlkit.parse(text)
+    if document["family"] != family:
+        tree["family"] = family
+    try:
+        _merge(tree, design, before if type(before) is type(design) else None, _length_of(design))
+        merged = tomlkit.dumps(tree)
+        kept = repr(design_from(parsed(merged, where), where)) == repr(design)
+    except (TOMLKitError, BladewrightError, IndexError, KeyError) as error:
+        raise FileError(_no_place(where)) from error
+    if not kept:
+        raise FileError(_no_place(where))
+    return merged
+
+
+def _no_place(where: str) -> str:
+    return f"'{where}' exists with a layout that cannot take this design's values: name another file"
+
+
+def _length_of(design: Design) -> str:
+    return str(getattr(design, "length_unit", "length"))
+
+
+def _lines(design: Design, path: str, length: str, *, parameters: bool) -> list[str]:
+    lines = []
+    for each in fields(design):
+        value = getattr(design, each.name)
+        left_out = isinstance(value, Design) or _is_default(each, value)
+        if ("unit" in each.metadata) == parameters and not left_out:
+            unit = each.metadata.get("unit", "-").replace("length", length)
+            comment = "" if unit == "-" else f"  # {unit}"
+            lines.append(f"{each.name} = {literal(value, path + each.name)}{comment}")
+    return lines
+
+
+def _is_default(each: Any, value: Any) -> bool:
+    return each.default is not MISSING and type(value) is type(each.default) and same(plain(each.default), plain(value))
+
+
+def _merge(table: MutableMapping[str, Any], design: Design, before: Design | None, length: str) -> None:
+    for each in fields(design):
+        value, old = getattr(design, each.name), getattr(before, each.name, None)
+        if isinstance(value, Design):
+            if not isinstance(table.get(each.name), MutableMapping):
+                table[each.name] = tomlkit.table()
+            _merge(table[each.name], value, old if isinstance(old, Design) else None, length)
+        elif value is None:
+            table.pop(each.name, None)
+        elif each.name in table:
+            _put(table, each.name, value, each.name)
+        elif not _is_default(each, value) and not (before is not None and same(plain(old), plain(value))):
+            table[each.name] = tomlkit.value(literal(value, each.name))
+    for key in set(table) - {each.name for each in fields(design)} - {"family"}:
+        del table[key]
+
+
+def _put(holder: Any, key: str | int, value: Any, path: str) -> None:
+    """Change what stands at `key` of a table or an array, as little of it as the value needs."""
+    there = holder[key]
+    if same(_unwrapped(there), plain(value)):
+        return
+    if not isinstance(there, Array) or not isinstance(value, tuple) or not there or not value:
+        holder[key] = tomlkit.value(literal(value, path))
+        return
+    while len(there) > len(value):
+        del there[-1]
+    for index, item in enumerate(value):
+        if index < len(there):
+            _put(there, index, item, f"{path}[{index}]")
+        else:
+            there.append(tomlkit.value(literal(item, f"{path}[{index}]")))
+
+
+def _unwrapped(item: Any) -> Any:
+    return item.unwrap() if hasattr(item, "unwrap") else item
