@@ -1,16 +1,154 @@
 """A piece of a surface inside closed boundary curves in its parameter plane."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property
 
+import numpy as np
+from numpy.random import default_rng
+from numpy.typing import ArrayLike, NDArray
+
+from bladewright.errors import GeometryError
+from bladewright.numerics.elementary import Array, length
+from bladewright.numerics.quadrature import gauss, panels, settled
+from bladewright.nurbs.basis import Reals, breaks
+from bladewright.nurbs.crossings import Chain, chain, contained, meeting_parameters
 from bladewright.nurbs.curve import Curve
 from bladewright.nurbs.surface import Surface
+
+CLOSED = 1e-9
+"""largest gap between consecutive boundary curves, in units of their extent"""
+DRAWS = 4_000_000
+"""most points that are drawn in the boundary's box to find some inside"""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class TrimmedSurface:
-    """The part of `surface` to the left of `boundary`, a closed chain of curves in (u, v) run counter-clockwise."""
+    """The part of `surface` to the left of `boundary`, a closed chain of curves in (u, v) run counter-clockwise.
+
+    The chain does not cross itself. Raises GeometryError where it is not plane, not closed or runs clockwise.
+    """
 
     surface: Surface
     """the untrimmed surface"""
     boundary: tuple[Curve, ...]
     """curves of dimension 2, each ending where the next one starts"""
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "boundary", tuple(self.boundary))
+        if not self.boundary or any(curve.control_points.shape[1:] != (2,) for curve in self.boundary):
+            shapes = [curve.control_points.shape for curve in self.boundary]
+            raise GeometryError(
+                f"a boundary of curves of shapes {shapes} was given: at least one, each (n, 2) in (u, v)"
+            )
+        ends = [(curve.control_points[0].real, curve.control_points[-1].real) for curve in self.boundary]
+        extent = float(np.ptp(np.concatenate([curve.control_points.real for curve in self.boundary]), axis=0).max())
+        for index, (_, end) in enumerate(ends):
+            following = (index + 1) % len(ends)
+            gap = float(length(ends[following][0] - end))
+            if gap > CLOSED * extent:
+                raise GeometryError(
+                    f"boundary curve {following} starts {gap:g} away from the end of curve {index}: at most "
+                    f"{CLOSED * extent:g} is allowed; reorder, reverse or close the chain"
+                )
+        if not self.parametric_area.real > 0.0:
+            raise GeometryError(
+                f"the boundary encloses an area of {self.parametric_area.real:g} in (u, v): it must run "
+                "counter-clockwise; reverse its curves and their order"
+            )
+
+    def __call__(self, u: ArrayLike, v: ArrayLike) -> Array:
+        """Points (..., d) of the surface, inside the boundary or not."""
+        return self.surface(u, v)
+
+    def normal(self, u: ArrayLike, v: ArrayLike) -> Array:
+        """Unit normals (..., 3) of the surface, inside the boundary or not."""
+        return self.surface.normal(u, v)
+
+    @cached_property
+    def parametric_area(self) -> Array:
+        """Area () enclosed by the boundary in the (u, v) plane."""
+
+        def total(order: int) -> Array:
+            enclosed: Array = np.zeros(())
+            for curve in self.boundary:
+                t, weights = panels(breaks(curve.knots), order)
+                enclosed = enclosed + np.sum(weights * curve(t)[:, 0] * curve.derivative(t)[:, 1])
+            return enclosed
+
+        return settled(total)
+
+    def area(self) -> Array:
+        """Area () of the trimmed piece of a surface in space."""
+
+        def density(u: Array, v: Array) -> Array:
+            along_u, along_v = self.surface.derivative(u, v, 1, 0), self.surface.derivative(u, v, 0, 1)
+            return length(np.cross(along_u, along_v))
+
+        return self.integral(density)
+
+    def integral(self, density: Callable[[Array, Array], Array], order: int | None = None) -> Array:
+        """Integral (k) of density(u, v) (..., k) du dv over the region inside the boundary.
+
+        Green's theorem: the sum over the boundary of F dv, with F the integral of the density along u from the
+        boundary's smallest u. Both quadratures break at the surface's knots, the outer one also at the boundary's;
+        `order` Gauss points a panel, or, where None, as many as the result needs to settle within 1e-13 of itself.
+        The parameters are complex where the boundary is; `Surface` carries their imaginary parts to first order.
+        """
+        return settled(lambda points: self._green(density, points)) if order is None else self._green(density, order)
+
+    def contains(self, u: ArrayLike, v: ArrayLike) -> NDArray[np.bool_]:
+        """Whether points (...) of the parameter plane lie inside the boundary; on the boundary itself, either."""
+        at_u, at_v = np.broadcast_arrays(np.asarray(u, dtype=np.float64), np.asarray(v, dtype=np.float64))
+        return contained(self._chain, at_u.ravel(), at_v.ravel()).reshape(at_u.shape)
+
+    def interior_points(self, count: int, seed: int = 0) -> tuple[Reals, Reals]:
+        """Parameters u, v (count,) drawn evenly in the (u, v) plane inside the boundary, the same for the same seed.
+
+        Raises GeometryError where the region is too thin for four million draws in its box.
+        """
+        random = default_rng(seed)
+        low, high = self._chain.low, self._chain.high
+        share = float(self.parametric_area.real) / float(np.prod(high - low))
+        found: list[Reals] = []
+        inside, drawn = 0, 0
+        while inside < count:
+            batch = min(int(1.2 * (count - inside) / share) + 16, DRAWS - drawn)
+            if batch <= 0:
+                raise GeometryError(
+                    f"{inside} of {count} points inside a boundary were found in {DRAWS} draws: it fills {share:g} of its "
+                    "box in (u, v); ask for fewer points"
+                )
+            sites = low + (high - low) * random.random((batch, 2))
+            found.append(sites[self.contains(sites[:, 0], sites[:, 1])])
+            inside, drawn = inside + len(found[-1]), drawn + batch
+        sites = np.concatenate([np.zeros((0, 2)), *found])[:count]
+        return sites[:, 0], sites[:, 1]
+
+    @cached_property
+    def _chain(self) -> Chain:
+        return chain(self.boundary)
+
+    def _green(self, density: Callable[[Array, Array], Array], order: int) -> Array:
+        knots_u, knots_v = breaks(self.surface.knots_u), breaks(self.surface.knots_v)
+        origin = float(self._chain.low[0])
+        starts = np.concatenate([[origin], knots_u[1:-1][knots_u[1:-1] > origin]])
+        nodes, weights = gauss(order)
+        total: Array = np.zeros(())
+        for curve in self.boundary:
+            ends = np.concatenate([breaks(curve.knots), meeting_parameters(curve, knots_u[1:-1], knots_v[1:-1])])
+            t, outer = panels(np.unique(ends), order)
+            u, v = np.moveaxis(curve(t), -1, 0)
+            rise = outer * curve.derivative(t)[:, 1]
+            # each panel along u ends at the next knot, or at the boundary if that comes first
+            tops = np.append(starts[1:], np.inf)
+            reached = u.real[:, None] > starts
+            width = np.where(reached, np.where(u.real[:, None] < tops, u[:, None], tops), starts) - starts
+            row, panel = np.nonzero(reached)
+            inner = width[row, panel][:, None]
+            values = density(
+                starts[panel][:, None] + inner * nodes, np.broadcast_to(v[row][:, None], inner.shape[:1] + nodes.shape)
+            )
+            scale = (inner * weights) * rise[row][:, None]
+            total = total + np.tensordot(scale, values, axes=((0, 1), (0, 1)))
+        return total

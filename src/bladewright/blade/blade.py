@@ -1,0 +1,125 @@
+"""The native blade: named surfaces in metres, with what was asked of them and what they reach."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from types import MappingProxyType
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from bladewright.blade.ends import ruled_end
+from bladewright.blade.exact import ExactBlade
+from bladewright.blade.knots import Knots
+from bladewright.blade.unified import UnifiedBlade
+from bladewright.errors import DesignError
+from bladewright.nurbs.domain import extended, reparametrised
+
+from bladewright.nurbs.surface import Surface
+from bladewright.nurbs.trimmed import TrimmedSurface
+
+if TYPE_CHECKING:
+    from bladewright.nurbs.flux import MassProperties
+    from bladewright.blade.promises import Promises
+    from bladewright.section.section import Section
+
+OUTWARD = MappingProxyType({"upper": -1, "lower": 1, "hub": -1, "shroud": 1})
+"""+1 for the faces whose dS/du x dS/dv points out of the blade"""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Blade:
+    """A closed blade of native surfaces."""
+
+    design: UnifiedBlade
+    surfaces: Mapping[str, Surface | TrimmedSurface]
+    """`upper` and `lower` (u from leading to trailing edge, v from hub to shroud), `hub` and `shroud`; metres"""
+    knots: Knots
+    """of both sides; give them to `design.build(knots=...)` to hold them"""
+    chord: float
+    """mean straight distance from leading to trailing edge [m]"""
+    error: float
+    """largest distance of the sides from the exact blade that was found between the sites, of the chord"""
+    wall_error: float
+    """largest distance of the blade's ends from hub and shroud that was found between the sites, of the chord"""
+    exact: ExactBlade
+    """the blade that is meant"""
+
+    @property
+    def name(self) -> str:
+        """The design's name."""
+        return self.design.name
+
+    @property
+    def description(self) -> str:
+        """One line for the header of CAD files."""
+        return self.design.description
+
+    @property
+    def author(self) -> str:
+        """For the header of CAD files."""
+        return self.design.author
+
+    @property
+    def organisation(self) -> str:
+        """For the header of CAD files."""
+        return self.design.organisation
+
+    @property
+    def orientations(self) -> Mapping[str, int]:
+        """+1 for the faces whose dS/du x dS/dv points out of the blade, -1 for the others."""
+        return OUTWARD
+
+    @property
+    def tolerance(self) -> float:
+        """The distance from the exact blade that was allowed, of the chord."""
+        return self.design.tolerance
+
+    @cached_property
+    def properties(self) -> "MassProperties":
+        """Volume [m^3], area [m^2], centroid [m] and inertia [m^5], by quadrature on the native surfaces."""
+        from bladewright.nurbs.flux import mass_properties
+
+        return mass_properties([(self.surfaces[name], sign) for name, sign in OUTWARD.items()])
+
+    @cached_property
+    def promises(self) -> "Promises":
+        """What the built surfaces keep of what was asked: angles, radii, smooth edges, ends on the walls."""
+        from bladewright.blade.promises import promises_of
+
+        return promises_of(self)
+
+    def section(self, v: float) -> "Section":
+        """The exact section at v in [0, 1], in its plane, with the properties it has on its stream surface."""
+        from bladewright.blade.sections import section_at
+
+        return section_at(self.exact, v)
+
+    def extended(self, span: float) -> "Blade":
+        """The blade continued past hub and shroud by `span` of its own span at each end, for a later cut.
+
+        The sides continue their own polynomials, and the part between is unchanged; ruled caps close the ends.
+        Raises DesignError where span is not above 0 and at most 0.5.
+        """
+        if not 0.0 < span <= 0.5:
+            raise DesignError(f"an extension by {span:g} of the span was asked: it must be above 0 and at most 0.5")
+        sides = {
+            name: reparametrised(extended(self.surfaces[name], -span, 1.0 + span, "v"), 0.0, 1.0, "v")
+            for name in ("upper", "lower")
+        }
+        for wall, row in (("hub", 0), ("shroud", -1)):
+            sides[wall] = ruled_end(sides["upper"], sides["lower"], row)
+        return Blade(
+            design=self.design.changed("name", f"{self.name}-extended"),
+            surfaces=MappingProxyType(sides),
+            knots=self.knots,
+            chord=self.chord,
+            error=self.error,
+            wall_error=float("nan"),
+            exact=self.exact,
+        )
+
+
+def surface_of(net: np.ndarray, knots: Knots, degree: int) -> Surface:
+    """A side from its control net."""
+    return Surface(control_points=net, knots_u=knots.u, knots_v=knots.v, degree_u=degree, degree_v=degree)

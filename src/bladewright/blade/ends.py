@@ -1,0 +1,149 @@
+"""The ends of a blade: trimmed pieces of hub and shroud, or ruled caps where a blade stands past them."""
+
+from collections.abc import Callable
+
+import numpy as np
+
+from bladewright.blade.exact import ExactBlade, Stations
+from bladewright.errors import DesignError
+from bladewright.numerics.elementary import Array, angle, dot, length
+from bladewright.nurbs.basis import Reals, basis, greville
+from bladewright.nurbs.curve import Curve
+from bladewright.nurbs.domain import extended
+from bladewright.nurbs.revolution import Revolution
+from bladewright.nurbs.surface import Surface
+from bladewright.nurbs.trimmed import TrimmedSurface
+
+FOLLOWED = 2e-10
+"""distance of a boundary's image from the side's end, of the chord, besides what the side itself lies off the wall"""
+
+
+def trimmed_end(exact: ExactBlade, sides: tuple[Surface, Surface], wall: str, chord: float) -> TrimmedSurface:
+    """The piece of the hub or shroud wall inside the ends of the upper and lower side.
+
+    The wall is the channel's, revolved about the axis or drawn along y in a cascade, exact; its u is the channel's.
+    """
+    row = 0 if wall == "hub" else -1
+    meridian = extended(exact.channel.curve(wall), -exact.before, 1.0 + exact.after)
+    stations = exact.stations(np.array([0.0 if wall == "hub" else 1.0]))
+    traces = [_Trace(stations, side, row, meridian, upper=upper) for side, upper in zip(sides, (True, False), strict=True)]
+    across = [np.real(trace(np.linspace(0.0, 1.0, 101))[1]) for trace in traces]
+    low, high = min(float(a.min()) for a in across), max(float(a.max()) for a in across)
+    room = 0.05 * (high - low)
+    revolution = None
+    if exact.mapping.revolved:
+        if high - low + 2.0 * room >= 2.0 * np.pi:
+            raise DesignError(
+                f"the blade winds {np.degrees(high - low):.0f} deg around the axis at the {wall}: its end cannot be one "
+                "trimmed face of 360 deg or more; lower the stagger there"
+            )
+        revolution = Revolution(meridian=meridian, start=low - room, end=high + room)
+        surface = revolution.surface()
+    else:
+        surface = _drawn(meridian, low - room, high + room)
+
+    def in_parameters(u: Array, across: Array) -> Array:
+        v = (across - low + room) / (high - low + 2.0 * room) if revolution is None else revolution.v(across)
+        return np.stack([u, v], axis=-1)
+
+    curves = [_followed(lambda s, trace=trace: in_parameters(*trace(s)), trace.end, surface, chord) for trace in traces]
+    return TrimmedSurface(surface=surface, boundary=(curves[1], _reversed(curves[0])), revolution=revolution)
+
+
+def ruled_end(upper: Surface, lower: Surface, row: int) -> Surface:
+    """The ruled surface between the ends of the sides: v = 0 on the lower, v = 1 on the upper side's end."""
+    ends = [np.array(side.control_points[:, row]) for side in (lower, upper)]
+    return Surface(
+        control_points=np.stack(ends, axis=1),
+        knots_u=upper.knots_u,
+        knots_v=np.array([0.0, 0.0, 1.0, 1.0]),
+        degree_u=upper.degree_u,
+        degree_v=1,
+    )
+
+
+class _Trace:
+    """The end of a side on its wall: the channel's u and theta, or y in a cascade, by the side's parameter."""
+
+    def __init__(self, stations: Stations, side: Surface, row: int, meridian: Curve, *, upper: bool) -> None:
+        self.end = Curve(control_points=side.control_points[:, row], knots=side.knots_u, degree=side.degree_u)
+        self.stations, self.meridian, self.upper = stations, meridian, upper
+
+    def __call__(self, s: Reals) -> tuple[Array, Array]:
+        """u and theta or y (len(s),) of the feet of the end's points on the wall's meridian."""
+        points = self.end(s)
+        u, near = self._meant(s)
+        if self.stations.mapping.revolved:
+            radius = length(points[..., 1:])
+            across = angle(points[..., 1], points[..., 2])
+            across = across + 2.0 * np.pi * np.round((near - np.real(across)) / (2.0 * np.pi))
+        else:
+            radius, across = points[..., 2], points[..., 1]
+        target = np.stack([points[..., 0], radius], axis=-1)
+        for _ in range(3):
+            u = u + _foot_step(self.meridian, u, np.real(target))
+        return u + _foot_step(self.meridian, u, target), across
+
+    def _meant(self, s: Reals) -> tuple[Reals, Reals]:
+        plane = self.stations.plane.points(s)[0 if self.upper else 1]
+        lines = self.stations.lines
+        u = lines.u_at(plane[..., 0])
+        across = lines.mapping.tangential(plane[..., 1], lines.position(u)[..., 1], lines.lengths[..., None])
+        first = (0,) * (u.ndim - 1)
+        return np.real(u)[first], np.real(across)[first]
+
+
+def _foot_step(meridian: Curve, u: Reals, target: Array) -> Array:
+    """Newton's step towards the nearest point of the meridian."""
+    miss, slope, bend = target - meridian(u), meridian.derivative(u), meridian.derivative(u, 2)
+    return dot(miss, slope) / (dot(slope, slope) - dot(miss, bend))
+
+
+def _followed(place: Callable[[Reals], Array], end: Curve, surface: Surface, chord: float) -> Curve:
+    """A plane B-spline that the wall maps on the side's end, as smooth as the side, its knots cut until it follows."""
+    real = surface if not np.iscomplexobj(surface.control_points) else _real(surface)
+    spans = np.unique(end.knots)
+    for pieces in (1, 2, 3, 4, 6, 8):
+        added = [spans[:-1] + np.diff(spans) * k / pieces for k in range(1, pieces)]
+        knots = np.sort(np.concatenate([end.knots, *added]))
+        sites = greville(knots, end.degree)
+        net = np.linalg.solve(basis(knots, end.degree, sites), place(sites))
+        curve = Curve(control_points=net, knots=knots, degree=end.degree)
+        between = (sites[1:] + sites[:-1]) / 2.0
+        exact, found = np.real(place(between)), np.real(curve(between))
+        miss = length(real(exact[:, 0], exact[:, 1]) - real(found[:, 0], found[:, 1]))
+        if np.max(miss) < FOLLOWED * chord:
+            return curve
+    raise DesignError(
+        f"an end of the blade cannot be followed on its wall within {FOLLOWED:g} of the chord, "
+        f"{np.max(miss) / chord:.2g} is reached: smooth the channel's wall, or lower the tolerance"
+    )
+
+
+def _real(surface: Surface) -> Surface:
+    return Surface(
+        control_points=np.real(surface.control_points),
+        knots_u=surface.knots_u,
+        knots_v=surface.knots_v,
+        degree_u=surface.degree_u,
+        degree_v=surface.degree_v,
+        weights=None if surface.weights is None else np.real(surface.weights),
+    )
+
+
+def _reversed(curve: Curve) -> Curve:
+    low, high = curve.knots[0], curve.knots[-1]
+    return Curve(control_points=curve.control_points[::-1], knots=(low + high - curve.knots)[::-1], degree=curve.degree)
+
+
+def _drawn(meridian: Curve, low: float, high: float) -> Surface:
+    """The meridian (x, z) drawn along y from low to high."""
+    x, z = meridian.control_points[:, 0], meridian.control_points[:, 1]
+    rows = [np.stack([x, np.full_like(x, y), z], axis=-1) for y in (low, high)]
+    return Surface(
+        control_points=np.stack(rows, axis=1),
+        knots_u=meridian.knots,
+        knots_v=np.array([0.0, 0.0, 1.0, 1.0]),
+        degree_u=meridian.degree,
+        degree_v=1,
+    )

@@ -1,0 +1,266 @@
+"""The exact blade: for every v the plane section of the laws' values there, laid on its stream surface."""
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from bladewright.blade.mapping import Conformal, Mapping, Taylor, mapping_of
+from bladewright.blade.meridional import Meridional, meridional
+from bladewright.blade.streamlines import StreamLines, stream_lines
+from bladewright.blade.unified import UnifiedBlade
+from bladewright.errors import DesignError
+from bladewright.numerics.elementary import Array, radians, unit
+from bladewright.nurbs.basis import Reals
+from bladewright.section.camber import camber_line, camber_points
+from bladewright.section.checks import UNITS
+from bladewright.section.laws import Span
+from bladewright.section.plane import PlaneSections, plane_sections
+from bladewright.section.sampling import sample_places
+from bladewright.section.sides import advances, edge_height, side
+
+REACH = 0.6
+"""how far, in u, the channel may be continued for a nose"""
+
+
+class EdgeRow(NamedTuple):
+    """An edge in space: its points and, by s along the upper side, the sides' derivatives there (..., m, 3).
+
+    The lower side has the opposite first and the same second derivative.
+    """
+
+    point: Array
+    first: Array
+    second: Array
+
+
+@dataclass(frozen=True, kw_only=True)
+class Stations:
+    """The exact blade's sections at places v (m,) along the span."""
+
+    v: Reals
+    lines: StreamLines
+    plane: PlaneSections
+    angle_in: Array
+    """(..., m) metal angle at the leading edge [rad]"""
+    angle_out: Array
+    """(..., m) metal angle at the trailing edge [rad]"""
+    curvature_in: Array
+    """(..., m) curvature of the leading edge in the plane"""
+    curvature_out: Array
+    """(..., m) curvature of the trailing edge in the plane"""
+
+    @property
+    def mapping(self) -> Mapping:
+        """The sections' plane and its way to space."""
+        return self.lines.mapping
+
+    def in_space(self, plane: Array) -> Array:
+        """Points (..., m, k, 3) in metres of plane points (..., m, k, 2)."""
+        u = self.lines.u_at(plane[..., 0])
+        position = self.lines.position(u)
+        tangential = self.mapping.tangential(plane[..., 1], position[..., 1], self.lines.lengths[..., None])
+        return self.mapping.in_space(position[..., 0], position[..., 1], tangential)
+
+    def points(self, s: Reals) -> tuple[Array, Array]:
+        """Points (..., m, len(s), 3) of the upper and the lower side."""
+        upper, lower = self.plane.points(s)
+        both = self.in_space(np.concatenate([upper, lower], axis=-2))
+        return both[..., : len(s), :], both[..., len(s) :, :]
+
+    def wall_normals(self, plane: Array) -> Array:
+        """Unit normals (..., m, k, 3) of the stream surfaces at plane points (..., m, k, 2), towards the shroud."""
+        u = self.lines.u_at(plane[..., 0])
+        position, slope = self.lines.position(u), unit(self.lines.position(u, 1))
+        tangential = self.mapping.tangential(plane[..., 1], position[..., 1], self.lines.lengths[..., None])
+        if not self.mapping.revolved:
+            tangential = np.zeros_like(tangential)
+        return Conformal().in_space(-slope[..., 1], slope[..., 0], tangential)
+
+    def leading_edge(self) -> EdgeRow:
+        """The leading edge in space."""
+        edge, turn = self.plane.leading_edge, self.angle_in
+        normal = np.stack([-np.sin(turn), np.cos(turn)], axis=-1)
+        bend = (self.curvature_in * edge.normal_speed**2)[..., None] * np.stack([np.cos(turn), np.sin(turn)], axis=-1)
+        first = edge.normal_speed[..., None] * normal
+        return self._row(0.0, self.plane.camber[..., 0, :], first, bend + edge.tangential[..., None] * normal)
+
+    def trailing_edge(self) -> EdgeRow:
+        """The trailing edge in space."""
+        edge, turn = self.plane.trailing_edge, self.angle_out
+        normal = np.stack([-np.sin(turn), np.cos(turn)], axis=-1)
+        bend = (self.curvature_out * edge.normal_speed**2)[..., None] * np.stack([np.cos(turn), np.sin(turn)], axis=-1)
+        first = -edge.normal_speed[..., None] * normal
+        return self._row(1.0, self.plane.camber[..., 3, :], first, edge.tangential[..., None] * normal - bend)
+
+    def _row(self, u: float, start: Array, first: Array, second: Array) -> EdgeRow:
+        at = np.array([u])
+        position, slope, bend = (self.lines.position(at, order)[..., 0, :] for order in range(3))
+        density = self.mapping.density(position, slope)
+        growth = self.mapping.density_slope(position, slope, bend)
+        u_first = first[..., 0] / density
+        u_second = (second[..., 0] - growth * u_first**2) / density
+        x, radius = (
+            Taylor(position[..., i], slope[..., i] * u_first, bend[..., i] * u_first**2 + slope[..., i] * u_second)
+            for i in (0, 1)
+        )
+        ordinate = Taylor(start[..., 1], first[..., 1], second[..., 1])
+        tangential = self.mapping.tangential_series(ordinate, radius, self.lines.lengths)
+        return EdgeRow(*self.mapping.series_in_space(x, radius, tangential))
+
+
+@dataclass(frozen=True, kw_only=True)
+class ExactBlade:
+    """The blade that is meant, in metres and radians: what the native surfaces interpolate and are measured against."""
+
+    design: UnifiedBlade
+    channel: Meridional
+    mapping: Mapping
+    places: Reals
+    """camber parameters of a side's control points"""
+    before: float
+    """how far, in u, stream lines are continued past the leading edge"""
+    after: float
+    """how far, in u, stream lines are continued past the trailing edge"""
+
+    def stations(self, v: Reals) -> Stations:
+        """Sections at v (m,); refuses an edge radius that the thickness cannot hold."""
+        design, span = self.design, Span(v)
+        lines = stream_lines(self.channel, self.mapping, v, self.before, self.after)
+        angle_in, angle_out = (radians(span.values(law)) for law in (design.metal_angle_in, design.metal_angle_out))
+        extent = lines.extents()
+        edges = lines.position(np.array([0.0, 1.0]))
+        if self.mapping.revolved:
+            start = radians(span.values(design.leading_edge_theta or 0.0))
+        else:
+            start = UNITS[design.length_unit] * span.values(design.leading_edge_y or 0.0)
+        start = self.mapping.start(start, edges[..., 0, 1], lines.lengths)
+        start, extent = np.broadcast_arrays(start, extent)
+        camber = camber_line(
+            start,
+            extent,
+            radians(span.values(design.stagger)),
+            angle_in,
+            angle_out,
+            span.values(design.tangent_in),
+            span.values(design.tangent_out),
+        )
+        inner = self.places[2:-2]
+        radius = lines.position(lines.u_at(camber_points(camber, inner)[..., 0]))[..., 1]
+        scale = self.mapping.scale(radius, lines.lengths[..., None])
+        slopes = lines.position(np.array([0.0, 1.0]), 1)
+        climbs = slopes[..., 1] / np.sqrt(np.sum(slopes * slopes, axis=-1))
+        curvatures = [
+            self.mapping.edge_curvature(
+                span.values(law), lines.lengths, edges[..., i, 1], climbs[..., i] * np.cos(turn), bool(i)
+            )
+            for i, (law, turn) in enumerate(
+                ((design.leading_edge_radius, angle_in), (design.trailing_edge_radius, angle_out))
+            )
+        ]
+        sides = []
+        for name, upper in (("upper", True), ("lower", False)):
+            thickness = span.chordwise(getattr(design, f"thickness_{name}"), inner) * scale
+            laws = getattr(design, f"weights_{name}")
+            weights = span.chordwise(laws, self.places) if laws else None
+            _check_edges(design, name, camber, self.places, thickness, curvatures, weights, span)
+            sides.append(side(camber, self.places, thickness, *curvatures, upper=upper, weights=weights))
+        return Stations(
+            v=v,
+            lines=lines,
+            plane=plane_sections(camber, *_same_kind(*sides)),
+            angle_in=angle_in,
+            angle_out=angle_out,
+            curvature_in=curvatures[0],
+            curvature_out=curvatures[1],
+        )
+
+
+def exact_blade(design: UnifiedBlade) -> ExactBlade:
+    """The exact blade of a design, its channel continued as far as the noses need."""
+    mapping = mapping_of(design.mapping, design.arrangement)
+    channel = meridional(design.channel, UNITS[design.length_unit])
+    places = sample_places(design.samples, design.clustering)
+    first = ExactBlade(design=design, channel=channel, mapping=mapping, places=places, before=0.0, after=0.0)
+    sections = first.stations(np.linspace(0.0, 1.0, 17))
+    hull = np.concatenate([sections.plane.upper, sections.plane.lower], axis=-2)
+    abscissae = np.real(hull[..., 0] / hull[..., 2] if hull.shape[-1] == 3 else hull[..., 0])
+    lines = sections.lines
+    at = np.array([0.0, 1.0])
+    densities = np.real(mapping.density(lines.position(at), lines.position(at, 1)))
+    extent = np.real(lines.extents())
+    before = np.max(-np.min(abscissae, axis=-1) / densities[..., 0], initial=0.0)
+    after = np.max((np.max(abscissae, axis=-1) - extent) / densities[..., 1], initial=0.0)
+    reach = [1.3 * float(value) + 0.01 for value in (before, after)]
+    for value, edge in zip(reach, ("leading", "trailing"), strict=True):
+        if value > REACH:
+            raise DesignError(
+                f"the nose at the {edge} edge stands {value:.2f} of the meridional length outside the channel, more than "
+                f"{REACH}: lower the thickness next to the edge, its radius or the metal angle there"
+            )
+    return ExactBlade(
+        design=design, channel=channel, mapping=mapping, places=places, before=reach[0], after=reach[1]
+    )
+
+
+def _same_kind(upper: Array, lower: Array) -> tuple[Array, Array]:
+    if upper.shape[-1] == lower.shape[-1]:
+        return upper, lower
+    sides = [np.concatenate([c, np.ones_like(c[..., :1])], axis=-1) if c.shape[-1] == 2 else c for c in (upper, lower)]
+    return sides[0], sides[1]
+
+
+NOSE_SHARE = 0.4219
+"""largest value of the second basis function of a clamped quartic with uniform knots: the nose's own half thickness"""
+
+
+def _check_edges(
+    design: UnifiedBlade,
+    name: str,
+    camber: Array,
+    places: Reals,
+    thickness: Array,
+    curvatures: list[Array],
+    weights: Array | None,
+    span: Span,
+) -> None:
+    reached = advances(camber, places, thickness, name == "upper")
+    count = len(getattr(design, f"thickness_{name}"))
+    for i, edge in enumerate(("leading", "trailing")):
+        entry = f"thickness_{name}[{0 if i == 0 else count - 1}]"
+        radius = span.values(getattr(design, f"{edge}_edge_radius"))
+        advance, curvature = np.real(reached[i]), np.real(curvatures[i])
+        where = _first(advance <= 0.0)
+        if where is not None:
+            raise DesignError(
+                f"{entry}: next to the {edge} edge at v = {span.v[where[-1]]:.3f} the {name} side leaves the blade "
+                f"outwards: the camber turns too fast for the thickness there; lower {entry}, or the turning of the camber"
+            )
+        where = _first(curvature <= 0.0)
+        if where is not None:
+            raise DesignError(
+                f"{edge}_edge_radius is {_at(radius, where):.4g} at v = {span.v[where[-1]]:.3f}: the stream surface there "
+                f"bends more than such an edge; lower {edge}_edge_radius"
+            )
+        ratio = 1.0
+        if weights is not None:
+            ends = np.real(weights if i == 0 else weights[..., ::-1])
+            ratio = ends[..., 0] * ends[..., 2] / ends[..., 1] ** 2
+        height = np.real(edge_height(advance, curvature, ratio))
+        beside = np.real(thickness[..., 0 if i == 0 else -1])
+        where = _first(NOSE_SHARE * height > beside)
+        if where is not None:
+            largest = _at(radius, where) * (_at(beside, where) / (NOSE_SHARE * _at(height, where))) ** 2
+            raise DesignError(
+                f"{edge}_edge_radius is {_at(radius, where):.4g} at v = {span.v[where[-1]]:.3f}: the thickness of the "
+                f"{name} side next to it can hold at most {largest:.4g}; lower {edge}_edge_radius or raise {entry}"
+            )
+
+
+def _first(mask: Array) -> tuple[int, ...] | None:
+    found = np.argwhere(mask)
+    return tuple(int(i) for i in found[0]) if len(found) else None
+
+
+def _at(values: Array, where: tuple[int, ...]) -> float:
+    return float(np.ravel(np.real(values)[..., where[-1]])[0])

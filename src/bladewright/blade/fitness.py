@@ -1,0 +1,120 @@
+"""How far native sides are from the exact blade, and the knots that bring them within the tolerance."""
+
+import numpy as np
+
+from bladewright.blade.exact import EdgeRow, ExactBlade
+from bladewright.blade.knots import DEGREE, MOST_POLES, Knots, breaks_along_u, breaks_along_v, clamped, refined
+from bladewright.blade.native import interpolated_along_u
+from bladewright.numerics.elementary import dot, length
+from bladewright.nurbs.basis import Reals, basis, greville
+from bladewright.nurbs.surface import Surface
+
+WALL_TOLERANCE = 1e-7
+"""distance of the blade's ends from hub and shroud, of the chord"""
+RESERVE = 0.4
+"""share of a tolerance that one direction may use while knots are sought"""
+
+
+def chord_of(exact: ExactBlade) -> float:
+    """Mean straight distance from leading to trailing edge along the span [m]."""
+    stations = exact.stations(np.linspace(0.0, 1.0, 9))
+    return float(np.mean(np.real(length(stations.trailing_edge().point - stations.leading_edge().point))))
+
+
+def knots_for(exact: ExactBlade, chord: float) -> Knots:
+    """Knots with which the native sides meet the design's tolerance, and their ends lie on the walls."""
+    tolerance = exact.design.tolerance * chord
+    along_u = refined(clamped(breaks_along_u(exact)), _LinesAlongU(exact, tolerance, chord), MOST_POLES[0])
+    along_v = refined(clamped(breaks_along_v(exact)), _LinesAlongV(exact, tolerance, along_u), MOST_POLES[1])
+    return Knots(u=along_u, v=along_v)
+
+
+class _LinesAlongU:
+    """Error over tolerance along sections of the exact blade that are interpolated in u alone."""
+
+    def __init__(self, exact: ExactBlade, tolerance: float, chord: float) -> None:
+        self.stations = exact.stations(np.array([0.0, 0.12, 0.3, 0.5, 0.7, 0.88, 1.0]))
+        self.tolerance = RESERVE * tolerance
+        self.wall_tolerance = RESERVE * min(WALL_TOLERANCE * chord, tolerance)
+        self.edges = self.stations.leading_edge(), self.stations.trailing_edge()
+
+    def __call__(self, knots: Reals, places: Reals) -> Reals:
+        sites = greville(knots, DEGREE)[3:-3]
+        both = np.concatenate([sites, places])
+        order = np.argsort(both)
+        back = np.argsort(order)
+        worst = np.zeros(len(places))
+        plane = self.stations.plane.points(both[order])
+        normals = self.stations.wall_normals
+        for points, sign, flat in zip(self.stations.points(both[order]), (1.0, -1.0), plane, strict=True):
+            points, flat = points[:, back], flat[:, back]
+            lines = np.swapaxes(points[:, : len(sites)], 0, 1)
+            net = interpolated_along_u(lines, *self.edges, sign, knots)
+            native = np.tensordot(basis(knots, DEGREE, places), net, axes=1).swapaxes(0, 1)
+            error = native - points[:, len(sites) :]
+            worst = np.maximum(worst, np.max(length(error), axis=0) / self.tolerance)
+            off = dot(error, normals(flat[:, len(sites) :]))[[0, -1]]
+            worst = np.maximum(worst, np.max(np.abs(off), axis=0) / self.wall_tolerance)  # real: knots come from the real design
+        return worst
+
+
+class _LinesAlongV:
+    """Error over tolerance along lines of constant u that are interpolated in v alone."""
+
+    def __init__(self, exact: ExactBlade, tolerance: float, knots_u: Reals) -> None:
+        self.exact = exact
+        self.tolerance = RESERVE * tolerance
+        spans = np.unique(knots_u)
+        step = max(1, (len(spans) - 1) // 24)
+        self.s = np.concatenate([[0.0], (spans[:-1:step] + spans[1::step]) / 2.0, [1.0]])
+
+    def __call__(self, knots: Reals, places: Reals) -> Reals:
+        sites = greville(knots, DEGREE)
+        both = np.concatenate([sites, places])
+        stations = self.exact.stations(both)
+        matrix = basis(knots, DEGREE, sites)
+        errors = [np.zeros(len(places))]
+        for points in stations.points(self.s):
+            flat = points.reshape(len(both), -1)
+            native = basis(knots, DEGREE, places) @ np.linalg.solve(matrix, flat[: len(sites)])
+            miss = (native - flat[len(sites) :]).reshape(len(places), -1, 3)
+            errors.append(np.max(length(miss), axis=1) / self.tolerance)
+        errors += [self._edge_miss(row, matrix, knots, places) for row in (stations.leading_edge(), stations.trailing_edge())]
+        return np.max(errors, axis=0)
+
+    @staticmethod
+    def _edge_miss(row: EdgeRow, matrix: Reals, knots: Reals, places: Reals) -> Reals:
+        """Relative error of the edges' derivatives, which carry angle and radius, over what the promises allow."""
+        count = len(matrix)
+        at = basis(knots, DEGREE, places)
+        result = np.zeros(len(places))
+        for part, allowed in ((row.first, 5e-5), (row.second, 2e-4)):
+            error = length(at @ np.linalg.solve(matrix, part[:count]) - part[count:])
+            result = np.maximum(result, error / length(part[count:]) / allowed)
+        return result
+
+
+def error_of(exact: ExactBlade, upper: Surface, lower: Surface) -> tuple[float, float, tuple[float, float]]:
+    """Largest distance [m] of the native sides from the exact blade between their sites, that of their ends from the
+    walls, and the (u, v) of the former; both at equal parameters, so the first bounds the true distance."""
+    u, v = (_between(knots) for knots in (upper.knots_u, upper.knots_v))
+    v = np.concatenate([[0.0], v, [1.0]])
+    stations = exact.stations(v)
+    plane = stations.plane.points(u)
+    error, off, place = 0.0, 0.0, (0.0, 0.0)
+    for surface, points, flat in zip((upper, lower), stations.points(u), plane, strict=True):
+        miss = np.real(surface.grid(u, v).swapaxes(0, 1) - points)
+        distance = length(miss)
+        worst = np.unravel_index(int(np.argmax(distance)), distance.shape)
+        if distance[worst] > error:
+            error, place = float(distance[worst]), (float(u[worst[1]]), float(v[worst[0]]))
+        ends = dot(miss, np.real(stations.wall_normals(flat)))[[0, -1]]
+        off = max(off, float(np.max(np.abs(ends))))  # real: a measured distance
+    return error, off, place
+
+
+def _between(knots: Reals) -> Reals:
+    spans = np.unique(knots)
+    return np.sort(np.concatenate([spans[:-1] + share * np.diff(spans) for share in (0.31, 0.74)]))
+
+

@@ -1,0 +1,156 @@
+"""What the built surfaces keep of what was asked, measured on them and not on what they were made from."""
+
+from dataclasses import asdict, dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from bladewright.blade.exact import Stations
+from bladewright.numerics.elementary import Array, cross2, degrees, dot, length, unit
+from bladewright.nurbs.basis import Reals
+from bladewright.nurbs.surface import Surface
+from bladewright.section.laws import Span
+
+if TYPE_CHECKING:
+    from bladewright.blade.blade import Blade
+
+
+@dataclass(frozen=True, kw_only=True)
+class Promises:
+    """Largest misses of the built blade; each has its limit in `LIMITS`."""
+
+    metal_angle_at_walls: float
+    """of the camber's angle at both edges from the metal angle, at hub and shroud [deg]"""
+    metal_angle_between: float
+    """the same at every span between [deg]"""
+    edge_radius: float
+    """of the edges' radius in the stream surface from the radius asked for, relative [-]"""
+    edge_tangent_planes: float
+    """angle between the sides' tangent planes across an edge [rad]"""
+    edge_curvatures: float
+    """jump of the normal curvatures across an edge, of the largest of them [-]"""
+    stream_surfaces: float
+    """distance of curves of constant v from their stream surfaces, of the chord [-]"""
+    walls: float
+    """distance of the blade's ends from hub and shroud, of the chord [-]"""
+    surface: float
+    """distance of the sides from the exact blade, of the chord [-]"""
+    limits: dict[str, float]
+    """what each may be"""
+
+    @property
+    def kept(self) -> bool:
+        """Whether every figure is within its limit."""
+        return all(getattr(self, name) <= limit for name, limit in self.limits.items())
+
+    def to_dict(self) -> dict[str, object]:
+        """All figures, their limits and whether they are kept, for JSON."""
+        return {**asdict(self), "kept": self.kept}
+
+
+LIMITS = {
+    "metal_angle_at_walls": 1e-6,
+    "metal_angle_between": 1e-2,
+    "edge_radius": 1e-3,
+    "edge_tangent_planes": 1e-9,
+    "edge_curvatures": 1e-6,
+    "walls": 1e-7,
+}
+
+
+def promises_of(blade: "Blade") -> Promises:
+    """The promises of a blade, measured at hub and shroud and at three places in each of the surface's knot spans.
+
+    The mapping of the paper keeps neither angles nor radii: its limits are those of the edges and the walls only.
+    """
+    upper, lower = blade.surfaces["upper"], blade.surfaces["lower"]
+    assert isinstance(upper, Surface)
+    assert isinstance(lower, Surface)
+    spans = np.unique(upper.knots_v)
+    inner = np.sort(np.concatenate([spans[:-1] + share * np.diff(spans) for share in (0.21, 0.53, 0.83)]))
+    v = np.concatenate([[0.0], inner, [1.0]])
+    stations = blade.exact.stations(v)
+    angles, radii, planes, bends = [], [], [], []
+    for end, name in ((0.0, "leading"), (1.0, "trailing")):
+        row = _edge(upper, lower, end, v)
+        turn, radius = _angle_and_radius(stations, row, end)
+        meant = stations.angle_out if end else stations.angle_in
+        law = getattr(blade.design, f"{name}_edge_radius")
+        angles.append(np.abs(degrees(turn - np.real(meant))))  # real: a measured angle
+        asked = np.real(Span(v).values(law) * stations.lines.lengths)
+        radii.append(np.abs(radius / asked - 1.0))  # real: a measured radius
+        plane, bend = _smoothness(row)
+        planes.append(plane)
+        bends.append(bend)
+    walls = [np.max(angle[[0, -1]]) for angle in angles]
+    off, ends = _off_stream_surfaces(stations, upper, lower)
+    tolerance = blade.design.tolerance
+    limits = {**LIMITS, "stream_surfaces": tolerance, "surface": tolerance}
+    if blade.design.mapping == "paper":
+        for lost in ("metal_angle_at_walls", "metal_angle_between", "edge_radius"):
+            del limits[lost]
+    return Promises(
+        metal_angle_at_walls=float(max(walls)),
+        metal_angle_between=float(np.max(angles)),
+        edge_radius=float(np.max(radii)),
+        edge_tangent_planes=float(np.max(planes)),
+        edge_curvatures=float(np.max(bends)),
+        stream_surfaces=off / blade.chord,
+        walls=max(ends / blade.chord, blade.wall_error),
+        surface=blade.error,
+        limits=limits,
+    )
+
+
+def _edge(upper: Surface, lower: Surface, end: float, v: Reals) -> list[dict[tuple[int, int], Array]]:
+    orders = ((0, 0), (1, 0), (0, 1), (2, 0), (1, 1), (0, 2))
+    at = np.array([end])
+    return [{order: np.real(side.grid(at, v, *order))[0] for order in orders} for side in (upper, lower)]
+
+
+def _angle_and_radius(stations: Stations, row: list[dict[tuple[int, int], Array]], end: float) -> tuple[Reals, Reals]:
+    """Camber angle [rad] and radius in the stream surface [m] of the upper side at an edge, (m,) each."""
+    first, second, point = row[0][1, 0], row[0][2, 0], row[0][0, 0]
+    slope = unit(np.real(stations.lines.position(np.array([end]), 1))[..., 0, :])
+    slope = slope.reshape(-1, *slope.shape[-2:])[0]
+    if stations.mapping.revolved:
+        around = unit(point[:, 1:])
+        zero = np.zeros(len(point))
+        meridional = np.stack([slope[:, 0], slope[:, 1] * around[:, 0], slope[:, 1] * around[:, 1]], axis=-1)
+        tangential = np.stack([zero, around[:, 1], -around[:, 0]], axis=-1)
+    else:
+        zero, one = np.zeros(len(point)), np.ones(len(point))
+        meridional = np.stack([slope[:, 0], zero, slope[:, 1]], axis=-1)
+        tangential = np.stack([zero, one, zero], axis=-1)
+    along, across = dot(first, meridional), dot(first, tangential)
+    turn = np.arctan2(along, -across) if end else np.arctan2(-along, across)  # real: measured on the real surfaces
+    plane_first = np.stack([along, across], axis=-1)
+    plane_second = np.stack([dot(second, meridional), dot(second, tangential)], axis=-1)
+    curvature = cross2(plane_first, plane_second) / length(plane_first) ** 3
+    return turn, 1.0 / np.abs(curvature)  # real: a measured radius
+
+
+def _smoothness(row: list[dict[tuple[int, int], Array]]) -> tuple[Reals, Reals]:
+    """Angle between the tangent planes [rad] and relative jump of the normal curvatures across an edge, (m,) each."""
+    normals = [unit(np.cross(side[1, 0], side[0, 1])) for side in row]
+    plane = length(np.cross(normals[0], normals[1]))
+    forms = []
+    for side, normal, sign in zip(row, normals, (1.0, -1.0), strict=True):
+        sizes = length(side[1, 0]), length(side[0, 1])
+        terms = [dot(side[2, 0], normal) / sizes[0] ** 2, dot(side[1, 1], normal) * sign / (sizes[0] * sizes[1])]
+        forms.append(np.stack([*terms, dot(side[0, 2], normal) / sizes[1] ** 2], axis=-1) * sign)
+    jump = np.max(np.abs(forms[0] - forms[1]), axis=-1)  # real: measured curvatures
+    return plane, jump / np.max(np.abs(forms[0]), axis=-1)  # real: measured curvatures
+
+
+def _off_stream_surfaces(stations: Stations, upper: Surface, lower: Surface) -> tuple[float, float]:
+    """Largest distances [m] of curves of constant v, and of the ends among them, from their stream surfaces."""
+    spans = np.unique(upper.knots_u)
+    u = np.sort(np.concatenate([spans, (spans[1:] + spans[:-1]) / 2.0]))
+    plane = stations.plane.points(u)
+    off = [
+        dot(np.real(side.grid(u, stations.v).swapaxes(0, 1) - points), np.real(stations.wall_normals(flat)))
+        for side, points, flat in zip((upper, lower), stations.points(u), plane, strict=True)
+    ]
+    distances = np.max(np.abs(off), axis=(0, -1)).reshape(-1, len(stations.v))[0]  # real: measured distances
+    return float(np.max(distances)), float(np.max(distances[[0, -1]]))

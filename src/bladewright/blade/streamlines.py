@@ -1,0 +1,225 @@
+"""Stream lines of the channel: position, meridional length and conformal length along u, and their inverse."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from math import perm
+
+import numpy as np
+from numpy.polynomial import chebyshev
+
+from bladewright.blade.mapping import Mapping
+from bladewright.blade.meridional import Meridional
+from bladewright.errors import DesignError
+from bladewright.numerics.elementary import Array, length
+from bladewright.nurbs.basis import Reals
+
+NODES = 24
+"""Chebyshev nodes of the density on a panel"""
+CONVERGED = 1e-8
+"""a Newton step this small leaves an error of its square: rounding"""
+
+
+@dataclass(frozen=True, kw_only=True)
+class StreamLines:
+    """Stream lines (..., m) at m places along the span, as polynomials on panels of u."""
+
+    mapping: Mapping
+    panels: Reals
+    """(p + 1,) ends of the panels in u; 0 and 1 are among them"""
+    powers: Array
+    """(..., m, p, k, 2) coefficients of (x, r) in powers of u - panel centre"""
+    density: Array
+    """(..., m, p, NODES) Chebyshev series of the density da/du on each panel"""
+    series: Array
+    """(..., m, p, NODES + 1) Chebyshev series of the abscissa a(u) on each panel, 0 at its start"""
+    starts: Array
+    """(..., m, p + 1) the abscissa at the ends of the panels, 0 at u = 0"""
+    lengths: Array
+    """(..., m) meridional length between u = 0 and u = 1 [m]"""
+
+    def position(self, u: Array, order: int = 0) -> Array:
+        """(x, r) or derivatives by u (..., m, k, 2) at u (..., m, k) or (k,)."""
+        u = np.broadcast_to(u, np.broadcast_shapes((*self.starts.shape[:-1], 1), np.shape(u)))
+        return self._by_panel(u, lambda panel, part: self._polynomial(panel, part, order))
+
+    def extents(self) -> Array:
+        """(..., m) extent of the stream lines in their plane: the abscissa at u = 1."""
+        return self.starts[..., int(np.searchsorted(self.panels, 1.0))]
+
+    def u_at(self, abscissa: Array) -> Array:
+        """u (..., m, k) at an abscissa (..., m, k): Newton in real numbers, its derivative by one more complex step."""
+        real = np.real(abscissa)
+        if not (np.iscomplexobj(abscissa) or np.iscomplexobj(self.series)):
+            return self._inverse(real)
+        if real.ndim > 2:
+            flat = real.reshape(-1, *real.shape[-2:])
+            real = flat[0]
+        u = self._real()._inverse(real)
+        return u - self._newton_step(np.broadcast_to(u, abscissa.shape), abscissa)
+
+    def _inverse(self, abscissa: Reals) -> Reals:
+        u = self._guess(abscissa)
+        for _ in range(30):
+            step = self._newton_step(u, abscissa)
+            u = u - step
+            if np.max(np.abs(step), initial=0.0) < CONVERGED:  # real: a stopping rule
+                return u
+        raise DesignError(
+            "channel: the meridional length along a stream line cannot be inverted, so its control points "
+            "make it turn back; spread the inner control points of hub and shroud"
+        )
+
+    def _guess(self, abscissa: Reals) -> Reals:
+        """The inverse on each panel as a Chebyshev series through a few places found by Newton from a straight line."""
+        count = len(self.panels) - 1
+        low, high = self.starts[..., :-1], self.starts[..., 1:]
+        local = (1.0 + _GUESS_PLACES) / 2.0
+        targets = low[..., None] + (high - low)[..., None] * local
+        u = np.broadcast_to(self.panels[:-1, None] + np.diff(self.panels)[:, None] * local, targets.shape)
+        for _ in range(4):
+            steps = [self._panel_step(i, u[..., i, :], targets[..., i, :]) for i in range(count)]
+            u = np.clip(u - np.stack(steps, axis=-2), self.panels[:-1, None], self.panels[1:, None])
+        series = u @ _GUESS_SERIES.T
+        index = np.sum(abscissa[..., None] >= self.starts[..., None, 1:-1], axis=-1)
+
+        def on_panel(panel: int, part: Reals) -> Reals:
+            start, end = self.starts[..., panel, None], self.starts[..., panel + 1, None]
+            return _clenshaw(series[..., panel, :], (2.0 * part - start - end) / (end - start))
+
+        return _patched(index, abscissa, on_panel)
+
+    def _real(self) -> "StreamLines":
+        first = (0,) * (self.series.ndim - 3)
+        return StreamLines(
+            mapping=self.mapping,
+            panels=self.panels,
+            powers=np.real(self.powers[(0,) * (self.powers.ndim - 4)]),
+            density=np.real(self.density[first]),
+            series=np.real(self.series[first]),
+            starts=np.real(self.starts[first]),
+            lengths=np.real(self.lengths[first]),
+        )
+
+    def _newton_step(self, u: Array, abscissa: Array) -> Array:
+        index = self._panel_index(u)
+        return _patched(index, np.stack([u, abscissa]), lambda panel, part: self._panel_step(panel, part[0], part[1]))
+
+    def _panel_step(self, panel: int, u: Array, abscissa: Array) -> Array:
+        low, high = self.panels[panel], self.panels[panel + 1]
+        local = (2.0 * u - low - high) / (high - low)
+        value = _clenshaw(self.series[..., panel, :], local) + self.starts[..., panel, None]
+        return (value - abscissa) / _clenshaw(self.density[..., panel, :], local)
+
+    def _by_panel(self, u: Array, on_panel: Callable[[int, Array], Array]) -> Array:
+        return _patched(self._panel_index(u), u, on_panel)
+
+    def _panel_index(self, u: Array) -> Array:
+        return np.clip(np.searchsorted(self.panels, np.real(u), side="right") - 1, 0, len(self.panels) - 2)
+
+    def _polynomial(self, panel: int, u: Array, order: int) -> Array:
+        t = u - (self.panels[panel] + self.panels[panel + 1]) / 2.0
+        return np.stack([_horner(self.powers[..., panel, :, i], t, order) for i in (0, 1)], axis=-1)
+
+
+def stream_lines(channel: Meridional, mapping: Mapping, v: Reals, before: float, after: float) -> StreamLines:
+    """Stream lines at v (m,), continued by `before` and `after` in u.
+
+    The densities' Chebyshev series are carried to rounding: panels are halved until their last terms vanish.
+    Raises DesignError where the channel cannot be continued: r or the speed along a stream line vanishes.
+    """
+    ends = np.concatenate([[-before] if before else [], [0.0], channel.joints(), [1.0], [1.0 + after] if after else []])
+    for _ in range(6):
+        lines, tail = _on_panels(channel, mapping, v, ends)
+        poor = tail > 1e-13
+        if not np.any(poor):
+            break
+        middles = ((ends[:-1] + ends[1:]) / 2.0)[poor]
+        ends = np.sort(np.concatenate([ends, middles]))
+    return lines
+
+
+def _on_panels(channel: Meridional, mapping: Mapping, v: Reals, ends: Reals) -> tuple[StreamLines, Reals]:
+    centres, halves = (ends[:-1] + ends[1:]) / 2.0, (ends[1:] - ends[:-1]) / 2.0
+    powers = channel.stream_polynomials(v, centres)
+    t = halves[:, None] * _NODE_PLACES
+    vander = t[..., None] ** np.arange(powers.shape[-2])
+    position = vander @ powers
+    slope_powers = powers[..., 1:, :] * np.arange(1, powers.shape[-2])[:, None]
+    slope = vander[..., :-1] @ slope_powers
+    if mapping.revolved and np.min(position[..., 1].real) <= 0.0:
+        where = np.argwhere(position[..., 1].real <= 0.0)[0]
+        u = float(centres[where[-2]] + t[where[-2], where[-1]])
+        raise DesignError(
+            f"channel: the radius is {position[..., 1].real[tuple(where)]:.4g} m at u = {u:.3f}, v = {v[where[-3]]:.3f}: "
+            "the channel, continued past its edges over the nose, must keep clear of the axis; move its control points"
+        )
+    speeds = length(slope)
+    density = mapping.density(position, slope)
+    coefficients = np.einsum("jk,...k->...j", _TO_SERIES, density)
+    size = np.max(np.abs(density.real), axis=-1)  # real: the size of rounding
+    tail = np.max(np.abs(coefficients[..., -2:].real), axis=-1) / size  # real: a stopping rule
+    series = np.einsum("jk,...k->...j", _INTEGRATED, coefficients) * halves[:, None]
+    increments = np.sum(series, axis=-1)
+    starts = np.concatenate([np.zeros_like(increments[..., :1]), np.cumsum(increments, axis=-1)], axis=-1)
+    zero, one = (int(np.searchsorted(ends, place)) for place in (0.0, 1.0))
+    starts = starts - starts[..., zero : zero + 1]
+    by_length = np.einsum("jk,...k->...j", _INTEGRATED @ _TO_SERIES, speeds) * halves[:, None]
+    lengths = np.sum(np.sum(by_length, axis=-1)[..., zero:one], axis=-1)
+    lines = StreamLines(
+        mapping=mapping,
+        panels=ends,
+        powers=powers,
+        density=coefficients,
+        series=series,
+        starts=starts,
+        lengths=lengths,
+    )
+    return lines, np.max(tail.reshape(-1, len(centres)), axis=0)
+
+
+def _patched(index: Array, values: Array, on_panel: Callable[[int, Array], Array]) -> Array:
+    """The panels' functions put together; a panel is asked only for the columns in which it has points."""
+    panels = np.unique(index)
+    if len(panels) == 1:
+        return on_panel(int(panels[0]), values)
+    main = int(panels[np.argmax([np.sum(index == panel) for panel in panels])])
+    result = np.array(on_panel(main, values))
+    for panel in panels[panels != main]:
+        inside = index == panel
+        columns = np.any(inside.reshape(-1, inside.shape[-1]), axis=0)
+        part = on_panel(int(panel), values[..., columns])
+        inside = inside[..., columns]
+        if part.ndim == result.ndim and result.ndim > index.ndim:
+            result[..., columns, :] = np.where(inside[..., None], part, result[..., columns, :])
+        else:
+            result[..., columns] = np.where(inside, part, result[..., columns])
+    return result
+
+
+def _horner(powers: Array, t: Array, order: int) -> Array:
+    count = powers.shape[-1]
+    value: Array = np.zeros(np.broadcast_shapes((*powers.shape[:-1], 1), t.shape), dtype=np.result_type(powers, t))
+    for k in range(count - 1, order - 1, -1):
+        value = value * t + perm(k, order) * powers[..., k, None]
+    return value
+
+
+def _clenshaw(series: Array, x: Array) -> Array:
+    two = 2.0 * x
+    later: Array | float = 0.0
+    now: Array | float = 0.0
+    for k in range(series.shape[-1] - 1, 0, -1):
+        later, now = now, series[..., k, None] + two * now - later
+    return series[..., 0, None] + x * now - later
+
+
+def _integration() -> Reals:
+    rows = [chebyshev.chebint(np.eye(NODES)[k], lbnd=-1.0) for k in range(NODES)]
+    return np.array([np.pad(row, (0, NODES + 1 - len(row))) for row in rows]).T
+
+
+_NODE_PLACES = np.cos(np.pi * (np.arange(NODES) + 0.5) / NODES)
+_TO_SERIES = np.linalg.inv(chebyshev.chebvander(_NODE_PLACES, NODES - 1))
+_INTEGRATED = _integration()
+_GUESS_PLACES = np.cos(np.pi * (np.arange(12) + 0.5) / 12)
+_GUESS_SERIES = np.linalg.inv(chebyshev.chebvander(_GUESS_PLACES, 11))

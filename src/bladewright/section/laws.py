@@ -1,0 +1,50 @@
+"""Laws of evolution: clamped uniform B-splines of degree min(n - 1, 3) over [0, 1]."""
+
+from typing import Any
+
+import numpy as np
+
+from bladewright.designs import ChordwiseLaw, Law
+from bladewright.numerics.elementary import Array
+from bladewright.nurbs.basis import Reals, basis, uniform_knots
+
+DEGREE = 3
+"""highest degree of a law"""
+
+
+def stacked(leaves: Any) -> Array:
+    """Numbers, some of which may be batches (...), as one array (..., n)."""
+    return np.stack(np.broadcast_arrays(*[np.asarray(leaf) for leaf in leaves]), axis=-1)
+
+
+def law_basis(count: int, v: Reals) -> Reals:
+    """Values (len(v), count) of the basis functions of a law with `count` control points."""
+    if count == 1:
+        return np.ones((len(v), 1))
+    degree = min(count - 1, DEGREE)
+    return basis(uniform_knots(count, degree), degree, v)
+
+
+class Span:
+    """Laws taken at fixed places v (m,) along the span; the basis of each number of control points is kept."""
+
+    def __init__(self, v: Reals) -> None:
+        self.v = v
+        self._basis: dict[int, Reals] = {}
+
+    def values(self, law: Law) -> Array:
+        """The law's values (..., m)."""
+        leaves = law if isinstance(law, tuple) else (law,)
+        if len(leaves) not in self._basis:
+            self._basis[len(leaves)] = law_basis(len(leaves), self.v)
+        return stacked(leaves) @ self._basis[len(leaves)].T
+
+    def chordwise(self, laws: ChordwiseLaw, u: Reals) -> Array:
+        """Values (..., m, len(u)) at u along the chord of control points that are laws along the span."""
+        controls = np.stack(np.broadcast_arrays(*[self.values(law) for law in laws]), axis=-1)
+        return controls @ law_basis(len(laws), u).T
+
+
+def inner_knots(count: int) -> Reals:
+    """Places of a law's inner knots, where it is twice differentiable only."""
+    return np.unique(uniform_knots(count, min(count - 1, DEGREE))[1:-1])[1:-1] if count > 1 else np.empty(0)
