@@ -14,6 +14,7 @@ from bladewright.numerics.quadrature import gauss, panels, settled
 from bladewright.nurbs.basis import Reals, breaks
 from bladewright.nurbs.crossings import Chain, chain, contained, meeting_parameters
 from bladewright.nurbs.curve import Curve
+from bladewright.nurbs.revolution import Revolution
 from bladewright.nurbs.surface import Surface
 
 CLOSED = 1e-9
@@ -33,6 +34,8 @@ class TrimmedSurface:
     """the untrimmed surface"""
     boundary: tuple[Curve, ...]
     """curves of dimension 2, each ending where the next one starts"""
+    revolution: Revolution | None = None
+    """how the surface was revolved, where it is one of revolution about the x axis"""
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "boundary", tuple(self.boundary))
@@ -116,8 +119,8 @@ class TrimmedSurface:
             batch = min(int(1.2 * (count - inside) / share) + 16, DRAWS - drawn)
             if batch <= 0:
                 raise GeometryError(
-                    f"{inside} of {count} points inside a boundary were found in {DRAWS} draws: it fills {share:g} of its "
-                    "box in (u, v); ask for fewer points"
+                    f"{inside} of {count} points inside a boundary were found in {DRAWS} draws: it fills {share:g} "
+                    "of its box in (u, v); ask for fewer points"
                 )
             sites = low + (high - low) * random.random((batch, 2))
             found.append(sites[self.contains(sites[:, 0], sites[:, 1])])
@@ -146,9 +149,8 @@ class TrimmedSurface:
             width = np.where(reached, np.where(u.real[:, None] < tops, u[:, None], tops), starts) - starts
             row, panel = np.nonzero(reached)
             inner = width[row, panel][:, None]
-            values = density(
-                starts[panel][:, None] + inner * nodes, np.broadcast_to(v[row][:, None], inner.shape[:1] + nodes.shape)
-            )
+            along_u = starts[panel][:, None] + inner * nodes
+            values = density(along_u, np.broadcast_to(v[row][:, None], along_u.shape))
             scale = (inner * weights) * rise[row][:, None]
             total = total + np.tensordot(scale, values, axes=((0, 1), (0, 1)))
         return total

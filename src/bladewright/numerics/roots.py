@@ -1,0 +1,40 @@
+"""Roots of many equations at once, bracketed, with their derivative by one more Newton step."""
+
+from collections.abc import Callable
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from bladewright.numerics.elementary import Array
+
+STEPS = 80
+"""bisection alone needs no more: the bracket is then below the spacing of doubles"""
+
+
+def bracketed_root(function: Callable[[Array], tuple[Array, Array]], low: ArrayLike, high: ArrayLike) -> Array:
+    """Roots (...) between `low` and `high` (...) of a function that has different signs there, or is zero at one.
+
+    `function(x)` returns value and slope (...) at real x (...). Newton's steps are taken where they stay inside the
+    bracket and halve the step before, bisection elsewhere, on real parts; where values are complex, the root's
+    imaginary part is that of one more Newton step, which makes it the derivative of the root.
+    """
+    below, above = (np.array(end, dtype=np.float64) for end in np.broadcast_arrays(low, high))
+    rising = np.real(function(above)[0]) >= np.real(function(below)[0])
+    root = 0.5 * (below + above)
+    step = above - below
+    for _ in range(STEPS):
+        value, slope = (np.real(part) for part in function(root))
+        to_right = (value < 0.0) == rising
+        below, above = np.where(to_right, root, below), np.where(to_right, above, root)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            newton = root - value / slope
+        inside = (newton > below) & (newton < above) & ((newton - root) ** 2 < 0.25 * step**2)
+        after = np.where(value == 0.0, root, np.where(inside, newton, 0.5 * (below + above)))
+        step, root = after - root, after
+        settled = step**2 <= np.spacing(np.maximum(root, -root)) ** 2
+        if settled.all():
+            break
+    value, slope = function(root)
+    if np.iscomplexobj(value) or np.iscomplexobj(slope):
+        return np.asarray(root - 1j * np.imag(value) / np.real(slope))
+    return root
