@@ -35,6 +35,7 @@ class Design(ABC):
     """Base of all designs: immutable, validated on construction, addressed by dotted paths."""
 
     __pydantic_config__: ClassVar[dict[str, Any]] = {"extra": "forbid", "use_attribute_docstrings": True}
+    """how a file is validated: unknown keys are refused, and the schema describes a field by its docstring"""
 
     def parameters(self) -> dict[str, float]:
         """Every differentiable leaf by its path, in the order of the fields, in the design's own units."""

@@ -1,0 +1,96 @@
+"""`bladewright build`: a design becomes CAD files that are reopened and measured."""
+
+import json
+from pathlib import Path
+from typing import Any
+
+import click
+
+from bladewright.cli.blueprint import built_from, design_at
+from bladewright.cli.call import Call, common
+from bladewright.cli.options import design_argument, extend_option, length, listed, set_option
+from bladewright.cli.outcome import Outcome, jsonable
+from bladewright.cli.progress import progress
+from bladewright.cli.staging import staged
+
+SUFFIXES = {"step": ".step", "iges": ".igs", "brep": ".brep", "stl": ".stl", "3mf": ".3mf"}
+BODIES = ("blade",)
+
+
+@click.command(short_help="Design to verified CAD files.")
+@design_argument
+@click.option(
+    "-o", "--output", "directory", type=click.Path(path_type=Path), default=".", help="Directory to write into."
+)
+@click.option(
+    "--as",
+    "formats",
+    default="step,iges",
+    show_default=True,
+    callback=listed(tuple(SUFFIXES)),
+    help="Formats, with commas between: step, iges, brep, stl, 3mf.",
+)
+@click.option(
+    "--body", "bodies", default="blade", show_default=True, callback=listed(BODIES), help="What to make solid."
+)
+@click.option(
+    "--schema",
+    type=click.Choice(["AP242", "AP214", "AP203"]),
+    default="AP242",
+    show_default=True,
+    help="Application protocol of the STEP file.",
+)
+@click.option("--iges-surfaces", is_flag=True, help="Trimmed surfaces in the IGES file, in the place of a solid.")
+@click.option(
+    "--chordal-deviation", callback=length, metavar="LENGTH", help="Largest gap of STL and 3MF, such as 0.01mm."
+)
+@extend_option
+@set_option
+@common
+@click.pass_obj
+def build(
+    call: Call,
+    design: Path,
+    directory: Path,
+    formats: tuple[str, ...],
+    bodies: tuple[str, ...],  # noqa: ARG001  a blade is the one body there is
+    schema: str,
+    iges_surfaces: bool,
+    chordal_deviation: float | None,
+    extend: float,
+    changes: dict[str, Any],
+) -> Outcome:
+    """Build DESIGN into verified CAD files: NAME.step, NAME.igs and so on, NAME being the design's name.
+
+    NAME.roundtrip.json beside them is what was measured on the reopened file of the first format; each further format
+    has its own, such as NAME.igs.roundtrip.json. Where a check fails the files stay, say so, and the exit status is 1.
+    """
+    blueprint = design_at(design, changes)
+    with staged(directory) as draft, progress(1 + len(formats), call) as bar:
+        bar.set_description_str("blade")
+        built = built_from(blueprint, design, extend)
+        bar.update(1)
+        trips = []
+        for number, name in enumerate(formats):
+            from bladewright import cad
+
+            bar.set_description_str(name)
+            path = draft / f"{built.name}{SUFFIXES[name]}"
+            solid = not (iges_surfaces and name == "iges")
+            trip = cad.write(built, path, schema=schema, solid=solid, chordal_deviation=chordal_deviation)
+            report = path.with_name(f"{path.name if number else built.name}.roundtrip.json")
+            report.write_text(json.dumps(jsonable(trip.to_dict()), indent=2) + "\n", encoding="utf-8")
+            trips.append(trip)
+            bar.update(1)
+        files = [directory / f"{built.name}{SUFFIXES[name]}" for name in formats]
+    passed = all(trip.passed for trip in trips)
+    return Outcome(
+        data={
+            "name": built.name,
+            "passed": passed,
+            "files": [str(file) for file in files],
+            "roundtrips": [trip.to_dict() for trip in trips],
+        },
+        text="\n".join(str(trip) for trip in trips),
+        failures=tuple(f"{file}: {text}" for file, trip in zip(files, trips, strict=True) for text in trip.failures),
+    )

@@ -1,0 +1,88 @@
+"""The program: its commands, and what becomes of their outcomes and errors."""
+
+import sys
+import traceback
+from collections.abc import Sequence
+
+import click
+
+from bladewright.cli.build import build
+from bladewright.cli.call import Call, common
+from bladewright.cli.new import new
+from bladewright.cli.outcome import Outcome, one_paragraph, printed
+from bladewright.cli.schema import schema
+from bladewright.cli.show import show
+from bladewright.cli.verify import verify
+from bladewright.errors import BladewrightError, FileError
+
+INTERRUPTED = 130
+
+
+def _version(context: click.Context, _: click.Parameter, wanted: bool) -> None:
+    if not wanted or context.resilient_parsing:
+        return
+    from importlib import metadata
+
+    from bladewright import __version__
+
+    try:
+        kernel = ".".join(metadata.version("cadquery-ocp").split(".")[:3])
+    except metadata.PackageNotFoundError:
+        kernel = "not installed"
+    click.echo(f"bladewright {__version__} (OpenCASCADE {kernel})")
+    context.exit()
+
+
+@click.group(invoke_without_command=True, context_settings={"help_option_names": ["-h", "--help"]})
+@click.option(
+    "--version", is_flag=True, is_eager=True, expose_value=False, callback=_version, help="Print the versions."
+)
+@common
+@click.pass_context
+def program(context: click.Context) -> None:
+    """Turbomachinery blades: from a design file to CAD solids that are reopened and measured.
+
+    Exit status: 0 done and passed; 1 done, but a check failed; 2 the input or the call is wrong; 130 interrupted.
+    """
+    if context.invoked_subcommand is None:
+        click.echo(context.get_help())
+
+
+for each in (build, verify, show, new, schema):
+    program.add_command(each)
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run the command that the words of a command line name, and return the exit status."""
+    words = list(sys.argv[1:] if arguments is None else arguments)
+    call = Call.from_words(words)
+    try:
+        outcome = program.main(words, prog_name="bladewright", standalone_mode=False, obj=call)
+        return printed(outcome, call) if isinstance(outcome, Outcome) else int(outcome or 0)
+    except (KeyboardInterrupt, click.Abort) as error:
+        return _refused(call, error, "Interrupted", "interrupted", INTERRUPTED)
+    except click.ClickException as error:
+        return _refused(call, error, "UsageError", f"{error.format_message()} {_help_of(error)}".strip())
+    except (BladewrightError, MemoryError) as error:
+        return _refused(call, error, type(error).__name__, str(error) or "there is not enough memory for this design")
+    except OSError as error:
+        return _refused(call, error, FileError.__name__, str(error))
+    except Exception as error:  # noqa: BLE001  a user is owed a paragraph whatever happens
+        reason = f"{type(error).__name__}: {error}"
+        message = f"this is a fault of bladewright, not of the input ({reason}); --debug shows where"
+        return _refused(call, error, "InternalError", message)
+
+
+def _help_of(error: click.ClickException) -> str:
+    context = getattr(error, "ctx", None)
+    return f"See '{context.command_path} --help'." if context else ""
+
+
+def _refused(call: Call, error: BaseException, kind: str, message: str, status: int = 2) -> int:
+    if call.debug:
+        traceback.print_exception(error, file=sys.stderr)
+    message = one_paragraph(message)
+    if call.as_json:
+        printed(Outcome(data={"error": {"kind": kind, "message": message}}), call)
+    click.echo(f"bladewright: {message}", err=True)
+    return status

@@ -1,0 +1,38 @@
+"""Progress of long work, on standard error and only where that is a terminal."""
+
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import Protocol
+
+from bladewright.cli.call import Call
+
+
+class Bar(Protocol):
+    """What moves a progress bar."""
+
+    def set_description_str(self, text: str) -> object:
+        """Say what is being done."""
+
+    def update(self, steps: int) -> object:
+        """Say that so many steps are done."""
+
+
+class _Silent:
+    def set_description_str(self, text: str) -> None:
+        pass
+
+    def update(self, steps: int) -> None:
+        pass
+
+
+@contextmanager
+def progress(steps: int, call: Call) -> Iterator[Bar]:
+    """A bar of so many steps, gone when the work is done."""
+    if call.quiet or not sys.stderr.isatty():
+        yield _Silent()
+        return
+    from tqdm import tqdm
+
+    with tqdm(total=steps, file=sys.stderr, leave=False, bar_format="{desc}: {bar} {n_fmt}/{total_fmt}") as bar:
+        yield bar
