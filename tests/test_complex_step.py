@@ -19,7 +19,7 @@ SAFE_FORMS = PACKAGE / "numerics" / "elementary.py"
 
 METHODS = {"conj", "conjugate"}
 FUNCTIONS = METHODS | {
-    "abs", "absolute", "fabs", "sign", "copysign", "angle", "vdot", "arctan2", "hypot",
+    "abs", "absolute", "fabs", "sign", "angle", "vdot", "arctan2", "hypot",
     "norm", "lstsq", "qr", "cholesky", "cho_factor", "svd", "pinv", "eigh", "matrix_rank",
 }  # fmt: skip
 LIBRARIES = {"np", "numpy", "scipy", "linalg"}

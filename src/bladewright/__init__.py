@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from bladewright import cad as cad
+    from bladewright.blade.blade import Blade as Blade
     from bladewright.blade.channel import Channel as Channel
     from bladewright.blade.unified import UnifiedBlade as UnifiedBlade
     from bladewright.errors import BladewrightError as BladewrightError
@@ -16,6 +17,8 @@ if TYPE_CHECKING:
     from bladewright.errors import DesignError as DesignError
     from bladewright.errors import FileError as FileError
     from bladewright.errors import GeometryError as GeometryError
+    from bladewright.files.reading import read_design as read_design
+    from bladewright.files.writing import write_design as write_design
     from bladewright.nurbs.curve import Curve as Curve
     from bladewright.nurbs.surface import Surface as Surface
     from bladewright.nurbs.trimmed import TrimmedSurface as TrimmedSurface
@@ -23,6 +26,7 @@ if TYPE_CHECKING:
 __version__ = "0.1.0"
 
 _HOMES = {
+    "Blade": "blade.blade",
     "BladewrightError": "errors",
     "CadError": "errors",
     "Channel": "blade.channel",
@@ -33,6 +37,8 @@ _HOMES = {
     "Surface": "nurbs.surface",
     "TrimmedSurface": "nurbs.trimmed",
     "UnifiedBlade": "blade.unified",
+    "read_design": "files.reading",
+    "write_design": "files.writing",
 }
 _ROOMS = ("cad",)
 
