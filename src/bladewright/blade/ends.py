@@ -27,8 +27,7 @@ def trimmed_end(exact: ExactBlade, sides: tuple[Surface, Surface], wall: str, ch
     meridian = extended(exact.channel.curve(wall), -exact.before, 1.0 + exact.after)
     stations = exact.stations(np.array([0.0 if wall == "hub" else 1.0]))
     traces = [_Trace(stations, side, row, meridian, upper=upper) for side, upper in zip(sides, (True, False), strict=True)]
-    across = [np.real(trace(np.linspace(0.0, 1.0, 101))[1]) for trace in traces]
-    low, high = min(float(a.min()) for a in across), max(float(a.max()) for a in across)
+    low, high = min(float(trace.across.min()) for trace in traces), max(float(trace.across.max()) for trace in traces)
     room = 0.05 * (high - low)
     revolution = None
     if exact.mapping.revolved:
@@ -67,30 +66,28 @@ class _Trace:
 
     def __init__(self, stations: Stations, side: Surface, row: int, meridian: Curve, *, upper: bool) -> None:
         self.end = Curve(control_points=side.control_points[:, row], knots=side.knots_u, degree=side.degree_u)
-        self.stations, self.meridian, self.upper = stations, meridian, upper
+        self.revolved, self.meridian = stations.mapping.revolved, meridian
+        spans = np.unique(side.knots_u)
+        self._places = np.sort(np.concatenate([spans, (spans[1:] + spans[:-1]) / 2.0]))
+        u, _, across = stations.on_lines(stations.plane.points(self._places)[0 if upper else 1])
+        first = (0,) * (u.ndim - 1)
+        self._u, self.across = np.real(u)[first], np.real(across)[first]
 
     def __call__(self, s: Reals) -> tuple[Array, Array]:
         """u and theta or y (len(s),) of the feet of the end's points on the wall's meridian."""
         points = self.end(s)
-        u, near = self._meant(s)
-        if self.stations.mapping.revolved:
+        if self.revolved:
             radius = length(points[..., 1:])
             across = angle(points[..., 1], points[..., 2])
+            near = np.interp(s, self._places, self.across)
             across = across + 2.0 * np.pi * np.round((near - np.real(across)) / (2.0 * np.pi))
         else:
             radius, across = points[..., 2], points[..., 1]
         target = np.stack([points[..., 0], radius], axis=-1)
-        for _ in range(3):
+        u = np.interp(s, self._places, self._u)
+        for _ in range(4):
             u = u + _foot_step(self.meridian, u, np.real(target))
         return u + _foot_step(self.meridian, u, target), across
-
-    def _meant(self, s: Reals) -> tuple[Reals, Reals]:
-        plane = self.stations.plane.points(s)[0 if self.upper else 1]
-        lines = self.stations.lines
-        u = lines.u_at(plane[..., 0])
-        across = lines.mapping.tangential(plane[..., 1], lines.position(u)[..., 1], lines.lengths[..., None])
-        first = (0,) * (u.ndim - 1)
-        return np.real(u)[first], np.real(across)[first]
 
 
 def _foot_step(meridian: Curve, u: Reals, target: Array) -> Array:

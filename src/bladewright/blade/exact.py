@@ -55,27 +55,28 @@ class Stations:
         """The sections' plane and its way to space."""
         return self.lines.mapping
 
-    def in_space(self, plane: Array) -> Array:
-        """Points (..., m, k, 3) in metres of plane points (..., m, k, 2)."""
+    def on_lines(self, plane: Array) -> tuple[Array, Array, Array]:
+        """u, (x, r) and theta or y (..., m, k) of plane points (..., m, k, 2)."""
         u = self.lines.u_at(plane[..., 0])
         position = self.lines.position(u)
-        tangential = self.mapping.tangential(plane[..., 1], position[..., 1], self.lines.lengths[..., None])
-        return self.mapping.in_space(position[..., 0], position[..., 1], tangential)
+        return u, position, self.mapping.tangential(plane[..., 1], position[..., 1], self.lines.lengths[..., None])
 
     def points(self, s: Reals) -> tuple[Array, Array]:
-        """Points (..., m, len(s), 3) of the upper and the lower side."""
-        upper, lower = self.plane.points(s)
-        both = self.in_space(np.concatenate([upper, lower], axis=-2))
+        """Points (..., m, len(s), 3) in metres of the upper and the lower side."""
+        _, position, tangential = self.on_lines(np.concatenate(self.plane.points(s), axis=-2))
+        both = self.mapping.in_space(position[..., 0], position[..., 1], tangential)
         return both[..., : len(s), :], both[..., len(s) :, :]
 
-    def wall_normals(self, plane: Array) -> Array:
-        """Unit normals (..., m, k, 3) of the stream surfaces at plane points (..., m, k, 2), towards the shroud."""
-        u = self.lines.u_at(plane[..., 0])
-        position, slope = self.lines.position(u), unit(self.lines.position(u, 1))
-        tangential = self.mapping.tangential(plane[..., 1], position[..., 1], self.lines.lengths[..., None])
+    def points_and_normals(self, s: Reals) -> tuple[tuple[Array, Array], tuple[Array, Array]]:
+        """The same, with the unit normals of the stream surfaces there, towards the shroud."""
+        u, position, tangential = self.on_lines(np.concatenate(self.plane.points(s), axis=-2))
+        both = self.mapping.in_space(position[..., 0], position[..., 1], tangential)
+        slope = unit(self.lines.position(u, 1))
         if not self.mapping.revolved:
             tangential = np.zeros_like(tangential)
-        return Conformal().in_space(-slope[..., 1], slope[..., 0], tangential)
+        normals = Conformal().in_space(-slope[..., 1], slope[..., 0], tangential)
+        points, directions = ((array[..., : len(s), :], array[..., len(s) :, :]) for array in (both, normals))
+        return points, directions
 
     def leading_edge(self) -> EdgeRow:
         """The leading edge in space."""

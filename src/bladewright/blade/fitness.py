@@ -44,16 +44,14 @@ class _LinesAlongU:
         order = np.argsort(both)
         back = np.argsort(order)
         worst = np.zeros(len(places))
-        plane = self.stations.plane.points(both[order])
-        normals = self.stations.wall_normals
-        for points, sign, flat in zip(self.stations.points(both[order]), (1.0, -1.0), plane, strict=True):
-            points, flat = points[:, back], flat[:, back]
+        for side, sign in zip(zip(*self.stations.points_and_normals(both[order]), strict=True), (1.0, -1.0), strict=True):
+            points, normals = side[0][:, back], side[1][:, back]
             lines = np.swapaxes(points[:, : len(sites)], 0, 1)
             net = interpolated_along_u(lines, *self.edges, sign, knots)
             native = np.tensordot(basis(knots, DEGREE, places), net, axes=1).swapaxes(0, 1)
             error = native - points[:, len(sites) :]
             worst = np.maximum(worst, np.max(length(error), axis=0) / self.tolerance)
-            off = dot(error, normals(flat[:, len(sites) :]))[[0, -1]]
+            off = dot(error, normals[:, len(sites) :])[[0, -1]]
             worst = np.maximum(worst, np.max(np.abs(off), axis=0) / self.wall_tolerance)  # real: knots come from the real design
         return worst
 
@@ -100,15 +98,14 @@ def error_of(exact: ExactBlade, upper: Surface, lower: Surface) -> tuple[float, 
     u, v = (_between(knots) for knots in (upper.knots_u, upper.knots_v))
     v = np.concatenate([[0.0], v, [1.0]])
     stations = exact.stations(v)
-    plane = stations.plane.points(u)
     error, off, place = 0.0, 0.0, (0.0, 0.0)
-    for surface, points, flat in zip((upper, lower), stations.points(u), plane, strict=True):
+    for surface, points, normals in zip((upper, lower), *stations.points_and_normals(u), strict=True):
         miss = np.real(surface.grid(u, v).swapaxes(0, 1) - points)
         distance = length(miss)
         worst = np.unravel_index(int(np.argmax(distance)), distance.shape)
         if distance[worst] > error:
             error, place = float(distance[worst]), (float(u[worst[1]]), float(v[worst[0]]))
-        ends = dot(miss, np.real(stations.wall_normals(flat)))[[0, -1]]
+        ends = dot(miss, np.real(normals))[[0, -1]]
         off = max(off, float(np.max(np.abs(ends))))  # real: a measured distance
     return error, off, place
 

@@ -147,10 +147,9 @@ def _off_stream_surfaces(stations: Stations, upper: Surface, lower: Surface) -> 
     """Largest distances [m] of curves of constant v, and of the ends among them, from their stream surfaces."""
     spans = np.unique(upper.knots_u)
     u = np.sort(np.concatenate([spans, (spans[1:] + spans[:-1]) / 2.0]))
-    plane = stations.plane.points(u)
     off = [
-        dot(np.real(side.grid(u, stations.v).swapaxes(0, 1) - points), np.real(stations.wall_normals(flat)))
-        for side, points, flat in zip((upper, lower), stations.points(u), plane, strict=True)
+        dot(np.real(side.grid(u, stations.v).swapaxes(0, 1) - points), np.real(normals))
+        for side, points, normals in zip((upper, lower), *stations.points_and_normals(u), strict=True)
     ]
     distances = np.max(np.abs(off), axis=(0, -1)).reshape(-1, len(stations.v))[0]  # real: measured distances
     return float(np.max(distances)), float(np.max(distances[[0, -1]]))

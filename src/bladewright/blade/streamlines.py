@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property
 from math import perm
 
 import numpy as np
@@ -70,23 +71,25 @@ class StreamLines:
         )
 
     def _guess(self, abscissa: Reals) -> Reals:
-        """The inverse on each panel as a Chebyshev series through a few places found by Newton from a straight line."""
-        count = len(self.panels) - 1
-        low, high = self.starts[..., :-1], self.starts[..., 1:]
-        local = (1.0 + _GUESS_PLACES) / 2.0
-        targets = low[..., None] + (high - low)[..., None] * local
-        u = np.broadcast_to(self.panels[:-1, None] + np.diff(self.panels)[:, None] * local, targets.shape)
-        for _ in range(4):
-            steps = [self._panel_step(i, u[..., i, :], targets[..., i, :]) for i in range(count)]
-            u = np.clip(u - np.stack(steps, axis=-2), self.panels[:-1, None], self.panels[1:, None])
-        series = u @ _GUESS_SERIES.T
         index = np.sum(abscissa[..., None] >= self.starts[..., None, 1:-1], axis=-1)
 
         def on_panel(panel: int, part: Reals) -> Reals:
             start, end = self.starts[..., panel, None], self.starts[..., panel + 1, None]
-            return _clenshaw(series[..., panel, :], (2.0 * part - start - end) / (end - start))
+            return _clenshaw(self._rough_inverse[..., panel, :], (2.0 * part - start - end) / (end - start))
 
         return _patched(index, abscissa, on_panel)
+
+    @cached_property
+    def _rough_inverse(self) -> Reals:
+        """Chebyshev series (m, p, 12) of u by abscissa on each panel, through places found by Newton from a line."""
+        extent = np.diff(self.starts)[..., None]
+        local = _GUESS_PLACES
+        for _ in range(4):
+            value = _clenshaw(self.series, local) - extent * (1.0 + _GUESS_PLACES) / 2.0
+            step = value / _clenshaw(self.density, local) / (np.diff(self.panels)[:, None] / 2.0)
+            local = np.clip(local - step, -1.0, 1.0)
+        u = self.panels[:-1, None] + np.diff(self.panels)[:, None] * (1.0 + local) / 2.0
+        return u @ _GUESS_SERIES.T
 
     def _real(self) -> "StreamLines":
         first = (0,) * (self.series.ndim - 3)
