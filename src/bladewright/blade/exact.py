@@ -14,10 +14,11 @@ from bladewright.numerics.elementary import Array, radians, unit
 from bladewright.nurbs.basis import Reals
 from bladewright.section.camber import camber_line, camber_points
 from bladewright.section.checks import UNITS
+from bladewright.section.holding import check_edges
 from bladewright.section.laws import Span
-from bladewright.section.plane import PlaneSections, plane_sections
+from bladewright.section.plane import PlaneSections, matched, plane_sections
 from bladewright.section.sampling import sample_places
-from bladewright.section.sides import advances, edge_height, side
+from bladewright.section.sides import side
 
 REACH = 0.6
 """how far, in u, the channel may be continued for a nose"""
@@ -164,12 +165,12 @@ class ExactBlade:
             thickness = span.chordwise(getattr(design, f"thickness_{name}"), inner) * scale
             laws = getattr(design, f"weights_{name}")
             weights = span.chordwise(laws, self.places) if laws else None
-            _check_edges(design, name, camber, self.places, thickness, curvatures, weights, span)
+            check_edges(design, name, camber, self.places, thickness, curvatures, weights, span)
             sides.append(side(camber, self.places, thickness, *curvatures, upper=upper, weights=weights))
         return Stations(
             v=v,
             lines=lines,
-            plane=plane_sections(camber, *_same_kind(*sides)),
+            plane=plane_sections(camber, *matched(*sides)),
             angle_in=angle_in,
             angle_out=angle_out,
             curvature_in=curvatures[0],
@@ -202,66 +203,3 @@ def exact_blade(design: UnifiedBlade) -> ExactBlade:
     return ExactBlade(
         design=design, channel=channel, mapping=mapping, places=places, before=reach[0], after=reach[1]
     )
-
-
-def _same_kind(upper: Array, lower: Array) -> tuple[Array, Array]:
-    if upper.shape[-1] == lower.shape[-1]:
-        return upper, lower
-    sides = [np.concatenate([c, np.ones_like(c[..., :1])], axis=-1) if c.shape[-1] == 2 else c for c in (upper, lower)]
-    return sides[0], sides[1]
-
-
-NOSE_SHARE = 0.4219
-"""largest value of the second basis function of a clamped quartic with uniform knots: the nose's own half thickness"""
-
-
-def _check_edges(
-    design: UnifiedBlade,
-    name: str,
-    camber: Array,
-    places: Reals,
-    thickness: Array,
-    curvatures: list[Array],
-    weights: Array | None,
-    span: Span,
-) -> None:
-    reached = advances(camber, places, thickness, name == "upper")
-    count = len(getattr(design, f"thickness_{name}"))
-    for i, edge in enumerate(("leading", "trailing")):
-        entry = f"thickness_{name}[{0 if i == 0 else count - 1}]"
-        radius = span.values(getattr(design, f"{edge}_edge_radius"))
-        advance, curvature = np.real(reached[i]), np.real(curvatures[i])
-        where = _first(advance <= 0.0)
-        if where is not None:
-            raise DesignError(
-                f"{entry}: next to the {edge} edge at v = {span.v[where[-1]]:.3f} the {name} side leaves the blade "
-                f"outwards: the camber turns too fast for the thickness there; lower {entry}, or the turning of the camber"
-            )
-        where = _first(curvature <= 0.0)
-        if where is not None:
-            raise DesignError(
-                f"{edge}_edge_radius is {_at(radius, where):.4g} at v = {span.v[where[-1]]:.3f}: the stream surface there "
-                f"bends more than such an edge; lower {edge}_edge_radius"
-            )
-        ratio = 1.0
-        if weights is not None:
-            ends = np.real(weights if i == 0 else weights[..., ::-1])
-            ratio = ends[..., 0] * ends[..., 2] / ends[..., 1] ** 2
-        height = np.real(edge_height(advance, curvature, ratio))
-        beside = np.real(thickness[..., 0 if i == 0 else -1])
-        where = _first(NOSE_SHARE * height > beside)
-        if where is not None:
-            largest = _at(radius, where) * (_at(beside, where) / (NOSE_SHARE * _at(height, where))) ** 2
-            raise DesignError(
-                f"{edge}_edge_radius is {_at(radius, where):.4g} at v = {span.v[where[-1]]:.3f}: the thickness of the "
-                f"{name} side next to it can hold at most {largest:.4g}; lower {edge}_edge_radius or raise {entry}"
-            )
-
-
-def _first(mask: Array) -> tuple[int, ...] | None:
-    found = np.argwhere(mask)
-    return tuple(int(i) for i in found[0]) if len(found) else None
-
-
-def _at(values: Array, where: tuple[int, ...]) -> float:
-    return float(np.ravel(np.real(values)[..., where[-1]])[0])

@@ -7,15 +7,11 @@ from bladewright.blade.channel import Channel
 from bladewright.designs import ChordwiseLaw, Design, Law, parameter
 from bladewright.errors import DesignError
 from bladewright.section import checks
+from bladewright.section.limits import check_labels, check_laws, check_range, check_sampling
 
 if TYPE_CHECKING:
     from bladewright.blade.blade import Blade
     from bladewright.blade.knots import Knots
-
-ANGLES = ("stagger", "metal_angle_in", "metal_angle_out")
-FRACTIONS = ("leading_edge_radius", "trailing_edge_radius")
-TANGENTS = ("tangent_in", "tangent_out")
-
 
 @dataclass(frozen=True, kw_only=True)
 class UnifiedBlade(Design):
@@ -79,35 +75,13 @@ class UnifiedBlade(Design):
     """for the header of CAD files"""
 
     def __post_init__(self) -> None:
-        put = object.__setattr__
-        for name in ("name", "description", "author", "organisation"):
-            checks.text(name, getattr(self, name))
-        if not self.name.strip() or any(sign in self.name for sign in '/\\:*?"<>|'):
-            raise DesignError(f"name is {self.name!r}: it names files, so it must not be empty nor hold / \\ : * ? \" < > |")
-        checks.choice("length_unit", self.length_unit, list(checks.UNITS))
+        check_labels(self)
         checks.choice("arrangement", self.arrangement, ["annular", "linear"])
         checks.choice("mapping", self.mapping, ["conformal", "paper"])
-        for name in (*ANGLES, *TANGENTS, *FRACTIONS):
-            put(self, name, checks.law(name, getattr(self, name)))
-        for name in ("thickness_upper", "thickness_lower"):
-            put(self, name, checks.chordwise(name, getattr(self, name)))
-            checks.between(name, getattr(self, name), 0.0, 10.0, "thickness must be positive, and below 10; raise it")
-        for name in ("weights_upper", "weights_lower"):
-            if getattr(self, name) != ():
-                put(self, name, checks.chordwise(name, getattr(self, name)))
-                checks.between(name, getattr(self, name), 0.0, 1e6, "a weight must be positive, and below 1e6")
-        for name in ANGLES:
-            checks.between(name, getattr(self, name), -90.0, 90.0, "an angle must lie between -90 and 90 deg")
-        for name in TANGENTS:
-            what = "a tangent proportion must lie above 0 and not above 1, or the camber turns back"
-            checks.between(name, getattr(self, name), 0.0, 1.0 + 1e-12, what)
-        for name in FRACTIONS:
-            checks.between(name, getattr(self, name), 0.0, 1.0, "an edge radius must lie between 0 and 1")
+        check_laws(self)
         self._check_arrangement()
-        put(self, "samples", checks.integer("samples", self.samples, 3, 60, "a whole number is needed"))
-        for name, low, high in (("clustering", 0.0, 1.0), ("tolerance", 1e-9, 1e-2)):
-            put(self, name, checks.number(name, getattr(self, name)))
-            checks.between(name, getattr(self, name), low, high, f"it must lie from {low:g} to {high:g}", closed=True)
+        check_sampling(self)
+        check_range(self, "tolerance", 1e-9, 1e-2)
         if not isinstance(self.channel, Channel):
             raise DesignError(f"channel is {self.channel!r}: a Channel with leading_edge and trailing_edge is needed")
 

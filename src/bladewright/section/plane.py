@@ -47,6 +47,14 @@ def plane_sections(camber: Array, upper: Array, lower: Array) -> PlaneSections:
     return PlaneSections(camber=camber, upper=upper, lower=lower, leading_edge=ends[0], trailing_edge=ends[1])
 
 
+def matched(upper: Array, lower: Array) -> tuple[Array, Array]:
+    """Both sides' control points homogeneous where one of them is."""
+    if upper.shape[-1] == lower.shape[-1]:
+        return upper, lower
+    sides = [np.concatenate([c, np.ones_like(c[..., :1])], axis=-1) if c.shape[-1] == 2 else c for c in (upper, lower)]
+    return sides[0], sides[1]
+
+
 def taylor(controls: Array, from_end: bool) -> Array:
     """Taylor coefficients (..., 5, 2) of a side at its start, or at its end by the distance from it.
 

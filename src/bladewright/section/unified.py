@@ -1,0 +1,154 @@
+"""The unified section as a 2D design: camber and two thickness laws in the plane (Agromayor et al. 2021, section 3)."""
+
+from dataclasses import dataclass
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Any, Literal
+
+import numpy as np
+
+from bladewright.designs import Design, parameter
+from bladewright.errors import DesignError
+from bladewright.numerics.elementary import radians
+from bladewright.nurbs.transform import translated
+from bladewright.section import checks
+from bladewright.section.camber import camber_line
+from bladewright.section.crossing import self_crossings, touches
+from bladewright.section.curves import camber_curve, side_curve
+from bladewright.section.holding import check_edges
+from bladewright.section.laws import Span
+from bladewright.section.limits import ANGLES, RADII, TANGENTS, check_labels, check_laws, check_sampling
+from bladewright.section.plane import matched, plane_sections
+from bladewright.section.sampling import sample_places
+from bladewright.section.section import Section
+from bladewright.section.sides import side
+
+if TYPE_CHECKING:
+    from bladewright.blade.unified import UnifiedBlade
+
+Numbers = tuple[float, ...]
+
+
+@dataclass(frozen=True, kw_only=True)
+class UnifiedSection(Design):
+    """A section of the unified family in the plane (x, y), x axial and y tangential.
+
+    Thicknesses, radii and tangent proportions are fractions of the axial chord.
+    Reference: Agromayor et al. 2021, section 3.
+    """
+
+    name: str
+    """the part's name, used in files"""
+    length_unit: Literal["m", "cm", "mm", "um", "in", "ft"]
+    """unit of every length in the design"""
+    pitch: float | None = parameter("length", default=None)
+    """tangential distance of neighbours; none: a single section [length]"""
+    leading_edge_x: float = parameter("length", default=0.0)
+    """axial position of the leading edge [length]"""
+    leading_edge_y: float = parameter("length", default=0.0)
+    """tangential position of the leading edge [length]"""
+    axial_chord: float = parameter("length")
+    """axial distance from leading to trailing edge [length]"""
+    stagger: float = parameter("deg")
+    """angle of the chord line from the axis [deg]"""
+    metal_angle_in: float = parameter("deg")
+    """camber angle at the leading edge [deg]"""
+    metal_angle_out: float = parameter("deg")
+    """camber angle at the trailing edge [deg]"""
+    tangent_in: float = parameter("-")
+    """length of the camber's tangent at the leading edge, of the axial chord [-]"""
+    tangent_out: float = parameter("-")
+    """length of the camber's tangent at the trailing edge, of the axial chord [-]"""
+    leading_edge_radius: float = parameter("-")
+    """radius of curvature at the leading edge, of the axial chord [-]"""
+    trailing_edge_radius: float = parameter("-")
+    """radius of curvature at the trailing edge, of the axial chord [-]"""
+    thickness_upper: Numbers = parameter("-")
+    """half thickness of the upper side, control points along the chord, of the axial chord [-]"""
+    thickness_lower: Numbers = parameter("-")
+    """half thickness of the lower side, control points along the chord, of the axial chord [-]"""
+    weights_upper: Numbers = parameter("-", default=())
+    """weights of the upper side's control points, a law along the chord; none: a B-spline [-]"""
+    weights_lower: Numbers = parameter("-", default=())
+    """weights of the lower side's control points, a law along the chord; none: a B-spline [-]"""
+    span: float | None = parameter("length", default=None)
+    """height of the prismatic blade that the section becomes as a solid; none: a section only [length]"""
+    samples: int = 16
+    """places along the chord where the thickness laws are taken, edges apart [-]"""
+    clustering: float = 1.0
+    """spacing of the samples: 0 uniform, 1 cosine towards both edges [-]"""
+    description: str = ""
+    """one line for the header of CAD files"""
+    author: str = ""
+    """for the header of CAD files"""
+    organisation: str = ""
+    """for the header of CAD files"""
+
+    def __post_init__(self) -> None:
+        put = object.__setattr__
+        check_labels(self)
+        numbers = ["leading_edge_x", "leading_edge_y", "axial_chord", *ANGLES, *TANGENTS, *RADII]
+        for name in [*numbers, *(name for name in ("pitch", "span") if getattr(self, name) is not None)]:
+            put(self, name, checks.number(name, getattr(self, name)))
+        check_laws(self)
+        for name in ("axial_chord", "pitch", "span"):
+            if getattr(self, name) is not None:
+                checks.between(name, getattr(self, name), 0.0, float("inf"), "it must be positive")
+        check_sampling(self)
+
+    def build(self) -> Section:
+        """The section in metres and radians; raises DesignError where the shape is impossible."""
+        metre, span = checks.UNITS[self.length_unit], Span(np.zeros(1))
+
+        def value(name: str) -> Any:
+            return np.asarray(getattr(self, name))[..., None]
+
+        chord = value("axial_chord") * metre
+        angles = [radians(value(name)) for name in ANGLES]
+        line = camber_line(
+            *np.broadcast_arrays(value("leading_edge_y") * metre, chord), *angles, value("tangent_in"), value("tangent_out")
+        )
+        places = sample_places(self.samples, self.clustering)
+        curvatures = [1.0 / (value(name) * chord) for name in RADII]
+        sides = []
+        for name in ("upper", "lower"):
+            thickness = span.chordwise(getattr(self, f"thickness_{name}"), places[2:-2]) * chord[..., None]
+            laws = getattr(self, f"weights_{name}")
+            weights = span.chordwise(laws, places) if laws else None
+            check_edges(self, name, line, places, thickness, curvatures, weights, span)
+            sides.append(side(line, places, thickness, *curvatures, upper=name == "upper", weights=weights))
+        upper, lower = matched(*sides)
+        self._check_outline(line, upper, lower, metre)
+        shift = np.array([self.leading_edge_x * metre, 0.0])
+        return Section(
+            span=0.0,
+            plane="x-y",
+            curves=MappingProxyType(
+                {"upper": translated(side_curve(upper[0]), shift), "lower": translated(side_curve(lower[0]), shift)}
+            ),
+            camber=translated(camber_curve(line[0]), shift),
+            stagger=float(np.real(angles[0][0])),
+            metal_angle_in=float(np.real(angles[1][0])),
+            metal_angle_out=float(np.real(angles[2][0])),
+            scale=np.ones_like,
+        )
+
+    def extruded(self, span: float | None = None) -> "UnifiedBlade":
+        """The prismatic blade of a linear cascade, `span` high [length]; raises DesignError where neither has a span."""
+        from bladewright.blade.prismatic import prismatic
+
+        return prismatic(self, span)
+
+    def _check_outline(self, line: Any, upper: Any, lower: Any, metre: float) -> None:
+        s = (1.0 - np.cos(np.pi * np.linspace(0.0, 1.0, 129))) / 2.0
+        above, below = (np.real(points)[0] for points in plane_sections(line, upper, lower).points(s))
+        outline = np.concatenate([above, below[-2:0:-1]])
+        place = self_crossings(outline)
+        if place is not None:
+            at = min(place, 2 * (len(s) - 1) - place)
+            raise DesignError(
+                f"the sides cross near s = {s[int(at)]:.3f} along the section: raise the thickness there, lower an edge "
+                "radius that is larger than the thickness beside it, or lower the turning of the camber"
+            )
+        if self.pitch is not None and touches(outline, float(np.real(self.pitch)) * metre):
+            raise DesignError(f"pitch is {self.pitch:g}: neighbouring sections intersect; take a larger pitch")
+
