@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
+from typing import final
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -14,6 +15,7 @@ from bladewright.nurbs.basis import checked_knots
 from bladewright.nurbs.rational import curve_quotients, homogeneous
 
 
+@final
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Curve:
     """A NURBS curve C(u) = sum N_i(u) w_i P_i / sum N_i(u) w_i (Piegl and Tiller 1997, eq. 4.1).

@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 from functools import cached_property
+from typing import final
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -15,6 +16,7 @@ from bladewright.nurbs.normals import unit_normals
 from bladewright.nurbs.rational import homogeneous, surface_quotients
 
 
+@final
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Surface:
     """A NURBS surface S(u, v) (Piegl and Tiller 1997, eq. 4.11), usually over [0, 1] x [0, 1].

@@ -1,7 +1,7 @@
 """Affine maps of curves, surfaces and trimmed surfaces: they act on the control points and leave knots and weights."""
 
 from dataclasses import replace
-from typing import TypeVar, cast
+from typing import TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -23,7 +23,7 @@ def transformed(shape: Mapped, matrix: ArrayLike, offset: ArrayLike = 0.0) -> Ma
     """
     if isinstance(shape, TrimmedSurface):
         # what it was revolved about does not move along
-        return cast("Mapped", replace(shape, surface=transformed(shape.surface, matrix, offset), revolution=None))
+        return replace(shape, surface=transformed(shape.surface, matrix, offset), revolution=None)
     linear, points = np.asarray(matrix), shape.control_points
     if linear.ndim != 2 or linear.shape[1] != points.shape[-1]:
         raise GeometryError(

@@ -3,6 +3,7 @@
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
+from typing import final
 
 import numpy as np
 from numpy.random import default_rng
@@ -23,6 +24,7 @@ DRAWS = 4_000_000
 """most points that are drawn in the boundary's box to find some inside"""
 
 
+@final
 @dataclass(frozen=True, kw_only=True, eq=False)
 class TrimmedSurface:
     """The part of `surface` to the left of `boundary`, a closed chain of curves in (u, v) run counter-clockwise.

@@ -1,0 +1,100 @@
+"""Bezier pieces of curves and surfaces, and the algebra of Bernstein coefficients."""
+
+from dataclasses import dataclass
+from functools import cache
+from math import comb
+
+import numpy as np
+from numpy.typing import NDArray
+
+from bladewright.nurbs.basis import Reals, breaks
+from bladewright.nurbs.blossom import knot_change
+from bladewright.nurbs.curve import Curve
+from bladewright.nurbs.surface import Surface
+
+
+@dataclass(frozen=True, kw_only=True)
+class Patches:
+    """The Bezier patches of a real surface, or of a real curve as a surface of degree 0 in v; all in one array."""
+
+    nets: Reals
+    """(k, p + 1, q + 1, d + 1) homogeneous control points (w P, w)"""
+    low: Reals
+    """(k, 2) u and v at which a patch starts"""
+    high: Reals
+    """(k, 2) u and v at which it ends"""
+    shape: tuple[int, int]
+    """number of patches along u and v: patch i, j has index i shape[1] + j"""
+
+    @property
+    def degrees(self) -> tuple[int, int]:
+        """Degrees along u and v."""
+        return self.nets.shape[1] - 1, self.nets.shape[2] - 1
+
+    def neighbours(
+        self, patch: NDArray[np.intp], steps: NDArray[np.intp]
+    ) -> tuple[NDArray[np.intp], NDArray[np.bool_]]:
+        """Indices (m,) of the patches `steps` (m, 2) further along u and v, and where there is one each way (m, 2)."""
+        place = np.stack(np.divmod(patch, self.shape[1]), axis=-1)
+        exists = (place + steps >= 0) & (place + steps < np.array(self.shape))
+        place = place + np.where(exists, steps, 0)
+        return place[:, 0] * self.shape[1] + place[:, 1], exists
+
+
+def patches(shape: Curve | Surface) -> Patches:
+    """The Bezier patches of a curve or surface (real parts), weighted by one where it has no weights."""
+    net = shape.homogeneous.real
+    if shape.weights is None:
+        net = np.concatenate([net, np.ones((*net.shape[:-1], 1))], axis=-1)
+    if isinstance(shape, Curve):
+        ends = breaks(shape.knots)
+        pieces = _pieces(shape.knots, shape.degree, net)[:, :, None]
+        flat = np.zeros(len(pieces))
+        low, high = np.stack([ends[:-1], flat], axis=-1), np.stack([ends[1:], flat], axis=-1)
+        return Patches(nets=pieces, low=low, high=high, shape=(len(pieces), 1))
+    rows = _pieces(shape.knots_u, shape.degree_u, net)
+    both = np.moveaxis(_pieces(shape.knots_v, shape.degree_v, np.moveaxis(rows, 2, 0)), (0, 1), (1, 3))
+    u, v = breaks(shape.knots_u), breaks(shape.knots_v)
+    low = np.stack(np.meshgrid(u[:-1], v[:-1], indexing="ij"), axis=-1).reshape(-1, 2)
+    high = np.stack(np.meshgrid(u[1:], v[1:], indexing="ij"), axis=-1).reshape(-1, 2)
+    return Patches(nets=both.reshape(-1, *both.shape[2:]), low=low, high=high, shape=(len(u) - 1, len(v) - 1))
+
+
+def bernstein(degree: int, s: Reals, order: int = 0) -> Reals:
+    """Bernstein polynomials' `order`-th derivatives (m, degree + 1) at s (m,) in [0, 1]."""
+    if order > degree:
+        return np.zeros((len(s), degree + 1))
+    if order:
+        lower = bernstein(degree - 1, s, order - 1)
+        padded = np.pad(lower, ((0, 0), (1, 1)))
+        return degree * (padded[:, :-1] - padded[:, 1:])
+    k = np.arange(degree + 1)
+    binomials = np.array([comb(degree, i) for i in k], dtype=np.float64)
+    return np.asarray(binomials * s[:, None] ** k * (1.0 - s[:, None]) ** (degree - k))
+
+
+@cache
+def product_table(degree: int) -> Reals:
+    """Coefficients (2p + 1, p + 1, p + 1) of the product of two polynomials of degree p in Bernstein form.
+
+    Farin 2002, section 6.4: c_k = sum over i + j = k of C(p, i) C(p, j) / C(2p, k) a_i b_j.
+    """
+    table = np.zeros((2 * degree + 1, degree + 1, degree + 1))
+    for i in range(degree + 1):
+        for j in range(degree + 1):
+            table[i + j, i, j] = comb(degree, i) * comb(degree, j) / comb(2 * degree, i + j)
+    return table
+
+
+@cache
+def halving(degree: int) -> tuple[Reals, Reals]:
+    """Matrices (degree + 1, degree + 1) from Bernstein coefficients to those of the left and right half."""
+    left = np.array([[comb(i, j) / 2.0**i if j <= i else 0.0 for j in range(degree + 1)] for i in range(degree + 1)])
+    return left, left[::-1, ::-1].copy()
+
+
+def _pieces(knots: Reals, degree: int, net: Reals) -> Reals:
+    ends = breaks(knots)
+    full = np.concatenate([knots[:1], np.repeat(ends, degree), knots[-1:]])
+    control = np.tensordot(knot_change(knots, degree, full), net, axes=1)
+    return np.stack([control[i * degree : i * degree + degree + 1] for i in range(len(ends) - 1)])

@@ -1,0 +1,236 @@
+"""Globally nearest points on Bezier patches: branch and bound on the Bernstein coefficients of the squared distance.
+
+With N / D the squared distance on a patch (D = 1 without weights) and f the best squared distance so far, a box of
+parameters is dropped when all Bernstein coefficients of N - f D are positive, or when N - f D is convex there and its
+tangent plane at the best point found is not negative on the box; otherwise it is halved. Values at corners of boxes
+that undercut f start a descent to a new best point. What is left out is further away than the answer less a tolerance.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.spatial import cKDTree
+
+from bladewright.numerics.elementary import length
+from bladewright.nurbs.basis import Reals
+from bladewright.nurbs.bezier import Patches, bernstein, halving, product_table
+from bladewright.nurbs.polish import Places, polished
+
+BLOCK = 2_000_000
+"""coefficients that are worked on at a time: it bounds the memory"""
+DEPTH = 48
+"""halvings after which a box is below the spacing of doubles"""
+
+
+def nearest(on: Patches, queries: Reals, tolerance: float) -> Places:
+    """The places (m,) nearest to queries (m, d): no other is nearer by more than `tolerance` [length]."""
+    search = _Search.of(on)
+    chunk = max(1, BLOCK // len(on.nets))
+    found = [search.nearest(queries[i : i + chunk], tolerance) for i in range(0, len(queries), chunk)]
+    return Places(
+        patch=np.concatenate([part.patch for part in found]),
+        local=np.concatenate([part.local for part in found]),
+        square=np.concatenate([part.square for part in found]),
+    )
+
+
+@dataclass(frozen=True, kw_only=True)
+class _Boxes:
+    """Boxes of patches still in question: one row for each pair of a query and a box."""
+
+    query: NDArray[np.intp]
+    patch: NDArray[np.intp]
+    low: Reals
+    """(k, 2) local parameters"""
+    width: float
+    numerator: Reals
+    """(k, 2p + 1, 2q + 1) Bernstein coefficients of N"""
+    denominator: Reals
+    """(k, 2p + 1, 2q + 1) of D"""
+    depth: int
+
+    def of(self, rows: NDArray[np.intp] | NDArray[np.bool_]) -> "_Boxes":
+        return _Boxes(
+            query=self.query[rows],
+            patch=self.patch[rows],
+            low=self.low[rows],
+            width=self.width,
+            numerator=self.numerator[rows],
+            denominator=self.denominator[rows],
+            depth=self.depth,
+        )
+
+    def halved(self, *, both: bool) -> "_Boxes":
+        quarters = [(i, j) for i in (0, 1) for j in ((0, 1) if both else (0,))]
+        return _Boxes(
+            query=np.tile(self.query, len(quarters)),
+            patch=np.tile(self.patch, len(quarters)),
+            low=np.concatenate([self.low + 0.5 * self.width * np.array(quarter) for quarter in quarters]),
+            width=0.5 * self.width,
+            numerator=_parts(self.numerator, quarters, both=both),
+            denominator=_parts(self.denominator, quarters, both=both),
+            depth=self.depth + 1,
+        )
+
+
+@dataclass(frozen=True, kw_only=True)
+class _Search:
+    """What the search needs of the patches, worked out once."""
+
+    on: Patches
+    centres: Reals
+    radii: Reals
+    forms: Reals
+    """(k, d + 2, 2p + 1, 2q + 1): N = forms . (1, x, |x|^2) with x the query from the patch's centre; D is the last"""
+    samples: cKDTree
+    sample_patch: NDArray[np.intp]
+    sample_local: Reals
+
+    @classmethod
+    def of(cls, on: Patches) -> "_Search":
+        points, weights = on.nets[..., :-1] / on.nets[..., -1:], on.nets[..., -1]
+        p, q = on.degrees
+        centres = 0.5 * (points.min(axis=(1, 2)) + points.max(axis=(1, 2)))
+        radii = length(points - centres[:, None, None]).max(axis=(1, 2))
+        moved = weights[..., None] * (points - centres[:, None, None])
+        factors = np.concatenate([moved, weights[..., None]], axis=-1)
+        squares = _products(factors, factors, p, q)
+        mixed = _products(factors[..., :-1], weights[..., None], p, q)
+        forms = np.concatenate(
+            [squares[..., :-1].sum(axis=-1, keepdims=True), -2.0 * mixed, squares[..., -1:]], axis=-1
+        )
+        s, t = (np.linspace(0.0, 1.0, 2 * degree + 2) if degree else np.zeros(1) for degree in (p, q))
+        local = np.stack(np.meshgrid(s, t, indexing="ij"), axis=-1).reshape(-1, 2)
+        sampled = np.einsum(
+            "ai,aj,kijd->kad", bernstein(p, local[:, 0]), bernstein(q, local[:, 1]), on.nets, optimize=True
+        )
+        return cls(
+            on=on,
+            centres=centres,
+            radii=radii,
+            forms=np.moveaxis(forms, -1, 1),
+            samples=cKDTree((sampled[..., :-1] / sampled[..., -1:]).reshape(-1, points.shape[-1])),
+            sample_patch=np.repeat(np.arange(len(on.nets)), len(local)),
+            sample_local=np.tile(local, (len(on.nets), 1)),
+        )
+
+    def nearest(self, queries: Reals, tolerance: float) -> Places:
+        _, sample = self.samples.query(queries)
+        best = polished(self.on, queries, self.sample_patch[sample], self.sample_local[sample])
+        best = Places(patch=best.patch, local=best.local, square=best.square.copy())
+        reach = np.sqrt(best.square)
+        distance = np.sqrt(np.maximum(0.0, _square_distances(queries, self.centres)))
+        # the margin is the rounding of a difference of squares
+        margin = 1e-7 * (self.radii + length(self.centres).max() + length(queries)[:, None])
+        query, patch = np.nonzero(distance - self.radii < reach[:, None] + np.minimum(margin, self.radii))
+        coefficients = self.forms.shape[2] * self.forms.shape[3]
+        limit = max(1, BLOCK // coefficients)
+        waiting: list[_Boxes] = []
+        for i in range(0, len(query), limit):
+            waiting.append(self._boxes(queries, query[i : i + limit], patch[i : i + limit]))
+            while waiting:
+                boxes = waiting.pop()
+                self._improve(best, queries, boxes)
+                boxes = boxes.of(self._open(best, boxes, tolerance))
+                if len(boxes.query) and boxes.depth < DEPTH:
+                    halves = boxes.halved(both=self.forms.shape[3] > 1)
+                    rows = np.arange(len(halves.query))
+                    waiting += [halves.of(rows[k : k + limit]) for k in range(0, len(rows), limit)]
+        return best
+
+    def _boxes(self, queries: Reals, query: NDArray[np.intp], patch: NDArray[np.intp]) -> _Boxes:
+        x = queries[query] - self.centres[patch]
+        form = np.concatenate([np.ones((len(x), 1)), x, np.sum(x * x, axis=1, keepdims=True)], axis=1)
+        chosen = self.forms[patch]
+        return _Boxes(
+            query=query,
+            patch=patch,
+            low=np.zeros((len(query), 2)),
+            width=1.0,
+            numerator=np.einsum("kc,kcij->kij", form, chosen),
+            denominator=chosen[:, -1],
+            depth=0,
+        )
+
+    def _improve(self, best: Places, queries: Reals, boxes: _Boxes) -> None:
+        """Descends from the lowest box corner of each query where that is below the best place."""
+        values = np.stack(
+            [boxes.numerator[:, i, j] / boxes.denominator[:, i, j] for i in (0, -1) for j in (0, -1)], axis=-1
+        )
+        corner = values.argmin(axis=1)
+        value = values[np.arange(len(values)), corner]
+        below = np.flatnonzero(value < best.square[boxes.query] * (1.0 - 1e-9))
+        if len(below) == 0:
+            return
+        order = below[np.lexsort((value[below], boxes.query[below]))]
+        query, first = np.unique(boxes.query[order], return_index=True)
+        start = order[first]
+        way = np.stack(np.divmod(corner[start], 2), axis=-1)
+        local = boxes.low[start] + boxes.width * way
+        if self.on.degrees[1] == 0:
+            local[:, 1] = 0.0
+        new = polished(self.on, queries[query], boxes.patch[start], local)
+        better = new.square < best.square[query]
+        best.patch[query[better]] = new.patch[better]
+        best.local[query[better]] = new.local[better]
+        best.square[query[better]] = new.square[better]
+
+    def _open(self, best: Places, boxes: _Boxes, tolerance: float) -> NDArray[np.intp]:
+        """The rows of boxes that may hold a place nearer than the best one by more than the tolerance."""
+        square = best.square[boxes.query]
+        root = np.sqrt(square)
+        slack = np.where(root > tolerance, tolerance * (2.0 * root - tolerance), square)
+        room = boxes.numerator - (square - slack)[:, None, None] * boxes.denominator
+        rows = np.flatnonzero((root > tolerance) & (room.min(axis=(1, 2)) < 0.0))
+        at = self._local(best, boxes.query[rows], boxes.patch[rows])
+        inside = (at >= boxes.low[rows] - 1e-12) & (at <= boxes.low[rows] + boxes.width + 1e-12)
+        holds = inside.all(axis=1)
+        kept = np.ones(len(rows), dtype=bool)
+        kept[holds] = ~_certified(room[rows[holds]], (at[holds] - boxes.low[rows[holds]]) / boxes.width)
+        return rows[kept]
+
+    def _local(self, best: Places, query: NDArray[np.intp], patch: NDArray[np.intp]) -> Reals:
+        """The best places in the local parameters of other patches; outside [0, 1] when they are not on them."""
+        low, high = self.on.low, self.on.high
+        home = best.patch[query]
+        place = low[home] + best.local[query] * (high[home] - low[home])
+        width = high[patch] - low[patch]
+        return np.where(width > 0.0, (place - low[patch]) / np.where(width > 0.0, width, 1.0), 0.0)
+
+
+def _certified(room: Reals, at: Reals) -> NDArray[np.bool_]:
+    """Where `room` (k, m, n) is convex on its box and not negative anywhere on its tangent plane `at` (k, 2)."""
+    m, n = room.shape[1] - 1, room.shape[2] - 1
+    along, across = np.diff(room, axis=1), np.diff(room, axis=2)
+    bend = m * (m - 1) * np.diff(along, axis=1).min(axis=(1, 2))
+    convex = bend >= 0.0
+    if n:
+        other = n * (n - 1) * np.diff(across, axis=2).min(axis=(1, 2))
+        twist = m * n * np.square(np.diff(along, axis=2)).max(axis=(1, 2)) ** 0.5
+        convex &= (other >= 0.0) & (bend * other >= twist**2)
+    at = np.clip(at, 0.0, 1.0)
+    s, t = [bernstein(m, at[:, 0], order) for order in (0, 1)], [bernstein(n, at[:, 1], order) for order in (0, 1)]
+    value, slope_s, slope_t = (np.einsum("kij,ki,kj->k", room, s[a], t[b]) for a, b in ((0, 0), (1, 0), (0, 1)))
+    fall_s = np.minimum(-at[:, 0] * slope_s, (1.0 - at[:, 0]) * slope_s)
+    fall_t = np.minimum(-at[:, 1] * slope_t, (1.0 - at[:, 1]) * slope_t)
+    return np.asarray(convex & (value + fall_s + fall_t >= 0.0))
+
+
+def _parts(coefficients: Reals, quarters: list[tuple[int, int]], *, both: bool) -> Reals:
+    along = halving(coefficients.shape[1] - 1)
+    across = halving(coefficients.shape[2] - 1)
+    halves = [np.einsum("ai,kij->kaj", matrix, coefficients) for matrix in along]
+    return np.concatenate([halves[i] @ across[j].T if both else halves[i] for i, j in quarters])
+
+
+def _products(a: Reals, b: Reals, p: int, q: int) -> Reals:
+    return np.asarray(
+        np.einsum(
+            "aix,bjy,kijd,kxyd->kabd", product_table(p), product_table(q), a, np.broadcast_to(b, a.shape), optimize=True
+        )
+    )
+
+
+def _square_distances(a: Reals, b: Reals) -> Reals:
+    return np.asarray(np.sum(a * a, axis=1)[:, None] - 2.0 * a @ b.T + np.sum(b * b, axis=1))
