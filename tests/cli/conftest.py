@@ -41,5 +41,3 @@ def design_file(tmp_path: Path) -> Path:
     path = tmp_path / "fan-rotor.toml"
     path.write_text(example_text("fan-rotor"))
     return path
-
-

@@ -1,4 +1,4 @@
-"""Bad input gets one paragraph with the parameter's path, its value, the limit and the cure, and leaves nothing behind."""
+"""Bad input gets one paragraph with path, value, limit and cure, and leaves nothing behind."""
 
 import re
 import sys
@@ -20,7 +20,7 @@ def replaced(key: str, line: str) -> str:
 
 BAD_FILES = {
     "wrong type": (replaced("stagger", 'stagger = "steep"'), ["stagger", '"steep"', "number", "deg"]),
-    "wrong type in a list": (replaced("stagger", 'stagger = [1, true]'), ["stagger[1]", "true", "a number"]),
+    "wrong type in a list": (replaced("stagger", "stagger = [1, true]"), ["stagger[1]", "true", "a number"]),
     "a fraction of a blade": (replaced("blade_count", "blade_count = 22.5"), ["blade_count", "22.5", "whole number"]),
     "number for a list": (replaced("thickness_lower", "thickness_lower = 0.3"), ["thickness_lower", "0.3", "list"]),
     "number for a text": (replaced("name", "name = 3"), ["name", "3", "text"]),
@@ -38,21 +38,36 @@ BAD_FILES = {
     "missing family": (replaced("family", ""), ["family", "missing", '"unified"']),
     "unknown family": (replaced("family", 'family = "unifid"'), ["unifid", "did you mean 'unified'"]),
     "family of the wrong type": (replaced("family", "family = 3"), ["family", "3", "text"]),
-    "unknown arrangement": (replaced("arrangement", 'arrangement = "anular"'), ["arrangement", "did you mean 'annular'"]),
+    "unknown arrangement": (
+        replaced("arrangement", 'arrangement = "anular"'),
+        ["arrangement", "did you mean 'annular'"],
+    ),
     "NaN": (replaced("stagger", "stagger = nan"), ["stagger", "nan", "finite"]),
     "NaN in a list": (replaced("hub", "hub = [[1, nan]]"), ["channel.hub[0].r", "nan", "finite"]),
     "infinity": (replaced("tangent_in", "tangent_in = [0.1, inf]"), ["tangent_in[1]", "inf", "finite"]),
     "beyond all floats": (replaced("tangent_in", f"tangent_in = 1{'0' * 400}"), ["tangent_in", "inf", "finite"]),
     "empty list": (replaced("stagger", "stagger = []"), ["stagger", "empty", "control point"]),
     "empty chordwise list": (replaced("thickness_upper", "thickness_upper = []"), ["thickness_upper", "empty"]),
-    "empty law in a list": (replaced("thickness_upper", "thickness_upper = [0.1, []]"), ["thickness_upper[1]", "empty"]),
+    "empty law in a list": (
+        replaced("thickness_upper", "thickness_upper = [0.1, []]"),
+        ["thickness_upper[1]", "empty"],
+    ),
     "zero blades": (replaced("blade_count", "blade_count = 0"), ["blade_count", "0", "1 to 10000"]),
     "90 degrees": (replaced("metal_angle_in", "metal_angle_in = [10, 90]"), ["metal_angle_in[1]", "90", "-90 and 90"]),
     "minus 95 degrees": (replaced("stagger", "stagger = -95"), ["stagger", "-95", "between -90 and 90 deg"]),
-    "negative thickness": (replaced("thickness_lower", "thickness_lower = [-0.1]"), ["thickness_lower[0]", "-0.1", "raise"]),
-    "zero radius": (replaced("leading_edge_radius", "leading_edge_radius = 0"), ["leading_edge_radius", "0", "between"]),
+    "negative thickness": (
+        replaced("thickness_lower", "thickness_lower = [-0.1]"),
+        ["thickness_lower[0]", "-0.1", "raise"],
+    ),
+    "zero radius": (
+        replaced("leading_edge_radius", "leading_edge_radius = 0"),
+        ["leading_edge_radius", "0", "between"],
+    ),
     "long tangent": (replaced("tangent_out", "tangent_out = 1.5"), ["tangent_out", "1.5", "not above 1"]),
-    "one control point": (replaced("leading_edge ", "leading_edge = [[1, 2]]"), ["channel.leading_edge", "1", "at least 2"]),
+    "one control point": (
+        replaced("leading_edge ", "leading_edge = [[1, 2]]"),
+        ["channel.leading_edge", "1", "at least 2"],
+    ),
     "a name that is a path": (replaced("name", 'name = "a/b"'), ["name", "a/b"]),
     "a name that is no text": (replaced("name", r'name = "a\u0000b"'), ["name", "printable"]),
     "pitch in an annulus": (replaced("leading_edge_theta", "pitch = 3.0"), ["pitch", "annular", "blade_count"]),
@@ -61,7 +76,9 @@ BAD_FILES = {
         ["leading_edge_theta", "linear", "leading_edge_y"],
     ),
     "swapped ends": (
-        TEXT.replace("\nleading_edge  =", "\nswap =").replace("\ntrailing_edge =", "\nleading_edge =").replace("swap", "trailing_edge"),
+        TEXT.replace("\nleading_edge  =", "\nswap =")
+        .replace("\ntrailing_edge =", "\nleading_edge =")
+        .replace("swap", "trailing_edge"),
         ["channel"],
     ),
     "swapped hub and shroud": (
@@ -114,7 +131,9 @@ def test_with_json_an_error_is_one_object_on_standard_output(name, run, tmp_path
 
 
 def test_a_missing_file_is_refused_with_the_nearest_name(run, design_file):
-    assert_refused(run("build", design_file.with_name("fan-rotr.toml")), "fan-rotr.toml", f"did you mean '{design_file}'")
+    assert_refused(
+        run("build", design_file.with_name("fan-rotr.toml")), "fan-rotr.toml", f"did you mean '{design_file}'"
+    )
 
 
 def test_a_directory_in_the_place_of_a_file_is_refused(run, design_file):

@@ -5,13 +5,16 @@ from pathlib import Path
 from typing import Any
 
 from bladewright.designs import Design
-from bladewright.errors import DesignError
+from bladewright.errors import DesignError, FileError
 
 
 def design_at(path: Path, changes: Mapping[str, Any]) -> Design:
     """The design in a file, with the changes of `--set`."""
+    from bladewright.files.examples import examples
     from bladewright.files.reading import read_design
 
+    if not (path.exists() or path.with_suffix(".toml").exists()) and path.stem in examples():
+        raise FileError(f"there is no file '{path}': 'bladewright new {path.stem}' writes the built-in example")
     design = read_design(path)
     return design.changed(changes) if changes else design
 

@@ -8,10 +8,10 @@ import click
 
 from bladewright.cli.blueprint import built_from, design_at
 from bladewright.cli.call import Call, common
+from bladewright.cli.directory import tidy
 from bladewright.cli.options import design_argument, extend_option, length, listed, set_option
 from bladewright.cli.outcome import Outcome, jsonable
 from bladewright.cli.progress import progress
-from bladewright.cli.staging import staged
 
 SUFFIXES = {"step": ".step", "iges": ".igs", "brep": ".brep", "stl": ".stl", "3mf": ".3mf"}
 BODIES = ("blade",)
@@ -65,30 +65,30 @@ def build(
     NAME.roundtrip.json beside them is what was measured on the reopened file of the first format; each further format
     has its own, such as NAME.igs.roundtrip.json. Where a check fails the files stay, say so, and the exit status is 1.
     """
-    blueprint = design_at(design, changes)
-    with staged(directory) as draft, progress(1 + len(formats), call) as bar:
+    from bladewright.files.text import write_text
+
+    blueprint: Any = design_at(design, changes)
+    files = [f"{blueprint.name}{SUFFIXES[name]}" for name in formats]
+    reports = [f"{file if number else blueprint.name}.roundtrip.json" for number, file in enumerate(files)]
+    trips = []
+    with tidy(directory, [*files, *reports]), progress(1 + len(formats), call) as bar:
         bar.set_description_str("blade")
         built = built_from(blueprint, design, extend)
         bar.update(1)
-        trips = []
-        for number, name in enumerate(formats):
-            from bladewright import cad
+        from bladewright import cad
 
+        for name, file, report in zip(formats, files, reports, strict=True):
             bar.set_description_str(name)
-            path = draft / f"{built.name}{SUFFIXES[name]}"
             solid = not (iges_surfaces and name == "iges")
-            trip = cad.write(built, path, schema=schema, solid=solid, chordal_deviation=chordal_deviation)
-            report = path.with_name(f"{path.name if number else built.name}.roundtrip.json")
-            report.write_text(json.dumps(jsonable(trip.to_dict()), indent=2) + "\n", encoding="utf-8")
+            trip = cad.write(built, directory / file, schema=schema, solid=solid, chordal_deviation=chordal_deviation)
+            write_text(directory / report, json.dumps(jsonable(trip.to_dict()), indent=2) + "\n")
             trips.append(trip)
             bar.update(1)
-        files = [directory / f"{built.name}{SUFFIXES[name]}" for name in formats]
-    passed = all(trip.passed for trip in trips)
     return Outcome(
         data={
             "name": built.name,
-            "passed": passed,
-            "files": [str(file) for file in files],
+            "passed": all(trip.passed for trip in trips),
+            "files": [str(directory / file) for file in files],
             "roundtrips": [trip.to_dict() for trip in trips],
         },
         text="\n".join(str(trip) for trip in trips),

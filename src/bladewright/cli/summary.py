@@ -1,11 +1,18 @@
 """What a design builds, as nested figures, and as lines to read."""
 
-from collections.abc import Iterator
 from dataclasses import fields, is_dataclass
 from typing import Any
 
 from bladewright.cli.outcome import jsonable
 from bladewright.designs import Design
+
+_MILLIMETRES = {
+    "volume": ("mm3", 1e9),
+    "area": ("mm2", 1e6),
+    "areas": ("mm2", 1e6),
+    "centroid": ("mm", 1e3),
+    "inertia": ("mm5", 1e15),
+}
 
 
 def data_of(design: Design, built: Any) -> dict[str, Any]:
@@ -27,10 +34,32 @@ def data_of(design: Design, built: Any) -> dict[str, Any]:
 
 
 def text_of(data: dict[str, Any]) -> str:
-    """The same figures, one a line."""
-    lines = list(_lines(data, ""))
-    width = max(len(name) for name, _ in lines)
-    return "\n".join(f"{name:<{width}}  {value}" for name, value in lines)
+    """The same figures to read, lengths in millimetres: size and error, properties, poles, and promises with limits."""
+    rows = [("chord", f"{data['chord_m'] * 1e3:.6g} mm")] if "chord_m" in data else []
+    if "error" in data:
+        rows.append(("error", f"{data['error']:.2g} of the chord"))
+    for name, value in data.get("properties", {}).items():
+        unit, scale = _MILLIMETRES.get(name, ("", 1.0))
+        rows.append((name.replace("_", " "), f"{_figures(value, scale)} {unit}".rstrip()))
+    for name, face in data.get("surfaces", data.get("curves", {})).items():
+        poles, degree = (" x ".join(map(str, face[key])) for key in ("poles", "degree"))
+        rows.append((name, f"{poles} poles of degree {degree}{', rational' if face['rational'] else ''}"))
+    promises = data.get("promises", {})
+    for name, limit in promises.get("limits", {}).items():
+        rows.append((name.replace("_", " "), f"{promises[name]:.2g}, promised within {limit:.2g}"))
+    width = max((len(name) for name, _ in rows), default=0)
+    head = f"{data['name']}: {data['family']}, {data['parameters']} parameters"
+    return "\n".join([head, *(f"  {name:<{width}}  {value}" for name, value in rows)])
+
+
+def broken_promises(data: dict[str, Any]) -> tuple[str, ...]:
+    """A line for every promise that misses its limit."""
+    promises = data.get("promises", {})
+    return tuple(
+        f"{data['name']}: the promise '{name}' is not kept: {promises[name]} where {limit} is allowed"
+        for name, limit in promises.get("limits", {}).items()
+        if promises[name] is None or promises[name] > limit
+    )
 
 
 def _record(result: Any) -> Any:
@@ -47,13 +76,8 @@ def _poles(face: Any) -> dict[str, Any]:
     return {"poles": list(face.control_points.shape[:-1]), "degree": degree, "rational": face.weights is not None}
 
 
-def _lines(value: Any, name: str) -> Iterator[tuple[str, str]]:
-    if isinstance(value, dict):
-        for key, item in value.items():
-            yield from _lines(item, f"{name}.{key}" if name else key)
-    elif isinstance(value, float):
-        yield name, f"{value:.6g}"
-    elif isinstance(value, list):
-        yield name, " ".join(f"{item:.6g}" if isinstance(item, float) else str(item) for item in value)
-    else:
-        yield name, str(value)
+def _figures(value: Any, scale: float) -> str:
+    if isinstance(value, list):
+        nested = any(isinstance(item, list) for item in value)
+        return (", " if nested else " ").join(_figures(item, scale) for item in value)
+    return f"{value * scale:.6g}" if isinstance(value, float) else str(value)

@@ -1,4 +1,4 @@
-"""Text files: read within a limit of size and only as UTF-8, written whole or not at all."""
+"""Text files, read within a limit of size and only as UTF-8; files written whole or not at all."""
 
 import os
 import secrets
@@ -41,28 +41,32 @@ def read_text(path: Path) -> str:
 
 
 def write_text(path: Path, text: str) -> None:
-    """Write a text file that appears whole or not at all; a link stays a link, a device is written to directly.
+    """Write a text as UTF-8, with its own line ends, as `write_bytes` does."""
+    write_bytes(path, text.encode())
+
+
+def write_bytes(path: Path, data: bytes) -> None:
+    """Write a file that appears whole or not at all; a link stays a link, a device is written to directly.
 
     Raises FileError where that is not possible, and leaves nothing behind.
     """
-    path = Path(path)
     try:
         target = Path(os.path.realpath(path))
         if target.is_dir():
             raise FileError(f"'{path}' is a directory: name the file to write")
         if target.exists() and not target.is_file():
-            target.write_text(text, encoding="utf-8", newline="")
-            return
-        _replace(target, text)
+            target.write_bytes(data)
+        else:
+            _replace(target, data)
     except (OSError, ValueError) as error:
-        raise FileError(f"'{path}' cannot be written: {_reason(error)}") from error
+        raise FileError(f"'{path}' cannot be written: {_reason(error)}; name another file") from error
 
 
-def _replace(target: Path, text: str) -> None:
+def _replace(target: Path, data: bytes) -> None:
     draft = target.with_name(f".{secrets.token_hex(8)}.tmp")
     try:
-        with draft.open("x", encoding="utf-8", newline="") as stream:
-            stream.write(text)
+        with draft.open("xb") as stream:
+            stream.write(data)
             stream.flush()
             os.fsync(stream.fileno())
         if target.exists():

@@ -1,0 +1,44 @@
+"""The directory that a command writes into, tidy after an error."""
+
+import tempfile
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager, suppress
+from pathlib import Path
+
+from bladewright.errors import FileError
+
+
+@contextmanager
+def tidy(directory: Path, names: Sequence[str]) -> Iterator[None]:
+    """A block that writes files of these names into a directory; an error leaves nothing that was not there before.
+
+    The directory is made where it is not there. Raises FileError where it cannot be made or written into.
+    """
+    made = [each for each in (directory, *directory.parents) if not each.exists()]
+    new: list[Path] = []
+    try:
+        _check_writable(directory, names)
+        new = [directory / name for name in names if not (directory / name).exists()]
+        yield
+    except BaseException:
+        for each in new:
+            each.unlink(missing_ok=True)
+        for each in made:
+            with suppress(OSError):
+                each.rmdir()
+        raise
+
+
+def _check_writable(directory: Path, names: Sequence[str]) -> None:
+    try:
+        directory.mkdir(parents=True, exist_ok=True)
+        with tempfile.TemporaryFile(dir=directory):
+            pass
+    except FileExistsError:
+        raise FileError(f"'{directory}' is a file: name a directory to write into") from None
+    except OSError as error:
+        reason = (error.strerror or str(error)).lower()
+        raise FileError(f"nothing can be written into '{directory}': {reason}; name another directory") from error
+    for name in names:
+        if (directory / name).is_dir():
+            raise FileError(f"'{directory / name}' is a directory where a file is to be written: move it away")

@@ -1,0 +1,110 @@
+"""Starting from an example, looking at what a design builds, and the schema for editors."""
+
+import json
+import tomllib
+
+import pytest
+
+from bladewright.files.examples import example_text, examples
+from bladewright.files.reading import read_design
+from bladewright.files.schema import schema
+
+
+def test_new_lists_the_examples_with_a_line_about_each(run):
+    found = run("new")
+    for name in examples():
+        assert f"{name} " in found.out
+    assert run("new", "--json").json == {"examples": examples()}
+
+
+@pytest.mark.parametrize("name", examples())
+def test_new_writes_an_example_that_reads(name, run, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    assert run("new", name).status == 0
+    assert (tmp_path / f"{name}.toml").read_text() == example_text(name)
+    assert read_design(f"{name}.toml").name == name
+
+
+def test_new_overwrites_nothing_unless_forced(run, tmp_path):
+    path = tmp_path / "mine.toml"
+    path.write_text("mine")
+    found = run("new", "fan-rotor", "-o", path)
+    assert found.status == 2
+    assert "--force" in found.err
+    assert path.read_text() == "mine"
+    assert run("new", "fan-rotor", "-o", path, "--force", "--json").json["file"] == str(path)
+    assert path.read_text() == example_text("fan-rotor")
+
+
+def test_new_names_the_nearest_example(run):
+    found = run("new", "fan-rotr")
+    assert (found.status, found.err.count("\n")) == (2, 1)
+    assert "did you mean 'fan-rotor'" in found.err
+
+
+def test_a_design_that_is_the_name_of_an_example_says_how_to_write_it(run, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    for name in ("fan-rotor", "fan-rotor.toml"):
+        found = run("show", name)
+        assert found.status == 2
+        assert "bladewright new fan-rotor" in found.err
+
+
+def test_the_schema_is_printed_or_written(run, tmp_path):
+    assert run("schema").json == schema()
+    assert run("schema", "--json").json == schema()
+    assert run("schema", "-o", tmp_path / "schema.json").status == 0
+    assert json.loads((tmp_path / "schema.json").read_text()) == schema()
+
+
+def test_show_prints_properties_and_promises(run, design_file):
+    found = run("show", design_file, "--json")
+    assert (found.status, found.err) == (0, "")
+    data = found.json
+    assert (data["name"], data["family"]) == ("fan-rotor", "unified")
+    assert data["promises"]["kept"] is True
+    assert data["error"] <= 1e-6
+    assert data["parameters"] == len(read_design(design_file).parameters())
+    assert set(data["surfaces"]) == {"upper", "lower", "hub", "shroud"}
+    blade = read_design(design_file).build()
+    assert data["properties"]["volume"] == pytest.approx(float(blade.properties.volume), rel=1e-12)
+    text = run("show", design_file).out
+    assert f"{float(blade.properties.volume) * 1e9:.6g} mm3" in text
+    assert "promised within" in text
+
+
+def test_set_changes_what_is_shown_as_it_changes_the_file(run, design_file):
+    changes = ["--set", "length_unit='m'", "--set", "blade_count=20"]
+    volumes = [run("show", design_file, *words, "--json").json["properties"]["volume"] for words in ([], changes)]
+    assert volumes[1] == pytest.approx(1e9 * volumes[0], rel=1e-9)
+
+
+def test_a_promise_that_is_not_kept_gives_status_one(run, design_file, monkeypatch):
+    from bladewright.blade import promises
+
+    monkeypatch.setitem(promises.LIMITS, "edge_radius", 1e-12)
+    found = run("show", design_file)
+    assert found.status == 1
+    assert "edge_radius" in found.err
+    assert "1e-12" in found.err
+
+
+@pytest.mark.parametrize(("suffix", "start"), [(".png", b"\x89PNG"), (".svg", b"<?xml"), (".pdf", b"%PDF")])
+def test_show_draws_a_picture(suffix, start, run, design_file, tmp_path):
+    picture = tmp_path / f"fan{suffix}"
+    found = run("show", design_file, "-o", picture, "--json")
+    assert (found.status, found.json["picture"]) == (0, str(picture))
+    assert picture.read_bytes().startswith(start)
+
+
+def test_a_picture_of_an_unknown_kind_is_refused(run, design_file, tmp_path):
+    found = run("show", design_file, "-o", tmp_path / "fan.bmpx")
+    assert found.status == 2
+    assert ".png, .svg, .pdf" in found.err
+    assert list(tmp_path.iterdir()) == [design_file]
+
+
+def test_examples_say_what_they_are():
+    for name, line in examples().items():
+        assert line, f"{name}.toml has no description"
+        assert tomllib.loads(example_text(name))["name"] == name

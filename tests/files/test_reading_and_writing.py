@@ -1,0 +1,253 @@
+"""A design file and a design are one thing in two forms."""
+
+import math
+import os
+import tomllib
+from pathlib import Path
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from bladewright.blade.channel import Channel
+from bladewright.blade.unified import UnifiedBlade
+from bladewright.errors import DesignError, FileError
+from bladewright.files.examples import example_text, examples
+from bladewright.files.reading import design_from, parsed, read_design
+from bladewright.files.writing import text_of, updated, write_design
+
+TEXT = example_text("fan-rotor")
+
+
+def law(low, high):
+    number = st.floats(low, high, exclude_min=True, exclude_max=True)
+    return number | st.lists(number, min_size=1, max_size=6).map(tuple)
+
+
+def chordwise(low, high):
+    return st.lists(law(low, high), min_size=1, max_size=5).map(tuple)
+
+
+def points(least):
+    number = st.floats(allow_nan=False, allow_infinity=False)
+    return st.lists(st.tuples(number, number), min_size=least, max_size=5).map(tuple)
+
+
+words = st.text(st.characters(categories=["L", "N", "P", "S", "Zs"]), max_size=30).filter(str.isprintable)
+names = words.filter(lambda text: text.strip() and not set(text) & set('/\\:*?"<>|'))
+channels = st.builds(
+    Channel, leading_edge=points(2), trailing_edge=points(2), hub=points(0), shroud=points(0), degree=st.integers(1, 5)
+)
+common = {
+    "name": names,
+    "length_unit": st.sampled_from(["m", "cm", "mm", "um", "in", "ft"]),
+    "stagger": law(-90, 90),
+    "metal_angle_in": law(-90, 90),
+    "metal_angle_out": law(-90, 90),
+    "tangent_in": law(0, 1),
+    "tangent_out": law(0, 1),
+    "leading_edge_radius": law(0, 1),
+    "trailing_edge_radius": law(0, 1),
+    "thickness_upper": chordwise(0, 10),
+    "thickness_lower": chordwise(0, 10),
+    "weights_upper": st.just(()) | chordwise(0, 1e6),
+    "channel": channels,
+    "samples": st.integers(3, 60),
+    "mapping": st.sampled_from(["conformal", "paper"]),
+    "clustering": st.floats(0, 1),
+    "description": words,
+}
+designs = st.builds(
+    UnifiedBlade, **common, blade_count=st.integers(1, 10_000), leading_edge_theta=st.none() | law(-1e3, 1e3)
+) | st.builds(
+    UnifiedBlade,
+    **common,
+    arrangement=st.just("linear"),
+    pitch=st.floats(0, 1e300, exclude_min=True),
+    leading_edge_y=st.none() | law(-1e3, 1e3),
+)
+
+
+def to_the_bit(design):
+    """Everything in a design, floats in the shortest form that gives the same bits back."""
+    return repr(design)
+
+
+@given(designs)
+def test_what_is_written_reads_back_to_the_bit(design):
+    assert to_the_bit(design_from(parsed(text_of(design), "file"), "file")) == to_the_bit(design)
+
+
+@given(designs)
+@settings(max_examples=50)
+def test_what_is_written_into_any_file_reads_back_to_the_bit(design):
+    text = updated(design, TEXT, "file")
+    assert to_the_bit(design_from(parsed(text, "file"), "file")) == to_the_bit(design)
+    assert text.startswith('family = "unified"\n')
+
+
+@pytest.mark.parametrize("name", examples())
+def test_writing_an_example_back_changes_nothing(name, tmp_path):
+    path = tmp_path / "design.toml"
+    path.write_text(example_text(name))
+    write_design(read_design(path), path)
+    assert path.read_text() == example_text(name)
+
+
+def test_changed_values_keep_comments_and_layout(tmp_path):
+    path = tmp_path / "design.toml"
+    path.write_text(TEXT)
+    changes = {
+        "stagger[1]": -52.0,
+        "tangent_in": 0.25,
+        "thickness_upper[0][1]": 0.5,
+        "thickness_lower": (0.1, (0.2, 0.3), 0.1, 0.1),
+        "channel.hub[0].x": 1e-6,
+        "channel.shroud": ((30.0, 256.0),),
+        "samples": 20,
+        "weights_upper": ((1.0, 2.0), 3.0),
+    }
+    design = read_design(path).changed(changes)
+    write_design(design, path)
+    assert to_the_bit(read_design(path)) == to_the_bit(design)
+    before, after = TEXT.splitlines(), path.read_text().splitlines()
+    for line in before:
+        if "#" in line:
+            assert line.partition("#")[2] in [other.partition("#")[2] for other in after]
+    changed = ("stagger", "tangent_in", "thickness", "hub", "shroud", "samples", "weights")
+    unchanged = [line for line in before if not line.startswith(changed)]
+    assert [line for line in after if not line.startswith(changed)] == unchanged
+    assert "stagger              = [12.8, -52.0, 48.9, 57.5, 63.1]  # deg" in after
+
+
+def test_comments_between_the_entries_of_a_list_survive(tmp_path):
+    path = tmp_path / "design.toml"
+    stagger = "stagger = [\n  12.8, # hub\n  # in between\n  60, # tip\n]"
+    path.write_text(TEXT.replace("stagger              = [12.8, 23.8, 48.9, 57.5, 63.1]", stagger))
+    write_design(read_design(path).changed("stagger[0]", 10.5), path)
+    assert stagger.replace("12.8", "10.5") in path.read_text()
+
+
+@pytest.mark.parametrize("end", ["\n", "\r\n"])
+def test_line_ends_stay_as_they_are(end, tmp_path):
+    path = tmp_path / "design.toml"
+    path.write_bytes(TEXT.replace("\n", end).encode())
+    write_design(read_design(path).changed("stagger[0]", 12.5), path)
+    assert path.read_bytes().decode() == TEXT.replace("12.8", "12.5").replace("\n", end)
+
+
+def test_a_byte_order_mark_is_no_part_of_the_design(tmp_path):
+    path = tmp_path / "design.toml"
+    path.write_bytes(b"\xef\xbb\xbf" + TEXT.encode())
+    assert read_design(path).name == "fan-rotor"
+
+
+def test_a_whole_number_stands_for_the_same_float_and_is_left_as_it_is_written(tmp_path):
+    path = tmp_path / "design.toml"
+    text = TEXT.replace("leading_edge_theta   = 0.0", "leading_edge_theta   = 7")
+    path.write_text(text)
+    design = read_design(path)
+    assert design.leading_edge_theta == 7.0
+    assert isinstance(design.leading_edge_theta, float)
+    write_design(design, path)
+    assert path.read_text() == text
+
+
+def test_the_sign_of_zero_survives(tmp_path):
+    path = tmp_path / "design.toml"
+    path.write_text(TEXT)
+    write_design(read_design(path).changed("leading_edge_theta", -0.0), path)
+    assert math.copysign(1.0, read_design(path).leading_edge_theta) == -1.0
+
+
+def test_a_design_replaces_one_of_the_other_arrangement(tmp_path):
+    path = tmp_path / "design.toml"
+    path.write_text(TEXT)
+    values = {
+        key: value for key, value in vars(read_design(path)).items() if key not in ("blade_count", "leading_edge_theta")
+    }
+    linear = UnifiedBlade(**{**values, "arrangement": "linear", "pitch": 40.0})
+    write_design(linear, path)
+    assert to_the_bit(read_design(path)) == to_the_bit(linear)
+    assert "blade_count" not in tomllib.loads(path.read_text())
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [("[tool.ruff]\nselect = []\n", "holds no design"), ("Dear reader,\n", "not valid TOML"), ("", "holds no design")],
+)
+def test_a_file_that_holds_something_else_is_not_overwritten(text, said, tmp_path):
+    path = tmp_path / "notes.toml"
+    path.write_text(text)
+    with pytest.raises(FileError, match=said) as refusal:
+        write_design(design_from(tomllib.loads(TEXT), "file"), path)
+    assert "not overwritten" in str(refusal.value)
+    assert "another file" in str(refusal.value)
+    assert path.read_text() == text
+
+
+def test_a_design_that_a_file_holds_wrongly_is_mended(tmp_path):
+    path = tmp_path / "design.toml"
+    path.write_text(TEXT.replace("tangent_in ", "tangent_inn "))
+    design = design_from(tomllib.loads(TEXT), "file")
+    write_design(design, path)
+    assert to_the_bit(read_design(path)) == to_the_bit(design)
+
+
+def test_a_complex_parameter_is_not_written(tmp_path):
+    design = design_from(tomllib.loads(TEXT), "file").changed("stagger[1]", 23.8 + 1e-30j)
+    with pytest.raises(DesignError, match=r"stagger\[1\] is .*j"):
+        write_design(design, tmp_path / "design.toml")
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_design_without_a_file_format_is_not_written(tmp_path):
+    with pytest.raises(FileError, match="Channel has no file format"):
+        write_design(design_from(tomllib.loads(TEXT), "file").channel, tmp_path / "channel.toml")
+
+
+def test_writing_follows_a_link_and_keeps_the_rights_of_a_file(tmp_path):
+    real, link = tmp_path / "real.toml", tmp_path / "link.toml"
+    real.write_text(TEXT)
+    real.chmod(0o640)
+    link.symlink_to(real)
+    write_design(read_design(link).changed("stagger[0]", 1.0), link)
+    assert link.is_symlink()
+    assert read_design(real).stagger[0] == 1.0
+    assert real.stat().st_mode & 0o777 == 0o640
+
+
+def test_a_new_file_has_the_rights_that_the_process_gives(tmp_path):
+    before = os.umask(0o027)
+    try:
+        write_design(design_from(tomllib.loads(TEXT), "file"), tmp_path / "design.toml")
+    finally:
+        os.umask(before)
+    assert (tmp_path / "design.toml").stat().st_mode & 0o777 == 0o640
+
+
+def test_a_write_that_fails_leaves_the_old_file_and_nothing_else(tmp_path, monkeypatch):
+    path = tmp_path / "design.toml"
+    path.write_text(TEXT)
+
+    def full(_):
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(os, "fsync", full)
+    with pytest.raises(FileError, match=r"design\.toml.*no space left"):
+        write_design(read_design(path).changed("stagger[0]", 1.0), path)
+    assert path.read_text() == TEXT
+    assert list(tmp_path.iterdir()) == [path]
+
+
+def test_a_path_that_is_text_reads_like_a_path(tmp_path):
+    path = tmp_path / "design.toml"
+    path.write_text(TEXT)
+    assert read_design(str(path)) == read_design(Path(path))
+
+
+def test_a_refusal_names_how_many_more_there_are(tmp_path):
+    path = tmp_path / "design.toml"
+    path.write_text(TEXT.replace("stagger  ", "stager  ").replace("blade_count = 22", 'blade_count = "22"'))
+    with pytest.raises(DesignError, match=r"stager .*did you mean 'stagger'\? \(2 more to correct after that\)"):
+        read_design(path)
