@@ -8,9 +8,9 @@ from scipy.interpolate import make_interp_spline
 
 from bladewright.nurbs.basis import greville
 from bladewright.nurbs.curve import Curve
+from bladewright.nurbs.revolution import Revolution
 from bladewright.nurbs.surface import Surface
-
-from .native import Revolution, TrimmedSurface
+from bladewright.nurbs.trimmed import TrimmedSurface
 
 CHORD = 0.1
 HUB = np.array([[-0.05, 0.200], [0.0, 0.203], [0.05, 0.212], [0.1, 0.216], [0.15, 0.214]])
@@ -65,35 +65,6 @@ def meridian(points: np.ndarray) -> Curve:
     return Curve(control_points=points, knots=np.array([0, 0, 0, 0, 0.5, 1, 1, 1, 1.0]), degree=3)
 
 
-def wall(line: Curve, start: float, end: float) -> tuple[Surface, Revolution]:
-    """The meridian swept over start <= theta <= end as a rational arc; tan(half the angle from the middle) is linear in v."""
-    middle, half = 0.5 * (start + end), 0.5 * (end - start)
-    x, r = line.control_points.T
-    rings = [(middle - half, 1.0, 1.0), (middle, 1.0 / np.cos(half), np.cos(half)), (middle + half, 1.0, 1.0)]
-    points = np.stack(
-        [np.stack([x, stretch * r * np.sin(a), stretch * r * np.cos(a)], -1) for a, stretch, _ in rings], axis=1
-    )
-    weights = np.tile([weight for *_, weight in rings], (len(x), 1))
-    surface = Surface(
-        control_points=points,
-        knots_u=line.knots,
-        knots_v=np.array([0, 0, 0, 1, 1, 1.0]),
-        degree_u=line.degree,
-        degree_v=2,
-        weights=weights,
-    )
-
-    def theta(v: np.ndarray) -> np.ndarray:
-        return middle + 2.0 * np.arctan((2.0 * np.asarray(v) - 1.0) * np.tan(0.5 * half))
-
-    return surface, Revolution(meridian=line, theta=theta)
-
-
-def arc_parameter(theta: np.ndarray, start: float, end: float) -> np.ndarray:
-    middle, half = 0.5 * (start + end), 0.5 * (end - start)
-    return 0.5 + 0.5 * np.tan(0.5 * (theta - middle)) / np.tan(0.5 * half)
-
-
 def fitted(function: Callable, knots: np.ndarray, degree: int = 5) -> Curve:
     sites = greville(knots, degree)
     spline = make_interp_spline(sites, function(sites), k=degree, t=knots)
@@ -131,21 +102,23 @@ def annular(*, name: str = "rotor", spans: int = 36, turn: float = 0.0) -> TestB
     upper = side(place, 1, knots_u, knots_v)
     lower = shared(upper, side(place, -1, knots_u, knots_v))
     surfaces: dict[str, Surface | TrimmedSurface] = {"upper": upper, "lower": lower}
-    start, end = turn - 0.4, turn + 0.5
     for label, line, v in (("hub", hub, 0.0), ("shroud", shroud, 1.0)):
 
-        def trace(u: np.ndarray, sign: int, v: float = v) -> np.ndarray:
-            t, theta = section(u, np.full_like(u, v), sign)
-            return np.stack([t, arc_parameter(theta + turn, start, end)], axis=-1)
+        revolution = Revolution(meridian=line, start=turn - 0.4, end=turn + 0.5)
 
-        surface, revolution = wall(line, start, end)
+        def trace(u: np.ndarray, sign: int, v: float = v, revolution: Revolution = revolution) -> np.ndarray:
+            t, theta = section(u, np.full_like(u, v), sign)
+            return np.stack([t, revolution.v(theta + turn)], axis=-1)
+
         fine = doubled(2 * spans, 5)
         # theta grows with v, so lower side out, upper side back runs counter-clockwise in (u, v)
         boundary = (
             fitted(lambda u, trace=trace: trace(u, -1), fine),
             fitted(lambda u, trace=trace: trace(1.0 - u, 1), fine),
         )
-        surfaces[label] = TrimmedSurface(surface=surface, boundary=boundary, revolution=revolution)
+        surfaces[label] = TrimmedSurface(
+            surface=revolution.surface(), boundary=boundary, revolution=revolution
+        )
     # e_x x e_r = -e_theta on the sides, of which the upper lies at the larger theta; e_x x e_theta = e_r on the walls
     orientations = {"upper": -1, "lower": 1, "hub": -1, "shroud": 1}
     return TestBlade(

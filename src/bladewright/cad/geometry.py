@@ -98,8 +98,8 @@ def native_surface(geometry: Geom_BSplineSurface) -> Surface:
         )
     return Surface(
         control_points=points,
-        knots_u=_sequence(geometry.UKnot, geometry.UMultiplicity, geometry.NbUKnots()),
-        knots_v=_sequence(geometry.VKnot, geometry.VMultiplicity, geometry.NbVKnots()),
+        knots_u=knot_sequence(geometry.UKnot, geometry.UMultiplicity, geometry.NbUKnots()),
+        knots_v=knot_sequence(geometry.VKnot, geometry.VMultiplicity, geometry.NbVKnots()),
         degree_u=geometry.UDegree(),
         degree_v=geometry.VDegree(),
         weights=weights,
@@ -114,13 +114,14 @@ def native_curve(geometry: Geom_BSplineCurve) -> Curve:
         weights = np.array([geometry.Weight(i) for i in range(1, geometry.NbPoles() + 1)])
     return Curve(
         control_points=np.array([(p.X(), p.Y(), p.Z()) for p in poles]),
-        knots=_sequence(geometry.Knot, geometry.Multiplicity, geometry.NbKnots()),
+        knots=knot_sequence(geometry.Knot, geometry.Multiplicity, geometry.NbKnots()),
         degree=geometry.Degree(),
         weights=weights,
     )
 
 
-def _sequence(knot: object, multiplicity: object, count: int) -> Array:
+def knot_sequence(knot: object, multiplicity: object, count: int) -> Array:
+    """Knots, each as often as its multiplicity, from the kernel's two getters."""
     values = [knot(i) for i in range(1, count + 1)]  # type: ignore[operator]
     counts = [multiplicity(i) for i in range(1, count + 1)]  # type: ignore[operator]
     return np.repeat(np.array(values), counts)

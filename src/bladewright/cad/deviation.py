@@ -1,0 +1,112 @@
+"""How far the faces of a CAD file lie from the native ones, in both directions."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from bladewright.cad.built import MM
+from bladewright.cad.closest import Target
+from bladewright.cad.patch import SplineCarrier, native_carrier
+from bladewright.cad.region import Region, spread
+from bladewright.numerics.elementary import Array
+from bladewright.nurbs.surface import Surface
+from bladewright.nurbs.trimmed import TrimmedSurface
+
+SAME_KNOT = 1e-9
+"""Difference of knots below which a file, which rounds them, gave them back."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Deviation:
+    """Distances between a native face and what a file made of it."""
+
+    largest: float
+    """[mm]"""
+    mean: float
+    """[mm]"""
+    worst: tuple[float, float]
+    """native parameters of the place where it is largest"""
+
+
+class Meant:
+    """A native face, prepared once for all that is compared with it."""
+
+    def __init__(self, face: Surface | TrimmedSurface) -> None:
+        surface = face if isinstance(face, Surface) else face.surface
+        self.face = face
+        self.region = Region(
+            carrier=native_carrier(surface),
+            chains=() if isinstance(face, Surface) else (face.boundary,),
+            low=np.array([surface.knots_u[0], surface.knots_v[0]]),
+            high=np.array([surface.knots_u[-1], surface.knots_v[-1]]),
+        )
+        self._target: Target | None = None
+
+    @property
+    def target(self) -> Target:
+        """The face as something that points are brought to."""
+        if self._target is None:
+            self._target = Target(self.region)
+        return self._target
+
+    def pole_for_pole(self, region: Region) -> bool:
+        """Whether a region is the whole of a surface with this face's degrees, knots and number of control points."""
+        if not isinstance(self.face, Surface) or not isinstance(region.carrier, SplineCarrier) or region.chains:
+            return False
+        mine, other = self.face, region.carrier.surface
+        return (
+            (mine.degree_u, mine.degree_v) == (other.degree_u, other.degree_v)
+            and mine.control_points.shape == other.control_points.shape
+            and bool(np.allclose(mine.knots_u, other.knots_u, rtol=0.0, atol=SAME_KNOT))
+            and bool(np.allclose(mine.knots_v, other.knots_v, rtol=0.0, atol=SAME_KNOT))
+        )
+
+    def pole_distance(self, region: Region) -> float:
+        """[mm] Largest distance of control points of a region that came back pole for pole."""
+        difference = region.carrier.surface.control_points - MM * self.face.control_points  # type: ignore[union-attr]
+        return float(np.sqrt(np.max(np.sum(difference**2, axis=-1))))
+
+
+def deviation(meant: Meant, regions: list[Region], count: int, limit: float) -> Deviation:
+    """Distances between a native face and the file's faces that stand for it, from `count` samples each way.
+
+    Where the control points came back one for one, points at equal parameters are compared, which bounds the distance
+    from above; where that bound is not below `limit`, and for all others, each sample is brought to the nearest point
+    of the other side.
+    """
+    if len(regions) == 1 and meant.pole_for_pole(regions[0]):
+        found = _at_equal_parameters(meant, regions[0], count)
+        if found.largest <= limit:
+            return found
+    uv = meant.region.sampled(count)
+    points = meant.region.points(uv)
+    away = np.full(len(points), np.inf)
+    for region in regions:
+        away = np.minimum(away, Target(region).closest(points, limit)[1])
+    worst = int(np.argmax(away))
+    largest, place, every = float(away[worst]), uv[worst], [away]
+    for region in regions:
+        back = region.points(region.sampled(max(100, count // len(regions))))
+        feet, away = meant.target.closest(back, limit)
+        worst = int(np.argmax(away))
+        every.append(away)
+        if away[worst] > largest:
+            largest, place = float(away[worst]), feet[worst]
+    return Deviation(
+        largest=largest, mean=float(np.mean(np.concatenate(every))), worst=(float(place[0]), float(place[1]))
+    )
+
+
+def _at_equal_parameters(meant: Meant, region: Region, count: int) -> Deviation:
+    surface, other = meant.face, region.carrier.surface  # type: ignore[union-attr]
+    lines = int(np.sqrt(count))
+    u, v = (spread(surface.knots_u, surface.degree_u, lines), spread(surface.knots_v, surface.degree_v, lines))
+    away = _length(MM * surface.grid(u, v) - other.grid(u, v))
+    worst = np.unravel_index(np.argmax(away), away.shape)
+    return Deviation(
+        largest=float(away[worst]), mean=float(away.mean()), worst=(float(u[worst[0]]), float(v[worst[1]]))
+    )
+
+
+def _length(vectors: Array) -> Array:
+    return np.sqrt(np.sum(vectors * vectors, axis=-1))

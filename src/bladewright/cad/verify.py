@@ -1,0 +1,215 @@
+"""The measurement of a CAD file, from anywhere, against a built object."""
+
+import os
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from OCP.BRepGProp import BRepGProp
+from OCP.GProp import GProp_GProps
+
+from bladewright.cad.built import MM, Built, extent
+from bladewright.cad.closure import Closure, closure
+from bladewright.cad.deviation import Meant, deviation
+from bladewright.cad.quiet import quiet
+from bladewright.cad.reopen import Reopened, format_of, reopened
+from bladewright.cad.returned import Returned, returned
+from bladewright.cad.roundtrip import Compared, EdgeTrip, FaceTrip, RoundTrip
+from bladewright.numerics.elementary import Array
+from bladewright.nurbs.measure import area
+from bladewright.nurbs.surface import Surface
+from bladewright.nurbs.trimmed import TrimmedSurface
+
+SAMPLES = 10_000
+"""points on each face, each way"""
+QUADRATURE = 1e-9
+"""relative error that the kernel's quadrature of volumes aims at"""
+
+
+def verify(path: str | os.PathLike[str], built: Built, *, samples: int = SAMPLES) -> RoundTrip:
+    """The round trip of a CAD file: what it holds, and how far that is from a built object.
+
+    STEP, IGES and BREP files are measured face by face, whoever wrote them and however their surfaces are parametrised;
+    STL and 3MF files triangle by triangle. Raises CadError where the file cannot be opened as what its name says.
+    """
+    path = Path(path)
+    if format_of(path) in {"STL", "3MF"}:
+        from bladewright.cad.mesh_trip import verify_mesh
+
+        return verify_mesh(path, built, samples=samples)
+    opened = reopened(path)
+    with quiet():
+        return _Measurement(opened, built, samples).report()
+
+
+def limits_of(built: Built) -> dict[str, float]:
+    """Limits of the figures: millimetres for distances, fractions for areas and volume."""
+    chords = [
+        float(np.sqrt(np.sum((np.diff(face.surface(*face.boundary[0](face.boundary[0].knots[[0, -1]]).T), axis=0)) ** 2)))
+        for face in built.surfaces.values()
+        if isinstance(face, TrimmedSurface)
+    ]
+    end = max([1e-5, *(1e-7 * chord * MM for chord in chords)])
+    return {"side_mm": 1e-6, "end_mm": end, "edge_mm": 1e-6, "face_area": 1e-9, "volume": 1e-6}
+
+
+class _Measurement:
+    """One file against one built object."""
+
+    def __init__(self, opened: Reopened, built: Built, samples: int) -> None:
+        self.opened, self.built, self.samples = opened, built, samples
+        self.limits = limits_of(built)
+        self.meant = {name: Meant(face) for name, face in built.surfaces.items()}
+        self.returned = [returned(face) for face in opened.faces]
+        self.named = {k: name for k, name in opened.names.items() if name in self.meant}
+        self.names = self._names()
+        self.failures: list[str] = []
+
+    def report(self) -> RoundTrip:
+        """The whole round trip."""
+        self._check_names()
+        faces = tuple(
+            self._face(name, [face for k, face in enumerate(self.returned) if self.names[k] == name])
+            for name in self.meant
+            if name in self.names.values()
+        )
+        closed = closure(self.opened.shape)
+        self._check_closure(closed)
+        edges = self._edges(closed)
+        whole = GProp_GProps()
+        BRepGProp.VolumeProperties_s(self.opened.shape, whole, QUADRATURE)
+        properties = self.built.properties
+        volume = Compared(cad=whole.Mass(), native=float(properties.volume) * MM**3)
+        total = Compared(cad=sum(face.area for face in self.returned), native=float(properties.area) * MM**2)
+        middle = whole.CentreOfMass()
+        centroid = np.array([middle.X(), middle.Y(), middle.Z()]), np.asarray(properties.centroid) * MM
+        self._check_whole(volume, total, centroid)
+        promises: Any = getattr(self.built, "promises", None)
+        return RoundTrip(
+            file=self.opened.path.name,
+            format=self.opened.format,
+            schema=self.opened.schema,
+            unit=self.opened.unit,
+            failures=tuple(self.failures),
+            limits=self.limits,
+            solids=closed.solids,
+            shells=closed.shells,
+            free_edges=closed.free,
+            valid=closed.valid,
+            faces=faces,
+            edges=edges,
+            volume=volume,
+            area=total,
+            centroid=centroid,
+            promises=None if promises is None else promises.to_dict(),
+        )
+
+    def _names(self) -> dict[int, str]:
+        """Names of all faces of the file: those it has, else those of the native faces they lie on."""
+        names = dict(self.named)
+        size = extent(self.built) * MM
+        for k, face in enumerate(self.returned):
+            if k in names:
+                continue
+            for name, meant in self.meant.items():
+                # millimetres apart is not another face, but a bad one
+                if meant.pole_for_pole(face.region) and meant.pole_distance(face.region) < 1e-2 * size:
+                    names[k] = name
+            if k not in names:
+                points = face.region.points(face.region.sampled(100))
+                away = {name: meant.target.closest(points, 0.0)[1].max() for name, meant in self.meant.items()}
+                names[k] = min(away, key=lambda name: float(away[name]))
+        return names
+
+    def _check_names(self) -> None:
+        missing = [name for name in self.meant if name not in self.names.values()]
+        if missing:
+            self.failures.append(f"no face of the file is {' or '.join(missing)}")
+        if self.opened.format == "STEP" and self.opened.ours:
+            self.failures += [
+                f"face {self.names[k]} has no name in the file" for k in range(len(self.returned)) if k not in self.named
+            ]
+
+    def _face(self, name: str, faces: list[Returned]) -> FaceTrip:
+        native = self.built.surfaces[name]
+        untrimmed = isinstance(native, Surface)
+        limit = self.limits["side_mm" if untrimmed else "end_mm"]
+        found = deviation(self.meant[name], [face.region for face in faces], self.samples, limit)
+        compared = Compared(cad=sum(face.area for face in faces), native=self._area(name) * MM**2)
+        trip = FaceTrip(
+            name=name,
+            samples=self.samples,
+            max_deviation=found.largest,
+            mean_deviation=found.mean,
+            worst=found.worst,
+            area=compared,
+        )
+        if any(face.inside_out for face in faces):
+            self.failures.append(f"face {name} keeps the wrong side of its boundary")
+        if not found.largest <= limit:
+            self.failures.append(
+                f"face {name} is {found.largest:.3g} mm off at u = {found.worst[0]:.4g}, v = {found.worst[1]:.4g}: "
+                f"at most {limit:.3g} mm is allowed"
+            )
+        # the area of a trimmed face follows its boundary, which may lie as far off as the gap
+        allowed = self.limits["face_area" if untrimmed else "volume"]
+        if not compared.relative_error <= allowed:
+            self.failures.append(
+                f"face {name} has an area of {compared.cad:.10g} mm2, which is off by {compared.relative_error:.3g}: "
+                f"at most {allowed:.3g} is allowed"
+            )
+        return trip
+
+    def _area(self, name: str) -> float:
+        areas = getattr(self.built.properties, "areas", None)
+        if areas is not None:
+            return float(areas[list(self.meant).index(name)])
+        face = self.built.surfaces[name]
+        return float(area(face) if isinstance(face, Surface) else face.area())
+
+    def _check_closure(self, closed: Closure) -> None:
+        for count, what in ((closed.solids, "solid"), (closed.shells, "shell")):
+            if count != 1:
+                self.failures.append(f"the file holds {count} {what}s: one closed body is one {what}")
+        if closed.free:
+            self.failures.append(f"{closed.free} edges belong to one face only: the body is open")
+        if closed.crowded:
+            self.failures.append(f"{closed.crowded} edges do not belong to two faces that run opposite ways")
+        if not closed.valid:
+            self.failures.append("OpenCASCADE finds the shape invalid")
+
+    def _edges(self, closed: Closure) -> EdgeTrip:
+        for joint in closed.joints:
+            names = sorted({self.names[k] for k in joint.faces})
+            sides = all(isinstance(self.built.surfaces[name], Surface) for name in names)
+            limit = self.limits["edge_mm" if sides else "end_mm"]
+            where = f"the edge of {' and '.join(names)} ({joint.length:.4g} mm long)"
+            if not joint.gap <= limit:
+                self.failures.append(f"{where} has a gap of {joint.gap:.3g} mm: at most {limit:.3g} mm is allowed")
+            if not joint.tolerance <= max(limit, self.limits["end_mm"]):
+                self.failures.append(
+                    f"{where} has a tolerance of {joint.tolerance:.3g} mm: at most {limit:.3g} mm is allowed"
+                )
+        return EdgeTrip(
+            count=len(closed.joints),
+            shortest=min((joint.length for joint in closed.joints), default=0.0),
+            max_gap=max((joint.gap for joint in closed.joints), default=0.0),
+            max_tolerance=max((joint.tolerance for joint in closed.joints), default=0.0),
+        )
+
+    def _check_whole(self, volume: Compared, total: Compared, centroid: tuple[Array, Array]) -> None:
+        allowed = self.limits["volume"]
+        for what, unit, compared in (("volume", "mm3", volume), ("area", "mm2", total)):
+            if not compared.relative_error <= allowed:
+                self.failures.append(
+                    f"the {what} of {compared.cad:.10g} {unit} is off by {compared.relative_error:.3g}: at most "
+                    f"{allowed:.3g} is allowed"
+                )
+        size = extent(self.built) * MM
+        distance = float(np.sqrt(np.sum((centroid[0] - centroid[1]) ** 2)))
+        if not distance <= allowed * size:
+            self.failures.append(
+                f"the centroid is {distance:.3g} mm off: at most {allowed:.3g} of the body's {size:.4g} mm is allowed"
+            )
+
+
