@@ -25,8 +25,7 @@ def uniform_knots(count: int, degree: int) -> Reals:
 
 def greville(knots: Reals, degree: int) -> Reals:
     """Greville abscissae (n,): the means of `degree` consecutive knots, one for each control point."""
-    count = len(knots) - degree - 1
-    return np.array([knots[i + 1 : i + degree + 1].mean() for i in range(count)])
+    return np.lib.stride_tricks.sliding_window_view(knots[1:-1], degree).mean(axis=-1)
 
 
 def breaks(knots: Reals) -> Reals:

@@ -25,6 +25,8 @@ class Patches:
     """(k, 2) u and v at which it ends"""
     shape: tuple[int, int]
     """number of patches along u and v: patch i, j has index i shape[1] + j"""
+    rational: bool
+    """whether weights differ from one"""
 
     @property
     def degrees(self) -> tuple[int, int]:
@@ -44,20 +46,22 @@ class Patches:
 def patches(shape: Curve | Surface) -> Patches:
     """The Bezier patches of a curve or surface (real parts), weighted by one where it has no weights."""
     net = shape.homogeneous.real
-    if shape.weights is None:
+    rational = shape.weights is not None
+    if not rational:
         net = np.concatenate([net, np.ones((*net.shape[:-1], 1))], axis=-1)
     if isinstance(shape, Curve):
         ends = breaks(shape.knots)
         pieces = _pieces(shape.knots, shape.degree, net)[:, :, None]
         flat = np.zeros(len(pieces))
         low, high = np.stack([ends[:-1], flat], axis=-1), np.stack([ends[1:], flat], axis=-1)
-        return Patches(nets=pieces, low=low, high=high, shape=(len(pieces), 1))
+        return Patches(nets=pieces, low=low, high=high, shape=(len(pieces), 1), rational=rational)
     rows = _pieces(shape.knots_u, shape.degree_u, net)
     both = np.moveaxis(_pieces(shape.knots_v, shape.degree_v, np.moveaxis(rows, 2, 0)), (0, 1), (1, 3))
     u, v = breaks(shape.knots_u), breaks(shape.knots_v)
     low = np.stack(np.meshgrid(u[:-1], v[:-1], indexing="ij"), axis=-1).reshape(-1, 2)
     high = np.stack(np.meshgrid(u[1:], v[1:], indexing="ij"), axis=-1).reshape(-1, 2)
-    return Patches(nets=both.reshape(-1, *both.shape[2:]), low=low, high=high, shape=(len(u) - 1, len(v) - 1))
+    flat_nets = both.reshape(-1, *both.shape[2:])
+    return Patches(nets=flat_nets, low=low, high=high, shape=(len(u) - 1, len(v) - 1), rational=rational)
 
 
 def bernstein(degree: int, s: Reals, order: int = 0) -> Reals:
@@ -69,21 +73,22 @@ def bernstein(degree: int, s: Reals, order: int = 0) -> Reals:
         padded = np.pad(lower, ((0, 0), (1, 1)))
         return degree * (padded[:, :-1] - padded[:, 1:])
     k = np.arange(degree + 1)
-    binomials = np.array([comb(degree, i) for i in k], dtype=np.float64)
-    return np.asarray(binomials * s[:, None] ** k * (1.0 - s[:, None]) ** (degree - k))
+    return np.asarray(_binomials(degree) * s[:, None] ** k * (1.0 - s[:, None]) ** (degree - k))
 
 
-@cache
-def product_table(degree: int) -> Reals:
-    """Coefficients (2p + 1, p + 1, p + 1) of the product of two polynomials of degree p in Bernstein form.
+def products(a: Reals, b: Reals) -> Reals:
+    """Coefficients (k, 2p + 1, 2q + 1, d) of the products of polynomials in Bernstein form (k, p + 1, q + 1, d).
 
     Farin 2002, section 6.4: c_k = sum over i + j = k of C(p, i) C(p, j) / C(2p, k) a_i b_j.
     """
-    table = np.zeros((2 * degree + 1, degree + 1, degree + 1))
-    for i in range(degree + 1):
-        for j in range(degree + 1):
-            table[i + j, i, j] = comb(degree, i) * comb(degree, j) / comb(2 * degree, i + j)
-    return table
+    p, q = a.shape[1] - 1, a.shape[2] - 1
+    scale = _binomials(p)[:, None, None] * _binomials(q)[:, None]
+    left, right = scale * a, scale * b
+    total = np.zeros((len(a), 2 * p + 1, 2 * q + 1, max(a.shape[3], b.shape[3])))
+    for i in range(p + 1):
+        for j in range(q + 1):
+            total[:, i : i + p + 1, j : j + q + 1] += left[:, i : i + 1, j : j + 1] * right
+    return np.asarray(total / (_binomials(2 * p)[:, None, None] * _binomials(2 * q)[:, None]))
 
 
 @cache
@@ -91,6 +96,11 @@ def halving(degree: int) -> tuple[Reals, Reals]:
     """Matrices (degree + 1, degree + 1) from Bernstein coefficients to those of the left and right half."""
     left = np.array([[comb(i, j) / 2.0**i if j <= i else 0.0 for j in range(degree + 1)] for i in range(degree + 1)])
     return left, left[::-1, ::-1].copy()
+
+
+@cache
+def _binomials(degree: int) -> Reals:
+    return np.array([comb(degree, i) for i in range(degree + 1)], dtype=np.float64)
 
 
 def _pieces(knots: Reals, degree: int, net: Reals) -> Reals:

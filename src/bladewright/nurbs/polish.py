@@ -11,6 +11,8 @@ from bladewright.nurbs.rational import surface_quotients
 
 ROUNDS, STEPS = 12, 40
 """patches a point may cross, and Newton steps in each"""
+CONVERGED = 1e-12
+"""step in local parameters after which Newton's next one is below rounding"""
 NOISE = 1e-13
 """relative rise of a squared distance that is rounding"""
 
@@ -54,7 +56,7 @@ def _descended(nets: Reals, queries: Reals, local: Reals) -> tuple[Reals, Reals,
     for _ in range(STEPS):
         step = _step(gradient[active], hessian[active], metric[active], damping[active], local[active])
         trial = np.clip(local[active] + step, 0.0, 1.0)
-        far = np.max((trial - local[active]) ** 2, axis=1) > 1e-30
+        far = np.max((trial - local[active]) ** 2, axis=1) > CONVERGED**2
         active, trial = active[far], trial[far]
         if len(active) == 0:
             break

@@ -14,7 +14,7 @@ from scipy.spatial import cKDTree
 
 from bladewright.numerics.elementary import length
 from bladewright.nurbs.basis import Reals
-from bladewright.nurbs.bezier import Patches, bernstein, halving, product_table
+from bladewright.nurbs.bezier import Patches, bernstein, halving, products
 from bladewright.nurbs.polish import Places, polished
 
 BLOCK = 2_000_000
@@ -47,7 +47,7 @@ class _Boxes:
     numerator: Reals
     """(k, 2p + 1, 2q + 1) Bernstein coefficients of N"""
     denominator: Reals
-    """(k, 2p + 1, 2q + 1) of D"""
+    """(k, 2p + 1, 2q + 1) of D, or (k, 1, 1) without weights"""
     depth: int
 
     def of(self, rows: NDArray[np.intp] | NDArray[np.bool_]) -> "_Boxes":
@@ -95,8 +95,8 @@ class _Search:
         radii = length(points - centres[:, None, None]).max(axis=(1, 2))
         moved = weights[..., None] * (points - centres[:, None, None])
         factors = np.concatenate([moved, weights[..., None]], axis=-1)
-        squares = _products(factors, factors, p, q)
-        mixed = _products(factors[..., :-1], weights[..., None], p, q)
+        squares = products(factors, factors)
+        mixed = products(factors[..., :-1], weights[..., None])
         forms = np.concatenate(
             [squares[..., :-1].sum(axis=-1, keepdims=True), -2.0 * mixed, squares[..., -1:]], axis=-1
         )
@@ -148,8 +148,8 @@ class _Search:
             patch=patch,
             low=np.zeros((len(query), 2)),
             width=1.0,
-            numerator=np.einsum("kc,kcij->kij", form, chosen),
-            denominator=chosen[:, -1],
+            numerator=(form[:, None] @ chosen.reshape(*chosen.shape[:2], -1)).reshape(len(x), *chosen.shape[2:]),
+            denominator=chosen[:, -1] if self.on.rational else np.ones((len(x), 1, 1)),
             depth=0,
         )
 
@@ -211,7 +211,8 @@ def _certified(room: Reals, at: Reals) -> NDArray[np.bool_]:
         convex &= (other >= 0.0) & (bend * other >= twist**2)
     at = np.clip(at, 0.0, 1.0)
     s, t = [bernstein(m, at[:, 0], order) for order in (0, 1)], [bernstein(n, at[:, 1], order) for order in (0, 1)]
-    value, slope_s, slope_t = (np.einsum("kij,ki,kj->k", room, s[a], t[b]) for a, b in ((0, 0), (1, 0), (0, 1)))
+    rows = [(s[a][:, None] @ room)[:, 0] for a in (0, 1)]
+    value, slope_s, slope_t = (np.sum(rows[a] * t[b], axis=1) for a, b in ((0, 0), (1, 0), (0, 1)))
     fall_s = np.minimum(-at[:, 0] * slope_s, (1.0 - at[:, 0]) * slope_s)
     fall_t = np.minimum(-at[:, 1] * slope_t, (1.0 - at[:, 1]) * slope_t)
     return np.asarray(convex & (value + fall_s + fall_t >= 0.0))
@@ -220,16 +221,8 @@ def _certified(room: Reals, at: Reals) -> NDArray[np.bool_]:
 def _parts(coefficients: Reals, quarters: list[tuple[int, int]], *, both: bool) -> Reals:
     along = halving(coefficients.shape[1] - 1)
     across = halving(coefficients.shape[2] - 1)
-    halves = [np.einsum("ai,kij->kaj", matrix, coefficients) for matrix in along]
+    halves = [matrix @ coefficients for matrix in along]
     return np.concatenate([halves[i] @ across[j].T if both else halves[i] for i, j in quarters])
-
-
-def _products(a: Reals, b: Reals, p: int, q: int) -> Reals:
-    return np.asarray(
-        np.einsum(
-            "aix,bjy,kijd,kxyd->kabd", product_table(p), product_table(q), a, np.broadcast_to(b, a.shape), optimize=True
-        )
-    )
 
 
 def _square_distances(a: Reals, b: Reals) -> Reals:

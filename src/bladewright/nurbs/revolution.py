@@ -1,6 +1,7 @@
 """Surfaces of revolution about the x axis, with the angle theta turning z towards y."""
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -8,10 +9,11 @@ from numpy.typing import ArrayLike
 from bladewright.numerics.elementary import Array
 from bladewright.nurbs.basis import Reals
 from bladewright.nurbs.curve import Curve
+from bladewright.nurbs.revolve import revolved
 from bladewright.nurbs.surface import Surface
 
-WIDEST = np.pi / 2.0
-"""widest angle of one rational arc [rad]"""
+LEFT_HANDED = (-1.0, 0.0, 0.0)
+"""the axis about which theta, from z towards y, turns right-handed"""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -29,10 +31,10 @@ class Revolution:
     end: float
     """theta at v = 1 [rad]"""
 
-    @property
+    @cached_property
     def arcs(self) -> int:
         """Number of rational arcs, each of at most a right angle."""
-        return max(1, int(np.ceil((self.end - self.start) / WIDEST)))
+        return (len(np.unique(self.surface().knots_v))) - 1
 
     def theta(self, v: ArrayLike) -> Reals:
         """Angle [rad] at real v (...)."""
@@ -51,26 +53,11 @@ class Revolution:
 
     def surface(self) -> Surface:
         """The rational surface: u along the meridian, v around the axis."""
-        count = self.arcs
-        step = (self.end - self.start) / count
-        angles = self.start + step / 2.0 * np.arange(2 * count + 1)
-        corner = np.arange(2 * count + 1) % 2 == 1
-        stretch = np.where(corner, 1.0 / np.cos(step / 2.0), 1.0)
         x, r = self.meridian.control_points[:, 0], self.meridian.control_points[:, 1]
-        net = np.stack(
-            np.broadcast_arrays(
-                x[:, None], r[:, None] * (stretch * np.sin(angles)), r[:, None] * (stretch * np.cos(angles))
-            ),
-            axis=-1,
+        in_space = Curve(
+            control_points=np.stack([x, np.zeros_like(r), r], axis=-1),
+            knots=self.meridian.knots,
+            degree=self.meridian.degree,
+            weights=self.meridian.weights,
         )
-        around = 1.0 / stretch
-        own = np.ones(len(x)) if self.meridian.weights is None else self.meridian.weights
-        joints = np.repeat(np.arange(1, count) / count, 2)
-        return Surface(
-            control_points=net,
-            knots_u=self.meridian.knots,
-            knots_v=np.concatenate([np.zeros(3), joints, np.ones(3)]),
-            degree_u=self.meridian.degree,
-            degree_v=2,
-            weights=own[:, None] * around,
-        )
+        return revolved(in_space, self.start, self.end, axis=LEFT_HANDED)
