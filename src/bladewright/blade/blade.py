@@ -10,6 +10,7 @@ import numpy as np
 
 from bladewright.blade.ends import ruled_end
 from bladewright.blade.exact import ExactBlade
+from bladewright.blade.fitness import Misfit, misfit
 from bladewright.blade.knots import Knots
 from bladewright.blade.unified import UnifiedBlade
 from bladewright.errors import DesignError
@@ -38,10 +39,6 @@ class Blade:
     """of both sides; give them to `design.build(knots=...)` to hold them"""
     chord: float
     """mean straight distance from leading to trailing edge [m]"""
-    error: float
-    """largest distance of the sides from the exact blade that was found between the sites, of the chord"""
-    wall_error: float
-    """largest distance of the blade's ends from hub and shroud that was found between the sites, of the chord"""
     exact: ExactBlade
     """the blade that is meant"""
 
@@ -74,6 +71,21 @@ class Blade:
     def tolerance(self) -> float:
         """The distance from the exact blade that was allowed, of the chord."""
         return self.design.tolerance
+
+    @cached_property
+    def misfit(self) -> Misfit:
+        """Where and how far the sides are from the exact blade between the sites."""
+        return misfit(self.exact, self.surfaces["upper"], self.surfaces["lower"])
+
+    @property
+    def error(self) -> float:
+        """Largest distance of the sides from the exact blade, of the chord."""
+        return self.misfit.distance / self.chord
+
+    @property
+    def wall_error(self) -> float:
+        """Largest distance of the blade's ends from hub and shroud, of the chord."""
+        return self.misfit.off_walls / self.chord
 
     @cached_property
     def properties(self) -> "MassProperties":
@@ -114,8 +126,6 @@ class Blade:
             surfaces=MappingProxyType(sides),
             knots=self.knots,
             chord=self.chord,
-            error=self.error,
-            wall_error=float("nan"),
             exact=self.exact,
         )
 

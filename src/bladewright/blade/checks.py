@@ -9,21 +9,13 @@ from bladewright.nurbs.basis import Reals
 from bladewright.section.checks import UNITS
 from bladewright.section.crossing import self_crossings, touches
 
-STATIONS = np.linspace(0.0, 1.0, 9)
-
 
 def check_channel(exact: ExactBlade) -> None:
     """Refuse a channel whose map (u, v) -> (x, r) is not one to one, from nose to nose."""
-    u = np.linspace(-exact.before, 1.0 + exact.after, 41)
-    v, step = np.linspace(0.0, 1.0, 21), 1e-6
-    lines = exact.stations(np.concatenate([v, np.clip(v + step, 0.0, 1.0), np.clip(v - step, 0.0, 1.0)])).lines
-    position, slope = np.real(lines.position(u)), np.real(lines.position(u, 1))
-    here, ahead, behind = (slice(i * len(v), (i + 1) * len(v)) for i in range(3))
-    width = (np.clip(v + step, 0.0, 1.0) - np.clip(v - step, 0.0, 1.0))[:, None, None]
-    position, slope = (array.reshape(-1, *array.shape[-3:])[0] for array in (position, slope))
-    across = (position[ahead] - position[behind]) / width
-    jacobian = cross2(slope[here], across)
-    size = np.median(np.sqrt(np.sum(slope[here] ** 2, axis=-1) * np.sum(across**2, axis=-1)))
+    u, v = np.linspace(-exact.before, 1.0 + exact.after, 41), np.linspace(0.0, 1.0, 21)
+    along, across = (np.real(part) for part in exact.channel.slopes(u, v))
+    jacobian = cross2(along, across)
+    size = np.median(np.sqrt(np.sum(along**2, axis=-1) * np.sum(across**2, axis=-1)))
     share = jacobian / size
     if np.all(share < 0.0):
         raise DesignError(
@@ -40,11 +32,11 @@ def check_channel(exact: ExactBlade) -> None:
 
 def check_sections(exact: ExactBlade) -> None:
     """Refuse sections whose sides cross or touch, and neighbouring blades that intersect."""
-    stations = exact.stations(STATIONS)
+    stations = exact.survey
     s = (1.0 - np.cos(np.pi * np.linspace(0.0, 1.0, 65))) / 2.0
     first = (0,) * (stations.plane.camber.ndim - 3)
     upper, lower = (np.real(points)[first] for points in stations.plane.points(s))
-    for v, above, below in zip(STATIONS, upper, lower, strict=True):
+    for v, above, below in zip(stations.v, upper, lower, strict=True):
         place = self_crossings(np.concatenate([above, below[-2:0:-1]]))
         if place is not None:
             at = min(place, 2 * (len(s) - 1) - place)

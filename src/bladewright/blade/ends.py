@@ -4,7 +4,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from bladewright.blade.exact import ExactBlade, Stations
+from bladewright.blade.exact import ExactBlade
 from bladewright.errors import DesignError
 from bladewright.numerics.elementary import Array, angle, dot, length
 from bladewright.nurbs.basis import Reals, basis, greville
@@ -14,27 +14,42 @@ from bladewright.nurbs.revolution import Revolution
 from bladewright.nurbs.surface import Surface
 from bladewright.nurbs.trimmed import TrimmedSurface
 
-FOLLOWED = 2e-10
+FOLLOWED = 1e-9
 """distance of a boundary's image from the side's end, of the chord, besides what the side itself lies off the wall"""
 
 
-def trimmed_end(exact: ExactBlade, sides: tuple[Surface, Surface], wall: str, chord: float) -> TrimmedSurface:
-    """The piece of the hub or shroud wall inside the ends of the upper and lower side.
+def trimmed_ends(exact: ExactBlade, upper: Surface, lower: Surface, chord: float) -> dict[str, TrimmedSurface]:
+    """The pieces of the hub and shroud walls inside the ends of the sides.
 
-    The wall is the channel's, revolved about the axis or drawn along y in a cascade, exact; its u is the channel's.
+    The walls are the channel's, revolved about the axis or drawn along y in a cascade, exact; their u is the channel's.
+    Raises DesignError where the blade winds a full turn around the axis.
     """
-    row = 0 if wall == "hub" else -1
-    meridian = extended(exact.channel.curve(wall), -exact.before, 1.0 + exact.after)
-    stations = exact.stations(np.array([0.0 if wall == "hub" else 1.0]))
-    traces = [_Trace(stations, side, row, meridian, upper=upper) for side, upper in zip(sides, (True, False), strict=True)]
+    spans = np.unique(upper.knots_u)
+    places = np.sort(np.concatenate([spans, (spans[1:] + spans[:-1]) / 2.0]))
+    stations = exact.survey
+    u, _, across = stations.on_lines(np.concatenate(stations.plane.points(places), axis=-2))
+    first = (0,) * (u.ndim - 2)
+    u, across = np.real(u)[first], np.real(across)[first]
+    ends = {}
+    for wall, row in (("hub", 0), ("shroud", -1)):
+        meridian = extended(exact.channel.curve(wall), -exact.before, 1.0 + exact.after)
+        traces = [
+            _Trace(side, row, meridian, exact.mapping.revolved, places, u[row, part], across[row, part])
+            for side, part in ((upper, slice(None, len(places))), (lower, slice(len(places), None)))
+        ]
+        ends[wall] = _trimmed(traces, meridian, wall, chord)
+    return ends
+
+
+def _trimmed(traces: "list[_Trace]", meridian: Curve, wall: str, chord: float) -> TrimmedSurface:
     low, high = min(float(trace.across.min()) for trace in traces), max(float(trace.across.max()) for trace in traces)
     room = 0.05 * (high - low)
     revolution = None
-    if exact.mapping.revolved:
+    if traces[0].revolved:
         if high - low + 2.0 * room >= 2.0 * np.pi:
             raise DesignError(
-                f"the blade winds {np.degrees(high - low):.0f} deg around the axis at the {wall}: its end cannot be one "
-                "trimmed face of 360 deg or more; lower the stagger there"
+                f"stagger: the blade winds {np.degrees(high - low):.0f} deg around the axis at the {wall}: its end must be "
+                "one trimmed face of less than 327 deg; lower the stagger there"
             )
         revolution = Revolution(meridian=meridian, start=low - room, end=high + room)
         surface = revolution.surface()
@@ -64,14 +79,12 @@ def ruled_end(upper: Surface, lower: Surface, row: int) -> Surface:
 class _Trace:
     """The end of a side on its wall: the channel's u and theta, or y in a cascade, by the side's parameter."""
 
-    def __init__(self, stations: Stations, side: Surface, row: int, meridian: Curve, *, upper: bool) -> None:
+    def __init__(
+        self, side: Surface, row: int, meridian: Curve, revolved: bool, places: Reals, u: Reals, across: Reals
+    ) -> None:
         self.end = Curve(control_points=side.control_points[:, row], knots=side.knots_u, degree=side.degree_u)
-        self.revolved, self.meridian = stations.mapping.revolved, meridian
-        spans = np.unique(side.knots_u)
-        self._places = np.sort(np.concatenate([spans, (spans[1:] + spans[:-1]) / 2.0]))
-        u, _, across = stations.on_lines(stations.plane.points(self._places)[0 if upper else 1])
-        first = (0,) * (u.ndim - 1)
-        self._u, self.across = np.real(u)[first], np.real(across)[first]
+        self.meridian, self.revolved = meridian, revolved
+        self.across, self._places, self._u = across, places, u
 
     def __call__(self, s: Reals) -> tuple[Array, Array]:
         """u and theta or y (len(s),) of the feet of the end's points on the wall's meridian."""
@@ -85,7 +98,7 @@ class _Trace:
             radius, across = points[..., 2], points[..., 1]
         target = np.stack([points[..., 0], radius], axis=-1)
         u = np.interp(s, self._places, self._u)
-        for _ in range(4):
+        for _ in range(3):
             u = u + _foot_step(self.meridian, u, np.real(target))
         return u + _foot_step(self.meridian, u, target), across
 
@@ -100,7 +113,7 @@ def _followed(place: Callable[[Reals], Array], end: Curve, surface: Surface, cho
     """A plane B-spline that the wall maps on the side's end, as smooth as the side, its knots cut until it follows."""
     real = surface if not np.iscomplexobj(surface.control_points) else _real(surface)
     spans = np.unique(end.knots)
-    for pieces in (1, 2, 3, 4, 6, 8):
+    for pieces in (2, 3, 4, 6, 8):
         added = [spans[:-1] + np.diff(spans) * k / pieces for k in range(1, pieces)]
         knots = np.sort(np.concatenate([end.knots, *added]))
         sites = greville(knots, end.degree)

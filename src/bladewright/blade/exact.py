@@ -1,6 +1,7 @@
 """The exact blade: for every v the plane section of the laws' values there, laid on its stream surface."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
@@ -20,6 +21,8 @@ from bladewright.section.plane import PlaneSections, matched, plane_sections
 from bladewright.section.sampling import sample_places
 from bladewright.section.sides import side
 
+SURVEY = np.array([0.0, 0.12, 0.25, 0.38, 0.5, 0.62, 0.75, 0.88, 1.0])
+"""places along the span of the survey"""
 REACH = 0.6
 """how far, in u, the channel may be continued for a nose"""
 
@@ -125,6 +128,11 @@ class ExactBlade:
     after: float
     """how far, in u, stream lines are continued past the trailing edge"""
 
+    @cached_property
+    def survey(self) -> Stations:
+        """Stations from hub to shroud on which the shape is judged."""
+        return self.stations(SURVEY)
+
     def stations(self, v: Reals) -> Stations:
         """Sections at v (m,); refuses an edge radius that the thickness cannot hold."""
         design, span = self.design, Span(v)
@@ -183,23 +191,24 @@ def exact_blade(design: UnifiedBlade) -> ExactBlade:
     mapping = mapping_of(design.mapping, design.arrangement)
     channel = meridional(design.channel, UNITS[design.length_unit])
     places = sample_places(design.samples, design.clustering)
-    first = ExactBlade(design=design, channel=channel, mapping=mapping, places=places, before=0.0, after=0.0)
-    sections = first.stations(np.linspace(0.0, 1.0, 17))
-    hull = np.concatenate([sections.plane.upper, sections.plane.lower], axis=-2)
+    within = ExactBlade(design=design, channel=channel, mapping=mapping, places=places, before=0.0, after=0.0)
+    return replace(within, **_reaches(within.stations(SURVEY)))
+
+
+def _reaches(stations: Stations) -> dict[str, float]:
+    """How far in u the noses stand outside the channel, bounded by the sides' control points, with a margin."""
+    hull = np.concatenate([stations.plane.upper, stations.plane.lower], axis=-2)
     abscissae = np.real(hull[..., 0] / hull[..., 2] if hull.shape[-1] == 3 else hull[..., 0])
-    lines = sections.lines
-    at = np.array([0.0, 1.0])
-    densities = np.real(mapping.density(lines.position(at), lines.position(at, 1)))
-    extent = np.real(lines.extents())
-    before = np.max(-np.min(abscissae, axis=-1) / densities[..., 0], initial=0.0)
-    after = np.max((np.max(abscissae, axis=-1) - extent) / densities[..., 1], initial=0.0)
-    reach = [1.3 * float(value) + 0.01 for value in (before, after)]
-    for value, edge in zip(reach, ("leading", "trailing"), strict=True):
+    lines, at = stations.lines, np.array([0.0, 1.0])
+    densities = np.real(lines.mapping.density(lines.position(at), lines.position(at, 1)))
+    before = -np.min(abscissae, axis=-1) / densities[..., 0]
+    after = (np.max(abscissae, axis=-1) - np.real(lines.extents())) / densities[..., 1]
+    reaches = {name: 1.3 * float(np.max(past, initial=0.0)) + 0.01 for name, past in (("before", before), ("after", after))}
+    for value, edge in zip(reaches.values(), ("leading", "trailing"), strict=True):
         if value > REACH:
             raise DesignError(
-                f"the nose at the {edge} edge stands {value:.2f} of the meridional length outside the channel, more than "
-                f"{REACH}: lower the thickness next to the edge, its radius or the metal angle there"
+                f"thickness_upper or thickness_lower: the nose at the {edge} edge stands {value:.2f} of the meridional "
+                f"length outside the channel, more than {REACH}: lower the thickness next to the edge, its radius or the "
+                "metal angle there"
             )
-    return ExactBlade(
-        design=design, channel=channel, mapping=mapping, places=places, before=reach[0], after=reach[1]
-    )
+    return reaches

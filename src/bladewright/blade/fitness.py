@@ -1,5 +1,7 @@
 """How far native sides are from the exact blade, and the knots that bring them within the tolerance."""
 
+from typing import NamedTuple
+
 import numpy as np
 
 from bladewright.blade.exact import EdgeRow, ExactBlade
@@ -17,7 +19,7 @@ RESERVE = 0.4
 
 def chord_of(exact: ExactBlade) -> float:
     """Mean straight distance from leading to trailing edge along the span [m]."""
-    stations = exact.stations(np.linspace(0.0, 1.0, 9))
+    stations = exact.survey
     return float(np.mean(np.real(length(stations.trailing_edge().point - stations.leading_edge().point))))
 
 
@@ -33,7 +35,7 @@ class _LinesAlongU:
     """Error over tolerance along sections of the exact blade that are interpolated in u alone."""
 
     def __init__(self, exact: ExactBlade, tolerance: float, chord: float) -> None:
-        self.stations = exact.stations(np.array([0.0, 0.12, 0.3, 0.5, 0.7, 0.88, 1.0]))
+        self.stations = exact.survey
         self.tolerance = RESERVE * tolerance
         self.wall_tolerance = RESERVE * min(WALL_TOLERANCE * chord, tolerance)
         self.edges = self.stations.leading_edge(), self.stations.trailing_edge()
@@ -92,22 +94,33 @@ class _LinesAlongV:
         return result
 
 
-def error_of(exact: ExactBlade, upper: Surface, lower: Surface) -> tuple[float, float, tuple[float, float]]:
-    """Largest distance [m] of the native sides from the exact blade between their sites, that of their ends from the
-    walls, and the (u, v) of the former; both at equal parameters, so the first bounds the true distance."""
+class Misfit(NamedTuple):
+    """How far native sides are from the exact blade between their sites, at equal parameters."""
+
+    distance: float
+    """largest distance [m]"""
+    off_walls: float
+    """largest distance of the ends from hub and shroud [m]"""
+    u: float
+    """where the largest distance is"""
+    v: float
+
+
+def misfit(exact: ExactBlade, upper: Surface, lower: Surface) -> Misfit:
+    """The distance of the sides from the exact blade: at equal parameters, so it bounds the true distance."""
     u, v = (_between(knots) for knots in (upper.knots_u, upper.knots_v))
     v = np.concatenate([[0.0], v, [1.0]])
-    stations = exact.stations(v)
-    error, off, place = 0.0, 0.0, (0.0, 0.0)
-    for surface, points, normals in zip((upper, lower), *stations.points_and_normals(u), strict=True):
+    worst = Misfit(0.0, 0.0, 0.0, 0.0)
+    for surface, points, normals in zip((upper, lower), *exact.stations(v).points_and_normals(u), strict=True):
         miss = np.real(surface.grid(u, v).swapaxes(0, 1) - points)
         distance = length(miss)
-        worst = np.unravel_index(int(np.argmax(distance)), distance.shape)
-        if distance[worst] > error:
-            error, place = float(distance[worst]), (float(u[worst[1]]), float(v[worst[0]]))
+        i, j = np.unravel_index(int(np.argmax(distance)), distance.shape)
         ends = dot(miss, np.real(normals))[[0, -1]]
-        off = max(off, float(np.max(np.abs(ends))))  # real: a measured distance
-    return error, off, place
+        off = max(worst.off_walls, float(np.max(np.abs(ends))))  # real: a measured distance
+        if distance[i, j] > worst.distance:
+            worst = Misfit(float(distance[i, j]), off, float(u[j]), float(v[i]))
+        worst = worst._replace(off_walls=off)
+    return worst
 
 
 def _between(knots: Reals) -> Reals:

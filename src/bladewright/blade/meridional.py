@@ -14,6 +14,9 @@ from bladewright.nurbs.curve import Curve
 from bladewright.section.laws import stacked
 
 
+_EDGES = ("leading_edge", "trailing_edge")
+
+
 @dataclass(frozen=True, kw_only=True)
 class Meridional:
     """The channel's map (u, v) -> (x, r) in metres; outside 0 <= u <= 1 hub and shroud continue their own polynomials.
@@ -46,6 +49,28 @@ class Meridional:
         inner = np.concatenate([self.knots("hub"), self.knots("shroud")])
         return np.unique(inner[(inner > 0.0) & (inner < 1.0)].round(14))
 
+    def slopes(self, u: Reals, v: Reals) -> tuple[Array, Array]:
+        """Derivatives (..., len(v), len(u), 2) of (x, r) by u and by v."""
+
+        def walls(order: int) -> list[Array]:
+            return [self._values(wall, u, order)[..., None, :, :] for wall in ("hub", "shroud")]
+
+        def edges(order: int) -> list[Array]:
+            return [self._values(edge, v, order)[..., :, None, :] for edge in ("leading_edge", "trailing_edge")]
+
+        a, b = u[:, None], v[:, None, None]
+        ends = [getattr(self, edge)[..., end, :][..., None, None, :] for edge in _EDGES for end in (0, -1)]
+        (hub, shroud), (start, end) = walls(0), edges(0)
+        (hub_slope, shroud_slope), (start_slope, end_slope) = walls(1), edges(1)
+        by_u = end - start + (1.0 - b) * hub_slope + b * shroud_slope
+        by_u = by_u - ((1.0 - b) * (ends[2] - ends[0]) + b * (ends[3] - ends[1]))
+        by_v = (1.0 - a) * start_slope + a * end_slope + shroud - hub
+        by_v = by_v - ((1.0 - a) * (ends[1] - ends[0]) + a * (ends[3] - ends[2]))
+        return by_u, by_v
+
+    def _values(self, wall: str, at: Reals, order: int) -> Array:
+        return basis(self.knots(wall), self.degree_of(wall), at, order) @ getattr(self, wall)
+
     def stream_polynomials(self, v: Reals, centres: Reals) -> Array:
         """Coefficients (..., len(v), len(centres), k, 2) of the stream lines' powers of u - centre.
 
@@ -56,7 +81,7 @@ class Meridional:
         w = v[:, None, None, None]
         total = (1.0 - w) * hub + w * shroud
         edges = []
-        for name in ("leading_edge", "trailing_edge"):
+        for name in _EDGES:
             points = getattr(self, name)
             values = basis(self.knots(name), self.degree_of(name), v) @ points
             ruled = (1.0 - v)[:, None] * points[..., :1, :] + v[:, None] * points[..., -1:, :]

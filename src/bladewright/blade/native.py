@@ -5,7 +5,7 @@ import numpy as np
 from bladewright.blade.exact import EdgeRow, Stations
 from bladewright.blade.knots import DEGREE, Knots
 from bladewright.numerics.elementary import Array
-from bladewright.nurbs.basis import Reals, basis
+from bladewright.nurbs.basis import Reals, basis, greville
 
 
 def native_sides(stations: Stations, knots: Knots) -> tuple[Array, Array]:
@@ -33,7 +33,7 @@ def interpolated_along_u(lines: Array, start: EdgeRow, end: EdgeRow, sign: float
 
     `sign` is +1 for the upper side and -1 for the lower, whose first derivatives are opposite.
     """
-    sites = np.array([knots_u[i + 1 : i + DEGREE + 1].mean() for i in range(3, len(knots_u) - DEGREE - 4)])
+    sites = greville(knots_u, DEGREE)[3:-3]
     first = _end_rows(start, sign, knots_u[DEGREE + 1], knots_u[DEGREE + 2])
     last = _end_rows(end, -sign, 1.0 - knots_u[-DEGREE - 2], 1.0 - knots_u[-DEGREE - 3])[::-1]
     known = np.stack([*first, *last], axis=-3)

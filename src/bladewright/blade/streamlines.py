@@ -182,12 +182,14 @@ def _on_panels(channel: Meridional, mapping: Mapping, v: Reals, ends: Reals) -> 
 
 def _patched(index: Array, values: Array, on_panel: Callable[[int, Array], Array]) -> Array:
     """The panels' functions put together; a panel is asked only for the columns in which it has points."""
-    panels = np.unique(index)
-    if len(panels) == 1:
-        return on_panel(int(panels[0]), values)
-    main = int(panels[np.argmax([np.sum(index == panel) for panel in panels])])
+    counts = np.bincount(index.ravel())
+    main = int(np.argmax(counts))
+    if counts[main] == index.size:
+        return on_panel(main, values)
     result = np.array(on_panel(main, values))
-    for panel in panels[panels != main]:
+    for panel in np.flatnonzero(counts):
+        if panel == main:
+            continue
         inside = index == panel
         columns = np.any(inside.reshape(-1, inside.shape[-1]), axis=0)
         part = on_panel(int(panel), values[..., columns])

@@ -1,6 +1,7 @@
 """Whether closed outlines cross themselves or their neighbours."""
 
 import numpy as np
+from numpy.typing import NDArray
 
 from bladewright.nurbs.basis import Reals
 
@@ -23,13 +24,14 @@ def touches(outline: Reals, pitch: float) -> bool:
     return bool(np.any(_crossed(outline, outline + np.array([0.0, pitch]))))
 
 
-def _crossed(first: Reals, second: Reals) -> np.ndarray:
+def _crossed(first: Reals, second: Reals) -> NDArray[np.bool_]:
     """Mask (n, m) of the pairs of segments of two closed outlines that cross."""
-    a, b = first, np.roll(first, -1, axis=0)
-    c, d = second, np.roll(second, -1, axis=0)
+    return _parted(first, second) & _parted(second, first).T
 
-    def turn(p: Reals, q: Reals, r: Reals) -> Reals:
-        return (q[..., 0] - p[..., 0]) * (r[..., 1] - p[..., 1]) - (q[..., 1] - p[..., 1]) * (r[..., 0] - p[..., 0])
 
-    a, b, c, d = a[:, None], b[:, None], c[None], d[None]
-    return (turn(a, b, c) * turn(a, b, d) < 0.0) & (turn(c, d, a) * turn(c, d, b) < 0.0)
+def _parted(lines: Reals, points: Reals) -> NDArray[np.bool_]:
+    """Mask (n, m) of the segments of `points` whose ends lie on different sides of the line through each of `lines`."""
+    along = np.roll(lines, -1, axis=0) - lines
+    turns = np.outer(along[:, 0], points[:, 1]) - np.outer(along[:, 1], points[:, 0])
+    turns -= (along[:, 0] * lines[:, 1] - along[:, 1] * lines[:, 0])[:, None]
+    return turns * np.roll(turns, -1, axis=1) < 0.0
