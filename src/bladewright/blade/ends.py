@@ -17,6 +17,9 @@ from bladewright.nurbs.trimmed import TrimmedSurface
 FOLLOWED = 1e-9
 """distance of a boundary's image from the side's end, of the chord, besides what the side itself lies off the wall"""
 
+SNAPPED = 1e-9
+"""distance in the side's parameter below which a crossing takes the place of a knot"""
+
 
 def trimmed_ends(exact: ExactBlade, upper: Surface, lower: Surface, chord: float) -> dict[str, TrimmedSurface]:
     """The pieces of the hub and shroud walls inside the ends of the sides.
@@ -56,11 +59,18 @@ def _trimmed(traces: "list[_Trace]", meridian: Curve, wall: str, chord: float) -
     else:
         surface = _drawn(meridian, low - room, high + room)
 
+    joints = np.linspace(low - room, high + room, revolution.arcs + 1)[1:-1] if revolution is not None else np.empty(0)
+
     def in_parameters(u: Array, across: Array) -> Array:
         v = (across - low + room) / (high - low + 2.0 * room) if revolution is None else revolution.v(across)
         return np.stack([u, v], axis=-1)
 
-    curves = [_followed(lambda s, trace=trace: in_parameters(*trace(s)), trace.end, surface, chord) for trace in traces]
+    curves = [
+        _followed(
+            lambda s, trace=trace: in_parameters(*trace(s)), trace.end, trace.crossings(joints), surface, chord
+        )
+        for trace in traces
+    ]
     return TrimmedSurface(surface=surface, boundary=(curves[1], _reversed(curves[0])), revolution=revolution)
 
 
@@ -102,6 +112,20 @@ class _Trace:
             u = u + _foot_step(self.meridian, u, np.real(target))
         return u + _foot_step(self.meridian, u, target), across
 
+    def crossings(self, joints: Reals) -> Reals:
+        """Parameters of the end where it passes any of the angles `joints` (k,) of the wall's arcs, in order."""
+        found = []
+        for joint in joints:
+            off = self.across - joint
+            at = np.flatnonzero(off[:-1] * off[1:] < 0.0)
+            low, high = self._places[at], self._places[at + 1]
+            for _ in range(50):
+                middle = (low + high) / 2.0
+                same = (np.real(self(middle)[1]) - joint) * off[at] > 0.0
+                low, high = np.where(same, middle, low), np.where(same, high, middle)
+            found.append((low + high) / 2.0)
+        return np.sort(np.concatenate([np.empty(0), *found]))
+
 
 def _foot_step(meridian: Curve, u: Reals, target: Array) -> Array:
     """Newton's step towards the nearest point of the meridian."""
@@ -109,13 +133,23 @@ def _foot_step(meridian: Curve, u: Reals, target: Array) -> Array:
     return dot(miss, slope) / (dot(slope, slope) - dot(miss, bend))
 
 
-def _followed(place: Callable[[Reals], Array], end: Curve, surface: Surface, chord: float) -> Curve:
-    """A plane B-spline that the wall maps on the side's end, as smooth as the side, its knots cut until it follows."""
+def _followed(
+    place: Callable[[Reals], Array], end: Curve, crossings: Reals, surface: Surface, chord: float
+) -> Curve:
+    """A plane B-spline that the wall maps on the side's end, as smooth as the side, its knots cut until it follows.
+
+    Where the wall's own parameter passes from one rational arc to the next, at `crossings`, it is smooth to the first
+    derivative only, and so is the curve.
+    """
     real = surface if not np.iscomplexobj(surface.control_points) else _real(surface)
-    spans = np.unique(end.knots)
+    own = end.knots
+    for crossing in crossings:
+        beside = (np.abs(own - crossing) < SNAPPED) & (own > own[0]) & (own < own[-1])  # real: knots
+        own = np.sort(np.concatenate([own[~beside], np.full(end.degree - 1, crossing)]))
+    spans = np.unique(own)
     for pieces in (2, 3, 4, 6, 8):
         added = [spans[:-1] + np.diff(spans) * k / pieces for k in range(1, pieces)]
-        knots = np.sort(np.concatenate([end.knots, *added]))
+        knots = np.sort(np.concatenate([own, *added]))
         sites = greville(knots, end.degree)
         net = np.linalg.solve(basis(knots, end.degree, sites), place(sites))
         curve = Curve(control_points=net, knots=knots, degree=end.degree)
