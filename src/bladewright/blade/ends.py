@@ -51,8 +51,8 @@ def _trimmed(traces: "list[_Trace]", meridian: Curve, wall: str, chord: float) -
     if traces[0].revolved:
         if high - low + 2.0 * room >= 2.0 * np.pi:
             raise DesignError(
-                f"stagger: the blade winds {np.degrees(high - low):.0f} deg around the axis at the {wall}: its end must be "
-                "one trimmed face of less than 327 deg; lower the stagger there"
+                f"stagger: the blade winds {np.degrees(high - low):.0f} deg around the axis at the {wall}: its end "
+                "must be one trimmed face of less than 327 deg; lower the stagger there"
             )
         revolution = Revolution(meridian=meridian, start=low - room, end=high + room)
         surface = revolution.surface()
@@ -65,12 +65,10 @@ def _trimmed(traces: "list[_Trace]", meridian: Curve, wall: str, chord: float) -
         v = (across - low + room) / (high - low + 2.0 * room) if revolution is None else revolution.v(across)
         return np.stack([u, v], axis=-1)
 
-    curves = [
-        _followed(
-            lambda s, trace=trace: in_parameters(*trace(s)), trace.end, trace.crossings(joints), surface, chord
-        )
-        for trace in traces
-    ]
+    def followed(trace: _Trace) -> Curve:
+        return _followed(lambda s: in_parameters(*trace(s)), trace.end, trace.crossings(joints), surface, chord)
+
+    curves = [followed(trace) for trace in traces]
     return TrimmedSurface(surface=surface, boundary=(curves[1], _reversed(curves[0])), revolution=revolution)
 
 
