@@ -41,3 +41,11 @@ def design_file(tmp_path: Path) -> Path:
     path = tmp_path / "fan-rotor.toml"
     path.write_text(example_text("fan-rotor"))
     return path
+
+
+@pytest.fixture
+def vane_file(tmp_path: Path) -> Path:
+    """A prismatic vane, which builds faster than a blade in an annulus."""
+    path = tmp_path / "vane.toml"
+    path.write_text((Path(__file__).parent / "vane.toml").read_text())
+    return path

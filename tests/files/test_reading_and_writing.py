@@ -13,15 +13,20 @@ from bladewright.blade.channel import Channel
 from bladewright.blade.unified import UnifiedBlade
 from bladewright.errors import DesignError, FileError
 from bladewright.files.examples import example_text, examples
+from bladewright.files.families import FAMILIES, family_of
 from bladewright.files.reading import design_from, parsed, read_design
 from bladewright.files.writing import text_of, updated, write_design
+from bladewright.section.unified import UnifiedSection
 
 TEXT = example_text("fan-rotor")
 
 
+def number(low, high):
+    return st.floats(low, high, exclude_min=True, exclude_max=True)
+
+
 def law(low, high):
-    number = st.floats(low, high, exclude_min=True, exclude_max=True)
-    return number | st.lists(number, min_size=1, max_size=6).map(tuple)
+    return number(low, high) | st.lists(number(low, high), min_size=1, max_size=6).map(tuple)
 
 
 def chordwise(low, high):
@@ -29,8 +34,8 @@ def chordwise(low, high):
 
 
 def points(least):
-    number = st.floats(allow_nan=False, allow_infinity=False)
-    return st.lists(st.tuples(number, number), min_size=least, max_size=5).map(tuple)
+    coordinate = st.floats(allow_nan=False, allow_infinity=False)
+    return st.lists(st.tuples(coordinate, coordinate), min_size=least, max_size=5).map(tuple)
 
 
 words = st.text(st.characters(categories=["L", "N", "P", "S", "Zs"]), max_size=30).filter(str.isprintable)
@@ -38,34 +43,46 @@ names = words.filter(lambda text: text.strip() and not set(text) & set('/\\:*?"<
 channels = st.builds(
     Channel, leading_edge=points(2), trailing_edge=points(2), hub=points(0), shroud=points(0), degree=st.integers(1, 5)
 )
-common = {
+labels = {
     "name": names,
     "length_unit": st.sampled_from(["m", "cm", "mm", "um", "in", "ft"]),
-    "stagger": law(-90, 90),
-    "metal_angle_in": law(-90, 90),
-    "metal_angle_out": law(-90, 90),
-    "tangent_in": law(0, 1),
-    "tangent_out": law(0, 1),
-    "leading_edge_radius": law(0, 1),
-    "trailing_edge_radius": law(0, 1),
-    "thickness_upper": chordwise(0, 10),
-    "thickness_lower": chordwise(0, 10),
-    "weights_upper": st.just(()) | chordwise(0, 1e6),
-    "channel": channels,
     "samples": st.integers(3, 60),
-    "mapping": st.sampled_from(["conformal", "paper"]),
     "clustering": st.floats(0, 1),
     "description": words,
 }
-designs = st.builds(
-    UnifiedBlade, **common, blade_count=st.integers(1, 10_000), leading_edge_theta=st.none() | law(-1e3, 1e3)
-) | st.builds(
-    UnifiedBlade,
-    **common,
-    arrangement=st.just("linear"),
-    pitch=st.floats(0, 1e300, exclude_min=True),
-    leading_edge_y=st.none() | law(-1e3, 1e3),
-)
+length = st.floats(0, 1e300, exclude_min=True)
+
+
+def shape(law, chordwise):
+    """Strategies for the fields of the unified families, whatever a law is."""
+    return {
+        **dict.fromkeys(["stagger", "metal_angle_in", "metal_angle_out"], law(-90, 90)),
+        **dict.fromkeys(["tangent_in", "tangent_out", "leading_edge_radius", "trailing_edge_radius"], law(0, 1)),
+        **dict.fromkeys(["thickness_upper", "thickness_lower"], chordwise(0, 10)),
+        **dict.fromkeys(["weights_upper", "weights_lower"], st.just(()) | chordwise(0, 1e6)),
+    }
+
+
+def blades(**fields):
+    mapping = st.sampled_from(["conformal", "paper"])
+    return st.builds(UnifiedBlade, **labels, **shape(law, chordwise), channel=channels, mapping=mapping, **fields)
+
+
+place = st.none() | law(-1e3, 1e3)
+DESIGNS = {
+    "unified": blades(blade_count=st.integers(1, 10_000), leading_edge_theta=place)
+    | blades(arrangement=st.just("linear"), pitch=length, leading_edge_y=place),
+    "unified-section": st.builds(
+        UnifiedSection,
+        **labels,
+        **shape(number, lambda low, high: st.lists(number(low, high), min_size=1, max_size=6).map(tuple)),
+        axial_chord=length,
+        leading_edge_x=st.floats(-1e300, 1e300),
+        pitch=st.none() | length,
+        span=st.none() | length,
+    ),
+}
+designs = st.one_of([DESIGNS[family] for family in FAMILIES])
 
 
 def to_the_bit(design):
@@ -83,7 +100,8 @@ def test_what_is_written_reads_back_to_the_bit(design):
 def test_what_is_written_into_any_file_reads_back_to_the_bit(design):
     text = updated(design, TEXT, "file")
     assert to_the_bit(design_from(parsed(text, "file"), "file")) == to_the_bit(design)
-    assert text.startswith('family = "unified"\n')
+    assert tomllib.loads(text)["family"] == family_of(design)
+    assert list(tomllib.loads(text))[:3] == ["family", "length_unit", "name"]
 
 
 @pytest.mark.parametrize("name", examples())

@@ -20,6 +20,19 @@ VALIDATOR = jsonschema.Draft202012Validator(SCHEMA)
 FAN = tomllib.loads(example_text("fan-rotor"))
 
 
+SECTION = {
+    "family": "unified-section",
+    "name": "vane",
+    "length_unit": "mm",
+    "axial_chord": 40,
+    "stagger": -40.0,
+    **dict.fromkeys(["metal_angle_in", "metal_angle_out"], -30.0),
+    **dict.fromkeys(["tangent_in", "tangent_out", "leading_edge_radius", "trailing_edge_radius"], 0.05),
+    "thickness_upper": [0.1, 0.1],
+    "thickness_lower": [0.1, 0.1],
+}
+
+
 def designs_in(kind):
     yield kind
     for hint in get_type_hints(kind).values():
@@ -47,6 +60,23 @@ def test_every_field_has_its_docstring_and_its_unit(name):
         entry = SCHEMA["$defs"][name]["properties"][each.name]
         assert entry["description"] or "$ref" in entry
         assert entry.get("unit") == each.metadata.get("unit")
+
+
+def test_a_section_is_valid():
+    VALIDATOR.validate(SECTION)
+    assert design_from(SECTION, "file").axial_chord == 40.0
+
+
+@pytest.mark.parametrize(
+    "change",
+    [{"axial_chord": None}, {"stagger": [1.0, 2.0]}, {"channel": FAN["channel"]}, {"family": "unified"}],
+    ids=str,
+)
+def test_a_section_is_refused_where_it_is_no_section(change):
+    document = {key: value for key, value in {**SECTION, **change}.items() if value is not None}
+    assert not VALIDATOR.is_valid(document)
+    with pytest.raises(DesignError):
+        design_from(document, "file")
 
 
 @pytest.mark.parametrize(

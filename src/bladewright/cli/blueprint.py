@@ -19,13 +19,24 @@ def design_at(path: Path, changes: Mapping[str, Any]) -> Design:
     return design.changed(changes) if changes else design
 
 
-def built_from(design: Any, path: Path, extend: float = 0.0) -> Any:
-    """What a design builds, extended past its ends by a part of its span where that is not 0.
+def built_from(design: Any, path: Path) -> Any:
+    """What a design builds: a blade, or a section of a 2D family.
 
     Raises DesignError, naming the file at `path`, where the shape is impossible.
     """
     try:
-        built = design.build()
-        return built.extended(extend) if extend else built
+        return design.build()
+    except DesignError as error:
+        raise DesignError(f"{path}: {error}") from error
+
+
+def body_from(design: Any, path: Path, extend: float) -> Any:
+    """The blade of a design, a prismatic one where it is 2D, extended past both ends by a part of its span.
+
+    Raises DesignError, naming the file at `path`, where the shape is impossible.
+    """
+    try:
+        blade = (design.extruded() if hasattr(design, "extruded") else design).build()
+        return blade.extended(extend) if extend else blade
     except DesignError as error:
         raise DesignError(f"{path}: {error}") from error

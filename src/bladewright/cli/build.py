@@ -6,7 +6,7 @@ from typing import Any
 
 import click
 
-from bladewright.cli.blueprint import built_from, design_at
+from bladewright.cli.blueprint import body_from, design_at
 from bladewright.cli.call import Call, common
 from bladewright.cli.directory import tidy
 from bladewright.cli.options import design_argument, extend_option, length, listed, set_option
@@ -73,7 +73,7 @@ def build(
     trips = []
     with tidy(directory, [*files, *reports]), progress(1 + len(formats), call) as bar:
         bar.set_description_str("blade")
-        built = built_from(blueprint, design, extend)
+        built = body_from(blueprint, design, extend)
         bar.update(1)
         from bladewright import cad
 

@@ -12,21 +12,26 @@ _MILLIMETRES = {
     "areas": ("mm2", 1e6),
     "centroid": ("mm", 1e3),
     "inertia": ("mm5", 1e15),
+    "camber_length": ("mm", 1e3),
+    "perimeter": ("mm", 1e3),
+    "maximum_thickness": ("mm", 1e3),
+    "maximum_camber": ("mm", 1e3),
+    "edge_radii": ("mm", 1e3),
 }
 
 
 def data_of(design: Design, built: Any) -> dict[str, Any]:
-    """Names, size, error, properties, promises and poles of what a design built."""
+    """Names, size [m], error, properties [m], promises and poles of the blade or section that a design built."""
     from bladewright.files.families import family_of
 
     faces = getattr(built, "surfaces", None) or getattr(built, "curves", {})
     data = {
-        "name": built.name,
+        "name": getattr(design, "name", ""),
         "family": family_of(design),
         "parameters": len(design.parameters()),
         "chord_m": getattr(built, "chord", None),
         "error": getattr(built, "error", None),
-        "properties": _record(getattr(built, "properties", None)),
+        "properties": _record(getattr(built, "properties", built)),
         "promises": _record(getattr(built, "promises", None)),
         "surfaces" if hasattr(built, "surfaces") else "curves": {name: _poles(face) for name, face in faces.items()},
     }
@@ -38,7 +43,9 @@ def text_of(data: dict[str, Any]) -> str:
     rows = [("chord", f"{data['chord_m'] * 1e3:.6g} mm")] if "chord_m" in data else []
     if "error" in data:
         rows.append(("error", f"{data['error']:.2g} of the chord"))
-    for name, value in data.get("properties", {}).items():
+    for name, value in data["properties"].items():
+        if name == "chord":
+            continue
         unit, scale = _MILLIMETRES.get(name, ("", 1.0))
         rows.append((name.replace("_", " "), f"{_figures(value, scale)} {unit}".rstrip()))
     for name, face in data.get("surfaces", data.get("curves", {})).items():

@@ -5,7 +5,7 @@ from typing import Any
 
 import click
 
-from bladewright.cli.blueprint import built_from, design_at
+from bladewright.cli.blueprint import body_from, design_at
 from bladewright.cli.call import common
 from bladewright.cli.options import design_argument, extend_option, set_option
 from bladewright.cli.outcome import Outcome
@@ -19,7 +19,7 @@ from bladewright.cli.outcome import Outcome
 @common
 def verify(file: Path, design: Path, extend: float, changes: dict[str, Any]) -> Outcome:
     """Measure the CAD file FILE against the blade of DESIGN, both ways."""
-    built = built_from(design_at(design, changes), design, extend)
+    built = body_from(design_at(design, changes), design, extend)
     from bladewright import cad
 
     trip = cad.verify(file, built)

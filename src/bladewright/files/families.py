@@ -3,9 +3,11 @@
 from bladewright.blade.unified import UnifiedBlade
 from bladewright.designs import Design
 from bladewright.errors import FileError
+from bladewright.section.unified import UnifiedSection
 
 FAMILIES: dict[str, type[Design]] = {
     "unified": UnifiedBlade,
+    "unified-section": UnifiedSection,
 }
 """Design class by the `family` of its files."""
 
