@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from bladewright.nurbs.curve import Curve as Curve
     from bladewright.nurbs.surface import Surface as Surface
     from bladewright.nurbs.trimmed import TrimmedSurface as TrimmedSurface
+    from bladewright.section.unified import UnifiedSection as UnifiedSection
 
 __version__ = "0.1.0"
 
@@ -37,6 +38,7 @@ _HOMES = {
     "Surface": "nurbs.surface",
     "TrimmedSurface": "nurbs.trimmed",
     "UnifiedBlade": "blade.unified",
+    "UnifiedSection": "section.unified",
     "read_design": "files.reading",
     "write_design": "files.writing",
 }
