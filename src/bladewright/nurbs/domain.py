@@ -24,7 +24,13 @@ def extended(shape: Shape, start: float, end: float, direction: Direction = "u")
         raise GeometryError(f"[{start:g}, {end:g}] was asked for as a domain: the start must lie below the end")
     inner = knots[(knots > max(start, knots[0])) & (knots < min(end, knots[-1]))]
     target = np.concatenate([np.full(degree + 1, start), inner, np.full(degree + 1, end)])
-    return changed_along(shape, direction, knot_change(knots, degree, target), target, degree)
+    try:
+        return changed_along(shape, direction, knot_change(knots, degree, target), target, degree)
+    except GeometryError as error:
+        raise GeometryError(
+            f"the {type(shape).__name__.lower()} over [{knots[0]:g}, {knots[-1]:g}] cannot be continued to "
+            f"[{start:g}, {end:g}]: {error}; extend it less far"
+        ) from error
 
 
 def piece(shape: Shape, start: float, end: float, direction: Direction = "u") -> Shape:

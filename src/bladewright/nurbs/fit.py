@@ -75,9 +75,15 @@ def averaged_knots(sites: ArrayLike, degree: int, start: int = 0, end: int = 0) 
     """Clamped knots for interpolation at sites (m,) with `start` and `end` derivatives at the ends.
 
     Each inner knot is the mean of `degree` consecutive sites, an end counted once more for each of its derivatives:
-    the collocation matrix is then never singular (Piegl and Tiller 1997, eq. 9.8).
+    the collocation matrix is then never singular (Piegl and Tiller 1997, eq. 9.8). Raises GeometryError where there are
+    fewer than degree + 1 conditions, or `degree` derivatives at an end.
     """
     at = _increasing(sites)
+    if max(start, end) >= max(degree, 1):
+        raise GeometryError(
+            f"{max(start, end)} derivatives at an end were given for degree {degree} without knots: at most {degree - 1}; "
+            "raise the degree or give knots"
+        )
     padded = np.concatenate([np.full(start, at[0]), at, np.full(end, at[-1])])
     if len(padded) < degree + 1:
         raise GeometryError(

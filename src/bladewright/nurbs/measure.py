@@ -8,7 +8,7 @@ from numpy.typing import ArrayLike
 
 from bladewright.errors import GeometryError
 from bladewright.numerics.elementary import Array, length
-from bladewright.numerics.quadrature import panels, settled
+from bladewright.numerics.quadrature import adaptive, panels, settled
 from bladewright.numerics.roots import bracketed_root
 from bladewright.nurbs.basis import breaks
 from bladewright.nurbs.curve import Curve
@@ -21,19 +21,14 @@ Density = Callable[[Array, Array, Array], Array]
 def arc_length(curve: Curve, start: float | None = None, end: float | None = None) -> Array:
     """Length () of a curve between two parameters, by default the whole; negative where start lies above end.
 
-    Gauss quadrature on each knot span, with more points until the length settles within 1e-13 of itself.
+    Gauss quadrature on each knot span, halved where that has not converged to rounding.
     """
     first = curve.domain[0] if start is None else start
     last = curve.domain[1] if end is None else end
     inner = breaks(curve.knots)
     ends = np.concatenate([[first], inner[(inner > min(first, last)) & (inner < max(first, last))], [last]])
     ends = np.sort(ends) if last >= first else np.sort(ends)[::-1]
-
-    def total(order: int) -> Array:
-        nodes, weights = panels(ends, order)
-        return np.asarray(weights @ length(curve.derivative(nodes)))
-
-    return settled(total)
+    return adaptive(lambda u: length(curve.derivative(u)), ends)
 
 
 def parameters_at_length(curve: Curve, fractions: ArrayLike) -> Array:
@@ -49,12 +44,10 @@ def parameters_at_length(curve: Curve, fractions: ArrayLike) -> Array:
     reached = np.concatenate([np.zeros(1, dtype=steps.dtype), np.cumsum(steps)])
     target = wanted * reached[-1]
     span = np.clip(np.searchsorted(reached.real, target.real, side="right") - 1, 0, len(steps) - 1)
-    nodes, weights = panels([0.0, 1.0], 32)
 
     def excess(u: Array) -> tuple[Array, Array]:
-        width = u - ends[span]
-        speed = length(curve.derivative(ends[span][:, None] + width[:, None] * nodes))
-        return reached[span] + width * (speed @ weights) - target, length(curve.derivative(u))
+        cut = np.array([arc_length(curve, ends[k], x) for k, x in zip(span, u, strict=True)])
+        return reached[span] + cut - target, length(curve.derivative(u))
 
     return bracketed_root(excess, ends[span], ends[span + 1])
 

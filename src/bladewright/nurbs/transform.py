@@ -49,7 +49,7 @@ def rotated(
 ) -> Mapped:
     """The shape in space turned right-handed by `angle` [rad] about an axis (3,) through `origin` (Rodrigues 1840)."""
     direction = unit(np.asarray(axis, dtype=np.result_type(np.asarray(axis), np.float64)))
-    cross = np.cross(np.eye(3), -direction)
+    cross = np.cross(np.eye(3), direction)
     matrix = np.cos(angle) * np.eye(3) + np.sin(angle) * cross + (1.0 - np.cos(angle)) * np.outer(direction, direction)
     fixed = np.asarray(origin)
     return transformed(shape, matrix, fixed - matrix @ fixed)
