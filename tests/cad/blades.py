@@ -103,7 +103,6 @@ def annular(*, name: str = "rotor", spans: int = 36, turn: float = 0.0) -> TestB
     lower = shared(upper, side(place, -1, knots_u, knots_v))
     surfaces: dict[str, Surface | TrimmedSurface] = {"upper": upper, "lower": lower}
     for label, line, v in (("hub", hub, 0.0), ("shroud", shroud, 1.0)):
-
         revolution = Revolution(meridian=line, start=turn - 0.4, end=turn + 0.5)
 
         def trace(u: np.ndarray, sign: int, v: float = v, revolution: Revolution = revolution) -> np.ndarray:
@@ -116,9 +115,7 @@ def annular(*, name: str = "rotor", spans: int = 36, turn: float = 0.0) -> TestB
             fitted(lambda u, trace=trace: trace(u, -1), fine),
             fitted(lambda u, trace=trace: trace(1.0 - u, 1), fine),
         )
-        surfaces[label] = TrimmedSurface(
-            surface=revolution.surface(), boundary=boundary, revolution=revolution
-        )
+        surfaces[label] = TrimmedSurface(surface=revolution.surface(), boundary=boundary, revolution=revolution)
     # e_x x e_r = -e_theta on the sides, of which the upper lies at the larger theta; e_x x e_theta = e_r on the walls
     orientations = {"upper": -1, "lower": 1, "hub": -1, "shroud": 1}
     return TestBlade(
@@ -144,9 +141,7 @@ def linear(*, name: str = "vane", spans: int = 36) -> TestBlade:
     low, high = np.array([-0.1, -0.2]), np.array([0.4, 0.2])
     for label, z in (("hub", 0.0), ("shroud", height)):
         corners = np.array([[[x, y, z] for y in (low[1], high[1])] for x in (low[0], high[0])])
-        plane = Surface(
-            control_points=corners, knots_u=[0, 0, 1, 1.0], knots_v=[0, 0, 1, 1.0], degree_u=1, degree_v=1
-        )
+        plane = Surface(control_points=corners, knots_u=[0, 0, 1, 1.0], knots_v=[0, 0, 1, 1.0], degree_u=1, degree_v=1)
         edge = 0 if label == "hub" else -1
         chain = []
         for body, backwards in ((lower, False), (upper, True)):

@@ -18,15 +18,15 @@ class Properties(Protocol):
 
     @property
     def volume(self) -> float:
-        """[m^3]"""
+        """Volume [m^3]."""
 
     @property
     def area(self) -> float:
-        """[m^2]"""
+        """Surface area [m^2]."""
 
     @property
     def centroid(self) -> Array:
-        """(3,) [m]"""
+        """Centroid of the volume (3,) [m]."""
 
 
 class Built(Protocol):

@@ -7,15 +7,17 @@ from bladewright.cad.region import Region
 from bladewright.numerics.elementary import Array
 
 STEPS = 12
-"""Gauss-Newton steps; a start of 10,000 samples a face needs three or four."""
+"""most Gauss-Newton steps; from the nearest of some thousand seeds three or four are needed"""
+SEEDS = 4_000
+"""points of a face from the nearest of which the search starts"""
 
 
 class Target:
     """A face that many points are brought to; what the search needs is prepared once."""
 
-    def __init__(self, region: Region, seeds: int = 10_000) -> None:
+    def __init__(self, region: Region, seeds: Array | None = None) -> None:
         self.region = region
-        self.uv = region.sampled(seeds)
+        self.uv = region.sampled(SEEDS) if seeds is None else seeds
         self.tree = cKDTree(region.points(self.uv))
 
     def closest(self, points: Array, limit: float) -> tuple[Array, Array]:

@@ -37,7 +37,9 @@ class Joint:
     gap: float
     """[mm] largest distance of the faces, and of the edge's own curve, at equal parameters"""
     tolerance: float
-    """[mm] of the edge and its vertices"""
+    """[mm] of the edge"""
+    vertex_tolerance: float
+    """[mm] of its vertices"""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -77,7 +79,8 @@ def closure(shape: TopoDS_Shape) -> Closure:
                 faces=tuple(k for k, face in enumerate(faces) if any(face.IsSame(own) for own in beside)),
                 length=properties.Mass(),
                 gap=_gap(edge, beside),
-                tolerance=_tolerance(edge),
+                tolerance=BRep_Tool.Tolerance_s(edge),
+                vertex_tolerance=_vertex_tolerance(edge),
             )
         )
     return Closure(
@@ -127,6 +130,6 @@ def _gap(edge: TopoDS_Edge, beside: list[TopoDS_Face]) -> float:
     )
 
 
-def _tolerance(edge: TopoDS_Edge) -> float:
+def _vertex_tolerance(edge: TopoDS_Edge) -> float:
     ends = (TopExp.FirstVertex_s(edge), TopExp.LastVertex_s(edge))
-    return max(BRep_Tool.Tolerance_s(edge), *(BRep_Tool.Tolerance_s(end) for end in ends if not end.IsNull()), 0.0)
+    return max((BRep_Tool.Tolerance_s(end) for end in ends if not end.IsNull()), default=0.0)

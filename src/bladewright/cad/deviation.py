@@ -1,14 +1,16 @@
 """How far the faces of a CAD file lie from the native ones, in both directions."""
 
 from dataclasses import dataclass
+from functools import cached_property, lru_cache
 
 import numpy as np
 
 from bladewright.cad.built import MM
-from bladewright.cad.closest import Target
+from bladewright.cad.closest import SEEDS, Target
 from bladewright.cad.patch import SplineCarrier, native_carrier
 from bladewright.cad.region import Region, spread
 from bladewright.numerics.elementary import Array
+from bladewright.nurbs.measure import area
 from bladewright.nurbs.surface import Surface
 from bladewright.nurbs.trimmed import TrimmedSurface
 
@@ -28,6 +30,12 @@ class Deviation:
     """native parameters of the place where it is largest"""
 
 
+@lru_cache(maxsize=16)
+def meant_by(face: Surface | TrimmedSurface) -> "Meant":
+    """A native face as the measure of others; kept for the next file of the same body."""
+    return Meant(face)
+
+
 class Meant:
     """A native face, prepared once for all that is compared with it."""
 
@@ -40,31 +48,31 @@ class Meant:
             low=np.array([surface.knots_u[0], surface.knots_v[0]]),
             high=np.array([surface.knots_u[-1], surface.knots_v[-1]]),
         )
-        self._target: Target | None = None
 
-    @property
+    @cached_property
     def target(self) -> Target:
         """The face as something that points are brought to."""
-        if self._target is None:
-            self._target = Target(self.region)
-        return self._target
+        return Target(self.region)
 
-    def pole_for_pole(self, region: Region) -> bool:
-        """Whether a region is the whole of a surface with this face's degrees, knots and number of control points."""
+    @cached_property
+    def area(self) -> float:
+        """[m^2] by quadrature."""
+        return float(area(self.face) if isinstance(self.face, Surface) else self.face.area())
+
+    def pole_for_pole(self, region: Region) -> tuple[Surface, Surface] | None:
+        """The native surface [m] and a region's [mm], where the latter is the whole of a surface with the same degrees,
+        knots and number of control points; None otherwise.
+        """  # noqa: D205
         if not isinstance(self.face, Surface) or not isinstance(region.carrier, SplineCarrier) or region.chains:
-            return False
+            return None
         mine, other = self.face, region.carrier.surface
-        return (
+        same = (
             (mine.degree_u, mine.degree_v) == (other.degree_u, other.degree_v)
             and mine.control_points.shape == other.control_points.shape
             and bool(np.allclose(mine.knots_u, other.knots_u, rtol=0.0, atol=SAME_KNOT))
             and bool(np.allclose(mine.knots_v, other.knots_v, rtol=0.0, atol=SAME_KNOT))
         )
-
-    def pole_distance(self, region: Region) -> float:
-        """[mm] Largest distance of control points of a region that came back pole for pole."""
-        difference = region.carrier.surface.control_points - MM * self.face.control_points  # type: ignore[union-attr]
-        return float(np.sqrt(np.max(np.sum(difference**2, axis=-1))))
+        return (mine, other) if same else None
 
 
 def deviation(meant: Meant, regions: list[Region], count: int, limit: float) -> Deviation:
@@ -74,20 +82,21 @@ def deviation(meant: Meant, regions: list[Region], count: int, limit: float) -> 
     from above; where that bound is not below `limit`, and for all others, each sample is brought to the nearest point
     of the other side.
     """
-    if len(regions) == 1 and meant.pole_for_pole(regions[0]):
-        found = _at_equal_parameters(meant, regions[0], count)
+    pair = meant.pole_for_pole(regions[0]) if len(regions) == 1 else None
+    if pair is not None:
+        found = _at_equal_parameters(*pair, count)
         if found.largest <= limit:
             return found
     uv = meant.region.sampled(count)
     points = meant.region.points(uv)
     away = np.full(len(points), np.inf)
-    for region in regions:
-        away = np.minimum(away, Target(region).closest(points, limit)[1])
+    samples = [region.sampled(max(100, count // len(regions))) for region in regions]
+    for region, seeds in zip(regions, samples, strict=True):
+        away = np.minimum(away, Target(region, seeds[::2] if len(seeds) > SEEDS else seeds).closest(points, limit)[1])
     worst = int(np.argmax(away))
     largest, place, every = float(away[worst]), uv[worst], [away]
-    for region in regions:
-        back = region.points(region.sampled(max(100, count // len(regions))))
-        feet, away = meant.target.closest(back, limit)
+    for region, back in zip(regions, samples, strict=True):
+        feet, away = meant.target.closest(region.points(back), limit)
         worst = int(np.argmax(away))
         every.append(away)
         if away[worst] > largest:
@@ -97,8 +106,7 @@ def deviation(meant: Meant, regions: list[Region], count: int, limit: float) -> 
     )
 
 
-def _at_equal_parameters(meant: Meant, region: Region, count: int) -> Deviation:
-    surface, other = meant.face, region.carrier.surface  # type: ignore[union-attr]
+def _at_equal_parameters(surface: Surface, other: Surface, count: int) -> Deviation:
     lines = int(np.sqrt(count))
     u, v = (spread(surface.knots_u, surface.degree_u, lines), spread(surface.knots_v, surface.degree_v, lines))
     away = _length(MM * surface.grid(u, v) - other.grid(u, v))

@@ -93,9 +93,7 @@ def native_surface(geometry: Geom_BSplineSurface) -> Surface:
     )
     weights = None
     if geometry.IsURational() or geometry.IsVRational():
-        weights = np.array(
-            [[geometry.Weight(i, j) for j in range(1, count_v + 1)] for i in range(1, count_u + 1)]
-        )
+        weights = np.array([[geometry.Weight(i, j) for j in range(1, count_v + 1)] for i in range(1, count_u + 1)])
     return Surface(
         control_points=points,
         knots_u=knot_sequence(geometry.UKnot, geometry.UMultiplicity, geometry.NbUKnots()),

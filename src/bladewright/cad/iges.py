@@ -21,7 +21,7 @@ def write_iges(built: Built, body: Body, path: str, *, solid: bool) -> None:
     # 0, the kernel's default, writes faces and forgets that they close a solid
     Interface_Static.SetIVal_s("write.iges.brep.mode", 1 if solid else 0)
     Interface_Static.SetIVal_s("write.precision.mode", 2)
-    Interface_Static.SetRVal_s("write.precision.val", CONFUSION)
+    Interface_Static.SetRVal_s("write.precision.val", max(CONFUSION, body.gap))
     writer = IGESCAFControl_Writer()
     writer.SetNameMode(True)
     writer.SetColorMode(False)

@@ -28,8 +28,9 @@ Frame = tuple[Array, Array, Array]
 class Carrier(Protocol):
     """An untrimmed surface in millimetres."""
 
-    period: float
-    """of the first parameter, or zero"""
+    @property
+    def period(self) -> float:
+        """Of the first parameter, or zero."""
 
     def frame(self, uv: Array) -> Frame:
         """Points and first derivatives at parameters (n, 2)."""
@@ -144,5 +145,3 @@ def _within(curve: object, low: float, high: float) -> tuple[float, float]:
 
 def _triple(value: object) -> Array:
     return np.array([value.X(), value.Y(), value.Z()])  # type: ignore[attr-defined]
-
-

@@ -162,11 +162,11 @@ class Rim:
         return cKDTree(self.points)
 
     @cached_property
-    def sag(self) -> float:
-        """[mm] how far the polygon cuts the corners, with some to spare."""
+    def _sag(self) -> Array:
+        """(n,) [mm] eight times what the polygon cuts off the curve next to a point."""
         steps = (self.uv[self.ahead] - self.uv) * self.region.scale
-        turn = (steps - np.roll(steps, 1, axis=0)) if len(self.region.chains) == 1 else steps[self.ahead] - steps
-        return float(np.sqrt(np.max(np.sum(turn * turn, axis=-1))))
+        turns = np.sqrt(_square(steps - steps[self.behind]))
+        return np.maximum(turns, np.maximum(turns[self.ahead], turns[self.behind]))
 
     def left(self, uv: Array) -> Array:
         """Whether parameters (n, 2) lie to the left of the boundary: of its nearest point.
@@ -175,7 +175,7 @@ class Rim:
         itself does.
         """
         scale = self.region.scale
-        away, near = self._flat.query(uv * scale)
+        _, near = self._flat.query(uv * scale)
         offset = (uv - self.uv[near]) * scale
         onward = _unit((self.uv[self.ahead[near]] - self.uv[near]) * scale)
         onto = _unit((self.uv[near] - self.uv[self.behind[near]]) * scale)
@@ -183,16 +183,12 @@ class Rim:
         tangent = onward + onto
         tangent = np.where((_dot(offset, onward) > 0.0)[:, None], onward, tangent)
         tangent = np.where(((_dot(offset, onto) < 0.0) & (_dot(offset, onward) <= 0.0))[:, None], onto, tangent)
-        inside = tangent[:, 0] * offset[:, 1] - tangent[:, 1] * offset[:, 0] > 0.0
-        close = np.flatnonzero(away <= 4.0 * self.sag + self._step)
+        height = tangent[:, 0] * offset[:, 1] - tangent[:, 1] * offset[:, 0]
+        inside = height > 0.0
+        close = np.flatnonzero(np.abs(height) <= self._sag[near] + 1e-12 * scale.max())
         if len(close):
             inside[close] = self._left_of_curve(uv[close], near[close], inside[close])
         return inside
-
-    @cached_property
-    def _step(self) -> float:
-        steps = (self.uv[self.ahead] - self.uv) * self.region.scale
-        return float(np.sqrt(np.max(np.sum(steps * steps, axis=-1))))
 
     def _left_of_curve(self, uv: Array, near: Array, otherwise: Array) -> Array:
         inside = np.array(otherwise)
@@ -226,12 +222,15 @@ class Rim:
                 curve = self.curves[index]
                 s = self.parameter[start[mine]]
                 for _ in range(8):
-                    place = curve(s)
-                    at, along, across = self.region.carrier.frame(place)
+                    at, along, across = self.region.carrier.frame(curve(s))
                     turn = curve.derivative(s)
                     tangent = turn[:, :1] * along + turn[:, 1:] * across
                     step = _dot(tangent, points[mine] - at) / _dot(tangent, tangent)
-                    s = np.clip(s + step, curve.knots[0], curve.knots[-1])
+                    moved = np.clip(s + step, curve.knots[0], curve.knots[-1])
+                    settled = np.max(np.abs(moved - s)) <= 1e-12 * (curve.knots[-1] - curve.knots[0])
+                    s = moved
+                    if settled:
+                        break
                 place = curve(s)
                 away = np.sqrt(_square(self.region.points(place) - points[mine]))
                 better = away < distance[mine]

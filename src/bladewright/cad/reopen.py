@@ -127,7 +127,12 @@ def ends(path: Path) -> tuple[bytes, bytes]:
 
 
 def _guess(head: bytes) -> str:
-    known = {b"\x89PNG": "a PNG picture", b"%PDF": "a PDF", b"PK\x03\x04": "a ZIP archive", b"\xff\xd8": "a JPEG picture"}
+    known = {
+        b"\x89PNG": "a PNG picture",
+        b"%PDF": "a PDF",
+        b"PK\x03\x04": "a ZIP archive",
+        b"\xff\xd8": "a JPEG picture",
+    }
     for signature, name in known.items():
         if head.startswith(signature):
             return f"it is {name}: give the CAD file"
@@ -165,10 +170,8 @@ def _step(path: Path) -> Reopened:
 
 
 def step_plain(text: str) -> str:
-    """Text of which ISO 10303-21's \\X2\\ sequences are letters again."""
-    return re.sub(
-        r"\\X2\\((?:[0-9A-Fa-f]{4})+)\\X0\\", lambda found: bytes.fromhex(found[1]).decode("utf-16-be"), text
-    )
+    r"""Text of which ISO 10303-21's \X2\ sequences are letters again."""
+    return re.sub(r"\\X2\\((?:[0-9A-Fa-f]{4})+)\\X0\\", lambda found: bytes.fromhex(found[1]).decode("utf-16-be"), text)
 
 
 def _protocol(schema: str) -> str:
@@ -224,7 +227,7 @@ def _sewn(shape: TopoDS_Shape, names: dict[int, str]) -> tuple[TopoDS_Shape, dic
     whole = sewing.SewedShape()
     kept = {}
     shells = each(whole, TopAbs_SHELL)
-    if len(shells) == 1 and shells[0].Closed():
+    if len(shells) == 1 and not sewing.NbFreeEdges():
         whole = BRepBuilderAPI_MakeSolid(TopoDS.Shell_s(shells[0])).Solid()
     after = each(whole, TopAbs_FACE)
     for index, face in enumerate(each(shape, TopAbs_FACE)):

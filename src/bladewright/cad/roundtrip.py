@@ -104,7 +104,7 @@ class RoundTrip:
 
     @property
     def centroid_distance(self) -> float:
-        """[mm]"""
+        """Distance of the centroids [mm]."""
         return float(sum((a - b) ** 2 for a, b in zip(*self.centroid, strict=True)) ** 0.5)
 
     def to_dict(self) -> dict[str, Any]:
@@ -136,24 +136,22 @@ class RoundTrip:
         return report
 
     def __str__(self) -> str:
-        verdict = "passed" if self.passed else "FAILED"
         kind = " ".join(word for word in (self.format, self.schema) if word)
-        lines = [
-            f"{self.file} ({kind}, {self.unit}): {verdict}",
-            *(f"  - {failure}" for failure in self.failures),
-            f"  {self.solids} solid, {self.shells} shell, {self.free_edges} free edges, "
-            f"{'valid' if self.valid else 'invalid'}",
-        ]
+        valid = "valid" if self.valid else "invalid"
         width = max((len(face.name) for face in self.faces), default=0)
-        lines += [
-            f"  {face.name:<{width}}  deviation {face.max_deviation:.1e} mm (mean {face.mean_deviation:.1e}), "
-            f"area {face.area.cad:.6g} mm2 ({face.area.relative_error:.1e})"
-            for face in self.faces
-        ]
-        lines += [
-            f"  edges: {self.edges.count}, gap {self.edges.max_gap:.1e} mm, tolerance {self.edges.max_tolerance:.1e} mm",
-            f"  volume {self.volume.cad:.8g} mm3 ({self.volume.relative_error:.1e}), "
-            f"area {self.area.cad:.8g} mm2 ({self.area.relative_error:.1e}), "
-            f"centroid off by {self.centroid_distance:.1e} mm",
-        ]
+        volume, area, edges = self.volume, self.area, self.edges
+        lines = [f"{self.file} ({kind}, {self.unit}): {'passed' if self.passed else 'FAILED'}"]
+        lines += [f"  - {failure}" for failure in self.failures]
+        lines.append(f"  {self.solids} solid, {self.shells} shell, {self.free_edges} free edges, {valid}")
+        for face in self.faces:
+            away = f"deviation {face.max_deviation:.1e} mm (mean {face.mean_deviation:.1e})"
+            size = f"area {face.area.cad:.6g} mm2 ({face.area.relative_error:.1e})"
+            lines.append(f"  {face.name:<{width}}  {away}, {size}")
+        lines.append(
+            f"  edges: {edges.count}, gap {edges.max_gap:.1e} mm, tolerance {edges.max_tolerance:.1e} mm",
+        )
+        lines.append(
+            f"  volume {volume.cad:.8g} mm3 ({volume.relative_error:.1e}), area {area.cad:.8g} mm2 "
+            f"({area.relative_error:.1e}), centroid off by {self.centroid_distance:.1e} mm"
+        )
         return "\n".join(lines)

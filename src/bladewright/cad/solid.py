@@ -39,6 +39,8 @@ class Body:
 
     solid: TopoDS_Solid
     faces: dict[str, TopoDS_Face]
+    gap: float
+    """[mm] largest tolerance that its edges need"""
 
 
 def solid(built: Built) -> cadquery.Solid:
@@ -56,8 +58,8 @@ def body(built: Built) -> Body:
     faces = {}
     for name, face in built.surfaces.items():
         outwards = built.orientations[name] > 0
-        faces[name] = workshop.patch(name, face, outwards) if isinstance(face, Surface) else workshop.wall(
-            name, face, outwards
+        faces[name] = (
+            workshop.patch(name, face, outwards) if isinstance(face, Surface) else workshop.wall(name, face, outwards)
         )
     workshop.close_edges()
     builder = BRep_Builder()
@@ -71,10 +73,10 @@ def body(built: Built) -> Body:
     builder.Add(whole, shell)
     if not BRepCheck_Analyzer(whole).IsValid():
         raise CadError(
-            f"OpenCASCADE finds the solid of {built.name!r} invalid, though its faces share their edges: a face crosses "
+            f"OpenCASCADE finds the solid of {built.name!r} invalid, though its faces share their edges: one crosses "
             "itself or another; look at the blade with `bladewright show`"
         )
-    return Body(solid=whole, faces=faces)
+    return Body(solid=whole, faces=faces, gap=max(workshop.gaps))
 
 
 class _Workshop:

@@ -39,8 +39,8 @@ def write_step(built: Built, body: Body, path: str, *, schema: str) -> None:
     writer.SetPropsMode(True)
     writer.SetColorMode(False)
     writer.SetLayerMode(False)
-    # the reader gives every edge at least this tolerance
-    writer.ChangeWriter().SetTolerance(CONFUSION)
+    # a reader that finds an edge further off a face than this replaces the trimming curve by a coarse one of its own
+    writer.ChangeWriter().SetTolerance(max(CONFUSION, body.gap))
     made, label = document(step_text(built.name), body, {name: step_text(name) for name in body.faces})
     properties = built.properties
     XCAFDoc_Volume.Set_s(label, float(properties.volume) * MM**3)
@@ -91,7 +91,7 @@ def _text(built: Built, field: str) -> str:
 
 
 def step_text(text: str) -> str:
-    """Text as ISO 10303-21 writes what is not ASCII: \\X2\\, the UTF-16 code units in hexadecimal, \\X0\\."""
+    r"""Text as ISO 10303-21 writes what is not ASCII: \X2\, the UTF-16 code units in hexadecimal, \X0\."""
     coded = []
     for letter in text:
         if letter.isascii() and letter.isprintable():

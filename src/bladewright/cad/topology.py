@@ -96,9 +96,7 @@ def topology(built: Built) -> Topology:
         )
         for curve, uses in runs
     )
-    collapsed = tuple(
-        Collapsed(use=use, vertex=_vertex(vertices, point, COINCIDENT * size)) for point, use in points
-    )
+    collapsed = tuple(Collapsed(use=use, vertex=_vertex(vertices, point, COINCIDENT * size)) for point, use in points)
     return Topology(edges=edges, collapsed=collapsed, vertices=np.array(vertices))
 
 

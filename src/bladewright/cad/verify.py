@@ -10,18 +10,19 @@ from OCP.GProp import GProp_GProps
 
 from bladewright.cad.built import MM, Built, extent
 from bladewright.cad.closure import Closure, closure
-from bladewright.cad.deviation import Meant, deviation
+from bladewright.cad.deviation import deviation, meant_by
 from bladewright.cad.quiet import quiet
 from bladewright.cad.reopen import Reopened, format_of, reopened
 from bladewright.cad.returned import Returned, returned
 from bladewright.cad.roundtrip import Compared, EdgeTrip, FaceTrip, RoundTrip
 from bladewright.numerics.elementary import Array
-from bladewright.nurbs.measure import area
 from bladewright.nurbs.surface import Surface
 from bladewright.nurbs.trimmed import TrimmedSurface
 
 SAMPLES = 10_000
 """points on each face, each way"""
+NEAR = 0.01
+"""Distance of control points, of the body's extent, below which a face without a name is taken for a native one."""
 QUADRATURE = 1e-9
 """relative error that the kernel's quadrature of volumes aims at"""
 
@@ -44,13 +45,16 @@ def verify(path: str | os.PathLike[str], built: Built, *, samples: int = SAMPLES
 
 def limits_of(built: Built) -> dict[str, float]:
     """Limits of the figures: millimetres for distances, fractions for areas and volume."""
-    chords = [
-        float(np.sqrt(np.sum((np.diff(face.surface(*face.boundary[0](face.boundary[0].knots[[0, -1]]).T), axis=0)) ** 2)))
-        for face in built.surfaces.values()
-        if isinstance(face, TrimmedSurface)
-    ]
+    chords = [_chord(face) for face in built.surfaces.values() if isinstance(face, TrimmedSurface)]
     end = max([1e-5, *(1e-7 * chord * MM for chord in chords)])
     return {"side_mm": 1e-6, "end_mm": end, "edge_mm": 1e-6, "face_area": 1e-9, "volume": 1e-6}
+
+
+def _chord(face: TrimmedSurface) -> float:
+    """[m] Distance of the ends of the first boundary curve."""
+    ends = face.boundary[0].control_points[[0, -1]]
+    start, end = face.surface(ends[:, 0], ends[:, 1])
+    return float(np.sqrt(np.sum((end - start) ** 2)))
 
 
 class _Measurement:
@@ -59,7 +63,7 @@ class _Measurement:
     def __init__(self, opened: Reopened, built: Built, samples: int) -> None:
         self.opened, self.built, self.samples = opened, built, samples
         self.limits = limits_of(built)
-        self.meant = {name: Meant(face) for name, face in built.surfaces.items()}
+        self.meant = {name: meant_by(face) for name, face in built.surfaces.items()}
         self.returned = [returned(face) for face in opened.faces]
         self.named = {k: name for k, name in opened.names.items() if name in self.meant}
         self.names = self._names()
@@ -107,13 +111,14 @@ class _Measurement:
     def _names(self) -> dict[int, str]:
         """Names of all faces of the file: those it has, else those of the native faces they lie on."""
         names = dict(self.named)
-        size = extent(self.built) * MM
+        near = NEAR * extent(self.built) * MM
         for k, face in enumerate(self.returned):
             if k in names:
                 continue
             for name, meant in self.meant.items():
-                # millimetres apart is not another face, but a bad one
-                if meant.pole_for_pole(face.region) and meant.pole_distance(face.region) < 1e-2 * size:
+                pair = meant.pole_for_pole(face.region)
+                # a pole that moved this far is not another face, but a bad one
+                if pair is not None and np.max(np.abs(pair[1].control_points - MM * pair[0].control_points)) < near:
                     names[k] = name
             if k not in names:
                 points = face.region.points(face.region.sampled(100))
@@ -126,9 +131,8 @@ class _Measurement:
         if missing:
             self.failures.append(f"no face of the file is {' or '.join(missing)}")
         if self.opened.format == "STEP" and self.opened.ours:
-            self.failures += [
-                f"face {self.names[k]} has no name in the file" for k in range(len(self.returned)) if k not in self.named
-            ]
+            unnamed = [self.names[k] for k in range(len(self.returned)) if k not in self.named]
+            self.failures += [f"face {name} has no name in the file" for name in unnamed]
 
     def _face(self, name: str, faces: list[Returned]) -> FaceTrip:
         native = self.built.surfaces[name]
@@ -164,8 +168,7 @@ class _Measurement:
         areas = getattr(self.built.properties, "areas", None)
         if areas is not None:
             return float(areas[list(self.meant).index(name)])
-        face = self.built.surfaces[name]
-        return float(area(face) if isinstance(face, Surface) else face.area())
+        return self.meant[name].area
 
     def _check_closure(self, closed: Closure) -> None:
         for count, what in ((closed.solids, "solid"), (closed.shells, "shell")):
@@ -186,15 +189,18 @@ class _Measurement:
             where = f"the edge of {' and '.join(names)} ({joint.length:.4g} mm long)"
             if not joint.gap <= limit:
                 self.failures.append(f"{where} has a gap of {joint.gap:.3g} mm: at most {limit:.3g} mm is allowed")
-            if not joint.tolerance <= max(limit, self.limits["end_mm"]):
-                self.failures.append(
-                    f"{where} has a tolerance of {joint.tolerance:.3g} mm: at most {limit:.3g} mm is allowed"
-                )
+            # a vertex between sides ends edges of the walls as well
+            tolerances = ((joint.tolerance, limit, "a"), (joint.vertex_tolerance, self.limits["end_mm"], "a vertex of"))
+            self.failures += [
+                f"{where} has {what} tolerance of {tolerance:.3g} mm: at most {allowed:.3g} mm is allowed"
+                for tolerance, allowed, what in tolerances
+                if not tolerance <= allowed
+            ]
         return EdgeTrip(
             count=len(closed.joints),
             shortest=min((joint.length for joint in closed.joints), default=0.0),
             max_gap=max((joint.gap for joint in closed.joints), default=0.0),
-            max_tolerance=max((joint.tolerance for joint in closed.joints), default=0.0),
+            max_tolerance=max((max(joint.tolerance, joint.vertex_tolerance) for joint in closed.joints), default=0.0),
         )
 
     def _check_whole(self, volume: Compared, total: Compared, centroid: tuple[Array, Array]) -> None:
@@ -211,5 +217,3 @@ class _Measurement:
             self.failures.append(
                 f"the centroid is {distance:.3g} mm off: at most {allowed:.3g} of the body's {size:.4g} mm is allowed"
             )
-
-

@@ -1,5 +1,6 @@
 """End faces as the CAD holds them: exact surfaces of revolution, planes, and the plane curves that trim them."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -14,7 +15,10 @@ from bladewright.errors import CadError
 from bladewright.numerics.elementary import Array, unit
 from bladewright.nurbs.basis import greville
 from bladewright.nurbs.curve import Curve
+from bladewright.nurbs.revolution import Revolution
 from bladewright.nurbs.trimmed import TrimmedSurface
+
+Along = Callable[[Array], Array]
 
 FOLLOWED = 1e-10
 """Distance, as a fraction of the edge's extent, that a trimming curve may add to what the edge lies off its wall."""
@@ -35,7 +39,7 @@ class Wall:
 def wall(face: TrimmedSurface, edges: list[tuple[Edge, Use]]) -> Wall:
     """The kernel's surface of a trimmed face and the traces on it of its edges, given in the order of its boundary."""
     if face.revolution is not None:
-        return _revolved(face, edges)
+        return _revolved(face, face.revolution, edges)
     net = face.surface.control_points
     corner, along, across = net[0, 0], net[-1, 0] - net[0, 0], net[0, -1] - net[0, 0]
     normal = unit(np.cross(along, across))
@@ -59,13 +63,12 @@ def _plane(corner: Array, along: Array, normal: Array, edges: list[tuple[Edge, U
     return Wall(geometry=Geom_Plane(frame), traces=traces, swapped=False)
 
 
-def _revolved(face: TrimmedSurface, edges: list[tuple[Edge, Use]]) -> Wall:
+def _revolved(face: TrimmedSurface, revolution: Revolution, edges: list[tuple[Edge, Use]]) -> Wall:
     """A surface of revolution about -x, about which theta is right-handed.
 
     The kernel's angle starts half a turn before the middle of the face, so that no trace comes near its seam.
     """
-    revolution = face.revolution
-    line: Curve = revolution.meridian
+    line = revolution.meridian
     angles = [np.asarray(revolution.theta(boundary(_spread(boundary.knots, 201))[:, 1])) for boundary in face.boundary]
     low, high = min(float(a.min()) for a in angles), max(float(a.max()) for a in angles)
     if high - low >= 2.0 * np.pi:
@@ -126,15 +129,17 @@ def _patch(face: TrimmedSurface, edges: list[tuple[Edge, Use]]) -> Wall:
             near = np.argmin(np.sum((points[:, None] - ahead[None]) ** 2, axis=-1), axis=1)
             uv = guides[near]
             for _ in range(20):
-                du, dv = surface.derivative(*uv.T, 1, 0), surface.derivative(*uv.T, 0, 1)
-                miss = points - surface(*uv.T)
+                u, v = uv.T
+                du, dv = surface.derivative(u, v, 1, 0), surface.derivative(u, v, 0, 1)
+                miss = points - surface(u, v)
                 a, b, c = (np.sum(p * q, axis=-1) for p, q in ((du, du), (du, dv), (dv, dv)))
                 e, f = np.sum(du * miss, axis=-1), np.sum(dv * miss, axis=-1)
                 uv = uv + np.stack([c * e - b * f, a * f - b * e], axis=-1) / (a * c - b * b)[:, None]
             return uv
 
         def stretch(uv: Array) -> Array:
-            tangents = (surface.derivative(*uv.T, 1, 0), surface.derivative(*uv.T, 0, 1))
+            u, v = uv.T
+            tangents = (surface.derivative(u, v, 1, 0), surface.derivative(u, v, 0, 1))
             return np.stack([np.sqrt(np.sum(t * t, axis=-1)) for t in tangents], axis=-1)
 
         return _interpolated(place, stretch, edge.curve)
@@ -158,7 +163,7 @@ def _foot(line: Curve, points: Array) -> Array:
     return t
 
 
-def _interpolated(place: object, stretch: object, along: Curve) -> Curve:
+def _interpolated(place: Along, stretch: Along, along: Curve) -> Curve:
     """A plane B-spline of degree 5 through `place(w)`, as smooth as the edge, its knots doubled until it follows.
 
     `stretch` gives the metres that the two parameters are worth.
@@ -173,10 +178,10 @@ def _interpolated(place: object, stretch: object, along: Curve) -> Curve:
         knots = np.sort(np.concatenate([np.repeat(ends[0], degree + 1), np.repeat(inner, counts), added,
                                         np.repeat(ends[-1], degree + 1)]))  # fmt: skip
         sites = greville(knots, degree)
-        spline = make_interp_spline(sites, place(sites), k=degree, t=knots)  # type: ignore[operator]
+        spline = make_interp_spline(sites, place(sites), k=degree, t=knots)
         between = 0.5 * (sites[1:] + sites[:-1])
-        exact = place(between)  # type: ignore[operator]
-        miss = np.max(np.abs(spline(between) - exact) * stretch(exact))  # type: ignore[operator]
+        exact = place(between)
+        miss = np.max(np.abs(spline(between) - exact) * stretch(exact))
         if miss <= FOLLOWED * size:
             return Curve(control_points=spline.c, knots=knots, degree=degree)
     raise CadError(

@@ -1,0 +1,165 @@
+"""Triangles: made of a solid, measured, and asked whether they close."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from OCP.BRep import BRep_Tool
+from OCP.BRepMesh import BRepMesh_IncrementalMesh
+from OCP.BRepTools import BRepTools
+from OCP.TopAbs import TopAbs_REVERSED
+from OCP.TopLoc import TopLoc_Location
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
+from scipy.spatial import cKDTree
+
+from bladewright.cad.solid import Body
+from bladewright.errors import CadError
+from bladewright.numerics.elementary import Array
+
+TURN = 0.35
+"""[rad] largest angle between neighbouring triangles' normals that the kernel aims at"""
+NEIGHBOURS = 12
+"""triangles near a point that are tried for the nearest"""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Mesh:
+    """Triangles in millimetres that share their vertices."""
+
+    vertices: Array
+    """(n, 3) [mm]"""
+    triangles: NDArray[np.int64]
+    """(m, 3) indices of vertices, counter-clockwise seen from outside"""
+
+    @property
+    def corners(self) -> Array:
+        """(m, 3, 3) [mm] corners of the triangles."""
+        return self.vertices[self.triangles]
+
+    @property
+    def vectors(self) -> Array:
+        """(m, 3) [mm^2] area vectors of the triangles."""
+        a, b, c = np.moveaxis(self.corners, 1, 0)
+        return 0.5 * np.cross(b - a, c - a)
+
+    @property
+    def volume(self) -> float:
+        """Enclosed volume [mm^3]."""
+        return float(np.sum(self.corners.mean(axis=1) * self.vectors) / 3.0)
+
+    @property
+    def centroid(self) -> Array:
+        """(3,) [mm] of the volume."""
+        a, b, c = np.moveaxis(self.corners, 1, 0)
+        parts = np.sum(a * np.cross(b, c), axis=-1) / 6.0
+        return np.sum(parts[:, None] * (a + b + c) / 4.0, axis=0) / np.sum(parts)
+
+    @property
+    def edges(self) -> NDArray[np.int64]:
+        """(3 m, 2) directed edges."""
+        return np.concatenate([self.triangles[:, [k, (k + 1) % 3]] for k in range(3)])
+
+    @property
+    def open_edges(self) -> int:
+        """Edges that are not run once each way."""
+        size = len(self.vertices)
+        run = self.edges[:, 0] * size + self.edges[:, 1]
+        back = self.edges[:, 1] * size + self.edges[:, 0]
+        _, counts = np.unique(run, return_counts=True)
+        return int(np.sum(~np.isin(run, back)) + np.sum(counts > 1))
+
+    @property
+    def shells(self) -> int:
+        """Connected pieces."""
+        size = len(self.vertices)
+        graph = coo_array((np.ones(len(self.edges)), self.edges.T), shape=(size, size))
+        _, labels = connected_components(graph, directed=False)
+        return len(np.unique(labels[self.triangles[:, 0]]))
+
+
+def merged(corners: Array, tolerance: float = 0.0) -> Mesh:
+    """The mesh of loose triangles (m, 3, 3): equal vertices become one; triangles that collapse are left out."""
+    points = corners.reshape(-1, 3)
+    if tolerance:
+        points = np.round(points / tolerance) * tolerance
+    vertices, index = np.unique(points, axis=0, return_inverse=True)
+    triangles = index.reshape(-1, 3)
+    a, b, c = triangles.T
+    return Mesh(vertices=vertices, triangles=triangles[(a != b) & (b != c) & (c != a)])
+
+
+def triangulated(body: Body, deflection: float) -> Mesh:
+    """The kernel's triangles of a solid, aimed at a deflection [mm]."""
+    BRepTools.Clean_s(body.solid)
+    BRepMesh_IncrementalMesh(body.solid, deflection, False, TURN, False)
+    found = []
+    for name, face in body.faces.items():
+        triangulation = BRep_Tool.Triangulation_s(face, TopLoc_Location())
+        if triangulation is None:
+            raise CadError(f"OpenCASCADE could not triangulate face {name!r} within {deflection:.3g} mm")
+        nodes = (triangulation.Node(i) for i in range(1, triangulation.NbNodes() + 1))
+        points = np.array([(p.X(), p.Y(), p.Z()) for p in nodes])
+        triangles = np.array([triangulation.Triangle(i).Get() for i in range(1, triangulation.NbTriangles() + 1)]) - 1
+        if face.Orientation() == TopAbs_REVERSED:
+            triangles = triangles[:, ::-1]
+        found.append(points[triangles])
+    # nodes on a shared edge come from its one curve; the last bits of their sums may differ
+    return merged(np.concatenate(found), tolerance=1e-6)
+
+
+class Nearest:
+    """The triangles of a mesh as something that points are brought to."""
+
+    def __init__(self, mesh: Mesh) -> None:
+        self.mesh = mesh
+        size = float(np.ptp(mesh.vertices, axis=0).max()) / 100.0
+        pieces, self.owner = _split(mesh.corners, size)
+        self.tree = cKDTree(pieces.mean(axis=1))
+
+    def distance(self, points: Array, limit: float) -> Array:
+        """Distances (n,) [mm] of points (n, 3); those above `limit` are sought among more triangles."""
+        away = self._among(points, NEIGHBOURS)
+        doubtful = np.flatnonzero(away > limit)
+        if len(doubtful):
+            away[doubtful] = self._among(points[doubtful], 8 * NEIGHBOURS)
+        return away
+
+    def _among(self, points: Array, count: int) -> Array:
+        _, near = self.tree.query(points, k=min(count, len(self.owner)))
+        corners = self.mesh.corners[self.owner[near.reshape(len(points), -1)]]
+        return np.min(_to_triangle(points[:, None, :], corners), axis=1)
+
+
+def _split(corners: Array, size: float) -> tuple[Array, NDArray[np.int64]]:
+    """Triangles (k, 3, 3) with no side above `size`, and the triangle each is a part of."""
+    owner = np.arange(len(corners))
+    done, owners = [], []
+    while len(corners):
+        sides = np.linalg.norm(np.roll(corners, -1, axis=1) - corners, axis=-1)
+        small = sides.max(axis=1) <= size
+        done.append(corners[small])
+        owners.append(owner[small])
+        corners, owner, longest = corners[~small], owner[~small], np.argmax(sides[~small], axis=1)
+        row = np.arange(len(corners))
+        start, end, other = (corners[row, (longest + k) % 3] for k in range(3))
+        middle = 0.5 * (start + end)
+        corners = np.concatenate([np.stack([start, middle, other], axis=1), np.stack([middle, end, other], axis=1)])
+        owner = np.concatenate([owner, owner])
+    return np.concatenate(done), np.concatenate(owners)
+
+
+def _to_triangle(points: Array, corners: Array) -> Array:
+    """Distances of points (..., 3) from triangles (..., 3, 3)."""
+    a, b, c = np.moveaxis(corners, -2, 0)
+    normal = np.cross(b - a, c - a)
+    square = np.maximum(np.sum(normal * normal, axis=-1), 1e-300)
+    height = np.sum((points - a) * normal, axis=-1)
+    inside = np.ones(height.shape, dtype=bool)
+    nearest = np.full(height.shape, np.inf)
+    for start, end in ((a, b), (b, c), (c, a)):
+        side, arm = end - start, points - start
+        inside &= np.sum(np.cross(side, arm) * normal, axis=-1) >= 0.0
+        share = np.clip(np.sum(arm * side, axis=-1) / np.maximum(np.sum(side * side, axis=-1), 1e-300), 0.0, 1.0)
+        nearest = np.minimum(nearest, np.sum((arm - share[..., None] * side) ** 2, axis=-1))
+    return np.sqrt(np.where(inside, np.minimum(nearest, height * height / square), nearest))

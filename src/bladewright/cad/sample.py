@@ -1,0 +1,66 @@
+"""Points of CAD files, for whoever wants a cloud of them."""
+
+import os
+from pathlib import Path
+
+import numpy as np
+from numpy.random import Generator, default_rng
+
+from bladewright.cad.built import MM
+from bladewright.cad.mesh import Mesh
+from bladewright.cad.quiet import quiet
+from bladewright.cad.region import Region
+from bladewright.cad.reopen import format_of, reopened
+from bladewright.cad.returned import returned
+from bladewright.cad.stl import read_stl
+from bladewright.cad.threemf import read_3mf
+from bladewright.errors import CadError
+from bladewright.numerics.elementary import Array
+
+
+def sample(path: str | os.PathLike[str], count: int = 10_000, *, seed: int = 0) -> Array:
+    """Points (count, 3) [m], evenly spread by area over all faces of a CAD file; the same for the same seed.
+
+    Raises CadError where the file cannot be opened as what its name says.
+    """
+    path = Path(path)
+    if count < 1:
+        raise CadError(f"{count} points were asked for: at least 1 is needed")
+    random = default_rng(seed)
+    kind = format_of(path)
+    if kind in {"STL", "3MF"}:
+        mesh = read_stl(path) if kind == "STL" else read_3mf(path)[0]
+        return _of_mesh(mesh, count, random) / MM
+    with quiet():
+        faces = [returned(face) for face in reopened(path).faces]
+    shares = np.cumsum([face.area for face in faces]) / sum(face.area for face in faces)
+    counts = np.diff(np.concatenate([[0], np.round(shares * count).astype(int)]))
+    drawn = [_of_region(face.region, int(number), random) for face, number in zip(faces, counts, strict=True)]
+    return np.concatenate(drawn) / MM
+
+
+def _of_region(region: Region, count: int, random: Generator) -> Array:
+    """Points (count, 3) [mm], evenly spread: candidates stay with a probability that grows with their area."""
+    low, high = region.low, region.high
+    if region.chains:
+        low, high = region.rim.uv.min(axis=0), region.rim.uv.max(axis=0)
+    found, total, densest = [np.zeros((0, 3))], 0, 0.0
+    while total < count:
+        uv = low + random.random((max(4 * count, 4000), 2)) * (high - low)
+        uv = uv[region.contains(uv)]
+        points, along, across = region.carrier.frame(uv)
+        element = np.sqrt(np.sum(np.cross(along, across) ** 2, axis=-1))
+        # the densest place seen so far stands for the densest there is
+        densest = max(densest, float(element.max(initial=0.0)))
+        kept = points[random.random(len(points)) * densest < element]
+        found.append(kept)
+        total += len(kept)
+    return np.concatenate(found)[:count]
+
+
+def _of_mesh(mesh: Mesh, count: int, random: Generator) -> Array:
+    vectors = mesh.vectors
+    areas = np.sqrt(np.sum(vectors * vectors, axis=-1))
+    corners = mesh.corners[random.choice(len(areas), size=count, p=areas / areas.sum())]
+    a, b = np.sort(random.random((2, count)), axis=0)[:, :, None]
+    return a * corners[:, 0] + (b - a) * corners[:, 1] + (1.0 - b) * corners[:, 2]
