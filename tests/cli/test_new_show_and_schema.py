@@ -87,6 +87,7 @@ def test_a_promise_that_is_not_kept_gives_status_one(run, vane_file, monkeypatch
     assert found.status == 1
     assert "edge_radius" in found.err
     assert "1e-12" in found.err
+    assert "NOT KEPT" in found.out
 
 
 def test_show_draws_a_picture(run, vane_file, tmp_path):

@@ -2,7 +2,7 @@
 
 import json
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 import click
 
@@ -54,7 +54,7 @@ def build(
     directory: Path,
     formats: tuple[str, ...],
     bodies: tuple[str, ...],  # noqa: ARG001  a blade is the one body there is
-    schema: str,
+    schema: Literal["AP242", "AP214", "AP203"],
     iges_surfaces: bool,
     chordal_deviation: float | None,
     extend: float,

@@ -19,7 +19,7 @@ class Outcome:
     data: dict[str, Any]
     """the JSON object"""
     text: str = ""
-    """for people; nothing is printed where it is empty"""
+    """for people, the failures in it; nothing is printed where it is empty"""
     failures: tuple[str, ...] = field(default=())
     """checks that failed, each a paragraph"""
 
@@ -29,8 +29,10 @@ def printed(outcome: Outcome, call: Call) -> int:
     text = json.dumps(jsonable(outcome.data), indent=2, allow_nan=False) if call.as_json else outcome.text
     if text and (call.as_json or not call.quiet):
         _print(text)
-    for failure in outcome.failures:
-        click.echo(one_paragraph(failure), err=True)
+    # On a terminal the text has said it already.
+    if call.quiet or call.as_json or not sys.stdout.isatty():
+        for failure in outcome.failures:
+            click.echo(one_paragraph(failure), err=True)
     return 1 if outcome.failures else 0
 
 

@@ -53,7 +53,9 @@ def text_of(data: dict[str, Any]) -> str:
         rows.append((name, f"{poles} poles of degree {degree}{', rational' if face['rational'] else ''}"))
     promises = data.get("promises", {})
     for name, limit in promises.get("limits", {}).items():
-        rows.append((name.replace("_", " "), f"{promises[name]:.2g}, promised within {limit:.2g}"))
+        value = promises[name]
+        said = f"{'unknown' if value is None else f'{value:.2g}'}, promised within {limit:.2g}"
+        rows.append((name.replace("_", " "), said + ("" if _kept(value, limit) else ": NOT KEPT")))
     width = max((len(name) for name, _ in rows), default=0)
     head = f"{data['name']}: {data['family']}, {data['parameters']} parameters"
     return "\n".join([head, *(f"  {name:<{width}}  {value}" for name, value in rows)])
@@ -65,8 +67,12 @@ def broken_promises(data: dict[str, Any]) -> tuple[str, ...]:
     return tuple(
         f"{data['name']}: the promise '{name}' is not kept: {promises[name]} where {limit} is allowed"
         for name, limit in promises.get("limits", {}).items()
-        if promises[name] is None or promises[name] > limit
+        if not _kept(promises[name], limit)
     )
+
+
+def _kept(value: float | None, limit: float) -> bool:
+    return value is not None and value <= limit
 
 
 def _record(result: Any) -> Any:

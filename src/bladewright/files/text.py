@@ -41,16 +41,13 @@ def read_text(path: Path) -> str:
 
 
 def write_text(path: Path, text: str) -> None:
-    """Write a text as UTF-8, with its own line ends, as `write_bytes` does."""
-    write_bytes(path, text.encode())
+    """Write a text as UTF-8, its line ends kept: the file appears whole or not at all.
 
-
-def write_bytes(path: Path, data: bytes) -> None:
-    """Write a file that appears whole or not at all; a link stays a link, a device is written to directly.
-
-    Raises FileError where that is not possible, and leaves nothing behind.
+    A link stays a link, a device is written to directly. Raises FileError where it cannot be written, and leaves
+    nothing behind.
     """
     try:
+        data = text.encode()
         target = Path(os.path.realpath(path))
         if target.is_dir():
             raise FileError(f"'{path}' is a directory: name the file to write")
