@@ -1,18 +1,18 @@
 """Blades of closed formulas to try the CAD room with: smooth, twisted, between curved walls of revolution or planes."""
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from scipy.interpolate import make_interp_spline
 
-from bladewright.nurbs.basis import greville
+from bladewright.nurbs.basis import greville, uniform_knots
 from bladewright.nurbs.curve import Curve
 from bladewright.nurbs.revolution import Revolution
 from bladewright.nurbs.surface import Surface
 from bladewright.nurbs.trimmed import TrimmedSurface
 
-CHORD = 0.1
+UNIFORM = uniform_knots(6, 3)
 HUB = np.array([[-0.05, 0.200], [0.0, 0.203], [0.05, 0.212], [0.1, 0.216], [0.15, 0.214]])
 SHROUD = np.array([[-0.05, 0.310], [0.0, 0.309], [0.05, 0.304], [0.1, 0.300], [0.15, 0.301]])
 
@@ -33,7 +33,7 @@ class Promises:
 
 
 @dataclass(frozen=True, kw_only=True)
-class TestBlade:
+class Blade:
     name: str
     surfaces: Mapping[str, Surface | TrimmedSurface]
     orientations: Mapping[str, int]
@@ -42,6 +42,24 @@ class TestBlade:
     author: str = "A. Author"
     organisation: str = "Institute of Blades"
     promises: Promises = field(default_factory=Promises)
+
+
+def blade(name: str, surfaces: Mapping, orientations: Mapping[str, int]) -> Blade:
+    return Blade(
+        name=name, surfaces=surfaces, orientations=orientations, properties=properties(surfaces, orientations)
+    )
+
+
+def replaced(built: Blade, **faces: Surface | TrimmedSurface) -> Blade:
+    """The blade with some of its faces replaced, though it still says that its volume is the old one's."""
+    return replace(built, surfaces={**built.surfaces, **faces})
+
+
+def moved(face: Surface, row: int, column: int, by: float) -> Surface:
+    """A surface of which one control point is moved along z [m]."""
+    net = np.array(face.control_points)
+    net[row, column, 2] += by
+    return replace(face, control_points=net)
 
 
 def doubled(count: int, degree: int, at: tuple[float, ...] = (0.5,), multiplicity: int = 3) -> np.ndarray:
@@ -88,7 +106,7 @@ def shared(upper: Surface, lower: Surface) -> Surface:
     return Surface(control_points=net, knots_u=lower.knots_u, knots_v=lower.knots_v, degree_u=5, degree_v=5)
 
 
-def annular(*, name: str = "rotor", spans: int = 36, turn: float = 0.0) -> TestBlade:
+def annular(*, name: str = "rotor", spans: int = 36, turn: float = 0.0) -> Blade:
     """A blade of about 0.1 m between curved walls of revolution; `turn` rotates it about the machine axis."""
     hub, shroud = meridian(HUB), meridian(SHROUD)
 
@@ -118,15 +136,10 @@ def annular(*, name: str = "rotor", spans: int = 36, turn: float = 0.0) -> TestB
         surfaces[label] = TrimmedSurface(surface=revolution.surface(), boundary=boundary, revolution=revolution)
     # e_x x e_r = -e_theta on the sides, of which the upper lies at the larger theta; e_x x e_theta = e_r on the walls
     orientations = {"upper": -1, "lower": 1, "hub": -1, "shroud": 1}
-    return TestBlade(
-        name=name,
-        surfaces=surfaces,
-        orientations=orientations,
-        properties=properties(surfaces, orientations),
-    )
+    return blade(name, surfaces, orientations)
 
 
-def linear(*, name: str = "vane", spans: int = 36) -> TestBlade:
+def linear(*, name: str = "vane", spans: int = 36) -> Blade:
     """A prismatic blade of a linear cascade between the planes z = 0 and z = 0.12."""
     height = 0.12
 
@@ -155,12 +168,10 @@ def linear(*, name: str = "vane", spans: int = 36) -> TestBlade:
             )
         surfaces[label] = TrimmedSurface(surface=plane, boundary=tuple(chain), revolution=None)
     orientations = {"upper": -1, "lower": 1, "hub": -1, "shroud": 1}
-    return TestBlade(
-        name=name, surfaces=surfaces, orientations=orientations, properties=properties(surfaces, orientations)
-    )
+    return blade(name, surfaces, orientations)
 
 
-def ruled_ends(*, name: str = "extended") -> TestBlade:
+def ruled_ends(*, name: str = "extended") -> Blade:
     """The annular blade closed by ruled surfaces, which collapse at both edges, instead of walls."""
     walls = annular()
     upper, lower = walls.surfaces["upper"], walls.surfaces["lower"]
@@ -171,9 +182,26 @@ def ruled_ends(*, name: str = "extended") -> TestBlade:
             control_points=net, knots_u=lower.knots_u, knots_v=[0, 0, 1, 1.0], degree_u=5, degree_v=1
         )
     orientations = {"upper": -1, "lower": 1, "hub": -1, "shroud": 1}
-    return TestBlade(
-        name=name, surfaces=surfaces, orientations=orientations, properties=properties(surfaces, orientations)
-    )
+    return blade(name, surfaces, orientations)
+
+
+def brick(*, name: str = "passage") -> Blade:
+    """A curved six-sided body of patches of which each shares its boundary control points with its neighbours."""
+    u = greville(UNIFORM, 3)
+    x, y, z = np.meshgrid(u, u, u, indexing="ij")
+    net = np.stack([0.1 * x + 0.01 * y * z, 0.08 * y + 0.02 * np.sin(3 * x), 0.05 * z + 0.01 * x * y], axis=-1)
+    slices = {
+        "inlet": net[0], "outlet": net[-1], "pressure": net[:, 0], "suction": net[:, -1],
+        "hub": net[:, :, 0], "shroud": net[:, :, -1],
+    }  # fmt: skip
+    # one patch runs the other way round, as patches of different origin do
+    slices["outlet"] = slices["outlet"][::-1]
+    surfaces = {
+        label: Surface(control_points=points, knots_u=UNIFORM, knots_v=UNIFORM, degree_u=3, degree_v=3)
+        for label, points in slices.items()
+    }
+    orientations = {"inlet": -1, "outlet": -1, "pressure": 1, "suction": -1, "hub": -1, "shroud": 1}
+    return blade(name, surfaces, orientations)
 
 
 def gauss(knots: np.ndarray, count: int) -> tuple[np.ndarray, np.ndarray]:
@@ -186,10 +214,10 @@ def gauss(knots: np.ndarray, count: int) -> tuple[np.ndarray, np.ndarray]:
     )
 
 
-def strip(face: TrimmedSurface) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def strip(face: TrimmedSurface) -> tuple[np.ndarray, np.ndarray]:
     """Parameters (n, 2) and weights (n,) that integrate over the region between the two boundary curves."""
     lower, upper = face.boundary
-    s, ws = gauss(lower.knots, 6)
+    s, ws = gauss(lower.knots, 8)
     q, wq = gauss(np.array([0.0, 1.0]), 8)
     weight = np.outer(ws, wq).ravel()
     s, q = np.repeat(s, len(q)), np.tile(q, len(s))
@@ -197,17 +225,17 @@ def strip(face: TrimmedSurface) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     along = (1.0 - q)[:, None] * lower.derivative(s) - q[:, None] * upper.derivative(1.0 - s)
     across = end - start
     jacobian = along[:, 0] * across[:, 1] - along[:, 1] * across[:, 0]
-    return start + q[:, None] * across, weight * jacobian, s
+    return start + q[:, None] * across, weight * jacobian
 
 
 def elements(face: Surface | TrimmedSurface) -> tuple[np.ndarray, np.ndarray]:
     """Points (n, 3) and area vectors (n, 3) of dS/du x dS/dv."""
     if isinstance(face, Surface):
-        u, wu = gauss(face.knots_u, 8)
+        u, wu = gauss(face.knots_u, 16)
         v, wv = gauss(face.knots_v, 8)
         normals = np.cross(face.grid(u, v, 1, 0), face.grid(u, v, 0, 1)) * np.outer(wu, wv)[..., None]
         return face.grid(u, v).reshape(-1, 3), normals.reshape(-1, 3)
-    uv, weights, _ = strip(face)
+    uv, weights = strip(face)
     u, v = uv.T
     surface = face.surface
     normals = np.cross(surface.derivative(u, v, 1, 0), surface.derivative(u, v, 0, 1)) * weights[:, None]
@@ -223,3 +251,6 @@ def properties(surfaces: Mapping, orientations: Mapping[str, int]) -> Properties
         area += np.sum(np.sqrt(np.sum(vectors * vectors, axis=-1)))
         moment += 0.5 * np.sum(points * points * vectors, axis=0)
     return Properties(volume=float(volume), area=float(area), centroid=moment / volume)
+
+
+BODIES = {"annular": annular, "linear": linear, "ruled ends": ruled_ends, "brick": brick}

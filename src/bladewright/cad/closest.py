@@ -17,8 +17,13 @@ class Target:
 
     def __init__(self, region: Region, seeds: Array | None = None) -> None:
         self.region = region
-        self.uv = region.sampled(SEEDS) if seeds is None else seeds
-        self.tree = cKDTree(region.points(self.uv))
+        uv = region.sampled(SEEDS) if seeds is None else seeds
+        points = region.points(uv)
+        # a side that is a single point would fill the list of neighbours with itself
+        grain = 1e-9 * max(float(np.ptp(points, axis=0).max()), 1e-300)
+        _, kept = np.unique(np.round(points / grain), axis=0, return_index=True)
+        self.uv = uv[kept]
+        self.tree = cKDTree(points[kept])
 
     def closest(self, points: Array, limit: float) -> tuple[Array, Array]:
         """Parameters (n, 2) and distances (n,) [mm] of the nearest points of the face to points (n, 3).
@@ -58,8 +63,9 @@ class Target:
             best[active[better]], distance[active[better]] = uv[active[better]], away[better]
             a, b, c = (np.sum(p * q, axis=-1) for p, q in ((along, along), (along, across), (across, across)))
             e, f = np.sum(along * miss, axis=-1), np.sum(across * miss, axis=-1)
+            # where a side of the face is a single point, one of the derivatives vanishes
+            a, c = a + 1e-12 * self.region.scale[0] ** 2, c + 1e-12 * self.region.scale[1] ** 2
             determinant = a * c - b * b
-            determinant = np.where(determinant > 1e-14 * a * c, determinant, np.inf)
             step = np.stack([c * e - b * f, a * f - b * e], axis=-1) / determinant[:, None]
             moved = self.region.brought_near(uv[active] + step)
             shift = (moved - uv[active]) * self.region.scale

@@ -1,5 +1,6 @@
 """How far the faces of a CAD file lie from the native ones, in both directions."""
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property, lru_cache
 
@@ -10,6 +11,8 @@ from bladewright.cad.closest import SEEDS, Target
 from bladewright.cad.patch import SplineCarrier, native_carrier
 from bladewright.cad.region import Region, spread
 from bladewright.numerics.elementary import Array
+from bladewright.nurbs.domain import reversed as run_backwards
+from bladewright.nurbs.domain import swapped
 from bladewright.nurbs.measure import area
 from bladewright.nurbs.surface import Surface
 from bladewright.nurbs.trimmed import TrimmedSurface
@@ -65,14 +68,24 @@ class Meant:
         """  # noqa: D205
         if not isinstance(self.face, Surface) or not isinstance(region.carrier, SplineCarrier) or region.chains:
             return None
-        mine, other = self.face, region.carrier.surface
-        same = (
-            (mine.degree_u, mine.degree_v) == (other.degree_u, other.degree_v)
-            and mine.control_points.shape == other.control_points.shape
-            and bool(np.allclose(mine.knots_u, other.knots_u, rtol=0.0, atol=SAME_KNOT))
-            and bool(np.allclose(mine.knots_v, other.knots_v, rtol=0.0, atol=SAME_KNOT))
-        )
-        return (mine, other) if same else None
+        mine, found = self.face, []
+        for turned in _turned(region.carrier.surface):
+            if (
+                (mine.degree_u, mine.degree_v) == (turned.degree_u, turned.degree_v)
+                and mine.control_points.shape == turned.control_points.shape
+                and np.allclose(mine.knots_u, turned.knots_u, rtol=0.0, atol=SAME_KNOT)
+                and np.allclose(mine.knots_v, turned.knots_v, rtol=0.0, atol=SAME_KNOT)
+            ):
+                found.append((np.max(np.abs(turned.control_points - MM * mine.control_points)), turned))
+        return (mine, min(found, key=lambda each: float(each[0]))[1]) if found else None
+
+
+def _turned(surface: Surface) -> Iterator[Surface]:
+    """A surface and itself run in other directions, as a program that turns a face round writes it."""
+    for exchanged in (surface, swapped(surface)):
+        for half in (exchanged, run_backwards(exchanged, "u")):
+            yield half
+            yield run_backwards(half, "v")
 
 
 def deviation(meant: Meant, regions: list[Region], count: int, limit: float) -> Deviation:

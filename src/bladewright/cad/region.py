@@ -61,7 +61,9 @@ class Region:
         """Parameters (count, 2), spread over the face and along its boundary."""
         if not self.chains:
             return self._rectangle(count)
-        border = self.rim.uv[:: max(1, len(self.rim.uv) * 10 // count)]
+        every = np.arange(0, len(self.rim.uv), max(1, len(self.rim.uv) * 10 // count))
+        # with the corners, where a face may collapse
+        border = self.rim.uv[np.union1d(every, np.arange(0, len(self.rim.uv), RIM))]
         lines = int(np.sqrt(count))
         inner = self._between(count - len(border), lines)
         # the polygon cuts corners: what it lets in by mistake goes to the true boundary

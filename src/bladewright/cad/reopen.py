@@ -232,7 +232,7 @@ def _sewn(shape: TopoDS_Shape, names: dict[int, str]) -> tuple[TopoDS_Shape, dic
     after = each(whole, TopAbs_FACE)
     for index, face in enumerate(each(shape, TopAbs_FACE)):
         if index in names:
-            sewn = sewing.Modified(face)
+            sewn = sewing.ModifiedSubShape(face)
             for place, candidate in enumerate(after):
                 if candidate.IsSame(sewn):
                     kept[place] = names[index]

@@ -21,7 +21,7 @@ from OCP.TopoDS import (
 )
 
 from bladewright.cad.built import MM, Built
-from bladewright.cad.geometry import plane_curve, space_curve, space_surface
+from bladewright.cad.geometry import millimetres, plane_curve, space_curve, space_surface
 from bladewright.cad.topology import Edge, Topology, Use, topology
 from bladewright.cad.walls import wall
 from bladewright.errors import CadError
@@ -53,6 +53,8 @@ def solid(built: Built) -> cadquery.Solid:
 
 def body(built: Built) -> Body:
     """The same solid in the kernel's own type, with its faces by name."""
+    for face in built.surfaces.values():
+        millimetres(face.control_points if isinstance(face, Surface) else face.surface.control_points)
     made = topology(built)
     workshop = _Workshop(made)
     faces = {}
