@@ -3,8 +3,10 @@
 import numpy as np
 from _common import example, export
 
+import bladewright as bw
+
 design = example("turbine-section")
-export(design, design.extruded().build())
+export(design, bw.prismatic(design).build())
 
 section = design.build()
 u = np.linspace(0.0, 1.0, 2001)

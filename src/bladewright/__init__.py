@@ -11,6 +11,7 @@ if TYPE_CHECKING:
     from bladewright import cad as cad
     from bladewright.blade.blade import Blade as Blade
     from bladewright.blade.channel import Channel as Channel
+    from bladewright.blade.prismatic import prismatic as prismatic
     from bladewright.blade.unified import UnifiedBlade as UnifiedBlade
     from bladewright.errors import BladewrightError as BladewrightError
     from bladewright.errors import CadError as CadError
@@ -39,6 +40,7 @@ _HOMES = {
     "TrimmedSurface": "nurbs.trimmed",
     "UnifiedBlade": "blade.unified",
     "UnifiedSection": "section.unified",
+    "prismatic": "blade.prismatic",
     "read_design": "files.reading",
     "write_design": "files.writing",
 }

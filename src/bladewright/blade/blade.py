@@ -12,15 +12,16 @@ from bladewright.blade.ends import ruled_end
 from bladewright.blade.exact import ExactBlade
 from bladewright.blade.fitness import Misfit, misfit
 from bladewright.blade.knots import Knots
+from bladewright.blade.properties import blade_properties
 from bladewright.blade.unified import UnifiedBlade
 from bladewright.errors import DesignError
 from bladewright.nurbs.domain import extended, reparametrised
 
+from bladewright.nurbs.flux import MassProperties, mass_properties
 from bladewright.nurbs.surface import Surface
 from bladewright.nurbs.trimmed import TrimmedSurface
 
 if TYPE_CHECKING:
-    from bladewright.nurbs.flux import MassProperties
     from bladewright.blade.promises import Promises
     from bladewright.section.section import Section
 
@@ -88,10 +89,10 @@ class Blade:
         return self.misfit.off_walls / self.chord
 
     @cached_property
-    def properties(self) -> "MassProperties":
+    def properties(self) -> MassProperties:
         """Volume [m^3], area [m^2], centroid [m] and inertia [m^5], by quadrature on the native surfaces."""
-        from bladewright.nurbs.flux import mass_properties
-
+        if isinstance(self.surfaces["hub"], TrimmedSurface):
+            return blade_properties(self.surfaces, OUTWARD, revolved=self.exact.mapping.revolved)
         return mass_properties([(self.surfaces[name], sign) for name, sign in OUTWARD.items()])
 
     @cached_property

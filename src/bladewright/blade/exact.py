@@ -141,9 +141,9 @@ class ExactBlade:
         extent = lines.extents()
         edges = lines.position(np.array([0.0, 1.0]))
         if self.mapping.revolved:
-            start = radians(span.values(design.leading_edge_theta or 0.0))
+            start = radians(span.values(0.0 if design.leading_edge_theta is None else design.leading_edge_theta))
         else:
-            start = UNITS[design.length_unit] * span.values(design.leading_edge_y or 0.0)
+            start = UNITS[design.length_unit] * span.values(0.0 if design.leading_edge_y is None else design.leading_edge_y)
         start = self.mapping.start(start, edges[..., 0, 1], lines.lengths)
         start, extent = np.broadcast_arrays(start, extent)
         camber = camber_line(

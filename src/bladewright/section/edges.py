@@ -16,8 +16,13 @@ import numpy as np
 from bladewright.numerics.elementary import Array, dot
 from bladewright.nurbs.basis import Reals
 
-BRAKE = 4.0
-"""limit of |beta| h: below 8 the parametrisation stays monotone for every alpha in (0, 1]"""
+BRAKE = 20.0
+"""square of the rise (second derivative over first, in knot spans) from which the sides are slowed at an edge
+
+With alpha = (1 + rise^2 / BRAKE)^(-1/3) and beta h = -rise alpha^2 the parametrisation is monotone for every rise: its
+slope stays above 0.56 alpha, also where the sides' speeds differ by a quarter and their rises by half
+(design/edge_parametrisation.py).
+"""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -46,7 +51,7 @@ def edge(upper: Array, lower: Array, normal: Array, span: float) -> Edge:
     second_upper = 2.0 * dot(upper[..., 2, :], normal)
     second_lower = 2.0 * dot(lower[..., 2, :], normal)
     rise = span * (second_upper / speed_upper - second_lower / speed_lower) / 2.0
-    brake = (1.0 + (rise / BRAKE) ** 2) ** -0.25
+    brake = (1.0 + rise**2 / BRAKE) ** (-1.0 / 3.0)
     speed = np.sqrt(speed_upper * speed_lower) * brake
     alpha_upper = speed / speed_upper
     alpha_lower = speed / speed_lower

@@ -1,4 +1,8 @@
-"""Whether the thickness beside an edge can hold the edge's radius."""
+"""Whether the thickness beside an edge can hold the edge's radius.
+
+It does where the side's control points rise from the edge: the one that sets the radius may not stand higher above the
+camber than the next one, which carries the thickness, or the side would bulge beyond the thickness asked for.
+"""
 
 import numpy as np
 
@@ -8,10 +12,6 @@ from bladewright.numerics.elementary import Array
 from bladewright.nurbs.basis import Reals
 from bladewright.section.laws import Span
 from bladewright.section.sides import advances, edge_height
-
-NOSE_SHARE = 0.4219
-"""largest value of the second basis function of a clamped quartic with uniform knots: the nose's own half thickness"""
-
 
 def check_edges(
     design: Design,
@@ -52,9 +52,9 @@ def check_edges(
             ratio = ends[..., 0] * ends[..., 2] / ends[..., 1] ** 2
         height = np.real(edge_height(advance, curvature, ratio))
         beside = np.real(thickness[..., 0 if i == 0 else -1])
-        where = _first(NOSE_SHARE * height > beside)
+        where = _first(height > beside)
         if where is not None:
-            largest = _at(radius, where) * (_at(beside, where) / (NOSE_SHARE * _at(height, where))) ** 2
+            largest = _at(radius, where) * (_at(beside, where) / _at(height, where)) ** 2
             raise DesignError(
                 f"{edge}_edge_radius is {_at(radius, where):.4g} at v = {span.v[where[-1]]:.3f}: the thickness of the "
                 f"{name} side next to it can hold at most {largest:.4g}; lower {edge}_edge_radius or raise {entry}"

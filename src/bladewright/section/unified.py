@@ -2,7 +2,7 @@
 
 from dataclasses import dataclass
 from types import MappingProxyType
-from typing import TYPE_CHECKING, Any, Literal
+from typing import Any, Literal
 
 import numpy as np
 
@@ -21,9 +21,6 @@ from bladewright.section.plane import matched, plane_sections
 from bladewright.section.sampling import sample_places
 from bladewright.section.section import Section
 from bladewright.section.sides import side
-
-if TYPE_CHECKING:
-    from bladewright.blade.unified import UnifiedBlade
 
 Numbers = tuple[float, ...]
 
@@ -131,12 +128,6 @@ class UnifiedSection(Design):
             metal_angle_out=float(np.real(angles[2][0])),
             scale=np.ones_like,
         )
-
-    def extruded(self, span: float | None = None) -> "UnifiedBlade":
-        """The prismatic blade of a linear cascade, `span` high [length]; raises DesignError where neither has a span."""
-        from bladewright.blade.prismatic import prismatic
-
-        return prismatic(self, span)
 
     def _check_outline(self, line: Any, upper: Any, lower: Any, metre: float) -> None:
         s = (1.0 - np.cos(np.pi * np.linspace(0.0, 1.0, 129))) / 2.0

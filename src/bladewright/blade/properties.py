@@ -1,0 +1,109 @@
+"""Volume, area, centroid and inertia of a blade between its walls, from its sides and the outlines of its ends.
+
+A vector field along theta has no flux through a surface of revolution about the axis, nor one along y through the walls
+of a cascade. So the divergence theorem with G(x, r, theta) such that dG/dtheta = f needs the sides alone:
+
+    integral f dV = sum over the sides of integral G (r e_theta . n) dA.
+
+The area of an end is the integral of theta r |C'| du around its outline, C the wall's meridian.
+"""
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from bladewright.numerics.elementary import Array, angle, length
+from bladewright.numerics.quadrature import panels
+from bladewright.nurbs.basis import breaks
+from bladewright.nurbs.flux import MassProperties
+from bladewright.nurbs.revolution import Revolution
+from bladewright.nurbs.surface import Surface
+from bladewright.nurbs.trimmed import TrimmedSurface
+
+POINTS = 12
+"""Gauss points in a knot span: exact to degree 19"""
+
+
+def blade_properties(
+    surfaces: Mapping[str, Surface | TrimmedSurface], outward: Mapping[str, int], *, revolved: bool
+) -> MassProperties:
+    """Properties of a blade of two sides and two trimmed ends, inertia about the centroid.
+
+    Control points may be complex.
+    """
+    total: Array = np.zeros(10)
+    areas, vectors = [], []
+    for name in ("upper", "lower"):
+        side = surfaces[name]
+        assert isinstance(side, Surface)
+        (u, weight_u), (v, weight_v) = (panels(breaks(knots), POINTS) for knots in (side.knots_u, side.knots_v))
+        point = side.grid(u, v)
+        normal = np.cross(side.grid(u, v, 1, 0), side.grid(u, v, 0, 1))
+        weight = weight_u[:, None] * weight_v
+        moments = _around_axis(point, normal) if revolved else _along_y(point, normal)
+        total = total + outward[name] * np.einsum("uv,uvk->k", weight, moments)
+        areas.append(np.sum(weight * length(normal)))
+        vectors.append(outward[name] * np.einsum("uv,uvk->k", weight, normal))
+    for name in ("hub", "shroud"):
+        end = surfaces[name]
+        assert isinstance(end, TrimmedSurface)
+        area, vector = _end(end)
+        areas.append(area)
+        vectors.append(outward[name] * vector)
+    volume, centroid = total[0], total[1:4] / total[0]
+    xx, yy, zz, xy, yz, zx = total[4:]
+    spread = np.array([[xx, xy, zx], [xy, yy, yz], [zx, yz, zz]]) - volume * np.outer(centroid, centroid)
+    return MassProperties(
+        volume=volume,
+        area=np.sum(areas),
+        areas=np.array(areas),
+        centroid=centroid,
+        inertia=np.trace(spread) * np.eye(3) - spread,
+        openness=length(np.real(np.sum(vectors, axis=0))) / np.real(np.sum(areas)),
+    )
+
+
+def _around_axis(point: Array, normal: Array) -> Array:
+    """Densities (..., 10) of the moments 1, x, y, z, xx, yy, zz, xy, yz, zx for a field along theta."""
+    x, y, z = np.moveaxis(point, -1, 0)
+    theta = angle(y, z)
+    turns = np.unwrap(np.unwrap(np.real(theta), axis=0), axis=1)
+    theta = theta + (turns - np.real(theta))
+    square = (y * y + z * z) * theta
+    flux = z * normal[..., 1] - y * normal[..., 2]
+    primitives = [theta, x * theta, -z, y, x * x * theta, (square - y * z) / 2.0, (square + y * z) / 2.0]
+    primitives += [-x * z, y * y / 2.0, x * y]
+    return np.stack(primitives, axis=-1) * flux[..., None]
+
+
+def _along_y(point: Array, normal: Array) -> Array:
+    """The same for a field along y."""
+    x, y, z = np.moveaxis(point, -1, 0)
+    primitives = [y, x * y, y * y / 2.0, z * y, x * x * y, y**3 / 3.0, z * z * y]
+    primitives += [x * y * y / 2.0, z * y * y / 2.0, z * x * y]
+    return np.stack(primitives, axis=-1) * normal[..., 1, None]
+
+
+def _end(end: TrimmedSurface) -> tuple[Array, Array]:
+    """Area and area vector (3,) of a trimmed end, along its own normal."""
+    area: Array = np.zeros(())
+    vector: Array = np.zeros(3)
+    for curve in end.boundary:
+        s, weight = panels(breaks(curve.knots), POINTS)
+        uv, slope = curve(s), curve.derivative(s)
+        point = end.surface(uv[:, 0], uv[:, 1])
+        along, across = end.surface.derivative(uv[:, 0], uv[:, 1], 1, 0), end.surface.derivative(uv[:, 0], uv[:, 1], 0, 1)
+        tangent = along * slope[:, :1] + across * slope[:, 1:]
+        vector = vector + np.sum(weight[:, None] * np.cross(point, tangent), axis=0) / 2.0
+        area = area - np.sum(weight * _width(end.revolution, point) * length(along) * slope[:, 0])
+    return area, vector
+
+
+def _width(revolution: Revolution | None, point: Array) -> Array:
+    """r theta, or y in a cascade: the distance along the wall from theta = middle, or y = 0."""
+    if revolution is None:
+        return point[:, 1]
+    middle = (revolution.start + revolution.end) / 2.0
+    y, z = point[:, 1], point[:, 2]
+    away = angle(y * np.cos(middle) - z * np.sin(middle), z * np.cos(middle) + y * np.sin(middle))
+    return length(point[:, 1:]) * away
