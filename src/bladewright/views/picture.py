@@ -1,0 +1,157 @@
+"""The sheet of everything an engineer looks for on a design, and a picture of the blade alone."""
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any, cast
+
+import numpy as np
+from matplotlib.figure import Figure, SubFigure
+from matplotlib.layout_engine import ConstrainedLayoutEngine
+
+from bladewright.blade.blade import Blade
+from bladewright.blade.unified import UnifiedBlade
+from bladewright.errors import DesignError
+from bladewright.section.section import Section
+from bladewright.section.unified import UnifiedSection
+from bladewright.views.curvature import draw_curvature
+from bladewright.views.edges import draw_edge
+from bladewright.views.laws import draw_laws, panels_of
+from bladewright.views.meridional import draw_meridional
+from bladewright.views.sections import draw_passage, draw_sections, pitch_of
+from bladewright.views.solid import draw_solid
+from bladewright.views.style import MILLIMETRES, manner
+from bladewright.views.thickness import draw_thickness, draw_thickness_laws
+from bladewright.views.writing import checked, write
+
+DOTS = 150
+"""to an inch of a PNG"""
+SPANS = (0.0, 0.25, 0.5, 0.75, 1.0)
+FEW = (0.0, 0.5, 1.0)
+
+
+Drawable = UnifiedBlade | UnifiedSection | Blade | Section
+
+
+def picture(design: Drawable, path: str | Path, *, blade: Blade | Section | None = None) -> None:
+    """Draws a design, as PNG, SVG or PDF by the suffix of `path`: sections, curvature, channel, laws and a 3D view.
+
+    `blade` is what the design builds, where that is at hand; `design` may be the built object itself (of a section
+    alone no laws are known, and none are drawn). The file appears whole or not at all. Raises FileError where the
+    suffix is another or the path cannot be written, DesignError where the design cannot be built.
+    """
+    checked(path)
+    write(sheet(design, blade), path, DOTS)
+
+
+def blade_view(blade: Blade | UnifiedBlade, path: str | Path) -> None:
+    """Draws the blade in its row on the hub, shaded; as PNG, SVG or PDF by the suffix of `path`.
+
+    Raises FileError where the suffix is another or the path cannot be written.
+    """
+    checked(path)
+    if not isinstance(blade, Blade | UnifiedBlade):
+        raise DesignError(
+            f"a {type(blade).__name__} was given: only a blade has a 3D view; draw the one that "
+            "prismatic(section, span) makes"
+        )
+    built = blade.build() if isinstance(blade, UnifiedBlade) else blade
+    with manner():
+        figure = Figure(figsize=(10.0, 8.0), layout="constrained")
+        draw_solid(figure.add_subplot(), built, neighbours=None, width=1250)
+        write(figure, path, 160)
+
+
+def sheet(design: Drawable, blade: Blade | Section | None = None) -> Figure:
+    """The figure that `picture` writes."""
+    built: Any = design if isinstance(design, Blade | Section) else (blade or design.build())
+    asked: Any = getattr(built, "design", None) if isinstance(design, Blade | Section) else design
+    with manner():
+        return _blade_sheet(built) if isinstance(built, Blade) else _section_sheet(asked, built)
+
+
+def _blade_sheet(blade: Blade) -> Figure:
+    sections = [blade.section(v) for v in SPANS]
+    few = [section for section in sections if section.span in FEW]
+    middle = sections[2]
+    pitch = pitch_of(blade, middle)
+    figure = Figure(figsize=(16.0, 15.0))
+    _headed(figure, blade.name, blade.description, _blade_figures(blade, middle, pitch))
+    top, centre, bottom = _rows(figure, 5.4, 4.6, 4.4)
+    axes = top.subplots(1, 3, width_ratios=[1.25, 1.0, 1.0])
+    draw_solid(axes[0], blade, neighbours=2, width=900)
+    axes[0].set_title("Blade with neighbours")
+    draw_sections(axes[1], sections)
+    draw_passage(axes[2], middle, pitch, "Passage at mid span")
+    axes = centre.subplots(1, 3)
+    draw_meridional(axes[0], blade)
+    draw_curvature(axes[1], few)
+    draw_thickness(axes[2], sections)
+    panels = panels_of(blade.design)
+    axes = bottom.subplots(1, len(panels) + 1, width_ratios=[1.0] * len(panels) + [1.6])
+    for place, panel in zip(axes, panels, strict=False):
+        draw_laws(place, panel)
+    draw_thickness_laws(axes[-1], blade.design, few, "length")
+    return figure
+
+
+def _section_sheet(design: UnifiedSection | None, section: Section) -> Figure:
+    from bladewright.section.checks import UNITS
+
+    pitch = None
+    if design is not None and design.pitch is not None:
+        pitch = design.pitch * UNITS[design.length_unit] * MILLIMETRES
+    figure = Figure(figsize=(16.0, 11.0))
+    name, description = (design.name, design.description) if design is not None else ("section", "")
+    _headed(figure, name, description, _section_figures(section, pitch))
+    top, bottom = _rows(figure, 6.0, 4.6)
+    axes = top.subplots(1, 3, width_ratios=[1.6, 1.0, 1.0])
+    draw_passage(axes[0], section, pitch, "Section")
+    draw_edge(axes[1], section, trailing=False)
+    draw_edge(axes[2], section, trailing=True)
+    axes = bottom.subplots(1, 3 if design is not None else 2)
+    draw_curvature(axes[0], [section])
+    draw_thickness(axes[1], [section])
+    if design is not None:
+        draw_thickness_laws(axes[2], design, [section], "axial chord")
+    return figure
+
+
+def _rows(figure: Figure, *heights: float) -> Sequence[SubFigure]:
+    return list(np.atleast_1d(cast(Any, figure.subfigures(len(heights), 1, height_ratios=heights))))
+
+
+def _headed(figure: Figure, name: str, description: str, figures: list[str]) -> None:
+    inch = 1.0 / figure.get_figheight()
+    rect = (0.0, 0.0, 1.0, 1.0 - 0.85 * inch)
+    figure.set_layout_engine(ConstrainedLayoutEngine(w_pad=0.12, h_pad=0.10, rect=rect))
+    place: dict[str, Any] = {"ha": "left", "va": "baseline"}
+    figure.text(0.012, 1.0 - 0.42 * inch, name, fontsize=20.0, fontweight="bold", **place)
+    figure.text(0.012, 1.0 - 0.72 * inch, "   ·   ".join(figures), fontsize=11.0, **place)
+    figure.text(0.988, 1.0 - 0.42 * inch, description, fontsize=11.0, ha="right", va="baseline")
+
+
+def _blade_figures(blade: Blade, middle: Section, pitch: float) -> list[str]:
+    columns, rows = blade.knots.poles
+    count = blade.design.blade_count
+    return [
+        f"{count} blades" if count is not None else "linear cascade",
+        f"mean chord {blade.chord * MILLIMETRES:.4g} mm",
+        f"chord / pitch at mid span {middle.chord * MILLIMETRES / pitch:.3g}",
+        f"{columns} x {rows} poles a side",
+        f"error {blade.error:.1e} of the chord",
+        "every promise kept" if blade.promises.kept else "a promise is not kept",
+    ]
+
+
+def _section_figures(section: Section, pitch: float | None) -> list[str]:
+    chord = section.chord * MILLIMETRES
+    figures = [
+        f"chord {chord:.4g} mm",
+        f"area {section.area * MILLIMETRES**2:.4g} mm²",
+        f"perimeter {section.perimeter * MILLIMETRES:.4g} mm",
+        "stagger {:.3g}°, metal angles {:.3g}° and {:.3g}°".format(
+            *(np.degrees(each) for each in (section.stagger, section.metal_angle_in, section.metal_angle_out))
+        ),
+        f"poles {' and '.join(str(len(curve.control_points)) for curve in section.curves.values())}",
+    ]
+    return [*figures, f"chord / pitch {chord / pitch:.3g}"] if pitch is not None else figures

@@ -1,0 +1,172 @@
+"""Hidden surfaces by a depth buffer: shaded pictures of meshes, seen from infinitely far."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.ndimage import gaussian_filter
+
+from bladewright.nurbs.basis import Reals
+
+Pixels = NDArray[np.float32]
+
+STEP = 0.7
+"""largest distance of neighbouring points in pixels: up to half the root of two, no pixel is left out"""
+TILE = 8
+"""cells a side of the pieces that a grid is filled in by"""
+LIGHTS = (((-0.45, 0.65, 0.60), 0.52), ((0.85, 0.25, 0.45), 0.20), ((0.0, 0.0, 1.0), 0.24))
+"""directions, in the viewer's right, up and towards, and strengths of the lamps"""
+AMBIENT, GLOSS, SHARPNESS = 0.36, 0.16, 28.0
+HAZE = 0.30
+"""how far the farthest point fades to white"""
+HOLLOW = 0.40
+"""how much darker a place gets that lies behind what surrounds it"""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Mesh:
+    """A grid of points (m, n, 3) with normals (m, n, 3) of either sense, in one colour (red, green, blue)."""
+
+    points: Reals
+    normals: Reals
+    colour: tuple[float, float, float]
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Trace:
+    """A line through points (n, 3) in one colour, hidden where a mesh stands before it."""
+
+    points: Reals
+    colour: tuple[float, float, float]
+    width: int = 1
+    """[pixels]"""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Camera:
+    """A parallel projection: the rows of `axes` (3, 3) are the viewer's right, up and towards."""
+
+    axes: Reals
+    corner: Reals
+    """(2,) right and up of the picture's lower left"""
+    extent: Reals
+    """(2,) width and height of the picture, in the meshes' unit"""
+
+    def seen(self, points: Reals) -> Reals:
+        """Points (..., 3) as right, up and towards."""
+        seen: Reals = points @ self.axes.T
+        return seen
+
+
+def axes_towards(eye: tuple[float, float, float], up: tuple[float, float, float]) -> Reals:
+    """Rows right, up and towards (3, 3) of a viewer in the direction `eye`."""
+    towards = np.array(eye) / np.sqrt(np.sum(np.square(eye)))
+    right = np.cross(up, towards)
+    right = right / np.sqrt(right @ right)
+    return np.stack([right, np.cross(towards, right), towards])
+
+
+def framed(axes: Reals, points: Reals, margin: float = 0.03) -> Camera:
+    """A camera whose picture just holds points (n, 3)."""
+    flat = points @ axes[:2].T
+    low, high = flat.min(axis=0), flat.max(axis=0)
+    border = margin * np.max(high - low)
+    return Camera(axes=axes, corner=low - border, extent=high - low + 2.0 * border)
+
+
+def rendered(meshes: list[Mesh], traces: list[Trace], camera: Camera, width: int, fineness: int = 2) -> Reals:
+    """The picture (height, width, 4) in red, green, blue and opacity, its first row on top.
+
+    Every pixel is the mean of `fineness` x `fineness` finer ones.
+    """
+    across = width * fineness
+    unit = across / camera.extent[0]
+    height = int(np.ceil(camera.extent[1] * unit / fineness)) * fineness
+    depth = np.full(across * height, -np.inf, dtype=np.float32)
+    normal = np.zeros((across * height, 3), dtype=np.float32)
+    colour = np.ones((across * height, 3), dtype=np.float32)
+    for mesh in meshes:
+        seen = camera.seen(mesh.points)
+        seen[..., :2] = (seen[..., :2] - camera.corner) * unit
+        for points in _dense(np.concatenate([seen, camera.seen(mesh.normals)], axis=-1).astype(np.float32)):
+            column, row = points[:, 0].astype(np.int32), points[:, 1].astype(np.int32)
+            held = (points[:, 0] >= 0.0) & (points[:, 1] >= 0.0) & (column < across) & (row < height)
+            pixel = np.where(held, row * across + column, 0)
+            near = np.where(held, points[:, 2], -np.inf)
+            np.maximum.at(depth, pixel, near)
+            nearest = np.flatnonzero(held & (near >= depth[pixel]))
+            normal[pixel[nearest]] = points[nearest, 3:]
+            colour[pixel[nearest]] = mesh.colour
+    shaded = _shaded(depth.reshape(height, across), normal, colour, fineness)
+    for trace in traces:
+        _drawn(shaded, depth.reshape(height, across), trace, camera, unit)
+    blocks = shaded[::-1].reshape(height // fineness, fineness, width, fineness, 4)
+    blocks[..., :3] *= blocks[..., 3:]
+    picture = blocks.mean(axis=(1, 3), dtype=np.float64)
+    solid = picture[..., 3:] > 0.0
+    picture[..., :3] = np.where(solid, picture[..., :3] / np.where(solid, picture[..., 3:], 1.0), 1.0)
+    return np.clip(picture, 0.0, 1.0)
+
+
+def _dense(grid: Pixels) -> Iterator[Pixels]:
+    """Points with normals (k, 6) of a grid (m, n, 6), tile by tile, filled in until no pixel is left out."""
+    for row in range(0, grid.shape[0] - 1, TILE):
+        for column in range(0, grid.shape[1] - 1, TILE):
+            tile = grid[row : row + TILE + 1, column : column + TILE + 1]
+            for axis in (0, 1):
+                steps = np.diff(tile[..., :2], axis=axis)
+                longest = np.sqrt(np.max(np.sum(steps**2, axis=-1), axis=1 - axis))
+                count = np.ceil(longest / STEP).astype(int).clip(1)
+                index = np.repeat(np.arange(len(count)), count)
+                share = (np.arange(len(index)) - np.repeat(np.cumsum(count) - count, count)) / count[index]
+                index, share = np.append(index, len(count) - 1), np.append(share, 1.0).astype(np.float32)
+                share = share[:, None, None] if axis == 0 else share[:, None]
+                start = np.take(tile, index, axis=axis)
+                tile = start + share * (np.take(tile, index + 1, axis=axis) - start)
+            yield tile.reshape(-1, tile.shape[-1])
+
+
+def _shaded(depth: Pixels, normal: Pixels, colour: Pixels, fineness: int) -> Pixels:
+    """Red, green, blue and opacity (height, width, 4) by lamps from two sides, haze and hollows."""
+    seen = np.isfinite(depth)
+    picture = np.zeros((*depth.shape, 4), dtype=np.float32)
+    if not seen.any():
+        return picture
+    towards = normal[seen.ravel()]
+    towards /= np.maximum(np.sqrt(np.sum(towards**2, axis=-1, keepdims=True)), 1e-12)
+    towards *= np.where(towards[:, 2:] < 0.0, -1.0, 1.0)
+    light = np.full(len(towards), AMBIENT, dtype=np.float32)
+    shine = np.zeros_like(light)
+    for direction, strength in LIGHTS:
+        lamp = np.array(direction) / np.sqrt(np.sum(np.square(direction)))
+        half = lamp + np.array([0.0, 0.0, 1.0])
+        light += strength * np.maximum(towards @ lamp, 0.0)
+        shine += strength * np.maximum(towards @ (half / np.sqrt(half @ half)), 0.0) ** SHARPNESS
+    near, far = depth[seen].max(), depth[seen].min()
+    reach = max(float(near - far), 1e-30)
+    filled = np.where(seen, depth, far)
+    hollow = gaussian_filter(filled, 0.008 * max(depth.shape) / fineness * 2.0) - filled
+    light *= 1.0 - HOLLOW * np.clip(4.0 * hollow[seen] / reach, 0.0, 1.0)
+    base = colour[seen.ravel()] * light[:, None] + GLOSS * shine[:, None]
+    haze = HAZE * ((near - depth[seen]) / reach)[:, None]
+    picture[seen, :3] = np.clip(base, 0.0, 1.0) * (1.0 - haze) + haze
+    picture[seen, 3] = 1.0
+    return picture
+
+
+def _drawn(picture: Pixels, depth: Pixels, trace: Trace, camera: Camera, unit: float) -> None:
+    seen = camera.seen(trace.points)
+    seen[:, :2] = (seen[:, :2] - camera.corner) * unit
+    along = np.concatenate([[0.0], np.cumsum(np.sqrt(np.sum(np.diff(seen[:, :2], axis=0) ** 2, axis=-1)))])
+    at = np.linspace(0.0, along[-1], int(2.0 * along[-1]) + 2)
+    right, up, towards = (np.interp(at, along, seen[:, i]) for i in range(3))
+    bias = 3.0 * trace.width / unit
+    reach = np.arange(trace.width) - (trace.width - 1) // 2
+    for across in reach:
+        for above in reach:
+            column, row = (right + across).astype(int), (up + above).astype(int)
+            held = (column >= 0) & (row >= 0) & (column < depth.shape[1]) & (row < depth.shape[0])
+            column, row, near = column[held], row[held], towards[held]
+            ahead = near + bias > depth[row, column]
+            picture[row[ahead], column[ahead]] = (*trace.colour, 1.0)
