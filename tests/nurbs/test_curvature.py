@@ -83,8 +83,10 @@ def test_a_saddle_has_opposite_curvatures_at_its_middle():
         Surface(control_points=net, knots_u=knots, knots_v=knots, degree_u=2, degree_v=2), 0.5, 0.5
     )
     # z = y^2 - x^2 in these coordinates, up to the sign of the axes
-    assert np.isclose(found.maximum, 2.0) and np.isclose(found.minimum, -2.0)
-    assert np.isclose(found.mean, 0.0, atol=1e-14) and np.isclose(found.gaussian, -4.0)
+    assert np.isclose(found.maximum, 2.0)
+    assert np.isclose(found.minimum, -2.0)
+    assert np.isclose(found.mean, 0.0, atol=1e-14)
+    assert np.isclose(found.gaussian, -4.0)
 
 
 def test_surface_curvature_carries_an_imaginary_step():

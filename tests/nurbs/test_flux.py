@@ -62,7 +62,8 @@ def test_a_box_has_its_volume_centroid_and_inertia():
     assert np.isclose(found.volume, 6.0, rtol=1e-14)
     assert np.allclose(found.centroid, [0.5, 1.0, 1.5], rtol=1e-14)
     assert np.allclose(found.inertia, 0.5 * np.diag([13.0, 10.0, 5.0]), rtol=1e-13, atol=1e-13)
-    assert np.isclose(found.area, 22.0) and np.allclose(found.areas, [6.0, 6.0, 3.0, 3.0, 2.0, 2.0])
+    assert np.isclose(found.area, 22.0)
+    assert np.allclose(found.areas, [6.0, 6.0, 3.0, 3.0, 2.0, 2.0])
 
 
 def test_a_cylinder_with_trimmed_ends_has_its_volume_centroid_and_inertia():
@@ -81,14 +82,12 @@ def test_a_cylinder_with_trimmed_ends_has_its_volume_centroid_and_inertia():
 def test_moving_a_solid_moves_its_centroid_and_turns_its_inertia(body):
     before = mass_properties(body)
     turn = {"origin": (1.0, 2.0, 3.0), "axis": (1.0, -1.0, 0.5)}
-    matrix = rotated(segment((0, 0, 0), (0, 0, 1)), 0.8, axis=turn["axis"])
     moved = [(translated(rotated(face, 0.8, **turn), (5.0, -4.0, 7.0)), sign) for face, sign in body]
     after = mass_properties(moved)
     assert np.isclose(after.volume, before.volume, rtol=1e-12)
     assert np.allclose(np.linalg.eigvalsh(after.inertia), np.linalg.eigvalsh(before.inertia), rtol=1e-11)
     place = rotated(segment(before.centroid, before.centroid + 1.0), 0.8, **turn).control_points[0]
-    assert np.allclose(after.centroid, place + [5.0, -4.0, 7.0], rtol=1e-12)
-    assert matrix.control_points.shape == (2, 3)
+    assert np.allclose(after.centroid, place + np.array([5.0, -4.0, 7.0]), rtol=1e-12)
 
 
 def test_a_closed_set_of_faces_is_told_from_an_open_one():

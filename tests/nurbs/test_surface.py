@@ -3,9 +3,9 @@ import pytest
 from scipy.interpolate import NdBSpline
 
 from bladewright.errors import GeometryError
+from bladewright.nurbs.curve import Curve
 from bladewright.nurbs.revolve import revolved
 from bladewright.nurbs.surface import Surface
-from bladewright.nurbs.curve import Curve
 from bladewright.nurbs.transform import transformed
 
 PLACES = ((0.13, 0.29), (0.61, 0.08), (0.93, 0.77))

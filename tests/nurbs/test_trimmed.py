@@ -127,7 +127,8 @@ def test_rays_through_corners_and_along_edges_count_once():
             )
         ),
     )
-    assert square.contains(0.5, 0.5) and diamond.contains(0.4, 0.5)
+    assert square.contains(0.5, 0.5)
+    assert diamond.contains(0.4, 0.5)
     assert not square.contains([0.1, 0.1, 0.9], [0.25, 0.75, 0.5]).any()
     assert not diamond.contains([0.1, 0.1, 0.1, 0.9], [0.25, 0.5, 0.75, 0.5]).any()
 
@@ -136,8 +137,10 @@ def test_interior_points_are_inside_and_the_same_for_the_same_seed():
     face = TrimmedSurface(surface=PLANE, boundary=(blob(),))
     u, v = face.interior_points(2000, seed=3)
     again = face.interior_points(2000, seed=3)
-    assert len(u) == 2000 and face.contains(u, v).all()
-    assert np.array_equal(u, again[0]) and np.array_equal(v, again[1])
+    assert len(u) == 2000
+    assert face.contains(u, v).all()
+    assert np.array_equal(u, again[0])
+    assert np.array_equal(v, again[1])
     assert not np.array_equal(u, face.interior_points(2000, seed=4)[0])
 
 

@@ -81,8 +81,8 @@ def averaged_knots(sites: ArrayLike, degree: int, start: int = 0, end: int = 0) 
     at = _increasing(sites)
     if max(start, end) >= max(degree, 1):
         raise GeometryError(
-            f"{max(start, end)} derivatives at an end were given for degree {degree} without knots: at most {degree - 1}; "
-            "raise the degree or give knots"
+            f"{max(start, end)} derivatives at an end were given for degree {degree} without knots: at most "
+            f"{degree - 1}; raise the degree or give knots"
         )
     padded = np.concatenate([np.full(start, at[0]), at, np.full(end, at[-1])])
     if len(padded) < degree + 1:

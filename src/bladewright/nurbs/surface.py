@@ -126,8 +126,16 @@ class Surface:
     def _grid(self, u: ArrayLike, v: ArrayLike, du: int, dv: int) -> Array:
         along_u = basis(self.knots_u, self.degree_u, u, du)
         along_v = basis(self.knots_v, self.degree_v, v, dv)
-        net = self.homogeneous
-        rows = np.tensordot(along_u, net, axes=1)
-        flat = rows.reshape(*rows.shape[:2], -1)
-        points: Array = np.matmul(along_v, flat).reshape(len(along_u), len(along_v), *net.shape[2:])
-        return points
+        if len(self.knots_u) - self.degree_u >= len(self.knots_v) - self.degree_v:
+            return np.swapaxes(_product(along_v, along_u, np.swapaxes(self.homogeneous, 0, 1)), 0, 1)
+        return _product(along_u, along_v, self.homogeneous)
+
+
+def _product(last: Array, first: Array, net: Array) -> Array:
+    """last (m, a) times net (a, b, ...) times first (k, b) as (m, k, ...), in two products of full matrices.
+
+    The second product costs m k a: `last` is for the direction with fewer control points.
+    """
+    rows = first @ np.swapaxes(net, 0, 1).reshape(net.shape[1], -1)
+    columns = np.swapaxes(rows.reshape(len(first), net.shape[0], -1), 0, 1).reshape(net.shape[0], -1)
+    return np.asarray((last @ columns).reshape(len(last), len(first), *net.shape[2:]))
