@@ -1,7 +1,7 @@
 """What every design is: a frozen record of plain numbers whose parameters have one dotted path each."""
 
 import re
-from abc import ABC
+from abc import ABC, abstractmethod
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, fields, replace
 from typing import Any, ClassVar, NamedTuple, Self
@@ -31,8 +31,8 @@ def parameter(unit: str, **options: Any) -> Any:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Design(ABC):
-    """Base of all designs: immutable, validated on construction, addressed by dotted paths."""
+class Part:
+    """A frozen record of parameters: validated on construction, addressed by dotted paths."""
 
     __pydantic_config__: ClassVar[dict[str, Any]] = {"extra": "forbid", "use_attribute_docstrings": True}
     """how a file is validated: unknown keys are refused, and the schema describes a field by its docstring"""
@@ -57,15 +57,27 @@ class Design(ABC):
         return replace(self, **put)
 
 
-def unit_of(design: Design, name: str) -> str | None:
+@dataclass(frozen=True, kw_only=True)
+class Design(Part, ABC):
+    """Base of the families: a part that is built on its own."""
+
+    @abstractmethod
+    def build(self) -> Any:
+        """The native geometry in metres and radians; the same design always builds the same.
+
+        Raises DesignError where the shape is impossible.
+        """
+
+
+def unit_of(design: Part, name: str) -> str | None:
     """The unit of a field, such as 'deg', or None where the field is no parameter."""
     return next((f.metadata.get("unit") for f in fields(design) if f.name == name), None)
 
 
 def _leaves_of(node: Any, path: str) -> Iterator[tuple[str, Any]]:
-    if isinstance(node, Design):
+    if isinstance(node, Part):
         for each in fields(node):
-            if "unit" in each.metadata or isinstance(getattr(node, each.name), Design):
+            if "unit" in each.metadata or isinstance(getattr(node, each.name), Part):
                 yield from _leaves_of(getattr(node, each.name), f"{path}.{each.name}" if path else each.name)
     elif isinstance(node, Point):
         yield f"{path}.x", node.x
@@ -88,7 +100,7 @@ def _steps(path: str) -> list[str | int]:
         if match is None:
             message = f"the path '{path}' is not understood at '{path[position:]}': write it like stagger[1]"
             raise DesignError(f"{message} or channel.hub[0].x")
-        steps.append(match[1] if match[1] else int(match[2]))
+        steps.append(match[1] or int(match[2]))
         position = match.end()
     return steps
 
@@ -97,7 +109,7 @@ def _with(node: Any, steps: list[str | int], value: Any, path: str) -> Any:
     if not steps:
         return value
     step, rest = steps[0], steps[1:]
-    if isinstance(node, Design) and isinstance(step, str):
+    if isinstance(node, Part) and isinstance(step, str):
         names = [each.name for each in fields(node)]
         if step not in names:
             raise DesignError(unknown(path, step, names))
@@ -112,7 +124,7 @@ def _with(node: Any, steps: list[str | int], value: Any, path: str) -> Any:
         items = list(node)
         items[step] = _with(node[step], rest, value, path)
         return tuple(items)
-    kind = "a single number" if not isinstance(node, tuple | Design) else "a list"
+    kind = "a single number" if not isinstance(node, tuple | Part) else "a list"
     raise DesignError(f"{path} does not exist: what stands before '{step}' is {kind}; see design.parameters()")
 
 
@@ -123,5 +135,3 @@ def unknown(path: str, name: str, known: list[str]) -> str:
     near = get_close_matches(name, known, n=1, cutoff=0.5)
     hint = f"did you mean '{near[0]}'?" if near else f"known are {', '.join(known)}"
     return f"{path} does not exist: there is no '{name}'; {hint}"
-
-

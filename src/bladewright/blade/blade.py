@@ -4,7 +4,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from types import MappingProxyType
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, cast
 
 import numpy as np
 
@@ -16,7 +16,6 @@ from bladewright.blade.properties import blade_properties
 from bladewright.blade.unified import UnifiedBlade
 from bladewright.errors import DesignError
 from bladewright.nurbs.domain import extended, reparametrised
-
 from bladewright.nurbs.flux import MassProperties, mass_properties
 from bladewright.nurbs.surface import Surface
 from bladewright.nurbs.trimmed import TrimmedSurface
@@ -25,6 +24,8 @@ if TYPE_CHECKING:
     from bladewright.blade.promises import Promises
     from bladewright.section.section import Section
 
+Faces = Mapping[str, Surface | TrimmedSurface]
+"""faces of a body by name"""
 OUTWARD = MappingProxyType({"upper": -1, "lower": 1, "hub": -1, "shroud": 1})
 """+1 for the faces whose dS/du x dS/dv points out of the blade"""
 
@@ -34,7 +35,7 @@ class Blade:
     """A closed blade of native surfaces."""
 
     design: UnifiedBlade
-    surfaces: Mapping[str, Surface | TrimmedSurface]
+    surfaces: Faces
     """`upper` and `lower` (u from leading to trailing edge, v from hub to shroud), `hub` and `shroud`; metres"""
     knots: Knots
     """of both sides; give them to `design.build(knots=...)` to hold them"""
@@ -73,10 +74,15 @@ class Blade:
         """The distance from the exact blade that was allowed, of the chord."""
         return self.design.tolerance
 
+    @property
+    def sides(self) -> tuple[Surface, Surface]:
+        """The upper and the lower side."""
+        return cast(Surface, self.surfaces["upper"]), cast(Surface, self.surfaces["lower"])
+
     @cached_property
     def misfit(self) -> Misfit:
         """Where and how far the sides are from the exact blade between the sites."""
-        return misfit(self.exact, self.surfaces["upper"], self.surfaces["lower"])
+        return misfit(self.exact, *self.sides)
 
     @property
     def error(self) -> float:
@@ -116,15 +122,11 @@ class Blade:
         """
         if not 0.0 < span <= 0.5:
             raise DesignError(f"an extension by {span:g} of the span was asked: it must be above 0 and at most 0.5")
-        sides = {
-            name: reparametrised(extended(self.surfaces[name], -span, 1.0 + span, "v"), 0.0, 1.0, "v")
-            for name in ("upper", "lower")
-        }
-        for wall, row in (("hub", 0), ("shroud", -1)):
-            sides[wall] = ruled_end(sides["upper"], sides["lower"], row)
+        upper, lower = (reparametrised(extended(side, -span, 1.0 + span, "v"), 0.0, 1.0, "v") for side in self.sides)
+        ends = {"hub": ruled_end(upper, lower, 0), "shroud": ruled_end(upper, lower, -1)}
         return Blade(
             design=self.design.changed("name", f"{self.name}-extended"),
-            surfaces=MappingProxyType(sides),
+            surfaces=MappingProxyType({"upper": upper, "lower": lower, **ends}),
             knots=self.knots,
             chord=self.chord,
             exact=self.exact,

@@ -2,7 +2,7 @@
 
 from types import MappingProxyType
 
-from bladewright.blade.blade import Blade, surface_of
+from bladewright.blade.blade import Blade, Faces, surface_of
 from bladewright.blade.checks import check_channel, check_sections
 from bladewright.blade.ends import trimmed_ends
 from bladewright.blade.exact import exact_blade
@@ -26,7 +26,7 @@ def built(design: UnifiedBlade, knots: Knots | None = None) -> Blade:
     knots = knots if knots is not None else knots_for(exact, chord)
     nets = native_sides(exact.stations(knots.sites_v), knots)
     sides = surface_of(nets[0], knots, DEGREE), surface_of(nets[1], knots, DEGREE)
-    surfaces = MappingProxyType({"upper": sides[0], "lower": sides[1], **trimmed_ends(exact, *sides, chord)})
+    surfaces: Faces = MappingProxyType({"upper": sides[0], "lower": sides[1], **trimmed_ends(exact, *sides, chord)})
     blade = Blade(design=design, surfaces=surfaces, knots=knots, chord=chord, exact=exact)
     if not held:
         _check_reached(blade)
@@ -40,8 +40,8 @@ def _check_reached(blade: Blade) -> None:
     if error <= tolerance and off <= wall and poles[0] <= MOST_POLES[0] and poles[1] <= MOST_POLES[1]:
         return
     raise DesignError(
-        f"tolerance is {tolerance:g} of the chord: the native surfaces reach {error:.2g} (ends {off:.2g} off the walls, "
-        f"{wall:g} allowed) with {poles[0]} x {poles[1]} poles a side, at most {MOST_POLES[0]} x {MOST_POLES[1]} are "
-        f"allowed; the worst place is u = {blade.misfit.u:.3f}, v = {blade.misfit.v:.3f}: raise the tolerance, raise a "
-        "very small edge radius, or smooth the laws there"
+        f"tolerance is {tolerance:g} of the chord: native surfaces reach {error:.2g} (ends {off:.2g} off the "
+        f"walls, {wall:g} allowed) with {poles[0]} x {poles[1]} poles a side, at most {MOST_POLES[0]} x "
+        f"{MOST_POLES[1]} are allowed; the worst place is u = {blade.misfit.u:.3f}, v = {blade.misfit.v:.3f}: raise "
+        "the tolerance, raise a very small edge radius, or smooth the laws there"
     )

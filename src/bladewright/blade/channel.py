@@ -3,12 +3,12 @@
 from dataclasses import dataclass
 from typing import Literal
 
-from bladewright.designs import Design, Points, parameter
+from bladewright.designs import Part, Points, parameter
 from bladewright.section import checks
 
 
 @dataclass(frozen=True, kw_only=True)
-class Channel(Design):
+class Channel(Part):
     """Control points of the four meridional curves, in the (x, r) plane of the machine, or (x, z) of a cascade.
 
     Hub and shroud take their end points from the leading and trailing edge, so a corner is one parameter.

@@ -1,8 +1,11 @@
 """Shapes that cannot be: a channel that folds, sides that cross, neighbours that intersect."""
 
+from typing import Any
+
 import numpy as np
 
-from bladewright.blade.exact import ExactBlade, Stations
+from bladewright.blade.exact import ExactBlade
+from bladewright.blade.unified import UnifiedBlade
 from bladewright.errors import DesignError
 from bladewright.numerics.elementary import cross2
 from bladewright.nurbs.basis import Reals
@@ -34,32 +37,36 @@ def check_sections(exact: ExactBlade) -> None:
     """Refuse sections whose sides cross or touch, and neighbouring blades that intersect."""
     stations = exact.survey
     s = (1.0 - np.cos(np.pi * np.linspace(0.0, 1.0, 65))) / 2.0
-    first = (0,) * (stations.plane.camber.ndim - 3)
-    upper, lower = (np.real(points)[first] for points in stations.plane.points(s))
-    for v, above, below in zip(stations.v, upper, lower, strict=True):
-        place = self_crossings(np.concatenate([above, below[-2:0:-1]]))
+    upper, lower = stations.plane.points(s)
+    outlines = np.concatenate([upper, lower[..., -2:0:-1, :]], axis=-2)
+    first = (0,) * (outlines.ndim - 3)
+    for v, outline in zip(stations.v, np.real(outlines)[first], strict=True):
+        place = self_crossings(outline)
         if place is not None:
             at = min(place, 2 * (len(s) - 1) - place)
             raise DesignError(
-                f"the sides cross at v = {v:.3f}, near s = {s[int(at)]:.3f} along the section: raise the thickness there, "
-                "lower an edge radius that is larger than the thickness beside it, or lower the turning of the camber"
+                f"thickness_upper and thickness_lower: the sides cross at v = {v:.3f}, near s = {s[int(at)]:.3f} along "
+                "the section: raise the thickness there, lower an edge radius that is larger than the thickness beside "
+                "it, or lower the turning of the camber"
             )
-    _check_neighbours(exact, stations, upper, lower)
+    u, _, across = stations.on_lines(outlines)
+    _check_neighbours(exact.design, stations.v, np.real(np.stack([u, across], axis=-1))[first])
 
 
-def _check_neighbours(exact: ExactBlade, stations: Stations, upper: Reals, lower: Reals) -> None:
-    design = exact.design
-    pitch = 2.0 * np.pi / design.blade_count if design.blade_count else float(np.ravel(np.real(design.pitch))[0])
-    pitch = pitch if design.blade_count else pitch * UNITS[design.length_unit]
-    for i, v in enumerate(stations.v):
-        outline = np.concatenate([upper[i], lower[i][-2:0:-1]])
-        scale = float(np.ravel(np.real(stations.mapping.tangential(
-            np.ones(1), np.real(stations.lines.position(np.array([0.0])))[..., i, :, 1], np.real(stations.lines.lengths)[..., i, None]
-        )))[0])
-        if touches(outline, pitch / scale):
-            what = f"blade_count is {design.blade_count}" if design.blade_count else f"pitch is {design.pitch:g}"
+def _check_neighbours(design: UnifiedBlade, places: Reals, outlines: Reals) -> None:
+    """Refuse a pitch by which an outline (m, n, 2) in u and theta, or y, meets itself."""
+    metre = UNITS[design.length_unit]
+    pitch = 2.0 * np.pi / design.blade_count if design.blade_count else metre * _first(design.pitch)
+    for v, outline in zip(places, outlines, strict=True):
+        if touches(outline, pitch):
+            what = f"blade_count is {design.blade_count}" if design.blade_count else f"pitch is {pitch / metre:g}"
+            much = f"{np.degrees(pitch):.4g} deg" if design.blade_count else f"{pitch / metre:.4g} {design.length_unit}"
             cure = "fewer blades" if design.blade_count else "a larger pitch"
             raise DesignError(
-                f"{what}: neighbouring blades intersect at v = {v:.3f}, where the pitch is {pitch / scale:.4g} in the "
-                f"section's plane; take {cure}, thinner sections or less stagger there"
+                f"{what}: neighbouring blades intersect at v = {v:.3f}, where they stand {much} apart; take {cure}, "
+                "thinner sections or less stagger there"
             )
+
+
+def _first(value: Any) -> float:
+    return float(np.real(np.ravel(value))[0])

@@ -131,9 +131,7 @@ def _foot_step(meridian: Curve, u: Reals, target: Array) -> Array:
     return dot(miss, slope) / (dot(slope, slope) - dot(miss, bend))
 
 
-def _followed(
-    place: Callable[[Reals], Array], end: Curve, crossings: Reals, surface: Surface, chord: float
-) -> Curve:
+def _followed(place: Callable[[Reals], Array], end: Curve, crossings: Reals, surface: Surface, chord: float) -> Curve:
     """A plane B-spline that the wall maps on the side's end, as smooth as the side, its knots cut until it follows.
 
     Where the wall's own parameter passes from one rational arc to the next, at `crossings`, it is smooth to the first

@@ -143,7 +143,9 @@ class ExactBlade:
         if self.mapping.revolved:
             start = radians(span.values(0.0 if design.leading_edge_theta is None else design.leading_edge_theta))
         else:
-            start = UNITS[design.length_unit] * span.values(0.0 if design.leading_edge_y is None else design.leading_edge_y)
+            start = UNITS[design.length_unit] * span.values(
+                0.0 if design.leading_edge_y is None else design.leading_edge_y
+            )
         start = self.mapping.start(start, edges[..., 0, 1], lines.lengths)
         start, extent = np.broadcast_arrays(start, extent)
         camber = camber_line(
@@ -192,10 +194,11 @@ def exact_blade(design: UnifiedBlade) -> ExactBlade:
     channel = meridional(design.channel, UNITS[design.length_unit])
     places = sample_places(design.samples, design.clustering)
     within = ExactBlade(design=design, channel=channel, mapping=mapping, places=places, before=0.0, after=0.0)
-    return replace(within, **_reaches(within.stations(SURVEY)))
+    before, after = _reaches(within.stations(SURVEY))
+    return replace(within, before=before, after=after)
 
 
-def _reaches(stations: Stations) -> dict[str, float]:
+def _reaches(stations: Stations) -> list[float]:
     """How far in u the noses stand outside the channel, bounded by the sides' control points, with a margin."""
     hull = np.concatenate([stations.plane.upper, stations.plane.lower], axis=-2)
     abscissae = np.real(hull[..., 0] / hull[..., 2] if hull.shape[-1] == 3 else hull[..., 0])
@@ -203,12 +206,12 @@ def _reaches(stations: Stations) -> dict[str, float]:
     densities = np.real(lines.mapping.density(lines.position(at), lines.position(at, 1)))
     before = -np.min(abscissae, axis=-1) / densities[..., 0]
     after = (np.max(abscissae, axis=-1) - np.real(lines.extents())) / densities[..., 1]
-    reaches = {name: 1.3 * float(np.max(past, initial=0.0)) + 0.01 for name, past in (("before", before), ("after", after))}
-    for value, edge in zip(reaches.values(), ("leading", "trailing"), strict=True):
+    reaches = [1.3 * float(np.max(past, initial=0.0)) + 0.01 for past in (before, after)]
+    for value, edge in zip(reaches, ("leading", "trailing"), strict=True):
         if value > REACH:
             raise DesignError(
                 f"thickness_upper or thickness_lower: the nose at the {edge} edge stands {value:.2f} of the meridional "
-                f"length outside the channel, more than {REACH}: lower the thickness next to the edge, its radius or the "
-                "metal angle there"
+                f"length outside the channel, more than {REACH}: lower the thickness next to the edge, its radius or "
+                "the metal angle there"
             )
     return reaches

@@ -46,7 +46,9 @@ class _LinesAlongU:
         order = np.argsort(both)
         back = np.argsort(order)
         worst = np.zeros(len(places))
-        for side, sign in zip(zip(*self.stations.points_and_normals(both[order]), strict=True), (1.0, -1.0), strict=True):
+        for side, sign in zip(
+            zip(*self.stations.points_and_normals(both[order]), strict=True), (1.0, -1.0), strict=True
+        ):
             points, normals = side[0][:, back], side[1][:, back]
             lines = np.swapaxes(points[:, : len(sites)], 0, 1)
             net = interpolated_along_u(lines, *self.edges, sign, knots)
@@ -54,7 +56,9 @@ class _LinesAlongU:
             error = native - points[:, len(sites) :]
             worst = np.maximum(worst, np.max(length(error), axis=0) / self.tolerance)
             off = dot(error, normals[:, len(sites) :])[[0, -1]]
-            worst = np.maximum(worst, np.max(np.abs(off), axis=0) / self.wall_tolerance)  # real: knots come from the real design
+            worst = np.maximum(
+                worst, np.max(np.abs(off), axis=0) / self.wall_tolerance
+            )  # real: knots come from the real design
         return worst
 
 
@@ -79,7 +83,9 @@ class _LinesAlongV:
             native = basis(knots, DEGREE, places) @ np.linalg.solve(matrix, flat[: len(sites)])
             miss = (native - flat[len(sites) :]).reshape(len(places), -1, 3)
             errors.append(np.max(length(miss), axis=1) / self.tolerance)
-        errors += [self._edge_miss(row, matrix, knots, places) for row in (stations.leading_edge(), stations.trailing_edge())]
+        errors += [
+            self._edge_miss(row, matrix, knots, places) for row in (stations.leading_edge(), stations.trailing_edge())
+        ]
         return np.max(errors, axis=0)
 
     @staticmethod
@@ -126,5 +132,3 @@ def misfit(exact: ExactBlade, upper: Surface, lower: Surface) -> Misfit:
 def _between(knots: Reals) -> Reals:
     spans = np.unique(knots)
     return np.sort(np.concatenate([spans[:-1] + share * np.diff(spans) for share in (0.31, 0.74)]))
-
-

@@ -92,9 +92,11 @@ class Mapping(ABC):
 
     def series_in_space(self, x: Taylor, radius: Taylor, tangential: Taylor) -> tuple[Array, Array, Array]:
         """A curve's point and its first two derivatives (..., 3) in space."""
-        parts = [x, tangential, radius] if not self.revolved else [
-            x, radius * tangential.sine(), radius * tangential.cosine()
-        ]
+        parts = (
+            [x, tangential, radius]
+            if not self.revolved
+            else [x, radius * tangential.sine(), radius * tangential.cosine()]
+        )
         value, first, second = (np.stack([part[order] for part in parts], axis=-1) for order in range(3))
         return value, first, second
 

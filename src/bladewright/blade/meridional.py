@@ -1,4 +1,4 @@
-"""The meridional channel as native geometry: four curves blended by transfinite interpolation, continued past its ends."""
+"""The meridional channel as native geometry: four curves in transfinite interpolation, and past its ends."""
 
 from dataclasses import dataclass
 from functools import lru_cache
@@ -12,7 +12,6 @@ from bladewright.numerics.elementary import Array
 from bladewright.nurbs.basis import Reals, basis, uniform_knots
 from bladewright.nurbs.curve import Curve
 from bladewright.section.laws import stacked
-
 
 _EDGES = ("leading_edge", "trailing_edge")
 

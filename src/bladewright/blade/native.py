@@ -29,7 +29,7 @@ def native_sides(stations: Stations, knots: Knots) -> tuple[Array, Array]:
 
 
 def interpolated_along_u(lines: Array, start: EdgeRow, end: EdgeRow, sign: float, knots_u: Reals) -> Array:
-    """Control points (..., n_u, m, 3) through points (..., n_u - 6, m, 3), with two derivatives (..., m, 3) at the ends.
+    """Control points (..., n_u, m, 3) through points (..., n_u - 6, m, 3), with two end derivatives (..., m, 3).
 
     `sign` is +1 for the upper side and -1 for the lower, whose first derivatives are opposite.
     """
@@ -46,7 +46,7 @@ def interpolated_along_u(lines: Array, start: EdgeRow, end: EdgeRow, sign: float
 
 
 def _end_rows(row: EdgeRow, sign: float, near: float, far: float) -> list[Array]:
-    """The three control points at a clamped end, by the distance from it: near and far are its first two inner knots."""
+    """The three control points at a clamped end, whose first two inner knots stand near and far from it."""
     step = sign * row.first * (near / DEGREE)
     second = row.point + step
     third = second + far * (row.second * (near / (DEGREE * (DEGREE - 1))) + step / near)

@@ -63,9 +63,7 @@ def promises_of(blade: "Blade") -> Promises:
 
     The mapping of the paper keeps neither angles nor radii: its limits are those of the edges and the walls only.
     """
-    upper, lower = blade.surfaces["upper"], blade.surfaces["lower"]
-    assert isinstance(upper, Surface)
-    assert isinstance(lower, Surface)
+    upper, lower = blade.sides
     spans = np.unique(upper.knots_v)
     inner = np.sort(np.concatenate([spans[:-1] + share * np.diff(spans) for share in (0.21, 0.53, 0.83)]))
     v = np.concatenate([[0.0], inner, [1.0]])

@@ -9,6 +9,7 @@ The area of an end is the integral of theta r |C'| du around its outline, C the 
 """
 
 from collections.abc import Mapping
+from typing import cast
 
 import numpy as np
 
@@ -32,21 +33,20 @@ def blade_properties(
     Control points may be complex.
     """
     total: Array = np.zeros(10)
-    areas, vectors = [], []
+    areas: list[Array] = []
+    vectors: list[Array] = []
     for name in ("upper", "lower"):
-        side = surfaces[name]
-        assert isinstance(side, Surface)
+        side = cast(Surface, surfaces[name])
         (u, weight_u), (v, weight_v) = (panels(breaks(knots), POINTS) for knots in (side.knots_u, side.knots_v))
         point = side.grid(u, v)
         normal = np.cross(side.grid(u, v, 1, 0), side.grid(u, v, 0, 1))
         weight = weight_u[:, None] * weight_v
         moments = _around_axis(point, normal) if revolved else _along_y(point, normal)
         total = total + outward[name] * np.einsum("uv,uvk->k", weight, moments)
-        areas.append(np.sum(weight * length(normal)))
+        areas.append(np.asarray(np.sum(weight * length(normal))))
         vectors.append(outward[name] * np.einsum("uv,uvk->k", weight, normal))
     for name in ("hub", "shroud"):
-        end = surfaces[name]
-        assert isinstance(end, TrimmedSurface)
+        end = cast(TrimmedSurface, surfaces[name])
         area, vector = _end(end)
         areas.append(area)
         vectors.append(outward[name] * vector)
@@ -55,7 +55,7 @@ def blade_properties(
     spread = np.array([[xx, xy, zx], [xy, yy, yz], [zx, yz, zz]]) - volume * np.outer(centroid, centroid)
     return MassProperties(
         volume=volume,
-        area=np.sum(areas),
+        area=np.asarray(np.sum(areas)),
         areas=np.array(areas),
         centroid=centroid,
         inertia=np.trace(spread) * np.eye(3) - spread,
@@ -92,7 +92,10 @@ def _end(end: TrimmedSurface) -> tuple[Array, Array]:
         s, weight = panels(breaks(curve.knots), POINTS)
         uv, slope = curve(s), curve.derivative(s)
         point = end.surface(uv[:, 0], uv[:, 1])
-        along, across = end.surface.derivative(uv[:, 0], uv[:, 1], 1, 0), end.surface.derivative(uv[:, 0], uv[:, 1], 0, 1)
+        along, across = (
+            end.surface.derivative(uv[:, 0], uv[:, 1], 1, 0),
+            end.surface.derivative(uv[:, 0], uv[:, 1], 0, 1),
+        )
         tangent = along * slope[:, :1] + across * slope[:, 1:]
         vector = vector + np.sum(weight[:, None] * np.cross(point, tangent), axis=0) / 2.0
         area = area - np.sum(weight * _width(end.revolution, point) * length(along) * slope[:, 0])

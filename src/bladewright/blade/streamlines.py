@@ -55,7 +55,7 @@ class StreamLines:
         if real.ndim > 2:
             flat = real.reshape(-1, *real.shape[-2:])
             real = flat[0]
-        u = self._real()._inverse(real)
+        u = self._real().u_at(real)
         return u - self._newton_step(np.broadcast_to(u, abscissa.shape), abscissa)
 
     def _inverse(self, abscissa: Reals) -> Reals:
@@ -153,7 +153,7 @@ def _on_panels(channel: Meridional, mapping: Mapping, v: Reals, ends: Reals) -> 
         where = np.argwhere(position[..., 1].real <= 0.0)[0]
         u = float(centres[where[-2]] + t[where[-2], where[-1]])
         raise DesignError(
-            f"channel: the radius is {position[..., 1].real[tuple(where)]:.4g} m at u = {u:.3f}, v = {v[where[-3]]:.3f}: "
+            f"channel: radius {position[..., 1].real[tuple(where)]:.4g} m at u = {u:.3f}, v = {v[where[-3]]:.3f}: "
             "the channel, continued past its edges over the nose, must keep clear of the axis; move its control points"
         )
     speeds = length(slope)

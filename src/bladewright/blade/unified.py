@@ -13,6 +13,7 @@ if TYPE_CHECKING:
     from bladewright.blade.blade import Blade
     from bladewright.blade.knots import Knots
 
+
 @dataclass(frozen=True, kw_only=True)
 class UnifiedBlade(Design):
     """A blade of the unified family, axial, radial or mixed, in an annulus or a linear cascade.
@@ -92,7 +93,9 @@ class UnifiedBlade(Design):
         for name in fields_of[other]:
             if getattr(self, name) is not None:
                 mine = fields_of[own][fields_of[other].index(name)]
-                raise DesignError(f"{name} is given, but arrangement is '{own}': give {mine}, or arrangement = '{other}'")
+                raise DesignError(
+                    f"{name} is given, but arrangement is '{own}': give {mine}, or arrangement = '{other}'"
+                )
         count, place = fields_of[own]
         if getattr(self, count) is None:
             raise DesignError(f"{count} is missing: arrangement '{own}' needs it")
@@ -111,5 +114,3 @@ class UnifiedBlade(Design):
         from bladewright.blade.build import built
 
         return built(self, knots)
-
-

@@ -5,7 +5,7 @@ from typing import Any, get_type_hints
 
 from pydantic import TypeAdapter
 
-from bladewright.designs import Design
+from bladewright.designs import Part
 from bladewright.files.families import FAMILIES
 from bladewright.files.reading import adapter
 
@@ -31,7 +31,7 @@ def schema() -> dict[str, Any]:
     }
 
 
-def _refine(kind: type[Design], definitions: dict[str, Any]) -> None:
+def _refine(kind: type[Part], definitions: dict[str, Any]) -> None:
     """Add units, and take away what a TOML file cannot say: null."""
     properties = definitions[kind.__name__]["properties"]
     hints = get_type_hints(kind)
@@ -45,5 +45,5 @@ def _refine(kind: type[Design], definitions: dict[str, Any]) -> None:
             arms = [arm for arm in entry.pop("anyOf") if arm != {"type": "null"}]
             entry.update(arms[0] if len(arms) == 1 else {"anyOf": arms})
         hint = hints[each.name]
-        if isinstance(hint, type) and is_dataclass(hint) and issubclass(hint, Design):
+        if isinstance(hint, type) and is_dataclass(hint) and issubclass(hint, Part):
             _refine(hint, definitions)

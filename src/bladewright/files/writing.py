@@ -10,7 +10,7 @@ import tomlkit
 from tomlkit.exceptions import TOMLKitError
 from tomlkit.items import Array
 
-from bladewright.designs import Design
+from bladewright.designs import Design, Part
 from bladewright.errors import BladewrightError, DesignError, FileError
 from bladewright.files.families import family_of
 from bladewright.files.literals import literal, plain, same
@@ -37,7 +37,7 @@ def text_of(design: Design) -> str:
     lines += _lines(design, "", length, parameters=True)
     for each in fields(design):
         value = getattr(design, each.name)
-        if isinstance(value, Design):
+        if isinstance(value, Part):
             lines += ["", f"[{each.name}]"]
             lines += [
                 line for kind in (False, True) for line in _lines(value, f"{each.name}.", length, parameters=kind)
@@ -80,11 +80,11 @@ def _length_of(design: Design) -> str:
     return str(getattr(design, "length_unit", "length"))
 
 
-def _lines(design: Design, path: str, length: str, *, parameters: bool) -> list[str]:
+def _lines(design: Part, path: str, length: str, *, parameters: bool) -> list[str]:
     lines = []
     for each in fields(design):
         value = getattr(design, each.name)
-        left_out = isinstance(value, Design) or _is_default(each, value)
+        left_out = isinstance(value, Part) or _is_default(each, value)
         if ("unit" in each.metadata) == parameters and not left_out:
             unit = each.metadata.get("unit", "-").replace("length", length)
             comment = "" if unit == "-" else f"  # {unit}"
@@ -96,13 +96,13 @@ def _is_default(each: Any, value: Any) -> bool:
     return each.default is not MISSING and type(value) is type(each.default) and same(plain(each.default), plain(value))
 
 
-def _merge(table: MutableMapping[str, Any], design: Design, before: Design | None, length: str) -> None:
+def _merge(table: MutableMapping[str, Any], design: Part, before: Part | None, length: str) -> None:
     for each in fields(design):
         value, old = getattr(design, each.name), getattr(before, each.name, None)
-        if isinstance(value, Design):
+        if isinstance(value, Part):
             if not isinstance(table.get(each.name), MutableMapping):
                 table[each.name] = tomlkit.table()
-            _merge(table[each.name], value, old if isinstance(old, Design) else None, length)
+            _merge(table[each.name], value, old if isinstance(old, Part) else None, length)
         elif value is None:
             table.pop(each.name, None)
         elif each.name in table:

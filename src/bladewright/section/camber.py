@@ -7,7 +7,13 @@ from bladewright.nurbs.basis import Reals
 
 
 def camber_line(
-    start: Array, extent: Array, stagger: Array, angle_in: Array, angle_out: Array, tangent_in: Array, tangent_out: Array
+    start: Array,
+    extent: Array,
+    stagger: Array,
+    angle_in: Array,
+    angle_out: Array,
+    tangent_in: Array,
+    tangent_out: Array,
 ) -> Array:
     """Control points (..., 4, 2) of the camber line.
 

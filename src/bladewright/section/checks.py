@@ -16,9 +16,11 @@ def number(path: str, value: Any) -> Any:
         if not np.all(np.isfinite(value)):
             raise DesignError(f"{path} holds a value that is not finite: every number of a design must be finite")
         return value
-    if isinstance(value, bool | str | bytes) or not np.isscalar(value) and not isinstance(value, np.ndarray):
+    single = np.isscalar(value) or (isinstance(value, np.ndarray) and value.ndim == 0)
+    if isinstance(value, bool | str | bytes) or not single:
         raise DesignError(f"{path} is {value!r}: a number is needed")
-    value = complex(value) if np.iscomplexobj(value) else float(value)
+    given: Any = value
+    value = complex(given) if np.iscomplexobj(given) else float(given)
     if not math.isfinite(value.real) or not math.isfinite(value.imag):
         raise DesignError(f"{path} is {value}: every number of a design must be finite")
     return value
@@ -48,9 +50,7 @@ def points(path: str, value: Any, least: int) -> Points:
         raise DesignError(f"{path} is {value!r}: a list of [x, r] pairs is needed")
     if len(value) < least:
         raise DesignError(f"{path} has {len(value)} control points: at least {least} are needed")
-    return tuple(
-        Point(number(f"{path}[{i}].x", x), number(f"{path}[{i}].r", r)) for i, (x, r) in enumerate(value)
-    )
+    return tuple(Point(number(f"{path}[{i}].x", x), number(f"{path}[{i}].r", r)) for i, (x, r) in enumerate(value))
 
 
 def is_sequence(value: Any) -> bool:

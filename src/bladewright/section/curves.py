@@ -19,4 +19,6 @@ def side_curve(controls: Array) -> Curve:
     if controls.shape[-1] == 2:
         return Curve(control_points=controls, knots=knots, degree=DEGREE)
     weights = controls[:, 2]
-    return Curve(control_points=controls[:, :2] / weights[:, None], knots=knots, degree=DEGREE, weights=np.array(weights))
+    return Curve(
+        control_points=controls[:, :2] / weights[:, None], knots=knots, degree=DEGREE, weights=np.array(weights)
+    )

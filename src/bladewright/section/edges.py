@@ -69,6 +69,8 @@ def edge(upper: Array, lower: Array, normal: Array, span: float) -> Edge:
 def reparametrised(s: Reals, alpha: Array, beta: Array, span: float) -> Array:
     """The side's own parameter a (..., len(s)) at distances s in [0, span] from the edge."""
     x = s / span
-    return s + (alpha - 1.0)[..., None] * (span * x * (1 - x) ** 4 * (1 + 4 * x)) + beta[..., None] * (
-        span**2 * x**2 * (1 - x) ** 4 / 2
+    return (
+        s
+        + (alpha - 1.0)[..., None] * (span * x * (1 - x) ** 4 * (1 + 4 * x))
+        + beta[..., None] * (span**2 * x**2 * (1 - x) ** 4 / 2)
     )

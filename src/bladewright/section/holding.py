@@ -13,6 +13,7 @@ from bladewright.nurbs.basis import Reals
 from bladewright.section.laws import Span
 from bladewright.section.sides import advances, edge_height
 
+
 def check_edges(
     design: Design,
     name: str,
@@ -38,13 +39,13 @@ def check_edges(
         if where is not None:
             raise DesignError(
                 f"{entry}: next to the {edge} edge at v = {span.v[where[-1]]:.3f} the {name} side leaves the blade "
-                f"outwards: the camber turns too fast for the thickness there; lower {entry}, or the turning of the camber"
+                f"outwards: the camber turns too fast for the thickness there; lower {entry}, or the camber's turning"
             )
         where = _first(curvature <= 0.0)
         if where is not None:
             raise DesignError(
-                f"{edge}_edge_radius is {_at(radius, where):.4g} at v = {span.v[where[-1]]:.3f}: the stream surface there "
-                f"bends more than such an edge; lower {edge}_edge_radius"
+                f"{edge}_edge_radius is {_at(radius, where):.4g} at v = {span.v[where[-1]]:.3f}: the stream surface "
+                f"there bends more than such an edge; lower {edge}_edge_radius"
             )
         ratio = 1.0
         if weights is not None:

@@ -17,7 +17,7 @@ def check_labels(design: Design) -> None:
         checks.text(label, getattr(design, label))
     name = getattr(design, "name")  # noqa: B009 - a field of every family, not of the base
     if not name.strip() or any(sign in name for sign in '/\\:*?"<>|'):
-        raise DesignError(f"name is {name!r}: it names files, so it must not be empty nor hold / \\ : * ? \" < > |")
+        raise DesignError(f'name is {name!r}: it names files, so it must not be empty nor hold / \\ : * ? " < > |')
     checks.choice("length_unit", getattr(design, "length_unit"), list(checks.UNITS))  # noqa: B009 - as above
 
 

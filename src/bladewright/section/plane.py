@@ -60,7 +60,7 @@ def taylor(controls: Array, from_end: bool) -> Array:
 
     A rational side's series is that of the quotient, cut after the fourth power: only its first three serve.
     """
-    series = _taylor_matrix(controls.shape[-2], from_end) @ controls
+    series = _taylor_matrix(controls.shape[-2], from_end=from_end) @ controls
     return series if controls.shape[-1] == 2 else _quotient(series)
 
 
@@ -89,9 +89,11 @@ def _side_points(controls: Array, s: Reals, span: float, start: tuple[Array, Arr
     last = max(first, int(np.searchsorted(s, 1.0 - span, side="right")))
     knots = uniform_knots(controls.shape[-2], DEGREE)
     middle = basis(knots, DEGREE, s[first:last]) @ controls
-    at_start = _polynomial(_taylor_matrix(controls.shape[-2], False) @ controls, reparametrised(s[:first], *start, span))
+    at_start = _polynomial(
+        _taylor_matrix(controls.shape[-2], from_end=False) @ controls, reparametrised(s[:first], *start, span)
+    )
     distance = reparametrised(1.0 - s[last:], *end, span)
-    at_end = _polynomial(_taylor_matrix(controls.shape[-2], True) @ controls, distance)
+    at_end = _polynomial(_taylor_matrix(controls.shape[-2], from_end=True) @ controls, distance)
     points = np.concatenate([at_start, middle, at_end], axis=-2)
     return points if points.shape[-1] == 2 else points[..., :2] / points[..., 2:]
 

@@ -7,7 +7,8 @@ from functools import cached_property
 import numpy as np
 
 from bladewright.numerics.elementary import Array, cross2, dot, length
-from bladewright.nurbs.basis import Reals
+from bladewright.numerics.quadrature import panels
+from bladewright.nurbs.basis import Reals, breaks
 from bladewright.nurbs.curve import Curve
 
 STEP = 1e-30
@@ -22,7 +23,8 @@ class Section:
 
     Its plane is metric for a 2D section and a cascade. For a blade in an annulus it is the conformal plane
     (m', theta) of a stream surface, where lengths are `scale(m')` times those in the plane; the properties below are
-    those on the stream surface.
+    those on the stream surface. Lengths, area and centroid are complex where the curves are; thickness, camber and
+    curvature are searched for on the real section.
     """
 
     span: float
@@ -42,48 +44,47 @@ class Section:
     """metres in a unit of the plane, by the abscissa"""
 
     @cached_property
-    def chord(self) -> float:
-        """Length of the straight line of the plane from leading to trailing edge [m]."""
-        ends = np.real(self.camber.control_points[[0, -1]])
-        along = np.linspace(0.0, 1.0, 33)[:, None]
-        line = ends[0] + along * (ends[1] - ends[0])
-        return float(np.real(np.trapezoid(self.scale(line[:, 0]), along[:, 0])) * length(ends[1] - ends[0]))
+    def chord(self) -> Array:
+        """Length () of the straight line of the plane from leading to trailing edge [m]."""
+        start, end = self.camber.control_points[0], self.camber.control_points[-1]
+        along, weight = panels([0.0, 1.0], 4 * PER_SPAN)
+        scale: Array = np.asarray(np.sum(weight * self.scale(start[0] + along * (end[0] - start[0]))))
+        return scale * length(end - start)
 
     @cached_property
-    def camber_length(self) -> float:
-        """Length of the camber line [m]."""
-        u, w = _gauss(self.camber.knots)
-        return float(np.real(np.sum(w * length(self.camber.derivative(u)) * self.scale(self.camber(u)[:, 0]))))
+    def camber_length(self) -> Array:
+        """Length () of the camber line [m]."""
+        return self._length(self.camber)
 
     @cached_property
-    def perimeter(self) -> float:
-        """Length of both sides [m]."""
-        total = 0.0
-        for curve in self.curves.values():
-            u, w = _gauss(curve.knots)
-            total += float(np.real(np.sum(w * length(curve.derivative(u)) * self.scale(curve(u)[:, 0]))))
-        return total
+    def perimeter(self) -> Array:
+        """Length () of both sides [m]."""
+        return self._length(self.curves["upper"]) + self._length(self.curves["lower"])
 
     @cached_property
-    def area(self) -> float:
-        """Area inside the sides [m^2], by Green's theorem."""
-        return float(np.real(self._moment(lambda a: np.ones_like(a), 0)))
+    def area(self) -> Array:
+        """Area () inside the sides [m^2], by Green's theorem."""
+        return self._moment(0, 0)
 
     @cached_property
-    def centroid(self) -> Reals:
+    def centroid(self) -> Array:
         """Centre of area (2,) in the coordinates of the plane."""
-        abscissa = self._moment(lambda a: a, 0)
-        ordinate = self._moment(lambda a: np.ones_like(a), 1)
-        return np.real(np.array([abscissa, ordinate]) / self.area)
+        return np.stack([self._moment(1, 0), self._moment(0, 1)]) / self.area
 
-    def _moment(self, of_abscissa: Callable[[Array], Array], power: int) -> Array:
+    def _length(self, curve: Curve) -> Array:
+        u, weight = panels(breaks(curve.knots), PER_SPAN)
+        return np.asarray(np.sum(weight * length(curve.derivative(u)) * self.scale(curve(u)[:, 0])))
+
+    def _moment(self, of_abscissa: int, of_ordinate: int) -> Array:
+        """Integral over the section of powers of its coordinates, times the scale squared."""
         total: Array = np.zeros(())
         for name, sign in (("upper", 1.0), ("lower", -1.0)):
             curve = self.curves[name]
-            u, w = _gauss(curve.knots)
+            u, weight = panels(breaks(curve.knots), PER_SPAN)
             point, slope = curve(u), curve.derivative(u)
-            density = of_abscissa(point[:, 0]) * self.scale(point[:, 0]) ** 2
-            total = total + sign * np.sum(w * density * point[:, 1] ** (power + 1) / (power + 1) * slope[:, 0])
+            density = point[:, 0] ** of_abscissa * self.scale(point[:, 0]) ** 2
+            inner = point[:, 1] ** (of_ordinate + 1) / (of_ordinate + 1)
+            total = total + sign * np.sum(weight * density * inner * slope[:, 0])
         return total
 
     @cached_property
@@ -143,11 +144,11 @@ class Section:
         return {
             "span": self.span,
             "plane": self.plane,
-            "chord": self.chord,
-            "camber_length": self.camber_length,
-            "perimeter": self.perimeter,
-            "area": self.area,
-            "centroid": [float(value) for value in self.centroid],
+            "chord": float(np.real(self.chord)),
+            "camber_length": float(np.real(self.camber_length)),
+            "perimeter": float(np.real(self.perimeter)),
+            "area": float(np.real(self.area)),
+            "centroid": [float(value) for value in np.real(self.centroid)],
             "maximum_thickness": thickest,
             "maximum_thickness_at": place,
             "maximum_camber": self.maximum_camber,
@@ -156,13 +157,6 @@ class Section:
             "metal_angle_in_deg": float(np.degrees(self.metal_angle_in)),
             "metal_angle_out_deg": float(np.degrees(self.metal_angle_out)),
         }
-
-
-def _gauss(knots: Reals) -> tuple[Reals, Reals]:
-    spans = np.unique(knots)
-    x, w = np.polynomial.legendre.leggauss(PER_SPAN)
-    half = np.diff(spans)[:, None] / 2.0
-    return (spans[:-1, None] + half * (x + 1.0)).ravel(), (half * w).ravel()
 
 
 def _ray_lengths(curve: Curve, origins: Reals, directions: Reals) -> Reals:

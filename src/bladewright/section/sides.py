@@ -3,8 +3,8 @@
 import numpy as np
 
 from bladewright.numerics.elementary import Array, dot
-from bladewright.section.camber import camber_points, camber_tangents, turned_left
 from bladewright.nurbs.basis import Reals
+from bladewright.section.camber import camber_points, camber_tangents, turned_left
 
 DEGREE = 4
 

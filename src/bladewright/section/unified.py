@@ -101,9 +101,9 @@ class UnifiedSection(Design):
 
         chord = value("axial_chord") * metre
         angles = [radians(value(name)) for name in ANGLES]
-        line = camber_line(
-            *np.broadcast_arrays(value("leading_edge_y") * metre, chord), *angles, value("tangent_in"), value("tangent_out")
-        )
+        start, extent = np.broadcast_arrays(value("leading_edge_y") * metre, chord)
+        stagger, angle_in, angle_out = angles
+        line = camber_line(start, extent, stagger, angle_in, angle_out, value("tangent_in"), value("tangent_out"))
         places = sample_places(self.samples, self.clustering)
         curvatures = [1.0 / (value(name) * chord) for name in RADII]
         sides = []
@@ -137,9 +137,9 @@ class UnifiedSection(Design):
         if place is not None:
             at = min(place, 2 * (len(s) - 1) - place)
             raise DesignError(
-                f"the sides cross near s = {s[int(at)]:.3f} along the section: raise the thickness there, lower an edge "
-                "radius that is larger than the thickness beside it, or lower the turning of the camber"
+                f"thickness_upper and thickness_lower: the sides cross near s = {s[int(at)]:.3f} along the section: "
+                "raise the thickness there, lower an edge radius that is larger than the thickness beside it, or lower "
+                "the turning of the camber"
             )
         if self.pitch is not None and touches(outline, float(np.real(self.pitch)) * metre):
             raise DesignError(f"pitch is {self.pitch:g}: neighbouring sections intersect; take a larger pitch")
-
