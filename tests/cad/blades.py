@@ -56,9 +56,9 @@ def replaced(built: Blade, **faces: Surface | TrimmedSurface) -> Blade:
 
 
 def moved(face: Surface, row: int, column: int, by: float) -> Surface:
-    """A surface of which one control point is moved along z [m]."""
+    """A surface of which one control point is moved along y [m], across the sides of the blades."""
     net = np.array(face.control_points)
-    net[row, column, 2] += by
+    net[row, column, 1] += by
     return replace(face, control_points=net)
 
 

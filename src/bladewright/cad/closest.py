@@ -24,16 +24,17 @@ class Target:
         _, kept = np.unique(np.round(points / grain), axis=0, return_index=True)
         self.uv = uv[kept]
         self.tree = cKDTree(points[kept])
+        self.spacing = float(self.tree.query(points[kept], k=min(5, len(kept)))[0].max())
 
     def closest(self, points: Array, limit: float) -> tuple[Array, Array]:
         """Parameters (n, 2) and distances (n,) [mm] of the nearest points of the face to points (n, 3).
 
         Where the first start ends further away than `limit`, the next nearest seeds are tried too, so that a local
-        minimum is not taken for the answer.
+        minimum is not taken for the answer; not so where all seeds are so far that the answer is beyond it.
         """
-        _, near = self.tree.query(points)
+        seed, near = self.tree.query(points)
         uv, distance = self._from(points, self.uv[near])
-        doubtful = np.flatnonzero(distance > limit)
+        doubtful = np.flatnonzero((distance > limit) & (seed < limit + 3.0 * self.spacing))
         if len(doubtful):
             _, candidates = self.tree.query(points[doubtful], k=min(8, len(self.uv)))
             for k in range(1, candidates.shape[1], 3):

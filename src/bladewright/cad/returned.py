@@ -34,6 +34,8 @@ class Returned:
     """A face of the file."""
 
     region: Region
+    outline: Array
+    """(n, 3) [mm] points on its boundary"""
     area: float
     """[mm^2] by the kernel"""
     inside_out: bool
@@ -47,12 +49,13 @@ def returned(face: TopoDS_Face) -> Returned:
     chains = tuple(_chain(TopoDS.Wire_s(wire), forward) for wire in each(forward, TopAbs_WIRE))
     if not chains:
         raise CadError("a face of the file has no boundary: it is not a face of a closed body")
-    points = np.concatenate([curve.control_points for chain in chains for curve in chain])
+    points = np.concatenate([curve.control_points for curve in _all(chains)])
     low, high = points.min(axis=0), points.max(axis=0)
     carried = carrier(geometry, low, high)
     properties = GProp_GProps()
     BRepGProp.SurfaceProperties_s(face, properties, AREA)
     turned = sum(_enclosed(chain) for chain in chains)
+    outline = carried.frame(np.concatenate([curve(spread(curve.knots, curve.degree, 40)) for curve in _all(chains)]))[0]
     if isinstance(carried, SplineCarrier):
         surface = carried.surface
         start = np.array([surface.knots_u[0], surface.knots_v[0]])
@@ -60,7 +63,7 @@ def returned(face: TopoDS_Face) -> Returned:
         rectangle = float(np.prod(end - start))
         if len(chains) == 1 and _on_border(chains[0], start, end) and abs(abs(turned) - rectangle) < 1e-6 * rectangle:
             region = Region(carrier=carried, chains=(), low=start, high=end)
-            return Returned(region=region, area=properties.Mass(), inside_out=turned < 0.0)
+            return Returned(region=region, outline=outline, area=properties.Mass(), inside_out=turned < 0.0)
         bounds = (start, end)
     else:
         u_low, u_high, v_low, v_high = geometry.Bounds()
@@ -77,7 +80,11 @@ def returned(face: TopoDS_Face) -> Returned:
         low = np.array([low[0] - reach[0], max(bounds[0][1], low[1] - reach[1])])
         high = np.array([high[0] + reach[0], min(bounds[1][1], high[1] + reach[1])])
     region = Region(carrier=carried, chains=chains, low=low, high=high)
-    return Returned(region=region, area=properties.Mass(), inside_out=turned < 0.0)
+    return Returned(region=region, outline=outline, area=properties.Mass(), inside_out=turned < 0.0)
+
+
+def _all(chains: tuple[tuple[Curve, ...], ...]) -> list[Curve]:
+    return [curve for chain in chains for curve in chain]
 
 
 def _chain(wire: object, face: TopoDS_Face) -> tuple[Curve, ...]:

@@ -121,8 +121,8 @@ class _Measurement:
                 if pair is not None and np.max(np.abs(pair[1].control_points - MM * pair[0].control_points)) < near:
                     names[k] = name
             if k not in names:
-                points = face.region.points(face.region.sampled(100))
-                away = {name: meant.target.closest(points, 0.0)[1].max() for name, meant in self.meant.items()}
+                # the boundary says which face it is meant to be, even where the wrong side of it was kept
+                away = {name: meant.target.closest(face.outline, 0.0)[1].max() for name, meant in self.meant.items()}
                 names[k] = min(away, key=lambda name: float(away[name]))
         return names
 
