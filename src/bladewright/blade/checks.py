@@ -10,7 +10,7 @@ from bladewright.errors import DesignError
 from bladewright.numerics.elementary import cross2
 from bladewright.nurbs.basis import Reals
 from bladewright.section.checks import UNITS
-from bladewright.section.crossing import self_crossings, touches
+from bladewright.section.crossing import PLACES, check_outline, touches
 
 
 def check_channel(exact: ExactBlade) -> None:
@@ -36,19 +36,11 @@ def check_channel(exact: ExactBlade) -> None:
 def check_sections(exact: ExactBlade) -> None:
     """Refuse sections whose sides cross or touch, and neighbouring blades that intersect."""
     stations = exact.survey
-    s = (1.0 - np.cos(np.pi * np.linspace(0.0, 1.0, 65))) / 2.0
-    upper, lower = stations.plane.points(s)
+    upper, lower = stations.plane.points(PLACES)
+    first = (0,) * (upper.ndim - 3)
+    for v, above, below in zip(stations.v, np.real(upper)[first], np.real(lower)[first], strict=True):
+        check_outline(above, below, PLACES, f"at v = {v:.3f}, ")
     outlines = np.concatenate([upper, lower[..., -2:0:-1, :]], axis=-2)
-    first = (0,) * (outlines.ndim - 3)
-    for v, outline in zip(stations.v, np.real(outlines)[first], strict=True):
-        place = self_crossings(outline)
-        if place is not None:
-            at = min(place, 2 * (len(s) - 1) - place)
-            raise DesignError(
-                f"thickness_upper and thickness_lower: the sides cross at v = {v:.3f}, near s = {s[int(at)]:.3f} along "
-                "the section: raise the thickness there, lower an edge radius that is larger than the thickness beside "
-                "it, or lower the turning of the camber"
-            )
     u, _, across = stations.on_lines(outlines)
     _check_neighbours(exact.design, stations.v, np.real(np.stack([u, across], axis=-1))[first])
 

@@ -71,13 +71,15 @@ class Mapping(ABC):
         sin(phi) cos(beta), phi the stream line's angle to the axis and beta the metal angle.
         """
 
-    @abstractmethod
     def tangential(self, ordinate: Array, radius: Array, lengths: Array) -> Array:
-        """theta [rad], or y [m] in a cascade, from the ordinate and the radius."""
+        """theta [rad], or y [m] in a cascade, from the ordinate and the radius: the ordinate itself, but for the paper."""
+        del radius, lengths
+        return ordinate
 
-    @abstractmethod
     def tangential_series(self, ordinate: Taylor, radius: Taylor, lengths: Array) -> Taylor:
         """The same along a curve."""
+        del radius, lengths
+        return ordinate
 
     def start(self, tangential: Array, radius: Array, lengths: Array) -> Array:
         """Ordinate of a point whose theta, or y in a cascade, is given."""
@@ -120,14 +122,6 @@ class Conformal(Mapping):
     def edge_curvature(self, fraction: Array, lengths: Array, radius: Array, climb: Array, trailing: bool) -> Array:
         return radius / (fraction * lengths) + (-climb if trailing else climb)
 
-    def tangential(self, ordinate: Array, radius: Array, lengths: Array) -> Array:
-        del radius, lengths
-        return ordinate
-
-    def tangential_series(self, ordinate: Taylor, radius: Taylor, lengths: Array) -> Taylor:
-        del radius, lengths
-        return ordinate
-
 
 class Cascade(Mapping):
     """The plane (m, y) of a linear cascade's stream surface, a cylinder along y: lengths are true."""
@@ -149,14 +143,6 @@ class Cascade(Mapping):
     def edge_curvature(self, fraction: Array, lengths: Array, radius: Array, climb: Array, trailing: bool) -> Array:
         del radius, climb, trailing
         return 1.0 / (fraction * lengths)
-
-    def tangential(self, ordinate: Array, radius: Array, lengths: Array) -> Array:
-        del radius, lengths
-        return ordinate
-
-    def tangential_series(self, ordinate: Taylor, radius: Taylor, lengths: Array) -> Taylor:
-        del radius, lengths
-        return ordinate
 
 
 class Paper(Mapping):

@@ -3,7 +3,25 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from bladewright.errors import DesignError
 from bladewright.nurbs.basis import Reals
+
+PLACES = (1.0 - np.cos(np.pi * np.linspace(0.0, 1.0, 65))) / 2.0
+"""places along the sides at which outlines are judged, dense at the edges"""
+
+
+def check_outline(upper: Reals, lower: Reals, s: Reals, where: str) -> Reals:
+    """The closed outline (n, 2) of two sides (m, 2) at `s` (m,); refused where it crosses itself, `where` in words."""
+    outline = np.concatenate([upper, lower[-2:0:-1]])
+    place = self_crossings(outline)
+    if place is not None:
+        at = s[min(place, 2 * (len(s) - 1) - place)]
+        raise DesignError(
+            f"thickness_upper and thickness_lower: the sides cross {where}near s = {at:.3f} along the section: raise the "
+            "thickness there, lower an edge radius that is larger than the thickness beside it, or lower the turning of "
+            "the camber"
+        )
+    return outline
 
 
 def self_crossings(outline: Reals) -> int | None:

@@ -8,11 +8,11 @@ import numpy as np
 
 from bladewright.designs import Design, parameter
 from bladewright.errors import DesignError
-from bladewright.numerics.elementary import radians
+from bladewright.numerics.elementary import Array, radians
 from bladewright.nurbs.transform import translated
 from bladewright.section import checks
 from bladewright.section.camber import camber_line
-from bladewright.section.crossing import self_crossings, touches
+from bladewright.section.crossing import PLACES, check_outline, touches
 from bladewright.section.curves import camber_curve, side_curve
 from bladewright.section.holding import check_edges
 from bladewright.section.laws import Span
@@ -129,17 +129,8 @@ class UnifiedSection(Design):
             scale=np.ones_like,
         )
 
-    def _check_outline(self, line: Any, upper: Any, lower: Any, metre: float) -> None:
-        s = (1.0 - np.cos(np.pi * np.linspace(0.0, 1.0, 129))) / 2.0
-        above, below = (np.real(points)[0] for points in plane_sections(line, upper, lower).points(s))
-        outline = np.concatenate([above, below[-2:0:-1]])
-        place = self_crossings(outline)
-        if place is not None:
-            at = min(place, 2 * (len(s) - 1) - place)
-            raise DesignError(
-                f"thickness_upper and thickness_lower: the sides cross near s = {s[int(at)]:.3f} along the section: "
-                "raise the thickness there, lower an edge radius that is larger than the thickness beside it, or lower "
-                "the turning of the camber"
-            )
+    def _check_outline(self, line: Array, upper: Array, lower: Array, metre: float) -> None:
+        above, below = (np.real(points)[0] for points in plane_sections(line, upper, lower).points(PLACES))
+        outline = check_outline(above, below, PLACES, "")
         if self.pitch is not None and touches(outline, float(np.real(self.pitch)) * metre):
             raise DesignError(f"pitch is {self.pitch:g}: neighbouring sections intersect; take a larger pitch")
