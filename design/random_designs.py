@@ -1,0 +1,256 @@
+"""Designs drawn at random: each is refused with a reason, or becomes a solid that passes its round trip.
+
+    python design/random_designs.py --count 2000 --jobs 2 --record design/random_designs.md
+    python design/random_designs.py --seed 17 --count 1 --show
+
+A design follows from its seed alone (random_blades.py). It is built in a process that may die, so that a crash of the
+kernel or a hang is a result like any other. The result of the first command is recorded in design/random_designs.md.
+"""
+
+import argparse
+import multiprocessing
+import multiprocessing.connection
+import re
+import signal
+import sys
+import tempfile
+import time
+import traceback
+from collections import Counter, defaultdict
+from dataclasses import dataclass, fields
+from pathlib import Path
+
+import numpy as np
+from random_blades import random_design, random_fields
+
+LIMIT = 60.0
+"""seconds of processor time that a design may take; ten times as much on the clock"""
+SAMPLES = 2000
+"""points on each face, each way, in the round trip"""
+REASONS = {
+    "an angle must lie between": "an angle of 90 deg or more",
+    "the sides cross": "the sides of a section cross",
+    "can hold at most": "the thickness cannot hold the edge radius",
+    "leaves the blade outwards": "the camber turns too fast for the thickness beside an edge",
+    "bends more than such an edge": "the stream surface bends more than the edge",
+    "neighbouring blades intersect": "neighbouring blades intersect",
+    "folds over": "the channel folds over",
+    "ends are swapped": "the channel's ends are swapped",
+    "keep clear of the axis": "the channel reaches the axis",
+    "cannot be inverted": "a stream line of the channel turns back",
+    "stands": "the nose stands too far outside the channel",
+    "the native surfaces reach": "the tolerance is not reached within 200 x 100 poles",
+    "the blade winds": "the blade winds around the axis",
+    "cannot be followed": "an end cannot be followed on its wall",
+}
+"""what a refusal says, and what it is counted as"""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Outcome:
+    """What became of the design of a seed."""
+
+    seed: int
+    kind: str
+    """built, refused, failed, crashed or hung"""
+    message: str
+    seconds: float
+    shape: str
+
+
+def judged(seed, directory, samples=SAMPLES):
+    """What becomes of the design of a seed: its kind, and why."""
+    from bladewright.errors import DesignError
+
+    try:
+        design = random_design(seed)
+        blade = design.build()
+    except DesignError as error:
+        wrong = unclear(str(error))
+        return ("failed", f"unclear refusal ({wrong}): {error}") if wrong else ("refused", str(error))
+    from bladewright import cad
+
+    if not blade.promises.kept:
+        broken = {name: getattr(blade.promises, name) for name in blade.promises.limits}
+        return "failed", f"a promise is not kept: {broken}, limits {blade.promises.limits}"
+    trip = cad.write(blade, Path(directory) / f"{design.name}.step", samples=samples)
+    return ("built", f"{blade.knots.poles[0]} x {blade.knots.poles[1]} poles") if trip.passed else (
+        "failed", f"round trip: {'; '.join(trip.failures)}"
+    )
+
+
+def unclear(message):
+    """What is wrong with a refusal that is not one clear paragraph that names a parameter, or nothing."""
+    from bladewright.blade.channel import Channel
+    from bladewright.blade.unified import UnifiedBlade
+
+    names = [each.name for kind in (UnifiedBlade, Channel) for each in fields(kind)]
+    if "\n" in message or not 40 <= len(message) <= 500:
+        return "not one paragraph"
+    if not re.search(rf"\b({'|'.join(names)})\b", message):
+        return "names no parameter"
+    return ""
+
+
+def reason_of(message):
+    """What a refusal is counted as."""
+    return next((reason for sign, reason in REASONS.items() if sign in message), message[:80])
+
+
+def _work(pipe):
+    with tempfile.TemporaryDirectory() as directory:
+        while True:
+            seed, samples, limit = pipe.recv()
+            # the kernel ends a process that reaches it, in compiled code too
+            signal.setitimer(signal.ITIMER_PROF, limit)
+            start = time.process_time()
+            try:
+                kind, message = judged(seed, directory, samples)
+            except Exception:  # noqa: BLE001 - whatever it is, it is what became of the design
+                kind, message = "failed", traceback.format_exc()
+            signal.setitimer(signal.ITIMER_PROF, 0.0)
+            pipe.send((kind, message, time.process_time() - start))
+
+
+def outcomes(seeds, jobs=1, limit=LIMIT, samples=SAMPLES):
+    """Yield the outcome of each seed, in any order, from `jobs` processes that are replaced where they die."""
+    context = multiprocessing.get_context("spawn")
+    todo = list(reversed(seeds))
+    workers = [_Worker(context, todo.pop(), limit, samples) for _ in range(min(jobs, len(todo)))]
+    while workers:
+        ready = multiprocessing.connection.wait(
+            [waitable for worker in workers for waitable in (worker.pipe, worker.process.sentinel)], timeout=0.2
+        )
+        for worker in list(workers):
+            outcome = worker.outcome(ready)
+            if outcome is None:
+                continue
+            yield outcome
+            if todo:
+                worker.ask(todo.pop())
+            else:
+                worker.end()
+                workers.remove(worker)
+
+
+class _Worker:
+    def __init__(self, context, seed, limit, samples):
+        self.context, self.limit, self.samples = context, limit, samples
+        self._start()
+        self.ask(seed)
+
+    def _start(self):
+        self.pipe, other = self.context.Pipe()
+        self.process = self.context.Process(target=_work, args=(other,), daemon=True)
+        self.process.start()
+        other.close()
+
+    def ask(self, seed):
+        self.seed, self.since = seed, time.perf_counter()
+        self.pipe.send((seed, self.samples, self.limit))
+
+    def outcome(self, ready):
+        if self.pipe in ready:
+            try:
+                kind, message, seconds = self.pipe.recv()
+            except EOFError:
+                return self._replaced()
+            return self._outcome(kind, message, seconds)
+        if self.process.sentinel in ready or time.perf_counter() - self.since > 10.0 * self.limit:
+            return self._replaced()
+        return None
+
+    def _replaced(self):
+        self.end()
+        code = self.process.exitcode
+        self._start()
+        if code in {-signal.SIGPROF, -signal.SIGKILL}:
+            return self._outcome("hung", f"more than {self.limit:g} s", self.limit)
+        return self._outcome("crashed", f"exit code {code}", float("nan"))
+
+    def _outcome(self, kind, message, seconds):
+        shape = random_fields(self.seed)["description"].split(",")[0]
+        return Outcome(seed=self.seed, kind=kind, message=message, seconds=seconds, shape=shape)
+
+    def end(self):
+        # one that is ending by itself keeps its exit code
+        self.process.join(0.5)
+        self.process.kill()
+        self.process.join()
+        self.pipe.close()
+
+
+def report(found, command):
+    """The record of a run, in Markdown."""
+    by_kind = defaultdict(list)
+    for outcome in found:
+        by_kind[outcome.kind].append(outcome)
+    lines = [
+        "# Random designs",
+        "",
+        f"`{command}`: {len(found)} designs, each refused with one clear paragraph that names a parameter, or",
+        "built into a STEP solid that passes its round trip and keeps every promise.",
+        "",
+        "| | designs | processor seconds each: median | 95 % | most |",
+        "|---|---|---|---|---|",
+    ]
+    for kind in ("built", "refused", "failed", "crashed", "hung"):
+        times = np.array([outcome.seconds for outcome in by_kind[kind]])
+        figures = [*np.quantile(times, [0.5, 0.95, 1.0])] if len(times) else []
+        row = [f"{figure:.2f}" for figure in figures] or [""] * 3
+        lines.append(f"| {kind} | {len(times)} | {' | '.join(row)} |")
+    lines += ["", "| channel | built | refused |", "|---|---|---|"]
+    for shape in sorted({outcome.shape for outcome in found}):
+        row = [sum(outcome.shape == shape for outcome in by_kind[kind]) for kind in ("built", "refused")]
+        lines.append(f"| {shape} | {row[0]} | {row[1]} |")
+    lines += ["", "| refused because | designs | for example |", "|---|---|---|"]
+    reasons = Counter(reason_of(outcome.message) for outcome in by_kind["refused"])
+    for reason, count in reasons.most_common():
+        example = next(outcome for outcome in by_kind["refused"] if reason_of(outcome.message) == reason)
+        lines.append(f"| {reason} | {count} | seed {example.seed}: {example.message} |")
+    bad = [outcome for kind in ("failed", "crashed", "hung") for outcome in by_kind[kind]]
+    if bad:
+        lines += ["", "## Failures", ""]
+        lines += [f"* seed {o.seed} {o.kind}: {o.message.strip().splitlines()[-1]}" for o in bad]
+    return "\n".join(lines) + "\n"
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--count", type=int, default=50)
+    parser.add_argument("--seed", type=int, default=0, help="the first seed")
+    parser.add_argument("--jobs", type=int, default=1)
+    parser.add_argument("--samples", type=int, default=SAMPLES)
+    parser.add_argument("--record", type=Path, help="Markdown file for the result")
+    parser.add_argument("--show", action="store_true", help="print each design as its file holds it")
+    given = parser.parse_args()
+    if given.show:
+        _show(range(given.seed, given.seed + given.count))
+    found = []
+    for outcome in outcomes(range(given.seed, given.seed + given.count), jobs=given.jobs, samples=given.samples):
+        found.append(outcome)
+        if outcome.kind != "refused" or given.show:
+            print(f"seed {outcome.seed}: {outcome.kind} in {outcome.seconds:.1f} s: {outcome.message}", flush=True)
+    text = report(sorted(found, key=lambda outcome: outcome.seed), f"python {' '.join(sys.argv)}")
+    print(text)
+    if given.record:
+        given.record.write_text(text, encoding="utf-8")
+    return 1 if any(outcome.kind not in {"built", "refused"} for outcome in found) else 0
+
+
+def _show(seeds):
+    from bladewright.errors import DesignError
+    from bladewright.files.writing import write_design
+
+    for seed in seeds:
+        with tempfile.TemporaryDirectory() as directory:
+            path = Path(directory) / "design.toml"
+            try:
+                write_design(random_design(seed), path)
+                print(path.read_text())
+            except DesignError as error:
+                print(f"seed {seed}: {error}")
+
+
+if __name__ == "__main__":
+    sys.exit(main())
