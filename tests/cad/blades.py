@@ -45,9 +45,7 @@ class Blade:
 
 
 def blade(name: str, surfaces: Mapping, orientations: Mapping[str, int]) -> Blade:
-    return Blade(
-        name=name, surfaces=surfaces, orientations=orientations, properties=properties(surfaces, orientations)
-    )
+    return Blade(name=name, surfaces=surfaces, orientations=orientations, properties=properties(surfaces, orientations))
 
 
 def replaced(built: Blade, **faces: Surface | TrimmedSurface) -> Blade:

@@ -14,7 +14,7 @@ from OCP.TopoDS import TopoDS, TopoDS_Compound, TopoDS_Face, TopoDS_Shell, TopoD
 
 from bladewright import cad
 from bladewright.cad.reopen import each
-from bladewright.cad.solid import body
+from bladewright.cad.solids import body
 
 from .blades import annular, moved, replaced
 
@@ -231,7 +231,7 @@ def test_a_name_that_our_own_file_lost(rotor, step, tmp_path):
     assert trip.failures == ("face hub has no name in the file",)
 
 
-def test_another_blade(rotor, step):
+def test_another_blade(step):
     other = annular(turn=1e-6)
     trip = failing(step[0], other)
     # 1e-6 rad at a radius of 0.2 to 0.3 m

@@ -13,8 +13,8 @@ from OCP.ShapeUpgrade import ShapeUpgrade_ShapeDivideContinuity
 from OCP.STEPControl import STEPControl_AsIs, STEPControl_Writer
 
 from bladewright import cad
-from bladewright.cad.solid import body
-from bladewright.cad.verify import limits_of
+from bladewright.cad.solids import body
+from bladewright.cad.verification import limits_of
 from bladewright.nurbs.surface import Surface
 
 REPORT = {

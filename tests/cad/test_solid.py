@@ -12,8 +12,8 @@ from OCP.Geom import Geom_Plane, Geom_SurfaceOfRevolution
 from bladewright import cad
 from bladewright.cad.closure import closure
 from bladewright.cad.geometry import native_surface
-from bladewright.cad.solid import body
-from bladewright.cad.verify import limits_of
+from bladewright.cad.solids import body
+from bladewright.cad.verification import limits_of
 from bladewright.errors import CadError
 from bladewright.nurbs.surface import Surface
 

@@ -65,7 +65,6 @@ def test_another_reader_finds_the_names_too(rotor, step):
     document = TDocStd_Document(TCollection_ExtendedString("XmlXCAF"))
     reader = STEPCAFControl_Reader()
     assert reader.ReadFile(str(step[0])) == IFSelect_RetDone
-    reader.SetNameMode(True)
     reader.Transfer(document)
     shapes = XCAFDoc_DocumentTool.ShapeTool_s(document.Main())
     labels = TDF_LabelSequence()

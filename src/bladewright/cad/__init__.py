@@ -2,8 +2,8 @@
 
 from bladewright.cad.built import Built as Built
 from bladewright.cad.roundtrip import RoundTrip as RoundTrip
-from bladewright.cad.sample import sample as sample
-from bladewright.cad.solid import solid as solid
-from bladewright.cad.verify import verify as verify
+from bladewright.cad.sampling import sample as sample
+from bladewright.cad.solids import solid as solid
+from bladewright.cad.verification import verify as verify
 from bladewright.cad.version import occ_version as occ_version
-from bladewright.cad.write import write as write
+from bladewright.cad.writing import write as write

@@ -68,16 +68,22 @@ class Meant:
         """  # noqa: D205
         if not isinstance(self.face, Surface) or not isinstance(region.carrier, SplineCarrier) or region.chains:
             return None
-        mine, found = self.face, []
-        for turned in _turned(region.carrier.surface):
-            if (
-                (mine.degree_u, mine.degree_v) == (turned.degree_u, turned.degree_v)
-                and mine.control_points.shape == turned.control_points.shape
-                and np.allclose(mine.knots_u, turned.knots_u, rtol=0.0, atol=SAME_KNOT)
-                and np.allclose(mine.knots_v, turned.knots_v, rtol=0.0, atol=SAME_KNOT)
-            ):
-                found.append((np.max(np.abs(turned.control_points - MM * mine.control_points)), turned))
+        mine = self.face
+        found = [
+            (np.max(np.abs(turned.control_points - MM * mine.control_points)), turned)
+            for turned in _turned(region.carrier.surface)
+            if _same_basis(mine, turned)
+        ]
         return (mine, min(found, key=lambda each: float(each[0]))[1]) if found else None
+
+
+def _same_basis(one: Surface, other: Surface) -> bool:
+    return (
+        (one.degree_u, one.degree_v) == (other.degree_u, other.degree_v)
+        and one.control_points.shape == other.control_points.shape
+        and bool(np.allclose(one.knots_u, other.knots_u, rtol=0.0, atol=SAME_KNOT))
+        and bool(np.allclose(one.knots_v, other.knots_v, rtol=0.0, atol=SAME_KNOT))
+    )
 
 
 def _turned(surface: Surface) -> Iterator[Surface]:

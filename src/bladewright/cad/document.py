@@ -6,7 +6,7 @@ from OCP.TDF import TDF_Label
 from OCP.TDocStd import TDocStd_Document
 from OCP.XCAFDoc import XCAFDoc_DocumentTool
 
-from bladewright.cad.solid import Body
+from bladewright.cad.solids import Body
 
 
 def document(name: str, body: Body, names: dict[str, str]) -> tuple[TDocStd_Document, TDF_Label]:

@@ -9,7 +9,7 @@ from OCP.TCollection import TCollection_HAsciiString
 
 from bladewright.cad.built import Built
 from bladewright.cad.document import document
-from bladewright.cad.solid import CONFUSION, Body
+from bladewright.cad.solids import CONFUSION, Body
 from bladewright.cad.step import SYSTEM
 from bladewright.errors import CadError
 

@@ -13,7 +13,7 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
-from bladewright.cad.solid import Body
+from bladewright.cad.solids import Body
 from bladewright.errors import CadError
 from bladewright.numerics.elementary import Array
 

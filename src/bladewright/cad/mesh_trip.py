@@ -13,7 +13,7 @@ from bladewright.cad.mesh import Mesh, Nearest, merged, triangulated
 from bladewright.cad.quiet import quiet
 from bladewright.cad.reopen import format_of
 from bladewright.cad.roundtrip import Compared, EdgeTrip, FaceTrip, RoundTrip
-from bladewright.cad.solid import body
+from bladewright.cad.solids import body
 from bladewright.cad.stl import read_stl, write_stl
 from bladewright.cad.threemf import read_3mf, write_3mf
 from bladewright.errors import CadError

@@ -17,7 +17,7 @@ from OCP.XCAFDoc import XCAFDoc_Area, XCAFDoc_Centroid, XCAFDoc_Volume
 from bladewright import __version__
 from bladewright.cad.built import MM, Built
 from bladewright.cad.document import document
-from bladewright.cad.solid import CONFUSION, Body
+from bladewright.cad.solids import CONFUSION, Body
 from bladewright.errors import CadError
 
 Schema = Literal["AP242", "AP214", "AP203"]

@@ -11,9 +11,9 @@ from bladewright.cad.iges import write_iges
 from bladewright.cad.quiet import quiet
 from bladewright.cad.reopen import format_of
 from bladewright.cad.roundtrip import RoundTrip
-from bladewright.cad.solid import Body, body
+from bladewright.cad.solids import Body, body
 from bladewright.cad.step import Schema, write_step
-from bladewright.cad.verify import SAMPLES, verify
+from bladewright.cad.verification import SAMPLES, verify
 from bladewright.errors import CadError
 
 
