@@ -9,9 +9,10 @@ import sys
 import tempfile
 from pathlib import Path
 
-import bladewright as bw
 from _common import EXPORTS, example
 from PIL import Image
+
+import bladewright as bw
 
 HERE = Path(__file__).parent
 NAMES = sorted(path.stem for path in HERE.glob("*.py") if path.stem not in {"_common", "make_all"})
