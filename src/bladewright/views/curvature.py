@@ -32,13 +32,16 @@ def draw_curvature(axes: Axes, sections: Sequence["Section"]) -> None:
     for section in sections:
         for name, style in (("upper", UPPER), ("lower", LOWER)):
             axes.plot(*side_curvature(section, name), color=span_colour(section.span), linestyle=style, linewidth=1.2)
-    threshold = 10.0 ** np.ceil(np.log10(1.0 / (MILLIMETRES * min(section.chord for section in sections))))
+    least = 2.0 / (MILLIMETRES * min(section.chord for section in sections))
+    decade = 10.0 ** np.floor(np.log10(least))
+    threshold = decade * min(each for each in (1.0, 2.0, 5.0, 10.0) if each * decade >= least)
     axes.set_yscale("symlog", linthresh=threshold, linscale=1.5)
     low, high = axes.get_ylim()
-    beyond = threshold * 10.0 ** np.arange(1.0, 9.0)
+    beyond = decade * 10.0 ** np.arange(1.0, 9.0)
+    beyond = beyond[beyond > 1.5 * threshold]
     ticks = np.concatenate([-beyond, threshold * np.linspace(-1.0, 1.0, 5), beyond])
     axes.set_ylim(low, high)
-    axes.yaxis.set_major_locator(FixedLocator(ticks[(ticks >= low) & (ticks <= high)]))
+    axes.yaxis.set_major_locator(FixedLocator(ticks[(ticks >= low) & (ticks <= high)].tolist()))
     axes.yaxis.set_minor_locator(NullLocator())
     axes.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
     axes.axhline(0.0, color=SOFT, linewidth=0.8)

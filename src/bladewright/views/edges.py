@@ -32,7 +32,7 @@ def draw_edge(axes: Axes, section: "Section", *, trailing: bool) -> None:
     axes.plot(*camber.T, color=INK, linewidth=0.9, linestyle=CAMBER)
     axes.add_patch(Circle((centre[0], centre[1]), radius, fill=False, edgecolor=RED, linewidth=1.1, linestyle="--"))
     axes.plot(*centre, marker="+", color=RED, markersize=7.0)
-    reach = max(min(REACH * radius, PART * section.chord * MILLIMETRES), 1.5 * radius)
+    reach = float(np.clip(PART * section.chord * MILLIMETRES, 1.5 * radius, REACH * radius))
     middle = tip + 0.6 * reach * inwards
     axes.set_xlim(middle[0] - reach, middle[0] + reach)
     axes.set_ylim(middle[1] - reach, middle[1] + reach)

@@ -2,9 +2,11 @@
 
 from collections.abc import Sequence
 from pathlib import Path
+from textwrap import shorten
 from typing import Any, cast
 
 import numpy as np
+from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure, SubFigure
 from matplotlib.layout_engine import ConstrainedLayoutEngine
 
@@ -25,10 +27,10 @@ from bladewright.views.writing import checked, write
 
 DOTS = 150
 """to an inch of a PNG"""
+LONGEST = 150
+"""letters of the sheet's first line"""
 SPANS = (0.0, 0.25, 0.5, 0.75, 1.0)
 FEW = (0.0, 0.5, 1.0)
-
-
 Drawable = UnifiedBlade | UnifiedSection | Blade | Section
 
 
@@ -40,7 +42,9 @@ def picture(design: Drawable, path: str | Path, *, blade: Blade | Section | None
     suffix is another or the path cannot be written, DesignError where the design cannot be built.
     """
     checked(path)
-    write(sheet(design, blade), path, DOTS)
+    figure = sheet(design, blade)
+    with manner():
+        write(figure, path, DOTS)
 
 
 def blade_view(blade: Blade | UnifiedBlade, path: str | Path) -> None:
@@ -66,7 +70,13 @@ def sheet(design: Drawable, blade: Blade | Section | None = None) -> Figure:
     built: Any = design if isinstance(design, Blade | Section) else (blade or design.build())
     asked: Any = getattr(built, "design", None) if isinstance(design, Blade | Section) else design
     with manner():
-        return _blade_sheet(built) if isinstance(built, Blade) else _section_sheet(asked, built)
+        figure = _blade_sheet(built) if isinstance(built, Blade) else _section_sheet(asked, built)
+        FigureCanvasAgg(figure)
+        engine = figure.get_layout_engine()
+        if engine is not None:
+            engine.execute(figure)
+        figure.set_layout_engine("none")  # or it would be laid out anew, twice, when it is written
+        return figure
 
 
 def _blade_sheet(blade: Blade) -> Figure:
@@ -78,10 +88,10 @@ def _blade_sheet(blade: Blade) -> Figure:
     _headed(figure, blade.name, blade.description, _blade_figures(blade, middle, pitch))
     top, centre, bottom = _rows(figure, 5.4, 4.6, 4.4)
     axes = top.subplots(1, 3, width_ratios=[1.25, 1.0, 1.0])
-    draw_solid(axes[0], blade, neighbours=2, width=900)
+    draw_solid(axes[0], blade, neighbours=2, width=760)
     axes[0].set_title("Blade with neighbours")
     draw_sections(axes[1], sections)
-    draw_passage(axes[2], middle, pitch, "Passage at mid span")
+    draw_passage(axes[2], middle, pitch, "Mid span")
     axes = centre.subplots(1, 3)
     draw_meridional(axes[0], blade)
     draw_curvature(axes[1], few)
@@ -125,9 +135,12 @@ def _headed(figure: Figure, name: str, description: str, figures: list[str]) -> 
     rect = (0.0, 0.0, 1.0, 1.0 - 0.85 * inch)
     figure.set_layout_engine(ConstrainedLayoutEngine(w_pad=0.12, h_pad=0.10, rect=rect))
     place: dict[str, Any] = {"ha": "left", "va": "baseline"}
-    figure.text(0.012, 1.0 - 0.42 * inch, name, fontsize=20.0, fontweight="bold", **place)
+    name = shorten(name, LONGEST // 3, placeholder=" …")
+    description = shorten(description, LONGEST - 2 * len(name), placeholder=" …")
+    figure.text(0.012, 1.0 - 0.42 * inch, name, fontsize=20.0, fontweight="bold", parse_math=False, **place)
     figure.text(0.012, 1.0 - 0.72 * inch, "   ·   ".join(figures), fontsize=11.0, **place)
-    figure.text(0.988, 1.0 - 0.42 * inch, description, fontsize=11.0, ha="right", va="baseline")
+    place["ha"] = "right"
+    figure.text(0.988, 1.0 - 0.42 * inch, description, fontsize=11.0, parse_math=False, **place)
 
 
 def _blade_figures(blade: Blade, middle: Section, pitch: float) -> list[str]:

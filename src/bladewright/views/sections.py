@@ -32,7 +32,7 @@ COORDINATES = {
     "u-y/L": (r"$u\,L$ [mm]", r"$r\,\theta$ [mm]"),
 }
 """the developed planes' axes; a bar is the mean along the section, so that angles are true and lengths near it"""
-ALONE = 12.0
+ALONE = 4.0
 """pitch, in chords, from which on a neighbour is not drawn"""
 
 
@@ -104,6 +104,7 @@ def draw_passage(axes: Axes, section: "Section", pitch: float | None, title: str
         gap = narrowest(shape, neighbour)
         width = float(length(gap[1] - gap[0]))
         axes.plot(*gap.T, color=RED, linewidth=1.1, marker="o", markersize=3.0, label=f"narrowest {width:.4g} mm")
+    if pitch is not None:
         title = f"{title}, pitch {pitch:.4g} mm"
     titled(axes, title, *COORDINATES[section.plane])
     axes.set_aspect("equal", adjustable="datalim")

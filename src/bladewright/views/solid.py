@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from bladewright.blade.blade import Blade
 
 BLADE = (0.16, 0.47, 0.68)
-NEIGHBOUR = (0.80, 0.84, 0.88)
+NEIGHBOUR = (0.74, 0.78, 0.83)
 HUB = (0.70, 0.68, 0.64)
 EDGE = (0.05, 0.16, 0.26)
 FAINT = (0.55, 0.60, 0.65)

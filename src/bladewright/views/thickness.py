@@ -36,7 +36,7 @@ def draw_thickness(axes: Axes, sections: Sequence["Section"]) -> None:
         axes.plot(place, largest * MILLIMETRES, marker="o", markersize=4.0, color=colour, linestyle="none")
     axes.set_ylim(bottom=0.0)
     axes.set_xlim(-0.01, 1.01)
-    titled(axes, "Thickness as built, largest of the chord", CHORD, "thickness across the camber [mm]")
+    titled(axes, "Thickness as built, largest in % of chord", CHORD, "thickness across the camber [mm]")
     legend_below(axes, 3, handlelength=1.2)
 
 
