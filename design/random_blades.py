@@ -2,21 +2,23 @@
 
 import numpy as np
 
+from bladewright.blade.channel import Channel
+from bladewright.blade.unified import UnifiedBlade
+from bladewright.section.checks import UNITS
+
 
 def random_design(seed):
     """The design of a seed; raises DesignError where its numbers alone are refused."""
-    from bladewright.blade.unified import UnifiedBlade
-
     return UnifiedBlade(**random_fields(seed))
 
 
 def random_fields(seed):
     """The fields of the design of a seed."""
     draw = np.random.default_rng(seed)
-    unit = str(draw.choice(["mm", "mm", "m", "in"]))
+    unit = str(draw.choice(["mm", "mm", "mm", "m", "cm", "um", "in", "ft"]))
     linear = draw.random() < 0.2
     wild = draw.random()
-    channel, shape = random_channel(draw, wild, linear=linear, size={"mm": 100.0, "m": 0.1, "in": 4.0}[unit])
+    channel, shape = random_channel(draw, wild, linear=linear, size=0.1 / UNITS[unit])
     length, radius = channel.pop("length"), channel.pop("radius")
     stagger = draw.uniform(-80.0, 80.0)
     bound = 95.0 if draw.random() < 0.03 else 86.0
@@ -41,10 +43,10 @@ def random_fields(seed):
         "trailing_edge_radius": law(draw, share[1] * thickness, 0.3 * share[1] * thickness, (1e-4, 0.5)),
         "thickness_upper": chordwise(draw, thickness),
         "thickness_lower": chordwise(draw, thickness * draw.uniform(0.4, 1.6)),
-        "samples": int(draw.choice([16, 16, 16, draw.integers(4, 31)])),
+        "samples": int(draw.choice([16, 16, 16, draw.integers(3, 41)])),
         "clustering": float(draw.choice([1.0, 1.0, draw.random()])),
         "mapping": "paper" if draw.random() < 0.05 else "conformal",
-        "tolerance": float(draw.choice([1e-6, 1e-6, 1e-6, 1e-7, 1e-5, 1e-4])),
+        "tolerance": float(draw.choice([1e-6, 1e-6, 1e-6, 1e-8, 1e-7, 1e-5, 1e-4])),
     }
     if draw.random() < 0.2:
         side = str(draw.choice(["upper", "lower"]))
@@ -57,8 +59,6 @@ def random_fields(seed):
     else:
         blade["blade_count"] = int(np.clip(round(2.0 * np.pi * radius / length * solidity), 1, 200))
         blade["leading_edge_theta"] = law(draw, draw.uniform(-180.0, 180.0), 4.0, (-9e9, 9e9))
-    from bladewright.blade.channel import Channel
-
     return {**blade, "channel": Channel(**channel)}
 
 
@@ -97,6 +97,7 @@ def random_channel(draw, wild, *, linear, size):
         return pairs(points + noise * draw.normal(size=(count, 2)))
 
     channel = {"leading_edge": edge(0), "trailing_edge": edge(-1), "hub": wall(hub), "shroud": wall(shroud)}
+    channel["degree"] = int(draw.choice([5, 5, 5, 5, 5, 4, 3, 2, 1]))
     radius = float(np.mean(middle[:, 1])) + lift[1]
     return {**channel, "length": float(length), "radius": radius}, shape
 

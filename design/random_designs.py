@@ -39,7 +39,7 @@ REASONS = {
     "keep clear of the axis": "the channel reaches the axis",
     "cannot be inverted": "a stream line of the channel turns back",
     "stands": "the nose stands too far outside the channel",
-    "the native surfaces reach": "the tolerance is not reached within 200 x 100 poles",
+    "native surfaces reach": "the tolerance is not reached within 200 x 100 poles",
     "the blade winds": "the blade winds around the axis",
     "cannot be followed": "an end cannot be followed on its wall",
 }

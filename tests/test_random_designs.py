@@ -1,6 +1,6 @@
 """Designs drawn at random: what cannot be built is refused with a reason, the rest passes its round trip.
 
-`python design/random_designs.py --count 2000` does the same for 2,000 of them.
+The slow test does the same for 2,000 of them, and so does `python design/random_designs.py --count 2000`.
 """
 
 import sys
@@ -24,6 +24,12 @@ def outcomes():
 def test_each_random_design_is_refused_with_a_reason_or_passes_its_round_trip(outcomes):
     assert sorted(outcome.seed for outcome in outcomes) == list(range(COUNT))
     assert [outcome for outcome in outcomes if outcome.kind not in {"built", "refused"}] == []
+
+
+@pytest.mark.slow
+def test_each_of_two_thousand_random_designs_is_refused_with_a_reason_or_passes_its_round_trip():
+    found = random_designs.outcomes(range(2000), jobs=2)
+    assert [outcome for outcome in found if outcome.kind not in {"built", "refused"}] == []
 
 
 def test_a_fair_share_of_random_designs_is_built_and_another_refused(outcomes):

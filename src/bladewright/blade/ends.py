@@ -155,8 +155,9 @@ def _followed(place: Callable[[Reals], Array], end: Curve, crossings: Reals, sur
         if np.max(miss) < FOLLOWED * chord:
             return curve
     raise DesignError(
-        f"an end of the blade cannot be followed on its wall within {FOLLOWED:g} of the chord, "
-        f"{np.max(miss) / chord:.2g} is reached: smooth the channel's wall, or lower the tolerance"
+        f"channel: an end of the blade cannot be followed on its wall within {FOLLOWED:g} of the chord, "
+        f"{np.max(miss) / chord:.2g} is reached: smooth the wall by a higher channel.degree or fewer inner control points, "
+        "or lower the tolerance"
     )
 
 
