@@ -147,7 +147,7 @@ def _blade_figures(blade: Blade, middle: Section, pitch: float) -> list[str]:
     columns, rows = blade.knots.poles
     count = blade.design.blade_count
     return [
-        f"{count} blades" if count is not None else "linear cascade",
+        "linear cascade" if count is None else f"{count} blade{'s' if count > 1 else ''}",
         f"mean chord {blade.chord * MILLIMETRES:.4g} mm",
         f"chord / pitch at mid span {middle.chord * MILLIMETRES / pitch:.3g}",
         f"{columns} x {rows} poles a side",
