@@ -30,7 +30,10 @@ def trimmed_ends(exact: ExactBlade, upper: Surface, lower: Surface, chord: float
     spans = np.unique(upper.knots_u)
     places = np.sort(np.concatenate([spans, (spans[1:] + spans[:-1]) / 2.0]))
     stations = exact.survey
-    u, _, across = stations.on_lines(np.concatenate(stations.plane.points(places), axis=-2))
+    plane = np.concatenate(stations.plane.points(places), axis=-2)[..., [0, -1], :, :]
+    lines = stations.lines.rows([0, -1])
+    u = lines.u_at(plane[..., 0])
+    across = lines.mapping.tangential(plane[..., 1], lines.position(u)[..., 1], lines.lengths[..., None])
     first = (0,) * (u.ndim - 2)
     u, across = np.real(u)[first], np.real(across)[first]
     ends = {}
@@ -65,8 +68,15 @@ def _trimmed(traces: "list[_Trace]", meridian: Curve, wall: str, chord: float) -
         v = (across - low + room) / (high - low + 2.0 * room) if revolution is None else revolution.v(across)
         return np.stack([u, v], axis=-1)
 
+    def stretch(uv: Reals) -> Reals:
+        line = _real(meridian)
+        around = np.full(len(uv), high - low + 2.0 * room)
+        if revolution is not None:
+            around = line(uv[:, 0])[:, 1] * revolution.slope(uv[:, 1])
+        return np.stack([length(line.derivative(uv[:, 0])), around], axis=-1)
+
     def followed(trace: _Trace) -> Curve:
-        return _followed(lambda s: in_parameters(*trace(s)), trace.end, trace.crossings(joints), surface, chord)
+        return _followed(lambda s: in_parameters(*trace(s)), trace.end, trace.crossings(joints), stretch, chord)
 
     curves = [followed(trace) for trace in traces]
     return TrimmedSurface(surface=surface, boundary=(curves[1], _reversed(curves[0])), revolution=revolution)
@@ -106,7 +116,7 @@ class _Trace:
             radius, across = points[..., 2], points[..., 1]
         target = np.stack([points[..., 0], radius], axis=-1)
         u = np.interp(s, self._places, self._u)
-        for _ in range(3):
+        for _ in range(2):
             u = u + _foot_step(self.meridian, u, np.real(target))
         return u + _foot_step(self.meridian, u, target), across
 
@@ -131,13 +141,14 @@ def _foot_step(meridian: Curve, u: Reals, target: Array) -> Array:
     return dot(miss, slope) / (dot(slope, slope) - dot(miss, bend))
 
 
-def _followed(place: Callable[[Reals], Array], end: Curve, crossings: Reals, surface: Surface, chord: float) -> Curve:
+def _followed(
+    place: Callable[[Reals], Array], end: Curve, crossings: Reals, stretch: Callable[[Reals], Reals], chord: float
+) -> Curve:
     """A plane B-spline that the wall maps on the side's end, as smooth as the side, its knots cut until it follows.
 
     Where the wall's own parameter passes from one rational arc to the next, at `crossings`, it is smooth to the first
     derivative only, and so is the curve.
     """
-    real = surface if not np.iscomplexobj(surface.control_points) else _real(surface)
     own = end.knots
     for crossing in crossings:
         beside = (np.abs(own - crossing) < SNAPPED) & (own > own[0]) & (own < own[-1])  # real: knots
@@ -151,25 +162,20 @@ def _followed(place: Callable[[Reals], Array], end: Curve, crossings: Reals, sur
         curve = Curve(control_points=net, knots=knots, degree=end.degree)
         between = (sites[1:] + sites[:-1]) / 2.0
         exact, found = np.real(place(between)), np.real(curve(between))
-        miss = length(real(exact[:, 0], exact[:, 1]) - real(found[:, 0], found[:, 1]))
+        miss = length((found - exact) * stretch(exact))
         if np.max(miss) < FOLLOWED * chord:
             return curve
     raise DesignError(
         f"channel: an end of the blade cannot be followed on its wall within {FOLLOWED:g} of the chord, "
-        f"{np.max(miss) / chord:.2g} is reached: smooth the wall by a higher channel.degree or fewer inner control points, "
-        "or lower the tolerance"
+        f"{np.max(miss) / chord:.2g} is reached: smooth the wall by a higher channel.degree or fewer inner control "
+        "points, or lower the tolerance"
     )
 
 
-def _real(surface: Surface) -> Surface:
-    return Surface(
-        control_points=np.real(surface.control_points),
-        knots_u=surface.knots_u,
-        knots_v=surface.knots_v,
-        degree_u=surface.degree_u,
-        degree_v=surface.degree_v,
-        weights=None if surface.weights is None else np.real(surface.weights),
-    )
+def _real(curve: Curve) -> Curve:
+    if not np.iscomplexobj(curve.control_points):
+        return curve
+    return Curve(control_points=np.real(curve.control_points), knots=curve.knots, degree=curve.degree)
 
 
 def _reversed(curve: Curve) -> Curve:
