@@ -74,7 +74,8 @@ def test_the_slope_of_the_density_is_its_derivative(mapping):
 
 def test_stream_lines_are_the_transfinite_interpolation_of_the_four_curves():
     channel = meridional(
-        Channel(leading_edge=((0.0, 1.0), (0.1, 1.6), (-0.1, 2.0)), trailing_edge=((1.0, 2.0), (0.7, 2.9)), **CURVED), 1.0
+        Channel(leading_edge=((0.0, 1.0), (0.1, 1.6), (-0.1, 2.0)), trailing_edge=((1.0, 2.0), (0.7, 2.9)), **CURVED),
+        1.0,
     )
     found = stream_lines(channel, Conformal(), V, 0.0, 0.0)
     u = np.linspace(0.0, 1.0, 11)
@@ -90,7 +91,9 @@ def test_stream_lines_are_the_transfinite_interpolation_of_the_four_curves():
 
 def test_past_the_edges_a_wall_continues_its_own_polynomial():
     hub = ((0.2, 1.3), (0.5, 0.9), (0.8, 1.4))
-    channel = meridional(Channel(leading_edge=((0.0, 1.0), (0.0, 2.0)), trailing_edge=((1.0, 1.0), (1.0, 2.0)), hub=hub), 1.0)
+    channel = meridional(
+        Channel(leading_edge=((0.0, 1.0), (0.0, 2.0)), trailing_edge=((1.0, 1.0), (1.0, 2.0)), hub=hub), 1.0
+    )
     found = stream_lines(channel, Cascade(), np.array([0.0]), 0.2, 0.2)
     inside = np.linspace(0.0, 1.0, 9)
     fit = np.polynomial.Polynomial.fit(inside, found.position(inside)[0, :, 1], 4)
@@ -100,7 +103,8 @@ def test_past_the_edges_a_wall_continues_its_own_polynomial():
 
 def test_slopes_of_the_channel_are_its_derivatives():
     channel = meridional(
-        Channel(leading_edge=((0.0, 1.0), (0.1, 1.6), (-0.1, 2.0)), trailing_edge=((1.0, 2.0), (0.7, 2.9)), **CURVED), 1.0
+        Channel(leading_edge=((0.0, 1.0), (0.1, 1.6), (-0.1, 2.0)), trailing_edge=((1.0, 2.0), (0.7, 2.9)), **CURVED),
+        1.0,
     )
     u, v, step = np.linspace(-0.1, 1.1, 7), np.linspace(0.05, 0.95, 5), 1e-6
     by_u, by_v = channel.slopes(u, v)

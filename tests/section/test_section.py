@@ -86,7 +86,13 @@ def test_maximum_thickness_is_that_of_rays_across_the_camber():
 
 def test_a_flat_camber_of_equal_sides_is_symmetric():
     design = VANE.changed(
-        {"stagger": 0.0, "metal_angle_in": 0.0, "metal_angle_out": 0.0, "thickness_lower": VANE.thickness_upper, "leading_edge_y": 0.0}
+        {
+            "stagger": 0.0,
+            "metal_angle_in": 0.0,
+            "metal_angle_out": 0.0,
+            "thickness_lower": VANE.thickness_upper,
+            "leading_edge_y": 0.0,
+        }
     )
     section = design.build()
     u = np.linspace(0.0, 1.0, 101)

@@ -27,7 +27,9 @@ def sections(stagger, angle_in, angle_out, radius_in, radius_out, thickness, wei
     places = sample_places(samples, clustering)
     half = span.chordwise(thickness, places[2:-2])
     law = None if weights is None else span.chordwise(weights, places)
-    sides = [side(line, places, half, one / radius_in, one / radius_out, upper=upper, weights=law) for upper in (True, False)]
+    sides = [
+        side(line, places, half, one / radius_in, one / radius_out, upper=upper, weights=law) for upper in (True, False)
+    ]
     return line, sides, plane_sections(line, *matched(*sides))
 
 
@@ -49,7 +51,9 @@ def test_both_sides_have_the_edge_radii_asked_for(turn, radius_in, radius_out, f
 
 @settings(max_examples=60, deadline=None)
 @given(ANGLES, RADII, RADII, THICK, THICK, WEIGHTS)
-def test_across_an_edge_first_derivatives_are_opposite_and_second_ones_equal(turn, radius_in, radius_out, a, b, weights):
+def test_across_an_edge_first_derivatives_are_opposite_and_second_ones_equal(
+    turn, radius_in, radius_out, a, b, weights
+):
     _, _, section = sections(turn / 2, turn, turn / 3, radius_in, radius_out, (a, 0.1, b), weights)
     for edge, from_end in ((section.leading_edge, False), (section.trailing_edge, True)):
         derivatives = []

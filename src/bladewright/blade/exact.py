@@ -194,8 +194,12 @@ def exact_blade(design: UnifiedBlade) -> ExactBlade:
     channel = meridional(design.channel, UNITS[design.length_unit])
     places = sample_places(design.samples, design.clustering)
     within = ExactBlade(design=design, channel=channel, mapping=mapping, places=places, before=0.0, after=0.0)
-    before, after = _reaches(within.stations(SURVEY))
-    return replace(within, before=before, after=after)
+    before, after = _reaches(within.survey)
+    exact = replace(within, before=before, after=after)
+    # the sections do not change with how far the stream lines are continued
+    longer = replace(within.survey, lines=stream_lines(channel, mapping, SURVEY, before, after))
+    exact.__dict__["survey"] = longer
+    return exact
 
 
 def _reaches(stations: Stations) -> list[float]:

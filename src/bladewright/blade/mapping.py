@@ -72,7 +72,7 @@ class Mapping(ABC):
         """
 
     def tangential(self, ordinate: Array, radius: Array, lengths: Array) -> Array:
-        """theta [rad], or y [m] in a cascade, from the ordinate and the radius: the ordinate itself, but for the paper."""
+        """theta [rad], or y [m] in a cascade, from ordinate and radius: the ordinate itself, but for the paper."""
         del radius, lengths
         return ordinate
 

@@ -43,6 +43,18 @@ class StreamLines:
         u = np.broadcast_to(u, np.broadcast_shapes((*self.starts.shape[:-1], 1), np.shape(u)))
         return self._by_panel(u, lambda panel, part: self._polynomial(panel, part, order))
 
+    def rows(self, which: list[int]) -> "StreamLines":
+        """Some of the stream lines, by their number along the span."""
+        return StreamLines(
+            mapping=self.mapping,
+            panels=self.panels,
+            powers=self.powers[..., which, :, :, :],
+            density=self.density[..., which, :, :],
+            series=self.series[..., which, :, :],
+            starts=self.starts[..., which, :],
+            lengths=self.lengths[..., which],
+        )
+
     def extents(self) -> Array:
         """(..., m) extent of the stream lines in their plane: the abscissa at u = 1."""
         return self.starts[..., int(np.searchsorted(self.panels, 1.0))]

@@ -44,6 +44,14 @@ class Revolution:
         t = v * self.arcs - arc
         return self.start + (arc + 0.5) * step + 2.0 * np.arctan(np.tan(step / 4.0) * (2.0 * t - 1.0))
 
+    def slope(self, v: ArrayLike) -> Reals:
+        """d theta / dv [rad] at real v (...)."""
+        v = np.asarray(v, dtype=np.float64)
+        step = (self.end - self.start) / self.arcs
+        t = v * self.arcs - np.clip(np.floor(v * self.arcs), 0, self.arcs - 1)
+        height = np.tan(step / 4.0)
+        return 4.0 * self.arcs * height / (1.0 + (height * (2.0 * t - 1.0)) ** 2)
+
     def v(self, theta: Array) -> Array:
         """v (...) at angles theta [rad], real or complex."""
         step = (self.end - self.start) / self.arcs

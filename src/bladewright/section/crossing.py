@@ -6,7 +6,7 @@ from numpy.typing import NDArray
 from bladewright.errors import DesignError
 from bladewright.nurbs.basis import Reals
 
-PLACES = (1.0 - np.cos(np.pi * np.linspace(0.0, 1.0, 65))) / 2.0
+PLACES = (1.0 - np.cos(np.pi * np.linspace(0.0, 1.0, 49))) / 2.0
 """places along the sides at which outlines are judged, dense at the edges"""
 
 
@@ -17,9 +17,9 @@ def check_outline(upper: Reals, lower: Reals, s: Reals, where: str) -> Reals:
     if place is not None:
         at = s[min(place, 2 * (len(s) - 1) - place)]
         raise DesignError(
-            f"thickness_upper and thickness_lower: the sides cross {where}near s = {at:.3f} along the section: raise the "
-            "thickness there, lower an edge radius that is larger than the thickness beside it, or lower the turning of "
-            "the camber"
+            f"thickness_upper and thickness_lower: the sides cross {where}near s = {at:.3f} along the section: raise "
+            "the thickness there, lower an edge radius that is larger than the thickness beside it, or lower the "
+            "turning of the camber"
         )
     return outline
 

@@ -14,6 +14,8 @@ DEGREE = 3
 
 def stacked(leaves: Any) -> Array:
     """Numbers, some of which may be batches (...), as one array (..., n)."""
+    if not any(isinstance(leaf, np.ndarray) for leaf in leaves):
+        return np.array(leaves)
     return np.stack(np.broadcast_arrays(*[np.asarray(leaf) for leaf in leaves]), axis=-1)
 
 
