@@ -21,6 +21,7 @@ SHROUD = np.array([[-0.05, 0.310], [0.0, 0.309], [0.05, 0.304], [0.1, 0.300], [0
 class Properties:
     volume: float
     area: float
+    areas: np.ndarray
     centroid: np.ndarray
 
 
@@ -241,14 +242,14 @@ def elements(face: Surface | TrimmedSurface) -> tuple[np.ndarray, np.ndarray]:
 
 
 def properties(surfaces: Mapping, orientations: Mapping[str, int]) -> Properties:
-    volume, area, moment = 0.0, 0.0, np.zeros(3)
-    for label, face in surfaces.items():
-        points, vectors = elements(face)
+    volume, areas, moment = 0.0, [], np.zeros(3)
+    for label in orientations:
+        points, vectors = elements(surfaces[label])
         vectors = vectors * orientations[label]
         volume += np.sum(points * vectors) / 3.0
-        area += np.sum(np.sqrt(np.sum(vectors * vectors, axis=-1)))
+        areas.append(np.sum(np.sqrt(np.sum(vectors * vectors, axis=-1))))
         moment += 0.5 * np.sum(points * points * vectors, axis=0)
-    return Properties(volume=float(volume), area=float(area), centroid=moment / volume)
+    return Properties(volume=float(volume), area=float(np.sum(areas)), areas=np.array(areas), centroid=moment / volume)
 
 
 BODIES = {"annular": annular, "linear": linear, "ruled ends": ruled_ends, "brick": brick}

@@ -14,7 +14,10 @@ MM = 1000.0
 
 
 class Properties(Protocol):
-    """Properties of the body by quadrature on its native surfaces."""
+    """Properties of the body by quadrature on its native surfaces.
+
+    Where there are `areas` (k,) [m^2] of the faces, in the order of `Built.orientations`, they are not computed again.
+    """
 
     @property
     def volume(self) -> float:

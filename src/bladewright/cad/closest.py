@@ -59,11 +59,11 @@ class Target:
         for _ in range(STEPS):
             at, along, across = self.region.carrier.frame(uv[active])
             miss = points[active] - at
-            away = np.sqrt(np.sum(miss * miss, axis=-1))
+            away = np.sqrt(_dot(miss, miss))
             better = away < distance[active]
             best[active[better]], distance[active[better]] = uv[active[better]], away[better]
-            a, b, c = (np.sum(p * q, axis=-1) for p, q in ((along, along), (along, across), (across, across)))
-            e, f = np.sum(along * miss, axis=-1), np.sum(across * miss, axis=-1)
+            a, b, c = _dot(along, along), _dot(along, across), _dot(across, across)
+            e, f = _dot(along, miss), _dot(across, miss)
             # where a side of the face is a single point, one of the derivatives vanishes
             a, c = a + 1e-12 * self.region.scale[0] ** 2, c + 1e-12 * self.region.scale[1] ** 2
             determinant = a * c - b * b
@@ -72,7 +72,11 @@ class Target:
             shift = (moved - uv[active]) * self.region.scale
             uv[active] = moved
             # below this the distance changes by less than rounding
-            active = active[np.sum(shift * shift, axis=-1) > (1e-9 * np.maximum(away, 1e-3)) ** 2]
+            active = active[_dot(shift, shift) > (1e-9 * np.maximum(away, 1e-3)) ** 2]
             if len(active) == 0:
                 break
         return best, distance
+
+
+def _dot(a: Array, b: Array) -> Array:
+    return np.einsum("ij,ij->i", a, b)

@@ -104,6 +104,7 @@ def triangulated(body: Body, deflection: float) -> Mesh:
         if face.Orientation() == TopAbs_REVERSED:
             triangles = triangles[:, ::-1]
         found.append(points[triangles])
+    BRepTools.Clean_s(body.solid)
     # nodes on a shared edge come from its one curve; the last bits of their sums may differ
     return merged(np.concatenate(found), tolerance=1e-6)
 

@@ -13,7 +13,7 @@ from bladewright.cad.mesh import Mesh, Nearest, merged, triangulated
 from bladewright.cad.quiet import quiet
 from bladewright.cad.reopen import format_of
 from bladewright.cad.roundtrip import Compared, EdgeTrip, FaceTrip, RoundTrip
-from bladewright.cad.solids import body
+from bladewright.cad.solids import body_of
 from bladewright.cad.stl import read_stl, write_stl
 from bladewright.cad.threemf import read_3mf, write_3mf
 from bladewright.errors import CadError
@@ -33,7 +33,7 @@ def write_mesh(built: Built, path: Path, *, chordal_deviation: float | None, sam
     if not (np.isfinite(allowed) and allowed > 0.0):
         raise CadError(f"a chordal deviation of {allowed} m was asked for: it must be positive, such as 1e-5")
     with quiet():
-        made = body(built)
+        made = body_of(built)
         meant = {name: meant_by(face) for name, face in built.surfaces.items()}
         for share in FINER:
             mesh = triangulated(made, share * allowed * MM)

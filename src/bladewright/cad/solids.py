@@ -1,6 +1,7 @@
 """Closed solids of native surfaces: shared edges, shared vertices, tolerances as large as the gaps that there are."""
 
 from dataclasses import dataclass
+from functools import lru_cache
 
 import cadquery
 import numpy as np
@@ -49,6 +50,29 @@ def solid(built: Built) -> cadquery.Solid:
     Raises CadError where the surfaces do not close up, or where OpenCASCADE finds the solid invalid.
     """
     return cadquery.Solid(body(built).solid)
+
+
+class _Same:
+    """A built object, equal to itself only."""
+
+    def __init__(self, built: Built) -> None:
+        self.built = built
+
+    def __hash__(self) -> int:
+        return id(self.built)
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, _Same) and other.built is self.built
+
+
+def body_of(built: Built) -> Body:
+    """The `body` of a built object, kept while the files of the same object are written one after another."""
+    return _kept(_Same(built))
+
+
+@lru_cache(maxsize=1)
+def _kept(same: _Same) -> Body:
+    return body(same.built)
 
 
 def body(built: Built) -> Body:

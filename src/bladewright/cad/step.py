@@ -39,7 +39,8 @@ def write_step(built: Built, body: Body, path: str, *, schema: str) -> None:
     writer.SetPropsMode(True)
     writer.SetColorMode(False)
     writer.SetLayerMode(False)
-    # a reader that finds an edge further off a face than this replaces the trimming curve by a coarse one of its own
+    # a reader that finds an edge further off a face than this replaces the trimming curve by a coarse one of its own:
+    # design/cad_trimming_curves.py
     writer.ChangeWriter().SetTolerance(max(CONFUSION, body.gap))
     made, label = document(step_text(built.name), body, {name: step_text(name) for name in body.faces})
     properties = built.properties

@@ -153,13 +153,17 @@ def _spread(knots: Array, count: int) -> Array:
 
 def _foot(line: Curve, points: Array) -> Array:
     """Parameters (n,) of the points of a meridian curve that are nearest to points (n, 2)."""
-    spread = _spread(line.knots, 1001)
-    dense = line(spread)
-    t = spread[np.argmin(np.sum((points[:, None] - dense[None]) ** 2, axis=-1), axis=1)]
-    for _ in range(8):
+    spread = _spread(line.knots, 201)
+    away = (points[:, :1] - line(spread)[:, 0]) ** 2 + (points[:, 1:] - line(spread)[:, 1]) ** 2
+    t = spread[np.argmin(away, axis=1)]
+    for _ in range(12):
         miss, first, second = line(t) - points, line.derivative(t), line.derivative(t, 2)
-        slope = np.sum(first * first, axis=-1) + np.sum(miss * second, axis=-1)
-        t = np.clip(t - np.sum(miss * first, axis=-1) / slope, line.knots[0], line.knots[-1])
+        slope = np.einsum("ij,ij->i", first, first) + np.einsum("ij,ij->i", miss, second)
+        step = np.einsum("ij,ij->i", miss, first) / slope
+        t = np.clip(t - step, line.knots[0], line.knots[-1])
+        # the next step would be its square
+        if np.max(np.abs(step)) <= 1e-9 * (line.knots[-1] - line.knots[0]):
+            break
     return t
 
 

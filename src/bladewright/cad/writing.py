@@ -11,7 +11,7 @@ from bladewright.cad.iges import write_iges
 from bladewright.cad.quiet import quiet
 from bladewright.cad.reopen import format_of
 from bladewright.cad.roundtrip import RoundTrip
-from bladewright.cad.solids import Body, body
+from bladewright.cad.solids import Body, body_of
 from bladewright.cad.step import Schema, write_step
 from bladewright.cad.verification import SAMPLES, verify
 from bladewright.errors import CadError
@@ -41,7 +41,7 @@ def write(
 
         return write_mesh(built, path, chordal_deviation=chordal_deviation, samples=samples)
     with quiet():
-        made = body(built)
+        made = body_of(built)
         with appearing(path) as unfinished:
             _put(built, made, unfinished, kind, schema=schema, solid=solid)
     return verify(path, built, samples=samples)

@@ -1,0 +1,48 @@
+"""How well OpenCASCADE's quadrature knows areas and volumes, and what it costs.
+
+Without an error bound it takes a fixed number of Gauss points for each span of knots; with one it refines. Measured
+with OpenCASCADE 7.9.3 on the fan rotor, relative to the native quadrature:
+
+    bound    volume               area of the upper side
+    none     +3.0e-06 in 0.07 s   +6.2e-07 in 0.04 s
+    1e-06    -4.2e-10 in 0.10 s   +8.1e-10 in 0.03 s
+    1e-09    +1.5e-09 in 0.21 s   +2.7e-13 in 0.10 s
+    1e-10    +1.5e-09 in 0.25 s   +2.7e-13 in 0.12 s
+
+The volumes differ by 1.5e-9 in truth: the native ends follow the sides, which lie as much off the wall. Without a bound
+the limit of 1e-6 on volumes would be missed by the measurement itself. The round trip asks for 1e-9 on faces, whose
+limit is 1e-9, and for 1e-7 on volumes.
+
+    python design/cad_quadrature.py
+"""
+
+import time
+from importlib.resources import files
+from pathlib import Path
+
+from OCP.BRepGProp import BRepGProp
+from OCP.GProp import GProp_GProps
+
+import bladewright as bw
+from bladewright.cad.deviation import Meant
+from bladewright.cad.solids import body
+
+
+def main():
+    blade = bw.read_design(Path(str(files("bladewright"))) / "examples" / "fan-rotor.toml").build()
+    made = body(blade)
+    volume, area = float(blade.properties.volume) * 1e9, Meant(blade.surfaces["upper"]).area * 1e6
+    for bound in ((), (1e-6,), (1e-9,), (1e-10,), (1e-11,)):
+        results = []
+        for function, shape, exact in (
+            (BRepGProp.VolumeProperties_s, made.solid, volume),
+            (BRepGProp.SurfaceProperties_s, made.faces["upper"], area),
+        ):
+            properties, start = GProp_GProps(), time.process_time()
+            function(shape, properties, *bound)
+            results.append(f"{properties.Mass() / exact - 1.0:+.1e} in {time.process_time() - start:.3f} s")
+        print(f"{bound[0] if bound else 'none':<8}", *results, sep="   ")
+
+
+if __name__ == "__main__":
+    main()
