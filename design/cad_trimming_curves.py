@@ -2,7 +2,8 @@
 
 The ends of a blade lie off their walls by what the native sides miss between their sites, some millionths of a
 millimetre. A reader that finds an edge further off a face than the file's uncertainty takes the trimming curve for
-wrong and puts a cubic approximation of its own in its place. Measured on the centrifugal impeller with OpenCASCADE 7.9.3:
+wrong and puts a cubic approximation of its own in its place. Measured on the centrifugal impeller with OpenCASCADE
+7.9.3:
 
     uncertainty    largest gap after reading    largest edge tolerance    the same between sides
     1e-07 mm       1.1e-04 mm                   3.9e-06 mm                1e-07 mm
