@@ -36,11 +36,12 @@ def blade_properties(
 
     Control points may be complex.
     """
+    middle = _middle(cast(TrimmedSurface, surfaces["hub"]))
     total: Array = np.zeros(10)
     areas: list[Array] = []
     vectors: list[Array] = []
     for name in ("upper", "lower"):
-        moments, area, vector = _side(cast(Surface, surfaces[name]), revolved=revolved)
+        moments, area, vector = _side(cast(Surface, surfaces[name]), middle, revolved=revolved)
         total = total + outward[name] * moments
         areas.append(area)
         vectors.append(outward[name] * vector)
@@ -62,7 +63,7 @@ def blade_properties(
     )
 
 
-def _side(side: Surface, *, revolved: bool) -> tuple[Array, Array, Array]:
+def _side(side: Surface, middle: float, *, revolved: bool) -> tuple[Array, Array, Array]:
     """Ten moments of the flux through a side, its area and its area vector (3,), when the area has settled."""
     before: Array | None = None
     for points in POINTS:
@@ -74,29 +75,44 @@ def _side(side: Surface, *, revolved: bool) -> tuple[Array, Array, Array]:
             break
         before = area
     point = side.grid(u, v)
-    moments = _around_axis(point, normal) if revolved else _along_y(point, normal)
+    moments = _around_axis(point, normal, middle) if revolved else _along_y(point, normal, middle)
     return np.einsum("uv,uvk->k", weight, moments), area, np.einsum("uv,uvk->k", weight, normal)
 
 
-def _around_axis(point: Array, normal: Array) -> Array:
-    """Densities (..., 10) of the moments 1, x, y, z, xx, yy, zz, xy, yz, zx for a field along theta."""
+def _around_axis(point: Array, normal: Array, middle: float) -> Array:
+    """Densities (..., 10) of the moments 1, x, y, z, xx, yy, zz, xy, yz, zx for a field along theta.
+
+    The field vanishes at theta = `middle`, so that what passes through the gap between sides and walls stays small.
+    """
     x, y, z = np.moveaxis(point, -1, 0)
-    theta = angle(y, z)
+    radius = length(point[..., 1:])
+    start_y, start_z = radius * np.sin(middle), radius * np.cos(middle)
+    theta = angle(y * np.cos(middle) - z * np.sin(middle), z * np.cos(middle) + y * np.sin(middle))
     turns = np.unwrap(np.unwrap(np.real(theta), axis=0), axis=1)
+    turns = turns - 2.0 * np.pi * np.round(np.mean(turns) / (2.0 * np.pi))
     theta = theta + (turns - np.real(theta))
-    square = (y * y + z * z) * theta
+    square, product = radius * radius * theta, y * z - start_y * start_z
     flux = z * normal[..., 1] - y * normal[..., 2]
-    primitives = [theta, x * theta, -z, y, x * x * theta, (square - y * z) / 2.0, (square + y * z) / 2.0]
-    primitives += [-x * z, y * y / 2.0, x * y]
+    primitives = [theta, x * theta, start_z - z, y - start_y, x * x * theta]
+    primitives += [(square - product) / 2.0, (square + product) / 2.0]
+    primitives += [x * (start_z - z), (y * y - start_y * start_y) / 2.0, x * (y - start_y)]
     return np.stack(primitives, axis=-1) * flux[..., None]
 
 
-def _along_y(point: Array, normal: Array) -> Array:
-    """The same for a field along y."""
+def _along_y(point: Array, normal: Array, middle: float) -> Array:
+    """The same for a field along y, which vanishes at y = `middle`."""
     x, y, z = np.moveaxis(point, -1, 0)
-    primitives = [y, x * y, y * y / 2.0, z * y, x * x * y, y**3 / 3.0, z * z * y]
-    primitives += [x * y * y / 2.0, z * y * y / 2.0, z * x * y]
+    first, second, third = y - middle, (y * y - middle**2) / 2.0, (y**3 - middle**3) / 3.0
+    primitives = [first, x * first, second, z * first, x * x * first, third, z * z * first]
+    primitives += [x * second, z * second, z * x * first]
     return np.stack(primitives, axis=-1) * normal[..., 1, None]
+
+
+def _middle(wall: TrimmedSurface) -> float:
+    """theta, or y in a cascade, of the middle of a wall."""
+    if wall.revolution is not None:
+        return (wall.revolution.start + wall.revolution.end) / 2.0
+    return float(np.mean(np.real(wall.surface.control_points[..., 1])))
 
 
 def _end(end: TrimmedSurface) -> tuple[Array, Array]:
