@@ -2,12 +2,13 @@
 
 import numpy as np
 import pytest
-from .machines import CASCADE, FAN, IMPELLER
 
 from bladewright.blade.channel import Channel
 from bladewright.blade.exact import exact_blade
 from bladewright.blade.unified import UnifiedBlade
 from bladewright.section.unified import UnifiedSection
+
+from .machines import CASCADE, FAN, IMPELLER
 
 SHAPE = {
     "length_unit": "m",

@@ -2,7 +2,6 @@
 
 import numpy as np
 import pytest
-from .machines import CASCADE, FAN, IMPELLER, INFLOW
 
 from bladewright.blade.exact import exact_blade
 from bladewright.blade.fitness import misfit
@@ -11,6 +10,8 @@ from bladewright.blade.native import native_sides
 from bladewright.errors import DesignError
 from bladewright.nurbs.flux import mass_properties
 from bladewright.nurbs.surface import Surface
+
+from .machines import CASCADE, FAN, IMPELLER, INFLOW
 
 
 def sides(exact, knots):
@@ -130,7 +131,7 @@ def test_volume_and_area_agree_with_closed_forms_of_a_prismatic_vane():
 
 
 def test_properties_agree_with_the_divergence_theorem_over_all_faces(blade):
-    """Two formulas: fields along theta through the sides alone, and fluxes of x / 3... through sides and trimmed ends."""
+    """Two formulas: fields along theta through the sides alone, fluxes of x / 3... through sides and trimmed ends."""
     own = blade.properties
     general = mass_properties([(blade.surfaces[name], sign) for name, sign in blade.orientations.items()])
     # the sides end within 1e-7 of the chord off the walls, which closes the body by so much of the ends' area
@@ -151,7 +152,7 @@ def test_the_extended_blade_is_the_same_blade_between_its_walls():
         assert inside == pytest.approx(blade.surfaces[name].grid(u, v), abs=1e-13)
     assert longer.properties.volume > blade.properties.volume
     assert longer.properties.openness < 1e-12
-    with pytest.raises(DesignError, match="0.5"):
+    with pytest.raises(DesignError, match=r"0\.5"):
         blade.extended(0.7)
 
 

@@ -85,7 +85,7 @@ def test_a_file_is_replaced_whole_or_kept(tmp_path, monkeypatch):
     file.write_bytes(b"old")
     figure = Figure(figsize=(1.0, 1.0))
     with monkeypatch.context() as broken:
-        broken.setattr("pathlib.Path.replace", lambda *_: (_ for _ in ()).throw(OSError(28, "No space left on device")))
+        broken.setattr("os.fsync", lambda *_: (_ for _ in ()).throw(OSError(28, "No space left on device")))
         with pytest.raises(FileError, match="no space left on device"):
             write(figure, file, 50)
     assert file.read_bytes() == b"old"

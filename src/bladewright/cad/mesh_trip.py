@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 from scipy.spatial import cKDTree
 
-from bladewright.cad.atomic import appearing
+from bladewright.appearing import appearing
 from bladewright.cad.built import MM, Built, extent
 from bladewright.cad.deviation import Meant, meant_by
 from bladewright.cad.mesh import Mesh, Nearest, merged, triangulated

@@ -5,7 +5,7 @@ from pathlib import Path
 
 from OCP.BRepTools import BRepTools
 
-from bladewright.cad.atomic import appearing
+from bladewright.appearing import appearing
 from bladewright.cad.built import Built
 from bladewright.cad.iges import write_iges
 from bladewright.cad.quiet import quiet

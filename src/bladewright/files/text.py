@@ -1,9 +1,9 @@
 """Text files, read within a limit of size and only as UTF-8; files written whole or not at all."""
 
 import os
-import secrets
 from pathlib import Path
 
+from bladewright.appearing import appearing
 from bladewright.errors import FileError
 
 LARGEST = 1_000_000
@@ -43,35 +43,10 @@ def read_text(path: Path) -> str:
 def write_text(path: Path, text: str) -> None:
     """Write a text as UTF-8, its line ends kept: the file appears whole or not at all.
 
-    A link stays a link, a device is written to directly. Raises FileError where it cannot be written, and leaves
-    nothing behind.
+    Raises FileError where it cannot be written, and leaves nothing behind.
     """
-    try:
-        data = text.encode()
-        target = Path(os.path.realpath(path))
-        if target.is_dir():
-            raise FileError(f"'{path}' is a directory: name the file to write")
-        if target.exists() and not target.is_file():
-            target.write_bytes(data)
-        else:
-            _replace(target, data)
-    except (OSError, ValueError) as error:
-        raise FileError(f"'{path}' cannot be written: {_reason(error)}; name another file") from error
-
-
-def _replace(target: Path, data: bytes) -> None:
-    draft = target.with_name(f".{secrets.token_hex(8)}.tmp")
-    try:
-        with draft.open("xb") as stream:
-            stream.write(data)
-            stream.flush()
-            os.fsync(stream.fileno())
-        if target.exists():
-            draft.chmod(target.stat().st_mode & 0o7777)
-        draft.replace(target)
-    except BaseException:
-        draft.unlink(missing_ok=True)
-        raise
+    with appearing(path) as unfinished:
+        Path(unfinished).write_bytes(text.encode())
 
 
 def _decoded(data: bytes, path: Path) -> str:

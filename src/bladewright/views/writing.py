@@ -1,13 +1,12 @@
 """Picture files, written whole or not at all."""
 
 import io
-import os
-import secrets
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 
+from bladewright.appearing import appearing
 from bladewright.errors import FileError
 
 if TYPE_CHECKING:
@@ -40,13 +39,5 @@ def write(figure: "Figure", path: str | Path, dots: int) -> None:
     picture = io.BytesIO()
     FigureCanvasAgg(figure)
     figure.savefig(picture, format=suffix[1:], dpi=dots, metadata=_UNDATED[suffix])
-    target = Path(os.path.realpath(path))
-    draft = target.with_name(f".{secrets.token_hex(8)}.tmp")
-    try:
-        draft.write_bytes(picture.getvalue())
-        draft.replace(target)
-    except OSError as error:
-        reason = (error.strerror or str(error)).lower()
-        raise FileError(f"'{path}' cannot be written: {reason}; name another file") from error
-    finally:
-        draft.unlink(missing_ok=True)
+    with appearing(path) as unfinished:
+        Path(unfinished).write_bytes(picture.getvalue())

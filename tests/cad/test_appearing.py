@@ -6,10 +6,11 @@ from pathlib import Path
 
 import pytest
 
+from bladewright import appearing as module
 from bladewright import cad
-from bladewright.cad import atomic, writing
-from bladewright.cad.atomic import appearing
-from bladewright.errors import CadError
+from bladewright.appearing import appearing
+from bladewright.cad import writing
+from bladewright.errors import FileError
 
 WAYS = ["_Nameless", "_Hidden"]
 
@@ -18,8 +19,8 @@ WAYS = ["_Nameless", "_Hidden"]
 def way(request, monkeypatch):
     """Both ways of holding an unfinished file, whatever the system offers."""
     if request.param == "_Hidden":
-        monkeypatch.setattr(atomic._Nameless, "possible", staticmethod(lambda _: False))
-    elif not atomic._Nameless.possible(Path.cwd()):
+        monkeypatch.setattr(module._Nameless, "possible", staticmethod(lambda _: False))
+    elif not module._Nameless.possible(Path.cwd()):
         pytest.skip("this system has no files without a name")
     return request.param
 
@@ -97,12 +98,12 @@ def test_what_a_link_points_to_is_replaced_and_the_link_stays(tmp_path):
 
 def test_a_directory_in_the_files_place_is_refused(bodies, tmp_path):
     (tmp_path / "vane.step").mkdir()
-    with pytest.raises(CadError, match="is a directory: give the name of a file"):
+    with pytest.raises(FileError, match="is a directory: name the file"):
         cad.write(bodies["linear"], tmp_path / "vane.step")
 
 
 def test_a_directory_that_does_not_exist_is_refused(bodies, tmp_path):
-    with pytest.raises(CadError, match=r"cannot write .*create the directory"):
+    with pytest.raises(FileError, match=r"cannot be written.*create the directory"):
         cad.write(bodies["linear"], tmp_path / "nowhere" / "vane.step")
 
 
@@ -110,7 +111,7 @@ def test_a_directory_that_does_not_exist_is_refused(bodies, tmp_path):
 def test_a_directory_that_cannot_be_written_is_refused(bodies, where):
     if not Path(where).parent.is_dir():
         pytest.skip(f"this system has no {Path(where).parent}")
-    with pytest.raises(CadError, match="cannot write"):
+    with pytest.raises(FileError, match="cannot be written"):
         cad.write(bodies["linear"], where)
 
 
@@ -118,7 +119,7 @@ def test_a_full_disk_is_reported_and_leaves_nothing(bodies, tmp_path, monkeypatc
     def full(*_):
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr(atomic.os, "fsync", full)
-    with pytest.raises(CadError, match=r"No space left on device; free some space"):
+    monkeypatch.setattr(module.os, "fsync", full)
+    with pytest.raises(FileError, match=r"no space left on device; free some space"):
         cad.write(bodies["linear"], tmp_path / "vane.step")
     assert not list(tmp_path.iterdir())

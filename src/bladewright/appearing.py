@@ -1,44 +1,64 @@
 """Files that appear whole or not at all, also when the process is killed while it writes."""
 
+import errno
 import os
 import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
-from bladewright.errors import CadError
+from bladewright.errors import FileError
 
 
 @contextmanager
-def appearing(path: Path) -> Iterator[str]:
+def appearing(path: str | Path) -> Iterator[str]:
     """A path to write to; where the block ends well, what was written there becomes the file `path`.
 
     Where the system has files without a name (Linux), the unfinished file has none, so that nothing is left behind even
-    by SIGKILL; elsewhere it is a hidden neighbour, removed on any exception. Raises CadError where `path` cannot be
-    written.
+    by SIGKILL; elsewhere it is a hidden neighbour, removed on any exception. A link stays a link, a file keeps its
+    permissions, and a device is written to directly. Raises FileError where `path` cannot be written.
     """
-    target = Path(os.path.realpath(path))
-    if target.is_dir():
-        raise CadError(f"{path} is a directory: give the name of a file in it, such as {Path(path) / 'blade.step'}")
     try:
+        target = Path(os.path.realpath(path))
+        if target.is_dir():
+            raise FileError(f"'{path}' is a directory: name the file to write in it")
+        if target.exists() and not target.is_file():
+            yield str(target)
+            return
         unfinished = _Nameless(target) if _Nameless.possible(target.parent) else _Hidden(target)
-    except OSError as error:
-        raise CadError(f"cannot write {path}: {error.strerror}; {_cure(target)}") from error
+    except (OSError, ValueError) as error:
+        raise _refusal(path, error) from error
     try:
         yield unfinished.path
-        unfinished.publish()
+        unfinished.publish(_permissions(target))
     except OSError as error:
-        raise CadError(f"cannot write {path}: {error.strerror}; {_cure(target)}") from error
+        raise _refusal(path, error) from error
     finally:
         unfinished.close()
 
 
-def _cure(target: Path) -> str:
-    if not target.parent.exists():
-        return f"create the directory {target.parent} first"
-    if not os.access(target.parent, os.W_OK):
-        return f"the directory {target.parent} is not writable: choose another one, or allow writing there"
-    return "free some space there, or choose another directory"
+def _refusal(path: str | Path, error: OSError | ValueError) -> FileError:
+    reason = str(getattr(error, "strerror", None) or error)
+    return FileError(f"'{path}' cannot be written: {reason[:1].lower()}{reason[1:]}; {_cure(Path(path), error)}")
+
+
+def _permissions(target: Path) -> int:
+    """Those of the file that is replaced, or what the process gives new files."""
+    if target.exists():
+        return target.stat().st_mode & 0o7777
+    mask = os.umask(0)
+    os.umask(mask)
+    return 0o666 & ~mask
+
+
+def _cure(target: Path, error: OSError | ValueError) -> str:
+    with suppress(OSError, ValueError):
+        if not target.parent.exists():
+            return f"create the directory '{target.parent}' first"
+        if not os.access(target.parent, os.W_OK):
+            return f"the directory '{target.parent}' is not writable: name another file, or allow writing there"
+    full = getattr(error, "errno", None) in {errno.ENOSPC, errno.EDQUOT}
+    return "free some space there, or name another file" if full else "name another file"
 
 
 class _Nameless:
@@ -59,7 +79,8 @@ class _Nameless:
             return False
         return True
 
-    def publish(self) -> None:
+    def publish(self, permissions: int) -> None:
+        os.fchmod(self.descriptor, permissions)
         os.fsync(self.descriptor)
         folder = os.open(self.target.parent, os.O_RDONLY)
         try:
@@ -86,15 +107,13 @@ class _Hidden:
         descriptor, self.path = tempfile.mkstemp(prefix=f".{target.name}.", dir=target.parent)
         os.close(descriptor)
 
-    def publish(self) -> None:
+    def publish(self, permissions: int) -> None:
         descriptor = os.open(self.path, os.O_RDWR)
         try:
+            os.fchmod(descriptor, permissions)
             os.fsync(descriptor)
         finally:
             os.close(descriptor)
-        mask = os.umask(0)
-        os.umask(mask)
-        Path(self.path).chmod(0o666 & ~mask)
         Path(self.path).replace(self.target)
 
     def close(self) -> None:
