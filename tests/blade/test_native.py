@@ -205,3 +205,32 @@ def test_an_impossible_blade_is_refused_with_path_value_and_cure(design, changes
     message = str(caught.value)
     assert all(word in message for word in words), message
     assert "\n" not in message
+
+
+def test_rational_sides_keep_every_promise():
+    weighted = INFLOW.changed({"weights_upper": (1.0, 2.5, 0.8), "weights_lower": ((1.0, 1.4), 0.7)})
+    blade = weighted.build()
+    plain = INFLOW.build()
+    assert blade.promises.kept
+    assert np.max(np.abs(blade.surfaces["upper"](0.5, 0.5) - plain.surfaces["upper"](0.5, 0.5))) > 1e-4 * blade.chord
+
+
+def test_weights_of_one_change_nothing():
+    weighted = exact_blade(INFLOW.changed({"weights_upper": (1.0,), "weights_lower": (1.0, 1.0)}))
+    plain = exact_blade(INFLOW)
+    v, s = np.linspace(0.0, 1.0, 3), np.linspace(0.0, 1.0, 21)
+    for with_weights, without in zip(weighted.stations(v).points(s), plain.stations(v).points(s), strict=True):
+        assert with_weights == pytest.approx(without, abs=1e-15)
+
+
+def test_sections_have_the_areas_that_make_up_the_volume_of_a_cascade():
+    v, w = np.polynomial.legendre.leggauss(6)
+    straight = CASCADE.changed(
+        "channel",
+        type(CASCADE.channel)(
+            leading_edge=((0.0, 0.0), (0.0, 90.0)), trailing_edge=((60.0, 0.0), (50.0, 90.0))
+        ),
+    )
+    blade = straight.build()
+    areas = [blade.section((place + 1.0) / 2.0).area for place in v]
+    assert blade.properties.volume == pytest.approx(90e-3 * np.dot(w, areas) / 2.0, rel=1e-7)
