@@ -7,18 +7,17 @@ import numpy as np
 from bladewright.blade.exact import ExactBlade
 from bladewright.errors import DesignError
 from bladewright.numerics.elementary import Array, angle, dot, length
+from bladewright.numerics.roots import crossings
 from bladewright.nurbs.basis import Reals, basis, greville
 from bladewright.nurbs.curve import Curve
 from bladewright.nurbs.domain import extended
+from bladewright.nurbs.joints import jointed
 from bladewright.nurbs.revolution import Revolution
 from bladewright.nurbs.surface import Surface
 from bladewright.nurbs.trimmed import TrimmedSurface
 
 FOLLOWED = 1e-9
 """distance of a boundary's image from the side's end, of the chord, besides what the side itself lies off the wall"""
-
-SNAPPED = 1e-9
-"""distance in the side's parameter below which a crossing takes the place of a knot"""
 
 
 def trimmed_ends(exact: ExactBlade, upper: Surface, lower: Surface, chord: float) -> dict[str, TrimmedSurface]:
@@ -62,7 +61,7 @@ def _trimmed(traces: "list[_Trace]", meridian: Curve, wall: str, chord: float) -
     else:
         surface = _drawn(meridian, low - room, high + room)
 
-    joints = np.linspace(low - room, high + room, revolution.arcs + 1)[1:-1] if revolution is not None else np.empty(0)
+    between = np.linspace(low - room, high + room, revolution.arcs + 1)[1:-1] if revolution is not None else np.empty(0)
 
     def in_parameters(u: Array, across: Array) -> Array:
         v = (across - low + room) / (high - low + 2.0 * room) if revolution is None else revolution.v(across)
@@ -76,7 +75,7 @@ def _trimmed(traces: "list[_Trace]", meridian: Curve, wall: str, chord: float) -
         return np.stack([length(line.derivative(uv[:, 0])), around], axis=-1)
 
     def followed(trace: _Trace) -> Curve:
-        return _followed(lambda s: in_parameters(*trace(s)), trace.end, trace.crossings(joints), stretch, chord)
+        return _followed(lambda s: in_parameters(*trace(s)), trace.end, trace.joints(between), stretch, chord)
 
     curves = [followed(trace) for trace in traces]
     return TrimmedSurface(surface=surface, boundary=(curves[1], _reversed(curves[0])), revolution=revolution)
@@ -120,19 +119,24 @@ class _Trace:
             u = u + _foot_step(self.meridian, u, np.real(target))
         return u + _foot_step(self.meridian, u, target), across
 
-    def crossings(self, joints: Reals) -> Reals:
-        """Parameters of the end where it passes any of the angles `joints` (k,) of the wall's arcs, in order."""
-        found = []
-        for joint in joints:
-            off = self.across - joint
-            at = np.flatnonzero(off[:-1] * off[1:] < 0.0)
-            low, high = self._places[at], self._places[at + 1]
-            for _ in range(50):
-                middle = (low + high) / 2.0
-                same = (np.real(self(middle)[1]) - joint) * off[at] > 0.0
-                low, high = np.where(same, middle, low), np.where(same, high, middle)
-            found.append((low + high) / 2.0)
-        return np.sort(np.concatenate([np.empty(0), *found]))
+    def joints(self, angles: Reals) -> list[tuple[float, int]]:
+        """Where the end passes inner knots of the meridian, or `angles` (k,) between the wall's rational arcs.
+
+        Each with the derivatives that the wall's own parameters keep there: one between arcs, which are symmetric.
+        """
+        knots = np.unique(self.meridian.knots)[1:-1]
+
+        def passed(which: int, values: Reals, levels: Reals) -> list[float]:
+            return [
+                float(place)
+                for level in levels
+                for place in crossings(lambda s: np.real(self(s)[which]), self._places, values, level)
+            ]
+
+        return [
+            *((place, self.meridian.degree - 1) for place in passed(0, self._u, knots)),
+            *((place, 1) for place in passed(1, self.across, angles)),
+        ]
 
 
 def _foot_step(meridian: Curve, u: Reals, target: Array) -> Array:
@@ -142,17 +146,17 @@ def _foot_step(meridian: Curve, u: Reals, target: Array) -> Array:
 
 
 def _followed(
-    place: Callable[[Reals], Array], end: Curve, crossings: Reals, stretch: Callable[[Reals], Reals], chord: float
+    place: Callable[[Reals], Array],
+    end: Curve,
+    joints: list[tuple[float, int]],
+    stretch: Callable[[Reals], Reals],
+    chord: float,
 ) -> Curve:
     """A plane B-spline that the wall maps on the side's end, as smooth as the side, its knots cut until it follows.
 
-    Where the wall's own parameter passes from one rational arc to the next, at `crossings`, it is smooth to the first
-    derivative only, and so is the curve.
+    `joints` are the places where it is less smooth, each with the derivatives that are continuous there.
     """
-    own = end.knots
-    for crossing in crossings:
-        beside = (np.abs(own - crossing) < SNAPPED) & (own > own[0]) & (own < own[-1])  # real: knots
-        own = np.sort(np.concatenate([own[~beside], np.full(end.degree - 1, crossing)]))
+    own = jointed(end.knots, end.degree, joints)
     spans = np.unique(own)
     for pieces in (2, 3, 4, 6, 8):
         added = [spans[:-1] + np.diff(spans) * k / pieces for k in range(1, pieces)]

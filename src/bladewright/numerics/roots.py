@@ -1,4 +1,4 @@
-"""Roots of many equations at once, bracketed, with their derivative by one more Newton step."""
+"""Roots of many equations at once, bracketed, with their derivative by one more Newton step; crossings of a level."""
 
 from collections.abc import Callable
 
@@ -38,3 +38,18 @@ def bracketed_root(function: Callable[[Array], tuple[Array, Array]], low: ArrayL
     if np.iscomplexobj(value) or np.iscomplexobj(slope):
         return np.asarray(root - 1j * np.imag(value) / np.real(slope))
     return root
+
+
+def crossings(function: Callable[[Array], Array], places: ArrayLike, values: ArrayLike, level: float) -> Array:
+    """Places (k,), rising, where a continuous real function passes a level, by bisection.
+
+    `values` (m,) are the function's at `places` (m,), rising; what crosses twice between two of them is not seen.
+    """
+    at, off = np.asarray(places, dtype=np.float64), np.asarray(values, dtype=np.float64) - level
+    first = np.flatnonzero(off[:-1] * off[1:] < 0.0)
+    low, high = at[first], at[first + 1]
+    for _ in range(STEPS if len(first) else 0):
+        middle = 0.5 * (low + high)
+        same = (np.real(function(middle)) - level) * off[first] > 0.0
+        low, high = np.where(same, middle, low), np.where(same, high, middle)
+    return np.sort(np.concatenate([0.5 * (low + high), at[off == 0.0]]))
