@@ -13,8 +13,10 @@ from bladewright.cad.geometry import space_curve, space_surface
 from bladewright.cad.topology import Edge, Use
 from bladewright.errors import CadError
 from bladewright.numerics.elementary import Array, unit
+from bladewright.numerics.roots import crossings
 from bladewright.nurbs.basis import greville
 from bladewright.nurbs.curve import Curve
+from bladewright.nurbs.joints import jointed
 from bladewright.nurbs.revolution import Revolution
 from bladewright.nurbs.trimmed import TrimmedSurface
 
@@ -105,7 +107,7 @@ def _revolved(face: TrimmedSurface, revolution: Revolution, edges: list[tuple[Ed
             tangent = line.derivative(uv[:, 1])
             return np.stack([line(uv[:, 1])[:, 1], np.sqrt(np.sum(tangent * tangent, axis=-1))], axis=-1)
 
-        return _interpolated(place, stretch, edge.curve)
+        return _interpolated(place, stretch, edge.curve, _joints(place, 1, line.knots, line.degree, edge.curve))
 
     return Wall(
         geometry=Geom_SurfaceOfRevolution(space_curve(meridian), axis),
@@ -142,7 +144,8 @@ def _patch(face: TrimmedSurface, edges: list[tuple[Edge, Use]]) -> Wall:
             tangents = (surface.derivative(u, v, 1, 0), surface.derivative(u, v, 0, 1))
             return np.stack([np.sqrt(np.sum(t * t, axis=-1)) for t in tangents], axis=-1)
 
-        return _interpolated(place, stretch, edge.curve)
+        joints = _joints(place, 0, surface.knots_u, surface.degree_u, edge.curve)
+        return _interpolated(place, stretch, edge.curve, joints)
 
     return Wall(geometry=space_surface(surface), traces=tuple(trace(e, u) for e, u in edges), swapped=False)
 
@@ -167,14 +170,31 @@ def _foot(line: Curve, points: Array) -> Array:
     return t
 
 
-def _interpolated(place: Along, stretch: Along, along: Curve) -> Curve:
+def _joints(place: Along, column: int, knots: Array, degree: int, along: Curve) -> list[tuple[float, int]]:
+    """Where an edge passes inner knots of its wall, with the derivatives of the trace that are continuous there."""
+    levels = np.unique(knots)[1:-1]
+    if len(levels) == 0:
+        return []
+    w = _spread(along.knots, 401)
+    values = place(w)[:, column]
+    return [
+        (float(at), degree - 1)
+        for level in levels
+        for at in crossings(lambda s: place(s)[:, column], w, values, level)
+    ]
+
+
+def _interpolated(place: Along, stretch: Along, along: Curve, joints: list[tuple[float, int]]) -> Curve:
     """A plane B-spline of degree 5 through `place(w)`, as smooth as the edge, its knots doubled until it follows.
 
-    `stretch` gives the metres that the two parameters are worth.
+    `stretch` gives the metres that the two parameters are worth, `joints` the places where the trace is less smooth.
     """
     degree = max(5, along.degree)
     inner, counts = np.unique(along.knots[along.degree + 1 : -along.degree - 1], return_counts=True)
     counts = np.minimum(counts + degree - along.degree, degree)
+    ends = np.repeat(along.knots[[0, -1]], degree + 1)
+    whole = jointed(np.sort(np.concatenate([ends, np.repeat(inner, counts)])), degree, joints)
+    inner, counts = np.unique(whole[degree + 1 : -degree - 1], return_counts=True)
     size = float(np.ptp(along.control_points, axis=0).max())
     for division in (1, 2, 4, 8, 16):
         ends = np.concatenate([along.knots[:1], inner, along.knots[-1:]])
