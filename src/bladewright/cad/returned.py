@@ -25,7 +25,7 @@ from bladewright.nurbs.domain import reversed as run_backwards
 
 ON_BORDER = 1e-9
 """Distance from the border of the parameter rectangle, of its size, below which a trimming curve lies on it."""
-AREA = 1e-9
+AREA = 1e-10
 """Relative error that the kernel's quadrature of a face aims at: design/cad_quadrature.py."""
 
 
