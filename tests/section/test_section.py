@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from bladewright.errors import DesignError
-from bladewright.section.crossing import self_crossings, touches
+from bladewright.section.crossing import self_crossings, touching
 from bladewright.section.unified import UnifiedSection
 
 VANE = UnifiedSection(
@@ -143,17 +143,17 @@ def test_an_impossible_section_is_refused_with_path_value_and_cure(changes, word
 def test_an_outline_that_crosses_itself_is_found():
     eight = np.array([[0.0, 0.0], [2.0, 2.0], [2.0, 0.0], [0.0, 2.0]])
     square = np.array([[0.0, 0.0], [2.0, 0.0], [2.0, 2.0], [0.0, 2.0]])
-    assert self_crossings(eight) is not None
-    assert self_crossings(square) is None
+    assert self_crossings(np.stack([square, eight]))[0] == 1
+    assert self_crossings(square[None]) is None
 
 
 def test_an_outline_touches_its_neighbour_where_it_is_higher_than_the_pitch():
     diamond = np.array([[0.0, 0.0], [1.0, -1.0], [2.0, 0.0], [1.0, 1.0]])
-    assert touches(diamond, 1.9)
-    assert not touches(diamond, 2.1)
+    assert touching(diamond[None], 1.9) == 0
+    assert touching(diamond[None], 2.1) is None
 
 
 def test_an_inclined_outline_may_be_higher_than_the_pitch_and_still_clear_its_neighbour():
     flat = np.array([[0.0, 0.0], [4.0, 8.0], [3.9, 8.4], [-0.1, 0.4]])
-    assert not touches(flat, 1.0)
-    assert touches(flat, 0.3)
+    assert touching(flat[None], 1.0) is None
+    assert touching(flat[None], 0.3) == 0

@@ -10,7 +10,7 @@ from bladewright.errors import DesignError
 from bladewright.numerics.elementary import cross2
 from bladewright.nurbs.basis import Reals
 from bladewright.section.checks import UNITS
-from bladewright.section.crossing import PLACES, check_outline, touches
+from bladewright.section.crossing import PLACES, check_outlines, outlines_of, touching
 
 
 def check_channel(exact: ExactBlade) -> None:
@@ -36,11 +36,9 @@ def check_channel(exact: ExactBlade) -> None:
 def check_sections(exact: ExactBlade) -> None:
     """Refuse sections whose sides cross or touch, and neighbouring blades that intersect."""
     stations = exact.survey
-    upper, lower = stations.plane.points(PLACES)
-    first = (0,) * (upper.ndim - 3)
-    for v, above, below in zip(stations.v, np.real(upper)[first], np.real(lower)[first], strict=True):
-        check_outline(above, below, PLACES, f"at v = {v:.3f}, ")
-    outlines = np.concatenate([upper, lower[..., -2:0:-1, :]], axis=-2)
+    outlines = outlines_of(*stations.plane.points(PLACES))
+    first = (0,) * (outlines.ndim - 3)
+    check_outlines(np.real(outlines)[first], [f"at v = {v:.3f}, " for v in stations.v])
     u, _, across = stations.on_lines(outlines)
     _check_neighbours(exact.design, stations.v, np.real(np.stack([u, across], axis=-1))[first])
 
@@ -49,15 +47,15 @@ def _check_neighbours(design: UnifiedBlade, places: Reals, outlines: Reals) -> N
     """Refuse a pitch by which an outline (m, n, 2) in u and theta, or y, meets itself."""
     metre = UNITS[design.length_unit]
     pitch = 2.0 * np.pi / design.blade_count if design.blade_count else metre * _first(design.pitch)
-    for v, outline in zip(places, outlines, strict=True):
-        if touches(outline, pitch):
-            what = f"blade_count is {design.blade_count}" if design.blade_count else f"pitch is {pitch / metre:g}"
-            much = f"{np.degrees(pitch):.4g} deg" if design.blade_count else f"{pitch / metre:.4g} {design.length_unit}"
-            cure = "fewer blades" if design.blade_count else "a larger pitch"
-            raise DesignError(
-                f"{what}: neighbouring blades intersect at v = {v:.3f}, where they stand {much} apart; take {cure}, "
-                "thinner sections or less stagger there"
-            )
+    found = touching(outlines, pitch)
+    if found is not None:
+        what = f"blade_count is {design.blade_count}" if design.blade_count else f"pitch is {pitch / metre:g}"
+        much = f"{np.degrees(pitch):.4g} deg" if design.blade_count else f"{pitch / metre:.4g} {design.length_unit}"
+        cure = "fewer blades" if design.blade_count else "a larger pitch"
+        raise DesignError(
+            f"{what}: neighbouring blades intersect at v = {places[found]:.3f}, where they stand {much} apart; take "
+            f"{cure}, thinner sections or less stagger there"
+        )
 
 
 def _first(value: Any) -> float:

@@ -115,8 +115,7 @@ class _Trace:
             radius, across = points[..., 2], points[..., 1]
         target = np.stack([points[..., 0], radius], axis=-1)
         u = np.interp(s, self._places, self._u)
-        for _ in range(2):
-            u = u + _foot_step(self.meridian, u, np.real(target))
+        u = u + _foot_step(self.meridian, u, np.real(target))
         return u + _foot_step(self.meridian, u, target), across
 
     def joints(self, angles: Reals) -> list[tuple[float, int]]:

@@ -19,7 +19,9 @@ def native_sides(stations: Stations, knots: Knots) -> tuple[Array, Array]:
     def along_v(values: Array) -> Array:
         return np.linalg.solve(matrix, values)
 
-    edges = [EdgeRow(*(along_v(part) for part in row)) for row in (stations.leading_edge(), stations.trailing_edge())]
+    rows = stations.leading_edge(), stations.trailing_edge()
+    parts = np.split(along_v(np.concatenate([part for row in rows for part in row], axis=-1)), 6, axis=-1)
+    edges = EdgeRow(*parts[:3]), EdgeRow(*parts[3:])
     sides = []
     for points, sign in zip(stations.points(knots.sites_u), (1.0, -1.0), strict=True):
         flat = np.swapaxes(points, -3, -2)

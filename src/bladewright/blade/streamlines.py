@@ -16,7 +16,9 @@ from bladewright.nurbs.basis import Reals
 
 NODES = 24
 """Chebyshev nodes of the density on a panel"""
-CONVERGED = 1e-8
+GUESS = 22
+"""Chebyshev places of the inverse that Newton starts from: one step from there mostly does"""
+CONVERGED = 3e-8
 """a Newton step this small leaves an error of its square: rounding"""
 
 
@@ -93,7 +95,7 @@ class StreamLines:
 
     @cached_property
     def _rough_inverse(self) -> Reals:
-        """Chebyshev series (m, p, 12) of u by abscissa on each panel, through places found by Newton from a line."""
+        """Chebyshev series (m, p, GUESS) of u by abscissa on each panel, through places found by Newton from a line."""
         extent = np.diff(self.starts)[..., None]
         local = _GUESS_PLACES
         for _ in range(4):
@@ -171,8 +173,9 @@ def _on_panels(channel: Meridional, mapping: Mapping, v: Reals, ends: Reals) -> 
     speeds = length(slope)
     density = mapping.density(position, slope)
     coefficients = np.einsum("jk,...k->...j", _TO_SERIES, density)
-    size = np.max(np.abs(density.real), axis=-1)  # real: the size of rounding
-    tail = np.max(np.abs(coefficients[..., -2:].real), axis=-1) / size  # real: a stopping rule
+    axes = tuple(range(coefficients.ndim - 2))
+    shares = np.max(np.abs(coefficients.real), axis=axes) / np.max(np.abs(density.real))  # real: a stopping rule
+    tail = np.max(shares[:, -2:], axis=-1)
     series = np.einsum("jk,...k->...j", _INTEGRATED, coefficients) * halves[:, None]
     increments = np.sum(series, axis=-1)
     starts = np.concatenate([np.zeros_like(increments[..., :1]), np.cumsum(increments, axis=-1)], axis=-1)
@@ -189,7 +192,7 @@ def _on_panels(channel: Meridional, mapping: Mapping, v: Reals, ends: Reals) -> 
         starts=starts,
         lengths=lengths,
     )
-    return lines, np.max(tail.reshape(-1, len(centres)), axis=0)
+    return lines, tail
 
 
 def _patched(index: Array, values: Array, on_panel: Callable[[int, Array], Array]) -> Array:
@@ -238,5 +241,5 @@ def _integration() -> Reals:
 _NODE_PLACES = np.cos(np.pi * (np.arange(NODES) + 0.5) / NODES)
 _TO_SERIES = np.linalg.inv(chebyshev.chebvander(_NODE_PLACES, NODES - 1))
 _INTEGRATED = _integration()
-_GUESS_PLACES = np.cos(np.pi * (np.arange(12) + 0.5) / 12)
-_GUESS_SERIES = np.linalg.inv(chebyshev.chebvander(_GUESS_PLACES, 11))
+_GUESS_PLACES = np.cos(np.pi * (np.arange(GUESS) + 0.5) / GUESS)
+_GUESS_SERIES = np.linalg.inv(chebyshev.chebvander(_GUESS_PLACES, GUESS - 1))

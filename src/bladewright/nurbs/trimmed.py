@@ -20,6 +20,8 @@ from bladewright.nurbs.surface import Surface
 
 CLOSED = 1e-9
 """largest gap between consecutive boundary curves, in units of their extent"""
+ORIENTING = 4
+"""Gauss points a knot span that tell which way a boundary runs"""
 DRAWS = 4_000_000
 """most points that are drawn in the boundary's box to find some inside"""
 
@@ -56,7 +58,7 @@ class TrimmedSurface:
                     f"boundary curve {following} starts {gap:g} away from the end of curve {index}: at most "
                     f"{CLOSED * extent:g} is allowed; reorder, reverse or close the chain"
                 )
-        if not self.parametric_area.real > 0.0:
+        if not self._enclosed(ORIENTING).real > 0.0:
             raise GeometryError(
                 f"the boundary encloses an area of {self.parametric_area.real:g} in (u, v): it must run "
                 "counter-clockwise; reverse its curves and their order"
@@ -73,15 +75,14 @@ class TrimmedSurface:
     @cached_property
     def parametric_area(self) -> Array:
         """Area () enclosed by the boundary in the (u, v) plane."""
+        return settled(self._enclosed)
 
-        def total(order: int) -> Array:
-            enclosed: Array = np.zeros(())
-            for curve in self.boundary:
-                t, weights = panels(breaks(curve.knots), order)
-                enclosed = enclosed + np.sum(weights * curve(t)[:, 0] * curve.derivative(t)[:, 1])
-            return enclosed
-
-        return settled(total)
+    def _enclosed(self, order: int) -> Array:
+        enclosed: Array = np.zeros(())
+        for curve in self.boundary:
+            t, weights = panels(breaks(curve.knots), order)
+            enclosed = enclosed + np.sum(weights * curve(t)[:, 0] * curve.derivative(t)[:, 1])
+        return enclosed
 
     def area(self) -> Array:
         """Area () of the trimmed piece of a surface in space."""

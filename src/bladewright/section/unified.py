@@ -12,7 +12,7 @@ from bladewright.numerics.elementary import Array, radians
 from bladewright.nurbs.transform import translated
 from bladewright.section import checks
 from bladewright.section.camber import camber_line
-from bladewright.section.crossing import PLACES, check_outline, touches
+from bladewright.section.crossing import PLACES, check_outlines, outlines_of, touching
 from bladewright.section.curves import camber_curve, side_curve
 from bladewright.section.holding import check_edges
 from bladewright.section.laws import Span
@@ -130,7 +130,7 @@ class UnifiedSection(Design):
         )
 
     def _check_outline(self, line: Array, upper: Array, lower: Array, metre: float) -> None:
-        above, below = (np.real(points)[0] for points in plane_sections(line, upper, lower).points(PLACES))
-        outline = check_outline(above, below, PLACES, "")
-        if self.pitch is not None and touches(outline, float(np.real(self.pitch)) * metre):
+        outlines = outlines_of(*(np.real(points) for points in plane_sections(line, upper, lower).points(PLACES)))
+        check_outlines(outlines[:1], [""])
+        if self.pitch is not None and touching(outlines[:1], float(np.real(self.pitch)) * metre) is not None:
             raise DesignError(f"pitch is {self.pitch:g}: neighbouring sections intersect; take a larger pitch")
