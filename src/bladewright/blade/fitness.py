@@ -56,7 +56,8 @@ class _LinesAlongU:
             error = native - points[:, len(sites) :]
             worst = np.maximum(worst, np.max(length(error), axis=0) / self.tolerance)
             off = dot(error, normals[:, len(sites) :])[[0, -1]]
-            worst = np.maximum(worst, np.max(np.abs(off), axis=0) / self.wall_tolerance)
+            gap = np.max(np.abs(off), axis=0)  # real: knots come from the real design
+            worst = np.maximum(worst, gap / self.wall_tolerance)
         return worst
 
 

@@ -25,8 +25,8 @@ def check_outlines(outlines: Reals, where: Sequence[str]) -> None:
         at = PLACES[min(segment, outlines.shape[1] - segment)]
         raise DesignError(
             f"thickness_upper and thickness_lower: the sides cross {where[section]}near s = {at:.3f} along the "
-            "section: raise the thickness there, lower an edge radius that is larger than the thickness beside it, or lower the "
-            "turning of the camber"
+            "section: raise the thickness there, lower an edge radius that is larger than the thickness beside it, or "
+            "lower the turning of the camber"
         )
 
 
