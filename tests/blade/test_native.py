@@ -227,9 +227,7 @@ def test_sections_have_the_areas_that_make_up_the_volume_of_a_cascade():
     v, w = np.polynomial.legendre.leggauss(6)
     straight = CASCADE.changed(
         "channel",
-        type(CASCADE.channel)(
-            leading_edge=((0.0, 0.0), (0.0, 90.0)), trailing_edge=((60.0, 0.0), (50.0, 90.0))
-        ),
+        type(CASCADE.channel)(leading_edge=((0.0, 0.0), (0.0, 90.0)), trailing_edge=((60.0, 0.0), (50.0, 90.0))),
     )
     blade = straight.build()
     areas = [blade.section((place + 1.0) / 2.0).area for place in v]
