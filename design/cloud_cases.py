@@ -53,9 +53,10 @@ class Case:
     held: tuple[str, ...] = ()
     """beginnings of paths that stay at their start: they would only slide points along a curve"""
     spans: dict[str, int] = field(default_factory=dict)
-    """control points of single laws"""
+    """control points of single laws; `thickness_edges` of the first and last control points along the chord"""
     high: dict[str, float] = field(default_factory=dict)
     """upper bounds by the beginnings of paths"""
+    weights: Weights = field(default_factory=Weights)
     rounds: int = 60
 
 
@@ -84,14 +85,23 @@ CASES = {
     "nasa-rotor-67": Case(
         cloud="NASA_R67",
         design={"blade_count": 22},
-        counts={"hub": 4, "shroud": 4, "leading_edge": 4, "trailing_edge": 4},
-        hub=[(0.0, 0.096), (0.09, 0.118)],
-        shroud=[(0.024, 0.255), (0.065, 0.248)],
+        counts={"hub": 4, "shroud": 4, "leading_edge": 4, "trailing_edge": 6},
+        hub=[(-0.0007, 0.0959), (0.0896, 0.118)],
+        shroud=[(0.0241, 0.2552), (0.065, 0.2479)],
         span=5,
         chord=6,
-        spans={"leading_edge_radius": 2, "trailing_edge_radius": 2, "tangent_in": 4, "tangent_out": 4},
+        spans={
+            "leading_edge_radius": 2,
+            "trailing_edge_radius": 2,
+            "thickness_edges": 2,
+            "tangent_in": 4,
+            "tangent_out": 4,
+        },
+        weights=Weights(smooth=1e-3, centred=3e-3, near=3e-4, edges=0.01),
+        high={"tangent": 0.6},
         held=(
-            *(f"channel.{edge}_edge[{i}].r" for edge in ("leading", "trailing") for i in (1, 2)),
+            *(f"channel.leading_edge[{i}].r" for i in (1, 2)),
+            *(f"channel.trailing_edge[{i}].r" for i in (1, 2, 3, 4)),
             *(f"channel.{wall}[{i}].x" for wall in ("hub", "shroud") for i in (0, 1)),
         ),
     ),
@@ -99,10 +109,11 @@ CASES = {
         cloud="APU_rotor",
         design={"blade_count": 12},
         counts={"hub": 6, "shroud": 6, "leading_edge": 2, "trailing_edge": 2},
-        hub=[(0.0, 0.058), (0.001, 0.037), (0.01, 0.023), (0.026, 0.016), (0.039, 0.015)],
-        shroud=[(0.0065, 0.058), (0.009, 0.047), (0.015, 0.04), (0.035, 0.037)],
+        hub=[(0.0, 0.0582), (0.001, 0.037), (0.01, 0.023), (0.026, 0.016), (0.039, 0.015)],
+        shroud=[(0.00635, 0.0582), (0.009, 0.047), (0.015, 0.04), (0.035, 0.037)],
         span=4,
-        chord=5,
+        chord=7,
+        weights=Weights(centred=3e-3),
     ),
 }
 
@@ -150,7 +161,9 @@ def _started(case: Case, name: str, found: Outline, camber: Camber) -> UnifiedBl
     t = camber.thickness
     shape = (0.6, *(1.0,) * (case.chord - 2), 0.5)
     place = law(tuple(x * 1e3 if linear else x for x in camber.theta), -1e3, 1e3)
-    thickness = tuple(law((t * f,) * case.span) for f in shape)
+    ends = case.spans.get("thickness_edges", case.span)
+    spans = (ends, *(case.span,) * (case.chord - 2), ends)
+    thickness = tuple(law((t * f,) * n) for f, n in zip(shape, spans, strict=True))
     even = {"tangent_in": 0.35, "tangent_out": 0.35, "leading_edge_radius": 0.3 * t, "trailing_edge_radius": 0.2 * t}
     return UnifiedBlade(
         name=name,
@@ -185,7 +198,7 @@ def fitted(name: str, case: Case, report: Callable[[str], None] = print) -> Unif
         free = free_parameters(design, chord, (*case.given, *case.held))
     free = [replace(f, high=next((b for k, b in case.high.items() if f.paths[0].startswith(k)), f.high)) for f in free]
     start = time.perf_counter()
-    for stage, each in enumerate((Weights(smooth=1e-2, centred=1e-2, near=1e-3), Weights())):
+    for stage, each in enumerate((Weights(smooth=1e-2, centred=1e-2, near=1e-3, edges=0.05), case.weights)):
         fitting = Fitting(
             points=points, walls=walls, start=design, free=free, weights=each, tolerance=(1e-4, 1e-5)[stage]
         )

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 from cloud_feet import Feet, feet, projected, wall_feet
-from cloud_laws import Free, Weights, edges_unchecked, overfull, taming
+from cloud_laws import Free, Weights, edges_unchecked, overfull, pressed, taming
 from scipy.optimize import OptimizeResult, least_squares
 from scipy.spatial import cKDTree
 
@@ -26,8 +26,6 @@ from bladewright.nurbs.basis import Reals, basis
 from bladewright.nurbs.surface import Surface
 
 STEP = 1e-30
-EDGE_SHARE = {"leading_edge": 0.3, "trailing_edge": 0.3}
-"""weight of the meridional outline at the edges: the nose, not the camber's end, is outermost, but it is near"""
 
 
 @dataclass(kw_only=True)
@@ -48,6 +46,10 @@ class Fitting:
         values = self.start.parameters()
         spacing = cKDTree(self.points).query(self.points, k=4)[0][:, 1:].mean(axis=1)
         self.share = np.clip(np.sqrt(spacing / np.mean(spacing)), 0.5, 2.0)
+        self.wall_share = {
+            wall: np.sqrt(self.weights.edges * len(self.points) / len(places)) if "edge" in wall else 1.0
+            for wall, places in self.walls.items()
+        }
         self.first = np.array([values[each.paths[0]] for each in self.free])
         self.size = np.array([each.size for each in self.free])
         with edges_unchecked():
@@ -79,8 +81,8 @@ class Fitting:
         rows = [self.share * np.sum(on.miss * each, axis=-1) for each in (on.normal, on.beyond)]
         for wall, places in self.walls.items():
             _, normal, miss = wall_feet(exact.channel, wall, places)
-            rows.append(EDGE_SHARE.get(wall, 1.0) * np.sum(miss * normal, axis=-1))
-        held = self.weights.held * np.maximum(overfull(stations), 0.0).ravel()
+            rows.append(self.wall_share[wall] * np.sum(miss * normal, axis=-1))
+        held = self.weights.held * pressed(overfull(stations)).ravel()
         return np.concatenate([*(row / self.chord for row in rows), held, self.tame @ z - self.aim])
 
     def jacobian(self, z: Reals) -> Reals:
@@ -107,8 +109,8 @@ class Fitting:
             curve = np.imag(getattr(moved.channel, wall)) / STEP
             curve = np.broadcast_to(curve, (count, *curve.shape[-2:]))
             at = basis(exact.channel.knots(wall), exact.channel.degree_of(wall), t)
-            blocks.append(-EDGE_SHARE.get(wall, 1.0) * np.einsum("ni,pid,nd->np", at, curve, normal))
-        held = self.weights.held * np.where(overfull(stations) > 0.0, np.imag(overfull(moving)) / STEP, 0.0)
+            blocks.append(-self.wall_share[wall] * np.einsum("ni,pid,nd->np", at, curve, normal))
+        held = self.weights.held * np.imag(pressed(overfull(moving))) / STEP
         held = np.broadcast_to(held, (count, *held.shape[-2:])).reshape(count, -1).T
         return np.concatenate([*(block / self.chord for block in blocks), held, self.tame])
 

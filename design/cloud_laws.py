@@ -41,7 +41,12 @@ class Weights:
     """difference of upper and lower thickness: the camber line runs in the middle"""
     near: float = 1e-4
     """distance from the start, by parameter size"""
-    held: float = 100.0
+    channel: float = 1e-3
+    """the same of the channel's control points, which the cloud lets slide along their curve"""
+    edges: float = 1e-3
+    """the outermost places at each edge, of the whole cloud: a blade that is too long stays so without them, because
+    the places where it sticks out are nobody's nearest; but the camber's end of a staggered nose is not outermost"""
+    held: float = 10.0
     """edge radii that the thickness beside them cannot hold; of the section's extent"""
 
 
@@ -57,7 +62,7 @@ def free_parameters(design: UnifiedBlade, chord: float, fixed: Sequence[str] = (
         "leading_edge_radius": (0.003, 5e-4, 0.9),
         "trailing_edge_radius": (0.003, 5e-4, 0.9),
         "thickness": (0.05, 2e-3, 5.0),
-        "channel": (0.05 * chord / unit, -np.inf, np.inf),
+        "channel": (0.005 * chord / unit, -np.inf, np.inf),
     }
     result = []
     for path in design.parameters():
@@ -73,7 +78,8 @@ def taming(start: UnifiedBlade, free: Sequence[Free], weights: Weights) -> tuple
     """Rows and right-hand sides of the linear residuals, by size, that keep laws smooth, centred and near the start."""
     values, count = start.parameters(), len(free)
     index = {path: i for i, each in enumerate(free) for path in each.paths}
-    rows, aims = [weights.near * np.eye(count)], [np.zeros(count)]
+    near = [weights.channel if each.paths[0].startswith("channel") else weights.near for each in free]
+    rows, aims = [np.diag(near)], [np.zeros(count)]
 
     for terms, weight, size in [*_second_differences(start, free, weights), *_sides_apart(start, weights)]:
         row = np.zeros(count)
@@ -96,7 +102,8 @@ def _second_differences(
         if size is None:
             continue
         grid = _paths(name, getattr(start, name))
-        lines = [*grid, *(zip(*grid, strict=True) if len({len(row) for row in grid}) == 1 else ())]
+        inner = grid[1:-1] if len(grid) > 2 and len(grid[0]) != len(grid[1]) else grid
+        lines = [*grid, *zip(*inner, strict=True)]
         for line in lines:
             for before, at, after in zip(line, line[1:], line[2:], strict=False):
                 yield [(before, 1.0), (at, -2.0), (after, 1.0)], weights.smooth, size
@@ -117,6 +124,10 @@ def _paths(name: str, law: Any) -> list[list[str]]:
         stem = f"{name}[{i}]" if chordwise else name
         rows.append([f"{stem}[{j}]" for j in range(len(entry))] if isinstance(entry, tuple) else [stem])
     return rows
+
+
+SOFT = 2e-4
+"""width of the smooth step from fitting to overfull, of the section's extent"""
 
 
 @contextmanager
@@ -148,3 +159,8 @@ def _ends(side: Array, end: int) -> tuple[Array, Array, Array]:
     order = (0, 1, 2) if end == 0 else (-1, -2, -3)
     first, second, third = (side[..., i, :] for i in order)
     return first, second, third
+
+
+def pressed(over: Array) -> Array:
+    """A smooth max(over, 0): a kink there would stop the fit at it."""
+    return (over + np.sqrt(over * over + SOFT**2)) / 2.0

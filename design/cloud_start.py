@@ -153,17 +153,13 @@ def _inverse(curves: dict[str, Reals], places: Reals) -> tuple[Reals, Reals]:
     return u, v
 
 
-def _outermost(along: Reals, across: Reals, *, high: bool, bins: int = 20, share: float = 0.01) -> Reals:
-    """Indices of the places within `share` of the outermost in each of the bins along a curve."""
+def _outermost(along: Reals, across: Reals, *, high: bool, window: float = 0.04, share: float = 0.01) -> Reals:
+    """Indices of the places within `share` of the outermost of their neighbours along a curve."""
     value = -across if high else across
-    which = np.clip((along * bins).astype(int), 0, bins - 1)
-    keep = np.zeros(len(along), dtype=bool)
-    for k in range(bins):
-        inside = which == k
-        if np.any(inside):
-            keep |= inside & (value <= np.min(value[inside]) + share)
-    edges = np.abs(np.median(value[keep]))
-    return np.flatnonzero(keep & (np.abs(value - np.median(value[keep])) < 0.2 + edges))
+    least = np.array([np.min(value[np.abs(along - at) < window]) for at in along])
+    keep = value <= least + share
+    middle = np.median(value[keep])
+    return np.flatnonzero(keep & (np.abs(value - middle) < 0.2))
 
 
 def _fitted(places: Reals, t: Reals, before: Reals) -> Reals:

@@ -14,8 +14,8 @@ CLOUDS = Path(__file__).parents[3] / "shared" / "data" / "clouds"
 EXAMPLES = {
     "vki-ls89": ("LS89_2D", 31),
     "aachen-stator": ("Aachen_3D", 52),
-    "nasa-rotor-67": ("NASA_R67", 118),
-    "radial-turbine": ("APU_rotor", 110),
+    "nasa-rotor-67": ("NASA_R67", 108),
+    "radial-turbine": ("APU_rotor", 112),
 }
 """cloud and number of parameters: a fit with more of them would prove less"""
 
@@ -53,9 +53,9 @@ def test_the_cloud_lies_within_half_a_percent_of_the_chord_in_the_mean(name):
     chord = built(name).chord
     distances, _ = nearest(name)
     assert distances.mean() < 0.005 * chord
-    # the fits reach 0.06 % and less in the mean and 0.45 % at worst, next to an edge: a later change must not lose that
-    assert distances.mean() < 0.0007 * chord
-    assert distances.max() < 0.005 * chord
+    # the fits reach 0.05 % and less in the mean and 0.35 % at worst, next to an edge: a later change must not lose that
+    assert distances.mean() < 0.0006 * chord
+    assert distances.max() < 0.004 * chord
 
 
 @pytest.mark.parametrize("name", [name for name in EXAMPLES if name != "vki-ls89"])
