@@ -250,5 +250,7 @@ if __name__ == "__main__":
         if not words or any(word in name for word in words):
             path = ROOT / "src" / "bladewright" / "examples" / f"{name}.toml"
             if not only_measure:
-                write_design(rounded(fitted(name, case)), path)
+                design = rounded(fitted(name, case))
+                kept = read_design(path).description if path.is_file() else ""
+                write_design(design.changed("description", kept), path)
             print(measured(name, case, read_design(path)))
