@@ -7,7 +7,7 @@ import numpy as np
 
 from bladewright.errors import GeometryError
 from bladewright.numerics.elementary import Array, length
-from bladewright.nurbs.measure import surface_integral
+from bladewright.nurbs.measure import area, surface_integral
 from bladewright.nurbs.surface import Surface
 from bladewright.nurbs.trimmed import TrimmedSurface
 
@@ -47,7 +47,12 @@ def mass_properties(faces: Sequence[Face]) -> MassProperties:
     middle = 0.5 * (nets.real.min(axis=0) + nets.real.max(axis=0))
     sums = [face_moments(face, middle) for face, _ in faces]
     total = np.sum([sign * moments[1:] for (_, sign), moments in zip(faces, sums, strict=True)], axis=0)
-    areas = np.array([moments[0] for moments in sums])
+    areas = np.array(
+        [
+            area(face) if isinstance(face, Surface) else moments[0]
+            for (face, _), moments in zip(faces, sums, strict=True)
+        ]
+    )
     volume, first, second = total[3], total[4:7], total[7:]
     if not volume.real > 0.0:
         raise GeometryError(
