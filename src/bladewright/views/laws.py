@@ -67,7 +67,9 @@ def draw_laws(axes: Axes, panel: Panel) -> None:
         axes.set_xlim(low - 1.0, high + 1.0)
     axes.set_ylim(-0.03, 1.03)
     titled(axes, panel.title, panel.abscissa, "span v [-]")
-    legend_below(axes, 2 if len(panel.laws) > 4 else 1)
+    many = len(panel.laws) > 8
+    # at most four rows: more would push the legend of a low panel over its axis
+    legend_below(axes, -(-len(panel.laws) // 4), handlelength=0.9 if many else 2.0, columnspacing=0.6 if many else 1.2)
 
 
 def _chordwise(design: Any, what: str) -> dict[str, Law]:
