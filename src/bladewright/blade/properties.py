@@ -17,7 +17,6 @@ from bladewright.numerics.elementary import Array, angle, length
 from bladewright.numerics.quadrature import panels
 from bladewright.nurbs.basis import breaks
 from bladewright.nurbs.flux import MassProperties
-from bladewright.nurbs.measure import AREA_POINTS, AREA_SETTLED
 from bladewright.nurbs.measure import area
 from bladewright.nurbs.revolution import Revolution
 from bladewright.nurbs.surface import Surface

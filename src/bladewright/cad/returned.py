@@ -22,11 +22,12 @@ from bladewright.errors import CadError
 from bladewright.numerics.elementary import Array
 from bladewright.nurbs.curve import Curve
 from bladewright.nurbs.domain import reversed as run_backwards
+from bladewright.nurbs.measure import area
 
 ON_BORDER = 1e-9
 """Distance from the border of the parameter rectangle, of its size, below which a trimming curve lies on it."""
 AREA = 1e-10
-"""Relative error that the kernel's quadrature of a face aims at: design/cad_quadrature.py."""
+"""Relative error that the kernel's quadrature of a trimmed face aims at: design/cad_quadrature.py."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -37,7 +38,7 @@ class Returned:
     outline: Array
     """(n, 3) [mm] points on its boundary"""
     area: float
-    """[mm^2] by the kernel"""
+    """[mm^2] of a whole B-spline by quadrature on the poles that came back, of any other face by the kernel"""
     inside_out: bool
     """whether the face keeps the outside of its boundary"""
 
@@ -52,8 +53,6 @@ def returned(face: TopoDS_Face) -> Returned:
     points = np.concatenate([curve.control_points for curve in _all(chains)])
     low, high = points.min(axis=0), points.max(axis=0)
     carried = carrier(geometry, low, high)
-    properties = GProp_GProps()
-    BRepGProp.SurfaceProperties_s(face, properties, AREA)
     turned = sum(_enclosed(chain) for chain in chains)
     outline = carried.frame(np.concatenate([curve(spread(curve.knots, curve.degree, 40)) for curve in _all(chains)]))[0]
     if isinstance(carried, SplineCarrier):
@@ -62,8 +61,9 @@ def returned(face: TopoDS_Face) -> Returned:
         end = np.array([surface.knots_u[-1], surface.knots_v[-1]])
         rectangle = float(np.prod(end - start))
         if len(chains) == 1 and _on_border(chains[0], start, end) and abs(abs(turned) - rectangle) < 1e-6 * rectangle:
+            # the kernel's own quadrature stays 1e-8 off where a normal turns round within a span
             region = Region(carrier=carried, chains=(), low=start, high=end)
-            return Returned(region=region, outline=outline, area=properties.Mass(), inside_out=turned < 0.0)
+            return Returned(region=region, outline=outline, area=float(area(surface)), inside_out=turned < 0.0)
         bounds = (start, end)
     else:
         u_low, u_high, v_low, v_high = geometry.Bounds()
@@ -79,6 +79,8 @@ def returned(face: TopoDS_Face) -> Returned:
     else:
         low = np.array([low[0] - reach[0], max(bounds[0][1], low[1] - reach[1])])
         high = np.array([high[0] + reach[0], min(bounds[1][1], high[1] + reach[1])])
+    properties = GProp_GProps()
+    BRepGProp.SurfaceProperties_s(face, properties, AREA)
     region = Region(carrier=carried, chains=chains, low=low, high=high)
     return Returned(region=region, outline=outline, area=properties.Mass(), inside_out=turned < 0.0)
 

@@ -16,16 +16,13 @@ from bladewright.nurbs.surface import Surface
 
 PER_PATCH = 6
 """Gauss points each way on a patch"""
-ROUNDING = 1e-14
+ROUNDING = 1e-13
 """share of a whole area that a patch may be off"""
 DEEPEST = 24
 """most quarterings of a patch"""
+MOST_PATCHES = 20_000
+"""patches that are quartered at once; more are rough where the normal vanishes along a line"""
 _QUARTERS = np.array([[0.0, 0.0], [0.0, 1.0], [1.0, 0.0], [1.0, 1.0]])
-
-AREA_POINTS = (7, 12, 20, 36)
-"""Gauss points in a knot span each way, tried in turn for areas"""
-AREA_SETTLED = 1e-11
-"""relative change of an area between two tries that is taken for rounding"""
 
 Density = Callable[[Array, Array, Array], Array]
 """of points S, dS/du and dS/dv, each (..., d), a density (..., k) per du dv"""
@@ -66,18 +63,43 @@ def parameters_at_length(curve: Curve, fractions: ArrayLike) -> Array:
 
 
 def area(surface: Surface) -> Array:
-    """Area () of a whole surface in space: Gauss quadrature on knot spans until two tries agree within 1e-11.
+    """Area () of a whole surface in space.
 
-    Where none does, the last: where the normal all but vanishes or turns round within a span, no rule is exact, but
-    the same surface has the same area.
+    A patch between knots is quartered until six Gauss points each way on it and on its quarters agree within 1e-14 of
+    the whole, so that a normal that turns round within a patch costs more points but no accuracy.
     """
-    before: Array | None = None
-    for points in AREA_POINTS:
-        now = surface_integral(surface, lambda _, along_u, along_v: length(np.cross(along_u, along_v)), points)
-        if before is not None and np.square(np.real(now - before)) <= np.square(AREA_SETTLED * np.real(now)):
+    low, high = _corners(breaks(surface.knots_u), breaks(surface.knots_v))
+    coarse = _patch_areas(surface, low, high)
+    done: Array = np.zeros(())
+    for _ in range(DEEPEST):
+        size = 0.5 * (high - low)
+        starts = (low[:, None] + _QUARTERS * size[:, None]).reshape(-1, 2)
+        ends = starts + np.repeat(size, 4, axis=0)
+        fine = _patch_areas(surface, starts, ends)
+        both = fine.reshape(-1, 4).sum(axis=1)
+        whole = np.real(done + both.sum())
+        rough = np.square(np.real(both - coarse)) > (ROUNDING * whole) ** 2
+        done = done + both[~rough].sum()
+        again = np.repeat(rough, 4)
+        low, high, coarse = starts[again], ends[again], fine[again]
+        if not 0 < len(low) <= MOST_PATCHES:
             break
-        before = now
-    return now
+    return np.asarray(done + coarse.sum())
+
+
+def _corners(u: Reals, v: Reals) -> tuple[Reals, Reals]:
+    """Lower and upper corners (k, 2) of the patches between breaks."""
+    grids = [np.stack(np.meshgrid(*ends, indexing="ij"), axis=-1) for ends in ((u[:-1], v[:-1]), (u[1:], v[1:]))]
+    return grids[0].reshape(-1, 2), grids[1].reshape(-1, 2)
+
+
+def _patch_areas(surface: Surface, low: Reals, high: Reals) -> Array:
+    """Areas (k,) of patches between corners (k, 2), by Gauss quadrature."""
+    nodes, weights = gauss(PER_PATCH)
+    u, v = (low[:, i, None] + (high - low)[:, i, None] * nodes for i in (0, 1))
+    at_u, at_v = u[:, :, None], v[:, None, :]
+    normal = np.cross(surface.derivative(at_u, at_v, 1, 0), surface.derivative(at_u, at_v, 0, 1))
+    return np.asarray(np.prod(high - low, axis=-1) * np.einsum("kij,i,j->k", length(normal), weights, weights))
 
 
 def surface_integral(surface: Surface, density: Density, order: int | None = None) -> Array:
