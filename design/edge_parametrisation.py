@@ -15,7 +15,7 @@ P = (Polynomial([0.0, 1.0, 4.0]) * FALL).deriv()(X)
 Q = (Polynomial([0.0, 0.0, 0.5]) * FALL).deriv()(X)
 
 
-def least_slope(brake: float, unlike: bool) -> float:
+def least_slope(brake: float, *, unlike: bool) -> float:
     """Least a' / alpha over rises from -100 to 100,000 knot spans."""
     speeds, rises = ((0.8, 1.25), (0.6, 1.5)) if unlike else ((1.0,), (1.0,))
     least = np.inf
@@ -30,4 +30,5 @@ def least_slope(brake: float, unlike: bool) -> float:
 
 if __name__ == "__main__":
     for brake in (10.0, 20.0, 40.0, 60.0):
-        print(f"BRAKE {brake:g}: {least_slope(brake, False):.2f}, {least_slope(brake, True):.2f}")
+        alike, unlike = (least_slope(brake, unlike=each) for each in (False, True))
+        print(f"BRAKE {brake:g}: {alike:.2f}, {unlike:.2f}")

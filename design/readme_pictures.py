@@ -1,6 +1,6 @@
 """Remake the pictures of the README.
 
-python docs/pictures/make.py
+    python design/readme_pictures.py
 """
 
 import tempfile
@@ -12,7 +12,7 @@ from PIL import Image
 import bladewright as bw
 from bladewright import views
 
-HERE = Path(__file__).parent
+HERE = Path(__file__).parents[1] / "docs" / "pictures"
 WIDTH = 1400
 """of a picture [pixels]"""
 
