@@ -1,4 +1,4 @@
-"""A radial-inflow turbine rotor, fitted to a cloud: its leading edge lies on a cylinder and its blades enter radially."""
+"""A radial-inflow turbine rotor, fitted to a cloud: its inlet lies on a cylinder and its blades enter radially."""
 
 import numpy as np
 from _common import example, export
