@@ -188,8 +188,9 @@ def report(found, command):
     lines = [
         "# Random designs",
         "",
-        f"`{command}`: {len(found)} designs, each refused with one clear paragraph that names a parameter, or",
-        "built into a STEP solid that passes its round trip and keeps every promise.",
+        f"`{command}`:",
+        f"{len(found)} designs, each refused with one clear paragraph that names a parameter, or built into a STEP solid",
+        "that passes its round trip and keeps every promise.",
         "",
         "| | designs | processor seconds each: median | 95 % | most |",
         "|---|---|---|---|---|",
@@ -231,6 +232,7 @@ def main():
         found.append(outcome)
         if outcome.kind != "refused" or given.show:
             print(f"seed {outcome.seed}: {outcome.kind} in {outcome.seconds:.1f} s: {outcome.message}", flush=True)
+    # the processes end in any order
     text = report(sorted(found, key=lambda outcome: outcome.seed), f"python {' '.join(sys.argv)}")
     print(text)
     if given.record:
