@@ -39,12 +39,14 @@ def check_sections(exact: ExactBlade) -> None:
     outlines = outlines_of(*stations.plane.points(PLACES))
     first = (0,) * (outlines.ndim - 3)
     check_outlines(np.real(outlines)[first], [f"at v = {v:.3f}, " for v in stations.v])
-    u, _, across = stations.on_lines(outlines)
-    _check_neighbours(exact.design, stations.v, np.real(np.stack([u, across], axis=-1))[first])
+    if not exact.mapping.keeps_ordinate:
+        u, _, across = stations.on_lines(outlines)
+        outlines = np.stack([u, across], axis=-1)
+    _check_neighbours(exact.design, stations.v, np.real(outlines)[first])
 
 
 def _check_neighbours(design: UnifiedBlade, places: Reals, outlines: Reals) -> None:
-    """Refuse a pitch by which an outline (m, n, 2) in u and theta, or y, meets itself."""
+    """Refuse a pitch by which an outline (m, n, 2) whose ordinate is theta, or y, meets itself."""
     metre = UNITS[design.length_unit]
     pitch = 2.0 * np.pi / design.blade_count if design.blade_count else metre * _first(design.pitch)
     found = touching(outlines, pitch)

@@ -26,8 +26,7 @@ def trimmed_ends(exact: ExactBlade, upper: Surface, lower: Surface, chord: float
     The walls are the channel's, revolved about the axis or drawn along y in a cascade, exact; their u is the channel's.
     Raises DesignError where the blade winds a full turn around the axis.
     """
-    spans = np.unique(upper.knots_u)
-    places = np.sort(np.concatenate([spans, (spans[1:] + spans[:-1]) / 2.0]))
+    places = np.unique(upper.knots_u)
     stations = exact.survey
     plane = np.concatenate(stations.plane.points(places), axis=-2)[..., [0, -1], :, :]
     lines = stations.lines.rows([0, -1])

@@ -50,6 +50,8 @@ class Mapping(ABC):
     """whether blades stand around the machine axis"""
     plane: str
     """the plane's coordinates by name"""
+    keeps_ordinate: bool = True
+    """whether neighbours stand one pitch apart in the plane's ordinate everywhere"""
 
     @abstractmethod
     def density(self, position: Array, slope: Array) -> Array:
@@ -152,6 +154,7 @@ class Paper(Mapping):
     """
 
     plane = "u-y/L"
+    keeps_ordinate = False
 
     def __init__(self, *, revolved: bool) -> None:
         self.revolved = revolved

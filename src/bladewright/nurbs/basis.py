@@ -1,5 +1,7 @@
 """B-spline basis functions on clamped knot vectors."""
 
+from functools import lru_cache
+
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.interpolate import BSpline
@@ -7,6 +9,9 @@ from scipy.interpolate import BSpline
 from bladewright.errors import GeometryError
 
 Reals = NDArray[np.float64]
+
+FEW = 400
+"""parameters up to which a matrix of basis functions is kept"""
 
 
 def uniform_knots(count: int, degree: int) -> Reals:
@@ -45,12 +50,25 @@ def spans(knots: Reals, degree: int, u: ArrayLike) -> NDArray[np.intp]:
 
 
 def basis(knots: Reals, degree: int, u: ArrayLike, order: int = 0) -> Reals:
-    """Dense matrix (len(u), n) of all basis functions' `order`-th derivatives at real parameters u (m,).
+    """Dense matrix (len(u), n) of all basis functions' `order`-th derivatives at real parameters u (m,), read-only.
 
-    Outside the knots' range the end polynomials are continued.
+    Outside the knots' range the end polynomials are continued. Matrices of few parameters are kept: builds at held
+    knots ask for the same ones again and again.
     """
-    count = len(knots) - degree - 1
-    matrix: Reals = BSpline(knots, np.eye(count), degree)(np.asarray(u, dtype=np.float64), nu=order)
+    at, on = np.asarray(u, dtype=np.float64), np.asarray(knots, dtype=np.float64)
+    if at.ndim == 1 and len(at) <= FEW:
+        return _kept(on.tobytes(), degree, at.tobytes(), order)
+    return _matrix(on, degree, at, order)
+
+
+@lru_cache(maxsize=128)
+def _kept(knots: bytes, degree: int, u: bytes, order: int) -> Reals:
+    return _matrix(np.frombuffer(knots), degree, np.frombuffer(u), order)
+
+
+def _matrix(knots: Reals, degree: int, u: Reals, order: int) -> Reals:
+    matrix: Reals = BSpline(knots, np.eye(len(knots) - degree - 1), degree)(u, nu=order)
+    matrix.setflags(write=False)
     return matrix
 
 

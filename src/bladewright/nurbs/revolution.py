@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike
 from bladewright.numerics.elementary import Array
 from bladewright.nurbs.basis import Reals
 from bladewright.nurbs.curve import Curve
-from bladewright.nurbs.revolve import revolved
+from bladewright.nurbs.revolve import FULL_TURN, arc_count, revolved
 from bladewright.nurbs.surface import Surface
 
 LEFT_HANDED = (-1.0, 0.0, 0.0)
@@ -34,7 +34,7 @@ class Revolution:
     @cached_property
     def arcs(self) -> int:
         """Number of rational arcs, each of at most a right angle."""
-        return (len(np.unique(self.surface().knots_v))) - 1
+        return arc_count((self.end - self.start) / FULL_TURN)
 
     def theta(self, v: ArrayLike) -> Reals:
         """Angle [rad] at real v (...)."""

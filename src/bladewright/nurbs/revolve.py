@@ -84,6 +84,11 @@ def revolved(
     )
 
 
+def arc_count(turns: float) -> int:
+    """Number of equal rational arcs, each of at most a right angle, in a part of a full turn."""
+    return max(1, ceil(4.0 * turns - ROUNDING))
+
+
 def _turn(start: complex, end: complex) -> tuple[Array, Array, Reals]:
     """Control points (n, 2), weights (n,) and knots of the unit arc from start to end [rad]."""
     sweep = end - start
@@ -93,7 +98,7 @@ def _turn(start: complex, end: complex) -> tuple[Array, Array, Reals]:
             f"a turn from {np.real(start):g} to {np.real(end):g} rad was asked for: it must be more than none "
             "and at most 2 pi; split a longer one"
         )
-    pieces = max(1, ceil(4.0 * turns * np.copysign(1.0, turns) - ROUNDING))
+    pieces = arc_count(turns * np.copysign(1.0, turns))
     half = sweep / (2 * pieces)
     angles = start + half * np.arange(2 * pieces + 1)
     weights = np.where(np.arange(2 * pieces + 1) % 2 == 1, np.cos(half), 1.0)

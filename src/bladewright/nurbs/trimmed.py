@@ -20,7 +20,7 @@ from bladewright.nurbs.surface import Surface
 
 CLOSED = 1e-9
 """largest gap between consecutive boundary curves, in units of their extent"""
-ORIENTING = 4
+ORIENTING = 2
 """Gauss points a knot span that tell which way a boundary runs"""
 DRAWS = 4_000_000
 """most points that are drawn in the boundary's box to find some inside"""
