@@ -16,10 +16,11 @@ from scipy.optimize import OptimizeResult, least_squares
 from scipy.spatial import cKDTree
 
 from bladewright.blade.blade import surface_of
-from bladewright.blade.exact import Stations, exact_blade
+from bladewright.blade.exact import exact_blade
 from bladewright.blade.fitness import chord_of, knots_for
 from bladewright.blade.knots import DEGREE, Knots
 from bladewright.blade.native import native_sides
+from bladewright.blade.stations import Stations
 from bladewright.blade.unified import UnifiedBlade
 from bladewright.errors import DesignError
 from bladewright.nurbs.basis import Reals, basis

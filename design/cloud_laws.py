@@ -8,8 +8,8 @@ from typing import Any
 
 import numpy as np
 
-import bladewright.blade.exact as exact_module
-from bladewright.blade.exact import Stations
+import bladewright.blade.stations as stations_module
+from bladewright.blade.stations import Stations
 from bladewright.blade.unified import UnifiedBlade
 from bladewright.numerics.elementary import Array, dot, length
 from bladewright.nurbs.basis import Reals
@@ -133,13 +133,13 @@ SOFT = 2e-4
 @contextmanager
 def edges_unchecked() -> Iterator[None]:
     """The exact blade without the refusal of edge radii: a wall in the way of a step would stop the fit short of it."""
-    kept = exact_module.check_edges
-    exact_module.check_edges = lambda *_: None
+    kept = stations_module.check_edges
+    stations_module.check_edges = lambda *_: None
     try:
         with np.errstate(invalid="ignore"):
             yield
     finally:
-        exact_module.check_edges = kept
+        stations_module.check_edges = kept
 
 
 def overfull(stations: Stations) -> Array:

@@ -1,6 +1,6 @@
 """The README's tables: the worst promise and the worst figure of a round trip over all built-in examples.
 
-    python design/proof.py
+python design/proof.py
 """
 
 import tempfile

@@ -74,8 +74,10 @@ def judged(seed, directory, samples=SAMPLES):
         broken = {name: getattr(blade.promises, name) for name in blade.promises.limits}
         return "failed", f"a promise is not kept: {broken}, limits {blade.promises.limits}"
     trip = cad.write(blade, Path(directory) / f"{design.name}.step", samples=samples)
-    return ("built", f"{blade.knots.poles[0]} x {blade.knots.poles[1]} poles") if trip.passed else (
-        "failed", f"round trip: {'; '.join(trip.failures)}"
+    return (
+        ("built", f"{blade.knots.poles[0]} x {blade.knots.poles[1]} poles")
+        if trip.passed
+        else ("failed", f"round trip: {'; '.join(trip.failures)}")
     )
 
 
@@ -189,8 +191,8 @@ def report(found, command):
         "# Random designs",
         "",
         f"`{command}`:",
-        f"{len(found)} designs, each refused with one clear paragraph that names a parameter, or built into a STEP solid",
-        "that passes its round trip and keeps every promise.",
+        f"{len(found)} designs, each refused with one clear paragraph that names a parameter, or built into a STEP",
+        "solid that passes its round trip and keeps every promise.",
         "",
         "| | designs | processor seconds each: median | 95 % | most |",
         "|---|---|---|---|---|",

@@ -1,6 +1,6 @@
 """Remake the pictures of the README.
 
-    python design/readme_pictures.py
+python design/readme_pictures.py
 """
 
 import tempfile

@@ -4,9 +4,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bladewright.blade.exact import EdgeRow, ExactBlade
+from bladewright.blade.exact import ExactBlade
 from bladewright.blade.knots import DEGREE, MOST_POLES, Knots, breaks_along_u, breaks_along_v, clamped, refined
 from bladewright.blade.native import interpolated_along_u
+from bladewright.blade.stations import EdgeRow
 from bladewright.numerics.elementary import dot, length
 from bladewright.nurbs.basis import Reals, basis, greville
 from bladewright.nurbs.surface import Surface

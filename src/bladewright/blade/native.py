@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from bladewright.blade.exact import EdgeRow, Stations
 from bladewright.blade.knots import DEGREE, Knots
+from bladewright.blade.stations import EdgeRow, Stations
 from bladewright.numerics.elementary import Array
 from bladewright.nurbs.basis import Reals, basis, greville
 

@@ -5,7 +5,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from bladewright.blade.exact import Stations
+from bladewright.blade.stations import Stations
 from bladewright.numerics.elementary import Array, cross2, degrees, dot, length, unit
 from bladewright.nurbs.basis import Reals
 from bladewright.nurbs.surface import Surface

@@ -178,9 +178,7 @@ def _joints(place: Along, column: int, knots: Array, degree: int, along: Curve) 
     w = _spread(along.knots, 401)
     values = place(w)[:, column]
     return [
-        (float(at), degree - 1)
-        for level in levels
-        for at in crossings(lambda s: place(s)[:, column], w, values, level)
+        (float(at), degree - 1) for level in levels for at in crossings(lambda s: place(s)[:, column], w, values, level)
     ]
 
 
