@@ -62,7 +62,7 @@ def _elevated(values, count):
 
 def angles(stations, window):
     """Mean angle [deg] of the mapped camber line to the meridional direction over a window of its parameter."""
-    u, position, theta = stations.on_lines(camber_points(stations.plane.camber, np.array(window)))
+    _, position, theta = stations.on_lines(camber_points(stations.plane.camber, np.array(window)))
     along = np.sqrt(np.sum(np.diff(position, axis=-2) ** 2, axis=-1))[:, 0]
     around = np.mean(position[..., 1], axis=-1) * np.diff(theta, axis=-1)[:, 0]
     return np.degrees(np.arctan2(around, along))
