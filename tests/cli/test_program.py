@@ -108,7 +108,12 @@ def test_a_full_disk_behind_standard_output_is_an_error():
 def test_the_interrupt_signal_ends_a_build_with_130_and_leaves_nothing(design_file):
     out = design_file.parent / "out"
     words = [sys.executable, "-m", "bladewright", "build", design_file, "-o", out]
-    process = subprocess.Popen(words, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    # a suite that runs in the background of a shell ignores the signal, and what it starts would too
+    kept = signal.signal(signal.SIGINT, signal.default_int_handler)
+    try:
+        process = subprocess.Popen(words, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+    finally:
+        signal.signal(signal.SIGINT, kept)
     while not out.exists() and process.poll() is None:
         time.sleep(0.01)
     process.send_signal(signal.SIGINT)
