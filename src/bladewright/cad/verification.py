@@ -23,7 +23,7 @@ SAMPLES = 10_000
 """points on each face, each way"""
 NEAR = 0.01
 """Distance of control points, of the body's extent, below which a face without a name is taken for a native one."""
-QUADRATURE = (1e-7, 1e-9, 1e-11)
+QUADRATURE = (1e-7, 1e-9, 1e-12)
 """relative errors that the kernel's quadrature of volumes aims at in turn: design/cad_quadrature.py"""
 SURE = 0.2
 """share of a limit within which the first quadrature will do"""
