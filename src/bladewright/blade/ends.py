@@ -6,7 +6,7 @@ import numpy as np
 
 from bladewright.blade.exact import ExactBlade
 from bladewright.errors import DesignError
-from bladewright.numerics.elementary import Array, angle, dot, length
+from bladewright.numerics.elementary import Array, angle, dot, joined, length
 from bladewright.numerics.roots import crossings
 from bladewright.nurbs.basis import Reals, basis, greville
 from bladewright.nurbs.curve import Curve
@@ -28,7 +28,7 @@ def trimmed_ends(exact: ExactBlade, upper: Surface, lower: Surface, chord: float
     """
     places = np.unique(upper.knots_u)
     stations = exact.survey
-    plane = np.concatenate(stations.plane.points(places), axis=-2)[..., [0, -1], :, :]
+    plane = joined(stations.plane.points(places), axis=-2)[..., [0, -1], :, :]
     lines = stations.lines.rows([0, -1])
     u = lines.u_at(plane[..., 0])
     across = lines.mapping.tangential(plane[..., 1], lines.position(u)[..., 1], lines.lengths[..., None])

@@ -10,6 +10,7 @@ from bladewright.blade.stations import Stations, stations_at
 from bladewright.blade.streamlines import stream_lines
 from bladewright.blade.unified import UnifiedBlade
 from bladewright.errors import DesignError
+from bladewright.numerics.elementary import joined
 from bladewright.nurbs.basis import Reals
 from bladewright.section.checks import UNITS
 from bladewright.section.sampling import sample_places
@@ -64,7 +65,7 @@ def exact_blade(design: UnifiedBlade) -> ExactBlade:
 
 def _reaches(stations: Stations) -> list[float]:
     """How far in u the noses stand outside the channel, bounded by the sides' control points, with a margin."""
-    hull = np.concatenate([stations.plane.upper, stations.plane.lower], axis=-2)
+    hull = joined([stations.plane.upper, stations.plane.lower], axis=-2)
     abscissae = np.real(hull[..., 0] / hull[..., 2] if hull.shape[-1] == 3 else hull[..., 0])
     lines, at = stations.lines, np.array([0.0, 1.0])
     densities = np.real(lines.mapping.density(lines.position(at), lines.position(at, 1)))

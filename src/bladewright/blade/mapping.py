@@ -92,7 +92,8 @@ class Mapping(ABC):
         """Points (..., 3) in metres."""
         if not self.revolved:
             return np.stack(np.broadcast_arrays(x, tangential, radius), axis=-1)
-        return np.stack([x, radius * np.sin(tangential), radius * np.cos(tangential)], axis=-1)
+        both = radius * np.sin(tangential), radius * np.cos(tangential)
+        return np.stack(np.broadcast_arrays(x, *both), axis=-1)
 
     def series_in_space(self, x: Taylor, radius: Taylor, tangential: Taylor) -> tuple[Array, Array, Array]:
         """A curve's point and its first two derivatives (..., 3) in space."""
@@ -101,7 +102,9 @@ class Mapping(ABC):
             if not self.revolved
             else [x, radius * tangential.sine(), radius * tangential.cosine()]
         )
-        value, first, second = (np.stack([part[order] for part in parts], axis=-1) for order in range(3))
+        value, first, second = (
+            np.stack(np.broadcast_arrays(*[part[order] for part in parts]), axis=-1) for order in range(3)
+        )
         return value, first, second
 
 

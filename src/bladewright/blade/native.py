@@ -4,7 +4,7 @@ import numpy as np
 
 from bladewright.blade.knots import DEGREE, Knots
 from bladewright.blade.stations import EdgeRow, Stations
-from bladewright.numerics.elementary import Array
+from bladewright.numerics.elementary import Array, joined
 from bladewright.nurbs.basis import Reals, basis, greville
 
 
@@ -20,7 +20,7 @@ def native_sides(stations: Stations, knots: Knots) -> tuple[Array, Array]:
         return np.linalg.solve(matrix, values)
 
     rows = stations.leading_edge(), stations.trailing_edge()
-    parts = np.split(along_v(np.concatenate([part for row in rows for part in row], axis=-1)), 6, axis=-1)
+    parts = np.split(along_v(joined([*rows[0], *rows[1]], axis=-1)), 6, axis=-1)
     edges = EdgeRow(*parts[:3]), EdgeRow(*parts[3:])
     sides = []
     for points, sign in zip(stations.points(knots.sites_u), (1.0, -1.0), strict=True):
@@ -44,7 +44,7 @@ def interpolated_along_u(lines: Array, start: EdgeRow, end: EdgeRow, sign: float
     right = lines - np.einsum("ik,...kmd->...imd", outer, known)
     shape = right.shape
     inner = np.linalg.solve(matrix[:, 3:-3], right.reshape(*shape[:-2], -1)).reshape(shape)
-    return np.concatenate([known[..., :3, :, :], inner, known[..., 3:, :, :]], axis=-3)
+    return joined([known[..., :3, :, :], inner, known[..., 3:, :, :]], axis=-3)
 
 
 def _end_rows(row: EdgeRow, sign: float, near: float, far: float) -> list[Array]:

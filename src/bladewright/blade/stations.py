@@ -8,7 +8,7 @@ import numpy as np
 from bladewright.blade.mapping import Conformal, Mapping, Taylor
 from bladewright.blade.streamlines import StreamLines
 from bladewright.blade.unified import UnifiedBlade
-from bladewright.numerics.elementary import Array, radians, unit
+from bladewright.numerics.elementary import Array, joined, radians, unit
 from bladewright.nurbs.basis import Reals
 from bladewright.section.camber import camber_line, camber_points
 from bladewright.section.checks import UNITS
@@ -60,13 +60,13 @@ class Stations:
 
     def points(self, s: Reals) -> tuple[Array, Array]:
         """Points (..., m, len(s), 3) in metres of the upper and the lower side."""
-        _, position, tangential = self.on_lines(np.concatenate(self.plane.points(s), axis=-2))
+        _, position, tangential = self.on_lines(joined(self.plane.points(s), axis=-2))
         both = self.mapping.in_space(position[..., 0], position[..., 1], tangential)
         return both[..., : len(s), :], both[..., len(s) :, :]
 
     def points_and_normals(self, s: Reals) -> tuple[tuple[Array, Array], tuple[Array, Array]]:
         """The same, with the unit normals of the stream surfaces there, towards the shroud."""
-        u, position, tangential = self.on_lines(np.concatenate(self.plane.points(s), axis=-2))
+        u, position, tangential = self.on_lines(joined(self.plane.points(s), axis=-2))
         both = self.mapping.in_space(position[..., 0], position[..., 1], tangential)
         slope = unit(self.lines.position(u, 1))
         if not self.mapping.revolved:

@@ -1,5 +1,6 @@
 """Elementary functions that stay analytic, so that an imaginary step survives them."""
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -41,6 +42,14 @@ def angle(y: Array, x: Array) -> Array:
         return real
     square = np.real(x) ** 2 + np.real(y) ** 2
     return real + 1j * (np.real(x) * np.imag(y) - np.real(y) * np.imag(x)) / square
+
+
+def joined(parts: Sequence[Array], axis: int) -> Array:
+    """Arrays put together along a negative axis, the other axes broadcast: some may carry a batch, others not."""
+    own = [part.shape[axis] for part in parts]
+    rest = np.broadcast_shapes(*[(*part.shape[:axis], 1, *part.shape[axis:][1:]) for part in parts])
+    shapes = [(*rest[:axis], count, *rest[axis:][1:]) for count in own]
+    return np.concatenate([np.broadcast_to(part, shape) for part, shape in zip(parts, shapes, strict=True)], axis=axis)
 
 
 def radians(degrees: Array) -> Array:

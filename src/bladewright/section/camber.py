@@ -21,14 +21,13 @@ def camber_line(
     edge; angles (...) in radians from the abscissa; tangent proportions (...) are fractions of `extent`.
     Reference: Agromayor et al. 2021, eqs. 8 to 11, with the extent in place of the chord.
     """
-    zero = np.zeros_like(start)
-    first = np.stack([zero, start], axis=-1)
-    last = first + np.stack([extent, extent * np.tan(stagger)], axis=-1)
+    first = np.stack([np.zeros_like(start), start], axis=-1)
+    last = first + np.stack(np.broadcast_arrays(extent, extent * np.tan(stagger)), axis=-1)
     along_in = np.stack([np.cos(angle_in), np.sin(angle_in)], axis=-1)
     along_out = np.stack([np.cos(angle_out), np.sin(angle_out)], axis=-1)
     second = first + (tangent_in * extent)[..., None] * along_in
     third = last - (tangent_out * extent)[..., None] * along_out
-    return np.stack([first, second, third, last], axis=-2)
+    return np.stack(np.broadcast_arrays(first, second, third, last), axis=-2)
 
 
 def bernstein(u: Reals) -> Reals:

@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bladewright.errors import DesignError
+from bladewright.numerics.elementary import joined
 from bladewright.nurbs.basis import Reals
 
 PLACES = (1.0 - np.cos(np.pi * np.linspace(0.0, 1.0, 49))) / 2.0
@@ -14,7 +15,7 @@ PLACES = (1.0 - np.cos(np.pi * np.linspace(0.0, 1.0, 49))) / 2.0
 
 def outlines_of(upper: Reals, lower: Reals) -> Reals:
     """Closed outlines (..., n, 2) of two sides (..., m, 2) each."""
-    return np.concatenate([upper, lower[..., -2:0:-1, :]], axis=-2)
+    return joined([upper, lower[..., -2:0:-1, :]], axis=-2)
 
 
 def check_outlines(outlines: Reals, where: Sequence[str]) -> None:

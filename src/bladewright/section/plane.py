@@ -6,7 +6,7 @@ from math import factorial
 
 import numpy as np
 
-from bladewright.numerics.elementary import Array
+from bladewright.numerics.elementary import Array, joined
 from bladewright.nurbs.basis import Reals, basis, uniform_knots
 from bladewright.section.camber import camber_tangents, turned_left
 from bladewright.section.edges import Edge, edge, reparametrised
@@ -94,7 +94,7 @@ def _side_points(controls: Array, s: Reals, span: float, start: tuple[Array, Arr
     )
     distance = reparametrised(1.0 - s[last:], *end, span)
     at_end = _polynomial(_taylor_matrix(controls.shape[-2], from_end=True) @ controls, distance)
-    points = np.concatenate([at_start, middle, at_end], axis=-2)
+    points = joined([at_start, middle, at_end], axis=-2)
     return points if points.shape[-1] == 2 else points[..., :2] / points[..., 2:]
 
 

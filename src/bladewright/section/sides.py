@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from bladewright.numerics.elementary import Array, dot
+from bladewright.numerics.elementary import Array, dot, joined
 from bladewright.nurbs.basis import Reals
 from bladewright.section.camber import camber_points, camber_tangents, turned_left
 
@@ -57,11 +57,10 @@ def side(
     second = ends[..., 0, :] + edge_height(at_start, curvature_in, ratio_in)[..., None] * normals[..., 0, :]
     before_last = ends[..., 1, :] + edge_height(at_end, curvature_out, ratio_out)[..., None] * normals[..., 1, :]
     rows = [ends[..., :1, :], second[..., None, :], inner, before_last[..., None, :], ends[..., 1:, :]]
-    points = np.concatenate(rows, axis=-2)
+    points = joined(rows, axis=-2)
     if weights is None:
         return points
-    weights = np.broadcast_to(weights, points.shape[:-1])
-    return np.concatenate([points * weights[..., None], weights[..., None]], axis=-1)
+    return joined([points * weights[..., None], weights[..., None]], axis=-1)
 
 
 def _thickened(line: Array, places: Reals, thickness: Array, upper: bool) -> Array:
