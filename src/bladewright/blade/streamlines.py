@@ -4,12 +4,12 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 from math import perm
+from typing import Protocol
 
 import numpy as np
 from numpy.polynomial import chebyshev
 
 from bladewright.blade.mapping import Mapping
-from bladewright.blade.meridional import Meridional
 from bladewright.errors import DesignError
 from bladewright.numerics.elementary import Array, length
 from bladewright.nurbs.basis import Reals
@@ -20,6 +20,16 @@ GUESS = 22
 """Chebyshev places of the inverse that Newton starts from: one step from there mostly does"""
 CONVERGED = 3e-8
 """a Newton step this small leaves an error of its square: rounding"""
+
+
+class Channelled(Protocol):
+    """A channel whose stream lines are piecewise polynomials of u."""
+
+    def joints(self) -> Reals:
+        """Where a stream line loses derivatives."""
+
+    def stream_polynomials(self, v: Reals, centres: Reals) -> Array:
+        """Coefficients (..., len(v), len(centres), k, 2) of (x, r) in powers of u - centre, around each centre."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -60,6 +70,11 @@ class StreamLines:
     def extents(self) -> Array:
         """(..., m) extent of the stream lines in their plane: the abscissa at u = 1."""
         return self.starts[..., int(np.searchsorted(self.panels, 1.0))]
+
+    def abscissa(self, u: Array) -> Array:
+        """The abscissa (..., m, k) in the plane at u (..., m, k) or (k,)."""
+        u = np.broadcast_to(u, np.broadcast_shapes((*self.starts.shape[:-1], 1), np.shape(u)))
+        return self._by_panel(u, self._panel_abscissa)
 
     def u_at(self, abscissa: Array) -> Array:
         """u (..., m, k) at an abscissa (..., m, k): Newton in real numbers, its derivative by one more complex step."""
@@ -122,10 +137,16 @@ class StreamLines:
         return _patched(index, np.stack([u, abscissa]), lambda panel, part: self._panel_step(panel, part[0], part[1]))
 
     def _panel_step(self, panel: int, u: Array, abscissa: Array) -> Array:
+        return (self._panel_abscissa(panel, u) - abscissa) / _clenshaw(
+            self.density[..., panel, :], self._local(panel, u)
+        )
+
+    def _panel_abscissa(self, panel: int, u: Array) -> Array:
+        return _clenshaw(self.series[..., panel, :], self._local(panel, u)) + self.starts[..., panel, None]
+
+    def _local(self, panel: int, u: Array) -> Array:
         low, high = self.panels[panel], self.panels[panel + 1]
-        local = (2.0 * u - low - high) / (high - low)
-        value = _clenshaw(self.series[..., panel, :], local) + self.starts[..., panel, None]
-        return (value - abscissa) / _clenshaw(self.density[..., panel, :], local)
+        return (2.0 * u - low - high) / (high - low)
 
     def _by_panel(self, u: Array, on_panel: Callable[[int, Array], Array]) -> Array:
         return _patched(self._panel_index(u), u, on_panel)
@@ -138,13 +159,13 @@ class StreamLines:
         return np.stack([_horner(self.powers[..., panel, :, i], t, order) for i in (0, 1)], axis=-1)
 
 
-def stream_lines(channel: Meridional, mapping: Mapping, v: Reals, before: float, after: float) -> StreamLines:
+def stream_lines(channel: Channelled, mapping: Mapping, v: Reals, before: float, after: float) -> StreamLines:
     """Stream lines at v (m,), continued by `before` and `after` in u.
 
     The densities' Chebyshev series are carried to rounding: panels are halved until their last terms vanish.
     Raises DesignError where the channel cannot be continued: r or the speed along a stream line vanishes.
     """
-    ends = np.concatenate([[-before] if before else [], [0.0], channel.joints(), [1.0], [1.0 + after] if after else []])
+    ends = np.unique(np.concatenate([[-before, 0.0], channel.joints(), [1.0, 1.0 + after]]))
     for _ in range(6):
         lines, tail = _on_panels(channel, mapping, v, ends)
         poor = tail > 1e-13
@@ -155,7 +176,7 @@ def stream_lines(channel: Meridional, mapping: Mapping, v: Reals, before: float,
     return lines
 
 
-def _on_panels(channel: Meridional, mapping: Mapping, v: Reals, ends: Reals) -> tuple[StreamLines, Reals]:
+def _on_panels(channel: Channelled, mapping: Mapping, v: Reals, ends: Reals) -> tuple[StreamLines, Reals]:
     centres, halves = (ends[:-1] + ends[1:]) / 2.0, (ends[1:] - ends[:-1]) / 2.0
     powers = channel.stream_polynomials(v, centres)
     t = halves[:, None] * _NODE_PLACES
