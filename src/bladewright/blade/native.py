@@ -1,10 +1,13 @@
 """Native sides that interpolate the exact blade, with the edges' two derivatives built into their control points."""
 
+from typing import NamedTuple
+
 import numpy as np
 
 from bladewright.blade.knots import DEGREE, Knots
 from bladewright.blade.stations import EdgeRow, Stations
 from bladewright.numerics.elementary import Array, joined
+from bladewright.numerics.solving import solved
 from bladewright.nurbs.basis import Reals, basis, greville
 
 
@@ -14,19 +17,35 @@ def native_sides(stations: Stations, knots: Knots) -> tuple[Array, Array]:
     Across each edge the sides share the row P0, the rows P0 + D and P0 - D and the row of second derivatives E, so
     that curvature is continuous there for every v.
     """
-    matrix = basis(knots.v, DEGREE, stations.v)
+    return sides_through(skeleton_of(stations, knots), knots)
 
-    def along_v(values: Array) -> Array:
-        return np.linalg.solve(matrix, values)
 
-    rows = stations.leading_edge(), stations.trailing_edge()
-    parts = np.split(along_v(joined([*rows[0], *rows[1]], axis=-1)), 6, axis=-1)
+class Skeleton(NamedTuple):
+    """What the native sides interpolate at their sites along the span (m,): the nets are linear in it."""
+
+    leading_edge: EdgeRow
+    trailing_edge: EdgeRow
+    upper: Array
+    """points (..., m, n_u - 6, 3)"""
+    lower: Array
+    """points (..., m, n_u - 6, 3)"""
+
+
+def skeleton_of(stations: Stations, knots: Knots) -> Skeleton:
+    """The skeleton of stations at `knots.sites_v`."""
+    return Skeleton(stations.leading_edge(), stations.trailing_edge(), *stations.points(knots.sites_u))
+
+
+def sides_through(skeleton: Skeleton, knots: Knots) -> tuple[Array, Array]:
+    """Control nets (..., n_u, n_v, 3) of the upper and the lower side that interpolate a skeleton."""
+    matrix = basis(knots.v, DEGREE, knots.sites_v)
+    ends = solved(matrix, joined([*skeleton.leading_edge, *skeleton.trailing_edge], axis=-1))
+    parts = np.split(ends, 6, axis=-1)
     edges = EdgeRow(*parts[:3]), EdgeRow(*parts[3:])
     sides = []
-    for points, sign in zip(stations.points(knots.sites_u), (1.0, -1.0), strict=True):
-        flat = np.swapaxes(points, -3, -2)
-        lines = along_v(flat.reshape(*flat.shape[:-3], *flat.shape[-3:]))
-        sides.append(interpolated_along_u(lines, edges[0], edges[1], sign, knots.u))
+    for points, sign in ((skeleton.upper, 1.0), (skeleton.lower, -1.0)):
+        rows = solved(matrix, points.reshape(*points.shape[:-2], -1)).reshape(points.shape)
+        sides.append(interpolated_along_u(np.swapaxes(rows, -3, -2), *edges, sign, knots.u))
     return sides[0], sides[1]
 
 
@@ -43,7 +62,7 @@ def interpolated_along_u(lines: Array, start: EdgeRow, end: EdgeRow, sign: float
     outer = np.concatenate([matrix[:, :3], matrix[:, -3:]], axis=1)
     right = lines - np.einsum("ik,...kmd->...imd", outer, known)
     shape = right.shape
-    inner = np.linalg.solve(matrix[:, 3:-3], right.reshape(*shape[:-2], -1)).reshape(shape)
+    inner = solved(matrix[:, 3:-3], right.reshape(*shape[:-2], -1)).reshape(shape)
     return joined([known[..., :3, :, :], inner, known[..., 3:, :, :]], axis=-3)
 
 
