@@ -9,7 +9,7 @@ from scipy.sparse import csr_array
 from scipy.spatial import cKDTree
 
 from bladewright.blade.knots import DEGREE, Knots
-from bladewright.nurbs.basis import Reals, basis, uniform_knots
+from bladewright.nurbs.basis import Reals, basis
 from bladewright.nurbs.surface import Surface
 
 
@@ -93,8 +93,8 @@ def projected(knots: Knots, u: Reals, v: Reals, direction: Reals) -> csr_array:
 
 def wall_feet(channel: Any, wall: str, places: Reals) -> tuple[Reals, Reals, Reals]:
     """Nearest parameters on a wall continued by its own polynomial, unit normals and misses there."""
-    points, degree = np.real(getattr(channel, wall)), channel.degree_of(wall)
-    knots = uniform_knots(len(points), degree)
+    line = channel.line(wall)
+    points, degree, knots = np.real(line.points), line.degree, line.knots
     t = np.linspace(-0.03, 1.03, 400)
     _, index = cKDTree(basis(knots, degree, t) @ points).query(places)
     t = t[index]

@@ -107,7 +107,7 @@ class Fitting:
         blocks = [*rows]
         for wall, places in self.walls.items():
             t, normal, _ = wall_feet(exact.channel, wall, places)
-            curve = np.imag(getattr(moved.channel, wall)) / STEP
+            curve = np.imag(moved.channel.line(wall).points) / STEP
             curve = np.broadcast_to(curve, (count, *curve.shape[-2:]))
             at = basis(exact.channel.knots(wall), exact.channel.degree_of(wall), t)
             blocks.append(-self.wall_share[wall] * np.einsum("ni,pid,nd->np", at, curve, normal))

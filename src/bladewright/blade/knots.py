@@ -62,11 +62,11 @@ def breaks_along_v(exact: ExactBlade) -> Reals:
     for law in laws:
         for knot in inner_knots(len(law)) if isinstance(law, tuple) else ():
             times[round(float(knot), 12)] = DEGREE - LAW_DEGREE + 1
-    for edge in ("leading_edge", "trailing_edge"):
-        for knot in exact.channel.knots(edge):
+    for edge in (exact.channel.leading_edge, exact.channel.trailing_edge):
+        for knot in edge.joints():
             key = round(float(knot), 12)
             if 0.0 < key < 1.0:
-                times[key] = max(times.get(key, 0), DEGREE - exact.channel.degree_of(edge) + 1)
+                times[key] = max(times.get(key, 0), DEGREE - edge.degree + 1)
     return np.array([knot for knot in sorted(times) for _ in range(times[knot])])
 
 

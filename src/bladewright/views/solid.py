@@ -148,7 +148,7 @@ def _viewpoint(blade: "Blade") -> Reals:
     """Right, up and towards of a viewer who looks at the smaller end of the hub, or from upstream on an even one."""
     if not blade.exact.mapping.revolved:
         return axes_towards((-0.55, -0.75, 0.50), (0.0, 0.0, 1.0))
-    first, last = np.real(blade.exact.channel.hub)[[0, -1]]
+    first, last = np.real(blade.exact.channel.hub.points)[[0, -1]]
     narrows = first[1] - last[1] > 0.15 * first[1]
     smaller, larger = (last, first) if narrows else (first, last)
     return axes_towards((0.74 if smaller[0] > larger[0] else -0.74, 0.42, 0.52), (0.0, 0.0, 1.0))
