@@ -130,9 +130,9 @@ class Meridional:
         w = v[:, None, None, None]
         total = (1.0 - w) * hub + w * shroud
         edges = []
-        for edge, end in ((self.leading_edge, slice(None, 1)), (self.trailing_edge, slice(-1, None))):
-            corners = self.hub.points[..., end, :], self.shroud.points[..., end, :]
-            ruled = (1.0 - v)[:, None] * corners[0] + v[:, None] * corners[1]
+        for edge, place in ((self.leading_edge, slice(None, 1)), (self.trailing_edge, slice(-1, None))):
+            low, high = self.hub.points[..., place, :], self.shroud.points[..., place, :]
+            ruled = (1.0 - v)[:, None] * low + v[:, None] * high
             edges.append((edge.values(v) - ruled)[..., None, :])
         start, end = edges
         total = np.array(np.broadcast_to(total, np.broadcast_shapes(total.shape, (*start.shape[:-2], 1, powers, 2))))
