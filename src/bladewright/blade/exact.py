@@ -1,6 +1,7 @@
 """The exact blade: for every v the plane section of the laws' values there, laid on its stream surface."""
 
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
@@ -34,8 +35,13 @@ class ExactBlade:
     """how far, in u, stream lines are continued past the leading edge"""
     after: float
     """how far, in u, stream lines are continued past the trailing edge"""
-    survey: Stations
-    """stations from hub to shroud on which the shape is judged"""
+    surveyed: Stations | None = None
+    """the survey, where it is at hand"""
+
+    @cached_property
+    def survey(self) -> Stations:
+        """Stations from hub to shroud on which the shape is judged."""
+        return self.stations(SURVEY) if self.surveyed is None else self.surveyed
 
     def stations(self, v: Reals) -> Stations:
         """Sections at v (m,); refuses an edge radius that the thickness cannot hold."""
@@ -46,7 +52,7 @@ class ExactBlade:
 def exact_blade(design: UnifiedBlade) -> ExactBlade:
     """The exact blade of a design, its channel continued as far as the noses need."""
     mapping = mapping_of(design.mapping, design.arrangement)
-    channel = meridional(design.channel, UNITS[design.length_unit])
+    channel = _channel_of(design)
     places = sample_places(design.samples, design.clustering)
     within = stations_at(design, places, stream_lines(channel, mapping, SURVEY, 0.0, 0.0), SURVEY)
     before, after = _reaches(within)
@@ -59,8 +65,17 @@ def exact_blade(design: UnifiedBlade) -> ExactBlade:
         places=places,
         before=before,
         after=after,
-        survey=survey,
+        surveyed=survey,
     )
+
+
+def moved(exact: ExactBlade, design: UnifiedBlade) -> ExactBlade:
+    """The exact blade of a design that is a small step away, its channel continued as far as that of `exact`."""
+    return replace(exact, design=design, channel=_channel_of(design), surveyed=None)
+
+
+def _channel_of(design: UnifiedBlade) -> Meridional:
+    return meridional(design.channel, UNITS[design.length_unit])
 
 
 def _reaches(stations: Stations) -> list[float]:
