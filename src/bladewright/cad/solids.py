@@ -1,5 +1,6 @@
 """Closed solids of native surfaces: shared edges, shared vertices, tolerances as large as the gaps that there are."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import lru_cache
 
@@ -8,8 +9,9 @@ import numpy as np
 from OCP.BRep import BRep_Builder
 from OCP.BRepCheck import BRepCheck_Analyzer
 from OCP.Geom import Geom_Surface
-from OCP.Geom2d import Geom2d_Line
+from OCP.Geom2d import Geom2d_BSplineCurve, Geom2d_Curve, Geom2d_Line
 from OCP.gp import gp_Dir2d, gp_Pnt, gp_Pnt2d
+from OCP.TColgp import TColgp_Array1OfPnt2d
 from OCP.TopAbs import TopAbs_FORWARD, TopAbs_REVERSED
 from OCP.TopoDS import (
     TopoDS,
@@ -22,8 +24,8 @@ from OCP.TopoDS import (
 )
 
 from bladewright.cad.built import MM, Built
-from bladewright.cad.geometry import millimetres, plane_curve, space_curve, space_surface
-from bladewright.cad.topology import Edge, Topology, Use, topology
+from bladewright.cad.geometry import millimetres, occ_knots, plane_curve, space_curve, space_surface
+from bladewright.cad.topology import Collapsed, Edge, Topology, Use, topology
 from bladewright.cad.walls import wall
 from bladewright.errors import CadError
 from bladewright.nurbs.curve import Curve
@@ -80,7 +82,7 @@ def body(built: Built) -> Body:
     for face in built.surfaces.values():
         millimetres(face.control_points if isinstance(face, Surface) else face.surface.control_points)
     made = topology(built)
-    workshop = _Workshop(made)
+    workshop = _Workshop(built.surfaces, made)
     faces = {}
     for name, face in built.surfaces.items():
         outwards = built.orientations[name] > 0
@@ -108,8 +110,8 @@ def body(built: Built) -> Body:
 class _Workshop:
     """Edges and vertices of the kernel, made once and handed to every face that meets there."""
 
-    def __init__(self, made: Topology) -> None:
-        self.made = made
+    def __init__(self, surfaces: Mapping[str, Surface | TrimmedSurface], made: Topology) -> None:
+        self.surfaces, self.made = surfaces, made
         self.builder = BRep_Builder()
         self.vertices = [TopoDS_Vertex() for _ in made.vertices]
         self.tolerances = np.full(len(made.vertices), CONFUSION)
@@ -135,28 +137,22 @@ class _Workshop:
         self.builder.MakeFace(face, space_surface(surface), CONFUSION)
         wire = self._wire()
         for side in range(4):
-            for index, edge in enumerate(self.made.edges):
-                for use in edge.uses:
-                    if (use.face, use.side) == (name, side):
-                        backwards = use.along != (side in {0, 1})
-                        line = _side_line(surface, side, backwards=backwards)
-                        self.builder.UpdateEdge(self.edges[index], line, face, CONFUSION)
-                        self._add(wire, self.edges[index], along=use.along)
+            for index, use in self._along(name, side):
+                trace = _side_trace(surface, use, self.made.edges[index].curve)
+                self.builder.UpdateEdge(self.edges[index], trace, face, CONFUSION)
+                self._add(wire, self.edges[index], along=use.along)
             for point in self.made.collapsed:
                 if (point.use.face, point.use.side) == (name, side):
-                    self._add(wire, self._degenerate(surface, side, point.vertex, face), along=side in {0, 1})
+                    self._add(wire, self._degenerate(surface, point, face), along=point.use.along)
         return self._closed(face, wire, outwards)
 
     def wall(self, name: str, face: TrimmedSurface, outwards: bool) -> TopoDS_Face:
         """A trimmed face, its wire run along the edges that its boundary follows."""
-        chain: list[tuple[int, Edge, Use]] = []
-        for side in range(len(face.boundary)):
-            chain += [
-                (index, edge, use)
-                for index, edge in enumerate(self.made.edges)
-                for use in edge.uses
-                if (use.face, use.side) == (name, side)
-            ]
+        chain = [
+            (index, self.made.edges[index], use)
+            for side in range(len(face.boundary))
+            for index, use in self._along(name, side)
+        ]
         shape = wall(face, [(edge, use) for _, edge, use in chain])
         made = TopoDS_Face()
         self.builder.MakeFace(made, shape.geometry, CONFUSION)
@@ -181,6 +177,17 @@ class _Workshop:
         for vertex, tolerance in zip(self.vertices, self.tolerances.tolist(), strict=True):
             self.builder.UpdateVertex(vertex, tolerance)
 
+    def _along(self, name: str, side: int) -> list[tuple[int, Use]]:
+        """The edges on a side of a face, by their place, in the order of the face's run along that side."""
+        found = [
+            (index, use)
+            for index, edge in enumerate(self.made.edges)
+            for use in edge.uses
+            if (use.face, use.side) == (name, side)
+        ]
+        trimmed = isinstance(self.surfaces[name], TrimmedSurface)
+        return sorted(found, key=lambda each: each[1].span, reverse=not trimmed and side in {2, 3})
+
     def _wire(self) -> TopoDS_Wire:
         wire = TopoDS_Wire()
         self.builder.MakeWire(wire)
@@ -194,26 +201,37 @@ class _Workshop:
         self.builder.Add(face, wire)
         return TopoDS.Face_s(face.Oriented(TopAbs_FORWARD if forward else TopAbs_REVERSED))
 
-    def _degenerate(self, surface: Surface, side: int, vertex: int, face: TopoDS_Face) -> TopoDS_Edge:
+    def _degenerate(self, surface: Surface, point: Collapsed, face: TopoDS_Face) -> TopoDS_Edge:
         edge = TopoDS_Edge()
         self.builder.MakeEdge(edge)
-        self.builder.UpdateEdge(edge, _side_line(surface, side, backwards=False), face, CONFUSION)
-        self._bound(edge, vertex, vertex)
+        self.builder.UpdateEdge(edge, _side_trace(surface, point.use, None), face, CONFUSION)
+        self._bound(edge, point.vertex, point.vertex)
         self.builder.Degenerated(edge, True)
-        knots = surface.knots_u if side in {0, 2} else surface.knots_v
-        self.builder.Range(edge, face, float(knots[0]), float(knots[-1]))
+        self.builder.Range(edge, face, *point.use.span)
         return edge
 
 
-def _side_line(surface: Surface, side: int, *, backwards: bool) -> Geom2d_Line:
-    """The side of the parameter rectangle at the parameter of its curve, or at that of the reversed curve."""
-    knots = surface.knots_u if side in {0, 2} else surface.knots_v
-    across = surface.knots_v if side in {0, 2} else surface.knots_u
-    fixed = float(across[0] if side in {0, 3} else across[-1])
-    origin, step = (float(knots[0] + knots[-1]), -1.0) if backwards else (0.0, 1.0)
-    if side in {0, 2}:
-        return Geom2d_Line(gp_Pnt2d(origin, fixed), gp_Dir2d(step, 0.0))
-    return Geom2d_Line(gp_Pnt2d(fixed, origin), gp_Dir2d(0.0, step))
+def _side_trace(surface: Surface, use: Use, curve: Curve | None) -> Geom2d_Curve:
+    """The piece of a side of the parameter rectangle at the parameter of an edge's curve, or at its own."""
+    along_u = use.side in {0, 2}
+    across = surface.knots_v if along_u else surface.knots_u
+    fixed = float(across[0] if use.side in {0, 3} else across[-1])
+    backwards = curve is not None and use.along != (use.side in {0, 1})
+    start, end = reversed(use.span) if backwards else use.span
+    first, last = use.span if curve is None else curve.domain
+    slope = (end - start) / (last - first)
+
+    def at(place: float) -> gp_Pnt2d:
+        return gp_Pnt2d(place, fixed) if along_u else gp_Pnt2d(fixed, place)
+
+    if abs(abs(slope) - 1.0) <= 1e-15:
+        # a line of the kernel has its length for a parameter
+        step = -1.0 if backwards else 1.0
+        return Geom2d_Line(at(start - step * first), gp_Dir2d(step, 0.0) if along_u else gp_Dir2d(0.0, step))
+    poles = TColgp_Array1OfPnt2d(1, 2)
+    poles.SetValue(1, at(start))
+    poles.SetValue(2, at(end))
+    return Geom2d_BSplineCurve(poles, *occ_knots(np.array([first, first, last, last])), 1)
 
 
 def _turns_left(face: TrimmedSurface) -> bool:

@@ -1,6 +1,7 @@
 """Which faces of a body share which edges, found from their native boundary curves."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from itertools import pairwise
 
 import numpy as np
 
@@ -16,6 +17,9 @@ COINCIDENT = 1e-12
 ALONG = 1e-6
 """The same up to which a trimmed face's boundary runs along an edge; what is left is measured as the edge's gap."""
 
+SAME_KNOT = 1e-12
+"""Difference of two knots, as a fraction of the edge's range, up to which they are the same."""
+
 SIDES = ("v = 0", "u = 1", "v = 1", "u = 0")
 """The sides of an untrimmed face in the order of a counter-clockwise run around its parameter square."""
 
@@ -30,6 +34,8 @@ class Use:
     """index into SIDES, or into the boundary curves of a trimmed face"""
     along: bool
     """whether the face's run along this side follows the edge's own parameter"""
+    span: tuple[float, float]
+    """where on the side the edge lies: the side's own parameters, or those of the boundary curve, smaller first"""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -45,7 +51,7 @@ class Edge:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Collapsed:
-    """A side of a face that is a single point."""
+    """A side of a face, or a piece of it, that is a single point."""
 
     use: Use
     vertex: int
@@ -64,9 +70,10 @@ class Topology:
 def topology(built: Built) -> Topology:
     """The edges that the faces of a body share, and the vertices where those meet.
 
-    Untrimmed faces are neighbours where their boundary curves have the same control points, run either way; a trimmed
-    face is the neighbour of the edge that its boundary follows. Raises CadError where an edge does not belong to
-    exactly two faces.
+    A side of an untrimmed face that is no more than continuous at an inner knot is split there, and each piece is an
+    edge of its own. Untrimmed faces are neighbours where such pieces have the same control points, run either way, and
+    the same knots, up to a linear change of the parameter; a trimmed face is the neighbour of the edges that its
+    boundary follows. Raises CadError where an edge does not belong to exactly two faces.
     """
     size = extent(built)
     runs: list[tuple[Curve, list[Use]]] = []
@@ -74,13 +81,15 @@ def topology(built: Built) -> Topology:
     for name, face in built.surfaces.items():
         if isinstance(face, Surface):
             for side in range(4):
-                curve, along = side_curve(face, side)
-                use = Use(face=name, side=side, along=along)
-                net = curve.control_points
-                if np.ptp(net, axis=0).max() <= COINCIDENT * size:
-                    points.append((net[0], use))
-                else:
-                    _join(runs, curve, use, COINCIDENT * size)
+                whole, along = side_curve(face, side)
+                flat = np.ptp(whole.control_points, axis=0).max() <= COINCIDENT * size
+                for curve in (whole,) if flat else pieces(whole):
+                    use = Use(face=name, side=side, along=along, span=curve.domain)
+                    net = curve.control_points
+                    if np.ptp(net, axis=0).max() <= COINCIDENT * size:
+                        points.append((net[0], use))
+                    else:
+                        _join(runs, curve, use, COINCIDENT * size)
     for name, face in built.surfaces.items():
         if isinstance(face, TrimmedSurface):
             for side, boundary in enumerate(face.boundary):
@@ -113,11 +122,29 @@ def side_curve(face: Surface, side: int) -> tuple[Curve, bool]:
     return curve, side in {0, 1}
 
 
+def pieces(curve: Curve) -> tuple[Curve, ...]:
+    """The parts of a curve between inner knots of full multiplicity, control point for control point."""
+    degree = curve.degree
+    inner, counts = np.unique(curve.knots[degree + 1 : -degree - 1], return_counts=True)
+    cuts = [curve.knots[0], *inner[counts == degree], curve.knots[-1]]
+    # the control point that a cut passes through stands before the first of its knots
+    places = [0, *(int(np.searchsorted(curve.knots, cut)) - 1 for cut in cuts[1:-1]), len(curve.control_points) - 1]
+    return tuple(
+        Curve(
+            control_points=curve.control_points[first : last + 1],
+            knots=np.concatenate([[start], curve.knots[first + 1 : last + degree + 1], [end]]),
+            degree=degree,
+            weights=None if curve.weights is None else curve.weights[first : last + 1],
+        )
+        for (start, end), (first, last) in zip(pairwise(cuts), pairwise(places), strict=True)
+    )
+
+
 def _join(runs: list[tuple[Curve, list[Use]]], curve: Curve, use: Use, tolerance: float) -> None:
     for known, uses in runs:
         for backwards in (False, True):
             if _same(known, curve, tolerance, backwards=backwards):
-                uses.append(Use(face=use.face, side=use.side, along=use.along != backwards))
+                uses.append(replace(use, along=use.along != backwards))
                 return
     runs.append((curve, [use]))
 
@@ -126,8 +153,8 @@ def _same(one: Curve, other: Curve, tolerance: float, *, backwards: bool) -> boo
     if one.degree != other.degree or one.control_points.shape != other.control_points.shape:
         return False
     step = -1 if backwards else 1
-    knots = other.knots[0] + other.knots[-1] - other.knots[::-1] if backwards else other.knots
-    if not np.allclose(one.knots, knots, rtol=0.0, atol=1e-12):
+    shares = _shares(other.knots)
+    if np.max(np.abs(_shares(one.knots) - (1.0 - shares[::-1] if backwards else shares))) > SAME_KNOT:
         return False
     weights = [curve.weights if curve.weights is not None else np.ones(1) for curve in (one, other)]
     if not np.allclose(weights[0], weights[1][::step], rtol=1e-12, atol=0.0):
@@ -135,36 +162,53 @@ def _same(one: Curve, other: Curve, tolerance: float, *, backwards: bool) -> boo
     return bool(np.max(np.abs(one.control_points - other.control_points[::step])) <= tolerance)
 
 
+def _shares(knots: Array) -> Array:
+    return (knots - knots[0]) / (knots[-1] - knots[0])
+
+
 def _follow(
     runs: list[tuple[Curve, list[Use]]], face: TrimmedSurface, boundary: Curve, name: str, side: int, tolerance: float
 ) -> None:
-    """Give the boundary of a trimmed face to the edge that runs along it."""
+    """Give the boundary of a trimmed face to the edge that runs along it, or to several one behind another."""
     s = np.linspace(boundary.knots[0], boundary.knots[-1], 2001)
     trace = face.surface(*boundary(s).T)
-    best, nearest = None, np.inf
-    for known, uses in runs:
-        first, middle, last = known(known.knots[0] + np.array([0.0, 0.5, 1.0]) * (known.knots[-1] - known.knots[0]))
-        for ends, along in (((first, last), True), ((last, first), False)):
-            # the middle lies at another parameter of the boundary: its distance is measured to the polyline
-            miss = max(_distance(trace[0], ends[0]), _distance(trace[-1], ends[1]), _to_polyline(middle, trace))
-            if miss < nearest:
-                best, nearest = (uses, along), miss
-    if best is None or nearest > tolerance:
+    found, nearest = [], np.inf
+    for curve, uses in runs:
+        first, middle, last = curve(curve.knots[0] + np.array([0.0, 0.5, 1.0]) * (curve.knots[-1] - curve.knots[0]))
+        # a point of the edge lies at another parameter of the boundary: its distance is measured to the polyline
+        off = _to_polyline(middle, trace)
+        for start, end in ((first, last), (last, first)):
+            nearest = min(nearest, max(_distance(trace[0], start), _distance(trace[-1], end), off[0]))
+        if max(off[0], *(_to_polyline(end, trace)[0] for end in (first, last))) <= tolerance:
+            found.append((off[1], uses, first, last))
+    place, reached = trace[0], boundary.knots[0]
+    for at, uses, first, last in sorted(found, key=lambda each: each[0]):
+        along = _distance(place, first) <= _distance(place, last)
+        start, end = (first, last) if along else (last, first)
+        if _distance(place, start) > tolerance:
+            break
+        past = s[0] + (s[-1] - s[0]) * _to_polyline(end, trace, after=at)[1] / (len(s) - 1)
+        uses.append(Use(face=name, side=side, along=along, span=(float(reached), float(past))))
+        place, reached = end, past
+    if not found or _distance(place, trace[-1]) > tolerance:
         raise CadError(
             f"boundary {side} of face {name!r} runs along no edge of another face: the nearest is {nearest:.3g} m "
             f"away, and at most {tolerance:.3g} m is taken for the same; let the neighbour end on this boundary"
         )
-    best[0].append(Use(face=name, side=side, along=best[1]))
 
 
 def _distance(a: Array, b: Array) -> float:
     return float(np.sqrt(np.sum((a - b) ** 2)))
 
 
-def _to_polyline(point: Array, line: Array) -> float:
-    start, step = line[:-1], np.diff(line, axis=0)
+def _to_polyline(point: Array, line: Array, after: float = 0.0) -> tuple[float, float]:
+    """Distance of a point from a polyline, and the place there, counted in its segments, not before `after`."""
+    begin = int(after)
+    start, step = line[begin:-1], np.diff(line[begin:], axis=0)
     share = np.clip(np.sum((point - start) * step, axis=-1) / np.sum(step * step, axis=-1), 0.0, 1.0)
-    return float(np.sqrt(np.min(np.sum((start + share[:, None] * step - point) ** 2, axis=-1))))
+    away = np.sum((start + share[:, None] * step - point) ** 2, axis=-1)
+    nearest = int(np.argmin(away))
+    return float(np.sqrt(away[nearest])), float(begin + nearest + share[nearest])
 
 
 def _vertex(vertices: list[Array], point: Array, tolerance: float) -> int:

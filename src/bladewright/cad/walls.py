@@ -90,7 +90,7 @@ def _revolved(face: TrimmedSurface, revolution: Revolution, edges: list[tuple[Ed
 
     def trace(edge: Edge, use: Use) -> Curve:
         boundary = face.boundary[use.side]
-        s = _spread(boundary.knots, 201)
+        s = np.linspace(*use.span, 201)
         guides = boundary(s if use.along else s[::-1])
         reference = np.asarray(revolution.theta(guides[:, 1]))
 
@@ -122,8 +122,7 @@ def _patch(face: TrimmedSurface, edges: list[tuple[Edge, Use]]) -> Wall:
 
     def trace(edge: Edge, use: Use) -> Curve:
         boundary = face.boundary[use.side]
-        s = _spread(boundary.knots, 2001)
-        guides = boundary(s)
+        guides = boundary(np.linspace(*use.span, 2001))
         ahead = surface(*guides.T)
 
         def place(w: Array) -> Array:
