@@ -60,7 +60,7 @@ def interpolated_along_u(lines: Array, start: EdgeRow, end: EdgeRow, sign: float
     known = np.stack([*first, *last], axis=-3)
     matrix = basis(knots_u, DEGREE, sites)
     outer = np.concatenate([matrix[:, :3], matrix[:, -3:]], axis=1)
-    right = lines - np.einsum("ik,...kmd->...imd", outer, known)
+    right = lines - (outer @ known.reshape(*known.shape[:-2], -1)).reshape(*known.shape[:-3], *lines.shape[-3:])
     shape = right.shape
     inner = solved(matrix[:, 3:-3], right.reshape(*shape[:-2], -1)).reshape(shape)
     return joined([known[..., :3, :, :], inner, known[..., 3:, :, :]], axis=-3)

@@ -1,7 +1,7 @@
 """Stream lines of the channel: position, meridional length and conformal length along u, and their inverse."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from math import perm
 from typing import Protocol
@@ -84,8 +84,11 @@ class StreamLines:
         if real.ndim > 2:
             flat = real.reshape(-1, *real.shape[-2:])
             real = flat[0]
-        u = self._real().u_at(real)
-        return u - self._newton_step(np.broadcast_to(u, abscissa.shape), abscissa)
+        lines = self._real()
+        u = lines.u_at(real)
+        # the step's imaginary part alone: all of it that a batch need carry
+        carried = replace(lines, series=np.imag(self.series), starts=np.imag(self.starts))
+        return u - 1j * carried._newton_step(np.broadcast_to(u, abscissa.shape), np.imag(abscissa))  # noqa: SLF001
 
     def _inverse(self, abscissa: Reals) -> Reals:
         u = self._guess(abscissa)

@@ -9,11 +9,11 @@ from bladewright.numerics.elementary import Array
 def solved(matrix: NDArray[np.float64], values: Array) -> Array:
     """The solutions (..., n, k) of matrix (n, n) times them = values (..., n, k), real or complex.
 
-    The matrix is factorised once for all of them, in real numbers.
+    By the inverse, which is as exact as elimination where the matrix is well conditioned, as in an interpolation at
+    Greville abscissae (about 10), and many times faster for a batch.
     """
-    columns = np.moveaxis(values, -2, 0)
-    complex_valued = np.iscomplexobj(columns)
-    flat = np.ascontiguousarray(columns).reshape(len(columns), -1)
-    found: Array = np.linalg.solve(matrix, flat.view(np.float64) if complex_valued else flat)
-    found = found.view(np.complex128) if complex_valued else found
-    return np.moveaxis(found.reshape(columns.shape), 0, -2)
+    inverse = np.linalg.inv(matrix)
+    if not np.iscomplexobj(values):
+        return np.asarray(inverse @ values)
+    found: Array = inverse @ np.ascontiguousarray(values).view(np.float64)
+    return found.view(np.complex128)
