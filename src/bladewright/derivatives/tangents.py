@@ -1,0 +1,92 @@
+"""Derivatives of a unified blade's control nets by its parameters, many in one rebuild.
+
+A law of evolution acts on the section at v by its value there alone, so a step of the whole law gives the section's
+derivative, and that of control point j is N_j(v) times it. Nets are linear in the sections' points. What is left, the
+channel above all, is stepped leaf by leaf.
+"""
+
+import re
+from collections.abc import Iterator, Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from bladewright.blade.blade import Blade
+from bladewright.blade.exact import moved
+from bladewright.blade.native import EdgeRow, Skeleton, sides_through, skeleton_of
+from bladewright.blade.unified import UnifiedBlade
+from bladewright.numerics.elementary import Array, joined
+from bladewright.nurbs.basis import Reals
+from bladewright.section.laws import law_basis
+from bladewright.section.limits import ANGLES, RADII, TANGENTS, THICKNESSES, WEIGHTS
+
+STEP = 1e-30
+"""imaginary step: its square vanishes beside 1, so that the derivative is exact to rounding"""
+AT_ONCE = 16
+"""parameters in one rebuild"""
+LAWS = ("leading_edge_theta", "leading_edge_y", *ANGLES, *TANGENTS, *RADII)
+CHORDWISE = (*THICKNESSES, *WEIGHTS)
+Nets = tuple[Array, Array]
+
+
+class _Source(NamedTuple):
+    """Where a parameter's derivative comes from."""
+
+    step: str
+    """the law, or the leaf, that is stepped"""
+    index: int = 0
+    """number of the control point in its law"""
+    count: int = 0
+    """control points of the law; 0 for a leaf that is no law"""
+
+
+def side_tangents(blade: Blade, paths: Sequence[str]) -> Iterator[Nets]:
+    """Derivatives (k, n_u, n_v, 3) of the upper and lower net by parameters, in chunks of at most `AT_ONCE` in order.
+
+    Metres per unit of the parameter's field, at the blade's knots.
+    """
+    sources = [_source(blade.design, path) for path in paths]
+    steps = list(dict.fromkeys(source.step for source in sources))
+    rates = np.concatenate([_rates(blade, steps[i : i + AT_ONCE]) for i in range(0, len(steps), AT_ONCE)])
+    for first in range(0, len(paths), AT_ONCE):
+        chunk = sources[first : first + AT_ONCE]
+        shares = np.stack([_share(source, blade.knots.sites_v) for source in chunk])
+        rows = rates[[steps.index(source.step) for source in chunk]] * shares[..., None]
+        yield sides_through(_parted(rows), blade.knots)
+
+
+def _source(design: UnifiedBlade, path: str) -> _Source:
+    name, *places = re.findall(r"\w+", path)
+    if name not in (*LAWS, *CHORDWISE):
+        return _Source(path)
+    depth = 1 if name in CHORDWISE else 0
+    if len(places) == depth:
+        return _Source(path, 0, 1)
+    law = getattr(design, name)[int(places[0])] if depth else getattr(design, name)
+    return _Source(path.rpartition("[")[0], int(places[-1]), len(law))
+
+
+def _share(source: _Source, v: Reals) -> Reals:
+    return law_basis(source.count, v)[:, source.index] if source.count else np.ones(len(v))
+
+
+def _rates(blade: Blade, steps: Sequence[str]) -> Array:
+    """Derivatives (len(steps), m, k) of the skeleton, in a row for each section, by laws as a whole and by leaves."""
+    values = blade.design.parameters()
+    changes: dict[str, Any] = {}
+    for place, step in enumerate(steps):
+        kick = np.zeros(len(steps), dtype=np.complex128)
+        kick[place] = STEP * 1j
+        changes |= {path: value + kick for path, value in values.items() if path == step or path.startswith(f"{step}[")}
+    stations = moved(blade.exact, blade.design.changed(changes)).stations(blade.knots.sites_v)
+    skeleton = skeleton_of(stations, blade.knots)
+    sides = [side.reshape(*side.shape[:-2], -1) for side in (skeleton.upper, skeleton.lower)]
+    rows = joined([*skeleton.leading_edge, *skeleton.trailing_edge, *sides], axis=-1)
+    return np.broadcast_to(np.imag(rows) / STEP, (len(steps), *rows.shape[-2:]))
+
+
+def _parted(rows: Array) -> Skeleton:
+    edges, upper, lower = np.split(rows, [18, (18 + rows.shape[-1]) // 2], axis=-1)
+    parts = np.split(edges, 6, axis=-1)
+    sides = [side.reshape(*side.shape[:-1], -1, 3) for side in (upper, lower)]
+    return Skeleton(EdgeRow(*parts[:3]), EdgeRow(*parts[3:]), *sides)
