@@ -26,8 +26,6 @@ if TYPE_CHECKING:
 
 Faces = Mapping[str, Surface | TrimmedSurface]
 """faces of a body by name"""
-OUTWARD = MappingProxyType({"upper": -1, "lower": 1, "hub": -1, "shroud": 1})
-"""+1 for the faces whose dS/du x dS/dv points out of the blade"""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -36,7 +34,7 @@ class Blade:
 
     design: UnifiedBlade
     surfaces: Faces
-    """`upper` and `lower` (u from leading to trailing edge, v from hub to shroud), `hub` and `shroud`; metres"""
+    """`upper` and `lower` (u from leading to trailing edge, v from end to end), and the two `design.ends`; metres"""
     knots: Knots
     """of both sides; give them to `design.build(knots=...)` to hold them"""
     chord: float
@@ -67,7 +65,8 @@ class Blade:
     @property
     def orientations(self) -> Mapping[str, int]:
         """+1 for the faces whose dS/du x dS/dv points out of the blade, -1 for the others."""
-        return OUTWARD
+        low, high = self.design.ends
+        return MappingProxyType({"upper": -1, "lower": 1, low: -1, high: 1})
 
     @property
     def tolerance(self) -> float:
@@ -91,15 +90,15 @@ class Blade:
 
     @property
     def wall_error(self) -> float:
-        """Largest distance of the blade's ends from hub and shroud, of the chord."""
+        """Largest distance of the blade's ends from hub, shroud or clearance surface, of the chord."""
         return self.misfit.off_walls / self.chord
 
     @cached_property
     def properties(self) -> MassProperties:
         """Volume [m^3], area [m^2], centroid [m] and inertia [m^5], by quadrature on the native surfaces."""
-        if isinstance(self.surfaces["hub"], TrimmedSurface):
-            return blade_properties(self.surfaces, OUTWARD, revolved=self.exact.mapping.revolved)
-        return mass_properties([(self.surfaces[name], sign) for name, sign in OUTWARD.items()])
+        if all(isinstance(self.surfaces[name], TrimmedSurface) for name in self.design.ends):
+            return blade_properties(self.surfaces, self.orientations, revolved=self.exact.mapping.revolved)
+        return mass_properties([(self.surfaces[name], sign) for name, sign in self.orientations.items()])
 
     @cached_property
     def promises(self) -> "Promises":
@@ -117,13 +116,17 @@ class Blade:
     def extended(self, span: float) -> "Blade":
         """The blade continued past hub and shroud by `span` of its own span at each end, for a later cut.
 
-        The sides continue their own polynomials, and the part between is unchanged; ruled caps close the ends.
-        Raises DesignError where span is not above 0 and at most 0.5.
+        The sides continue their own polynomials, and the part between is unchanged; ruled caps close the ends. An end
+        that stands off its wall stays as it is. Raises DesignError where span is not above 0 and at most 0.5.
         """
         if not 0.0 < span <= 0.5:
             raise DesignError(f"an extension by {span:g} of the span was asked: it must be above 0 and at most 0.5")
-        upper, lower = (reparametrised(extended(side, -span, 1.0 + span, "v"), 0.0, 1.0, "v") for side in self.sides)
-        ends = {"hub": ruled_end(upper, lower, 0), "shroud": ruled_end(upper, lower, -1)}
+        low, high = (0.0 if name == "tip" else span for name in self.design.ends)
+        upper, lower = (reparametrised(extended(side, -low, 1.0 + high, "v"), 0.0, 1.0, "v") for side in self.sides)
+        ends = {
+            name: self.surfaces[name] if name == "tip" else ruled_end(upper, lower, row)
+            for name, row in zip(self.design.ends, (0, -1), strict=True)
+        }
         return Blade(
             design=self.design.changed("name", f"{self.name}-extended"),
             surfaces=MappingProxyType({"upper": upper, "lower": lower, **ends}),

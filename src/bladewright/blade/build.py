@@ -18,7 +18,7 @@ def built(design: UnifiedBlade, knots: Knots | None = None) -> Blade:
 
     Raises DesignError where the shape is impossible, or the tolerance is not reached within 200 x 100 poles a side.
     """
-    exact = exact_blade(design)
+    exact = exact_blade(design, None if knots is None else knots.tip)
     check_channel(exact)
     check_sections(exact)
     chord = chord_of(exact)

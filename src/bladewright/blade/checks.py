@@ -1,10 +1,10 @@
 """Shapes that cannot be: a channel that folds, sides that cross, neighbours that intersect."""
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from bladewright.blade.exact import ExactBlade
+from bladewright.blade.meridional import Meridional
 from bladewright.blade.unified import UnifiedBlade
 from bladewright.errors import DesignError
 from bladewright.numerics.elementary import cross2
@@ -12,11 +12,19 @@ from bladewright.nurbs.basis import Reals
 from bladewright.section.checks import UNITS
 from bladewright.section.crossing import PLACES, check_outlines, outlines_of, touching
 
+if TYPE_CHECKING:
+    from bladewright.blade.exact import ExactBlade
 
-def check_channel(exact: ExactBlade) -> None:
+
+def check_channel(exact: "ExactBlade") -> None:
     """Refuse a channel whose map (u, v) -> (x, r) is not one to one, from nose to nose."""
-    u, v = np.linspace(-exact.before, 1.0 + exact.after, 41), np.linspace(0.0, 1.0, 21)
-    along, across = (np.real(part) for part in exact.channel.slopes(u, v))
+    check_folds(exact.channel, exact.before, exact.after)
+
+
+def check_folds(channel: Meridional, before: float = 0.0, after: float = 0.0) -> None:
+    """The same for a channel from `before` its leading to `after` its trailing edge, in u."""
+    u, v = np.linspace(-before, 1.0 + after, 41), np.linspace(0.0, 1.0, 21)
+    along, across = (np.real(part) for part in channel.slopes(u, v))
     jacobian = cross2(along, across)
     size = np.median(np.sqrt(np.sum(along**2, axis=-1) * np.sum(across**2, axis=-1)))
     share = jacobian / size
@@ -33,7 +41,7 @@ def check_channel(exact: ExactBlade) -> None:
         )
 
 
-def check_sections(exact: ExactBlade) -> None:
+def check_sections(exact: "ExactBlade") -> None:
     """Refuse sections whose sides cross or touch, and neighbouring blades that intersect."""
     stations = exact.survey
     outlines = outlines_of(*stations.plane.points(PLACES))

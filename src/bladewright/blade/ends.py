@@ -21,7 +21,7 @@ FOLLOWED = 1e-9
 
 
 def trimmed_ends(exact: ExactBlade, upper: Surface, lower: Surface, chord: float) -> dict[str, TrimmedSurface]:
-    """The pieces of the hub and shroud walls inside the ends of the sides.
+    """The pieces of the hub and shroud walls, or of a clearance surface, inside the ends of the sides.
 
     The walls are the channel's, revolved about the axis or drawn along y in a cascade, exact; their u is the channel's.
     Raises DesignError where the blade winds a full turn around the axis.
@@ -41,7 +41,7 @@ def trimmed_ends(exact: ExactBlade, upper: Surface, lower: Surface, chord: float
             _Trace(side, row, meridian, exact.mapping.revolved, places, u[row, part], across[row, part])
             for side, part in ((upper, slice(None, len(places))), (lower, slice(len(places), None)))
         ]
-        ends[wall] = _trimmed(traces, meridian, wall, chord)
+        ends[exact.design.ends[row]] = _trimmed(traces, meridian, wall, chord)
     return ends
 
 

@@ -5,6 +5,7 @@ from functools import cached_property
 
 import numpy as np
 
+from bladewright.blade.clearance import Clearance, clearance_of, cleared
 from bladewright.blade.mapping import Mapping, mapping_of
 from bladewright.blade.meridional import Meridional, meridional
 from bladewright.blade.stations import Stations, stations_at
@@ -28,6 +29,10 @@ class ExactBlade:
 
     design: UnifiedBlade
     channel: Meridional
+    """the blade's own, between its ends"""
+    full_channel: Meridional
+    """from wall to wall: the same where there is no clearance"""
+    clearance: Clearance | None
     mapping: Mapping
     places: Reals
     """camber parameters of a side's control points"""
@@ -38,9 +43,14 @@ class ExactBlade:
     surveyed: Stations | None = None
     """the survey, where it is at hand"""
 
+    @property
+    def tip_knots(self) -> Reals | None:
+        """Knots of the meridian of the clearance surface, where there is one."""
+        return None if self.clearance is None else self.channel.knots(self.clearance.wall)
+
     @cached_property
     def survey(self) -> Stations:
-        """Stations from hub to shroud on which the shape is judged."""
+        """Stations from end to end on which the shape is judged."""
         return self.stations(SURVEY) if self.surveyed is None else self.surveyed
 
     def stations(self, v: Reals) -> Stations:
@@ -49,10 +59,13 @@ class ExactBlade:
         return stations_at(self.design, self.places, lines, v)
 
 
-def exact_blade(design: UnifiedBlade) -> ExactBlade:
-    """The exact blade of a design, its channel continued as far as the noses need."""
+def exact_blade(design: UnifiedBlade, tip_knots: Reals | None = None) -> ExactBlade:
+    """The exact blade of a design, its channel continued as far as the noses need.
+
+    `tip_knots` hold the knots of the meridian of a clearance surface. Raises DesignError where there is no such blade.
+    """
     mapping = mapping_of(design.mapping, design.arrangement)
-    channel = _channel_of(design)
+    full, channel, clearance = _channels_of(design, tip_knots)
     places = sample_places(design.samples, design.clustering)
     within = stations_at(design, places, stream_lines(channel, mapping, SURVEY, 0.0, 0.0), SURVEY)
     before, after = _reaches(within)
@@ -61,6 +74,8 @@ def exact_blade(design: UnifiedBlade) -> ExactBlade:
     return ExactBlade(
         design=design,
         channel=channel,
+        full_channel=full,
+        clearance=clearance,
         mapping=mapping,
         places=places,
         before=before,
@@ -71,11 +86,14 @@ def exact_blade(design: UnifiedBlade) -> ExactBlade:
 
 def moved(exact: ExactBlade, design: UnifiedBlade) -> ExactBlade:
     """The exact blade of a design that is a small step away, its channel continued as far as that of `exact`."""
-    return replace(exact, design=design, channel=_channel_of(design), surveyed=None)
+    full, channel, clearance = _channels_of(design, exact.tip_knots)
+    return replace(exact, design=design, channel=channel, full_channel=full, clearance=clearance, surveyed=None)
 
 
-def _channel_of(design: UnifiedBlade) -> Meridional:
-    return meridional(design.channel, UNITS[design.length_unit])
+def _channels_of(design: UnifiedBlade, tip_knots: Reals | None) -> tuple[Meridional, Meridional, Clearance | None]:
+    full = meridional(design.channel, UNITS[design.length_unit])
+    clearance = clearance_of(design)
+    return full, full if clearance is None else cleared(full, clearance, tip_knots), clearance
 
 
 def _reaches(stations: Stations) -> list[float]:

@@ -29,7 +29,7 @@ def knots_for(exact: ExactBlade, chord: float) -> Knots:
     tolerance = exact.design.tolerance * chord
     along_u = refined(clamped(breaks_along_u(exact)), _LinesAlongU(exact, tolerance, chord), MOST_POLES[0])
     along_v = refined(clamped(breaks_along_v(exact)), _LinesAlongV(exact, tolerance, along_u), MOST_POLES[1])
-    return Knots(u=along_u, v=along_v)
+    return Knots(u=along_u, v=along_v, tip=exact.tip_knots)
 
 
 class _LinesAlongU:

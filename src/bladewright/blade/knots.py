@@ -2,15 +2,18 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from bladewright.blade.exact import ExactBlade
 from bladewright.numerics.elementary import frozen
 from bladewright.nurbs.basis import Reals, greville
 from bladewright.section.laws import DEGREE as LAW_DEGREE
 from bladewright.section.laws import inner_knots
 from bladewright.section.sides import DEGREE as SIDE_DEGREE
+
+if TYPE_CHECKING:
+    from bladewright.blade.exact import ExactBlade
 
 DEGREE = 5
 """degree of the native sides along u and v"""
@@ -24,10 +27,14 @@ class Knots:
 
     u: Reals
     v: Reals
+    tip: Reals | None = None
+    """of the meridian of its clearance surface, where it has one"""
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "u", frozen(self.u))
         object.__setattr__(self, "v", frozen(self.v))
+        if self.tip is not None:
+            object.__setattr__(self, "tip", frozen(self.tip))
 
     @property
     def sites_u(self) -> Reals:
@@ -45,13 +52,13 @@ class Knots:
         return len(self.u) - DEGREE - 1, len(self.v) - DEGREE - 1
 
 
-def breaks_along_u(exact: ExactBlade) -> Reals:
+def breaks_along_u(exact: "ExactBlade") -> Reals:
     """Inner knots of the sections' sides, twice each: the sides keep three derivatives there."""
     spans = len(exact.places) - SIDE_DEGREE
     return np.repeat(np.linspace(0.0, 1.0, spans + 1)[1:-1], DEGREE - SIDE_DEGREE + 1)
 
 
-def breaks_along_v(exact: ExactBlade) -> Reals:
+def breaks_along_v(exact: "ExactBlade") -> Reals:
     """Inner knots of the laws of evolution and of the channel's edges, as often as they lose derivatives."""
     design = exact.design
     laws = [design.leading_edge_theta, design.leading_edge_y, design.stagger, design.metal_angle_in]

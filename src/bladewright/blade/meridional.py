@@ -59,6 +59,15 @@ class Line:
         rows = _power_rows(self.knots.tobytes(), self.degree, tuple(centres), count)
         return rows @ self.points[..., None, :, :]
 
+    def real(self) -> "Line":
+        """The same without imaginary parts and batch."""
+
+        def first(values: Array | None, axes: int) -> Array | None:
+            return None if values is None else np.asarray(np.real(values[(0,) * (np.ndim(values) - axes)]))
+
+        points = np.real(self.points[(0,) * (self.points.ndim - 2)])
+        return Line(points=points, knots=self.knots, start=first(self.start, 0), end=first(self.end, 0))
+
     def curve(self) -> Curve:
         """The whole B-spline as a native curve over its own parameter."""
         return Curve(control_points=self.points, knots=self.knots, degree=self.degree)
@@ -79,6 +88,15 @@ class Meridional:
     trailing_edge: Line
     hub: Line
     shroud: Line
+
+    def real(self) -> "Meridional":
+        """The same without imaginary parts and batch."""
+        return Meridional(
+            leading_edge=self.leading_edge.real(),
+            trailing_edge=self.trailing_edge.real(),
+            hub=self.hub.real(),
+            shroud=self.shroud.real(),
+        )
 
     def line(self, name: str) -> Line:
         """One of the four curves by its name."""
@@ -119,6 +137,18 @@ class Meridional:
         by_v = (1.0 - a) * start_slope + a * end_slope + shroud - hub
         by_v = by_v - ((1.0 - a) * (ends[1] - ends[0]) + a * (ends[3] - ends[2]))
         return by_u, by_v
+
+    def at(self, u: Reals, v: Reals) -> tuple[Array, Array]:
+        """(x, r) at pairs of u and v (m,), and its derivative by v, (..., m, 2) each."""
+        a, b = u[:, None], v[:, None]
+        hub, shroud = self.hub.values(u), self.shroud.values(u)
+        corners = [wall.points[..., end, :][..., None, :] for end in (0, -1) for wall in (self.hub, self.shroud)]
+        ruled = [(1.0 - a) * corners[k] + a * corners[k + 2] for k in (0, 1)]
+        start, end = self.leading_edge, self.trailing_edge
+        point = (1.0 - a) * start.values(v) + a * end.values(v)
+        point = point + (1.0 - b) * (hub - ruled[0]) + b * (shroud - ruled[1])
+        across = (1.0 - a) * start.values(v, 1) + a * end.values(v, 1) + (shroud - ruled[1]) - (hub - ruled[0])
+        return point, across
 
     def stream_polynomials(self, v: Reals, centres: Reals) -> Array:
         """Coefficients (..., len(v), len(centres), k, 2) of the stream lines' powers of u - centre.

@@ -35,7 +35,8 @@ def blade_properties(
 
     Control points may be complex.
     """
-    middle = _middle(cast(TrimmedSurface, surfaces["hub"]))
+    ends = [name for name in outward if name not in {"upper", "lower"}]
+    middle = _middle(cast(TrimmedSurface, surfaces[ends[0]]))
     total: Array = np.zeros(10)
     areas: list[Array] = []
     vectors: list[Array] = []
@@ -44,7 +45,7 @@ def blade_properties(
         total = total + outward[name] * moments
         areas.append(size)
         vectors.append(outward[name] * vector)
-    for name in ("hub", "shroud"):
+    for name in ends:
         end = cast(TrimmedSurface, surfaces[name])
         size, vector = _end(end)
         areas.append(size)

@@ -18,7 +18,9 @@ if TYPE_CHECKING:
 class UnifiedBlade(Design):
     """A blade of the unified family, axial, radial or mixed, in an annulus or a linear cascade.
 
-    Every law is a number, or the control points of a clamped uniform B-spline of degree min(n - 1, 3) along the span.
+    Every law is a number, or the control points of a clamped uniform B-spline of degree min(n - 1, 3) along the span,
+    v = 0 at the hub and v = 1 at the shroud. With a clearance the blade ends on a surface at the stated distance from
+    that wall: v = 0 and v = 1 are the blade's own ends, and so are those of the laws.
     Reference: Agromayor et al. 2021, sections 3 and 4.
     """
 
@@ -58,8 +60,12 @@ class UnifiedBlade(Design):
     """weights of the upper side's control points, a law along the chord; none: a B-spline [-]"""
     weights_lower: ChordwiseLaw = parameter("-", default=())
     """weights of the lower side's control points, a law along the chord; none: a B-spline [-]"""
+    tip_clearance: float | tuple[float, float] | None = parameter("length", default=None)
+    """meridional distance of the blade's end from the shroud, at leading and trailing edge where two [length]"""
+    hub_clearance: float | tuple[float, float] | None = parameter("length", default=None)
+    """meridional distance of the blade's end from the hub, at leading and trailing edge where two [length]"""
     channel: Channel
-    """the meridional channel"""
+    """the meridional channel, from wall to wall"""
     mapping: Literal["conformal", "paper"] = "conformal"
     """sections laid in the plane (m', theta), or the mapping of Agromayor et al. 2021, eq. 28"""
     samples: int = 16
@@ -81,6 +87,7 @@ class UnifiedBlade(Design):
         checks.choice("mapping", self.mapping, ["conformal", "paper"])
         check_laws(self)
         self._check_arrangement()
+        self._check_clearances()
         check_sampling(self)
         check_range(self, "tolerance", 1e-9, 1e-2)
         if not isinstance(self.channel, Channel):
@@ -105,6 +112,29 @@ class UnifiedBlade(Design):
         else:
             put(self, count, checks.number(count, self.pitch))
             checks.between(count, self.pitch, 0.0, float("inf"), "the pitch must be positive")
+
+    def _check_clearances(self) -> None:
+        given = [name for name in ("tip_clearance", "hub_clearance") if getattr(self, name) is not None]
+        if len(given) == 2:
+            raise DesignError(
+                "tip_clearance and hub_clearance are both given: a blade stands on one of the walls; leave out the one "
+                "of the wall that it stands on"
+            )
+        for name in given:
+            value = checks.law(name, getattr(self, name))
+            if isinstance(value, tuple) and len(value) != 2:
+                raise DesignError(
+                    f"{name} has {len(value)} entries: give one number, or two, at the leading and the trailing edge"
+                )
+            what = "a clearance must be positive; leave it out where the blade stands on that wall"
+            checks.between(name, value, 0.0, float("inf"), what)
+            object.__setattr__(self, name, value)
+
+    @property
+    def ends(self) -> tuple[str, str]:
+        """Names of the blade's ends at v = 0 and v = 1: `hub` and `shroud`, or `tip` where there is a clearance."""
+        hub = "hub" if self.hub_clearance is None else "tip"
+        return hub, "shroud" if self.tip_clearance is None else "tip"
 
     def build(self, knots: "Knots | None" = None) -> "Blade":
         """The native blade in metres; `knots=blade.knots` holds another build's knots and interpolation sites.
