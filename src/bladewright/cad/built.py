@@ -32,12 +32,20 @@ class Properties(Protocol):
         """Centroid of the volume (3,) [m]."""
 
 
-class Built(Protocol):
-    """A body bounded by native surfaces: a blade, a row's passage."""
+class Product(Protocol):
+    """What a CAD file says of a body; `description`, `author` and `organisation` as well, where it has them."""
 
     @property
     def name(self) -> str:
         """Name of the product in a CAD file."""
+
+    @property
+    def properties(self) -> Properties:
+        """Volume, area and centroid."""
+
+
+class Built(Product, Protocol):
+    """A body bounded by native surfaces: a blade, a row's passage."""
 
     @property
     def surfaces(self) -> Mapping[str, Surface | TrimmedSurface]:
@@ -46,10 +54,6 @@ class Built(Protocol):
     @property
     def orientations(self) -> Mapping[str, int]:
         """+1 for a face whose dS/du x dS/dv points out of the body, -1 for the others."""
-
-    @property
-    def properties(self) -> Properties:
-        """Volume, area and centroid."""
 
 
 def extent(built: Built) -> float:

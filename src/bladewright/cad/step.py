@@ -15,7 +15,7 @@ from OCP.TCollection import TCollection_HAsciiString
 from OCP.XCAFDoc import XCAFDoc_Area, XCAFDoc_Centroid, XCAFDoc_Volume
 
 from bladewright import __version__
-from bladewright.cad.built import MM, Built
+from bladewright.cad.built import MM, Product
 from bladewright.cad.document import document
 from bladewright.cad.solids import CONFUSION, Body
 from bladewright.errors import CadError
@@ -29,7 +29,7 @@ SYSTEM = f"bladewright {__version__}"
 """Originating system in the headers of CAD files."""
 
 
-def write_step(built: Built, body: Body, path: str, *, schema: str) -> None:
+def write_step(built: Product, body: Body, path: str, *, schema: str) -> None:
     """Write a STEP file in millimetres. Raises CadError where the kernel refuses."""
     if schema not in SCHEMAS:
         raise CadError(f"schema {schema!r} is not a STEP schema that can be written: choose AP242, AP214 or AP203")
@@ -63,7 +63,7 @@ def _settings(schema: str) -> None:
     Interface_Static.SetIVal_s("write.surfacecurve.mode", 1)
 
 
-def _name_solid(model: object, built: Built) -> None:
+def _name_solid(model: object, built: Product) -> None:
     name = TCollection_HAsciiString(step_text(built.name))
     for number in range(1, model.NbEntities() + 1):  # type: ignore[attr-defined]
         entity = model.Value(number)  # type: ignore[attr-defined]
@@ -73,7 +73,7 @@ def _name_solid(model: object, built: Built) -> None:
             entity.SetDescription(TCollection_HAsciiString(step_text(_text(built, "description"))))
 
 
-def _head(header: APIHeaderSection_MakeHeader, built: Built) -> None:
+def _head(header: APIHeaderSection_MakeHeader, built: Product) -> None:
     def one(value: str) -> Interface_HArray1OfHAsciiString:
         array = Interface_HArray1OfHAsciiString(1, 1)
         array.SetValue(1, TCollection_HAsciiString(step_text(value)))
@@ -87,7 +87,7 @@ def _head(header: APIHeaderSection_MakeHeader, built: Built) -> None:
     header.SetAuthorisation(TCollection_HAsciiString(""))
 
 
-def _text(built: Built, field: str) -> str:
+def _text(built: Product, field: str) -> str:
     return str(getattr(built, field, "") or "")
 
 

@@ -1,0 +1,201 @@
+"""The second way to a passage: the kernel cuts the blade out of the sector between exact surfaces of revolution."""
+
+import os
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Protocol
+
+import cadquery
+import numpy as np
+from OCP.Bnd import Bnd_Box
+from OCP.BRep import BRep_Tool
+from OCP.BRepAlgoAPI import BRepAlgoAPI_Cut
+from OCP.BRepBndLib import BRepBndLib
+from OCP.BRepGProp import BRepGProp
+from OCP.GProp import GProp_GProps
+from OCP.TopAbs import TopAbs_FACE, TopAbs_SOLID
+from OCP.TopoDS import TopoDS, TopoDS_Face, TopoDS_Shape, TopoDS_Solid
+from OCP.TopTools import TopTools_ListOfShape
+
+from bladewright.appearing import appearing
+from bladewright.cad.built import MM, Built
+from bladewright.cad.closure import Closure, closure
+from bladewright.cad.quiet import quiet
+from bladewright.cad.reopen import each, format_of, reopened
+from bladewright.cad.solids import Body, body
+from bladewright.cad.step import Schema, write_step
+from bladewright.errors import CadError
+from bladewright.numerics.elementary import Array
+
+PAST = 0.05
+"""Part of its span by which the blade stands out of the walls that cut it."""
+QUADRATURE = (1e-7, 1e-9)
+"""relative errors that the kernel's quadrature aims at in turn"""
+RETURNED = 1e-9
+"""Relative difference of the volume that a file may make."""
+
+
+class Cuttable(Protocol):
+    """A passage that can be cut as well."""
+
+    @property
+    def name(self) -> str:
+        """Name of the product in a CAD file."""
+
+    @property
+    def sector(self) -> Built:
+        """What lies between inlet, outlet, periodic boundaries and exact walls, without a blade."""
+
+    @property
+    def blade(self) -> "Extensible":
+        """The blade in it."""
+
+
+class Extensible(Protocol):
+    """A blade that can stand out of the walls."""
+
+    def extended(self, span: float) -> Built:
+        """The blade continued past its walls by a part of its span."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Measured:
+    """Volume, area and centroid of a solid by the kernel's quadrature."""
+
+    volume: float
+    """[m^3]"""
+    area: float
+    """[m^2]"""
+    centroid: Array
+    """(3,) [m]"""
+    volume_error: float
+    """[m^3] bound: what two quadratures differ by, and what may flow through the gaps along the edges"""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class CutPassage:
+    """A passage as the kernel's boolean operation leaves it."""
+
+    name: str
+    description: str
+    author: str
+    organisation: str
+    body: Body
+    """the solid [mm], its faces named after those of the sector, and `blade_` those of the blade"""
+    properties: Measured
+    gap: float
+    """[m] largest distance of two faces at an edge"""
+
+    @property
+    def solid(self) -> cadquery.Solid:
+        """The closed solid, in millimetres."""
+        return cadquery.Solid(self.body.solid)
+
+
+def cut_passage(passage: Cuttable, *, span: float = PAST) -> CutPassage:
+    """The passage cut by OpenCASCADE: `passage.sector` without `passage.blade`, extended by `span` of its span.
+
+    Its walls are exact, so that its volume tells how well the untrimmed patches follow them. Raises CadError where the
+    kernel does not leave one closed valid solid of named faces.
+    """
+    with quiet():
+        # fresh solids: the operation raises tolerances of what it is given
+        sector, blade = body(passage.sector), body(passage.blade.extended(span))
+        found = _without(sector, blade, passage.name)
+        closed = closure(found)
+        solids = each(found, TopAbs_SOLID)
+        if (len(solids), closed.shells, closed.free, closed.crowded) != (1, 1, 0, 0) or not closed.valid:
+            raise CadError(
+                f"OpenCASCADE leaves {len(solids)} solids and {closed.free} free edges of {passage.name!r}, where one "
+                "closed valid solid is needed: the blade does not stand within its sector; look at the pitch"
+            )
+        whole = TopoDS.Solid_s(solids[0])
+        faces = _named(whole, sector, blade)
+        return CutPassage(
+            name=f"{passage.name}-cut",
+            description=str(getattr(passage, "description", "")),
+            author=str(getattr(passage, "author", "")),
+            organisation=str(getattr(passage, "organisation", "")),
+            body=Body(solid=whole, faces=faces, gap=max(joint.tolerance for joint in closed.joints)),
+            properties=_measured(whole, closed),
+            gap=max(joint.gap for joint in closed.joints) / MM,
+        )
+
+
+def write_cut(cut: CutPassage, path: str | os.PathLike[str], *, schema: Schema = "AP242") -> None:
+    """Write a cut passage to a STEP file and reopen it.
+
+    The file appears whole or not at all. Raises CadError where it does not hold the same named, closed, valid solid.
+    """
+    path = Path(path)
+    if format_of(path) != "STEP":
+        raise CadError(f"{path} was asked for: a cut passage is written to STEP only; let the name end in .step")
+    with quiet():
+        with appearing(path) as unfinished:
+            write_step(cut, cut.body, unfinished, schema=schema)
+        opened = reopened(path)
+        closed = closure(opened.shape)
+        volume = _volume(opened.shape, QUADRATURE[-1])[0]
+        off = abs(volume / MM**3 / cut.properties.volume - 1.0)
+    if sorted(opened.names.values()) != sorted(cut.body.faces) or not closed.valid or closed.free or off > RETURNED:
+        raise CadError(
+            f"{path} came back with {len(opened.names)} of {len(cut.body.faces)} names, {closed.free} free edges and a "
+            f"volume off by {off:.2g}: at most {RETURNED:g} is allowed; write the passage of untrimmed patches instead"
+        )
+
+
+def _without(sector: Body, blade: Body, name: str) -> TopoDS_Shape:
+    arguments, tools = TopTools_ListOfShape(), TopTools_ListOfShape()
+    arguments.Append(sector.solid)
+    tools.Append(blade.solid)
+    operation = BRepAlgoAPI_Cut()
+    operation.SetArguments(arguments)
+    operation.SetTools(tools)
+    # edges of the sector lie so far off its walls, and what is nearer than that is the same
+    operation.SetFuzzyValue(max(sector.gap, blade.gap))
+    operation.Build()
+    if not operation.IsDone() or operation.Shape().IsNull():
+        raise CadError(f"OpenCASCADE cannot cut the blade out of the sector of {name!r}; cut with a longer extension")
+    return operation.Shape()
+
+
+def _named(whole: TopoDS_Solid, sector: Body, blade: Body) -> dict[str, TopoDS_Face]:
+    """Faces by name: a face that was cut still lies on the surface that it had."""
+    origins = {**sector.faces, **{f"blade_{name}": face for name, face in blade.faces.items() if name != "tip"}}
+    origins |= {name: face for name, face in blade.faces.items() if name == "tip"}
+    surfaces = {name: BRep_Tool.Surface_s(face) for name, face in origins.items()}
+    faces: dict[str, TopoDS_Face] = {}
+    for shape in each(whole, TopAbs_FACE):
+        face = TopoDS.Face_s(shape)
+        own = BRep_Tool.Surface_s(face)
+        found = [name for name, surface in surfaces.items() if surface == own]
+        if len(found) != 1 or found[0] in faces:
+            raise CadError(
+                f"a face of the cut passage comes from {' and '.join(found) or 'nowhere'}, where each is the rest of "
+                "one face: the blade's extension ends within the sector; extend it further"
+            )
+        faces[found[0]] = face
+    return faces
+
+
+def _measured(whole: TopoDS_Solid, closed: Closure) -> Measured:
+    (coarse, _), (volume, middle) = (_volume(whole, bound) for bound in QUADRATURE)
+    area, box = GProp_GProps(), Bnd_Box()
+    BRepGProp.SurfaceProperties_s(whole, area, QUADRATURE[0])
+    BRepBndLib.Add_s(whole, box)
+    size = float(np.sqrt(box.SquareExtent()))
+    # the volume is a flux of a third of the way from the middle
+    leak = sum(joint.gap * joint.length for joint in closed.joints) * size / 6.0
+    return Measured(
+        volume=volume / MM**3,
+        area=area.Mass() / MM**2,
+        centroid=middle / MM,
+        volume_error=(abs(volume - coarse) + QUADRATURE[-1] * volume + leak) / MM**3,
+    )
+
+
+def _volume(shape: TopoDS_Shape, bound: float) -> tuple[float, Array]:
+    whole = GProp_GProps()
+    BRepGProp.VolumeProperties_s(shape, whole, bound)
+    middle = whole.CentreOfMass()
+    return whole.Mass(), np.array([middle.X(), middle.Y(), middle.Z()])
