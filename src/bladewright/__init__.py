@@ -13,8 +13,13 @@ if TYPE_CHECKING:
     from bladewright.blade.channel import Channel as Channel
     from bladewright.blade.prismatic import prismatic as prismatic
     from bladewright.blade.unified import UnifiedBlade as UnifiedBlade
+    from bladewright.derivatives.jacobian import NetJacobian as NetJacobian
+    from bladewright.derivatives.nets import net_jacobian as net_jacobian
+    from bladewright.derivatives.nets import pullback as pullback
+    from bladewright.derivatives.sensitivity import sensitivity as sensitivity
     from bladewright.errors import BladewrightError as BladewrightError
     from bladewright.errors import CadError as CadError
+    from bladewright.errors import DerivativeError as DerivativeError
     from bladewright.errors import DesignError as DesignError
     from bladewright.errors import FileError as FileError
     from bladewright.errors import GeometryError as GeometryError
@@ -33,15 +38,20 @@ _HOMES = {
     "CadError": "errors",
     "Channel": "blade.channel",
     "Curve": "nurbs.curve",
+    "DerivativeError": "errors",
     "DesignError": "errors",
     "FileError": "errors",
     "GeometryError": "errors",
+    "NetJacobian": "derivatives.jacobian",
     "Surface": "nurbs.surface",
     "TrimmedSurface": "nurbs.trimmed",
     "UnifiedBlade": "blade.unified",
     "UnifiedSection": "section.unified",
+    "net_jacobian": "derivatives.nets",
     "prismatic": "blade.prismatic",
+    "pullback": "derivatives.nets",
     "read_design": "files.reading",
+    "sensitivity": "derivatives.sensitivity",
     "write_design": "files.writing",
 }
 _ROOMS = ("cad",)

@@ -19,3 +19,7 @@ class GeometryError(BladewrightError):
 
 class CadError(BladewrightError):
     """A solid that OpenCASCADE could not make, write or reopen."""
+
+
+class DerivativeError(BladewrightError):
+    """A derivative that cannot be taken: a quantity that loses the step, or parameters that do not exist."""

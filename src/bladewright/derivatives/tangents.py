@@ -13,7 +13,8 @@ import numpy as np
 
 from bladewright.blade.blade import Blade
 from bladewright.blade.exact import moved
-from bladewright.blade.native import EdgeRow, Skeleton, sides_through, skeleton_of
+from bladewright.blade.native import Skeleton, sides_through, skeleton_of
+from bladewright.blade.stations import EdgeRow
 from bladewright.blade.unified import UnifiedBlade
 from bladewright.numerics.elementary import Array, joined
 from bladewright.nurbs.basis import Reals
@@ -34,9 +35,9 @@ class _Source(NamedTuple):
 
     step: str
     """the law, or the leaf, that is stepped"""
-    index: int = 0
+    place: int = 0
     """number of the control point in its law"""
-    count: int = 0
+    points: int = 0
     """control points of the law; 0 for a leaf that is no law"""
 
 
@@ -67,7 +68,7 @@ def _source(design: UnifiedBlade, path: str) -> _Source:
 
 
 def _share(source: _Source, v: Reals) -> Reals:
-    return law_basis(source.count, v)[:, source.index] if source.count else np.ones(len(v))
+    return law_basis(source.points, v)[:, source.place] if source.points else np.ones(len(v))
 
 
 def _rates(blade: Blade, steps: Sequence[str]) -> Array:

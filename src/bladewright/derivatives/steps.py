@@ -1,0 +1,95 @@
+"""What a design builds while it carries a step: complex for a derivative, real for a difference, at held knots."""
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from bladewright.blade.blade import Blade
+from bladewright.blade.ends import trimmed_ends
+from bladewright.blade.exact import moved
+from bladewright.blade.native import native_sides
+from bladewright.blade.unified import UnifiedBlade
+from bladewright.derivatives.tangents import AT_ONCE, STEP, Nets, side_tangents
+from bladewright.designs import Design
+from bladewright.nurbs.surface import Surface
+from bladewright.nurbs.trimmed import TrimmedSurface
+
+Face = Surface | TrimmedSurface
+
+
+def built(design: Design, knots: Any = None) -> Any:
+    """What the design builds, at given knots where there are some."""
+    return design.build() if knots is None else design.build(knots=knots)  # type: ignore[call-arg]
+
+
+def stepped(design: Design, base: Any, paths: Sequence[str]) -> Iterator[Any]:
+    """What the design builds with an imaginary step on each parameter in turn, at the knots of `base`, its build.
+
+    A unified blade is made from its nets and their derivatives, its ends when they are asked for.
+    """
+    values = design.parameters()
+    if not (isinstance(design, UnifiedBlade) and isinstance(base, Blade)):
+        for path in paths:
+            yield built(design.changed(path, values[path] + STEP * 1j), getattr(base, "knots", None))
+        return
+    rows = iter(paths)
+    for tangents in side_tangents(base, paths):
+        for pair in zip(*tangents, strict=True):
+            path = next(rows)
+            nets = [side.control_points + STEP * 1j * rate for side, rate in zip(base.sides, pair, strict=True)]
+            yield _blade(base, design.changed(path, values[path] + STEP * 1j), nets[0], nets[1])
+
+
+def varied(design: Design, base: Any, path: str, values: Sequence[complex]) -> Iterator[Any]:
+    """What the design builds with other values of one parameter, at the knots of `base`, its build."""
+    if not (isinstance(design, UnifiedBlade) and isinstance(base, Blade)):
+        for value in values:
+            yield built(design.changed(path, value), getattr(base, "knots", None))
+        return
+    for first in range(0, len(values), AT_ONCE):
+        chunk = np.array(values[first : first + AT_ONCE])
+        upper, lower = varied_nets(base, path, chunk)
+        for place, value in enumerate(chunk):
+            yield _blade(base, design.changed(path, value), upper[place], lower[place])
+
+
+def varied_nets(blade: Blade, path: str, values: np.ndarray) -> Nets:
+    """Nets (k, n_u, n_v, 3) of the upper and lower side for values (k,) of one parameter, at the blade's knots."""
+    exact = moved(blade.exact, blade.design.changed(path, values))
+    upper, lower = native_sides(exact.stations(blade.knots.sites_v), blade.knots)
+    shape = (len(values), *upper.shape[-3:])
+    return np.broadcast_to(upper, shape), np.broadcast_to(lower, shape)
+
+
+class _Faces(Mapping[str, Face]):
+    """A blade's sides, and its ends, which are made when one is asked for."""
+
+    def __init__(
+        self, sides: Mapping[str, Surface], names: Sequence[str], ends: Callable[[], Mapping[str, Face]]
+    ) -> None:
+        self._found: dict[str, Face] = dict(sides)
+        self._names, self._ends = tuple(names), ends
+
+    def __getitem__(self, name: str) -> Face:
+        if name not in self._found and name in self._names:
+            self._found |= self._ends()
+        return self._found[name]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._names)
+
+    def __len__(self) -> int:
+        return len(self._names)
+
+
+def _blade(base: Blade, design: UnifiedBlade, upper: np.ndarray, lower: np.ndarray) -> Blade:
+    exact = moved(base.exact, design)
+    sides = [replace(side, control_points=net) for side, net in zip(base.sides, (upper, lower), strict=True)]
+
+    def ends() -> Mapping[str, Face]:
+        return trimmed_ends(exact, sides[0], sides[1], base.chord)
+
+    surfaces = _Faces({"upper": sides[0], "lower": sides[1]}, tuple(base.surfaces), ends)
+    return replace(base, design=design, surfaces=surfaces, exact=exact)
