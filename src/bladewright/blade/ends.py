@@ -37,8 +37,9 @@ def trimmed_ends(exact: ExactBlade, upper: Surface, lower: Surface, chord: float
     ends = {}
     for wall, row in (("hub", 0), ("shroud", -1)):
         meridian = extended(exact.channel.curve(wall), -exact.before, 1.0 + exact.after)
+        inner = exact.full_channel.line(wall).joints()
         traces = [
-            _Trace(side, row, meridian, exact.mapping.revolved, places, u[row, part], across[row, part])
+            _Trace(side, row, meridian, inner, exact.mapping.revolved, places, u[row, part], across[row, part])
             for side, part in ((upper, slice(None, len(places))), (lower, slice(len(places), None)))
         ]
         ends[exact.design.ends[row]] = _trimmed(traces, meridian, wall, chord)
@@ -96,10 +97,18 @@ class _Trace:
     """The end of a side on its wall: the channel's u and theta, or y in a cascade, by the side's parameter."""
 
     def __init__(
-        self, side: Surface, row: int, meridian: Curve, revolved: bool, places: Reals, u: Reals, across: Reals
+        self,
+        side: Surface,
+        row: int,
+        meridian: Curve,
+        inner: Reals,
+        revolved: bool,
+        places: Reals,
+        u: Reals,
+        across: Reals,
     ) -> None:
         self.end = Curve(control_points=side.control_points[:, row], knots=side.knots_u, degree=side.degree_u)
-        self.meridian, self.revolved = meridian, revolved
+        self.meridian, self.inner, self.revolved = meridian, np.unique(inner), revolved
         self.across, self._places, self._u = across, places, u
 
     def __call__(self, s: Reals) -> tuple[Array, Array]:
@@ -118,11 +127,10 @@ class _Trace:
         return u + _foot_step(self.meridian, u, target), across
 
     def joints(self, angles: Reals) -> list[tuple[float, int]]:
-        """Where the end passes inner knots of the meridian, or `angles` (k,) between the wall's rational arcs.
+        """Where the end passes `inner` knots of the meridian, or `angles` (k,) between the wall's rational arcs.
 
         Each with the derivatives that the wall's own parameters keep there: one between arcs, which are symmetric.
         """
-        knots = np.unique(self.meridian.knots)[1:-1]
 
         def passed(which: int, values: Reals, levels: Reals) -> list[float]:
             return [
@@ -132,7 +140,7 @@ class _Trace:
             ]
 
         return [
-            *((place, self.meridian.degree - 1) for place in passed(0, self._u, knots)),
+            *((place, self.meridian.degree - 1) for place in passed(0, self._u, self.inner)),
             *((place, 1) for place in passed(1, self.across, angles)),
         ]
 

@@ -8,6 +8,7 @@ from typing import Protocol
 
 import numpy as np
 from numpy.polynomial import chebyshev
+from numpy.typing import NDArray
 
 from bladewright.blade.mapping import Mapping
 from bladewright.errors import DesignError
@@ -18,6 +19,8 @@ NODES = 24
 """Chebyshev nodes of the density on a panel"""
 GUESS = 22
 """Chebyshev places of the inverse that Newton starts from: one step from there mostly does"""
+MANY = 5
+"""panels from which on each point fetches its panel's coefficients, instead of one panel after the other"""
 CONVERGED = 3e-8
 """a Newton step this small leaves an error of its square: rounding"""
 
@@ -30,6 +33,10 @@ class Channelled(Protocol):
 
     def stream_polynomials(self, v: Reals, centres: Reals) -> Array:
         """Coefficients (..., len(v), len(centres), k, 2) of (x, r) in powers of u - centre, around each centre."""
+
+
+Panel = int | NDArray[np.intp]
+"""a panel by its number, or a number for each point"""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -105,9 +112,9 @@ class StreamLines:
     def _guess(self, abscissa: Reals) -> Reals:
         index = np.sum(abscissa[..., None] >= self.starts[..., None, 1:-1], axis=-1)
 
-        def on_panel(panel: int, part: Reals) -> Reals:
-            start, end = self.starts[..., panel, None], self.starts[..., panel + 1, None]
-            return _clenshaw(self._rough_inverse[..., panel, :], (2.0 * part - start - end) / (end - start))
+        def on_panel(panel: Panel, part: Reals) -> Reals:
+            start, end = _of(self.starts, panel), _of(self.starts, panel + 1)
+            return _clenshaw(_rows_of(self._rough_inverse, panel), (2.0 * part - start - end) / (end - start))
 
         return _patched(index, abscissa, on_panel)
 
@@ -117,8 +124,8 @@ class StreamLines:
         extent = np.diff(self.starts)[..., None]
         local = _GUESS_PLACES
         for _ in range(4):
-            value = _clenshaw(self.series, local) - extent * (1.0 + _GUESS_PLACES) / 2.0
-            step = value / _clenshaw(self.density, local) / (np.diff(self.panels)[:, None] / 2.0)
+            value = _clenshaw(self.series[..., None, :], local) - extent * (1.0 + _GUESS_PLACES) / 2.0
+            step = value / _clenshaw(self.density[..., None, :], local) / (np.diff(self.panels)[:, None] / 2.0)
             local = np.clip(local - step, -1.0, 1.0)
         u = self.panels[:-1, None] + np.diff(self.panels)[:, None] * (1.0 + local) / 2.0
         return u @ _GUESS_SERIES.T
@@ -139,27 +146,27 @@ class StreamLines:
         index = self._panel_index(u)
         return _patched(index, np.stack([u, abscissa]), lambda panel, part: self._panel_step(panel, part[0], part[1]))
 
-    def _panel_step(self, panel: int, u: Array, abscissa: Array) -> Array:
+    def _panel_step(self, panel: Panel, u: Array, abscissa: Array) -> Array:
         return (self._panel_abscissa(panel, u) - abscissa) / _clenshaw(
-            self.density[..., panel, :], self._local(panel, u)
+            _rows_of(self.density, panel), self._local(panel, u)
         )
 
-    def _panel_abscissa(self, panel: int, u: Array) -> Array:
-        return _clenshaw(self.series[..., panel, :], self._local(panel, u)) + self.starts[..., panel, None]
+    def _panel_abscissa(self, panel: Panel, u: Array) -> Array:
+        return _clenshaw(_rows_of(self.series, panel), self._local(panel, u)) + _of(self.starts, panel)
 
-    def _local(self, panel: int, u: Array) -> Array:
+    def _local(self, panel: Panel, u: Array) -> Array:
         low, high = self.panels[panel], self.panels[panel + 1]
         return (2.0 * u - low - high) / (high - low)
 
-    def _by_panel(self, u: Array, on_panel: Callable[[int, Array], Array]) -> Array:
+    def _by_panel(self, u: Array, on_panel: Callable[[Panel, Array], Array]) -> Array:
         return _patched(self._panel_index(u), u, on_panel)
 
     def _panel_index(self, u: Array) -> Array:
         return np.clip(np.searchsorted(self.panels, np.real(u), side="right") - 1, 0, len(self.panels) - 2)
 
-    def _polynomial(self, panel: int, u: Array, order: int) -> Array:
+    def _polynomial(self, panel: Panel, u: Array, order: int) -> Array:
         t = u - (self.panels[panel] + self.panels[panel + 1]) / 2.0
-        return np.stack([_horner(self.powers[..., panel, :, i], t, order) for i in (0, 1)], axis=-1)
+        return np.stack([_horner(_rows_of(self.powers[..., i], panel), t, order) for i in (0, 1)], axis=-1)
 
 
 def stream_lines(channel: Channelled, mapping: Mapping, v: Reals, before: float, after: float) -> StreamLines:
@@ -219,12 +226,14 @@ def _on_panels(channel: Channelled, mapping: Mapping, v: Reals, ends: Reals) -> 
     return lines, tail
 
 
-def _patched(index: Array, values: Array, on_panel: Callable[[int, Array], Array]) -> Array:
+def _patched(index: Array, values: Array, on_panel: Callable[[Panel, Array], Array]) -> Array:
     """The panels' functions put together; a panel is asked only for the columns in which it has points."""
     counts = np.bincount(index.ravel())
     main = int(np.argmax(counts))
     if counts[main] == index.size:
         return on_panel(main, values)
+    if np.count_nonzero(counts) >= MANY:
+        return on_panel(index, values)
     result = np.array(on_panel(main, values))
     for panel in np.flatnonzero(counts):
         if panel == main:
@@ -240,21 +249,37 @@ def _patched(index: Array, values: Array, on_panel: Callable[[int, Array], Array
     return result
 
 
+def _of(values: Array, panel: Panel) -> Array:
+    """Values (..., m, p) of a panel as (..., m, 1), or of each point's panel (..., m, k) as (..., m, k)."""
+    return _rows_of(values[..., None], panel)[..., 0]
+
+
+def _rows_of(coefficients: Array, panel: Panel) -> Array:
+    """Coefficients (..., m, p, n) of a panel as (..., m, 1, n), or of each point's (..., m, k) as (..., m, k, n)."""
+    if isinstance(panel, int):
+        return coefficients[..., panel, None, :]
+    count = max(coefficients.ndim, panel.ndim + 1)
+    index = panel.reshape((1,) * (count - panel.ndim - 1) + (*panel.shape, 1))
+    return np.take_along_axis(coefficients[(None,) * (count - coefficients.ndim)], index, axis=-2)
+
+
 def _horner(powers: Array, t: Array, order: int) -> Array:
+    """Values or derivatives (...) at t (...) of polynomials with coefficients (..., n)."""
     count = powers.shape[-1]
-    value: Array = np.zeros(np.broadcast_shapes((*powers.shape[:-1], 1), t.shape), dtype=np.result_type(powers, t))
+    value: Array = np.zeros(np.broadcast_shapes(powers.shape[:-1], t.shape), dtype=np.result_type(powers, t))
     for k in range(count - 1, order - 1, -1):
-        value = value * t + perm(k, order) * powers[..., k, None]
+        value = value * t + perm(k, order) * powers[..., k]
     return value
 
 
 def _clenshaw(series: Array, x: Array) -> Array:
+    """Values (...) at x (...) of Chebyshev series (..., n)."""
     two = 2.0 * x
     later: Array | float = 0.0
     now: Array | float = 0.0
     for k in range(series.shape[-1] - 1, 0, -1):
-        later, now = now, series[..., k, None] + two * now - later
-    return series[..., 0, None] + x * now - later
+        later, now = now, series[..., k] + two * now - later
+    return series[..., 0] + x * now - later
 
 
 def _integration() -> Reals:
