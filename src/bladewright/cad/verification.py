@@ -23,7 +23,7 @@ SAMPLES = 10_000
 """points on each face, each way"""
 NEAR = 0.01
 """Distance of control points, of the body's extent, below which a face without a name is taken for a native one."""
-QUADRATURE = (1e-7, 1e-9, 1e-12)
+QUADRATURE = (1e-3, 1e-7, 1e-9, 1e-12)
 """relative errors that the kernel's quadrature of volumes aims at in turn: design/cad_quadrature.py"""
 SURE = 0.2
 """share of a limit within which the first quadrature will do"""
@@ -127,11 +127,13 @@ class _Measurement:
         for k, face in enumerate(self.returned):
             if k in names:
                 continue
+            nearest = near
             for name, meant in self.meant.items():
                 pair = meant.pole_for_pole(face.region)
                 # a pole that moved this far is not another face, but a bad one
-                if pair is not None and np.max(np.abs(pair[1].control_points - MM * pair[0].control_points)) < near:
-                    names[k] = name
+                moved = np.inf if pair is None else np.max(np.abs(pair[1].control_points - MM * pair[0].control_points))
+                if moved < nearest:
+                    names[k], nearest = name, float(moved)
             if k not in names:
                 # the boundary says which face it is meant to be, even where the wrong side of it was kept
                 away = {name: meant.target.closest(face.outline, 0.0)[1].max() for name, meant in self.meant.items()}

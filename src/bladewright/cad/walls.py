@@ -176,9 +176,7 @@ def _joints(place: Along, column: int, knots: Array, degree: int, along: Curve) 
         return []
     w = _spread(along.knots, 401)
     values = place(w)[:, column]
-    return [
-        (float(at), degree - 1) for level in levels for at in crossings(lambda s: place(s)[:, column], w, values, level)
-    ]
+    return [(float(at), degree - 1) for at in crossings(lambda s: place(s)[:, column], w, values, levels)]
 
 
 def _interpolated(place: Along, stretch: Along, along: Curve, joints: list[tuple[float, int]]) -> Curve:
