@@ -40,16 +40,18 @@ def bracketed_root(function: Callable[[Array], tuple[Array, Array]], low: ArrayL
     return root
 
 
-def crossings(function: Callable[[Array], Array], places: ArrayLike, values: ArrayLike, level: float) -> Array:
-    """Places (k,), rising, where a continuous real function passes a level, by bisection.
+def crossings(function: Callable[[Array], Array], places: ArrayLike, values: ArrayLike, levels: ArrayLike) -> Array:
+    """Places (k,), rising, where a continuous real function passes a level, or any of several, by bisection.
 
     `values` (m,) are the function's at `places` (m,), rising; what crosses twice between two of them is not seen.
     """
-    at, off = np.asarray(places, dtype=np.float64), np.asarray(values, dtype=np.float64) - level
-    first = np.flatnonzero(off[:-1] * off[1:] < 0.0)
+    at, asked = np.asarray(places, dtype=np.float64), np.atleast_1d(np.asarray(levels, dtype=np.float64))
+    off = np.asarray(values, dtype=np.float64) - asked[:, None]
+    row, first = np.nonzero(off[:, :-1] * off[:, 1:] < 0.0)
+    level, side = asked[row], off[row, first]
     low, high = at[first], at[first + 1]
     for _ in range(STEPS if len(first) else 0):
         middle = 0.5 * (low + high)
-        same = (np.real(function(middle)) - level) * off[first] > 0.0
+        same = (np.real(function(middle)) - level) * side > 0.0
         low, high = np.where(same, middle, low), np.where(same, high, middle)
-    return np.sort(np.concatenate([0.5 * (low + high), at[off == 0.0]]))
+    return np.sort(np.concatenate([0.5 * (low + high), at[np.nonzero(off == 0.0)[1]]]))
