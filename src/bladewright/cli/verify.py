@@ -5,8 +5,9 @@ from typing import Any
 
 import click
 
-from bladewright.cli.blueprint import body_from, design_at
+from bladewright.cli.blueprint import design_at
 from bladewright.cli.call import common
+from bladewright.cli.domain import BODIES, check_options, named_body, passage_options
 from bladewright.cli.options import design_argument, extend_option, set_option
 from bladewright.cli.outcome import Outcome
 
@@ -14,12 +15,15 @@ from bladewright.cli.outcome import Outcome
 @click.command(short_help="A CAD file from anywhere against a design.")
 @click.argument("file", type=click.Path(path_type=Path))
 @design_argument
+@click.option("--body", type=click.Choice(BODIES), default="blade", show_default=True, help="What the file is to hold.")
 @extend_option
+@passage_options
 @set_option
 @common
-def verify(file: Path, design: Path, extend: float, changes: dict[str, Any]) -> Outcome:
-    """Measure the CAD file FILE against the blade of DESIGN, both ways."""
-    built = body_from(design_at(design, changes), design, extend)
+def verify(file: Path, design: Path, body: str, extend: float, changes: dict[str, Any], **reach: Any) -> Outcome:
+    """Measure the CAD file FILE against the blade of DESIGN, or against its passage, both ways."""
+    check_options([body], extend, reach)
+    built = named_body(body, design_at(design, changes), design, extend, reach)
     from bladewright import cad
 
     trip = cad.verify(file, built)
