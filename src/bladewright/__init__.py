@@ -17,6 +17,8 @@ if TYPE_CHECKING:
     from bladewright.derivatives.nets import net_jacobian as net_jacobian
     from bladewright.derivatives.nets import pullback as pullback
     from bladewright.derivatives.sensitivity import sensitivity as sensitivity
+    from bladewright.domain.build import passage as passage
+    from bladewright.domain.passage import Passage as Passage
     from bladewright.errors import BladewrightError as BladewrightError
     from bladewright.errors import CadError as CadError
     from bladewright.errors import DerivativeError as DerivativeError
@@ -42,12 +44,14 @@ _HOMES = {
     "DesignError": "errors",
     "FileError": "errors",
     "GeometryError": "errors",
+    "Passage": "domain.passage",
     "NetJacobian": "derivatives.jacobian",
     "Surface": "nurbs.surface",
     "TrimmedSurface": "nurbs.trimmed",
     "UnifiedBlade": "blade.unified",
     "UnifiedSection": "section.unified",
     "net_jacobian": "derivatives.nets",
+    "passage": "domain.build",
     "prismatic": "blade.prismatic",
     "pullback": "derivatives.nets",
     "read_design": "files.reading",

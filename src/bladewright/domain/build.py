@@ -1,0 +1,184 @@
+"""From a native blade to its flow passage."""
+
+from collections.abc import Mapping
+from types import MappingProxyType
+
+import numpy as np
+
+from bladewright.blade.blade import Blade
+from bladewright.blade.exact import ExactBlade, exact_blade
+from bladewright.blade.knots import DEGREE, breaks_along_v
+from bladewright.domain.camber import CamberLines, camber_lines
+from bladewright.domain.checks import check_duct, check_folds, check_pitch
+from bladewright.domain.duct import Duct
+from bladewright.domain.extents import extents, mean_length, openings
+from bladewright.domain.fitness import RESERVE, TOLERANCE, knots_across, knots_along, knots_beside, knots_span
+from bladewright.domain.knots import PassageKnots
+from bladewright.domain.nets import native_nets
+from bladewright.domain.passage import Passage
+from bladewright.domain.wall import WallHalf, halves
+from bladewright.errors import DesignError
+from bladewright.numerics.elementary import Array, radians
+from bladewright.nurbs.basis import Reals
+from bladewright.nurbs.refine import inserted
+from bladewright.nurbs.surface import Surface
+from bladewright.nurbs.trimmed import TrimmedSurface
+from bladewright.section.checks import UNITS, number
+
+Turned = tuple[Array | None, Array | None]
+"""d theta / dm' at inlet and outlet, where stated"""
+
+
+def passage(
+    blade: Blade,
+    *,
+    upstream: float | None = None,
+    downstream: float | None = None,
+    inlet_angle: complex | None = None,
+    outlet_angle: complex | None = None,
+    knots: PassageKnots | None = None,
+) -> Passage:
+    """The flow passage around a blade, as native patches that close up without trimming.
+
+    `upstream` and `downstream` are how far the duct reaches past the edges, in the channel's parameter u: about as many
+    meridional lengths of the blade; where not given, one half, or what the pitch needs. Camber lines go on at the slope
+    of their ends; with `inlet_angle` or `outlet_angle` [deg] they turn to that angle from the meridional direction.
+    `knots=passage.knots` holds another passage's knots and extents. Raises DesignError where a patch would fold, the
+    channel cannot be continued so far, or the blade does not keep within its pitch. Agromayor et al. 2021, section 4.
+    """
+    full = _whole(blade)
+    turned = _slope("inlet_angle", inlet_angle), _slope("outlet_angle", outlet_angle)
+    half = _half_pitch(blade)
+    held = knots is not None
+    if knots is None:
+        _check_within(blade, half)
+        knots = _knots(blade, full, half, turned, extents(full, half, upstream, downstream))
+    camber, walls = _plane(blade, full, knots, half, turned, knots.sites("span"))
+    upper, lower = (_with_knots(side, knots.blade) for side in blade.sides)
+    nets = native_nets(camber, walls, (upper.control_points, lower.control_points), knots, half)
+    surfaces: dict[str, Surface | TrimmedSurface] = {name: _surface(net, name, knots) for name, net in nets.items()}
+    surfaces |= {"blade_upper": upper, "blade_lower": lower}
+    surfaces |= {name: face for name, face in blade.surfaces.items() if name == "tip"}
+    made = Passage(blade=blade, surfaces=MappingProxyType(surfaces), knots=knots, camber=camber, walls=walls)
+    if not held:
+        check_folds(made.folds)
+        _check_reached(made)
+    return made
+
+
+def _whole(blade: Blade) -> ExactBlade:
+    """The exact blade without gaps, from wall to wall of the channel."""
+    gaps = [name for name in ("tip_clearance", "hub_clearance") if getattr(blade.design, name, None) is not None]
+    return exact_blade(blade.design.changed(dict.fromkeys(gaps))) if gaps else blade.exact
+
+
+def _slope(name: str, degrees: complex | None) -> Array | None:
+    if degrees is None:
+        return None
+    angle = number(name, degrees)
+    if not -89.0 < np.real(angle) < 89.0:
+        raise DesignError(f"{name} is {np.real(angle):g} deg: it must lie between -89 and 89 deg, as flow goes onwards")
+    return np.asarray(np.tan(radians(angle)))
+
+
+def _half_pitch(blade: Blade) -> Array:
+    design = blade.design
+    if design.blade_count:
+        return np.asarray(np.pi / design.blade_count)
+    return np.asarray(0.5 * UNITS[design.length_unit] * np.asarray(design.pitch))
+
+
+def _real_half(half: Array) -> float:
+    return float(np.real(half).flat[0])
+
+
+def _check_within(blade: Blade, half: Array) -> None:
+    exact = blade.exact
+    duct = Duct(
+        channel=exact.channel,
+        start=-exact.before,
+        end=1.0 + exact.after,
+        upstream=exact.before,
+        downstream=exact.after,
+        revolved=exact.mapping.revolved,
+        length=mean_length(exact),
+    )
+    check_pitch(camber_lines(exact.survey, duct, (None, None)), blade, _real_half(half))
+
+
+def _plane(
+    blade: Blade, full: ExactBlade, knots: PassageKnots, half: Array, turned: Turned, v: Reals
+) -> tuple[CamberLines, Mapping[str, WallHalf]]:
+    """Camber lines and walls' halves with stations at v (m,), hub first and shroud last."""
+    duct = Duct(
+        channel=full.channel,
+        start=knots.start,
+        end=knots.end,
+        upstream=knots.upstream,
+        downstream=knots.downstream,
+        revolved=full.mapping.revolved,
+        length=mean_length(full),
+    )
+    camber = camber_lines(full.stations(v), duct, turned)
+    touched = {wall: wall in blade.surfaces for wall in ("hub", "shroud")}
+    return camber, halves(camber, touched, half, knots.opening)
+
+
+def _knots(blade: Blade, full: ExactBlade, half: Array, turned: Turned, reaches: tuple[float, float]) -> PassageKnots:
+    rough = np.concatenate([np.zeros(DEGREE + 1), np.ones(DEGREE + 1)])
+    start = PassageKnots(
+        upstream=reaches[0],
+        downstream=reaches[1],
+        start=-full.before,
+        end=1.0 + full.after,
+        opening=openings(full, _real_half(half)),
+        blade=blade.knots.u,
+        inlet=rough,
+        outlet=rough,
+        across=rough,
+        span=rough,
+    )
+    camber, walls = _plane(blade, full, start, half, turned, np.array([0.0, 1.0]))
+    check_duct(camber.duct)
+    tolerance = RESERVE * TOLERANCE * blade.chord
+    return PassageKnots(
+        upstream=start.upstream,
+        downstream=start.downstream,
+        start=start.start,
+        end=start.end,
+        opening=start.opening,
+        blade=knots_beside(walls, blade.knots.u, tolerance),
+        inlet=knots_along(walls, "inlet", tolerance),
+        outlet=knots_along(walls, "outlet", tolerance),
+        across=knots_across(walls, tolerance),
+        span=knots_span(camber, breaks_along_v(full), tolerance),
+    )
+
+
+def _with_knots(side: Surface, knots: Reals) -> Surface:
+    """A side with more knots along u, its shape unchanged."""
+    if len(knots) == len(side.knots_u):
+        return side
+    missing = list(knots)
+    for knot in side.knots_u:
+        missing.remove(knot)
+    return inserted(side, np.array(missing), "u")
+
+
+def _surface(net: Array, name: str, knots: PassageKnots) -> Surface:
+    if name in {"inlet", "outlet"}:
+        along, across = knots.around, knots.span
+    elif name.startswith("periodic"):
+        along, across = knots.u, knots.span
+    else:
+        along, across = knots.u, knots.across
+    return Surface(control_points=net, knots_u=along, knots_v=across, degree_u=DEGREE, degree_v=DEGREE)
+
+
+def _check_reached(made: Passage) -> None:
+    if made.wall_error <= TOLERANCE:
+        return
+    raise DesignError(
+        f"passage: hub and shroud lie {made.wall_error:.2g} of the chord off their surfaces of revolution, at most "
+        f"{TOLERANCE:g} is allowed: lower the blade's tolerance, so that it has more knots along the chord"
+    )

@@ -1,0 +1,87 @@
+"""Camber lines from inlet to outlet: the sections' own, continued up- and downstream at the slope of their ends."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from bladewright.blade.mapping import Taylor
+from bladewright.blade.stations import Stations
+from bladewright.blade.streamlines import StreamLines
+from bladewright.domain.duct import Duct
+from bladewright.numerics.elementary import Array, unit
+from bladewright.nurbs.basis import Reals
+from bladewright.section.camber import bernstein
+
+
+@dataclass(frozen=True, kw_only=True)
+class CamberLines:
+    """Continued camber lines (..., m) in the planes (m', theta) of their stream surfaces, (m, y) in a cascade."""
+
+    stations: Stations
+    duct: Duct
+    lines: StreamLines
+    """of the duct, at the stations' v"""
+    slopes: tuple[Array, Array]
+    """(..., m) d theta / dm' at the leading and the trailing edge"""
+    turned: tuple[Array | None, Array | None]
+    """() d theta / dm' at inlet and outlet where an angle is stated"""
+
+    def points(self, piece: str, t: Reals) -> Array:
+        """Points (..., m, k, 2) at t (k,) in [0, 1] along `inlet`, `blade` or `outlet`."""
+        if piece == "blade":
+            return self.in_plane(bernstein(_parameter(t)) @ self.stations.plane.camber)
+        past = 0 if piece == "inlet" else 1
+        edge = self.points("blade", np.array([float(past)]))
+        end = np.array([-self.duct.upstream if past == 0 else 1.0 + self.duct.downstream])
+        reach = self.lines.abscissa(end) - edge[..., 0]
+        share = 1.0 - t if past == 0 else t
+        slope, turn = self.slopes[past][..., None], self.turned[past]
+        rise = slope * share
+        if turn is not None:
+            rise = rise + (turn - slope) * (share**3 - share**4 / 2.0)
+        return np.stack([edge[..., 0] + reach * share, edge[..., 1] + reach * rise], axis=-1)
+
+    def direction(self, past: int) -> Array:
+        """Unit vectors (..., m, 2) along the camber, downstream, at the leading (0) or trailing (1) edge."""
+        slope = self.slopes[past]
+        return unit(np.stack([np.ones_like(slope), slope], axis=-1))
+
+    def in_plane(self, section: Array) -> Array:
+        """Points (..., m, k, 2) in (m', theta) of points in the sections' own planes."""
+        mapping = self.stations.mapping
+        if type(mapping) is type(self.lines.mapping):
+            return section
+        u, _, tangential = self.stations.on_lines(section)
+        return np.stack([self.lines.abscissa(u), tangential], axis=-1)
+
+
+QUICK = 0.5
+"""how much faster than on average periodic boundaries pass the edges: the faster, the less cross-lines need to lean"""
+
+
+def _parameter(t: Reals) -> Reals:
+    """The camber's parameter abreast of t on the blade's sides."""
+    return (1.0 + QUICK) * t - 3.0 * QUICK * t**2 + 2.0 * QUICK * t**3
+
+
+def camber_lines(stations: Stations, duct: Duct, turned: tuple[Array | None, Array | None]) -> CamberLines:
+    """Continued camber lines of stations; `turned` holds d theta / dm' at inlet and outlet, None to keep the edge's."""
+    lines = duct.lines(stations.v)
+    slopes = _slope(stations, lines, 0), _slope(stations, lines, 1)
+    return CamberLines(stations=stations, duct=duct, lines=lines, slopes=slopes, turned=turned)
+
+
+def _slope(stations: Stations, lines: StreamLines, past: int) -> Array:
+    """d theta / dm' (..., m) of the camber at an edge."""
+    camber = stations.plane.camber
+    along = camber[..., 1, :] - camber[..., 0, :] if past == 0 else camber[..., 3, :] - camber[..., 2, :]
+    at = np.array([float(past)])
+    position, slope = (stations.lines.position(at, order)[..., 0, :] for order in range(2))
+    by_u = along[..., 0] / stations.mapping.density(position, slope)
+    nothing = np.zeros_like(by_u)
+    tangential = stations.mapping.tangential_series(
+        Taylor(camber[..., 3 * past, 1], along[..., 1], nothing),
+        Taylor(position[..., 1], slope[..., 1] * by_u, nothing),
+        stations.lines.lengths,
+    )
+    return tangential.first / (lines.mapping.density(position, slope) * by_u)

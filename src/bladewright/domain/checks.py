@@ -1,0 +1,89 @@
+"""Passages that cannot be: a duct that folds or meets the axis, a blade outside its pitch, patches that fold."""
+
+import numpy as np
+
+from bladewright.blade.blade import Blade
+from bladewright.domain.camber import CamberLines
+from bladewright.domain.duct import Duct
+from bladewright.domain.knots import PIECES
+from bladewright.errors import DesignError
+from bladewright.numerics.elementary import cross2
+from bladewright.nurbs.basis import Reals
+from bladewright.section.checks import UNITS
+
+SIDES = np.concatenate([np.linspace(0.0, 0.05, 25)[:-1], np.linspace(0.05, 0.95, 121), np.linspace(0.95, 1.0, 25)[1:]])
+"""places along a side where its distance from the periodic boundaries is taken"""
+
+
+def check_duct(duct: Duct) -> None:
+    """Refuse extents over which the continued channel folds over or meets the axis."""
+    v = np.linspace(0.0, 1.0, 33)
+    for name, u in (
+        ("upstream", np.linspace(-duct.upstream, 0.0, 41)[::-1]),
+        ("downstream", np.linspace(1.0, 1.0 + duct.downstream, 41)),
+    ):
+        powers = duct.stream_polynomials(v, u)
+        while powers.ndim > 4:
+            powers = powers[0]
+        position, slope = np.real(powers[..., 0, :]), np.real(powers[..., 1, :])
+        across = np.diff(position, axis=0)
+        turn = np.minimum(cross2(slope[:-1], across), cross2(slope[1:], across))
+        size = np.sqrt(np.sum(slope[:-1] ** 2, axis=-1) * np.sum(across**2, axis=-1))
+        folded = np.any(turn <= 1e-4 * np.median(size), axis=0)
+        sunk = np.any(position[..., 1] <= 0.0, axis=0) if duct.revolved else np.zeros_like(folded)
+        if not np.any(folded | sunk):
+            continue
+        first = int(np.argmax(folded | sunk))
+        most = (float(u[first - 1]) - float(u[0])) * (1.0 if name == "downstream" else -1.0) if first else 0.0
+        what = "meets the machine axis" if sunk[first] else "folds back on itself, as hub and shroud cross"
+        raise DesignError(
+            f"{name} is {getattr(duct, name):g} meridional lengths of the blade: the continued channel {what} at "
+            f"u = {u[first]:.3f}; at most {most:.3g} is possible, or let hub and shroud leave the blade more parallel"
+        )
+
+
+def check_pitch(camber: CamberLines, blade: Blade, half_pitch: float) -> None:
+    """Refuse a pitch beyond whose halves, about the camber, a side of the blade stands.
+
+    `camber` continues the blade's own stations.
+    """
+    v = camber.stations.v
+    lines = [np.concatenate([_real(camber.points(piece, SIDES)) for piece in PIECES], axis=-2)]
+    sides = [_real(camber.in_plane(side)) for side in camber.stations.plane.points(SIDES)]
+    design = blade.design
+    worst, where = -np.inf, (0, 0.0)
+    for side, sign in zip(sides, (1.0, -1.0), strict=True):
+        for row in range(len(v)):
+            away = sign * (side[row, :, 1] - np.interp(side[row, :, 0], *lines[0][row].T))
+            past = float(np.max(away) - half_pitch)
+            if past > worst:
+                worst, where = past, (row, float(side[row, int(np.argmax(away)), 0]))
+    if worst < 0.0:
+        return
+    row, abscissa = where
+    u = camber.lines.rows([row]).u_at(np.array([[abscissa]]))
+    radius = float(np.real(camber.lines.rows([row]).position(u))[..., 1].flat[0]) if design.blade_count else 1.0
+    metre = UNITS[design.length_unit]
+    what = f"blade_count is {design.blade_count}" if design.blade_count else f"pitch is {2 * half_pitch / metre:g}"
+    raise DesignError(
+        f"{what}: at v = {v[row]:.3f} the blade stands {worst * radius / metre:.4g} {design.length_unit} outside its "
+        f"passage, which reaches {half_pitch * radius / metre:.4g} {design.length_unit} to each side of the camber "
+        f"line there; take {'fewer blades' if design.blade_count else 'a larger pitch'} or thinner sections"
+    )
+
+
+def check_folds(shares: dict[str, tuple[float, float, float]]) -> None:
+    """Refuse a wall patch whose Jacobian is not positive; `shares` of its median are least at (u, v)."""
+    for name, (share, u, v) in shares.items():
+        if not share > 0.0:
+            raise DesignError(
+                f"passage: its face {name} folds over at u = {u:.3f}, v = {v:.3f} (Jacobian {share:.3g} of its median, "
+                "it must be positive): lengthen upstream or downstream, or lower the angle to which it turns"
+            )
+
+
+def _real(points: np.ndarray) -> Reals:
+    points = np.real(points)
+    while points.ndim > 3:
+        points = points[0]
+    return points

@@ -1,0 +1,170 @@
+"""The duct: the blade's channel continued up- and downstream, where hub and shroud straighten."""
+
+from dataclasses import dataclass
+from math import comb, factorial
+
+import numpy as np
+
+from bladewright.blade.mapping import Cascade, Conformal
+from bladewright.blade.meridional import Meridional
+from bladewright.blade.streamlines import StreamLines, stream_lines
+from bladewright.numerics.elementary import Array
+from bladewright.nurbs.basis import Reals, basis, greville
+from bladewright.nurbs.curve import Curve
+
+WALL = 7
+"""degree of a wall's meridian"""
+BEND = 0.08
+"""extent, in u, over which a continued stream line loses its curvature"""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Duct:
+    """The channel over start - upstream ... in its own u: polynomial over the blade, straight far from it.
+
+    From u = `start` down and from u = `end` up, u counts the length along the stream line over `length`. Its curvature,
+    and what distinguishes its direction from the walls', fade to zero over BEND as 1 - 3 t^2 + 2 t^3.
+    """
+
+    channel: Meridional
+    start: float
+    """u, at most 0, down to which stream lines continue the channel's own polynomials"""
+    end: float
+    """u, at least 1, up to which they do"""
+    length: float
+    """mean meridional length of the blade [m]"""
+    upstream: float
+    """how far, in u, the duct reaches upstream of the leading edge"""
+    downstream: float
+    """how far, in u, it reaches downstream of the trailing edge"""
+    revolved: bool
+    """whether it is an annulus; a cascade's duct otherwise"""
+
+    def joints(self) -> Reals:
+        """Where stream lines lose derivatives."""
+        own = [self.start - BEND, self.start, *self.channel.joints(), self.end, self.end + BEND]
+        return np.array([u for u in own if -self.upstream < u < 1.0 + self.downstream])
+
+    def stream_polynomials(self, v: Reals, centres: Reals) -> Array:
+        """Coefficients (..., len(v), len(centres), k, 2) of the stream lines' powers of u - centre; v from 0 to 1."""
+        inner = self.channel.stream_polynomials(v, np.clip(centres, self.start, self.end))
+        count = max(inner.shape[-2], KEPT + len(FADING) - 1)
+        total = np.zeros((*inner.shape[:-2], count, 2), dtype=inner.dtype)
+        total[..., : inner.shape[-2], :] = inner
+        for edge, sign in ((self.start, -1.0), (self.end, 1.0)):
+            outside = np.flatnonzero(sign * (centres - edge) > 0.0)
+            # the walls' own slopes are needed, whichever stream lines are asked for
+            all_v = np.concatenate([[0.0], v, [1.0]])
+            if outside.size:
+                powers = self.channel.stream_polynomials(all_v, np.array([edge]))[..., 0, :, :]
+            for i in outside:
+                found = _continued(powers, self.length, all_v, sign, sign * (float(centres[i]) - edge))[..., 1:-1, :, :]
+                total[..., i, :, :] = 0.0
+                total[..., i, : found.shape[-2], :] = found
+        return total
+
+    def lines(self, v: Reals) -> StreamLines:
+        """Stream lines at v (m,) from inlet to outlet, with the conformal length m' - m in a cascade - as abscissa."""
+        return stream_lines(self, Conformal() if self.revolved else Cascade(), v, self.upstream, self.downstream)
+
+    def wall(self, name: str) -> Curve:
+        """The meridian (x, r) of `hub` or `shroud` from inlet to outlet, over [0, 1] in proportion to its length.
+
+        It interpolates the stream line in so many places that it misses it by less than 1e-12 of its length.
+        """
+        along = stream_lines(self, Cascade(), np.array([0.0 if name == "hub" else 1.0]), self.upstream, self.downstream)
+        first, last = along.abscissa(np.array([-self.upstream, 1.0 + self.downstream]))[..., 0, :]
+        for spans in (32, 64, 128, 256):
+            knots = np.concatenate([np.zeros(WALL), np.linspace(0.0, 1.0, spans + 1), np.ones(WALL)])
+            sites = greville(knots, WALL)
+            both = np.concatenate([sites, (sites[1:] + sites[:-1]) / 2.0])
+            points = along.position(along.u_at((first + (last - first) * both)[None, :]))[0]
+            net = np.linalg.solve(basis(knots, WALL, sites), points[: len(sites)])
+            miss = np.real(basis(knots, WALL, both[len(sites) :]) @ net - points[len(sites) :])
+            if np.max(np.sum(miss**2, axis=-1)) < (1e-12 * float(np.real(last - first))) ** 2:
+                break
+        return Curve(control_points=net, knots=knots, degree=WALL)
+
+
+FADING = np.array([1.0, 0.0, -3.0, 2.0])
+"""powers of t: 1 at 0 and 0 at 1, with the first derivative zero at both"""
+KEPT = 3
+"""powers of the length past an edge, from 0, that a continued stream line has of its own"""
+
+
+def _continued(powers: Array, length_of_u: float, v: Reals, sign: float, away: float) -> Array:
+    """Powers (..., m, k, 2) of u - centre for stream lines with the given powers at an edge, continued by `away`."""
+    by_length = _by_length(powers * (sign ** np.arange(powers.shape[-2]))[:, None])
+    own = by_length * (length_of_u ** np.arange(KEPT))[:, None]
+    point, slope = own[..., 0, :], own[..., 1, :]
+    ruled = (1.0 - v)[:, None] * slope[..., :1, :] + v[:, None] * slope[..., -1:, :]
+    fading = FADING / BEND ** np.arange(len(FADING))
+    turning = _integrated(_integrated(_times(_derived(_derived(own)), fading)))
+    bowing = _integrated(_times((slope - ruled)[..., None, :], fading))
+    terms = [turning, bowing]
+    if away >= BEND:
+        terms = [_tangent(term) for term in terms]
+    total = np.zeros((*point.shape[:-1], turning.shape[-2], 2), dtype=powers.dtype)
+    total[..., 0, :] = point
+    total[..., 1, :] = ruled
+    for term in terms:
+        total[..., : term.shape[-2], :] += term
+    count = total.shape[-2]
+    shift = [[comb(j, k) * away ** (j - k) * sign**k if j >= k else 0.0 for j in range(count)] for k in range(count)]
+    return np.array(shift) @ total
+
+
+def _by_length(powers: Array) -> Array:
+    """The first KEPT powers (..., KEPT, 2) of a curve by its length, from those by its parameter."""
+    wanted = np.zeros((*powers.shape[:-2], KEPT + 1, 2), dtype=powers.dtype)
+    kept = powers[..., : KEPT + 1, :]
+    wanted[..., : kept.shape[-2], :] = kept
+    slope = _derived(wanted)
+    square = _product(slope[..., 0], slope[..., 0]) + _product(slope[..., 1], slope[..., 1])
+    slowness = _root(square, -0.5)
+    derivative, series = wanted, []
+    for k in range(KEPT):
+        series.append(derivative[..., 0, :] / factorial(k))
+        step = _derived(derivative)
+        derivative = np.stack([_product(step[..., i], slowness) for i in (0, 1)], axis=-1)
+    return np.stack(series, axis=-2)
+
+
+def _product(first: Array, second: Array) -> Array:
+    """Powers (..., k) of a product, as many as the shorter factor has."""
+    count = min(first.shape[-1], second.shape[-1])
+    terms = [np.sum(first[..., : k + 1] * second[..., k::-1], axis=-1) for k in range(count)]
+    return np.stack(terms, axis=-1)
+
+
+def _root(powers: Array, exponent: float) -> Array:
+    """Powers (..., k) of a series raised to an exponent."""
+    result = [powers[..., 0] ** exponent]
+    for n in range(1, powers.shape[-1]):
+        terms = [(exponent * k - (n - k)) * powers[..., k] * result[n - k] for k in range(1, n + 1)]
+        result.append(sum(terms[1:], terms[0]) / (n * powers[..., 0]))
+    return np.stack(result, axis=-1)
+
+
+def _derived(powers: Array) -> Array:
+    return powers[..., 1:, :] * np.arange(1, powers.shape[-2])[:, None]
+
+
+def _integrated(powers: Array) -> Array:
+    raised = powers / np.arange(1, powers.shape[-2] + 1)[:, None]
+    return np.concatenate([np.zeros_like(raised[..., :1, :]), raised], axis=-2)
+
+
+def _times(powers: Array, factor: Reals) -> Array:
+    count = powers.shape[-2]
+    product = np.zeros((*powers.shape[:-2], count + len(factor) - 1, 2), dtype=powers.dtype)
+    for k, value in enumerate(factor):
+        product[..., k : k + count, :] += value * powers
+    return product
+
+
+def _tangent(powers: Array) -> Array:
+    """The straight line that a polynomial of the distance goes on as from BEND."""
+    at = BEND ** np.arange(powers.shape[-2])
+    value, slope = at @ powers, at[:-1] @ _derived(powers)
+    return np.stack([value - BEND * slope, slope], axis=-2)

@@ -1,0 +1,93 @@
+"""How far a duct must reach past the blade so that no patch of its walls folds."""
+
+from numbers import Real
+
+import numpy as np
+
+from bladewright.blade.exact import ExactBlade
+from bladewright.domain.camber import CamberLines, camber_lines
+from bladewright.domain.duct import Duct
+from bladewright.domain.wall import lean, opening
+from bladewright.errors import DesignError
+from bladewright.numerics.elementary import Array
+
+USUAL = 0.5
+"""extent, in u, where none is given and the pitch needs no more"""
+STEP = 0.25
+"""extents that the pitch needs are rounded up to multiples of this, so that small changes of a design keep them"""
+MOST = 50.0
+"""extent, in u, above which a duct is refused"""
+ROOM = 1.25
+"""extents of the walls' patches in which lines of equal v lie, over the bulge of the cross-lines at the edge"""
+BULGE = 27.0 / 256.0
+"""greatest value of v (1 - v)^3"""
+
+
+def extents(
+    full: ExactBlade, half_pitch: Array, upstream: float | None, downstream: float | None
+) -> tuple[float, float]:
+    """Extents up- and downstream in u: those given where they suffice, else the usual or the needed ones.
+
+    Raises DesignError where one is not a number above what the nose and the pitch need.
+    """
+    found = []
+    for past, (name, given) in enumerate((("upstream", upstream), ("downstream", downstream))):
+        needed = _needed(full, half_pitch, past)
+        if given is None:
+            found.append(max(USUAL, STEP * float(np.ceil(needed / STEP))))
+            continue
+        if isinstance(given, bool) or not isinstance(given, Real):
+            raise DesignError(f"{name} is {given!r}: a number of meridional lengths of the blade is needed")
+        if not needed <= float(given) <= MOST:
+            raise DesignError(
+                f"{name} is {float(given):g} meridional lengths of the blade: it must be at least {needed:.4g}, so "
+                f"that the walls' patches hold the blade's nose and do not fold beside it, and at most {MOST:g}"
+            )
+        found.append(float(given))
+    return found[0], found[1]
+
+
+def mean_length(exact: ExactBlade) -> float:
+    """Mean meridional length of the blade's sections [m]."""
+    lengths = np.real(exact.survey.lines.lengths)
+    return float(np.mean(lengths.reshape(-1, lengths.shape[-1])[0]))
+
+
+def openings(full: ExactBlade, half_pitch: float) -> tuple[float, float]:
+    """The share of the width at which cross-lines leave the blade, on hub and shroud."""
+    hub, shroud = np.real(_camber(full).lines.abscissa(np.array([1.0])))[..., 0].reshape(-1, 2)[0]
+    return opening(half_pitch, hub), opening(half_pitch, shroud)
+
+
+def _needed(full: ExactBlade, half_pitch: Array, past: int) -> float:
+    """The extension must outlast the bulge of the cross-lines, and reach past the nose."""
+    return max((full.before, full.after)[past] + 0.05, ROOM * _bulge(full, half_pitch, past))
+
+
+def _bulge(full: ExactBlade, half_pitch: Array, past: int) -> float:
+    """How far, in u, cross-lines from an edge reach past it."""
+    camber = _camber(full)
+    direction = np.real(camber.direction(past))
+    at = np.array([float(past)])
+    density = np.real(camber.lines.mapping.density(camber.lines.position(at), camber.lines.position(at, 1)))[..., 0]
+    half = float(np.real(half_pitch).flat[0])
+    share = np.array(openings(full, half))
+    bulges = [
+        np.max(BULGE * share * lean(direction[..., 1], half, sign, past) * direction[..., 0] / density)
+        for sign in (1, -1)
+    ]
+    return max(float(each) for each in bulges)
+
+
+def _camber(full: ExactBlade) -> CamberLines:
+    duct = Duct(
+        channel=full.channel,
+        start=-full.before,
+        end=1.0 + full.after,
+        upstream=full.before,
+        downstream=full.after,
+        revolved=full.mapping.revolved,
+        length=mean_length(full),
+    )
+    stations = full.stations(np.array([0.0, 1.0]))
+    return camber_lines(stations, duct, (None, None))

@@ -1,0 +1,101 @@
+"""Knots with which the native walls of a passage lie on their surfaces of revolution."""
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from bladewright.blade.knots import DEGREE, clamped, refined
+from bladewright.domain.camber import CamberLines
+from bladewright.domain.duct import BEND
+from bladewright.domain.knots import PIECES
+from bladewright.domain.nets import through
+from bladewright.domain.wall import WallHalf
+from bladewright.numerics.elementary import Array, dot, length
+from bladewright.nurbs.basis import Reals, basis, greville
+
+TOLERANCE = 1e-7
+"""distance of hub and shroud from their surfaces of revolution, of the chord"""
+RESERVE = 0.25
+"""share of it that one direction may use while knots are sought"""
+MOST_POLES = 80
+"""poles of a piece in one direction above which a passage is refused"""
+_ALONG = np.array([0.0, 0.03, 0.1, 0.25, 0.5, 0.75, 0.9, 0.97, 1.0])
+_ACROSS = np.array([0.0, 0.2, 0.45, 0.7, 1.0])
+
+
+def knots_across(walls: Mapping[str, WallHalf], tolerance: float) -> Reals:
+    """Knots from the blade to a periodic boundary."""
+
+    def miss(knots: Reals, places: Reals) -> Reals:
+        v = np.concatenate([greville(knots, DEGREE), places])
+        worst = np.zeros(len(places))
+        for wall in walls.values():
+            for piece in PIECES:
+                points, normals = (np.real(part) for part in wall.in_space(piece, _ALONG, v))
+                off = _off(knots, places, np.swapaxes(points, 0, 1), np.swapaxes(normals, 0, 1))
+                worst = np.maximum(worst, np.max(off, axis=1) / tolerance)
+        return worst
+
+    return refined(_plain(3), miss, MOST_POLES)
+
+
+def knots_along(walls: Mapping[str, WallHalf], piece: str, tolerance: float) -> Reals:
+    """Knots of the piece up- or downstream of the blade."""
+
+    def miss(knots: Reals, places: Reals) -> Reals:
+        t = np.concatenate([greville(knots, DEGREE), places])
+        worst = np.zeros(len(places))
+        for wall in walls.values():
+            points, normals = (np.real(part) for part in wall.in_space(piece, t, _ACROSS))
+            worst = np.maximum(worst, np.max(_off(knots, places, points, normals), axis=1) / tolerance)
+        return worst
+
+    duct = next(iter(walls.values())).camber.duct
+    edge, reach = (-duct.start, duct.upstream) if piece == "inlet" else (duct.end - 1.0, duct.downstream)
+    joints = np.array([place / reach for place in (edge, edge + BEND) if place < reach])
+    inner = 1.0 - joints if piece == "inlet" else joints
+    return refined(clamped(np.concatenate([[0.5], inner])), miss, MOST_POLES)
+
+
+def knots_beside(walls: Mapping[str, WallHalf], own: Reals, tolerance: float) -> Reals:
+    """The blade's own knots along u, with as many more as the walls beside it need."""
+
+    def miss(knots: Reals, places: Reals) -> Reals:
+        t = np.concatenate([greville(knots, DEGREE), places])
+        order = np.argsort(t)
+        back = np.argsort(order)
+        worst = np.zeros(len(places))
+        for wall in walls.values():
+            points, normals = (np.real(part)[back] for part in wall.in_space("blade", t[order], _ACROSS))
+            worst = np.maximum(worst, np.max(_off(knots, places, points, normals), axis=1) / tolerance)
+        return worst
+
+    return refined(own, miss, MOST_POLES + len(own))
+
+
+def knots_span(camber: CamberLines, inner: Reals, tolerance: float) -> Reals:
+    """Knots of inlet, outlet and periodic boundaries along the span; `inner` are where the blade's laws have theirs."""
+    ends = np.array([-camber.duct.upstream, 1.0 + camber.duct.downstream])
+
+    def miss(knots: Reals, places: Reals) -> Reals:
+        v = np.concatenate([greville(knots, DEGREE), places])
+        points = np.real(camber.duct.lines(v).position(ends))
+        count = len(knots) - DEGREE - 1
+        native = basis(knots, DEGREE, places) @ through(points[:count].reshape(count, -1), knots, 0)
+        error = native.reshape(len(places), -1, 2) - points[count:]
+        return np.max(length(error), axis=1) / tolerance
+
+    spans = np.unique(np.concatenate([[0.0, 0.25, 0.5, 0.75, 1.0], inner]))
+    extra = [place for place in spans[1:-1] if not np.any(np.abs(inner - place) < 0.1)]  # real: knots
+    return refined(clamped(np.concatenate([inner, extra])), miss, MOST_POLES)
+
+
+def _off(knots: Reals, places: Reals, points: Array, normals: Array) -> Reals:
+    """Distance (k, l) along the normals of the interpolant of points (n + k, l, 3) from the last k of them."""
+    count = len(points) - len(places)
+    native = np.tensordot(basis(knots, DEGREE, places), through(points[:count], knots, 0), axes=1)
+    return np.abs(dot(native - points[count:], normals[count:]))  # real: knots come from the real design
+
+
+def _plain(spans: int) -> Reals:
+    return clamped(np.linspace(0.0, 1.0, spans + 1)[1:-1])

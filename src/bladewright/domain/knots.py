@@ -1,0 +1,67 @@
+"""Knots of a passage: real numbers chosen once, held while a design is differentiated."""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from bladewright.blade.knots import DEGREE, clamped
+from bladewright.numerics.elementary import frozen
+from bladewright.nurbs.basis import Reals, greville
+
+PIECES = ("inlet", "blade", "outlet")
+"""pieces of a passage's faces along the flow"""
+BLADE_AT = (0.25, 0.75)
+"""u of the leading and the trailing edge on the passage's faces"""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class PassageKnots:
+    """Knots of the passage's faces over [0, 1], and the real numbers that place them."""
+
+    upstream: float
+    """extent upstream of the leading edge, in the channel's u"""
+    downstream: float
+    """extent downstream of the trailing edge, in the channel's u"""
+    start: float
+    """u down to which the duct continues the channel's polynomials"""
+    end: float
+    """u up to which it does"""
+    opening: tuple[float, float]
+    """share of the passage's width at which cross-lines leave the blade, on hub and shroud"""
+    blade: Reals
+    """the blade's own along u, and what the walls need besides"""
+    inlet: Reals
+    """of the piece upstream of the blade, along u"""
+    outlet: Reals
+    """of the piece downstream of the blade, along u"""
+    across: Reals
+    """from the blade to a periodic boundary"""
+    span: Reals
+    """of inlet, outlet and periodic boundaries, along v"""
+
+    def __post_init__(self) -> None:
+        for name in (*PIECES, "across", "span"):
+            object.__setattr__(self, name, frozen(getattr(self, name)))
+
+    def sites(self, piece: str) -> Reals:
+        """Interpolation sites of a piece, or of `across` or `span`, in its own [0, 1]."""
+        return greville(getattr(self, piece), DEGREE)
+
+    @cached_property
+    def u(self) -> Reals:
+        """Knots along the flow: the three pieces, which meet with a full knot at the blade's edges."""
+        low, high = BLADE_AT
+        ends = (0.0, low, high, 1.0)
+        parts = [
+            start + (end - start) * getattr(self, piece)[DEGREE + 1 : -DEGREE - 1]
+            for piece, start, end in zip(PIECES, ends, ends[1:], strict=False)
+        ]
+        full = [np.full(DEGREE, edge) for edge in BLADE_AT]
+        return clamped(np.concatenate([parts[0], full[0], parts[1], full[1], parts[2]]))
+
+    @cached_property
+    def around(self) -> Reals:
+        """Knots of inlet and outlet from one periodic boundary to the other, full in the middle."""
+        inner = self.across[DEGREE + 1 : -DEGREE - 1]
+        return clamped(np.concatenate([0.5 - inner[::-1] / 2.0, np.full(DEGREE, 0.5), 0.5 + inner / 2.0]))

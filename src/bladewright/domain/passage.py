@@ -1,0 +1,138 @@
+"""The flow passage around one blade: native patches that close up pole for pole."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from types import MappingProxyType
+from typing import cast
+
+import numpy as np
+
+from bladewright.blade.blade import Blade, Faces
+from bladewright.domain.camber import CamberLines
+from bladewright.domain.duct import Duct
+from bladewright.domain.knots import BLADE_AT, PIECES, PassageKnots
+from bladewright.domain.wall import WallHalf
+from bladewright.numerics.elementary import dot
+from bladewright.nurbs.basis import Reals, breaks
+from bladewright.nurbs.flux import MassProperties, mass_properties
+from bladewright.nurbs.surface import Surface
+
+OUTWARD = MappingProxyType(
+    {
+        "hub_upper": -1,
+        "hub_lower": 1,
+        "shroud_upper": 1,
+        "shroud_lower": -1,
+        "inlet": -1,
+        "outlet": 1,
+        "periodic_upper": -1,
+        "periodic_lower": 1,
+        "blade_upper": 1,
+        "blade_lower": -1,
+    }
+)
+"""+1 for the faces whose dS/du x dS/dv points out of the passage"""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Passage:
+    """What the fluid fills around one blade, half a pitch to each side, from inlet to outlet."""
+
+    blade: Blade
+    surfaces: Faces
+    """walls' halves (u inlet to outlet, v from the blade to a periodic boundary), periodic boundaries (u inlet to
+    outlet, v hub to shroud), inlet and outlet (u from the lower to the upper periodic boundary, v hub to shroud), the
+    blade's sides, and its tip where there is a gap; metres"""
+    knots: PassageKnots
+    """give them to `passage(..., knots=...)` to hold them"""
+    camber: CamberLines
+    """continued camber lines, from hub to shroud"""
+    walls: Mapping[str, WallHalf]
+    """the exact halves of hub and shroud that the native ones interpolate"""
+
+    @property
+    def name(self) -> str:
+        """The blade's name and what this is."""
+        return f"{self.blade.name}-passage"
+
+    @property
+    def description(self) -> str:
+        """One line for the header of CAD files."""
+        return self.blade.description
+
+    @property
+    def author(self) -> str:
+        """For the header of CAD files."""
+        return self.blade.author
+
+    @property
+    def organisation(self) -> str:
+        """For the header of CAD files."""
+        return self.blade.organisation
+
+    @property
+    def duct(self) -> Duct:
+        """The channel with its continuations."""
+        return self.camber.duct
+
+    @property
+    def orientations(self) -> Mapping[str, int]:
+        """+1 for the faces whose dS/du x dS/dv points out of the passage, -1 for the others."""
+        if "tip" not in self.surfaces:
+            return OUTWARD
+        return MappingProxyType({**OUTWARD, "tip": -self.blade.orientations["tip"]})
+
+    @cached_property
+    def properties(self) -> MassProperties:
+        """Volume [m^3], area [m^2], centroid [m] and inertia [m^5], by quadrature on the native surfaces."""
+        return mass_properties([(self.surfaces[name], sign) for name, sign in self.orientations.items()])
+
+    @cached_property
+    def folds(self) -> dict[str, tuple[float, float, float]]:
+        """By the name of a wall's half: the least Jacobian in (m', theta), of its median, and u, v where it is."""
+        return {name: self._least(name, wall) for name, wall in self.walls.items()}
+
+    @cached_property
+    def wall_error(self) -> float:
+        """Largest distance of hub and shroud from their surfaces of revolution, of the chord."""
+        return max(self._off(name, wall) for name, wall in self.walls.items()) / self.blade.chord
+
+    def _least(self, name: str, wall: WallHalf) -> tuple[float, float, float]:
+        face = cast(Surface, self.surfaces[name])
+        v = _between(self.knots.across, (0.0, 0.5))
+        lowest, places = [], []
+        for piece, start, end in self._pieces():
+            t = _between(getattr(self.knots, piece), (1e-6, 0.3, 0.7, 1.0 - 1e-6))
+            u = start + (end - start) * t
+            normal = np.cross(np.real(face.grid(u, v, 1, 0)), np.real(face.grid(u, v, 0, 1)))
+            points, upright = (np.real(part) for part in wall.in_space(piece, t, v))
+            radius = points[..., 1] ** 2 + points[..., 2] ** 2 if self.duct.revolved else 1.0
+            lowest.append(wall.sign * dot(normal, upright) / radius)
+            places.append(u)
+        jacobian, u = np.concatenate(lowest), np.concatenate(places)
+        i, j = np.unravel_index(int(np.argmin(jacobian)), jacobian.shape)
+        return float(jacobian[i, j] / np.median(jacobian)), float(u[i]), float(v[j])
+
+    def _off(self, name: str, wall: WallHalf) -> float:
+        face = cast(Surface, self.surfaces[name])
+        v = _between(self.knots.across, (0.0, 0.31, 0.74))
+        worst = 0.0
+        for piece, start, end in self._pieces():
+            t = _between(getattr(self.knots, piece), (0.31, 0.74))
+            points, upright = (np.real(part) for part in wall.in_space(piece, t, v))
+            off = dot(np.real(face.grid(start + (end - start) * t, v)) - points, upright)
+            worst = max(worst, float(np.max(np.abs(off))))  # real: a measured distance
+        return worst
+
+    @staticmethod
+    def _pieces() -> tuple[tuple[str, float, float], ...]:
+        ends = (0.0, *BLADE_AT, 1.0)
+        return tuple(zip(PIECES, ends, ends[1:], strict=False))
+
+
+def _between(knots: Reals, shares: tuple[float, ...]) -> Reals:
+    """Places inside each knot span, and the last knot where `shares` has the first."""
+    spans = breaks(knots)
+    places = np.concatenate([spans[:-1] + share * np.diff(spans) for share in shares])
+    return np.sort(np.append(places, spans[-1]) if 0.0 in shares else places)

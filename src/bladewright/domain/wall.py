@@ -1,0 +1,109 @@
+"""One half of a wall in its plane (m', theta): between the blade, or the camber line under a gap, and a periodic line.
+
+With S the blade's side and its extensions, N the continued camber line half a pitch away, and A a vector along the
+extension that fades from the edge:
+
+    P(u, v) = S + (N - S) w(v) + A g(v),   w = o v + (1 - o) v^2,   g = o v (1 - v)^3.
+
+At an edge the cross-line leaves inside the right angle between side and extension, so that the patch does not fold
+there though its sides turn by that angle.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from bladewright.domain.camber import CamberLines
+from bladewright.numerics.elementary import Array, unit
+from bladewright.nurbs.basis import Reals
+
+FADE = 16
+"""power of 1 - t with which the lean of the cross-lines fades from an edge along the blade"""
+LEAN = 1.0
+"""tangent of the least angle of the cross-line to the normal of the extension, times the camber's cosine"""
+ROOM = 4.0
+"""half pitch, in meridional extents of the blade, beyond which cross-lines leave the blade more slowly"""
+
+
+def opening(half_pitch: float, extent: float) -> float:
+    """The share o of the width at which cross-lines leave the blade: about 1, less where the pitch is large."""
+    return 1.0 / (1.0 + half_pitch / (ROOM * extent))
+
+
+def widening(opened: float, v: Reals) -> Reals:
+    """The share w of the width that cross-lines have reached at v."""
+    return opened * v + (1.0 - opened) * v * v
+
+
+def lean(sine: Array, half_pitch: Array | float, sign: int, past: int) -> Array:
+    """Length |A| (...) of the lean at an edge where the camber has the given sine."""
+    outwards = -1.0 if past == 0 else 1.0
+    return half_pitch * (np.sqrt(sine * sine + LEAN**2) - outwards * sign * sine)
+
+
+@dataclass(frozen=True, kw_only=True)
+class WallHalf:
+    """A half of a wall: `sign` +1 above the blade, -1 below it; `touched` where the blade stands on the wall."""
+
+    camber: CamberLines
+    row: int
+    """which of the camber's stations"""
+    sign: int
+    touched: bool
+    half_pitch: Array
+    """() in theta, or y in a cascade"""
+    opening: float
+
+    def plane(self, piece: str, t: Reals, v: Reals) -> Array:
+        """Points (..., k, l, 2) in the plane at t (k,) along a piece and v (l,) across."""
+        middle = self.camber.points(piece, t)[..., self.row, :, :]
+        width = self.sign * self.half_pitch[..., None, None] * np.array([0.0, 1.0])
+        w = widening(self.opening, v)
+        if not self.touched:
+            return middle[..., None, :] + width[..., None, :] * w[:, None]
+        south = self._side(t) if piece == "blade" else middle
+        north = middle + width
+        g = self.opening * v * (1.0 - v) ** 3
+        across = (north - south)[..., None, :] * w[:, None]
+        return south[..., None, :] + across + self._lean(piece, t)[..., None, :] * g[:, None]
+
+    def _side(self, t: Reals) -> Array:
+        section = self.camber.stations.plane.points(t)[0 if self.sign > 0 else 1]
+        return self.camber.in_plane(section)[..., self.row, :, :]
+
+    def _lean(self, piece: str, t: Reals) -> Array:
+        """A (..., k, 2): at an edge, what turns the cross-line into the right angle."""
+        if piece == "blade":
+            return self._edge_lean(0) * ((1.0 - t) ** FADE)[:, None] + self._edge_lean(1) * (t**FADE)[:, None]
+        return self._edge_lean(0) * t[:, None] if piece == "inlet" else self._edge_lean(1) * (1.0 - t)[:, None]
+
+    def _edge_lean(self, past: int) -> Array:
+        direction = self.camber.direction(past)[..., self.row, :]
+        reach = (-1.0 if past == 0 else 1.0) * lean(direction[..., 1], self.half_pitch, self.sign, past)
+        return reach[..., None, None] * direction[..., None, :]
+
+    def in_space(self, piece: str, t: Reals, v: Reals) -> tuple[Array, Array]:
+        """Points (..., k, l, 3) in metres, and the wall's unit normals there, towards the shroud."""
+        plane = self.plane(piece, t, v)
+        flat = plane.reshape(*plane.shape[:-3], 1, -1, 2)
+        lines = self.camber.lines.rows([self.row])
+        u = lines.u_at(flat[..., 0])
+        position, slope = lines.position(u), unit(lines.position(u, 1))
+        mapping, tangential = lines.mapping, flat[..., 1]
+        points = mapping.in_space(position[..., 0], position[..., 1], tangential)
+        upright = mapping.in_space(-slope[..., 1], slope[..., 0], tangential if mapping.revolved else 0.0 * tangential)
+        shape = (*plane.shape[:-1], 3)
+        return points.reshape(shape), upright.reshape(shape)
+
+
+def halves(
+    camber: CamberLines, touched: dict[str, bool], half_pitch: Array, opened: tuple[float, float]
+) -> dict[str, WallHalf]:
+    """The four halves of hub (first station) and shroud (last), by the names of their faces."""
+    return {
+        f"{wall}_{half}": WallHalf(
+            camber=camber, row=row, sign=sign, touched=touched[wall], half_pitch=half_pitch, opening=opened[row]
+        )
+        for wall, row in (("hub", 0), ("shroud", -1))
+        for half, sign in (("upper", 1), ("lower", -1))
+    }
