@@ -20,6 +20,7 @@ from bladewright.blade.unified import UnifiedBlade
 from bladewright.errors import DesignError
 from bladewright.numerics.elementary import Array, cross2, dot, length
 from bladewright.nurbs.basis import Reals, basis, greville
+from bladewright.nurbs.fit import interpolated
 from bladewright.section.checks import UNITS
 
 REACHED = 1e-9
@@ -107,11 +108,14 @@ def cleared(full: Meridional, clearance: Clearance, knots: Reals | None = None) 
     )
 
 
-def clearance_error(full: Meridional, own: Meridional, clearance: Clearance) -> float:
-    """Largest difference between the meridian's distance from its wall and the stated one, of the meridional chord."""
-    meridian = own.real().line(clearance.wall)
-    u = np.linspace(0.0, 1.0, 8 * len(meridian.points) + 1)
-    return float(np.max(_off(full.real(), clearance.real(), meridian, u)))
+def off_distance(full: Meridional, clearance: Clearance, u: Reals, points: Reals) -> Reals:
+    """Differences (m,) [m] between the distances of points (x, r) (m, 2) from the wall and those stated at u (m,)."""
+    wall, feet = full.real().curve(clearance.wall), u
+    for _ in range(8):
+        foot, slope, bend = wall.derivatives(feet, 2)
+        gap = points - foot
+        feet = feet + dot(gap, slope) / (dot(slope, slope) - dot(gap, bend))
+    return np.abs(length(points - wall(feet)) - clearance.real().distance(u))  # real: a measured distance
 
 
 def _knots(full: Meridional, clearance: Clearance) -> Reals:
@@ -120,12 +124,13 @@ def _knots(full: Meridional, clearance: Clearance) -> Reals:
         round(float(joint), 12): DEGREE - wall.degree + 1 for wall in (full.hub, full.shroud) for joint in wall.joints()
     }
     start = clamped(np.array([joint for joint, count in times.items() for _ in range(count)]))
+    chord = float(np.mean([length(each.points[-1] - each.points[0]) for each in (full.hub, full.shroud)]))
 
     def miss(knots: Reals, places: Reals) -> Reals:
         sites = greville(knots, DEGREE)
         points = full.at(sites, _met(full, clearance, sites)[0])[0]
-        meridian = Line(points=np.linalg.solve(basis(knots, DEGREE, sites), points), knots=knots)
-        return _off(full, clearance, meridian, places) / REACHED
+        found = interpolated(points, sites, degree=DEGREE, knots=knots)(places)
+        return off_distance(full, clearance, places, found) / (REACHED * chord)
 
     knots = refined(start, miss, MOST)
     spans = np.unique(knots)
@@ -170,17 +175,6 @@ def _miss(full: Meridional, clearance: Clearance, u: Reals, w: Reals, f: Reals) 
     away = clearance.distance(u)[..., None]
     curvature = clearance.inward * cross2(slope, bend)[..., None] / speed**3
     return point - foot - away * normal, across, slope * (away * curvature - 1.0)
-
-
-def _off(full: Meridional, clearance: Clearance, meridian: Line, u: Reals) -> Reals:
-    """Differences (m,) between a meridian's distances from the wall, at their feet, and the stated ones."""
-    points, wall, feet = meridian.curve()(u), full.line(clearance.wall).curve(), u
-    for _ in range(8):
-        foot, slope, bend = wall.derivatives(feet, 2)
-        gap = points - foot
-        feet = feet + dot(gap, slope) / (dot(slope, slope) - dot(gap, bend))
-    chord = float(np.mean([length(each.points[-1] - each.points[0]) for each in (full.hub, full.shroud)]))
-    return np.sqrt((length(points - wall(feet)) - clearance.distance(u)) ** 2) / chord
 
 
 def _bend(full: Meridional, clearance: Clearance, feet: Reals) -> Reals:

@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from bladewright.blade.clearance import off_distance
 from bladewright.blade.stations import Stations
 from bladewright.numerics.elementary import Array, cross2, degrees, dot, length, unit
 from bladewright.nurbs.basis import Reals
@@ -32,11 +33,13 @@ class Promises:
     stream_surfaces: float
     """distance of curves of constant v from their stream surfaces, of the chord [-]"""
     walls: float
-    """distance of the blade's ends from hub and shroud, of the chord [-]"""
+    """distance of the blade's ends from hub and shroud, or from the clearance surface, of the chord [-]"""
     surface: float
     """distance of the sides from the exact blade, of the chord [-]"""
     limits: dict[str, float]
     """what each may be"""
+    clearance: float | None = None
+    """of the tip surface's distance from its wall from the stated one, of the chord, where there is a clearance [-]"""
 
     @property
     def kept(self) -> bool:
@@ -56,6 +59,8 @@ LIMITS = {
     "edge_curvatures": 1e-6,
     "walls": 1e-7,
 }
+CLEARANCE = 1e-8
+"""limit of the clearance's miss"""
 
 
 def promises_of(blade: "Blade") -> Promises:
@@ -87,6 +92,9 @@ def promises_of(blade: "Blade") -> Promises:
     if blade.design.mapping == "paper":
         for lost in ("metal_angle_at_walls", "metal_angle_between", "edge_radius"):
             del limits[lost]
+    clearance = _off_clearance(blade)
+    if clearance is not None:
+        limits["clearance"] = CLEARANCE
     return Promises(
         metal_angle_at_walls=float(max(walls)),
         metal_angle_between=float(np.max(angles)),
@@ -97,6 +105,7 @@ def promises_of(blade: "Blade") -> Promises:
         walls=max(ends / blade.chord, blade.wall_error),
         surface=blade.error,
         limits=limits,
+        clearance=clearance,
     )
 
 
@@ -139,6 +148,17 @@ def _smoothness(row: list[dict[tuple[int, int], Array]]) -> tuple[Reals, Reals]:
         forms.append(np.stack([*terms, dot(side[0, 2], normal) / sizes[1] ** 2], axis=-1) * sign)
     jump = np.max(np.abs(forms[0] - forms[1]), axis=-1)  # real: measured curvatures
     return plane, jump / np.max(np.abs(forms[0]), axis=-1)  # real: measured curvatures
+
+
+def _off_clearance(blade: "Blade") -> float | None:
+    """Largest miss of the tip surface's distance from its wall between the edges, of the chord."""
+    exact = blade.exact
+    if exact.clearance is None:
+        return None
+    u = np.linspace(0.0, 1.0, 401)
+    x, y, z = np.moveaxis(np.real(blade.surfaces["tip"](u, np.full_like(u, 0.5))), -1, 0)
+    points = np.stack([x, length(np.stack([y, z], axis=-1)) if exact.mapping.revolved else z], axis=-1)
+    return float(np.max(off_distance(exact.full_channel, exact.clearance, u, points))) / blade.chord
 
 
 def _off_stream_surfaces(stations: Stations, upper: Surface, lower: Surface) -> tuple[float, float]:
