@@ -1,6 +1,6 @@
 """The native blade: named surfaces in metres, with what was asked of them and what they reach."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from types import MappingProxyType
@@ -15,6 +15,7 @@ from bladewright.blade.knots import Knots
 from bladewright.blade.properties import blade_properties
 from bladewright.blade.unified import UnifiedBlade
 from bladewright.errors import DesignError
+from bladewright.numerics.elementary import Array
 from bladewright.nurbs.domain import extended, reparametrised
 from bladewright.nurbs.flux import MassProperties, mass_properties
 from bladewright.nurbs.surface import Surface
@@ -41,6 +42,8 @@ class Blade:
     """mean straight distance from leading to trailing edge [m]"""
     exact: ExactBlade
     """the blade that is meant"""
+    moments: Callable[[], Array] | None = None
+    """gives the moments of the volume, as `blade_moments` does, where they are known without quadrature"""
 
     @property
     def name(self) -> str:
@@ -96,8 +99,9 @@ class Blade:
     @cached_property
     def properties(self) -> MassProperties:
         """Volume [m^3], area [m^2], centroid [m] and inertia [m^5], by quadrature on the native surfaces."""
-        if all(isinstance(self.surfaces[name], TrimmedSurface) for name in self.design.ends):
-            return blade_properties(self.surfaces, self.orientations, revolved=self.exact.mapping.revolved)
+        moments, revolved = self.moments, self.exact.mapping.revolved
+        if moments or all(isinstance(self.surfaces[name], TrimmedSurface) for name in self.design.ends):
+            return blade_properties(self.surfaces, self.orientations, revolved=revolved, moments=moments)
         return mass_properties([(self.surfaces[name], sign) for name, sign in self.orientations.items()])
 
     @cached_property

@@ -8,9 +8,10 @@ from bladewright.blade.exact import ExactBlade
 from bladewright.errors import DesignError
 from bladewright.numerics.elementary import Array, angle, dot, joined, length
 from bladewright.numerics.roots import crossings
-from bladewright.nurbs.basis import Reals, basis, greville
+from bladewright.nurbs.basis import Reals, greville
 from bladewright.nurbs.curve import Curve
 from bladewright.nurbs.domain import extended
+from bladewright.nurbs.fit import interpolated
 from bladewright.nurbs.joints import jointed
 from bladewright.nurbs.revolution import Revolution
 from bladewright.nurbs.surface import Surface
@@ -133,11 +134,7 @@ class _Trace:
         """
 
         def passed(which: int, values: Reals, levels: Reals) -> list[float]:
-            return [
-                float(place)
-                for level in levels
-                for place in crossings(lambda s: np.real(self(s)[which]), self._places, values, level)
-            ]
+            return list(map(float, crossings(lambda s: np.real(self(s)[which]), self._places, values, levels)))
 
         return [
             *((place, self.meridian.degree - 1) for place in passed(0, self._u, self.inner)),
@@ -168,8 +165,7 @@ def _followed(
         added = [spans[:-1] + np.diff(spans) * k / pieces for k in range(1, pieces)]
         knots = np.sort(np.concatenate([own, *added]))
         sites = greville(knots, end.degree)
-        net = np.linalg.solve(basis(knots, end.degree, sites), place(sites))
-        curve = Curve(control_points=net, knots=knots, degree=end.degree)
+        curve = interpolated(place(sites), sites, degree=end.degree, knots=knots)
         between = (sites[1:] + sites[:-1]) / 2.0
         exact, found = np.real(place(between)), np.real(curve(between))
         miss = length((found - exact) * stretch(exact))

@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
+from functools import cached_property, partial
 from typing import Any
 
 import numpy as np
@@ -9,10 +10,13 @@ import numpy as np
 from bladewright.blade.blade import Blade
 from bladewright.blade.ends import trimmed_ends
 from bladewright.blade.exact import moved
+from bladewright.blade.moments import moment_gradient
 from bladewright.blade.native import native_sides
+from bladewright.blade.properties import blade_moments, middle_of
 from bladewright.blade.unified import UnifiedBlade
 from bladewright.derivatives.tangents import AT_ONCE, STEP, Nets, side_tangents
 from bladewright.designs import Design
+from bladewright.numerics.elementary import Array
 from bladewright.nurbs.surface import Surface
 from bladewright.nurbs.trimmed import TrimmedSurface
 
@@ -34,12 +38,13 @@ def stepped(design: Design, base: Any, paths: Sequence[str]) -> Iterator[Any]:
         for path in paths:
             yield built(design.changed(path, values[path] + STEP * 1j), getattr(base, "knots", None))
         return
-    rows = iter(paths)
+    rows, moments = iter(paths), _Moments(base)
     for tangents in side_tangents(base, paths):
         for pair in zip(*tangents, strict=True):
             path = next(rows)
             nets = [side.control_points + STEP * 1j * rate for side, rate in zip(base.sides, pair, strict=True)]
-            yield _blade(base, design.changed(path, values[path] + STEP * 1j), nets[0], nets[1])
+            blade = _blade(base, design.changed(path, values[path] + STEP * 1j), nets[0], nets[1])
+            yield replace(blade, moments=partial(moments, pair))
 
 
 def varied(design: Design, base: Any, path: str, values: Sequence[complex]) -> Iterator[Any]:
@@ -55,12 +60,34 @@ def varied(design: Design, base: Any, path: str, values: Sequence[complex]) -> I
             yield _blade(base, design.changed(path, value), upper[place], lower[place])
 
 
-def varied_nets(blade: Blade, path: str, values: np.ndarray) -> Nets:
+def varied_nets(blade: Blade, path: str, values: Array) -> Nets:
     """Nets (k, n_u, n_v, 3) of the upper and lower side for values (k,) of one parameter, at the blade's knots."""
     exact = moved(blade.exact, blade.design.changed(path, values))
     upper, lower = native_sides(exact.stations(blade.knots.sites_v), blade.knots)
     shape = (len(values), *upper.shape[-3:])
     return np.broadcast_to(upper, shape), np.broadcast_to(lower, shape)
+
+
+class _Moments:
+    """The moments of blades that carry a step, from their nets' derivatives and the gradients of the sides' moments."""
+
+    def __init__(self, base: Blade) -> None:
+        self.base = base
+
+    @cached_property
+    def _value_and_gradients(self) -> tuple[Array, list[Array]]:
+        outward, revolved = self.base.orientations, self.base.exact.mapping.revolved
+        middle = middle_of(self.base.surfaces)
+        gradients = [
+            outward[name] * moment_gradient(side, middle, revolved=revolved)
+            for name, side in zip(("upper", "lower"), self.base.sides, strict=True)
+        ]
+        return blade_moments(self.base.surfaces, outward, revolved=revolved), gradients
+
+    def __call__(self, tangents: Nets) -> Array:
+        value, gradients = self._value_and_gradients
+        rates = [np.tensordot(gradient, rate, axes=3) for gradient, rate in zip(gradients, tangents, strict=True)]
+        return value + STEP * 1j * (rates[0] + rates[1])
 
 
 class _Faces(Mapping[str, Face]):
@@ -84,7 +111,7 @@ class _Faces(Mapping[str, Face]):
         return len(self._names)
 
 
-def _blade(base: Blade, design: UnifiedBlade, upper: np.ndarray, lower: np.ndarray) -> Blade:
+def _blade(base: Blade, design: UnifiedBlade, upper: Array, lower: Array) -> Blade:
     exact = moved(base.exact, design)
     sides = [replace(side, control_points=net) for side, net in zip(base.sides, (upper, lower), strict=True)]
 

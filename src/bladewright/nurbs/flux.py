@@ -1,7 +1,9 @@
 """Volume, centroid and inertia of what a closed set of faces encloses, by the divergence theorem."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
 
 import numpy as np
 
@@ -17,22 +19,42 @@ Face = tuple[Surface | TrimmedSurface, int]
 """a face and its orientation: +1 where its normal points out of the solid, -1 where it points into it"""
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(frozen=True, kw_only=True, eq=False)
 class MassProperties:
     """What a closed set of faces encloses, for unit density."""
 
     volume: Array
     """() [length^3]"""
-    area: Array
-    """() of all faces together [length^2]"""
-    areas: Array
-    """(k,) of each face [length^2]"""
     centroid: Array
     """(3,) [length]"""
     inertia: Array
     """(3, 3) about the centroid, integral of (x.x) I - x x^T [length^5]"""
-    openness: Array
-    """() the faces' summed area vectors over their area [-]: zero for a closed set, up to rounding"""
+    measured: Callable[[], tuple[Array, Array]]
+    """gives the areas (k,) of the faces and their summed outward area vector (3,): they take longer than the rest"""
+
+    @cached_property
+    def _measured(self) -> tuple[Array, Array]:
+        return self.measured()
+
+    @property
+    def areas(self) -> Array:
+        """(k,) of each face [length^2]."""
+        return self._measured[0]
+
+    @property
+    def area(self) -> Array:
+        """() of all faces together [length^2]."""
+        return np.asarray(self.areas.sum())
+
+    @property
+    def openness(self) -> Array:
+        """() the faces' summed area vectors over their area [-]: zero for a closed set, up to rounding."""
+        return np.asarray(length(np.real(self._measured[1])) / np.real(self.area))
+
+    def to_dict(self) -> dict[str, Any]:
+        """All figures, for JSON."""
+        names = ("volume", "area", "areas", "centroid", "inertia", "openness")
+        return {name: np.real(getattr(self, name)).tolist() for name in names}
 
 
 def mass_properties(faces: Sequence[Face]) -> MassProperties:
@@ -47,9 +69,7 @@ def mass_properties(faces: Sequence[Face]) -> MassProperties:
         raise GeometryError(f"orientations {[sign for _, sign in faces]} were given: at least one, each +1 or -1")
     nets = np.concatenate([_surface(face).control_points.reshape(-1, 3) for face, _ in faces])
     middle = 0.5 * (nets.real.min(axis=0) + nets.real.max(axis=0))
-    sums = [face_moments(face, middle) for face, _ in faces]
-    total = np.sum([sign * moments[1:] for (_, sign), moments in zip(faces, sums, strict=True)], axis=0)
-    areas = np.array([moments[0] for moments in sums])
+    total = np.sum([sign * face_moments(face, middle) for face, sign in faces], axis=0)
     volume, first, second = total[3], total[4:7], total[7:]
     if not volume.real > 0.0:
         raise GeometryError(
@@ -61,18 +81,16 @@ def mass_properties(faces: Sequence[Face]) -> MassProperties:
     moments = np.array([[xx, xy, zx], [xy, yy, yz], [zx, yz, zz]]) - volume * np.outer(offset, offset)
     return MassProperties(
         volume=volume,
-        area=areas.sum(),
-        areas=areas,
         centroid=middle + offset,
         inertia=np.trace(moments) * np.eye(3) - moments,
-        openness=length(total[:3].real) / areas.real.sum(),
+        measured=lambda: (np.array([_area(face) for face, _ in faces]), total[:3]),
     )
 
 
 def face_moments(face: Surface | TrimmedSurface, origin: Array) -> Array:
-    """Integrals (14,) over one face in space, along its own normal, with x measured from `origin` (3,).
+    """Integrals (13,) over one face in space, along its own normal, with x measured from `origin` (3,).
 
-    The area; the area vector (3); the fluxes of x / 3; of x^2 / 2, y^2 / 2, z^2 / 2 along their axes; of x^3 / 3,
+    The area vector (3); the fluxes of x / 3; of x^2 / 2, y^2 / 2, z^2 / 2 along their axes; of x^3 / 3,
     y^3 / 3, z^3 / 3 along theirs; and of x^2 y / 2, y^2 z / 2, z^2 x / 2 along x, y, z.
     """
 
@@ -92,20 +110,15 @@ def face_moments(face: Surface | TrimmedSurface, origin: Array) -> Array:
         )
 
     if isinstance(face, Surface):
-        moments = _of_polynomials(face, origin) if face.weights is None else surface_integral(face, density)
-        return np.append(area(face), moments)
+        return _of_polynomials(face, origin) if face.weights is None else surface_integral(face, density)
     surface = face.surface
-
-    def trimmed(u: Array, v: Array) -> Array:
-        along_u, along_v = surface.derivative(u, v, 1, 0), surface.derivative(u, v, 0, 1)
-        sizes = length(np.cross(along_u, along_v))[..., None]
-        return np.concatenate([sizes, density(surface(u, v), along_u, along_v)], axis=-1)
-
-    return face.integral(trimmed)
+    return face.integral(
+        lambda u, v: density(surface(u, v), surface.derivative(u, v, 1, 0), surface.derivative(u, v, 0, 1))
+    )
 
 
 def _of_polynomials(surface: Surface, origin: Array) -> Array:
-    """The same (13,) without the area, exact: on a knot span the densities have the degree 5 p - 1 at most."""
+    """The same, exact: on a knot span the densities have the degree 5 p - 1 at most."""
     (u, along), (v, across) = (
         panels(breaks(knots), (5 * degree + 1) // 2)
         for knots, degree in ((surface.knots_u, surface.degree_u), (surface.knots_v, surface.degree_v))
@@ -124,6 +137,10 @@ def _of_polynomials(surface: Surface, origin: Array) -> Array:
             np.array(products) / 2.0,
         ]
     )
+
+
+def _area(face: Surface | TrimmedSurface) -> Array:
+    return area(face) if isinstance(face, Surface) else face.area()
 
 
 def _surface(face: Surface | TrimmedSurface) -> Surface:

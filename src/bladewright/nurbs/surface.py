@@ -136,6 +136,10 @@ def _product(last: Array, first: Array, net: Array) -> Array:
 
     The second product costs m k a: `last` is for the direction with fewer control points.
     """
+    if np.iscomplexobj(net):
+        # real products, or the real bases would be made complex first
+        pairs = np.ascontiguousarray(net)[..., None].view(np.float64)
+        return np.asarray(_product(last, first, pairs).view(np.complex128)[..., 0])
     rows = first @ np.swapaxes(net, 0, 1).reshape(net.shape[1], -1)
     columns = np.swapaxes(rows.reshape(len(first), net.shape[0], -1), 0, 1).reshape(net.shape[0], -1)
     return np.asarray((last @ columns).reshape(len(last), len(first), *net.shape[2:]))

@@ -1,0 +1,101 @@
+"""Moments of a blade's volume between its walls, from its sides alone, and their gradients by the control points.
+
+A vector field along theta has no flux through a surface of revolution about the axis, nor one along y through the walls
+of a cascade. So the divergence theorem with G(x, r, theta) such that dG/dtheta = f needs the sides alone:
+
+    integral f dV = sum over the sides of integral G (r e_theta . n) dA.
+"""
+
+from collections.abc import Callable
+
+import numpy as np
+
+from bladewright.numerics.elementary import Array, angle, length
+from bladewright.numerics.quadrature import panels
+from bladewright.nurbs.basis import Reals, basis, breaks
+from bladewright.nurbs.surface import Surface
+
+POINTS = 10
+"""Gauss points in a knot span of a side: exact to degree 19"""
+STEP = 1e-30
+"""imaginary step of a point"""
+Density = Callable[[Array, Array], Array]
+
+
+def side_moments(side: Surface, middle: float, *, revolved: bool) -> Array:
+    """Integrals (10,) of 1, x, y, z, xx, yy, zz, xy, yz, zx that a side gives a volume, along its own normal.
+
+    `middle` is the theta, or y in a cascade, at which the field vanishes: amid the blade, so that
+    what passes through the gap between sides and walls stays small. Control points may be complex.
+    """
+    u, v, weight = _places(side)
+    point, normal = side.grid(u, v), np.cross(side.grid(u, v, 1, 0), side.grid(u, v, 0, 1))
+    return np.einsum("uv,uvk->k", weight, _density(middle, revolved=revolved)(point, normal))
+
+
+def area_vector(side: Surface) -> Array:
+    """Integral (3,) of the normal over a side."""
+    u, v, weight = _places(side)
+    return np.einsum("uv,uvk->k", weight, np.cross(side.grid(u, v, 1, 0), side.grid(u, v, 0, 1)))
+
+
+def moment_gradient(side: Surface, middle: float, *, revolved: bool) -> Reals:
+    """Derivatives (10, n_u, n_v, 3) of a side's moments by its real control points.
+
+    The density f(S, n) is linear in n = S_u x S_v, so that its change is
+    f_S . dS + (S_v x f_n) . dS_u + (f_n x S_u) . dS_v.
+    """
+    u, v, weight = _places(side)
+    point, along, across = (side.grid(u, v, *orders) for orders in ((0, 0), (1, 0), (0, 1)))
+    density, axes = _density(middle, revolved=revolved), np.eye(3)
+    by_normal = np.stack([density(point, np.broadcast_to(axis, point.shape)) for axis in axes], axis=-1)
+    normal = np.cross(along, across)
+    by_point = np.stack([np.imag(density(point + STEP * 1j * axis, normal)) / STEP for axis in axes], axis=-1)
+    parts = (
+        (by_point, 0, 0),
+        (np.cross(across[..., None, :], by_normal), 1, 0),
+        (np.cross(by_normal, along[..., None, :]), 0, 1),
+    )
+    total: Reals = np.zeros((10, *side.control_points.shape))
+    for part, in_u, in_v in parts:
+        rows = basis(side.knots_u, side.degree_u, u, in_u)
+        columns = basis(side.knots_v, side.degree_v, v, in_v)
+        weighted = np.moveaxis(weight[..., None, None] * part, (0, 1), (-2, -1))
+        total += np.moveaxis(rows.T @ weighted @ columns, 1, -1)
+    return total
+
+
+def _places(side: Surface) -> tuple[Reals, Reals, Reals]:
+    (u, along), (v, across) = (panels(breaks(knots), POINTS) for knots in (side.knots_u, side.knots_v))
+    return u, v, along[:, None] * across
+
+
+def _density(middle: float, *, revolved: bool) -> Density:
+    field = _around_axis if revolved else _along_y
+    return lambda point, normal: field(point, normal, middle)
+
+
+def _around_axis(point: Array, normal: Array, middle: float) -> Array:
+    """Densities (..., 10) of the moments for a field along theta, which vanishes at theta = `middle`."""
+    x, y, z = np.moveaxis(point, -1, 0)
+    radius = length(point[..., 1:])
+    start_y, start_z = radius * np.sin(middle), radius * np.cos(middle)
+    theta = angle(y * np.cos(middle) - z * np.sin(middle), z * np.cos(middle) + y * np.sin(middle))
+    turns = np.unwrap(np.unwrap(np.real(theta), axis=0), axis=1)
+    turns = turns - 2.0 * np.pi * np.round(np.mean(turns) / (2.0 * np.pi))
+    theta = theta + (turns - np.real(theta))
+    square, product = radius * radius * theta, y * z - start_y * start_z
+    flux = z * normal[..., 1] - y * normal[..., 2]
+    primitives = [theta, x * theta, start_z - z, y - start_y, x * x * theta]
+    primitives += [(square - product) / 2.0, (square + product) / 2.0]
+    primitives += [x * (start_z - z), (y * y - start_y * start_y) / 2.0, x * (y - start_y)]
+    return np.stack(primitives, axis=-1) * flux[..., None]
+
+
+def _along_y(point: Array, normal: Array, middle: float) -> Array:
+    """The same for a field along y, which vanishes at y = `middle`."""
+    x, y, z = np.moveaxis(point, -1, 0)
+    first, second, third = y - middle, (y * y - middle**2) / 2.0, (y**3 - middle**3) / 3.0
+    primitives = [first, x * first, second, z * first, x * x * first, third, z * z * first]
+    primitives += [x * second, z * second, z * x * first]
+    return np.stack(primitives, axis=-1) * normal[..., 1, None]
