@@ -79,9 +79,14 @@ def _wall(line: Curve, v: np.ndarray) -> TrimmedSurface:
     return TrimmedSurface(surface=revolution.surface(), boundary=boundary, revolution=revolution)
 
 
-def longer(span: float = 0.1) -> Blade:
-    """The annular blade continued past both walls by a part of its span, closed by ruled caps."""
-    blade = annular()
+def standing() -> Blade:
+    """The annular blade with a third of its knots, which is cut in half the time."""
+    return annular(spans=12)
+
+
+def longer(span: float) -> Blade:
+    """That blade continued past both walls by a part of its span, closed by ruled caps."""
+    blade = standing()
     upper, lower = (extended(blade.surfaces[name], -span, 1.0 + span, "v") for name in ("upper", "lower"))
     surfaces: dict[str, Surface | TrimmedSurface] = {"upper": upper, "lower": lower}
     for label, edge in (("hub", 0), ("shroud", -1)):
@@ -103,9 +108,5 @@ class Extensible:
 @dataclass(frozen=True, kw_only=True)
 class Cuttable:
     sector: Blade
-    blade: Extensible
+    blade: Extensible = Extensible()
     name: str = "passage"
-
-
-def cuttable() -> Cuttable:
-    return Cuttable(sector=sector(), blade=Extensible())
