@@ -17,6 +17,8 @@ if TYPE_CHECKING:
     from bladewright.derivatives.nets import net_jacobian as net_jacobian
     from bladewright.derivatives.nets import pullback as pullback
     from bladewright.derivatives.sensitivity import sensitivity as sensitivity
+    from bladewright.derivatives.variables import Variables as Variables
+    from bladewright.derivatives.variables import variables as variables
     from bladewright.domain.build import passage as passage
     from bladewright.domain.passage import Passage as Passage
     from bladewright.errors import BladewrightError as BladewrightError
@@ -50,12 +52,14 @@ _HOMES = {
     "TrimmedSurface": "nurbs.trimmed",
     "UnifiedBlade": "blade.unified",
     "UnifiedSection": "section.unified",
+    "Variables": "derivatives.variables",
     "net_jacobian": "derivatives.nets",
     "passage": "domain.build",
     "prismatic": "blade.prismatic",
     "pullback": "derivatives.nets",
     "read_design": "files.reading",
     "sensitivity": "derivatives.sensitivity",
+    "variables": "derivatives.variables",
     "write_design": "files.writing",
 }
 _ROOMS = ("cad",)

@@ -74,6 +74,16 @@ def unit_of(design: Part, name: str) -> str | None:
     return next((f.metadata.get("unit") for f in fields(design) if f.name == name), None)
 
 
+def unit_at(design: Part, path: str) -> str | None:
+    """The unit of the field that holds a parameter, such as 'deg', or None where the path leads to none."""
+    node, unit = design, None
+    for step in _steps(path):
+        if not (isinstance(node, Part) and isinstance(step, str)):
+            break
+        unit, node = unit_of(node, step), getattr(node, step, None)
+    return unit
+
+
 def _leaves_of(node: Any, path: str) -> Iterator[tuple[str, Any]]:
     if isinstance(node, Part):
         for each in fields(node):

@@ -1,7 +1,7 @@
 """The derivative of any quantity of what a design builds, by the complex step."""
 
 import warnings
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from typing import Any
 
 import numpy as np
@@ -49,10 +49,20 @@ def sensitivity(design: Design, quantity: Quantity, *, free: Patterns = None, kn
     """
     base = built(design, knots)
     paths = chosen(design, free)
-    value = _array(quantity(base), "the design")
+    return differentiated(design, base, quantity, paths, stepped(design, base, paths))
+
+
+def differentiated(
+    design: Design, base: Any, quantity: Quantity, paths: Sequence[str], carried: Iterable[Any]
+) -> dict[str, Array]:
+    """Derivatives of a quantity by path, from builds that carry a step on each parameter; `base` is the design's own.
+
+    Raises as `sensitivity` does.
+    """
+    value = value_of(quantity, base)
     found: dict[str, Array] = {}
     real: list[str] = []
-    for path, carrying in zip(paths, stepped(design, base, paths), strict=True):
+    for path, carrying in zip(paths, carried, strict=True):
         rate = _value(quantity, carrying, path)
         if rate.shape != value.shape:
             raise DerivativeError(f"the quantity has shape {value.shape}, but {rate.shape} with a step on {path}")
@@ -62,6 +72,11 @@ def sensitivity(design: Design, quantity: Quantity, *, free: Patterns = None, kn
         _check_finite(found[path], path)
     _check_real(design, base, quantity, value, real)
     return found
+
+
+def value_of(quantity: Quantity, base: Any) -> Array:
+    """The quantity of what a design builds, as an array of numbers."""
+    return _array(quantity(base), "the design")
 
 
 def _value(quantity: Quantity, carrying: Any, path: str) -> Array:
@@ -103,8 +118,9 @@ def _check_real(design: Design, base: Any, quantity: Quantity, value: Array, pat
         return
     own = design.parameters()
     nudges = {path: own[path] + NUDGE * (own[path] or 1.0) for path in paths}
-    change = np.max(np.abs(_array(quantity(built(design.changed(nudges), getattr(base, "knots", None))), "") - value))
-    if change > UNCHANGED * np.max(np.abs(value)):
+    nudged = value_of(quantity, built(design.changed(nudges), getattr(base, "knots", None)))
+    change = np.max(np.abs(nudged - value), initial=0.0)  # real: a difference of real values
+    if change > UNCHANGED * np.max(np.abs(value), initial=0.0):  # real: the same
         others = f" and {len(paths) - 1} others" if len(paths) > 1 else ""
         raise DerivativeError(
             f"the quantity is real for a design that carries a complex step on {paths[0]}{others}, yet changes by "

@@ -1,0 +1,188 @@
+"""A design as a vector: what a search over its parameters needs, scaled, bounded, with exact gradients."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Any, Self
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from bladewright.derivatives.objective import Builds, Objective
+from bladewright.derivatives.patterns import Patterns, chosen, matching
+from bladewright.derivatives.sensitivity import Quantity
+from bladewright.derivatives.steps import built
+from bladewright.designs import Design, unit_at
+from bladewright.errors import DesignError
+from bladewright.numerics.elementary import Array, frozen
+from bladewright.nurbs.basis import Reals
+from bladewright.section.checks import UNITS
+
+TURN = 10.0
+"""an angle's scale [deg]"""
+SHARE = 0.1
+"""a length's scale, of the chord"""
+Bounds = Mapping[str, tuple[float, float]]
+"""lowest and highest value by pattern"""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Variables:
+    """Some parameters of a design as a vector x, each its value over its scale; made by `variables`."""
+
+    origin: Design
+    """where a search starts"""
+    paths: tuple[str, ...]
+    """the parameters, in the order of x"""
+    scale: Reals
+    """(n,) what one unit of x is, in the units of the parameters' fields"""
+    low: Reals
+    """(n,) lowest values, in the units of the fields"""
+    high: Reals
+    """(n,) highest values, in the units of the fields"""
+    knots: Any
+    """held in all builds; None for designs without"""
+
+    @property
+    def x0(self) -> Reals:
+        """The vector (n,) of the origin."""
+        return self.vector(self.origin)
+
+    @property
+    def bounds(self) -> list[tuple[float, float]]:
+        """Lowest and highest entry of x, as scipy.optimize takes them."""
+        return [
+            (float(low), float(high)) for low, high in zip(self.low / self.scale, self.high / self.scale, strict=True)
+        ]
+
+    def vector(self, design: Design) -> Reals:
+        """The vector (n,) of a design."""
+        values = design.parameters()
+        return np.array([values[path] for path in self.paths]) / self.scale
+
+    def design(self, x: ArrayLike) -> Design:
+        """The design of a vector; raises DesignError where a value is refused."""
+        values = np.asarray(x, dtype=np.float64) * self.scale
+        return self.origin.changed({path: float(value) for path, value in zip(self.paths, values, strict=True)})
+
+    def build(self, x: ArrayLike) -> Any:
+        """What the design of a vector builds, at the held knots."""
+        return built(self.design(x), self.knots)
+
+    def gradient(self, sensitivities: Mapping[str, ArrayLike]) -> Array:
+        """Derivatives (..., n) by x of a quantity (...) whose derivatives by path are given, as `sensitivity` does."""
+        missing = [path for path in self.paths if path not in sensitivities]
+        if missing:
+            raise DesignError(f"the derivative by {missing[0]} is missing: give all of {', '.join(self.paths)}")
+        columns = [np.asarray(sensitivities[path]) * scale for path, scale in zip(self.paths, self.scale, strict=True)]
+        return np.stack(columns, axis=-1)
+
+    def objective(self, quantity: Quantity) -> Objective:
+        """A quantity of the build as a function of x, with its derivatives."""
+        return Objective(builds=self._builds, gradient=self.gradient, quantity=quantity)
+
+    def restarted(self, x: ArrayLike) -> Self:
+        """The same variables from another origin, at the knots that its own build chooses.
+
+        For an accepted step of a search: within one, knots are held, or a refinement would jump into the objective.
+        """
+        design = self.design(x)
+        return replace(self, origin=design, knots=getattr(design.build(), "knots", None))
+
+    @cached_property
+    def _builds(self) -> "Builds":
+        return Builds(design_of=self.design, paths=self.paths, knots=self.knots)
+
+
+def variables(
+    design: Design,
+    *,
+    free: Patterns = None,
+    bounds: Bounds | None = None,
+    changes: Bounds | None = None,
+    scale: Mapping[str, float] | None = None,
+    knots: Any = None,
+) -> Variables:
+    """Some parameters of a design as a scaled and bounded vector, for scipy.optimize and others.
+
+    `free` are patterns of paths, where None every parameter. `bounds` are lowest and highest values by pattern, in the
+    unit of the field; `changes` the same counted from the design's own value, such as {"stagger*": (-5.0, 5.0)}; what
+    neither names is unbounded. `scale` is what one unit of x is, by pattern, in the unit of the field; elsewhere an
+    angle's is 10 deg, a length's a tenth of the chord and a proportion's the largest of its field, so that one unit of
+    any entry moves the surface by a like amount. `knots` are held, where None those that the design chooses.
+
+    Raises DesignError where a pattern matches no free parameter, two patterns bound or scale one parameter, or the
+    design lies outside its bounds.
+
+    >>> import bladewright as bw
+    >>> from scipy.optimize import NonlinearConstraint, minimize
+    >>> vane = bw.UnifiedSection(
+    ...     name="vane", length_unit="mm", axial_chord=40.0, stagger=-30.0, metal_angle_in=10.0, metal_angle_out=-60.0,
+    ...     tangent_in=0.4, tangent_out=0.5, leading_edge_radius=0.02, trailing_edge_radius=0.01,
+    ...     thickness_upper=(0.05, 0.08, 0.03), thickness_lower=(0.05, 0.06, 0.03),
+    ... )
+    >>> space = bw.variables(vane, free=["thickness*", "stagger"], bounds={"thickness*": (0.02, 0.2)})
+    >>> area, x0 = space.objective(lambda section: 1e4 * section.area), space.x0
+    >>> target = NonlinearConstraint(area.value, 2.2, 2.2, jac=area.jacobian)
+    >>> found = minimize(lambda x: (((x - x0) ** 2).sum(), 2.0 * (x - x0)), x0, jac=True, bounds=space.bounds,
+    ...                  constraints=target, method="SLSQP")
+    >>> f"{1e4 * space.build(found.x).area:.6f} cm2"
+    '2.200000 cm2'
+    """
+    paths = chosen(design, free)
+    values = design.parameters()
+    base = built(design, knots)
+    own = np.array([values[path] for path in paths])
+    sizes = _by_path(scale or {}, paths, "scale")
+    scales = np.array(
+        [_checked_scale(path, sizes[path]) if path in sizes else _scale(design, base, path) for path in paths]
+    )
+    low, high = np.full(len(paths), -np.inf), np.full(len(paths), np.inf)
+    absolute, relative = _by_path(bounds or {}, paths, "bounds"), _by_path(changes or {}, paths, "changes")
+    for place, path in enumerate(paths):
+        if path in absolute and path in relative:
+            raise DesignError(f"{path} is bounded twice, by bounds and by changes: name it in one of them")
+        if path in absolute:
+            low[place], high[place] = absolute[path]
+        elif path in relative:
+            low[place], high[place] = own[place] + np.asarray(relative[path])
+        if not low[place] <= own[place] <= high[place]:
+            raise DesignError(
+                f"{path} is {own[place]:g}: it lies outside its bounds, {low[place]:g} to {high[place]:g}; widen them, "
+                "or change the design"
+            )
+    return Variables(
+        origin=design,
+        paths=paths,
+        scale=frozen(scales),
+        low=frozen(low),
+        high=frozen(high),
+        knots=getattr(base, "knots", None) if knots is None else knots,
+    )
+
+
+def _by_path(given: Mapping[str, Any], paths: Sequence[str], what: str) -> dict[str, Any]:
+    found: dict[str, Any] = {}
+    for pattern, value in given.items():
+        for path in matching(pattern, paths):
+            if path in found:
+                raise DesignError(f"{path} is matched by two patterns in {what}: let one of them leave it out")
+            found[path] = value
+    return found
+
+
+def _checked_scale(path: str, value: float) -> float:
+    if not 0.0 < value < np.inf:
+        raise DesignError(f"the scale of {path} is {value}: it must be positive and finite")
+    return float(value)
+
+
+def _scale(design: Design, base: Any, path: str) -> float:
+    unit = unit_at(design, path)
+    if unit == "deg":
+        return TURN
+    if unit == "length":
+        metre = UNITS[getattr(design, "length_unit", "m")]
+        return SHARE * float(np.real(base.chord)) / metre
+    field = path.partition("[")[0]
+    return max(float(value) for name, value in design.parameters().items() if name.partition("[")[0] == field)
