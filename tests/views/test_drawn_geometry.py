@@ -89,7 +89,7 @@ def test_thickness_is_that_of_the_section_in_millimetres(drawn):
 
 @pytest.mark.parametrize("wall", ["leading_edge", "trailing_edge", "hub", "shroud"])
 def test_the_channel_is_that_of_the_blade_with_the_control_points_of_the_design(blade_drawn, wall):
-    panel, channel = blade_drawn.panel("Meridional"), blade_drawn.built.exact.channel
+    panel, channel = blade_drawn.panel("Meridional"), blade_drawn.built.exact.full_channel
     drawn = with_name(panel, wall.replace("_", " "))
     assert np.allclose(drawn, 1e3 * channel.curve(wall)(np.linspace(0.0, 1.0, 201)), **SAME)
     inches = {"mm": 1.0, "cm": 10.0}[blade_drawn.design.length_unit]

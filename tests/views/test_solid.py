@@ -76,7 +76,7 @@ def test_a_blade_without_near_neighbours_stands_alone(cascade_drawn):
 
 @pytest.mark.parametrize(("hub", "upstream"), [((50, 20), False), ((20, 50), True), ((20, 20), True)])
 def test_the_viewer_looks_at_the_smaller_end_of_the_hub(hub, upstream):
-    channel = SimpleNamespace(hub=np.array([[0.0, hub[0]], [40.0, hub[1]]]))
+    channel = SimpleNamespace(hub=SimpleNamespace(points=np.array([[0.0, hub[0]], [40.0, hub[1]]])))
     mapping = SimpleNamespace(revolved=True)
-    towards = _viewpoint(SimpleNamespace(exact=SimpleNamespace(channel=channel, mapping=mapping)))[2]
+    towards = _viewpoint(SimpleNamespace(exact=SimpleNamespace(full_channel=channel, mapping=mapping)))[2]
     assert (towards[0] < 0.0) == upstream

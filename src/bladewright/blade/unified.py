@@ -121,11 +121,12 @@ class UnifiedBlade(Design):
                 "of the wall that it stands on"
             )
         for name in given:
-            value = checks.law(name, getattr(self, name))
-            if isinstance(value, tuple) and len(value) != 2:
+            value = getattr(self, name)
+            if checks.is_sequence(value) and len(value) != 2:
                 raise DesignError(
-                    f"{name} has {len(value)} entries: give one number, or two, at the leading and the trailing edge"
+                    f"{name} is {value!r}: give one number, or two, at the leading and at the trailing edge"
                 )
+            value = checks.law(name, value)
             what = "a clearance must be positive; leave it out where the blade stands on that wall"
             checks.between(name, value, 0.0, float("inf"), what)
             object.__setattr__(self, name, value)

@@ -46,6 +46,8 @@ def needed(annotation: Any) -> str:
         return "one of " + ", ".join(shown(each) for each in inner)
     if origin is tuple:
         entry = needed(inner[0])
+        if Ellipsis not in inner:
+            return "a pair of numbers"
         return f"a list of {entry[2:]}s" if entry == "a number" else f"a list with, for each entry, {entry}"
     if is_dataclass(annotation):
         return "a table of " + ", ".join(each.name for each in fields(annotation))

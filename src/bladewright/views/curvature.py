@@ -11,7 +11,18 @@ from matplotlib.ticker import FixedLocator, FuncFormatter, NullLocator
 from bladewright.numerics.elementary import length
 from bladewright.nurbs.basis import Reals
 from bladewright.views.sections import along_curve
-from bladewright.views.style import INK, LOWER, MILLIMETRES, SOFT, UPPER, legend_below, span_colour, span_name, titled
+from bladewright.views.style import (
+    INK,
+    LOWER,
+    MILLIMETRES,
+    SOFT,
+    UPPER,
+    WALLS,
+    legend_below,
+    span_colour,
+    span_name,
+    titled,
+)
 
 if TYPE_CHECKING:
     from bladewright.section.section import Section
@@ -27,7 +38,7 @@ def side_curvature(section: "Section", name: str) -> tuple[Reals, Reals]:
     return arc / arc[-1], outwards * section.curvature(name, u) / MILLIMETRES
 
 
-def draw_curvature(axes: Axes, sections: Sequence["Section"]) -> None:
+def draw_curvature(axes: Axes, sections: Sequence["Section"], ends: tuple[str, str] = WALLS) -> None:
     """Draws the curvature of both sides; linear around zero, logarithmic beyond, so that the noses drown nothing."""
     for section in sections:
         for name, style in (("upper", UPPER), ("lower", LOWER)):
@@ -48,12 +59,12 @@ def draw_curvature(axes: Axes, sections: Sequence["Section"]) -> None:
     axes.set_xlim(-0.01, 1.01)
     place = "part of the arc, leading to trailing edge [-]"
     titled(axes, "Curvature of the sides, convex positive", place, "curvature [1/mm]")
-    sides_legend(axes, sections)
+    sides_legend(axes, sections, ends)
 
 
-def sides_legend(axes: Axes, sections: Sequence["Section"]) -> None:
+def sides_legend(axes: Axes, sections: Sequence["Section"], ends: tuple[str, str] = WALLS) -> None:
     """A legend under the panel: the spans by colour, where there are several, and the sides by line."""
-    handles = [Line2D([], [], color=span_colour(each.span), label=span_name(each.span)) for each in sections]
+    handles = [Line2D([], [], color=span_colour(each.span), label=span_name(each.span, ends)) for each in sections]
     ink = INK if len(sections) > 1 else span_colour(sections[0].span)
     styles = {"upper": UPPER, "lower": LOWER}
     sides = [Line2D([], [], color=ink, linestyle=style, label=name) for name, style in styles.items()]

@@ -12,7 +12,7 @@ from bladewright.views.style import BLUE, GREEN, INK, MILLIMETRES, ORANGE, RED, 
 if TYPE_CHECKING:
     from bladewright.blade.blade import Blade
 
-WALLS = {"hub": BLUE, "shroud": ORANGE, "leading_edge": GREEN, "trailing_edge": RED}
+CURVES = {"hub": BLUE, "shroud": ORANGE, "leading_edge": GREEN, "trailing_edge": RED}
 
 
 def draw_meridional(axes: Axes, blade: "Blade") -> None:
@@ -26,8 +26,8 @@ def draw_meridional(axes: Axes, blade: "Blade") -> None:
     lines = np.real(exact.stations(np.linspace(0.1, 0.9, 9)).lines.position(u)) * MILLIMETRES
     for index, line in enumerate(lines):
         axes.plot(*line.T, color=SOFT, linewidth=0.6, label=None if index else "stream lines")
-    for wall, colour in WALLS.items():
-        curve = exact.channel.curve(wall)
+    for wall, colour in CURVES.items():
+        curve = exact.full_channel.curve(wall)
         points = np.real(curve.control_points) * MILLIMETRES
         axes.plot(*(np.real(curve(inside)) * MILLIMETRES).T, color=colour, label=wall.replace("_", " "))
         if wall in ("hub", "shroud"):
@@ -36,6 +36,11 @@ def draw_meridional(axes: Axes, blade: "Blade") -> None:
         axes.plot(
             *points.T, color=colour, linestyle=":", linewidth=0.8, marker="o", markersize=4.5, markerfacecolor="white"
         )
+    if exact.clearance is not None:
+        tip = np.real(exact.channel.curve(exact.clearance.wall)(inside)) * MILLIMETRES
+        apart = MILLIMETRES * np.real(exact.clearance.real().distance(inside[[0, -1]]))
+        stated = " to ".join(dict.fromkeys(f"{each:.3g}" for each in apart))
+        axes.plot(*tip.T, color=INK, linestyle="--", linewidth=1.0, label=f"clearance {stated} mm")
     titled(axes, "Meridional channel, control points", "x [mm]", "r [mm]" if exact.mapping.revolved else "z [mm]")
     axes.set_aspect("equal", adjustable="datalim")
     legend_below(axes, 3)

@@ -15,6 +15,7 @@ from bladewright.views.style import (
     PALE,
     RED,
     SOFT,
+    WALLS,
     legend_below,
     span_colour,
     span_name,
@@ -73,13 +74,13 @@ def pitch_of(blade: "Blade", section: "Section") -> float:
     return 2.0 * np.pi / (design.blade_count or 1) * radius
 
 
-def draw_sections(axes: Axes, sections: Sequence["Section"]) -> None:
+def draw_sections(axes: Axes, sections: Sequence["Section"], ends: tuple[str, str] = WALLS) -> None:
     """Draws sections along the span over one another, each with its camber line."""
     for section in sections:
         colour = span_colour(section.span)
         shape = outline(section)
         axes.fill(*shape.T, color=colour, alpha=0.10, linewidth=0.0)
-        axes.plot(*shape.T, color=colour, label=span_name(section.span))
+        axes.plot(*shape.T, color=colour, label=span_name(section.span, ends))
         camber = developed(section, section.camber(along_curve()))
         axes.plot(*camber.T, color=colour, linewidth=0.8, linestyle=CAMBER)
     titled(axes, "Sections with camber lines", *COORDINATES[sections[0].plane])

@@ -100,7 +100,7 @@ def _blade_meshes(
         meshes.append(Mesh(points=points, normals=normals / np.maximum(size_of_normals, 1e-300), colour=colour))
         rims.append(points)
     lines = []
-    for row in (0, -1) if not blade.exact.mapping.revolved else (-1,):
+    for row in (-1,) if blade.exact.mapping.revolved and blade.design.ends[0] == "hub" else (0, -1):
         ends = np.stack([rim[:, row] for rim in rims], axis=1)
         across = rims[0][:, row] - rims[0][:, 1 if row == 0 else -2]
         normals = np.broadcast_to(across[:, None], ends.shape)
@@ -113,7 +113,7 @@ def _hub(blade: "Blade", turns: list[float]) -> list[Mesh]:
     """The wall that the blades drawn stand on [mm], a little longer than they are; of a whole row with its bore."""
     exact = blade.exact
     margin = max(exact.before, exact.after, 0.06)
-    wall = MILLIMETRES * np.real(exact.channel.curve("hub")(np.linspace(-margin, 1.0 + margin, 61)))
+    wall = MILLIMETRES * np.real(exact.full_channel.curve("hub")(np.linspace(-margin, 1.0 + margin, 61)))
     feet = MILLIMETRES * np.concatenate(
         [np.real(blade.surfaces[name](along_curve(41), 0.0)) for name in ("upper", "lower")]
     )
@@ -148,7 +148,7 @@ def _viewpoint(blade: "Blade") -> Reals:
     """Right, up and towards of a viewer who looks at the smaller end of the hub, or from upstream on an even one."""
     if not blade.exact.mapping.revolved:
         return axes_towards((-0.55, -0.75, 0.50), (0.0, 0.0, 1.0))
-    first, last = np.real(blade.exact.channel.hub.points)[[0, -1]]
+    first, last = np.real(blade.exact.full_channel.hub.points)[[0, -1]]
     narrows = first[1] - last[1] > 0.15 * first[1]
     smaller, larger = (last, first) if narrows else (first, last)
     return axes_towards((0.74 if smaller[0] > larger[0] else -0.74, 0.42, 0.52), (0.0, 0.0, 1.0))

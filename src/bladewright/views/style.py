@@ -20,6 +20,8 @@ LOWER: Any = (0, (4.0, 1.6))
 """line styles of the two sides"""
 CAMBER: Any = (0, (5.0, 2.0, 1.0, 2.0))
 """line style of camber lines"""
+WALLS = ("hub", "shroud")
+"""the ends of a blade that stands on both walls"""
 _SPAN = np.array([[0.07, 0.25, 0.42], [0.12, 0.56, 0.55], [0.88, 0.44, 0.22]])
 
 _MANNER: dict[str, Any] = {
@@ -70,9 +72,9 @@ def span_colour(v: float) -> tuple[float, float, float]:
     return red, green, blue
 
 
-def span_name(v: float) -> str:
-    """What a legend calls the section at v."""
-    return {0.0: "hub", 1.0: "shroud"}.get(v, f"{100.0 * v:.3g} % span")
+def span_name(v: float, ends: tuple[str, str] = WALLS) -> str:
+    """What a legend calls the section at v of a blade whose ends have these names."""
+    return {0.0: ends[0], 1.0: ends[1]}.get(v, f"{100.0 * v:.3g} % span")
 
 
 def titled(axes: Axes, title: str, abscissa: str, ordinate: str) -> None:

@@ -9,7 +9,7 @@ from matplotlib.axes import Axes
 from bladewright.nurbs.basis import Reals, greville, uniform_knots
 from bladewright.section.laws import DEGREE, Span
 from bladewright.views.curvature import sides_legend
-from bladewright.views.style import LOWER, MILLIMETRES, UPPER, legend_below, span_colour, span_name, titled
+from bladewright.views.style import LOWER, MILLIMETRES, UPPER, WALLS, legend_below, span_colour, span_name, titled
 
 if TYPE_CHECKING:
     from bladewright.section.section import Section
@@ -22,7 +22,7 @@ def control_places(count: int) -> Reals:
     return np.array([0.5]) if count == 1 else greville(uniform_knots(count, degree := min(count - 1, DEGREE)), degree)
 
 
-def draw_thickness(axes: Axes, sections: Sequence["Section"]) -> None:
+def draw_thickness(axes: Axes, sections: Sequence["Section"], ends: tuple[str, str] = WALLS) -> None:
     """Draws the built thickness across the camber line [mm], its largest value marked."""
     for section in sections:
         colour = span_colour(section.span)
@@ -31,7 +31,7 @@ def draw_thickness(axes: Axes, sections: Sequence["Section"]) -> None:
         share = 100.0 * largest / section.chord
         label = f"{largest * MILLIMETRES:.3g} mm, {share:.3g} % of the chord"
         if len(sections) > 1:
-            label = f"{span_name(section.span)} {share:.3g} %"
+            label = f"{span_name(section.span, ends)} {share:.3g} %"
         axes.plot(u, thickness * MILLIMETRES, color=colour, label=label)
         axes.plot(place, largest * MILLIMETRES, marker="o", markersize=4.0, color=colour, linestyle="none")
     axes.set_ylim(bottom=0.0)
@@ -63,4 +63,4 @@ def draw_thickness_laws(axes: Axes, design: Any, sections: Sequence["Section"], 
     axes.set_ylim(bottom=0.0)
     axes.set_xlim(-0.03, 1.03)
     titled(axes, "Half thickness along the chord", CHORD, f"half thickness [% of {length_name}]")
-    sides_legend(axes, sections)
+    sides_legend(axes, sections, getattr(design, "ends", WALLS))
