@@ -119,7 +119,7 @@ def _gap(edge: TopoDS_Edge, beside: list[TopoDS_Face]) -> float:
     own = BRepAdaptor_Curve(edge)
     curves = [own, *(BRepAdaptor_Curve(edge, face) for face in beside)]
     parameters = np.linspace(own.FirstParameter(), own.LastParameter(), PLACES).tolist()
-    traces = [np.array([(p.X(), p.Y(), p.Z()) for p in map(curve.Value, parameters)]) for curve in curves]
+    traces = [np.array([curve.Value(place).Coord() for place in parameters]) for curve in curves]
     return max(
         (
             float(np.sqrt(np.max(np.sum((one - other) ** 2, axis=-1))))

@@ -106,8 +106,9 @@ def cut_passage(passage: Cuttable, *, span: float = PAST) -> CutPassage:
         solids = each(found, TopAbs_SOLID)
         if (len(solids), closed.shells, closed.free, closed.crowded) != (1, 1, 0, 0) or not closed.valid:
             raise CadError(
-                f"OpenCASCADE leaves {len(solids)} solids and {closed.free} free edges of {passage.name!r}, where one "
-                "closed valid solid is needed: the blade does not stand within its sector; look at the pitch"
+                f"OpenCASCADE leaves {len(solids)} solids, {closed.shells} shells and {closed.free} free edges of "
+                f"{passage.name!r}, where one closed valid solid is needed: the blade does not stand within its sector "
+                "from wall to wall; extend it further, or look at the pitch"
             )
         whole = TopoDS.Solid_s(solids[0])
         faces = _named(whole, sector, blade)

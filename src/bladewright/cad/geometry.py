@@ -85,12 +85,7 @@ def _reals(values: Array) -> TColStd_Array1OfReal:
 def native_surface(geometry: Geom_BSplineSurface) -> Surface:
     """A B-spline surface of the kernel, pole for pole, in its own unit (millimetres)."""
     count_u, count_v = geometry.NbUPoles(), geometry.NbVPoles()
-    points = np.array(
-        [
-            [(p.X(), p.Y(), p.Z()) for p in (geometry.Pole(i, j) for j in range(1, count_v + 1))]
-            for i in range(1, count_u + 1)
-        ]
-    )
+    points = np.array([[geometry.Pole(i, j).Coord() for j in range(1, count_v + 1)] for i in range(1, count_u + 1)])
     weights = None
     if geometry.IsURational() or geometry.IsVRational():
         weights = np.array([[geometry.Weight(i, j) for j in range(1, count_v + 1)] for i in range(1, count_u + 1)])
@@ -111,7 +106,7 @@ def native_curve(geometry: Geom_BSplineCurve) -> Curve:
     if geometry.IsRational():
         weights = np.array([geometry.Weight(i) for i in range(1, geometry.NbPoles() + 1)])
     return Curve(
-        control_points=np.array([(p.X(), p.Y(), p.Z()) for p in poles]),
+        control_points=np.array([pole.Coord() for pole in poles]),
         knots=knot_sequence(geometry.Knot, geometry.Multiplicity, geometry.NbKnots()),
         degree=geometry.Degree(),
         weights=weights,

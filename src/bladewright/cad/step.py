@@ -65,12 +65,17 @@ def _settings(schema: str) -> None:
 
 def _name_solid(model: object, built: Product) -> None:
     name = TCollection_HAsciiString(step_text(built.name))
+    left: set[type] = {StepShape_ManifoldSolidBrep, StepShape_ClosedShell, StepBasic_Product}
     for number in range(1, model.NbEntities() + 1):  # type: ignore[attr-defined]
         entity = model.Value(number)  # type: ignore[attr-defined]
         if isinstance(entity, (StepShape_ManifoldSolidBrep, StepShape_ClosedShell)):
             entity.SetName(name)
         elif isinstance(entity, StepBasic_Product):
             entity.SetDescription(TCollection_HAsciiString(step_text(_text(built, "description"))))
+        left.discard(type(entity))
+        # thousands of points follow
+        if not left:
+            break
 
 
 def _head(header: APIHeaderSection_MakeHeader, built: Product) -> None:

@@ -153,13 +153,13 @@ def _same(one: Curve, other: Curve, tolerance: float, *, backwards: bool) -> boo
     if one.degree != other.degree or one.control_points.shape != other.control_points.shape:
         return False
     step = -1 if backwards else 1
+    if np.max(np.abs(one.control_points - other.control_points[::step])) > tolerance:
+        return False
     shares = _shares(other.knots)
     if np.max(np.abs(_shares(one.knots) - (1.0 - shares[::-1] if backwards else shares))) > SAME_KNOT:
         return False
-    weights = [curve.weights if curve.weights is not None else np.ones(1) for curve in (one, other)]
-    if not np.allclose(weights[0], weights[1][::step], rtol=1e-12, atol=0.0):
-        return False
-    return bool(np.max(np.abs(one.control_points - other.control_points[::step])) <= tolerance)
+    weights = [np.ones(1) if curve.weights is None else curve.weights for curve in (one, other)]
+    return bool(np.allclose(weights[0], weights[1][::step], rtol=1e-12, atol=0.0))
 
 
 def _shares(knots: Array) -> Array:

@@ -12,7 +12,7 @@ Array = NDArray[Any]
 
 def length(vectors: Array) -> Array:
     """Euclidean length of vectors (..., d) as (...), analytic: sqrt(sum x^2) without conjugation."""
-    return np.sqrt(np.sum(vectors * vectors, axis=-1))
+    return np.sqrt(dot(vectors, vectors))
 
 
 def unit(vectors: Array) -> Array:
@@ -22,7 +22,18 @@ def unit(vectors: Array) -> Array:
 
 def dot(a: Array, b: Array) -> Array:
     """Sum of products over the last axis, without conjugation."""
-    return np.sum(a * b, axis=-1)
+    # numpy's own sum over an axis of two or three entries takes three times as long
+    return np.asarray(np.einsum("...i,...i->...", a, b))
+
+
+def cross(a: Array, b: Array) -> Array:
+    """The vector product of vectors (..., 3), which numpy's own takes three times as long for."""
+    product = np.empty(np.broadcast_shapes(a.shape, b.shape), dtype=np.result_type(a, b))
+    for k in range(3):
+        i, j = (k + 1) % 3, (k + 2) % 3
+        np.multiply(a[..., i], b[..., j], out=product[..., k])
+        product[..., k] -= a[..., j] * b[..., i]
+    return product
 
 
 def cross2(a: Array, b: Array) -> Array:

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from bladewright.errors import GeometryError
-from bladewright.numerics.elementary import Array, length
+from bladewright.numerics.elementary import Array, cross, length
 from bladewright.numerics.quadrature import panels
 from bladewright.nurbs.basis import breaks
 from bladewright.nurbs.measure import area, surface_integral
@@ -95,7 +95,7 @@ def face_moments(face: Surface | TrimmedSurface, origin: Array) -> Array:
     """
 
     def density(points: Array, along_u: Array, along_v: Array) -> Array:
-        normal = np.cross(along_u, along_v)
+        normal = cross(along_u, along_v)
         x = points - origin
         flux = x * normal
         return np.concatenate(
@@ -119,12 +119,12 @@ def face_moments(face: Surface | TrimmedSurface, origin: Array) -> Array:
 
 def _of_polynomials(surface: Surface, origin: Array) -> Array:
     """The same, exact: on a knot span the densities have the degree 5 p - 1 at most."""
-    (u, along), (v, across) = (
+    (u, weight_u), (v, weight_v) = (
         panels(breaks(knots), (5 * degree + 1) // 2)
         for knots, degree in ((surface.knots_u, surface.degree_u), (surface.knots_v, surface.degree_v))
     )
     x = surface.grid(u, v) - origin
-    normal = np.cross(surface.grid(u, v, 1, 0), surface.grid(u, v, 0, 1)) * (along[:, None] * across)[..., None]
+    normal = cross(surface.grid(u, v, 1, 0), surface.grid(u, v, 0, 1)) * (weight_u[:, None] * weight_v)[..., None]
     flux = x * normal
     second = x * flux
     products = [np.einsum("uv,uv->", second[..., k], x[..., (k + 1) % 3]) for k in range(3)]

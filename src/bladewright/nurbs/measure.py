@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bladewright.errors import GeometryError
-from bladewright.numerics.elementary import Array, length
+from bladewright.numerics.elementary import Array, cross, length
 from bladewright.numerics.quadrature import adaptive, gauss, panels, settled
 from bladewright.numerics.roots import bracketed_root
 from bladewright.nurbs.basis import Reals, breaks
@@ -108,7 +108,7 @@ def _quarters(low: Reals, high: Reals) -> tuple[Reals, Reals]:
 def _grid_areas(surface: Surface, u: Reals, v: Reals) -> Array:
     """Areas (m, k) of all patches between breaks u (m + 1,) and v (k + 1,), by Gauss quadrature."""
     (at_u, along), (at_v, across) = panels(u, PER_PATCH), panels(v, PER_PATCH)
-    elements = length(np.cross(surface.grid(at_u, at_v, 1, 0), surface.grid(at_u, at_v, 0, 1)))
+    elements = length(cross(surface.grid(at_u, at_v, 1, 0), surface.grid(at_u, at_v, 0, 1)))
     weighted = along[:, None] * across * elements
     return np.asarray(weighted.reshape(len(u) - 1, PER_PATCH, len(v) - 1, PER_PATCH).sum(axis=(1, 3)))
 
@@ -118,7 +118,7 @@ def _patch_areas(surface: Surface, low: Reals, high: Reals) -> Array:
     nodes, weights = gauss(PER_PATCH)
     u, v = (low[:, i, None] + (high - low)[:, i, None] * nodes for i in (0, 1))
     at_u, at_v = u[:, :, None], v[:, None, :]
-    normal = np.cross(surface.derivative(at_u, at_v, 1, 0), surface.derivative(at_u, at_v, 0, 1))
+    normal = cross(surface.derivative(at_u, at_v, 1, 0), surface.derivative(at_u, at_v, 0, 1))
     return np.asarray(np.prod(high - low, axis=-1) * np.einsum("kij,i,j->k", length(normal), weights, weights))
 
 
