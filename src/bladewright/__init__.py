@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from bladewright import cad as cad
+    from bladewright import meshing as meshing
     from bladewright.blade.blade import Blade as Blade
     from bladewright.blade.channel import Channel as Channel
     from bladewright.blade.prismatic import prismatic as prismatic
@@ -27,6 +28,7 @@ if TYPE_CHECKING:
     from bladewright.errors import DesignError as DesignError
     from bladewright.errors import FileError as FileError
     from bladewright.errors import GeometryError as GeometryError
+    from bladewright.errors import MeshError as MeshError
     from bladewright.files.reading import read_design as read_design
     from bladewright.files.writing import write_design as write_design
     from bladewright.nurbs.curve import Curve as Curve
@@ -46,6 +48,7 @@ _HOMES = {
     "DesignError": "errors",
     "FileError": "errors",
     "GeometryError": "errors",
+    "MeshError": "errors",
     "Passage": "domain.passage",
     "NetJacobian": "derivatives.jacobian",
     "Surface": "nurbs.surface",
@@ -62,7 +65,7 @@ _HOMES = {
     "variables": "derivatives.variables",
     "write_design": "files.writing",
 }
-_ROOMS = ("cad",)
+_ROOMS = ("cad", "meshing")
 
 __all__ = ["__version__", *_ROOMS, *_HOMES]  # noqa: PLE0604
 

@@ -21,5 +21,9 @@ class CadError(BladewrightError):
     """A solid that OpenCASCADE could not make, write or reopen."""
 
 
+class MeshError(BladewrightError):
+    """A mesh that was asked for wrongly, or that gmsh could not make, write or reopen."""
+
+
 class DerivativeError(BladewrightError):
     """A derivative that cannot be taken: a quantity that loses the step, or parameters that do not exist."""

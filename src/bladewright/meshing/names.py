@@ -1,0 +1,49 @@
+"""The faces of a STEP file by name, as any mesher finds them in its text."""
+
+import re
+from pathlib import Path
+
+from bladewright.errors import MeshError
+
+GROUPS = (
+    "hub_upper",
+    "hub_lower",
+    "shroud_upper",
+    "shroud_lower",
+    "periodic_upper",
+    "periodic_lower",
+    "inlet",
+    "outlet",
+    "blade_upper",
+    "blade_lower",
+    "tip",
+)
+"""Physical groups of a passage's mesh; a face that is a piece of one is called GROUP_PIECE."""
+FLUID = "fluid"
+"""Physical group of the volume."""
+
+
+def face_names(text: str) -> tuple[str, ...]:
+    """Names of the faces of the one closed shell in the text of a STEP file, in the order of the shell.
+
+    gmsh numbers faces in that order, but does not hand on their names. Raises MeshError where there is not one shell.
+    """
+    joined = re.sub(r"\s+", "", text)
+    shells = re.findall(r"=CLOSED_SHELL\('[^']*',\(([#\d,]+)\)\);", joined)
+    if len(shells) != 1:
+        raise MeshError(f"the STEP file holds {len(shells)} closed shells: a passage is one, export one passage")
+    names = dict(re.findall(r"(#\d+)=ADVANCED_FACE\('([^']*)'", joined))
+    return tuple(names.get(face, "") for face in shells[0].split(","))
+
+
+def step_face_names(path: str | Path) -> tuple[str, ...]:
+    """`face_names` of the STEP file at a path. Raises MeshError where it cannot be read."""
+    try:
+        return face_names(Path(path).read_text(encoding="latin-1"))
+    except OSError as error:
+        raise MeshError(f"'{path}' cannot be read: {error.strerror or error}; name a STEP file") from error
+
+
+def group_of(face: str) -> str:
+    """The physical group that a face belongs to: its own name, or that of which it is a piece."""
+    return next((group for group in GROUPS if face == group or face.startswith(f"{group}_")), face)

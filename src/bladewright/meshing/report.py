@@ -1,0 +1,146 @@
+"""What a mesh file holds and how good that is, measured on the file."""
+
+from dataclasses import asdict, dataclass
+from typing import Any
+
+from bladewright.meshing.periodicity import MISMATCH
+
+FLAT = 0.0
+"""minSICN that every tetrahedron must exceed"""
+
+
+@dataclass(frozen=True, kw_only=True)
+class FaceMesh:
+    """The triangles of one physical group."""
+
+    name: str
+    triangles: int
+    nodes: int
+    max_deviation_mm: float
+    """largest distance of a node from the native surface"""
+    mean_deviation_mm: float
+
+
+@dataclass(frozen=True, kw_only=True)
+class Quality:
+    """A measure of the tetrahedra: 1 regular, 0 flat, negative inverted."""
+
+    worst: float
+    percentile: float
+    """that one in a hundred lies below"""
+    mean: float
+
+
+@dataclass(frozen=True, kw_only=True)
+class MeshReport:
+    """A mesh file, reopened from disk and measured."""
+
+    file: str
+    format: str
+    unit: str
+    """of length in the file"""
+    tetrahedra: int
+    nodes: int
+    inverted: int
+    """tetrahedra whose Jacobian is not positive"""
+    condition: Quality
+    """minSICN: signed inverse condition number of the map from the regular tetrahedron"""
+    gamma: Quality
+    """three times the inscribed over the circumscribed radius"""
+    faces: tuple[FaceMesh, ...]
+    deviation_limit_mm: float
+    loose: int
+    """sides of tetrahedra that neither another one nor a triangle of a group covers, and triangles on none"""
+    periodic_nodes: int
+    """pairs of partners on the periodic boundaries"""
+    periodic_mismatch: float
+    """largest distance of a node from its partner's image, of the pitch"""
+    periodic_triangles: bool
+    """whether the triangles are partners too"""
+    rotation_deg: float
+    """from the lower periodic boundary to the upper one, right-handed about +x"""
+    translation: tuple[float, float, float]
+    """the same for a linear cascade, in the file's unit"""
+    volume_error: float
+    """of the native volume: what flat facets cut off"""
+    size: float
+    """in the open passage, of the chord"""
+    smallest: float
+    """at the edges, of the chord"""
+    expected: int
+    """tetrahedra that were expected"""
+    gmsh: str
+    """its version"""
+    algorithms: tuple[str, ...]
+    """what meshed the faces, then the volume, and improved it"""
+    seconds: float
+
+    @property
+    def failures(self) -> tuple[str, ...]:
+        """A line for each check that failed."""
+        found = []
+        if self.inverted:
+            found.append(
+                f"{self.inverted} of {self.tetrahedra} tetrahedra are inverted or flat, the worst minSICN is "
+                f"{self.condition.worst:.3g}: choose another size"
+            )
+        if self.loose:
+            found.append(f"{self.loose} facets on the boundary do not match a named face")
+        found += [
+            f"{face.name}: nodes lie up to {face.max_deviation_mm:.3g} mm off the native surface, at most "
+            f"{self.deviation_limit_mm:.3g} mm is allowed"
+            for face in self.faces
+            if not face.max_deviation_mm <= self.deviation_limit_mm
+        ]
+        if not self.periodic_mismatch <= MISMATCH:
+            found.append(
+                f"periodic nodes are {self.periodic_mismatch:.3g} of the pitch off their partners, at most "
+                f"{MISMATCH:g} is allowed"
+            )
+        elif not self.periodic_triangles:
+            found.append("the triangles of the periodic boundaries are not partners, though their nodes are")
+        return tuple(found)
+
+    @property
+    def passed(self) -> bool:
+        """Whether every check passed."""
+        return not self.failures
+
+    @property
+    def su2_marker(self) -> str:
+        """The line of an SU2 configuration that couples the periodic markers."""
+        numbers = [0.0, 0.0, 0.0, self.rotation_deg, 0.0, 0.0, *self.translation]
+        return f"MARKER_PERIODIC= ( periodic_lower, periodic_upper, {', '.join(f'{n:.15g}' for n in numbers)} )"
+
+    def to_dict(self) -> dict[str, Any]:
+        """All figures with the limits and failures, for JSON."""
+        return {
+            **asdict(self),
+            "limits": {"min_sicn": FLAT, "deviation_mm": self.deviation_limit_mm, "periodic_mismatch": MISMATCH},
+            "passed": self.passed,
+            "failures": list(self.failures),
+            **({"su2": self.su2_marker} if self.format == "SU2" else {}),
+        }
+
+    def __str__(self) -> str:
+        width = max(len(face.name) for face in self.faces)
+        lines = [
+            f"{self.file} ({self.format}, {self.unit}): {'passed' if self.passed else 'FAILED'}",
+            f"  {self.tetrahedra} tetrahedra, {self.nodes} nodes, {self.inverted} inverted",
+            f"  size {self.size:.3g} to {self.smallest:.3g} of the chord, {self.expected} tetrahedra expected",
+            *(
+                f"  worst {name} {each.worst:.3f}, 1 % below {each.percentile:.3f}, mean {each.mean:.3f}"
+                for name, each in (("minSICN", self.condition), ("gamma", self.gamma))
+            ),
+            *(
+                f"  {face.name:<{width}}  {face.triangles} triangles, {face.nodes} nodes up to "
+                f"{face.max_deviation_mm:.2g} mm off the native surface"
+                for face in self.faces
+            ),
+            f"  periodic: {self.periodic_nodes} pairs of nodes, {self.periodic_mismatch:.2g} of the pitch apart",
+            f"  volume {self.volume_error:+.2g} of the native one",
+            f"  gmsh {self.gmsh}: {', '.join(self.algorithms)}; {self.seconds:.1f} s",
+            *([f"  {self.su2_marker}"] if self.format == "SU2" else []),
+            *(f"  FAILED: {failure}" for failure in self.failures),
+        ]
+        return "\n".join(lines)

@@ -1,0 +1,56 @@
+"""The text of a mesh file of gmsh in another unit."""
+
+from collections.abc import Iterator
+from itertools import islice
+from pathlib import Path
+
+
+def rescaled(lines: Iterator[str], scale: float) -> Iterator[str]:
+    """The lines of a version 4.1 text file with entities and periodic motions scaled.
+
+    gmsh itself scales the nodes, but leaves the boxes of its entities and the translations between periodic ones in the
+    unit of the geometry.
+    """
+    for line in lines:
+        yield line
+        if line.startswith("$Entities"):
+            yield from _entities(lines, scale)
+        elif line.startswith("$Periodic"):
+            yield from _motions(lines, scale)
+
+
+def rescaled_file(path: Path, scale: float) -> None:
+    """Scale the entities of the file at a path, see `rescaled`."""
+    other = path.with_suffix(".rescaled")
+    with path.open(encoding="utf-8") as source, other.open("w", encoding="utf-8") as target:
+        target.writelines(rescaled(source, scale))
+    other.replace(path)
+
+
+def _entities(lines: Iterator[str], scale: float) -> Iterator[str]:
+    head = next(lines)
+    yield head
+    points, *others = map(int, head.split())
+    yield from (_scaled(line, 1, 4, scale) for line in islice(lines, points))
+    yield from (_scaled(line, 1, 7, scale) for line in islice(lines, sum(others)))
+
+
+def _motions(lines: Iterator[str], scale: float) -> Iterator[str]:
+    head = next(lines)
+    yield head
+    for _ in range(int(head)):
+        yield next(lines)
+        words = next(lines).split()
+        # the fourth column of a matrix by rows, after the count of its numbers
+        for place in (4, 8, 12) if len(words) > 1 else ():
+            words[place] = repr(float(words[place]) * scale)
+        yield " ".join(words) + "\n"
+        pairs = next(lines)
+        yield pairs
+        yield from islice(lines, int(pairs))
+
+
+def _scaled(line: str, first: int, last: int, scale: float) -> str:
+    words = line.split()
+    words[first:last] = [repr(float(word) * scale) for word in words[first:last]]
+    return " ".join(words) + "\n"

@@ -1,0 +1,76 @@
+"""The process that loads gmsh: `python -m bladewright.meshing.worker DIRECTORY`, where the job is and the answer goes.
+
+gmsh takes seconds in which no signal reaches Python, and ends its process where it fails badly; both touch this one
+only.
+"""
+
+import sys
+from pathlib import Path
+
+import numpy as np
+
+from bladewright.errors import MeshError
+from bladewright.meshing.job import ARRAYS, Answer, Job
+
+
+def main(directory: Path) -> None:
+    """Make the mesh that the job in a directory asks for, write it, reopen it, and answer."""
+    try:
+        import gmsh
+    except (ImportError, OSError) as error:
+        Answer(error=_unloadable(error)).put(directory)
+        return
+    # SIGINT ends this process at once; the parent has its own handler
+    gmsh.initialize(interruptible=True, readConfigFiles=False)
+    try:
+        made = _made(Job.taken(directory), directory)
+    except MeshError as error:
+        made = Answer(error=str(error))
+    except Exception as error:  # noqa: BLE001  gmsh has no types of errors
+        made = Answer(error=f"gmsh gives up: {error}; try another size")
+    finally:
+        gmsh.finalize()
+    made.put(directory)
+
+
+def _made(job: Job, directory: Path) -> Answer:
+    import gmsh
+
+    from bladewright.meshing import generation, model
+    from bladewright.meshing.reopening import content
+    from bladewright.meshing.writing import written
+
+    model.options(model.QUIET)
+    generation.say("geometry")
+    faces = model.opened(job)
+    images = model.made_periodic(job, faces)
+    model.named(faces)
+    model.sized(job, faces)
+    generation.curves_meshed()
+    surface = generation.faces_meshed(images)
+    volume = generation.volume_meshed()
+    made = Answer(
+        gmsh=gmsh.__version__,
+        surface=surface,
+        volume=volume,
+        nodes=len(gmsh.model.mesh.getNodes()[0]),
+        tetrahedra=len(gmsh.model.mesh.getElements(3)[1][0]),
+    )
+    generation.say("writing")
+    written(Path(job.mesh), job.scale)
+    generation.say("reopening")
+    np.savez(directory / ARRAYS, **content(Path(job.mesh)))
+    return made
+
+
+def _unloadable(error: Exception) -> str:
+    if isinstance(error, ImportError):
+        return "gmsh is not installed, which meshes the passage: pip install 'bladewright[mesh]'"
+    return (
+        f"gmsh is installed, but a library of the system that it needs is not: {error}; on Debian and Ubuntu "
+        "apt-get install libglu1-mesa libxcursor1 libxft2 libxinerama1"
+    )
+
+
+if __name__ == "__main__":
+    main(Path(sys.argv[1]))
