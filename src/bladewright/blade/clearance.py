@@ -19,8 +19,10 @@ from bladewright.blade.meridional import Line, Meridional
 from bladewright.blade.unified import UnifiedBlade
 from bladewright.errors import DesignError
 from bladewright.numerics.elementary import Array, cross2, dot, length
+from bladewright.numerics.roots import crossings
 from bladewright.nurbs.basis import Reals, basis, greville
 from bladewright.nurbs.fit import interpolated
+from bladewright.nurbs.joints import jointed
 from bladewright.section.checks import UNITS
 
 REACHED = 1e-9
@@ -29,6 +31,8 @@ ALLOWED = 1e-8
 """the same above which a design is refused"""
 MOST = 60
 """control points of the meridian up to which it is refined"""
+_SHARES = np.array([0.03, 0.09, 0.2, 0.35, 0.5, 0.65, 0.8, 0.91, 0.97])
+"""places in a span: beside much shorter spans the miss is largest next to an end"""
 STEPS = 30
 """Newton's steps after which no meeting point is expected any more; mostly four do"""
 
@@ -120,21 +124,23 @@ def off_distance(full: Meridional, clearance: Clearance, u: Reals, points: Reals
 
 def _knots(full: Meridional, clearance: Clearance) -> Reals:
     """Knots of the meridian: where hub and shroud lose derivatives, and wherever else the distance asks for them."""
-    times = {
-        round(float(joint), 12): DEGREE - wall.degree + 1 for wall in (full.hub, full.shroud) for joint in wall.joints()
-    }
-    start = clamped(np.array([joint for joint, count in times.items() for _ in range(count)]))
+    joints = [(float(joint), wall.degree - 1) for wall in (full.hub, full.shroud) for joint in wall.joints()]
+    start = jointed(clamped(np.empty(0)), DEGREE, [*joints, *_passed(full, clearance)])
     chord = float(np.mean([length(each.points[-1] - each.points[0]) for each in (full.hub, full.shroud)]))
 
-    def miss(knots: Reals, places: Reals) -> Reals:
-        sites = greville(knots, DEGREE)
+    def worst(knots: Reals) -> Reals:
+        """Largest miss in each of the spans, of the chord."""
+        sites, spans = greville(knots, DEGREE), np.unique(knots)
         points = full.at(sites, _met(full, clearance, sites)[0])[0]
-        found = interpolated(points, sites, degree=DEGREE, knots=knots)(places)
-        return off_distance(full, clearance, places, found) / (REACHED * chord)
+        u = (spans[:-1, None] + np.diff(spans)[:, None] * _SHARES).ravel()
+        found = interpolated(points, sites, degree=DEGREE, knots=knots)(u)
+        return np.max(off_distance(full, clearance, u, found).reshape(-1, len(_SHARES)), axis=1) / chord
+
+    def miss(knots: Reals, places: Reals) -> Reals:
+        return worst(knots)[np.searchsorted(np.unique(knots), places) - 1] / REACHED
 
     knots = refined(start, miss, MOST)
-    spans = np.unique(knots)
-    off = float(np.max(miss(knots, (spans[1:] + spans[:-1]) / 2.0))) * REACHED
+    off = float(np.max(worst(knots)))
     if off > ALLOWED:
         raise DesignError(
             f"{clearance.name}: the surface at that distance from the {clearance.wall} is met within {off:.2g} of the "
@@ -142,6 +148,17 @@ def _knots(full: Meridional, clearance: Clearance) -> Reals:
             f"{clearance.name}, or smooth channel.{clearance.wall}"
         )
     return knots
+
+
+def _passed(full: Meridional, clearance: Clearance) -> list[tuple[float, int]]:
+    """Where the foot passes inner knots of its wall, each with the derivatives that are continuous there."""
+    wall = full.line(clearance.wall)
+    levels = np.unique(wall.joints())
+    if not len(levels):
+        return []
+    u = np.linspace(0.0, 1.0, 101)
+    feet = crossings(lambda at: _met(full, clearance, at)[1], u, _met(full, clearance, u)[1], levels)
+    return [(float(place), wall.degree - 1) for place in feet]
 
 
 def _met(full: Meridional, clearance: Clearance, u: Reals) -> tuple[Reals, Reals]:
