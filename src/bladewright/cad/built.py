@@ -32,20 +32,24 @@ class Properties(Protocol):
         """Centroid of the volume (3,) [m]."""
 
 
-class Product(Protocol):
-    """What a CAD file says of a body; `description`, `author` and `organisation` as well, where it has them."""
+class Named(Protocol):
+    """A body with a name."""
 
     @property
     def name(self) -> str:
         """Name of the product in a CAD file."""
+
+
+class Product(Named, Protocol):
+    """What a CAD file says of a body; `description`, `author` and `organisation` as well, where it has them."""
 
     @property
     def properties(self) -> Properties:
         """Volume, area and centroid."""
 
 
-class Built(Product, Protocol):
-    """A body bounded by native surfaces: a blade, a row's passage."""
+class Closed(Named, Protocol):
+    """A body bounded by native surfaces."""
 
     @property
     def surfaces(self) -> Mapping[str, Surface | TrimmedSurface]:
@@ -56,7 +60,11 @@ class Built(Product, Protocol):
         """+1 for a face whose dS/du x dS/dv points out of the body, -1 for the others."""
 
 
-def extent(built: Built) -> float:
+class Built(Closed, Product, Protocol):
+    """A body of native surfaces that a file is measured against: a blade, a passage."""
+
+
+def extent(built: Closed) -> float:
     """The largest side [m] of the box around all control points of untrimmed faces, or of all where there is none."""
     faces = built.surfaces.values()
     nets = [face.control_points for face in faces if isinstance(face, Surface)]

@@ -18,7 +18,7 @@ from OCP.TopoDS import TopoDS, TopoDS_Face, TopoDS_Shape, TopoDS_Solid
 from OCP.TopTools import TopTools_ListOfShape
 
 from bladewright.appearing import appearing
-from bladewright.cad.built import MM, Built
+from bladewright.cad.built import MM, Built, Closed
 from bladewright.cad.closure import Closure, closure
 from bladewright.cad.quiet import quiet
 from bladewright.cad.reopen import each, format_of, reopened
@@ -43,7 +43,7 @@ class Cuttable(Protocol):
         """Name of the product in a CAD file."""
 
     @property
-    def sector(self) -> Built:
+    def sector(self) -> Closed:
         """What lies between inlet, outlet, periodic boundaries and exact walls, without a blade."""
 
     @property

@@ -23,7 +23,7 @@ from OCP.TopoDS import (
     TopoDS_Wire,
 )
 
-from bladewright.cad.built import MM, Built
+from bladewright.cad.built import MM, Built, Closed
 from bladewright.cad.geometry import millimetres, occ_knots, plane_curve, space_curve, space_surface
 from bladewright.cad.topology import Collapsed, Edge, Topology, Use, topology
 from bladewright.cad.walls import wall
@@ -77,7 +77,7 @@ def _kept(same: _Same) -> Body:
     return body(same.built)
 
 
-def body(built: Built) -> Body:
+def body(built: Closed) -> Body:
     """The same solid in the kernel's own type, with its faces by name."""
     for face in built.surfaces.values():
         millimetres(face.control_points if isinstance(face, Surface) else face.surface.control_points)

@@ -5,7 +5,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from bladewright.cad.built import Built, extent
+from bladewright.cad.built import Closed, extent
 from bladewright.errors import CadError
 from bladewright.numerics.elementary import Array
 from bladewright.nurbs.curve import Curve
@@ -67,7 +67,7 @@ class Topology:
     """(n, 3) [m]"""
 
 
-def topology(built: Built) -> Topology:
+def topology(built: Closed) -> Topology:
     """The edges that the faces of a body share, and the vertices where those meet.
 
     A side of an untrimmed face that is no more than continuous at an inner knot is split there, and each piece is an

@@ -1,7 +1,5 @@
 """How far a duct must reach past the blade so that no patch of its walls folds."""
 
-from numbers import Real
-
 import numpy as np
 
 from bladewright.blade.exact import ExactBlade
@@ -10,6 +8,7 @@ from bladewright.domain.duct import Duct
 from bladewright.domain.wall import lean, opening
 from bladewright.errors import DesignError
 from bladewright.numerics.elementary import Array
+from bladewright.section.checks import number
 
 USUAL = 0.5
 """extent, in u, where none is given and the pitch needs no more"""
@@ -36,14 +35,13 @@ def extents(
         if given is None:
             found.append(max(USUAL, STEP * float(np.ceil(needed / STEP))))
             continue
-        if isinstance(given, bool) or not isinstance(given, Real):
-            raise DesignError(f"{name} is {given!r}: a number of meridional lengths of the blade is needed")
-        if not needed <= float(given) <= MOST:
+        value = float(np.real(number(name, given)))
+        if not needed <= value <= MOST:
             raise DesignError(
-                f"{name} is {float(given):g} meridional lengths of the blade: it must be at least {needed:.4g}, so "
+                f"{name} is {value:g} meridional lengths of the blade: it must be at least {needed:.4g}, so "
                 f"that the walls' patches hold the blade's nose and do not fold beside it, and at most {MOST:g}"
             )
-        found.append(float(given))
+        found.append(value)
     return found[0], found[1]
 
 

@@ -12,6 +12,7 @@ from bladewright.blade.blade import Blade, Faces
 from bladewright.domain.camber import CamberLines
 from bladewright.domain.duct import Duct
 from bladewright.domain.knots import BLADE_AT, PIECES, PassageKnots
+from bladewright.domain.sector import Sector, sector
 from bladewright.domain.wall import WallHalf
 from bladewright.numerics.elementary import dot
 from bladewright.nurbs.basis import Reals, breaks
@@ -87,6 +88,12 @@ class Passage:
     def properties(self) -> MassProperties:
         """Volume [m^3], area [m^2], centroid [m] and inertia [m^5], by quadrature on the native surfaces."""
         return mass_properties([(self.surfaces[name], sign) for name, sign in self.orientations.items()])
+
+    @cached_property
+    def sector(self) -> Sector:
+        """Passage and blade together, between exact surfaces of revolution."""
+        faces = {name: cast(Surface, face) for name, face in self.surfaces.items() if name != "tip"}
+        return sector(f"{self.blade.name}-sector", faces, self.duct, self.blade.chord)
 
     @cached_property
     def folds(self) -> dict[str, tuple[float, float, float]]:
