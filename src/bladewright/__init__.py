@@ -13,6 +13,8 @@ if TYPE_CHECKING:
     from bladewright.blade.blade import Blade as Blade
     from bladewright.blade.channel import Channel as Channel
     from bladewright.blade.prismatic import prismatic as prismatic
+    from bladewright.blade.throat import Throat as Throat
+    from bladewright.blade.throat import throat as throat
     from bladewright.blade.unified import UnifiedBlade as UnifiedBlade
     from bladewright.derivatives.jacobian import NetJacobian as NetJacobian
     from bladewright.derivatives.nets import net_jacobian as net_jacobian
@@ -52,6 +54,7 @@ _HOMES = {
     "Passage": "domain.passage",
     "NetJacobian": "derivatives.jacobian",
     "Surface": "nurbs.surface",
+    "Throat": "blade.throat",
     "TrimmedSurface": "nurbs.trimmed",
     "UnifiedBlade": "blade.unified",
     "UnifiedSection": "section.unified",
@@ -62,6 +65,7 @@ _HOMES = {
     "pullback": "derivatives.nets",
     "read_design": "files.reading",
     "sensitivity": "derivatives.sensitivity",
+    "throat": "blade.throat",
     "variables": "derivatives.variables",
     "write_design": "files.writing",
 }

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from bladewright.derivatives.patterns import Patterns, chosen
-from bladewright.derivatives.steps import built, stepped
+from bladewright.derivatives.steps import built, stepped, varied
 from bladewright.derivatives.tangents import STEP
 from bladewright.designs import Design
 from bladewright.errors import BladewrightError, DerivativeError
@@ -118,7 +118,7 @@ def _check_real(design: Design, base: Any, quantity: Quantity, value: Array, pat
         return
     own = design.parameters()
     nudges = {path: own[path] + NUDGE * (own[path] or 1.0) for path in paths}
-    nudged = value_of(quantity, built(design.changed(nudges), getattr(base, "knots", None)))
+    nudged = value_of(quantity, next(varied(design, base, [nudges])))
     change = np.max(np.abs(nudged - value), initial=0.0)  # real: a difference of real values
     if change > UNCHANGED * np.max(np.abs(value), initial=0.0):  # real: the same
         others = f" and {len(paths) - 1} others" if len(paths) > 1 else ""

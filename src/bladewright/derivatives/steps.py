@@ -10,6 +10,7 @@ import numpy as np
 from bladewright.blade.blade import Blade
 from bladewright.blade.ends import trimmed_ends
 from bladewright.blade.exact import moved
+from bladewright.blade.fitness import chord_of
 from bladewright.blade.moments import moment_gradient
 from bladewright.blade.native import native_sides
 from bladewright.blade.properties import blade_moments, middle_of
@@ -47,24 +48,31 @@ def stepped(design: Design, base: Any, paths: Sequence[str]) -> Iterator[Any]:
             yield replace(blade, moments=partial(moments, pair))
 
 
-def varied(design: Design, base: Any, path: str, values: Sequence[complex]) -> Iterator[Any]:
-    """What the design builds with other values of one parameter, at the knots of `base`, its build."""
+def varied(design: Design, base: Any, changes: Sequence[Mapping[str, complex]]) -> Iterator[Any]:
+    """What the design builds with each of several changes of its parameters, at the knots of `base`, its build.
+
+    For small changes: also what a build chooses besides knots is that of `base`.
+    """
     if not (isinstance(design, UnifiedBlade) and isinstance(base, Blade)):
-        for value in values:
-            yield built(design.changed(path, value), getattr(base, "knots", None))
+        for each in changes:
+            yield built(design.changed(each), getattr(base, "knots", None))
         return
-    for first in range(0, len(values), AT_ONCE):
-        chunk = np.array(values[first : first + AT_ONCE])
-        upper, lower = varied_nets(base, path, chunk)
-        for place, value in enumerate(chunk):
-            yield _blade(base, design.changed(path, value), upper[place], lower[place])
+    for first in range(0, len(changes), AT_ONCE):
+        chunk = changes[first : first + AT_ONCE]
+        upper, lower = varied_nets(base, chunk)
+        for place, each in enumerate(chunk):
+            blade = _blade(base, design.changed(each), upper[place], lower[place])
+            yield replace(blade, chord=chord_of(blade.exact))
 
 
-def varied_nets(blade: Blade, path: str, values: Array) -> Nets:
-    """Nets (k, n_u, n_v, 3) of the upper and lower side for values (k,) of one parameter, at the blade's knots."""
-    exact = moved(blade.exact, blade.design.changed(path, values))
+def varied_nets(blade: Blade, changes: Sequence[Mapping[str, complex]]) -> Nets:
+    """Nets (k, n_u, n_v, 3) of the upper and lower side with each of k changes of parameters, at the blade's knots."""
+    values = blade.design.parameters()
+    paths = dict.fromkeys(path for each in changes for path in each)
+    batch = {path: np.array([each.get(path, values[path]) for each in changes]) for path in paths}
+    exact = moved(blade.exact, blade.design.changed(batch))
     upper, lower = native_sides(exact.stations(blade.knots.sites_v), blade.knots)
-    shape = (len(values), *upper.shape[-3:])
+    shape = (len(changes), *upper.shape[-3:])
     return np.broadcast_to(upper, shape), np.broadcast_to(lower, shape)
 
 
