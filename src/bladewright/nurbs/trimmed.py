@@ -136,24 +136,31 @@ class TrimmedSurface:
         return chain(self.boundary)
 
     def _green(self, density: Callable[[Array, Array], Array], order: int) -> Array:
-        knots_u, knots_v = breaks(self.surface.knots_u), breaks(self.surface.knots_v)
-        origin = float(self._chain.low[0])
-        starts = np.concatenate([[origin], knots_u[1:-1][knots_u[1:-1] > origin]])
+        """Green's theorem: lines across the region, along the direction with fewer knots, summed over its boundary."""
+        knots = breaks(self.surface.knots_u), breaks(self.surface.knots_v)
+        within = [
+            inner[(inner > low) & (inner < high)]
+            for inner, low, high in zip(knots, self._chain.low, self._chain.high, strict=True)
+        ]
+        lines = 0 if len(within[0]) <= len(within[1]) else 1
+        starts = np.concatenate([[float(self._chain.low[lines])], within[lines]])
+        tops = np.append(starts[1:], np.inf)
         nodes, weights = gauss(order)
         total: Array = np.zeros(())
         for curve in self.boundary:
-            ends = np.concatenate([breaks(curve.knots), meeting_parameters(curve, knots_u[1:-1], knots_v[1:-1])])
+            ends = np.concatenate([breaks(curve.knots), meeting_parameters(curve, knots[0][1:-1], knots[1][1:-1])])
             t, outer = panels(np.unique(ends), order)
-            u, v = np.moveaxis(curve(t), -1, 0)
-            rise = outer * curve.derivative(t)[:, 1]
-            # each panel along u ends at the next knot, or at the boundary if that comes first
-            tops = np.append(starts[1:], np.inf)
-            reached = u.real[:, None] > starts
-            width = np.where(reached, np.where(u.real[:, None] < tops, u[:, None], tops), starts) - starts
+            place = curve(t)
+            end, fixed = place[:, lines], place[:, 1 - lines]
+            rise = outer * curve.derivative(t)[:, 1 - lines] * (1.0 if lines == 0 else -1.0)
+            # each panel of a line ends at the next knot, or at the boundary if that comes first
+            reached = end.real[:, None] > starts
+            width = np.where(reached, np.where(end.real[:, None] < tops, end[:, None], tops), starts) - starts
             row, panel = np.nonzero(reached)
             inner = width[row, panel][:, None]
-            along_u = starts[panel][:, None] + inner * nodes
-            values = density(along_u, np.broadcast_to(v[row][:, None], along_u.shape))
+            along = starts[panel][:, None] + inner * nodes
+            across = np.broadcast_to(fixed[row][:, None], along.shape)
+            values = density(along, across) if lines == 0 else density(across, along)
             scale = (inner * weights) * rise[row][:, None]
             total = total + np.tensordot(scale, values, axes=((0, 1), (0, 1)))
         return total
