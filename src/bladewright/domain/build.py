@@ -37,14 +37,18 @@ def passage(
     inlet_angle: complex | None = None,
     outlet_angle: complex | None = None,
     knots: PassageKnots | None = None,
+    split: bool = False,
 ) -> Passage:
     """The flow passage around a blade, as native patches that close up without trimming.
 
-    `upstream` and `downstream` are how far the duct reaches past the edges, in the channel's parameter u: about as many
-    meridional lengths of the blade; where not given, one half, or what the pitch needs. Camber lines go on at the slope
-    of their ends; with `inlet_angle` or `outlet_angle` [deg] they turn to that angle from the meridional direction.
-    `knots=passage.knots` holds another passage's knots and extents. Raises DesignError where a patch would fold, the
-    channel cannot be continued so far, or the blade does not keep within its pitch. Agromayor et al. 2021, section 4.
+    `upstream` and `downstream` are how far the duct reaches past the edges, in mean meridional lengths of the blade;
+    where not given, one half, or what the pitch needs. Camber lines go on at the slope of their ends; with
+    `inlet_angle` or `outlet_angle` [deg] they turn to that angle from the meridional direction. `knots=passage.knots`
+    holds another passage's knots and extents. Walls, periodic boundaries, inlet and outlet have creases where the
+    blade's edges are; `split=True` cuts them there into faces without any.
+
+    Raises DesignError where a patch would fold, the channel cannot be continued so far, or the blade does not keep
+    within its pitch. Agromayor et al. 2021, section 4.
     """
     full = _whole(blade)
     turned = _slope("inlet_angle", inlet_angle), _slope("outlet_angle", outlet_angle)
@@ -59,7 +63,7 @@ def passage(
     surfaces: dict[str, Surface | TrimmedSurface] = {name: _surface(net, name, knots) for name, net in nets.items()}
     surfaces |= {"blade_upper": upper, "blade_lower": lower}
     surfaces |= {name: face for name, face in blade.surfaces.items() if name == "tip"}
-    made = Passage(blade=blade, surfaces=MappingProxyType(surfaces), knots=knots, camber=camber, walls=walls)
+    made = Passage(blade=blade, whole=MappingProxyType(surfaces), knots=knots, camber=camber, walls=walls, split=split)
     if not held:
         check_folds(made.folds)
         _check_reached(made)
@@ -103,7 +107,7 @@ def _check_within(blade: Blade, half: Array) -> None:
         revolved=exact.mapping.revolved,
         length=mean_length(exact),
     )
-    check_pitch(camber_lines(exact.survey, duct, (None, None)), blade, _real_half(half))
+    check_pitch(camber_lines(exact.survey, duct), blade, _real_half(half))
 
 
 def _plane(
@@ -119,7 +123,7 @@ def _plane(
         revolved=full.mapping.revolved,
         length=mean_length(full),
     )
-    camber = camber_lines(full.stations(v), duct, turned)
+    camber = camber_lines(full.stations(v), duct, turned, np.unique(breaks_along_v(full)))
     touched = {wall: wall in blade.surfaces for wall in ("hub", "shroud")}
     return camber, halves(camber, touched, half, knots.opening)
 

@@ -25,6 +25,8 @@ class CamberLines:
     """(..., m) d theta / dm' at the leading and the trailing edge"""
     turned: tuple[Array | None, Array | None]
     """() d theta / dm' at inlet and outlet where an angle is stated"""
+    joints: Reals
+    """where, along the span, laws of evolution and the channel's edges lose derivatives"""
 
     def points(self, piece: str, t: Reals) -> Array:
         """Points (..., m, k, 2) at t (k,) in [0, 1] along `inlet`, `blade` or `outlet`."""
@@ -64,11 +66,23 @@ def _parameter(t: Reals) -> Reals:
     return (1.0 + QUICK) * t - 3.0 * QUICK * t**2 + 2.0 * QUICK * t**3
 
 
-def camber_lines(stations: Stations, duct: Duct, turned: tuple[Array | None, Array | None]) -> CamberLines:
+def camber_lines(
+    stations: Stations,
+    duct: Duct,
+    turned: tuple[Array | None, Array | None] = (None, None),
+    joints: Reals | None = None,
+) -> CamberLines:
     """Continued camber lines of stations; `turned` holds d theta / dm' at inlet and outlet, None to keep the edge's."""
     lines = duct.lines(stations.v)
     slopes = _slope(stations, lines, 0), _slope(stations, lines, 1)
-    return CamberLines(stations=stations, duct=duct, lines=lines, slopes=slopes, turned=turned)
+    return CamberLines(
+        stations=stations,
+        duct=duct,
+        lines=lines,
+        slopes=slopes,
+        turned=turned,
+        joints=np.empty(0) if joints is None else joints,
+    )
 
 
 def _slope(stations: Stations, lines: StreamLines, past: int) -> Array:

@@ -88,4 +88,4 @@ def _camber(full: ExactBlade) -> CamberLines:
         length=mean_length(full),
     )
     stations = full.stations(np.array([0.0, 1.0]))
-    return camber_lines(stations, duct, (None, None))
+    return camber_lines(stations, duct)

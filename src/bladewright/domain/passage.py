@@ -9,15 +9,18 @@ from typing import cast
 import numpy as np
 
 from bladewright.blade.blade import Blade, Faces
+from bladewright.domain.annulus import annulus_volume
 from bladewright.domain.camber import CamberLines
 from bladewright.domain.duct import Duct
 from bladewright.domain.knots import BLADE_AT, PIECES, PassageKnots
+from bladewright.domain.pieces import pieces_of
 from bladewright.domain.sector import Sector, sector
 from bladewright.domain.wall import WallHalf
-from bladewright.numerics.elementary import dot
+from bladewright.numerics.elementary import Array, dot
 from bladewright.nurbs.basis import Reals, breaks
 from bladewright.nurbs.flux import MassProperties, mass_properties
 from bladewright.nurbs.surface import Surface
+from bladewright.nurbs.trimmed import TrimmedSurface
 
 OUTWARD = MappingProxyType(
     {
@@ -41,7 +44,7 @@ class Passage:
     """What the fluid fills around one blade, half a pitch to each side, from inlet to outlet."""
 
     blade: Blade
-    surfaces: Faces
+    whole: Faces
     """walls' halves (u inlet to outlet, v from the blade to a periodic boundary), periodic boundaries (u inlet to
     outlet, v hub to shroud), inlet and outlet (u from the lower to the upper periodic boundary, v hub to shroud), the
     blade's sides, and its tip where there is a gap; metres"""
@@ -51,6 +54,18 @@ class Passage:
     """continued camber lines, from hub to shroud"""
     walls: Mapping[str, WallHalf]
     """the exact halves of hub and shroud that the native ones interpolate"""
+    split: bool = False
+    """whether `surfaces` are cut where the whole faces have a crease"""
+
+    @cached_property
+    def surfaces(self) -> Faces:
+        """The passage's faces by name; the whole ones, or `hub_upper_inlet`, `inlet_lower`... where they are split."""
+        if not self.split:
+            return self.whole
+        pieces: dict[str, Surface | TrimmedSurface] = {}
+        for name, face in self.whole.items():
+            pieces |= {name: face} if isinstance(face, TrimmedSurface) else pieces_of(name, face)
+        return MappingProxyType(pieces)
 
     @property
     def name(self) -> str:
@@ -80,19 +95,32 @@ class Passage:
     @property
     def orientations(self) -> Mapping[str, int]:
         """+1 for the faces whose dS/du x dS/dv points out of the passage, -1 for the others."""
-        if "tip" not in self.surfaces:
-            return OUTWARD
-        return MappingProxyType({**OUTWARD, "tip": -self.blade.orientations["tip"]})
+        senses = dict(OUTWARD)
+        if "tip" in self.whole:
+            senses["tip"] = -self.blade.orientations["tip"]
+        whole = sorted(senses, key=len, reverse=True)
+        return MappingProxyType(
+            {name: senses[next(face for face in whole if name.startswith(face))] for name in self.surfaces}
+        )
 
     @cached_property
     def properties(self) -> MassProperties:
         """Volume [m^3], area [m^2], centroid [m] and inertia [m^5], by quadrature on the native surfaces."""
         return mass_properties([(self.surfaces[name], sign) for name, sign in self.orientations.items()])
 
+    @property
+    def ring(self) -> Array:
+        """Volume () [m^3] of the annulus between inlet and outlet: blade count x (passage + blade).
+
+        In a cascade, of one pitch of the duct.
+        """
+        volume = annulus_volume(self.duct, self.camber.joints)
+        return volume if self.duct.revolved else volume * 2.0 * self.walls["hub_upper"].half_pitch
+
     @cached_property
     def sector(self) -> Sector:
         """Passage and blade together, between exact surfaces of revolution."""
-        faces = {name: cast(Surface, face) for name, face in self.surfaces.items() if name != "tip"}
+        faces = {name: cast(Surface, face) for name, face in self.whole.items() if name != "tip"}
         return sector(f"{self.blade.name}-sector", faces, self.duct, self.blade.chord)
 
     @cached_property
@@ -106,7 +134,7 @@ class Passage:
         return max(self._off(name, wall) for name, wall in self.walls.items()) / self.blade.chord
 
     def _least(self, name: str, wall: WallHalf) -> tuple[float, float, float]:
-        face = cast(Surface, self.surfaces[name])
+        face = cast(Surface, self.whole[name])
         v = _between(self.knots.across, (0.0, 0.5))
         lowest, places = [], []
         for piece, start, end in self._pieces():
@@ -122,7 +150,7 @@ class Passage:
         return float(jacobian[i, j] / np.median(jacobian)), float(u[i]), float(v[j])
 
     def _off(self, name: str, wall: WallHalf) -> float:
-        face = cast(Surface, self.surfaces[name])
+        face = cast(Surface, self.whole[name])
         v = _between(self.knots.across, (0.0, 0.31, 0.74))
         worst = 0.0
         for piece, start, end in self._pieces():

@@ -13,6 +13,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from bladewright.blade.streamlines import StreamLines
 from bladewright.domain.camber import CamberLines
 from bladewright.numerics.elementary import Array, unit
 from bladewright.nurbs.basis import Reals
@@ -46,6 +47,8 @@ class WallHalf:
     """A half of a wall: `sign` +1 above the blade, -1 below it; `touched` where the blade stands on the wall."""
 
     camber: CamberLines
+    line: StreamLines
+    """the duct's stream line along the wall"""
     row: int
     """which of the camber's stations"""
     sign: int
@@ -86,7 +89,7 @@ class WallHalf:
         """Points (..., k, l, 3) in metres, and the wall's unit normals there, towards the shroud."""
         plane = self.plane(piece, t, v)
         flat = plane.reshape(*plane.shape[:-3], 1, -1, 2)
-        lines = self.camber.lines.rows([self.row])
+        lines = self.line
         u = lines.u_at(flat[..., 0])
         position, slope = lines.position(u), unit(lines.position(u, 1))
         mapping, tangential = lines.mapping, flat[..., 1]
@@ -100,9 +103,16 @@ def halves(
     camber: CamberLines, touched: dict[str, bool], half_pitch: Array, opened: tuple[float, float]
 ) -> dict[str, WallHalf]:
     """The four halves of hub (first station) and shroud (last), by the names of their faces."""
+    lines = {row: camber.lines.rows([row]) for row in (0, -1)}
     return {
         f"{wall}_{half}": WallHalf(
-            camber=camber, row=row, sign=sign, touched=touched[wall], half_pitch=half_pitch, opening=opened[row]
+            camber=camber,
+            line=lines[row],
+            row=row,
+            sign=sign,
+            touched=touched[wall],
+            half_pitch=half_pitch,
+            opening=opened[row],
         )
         for wall, row in (("hub", 0), ("shroud", -1))
         for half, sign in (("upper", 1), ("lower", -1))
