@@ -24,6 +24,8 @@ if TYPE_CHECKING:
     from bladewright.derivatives.variables import variables as variables
     from bladewright.domain.build import passage as passage
     from bladewright.domain.passage import Passage as Passage
+    from bladewright.domain.section import SectionPassage as SectionPassage
+    from bladewright.domain.section import section_passage as section_passage
     from bladewright.errors import BladewrightError as BladewrightError
     from bladewright.errors import CadError as CadError
     from bladewright.errors import DerivativeError as DerivativeError
@@ -52,6 +54,7 @@ _HOMES = {
     "GeometryError": "errors",
     "MeshError": "errors",
     "Passage": "domain.passage",
+    "SectionPassage": "domain.section",
     "NetJacobian": "derivatives.jacobian",
     "Surface": "nurbs.surface",
     "Throat": "blade.throat",
@@ -64,6 +67,7 @@ _HOMES = {
     "prismatic": "blade.prismatic",
     "pullback": "derivatives.nets",
     "read_design": "files.reading",
+    "section_passage": "domain.section",
     "sensitivity": "derivatives.sensitivity",
     "throat": "blade.throat",
     "variables": "derivatives.variables",

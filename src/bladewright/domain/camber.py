@@ -40,7 +40,7 @@ class CamberLines:
         slope, turn = self.slopes[past][..., None], self.turned[past]
         rise = slope * share
         if turn is not None:
-            rise = rise + (turn - slope) * (share**3 - share**4 / 2.0)
+            rise = rise + (turn - slope) * share**3 / 3.0
         return np.stack([edge[..., 0] + reach * share, edge[..., 1] + reach * rise], axis=-1)
 
     def direction(self, past: int) -> Array:
