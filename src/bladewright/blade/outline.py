@@ -106,12 +106,15 @@ def _foot_step(meridian: Curve, u: Reals, target: Array) -> Array:
     return dot(miss, slope) / (dot(slope, slope) - dot(miss, bend))
 
 
-def followed(wall: Wall, trace: Trace, chord: float) -> Curve:
+def followed(wall: Wall, trace: Trace, chord: float, knots: Reals | None = None) -> Curve:
     """A plane B-spline that the wall maps on the traced curve, as smooth as that, its knots cut until it follows.
 
-    Raises DesignError where it does not come within FOLLOWED of the chord.
+    Or on given knots, as they are. Raises DesignError where it does not come within FOLLOWED of the chord.
     """
     end = trace.end
+    if knots is not None:
+        sites = greville(knots, end.degree)
+        return interpolated(wall.parameters(*trace(sites)), sites, degree=end.degree, knots=knots)
     own = jointed(end.knots, end.degree, trace.joints(wall))
     spans = np.unique(own)
     for pieces in (2, 3, 4, 6, 8):

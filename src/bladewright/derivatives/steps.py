@@ -124,7 +124,8 @@ def _blade(base: Blade, design: UnifiedBlade, upper: Array, lower: Array) -> Bla
     sides = [replace(side, control_points=net) for side, net in zip(base.sides, (upper, lower), strict=True)]
 
     def ends() -> Mapping[str, Face]:
-        return trimmed_ends(exact, sides[0], sides[1], base.chord)
+        like = {name: face for name, face in base.surfaces.items() if isinstance(face, TrimmedSurface)}
+        return trimmed_ends(exact, sides[0], sides[1], base.chord, like)
 
     surfaces = _Faces({"upper": sides[0], "lower": sides[1]}, tuple(base.surfaces), ends)
     return replace(base, design=design, surfaces=surfaces, exact=exact)
