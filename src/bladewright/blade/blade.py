@@ -100,7 +100,7 @@ class Blade:
     def properties(self) -> MassProperties:
         """Volume [m^3], area [m^2], centroid [m] and inertia [m^5], by quadrature on the native surfaces."""
         moments, revolved = self.moments, self.exact.mapping.revolved
-        if moments or all(isinstance(self.surfaces[name], TrimmedSurface) for name in self.design.ends):
+        if moments or any(isinstance(self.surfaces[name], TrimmedSurface) for name in self.design.ends):
             return blade_properties(self.surfaces, self.orientations, revolved=revolved, moments=moments)
         return mass_properties([(self.surfaces[name], sign) for name, sign in self.orientations.items()])
 

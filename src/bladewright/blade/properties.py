@@ -4,7 +4,6 @@ The area of an end is the integral of theta r |C'| du around its outline, C the 
 """
 
 from collections.abc import Callable, Mapping
-from typing import cast
 
 import numpy as np
 
@@ -26,7 +25,7 @@ Faces = Mapping[str, Surface | TrimmedSurface]
 def blade_properties(
     surfaces: Faces, outward: Mapping[str, int], *, revolved: bool, moments: Callable[[], Array] | None = None
 ) -> MassProperties:
-    """Properties of a blade of two sides and two trimmed ends, inertia about the centroid.
+    """Properties of a blade of two sides and two ends, of which at least one is trimmed; inertia about the centroid.
 
     Control points may be complex. `moments` gives those of `blade_moments` where they are known without quadrature.
     """
@@ -50,8 +49,9 @@ def blade_moments(surfaces: Faces, outward: Mapping[str, int], *, revolved: bool
     middle = middle_of(surfaces)
     return np.asarray(
         sum(
-            outward[name] * side_moments(cast(Surface, surfaces[name]), middle, revolved=revolved)
-            for name in ("upper", "lower")
+            outward[name] * side_moments(face, middle, revolved=revolved)
+            for name, face in surfaces.items()
+            if isinstance(face, Surface)
         )
     )
 
