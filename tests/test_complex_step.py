@@ -13,7 +13,7 @@ import pytest
 import bladewright
 
 PACKAGE = Path(bladewright.__file__).parent
-FLOORS = ("numerics", "nurbs", "section", "blade", "domain")
+FLOORS = ("numerics", "nurbs", "section", "blade", "domain", "derivatives")
 SAFE_FORMS = PACKAGE / "numerics" / "elementary.py"
 """the one file that may use them: it builds the analytic forms"""
 
