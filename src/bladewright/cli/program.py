@@ -8,6 +8,7 @@ import click
 
 from bladewright.cli.build import build
 from bladewright.cli.call import Call, common
+from bladewright.cli.mesh import mesh
 from bladewright.cli.new import new
 from bladewright.cli.outcome import Outcome, one_paragraph, printed
 from bladewright.cli.schema import schema
@@ -48,7 +49,7 @@ def program(context: click.Context) -> None:
         click.echo(context.get_help())
 
 
-for each in (build, verify, show, new, schema):
+for each in (build, verify, mesh, show, new, schema):
     program.add_command(each)
 
 

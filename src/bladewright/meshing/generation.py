@@ -35,6 +35,7 @@ def faces_meshed(images: dict[int, int]) -> tuple[str, ...]:
     Each face keeps the algorithm that gave it the best worst triangle. Raises MeshError where none meshes a face.
     """
     say("faces")
+    gmsh.option.setNumber("Mesh.MeshOnlyEmpty", 1)
     free = [tag for _, tag in gmsh.model.getEntities(2) if tag not in images]
     best: dict[int, tuple[float, str]] = {}
     waiting = free

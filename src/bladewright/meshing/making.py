@@ -15,13 +15,13 @@ from bladewright.domain.passage import Passage
 from bladewright.errors import MeshError
 from bladewright.meshing.job import ARRAYS, Answer, Job, Near
 from bladewright.meshing.measures import deviations, limit, loose_facets
-from bladewright.meshing.names import group_of, step_face_names
+from bladewright.meshing.names import GROUPS, group_of, step_face_names
 from bladewright.meshing.periodicity import Periodicity, match, periodicity
 from bladewright.meshing.quality import Indices, condition_numbers, radius_ratios, volumes
 from bladewright.meshing.reopening import GROUP
 from bladewright.meshing.report import FLAT, FaceMesh, MeshReport, Quality
-from bladewright.meshing.running import answered
-from bladewright.meshing.sizes import ELEMENTS_PER_TURN, Sizes, sizes
+from bladewright.meshing.running import answered, check_installed
+from bladewright.meshing.sizes import ELEMENTS_PER_TURN, Sizes, check_sizes, sizes
 from bladewright.nurbs.basis import Reals
 
 FORMATS = {".msh": "Gmsh 4.1", ".su2": "SU2", ".cgns": "CGNS"}
@@ -39,6 +39,19 @@ def format_of(path: str | os.PathLike[str]) -> str:
             f"'{path}' ends in {ending!r}, which is no mesh file that can be written: choose {', '.join(FORMATS)}"
         )
     return FORMATS[ending]
+
+
+def check(
+    path: str | os.PathLike[str],
+    *,
+    size: float | None = None,
+    smallest: float | None = None,
+    curvature: float = ELEMENTS_PER_TURN,
+) -> None:
+    """Raise MeshError for what `mesh` would refuse whatever the passage: an ending, a size, gmsh not installed."""
+    format_of(path)
+    check_sizes(size=size, smallest=smallest, curvature=curvature)
+    check_installed()
 
 
 def mesh(
@@ -64,9 +77,9 @@ def mesh(
     Raises MeshError for sizes or endings that are refused, or where gmsh is not installed or gives up. A mesh that
     fails a check is written, and the report says why.
     """
+    check(path, size=size, smallest=smallest, curvature=curvature)
     start = time.monotonic()
     step, path = Path(step), Path(path)
-    format_of(path)
     faces = step_face_names(step)
     plan = sizes(passage, size=size, smallest=smallest, curvature=curvature)
     motion = periodicity(passage.surfaces)
@@ -138,9 +151,9 @@ def _measured(
         tetrahedra=len(tetrahedra),
         nodes=len(nodes),
         inverted=int(np.count_nonzero(~(condition > FLAT))),
-        condition=_quality(condition),
+        min_sicn=_quality(condition),
         gamma=_quality(radius_ratios(nodes, tetrahedra)),
-        faces=tuple(_face(name, rows, nodes, passage) for name, rows in groups.items()),
+        faces=tuple(_face(name, groups[name], nodes, passage) for name in GROUPS if name in groups),
         deviation_limit_mm=limit(plan.chord) / MM,
         loose=loose_facets(tetrahedra, groups),
         periodic_nodes=pairs.nodes,

@@ -81,8 +81,16 @@ def sized(job: Job, faces: Faces) -> None:
         kind, tag = ("SurfacesList", faces[near.face]) if near.face else ("CurvesList", _curve_at(near, faces))
         field.setNumbers(distance, kind, [tag])
         field.setNumber(distance, "Sampling", SAMPLING)
-        size = field.add("MathEval")
-        field.setString(size, "F", f"Min({job.largest!r}, {near.size!r} + {job.growth!r} * F{distance})")
+        size = field.add("Threshold")
+        values = {
+            "InField": distance,
+            "SizeMin": near.size,
+            "SizeMax": job.largest,
+            "DistMin": 0.0,
+            "DistMax": (job.largest - near.size) / job.growth,
+        }
+        for name, value in values.items():
+            field.setNumber(size, name, value)
         grown.append(size)
     if grown:
         smallest = field.add("Min")

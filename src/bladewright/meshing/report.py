@@ -43,8 +43,8 @@ class MeshReport:
     nodes: int
     inverted: int
     """tetrahedra whose Jacobian is not positive"""
-    condition: Quality
-    """minSICN: signed inverse condition number of the map from the regular tetrahedron"""
+    min_sicn: Quality
+    """signed inverse condition number of the map from the regular tetrahedron"""
     gamma: Quality
     """three times the inscribed over the circumscribed radius"""
     faces: tuple[FaceMesh, ...]
@@ -82,7 +82,7 @@ class MeshReport:
         if self.inverted:
             found.append(
                 f"{self.inverted} of {self.tetrahedra} tetrahedra are inverted or flat, the worst minSICN is "
-                f"{self.condition.worst:.3g}: choose another size"
+                f"{self.min_sicn.worst:.3g}: choose another size"
             )
         if self.loose:
             found.append(f"{self.loose} facets on the boundary do not match a named face")
@@ -110,7 +110,7 @@ class MeshReport:
     def su2_marker(self) -> str:
         """The line of an SU2 configuration that couples the periodic markers."""
         numbers = [0.0, 0.0, 0.0, self.rotation_deg, 0.0, 0.0, *self.translation]
-        return f"MARKER_PERIODIC= ( periodic_lower, periodic_upper, {', '.join(f'{n:.15g}' for n in numbers)} )"
+        return f"MARKER_PERIODIC= ( periodic_lower, periodic_upper, {', '.join(f'{n:.13g}' for n in numbers)} )"
 
     def to_dict(self) -> dict[str, Any]:
         """All figures with the limits and failures, for JSON."""
@@ -130,7 +130,7 @@ class MeshReport:
             f"  size {self.size:.3g} to {self.smallest:.3g} of the chord, {self.expected} tetrahedra expected",
             *(
                 f"  worst {name} {each.worst:.3f}, 1 % below {each.percentile:.3f}, mean {each.mean:.3f}"
-                for name, each in (("minSICN", self.condition), ("gamma", self.gamma))
+                for name, each in (("minSICN", self.min_sicn), ("gamma", self.gamma))
             ),
             *(
                 f"  {face.name:<{width}}  {face.triangles} triangles, {face.nodes} nodes up to "

@@ -22,14 +22,18 @@ Listener = Callable[[str], object]
 """takes one line"""
 
 
+def check_installed() -> None:
+    """Raise MeshError where gmsh is not installed."""
+    if importlib.util.find_spec("gmsh") is None:
+        raise MeshError(MISSING)
+
+
 def answered(job: Job, directory: Path, *, step: Listener, log: Listener) -> Answer:
     """The answer of a process that was given a job in a directory; `step` hears what it does, `log` what gmsh prints.
 
-    The process ends with this call, however that ends. Raises MeshError, with gmsh's output as a note, where gmsh is
-    not installed or there is no mesh.
+    The process ends with this call, however that ends. Raises MeshError, with gmsh's output as a note, where there is
+    no mesh.
     """
-    if importlib.util.find_spec("gmsh") is None:
-        raise MeshError(MISSING)
     job.put(directory)
     output: list[str] = []
     with subprocess.Popen(  # noqa: S603  it is this Python, and a module of our own

@@ -86,10 +86,7 @@ def sizes(
     `smallest` it is `FINEST` of the size. Raises MeshError for sizes that are not positive, above the chord, or so
     small that more than `MOST` tetrahedra are expected.
     """
-    _check("size", size)
-    _check("smallest", smallest)
-    if not 1.0 <= curvature <= 1000.0:
-        raise MeshError(f"curvature is {curvature:g} elements on a full circle: it must be between 1 and 1000")
+    check_sizes(size=size, smallest=smallest, curvature=curvature)
     wish = _Wish(
         chord=float(np.real(passage.blade.chord)),
         volume=float(np.real(passage.properties.volume)),
@@ -97,11 +94,6 @@ def sizes(
         smallest=smallest,
     )
     given = wish.size_for(EXPECTED) if size is None else size
-    if smallest is not None and smallest > given:
-        raise MeshError(
-            f"smallest is {smallest:g} and size {given:.3g} of the chord: the smallest size must not be above the "
-            "largest; lower smallest, or raise size"
-        )
     found = wish.sizes(given)
     if found.expected > MOST:
         raise MeshError(
@@ -111,9 +103,17 @@ def sizes(
     return found
 
 
-def _check(name: str, value: float | None) -> None:
-    if value is not None and not 0.0 < value <= 1.0:
-        raise MeshError(f"{name} is {value:g} of the chord: it must be above 0 and at most 1, such as 0.05")
+def check_sizes(*, size: float | None, smallest: float | None, curvature: float) -> None:
+    """Raise MeshError for sizes that no mesh has."""
+    for name, value in (("size", size), ("smallest", smallest)):
+        if value is not None and not 0.0 < value <= 1.0:
+            raise MeshError(f"{name} is {value:g} of the chord: it must be above 0 and at most 1, such as 0.05")
+    if size is not None and smallest is not None and smallest > size:
+        raise MeshError(
+            f"smallest is {smallest:g} of the chord, above the size {size:g}: lower smallest, or raise size"
+        )
+    if not 1.0 <= curvature <= 1000.0:
+        raise MeshError(f"curvature is {curvature:g} elements on a full circle: it must be between 1 and 1000")
 
 
 def _cure(wish: _Wish) -> str:

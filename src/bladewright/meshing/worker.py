@@ -36,19 +36,20 @@ def main(directory: Path) -> None:
 def _made(job: Job, directory: Path) -> Answer:
     import gmsh
 
-    from bladewright.meshing import generation, model
+    from bladewright.meshing import generation, images, model
     from bladewright.meshing.reopening import content
     from bladewright.meshing.writing import written
 
     model.options(model.QUIET)
     generation.say("geometry")
     faces = model.opened(job)
-    images = model.made_periodic(job, faces)
+    followers = model.made_periodic(job, faces)
     model.named(faces)
     model.sized(job, faces)
     generation.curves_meshed()
-    surface = generation.faces_meshed(images)
+    surface = generation.faces_meshed(followers)
     volume = generation.volume_meshed()
+    images.placed(followers, job.motion)
     made = Answer(
         gmsh=gmsh.__version__,
         surface=surface,

@@ -1,12 +1,14 @@
-"""The text of a mesh file of gmsh in another unit."""
+"""The text of gmsh's own mesh files, version 4.1: in another unit, or without its periodic motions."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from itertools import islice
 from pathlib import Path
 
+Lines = Iterator[str]
 
-def rescaled(lines: Iterator[str], scale: float) -> Iterator[str]:
-    """The lines of a version 4.1 text file with entities and periodic motions scaled.
+
+def rescaled(lines: Lines, scale: float) -> Lines:
+    """The lines with entities and periodic motions scaled.
 
     gmsh itself scales the nodes, but leaves the boxes of its entities and the translations between periodic ones in the
     unit of the geometry.
@@ -19,15 +21,26 @@ def rescaled(lines: Iterator[str], scale: float) -> Iterator[str]:
             yield from _motions(lines, scale)
 
 
-def rescaled_file(path: Path, scale: float) -> None:
-    """Scale the entities of the file at a path, see `rescaled`."""
-    other = path.with_suffix(".rescaled")
+def motionless(lines: Lines) -> Lines:
+    """The lines without the periodic motions."""
+    for line in lines:
+        if line.startswith("$Periodic"):
+            for each in lines:
+                if each.startswith("$EndPeriodic"):
+                    break
+        else:
+            yield line
+
+
+def rewritten(path: Path, change: Callable[[Lines], Lines]) -> None:
+    """Replace the lines of the file at a path by what `change` makes of them."""
+    other = path.with_suffix(".rewritten")
     with path.open(encoding="utf-8") as source, other.open("w", encoding="utf-8") as target:
-        target.writelines(rescaled(source, scale))
+        target.writelines(change(source))
     other.replace(path)
 
 
-def _entities(lines: Iterator[str], scale: float) -> Iterator[str]:
+def _entities(lines: Lines, scale: float) -> Lines:
     head = next(lines)
     yield head
     points, *others = map(int, head.split())
@@ -35,7 +48,7 @@ def _entities(lines: Iterator[str], scale: float) -> Iterator[str]:
     yield from (_scaled(line, 1, 7, scale) for line in islice(lines, sum(others)))
 
 
-def _motions(lines: Iterator[str], scale: float) -> Iterator[str]:
+def _motions(lines: Lines, scale: float) -> Lines:
     head = next(lines)
     yield head
     for _ in range(int(head)):
