@@ -60,8 +60,9 @@ def moment_gradient(side: Surface, middle: float, *, revolved: bool) -> Reals:
     for part, in_u, in_v in parts:
         rows = basis(side.knots_u, side.degree_u, u, in_u)
         columns = basis(side.knots_v, side.degree_v, v, in_v)
-        weighted = np.moveaxis(weight[..., None, None] * part, (0, 1), (-2, -1))
-        total += np.moveaxis(rows.T @ weighted @ columns, 1, -1)
+        # in this order of memory the products are those of full matrices
+        weighted = np.ascontiguousarray(np.moveaxis(weight[..., None, None] * part, (0, 1), (-2, -1)))
+        total += np.moveaxis(rows.T @ (weighted @ columns), 1, -1)
     return total
 
 
