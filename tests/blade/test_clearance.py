@@ -167,10 +167,17 @@ def test_a_blade_of_the_same_section_at_every_radius_is_cut_off_where_its_stream
         assert short == pytest.approx(long, abs=1e-14)
 
 
-def test_a_wall_that_is_three_times_differentiable_only_is_followed_as_well():
-    points = [tuple(1e3 * curve_of(FAN, "shroud")(place)) for place in np.linspace(0.0, 1.0, 9)[1:-1]]
-    blade = FAN.changed({"channel.shroud": tuple(points), "channel.degree": 4, "tip_clearance": 0.5}).build()
+@pytest.mark.parametrize(("degree", "name"), [(2, "tip_clearance"), (3, "hub_clearance")])
+def test_a_wall_with_joints_is_followed_as_well(degree, name):
+    places = np.linspace(0.0, 1.0, 8)[1:-1]
+    walls = {f"channel.{wall}": tuple(map(tuple, 1e3 * curve_of(CASCADE, wall)(places))) for wall in ("hub", "shroud")}
+    blade = CASCADE.changed({**walls, "channel.degree": degree, name: 0.5}).build()
     assert blade.promises.kept
+    # the foot passes the wall's joint elsewhere than the line u = const does that of the channel
+    inner, counts = np.unique(blade.knots.tip[6:-6], return_counts=True)
+    joints = inner[counts == 6 - degree]
+    assert len(joints) == 2 * (8 - degree - 1)
+    assert np.min(np.diff(joints)) > 1e-5
 
 
 def test_without_a_clearance_the_blades_channel_is_the_whole_one():

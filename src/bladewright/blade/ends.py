@@ -40,12 +40,14 @@ def trimmed_ends(
     ends = {}
     for wall, row in (("hub", 0), ("shroud", -1)):
         meridian = extended(exact.channel.curve(wall), -exact.before, 1.0 + exact.after)
-        inner = exact.full_channel.line(wall).joints()
+        name, inner = exact.design.ends[row], exact.channel.line(wall).joints()
+        if name == "tip":
+            # at a single knot the fitted meridian is smooth up to what it misses
+            inner = inner[np.sum(inner[:, None] == inner, axis=0) > 1]
         traces = [
             Trace(_end(side, row), meridian, exact.mapping.revolved, places, u[row, part], across[row, part])
             for side, part in ((upper, slice(None, len(places))), (lower, slice(len(places), None)))
         ]
-        name = exact.design.ends[row]
         ends[name] = _trimmed(traces, inner, wall, chord, None if like is None else like[name])
     return ends
 

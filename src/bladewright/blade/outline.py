@@ -26,7 +26,7 @@ class Wall:
     meridian: Curve
     """(x, r), or (x, z) in a cascade"""
     inner: Reals
-    """the meridian's parameters where it loses derivatives"""
+    """the meridian's inner knots where it loses derivatives, each as often as it occurs"""
     revolved: bool
     low: float
     high: float
@@ -82,7 +82,9 @@ class Trace:
             radius, across = points[..., 2], points[..., 1]
         target = np.stack([points[..., 0], radius], axis=-1)
         u = np.interp(s, self._places, self._u)
-        u = u + _foot_step(self.meridian, u, np.real(target))
+        # the second brings rounding, without which the derivative would be as far off as the first left the place
+        for _ in range(2):
+            u = u + _foot_step(self.meridian, u, np.real(target))
         return u + _foot_step(self.meridian, u, target), across
 
     def joints(self, wall: Wall) -> list[tuple[float, int]]:
@@ -94,10 +96,13 @@ class Trace:
         def passed(which: int, values: Reals, levels: Reals) -> list[float]:
             return list(map(float, crossings(lambda s: np.real(self(s)[which]), self._places, values, levels)))
 
-        return [
-            *((place, self.meridian.degree - 1) for place in passed(0, self._u, np.unique(wall.inner))),
-            *((place, 1) for place in passed(1, self.across, wall.seams)),
+        levels, counts = np.unique(wall.inner, return_counts=True)
+        own = [
+            (place, self.meridian.degree - int(times))
+            for times in np.unique(counts)
+            for place in passed(0, self._u, levels[counts == times])
         ]
+        return [*own, *((place, 1) for place in passed(1, self.across, wall.seams))]
 
 
 def _foot_step(meridian: Curve, u: Reals, target: Array) -> Array:

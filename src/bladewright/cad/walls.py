@@ -171,12 +171,16 @@ def _foot(line: Curve, points: Array) -> Array:
 
 def _joints(place: Along, column: int, knots: Array, degree: int, along: Curve) -> list[tuple[float, int]]:
     """Where an edge passes inner knots of its wall, with the derivatives of the trace that are continuous there."""
-    levels = np.unique(knots)[1:-1]
+    levels, counts = (found[1:-1] for found in np.unique(knots, return_counts=True))
     if len(levels) == 0:
         return []
     w = _spread(along.knots, 401)
     values = place(w)[:, column]
-    return [(float(at), degree - 1) for at in crossings(lambda s: place(s)[:, column], w, values, levels)]
+    return [
+        (float(at), degree - int(times))
+        for times in np.unique(counts)
+        for at in crossings(lambda s: place(s)[:, column], w, values, levels[counts == times])
+    ]
 
 
 def _interpolated(place: Along, stretch: Along, along: Curve, joints: list[tuple[float, int]]) -> Curve:
