@@ -110,20 +110,23 @@ def _check_within(blade: Blade, half: Array) -> None:
     check_pitch(camber_lines(exact.survey, duct), blade, _real_half(half))
 
 
-def _plane(
-    blade: Blade, full: ExactBlade, knots: PassageKnots, half: Array, turned: Turned, v: Reals
-) -> tuple[CamberLines, Mapping[str, WallHalf]]:
-    """Camber lines and walls' halves with stations at v (m,), hub first and shroud last."""
-    duct = Duct(
+def _duct(full: ExactBlade, knots: PassageKnots) -> Duct:
+    return Duct(
         channel=full.channel,
         start=knots.start,
         end=knots.end,
         upstream=knots.upstream,
         downstream=knots.downstream,
         revolved=full.mapping.revolved,
-        length=mean_length(full),
+        length=knots.length,
     )
-    camber = camber_lines(full.stations(v), duct, turned, np.unique(breaks_along_v(full)))
+
+
+def _plane(
+    blade: Blade, full: ExactBlade, knots: PassageKnots, half: Array, turned: Turned, v: Reals
+) -> tuple[CamberLines, Mapping[str, WallHalf]]:
+    """Camber lines and walls' halves with stations at v (m,), hub first and shroud last."""
+    camber = camber_lines(full.stations(v), _duct(full, knots), turned, np.unique(breaks_along_v(full)))
     touched = {wall: wall in blade.surfaces for wall in ("hub", "shroud")}
     return camber, halves(camber, touched, half, knots.opening)
 
@@ -131,6 +134,7 @@ def _plane(
 def _knots(blade: Blade, full: ExactBlade, half: Array, turned: Turned, reaches: tuple[float, float]) -> PassageKnots:
     rough = np.concatenate([np.zeros(DEGREE + 1), np.ones(DEGREE + 1)])
     start = PassageKnots(
+        length=mean_length(full),
         upstream=reaches[0],
         downstream=reaches[1],
         start=-full.before,
@@ -142,10 +146,11 @@ def _knots(blade: Blade, full: ExactBlade, half: Array, turned: Turned, reaches:
         across=rough,
         span=rough,
     )
+    check_duct(_duct(full, start))
     camber, walls = _plane(blade, full, start, half, turned, np.array([0.0, 1.0]))
-    check_duct(camber.duct)
     tolerance = RESERVE * TOLERANCE * blade.chord
     return PassageKnots(
+        length=start.length,
         upstream=start.upstream,
         downstream=start.downstream,
         start=start.start,
@@ -184,5 +189,6 @@ def _check_reached(made: Passage) -> None:
         return
     raise DesignError(
         f"passage: hub and shroud lie {made.wall_error:.2g} of the chord off their surfaces of revolution, at most "
-        f"{TOLERANCE:g} is allowed: lower the blade's tolerance, so that it has more knots along the chord"
+        f"{TOLERANCE:g} is allowed: shorten upstream or downstream, let the flow turn to a lower angle there, or lower "
+        "the blade's tolerance, so that it has more knots along the chord"
     )

@@ -72,10 +72,15 @@ class Duct:
 
         It interpolates the stream line in so many places that it misses it by less than 1e-12 of its length.
         """
-        along = stream_lines(self, Cascade(), np.array([0.0 if name == "hub" else 1.0]), self.upstream, self.downstream)
+        row = np.array([0.0 if name == "hub" else 1.0])
+        along = stream_lines(self, Cascade(), row, self.upstream, self.downstream)
         first, last = along.abscissa(np.array([-self.upstream, 1.0 + self.downstream]))[..., 0, :]
-        for spans in (32, 64, 128, 256):
-            knots = np.concatenate([np.zeros(WALL), np.linspace(0.0, 1.0, spans + 1), np.ones(WALL)])
+        joints = np.real(along.abscissa(self.joints())[0] - first) / np.real(last - first)
+        for spans in (24, 48, 96, 192):
+            inner = np.linspace(0.0, 1.0, spans + 1)[1:-1]
+            inner = inner[np.all(np.abs(inner[:, None] - joints) > 0.1 / spans, axis=1)]  # real: knots
+            inner = np.sort(np.concatenate([inner, np.repeat(joints, WALL - 2)]))
+            knots = np.concatenate([np.zeros(WALL + 1), inner, np.ones(WALL + 1)])
             sites = greville(knots, WALL)
             both = np.concatenate([sites, (sites[1:] + sites[:-1]) / 2.0])
             points = along.position(along.u_at((first + (last - first) * both)[None, :]))[0]

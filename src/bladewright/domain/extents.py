@@ -14,7 +14,7 @@ USUAL = 0.5
 """extent, in u, where none is given and the pitch needs no more"""
 STEP = 0.25
 """extents that the pitch needs are rounded up to multiples of this, so that small changes of a design keep them"""
-MOST = 50.0
+MOST = 20.0
 """extent, in u, above which a duct is refused"""
 ROOM = 1.25
 """extents of the walls' patches in which lines of equal v lie, over the bulge of the cross-lines at the edge"""

@@ -19,10 +19,12 @@ BLADE_AT = (0.25, 0.75)
 class PassageKnots:
     """Knots of the passage's faces over [0, 1], and the real numbers that place them."""
 
+    length: float
+    """mean meridional length of the blade [m], in which extents count"""
     upstream: float
-    """extent upstream of the leading edge, in the channel's u"""
+    """extent upstream of the leading edge, in u"""
     downstream: float
-    """extent downstream of the trailing edge, in the channel's u"""
+    """extent downstream of the trailing edge, in u"""
     start: float
     """u down to which the duct continues the channel's polynomials"""
     end: float

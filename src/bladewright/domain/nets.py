@@ -8,7 +8,7 @@ from bladewright.blade.knots import DEGREE
 from bladewright.domain.camber import CamberLines
 from bladewright.domain.knots import PIECES, PassageKnots
 from bladewright.domain.wall import WallHalf, widening
-from bladewright.numerics.elementary import Array
+from bladewright.numerics.elementary import Array, joined
 from bladewright.nurbs.basis import Reals, basis, greville
 
 
@@ -32,9 +32,7 @@ def native_nets(
         line = middle[..., wall.row, :]
         if wall.touched:
             line = _with_blade(line, sides[0 if wall.sign > 0 else 1][..., wall.row, :], knots)
-        net[..., 0, :] = line
-        net[..., -1, :] = shifted[f"periodic_{half}"][..., wall.row, :]
-        nets[name] = net
+        nets[name] = _edged(net, line, shifted[f"periodic_{half}"][..., wall.row, :], -2)
     for name, end in (("inlet", 0), ("outlet", -1)):
         nets[name] = _opening(camber, walls, nets, knots, end)
     return nets
@@ -77,7 +75,7 @@ def _wall(wall: WallHalf, knots: PassageKnots) -> Array:
 def _with_blade(line: Array, side: Array, knots: PassageKnots) -> Array:
     """The continued camber line's control points with those of a side's end between its edges."""
     first, last = (len(getattr(knots, piece)) - DEGREE - 1 for piece in ("inlet", "outlet"))
-    return np.concatenate([line[..., : first - 1, :], side, line[..., line.shape[-2] - last + 1 :, :]], axis=-2)
+    return joined([line[..., : first - 1, :], side, line[..., line.shape[-2] - last + 1 :, :]], -2)
 
 
 def _opening(
@@ -96,12 +94,18 @@ def _opening(
         points = camber.lines.mapping.in_space(x, radius, tangential)
         halves.append(through(through(points, knots.across, -2), knots.span, -3))
     net = np.concatenate([halves[1][..., ::-1, :], halves[0][..., 1:, :]], axis=-2)
-    for row, name in ((0, "hub"), (-1, "shroud")):
-        sides = nets[f"{name}_lower"][..., end, ::-1, :], nets[f"{name}_upper"][..., end, 1:, :]
-        net[..., row, :, :] = np.concatenate(sides, axis=-2)
-    for column, half in ((0, "lower"), (-1, "upper")):
-        net[..., column, :] = nets[f"periodic_{half}"][..., end, :, :]
-    return np.swapaxes(net, -3, -2)
+    hub, shroud = (
+        joined([nets[f"{name}_lower"][..., end, ::-1, :], nets[f"{name}_upper"][..., end, 1:, :]], -2)
+        for name in ("hub", "shroud")
+    )
+    lower, upper = (nets[f"periodic_{half}"][..., end, :, :] for half in ("lower", "upper"))
+    return np.swapaxes(_edged(_edged(net, hub, shroud, -3), lower, upper, -2), -3, -2)
+
+
+def _edged(net: Array, first: Array, last: Array, axis: int) -> Array:
+    """The net with other control points at both ends of an axis."""
+    inner = np.take(net, np.arange(1, net.shape[axis] - 1), axis=axis)
+    return joined([np.expand_dims(first, axis), inner, np.expand_dims(last, axis)], axis)
 
 
 def _shifted(camber: CamberLines, net: Array, by: Array) -> Array:

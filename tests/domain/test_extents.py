@@ -1,0 +1,55 @@
+"""Extents, angles and pitches that cannot be, each refused with its limit and cure."""
+
+import re
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from bladewright.domain.build import passage
+from bladewright.domain.checks import check_duct
+from bladewright.errors import DesignError
+
+
+@pytest.mark.parametrize("name", ["upstream", "downstream"])
+@pytest.mark.parametrize("value", [-0.5, 0.0, 1e-3, 21.0])
+def test_an_extent_out_of_range_is_refused_with_its_limits(rotor, name, value):
+    with pytest.raises(DesignError, match=rf"{name} is .*at least 0\.\d+.*at most 20"):
+        passage(rotor.blade, **{name: value})
+
+
+def test_the_least_extent_that_a_refusal_names_is_enough(rotor):
+    with pytest.raises(DesignError) as refused:
+        passage(rotor.blade, upstream=0.01, downstream=0.5)
+    least = float(re.search(r"at least ([\d.]+)", str(refused.value))[1])
+    made = passage(rotor.blade, upstream=least * 1.001, downstream=0.5)
+    assert min(share for share, _, _ in made.folds.values()) > 0.0
+
+
+@pytest.mark.parametrize(("value", "said"), [("far", "a number is needed"), (np.nan, "finite"), (True, "a number")])
+def test_what_is_no_number_is_no_extent(rotor, value, said):
+    with pytest.raises(DesignError, match=f"upstream.*{said}"):
+        passage(rotor.blade, upstream=value)
+
+
+@pytest.mark.parametrize("name", ["inlet_angle", "outlet_angle"])
+def test_an_angle_against_the_flow_is_refused(rotor, name):
+    with pytest.raises(DesignError, match=f"{name} is 95 deg: it must lie between -89 and 89"):
+        passage(rotor.blade, **{name: 95.0})
+
+
+def test_a_duct_whose_walls_cross_is_refused_with_the_extent_that_is_possible(fan):
+    with pytest.raises(DesignError, match=r"upstream is 12 .*axis|upstream is 12 .*folds back") as refused:
+        passage(fan.blade, upstream=12.0)
+    most = float(re.search(r"at most ([\d.]+) is possible", str(refused.value))[1])
+    assert 0.5 < most < 12.0
+    check_duct(replace(fan.passage.duct, upstream=0.95 * most))
+
+
+def test_a_blade_outside_its_passage_is_refused_with_span_and_distance(cascade):
+    """A pitch at which neighbours do not yet touch, but each stands in the other's half."""
+    design = cascade.blade.design
+    upper = design.thickness_upper
+    stout = tuple(2.0 * value if 1 < i < len(upper) - 1 else value for i, value in enumerate(upper))
+    blade = design.changed({"thickness_upper": stout, "pitch": 50.0}).build()
+    with pytest.raises(DesignError, match=r"pitch is 50: at v = 0\.\d+ the blade stands [\d.]+ mm outside its passage"):
+        passage(blade)
