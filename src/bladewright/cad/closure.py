@@ -21,6 +21,7 @@ from OCP.TopoDS import TopoDS, TopoDS_Edge, TopoDS_Face, TopoDS_Shape
 from OCP.TopTools import TopTools_IndexedDataMapOfShapeListOfShape
 
 from bladewright.cad.reopen import each
+from bladewright.numerics.elementary import Array
 
 PLACES = 401
 """points along an edge at which its gap is measured"""
@@ -36,6 +37,8 @@ class Joint:
     """[mm]"""
     gap: float
     """[mm] largest distance of the faces, and of the edge's own curve, at equal parameters"""
+    opening: float
+    """[mm] the same, its mean along the edge"""
     tolerance: float
     """[mm] of the edge"""
     vertex_tolerance: float
@@ -74,11 +77,13 @@ def closure(shape: TopoDS_Shape) -> Closure:
         beside = [TopoDS.Face_s(face) for face in owners.FindFromIndex(index)]
         properties = GProp_GProps()
         BRepGProp.LinearProperties_s(edge, properties)
+        apart = _distances(edge, beside)
         joints.append(
             Joint(
                 faces=tuple(k for k, face in enumerate(faces) if any(face.IsSame(own) for own in beside)),
                 length=properties.Mass(),
-                gap=_gap(edge, beside),
+                gap=float(apart.max()),
+                opening=float(apart.mean()),
                 tolerance=BRep_Tool.Tolerance_s(edge),
                 vertex_tolerance=_vertex_tolerance(edge),
             )
@@ -115,19 +120,15 @@ def _uses(shape: TopoDS_Shape) -> dict[int, tuple[int, int]]:
     return counts
 
 
-def _gap(edge: TopoDS_Edge, beside: list[TopoDS_Face]) -> float:
+def _distances(edge: TopoDS_Edge, beside: list[TopoDS_Face]) -> Array:
+    """(PLACES,) [mm] Largest distance of the faces' and the edge's own curves at equal parameters."""
     own = BRepAdaptor_Curve(edge)
     curves = [own, *(BRepAdaptor_Curve(edge, face) for face in beside)]
     parameters = np.linspace(own.FirstParameter(), own.LastParameter(), PLACES).tolist()
     traces = [np.array([curve.Value(place).Coord() for place in parameters]) for curve in curves]
-    return max(
-        (
-            float(np.sqrt(np.max(np.sum((one - other) ** 2, axis=-1))))
-            for index, one in enumerate(traces)
-            for other in traces[:index]
-        ),
-        default=0.0,
-    )
+    squares = [np.zeros(PLACES)]
+    squares += [np.sum((one - other) ** 2, axis=-1) for index, one in enumerate(traces) for other in traces[:index]]
+    return np.sqrt(np.max(squares, axis=0))
 
 
 def _vertex_tolerance(edge: TopoDS_Edge) -> float:

@@ -8,8 +8,9 @@ from typing import Protocol
 import cadquery
 import numpy as np
 from OCP.Bnd import Bnd_Box
+from OCP.BOPAlgo import BOPAlgo_MakerVolume
 from OCP.BRep import BRep_Tool
-from OCP.BRepAlgoAPI import BRepAlgoAPI_Cut
+from OCP.BRepAlgoAPI import BRepAlgoAPI_BuilderAlgo
 from OCP.BRepBndLib import BRepBndLib
 from OCP.BRepGProp import BRepGProp
 from OCP.GProp import GProp_GProps
@@ -101,16 +102,14 @@ def cut_passage(passage: Cuttable, *, span: float = PAST) -> CutPassage:
     with quiet():
         # fresh solids: the operation raises tolerances of what it is given
         sector, blade = body(passage.sector), body(passage.blade.extended(span))
-        found = _without(sector, blade, passage.name)
-        closed = closure(found)
-        solids = each(found, TopAbs_SOLID)
-        if (len(solids), closed.shells, closed.free, closed.crowded) != (1, 1, 0, 0) or not closed.valid:
+        whole = _rest(sector, blade, passage.name)
+        closed = closure(whole)
+        if closed.shells != 1 or closed.free or closed.crowded or not closed.valid:
             raise CadError(
-                f"OpenCASCADE leaves {len(solids)} solids, {closed.shells} shells and {closed.free} free edges of "
-                f"{passage.name!r}, where one closed valid solid is needed: the blade does not stand within its sector "
+                f"OpenCASCADE leaves a solid of {closed.shells} shells with {closed.free} free edges of "
+                f"{passage.name!r}, where one closed valid shell is needed: the blade does not stand within its sector "
                 "from wall to wall; extend it further, or look at the pitch"
             )
-        whole = TopoDS.Solid_s(solids[0])
         faces = _named(whole, sector, blade)
         return CutPassage(
             name=f"{passage.name}-cut",
@@ -145,19 +144,40 @@ def write_cut(cut: CutPassage, path: str | os.PathLike[str], *, schema: Schema =
         )
 
 
-def _without(sector: Body, blade: Body, name: str) -> TopoDS_Shape:
-    arguments, tools = TopTools_ListOfShape(), TopTools_ListOfShape()
-    arguments.Append(sector.solid)
-    tools.Append(blade.solid)
-    operation = BRepAlgoAPI_Cut()
-    operation.SetArguments(arguments)
-    operation.SetTools(tools)
+def _rest(sector: Body, blade: Body, name: str) -> TopoDS_Solid:
+    """What is left of the sector.
+
+    The kernel divides the faces of sector and blade by each other, and makes all volumes that those close up; one of
+    them has the sector's outer faces. Its own subtraction returns whole sectors at times: design/cad_cutting.py.
+    """
+    both, divided = TopTools_ListOfShape(), TopTools_ListOfShape()
+    both.Append(sector.solid)
+    both.Append(blade.solid)
+    division = BRepAlgoAPI_BuilderAlgo()
+    division.SetArguments(both)
     # edges of the sector lie so far off its walls, and what is nearer than that is the same
-    operation.SetFuzzyValue(max(sector.gap, blade.gap))
-    operation.Build()
-    if not operation.IsDone() or operation.Shape().IsNull():
-        raise CadError(f"OpenCASCADE cannot cut the blade out of the sector of {name!r}; cut with a longer extension")
-    return operation.Shape()
+    division.SetFuzzyValue(max(sector.gap, blade.gap))
+    division.Build()
+    if not division.IsDone() or division.Shape().IsNull():
+        raise CadError(f"OpenCASCADE cannot divide the sector of {name!r} by its blade; try a longer extension")
+    for face in each(division.Shape(), TopAbs_FACE):
+        divided.Append(face)
+    volumes = BOPAlgo_MakerVolume()
+    volumes.SetArguments(divided)
+    volumes.SetIntersect(False)
+    volumes.Perform()
+    outer = [BRep_Tool.Surface_s(face) for label, face in sector.faces.items() if label not in {"hub", "shroud"}]
+    parts = [
+        TopoDS.Solid_s(part)
+        for part in each(volumes.Shape(), TopAbs_SOLID)
+        if any(BRep_Tool.Surface_s(TopoDS.Face_s(face)) in outer for face in each(part, TopAbs_FACE))
+    ]
+    if len(parts) != 1:
+        raise CadError(
+            f"{len(parts)} parts of the sector and the blade of {name!r} reach its outer faces, where only the passage "
+            "may: the blade leaves its sector; look at the pitch"
+        )
+    return parts[0]
 
 
 def _named(whole: TopoDS_Solid, sector: Body, blade: Body) -> dict[str, TopoDS_Face]:
@@ -186,7 +206,7 @@ def _measured(whole: TopoDS_Solid, closed: Closure) -> Measured:
     BRepBndLib.Add_s(whole, box)
     size = float(np.sqrt(box.SquareExtent()))
     # the volume is a flux of a third of the way from the middle
-    leak = sum(joint.gap * joint.length for joint in closed.joints) * size / 6.0
+    leak = sum(joint.opening * joint.length for joint in closed.joints) * size / 6.0
     return Measured(
         volume=volume / MM**3,
         area=area.Mass() / MM**2,
