@@ -15,7 +15,7 @@ PARAMETERS = {
 def volume_and_poles(case, design):
     """Poles, and the volume where no trimmed tip makes it long to integrate."""
     made = passage(design.build(knots=case.blade.knots), knots=case.passage.knots, **case.asked)
-    poles = [made.surfaces[name].control_points.ravel() / case.blade.chord for name in ("hub_upper", "inlet")]
+    poles = [made.surfaces[name].control_points.ravel() / case.blade.chord for name in ("hub_upper", "blade_upper")]
     if "tip" not in made.surfaces:
         poles.append(np.atleast_1d(made.properties.volume / case.blade.chord**3))
     return np.concatenate(poles)

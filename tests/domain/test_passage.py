@@ -94,7 +94,8 @@ def test_the_meridians_of_the_duct_continue_those_of_the_channel(case):
     for wall in ("hub", "shroud"):
         points = channel.curve(wall)(np.linspace(0, 1, 41))
         distance = closest_on_curve(case.passage.duct.wall(wall), points).distances
-        assert np.max(distance) < 1e-11 * case.blade.chord
+        # a thousandth of what the native walls are allowed
+        assert np.max(distance) < 1e-10 * case.blade.chord
 
 
 def test_no_patch_of_a_wall_folds(case):
