@@ -12,7 +12,7 @@ from bladewright.files.examples import example_text, examples
 from bladewright.files.reading import design_from
 
 NAMES = sorted(examples())
-OWN = ("centrifugal-impeller", "mixed-flow-pump", "propeller", "turbine-section")
+OWN = ("centrifugal-impeller", "compressor-stator", "fan-rotor", "mixed-flow-pump", "propeller", "turbine-section")
 
 
 @cache
@@ -96,8 +96,11 @@ def test_the_impeller_turns_from_axial_to_radial_and_its_trailing_edge_is_not_le
     lines = blade("centrifugal-impeller").exact.stations(v).lines
     slope = lines.position(np.array([0.0, 1.0]), 1)
     climb = np.degrees(np.arctan2(slope[..., 1], slope[..., 0]))
-    assert climb[:, 0] == pytest.approx(np.zeros(21), abs=1e-9)
-    assert climb[:, 1] == pytest.approx(np.full(21, 90.0), abs=1e-9)
+    # the clearance falls by 0.1 mm, and at both ends the shroud moves on by 80 mm a unit of u, the tip by within 2 %
+    slope = np.degrees(np.arctan(0.1 / 80.0))
+    assert climb[0] == pytest.approx([0.0, 90.0], abs=1e-9)
+    assert climb[-1] == pytest.approx([slope, 90.0 + slope], abs=0.03 * slope)
+    assert np.all(np.diff(climb, axis=0) > 0.0)
     assert radius_out == pytest.approx(np.full(21, 0.1), abs=1e-8)
     assert np.all(radius_in < radius_out)
     # the staggers are rounded to 0.1 deg, which on the hub's m' of 2.9 is 0.3 deg
@@ -126,3 +129,25 @@ def test_the_pump_leaves_at_about_45_deg_and_raises_the_angular_momentum():
     assert np.all(radius_out > 1.3 * radius_in)
     # the blade turns the relative flow towards the meridional direction
     assert np.all(np.real(stations.angle_out) > np.real(stations.angle_in))
+
+
+def test_the_stator_takes_the_swirl_of_the_rotor_before_it_and_hangs_from_the_casing():
+    v = np.linspace(0.0, 1.0, 21)
+    stations = blade("compressor-stator").exact.stations(v)
+    (_, radius, _), (_, _, _) = edges("compressor-stator", v)
+    flow = np.degrees(np.arctan(0.95 * 206e-3 / radius))
+    incidence = flow - np.degrees(np.real(stations.angle_in))
+    assert np.all((incidence > 0.5) & (incidence < 2.0))
+    assert blade("compressor-stator").design.ends == ("tip", "shroud")
+    height = radius[-1] - 182e-3
+    assert radius[0] - 182e-3 == pytest.approx(0.01 * height, rel=0.1)
+
+
+@pytest.mark.parametrize(("name", "share"), [("fan-rotor", 0.005), ("centrifugal-impeller", 0.03)])
+def test_a_wheel_without_a_shroud_stands_off_it_by_a_small_part_of_its_height(name, share):
+    exact = blade(name).exact
+    places = np.array([0.0, 1.0])
+    hub, shroud = (exact.full_channel.curve(wall)(places) for wall in ("hub", "shroud"))
+    clearance = exact.clearance.distance(places)
+    assert np.all(clearance < share * np.linalg.norm(shroud - hub, axis=-1))
+    assert "tip" in blade(name).surfaces
