@@ -68,6 +68,22 @@ BAD_FILES = {
         replaced("leading_edge ", "leading_edge = [[1, 2]]"),
         ["channel.leading_edge", "1", "at least 2"],
     ),
+    "negative clearance": (replaced("tip_clearance", "tip_clearance = -0.5"), ["tip_clearance", "-0.5", "positive"]),
+    "text for a clearance": (replaced("tip_clearance", 'tip_clearance = "0.6"'), ["tip_clearance", '"0.6"', "a pair"]),
+    "three clearances": (
+        replaced("tip_clearance", "tip_clearance = [1, 2, 3]"),
+        ["tip_clearance", "[1, 2, 3]", "pair"],
+    ),
+    "one clearance in a list": (replaced("tip_clearance", "tip_clearance = [1]"), ["tip_clearance[1]", "missing"]),
+    "an infinite clearance": (replaced("tip_clearance", "tip_clearance = [1, inf]"), ["tip_clearance[1]", "finite"]),
+    "a clearance at each end": (
+        replaced("tip_clearance", "tip_clearance = 1\nhub_clearance = 1"),
+        ["tip_clearance", "hub_clearance", "stands on one"],
+    ),
+    "a clearance beyond the span": (
+        replaced("tip_clearance", "tip_clearance = 160"),
+        ["tip_clearance is 160 mm", "u = ", "the hub is", "smaller than the span"],
+    ),
     "a name that is a path": (replaced("name", 'name = "a/b"'), ["name", "a/b"]),
     "a name that is no text": (replaced("name", r'name = "a\u0000b"'), ["name", "printable"]),
     "pitch in an annulus": (replaced("leading_edge_theta", "pitch = 3.0"), ["pitch", "annular", "blade_count"]),

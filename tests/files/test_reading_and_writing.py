@@ -69,9 +69,10 @@ def blades(**fields):
 
 
 place = st.none() | law(-1e3, 1e3)
+clearance = st.none() | length | st.tuples(length, length)
 DESIGNS = {
-    "unified": blades(blade_count=st.integers(1, 10_000), leading_edge_theta=place)
-    | blades(arrangement=st.just("linear"), pitch=length, leading_edge_y=place),
+    "unified": blades(blade_count=st.integers(1, 10_000), leading_edge_theta=place, tip_clearance=clearance)
+    | blades(arrangement=st.just("linear"), pitch=length, leading_edge_y=place, hub_clearance=clearance),
     "unified-section": st.builds(
         UnifiedSection,
         **labels,
