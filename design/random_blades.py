@@ -59,7 +59,19 @@ def random_fields(seed):
     else:
         blade["blade_count"] = int(np.clip(round(2.0 * np.pi * radius / length * solidity), 1, 200))
         blade["leading_edge_theta"] = law(draw, draw.uniform(-180.0, 180.0), 4.0, (-9e9, 9e9))
-    return {**blade, "channel": Channel(**channel)}
+    return {**blade, **random_clearance(seed, channel), "channel": Channel(**channel)}
+
+
+def random_clearance(seed, channel):
+    """A gap at one end of some blades, of a thousandth to a tenth of the span, drawn apart from the rest."""
+    draw = np.random.default_rng([seed, 1])
+    if draw.random() > 0.3:
+        return {}
+    ends = [np.array(channel[edge][-1]) - np.array(channel[edge][0]) for edge in ("leading_edge", "trailing_edge")]
+    spans = [float(np.sqrt(np.sum(end**2))) for end in ends]
+    gap = tuple(float(span * np.exp(draw.uniform(np.log(1e-3), np.log(0.1)))) for span in spans)
+    name = "tip_clearance" if draw.random() < 0.7 else "hub_clearance"
+    return {name: gap if draw.random() < 0.5 else min(gap)}
 
 
 def random_channel(draw, wild, *, linear, size):

@@ -25,8 +25,14 @@ from random_blades import random_design, random_fields
 
 LIMIT = 60.0
 """seconds of processor time that a design may take; ten times as much on the clock"""
+RING = 1e-6
+"""share of the ring by which blade count times passage and blade may differ from it"""
+OPEN = 1e-9
+"""summed area vectors of a passage's faces over their area; a trimmed tip is followed within 1e-9 of the chord"""
 SAMPLES = 2000
 """points on each face, each way, in the round trip"""
+FINE = frozenset({"built", "blade only", "refused"})
+"""what may become of a design"""
 REASONS = {
     "an angle must lie between": "an angle of 90 deg or more",
     "the sides cross": "the sides of a section cross",
@@ -42,6 +48,10 @@ REASONS = {
     "native surfaces reach": "the tolerance is not reached within 200 x 100 poles",
     "the blade winds": "the blade winds around the axis",
     "cannot be followed": "an end cannot be followed on its wall",
+    "outside its": "the blade stands outside its passage",
+    "its face": "a patch of a wall would fold over",
+    "the continued channel": "the continued channel folds over or meets the axis",
+    "off their surfaces of revolution": "walls are not within 1e-7 of their surfaces of revolution",
 }
 """what a refusal says, and what it is counted as"""
 
@@ -52,7 +62,7 @@ class Outcome:
 
     seed: int
     kind: str
-    """built, refused, failed, crashed or hung"""
+    """built, blade only (without its passage), refused, failed, crashed or hung"""
     message: str
     seconds: float
     shape: str
@@ -74,11 +84,29 @@ def judged(seed, directory, samples=SAMPLES):
         broken = {name: getattr(blade.promises, name) for name in blade.promises.limits}
         return "failed", f"a promise is not kept: {broken}, limits {blade.promises.limits}"
     trip = cad.write(blade, Path(directory) / f"{design.name}.step", samples=samples)
-    return (
-        ("built", f"{blade.knots.poles[0]} x {blade.knots.poles[1]} poles")
-        if trip.passed
-        else ("failed", f"round trip: {'; '.join(trip.failures)}")
-    )
+    if not trip.passed:
+        return "failed", f"round trip: {'; '.join(trip.failures)}"
+    return with_passage(blade)
+
+
+def with_passage(blade):
+    """What becomes of the passage around a blade that is built."""
+    from bladewright.domain.build import passage
+    from bladewright.errors import DesignError
+
+    poles = f"{blade.knots.poles[0]} x {blade.knots.poles[1]} poles"
+    try:
+        made = passage(blade)
+    except DesignError as error:
+        wrong = unclear(str(error))
+        return ("failed", f"unclear refusal ({wrong}): {error}") if wrong else ("blade only", str(error))
+    filled = (blade.design.blade_count or 1) * (made.properties.volume + blade.properties.volume)
+    off = filled / made.ring - 1.0
+    if not -RING < off < RING:
+        return "failed", f"blades and passages differ from the ring by {off:.2g} of its volume"
+    if made.properties.openness > OPEN:
+        return "failed", f"the passage is open by {made.properties.openness:.2g} of its area"
+    return "built", f"{poles}, passage {off:.1e} off the ring"
 
 
 def unclear(message):
@@ -87,6 +115,7 @@ def unclear(message):
     from bladewright.blade.unified import UnifiedBlade
 
     names = [each.name for kind in (UnifiedBlade, Channel) for each in fields(kind)]
+    names += ["upstream", "downstream"]
     if "\n" in message or not 40 <= len(message) <= 500:
         return "not one paragraph"
     if not re.search(rf"\b({'|'.join(names)})\b", message):
@@ -192,30 +221,35 @@ def report(found, command):
         "",
         f"`{command}`:",
         f"{len(found)} designs, each refused with one clear paragraph that names a parameter, or built into a STEP",
-        "solid that passes its round trip and keeps every promise.",
+        "solid that passes its round trip and keeps every promise, and a passage whose volume fills the ring.",
         "",
         "| | designs | processor seconds each: median | 95 % | most |",
         "|---|---|---|---|---|",
     ]
-    for kind in ("built", "refused", "failed", "crashed", "hung"):
+    for kind in ("built", "blade only", "refused", "failed", "crashed", "hung"):
         times = np.array([outcome.seconds for outcome in by_kind[kind]])
         figures = [*np.quantile(times, [0.5, 0.95, 1.0])] if len(times) else []
         row = [f"{figure:.2f}" for figure in figures] or [""] * 3
         lines.append(f"| {kind} | {len(times)} | {' | '.join(row)} |")
-    lines += ["", "| channel | built | refused |", "|---|---|---|"]
+    lines += ["", "| channel | built | blade only | refused |", "|---|---|---|---|"]
     for shape in sorted({outcome.shape for outcome in found}):
-        row = [sum(outcome.shape == shape for outcome in by_kind[kind]) for kind in ("built", "refused")]
-        lines.append(f"| {shape} | {row[0]} | {row[1]} |")
+        row = [sum(outcome.shape == shape for outcome in by_kind[kind]) for kind in ("built", "blade only", "refused")]
+        lines.append(f"| {shape} | {row[0]} | {row[1]} | {row[2]} |")
     lines += ["", "| refused because | designs | for example |", "|---|---|---|"]
-    reasons = Counter(reason_of(outcome.message) for outcome in by_kind["refused"])
-    for reason, count in reasons.most_common():
-        example = next(outcome for outcome in by_kind["refused"] if reason_of(outcome.message) == reason)
-        lines.append(f"| {reason} | {count} | seed {example.seed}: {example.message} |")
+    lines += _reasons(by_kind["refused"])
+    lines += ["", "| no passage because | designs | for example |", "|---|---|---|", *_reasons(by_kind["blade only"])]
     bad = [outcome for kind in ("failed", "crashed", "hung") for outcome in by_kind[kind]]
     if bad:
         lines += ["", "## Failures", ""]
         lines += [f"* seed {o.seed} {o.kind}: {o.message.strip().splitlines()[-1]}" for o in bad]
     return "\n".join(lines) + "\n"
+
+
+def _reasons(refused):
+    reasons = Counter(reason_of(outcome.message) for outcome in refused)
+    for reason, count in reasons.most_common():
+        example = next(outcome for outcome in refused if reason_of(outcome.message) == reason)
+        yield f"| {reason} | {count} | seed {example.seed}: {example.message} |"
 
 
 def main():
@@ -239,7 +273,7 @@ def main():
     print(text)
     if given.record:
         given.record.write_text(text, encoding="utf-8")
-    return 1 if any(outcome.kind not in {"built", "refused"} for outcome in found) else 0
+    return 1 if any(outcome.kind not in FINE for outcome in found) else 0
 
 
 def _show(seeds):

@@ -23,20 +23,22 @@ def outcomes():
 
 def test_each_random_design_is_refused_with_a_reason_or_passes_its_round_trip(outcomes):
     assert sorted(outcome.seed for outcome in outcomes) == list(range(COUNT))
-    assert [outcome for outcome in outcomes if outcome.kind not in {"built", "refused"}] == []
+    assert [outcome for outcome in outcomes if outcome.kind not in random_designs.FINE] == []
 
 
 @pytest.mark.slow
 def test_each_of_two_thousand_random_designs_is_refused_with_a_reason_or_passes_its_round_trip():
     found = random_designs.outcomes(range(2000), jobs=2)
-    assert [outcome for outcome in found if outcome.kind not in {"built", "refused"}] == []
+    assert [outcome for outcome in found if outcome.kind not in random_designs.FINE] == []
 
 
 def test_a_fair_share_of_random_designs_is_built_and_another_refused(outcomes):
     kinds = Counter(outcome.kind for outcome in outcomes)
-    assert kinds["built"] >= COUNT // 4
+    assert kinds["built"] + kinds["blade only"] >= COUNT // 4
+    # each with a passage that fills its ring
+    assert kinds["built"] >= COUNT // 8
     assert kinds["refused"] >= COUNT // 4
-    assert len({outcome.shape for outcome in outcomes if outcome.kind == "built"}) >= 4
+    assert len({outcome.shape for outcome in outcomes if outcome.kind == "built"}) >= 3
 
 
 def test_a_random_design_follows_from_its_seed_alone():

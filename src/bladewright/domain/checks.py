@@ -7,7 +7,6 @@ from bladewright.domain.camber import CamberLines
 from bladewright.domain.duct import Duct
 from bladewright.domain.knots import PIECES
 from bladewright.errors import DesignError
-from bladewright.numerics.elementary import cross2
 from bladewright.nurbs.basis import Reals
 from bladewright.section.checks import UNITS
 
@@ -17,28 +16,15 @@ SIDES = np.concatenate([np.linspace(0.0, 0.05, 25)[:-1], np.linspace(0.05, 0.95,
 
 def check_duct(duct: Duct) -> None:
     """Refuse extents over which the continued channel folds over or meets the axis."""
-    v = np.linspace(0.0, 1.0, 33)
-    for name, u in (
-        ("upstream", np.linspace(-duct.upstream, 0.0, 41)[::-1]),
-        ("downstream", np.linspace(1.0, 1.0 + duct.downstream, 41)),
-    ):
-        powers = duct.stream_polynomials(v, u)
-        while powers.ndim > 4:
-            powers = powers[0]
-        position, slope = np.real(powers[..., 0, :]), np.real(powers[..., 1, :])
-        across = np.diff(position, axis=0)
-        turn = np.minimum(cross2(slope[:-1], across), cross2(slope[1:], across))
-        size = np.sqrt(np.sum(slope[:-1] ** 2, axis=-1) * np.sum(across**2, axis=-1))
-        folded = np.any(turn <= 1e-4 * np.median(size), axis=0)
-        sunk = np.any(position[..., 1] <= 0.0, axis=0) if duct.revolved else np.zeros_like(folded)
-        if not np.any(folded | sunk):
+    for name in ("upstream", "downstream"):
+        found = duct.limit(name)
+        if found is None:
             continue
-        first = int(np.argmax(folded | sunk))
-        most = (float(u[first - 1]) - float(u[0])) * (1.0 if name == "downstream" else -1.0) if first else 0.0
-        what = "meets the machine axis" if sunk[first] else "folds back on itself, as hub and shroud cross"
+        what = "meets the machine axis" if found.sunk else "folds back on itself, as hub and shroud cross"
         raise DesignError(
             f"{name} is {getattr(duct, name):g} meridional lengths of the blade: the continued channel {what} at "
-            f"u = {u[first]:.3f}; at most {most:.3g} is possible, or let hub and shroud leave the blade more parallel"
+            f"u = {found.u:.3f}; at most {found.most:.3g} is possible, or let hub and shroud leave the blade more "
+            "parallel"
         )
 
 
@@ -78,7 +64,8 @@ def check_folds(shares: dict[str, tuple[float, float, float]]) -> None:
         if not share > 0.0:
             raise DesignError(
                 f"passage: its face {name} folds over at u = {u:.3f}, v = {v:.3f} (Jacobian {share:.3g} of its median, "
-                "it must be positive): lengthen upstream or downstream, or lower the angle to which it turns"
+                "it must be positive): thin the blade beside its edges, take a larger pitch, lengthen upstream or "
+                "downstream, or lower the angle to which the flow turns there"
             )
 
 

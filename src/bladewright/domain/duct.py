@@ -2,13 +2,14 @@
 
 from dataclasses import dataclass
 from math import comb, factorial
+from typing import NamedTuple
 
 import numpy as np
 
 from bladewright.blade.mapping import Cascade, Conformal
 from bladewright.blade.meridional import Meridional
 from bladewright.blade.streamlines import StreamLines, stream_lines
-from bladewright.numerics.elementary import Array
+from bladewright.numerics.elementary import Array, cross2
 from bladewright.nurbs.basis import Reals, basis, greville
 from bladewright.nurbs.curve import Curve
 
@@ -63,6 +64,25 @@ class Duct:
                 total[..., i, : found.shape[-2], :] = found
         return total
 
+    def limit(self, name: str) -> "Limit | None":
+        """Where, in steps of a fortieth of `upstream` or `downstream`, the duct folds over or meets the axis."""
+        v = np.linspace(0.0, 1.0, 33)
+        u = np.linspace(0.0, -self.upstream, 41) if name == "upstream" else np.linspace(1.0, 1.0 + self.downstream, 41)
+        powers = self.stream_polynomials(v, u)
+        while powers.ndim > 4:
+            powers = powers[0]
+        position, slope = np.real(powers[..., 0, :]), np.real(powers[..., 1, :])
+        across = np.diff(position, axis=0)
+        turn = np.minimum(cross2(slope[:-1], across), cross2(slope[1:], across))
+        size = np.sqrt(np.sum(slope[:-1] ** 2, axis=-1) * np.sum(across**2, axis=-1))
+        folded = np.any(turn <= 1e-4 * np.median(size), axis=0)
+        sunk = np.any(position[..., 1] <= 0.0, axis=0) if self.revolved else np.zeros_like(folded)
+        if not np.any(folded | sunk):
+            return None
+        first = int(np.argmax(folded | sunk))
+        before = float(u[first - 1] - u[0]) * (1.0 if name == "downstream" else -1.0) if first else 0.0
+        return Limit(u=float(u[first]), sunk=bool(sunk[first]), most=before)
+
     def lines(self, v: Reals) -> StreamLines:
         """Stream lines at v (m,) from inlet to outlet, with the conformal length m' - m in a cascade - as abscissa."""
         return stream_lines(self, Conformal() if self.revolved else Cascade(), v, self.upstream, self.downstream)
@@ -89,6 +109,16 @@ class Duct:
             if np.max(np.sum(miss**2, axis=-1)) < (1e-12 * float(np.real(last - first))) ** 2:
                 break
         return Curve(control_points=net, knots=knots, degree=WALL)
+
+
+class Limit(NamedTuple):
+    """Where a duct ends."""
+
+    u: float
+    sunk: bool
+    """whether it meets the axis there; it folds over otherwise"""
+    most: float
+    """the extent that is possible"""
 
 
 FADING = np.array([1.0, 0.0, -3.0, 2.0])

@@ -1,5 +1,7 @@
 """How far a duct must reach past the blade so that no patch of its walls folds."""
 
+from dataclasses import replace
+
 import numpy as np
 
 from bladewright.blade.exact import ExactBlade
@@ -27,13 +29,14 @@ def extents(
 ) -> tuple[float, float]:
     """Extents up- and downstream in u: those given where they suffice, else the usual or the needed ones.
 
-    Raises DesignError where one is not a number above what the nose and the pitch need.
+    A usual one is shortened where the duct would fold over or meet the axis. Raises DesignError where one is not a
+    number above what the nose and the pitch need.
     """
     found = []
     for past, (name, given) in enumerate((("upstream", upstream), ("downstream", downstream))):
         needed = _needed(full, half_pitch, past)
         if given is None:
-            found.append(max(USUAL, STEP * float(np.ceil(needed / STEP))))
+            found.append(_usual(full, name, needed))
             continue
         value = float(np.real(number(name, given)))
         if not needed <= value <= MOST:
@@ -43,6 +46,18 @@ def extents(
             )
         found.append(value)
     return found[0], found[1]
+
+
+def _usual(full: ExactBlade, name: str, needed: float) -> float:
+    """The usual extent; more where it is needed, less where the duct ends before that."""
+    wanted = max(USUAL, STEP * float(np.ceil(needed / STEP)))
+    duct = _camber(full).duct
+    limit = replace(
+        duct,
+        upstream=wanted if name == "upstream" else duct.upstream,
+        downstream=wanted if name == "downstream" else duct.downstream,
+    ).limit(name)
+    return wanted if limit is None else max(needed, 0.8 * limit.most)
 
 
 def mean_length(exact: ExactBlade) -> float:

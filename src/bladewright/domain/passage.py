@@ -118,6 +118,12 @@ class Passage:
         return volume if self.duct.revolved else volume * 2.0 * self.walls["hub_upper"].half_pitch
 
     @cached_property
+    def ring_error(self) -> float:
+        """How much more than the ring blade count x (passage + blade) fill, of the ring; one of each in a cascade."""
+        share = (self.blade.design.blade_count or 1) * (self.properties.volume + self.blade.properties.volume)
+        return float(np.real(share / self.ring - 1.0))
+
+    @cached_property
     def sector(self) -> Sector:
         """Passage and blade together, between exact surfaces of revolution."""
         faces = {name: cast(Surface, face) for name, face in self.whole.items() if name != "tip"}
