@@ -10,7 +10,7 @@ import pytest
 import bladewright
 
 PACKAGE = Path(bladewright.__file__).parent
-HEAVY = ("OCP", "cadquery", "matplotlib", "numba", "pydantic", "scipy")
+HEAVY = ("OCP", "cadquery", "gmsh", "matplotlib", "numba", "pydantic", "scipy")
 SOURCES = sorted(PACKAGE.rglob("*.py"))
 
 
@@ -31,13 +31,13 @@ def test_importing_the_package_loads_no_heavy_library() -> None:
     assert not loaded_by("import bladewright").intersection(HEAVY)
 
 
-def test_no_room_but_cad_and_the_command_line_loads_opencascade() -> None:
+def test_no_room_but_cad_and_the_command_line_loads_opencascade_and_none_loads_gmsh() -> None:
     rooms = [name for name in map(module_name, SOURCES) if name.split(".")[1:2] not in (["cad"], ["cli"], ["__main__"])]
-    assert not loaded_by(f"import {', '.join(rooms)}").intersection({"OCP", "cadquery"})
+    assert not loaded_by(f"import {', '.join(rooms)}").intersection({"OCP", "cadquery", "gmsh"})
 
 
 def test_the_command_line_starts_without_opencascade() -> None:
-    assert not loaded_by("import bladewright.cli").intersection({"OCP", "cadquery", "matplotlib"})
+    assert not loaded_by("import bladewright.cli").intersection({"OCP", "cadquery", "gmsh", "matplotlib"})
 
 
 @pytest.mark.parametrize("name", bladewright.__all__)

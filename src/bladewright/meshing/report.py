@@ -74,6 +74,7 @@ class MeshReport:
     algorithms: tuple[str, ...]
     """what meshed the faces, then the volume, and improved it"""
     seconds: float
+    """that the mesh took, measuring apart"""
 
     @property
     def failures(self) -> tuple[str, ...]:

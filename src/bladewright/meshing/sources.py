@@ -31,7 +31,7 @@ class Source:
 
 
 def sources(passage: Passage, curvature: float) -> tuple[Source, ...]:
-    """The blade's edges, with `curvature` elements on a circle as tight as them, and its tip, with one across the gap."""
+    """The blade's edges, with `curvature` elements on a circle as tight, and its tip, with one across the gap."""
     upper, tip = passage.surfaces["blade_upper"], passage.surfaces.get("tip")
     found = [_edge(upper, u, curvature) for u in (0.0, 1.0)] if isinstance(upper, Surface) else []
     if isinstance(tip, TrimmedSurface):
