@@ -1,12 +1,13 @@
 """Derivatives of the control nets of what a design builds, and gradients of what is known at points of them."""
 
 from collections.abc import Callable, Mapping, Sequence
+from functools import partial
 from types import MappingProxyType
 from typing import Any
 
 import numpy as np
 
-from bladewright.blade.blade import Blade
+from bladewright.blade.unified import UnifiedBlade
 from bladewright.derivatives.jacobian import Bars, NetJacobian, Shape
 from bladewright.derivatives.patterns import Patterns, chosen
 from bladewright.derivatives.steps import built, stepped
@@ -16,7 +17,7 @@ from bladewright.errors import DerivativeError
 from bladewright.numerics.elementary import Array
 from bladewright.nurbs.trimmed import TrimmedSurface
 
-Part = Callable[[Any], Any]
+Part = Callable[..., Any]
 """what is made of a design's build, such as its passage; it has `surfaces` or `curves` by name"""
 
 
@@ -31,23 +32,24 @@ def net_jacobian(
     """Derivatives of the control points of what a design builds, by all its parameters or those that `free` matches.
 
     `names` are the surfaces wanted, where None all that are not trimmed; `knots` those to hold, where None the design's
-    own; `of` makes of the build the body whose surfaces are meant, such as `bladewright.passage`. Raises
-    DerivativeError for an unknown name, DesignError where a pattern matches no parameter or the design cannot be built.
+    own; `of` makes of the build the body whose surfaces are meant, such as `bladewright.passage`, and takes that body's
+    `knots` where it has some. Raises DerivativeError for an unknown name, DesignError where a pattern matches no
+    parameter or the design cannot be built.
     """
     base = built(design, knots)
     paths = chosen(design, free)
     body = base if of is None else of(base)
-    faces = _faces(body)
+    faces = faces_of(body)
     wanted = tuple(name for name, face in faces.items() if not isinstance(face, TrimmedSurface))
     for name in wanted if names is None else names:
         if name not in faces:
             raise DerivativeError(unknown(f"'{name}'", name, list(faces)))
     wanted = wanted if names is None else tuple(dict.fromkeys(names))
-    shapes = {name: _whole(faces[name]) for name in wanted}
+    shapes = {name: whole(faces[name]) for name in wanted}
     return NetJacobian(
         paths=paths,
         shapes=MappingProxyType(shapes),
-        homogeneous=MappingProxyType(_rates(design, base, of, paths, shapes)),
+        homogeneous=MappingProxyType(_rates(design, base, _held(of, body), paths, shapes)),
     )
 
 
@@ -66,25 +68,33 @@ def pullback(
 def _rates(
     design: Design, base: Any, of: Part | None, paths: tuple[str, ...], shapes: Mapping[str, Shape]
 ) -> dict[str, Array]:
-    if of is None and isinstance(base, Blade) and set(shapes) <= {"upper", "lower"}:
+    if of is None and isinstance(design, UnifiedBlade) and set(shapes) <= {"upper", "lower"}:
         pairs = list(side_tangents(base, paths)) if paths else []
         sides = [np.concatenate([pair[side] for pair in pairs]) for side in (0, 1)]
         return {name: sides[("upper", "lower").index(name)] for name in shapes}
     rates = {name: np.empty((len(paths), *shape.homogeneous.shape)) for name, shape in shapes.items()}
     for place, carrying in enumerate(stepped(design, base, paths)):
-        faces = _faces(carrying if of is None else of(carrying))
+        faces = faces_of(carrying if of is None else of(carrying))
         for name in shapes:
-            rates[name][place] = np.imag(_whole(faces[name]).homogeneous) / STEP
+            rates[name][place] = np.imag(whole(faces[name]).homogeneous) / STEP
     return rates
 
 
-def _faces(body: Any) -> Mapping[str, Any]:
+def _held(of: Part | None, body: Any) -> Part | None:
+    """The same part, at the knots of `body`, where it has some."""
+    knots = getattr(body, "knots", None)
+    return of if of is None or knots is None else partial(of, knots=knots)
+
+
+def faces_of(body: Any) -> Mapping[str, Any]:
+    """Surfaces or curves by name; raises DerivativeError where there are none."""
     faces: Mapping[str, Any] | None = getattr(body, "surfaces", None) or getattr(body, "curves", None)
     if faces is None:
         raise DerivativeError(f"a {type(body).__name__} has neither surfaces nor curves to differentiate")
     return faces
 
 
-def _whole(face: Any) -> Shape:
+def whole(face: Any) -> Shape:
+    """The surface below a trimmed one, or the shape itself."""
     found: Shape = face.surface if isinstance(face, TrimmedSurface) else face
     return found

@@ -1,0 +1,85 @@
+"""Quantities that have a name: what the command line differentiates."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from types import MappingProxyType
+from typing import Any
+
+import numpy as np
+
+from bladewright.blade.throat import throat
+from bladewright.designs import unknown
+from bladewright.errors import DerivativeError
+from bladewright.numerics.elementary import Array, length
+from bladewright.numerics.quadrature import panels
+from bladewright.nurbs.basis import breaks
+
+
+@dataclass(frozen=True, kw_only=True)
+class Named:
+    """A quantity of what a design builds."""
+
+    name: str
+    of: Callable[[Any], Array]
+    """the quantity, of any shape, of a build that may be complex"""
+    power: int
+    """its unit is this power of a metre"""
+    points: bool = False
+    """whether it is a set of control points (k, d), whose derivative is told by its root mean square"""
+
+
+def _net(blade: Any) -> Array:
+    return np.concatenate([side.control_points.reshape(-1, 3) for side in blade.sides])
+
+
+def _curves(section: Any) -> Array:
+    return np.concatenate([curve.control_points for curve in section.curves.values()])
+
+
+def _chord(blade: Any) -> Array:
+    v, weight = panels(breaks(blade.knots.v), 3)
+    side = blade.sides[0]
+    return np.asarray(np.sum(weight * length(side(1.0, v) - side(0.0, v))))
+
+
+BLADE: Mapping[str, Named] = MappingProxyType(
+    {
+        each.name: each
+        for each in (
+            Named(name="surface", of=_net, power=1, points=True),
+            Named(name="volume", of=lambda blade: blade.properties.volume, power=3),
+            Named(name="area", of=lambda blade: blade.properties.area, power=2),
+            Named(name="centroid", of=lambda blade: blade.properties.centroid, power=1),
+            Named(name="inertia", of=lambda blade: blade.properties.inertia, power=5),
+            Named(name="chord", of=_chord, power=1),
+            Named(name="throat", of=lambda blade: throat(blade).area, power=2),
+        )
+    }
+)
+"""of a blade: its sides' control points; volume, area, centroid and inertia; the mean straight distance from leading to
+trailing edge; the throat's area"""
+SECTION: Mapping[str, Named] = MappingProxyType(
+    {
+        each.name: each
+        for each in (
+            Named(name="surface", of=_curves, power=1, points=True),
+            Named(name="area", of=lambda section: section.area, power=2),
+            Named(name="centroid", of=lambda section: section.centroid, power=1),
+            Named(name="chord", of=lambda section: section.chord, power=1),
+            Named(name="perimeter", of=lambda section: section.perimeter, power=1),
+            Named(name="camber-length", of=lambda section: section.camber_length, power=1),
+        )
+    }
+)
+"""of a section: its sides' control points; area, centroid, chord, length of both sides, and of the camber line"""
+
+
+def named(base: Any, name: str, more: Mapping[str, Named] | None = None) -> Named:
+    """The quantity of that name for what a design builds, `more` among the known ones.
+
+    Raises DerivativeError with the nearest name.
+    """
+    known = {**(BLADE if hasattr(base, "surfaces") else SECTION), **(more or {})}
+    if name not in known:
+        raise DerivativeError(unknown(f"the quantity '{name}'", name, list(known)))
+    return known[name]
