@@ -3,7 +3,7 @@
 from types import MappingProxyType
 
 from bladewright.blade.blade import Blade, Faces, surface_of
-from bladewright.blade.checks import check_channel, check_sections
+from bladewright.blade.checks import check_channel, check_clearance, check_sections
 from bladewright.blade.ends import trimmed_ends
 from bladewright.blade.exact import exact_blade
 from bladewright.blade.fitness import WALL_TOLERANCE, chord_of, knots_for
@@ -21,6 +21,7 @@ def built(design: UnifiedBlade, knots: Knots | None = None) -> Blade:
     exact = exact_blade(design, None if knots is None else knots.tip)
     check_channel(exact)
     check_sections(exact)
+    check_clearance(exact)
     chord = chord_of(exact)
     held = knots is not None
     knots = knots if knots is not None else knots_for(exact, chord)

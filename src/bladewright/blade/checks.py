@@ -41,6 +41,24 @@ def check_folds(channel: Meridional, before: float = 0.0, after: float = 0.0) ->
         )
 
 
+def check_clearance(exact: "ExactBlade") -> None:
+    """Refuse a clearance that ends on the nose of the blade, past the edge at which it is smaller."""
+    clearance = exact.clearance
+    if clearance is None:
+        return
+    row = exact.design.ends.index("tip") * (len(exact.survey.v) - 1)
+    outline = outlines_of(*exact.survey.plane.points(PLACES))[..., [row], :, :]
+    u = np.real(exact.survey.lines.rows([row]).u_at(outline[..., 0]))
+    for place, edge in ((float(np.min(u)), "leading"), (float(np.max(u)), "trailing")):
+        distance = float(clearance.real().distance(np.array([place]))[0])
+        if distance <= 0.0:
+            raise DesignError(
+                f"{clearance.name} is linear in u and falls to {clearance.said(distance)} at u = {place:.3f}, the nose "
+                f"past the {edge} edge: the blade would meet the {clearance.wall} there; bring its two values nearer "
+                "to each other"
+            )
+
+
 def check_sections(exact: "ExactBlade") -> None:
     """Refuse sections whose sides cross or touch, and neighbouring blades that intersect."""
     stations = exact.survey
