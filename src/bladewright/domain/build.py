@@ -147,7 +147,7 @@ def _knots(blade: Blade, full: ExactBlade, half: Array, turned: Turned, reaches:
         span=rough,
     )
     check_duct(_duct(full, start))
-    camber, walls = _plane(blade, full, start, half, turned, np.array([0.0, 1.0]))
+    walls = _plane(blade, full, start, half, turned, np.array([0.0, 1.0]))[1]
     tolerance = RESERVE * TOLERANCE * blade.chord
     return PassageKnots(
         length=start.length,
@@ -160,7 +160,7 @@ def _knots(blade: Blade, full: ExactBlade, half: Array, turned: Turned, reaches:
         inlet=knots_along(walls, "inlet", tolerance),
         outlet=knots_along(walls, "outlet", tolerance),
         across=knots_across(walls, tolerance),
-        span=knots_span(camber, breaks_along_v(full), tolerance),
+        span=knots_span(lambda v: _plane(blade, full, start, half, turned, v)[0], breaks_along_v(full), tolerance),
     )
 
 

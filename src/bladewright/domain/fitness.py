@@ -1,6 +1,6 @@
 """Knots with which the native walls of a passage lie on their surfaces of revolution."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 
 import numpy as np
 
@@ -73,17 +73,27 @@ def knots_beside(walls: Mapping[str, WallHalf], own: Reals, tolerance: float) ->
     return refined(own, miss, MOST_POLES + len(own))
 
 
-def knots_span(camber: CamberLines, inner: Reals, tolerance: float) -> Reals:
-    """Knots of inlet, outlet and periodic boundaries along the span; `inner` are where the blade's laws have theirs."""
-    ends = np.array([-camber.duct.upstream, 1.0 + camber.duct.downstream])
+def knots_span(camber_at: Callable[[Reals], CamberLines], inner: Reals, tolerance: float) -> Reals:
+    """Knots of inlet, outlet and periodic boundaries along the span; `inner` are where the blade's laws have theirs.
+
+    With them the edges of inlet and outlet lie on the surfaces of revolution of the duct's ends.
+    """
 
     def miss(knots: Reals, places: Reals) -> Reals:
-        v = np.concatenate([greville(knots, DEGREE), places])
-        points = np.real(camber.duct.lines(v).position(ends))
-        count = len(knots) - DEGREE - 1
-        native = basis(knots, DEGREE, places) @ through(points[:count].reshape(count, -1), knots, 0)
-        error = native.reshape(len(places), -1, 2) - points[count:]
-        return np.max(length(error), axis=1) / tolerance
+        camber = camber_at(np.concatenate([greville(knots, DEGREE), places]))
+        mapping, count = camber.lines.mapping, len(knots) - DEGREE - 1
+        worst = np.zeros(len(places))
+        for piece, t in (("inlet", 0.0), ("outlet", 1.0)):
+            plane = np.real(camber.points(piece, np.array([t])))
+            position = np.real(camber.lines.position(camber.lines.u_at(plane[..., 0])))
+            x, radius, tangential = position[:, 0, 0], position[:, 0, 1], plane[:, 0, 1]
+            points = mapping.in_space(x, radius, tangential)
+            error = basis(knots, DEGREE, places) @ through(points[:count], knots, 0) - points[count:]
+            if mapping.revolved:
+                outwards = mapping.in_space(0.0 * x, 1.0 + 0.0 * x, tangential)[count:]
+                error = np.stack([error[:, 0], dot(error, outwards)], axis=-1)
+            worst = np.maximum(worst, length(error) / tolerance)
+        return worst
 
     spans = np.unique(np.concatenate([[0.0, 0.25, 0.5, 0.75, 1.0], inner]))
     extra = [place for place in spans[1:-1] if not np.any(np.abs(inner - place) < 0.1)]  # real: knots
