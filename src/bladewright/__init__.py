@@ -19,6 +19,9 @@ if TYPE_CHECKING:
     from bladewright.derivatives.jacobian import NetJacobian as NetJacobian
     from bladewright.derivatives.nets import net_jacobian as net_jacobian
     from bladewright.derivatives.nets import pullback as pullback
+    from bladewright.derivatives.places import SurfacePoints as SurfacePoints
+    from bladewright.derivatives.places import placed_points as placed_points
+    from bladewright.derivatives.places import surface_points as surface_points
     from bladewright.derivatives.sensitivity import sensitivity as sensitivity
     from bladewright.derivatives.variables import Variables as Variables
     from bladewright.derivatives.variables import variables as variables
@@ -34,6 +37,9 @@ if TYPE_CHECKING:
     from bladewright.errors import GeometryError as GeometryError
     from bladewright.errors import MeshError as MeshError
     from bladewright.files.reading import read_design as read_design
+    from bladewright.files.su2 import read_surface_points as read_surface_points
+    from bladewright.files.su2 import read_surface_sensitivity as read_surface_sensitivity
+    from bladewright.files.su2 import write_surface_points as write_surface_points
     from bladewright.files.writing import write_design as write_design
     from bladewright.nurbs.curve import Curve as Curve
     from bladewright.nurbs.surface import Surface as Surface
@@ -57,6 +63,7 @@ _HOMES = {
     "SectionPassage": "domain.section",
     "NetJacobian": "derivatives.jacobian",
     "Surface": "nurbs.surface",
+    "SurfacePoints": "derivatives.places",
     "Throat": "blade.throat",
     "TrimmedSurface": "nurbs.trimmed",
     "UnifiedBlade": "blade.unified",
@@ -64,14 +71,19 @@ _HOMES = {
     "Variables": "derivatives.variables",
     "net_jacobian": "derivatives.nets",
     "passage": "domain.build",
+    "placed_points": "derivatives.places",
     "prismatic": "blade.prismatic",
     "pullback": "derivatives.nets",
     "read_design": "files.reading",
     "section_passage": "domain.section",
+    "read_surface_points": "files.su2",
+    "read_surface_sensitivity": "files.su2",
     "sensitivity": "derivatives.sensitivity",
+    "surface_points": "derivatives.places",
     "throat": "blade.throat",
     "variables": "derivatives.variables",
     "write_design": "files.writing",
+    "write_surface_points": "files.su2",
 }
 _ROOMS = ("cad", "meshing")
 

@@ -100,7 +100,7 @@ def surface_points(
 def placed_points(
     built: Any, ids: ArrayLike, points: ArrayLike, *, names: Sequence[str] = ("upper", "lower"), near: float = NEAR
 ) -> SurfacePoints:
-    """Where points (n, 3), or (n, 2) of a 2D design, numbered by `ids` (n,), lie: at the nearest places of the surfaces.
+    """Where points (n, 3), or (n, 2) of a 2D design, numbered `ids` (n,), lie: at the nearest places of the surfaces.
 
     So a mesh made elsewhere can follow a design. Raises DerivativeError where a number occurs twice, or a point lies
     further than `near` times the extent of all off the surfaces.
