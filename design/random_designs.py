@@ -34,6 +34,10 @@ SAMPLES = 2000
 FINE = frozenset({"built", "blade only", "refused"})
 """what may become of a design"""
 REASONS = {
+    "outside its": "the blade stands outside its passage",
+    "its face": "a patch of a wall would fold over",
+    "the continued channel": "the continued channel folds over or meets the axis",
+    "off their surfaces of revolution": "walls are not within 1e-7 of their surfaces of revolution",
     "an angle must lie between": "an angle of 90 deg or more",
     "the sides cross": "the sides of a section cross",
     "can hold at most": "the thickness cannot hold the edge radius",
@@ -44,14 +48,11 @@ REASONS = {
     "ends are swapped": "the channel's ends are swapped",
     "keep clear of the axis": "the channel reaches the axis",
     "cannot be inverted": "a stream line of the channel turns back",
-    "stands": "the nose stands too far outside the channel",
+    "outside the channel": "the nose stands too far outside the channel",
     "native surfaces reach": "the tolerance is not reached within 200 x 100 poles",
     "the blade winds": "the blade winds around the axis",
+    "is met within": "the clearance surface cannot be followed",
     "cannot be followed": "an end cannot be followed on its wall",
-    "outside its": "the blade stands outside its passage",
-    "its face": "a patch of a wall would fold over",
-    "the continued channel": "the continued channel folds over or meets the axis",
-    "off their surfaces of revolution": "walls are not within 1e-7 of their surfaces of revolution",
 }
 """what a refusal says, and what it is counted as"""
 
