@@ -17,8 +17,16 @@ if TYPE_CHECKING:
 
 
 def check_channel(exact: "ExactBlade") -> None:
-    """Refuse a channel whose map (u, v) -> (x, r) is not one to one, from nose to nose."""
-    check_folds(exact.channel, exact.before, exact.after)
+    """Refuse a channel whose map (u, v) -> (x, r) is not one to one, from nose to nose; the blade's own, too."""
+    check_folds(exact.full_channel, exact.before, exact.after)
+    if exact.clearance is not None:
+        try:
+            check_folds(exact.channel, exact.before, exact.after)
+        except DesignError as error:
+            name = exact.clearance.name
+            raise DesignError(
+                f"{name} bounds the blade's own {error}; or lower {name}, or bring its two values nearer to each other"
+            ) from error
 
 
 def check_folds(channel: Meridional, before: float = 0.0, after: float = 0.0) -> None:
