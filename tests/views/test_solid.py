@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from matplotlib.figure import Figure
 
-from bladewright.views.solid import _places, _viewpoint, draw_solid
+from bladewright.views.solid import _places, draw_solid, viewpoint
 
 
 @pytest.fixture
@@ -24,7 +24,7 @@ def test_the_native_blade_is_where_blue_is_drawn(blade_drawn, view):
     image = view.get_images()[0]
     picture, (left, right, low, high) = np.asarray(image.get_array()), image.get_extent()
     u, v = np.meshgrid(np.linspace(0.0, 1.0, 161), np.linspace(0.0, 1.0, 81))
-    axes = _viewpoint(blade_drawn.built)
+    axes = viewpoint(blade_drawn.built)
     flat = np.concatenate(
         [1e3 * blade_drawn.built.surfaces[name](u, v).reshape(-1, 3) @ axes[:2].T for name in ("upper", "lower")]
     )
@@ -78,5 +78,5 @@ def test_a_blade_without_near_neighbours_stands_alone(cascade_drawn):
 def test_the_viewer_looks_at_the_smaller_end_of_the_hub(hub, upstream):
     channel = SimpleNamespace(hub=SimpleNamespace(points=np.array([[0.0, hub[0]], [40.0, hub[1]]])))
     mapping = SimpleNamespace(revolved=True)
-    towards = _viewpoint(SimpleNamespace(exact=SimpleNamespace(full_channel=channel, mapping=mapping)))[2]
+    towards = viewpoint(SimpleNamespace(exact=SimpleNamespace(full_channel=channel, mapping=mapping)))[2]
     assert (towards[0] < 0.0) == upstream

@@ -1,17 +1,15 @@
 """The sheet of everything an engineer looks for on a design, and a picture of the blade alone."""
 
-from collections.abc import Sequence
 from pathlib import Path
-from textwrap import shorten
-from typing import Any, cast
+from typing import Any
 
 import numpy as np
-from matplotlib.backends.backend_agg import FigureCanvasAgg
-from matplotlib.figure import Figure, SubFigure
-from matplotlib.layout_engine import ConstrainedLayoutEngine
+from matplotlib.figure import Figure
 
 from bladewright.blade.blade import Blade
 from bladewright.blade.unified import UnifiedBlade
+from bladewright.domain.passage import Passage
+from bladewright.domain.section import SectionPassage
 from bladewright.errors import DesignError
 from bladewright.section.section import Section
 from bladewright.section.unified import UnifiedSection
@@ -19,6 +17,9 @@ from bladewright.views.curvature import draw_curvature
 from bladewright.views.edges import draw_edge
 from bladewright.views.laws import draw_laws, panels_of
 from bladewright.views.meridional import draw_meridional
+from bladewright.views.pages import headed, laid_out, rows
+from bladewright.views.passage import passage_sheet, section_passage_sheet
+from bladewright.views.passage_solid import draw_passage_solid
 from bladewright.views.sections import draw_passage, draw_sections, pitch_of
 from bladewright.views.solid import draw_solid
 from bladewright.views.style import MILLIMETRES, manner
@@ -27,19 +28,19 @@ from bladewright.views.writing import checked, write
 
 DOTS = 150
 """to an inch of a PNG"""
-LONGEST = 150
-"""letters of the sheet's first line"""
 SPANS = (0.0, 0.25, 0.5, 0.75, 1.0)
 FEW = (0.0, 0.5, 1.0)
-Drawable = UnifiedBlade | UnifiedSection | Blade | Section
+Built = Blade | Section | Passage | SectionPassage
+Drawable = UnifiedBlade | UnifiedSection | Built
 
 
-def picture(design: Drawable, path: str | Path, *, blade: Blade | Section | None = None) -> None:
+def picture(design: Drawable, path: str | Path, *, blade: Built | None = None) -> None:
     """Draws a design, as PNG, SVG or PDF by the suffix of `path`: sections, curvature, channel, laws and a 3D view.
 
     `blade` is what the design builds, where that is at hand; `design` may be the built object itself (of a section
-    alone no laws are known, and none are drawn). The file appears whole or not at all. Raises FileError where the
-    suffix is another or the path cannot be written, DesignError where the design cannot be built.
+    alone no laws are known, and none are drawn). Either may be a flow passage: then its duct, its walls unwrapped, its
+    figures and a 3D view are drawn. The file appears whole or not at all. Raises FileError where the suffix is another
+    or the path cannot be written, DesignError where the design cannot be built.
     """
     checked(path)
     figure = sheet(design, blade)
@@ -65,18 +66,35 @@ def blade_view(blade: Blade | UnifiedBlade, path: str | Path) -> None:
         write(figure, path, 160)
 
 
-def sheet(design: Drawable, blade: Blade | Section | None = None) -> Figure:
-    """The figure that `picture` writes."""
-    built: Any = design if isinstance(design, Blade | Section) else (blade or design.build())
-    asked: Any = getattr(built, "design", None) if isinstance(design, Blade | Section) else design
+def passage_view(passage: Passage, path: str | Path) -> None:
+    """Draws a flow passage as a see-through body, the blade shaded in it; as PNG, SVG or PDF by the suffix of `path`.
+
+    Raises FileError where the suffix is another or the path cannot be written.
+    """
+    checked(path)
+    if not isinstance(passage, Passage):
+        raise DesignError(
+            f"a {type(passage).__name__} was given: only a passage has this view; draw the one that "
+            "passage(blade) makes"
+        )
     with manner():
-        figure = _blade_sheet(built) if isinstance(built, Blade) else _section_sheet(asked, built)
-        FigureCanvasAgg(figure)
-        engine = figure.get_layout_engine()
-        if engine is not None:
-            engine.execute(figure)
-        figure.set_layout_engine("none")  # or it would be laid out anew, twice, when it is written
-        return figure
+        figure = Figure(figsize=(10.0, 8.0), layout="constrained")
+        draw_passage_solid(figure.add_subplot(), passage, width=1250)
+        write(figure, path, 160)
+
+
+def sheet(design: Drawable, blade: Built | None = None) -> Figure:
+    """The figure that `picture` writes."""
+    built: Any = design if isinstance(design, Built) else (blade or design.build())
+    asked: Any = None if isinstance(design, Section | SectionPassage) else design
+    with manner():
+        if isinstance(built, Passage):
+            figure = passage_sheet(built)
+        elif isinstance(built, SectionPassage):
+            figure = section_passage_sheet(asked, built)
+        else:
+            figure = _blade_sheet(built) if isinstance(built, Blade) else _section_sheet(asked, built)
+        return laid_out(figure)
 
 
 def _blade_sheet(blade: Blade) -> Figure:
@@ -85,8 +103,8 @@ def _blade_sheet(blade: Blade) -> Figure:
     middle = sections[2]
     pitch = pitch_of(blade, middle)
     figure = Figure(figsize=(16.0, 15.0))
-    _headed(figure, blade.name, blade.description, _blade_figures(blade, middle, pitch))
-    top, centre, bottom = _rows(figure, 5.4, 4.6, 4.4)
+    headed(figure, blade.name, blade.description, _blade_figures(blade, middle, pitch))
+    top, centre, bottom = rows(figure, 5.4, 4.6, 4.4)
     axes = top.subplots(1, 3, width_ratios=[1.25, 1.0, 1.0])
     draw_solid(axes[0], blade, neighbours=2, width=760)
     axes[0].set_title("Blade with neighbours")
@@ -112,8 +130,8 @@ def _section_sheet(design: UnifiedSection | None, section: Section) -> Figure:
         pitch = design.pitch * UNITS[design.length_unit] * MILLIMETRES
     figure = Figure(figsize=(16.0, 11.0))
     name, description = (design.name, design.description) if design is not None else ("section", "")
-    _headed(figure, name, description, _section_figures(section, pitch))
-    top, bottom = _rows(figure, 6.0, 4.6)
+    headed(figure, name, description, _section_figures(section, pitch))
+    top, bottom = rows(figure, 6.0, 4.6)
     axes = top.subplots(1, 3, width_ratios=[1.6, 1.0, 1.0])
     draw_passage(axes[0], section, pitch, "Section")
     draw_edge(axes[1], section, trailing=False)
@@ -124,23 +142,6 @@ def _section_sheet(design: UnifiedSection | None, section: Section) -> Figure:
     if design is not None:
         draw_thickness_laws(axes[2], design, [section], "axial chord")
     return figure
-
-
-def _rows(figure: Figure, *heights: float) -> Sequence[SubFigure]:
-    return list(np.atleast_1d(cast(Any, figure.subfigures(len(heights), 1, height_ratios=heights))))
-
-
-def _headed(figure: Figure, name: str, description: str, figures: list[str]) -> None:
-    inch = 1.0 / figure.get_figheight()
-    rect = (0.0, 0.0, 1.0, 1.0 - 0.85 * inch)
-    figure.set_layout_engine(ConstrainedLayoutEngine(w_pad=0.12, h_pad=0.10, rect=rect))
-    place: dict[str, Any] = {"ha": "left", "va": "baseline"}
-    name = shorten(name, LONGEST // 3, placeholder=" …")
-    description = shorten(description, LONGEST - 2 * len(name), placeholder=" …")
-    figure.text(0.012, 1.0 - 0.42 * inch, name, fontsize=20.0, fontweight="bold", parse_math=False, **place)
-    figure.text(0.012, 1.0 - 0.72 * inch, "   ·   ".join(figures), fontsize=11.0, **place)
-    place["ha"] = "right"
-    figure.text(0.988, 1.0 - 0.42 * inch, description, fontsize=11.0, parse_math=False, **place)
 
 
 def _blade_figures(blade: Blade, middle: Section, pitch: float) -> list[str]:

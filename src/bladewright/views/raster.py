@@ -1,6 +1,6 @@
 """Hidden surfaces by a depth buffer: shaded pictures of meshes, seen from infinitely far."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -22,6 +22,8 @@ HAZE = 0.30
 """how far the farthest point fades to white"""
 HOLLOW = 0.40
 """how much darker a place gets that lies behind what surrounds it"""
+PANE = 0.14
+"""how much of what lies behind it a see-through mesh covers"""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -31,6 +33,8 @@ class Mesh:
     points: Reals
     normals: Reals
     colour: tuple[float, float, float]
+    side: int = 0
+    """+1 to draw it only where its normals point towards the viewer, -1 only where away, 0 everywhere"""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -75,14 +79,42 @@ def framed(axes: Reals, points: Reals, margin: float = 0.03) -> Camera:
     return Camera(axes=axes, corner=low - border, extent=high - low + 2.0 * border)
 
 
-def rendered(meshes: list[Mesh], traces: list[Trace], camera: Camera, width: int, fineness: int = 2) -> Reals:
+def rendered(
+    meshes: list[Mesh],
+    traces: list[Trace],
+    camera: Camera,
+    width: int,
+    fineness: int = 2,
+    glass: Sequence[Mesh] = (),
+) -> Reals:
     """The picture (height, width, 4) in red, green, blue and opacity, its first row on top.
 
-    Every pixel is the mean of `fineness` x `fineness` finer ones.
+    Every pixel is the mean of `fineness` x `fineness` finer ones. The meshes of `glass` hide nothing, and dim what lies
+    behind the nearest of them.
     """
     across = width * fineness
     unit = across / camera.extent[0]
     height = int(np.ceil(camera.extent[1] * unit / fineness)) * fineness
+    depth, normal, colour = _filled(meshes, camera, (height, across), unit)
+    shaded = _shaded(depth, normal, colour, fineness)
+    if glass:
+        pane = _filled(glass, camera, (height, across), unit)
+        _glaze(shaded, _shaded(*pane, fineness), pane[0] > depth)
+    for trace in traces:
+        _drawn(shaded, depth, trace, camera, unit)
+    blocks = shaded[::-1].reshape(height // fineness, fineness, width, fineness, 4)
+    blocks[..., :3] *= blocks[..., 3:]
+    picture = blocks.mean(axis=(1, 3), dtype=np.float64)
+    solid = picture[..., 3:] > 0.0
+    picture[..., :3] = np.where(solid, picture[..., :3] / np.where(solid, picture[..., 3:], 1.0), 1.0)
+    return np.clip(picture, 0.0, 1.0)
+
+
+def _filled(
+    meshes: Sequence[Mesh], camera: Camera, size: tuple[int, int], unit: float
+) -> tuple[Pixels, Pixels, Pixels]:
+    """Depth (height, width) of what is nearest, and its normals and colours (height width, 3)."""
+    height, across = size
     depth = np.full(across * height, -np.inf, dtype=np.float32)
     normal = np.zeros((across * height, 3), dtype=np.float32)
     colour = np.ones((across * height, 3), dtype=np.float32)
@@ -92,21 +124,25 @@ def rendered(meshes: list[Mesh], traces: list[Trace], camera: Camera, width: int
         for points in _dense(np.concatenate([seen, camera.seen(mesh.normals)], axis=-1).astype(np.float32)):
             column, row = points[:, 0].astype(np.int32), points[:, 1].astype(np.int32)
             held = (points[:, 0] >= 0.0) & (points[:, 1] >= 0.0) & (column < across) & (row < height)
+            if mesh.side:
+                held &= mesh.side * points[:, 5] > 0.0
             pixel = np.where(held, row * across + column, 0)
             near = np.where(held, points[:, 2], -np.inf)
             np.maximum.at(depth, pixel, near)
             nearest = np.flatnonzero(held & (near >= depth[pixel]))
             normal[pixel[nearest]] = points[nearest, 3:]
             colour[pixel[nearest]] = mesh.colour
-    shaded = _shaded(depth.reshape(height, across), normal, colour, fineness)
-    for trace in traces:
-        _drawn(shaded, depth.reshape(height, across), trace, camera, unit)
-    blocks = shaded[::-1].reshape(height // fineness, fineness, width, fineness, 4)
-    blocks[..., :3] *= blocks[..., 3:]
-    picture = blocks.mean(axis=(1, 3), dtype=np.float64)
-    solid = picture[..., 3:] > 0.0
-    picture[..., :3] = np.where(solid, picture[..., :3] / np.where(solid, picture[..., 3:], 1.0), 1.0)
-    return np.clip(picture, 0.0, 1.0)
+    return depth.reshape(height, across), normal, colour
+
+
+def _glaze(picture: Pixels, pane: Pixels, before: NDArray[np.bool_]) -> None:
+    """Lay a shaded pane over the picture where it stands before it."""
+    cover = PANE * (pane[..., 3] * before)[..., None]
+    behind = (1.0 - cover) * picture[..., 3:]
+    total = cover + behind
+    mixed = cover * pane[..., :3] + behind * picture[..., :3]
+    picture[..., :3] = np.where(total > 0.0, mixed / np.where(total > 0.0, total, 1.0), picture[..., :3])
+    picture[..., 3:] = total
 
 
 def _dense(grid: Pixels) -> Iterator[Pixels]:

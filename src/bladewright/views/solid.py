@@ -28,10 +28,10 @@ def draw_solid(axes: Axes, blade: "Blade", *, neighbours: int | None, width: int
     """Draws the blade [mm] with `neighbours` on either side (None: the whole row) on the hub, `width` pixels wide."""
     turns = _places(blade, neighbours)
     meshes, traces = [], []
-    others = _blade_meshes(blade, COARSE, NEIGHBOUR)
+    others = blade_meshes(blade, COARSE, NEIGHBOUR)
     for turn in turns:
         own = turn == 0.0
-        parts, lines = _blade_meshes(blade, GRID, BLADE) if own else others
+        parts, lines = blade_meshes(blade, GRID, BLADE) if own else others
         meshes += [_placed(blade, mesh, turn) for mesh in parts]
         traces += [
             Trace(points=_moved(blade, line, turn), colour=EDGE if own else FAINT, width=2 if own else 1)
@@ -39,17 +39,15 @@ def draw_solid(axes: Axes, blade: "Blade", *, neighbours: int | None, width: int
         ]
     shown = np.concatenate([mesh.points.reshape(-1, 3) for mesh in meshes])
     meshes += _hub(blade, turns)
-    camera = framed(_viewpoint(blade), np.concatenate([shown, meshes[-1].points.reshape(-1, 3)]))
-    axes.imshow(
-        rendered(meshes, traces, camera, width),
-        extent=(
-            camera.corner[0],
-            camera.corner[0] + camera.extent[0],
-            camera.corner[1],
-            camera.corner[1] + camera.extent[1],
-        ),
-        interpolation="antialiased",
-    )
+    camera = framed(viewpoint(blade), np.concatenate([shown, meshes[-1].points.reshape(-1, 3)]))
+    show(axes, camera, rendered(meshes, traces, camera, width))
+
+
+def show(axes: Axes, camera: Camera, rendering: Reals) -> None:
+    """Puts what a camera rendered on axes, with the directions of x, y and z and a scale under it."""
+    left, low = camera.corner
+    wide, high = camera.extent
+    axes.imshow(rendering, extent=(left, left + wide, low, low + high), interpolation="antialiased")
     axes.set_axis_off()
     _scale(axes, camera)
 
@@ -86,7 +84,7 @@ def _placed(blade: "Blade", mesh: Mesh, turn: float) -> Mesh:
     return Mesh(points=_moved(blade, mesh.points, turn), normals=normals, colour=mesh.colour)
 
 
-def _blade_meshes(
+def blade_meshes(
     blade: "Blade", size: tuple[int, int], colour: tuple[float, float, float]
 ) -> tuple[list[Mesh], list[Reals]]:
     """Sides and ends [mm] with their normals, and the lines between them."""
@@ -144,7 +142,7 @@ def _hub_mesh(grid: Reals) -> Mesh:
     return Mesh(points=grid, normals=np.cross(np.gradient(grid, axis=0), np.gradient(grid, axis=1)), colour=HUB)
 
 
-def _viewpoint(blade: "Blade") -> Reals:
+def viewpoint(blade: "Blade") -> Reals:
     """Right, up and towards of a viewer who looks at the smaller end of the hub, or from upstream on an even one."""
     if not blade.exact.mapping.revolved:
         return axes_towards((-0.55, -0.75, 0.50), (0.0, 0.0, 1.0))
