@@ -1,0 +1,109 @@
+"""What a mesh file holds, measured against the native passage."""
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from bladewright.domain.passage import Passage
+from bladewright.errors import MeshError
+from bladewright.meshing.job import Answer
+from bladewright.meshing.measures import deviations, limit, loose_facets
+from bladewright.meshing.names import GROUPS, group_of
+from bladewright.meshing.periodicity import Periodicity, match
+from bladewright.meshing.quality import Indices, condition_numbers, radius_ratios, volumes
+from bladewright.meshing.reopening import GROUP
+from bladewright.meshing.report import FLAT, FaceMesh, MeshReport, Quality
+from bladewright.meshing.sizes import Sizes
+from bladewright.nurbs.basis import Reals
+
+UNITS = {"m": 1.0, "mm": 1e-3}
+"""[m]"""
+MM = 1e-3
+"""[m] the unit of deviations and of STEP files"""
+
+
+def verified(
+    content: Mapping[str, Any],
+    passage: Passage,
+    motion: Periodicity,
+    plan: Sizes,
+    answer: Answer,
+    path: Path,
+    kind: str,
+    unit: str,
+    seconds: float,
+) -> MeshReport:
+    """The report on the content of a mesh file: `kind` is its format, `unit` that of its lengths.
+
+    Raises MeshError where its groups are not the faces of the passage, or not all that was written is there.
+    """
+    nodes: Reals = content["nodes"] * UNITS[unit]
+    tetrahedra: Indices = content["tetrahedra"]
+    groups: dict[str, Indices] = {
+        name.removeprefix(GROUP): rows for name, rows in content.items() if name.startswith(GROUP)
+    }
+    check_complete(groups, passage, len(nodes), len(tetrahedra), answer)
+    native = float(np.real(passage.properties.volume))
+    condition = condition_numbers(nodes, tetrahedra)
+    pairs = match(motion, nodes, groups["periodic_lower"], groups["periodic_upper"])
+    x, y, z = (motion.translation / UNITS[unit]).tolist()
+    return MeshReport(
+        file=str(path),
+        format=kind,
+        unit=unit,
+        tetrahedra=len(tetrahedra),
+        nodes=len(nodes),
+        inverted=int(np.count_nonzero(~(condition > FLAT))),
+        min_sicn=_quality(condition),
+        gamma=_quality(radius_ratios(nodes, tetrahedra)),
+        faces=tuple(_face(name, groups[name], nodes, passage) for name in GROUPS if name in groups),
+        deviation_limit_mm=limit(plan.chord) / MM,
+        loose=loose_facets(tetrahedra, groups),
+        periodic_nodes=pairs.nodes,
+        periodic_mismatch=pairs.mismatch,
+        periodic_triangles=pairs.triangles,
+        rotation_deg=float(np.degrees(motion.angle)),
+        translation=(x, y, z),
+        volume_error=float(volumes(nodes, tetrahedra).sum()) / native - 1.0,
+        size=plan.largest / plan.chord,
+        smallest=plan.smallest / plan.chord,
+        expected=plan.expected,
+        gmsh=answer.gmsh,
+        algorithms=(*answer.surface, *answer.volume),
+        seconds=seconds,
+    )
+
+
+def check_complete(
+    groups: Mapping[str, Indices], passage: Passage, nodes: int, tetrahedra: int, answer: Answer
+) -> None:
+    """Raise MeshError where the groups are not the faces of the passage, or nodes or tetrahedra are lost."""
+    wanted = {group_of(name) for name in passage.surfaces}
+    if set(groups) != wanted or not all(map(len, groups.values())):
+        raise MeshError(
+            f"the mesh file holds the groups {', '.join(sorted(groups))}, but the passage has the faces "
+            f"{', '.join(sorted(wanted))}: mesh the STEP file of this passage"
+        )
+    if (nodes, tetrahedra) != (answer.nodes, answer.tetrahedra):
+        raise MeshError(
+            f"the mesh file holds {nodes} nodes and {tetrahedra} tetrahedra, but {answer.nodes} and "
+            f"{answer.tetrahedra} were written: choose another format"
+        )
+
+
+def _quality(values: Reals) -> Quality:
+    return Quality(worst=float(values.min()), percentile=float(np.percentile(values, 1.0)), mean=float(values.mean()))
+
+
+def _face(name: str, triangles: Indices, nodes: Reals, passage: Passage) -> FaceMesh:
+    points = nodes[np.unique(triangles)]
+    off = deviations(passage.surfaces, name, points, limit(float(np.real(passage.blade.chord))))
+    return FaceMesh(
+        name=name,
+        triangles=len(triangles),
+        nodes=len(points),
+        max_deviation_mm=float(off.max()) / MM,
+        mean_deviation_mm=float(off.mean()) / MM,
+    )
