@@ -11,9 +11,9 @@ volumes that the divided faces close up. Relative difference of the volume from 
     fan-rotor        +2.3e-11       +2.3e-11    +2.3e-11
 
 Nevertheless the third is used. While the walls' meridians went through fewer places, and the sector's edges lay 2.7e-5
-mm off them, the kernel found all edges of the fan rotor and divided all faces, but took the blade's sides to lie outside
-of the sector: subtraction and division returned that whole, +3.8e-2, the volumes of the divided faces -7.1e-9. Making
-volumes asks for no such decision, and costs a second.
+mm off them, the kernel found all edges of the fan rotor and divided all faces, but took the blade's sides to lie
+outside of the sector: subtraction and division returned that whole, +3.8e-2, the volumes of the divided faces -7.1e-9.
+Making volumes asks for no such decision, and costs a second.
 
     python design/cad_cutting.py
 """

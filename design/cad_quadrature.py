@@ -10,8 +10,8 @@ with OpenCASCADE 7.9.3 on the fan rotor, relative to the native quadrature:
     1e-10    +1.5e-09 in 0.25 s   +2.7e-13 in 0.12 s
 
 The volumes differ by 1.5e-9 in truth: the native ends follow the sides, which lie as much off the wall. Without a bound
-the limit of 1e-6 on volumes would be missed by the measurement itself. The round trip asks for 1e-3 on volumes, which on
-a passage with creased faces gives 4e-10 in a third of the time of 1e-7, and for 1e-7, 1e-9 and 1e-12 where that
+the limit of 1e-6 on volumes would be missed by the measurement itself. The round trip asks for 1e-3 on volumes, which
+for a passage with creased faces gives 4e-10 in a third of the time of 1e-7, and for 1e-7, 1e-9 and 1e-12 where that
 disagrees by more than a fifth of a limit: at 1e-7 the centroids of 3 of 400 random designs
 (random_designs.py, seeds 207, 294, 375) were 3e-6 to 1e-4 of the chord off, at 1e-10 5e-9 to 2e-7.
 

@@ -168,3 +168,13 @@ def test_the_nearest_triangle_is_the_one_that_brute_force_finds():
     # the dense points of a triangle are a fortieth of a side apart
     assert np.all(found <= brute + 1e-12)
     np.testing.assert_allclose(found, brute, atol=0.03)
+
+
+def test_a_large_triangle_is_found_behind_hundreds_of_small_ones():
+    # a fan of slivers about a corner of a large triangle: their middles are nearer than the large one's
+    angles = np.linspace(0.0, 0.5 * np.pi, 400)
+    rim = 0.001 * np.stack([np.cos(angles), np.sin(angles), 0.0 * angles], axis=-1)
+    fan = np.stack([np.zeros_like(rim[1:]), rim[:-1], rim[1:]], axis=1)
+    large = np.array([[[0.0, 0.0, 0.0], [-1.0, 0.0, 0.0], [0.0, -1.0, 0.0]]])
+    found = Nearest(merged(np.concatenate([fan, large]))).distance(np.array([[-1e-4, -1e-4, 0.0]]), 1e-6)
+    np.testing.assert_allclose(found, 0.0, atol=1e-12)

@@ -1,6 +1,7 @@
 """Triangles: made of a solid, measured, and asked whether they close."""
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -115,20 +116,33 @@ class Nearest:
     def __init__(self, mesh: Mesh) -> None:
         self.mesh = mesh
         size = float(np.ptp(mesh.vertices, axis=0).max()) / 100.0
-        pieces, self.owner = _split(mesh.corners, size)
-        self.tree = cKDTree(pieces.mean(axis=1))
+        self.pieces, self.owner = _split(mesh.corners, size)
+        self.tree = cKDTree(self.pieces.mean(axis=1))
+
+    @cached_property
+    def _by_size(self) -> list[tuple[cKDTree, NDArray[np.int64]]]:
+        """Trees of the middles of pieces of about the same size, each with its pieces' triangles."""
+        longest = np.max(np.linalg.norm(np.roll(self.pieces, -1, axis=1) - self.pieces, axis=-1), axis=1)
+        level = np.floor(np.log2(longest.max() / np.maximum(longest, 1e-300))).astype(np.int64)
+        groups = [np.flatnonzero(level == each) for each in np.unique(level)]
+        return [(cKDTree(self.pieces[group].mean(axis=1)), self.owner[group]) for group in groups]
 
     def distance(self, points: Array, limit: float) -> Array:
-        """Distances (n,) [mm] of points (n, 3); those above `limit` are sought among more triangles."""
-        away = self._among(points, NEIGHBOURS)
+        """Distances (n,) [mm] of points (n, 3).
+
+        Those above `limit` are sought among the nearest triangles of every size as well: where large and small ones
+        meet, the nearest middles are all of small ones.
+        """
+        away = self._among(points, self.tree, self.owner, NEIGHBOURS)
         doubtful = np.flatnonzero(away > limit)
-        if len(doubtful):
-            away[doubtful] = self._among(points[doubtful], 8 * NEIGHBOURS)
+        for tree, owner in self._by_size if len(doubtful) else ():
+            found = self._among(points[doubtful], tree, owner, 4 * NEIGHBOURS)
+            away[doubtful] = np.minimum(away[doubtful], found)
         return away
 
-    def _among(self, points: Array, count: int) -> Array:
-        _, near = self.tree.query(points, k=min(count, len(self.owner)))
-        corners = self.mesh.corners[self.owner[near.reshape(len(points), -1)]]
+    def _among(self, points: Array, tree: cKDTree, owner: NDArray[np.int64], count: int) -> Array:
+        _, near = tree.query(points, k=min(count, len(owner)))
+        corners = self.mesh.corners[owner[near.reshape(len(points), -1)]]
         return np.min(_to_triangle(points[:, None, :], corners), axis=1)
 
 

@@ -46,7 +46,7 @@ def named_body(body: str, design: Any, path: Path, extend: float, reach: Mapping
     return passage_from(design, path, **reach) if body == "passage" else body_from(design, path, extend)
 
 
-def passage_from(design: Any, path: Path, *, split: bool = False, **reach: float | None) -> Any:
+def passage_from(design: Any, path: Path, *, split: bool = False, **reach: Any) -> Any:
     """The passage of a design, around a prismatic blade where it is 2D.
 
     Raises DesignError, naming the file at `path`, where the shape is impossible.
@@ -56,8 +56,7 @@ def passage_from(design: Any, path: Path, *, split: bool = False, **reach: float
     if getattr(design, "pitch", 0.0) is None and getattr(design, "blade_count", None) is None:
         raise DesignError(f"{path}: pitch is missing: a passage lies between neighbours; set pitch in the design")
     blade = body_from(design, path, 0.0)
-    asked: dict[str, Any] = {**reach, **({"split": True} if split else {})}
     try:
-        return passage(blade, **asked)
+        return passage(blade, split=split, **reach)
     except DesignError as error:
         raise DesignError(f"{path}: {error}") from error
