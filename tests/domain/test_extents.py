@@ -31,6 +31,11 @@ def test_what_is_no_number_is_no_extent(rotor, value, said):
         passage(rotor.blade, upstream=value)
 
 
+def test_extents_that_contradict_held_knots_are_refused(rotor):
+    with pytest.raises(DesignError, match="upstream is 2.0, but the knots given hold 0.5: leave one of them out"):
+        passage(rotor.blade, upstream=2.0, knots=rotor.passage.knots)
+
+
 @pytest.mark.parametrize("name", ["inlet_angle", "outlet_angle"])
 def test_an_angle_against_the_flow_is_refused(rotor, name):
     with pytest.raises(DesignError, match=f"{name} is 95 deg: it must lie between -89 and 89"):

@@ -57,6 +57,12 @@ def passage(
     if knots is None:
         _check_within(blade, half)
         knots = _knots(blade, full, half, turned, extents(full, half, upstream, downstream))
+    else:
+        for name, given in (("upstream", upstream), ("downstream", downstream)):
+            if given is not None and given != getattr(knots, name):
+                raise DesignError(
+                    f"{name} is {given!r}, but the knots given hold {getattr(knots, name):g}: leave one of them out"
+                )
     camber, walls = _plane(blade, full, knots, half, turned, knots.sites("span"))
     upper, lower = (_with_knots(side, knots.blade) for side in blade.sides)
     nets = native_nets(camber, walls, (upper.control_points, lower.control_points), knots, half)
