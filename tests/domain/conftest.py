@@ -1,10 +1,11 @@
 """Passages of every kind of machine, with and without a gap, built once a session."""
 
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import cache
 from importlib import resources
 
 import pytest
+
 from bladewright.blade.blade import Blade
 from bladewright.domain.build import passage
 from bladewright.domain.passage import Passage
@@ -29,7 +30,7 @@ class Case:
     asked: dict
 
 
-@lru_cache(maxsize=None)
+@cache
 def made(name: str) -> Case:
     design, changes, asked = CASES[name]
     file = resources.files("bladewright") / "examples" / f"{design}.toml"

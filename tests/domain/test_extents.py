@@ -5,6 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+
 from bladewright.domain.build import passage
 from bladewright.domain.checks import check_duct
 from bladewright.errors import DesignError
@@ -32,7 +33,7 @@ def test_what_is_no_number_is_no_extent(rotor, value, said):
 
 
 def test_extents_that_contradict_held_knots_are_refused(rotor):
-    with pytest.raises(DesignError, match="upstream is 2.0, but the knots given hold 0.5: leave one of them out"):
+    with pytest.raises(DesignError, match=r"upstream is 2\.0, but the knots given hold 0\.5: leave one of them out"):
         passage(rotor.blade, upstream=2.0, knots=rotor.passage.knots)
 
 

@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+
 from bladewright.domain.knots import BLADE_AT
 from bladewright.nurbs.closest import closest_on_curve
 from bladewright.nurbs.trimmed import TrimmedSurface

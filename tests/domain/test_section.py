@@ -4,6 +4,7 @@ from importlib import resources
 
 import numpy as np
 import pytest
+
 from bladewright.domain.section import section_passage
 from bladewright.errors import DesignError
 from bladewright.files.reading import read_design
