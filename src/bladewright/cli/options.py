@@ -34,7 +34,7 @@ extend_option = click.option(
     type=click.FloatRange(0.0, 1.0),
     default=0.0,
     metavar="SPAN",
-    help="Extend the blade past hub and shroud by this part of its span, for a later cut in your CAD.",
+    help="Extend the blade past hub and shroud by this part of its span, for a later cut in your CAD; a tip stays.",
 )
 
 
