@@ -14,7 +14,7 @@ from bladewright.section.section import Section
 def section_at(exact: ExactBlade, v: float) -> Section:
     """The exact section at v in [0, 1]; raises DesignError outside."""
     if not 0.0 <= v <= 1.0:
-        raise DesignError(f"a section was asked at v = {v:g}: v runs from 0 at the blade's end at the hub to 1 at the other")
+        raise DesignError(f"a section was asked at v = {v:g}: v runs from 0 at the blade's hub end to 1 at its other")
     stations = exact.stations(np.array([v]))
     plane, lines = stations.plane, stations.lines
 
