@@ -45,9 +45,15 @@ def test_the_build_line_proves_what_it_made(built: Path) -> None:
     assert all(each["passed"] for each in reports)
 
 
-def test_the_python_example_runs(built: Path) -> None:
+def test_the_python_examples_run_one_after_another(built: Path) -> None:
+    blocks = re.findall(r"<!-- python -->\n```python\n(.*?)```", README, re.DOTALL)
+    assert len(blocks) == 2
     run = subprocess.run(
-        [sys.executable, "-c", block("python", "python")],
+        [
+            sys.executable,
+            "-c",
+            "\n".join(blocks) + "\nprint(trip.passed, gradient['stagger[1]'], slopes['stagger[0]'])",
+        ],
         cwd=built,
         capture_output=True,
         text=True,
