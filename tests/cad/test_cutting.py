@@ -3,10 +3,12 @@
 import numpy as np
 import pytest
 
+import bladewright as bw
 from bladewright import cad
 from bladewright.cad.closure import closure
 from bladewright.cad.reopen import reopened
 from bladewright.errors import CadError
+from bladewright.files.examples import example_text
 
 from .sectors import Cuttable, sector, standing
 
@@ -68,3 +70,19 @@ def test_another_format_is_refused_and_leaves_nothing(cut, tmp_path):
 def test_a_blade_that_ends_within_its_sector_is_refused(passage):
     with pytest.raises(CadError, match="the blade does not stand within its sector"):
         cad.cut_passage(passage, span=-0.05)
+
+
+QUICK = ("vki-ls89",)
+LONG = ("nasa-rotor-67", "aachen-stator", "compressor-stator", "fan-rotor", "centrifugal-impeller", "radial-turbine")
+
+
+@pytest.mark.parametrize("name", [*QUICK, *(pytest.param(name, marks=pytest.mark.slow) for name in LONG)])
+def test_patches_and_cut_enclose_the_same_volume(name, tmp_path):
+    # the patches lie within 1e-7 of the chord of the exact walls
+    path = tmp_path / f"{name}.toml"
+    path.write_text(example_text(name))
+    passage = bw.passage(bw.read_design(path).build())
+    cut = cad.cut_passage(passage)
+    native = float(passage.properties.volume)
+    assert cut.properties.volume == pytest.approx(native, rel=1e-8)
+    assert cut.properties.volume_error < 1e-6 * native

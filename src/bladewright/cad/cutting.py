@@ -25,7 +25,7 @@ from bladewright.cad.quiet import quiet
 from bladewright.cad.reopen import each, format_of, reopened
 from bladewright.cad.solids import Body, body
 from bladewright.cad.step import Schema, write_step
-from bladewright.errors import CadError
+from bladewright.errors import CadError, GeometryError
 from bladewright.numerics.elementary import Array
 
 PAST = 0.05
@@ -101,7 +101,13 @@ def cut_passage(passage: Cuttable, *, span: float = PAST) -> CutPassage:
     """
     with quiet():
         # fresh solids: the operation raises tolerances of what it is given
-        sector, blade = body(passage.sector), body(passage.blade.extended(span))
+        try:
+            sector, blade = body(passage.sector), body(passage.blade.extended(span))
+        except GeometryError as error:
+            raise CadError(
+                f"the sector of {passage.name!r} cannot be made: {error}. Its walls must each be one face within a turn; "
+                "take the passage of untrimmed patches instead, or a shorter one"
+            ) from error
         whole = _rest(sector, blade, passage.name)
         closed = closure(whole)
         if closed.shells != 1 or closed.free or closed.crowded or not closed.valid:
