@@ -21,7 +21,7 @@ from bladewright.views.style import (
     span_colour,
     titled,
 )
-from bladewright.views.unwrapped import draw_tightest, draw_unwrapped
+from bladewright.views.walls import draw_tightest, draw_wall
 
 if TYPE_CHECKING:
     from bladewright.domain.passage import Passage
@@ -37,14 +37,14 @@ def passage_sheet(passage: "Passage") -> Figure:
     # panels of their own: the legend of the duct would make the view lower
     body, duct, numbers = columns(top, 1.35, 1.0, 0.65)
     view = body.subplots()
-    draw_passage_solid(view, passage, width=900)
+    draw_passage_solid(view, passage, size=(900, 760))
     view.set_title("Passage, see-through from outside")
     view.set_anchor("N")
     draw_duct(duct.subplots(), passage)
     draw_figures(numbers.subplots(), figures(passage))
     panels = bottom.subplots(1, 3)
     for panel, wall in zip(panels, ("hub", "shroud"), strict=False):
-        draw_unwrapped(panel, passage, wall)
+        draw_wall(panel, passage, wall)
     draw_tightest(panels[2], passage)
     return figure
 

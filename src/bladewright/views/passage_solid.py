@@ -7,6 +7,7 @@ from matplotlib.axes import Axes
 from matplotlib.patheffects import withStroke
 
 from bladewright.domain.pieces import pieces_of
+from bladewright.numerics.elementary import length
 from bladewright.nurbs.basis import Reals
 from bladewright.nurbs.surface import Surface
 from bladewright.views.raster import Camera, Mesh, Trace, framed, rendered
@@ -21,12 +22,14 @@ OPENING = (0.78, 0.88, 0.80)
 GLASS = (0.66, 0.80, 0.90)
 SIZE = 33
 """points along and across a smooth piece of a face"""
+INNER = np.linspace(0.2, 0.8, 7)
+"""places along and across a face where its name may stand"""
 LINES = 6
 """lines of constant u, and of constant v, on a smooth piece of a wall"""
 
 
-def draw_passage_solid(axes: Axes, passage: "Passage", *, width: int) -> None:
-    """Draws the passage [mm], `width` pixels wide: solid where it is seen from within, like glass from outside."""
+def draw_passage_solid(axes: Axes, passage: "Passage", *, size: tuple[int, int]) -> None:
+    """Draws the passage [mm], at most `size` pixels wide and high: solid where it is seen from within, else glass."""
     blade, rims = blade_meshes(passage.blade, GRID, BLADE)
     solid, glass, traces = [], [], []
     for name, sense in outer_faces(passage).items():
@@ -40,9 +43,11 @@ def draw_passage_solid(axes: Axes, passage: "Passage", *, width: int) -> None:
     traces += [Trace(points=line, colour=EDGE) for line in _outer_edges(passage)]
     traces += [Trace(points=line, colour=EDGE, width=2) for line in rims]
     camera = framed(viewpoint(passage.blade), np.concatenate([mesh.points.reshape(-1, 3) for mesh in solid]))
+    width = int(min(size[0], size[1] * camera.extent[0] / camera.extent[1]))
     show(axes, camera, rendered([*solid, *blade], traces, camera, width, glass=glass))
+    shown = [np.concatenate([camera.seen(mesh.points).reshape(-1, 3)[:, :2] for mesh in blade])]
     for name in ("inlet", "outlet"):
-        _named(axes, camera, passage, name)
+        shown.append(_named(axes, camera, cast(Surface, passage.whole[name]), name, np.concatenate(shown)))
 
 
 def outer_faces(passage: "Passage") -> dict[str, int]:
@@ -80,9 +85,12 @@ def _outer_edges(passage: "Passage") -> list[Reals]:
     return [MILLIMETRES * line for line in lines]
 
 
-def _named(axes: Axes, camera: Camera, passage: "Passage", name: str) -> None:
-    """Writes a face's name on its middle."""
-    middle = MILLIMETRES * np.real(cast(Surface, passage.whole[name])(0.5, 0.5))
-    right, up, _ = camera.seen(middle)
+def _named(axes: Axes, camera: Camera, face: Surface, name: str, clear: Reals) -> Reals:
+    """Writes a face's name on it, as far as can be from places (n, 2) in the picture; returns where (1, 2)."""
+    points = MILLIMETRES * np.real(face.grid(INNER, INNER)).reshape(-1, 3)
+    flat = camera.seen(points)[:, :2]
+    apart = np.min(length(flat[:, None] - clear), axis=1)
+    best = flat[int(np.argmax(apart))]
     halo = [withStroke(linewidth=3.0, foreground="white", alpha=0.7)]
-    axes.text(float(right), float(up), name, ha="center", va="center", path_effects=halo)
+    axes.text(float(best[0]), float(best[1]), name, ha="center", va="center", path_effects=halo)
+    return best[None]

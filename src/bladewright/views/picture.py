@@ -79,7 +79,7 @@ def passage_view(passage: Passage, path: str | Path) -> None:
         )
     with manner():
         figure = Figure(figsize=(10.0, 8.0), layout="constrained")
-        draw_passage_solid(figure.add_subplot(), passage, width=1250)
+        draw_passage_solid(figure.add_subplot(), passage, size=(1250, 1000))
         write(figure, path, 160)
 
 
