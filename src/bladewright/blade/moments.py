@@ -39,24 +39,27 @@ def area_vector(side: Surface) -> Array:
     return np.einsum("uv,uvk->k", weight, np.cross(side.grid(u, v, 1, 0), side.grid(u, v, 0, 1)))
 
 
-def moment_gradient(side: Surface, middle: float, *, revolved: bool) -> Reals:
-    """Derivatives (10, n_u, n_v, 3) of a side's moments by its real control points.
+def moment_gradient(side: Surface, middle: float, *, revolved: bool, count: int = 10) -> Reals:
+    """Derivatives (count, n_u, n_v, 3) of the first of a side's moments by its real control points.
 
     The density f(S, n) is linear in n = S_u x S_v, so that its change is
     f_S . dS + (S_v x f_n) . dS_u + (f_n x S_u) . dS_v.
     """
     u, v, weight = _places(side)
     point, along, across = (side.grid(u, v, *orders) for orders in ((0, 0), (1, 0), (0, 1)))
-    density, axes = _density(middle, revolved=revolved), np.eye(3)
+    whole, axes, normal = _density(middle, revolved=revolved), np.eye(3), np.cross(along, across)
+
+    def density(point: Array, normal: Array) -> Array:
+        return whole(point, normal)[..., :count]
+
     by_normal = np.stack([density(point, np.broadcast_to(axis, point.shape)) for axis in axes], axis=-1)
-    normal = np.cross(along, across)
     by_point = np.stack([np.imag(density(point + STEP * 1j * axis, normal)) / STEP for axis in axes], axis=-1)
     parts = (
         (by_point, 0, 0),
         (np.cross(across[..., None, :], by_normal), 1, 0),
         (np.cross(by_normal, along[..., None, :]), 0, 1),
     )
-    total: Reals = np.zeros((10, *side.control_points.shape))
+    total: Reals = np.zeros((count, *side.control_points.shape))
     for part, in_u, in_v in parts:
         rows = basis(side.knots_u, side.degree_u, u, in_u)
         columns = basis(side.knots_v, side.degree_v, v, in_v)

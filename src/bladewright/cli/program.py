@@ -12,6 +12,7 @@ from bladewright.cli.mesh import mesh
 from bladewright.cli.new import new
 from bladewright.cli.outcome import Outcome, one_paragraph, printed
 from bladewright.cli.schema import schema
+from bladewright.cli.sensitivity import sensitivity
 from bladewright.cli.show import show
 from bladewright.cli.verify import verify
 from bladewright.errors import BladewrightError, FileError
@@ -49,7 +50,7 @@ def program(context: click.Context) -> None:
         click.echo(context.get_help())
 
 
-for each in (build, verify, mesh, show, new, schema):
+for each in (build, verify, mesh, show, sensitivity, new, schema):
     program.add_command(each)
 
 

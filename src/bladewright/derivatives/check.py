@@ -7,7 +7,7 @@ section 5 and figure 13.
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -26,12 +26,18 @@ STEPS = 10.0 ** -np.arange(2.0, 11.0)
 IMAGINARY = 10.0 ** -np.array([30.0, 20.0, 16.0, 12.0, 10.0, 8.0, 6.0, 5.0, 4.0, 3.0, 2.0])
 """of complex steps, in units of a parameter's scale; real parts are found for the smallest first"""
 LIMIT = 1e-5
-"""relative difference from the closest central difference that passes
+"""relative difference from the closest difference that passes
 
 Decades apart, central differences come as close as the 2/3 power of a build's rounding, some 1e-15 of its coordinates,
 over the parameter's own share of them, which is 1e-5 at least for the radius of an edge: 3e-7 for every parameter of
 the built-in examples. A derivative with anything left out misses by more than 1e-3.
 """
+DIFFERENCES = (
+    ((1.0, -1.0), (0.5, -0.5)),
+    ((0.0, 1.0, 2.0), (-1.5, 2.0, -0.5)),
+    ((0.0, -1.0, -2.0), (1.5, -2.0, 0.5)),
+)
+"""offsets in steps, and weights: a central difference; to one side, for a parameter that stands at its limit"""
 NOTHING = 1e-11
 """change of a quantity by one scale of a parameter, of the quantity, that is rounding"""
 ELSEWHERE = {"pitch": "places the next blade", "span": "is the height of the section's solid"}
@@ -66,12 +72,24 @@ class Sweep:
         return float(np.min(self.errors)) if len(self.errors) else float("nan")
 
 
-def sweeps(design: Design, base: Any, quantity: Named, space: Variables) -> Iterator[Sweep]:
-    """The check of every parameter of `space` in turn; `base` is the design's build, whose knots are held."""
+def sweeps(
+    design: Design,
+    base: Any,
+    quantity: Named,
+    space: Variables,
+    *,
+    steps: Reals = STEPS,
+    imaginary: Reals = IMAGINARY,
+) -> Iterator[Sweep]:
+    """The check of every parameter of `space` in turn; `base` is the design's build, whose knots are held.
+
+    `steps` and `imaginary` are those of the differences and of the complex steps, in units of a parameter's scale; of
+    the latter the smallest is the first.
+    """
     whole = size_of(np.real(np.asarray(quantity.of(base))), quantity)
     for path, scale, carrying in zip(space.paths, space.scale, stepped(design, base, space.paths), strict=True):
         exact = np.imag(np.asarray(quantity.of(carrying))) / STEP
-        yield _sweep(design, base, quantity, path, float(scale), exact, whole)
+        yield _sweep(_Sought(design, base, quantity, path, float(scale), exact, whole), steps, imaginary)
 
 
 def size_of(rate: Array, quantity: Named) -> float:
@@ -80,63 +98,74 @@ def size_of(rate: Array, quantity: Named) -> float:
     return float(np.sqrt(per_entry * np.mean(np.square(rate))))
 
 
-def _sweep(design: Design, base: Any, quantity: Named, path: str, scale: float, exact: Reals, whole: float) -> Sweep:
-    size = size_of(exact, quantity)
+class _Sought(NamedTuple):
+    """One derivative that is checked."""
+
+    design: Design
+    base: Any
+    quantity: Named
+    path: str
+    scale: float
+    exact: Reals
+    """by the complex step"""
+    whole: float
+    """size of the quantity"""
+
+    def values(self, offsets: Array) -> Array:
+        """The quantity (k, ...) at offsets (k,) of the parameter, in units of its scale."""
+        value = self.design.parameters()[self.path]
+        changes = [{self.path: value + self.scale * offset} for offset in offsets]
+        if not (self.quantity.points and isinstance(self.base, Blade)):
+            return np.array([self.quantity.of(each) for each in varied(self.design, self.base, changes)])
+        nets = [net.reshape(len(changes), -1, 3) for net in varied_nets(self.base, changes)]
+        return np.concatenate(nets, axis=1)
+
+    def errors(self, found: Array) -> Reals:
+        """Errors (k,) of derivatives (k, ...) by one scale of the parameter, over the derivative's size."""
+        size = size_of(self.exact, self.quantity)
+        return np.array([size_of(each / self.scale - self.exact, self.quantity) / size for each in found])
+
+    def differences(self, steps: Reals) -> tuple[Reals, Reals]:
+        """Steps (k,) and errors (k,) of differences, without the largest where these leave what can be built.
+
+        Central ones, or, where a value stands at its limit, of the same order to one side.
+        """
+        for offsets, weights in DIFFERENCES:
+            for first in range(len(steps)):
+                kept = steps[first:]
+                try:
+                    found = self.values(np.outer(kept, offsets).ravel())
+                except DesignError:
+                    continue
+                rows = np.tensordot(found.reshape(len(kept), len(offsets), *found.shape[1:]), weights, axes=(1, 0))
+                return kept, self.errors(rows / _beside(kept, rows))
+        return np.empty(0), np.empty(0)
+
+
+def _sweep(sought: _Sought, steps: Reals, imaginary: Reals) -> Sweep:
+    path, quantity, size = sought.path, sought.quantity, size_of(sought.exact, sought.quantity)
     none: Reals = np.empty(0)
-    bare = Sweep(path=path, size=size, scale=scale, steps=none, errors=none, imaginary=none, floor=none)
+    bare = Sweep(path=path, size=size, scale=sought.scale, steps=none, errors=none, imaginary=none, floor=none)
     if not np.isfinite(size):
         return replace(bare, failure=f"{path}: the derivative of the {quantity.name} is not finite")
-    if size * scale <= NOTHING * whole:
+    if size * sought.scale <= NOTHING * sought.whole:
         idle = f"{path} has no effect on the {quantity.name}"
         if quantity.points and path not in ELSEWHERE:
             return replace(bare, failure=idle)
         return replace(bare, note=f"{idle}: it {ELSEWHERE[path]}" if path in ELSEWHERE else idle)
-    value = design.parameters()[path]
-    steps, found = _differences(design, base, quantity, path, scale)
-    carried = np.imag(_values(design, base, quantity, path, value + 1j * scale * IMAGINARY))
-    sweep = replace(
-        bare,
-        steps=steps,
-        errors=_errors(found, exact, quantity),
-        imaginary=IMAGINARY,
-        floor=_errors(carried / _beside(scale * IMAGINARY, carried), exact, quantity),
-    )
+    carried = np.imag(sought.values(1j * imaginary))
+    kept, errors = sought.differences(steps)
+    floor = sought.errors(carried / _beside(imaginary, carried))
+    sweep = replace(bare, steps=kept, errors=errors, imaginary=imaginary, floor=floor)
     if sweep.best <= LIMIT:
         return sweep
     reason = (
-        f"{path}: the closest central difference of the {quantity.name} is {sweep.best:.2g} of the derivative away, "
+        f"{path}: the closest difference of the {quantity.name} is {sweep.best:.2g} of the derivative away, "
         f"at most {LIMIT:g} is allowed"
-        if len(steps)
+        if len(kept)
         else f"{path}: the design cannot be built beside its value, so that its derivative cannot be checked"
     )
     return replace(sweep, failure=reason)
-
-
-def _differences(design: Design, base: Any, quantity: Named, path: str, scale: float) -> tuple[Reals, Array]:
-    """Steps (k,) and central differences (k, ...), without the largest steps where these leave what can be built."""
-    value = design.parameters()[path]
-    for first in range(len(STEPS)):
-        steps = STEPS[first:] * scale
-        try:
-            found = _values(design, base, quantity, path, np.ravel([value + steps, value - steps]))
-        except DesignError:
-            continue
-        return STEPS[first:], (found[: len(steps)] - found[len(steps) :]) / _beside(2.0 * steps, found)
-    return np.empty(0), np.empty(0)
-
-
-def _values(design: Design, base: Any, quantity: Named, path: str, values: Array) -> Array:
-    """The quantity (k, ...) at values (k,) of one parameter."""
-    changes = [{path: value} for value in values]
-    if not (quantity.points and isinstance(base, Blade)):
-        return np.array([quantity.of(each) for each in varied(design, base, changes)])
-    nets = [net.reshape(len(values), -1, 3) for net in varied_nets(base, changes)]
-    return np.concatenate(nets, axis=1)
-
-
-def _errors(found: Array, exact: Array, quantity: Named) -> Reals:
-    size = size_of(exact, quantity)
-    return np.array([size_of(each - exact, quantity) / size for each in found])
 
 
 def _beside(steps: Reals, values: Array) -> Reals:

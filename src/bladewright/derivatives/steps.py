@@ -67,6 +67,11 @@ def varied(design: Design, base: Any, changes: Sequence[Mapping[str, complex]]) 
 
 def varied_nets(blade: Blade, changes: Sequence[Mapping[str, complex]]) -> Nets:
     """Nets (k, n_u, n_v, 3) of the upper and lower side with each of k changes of parameters, at the blade's knots."""
+    real = any(not np.iscomplexobj(value) for each in changes for value in each.values())
+    if len(changes) > 1 and real and blade.exact.clearance is not None:
+        # where a clearance surface lies is found for one real design at a time
+        alone = [varied_nets(blade, [each]) for each in changes]
+        return np.concatenate([nets[0] for nets in alone]), np.concatenate([nets[1] for nets in alone])
     values = blade.design.parameters()
     paths = dict.fromkeys(path for each in changes for path in each)
     batch = {path: np.array([each.get(path, values[path]) for each in changes]) for path in paths}

@@ -103,6 +103,14 @@ def read_surface_sensitivity(path: str | Path, points: SurfacePoints) -> Reals:
     return rates[order]
 
 
+def check_of(path: str | Path, points: SurfacePoints, now: SurfacePoints) -> None:
+    """Refuse points of a file that lie elsewhere on the design than when they were written: then it is another design.
+
+    `now` are the same places on the design as it is. Raises FileError.
+    """
+    _check_moved(Path(path), now.points, points, "the points must be those of this design: write them anew")
+
+
 def _from_table(path: Path, dimension: int) -> tuple[NDArray[np.int64], Reals, Reals]:
     """Numbers (n,), points and sensitivities (n, d) of a table."""
     header, rows = read_table(path)
@@ -154,7 +162,12 @@ def _matched_by_place(path: Path, found: Reals, points: SurfacePoints) -> NDArra
     return order
 
 
-def _check_moved(path: Path, found: Reals, points: SurfacePoints) -> None:
+def _check_moved(
+    path: Path,
+    found: Reals,
+    points: SurfacePoints,
+    cure: str = "the sensitivity must be that of the written points",
+) -> None:
     away = np.sqrt(np.sum((found - points.points) ** 2, axis=-1))
     limit = MOVED * float(np.ptp(points.points, axis=0).max())
     moved = np.flatnonzero(~(away <= limit))
@@ -162,7 +175,7 @@ def _check_moved(path: Path, found: Reals, points: SurfacePoints) -> None:
         worst = int(moved[np.argmax(away[moved])])
         raise FileError(
             f"'{path}' has {_listed(points.ids[moved])} elsewhere than they were written, {points.ids[worst]} by "
-            f"{away[worst]:.3g} m, at most {limit:.2g} m is allowed: the sensitivity must be that of the written points"
+            f"{away[worst]:.3g} m, at most {limit:.2g} m is allowed: {cure}"
         )
 
 
