@@ -7,8 +7,10 @@ import click
 
 from bladewright.cli.blueprint import built_from, design_at
 from bladewright.cli.call import Call, common
+from bladewright.cli.domain import BODIES, check_options, passage_options
 from bladewright.cli.options import design_argument, set_option
 from bladewright.cli.outcome import Outcome
+from bladewright.cli.passage import flow_domain, passage_data, passage_rows
 from bladewright.cli.progress import progress
 from bladewright.cli.summary import broken_promises, data_of, text_of
 
@@ -16,20 +18,31 @@ from bladewright.cli.summary import broken_promises, data_of, text_of
 @click.command(short_help="Figures and a picture of what a design builds.")
 @design_argument
 @click.option("-o", "--output", type=click.Path(path_type=Path), help="Picture to write: .png, .svg or .pdf.")
+@click.option(
+    "--body", type=click.Choice(BODIES), default="blade", show_default=True, help="What to show: blade or passage."
+)
+@passage_options
 @set_option
 @common
 @click.pass_obj
-def show(call: Call, design: Path, output: Path | None, changes: dict[str, Any]) -> Outcome:
+def show(call: Call, /, design: Path, output: Path | None, body: str, changes: dict[str, Any], **reach: Any) -> Outcome:
     """Print the properties of what DESIGN builds and the promises it keeps; draw it where -o names a picture.
 
-    The picture shows sections, curvature, the meridional channel, the laws of evolution and a 3D view. The exit status
-    is 1 where a promise is not kept.
+    The picture shows sections, curvature, the meridional channel, the laws of evolution and a 3D view; with --body
+    passage a see-through view of the flow passage, its duct, and its walls unwrapped with the lines of their patches.
+    The flow domain of a 2D design is the curves around its section, and reaches are in axial chords. The exit status is
+    1 where a promise is not kept.
     """
+    check_options((body,), 0.0, reach)
     blueprint: Any = design_at(design, changes)
     with progress(2 if output else 1, call) as bar:
-        bar.set_description_str("blade")
-        built = built_from(blueprint, design)
-        data = data_of(blueprint, built)
+        bar.set_description_str(body)
+        if body == "passage":
+            built = flow_domain(blueprint, design, reach)
+            data = passage_data(blueprint, built)
+        else:
+            built = built_from(blueprint, design)
+            data = data_of(blueprint, built)
         bar.update(1)
         if output is not None:
             from bladewright import views
@@ -38,5 +51,5 @@ def show(call: Call, design: Path, output: Path | None, changes: dict[str, Any])
             views.picture(blueprint, output, blade=built)
             data["picture"] = str(output)
             bar.update(1)
-    text = text_of(data) + (f"\nwrote {output}" if output else "")
+    text = text_of(data, passage_rows(data)) + (f"\nwrote {output}" if output else "")
     return Outcome(data=data, text=text, failures=broken_promises(data))

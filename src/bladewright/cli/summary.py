@@ -1,5 +1,6 @@
 """What a design builds, as nested figures, and as lines to read."""
 
+from collections.abc import Sequence
 from dataclasses import fields, is_dataclass
 from typing import Any
 
@@ -14,6 +15,7 @@ _MILLIMETRES = {
     "inertia": ("mm5", 1e15),
     "camber_length": ("mm", 1e3),
     "perimeter": ("mm", 1e3),
+    "pitch": ("mm", 1e3),
     "maximum_thickness": ("mm", 1e3),
     "maximum_camber": ("mm", 1e3),
     "edge_radii": ("mm", 1e3),
@@ -38,8 +40,11 @@ def data_of(design: Design, built: Any) -> dict[str, Any]:
     return {key: jsonable(value) for key, value in data.items() if value is not None}
 
 
-def text_of(data: dict[str, Any]) -> str:
-    """The same figures to read, lengths in millimetres: size and error, properties, poles, and promises with limits."""
+def text_of(data: dict[str, Any], more: Sequence[tuple[str, str]] = ()) -> str:
+    """The same figures to read, lengths in millimetres: size and error, properties, poles, and promises with limits.
+
+    `more` are names and values that stand before the poles.
+    """
     rows = [("chord", f"{data['chord_m'] * 1e3:.6g} mm")] if "chord_m" in data else []
     if "error" in data:
         rows.append(("error", f"{data['error']:.2g} of the chord"))
@@ -48,6 +53,7 @@ def text_of(data: dict[str, Any]) -> str:
             continue
         unit, scale = _MILLIMETRES.get(name, ("", 1.0))
         rows.append((name.replace("_", " "), f"{_figures(value, scale)} {unit}".rstrip()))
+    rows += more
     for name, face in data.get("surfaces", data.get("curves", {})).items():
         poles, degree = (" x ".join(map(str, face[key])) for key in ("poles", "degree"))
         rows.append((name, f"{poles} poles of degree {degree}{', rational' if face['rational'] else ''}"))
