@@ -7,7 +7,6 @@ import click
 
 from bladewright.cli.blueprint import built_from, design_at
 from bladewright.cli.call import Call, common
-from bladewright.cli.derivatives import checked, derivatives_of, pulled_back, written_points
 from bladewright.cli.options import design_argument, set_option
 from bladewright.cli.outcome import Outcome
 
@@ -68,6 +67,8 @@ def sensitivity(
     or a parameter has no effect on the surface. --write-points and --from chain a design to the flow solver SU2: its
     adjoint's sensitivity at the points becomes the gradient of its objective by the parameters.
     """
+    from bladewright.cli.derivatives import checked, derivatives_of, pulled_back, written_points
+
     _one_task(check=check, output=output, write_points=write_points, of=of, given=(sensitivity_file, points_file))
     blueprint = design_at(design, changes)
     built = built_from(blueprint, design)

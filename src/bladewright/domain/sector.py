@@ -11,6 +11,7 @@ from bladewright.blade.blade import Faces
 from bladewright.blade.outline import Trace, Wall, followed
 from bladewright.domain.duct import Duct
 from bladewright.domain.knots import BLADE_AT
+from bladewright.errors import DesignError
 from bladewright.numerics.elementary import Array, angle
 from bladewright.nurbs.basis import Reals
 from bladewright.nurbs.curve import Curve
@@ -73,6 +74,12 @@ def _wall(faces: Mapping[str, Surface], duct: Duct, row: int, name: str, chord: 
     ]
     across = np.concatenate([trace.across for trace in traces])
     room = 0.05 * float(np.ptp(across))
+    if duct.revolved and float(np.ptp(across)) + 2.0 * room >= 2.0 * np.pi:
+        raise DesignError(
+            f"upstream or downstream: the passage winds {np.degrees(np.ptp(across)):.0f} deg around the axis at the "
+            f"{name}, and a sector's wall is one trimmed face of less than 327 deg: shorten them, or let the flow turn "
+            "to a lower inlet_angle or outlet_angle"
+        )
     wall = Wall(
         meridian=meridian,
         inner=np.empty(0),
