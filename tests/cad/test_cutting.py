@@ -9,6 +9,7 @@ from bladewright.cad.closure import closure
 from bladewright.cad.reopen import reopened
 from bladewright.errors import CadError
 from bladewright.files.examples import example_text
+from bladewright.nurbs.revolve import arc
 
 from .sectors import Cuttable, sector, standing
 
@@ -70,6 +71,18 @@ def test_another_format_is_refused_and_leaves_nothing(cut, tmp_path):
 def test_a_blade_that_ends_within_its_sector_is_refused(passage):
     with pytest.raises(CadError, match="the blade does not stand within its sector"):
         cad.cut_passage(passage, span=-0.05)
+
+
+def test_a_sector_that_winds_more_than_a_turn_is_refused():
+    class Winding:
+        name = "pump"
+
+        @property
+        def sector(self):
+            return arc((0.0, 0.0), 1.0, 0.0, 7.0)
+
+    with pytest.raises(CadError, match="one face within a turn"):
+        cad.cut_passage(Winding())
 
 
 QUICK = ("vki-ls89",)

@@ -105,8 +105,8 @@ def cut_passage(passage: Cuttable, *, span: float = PAST) -> CutPassage:
             sector, blade = body(passage.sector), body(passage.blade.extended(span))
         except GeometryError as error:
             raise CadError(
-                f"the sector of {passage.name!r} cannot be made: {error}. Its walls must each be one face within a turn; "
-                "take the passage of untrimmed patches instead, or a shorter one"
+                f"the sector of {passage.name!r} cannot be made: {error}. Each of its walls must be one face within a "
+                "turn; take the passage of untrimmed patches instead, or a shorter one"
             ) from error
         whole = _rest(sector, blade, passage.name)
         closed = closure(whole)
