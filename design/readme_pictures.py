@@ -13,16 +13,20 @@ import bladewright as bw
 from bladewright import views
 
 HERE = Path(__file__).parents[1] / "docs" / "pictures"
-WIDTH = 1400
-"""of a picture [pixels]"""
+WIDTH, NARROW = 1400, 1150
+"""of a picture, and of one in all its colours [pixels]"""
+
+
+def smaller(made, width):
+    """A copy of another width."""
+    with Image.open(made) as picture:
+        size = (width, round(picture.height * width / picture.width))
+        return picture.convert("RGB").resize(size, Image.Resampling.LANCZOS)
 
 
 def keep(made, name):
     """A smaller copy: 200 colours are enough for lines and shaded blades."""
-    with Image.open(made) as picture:
-        size = (WIDTH, round(picture.height * WIDTH / picture.width))
-        small = picture.convert("RGB").resize(size, Image.Resampling.LANCZOS)
-        small.quantize(200, dither=Image.Dither.NONE).save(HERE / name, optimize=True)
+    smaller(made, WIDTH).quantize(200, dither=Image.Dither.NONE).save(HERE / name, optimize=True)
 
 
 with tempfile.TemporaryDirectory() as directory:
@@ -35,3 +39,7 @@ with tempfile.TemporaryDirectory() as directory:
         if name == "fan-rotor":
             views.picture(blade, picture)
             keep(picture, f"{name}.png")
+    with resources.as_file(resources.files("bladewright") / "examples" / "nasa-rotor-67.toml") as path:
+        views.passage_view(bw.passage(bw.read_design(path).build()), picture)
+    # with so few colours its large faces would show bands
+    smaller(picture, NARROW).save(HERE / "passage.png", optimize=True)
