@@ -5,7 +5,6 @@ from pathlib import Path
 from typing import Any
 
 import click
-import numpy as np
 
 from bladewright.cli.domain import passage_from
 from bladewright.cli.outcome import jsonable
@@ -41,6 +40,8 @@ def flow_domain(design: Any, path: Path, reach: Mapping[str, Any]) -> Any:
 
 def passage_data(design: Any, made: Any) -> dict[str, Any]:
     """Figures as `data_of` gives them, and those of a passage alone: ring, extents, folds and what they are held to."""
+    import numpy as np
+
     if hasattr(made, "section"):
         area = {"area": made.area, "pitch": np.ptp(np.real(made.curves["inlet"].control_points[:, 1]))}
         return {**data_of(design, made), "name": f"{design.name}-passage", "properties": jsonable(area)}
