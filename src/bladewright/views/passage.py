@@ -28,6 +28,9 @@ if TYPE_CHECKING:
     from bladewright.domain.section import SectionPassage
     from bladewright.section.unified import UnifiedSection
 
+VIEW = (900, 760)
+"""of the view in space, at most [pixels]"""
+
 
 def passage_sheet(passage: "Passage") -> Figure:
     """The figure of a 3D passage, not yet laid out."""
@@ -37,7 +40,7 @@ def passage_sheet(passage: "Passage") -> Figure:
     # panels of their own: the legend of the duct would make the view lower
     body, duct, numbers = columns(top, 1.35, 1.0, 0.65)
     view = body.subplots()
-    draw_passage_solid(view, passage, size=(900, 760))
+    draw_passage_solid(view, passage, size=VIEW)
     view.set_title("Passage, see-through from outside")
     view.set_anchor("N")
     draw_duct(duct.subplots(), passage)

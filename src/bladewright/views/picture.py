@@ -30,6 +30,8 @@ DOTS = 150
 """to an inch of a PNG"""
 SPANS = (0.0, 0.25, 0.5, 0.75, 1.0)
 FEW = (0.0, 0.5, 1.0)
+VIEW = (1250, 1000)
+"""of a passage that is drawn alone, at most [pixels]"""
 Built = Blade | Section | Passage | SectionPassage
 Drawable = UnifiedBlade | UnifiedSection | Built
 
@@ -79,7 +81,7 @@ def passage_view(passage: Passage, path: str | Path) -> None:
         )
     with manner():
         figure = Figure(figsize=(10.0, 8.0), layout="constrained")
-        draw_passage_solid(figure.add_subplot(), passage, size=(1250, 1000))
+        draw_passage_solid(figure.add_subplot(), passage, size=VIEW)
         write(figure, path, 160)
 
 
