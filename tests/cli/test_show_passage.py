@@ -73,6 +73,7 @@ def test_the_passage_of_a_section_is_drawn_as_curves(run, section_file, tmp_path
         (["--body", "passage", "--upstream", "-1"], ["turbine-section.toml", "upstream", "-1", "positive"]),
         (["--body", "passage", "--upstream", "nan"], ["turbine-section.toml", "upstream", "nan"]),
         (["--body", "passage", "--outlet-angle", "x"], ["--outlet-angle", "x"]),
+        (["--body", "passage", "--outlet-angle", "95"], ["turbine-section.toml", "outlet_angle", "95", "89 deg"]),
         (["--body", "passage", "--set", "pitch=9"], ["turbine-section.toml", "pitch"]),
         (["--body", "passage", "-o", "there.gif"], [".gif", ".png, .svg, .pdf"]),
     ],

@@ -61,3 +61,17 @@ def test_a_pitch_that_the_section_does_not_keep_within_is_refused(section):
 def test_an_extent_that_is_not_positive_is_refused(section, asked):
     with pytest.raises(DesignError, match="must be positive"):
         section_passage(section, 0.05, **asked)
+
+
+@pytest.mark.parametrize(
+    ("asked", "said"),
+    [
+        ({"upstream": -1.0}, r"upstream is -1: it must be positive and below 20"),
+        ({"downstream": 21.0}, r"downstream is 21: it must be positive and below 20"),
+        ({"inlet_angle": 95.0}, r"inlet_angle is 95: it must lie between -89 and 89 deg"),
+        ({"outlet_angle": -90.0}, r"outlet_angle is -90: it must lie between -89 and 89 deg"),
+    ],
+)
+def test_extents_and_angles_out_of_bounds_are_refused(section, asked, said):
+    with pytest.raises(DesignError, match=said):
+        section_passage(section, 0.05, **asked)

@@ -7,7 +7,7 @@ from types import MappingProxyType
 
 import numpy as np
 
-from bladewright.domain.extents import USUAL
+from bladewright.domain.extents import MOST, USUAL
 from bladewright.errors import DesignError
 from bladewright.numerics.elementary import Array, radians
 from bladewright.numerics.quadrature import panels
@@ -57,11 +57,15 @@ def section_passage(
 
     The periodic boundaries are cubic B-splines: the camber line, continued by `upstream` and `downstream` axial chords
     without a change of slope, or to `inlet_angle` and `outlet_angle` [deg], half a pitch up and down. All numbers may
-    be complex. Raises DesignError where an extent or the pitch is not positive, or a side of the section stands outside
-    its passage. Agromayor et al. 2021, section 3.
+    be complex. Raises DesignError where an extent, an angle or the pitch is out of bounds, or a side of the section
+    stands outside its passage. Agromayor et al. 2021, section 3.
     """
-    for name, value in (("pitch", pitch), ("upstream", upstream), ("downstream", downstream)):
-        between(name, number(name, value), 0.0, float("inf"), "it must be positive")
+    between("pitch", number("pitch", pitch), 0.0, float("inf"), "it must be positive")
+    for name, extent in (("upstream", upstream), ("downstream", downstream)):
+        between(name, number(name, extent), 0.0, MOST, f"it must be positive and below {MOST:g} axial chords")
+    for name, angle in (("inlet_angle", inlet_angle), ("outlet_angle", outlet_angle)):
+        if angle is not None:
+            between(name, number(name, angle), -89.0, 89.0, "it must lie between -89 and 89 deg, as flow goes onwards")
     camber = section.camber
     chord = camber.control_points[-1, 0] - camber.control_points[0, 0]
     before = _continued(camber, 0, -upstream * chord, inlet_angle)
@@ -82,7 +86,7 @@ def _continued(camber: Curve, end: int, extent: complex, degrees: complex | None
     start = camber.control_points[end]
     along = start - camber.control_points[1] if end == 0 else start - camber.control_points[-2]
     slope = along[1] / along[0]
-    turn = slope if degrees is None else np.tan(radians(number("angle", degrees)))
+    turn = slope if degrees is None else np.tan(radians(np.asarray(degrees)))
     rise = np.array([0.0, slope / 3.0, 2.0 * slope / 3.0, slope + (turn - slope) / 3.0]) * extent
     points = start + np.stack([extent * np.array([0.0, 1.0, 2.0, 3.0]) / 3.0, rise], axis=-1)
     knots = np.array([0.0, 0.0, 0.0, 0.0, 1.0, 1.0, 1.0, 1.0])
