@@ -1,0 +1,81 @@
+"""A stator whose throat is opened to a target area with the least change of shape, by SLSQP with exact gradients.
+
+The change is measured where it is felt: as the mean square distance that the surface moves. For a small change p of the
+parameters that is p . G p, with G from the surface's own derivatives; in the variables y = L^T p, G = L L^T, it is
+y . y, and a search takes straight steps.
+"""
+
+import time
+
+import numpy as np
+from _change import example, export
+from scipy.optimize import NonlinearConstraint, minimize
+
+import bladewright as bw
+
+OPENED = 1.06
+"""target area of the throat, of the present one"""
+
+
+def area(blade):
+    """Area of the throat [cm2]."""
+    return 1e4 * bw.throat(blade).area
+
+
+started = time.perf_counter()
+start = example("aachen-stator").changed({"name": "stator-throat", "tolerance": 1e-5})
+# the thickness beside both edges, which holds their radii, stays
+inner = [f"thickness_*[{i}][*]" for i in range(1, 6)]
+space = bw.variables(start, free=["stagger*", "metal_angle_*", "tangent_*", "leading_edge_theta*", *inner])
+opening, x0 = space.objective(area), space.x0
+target = OPENED * opening.value(x0)
+
+# movement [mm] of 2 x 800 points of the surface by each variable
+u, v = (1.0 - np.cos(np.pi * np.linspace(0.0, 1.0, 40)))[:, None] / 2.0, np.linspace(0.0, 1.0, 20)
+nets = bw.net_jacobian(start, free=space.paths, knots=space.knots)
+rates = 1e3 * np.stack([nets.points(name, u, v) for name in ("upper", "lower")], axis=1)
+rates = space.scale[:, None] * rates.reshape(len(space.paths), -1)
+metric = rates @ rates.T / (rates.shape[1] / 3)
+# a little of x . x, so that no parameter runs away along what hardly moves the surface
+lower = np.linalg.cholesky(metric + 1e-3 * np.trace(metric) * np.eye(len(metric)))
+
+
+def x_of(y):
+    return x0 + np.linalg.solve(lower.T, y)
+
+
+found = minimize(
+    lambda y: y @ y,
+    np.zeros(len(x0)),
+    jac=lambda y: 2.0 * y,
+    method="SLSQP",
+    options={"ftol": 1e-10},
+    constraints=NonlinearConstraint(
+        lambda y: opening.value(x_of(y)),
+        target,
+        target,
+        jac=lambda y: np.linalg.solve(lower, opening.jacobian(x_of(y))),
+    ),
+)
+spent = time.perf_counter() - started
+before, after = (space.design(x).changed("tolerance", 1e-6).build() for x in (x0, x_of(found.x)))
+export(after, before, "stator-throat")
+
+# what turning the vane as a whole would take
+restaggered = bw.sensitivity(start, area, free="stagger*", knots=space.knots)
+turn = (target - opening.value(x0)) / float(sum(restaggered.values()))
+turned = np.array([turn if path.startswith("stagger") else 0.0 for path in space.paths]) / space.scale
+by_turning = np.sqrt(turned @ metric @ turned)
+steps = [1e3 * (after.surfaces[name](u, v) - before.surfaces[name](u, v)) for name in ("upper", "lower")]
+moved = np.sqrt(np.mean(np.sum(np.square(steps), axis=-1)))
+print(f"{found.nit} iterations, {len(space.paths)} parameters, {spent:.1f} s")
+print(f"throat {area(before):.3f} cm2 before, {area(after):.3f} cm2 after, target {target:.3f} cm2")
+print(
+    f"surface moved by {moved:.3f} mm in the mean; "
+    f"turning the vane by {turn:.2f} deg would move it by {by_turning:.3f} mm"
+)
+
+assert found.success, found.message
+# between the tolerances of search and CAD file
+assert abs(area(after) / target - 1.0) < 1e-5
+assert moved < 0.8 * by_turning
