@@ -46,7 +46,7 @@ def example(name: str, directory: Path) -> Any:
 def case(design: Any, directory: Path) -> Case:
     passage = bw.passage(design.build())
     step = directory / "passage.step"
-    assert cad.write(passage, step).passed
+    assert cad.write(passage, step, samples=200).passed
     return Case(passage, step)
 
 

@@ -8,11 +8,11 @@ from bladewright.errors import MeshError
 from bladewright.meshing.job import STEP
 from bladewright.meshing.library import gmsh
 
-SURFACE = {"Frontal-Delaunay": 6, "MeshAdapt": 1, "Delaunay": 5}
+SURFACE = {"Frontal-Delaunay": 6, "Delaunay": 5, "MeshAdapt": 1}
 """In the order in which they are tried. MeshAdapt is slow, and copes with faces whose derivatives jump at a knot."""
 VOLUME = {"HXT": 10, "Delaunay": 1, "Frontal": 4}
 """In the order in which they are tried."""
-WORST_TRIANGLE = 0.25
+WORST_TRIANGLE = 0.2
 """gamma of the worst triangle of a face below which the next algorithm is tried on that face"""
 WORST_TETRAHEDRON = 0.1
 """minSICN of the worst tetrahedron below which the mesh is improved, and then the next algorithm tried"""
@@ -36,6 +36,9 @@ def faces_meshed(images: dict[int, int]) -> tuple[str, ...]:
     """
     say("faces")
     gmsh.option.setNumber("Mesh.MeshOnlyEmpty", 1)
+    # images are copied with parameters on their own face, which the kernel's projection takes milliseconds a node for;
+    # what gmsh's own finds is near enough, as the nodes themselves are placed exactly in the end
+    gmsh.option.setNumber("Geometry.OCCUseGenericClosestPoint", 1)
     free = [tag for _, tag in gmsh.model.getEntities(2) if tag not in images]
     best: dict[int, tuple[float, str]] = {}
     waiting = free

@@ -22,8 +22,8 @@ UNTOUCHED = {
 """The geometry is read without repair."""
 QUIET = {"General.Terminal": 1, "General.AbortOnError": 0, "General.NumThreads": 1}
 """One thread, so that the same input gives the same mesh; the output is the parent's."""
-SAMPLING = 400
-"""points of a curve, or each way on a face, from which distances are taken"""
+SAMPLES_OF_CURVE, SAMPLES_OF_FACE = 400, 60
+"""points of a curve, and each way on a face, from which distances are taken"""
 
 Faces = dict[str, int]
 """tags of faces by name"""
@@ -80,7 +80,7 @@ def sized(job: Job, faces: Faces) -> None:
         distance = field.add("Distance")
         kind, tag = ("SurfacesList", faces[near.face]) if near.face else ("CurvesList", _curve_at(near, faces))
         field.setNumbers(distance, kind, [tag])
-        field.setNumber(distance, "Sampling", SAMPLING)
+        field.setNumber(distance, "Sampling", SAMPLES_OF_FACE if near.face else SAMPLES_OF_CURVE)
         size = field.add("Threshold")
         values = {
             "InField": distance,

@@ -13,7 +13,7 @@ from bladewright.nurbs.measure import arc_length
 from bladewright.nurbs.surface import Surface
 from bladewright.nurbs.trimmed import TrimmedSurface
 
-WALLS = ("hub_upper", "hub_lower", "shroud_upper", "shroud_lower")
+WALLS = ("hub", "shroud")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -58,7 +58,7 @@ def _radius(side: Surface, u: float) -> float:
 
 
 def _tip(passage: Passage, tip: TrimmedSurface) -> Source:
-    runs = [curve(np.linspace(*curve.domain, 33)).real for curve in tip.boundary]
+    runs = [curve(np.linspace(*curve.domain, 17)).real for curve in tip.boundary]
     rim = np.concatenate([tip.surface(*run.T).real for run in runs])
     x, y, z = rim[0].tolist()
     return Source(face="tip", place=(x, y, z), size=_gap(passage, rim), extent=_area(rim))
@@ -66,9 +66,17 @@ def _tip(passage: Passage, tip: TrimmedSurface) -> Source:
 
 def _gap(passage: Passage, rim: Reals) -> float:
     """Median distance of points (n, 3) from the nearer wall [m]."""
-    faces = [face for name in WALLS if isinstance(face := passage.surfaces.get(name), Surface)]
-    distances = [closest_on_surface(face, rim, tolerance=1e-3).distances.real for face in faces]
+    sides = [
+        [face for name, face in passage.surfaces.items() if name.startswith(wall) and isinstance(face, Surface)]
+        for wall in WALLS
+    ]
+    near = min(sides, key=lambda faces: min(_to_net(face, rim[0]) for face in faces))
+    distances = [closest_on_surface(face, rim, tolerance=1e-3).distances.real for face in near]
     return float(np.median(np.min(distances, axis=0)))
+
+
+def _to_net(face: Surface, point: Reals) -> float:
+    return float(length(face.control_points.real - point).min())
 
 
 def _area(rim: Reals) -> float:
