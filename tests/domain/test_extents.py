@@ -6,8 +6,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from bladewright.blade.channel import Channel
+from bladewright.blade.unified import UnifiedBlade
 from bladewright.domain.build import passage
 from bladewright.domain.checks import check_duct
+from bladewright.domain.crossing import CROSSINGS
 from bladewright.errors import DesignError
 
 
@@ -59,3 +62,26 @@ def test_a_blade_outside_its_passage_is_refused_with_span_and_distance(cascade):
     blade = design.changed({"thickness_upper": stout, "pitch": 50.0}).build()
     with pytest.raises(DesignError, match=r"pitch is 50: at v = 0\.\d+ the blade stands [\d.]+ mm outside its passage"):
         passage(blade)
+
+
+def test_where_cross_lines_that_turn_back_early_fold_others_are_taken():
+    """A stout vane with a blunt trailing edge; the usual way for cross-lines alone would refuse it."""
+    vane = UnifiedBlade(
+        name="vane",
+        length_unit="mm",
+        arrangement="linear",
+        pitch=45.0,
+        stagger=-40.0,
+        metal_angle_in=0.0,
+        metal_angle_out=-65.0,
+        tangent_in=0.4,
+        tangent_out=0.4,
+        leading_edge_radius=0.05,
+        trailing_edge_radius=0.02,
+        thickness_upper=(0.09, 0.12, 0.07),
+        thickness_lower=(0.05, 0.05, 0.05),
+        channel=Channel(leading_edge=((0.0, 0.0), (0.0, 50.0)), trailing_edge=((40.0, 0.0), (40.0, 50.0))),
+    )
+    made = passage(vane.build())
+    assert made.knots.crossing in CROSSINGS[1:]
+    assert min(share for share, _, _ in made.folds.values()) > 0.0

@@ -10,9 +10,11 @@ from bladewright.blade.exact import ExactBlade, exact_blade
 from bladewright.blade.knots import DEGREE, breaks_along_v
 from bladewright.domain.camber import CamberLines, camber_lines
 from bladewright.domain.checks import check_duct, check_folds, check_pitch
+from bladewright.domain.crossing import CROSSINGS, Crossing
 from bladewright.domain.duct import Duct
 from bladewright.domain.extents import extents, mean_length, openings
 from bladewright.domain.fitness import RESERVE, TOLERANCE, knots_across, knots_along, knots_beside, knots_span
+from bladewright.domain.folding import UNFOLDED, least_share
 from bladewright.domain.knots import PassageKnots
 from bladewright.domain.nets import native_nets
 from bladewright.domain.passage import Passage
@@ -27,6 +29,8 @@ from bladewright.section.checks import UNITS, number
 
 Turned = tuple[Array | None, Array | None]
 """d theta / dm' at inlet and outlet, where stated"""
+Asked = tuple[float | None, float | None]
+"""extents up- and downstream, where stated"""
 
 
 def passage(
@@ -56,7 +60,7 @@ def passage(
     held = knots is not None
     if knots is None:
         _check_within(blade, half)
-        knots = _knots(blade, full, half, turned, extents(full, half, upstream, downstream))
+        knots = _knots(blade, full, half, turned, (upstream, downstream))
     else:
         for name, given in (("upstream", upstream), ("downstream", downstream)):
             if given is not None and given != getattr(knots, name):
@@ -134,26 +138,11 @@ def _plane(
     """Camber lines and walls' halves with stations at v (m,), hub first and shroud last."""
     camber = camber_lines(full.stations(v), _duct(full, knots), turned, np.unique(breaks_along_v(full)))
     touched = {wall: wall in blade.surfaces for wall in ("hub", "shroud")}
-    return camber, halves(camber, touched, half, knots.opening)
+    return camber, halves(camber, touched, half, knots.opening, knots.crossing)
 
 
-def _knots(blade: Blade, full: ExactBlade, half: Array, turned: Turned, reaches: tuple[float, float]) -> PassageKnots:
-    rough = np.concatenate([np.zeros(DEGREE + 1), np.ones(DEGREE + 1)])
-    start = PassageKnots(
-        length=mean_length(full),
-        upstream=reaches[0],
-        downstream=reaches[1],
-        start=-full.before,
-        end=1.0 + full.after,
-        opening=openings(full, _real_half(half)),
-        blade=blade.knots.u,
-        inlet=rough,
-        outlet=rough,
-        across=rough,
-        span=rough,
-    )
-    check_duct(_duct(full, start))
-    walls = _plane(blade, full, start, half, turned, np.array([0.0, 1.0]))[1]
+def _knots(blade: Blade, full: ExactBlade, half: Array, turned: Turned, asked: Asked) -> PassageKnots:
+    start, walls = _crossed(blade, full, half, turned, asked)
     tolerance = RESERVE * TOLERANCE * blade.chord
     return PassageKnots(
         length=start.length,
@@ -162,11 +151,55 @@ def _knots(blade: Blade, full: ExactBlade, half: Array, turned: Turned, reaches:
         start=start.start,
         end=start.end,
         opening=start.opening,
+        crossing=start.crossing,
         blade=knots_beside(walls, blade.knots.u, tolerance),
         inlet=knots_along(walls, "inlet", tolerance),
         outlet=knots_along(walls, "outlet", tolerance),
         across=knots_across(walls, tolerance),
         span=knots_span(lambda v: _plane(blade, full, start, half, turned, v)[0], breaks_along_v(full), tolerance),
+    )
+
+
+def _crossed(
+    blade: Blade, full: ExactBlade, half: Array, turned: Turned, asked: Asked
+) -> tuple[PassageKnots, Mapping[str, WallHalf]]:
+    """The first way for cross-lines in which no wall folds, with its extents but without knots, and the walls.
+
+    The first of all where every one folds.
+    """
+    tried: list[tuple[PassageKnots, Mapping[str, WallHalf]]] = []
+    for crossing in CROSSINGS:
+        try:
+            start = _rough(blade, full, half, crossing, extents(full, half, crossing, *asked))
+            check_duct(_duct(full, start))
+        except DesignError:
+            if not tried:
+                raise
+            break
+        walls = _plane(blade, full, start, half, turned, np.array([0.0, 1.0]))[1]
+        tried.append((start, walls))
+        if least_share(walls) > UNFOLDED:
+            return start, walls
+    return tried[0]
+
+
+def _rough(
+    blade: Blade, full: ExactBlade, half: Array, crossing: Crossing, reaches: tuple[float, float]
+) -> PassageKnots:
+    rough = np.concatenate([np.zeros(DEGREE + 1), np.ones(DEGREE + 1)])
+    return PassageKnots(
+        length=mean_length(full),
+        upstream=reaches[0],
+        downstream=reaches[1],
+        start=-full.before,
+        end=1.0 + full.after,
+        opening=openings(full, _real_half(half)),
+        crossing=crossing,
+        blade=blade.knots.u,
+        inlet=rough,
+        outlet=rough,
+        across=rough,
+        span=rough,
     )
 
 

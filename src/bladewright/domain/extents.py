@@ -6,6 +6,7 @@ import numpy as np
 
 from bladewright.blade.exact import ExactBlade
 from bladewright.domain.camber import CamberLines, camber_lines
+from bladewright.domain.crossing import Crossing
 from bladewright.domain.duct import Duct
 from bladewright.domain.wall import lean, opening
 from bladewright.errors import DesignError
@@ -20,12 +21,10 @@ MOST = 20.0
 """extent, in u, above which a duct is refused"""
 ROOM = 1.25
 """extents of the walls' patches in which lines of equal v lie, over the bulge of the cross-lines at the edge"""
-BULGE = 27.0 / 256.0
-"""greatest value of v (1 - v)^3"""
 
 
 def extents(
-    full: ExactBlade, half_pitch: Array, upstream: float | None, downstream: float | None
+    full: ExactBlade, half_pitch: Array, crossing: Crossing, upstream: float | None, downstream: float | None
 ) -> tuple[float, float]:
     """Extents up- and downstream in u: those given where they suffice, else the usual or the needed ones.
 
@@ -34,7 +33,7 @@ def extents(
     """
     found = []
     for past, (name, given) in enumerate((("upstream", upstream), ("downstream", downstream))):
-        needed = _needed(full, half_pitch, past)
+        needed = _needed(full, half_pitch, crossing, past)
         if given is None:
             found.append(_usual(full, name, needed))
             continue
@@ -72,12 +71,12 @@ def openings(full: ExactBlade, half_pitch: float) -> tuple[float, float]:
     return opening(half_pitch, hub), opening(half_pitch, shroud)
 
 
-def _needed(full: ExactBlade, half_pitch: Array, past: int) -> float:
+def _needed(full: ExactBlade, half_pitch: Array, crossing: Crossing, past: int) -> float:
     """The extension must outlast the bulge of the cross-lines, and reach past the nose."""
-    return max((full.before, full.after)[past] + 0.05, ROOM * _bulge(full, half_pitch, past))
+    return max((full.before, full.after)[past] + 0.05, ROOM * _bulge(full, half_pitch, crossing, past))
 
 
-def _bulge(full: ExactBlade, half_pitch: Array, past: int) -> float:
+def _bulge(full: ExactBlade, half_pitch: Array, crossing: Crossing, past: int) -> float:
     """How far, in u, cross-lines from an edge reach past it."""
     camber = _camber(full)
     direction = np.real(camber.direction(past))
@@ -86,7 +85,13 @@ def _bulge(full: ExactBlade, half_pitch: Array, past: int) -> float:
     half = float(np.real(half_pitch).flat[0])
     share = np.array(openings(full, half))
     bulges = [
-        np.max(BULGE * share * lean(direction[..., 1], half, sign, past) * direction[..., 0] / density)
+        np.max(
+            crossing.bulge
+            * share
+            * lean(direction[..., 1], half, sign, past, crossing.lean)
+            * direction[..., 0]
+            / density
+        )
         for sign in (1, -1)
     ]
     return max(float(each) for each in bulges)

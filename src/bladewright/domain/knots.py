@@ -6,6 +6,7 @@ from functools import cached_property
 import numpy as np
 
 from bladewright.blade.knots import DEGREE, clamped
+from bladewright.domain.crossing import Crossing
 from bladewright.numerics.elementary import frozen
 from bladewright.nurbs.basis import Reals, greville
 
@@ -31,6 +32,8 @@ class PassageKnots:
     """u up to which it does"""
     opening: tuple[float, float]
     """share of the passage's width at which cross-lines leave the blade, on hub and shroud"""
+    crossing: Crossing
+    """how cross-lines leave the edges and turn back"""
     blade: Reals
     """the blade's own along u, and what the walls need besides"""
     inlet: Reals

@@ -3,7 +3,7 @@
 With S the blade's side and its extensions, N the continued camber line half a pitch away, and A a vector along the
 extension that fades from the edge:
 
-    P(u, v) = S + (N - S) w(v) + A g(v),   w = o v + (1 - o) v^2,   g = o v (1 - v)^3.
+    P(u, v) = S + (N - S) w(v) + A g(v),   w = o v + (1 - o) v^2,   g = o v (1 - v)^e.
 
 At an edge the cross-line leaves inside the right angle between side and extension, so that the patch does not fold
 there though its sides turn by that angle.
@@ -15,13 +15,12 @@ import numpy as np
 
 from bladewright.blade.streamlines import StreamLines
 from bladewright.domain.camber import CamberLines
+from bladewright.domain.crossing import Crossing
 from bladewright.numerics.elementary import Array, unit
 from bladewright.nurbs.basis import Reals
 
 FADE = 16
 """power of 1 - t with which the lean of the cross-lines fades from an edge along the blade"""
-LEAN = 1.0
-"""tangent of the least angle of the cross-line to the normal of the extension, times the camber's cosine"""
 ROOM = 4.0
 """half pitch, in meridional extents of the blade, beyond which cross-lines leave the blade more slowly"""
 
@@ -36,10 +35,10 @@ def widening(opened: float, v: Reals) -> Reals:
     return opened * v + (1.0 - opened) * v * v
 
 
-def lean(sine: Array, half_pitch: Array | float, sign: int, past: int) -> Array:
-    """Length |A| (...) of the lean at an edge where the camber has the given sine."""
+def lean(sine: Array, half_pitch: Array | float, sign: int, past: int, least: float) -> Array:
+    """Length |A| (...) of the lean at an edge where the camber has the given sine; `least` that of a Crossing."""
     outwards = -1.0 if past == 0 else 1.0
-    return half_pitch * (np.sqrt(sine * sine + LEAN**2) - outwards * sign * sine)
+    return half_pitch * (np.sqrt(sine * sine + least**2) - outwards * sign * sine)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -56,6 +55,7 @@ class WallHalf:
     half_pitch: Array
     """() in theta, or y in a cascade"""
     opening: float
+    crossing: Crossing
 
     def plane(self, piece: str, t: Reals, v: Reals) -> Array:
         """Points (..., k, l, 2) in the plane at t (k,) along a piece and v (l,) across."""
@@ -66,7 +66,7 @@ class WallHalf:
             return middle[..., None, :] + width[..., None, :] * w[:, None]
         south = self._side(t) if piece == "blade" else middle
         north = middle + width
-        g = self.opening * v * (1.0 - v) ** 3
+        g = self.opening * v * (1.0 - v) ** self.crossing.ease
         across = (north - south)[..., None, :] * w[:, None]
         return south[..., None, :] + across + self._lean(piece, t)[..., None, :] * g[:, None]
 
@@ -82,7 +82,9 @@ class WallHalf:
 
     def _edge_lean(self, past: int) -> Array:
         direction = self.camber.direction(past)[..., self.row, :]
-        reach = (-1.0 if past == 0 else 1.0) * lean(direction[..., 1], self.half_pitch, self.sign, past)
+        reach = (-1.0 if past == 0 else 1.0) * lean(
+            direction[..., 1], self.half_pitch, self.sign, past, self.crossing.lean
+        )
         return reach[..., None, None] * direction[..., None, :]
 
     def in_space(self, piece: str, t: Reals, v: Reals) -> tuple[Array, Array]:
@@ -100,7 +102,7 @@ class WallHalf:
 
 
 def halves(
-    camber: CamberLines, touched: dict[str, bool], half_pitch: Array, opened: tuple[float, float]
+    camber: CamberLines, touched: dict[str, bool], half_pitch: Array, opened: tuple[float, float], crossing: Crossing
 ) -> dict[str, WallHalf]:
     """The four halves of hub (first station) and shroud (last), by the names of their faces."""
     lines = {row: camber.lines.rows([row]) for row in (0, -1)}
@@ -113,6 +115,7 @@ def halves(
             touched=touched[wall],
             half_pitch=half_pitch,
             opening=opened[row],
+            crossing=crossing,
         )
         for wall, row in (("hub", 0), ("shroud", -1))
         for half, sign in (("upper", 1), ("lower", -1))

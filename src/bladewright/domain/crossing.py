@@ -1,0 +1,22 @@
+"""The ways in which cross-lines of a wall's half leave an edge of the blade and turn back."""
+
+from typing import NamedTuple
+
+
+class Crossing(NamedTuple):
+    """How cross-lines turn back from the lean with which they leave an edge."""
+
+    ease: int
+    """the power e: the smaller, the later they turn back, and the further the extension must reach"""
+    lean: float
+    """tangent of their least angle to the normal of the extension, times the camber's cosine"""
+
+    @property
+    def bulge(self) -> float:
+        """The greatest value of v (1 - v)^e."""
+        share = self.ease / (self.ease + 1.0)
+        return float((1.0 - share) * share**self.ease)
+
+
+CROSSINGS = (Crossing(3, 1.0), Crossing(1, 1.0), Crossing(1, 2.0))
+"""the ways that are tried in turn: most blades need the first, blunt ones beside narrow passages the others"""
