@@ -19,18 +19,20 @@ POINTS = 10
 """Gauss points in a knot span of a side: exact to degree 19"""
 STEP = 1e-30
 """imaginary step of a point"""
+ALL = 10
+"""moments: 1, x, y, z, xx, yy, zz, xy, yz, zx"""
 Density = Callable[[Array, Array], Array]
 
 
-def side_moments(side: Surface, middle: float, *, revolved: bool) -> Array:
-    """Integrals (10,) of 1, x, y, z, xx, yy, zz, xy, yz, zx that a side gives a volume, along its own normal.
+def side_moments(side: Surface, middle: float, *, revolved: bool, count: int = ALL) -> Array:
+    """Integrals (count,) of 1, x, y, z, xx, yy, zz, xy, yz, zx that a side gives a volume, along its own normal.
 
     `middle` is the theta, or y in a cascade, at which the field vanishes: amid the blade, so that
     what passes through the gap between sides and walls stays small. Control points may be complex.
     """
     u, v, weight = _places(side)
     point, normal = side.grid(u, v), np.cross(side.grid(u, v, 1, 0), side.grid(u, v, 0, 1))
-    return np.einsum("uv,uvk->k", weight, _density(middle, revolved=revolved)(point, normal))
+    return np.einsum("uv,uvk->k", weight, _density(middle, count, revolved=revolved)(point, normal))
 
 
 def area_vector(side: Surface) -> Array:
@@ -39,7 +41,7 @@ def area_vector(side: Surface) -> Array:
     return np.einsum("uv,uvk->k", weight, np.cross(side.grid(u, v, 1, 0), side.grid(u, v, 0, 1)))
 
 
-def moment_gradient(side: Surface, middle: float, *, revolved: bool, count: int = 10) -> Reals:
+def moment_gradient(side: Surface, middle: float, *, revolved: bool, count: int = ALL) -> Reals:
     """Derivatives (count, n_u, n_v, 3) of the first of a side's moments by its real control points.
 
     The density f(S, n) is linear in n = S_u x S_v, so that its change is
@@ -47,11 +49,7 @@ def moment_gradient(side: Surface, middle: float, *, revolved: bool, count: int 
     """
     u, v, weight = _places(side)
     point, along, across = (side.grid(u, v, *orders) for orders in ((0, 0), (1, 0), (0, 1)))
-    whole, axes, normal = _density(middle, revolved=revolved), np.eye(3), np.cross(along, across)
-
-    def density(point: Array, normal: Array) -> Array:
-        return whole(point, normal)[..., :count]
-
+    density, axes, normal = _density(middle, count, revolved=revolved), np.eye(3), np.cross(along, across)
     by_normal = np.stack([density(point, np.broadcast_to(axis, point.shape)) for axis in axes], axis=-1)
     by_point = np.stack([np.imag(density(point + STEP * 1j * axis, normal)) / STEP for axis in axes], axis=-1)
     parts = (
@@ -74,13 +72,13 @@ def _places(side: Surface) -> tuple[Reals, Reals, Reals]:
     return u, v, along[:, None] * across
 
 
-def _density(middle: float, *, revolved: bool) -> Density:
+def _density(middle: float, count: int, *, revolved: bool) -> Density:
     field = _around_axis if revolved else _along_y
-    return lambda point, normal: field(point, normal, middle)
+    return lambda point, normal: field(point, normal, middle, count)
 
 
-def _around_axis(point: Array, normal: Array, middle: float) -> Array:
-    """Densities (..., 10) of the moments for a field along theta, which vanishes at theta = `middle`."""
+def _around_axis(point: Array, normal: Array, middle: float, count: int) -> Array:
+    """Densities (..., count) of the moments for a field along theta, which vanishes at theta = `middle`."""
     x, y, z = np.moveaxis(point, -1, 0)
     radius = length(point[..., 1:])
     start_y, start_z = radius * np.sin(middle), radius * np.cos(middle)
@@ -88,18 +86,20 @@ def _around_axis(point: Array, normal: Array, middle: float) -> Array:
     turns = np.unwrap(np.unwrap(np.real(theta), axis=0), axis=1)
     turns = turns - 2.0 * np.pi * np.round(np.mean(turns) / (2.0 * np.pi))
     theta = theta + (turns - np.real(theta))
-    square, product = radius * radius * theta, y * z - start_y * start_z
     flux = z * normal[..., 1] - y * normal[..., 2]
+    if count == 1:
+        return np.asarray((theta * flux)[..., None])
+    square, product = radius * radius * theta, y * z - start_y * start_z
     primitives = [theta, x * theta, start_z - z, y - start_y, x * x * theta]
     primitives += [(square - product) / 2.0, (square + product) / 2.0]
     primitives += [x * (start_z - z), (y * y - start_y * start_y) / 2.0, x * (y - start_y)]
-    return np.stack(primitives, axis=-1) * flux[..., None]
+    return np.stack(primitives[:count], axis=-1) * flux[..., None]
 
 
-def _along_y(point: Array, normal: Array, middle: float) -> Array:
+def _along_y(point: Array, normal: Array, middle: float, count: int) -> Array:
     """The same for a field along y, which vanishes at y = `middle`."""
     x, y, z = np.moveaxis(point, -1, 0)
     first, second, third = y - middle, (y * y - middle**2) / 2.0, (y**3 - middle**3) / 3.0
     primitives = [first, x * first, second, z * first, x * x * first, third, z * z * first]
     primitives += [x * second, z * second, z * x * first]
-    return np.stack(primitives, axis=-1) * normal[..., 1, None]
+    return np.stack(primitives[:count], axis=-1) * normal[..., 1, None]

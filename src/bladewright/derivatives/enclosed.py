@@ -22,16 +22,22 @@ def enclosed_volume_rates(
     these, as through a trimmed tip, a field along theta, or y, has no flux. `middle` is the theta or y amid the faces.
     Raises DerivativeError where the fluxes do not add up to the known `volume`.
     """
-    total, enclosed = np.zeros(len(found.paths)), 0.0
+    faces: dict[str, Surface] = {}
     for name, shape in found.shapes.items():
         if not isinstance(shape, Surface) or shape.weights is not None:
             raise DerivativeError(f"the face '{name}' is no polynomial surface: take bladewright.sensitivity instead")
-        gradient = moment_gradient(shape, middle, revolved=revolved, count=1)[0]
-        total = total + orientations[name] * np.tensordot(found.homogeneous[name], gradient, axes=3)
-        enclosed += orientations[name] * float(side_moments(shape, middle, revolved=revolved)[0])
+        faces[name] = shape
+    enclosed = sum(
+        orientations[name] * float(side_moments(face, middle, revolved=revolved, count=1)[0])
+        for name, face in faces.items()
+    )
     if not (enclosed / volume - 1.0) ** 2 <= AGREED**2:
         raise DerivativeError(
             f"the faces enclose {enclosed:.6g} m^3 by their fluxes along theta, and {volume:.6g} m^3 are known: for a "
             "passage that winds around the axis take bladewright.sensitivity instead"
         )
+    total = np.zeros(len(found.paths))
+    for name, face in faces.items():
+        gradient = moment_gradient(face, middle, revolved=revolved, count=1)[0]
+        total = total + orientations[name] * np.tensordot(found.homogeneous[name], gradient, axes=3)
     return {path: float(value) for path, value in zip(found.paths, total, strict=True)}
