@@ -76,7 +76,8 @@ def unit_of(design: Part, name: str) -> str | None:
 
 def unit_at(design: Part, path: str) -> str | None:
     """The unit of the field that holds a parameter, such as 'deg', or None where the path leads to none."""
-    node, unit = design, None
+    node: Any = design
+    unit: str | None = None
     for step in _steps(path):
         if not (isinstance(node, Part) and isinstance(step, str)):
             break
