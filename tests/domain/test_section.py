@@ -5,6 +5,7 @@ from importlib import resources
 import numpy as np
 import pytest
 
+from bladewright.domain.build import passage
 from bladewright.domain.section import section_passage
 from bladewright.errors import DesignError
 from bladewright.files.reading import read_design
@@ -55,6 +56,11 @@ def test_the_area_follows_the_pitch(section):
 def test_a_pitch_that_the_section_does_not_keep_within_is_refused(section):
     with pytest.raises(DesignError, match=r"pitch is 0\.002 m: the upper side .* stands 0\.\d+ m outside its passage"):
         section_passage(section, 0.002)
+
+
+def test_a_section_has_no_passage_in_space(section):
+    with pytest.raises(DesignError, match="a 2D section was given: use section_passage"):
+        passage(section)
 
 
 @pytest.mark.parametrize("asked", [{"upstream": -1.0}, {"downstream": 0.0}])

@@ -54,6 +54,10 @@ def passage(
     Raises DesignError where a patch would fold, the channel cannot be continued so far, or the blade does not keep
     within its pitch. Agromayor et al. 2021, section 4.
     """
+    if hasattr(blade, "camber"):
+        raise DesignError(
+            "passage: a 2D section was given: use section_passage for its flow domain, or build prismatic(design) first"
+        )
     full = _whole(blade)
     turned = _slope("inlet_angle", inlet_angle), _slope("outlet_angle", outlet_angle)
     half = _half_pitch(blade)
