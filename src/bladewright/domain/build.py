@@ -14,7 +14,7 @@ from bladewright.domain.crossing import CROSSINGS, Crossing
 from bladewright.domain.duct import Duct
 from bladewright.domain.extents import extents, mean_length, openings
 from bladewright.domain.fitness import RESERVE, TOLERANCE, knots_across, knots_along, knots_beside, knots_span
-from bladewright.domain.folding import UNFOLDED, least_share
+from bladewright.domain.folding import ROOMY, least_share
 from bladewright.domain.knots import PassageKnots
 from bladewright.domain.nets import native_nets
 from bladewright.domain.passage import Passage
@@ -167,11 +167,11 @@ def _knots(blade: Blade, full: ExactBlade, half: Array, turned: Turned, asked: A
 def _crossed(
     blade: Blade, full: ExactBlade, half: Array, turned: Turned, asked: Asked
 ) -> tuple[PassageKnots, Mapping[str, WallHalf]]:
-    """The first way for cross-lines in which no wall folds, with its extents but without knots, and the walls.
+    """The first way for cross-lines in which no wall is near to folding, or else the best, and the walls.
 
-    The first of all where every one folds.
+    What comes back has extents, but no knots yet.
     """
-    tried: list[tuple[PassageKnots, Mapping[str, WallHalf]]] = []
+    tried: list[tuple[float, PassageKnots, Mapping[str, WallHalf]]] = []
     for crossing in CROSSINGS:
         try:
             start = _rough(blade, full, half, crossing, extents(full, half, crossing, *asked))
@@ -181,10 +181,11 @@ def _crossed(
                 raise
             break
         walls = _plane(blade, full, start, half, turned, np.array([0.0, 1.0]))[1]
-        tried.append((start, walls))
-        if least_share(walls) > UNFOLDED:
-            return start, walls
-    return tried[0]
+        tried.append((least_share(walls), start, walls))
+        if tried[-1][0] > ROOMY:
+            break
+    _, start, walls = max(tried, key=lambda each: each[0])
+    return start, walls
 
 
 def _rough(

@@ -9,8 +9,8 @@ from bladewright.domain.wall import WallHalf
 from bladewright.numerics.elementary import cross2
 from bladewright.nurbs.basis import Reals
 
-UNFOLDED = 0.005
-"""least Jacobian, of its median, above which a patch is taken for one that does not fold"""
+ROOMY = 0.05
+"""least Jacobian, of its median, above which a patch is taken for far from folding"""
 _EVEN = np.linspace(0.0, 1.0, 31)
 _ALONG = np.unique(np.concatenate([np.linspace(0.0, 1.0, 61), 0.1 * _EVEN**2, 1.0 - 0.1 * _EVEN**2]))
 _ACROSS = np.concatenate([np.linspace(0.0, 0.1, 8)[:-1], np.linspace(0.1, 1.0, 22)])
