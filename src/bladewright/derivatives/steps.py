@@ -67,9 +67,8 @@ def varied(design: Design, base: Any, changes: Sequence[Mapping[str, complex]]) 
 
 def varied_nets(blade: Blade, changes: Sequence[Mapping[str, complex]]) -> Nets:
     """Nets (k, n_u, n_v, 3) of the upper and lower side with each of k changes of parameters, at the blade's knots."""
-    real = any(not np.iscomplexobj(value) for each in changes for value in each.values())
-    if len(changes) > 1 and real and blade.exact.clearance is not None:
-        # where a clearance surface lies is found for one real design at a time
+    if len(changes) > 1 and blade.exact.clearance is not None and any(map(_moves_walls, changes)):
+        # where a clearance surface lies is found for one real channel at a time
         alone = [varied_nets(blade, [each]) for each in changes]
         return np.concatenate([nets[0] for nets in alone]), np.concatenate([nets[1] for nets in alone])
     values = blade.design.parameters()
@@ -79,6 +78,12 @@ def varied_nets(blade: Blade, changes: Sequence[Mapping[str, complex]]) -> Nets:
     upper, lower = native_sides(exact.stations(blade.knots.sites_v), blade.knots)
     shape = (len(changes), *upper.shape[-3:])
     return np.broadcast_to(upper, shape), np.broadcast_to(lower, shape)
+
+
+def _moves_walls(change: Mapping[str, complex]) -> bool:
+    """Whether the real channel, or the clearance in it, is another."""
+    of_walls = [value for path, value in change.items() if path.startswith("channel.") or "clearance" in path]
+    return any(not np.iscomplexobj(value) for value in of_walls)
 
 
 class _Moments:

@@ -44,9 +44,9 @@ def draw_sweeps(found: Sequence["Sweep"], path: str | Path, *, title: str, limit
         _slopes(left)
         left.axhline(limit, color=INK, linewidth=1.0, linestyle=(0, (5, 3)))
         left.set_ylim(LEAST / 3.0, 30.0)
-        titled(left, "Central differences", "step, of the parameter's scale", "error of the derivative, of its size")
+        titled(left, "Differences", "step, of the parameter's scale", "error of the derivative, of its size")
         titled(right, "Complex step", "imaginary step, of the parameter's scale", "")
-        figure.legend(handles=_handles(found, limit), loc="outside lower left", ncols=4)
+        figure.legend(handles=_handles(found, limit), loc="outside lower left", ncols=5)
         write(figure, path, 150)
 
 
@@ -64,9 +64,9 @@ def _line(axes: Axes, steps: Reals, errors: Reals, colour: str) -> None:
 def _slopes(axes: Axes) -> None:
     """What truncation and rounding look like."""
     style = {"color": SOFT, "linewidth": 1.6, "linestyle": ":"}
-    axes.loglog([1e-5, 1e-2], [1e-3 * 1e-6, 1e-3], **style)
+    axes.loglog([1e-4, 1e-2], [1e-5, 1e-1], **style)
     axes.loglog([1e-10, 1e-6], [1.0, 1e-4], **style)
-    axes.annotate("truncation: step²", (10**-3.4, 10**-6.2), color=INK, ha="right", fontsize=9.0)
+    axes.annotate("truncation: step²", (10**-2.9, 10**-2.6), color=INK, ha="right", fontsize=9.0)
     axes.annotate("rounding: 1 / step", (10**-7.6, 10**-2.1), color=INK, ha="left", fontsize=9.0)
 
 
