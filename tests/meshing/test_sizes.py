@@ -13,12 +13,6 @@ def test_without_a_size_the_expected_number_is_made(cascade, rotor):
         assert sizes(case.passage).expected == pytest.approx(EXPECTED, rel=1e-3)
 
 
-def test_a_smallest_size_does_not_change_the_size_in_the_open_passage(rotor):
-    plain, fine = sizes(rotor.passage), sizes(rotor.passage, smallest=1e-3)
-    assert fine.largest == plain.largest
-    assert fine.expected > plain.expected
-
-
 def test_a_mesh_has_about_the_number_of_tetrahedra_that_was_expected(cascade_mesh, rotor_mesh):
     for _, report in (cascade_mesh, rotor_mesh):
         # an element or two across a passage is where they are least alike; design/meshes.md has those of all examples

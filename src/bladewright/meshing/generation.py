@@ -1,6 +1,6 @@
 """Nodes on curves, triangles on faces, tetrahedra between: gmsh's algorithms, tried in a stated order."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable
 
 import numpy as np
 
@@ -8,15 +8,14 @@ from bladewright.errors import MeshError
 from bladewright.meshing.job import STEP
 from bladewright.meshing.library import gmsh
 
-SURFACE = {"Frontal-Delaunay": (6, 1.0), "Delaunay": (5, 0.2), "MeshAdapt": (1, 0.1)}
-"""gmsh's number, and gamma of a face's worst triangle below which it is tried on that face; in this order. MeshAdapt
-copes with faces whose derivatives jump at a knot, and takes ten times as long."""
+SURFACE = {"Frontal-Delaunay": 6, "Delaunay": 5, "MeshAdapt": 1}
+"""In the order in which they are tried. MeshAdapt is slow, and copes with faces whose derivatives jump at a knot."""
 VOLUME = {"HXT": 10, "Delaunay": 1, "Frontal": 4}
 """In the order in which they are tried."""
-WORST_TETRAHEDRON = 0.05
-"""minSICN of the worst tetrahedron below which the mesh is improved; where one is inverted the next is tried"""
-IMPROVER = "Netgen"
-"""moves nodes and swaps edges inside the volume; takes ten times as long as making the mesh"""
+WORST_TRIANGLE = 0.2
+"""gamma of the worst triangle of a face below which the next algorithm is tried on that face"""
+WORST_TETRAHEDRON = 0.1
+"""minSICN of the worst tetrahedron below which the mesh is improved, and then the next algorithm tried"""
 
 
 def say(step: str) -> None:
@@ -42,25 +41,26 @@ def faces_meshed(images: dict[int, int]) -> tuple[str, ...]:
     gmsh.option.setNumber("Geometry.OCCUseGenericClosestPoint", 1)
     free = [tag for _, tag in gmsh.model.getEntities(2) if tag not in images]
     best: dict[int, tuple[float, str]] = {}
-    for name, (_, below) in SURFACE.items():
-        waiting = [tag for tag in free if best.get(tag, (0.0, ""))[0] < below]
+    waiting = free
+    for name in SURFACE:
         _mesh_faces(waiting, images, dict.fromkeys(waiting, name))
         for tag in waiting:
             best[tag] = max(best.get(tag, (-1.0, name)), (worst_triangle(tag), name))
-    worse = [tag for tag in free if worst_triangle(tag) < best[tag][0]]
-    _mesh_faces(worse, images, {tag: best[tag][1] for tag in worse})
+        waiting = [tag for tag in free if best[tag][0] < WORST_TRIANGLE]
+        if not waiting:
+            break
+    else:
+        _mesh_faces(waiting, images, {tag: best[tag][1] for tag in waiting})
     if min(worst for worst, _ in best.values()) < 0.0:
         raise MeshError("gmsh leaves a face without triangles: choose another size")
     return tuple(name for name in SURFACE if name in {used for _, used in best.values()})
 
 
-def _mesh_faces(tags: Sequence[int], images: dict[int, int], algorithms: dict[int, str]) -> None:
-    if not tags:
-        return
+def _mesh_faces(tags: Iterable[int], images: dict[int, int], algorithms: dict[int, str]) -> None:
     again = [*tags, *(image for image, master in images.items() if master in set(tags))]
     gmsh.model.mesh.clear([(2, tag) for tag in again])
     for tag, name in algorithms.items():
-        gmsh.model.mesh.setAlgorithm(2, tag, SURFACE[name][0])
+        gmsh.model.mesh.setAlgorithm(2, tag, SURFACE[name])
     _tried(lambda: gmsh.model.mesh.generate(2))
 
 
@@ -75,22 +75,26 @@ def volume_meshed() -> tuple[str, ...]:
 
     Raises MeshError where no algorithm does.
     """
+    used: list[str] = []
     for name, number in VOLUME.items():
         say(f"volume ({name})")
         gmsh.model.mesh.clear(gmsh.model.getEntities(3))
         gmsh.option.setNumber("Mesh.Algorithm3D", number)
         _tried(lambda: gmsh.model.mesh.generate(3))
-        worst = worst_tetrahedron()
-        if worst >= WORST_TETRAHEDRON:
-            return (name,)
-        if worst >= -1.0:
-            say(f"improving ({IMPROVER})")
-            _tried(lambda: gmsh.model.mesh.optimize(IMPROVER))
-            if worst_tetrahedron() > 0.0:
-                return name, IMPROVER
+        if worst_tetrahedron() < -1.0:
+            continue
+        used = [name]
+        for improvement in ("Relocate3D", "Netgen"):
+            if worst_tetrahedron() >= WORST_TETRAHEDRON:
+                return tuple(used)
+            say(f"improving ({improvement})")
+            _tried(lambda improvement=improvement: gmsh.model.mesh.optimize(improvement))  # type: ignore[misc]
+            used.append(improvement)
+        if worst_tetrahedron() >= WORST_TETRAHEDRON:
+            return tuple(used)
     if worst_tetrahedron() < -1.0:
         raise MeshError("gmsh cannot fill the passage with tetrahedra: choose another size")
-    return name, IMPROVER
+    return tuple(used)
 
 
 def worst_tetrahedron() -> float:

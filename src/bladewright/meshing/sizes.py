@@ -82,9 +82,9 @@ def sizes(
     """The sizes of a mesh with elements of `size` in the open passage and of `smallest` at least, both of the chord.
 
     An edge of the blade gets `curvature` elements on a full circle as tight as the edge, a gap one across it, as far as
-    `smallest` allows; where not given, that is `FINEST` of the size. Where no size is given, it is the one for which
-    about `EXPECTED` tetrahedra are expected with that. Raises MeshError for sizes that are not positive, above the
-    chord, or so small that more than `MOST` tetrahedra are expected.
+    `smallest` allows. Where no size is given, it is the one for which about `EXPECTED` tetrahedra are expected; without
+    `smallest` it is `FINEST` of the size. Raises MeshError for sizes that are not positive, above the chord, or so
+    small that more than `MOST` tetrahedra are expected.
     """
     check_sizes(size=size, smallest=smallest, curvature=curvature)
     wish = _Wish(
@@ -93,7 +93,7 @@ def sizes(
         sources=sources(passage, curvature),
         smallest=smallest,
     )
-    given = replace(wish, smallest=None).size_for(EXPECTED) if size is None else size
+    given = wish.size_for(EXPECTED) if size is None else size
     found = wish.sizes(given)
     if found.expected > MOST:
         raise MeshError(
