@@ -1,0 +1,1 @@
+"""Fitting: from clouds of points to designs, and to plain curves and surfaces."""
