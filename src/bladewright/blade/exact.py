@@ -42,6 +42,8 @@ class ExactBlade:
     """how far, in u, stream lines are continued past the trailing edge"""
     surveyed: Stations | None = None
     """the survey, where it is at hand"""
+    tentative: bool = False
+    """whether edge radii that the thickness cannot hold are let through, as on the way of a search"""
 
     @property
     def tip_knots(self) -> Reals | None:
@@ -54,20 +56,22 @@ class ExactBlade:
         return self.stations(SURVEY) if self.surveyed is None else self.surveyed
 
     def stations(self, v: Reals) -> Stations:
-        """Sections at v (m,); refuses an edge radius that the thickness cannot hold."""
+        """Sections at v (m,); refuses an edge radius that the thickness cannot hold, unless it is tentative."""
         lines = stream_lines(self.channel, self.mapping, v, self.before, self.after)
-        return stations_at(self.design, self.places, lines, v)
+        return stations_at(self.design, self.places, lines, v, tentative=self.tentative)
 
 
-def exact_blade(design: UnifiedBlade, tip_knots: Reals | None = None) -> ExactBlade:
+def exact_blade(design: UnifiedBlade, tip_knots: Reals | None = None, *, tentative: bool = False) -> ExactBlade:
     """The exact blade of a design, its channel continued as far as the noses need.
 
-    `tip_knots` hold the knots of the meridian of a clearance surface. Raises DesignError where there is no such blade.
+    `tip_knots` hold the knots of the meridian of a clearance surface; `tentative` lets through edge radii that the
+    thickness cannot hold. Raises DesignError where there is no such blade.
     """
     mapping = mapping_of(design.mapping, design.arrangement)
     full, channel, clearance = _channels_of(design, tip_knots)
     places = sample_places(design.samples, design.clustering)
-    within = stations_at(design, places, stream_lines(channel, mapping, SURVEY, 0.0, 0.0), SURVEY)
+    lines = stream_lines(channel, mapping, SURVEY, 0.0, 0.0)
+    within = stations_at(design, places, lines, SURVEY, tentative=tentative)
     before, after = _reaches(within)
     # the sections do not depend on how far the stream lines are continued
     survey = replace(within, lines=stream_lines(channel, mapping, SURVEY, before, after))
@@ -81,6 +85,7 @@ def exact_blade(design: UnifiedBlade, tip_knots: Reals | None = None) -> ExactBl
         before=before,
         after=after,
         surveyed=survey,
+        tentative=tentative,
     )
 
 

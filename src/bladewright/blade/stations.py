@@ -107,10 +107,12 @@ class Stations:
         return EdgeRow(*self.mapping.series_in_space(x, radius, tangential))
 
 
-def stations_at(design: UnifiedBlade, places: Reals, lines: StreamLines, v: Reals) -> Stations:
+def stations_at(
+    design: UnifiedBlade, places: Reals, lines: StreamLines, v: Reals, *, tentative: bool = False
+) -> Stations:
     """The sections of a design on stream lines at v (m,), `places` the camber parameters of a side's control points.
 
-    Raises DesignError for an edge radius that the thickness cannot hold.
+    Raises DesignError for an edge radius that the thickness cannot hold, unless the design is tentative.
     """
     span = Span(v)
     angle_in, angle_out = (radians(span.values(law)) for law in (design.metal_angle_in, design.metal_angle_out))
@@ -130,7 +132,8 @@ def stations_at(design: UnifiedBlade, places: Reals, lines: StreamLines, v: Real
         thickness = span.chordwise(getattr(design, f"thickness_{name}"), inner) * scale
         laws = getattr(design, f"weights_{name}")
         weights = span.chordwise(laws, places) if laws else None
-        check_edges(design, name, camber, places, thickness, curvatures, weights, span)
+        if not tentative:
+            check_edges(design, name, camber, places, thickness, curvatures, weights, span)
         sides.append(side(camber, places, thickness, *curvatures, upper=name == "upper", weights=weights))
     return Stations(
         v=v,

@@ -92,17 +92,20 @@ class UnifiedSection(Design):
                 checks.between(name, getattr(self, name), 0.0, float("inf"), "it must be positive")
         check_sampling(self)
 
-    def build(self) -> Section:
-        """The section in metres and radians; raises DesignError where the shape is impossible."""
+    def outline(self, *, tentative: bool = False) -> tuple[Array, Array, Array]:
+        """Control points [m] of the camber line (..., 1, 4, 2) and of the upper and the lower side (..., 1, n, 2).
+
+        Those of the sides are homogeneous, (w x, w y, w), where one has weights. The leading edge's x is not in them.
+        Raises DesignError for an edge radius that the thickness cannot hold, unless the design is tentative.
+        """
         metre, span = checks.UNITS[self.length_unit], Span(np.zeros(1))
 
         def value(name: str) -> Any:
             return np.asarray(getattr(self, name))[..., None]
 
         chord = value("axial_chord") * metre
-        angles = [radians(value(name)) for name in ANGLES]
+        stagger, angle_in, angle_out = (radians(value(name)) for name in ANGLES)
         start, extent = np.broadcast_arrays(value("leading_edge_y") * metre, chord)
-        stagger, angle_in, angle_out = angles
         line = camber_line(start, extent, stagger, angle_in, angle_out, value("tangent_in"), value("tangent_out"))
         places = sample_places(self.samples, self.clustering)
         curvatures = [1.0 / (value(name) * chord) for name in RADII]
@@ -111,10 +114,17 @@ class UnifiedSection(Design):
             thickness = span.chordwise(getattr(self, f"thickness_{name}"), places[2:-2]) * chord[..., None]
             laws = getattr(self, f"weights_{name}")
             weights = span.chordwise(laws, places) if laws else None
-            check_edges(self, name, line, places, thickness, curvatures, weights, span)
+            if not tentative:
+                check_edges(self, name, line, places, thickness, curvatures, weights, span)
             sides.append(side(line, places, thickness, *curvatures, upper=name == "upper", weights=weights))
-        upper, lower = matched(*sides)
+        return line, *matched(*sides)
+
+    def build(self) -> Section:
+        """The section in metres and radians; raises DesignError where the shape is impossible."""
+        metre = checks.UNITS[self.length_unit]
+        line, upper, lower = self.outline()
         self._check_outline(line, upper, lower, metre)
+        stagger, angle_in, angle_out = (float(np.real(radians(np.asarray(getattr(self, name))))) for name in ANGLES)
         shift = np.array([self.leading_edge_x * metre, 0.0])
         return Section(
             span=0.0,
@@ -123,9 +133,9 @@ class UnifiedSection(Design):
                 {"upper": translated(side_curve(upper[0]), shift), "lower": translated(side_curve(lower[0]), shift)}
             ),
             camber=translated(camber_curve(line[0]), shift),
-            stagger=float(np.real(angles[0][0])),
-            metal_angle_in=float(np.real(angles[1][0])),
-            metal_angle_out=float(np.real(angles[2][0])),
+            stagger=stagger,
+            metal_angle_in=angle_in,
+            metal_angle_out=angle_out,
             scale=np.ones_like,
         )
 
