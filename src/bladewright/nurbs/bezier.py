@@ -70,10 +70,42 @@ def bernstein(degree: int, s: Reals, order: int = 0) -> Reals:
         return np.zeros((len(s), degree + 1))
     if order:
         lower = bernstein(degree - 1, s, order - 1)
-        padded = np.pad(lower, ((0, 0), (1, 1)))
-        return degree * (padded[:, :-1] - padded[:, 1:])
+        found = np.zeros((len(s), degree + 1))
+        found[:, :-1] -= lower
+        found[:, 1:] += lower
+        return degree * found
     k = np.arange(degree + 1)
     return np.asarray(_binomials(degree) * s[:, None] ** k * (1.0 - s[:, None]) ** (degree - k))
+
+
+@dataclass(frozen=True, kw_only=True)
+class Samples:
+    """Points on patches, a grid in each: where a search for nearest places starts."""
+
+    points: Reals
+    """(n, d)"""
+    patch: NDArray[np.intp]
+    """(n,) index"""
+    local: Reals
+    """(n, 2) parameters in [0, 1] of the patch"""
+
+
+def sampled(on: Patches, along: int, across: int) -> Samples:
+    """`along` x `across` samples of each patch, those on its borders among them; one across a curve."""
+    s, t = (
+        np.linspace(0.0, 1.0, count) if degree else np.zeros(1)
+        for degree, count in zip(on.degrees, (along, across), strict=True)
+    )
+    local = np.stack(np.meshgrid(s, t, indexing="ij"), axis=-1).reshape(-1, 2)
+    rows = np.einsum(
+        "ai,aj,kijd->kad", bernstein(on.degrees[0], local[:, 0]), bernstein(on.degrees[1], local[:, 1]), on.nets,
+        optimize=True,
+    )  # fmt: skip
+    return Samples(
+        points=(rows[..., :-1] / rows[..., -1:]).reshape(-1, rows.shape[-1] - 1),
+        patch=np.repeat(np.arange(len(on.nets)), len(local)),
+        local=np.tile(local, (len(on.nets), 1)),
+    )
 
 
 def products(a: Reals, b: Reals) -> Reals:

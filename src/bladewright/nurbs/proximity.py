@@ -14,7 +14,7 @@ from scipy.spatial import cKDTree
 
 from bladewright.numerics.elementary import length
 from bladewright.nurbs.basis import Reals
-from bladewright.nurbs.bezier import Patches, bernstein, halving, products
+from bladewright.nurbs.bezier import Patches, bernstein, halving, products, sampled
 from bladewright.nurbs.polish import Places, polished
 
 BLOCK = 2_000_000
@@ -100,19 +100,15 @@ class _Search:
         forms = np.concatenate(
             [squares[..., :-1].sum(axis=-1, keepdims=True), -2.0 * mixed, squares[..., -1:]], axis=-1
         )
-        s, t = (np.linspace(0.0, 1.0, 2 * degree + 2) if degree else np.zeros(1) for degree in (p, q))
-        local = np.stack(np.meshgrid(s, t, indexing="ij"), axis=-1).reshape(-1, 2)
-        sampled = np.einsum(
-            "ai,aj,kijd->kad", bernstein(p, local[:, 0]), bernstein(q, local[:, 1]), on.nets, optimize=True
-        )
+        starts = sampled(on, 2 * p + 2, 2 * q + 2)
         return cls(
             on=on,
             centres=centres,
             radii=radii,
             forms=np.moveaxis(forms, -1, 1),
-            samples=cKDTree((sampled[..., :-1] / sampled[..., -1:]).reshape(-1, points.shape[-1])),
-            sample_patch=np.repeat(np.arange(len(on.nets)), len(local)),
-            sample_local=np.tile(local, (len(on.nets), 1)),
+            samples=cKDTree(starts.points),
+            sample_patch=starts.patch,
+            sample_local=starts.local,
         )
 
     def nearest(self, queries: Reals, tolerance: float) -> Places:

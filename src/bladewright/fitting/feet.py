@@ -1,0 +1,107 @@
+"""Nearest places of a cloud on the two sides of a blade or section."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.spatial import cKDTree
+
+from bladewright.nurbs.basis import Reals
+from bladewright.nurbs.bezier import Patches, patches, sampled
+from bladewright.nurbs.curve import Curve
+from bladewright.nurbs.polish import Places, polished
+from bladewright.nurbs.surface import Surface
+
+Side = Curve | Surface
+NEAR = 2.0
+"""the other side is tried too where its nearest sample is not this much further away"""
+SAMPLES = (6, 5)
+"""samples along and across a patch; a patch is small where the side bends"""
+CURVE_SAMPLES = (24, 1)
+AT_ONCE = 20_000
+"""points that are projected at a time, to bound the memory"""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Feet:
+    """The nearest places of n points on the sides, in d dimensions."""
+
+    side: NDArray[np.intp]
+    """(n,) 0 upper, 1 lower"""
+    u: Reals
+    v: Reals
+    """0 on curves"""
+    points: Reals
+    """(n, d) the places themselves"""
+    normals: Reals
+    """(n, d) unit normals there, out of the blade"""
+    beyond: Reals
+    """(n, d) at an end of the blade the unit vector in the surface that points past it; 0 elsewhere"""
+    miss: Reals
+    """(n, d) from the place to the point"""
+
+    @property
+    def distances(self) -> Reals:
+        """(n,) true distances."""
+        return np.sqrt(np.sum(self.miss**2, axis=-1))
+
+    @property
+    def heights(self) -> Reals:
+        """(n,) signed distances along the normals."""
+        return np.sum(self.miss * self.normals, axis=-1)
+
+
+def feet(points: Reals, sides: Sequence[Side]) -> Feet:
+    """The nearest places of points (n, d) on the upper and the lower side.
+
+    Each starts from the nearest of samples that are close to each other where the sides bend, and descends by damped
+    Newton steps until it converges.
+    """
+    on = [patches(side) for side in sides]
+    samples = [sampled(each, *(SAMPLES if each.degrees[1] else CURVE_SAMPLES)) for each in on]
+    trees = [cKDTree(each.points) for each in samples]
+    starts = [tree.query(points) for tree in trees]
+    best = [np.full(len(points), np.inf), np.full(len(points), np.inf)]
+    u, v = np.zeros((2, len(points))), np.zeros((2, len(points)))
+    for k in (0, 1):
+        wanted = np.flatnonzero(starts[k][0] <= NEAR * starts[1 - k][0])
+        for part in np.array_split(wanted, max(1, -(-len(wanted) // AT_ONCE))):
+            index = starts[k][1][part]
+            found = polished(on[k], points[part], samples[k].patch[index], samples[k].local[index])
+            best[k][part] = found.square
+            u[k, part], v[k, part] = _parameters(on[k], found)
+    side = (best[1] < best[0]).astype(np.intp)
+    rows = np.arange(len(points))
+    return placed(points, sides, side, u[side, rows], v[side, rows])
+
+
+def placed(points: Reals, sides: Sequence[Side], side: NDArray[np.intp], u: Reals, v: Reals) -> Feet:
+    """Feet at known parameters."""
+    at, normals, beyond = np.empty_like(points), np.empty_like(points), np.zeros_like(points)
+    for k, shape in enumerate(sides):
+        rows = np.flatnonzero(side == k)
+        sign = 1.0 if k == 0 else -1.0
+        if isinstance(shape, Curve):
+            at[rows] = shape(u[rows])
+            along = np.asarray(shape.derivative(u[rows]))
+            normals[rows] = sign * _unit(np.stack([-along[:, 1], along[:, 0]], axis=-1))
+            continue
+        at[rows] = shape(u[rows], v[rows])
+        along, across = (np.asarray(shape.derivative(u[rows], v[rows], *order)) for order in ((1, 0), (0, 1)))
+        normals[rows] = sign * _unit(np.cross(across, along))
+        out = sign * _unit(np.cross(along, normals[rows]))
+        low, high = shape.domain_v
+        beyond[rows] = out * ((v[rows] >= high).astype(float) - (v[rows] <= low))[:, None]
+    return Feet(side=side, u=u, v=v, points=at, normals=normals, beyond=beyond, miss=points - at)
+
+
+def _parameters(on: Patches, found: Places) -> tuple[Reals, Reals]:
+    low, high = on.low[found.patch], on.high[found.patch]
+    place = np.where(found.local >= 1.0, high, low + found.local * (high - low))
+    return place[:, 0], place[:, 1]
+
+
+def _unit(vectors: Reals) -> Reals:
+    size = np.sqrt(np.sum(vectors**2, axis=-1, keepdims=True))
+    return np.asarray(vectors / np.where(size > 0.0, size, 1.0))
