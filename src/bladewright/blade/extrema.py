@@ -13,8 +13,8 @@ SPANS = (0.0, 0.125, 0.25, 0.375, 0.5, 0.625, 0.75, 0.875, 1.0)
 def extrema_of(built: Blade | Section, spans: Sequence[float] = SPANS) -> dict[str, int]:
     """The number of extrema of the curvature of each side, {"upper": n, "lower": n}.
 
-    Of a blade it is the most that any of its sections has; `spans` are their v. See `section.extrema.curvature_extrema` for
-    what counts as an extremum.
+    Of a blade it is the most that any of its sections has; `spans` are their v. What counts as an extremum is said by
+    `section.extrema.curvature_extrema`.
     """
     sections = [built] if isinstance(built, Section) else [built.section(v) for v in spans]
     return {name: max(curvature_extrema(each, name) for each in sections) for name in ("upper", "lower")}
