@@ -1,0 +1,122 @@
+"""A first camber: the middle between the two sides in a frame along the chord, alternating with which side is which."""
+
+import numpy as np
+from numpy.polynomial import chebyshev
+
+from bladewright.fitting.first.matching import LONGEST, SHORTEST, STEEPEST, Laid
+from bladewright.fitting.first.shape import (
+    ANGLE_IN,
+    ANGLE_OUT,
+    END,
+    ROOT_IN,
+    ROOT_OUT,
+    START,
+    TANGENT_IN,
+    TANGENT_OUT,
+    Shape,
+)
+from bladewright.nurbs.basis import Reals
+from bladewright.section.laws import law_basis
+
+
+def first_laws(shape: Shape, laid: Laid, direction: Reals, count: int) -> Reals:
+    """Laws (count, q) of sections whose chord lies along an angle `direction` (n,) [rad] at each point."""
+    cosine, sine = np.cos(direction), np.sin(direction)
+    a, b = laid.points.T
+    along, across = cosine * a + sine * b, -sine * a + cosine * b
+    rows = law_basis(count, laid.v)
+    low, high = _envelope(rows, along, laid.v, -1.0, laid.flat), _envelope(rows, along, laid.v, 1.0, laid.flat)
+    start, end = rows @ low, rows @ high
+    t = np.clip((along - start) / np.maximum(end - start, 1e-9 * laid.chord), 0.0, 1.0)
+    even = _even(t, laid)
+    vander = (chebyshev.chebvander(2.0 * t - 1.0, 3)[:, :, None] * rows[:, None, :]).reshape(len(t), -1)
+    middle, half = np.zeros(vander.shape[1]), np.zeros(vander.shape[1])
+    upper = across > vander @ _ridged(vander, across, even)
+    for _ in range(6):
+        both = [_ridged(vander[mask], across[mask], even[mask]) for mask in (upper, ~upper) if np.any(mask)]
+        if len(both) < 2:
+            break
+        middle, half = (both[0] + both[1]) / 2.0, (both[0] - both[1]) / 2.0
+        now = across > vander @ middle
+        if np.array_equal(now, upper):
+            break
+        upper = now
+    return _as_laws(shape, laid, direction, count, (low, high), (middle, half))
+
+
+def _as_laws(shape: Shape, laid: Laid, direction: Reals, count: int, ends: tuple[Reals, Reals], fields: tuple[Reals, Reals]) -> Reals:  # fmt: skip
+    at = np.zeros(1) if laid.flat else np.linspace(0.0, 1.0, max(9, 2 * count + 1))
+    rows = law_basis(count, at)
+    turn = np.interp(at, *_sorted(laid.v, direction)) if not laid.flat else direction[:1]
+    start, end = rows @ ends[0], rows @ ends[1]
+    size = np.interp(at, *_sorted(laid.v, laid.size)) if not laid.flat else laid.size[:1]
+    to_bezier = np.linalg.inv(np.array([_bernstein(t) for t in (0.0, 1 / 3, 2 / 3, 1.0)]))
+    rows3 = chebyshev.chebvander(np.array([-1.0, -1 / 3, 1 / 3, 1.0]), 3)
+    middle, half = (rows3 @ field.reshape(4, count) @ rows.T for field in fields)
+    ordinates = (to_bezier @ middle).T
+    places = start[:, None] + np.array([0.0, 1 / 3, 2 / 3, 1.0]) * (end - start)[:, None]
+    line = np.stack(
+        [
+            np.cos(turn)[:, None] * places - np.sin(turn)[:, None] * ordinates,
+            np.sin(turn)[:, None] * places + np.cos(turn)[:, None] * ordinates,
+        ],
+        axis=-1,
+    )
+    first, last = line[:, 1] - line[:, 0], line[:, 3] - line[:, 2]
+    extent = np.maximum(line[:, 3, 0] - line[:, 0, 0], 1e-6)
+    numbers = np.zeros((len(at), shape.columns))
+    numbers[:, START], numbers[:, END] = line[:, 0], line[:, 3]
+    for angle, tangent, vector in ((ANGLE_IN, TANGENT_IN, first), (ANGLE_OUT, TANGENT_OUT, last)):
+        numbers[:, angle] = np.clip(np.arctan2(vector[:, 1], np.maximum(vector[:, 0], 1e-9)), -STEEPEST, STEEPEST)
+        length = np.sqrt(np.sum(vector**2, axis=-1))
+        numbers[:, tangent] = np.clip(length / extent, SHORTEST, LONGEST)
+    thickness = np.maximum(np.mean(half[1:3], axis=0) / size, 2e-3 * laid.chord)
+    for side in (shape.upper, shape.lower):
+        shares = np.ones(side.stop - side.start)
+        shares[[0, -1]] = 0.6
+        numbers[:, side] = thickness[:, None] * shares
+    numbers[:, [ROOT_IN, ROOT_OUT]] = np.sqrt(0.3 * thickness)[:, None]
+    return np.linalg.lstsq(rows, numbers, rcond=None)[0]
+
+
+def _bernstein(t: float) -> list[float]:
+    w = 1.0 - t
+    return [w**3, 3 * w**2 * t, 3 * w * t**2, t**3]
+
+
+def _sorted(v: Reals, values: Reals) -> tuple[Reals, Reals]:
+    order = np.argsort(v)
+    return v[order], values[order]
+
+
+def _envelope(rows: Reals, along: Reals, v: Reals, sign: float, flat: bool) -> Reals:
+    """Control points of the law that bounds the places along the chord."""
+    if flat:
+        return np.full(1, sign * np.max(sign * along))
+    parts = np.clip((v * 7.999).astype(int), 0, 7)
+    index = []
+    for part in range(8):
+        mask = np.flatnonzero(parts == part)
+        if len(mask):
+            index.append(mask[np.argsort(-sign * along[mask])[: max(1, len(mask) // 60)]])
+    chosen = np.concatenate(index)
+    tame = 1e-3 * np.eye(rows.shape[1])
+    middle = float(np.mean(along[chosen]))
+    matrix = np.concatenate([rows[chosen], tame])
+    aim = np.concatenate([along[chosen] - middle, np.zeros(rows.shape[1])])
+    return np.linalg.lstsq(matrix, aim, rcond=None)[0] + middle
+
+
+def _even(t: Reals, laid: Laid) -> Reals:
+    bins = (t * 9.999).astype(int) + 10 * (np.clip(laid.v, 0.0, 1.0) * 3.999).astype(int) * (not laid.flat)
+    return np.asarray(1.0 / np.sqrt(np.bincount(bins)[bins]))
+
+
+def _ridged(matrix: Reals, aim: Reals, weight: Reals) -> Reals:
+    tame = 1e-3 * np.sqrt(np.sum(weight**2)) * np.eye(matrix.shape[1])
+    middle = float(np.mean(aim))
+    rows = np.concatenate([matrix * weight[:, None], tame])
+    found = np.linalg.lstsq(rows, np.concatenate([(aim - middle) * weight, np.zeros(len(tame))]), rcond=None)[0]
+    # the basis along the span adds up to one, so a constant is its coefficients
+    found[: matrix.shape[1] // 4] += middle
+    return found

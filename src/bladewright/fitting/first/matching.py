@@ -1,0 +1,231 @@
+"""Sections drawn through the points of a cloud: a short least squares in the sections' planes."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from bladewright.fitting.first.shape import (
+    ANGLE_IN,
+    ANGLE_OUT,
+    END,
+    ROOT_IN,
+    ROOT_OUT,
+    START,
+    TANGENT_IN,
+    TANGENT_OUT,
+    Shape,
+)
+from bladewright.nurbs.basis import Reals
+from bladewright.section.laws import law_basis
+
+STEEPEST = np.radians(87.0)
+SHORTEST, LONGEST = 0.03, 0.97
+"""of the extent: tangents of a first camber"""
+THINNEST = 5e-4
+"""of the chord: half thickness of a first section"""
+PLACES = np.linspace(0.0, 1.0, 101)
+"""along a side, where the nearest place is sought"""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Laid:
+    """Points of a cloud in the planes of their sections."""
+
+    points: Reals
+    """(n, 2)"""
+    v: Reals
+    """(n,) along the span"""
+    size: Reals
+    """(n,) of one metre in the plane"""
+    chord: float
+    """typical, [m]"""
+    flat: bool = False
+    """whether all points belong to one section"""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Match:
+    """Laws of sections and how far points lie from them."""
+
+    laws: Reals
+    """(k, q) control points along the span of each number of a section"""
+    distances: Reals
+    """(n,) [m]"""
+    mean: float
+    """of the points that count [m]"""
+    s: Reals
+    upper: NDArray[np.bool_]
+
+
+def numbers_at(laws: Reals, v: Reals) -> Reals:
+    """Numbers (n, q) of the sections at v."""
+    return law_basis(len(laws), v) @ laws
+
+
+def stations(laid: Laid) -> Reals:
+    """Places along the span where sections are drawn."""
+    return np.zeros(1) if laid.flat else np.linspace(0.0, 1.0, 13)
+
+
+def nearest(shape: Shape, laid: Laid, laws: Reals) -> tuple[Reals, NDArray[np.bool_], Reals]:
+    """Place along the side, side and distance [m] of each point."""
+    at = stations(laid)
+    lines = np.concatenate(shape.polylines(numbers_at(laws, at), at, PLACES), axis=1)
+    count = len(PLACES)
+    best = np.empty((len(laid.points), 2))
+    s, upper = np.empty(len(laid.points)), np.empty(len(laid.points), dtype=bool)
+    for block in np.array_split(np.arange(len(laid.points)), max(1, len(laid.points) // 2000)):
+        p = laid.points[block]
+        if laid.flat:
+            on = np.broadcast_to(lines, (len(p), *lines.shape[1:]))
+        else:
+            place = np.clip(laid.v[block], 0.0, 1.0) * (len(at) - 1)
+            low = np.clip(place.astype(int), 0, len(at) - 2)
+            share = (place - low)[:, None, None]
+            on = (1.0 - share) * lines[low] + share * lines[low + 1]
+        start, step = on[:, :-1], on[:, 1:] - on[:, :-1]
+        away = p[:, None] - start
+        t = np.clip(np.sum(away * step, axis=-1) / (np.sum(step**2, axis=-1) + 1e-300), 0.0, 1.0)
+        squares = np.sum((away - t[..., None] * step) ** 2, axis=-1)
+        squares[:, count - 1] = np.inf
+        index = np.argmin(squares, axis=1)
+        row = np.arange(len(p))
+        upper[block] = index < count
+        s[block] = (index % count + t[row, index]) / (count - 1)
+        best[block, 0] = np.sqrt(squares[row, index])
+    return np.clip(s, 0.0, 1.0), upper, best[:, 0] / laid.size
+
+
+def matched(shape: Shape, laid: Laid, laws: Reals, *, turns: int = 25, stiff: float = 1.0) -> Match:
+    """Laws near the given ones whose sections lie close to the points."""
+    laws = held(shape, laid, laws)
+    best: Match | None = None
+    smooth = 3e-2 * stiff
+    for turn in range(turns + 1):
+        s, upper, distances = nearest(shape, laid, laws)
+        weight = _weights(laid, s, upper, distances, turn / turns)
+        # places that no point is near count as well: a side without points is none
+        mean = float(np.sum(weight * distances) / np.sum(weight)) + 0.2 * float(np.mean(np.minimum(distances, 0.1 * laid.chord)))
+        if best is None or mean < best.mean:
+            best = Match(laws=laws, distances=distances, mean=mean, s=s, upper=upper)
+        if turn == turns:
+            break
+        laws = held(shape, laid, laws + _step(shape, laid, laws, s, upper, weight, smooth))
+        smooth = max(0.7 * smooth, 1e-3 * stiff)
+    assert best is not None
+    return replace(best, mean=float(np.mean(np.sort(best.distances)[: max(1, int(0.94 * len(best.distances)))])))
+
+
+def held(shape: Shape, laid: Laid, laws: Reals) -> Reals:
+    """The laws within the family's limits, and radii that the thickness beside them can hold."""
+    laws = np.array(laws)
+    laws[:, [ANGLE_IN, ANGLE_OUT]] = np.clip(laws[:, [ANGLE_IN, ANGLE_OUT]], -STEEPEST, STEEPEST)
+    laws[:, [TANGENT_IN, TANGENT_OUT]] = np.clip(laws[:, [TANGENT_IN, TANGENT_OUT]], SHORTEST, LONGEST)
+    laws[:, 10:] = np.maximum(laws[:, 10:], THINNEST * laid.chord)
+    least = np.sqrt(2e-4 * laid.chord)
+    laws[:, [ROOT_IN, ROOT_OUT]] = np.maximum(laws[:, [ROOT_IN, ROOT_OUT]], least)
+    at = stations(laid)
+    numbers = numbers_at(laws, at)
+    for column, beside, end in ((ROOT_IN, 2, 0), (ROOT_OUT, -3, 1)):
+        most = np.full(len(at), np.inf)
+        for upper in (True, False):
+            heights, *units = shape.heights(numbers, at, upper)
+            most = np.minimum(most, 0.97 * heights[:, beside] / units[end])
+        excess = float(np.max(numbers[:, column] / most))
+        if excess > 1.0 and len(laws) > 1:
+            capped = np.linalg.lstsq(law_basis(len(laws), at), np.minimum(numbers[:, column], most), rcond=None)[0]
+            laws[:, column] = np.maximum(capped, 0.2 * least)
+            excess = float(np.max((law_basis(len(laws), at) @ laws[:, column]) / most))
+        laws[:, column] /= max(excess, 1.0)
+    return laws
+
+
+def _weights(laid: Laid, s: Reals, upper: NDArray[np.bool_], distances: Reals, progress: float) -> Reals:
+    """Of the points: as much for each part of a side, less for what lies far off."""
+    bins = (s * 11.999).astype(int) + 12 * upper + 24 * (np.clip(laid.v, 0.0, 1.0) * 3.999).astype(int) * (not laid.flat)
+    counts = np.bincount(bins)[bins]
+    even = 1.0 / np.sqrt(counts / np.mean(counts) + 0.05)
+    spread = 1.4826 * float(np.median(distances))
+    reach = max(5.0 * spread, laid.chord * (0.05 * (1.0 - progress) ** 2 + 2e-3))
+    return even / np.mean(even) / (1.0 + (distances / reach) ** 2) ** 2
+
+
+def _step(
+    shape: Shape, laid: Laid, laws: Reals, s: Reals, upper: NDArray[np.bool_], weight: Reals, smooth: float
+) -> Reals:
+    numbers = numbers_at(laws, laid.v)
+    foot = shape.feet(numbers, laid.v, s, upper)
+    root = np.sqrt(weight / np.sum(weight)) / (laid.size * laid.chord)
+    away = root * np.sum((laid.points - foot.point) * foot.normal, axis=-1)
+    rows = law_basis(len(laws), laid.v)
+    slopes = (root[:, None] * foot.slopes)[:, :, None] * rows[:, None, :]
+    matrix = slopes.reshape(len(s), -1)
+    prior, aim = _priors(shape, laid, laws, smooth)
+    matrix, away = np.concatenate([matrix, prior]), np.concatenate([away, aim])
+    flat = laws.T.reshape(-1)
+    low, high, most = (np.repeat(a, len(laws)) for a in _limits(shape, laid))
+    free = np.ones(len(flat), dtype=bool)
+    step = np.zeros(len(flat))
+    normal, right = matrix.T @ matrix, matrix.T @ away
+    normal[np.diag_indices_from(normal)] += 1e-4 * np.diag(normal) + 1e-12
+    for _ in range(4):
+        step[:] = 0.0
+        step[free] = np.linalg.solve(normal[np.ix_(free, free)], right[free])
+        out = free & (((flat <= low) & (step < 0.0)) | ((flat >= high) & (step > 0.0)))
+        if not np.any(out):
+            break
+        free &= ~out
+    step *= 1.0 / max(1.0, float(np.max(np.abs(step) / most)))
+    new = np.clip(flat + step, low, high)
+    return (new - flat).reshape(-1, len(laws)).T
+
+
+def _priors(shape: Shape, laid: Laid, laws: Reals, smooth: float) -> tuple[Reals, Reals]:
+    """Rows that keep what the points leave open: alike sides, even thickness, tangents of a third, even laws."""
+    count, k = shape.columns, len(laws)
+    rows: list[tuple[Reals, float]] = []
+
+    def add(parts: dict[int, float], aim: float, weight: float) -> None:
+        row = np.zeros(count)
+        for column, value in parts.items():
+            row[column] = weight * value
+        rows.append((row, weight * aim))
+
+    nu, nl = shape.chordwise
+    up, low = shape.upper.start, shape.lower.start
+    if nu == nl:
+        for i in range(nu):
+            add({up + i: 1.0 / laid.chord, low + i: -1.0 / laid.chord}, 0.0, 0.3 * smooth)
+    for first, n in ((up, nu), (low, nl)):
+        for i in range(n - 2):
+            parts = {first + i: 1.0 / laid.chord, first + i + 1: -2.0 / laid.chord, first + i + 2: 1.0 / laid.chord}
+            add(parts, 0.0, smooth)
+    for column in (TANGENT_IN, TANGENT_OUT):
+        add({column: 1.0}, 0.35, 0.03 * smooth)
+    for column in (ROOT_IN, ROOT_OUT):
+        add({column: 1.0 / np.sqrt(laid.chord)}, 0.05, 0.03 * smooth)
+    matrix = np.array([np.kron(row, np.eye(k)) for row, _ in rows]).reshape(-1, count * k)
+    aims = np.repeat([aim for _, aim in rows], k)
+    if k > 2:
+        units = _limits(shape, laid)[2]
+        bend = np.diff(np.eye(k), n=2, axis=0)
+        extra = np.kron(np.diag(0.05 * smooth / units), bend)
+        matrix, aims = np.concatenate([matrix, extra]), np.concatenate([aims, np.zeros(len(extra))])
+    flat = laws.T.reshape(-1)
+    return matrix, aims - matrix @ flat
+
+
+def _limits(shape: Shape, laid: Laid) -> tuple[Reals, Reals, Reals]:
+    """Lowest and highest values of the columns, and the most that one step may change them."""
+    low, high = np.full(shape.columns, -np.inf), np.full(shape.columns, np.inf)
+    most = np.full(shape.columns, 0.1 * laid.chord)
+    low[[ANGLE_IN, ANGLE_OUT]], high[[ANGLE_IN, ANGLE_OUT]] = -STEEPEST, STEEPEST
+    low[[TANGENT_IN, TANGENT_OUT]], high[[TANGENT_IN, TANGENT_OUT]] = SHORTEST, LONGEST
+    low[10:] = THINNEST * laid.chord
+    low[[ROOT_IN, ROOT_OUT]] = np.sqrt(2e-4 * laid.chord)
+    most[[ANGLE_IN, ANGLE_OUT]] = 0.35
+    most[[TANGENT_IN, TANGENT_OUT]] = 0.3
+    most[[ROOT_IN, ROOT_OUT]] = 0.15 * np.sqrt(laid.chord)
+    most[START] = most[END] = 0.15 * laid.chord * float(np.median(laid.size))
+    return low, high, most

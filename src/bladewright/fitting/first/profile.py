@@ -1,0 +1,121 @@
+"""A first section from points in the plane."""
+
+from typing import Literal
+
+import numpy as np
+
+from bladewright.errors import DesignError, FitError
+from bladewright.fitting.first.camber import first_laws
+from bladewright.fitting.first.inliers import thinned, usual
+from bladewright.fitting.first.matching import Laid, Match, matched
+from bladewright.fitting.first.shape import (
+    ANGLE_IN,
+    ANGLE_OUT,
+    FIRST_THICKNESS,
+    ROOT_IN,
+    ROOT_OUT,
+    TANGENT_IN,
+    TANGENT_OUT,
+    Shape,
+)
+from bladewright.nurbs.basis import Reals
+from bladewright.section.checks import UNITS
+from bladewright.section.unified import UnifiedSection
+
+Unit = Literal["m", "cm", "mm", "um", "in", "ft"]
+MOST = 900
+"""points that a first section is drawn through"""
+TURNED = 0.03
+"""axial share of the chord below which the rounder end leads"""
+
+
+def first_section(
+    points: Reals,
+    *,
+    chordwise: tuple[int, int] = (6, 6),
+    samples: int = 16,
+    clustering: float = 1.0,
+    name: str = "blade",
+    length_unit: Unit = "mm",
+) -> UnifiedSection:
+    """A section of the unified family near points (n, 2) [m], x axial and y tangential, found from them alone.
+
+    `chordwise` are the control points of the upper and the lower thickness. Raises FitError where no section that can
+    be built lies near the points.
+    """
+    points = thinned(usual(np.unique(np.asarray(points, dtype=np.float64), axis=0)), MOST)
+    shape = Shape(chordwise=chordwise, samples=samples, clustering=clustering, scale=lambda a, v: np.ones_like(a))
+    middle = np.mean(points, axis=0)
+    axis, chord = longest(points)
+    laid = Laid(
+        points=points - middle, v=np.zeros(len(points)), size=np.ones(len(points)), chord=chord, flat=True
+    )
+    match = best_match(shape, laid, axis)
+    return built_section(shape, match, middle, chord, name, length_unit)
+
+
+def longest(points: Reals) -> tuple[float, float]:
+    """Angle [rad] of the longest distance between two points, towards +x, and that distance."""
+    from scipy.spatial import ConvexHull
+
+    corners = points[ConvexHull(points).vertices]
+    apart = corners[:, None] - corners
+    squares = np.sum(apart**2, axis=-1)
+    i, j = np.unravel_index(int(np.argmax(squares)), squares.shape)
+    along = apart[i, j] if apart[i, j, 0] > 0.0 else -apart[i, j]
+    return float(np.arctan2(along[1], along[0])), float(np.sqrt(squares[i, j]))
+
+
+def best_match(shape: Shape, laid: Laid, axis: float) -> Match:
+    """The closest of matches that start from several directions of the chord."""
+    found: list[Match] = []
+    for turn in (0.0, 0.2, -0.2, 0.5, -0.5):
+        direction = np.full(len(laid.v), axis + turn)
+        if abs(axis + turn) > np.radians(88.0):
+            continue
+        laws = first_laws(shape, laid, direction, 1)
+        found.append(matched(shape, laid, laws))
+        if found[-1].mean < 1e-3 * laid.chord:
+            break
+    if not found:
+        raise FitError("no chord")
+    return min(found, key=lambda match: match.mean)
+
+
+def built_section(
+    shape: Shape, match: Match, middle: Reals, chord: float, name: str, length_unit: Unit
+) -> UnifiedSection:
+    """The section of a match, with thickness raised or edges sharpened until it can be built."""
+    numbers = match.laws[0].copy()
+    metre = UNITS[length_unit]
+    error: DesignError | None = None
+    for attempt in range(8):
+        extent = numbers[2] - numbers[0]
+        design = UnifiedSection(
+            name=name,
+            length_unit=length_unit,
+            leading_edge_x=float((numbers[0] + middle[0]) / metre),
+            leading_edge_y=float((numbers[1] + middle[1]) / metre),
+            axial_chord=float(extent / metre),
+            stagger=float(np.degrees(np.arctan2(numbers[3] - numbers[1], extent))),
+            metal_angle_in=float(np.degrees(numbers[ANGLE_IN])),
+            metal_angle_out=float(np.degrees(numbers[ANGLE_OUT])),
+            tangent_in=float(numbers[TANGENT_IN]),
+            tangent_out=float(numbers[TANGENT_OUT]),
+            leading_edge_radius=float(numbers[ROOT_IN] ** 2 / extent),
+            trailing_edge_radius=float(numbers[ROOT_OUT] ** 2 / extent),
+            thickness_upper=tuple(float(t / extent) for t in numbers[shape.upper]),
+            thickness_lower=tuple(float(t / extent) for t in numbers[shape.lower]),
+            samples=shape.samples,
+            clustering=shape.clustering,
+        )
+        try:
+            design.build()
+        except DesignError as refused:
+            error = refused
+            numbers[[ROOT_IN, ROOT_OUT]] *= 0.8
+            floor = chord * 2e-3 * 1.6**attempt
+            numbers[FIRST_THICKNESS:] = np.maximum(numbers[FIRST_THICKNESS:], floor)
+        else:
+            return design
+    raise FitError(f"no section that can be built was found near the points: {error}")
