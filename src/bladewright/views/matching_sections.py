@@ -1,0 +1,111 @@
+"""Fitted sections with the points beside them: deviations magnified, and the edges close by as they are."""
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.collections import LineCollection
+
+from bladewright.nurbs.basis import Reals
+from bladewright.numerics.elementary import length
+from bladewright.views.edges import PART, REACH
+from bladewright.views.matching_outline import Outline
+from bladewright.views.matching_points import (
+    COLOURS,
+    ROUND,
+    SIDES,
+    Matched,
+    counted,
+    drawn,
+    millimetres,
+    scale_of,
+)
+from bladewright.views.sections import COORDINATES
+from bladewright.views.style import INK, MILLIMETRES, PALE, SOFT, titled
+
+MOST = 4000
+"""points drawn beside a section"""
+HEIGHT = 0.035
+"""of the chord, that the largest of 99 of 100 deviations is drawn with at most"""
+
+
+def magnification(fit: Matched) -> float:
+    """A round factor by which the deviations are seen beside a section."""
+    off = np.abs(fit.deviations[fit.inliers])
+    most = float(np.percentile(off, 99.0)) if len(off) else 0.0
+    if most <= 0.0:
+        return 1.0
+    factor = HEIGHT * float(np.real(fit.built.chord)) / most
+    decade = 10.0 ** np.floor(np.log10(factor))
+    steps = [each for each in ROUND if each in {1.0, 2.0, 5.0}]
+    return max(1.0, float(max(each for each in steps if each * decade <= factor * (1.0 + 1e-9)) * decade))
+
+
+def draw_magnified(axes: Axes, fit: Matched, outline: Outline, name: str) -> None:
+    """Draws a section with the deviations of the points near it magnified; outliers crossed, at most 8 % away."""
+    factor = magnification(fit)
+    axes.fill(*outline.closed.T, color=PALE, linewidth=0.0)
+    if fit.tolerance is not None:
+        for side in SIDES:
+            for sign in (-1.0, 1.0):
+                limit = outline.moved(side, sign * factor * fit.tolerance * MILLIMETRES)
+                axes.plot(*limit.T, color=SOFT, linewidth=0.7, linestyle="--")
+    shown = drawn(fit, outline.points & fit.inliers, MOST)
+    off = millimetres(fit, shown)
+    feet, normals = outline.feet(fit, shown)
+    tops = feet + normals * (factor * off)[:, None]
+    whiskers = LineCollection(
+        list(np.stack([feet, tops], axis=1)),
+        colors=COLOURS(scale_of(fit)(off)),
+        linewidths=0.9 if len(shown) < 1500 else 0.5,
+        rasterized=len(shown) > 1500,
+    )
+    axes.add_collection(whiskers)
+    axes.scatter(*tops.T, s=5.0 if len(shown) < 1500 else 2.0, c=INK, linewidths=0.0, rasterized=len(shown) > 1500)
+    axes.plot(*outline.closed.T, color=INK, linewidth=1.0)
+    _cross_outliers(axes, fit, outline, factor, 0.08 * outline.section.chord * MILLIMETRES)
+    titled(axes, f"{name}, deviations × {factor:g}", *COORDINATES[outline.section.plane])
+    axes.set_aspect("equal", adjustable="datalim")
+    axes.margins(0.06)
+
+
+def draw_edge_match(axes: Axes, fit: Matched, outline: Outline, *, trailing: bool, where: str) -> None:
+    """Draws the leading or the trailing edge of a section with the points there, as they are."""
+    section = outline.section
+    radius = section.edge_radii[int(trailing)] * MILLIMETRES
+    tip = outline.sides["upper"][-1 if trailing else 0]
+    inwards = -outline.outwards["upper"][-1 if trailing else 0]
+    reach = float(np.clip(PART * section.chord * MILLIMETRES, 1.5 * radius, REACH * radius))
+    middle = tip + 0.6 * reach * inwards
+    axes.fill(*outline.closed.T, color=PALE, linewidth=0.0)
+    if fit.tolerance is not None:
+        limit = fit.tolerance * MILLIMETRES
+        for sign in (-1.0, 1.0):
+            for side in SIDES:
+                axes.plot(*outline.moved(side, sign * limit).T, color=SOFT, linewidth=0.8, linestyle="--")
+    axes.plot(*outline.closed.T, color=INK, linewidth=1.2)
+    feet, normals = outline.feet(fit, np.flatnonzero(outline.points))
+    near = np.zeros_like(outline.points)
+    at = feet + normals * millimetres(fit, np.flatnonzero(outline.points))[:, None]
+    near[np.flatnonzero(outline.points)[np.max(np.abs(at - middle), axis=-1) <= 1.05 * reach]] = True
+    shown = drawn(fit, near & fit.inliers, MOST)
+    feet, normals = outline.feet(fit, shown)
+    at = feet + normals * millimetres(fit, shown)[:, None]
+    size = float(np.clip(6e3 / max(len(shown), 1), 4.0, 26.0))
+    colours = {"c": millimetres(fit, shown), "cmap": COLOURS, "norm": scale_of(fit)}
+    axes.scatter(*at.T, s=size, linewidths=0.4, edgecolors=INK, zorder=3.0, rasterized=len(shown) > 1500, **colours)
+    _cross_outliers(axes, fit, outline, 1.0, np.inf)
+    axes.set_xlim(middle[0] - reach, middle[0] + reach)
+    axes.set_ylim(middle[1] - reach, middle[1] + reach)
+    axes.set_aspect("equal", adjustable="box")
+    edge = "Trailing" if trailing else "Leading"
+    abscissa, ordinate = COORDINATES[section.plane]
+    told = f"{counted(int(np.count_nonzero(near & fit.inliers)), 'point')}, radius {radius:.3g} mm"
+    titled(axes, f"{edge} edge{where}", f"{abscissa}\n{told}", ordinate)
+
+
+def _cross_outliers(axes: Axes, fit: Matched, outline: Outline, factor: float, most: float) -> None:
+    index = np.flatnonzero(outline.points & ~fit.inliers)
+    if len(index) == 0:
+        return
+    feet, normals = outline.feet(fit, index)
+    at: Reals = feet + normals * np.clip(factor * millimetres(fit, index), -most, most)[:, None]
+    axes.plot(*at.T, color=INK, linestyle="none", marker="x", markersize=5.0, markeredgewidth=1.1, rasterized=True)
