@@ -1,0 +1,90 @@
+"""The order of points along a curve, where none is given."""
+
+import numpy as np
+from scipy.sparse.csgraph import dijkstra, minimum_spanning_tree
+from scipy.spatial import cKDTree
+from scipy.spatial.distance import cdist
+
+from bladewright.nurbs.basis import Reals
+
+CELLS = 150
+"""cells along the extent of the points in which neighbours become one, so that noise does not fold the path"""
+MOST = 1500
+"""cells of which all distances are compared"""
+IN_ORDER = 0.9
+"""share of points whose nearest point stands next to them in the list, from which the list is an order"""
+DETOUR = 3.0
+"""length of the way through the list, of the length through the tree, from which it is none"""
+FINE = 8
+"""places on a piece of the path among which the nearest is sought"""
+
+
+def sites_along(points: Reals, *, closed: bool) -> Reals:
+    """Rough places (n,) in [0, 1] of points (n, d) along a curve, by the length of a path through them.
+
+    The path is the list of points where that is an order already. Otherwise it is the longest one in the minimum
+    spanning tree of the points, thinned to a grid: right where the curve keeps away from itself by more than its
+    points are apart. A closed curve is opened at the widest gap.
+    """
+    path = _tree_path(points)
+    own = np.sqrt(np.sum(np.diff(points, axis=0) ** 2, axis=-1))
+    if _listed_in_order(points, own) and own.sum() <= DETOUR * _length(path):
+        path, sites = points, np.concatenate([[0.0], np.cumsum(own)])
+        whole = sites[-1] + (np.sqrt(np.sum((points[0] - points[-1]) ** 2)) if closed else 0.0)
+        return np.asarray(sites / whole)
+    if closed:
+        path = np.concatenate([path, path[:1]])
+    steps = np.sqrt(np.sum(np.diff(path, axis=0) ** 2, axis=-1))
+    ends = np.concatenate([[0.0], np.cumsum(steps)])
+    share = np.linspace(0.0, 1.0, FINE, endpoint=False)
+    fine = np.concatenate([(path[:-1, None] + share[:, None] * np.diff(path, axis=0)[:, None]).reshape(-1, path.shape[1]), path[-1:]])
+    places = np.append((ends[:-1, None] + share * steps[:, None]).ravel(), ends[-1])
+    _, nearest = cKDTree(fine).query(points)
+    sites = places[nearest]
+    # the outermost points lie past the path's ends, which are means of cells
+    if not closed:
+        for end, inner, sign in ((0, 1, -1.0), (-1, -2, 1.0)):
+            tangent = path[end] - path[inner]
+            rows = np.flatnonzero(sites == places[end])
+            beyond = (points[rows] - path[end]) @ tangent / np.sqrt(tangent @ tangent)
+            sites[rows] += sign * np.maximum(beyond, 0.0)
+    low = sites.min() if not closed else 0.0
+    high = sites.max() if not closed else ends[-1]
+    return np.asarray((sites - low) / (high - low))
+
+
+def _listed_in_order(points: Reals, steps: Reals) -> bool:
+    distance, _ = cKDTree(points).query(points, k=2)
+    beside = np.minimum(np.append(steps, np.inf), np.append(np.inf, steps))
+    return bool(np.mean(beside <= distance[:, 1] * (1.0 + 1e-9)) >= IN_ORDER)
+
+
+def _tree_path(points: Reals) -> Reals:
+    cells = CELLS
+    while True:
+        centres = _thinned(points, cells)
+        if len(centres) <= MOST:
+            break
+        cells = cells * 2 // 3
+    if len(centres) < 3:
+        return points[np.lexsort(points.T)][[0, -1]] if len(centres) < 2 else centres
+    tree = minimum_spanning_tree(cdist(centres, centres))
+    first = int(np.argmax(dijkstra(tree, directed=False, indices=0)))
+    reach, before = dijkstra(tree, directed=False, indices=first, return_predecessors=True)
+    path = [int(np.argmax(reach))]
+    while path[-1] != first:
+        path.append(int(before[path[-1]]))
+    return np.asarray(centres[path[::-1]])
+
+
+def _thinned(points: Reals, cells: int) -> Reals:
+    low = points.min(axis=0)
+    size = np.ptp(points, axis=0).max() / cells
+    index = np.floor((points - low) / size).astype(np.int64)
+    _, cell = np.unique(index, axis=0, return_inverse=True)
+    count = np.bincount(cell)
+    return np.stack([np.bincount(cell, weights=column) / count for column in points.T], axis=-1)
+
+
+def _length(path: Reals) -> float:
+    return float(np.sum(np.sqrt(np.sum(np.diff(path, axis=0) ** 2, axis=-1))))
