@@ -1,0 +1,147 @@
+"""Reading a ParaBlade configuration as a design, with what was changed and how far it lies from ParaBlade's blade."""
+
+import os
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from bladewright.blade.checks import check_sections
+from bladewright.blade.exact import exact_blade
+from bladewright.blade.unified import UnifiedBlade
+from bladewright.errors import DesignError, FileError
+from bladewright.files.parablade.config import CHANNEL, COMMON, WORDS, Config, parsed
+from bladewright.files.parablade.shape import shape_at, side_basis
+from bladewright.files.parablade.translation import blade_of, section_of
+from bladewright.files.text import read_text
+from bladewright.nurbs.basis import Reals
+from bladewright.section.unified import UnifiedSection
+
+_ALONG = (1.0 - np.cos(np.pi * (np.arange(60) + 0.5) / 60.0)) / 2.0
+_ACROSS = (np.arange(12) + 0.5) / 12.0
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Imported:
+    """A design from another program's file."""
+
+    design: UnifiedBlade | UnifiedSection
+    program: str
+    """whose file it is"""
+    kept: tuple[str, ...]
+    """what is as it was, each a sentence"""
+    changed: tuple[str, ...]
+    """what is not, each a sentence"""
+    points: Mapping[str, Reals]
+    """points (k, 2) or (k, 3) [m] of the other program's sides, by the side that they should lie on"""
+
+    def distances(self, built: Any) -> Reals:
+        """Distances (n,) [m] of the other program's points from the sides of what the design builds."""
+        from bladewright.nurbs.closest import closest_on_curve, closest_on_surface
+
+        found = []
+        for name, points in self.points.items():
+            if points.shape[1] == 2:
+                found.append(closest_on_curve(built.curves[name], points).distances)
+            else:
+                found.append(closest_on_surface(built.surfaces[name], points).distances)
+        return np.concatenate(found)
+
+
+def is_parablade(text: str) -> bool:
+    """Whether a text looks like a ParaBlade configuration."""
+    keys = {line.partition("=")[0].strip() for line in text.splitlines() if "=" in line and line[0] not in "#%"}
+    return len(keys & {*CHANNEL, *COMMON, *WORDS}) >= 4
+
+
+def read_parablade(path: str | os.PathLike[str]) -> UnifiedBlade | UnifiedSection:
+    """The design of the unified family that comes nearest to the blade of a ParaBlade configuration.
+
+    A section where it has two dimensions, else a blade, annular or linear as it says. Raises FileError where the file
+    is no such configuration, or one of connecting arcs, and DesignError where the unified family has no such blade.
+    """
+    return import_parablade(path).design
+
+
+def import_parablade(path: str | os.PathLike[str]) -> Imported:
+    """The same, with what was kept and changed, and points of ParaBlade's own blade to measure it with."""
+    path = Path(path)
+    config = parsed(read_text(path), f"'{path}'")
+    if config.arcs:
+        raise FileError(
+            f"'{path}' is of PARAMETRIZATION_TYPE = CONNECTING_ARCS, whose sides are arcs without camber and thickness: "
+            "only CAMBER_THICKNESS is imported; write its points as a cloud with ParaBlade, and fit a design to them"
+        )
+    name = re.sub(r'[/\\:*?"<>|\s]+', "-", path.stem).strip("-.") or "blade"
+    try:
+        design, changed = _design_of(config, name)
+    except DesignError as error:
+        raise DesignError(f"'{path}': the unified family has no such blade: {error}") from error
+    return Imported(
+        design=design,
+        program="ParaBlade",
+        kept=_kept(config),
+        changed=(*changed, *config.notes),
+        points=_points(config),
+    )
+
+
+def _design_of(config: Config, name: str) -> tuple[UnifiedBlade | UnifiedSection, list[str]]:
+    if config.dimensions == 2:
+        section, changed = section_of(config, name)
+        return section, [*changed, f"N_BLADES = {config.blades} says no pitch: a single section is written"]
+    blade, changed = blade_of(config, name)
+    if not config.annular:
+        changed.append(
+            f"no pitch is in the file: {blade.pitch:.4g} mm is taken, one meridional length; set the true one"
+        )
+        return blade, changed
+    standing = _standing_apart(blade)
+    said = f"N_BLADES = {config.blades} has no effect in ParaBlade, and may be any number there"
+    if standing != blade.blade_count:
+        changed.append(f"{said}: so many blades intersect, and {standing} are taken; set the true number")
+        return blade.changed("blade_count", standing), changed
+    changed.append(f"{said}: it is taken as it is; set the true one")
+    return blade, changed
+
+
+def _standing_apart(blade: UnifiedBlade) -> int:
+    """The largest number of blades, at most the design's, that do not intersect."""
+
+    def apart(count: int) -> bool:
+        try:
+            check_sections(exact_blade(blade.changed("blade_count", count)))
+        except DesignError as error:
+            if "blade_count" in str(error):
+                return False
+            raise
+        return True
+
+    most = int(blade.blade_count or 1)
+    if apart(most):
+        return most
+    low, high = 1, most
+    while high - low > 1:
+        middle = (low + high) // 2
+        low, high = (middle, high) if apart(middle) else (low, middle)
+    return low
+
+
+def _kept(config: Config) -> tuple[str, ...]:
+    if config.dimensions == 2:
+        return ("the camber line, the mean of ParaBlade's two sections, and the radii of both edges",)
+    return (
+        'the camber lines in ParaBlade\'s plane (mapping = "paper": its angles are not those of the blade in space)',
+        "the numbers of control points along the span",
+    )
+
+
+def _points(config: Config) -> dict[str, Reals]:
+    shape = shape_at(config, _ACROSS)
+    rows = side_basis(_ALONG)
+    width = 2 if config.dimensions == 2 else 3
+    sides = zip(("upper", "lower"), shape.sides, strict=True)
+    return {name: shape.points(rows @ controls).reshape(-1, width) for name, controls in sides}

@@ -1,0 +1,210 @@
+"""From a ParaBlade configuration to the design of the unified family that comes nearest to its blade."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from bladewright.blade.unified import UnifiedBlade
+from bladewright.designs import Law
+from bladewright.files.parablade.channel import cut_channel, lengths_of
+from bladewright.files.parablade.config import Config
+from bladewright.files.parablade.matching import LEAST, held_radii, least_thickness, matched_thickness
+from bladewright.files.parablade.planes import Planes, averaged, stretched
+from bladewright.files.parablade.shape import Shape
+from bladewright.nurbs.basis import Reals, basis, uniform_knots
+from bladewright.section.laws import law_basis
+from bladewright.section.sampling import sample_places
+from bladewright.section.sides import DEGREE, side
+from bladewright.section.unified import UnifiedSection
+
+UNIT = 1e-3
+"""metres in a design's millimetre"""
+SAMPLES = 16
+STATIONS = (1.0 - np.cos(np.pi * np.linspace(0.0, 1.0, 13))) / 2.0
+"""places along the span at which the sections are matched"""
+CHORDWISE = (8, 10, 12, 14, 16)
+"""numbers of control points of a thickness law that are tried: ParaBlade's own has 8, the edge radii at its ends"""
+CLOSE = 5e-4
+"""distance of the sides, of the meridional length, at which no more control points are added"""
+CLOSE_ANGLE = 0.02
+"""deviation of a law [deg] at which no more control points are added"""
+CLOSE_PART = 2e-3
+"""deviation of a law of tangents, of itself, at which no more control points are added"""
+MORE = 3
+"""control points that a law may be given beyond ParaBlade's"""
+HELD = 0.95
+"""part of the largest radius that an edge is given where its thickness cannot hold ParaBlade's"""
+
+Laws = dict[str, Law | tuple[Law, ...]]
+
+
+def section_of(config: Config, name: str) -> tuple[UnifiedSection, list[str]]:
+    """The section of a configuration in two dimensions, and what was changed, each a sentence."""
+    planes, start, extent = averaged(config)
+    laws, notes = _laws(config, planes)
+    design = UnifiedSection(
+        name=name,
+        length_unit="mm",
+        leading_edge_x=float(start[0]) / UNIT,
+        leading_edge_y=float(start[1]) / UNIT,
+        axial_chord=extent / UNIT,
+        samples=SAMPLES,
+        **laws,
+    )
+    return design, notes
+
+
+def blade_of(config: Config, name: str) -> tuple[UnifiedBlade, list[str]]:
+    """The blade of a configuration in three dimensions, and what was changed, each a sentence."""
+    channel, off = cut_channel(config, UNIT)
+    shape = Shape(config=config, v=STATIONS)
+    lengths = lengths_of(channel, UNIT, STATIONS)
+    laws, notes = _laws(config, stretched(shape, shape.lengths / lengths))
+    notes.insert(
+        0,
+        "the channel is cut where the camber lines begin and end, as ParaBlade's is filled from nose to nose; its curves "
+        f"lie within {off * 1e3:.2g} mm of those",
+    )
+    y = shape.law("y_leading")
+    count = len(config.laws["y_leading"])
+    if config.annular:
+        at = shape.channel_places(np.zeros((len(STATIONS), 1)))
+        radius = shape.meridional(at)[:, 0, 1]
+        place, _ = _law(np.degrees(y / radius), STATIONS, count, CLOSE_ANGLE / 10.0)
+        own: Laws = {"leading_edge_theta": place}
+    else:
+        place, _ = _law(y / UNIT, STATIONS, count, float(np.max(lengths)) / UNIT * CLOSE)
+        own = {"leading_edge_y": place}
+    design = UnifiedBlade(
+        name=name,
+        length_unit="mm",
+        arrangement="annular" if config.annular else "linear",
+        blade_count=max(config.blades, 1) if config.annular else None,
+        pitch=None if config.annular else float(np.max(lengths)) / UNIT,
+        channel=channel,
+        mapping="paper",
+        samples=SAMPLES,
+        **own,
+        **laws,
+    )
+    return design, notes
+
+
+def _laws(config: Config, planes: Planes) -> tuple[Laws, list[str]]:
+    """Angles, tangents, radii and thicknesses of sections, and what was changed."""
+    notes: list[str] = []
+    line, v = planes.camber, planes.v
+    first, last = line[:, 1] - line[:, 0], line[:, 3] - line[:, 2]
+    found: Laws = {}
+    for name, key, values, close in (
+        ("stagger", "stagger", np.degrees(np.arctan(line[:, 3, 1])), CLOSE_ANGLE),
+        ("metal_angle_in", "theta_in", np.degrees(np.arctan2(first[:, 1], first[:, 0])), CLOSE_ANGLE),
+        ("metal_angle_out", "theta_out", np.degrees(np.arctan2(last[:, 1], last[:, 0])), CLOSE_ANGLE),
+        ("tangent_in", "dist_in", np.sqrt(np.sum(first**2, axis=-1)), None),
+        ("tangent_out", "dist_out", np.sqrt(np.sum(last**2, axis=-1)), None),
+    ):
+        limit = CLOSE_PART * float(np.mean(values)) if close is None else close
+        found[name], count = _law(values, v, len(config.laws[key]), limit)
+        if count > len(config.laws[key]):
+            notes.append(f"{name} has {count} control points, where ParaBlade has {len(config.laws[key])}")
+        if name.startswith("tangent") and np.max(values) > 1.0:
+            notes.append(f"{name} is lowered from {np.max(values):.3g} to 1: the camber would turn back")
+            found[name] = _clipped(found[name], 1e-3, 1.0)
+    places = sample_places(SAMPLES, 1.0)
+    spans = {side_name: _spanwise(config, side_name) for side_name in ("upper", "lower")}
+    thickness: dict[str, Reals] = {}
+    for chordwise in CHORDWISE:
+        off = 0.0
+        for side_name, target in (("upper", planes.upper), ("lower", planes.lower)):
+            upper = side_name == "upper"
+            least = least_thickness(chordwise, spans[side_name], planes.radii, v, places)
+            law = matched_thickness(line, planes.radii, target, least, v, places, upper=upper)
+            thickness[side_name] = law
+            off = max(off, _distance(planes, law, places, target, upper=upper))
+        if off <= CLOSE:
+            break
+    notes.append(
+        f"the sides are quartic, ParaBlade's cubic: their thickness laws have {chordwise} control points along the chord, "
+        f"matched within {100.0 * off:.2g} % of the meridional length"
+    )
+    for side_name, law in thickness.items():
+        found[f"thickness_{side_name}"] = tuple(_plain(row) for row in law)
+    found.update(_radii(config, planes, thickness, places, notes))
+    return found, notes
+
+
+def _radii(config: Config, planes: Planes, thickness: dict[str, Reals], places: Reals, notes: list[str]) -> Laws:
+    """Laws of the edge radii, lowered where the thickness cannot hold them."""
+    fine = np.linspace(0.0, 1.0, 101) if len(planes.v) > 1 else planes.v
+    camber = _interpolated(planes.camber, planes.v, fine)
+    inner = places[2:-2]
+    values = [law_basis(law.shape[1], fine) @ law.T @ law_basis(law.shape[0], inner).T for law in thickness.values()]
+    most = held_radii(camber, (values[0], values[1]), places)
+    found: Laws = {}
+    for name, key, radii, limit in zip(
+        ("leading_edge_radius", "trailing_edge_radius"), ("radius_in", "radius_out"), planes.radii, most, strict=True
+    ):
+        count = len(config.laws[key])
+        rows = law_basis(count, fine)
+        wanted = _interpolated(radii, planes.v, fine)
+        law = np.linalg.lstsq(rows, wanted, rcond=None)[0]
+        law = np.clip(law, LEAST / 10.0, 0.999)
+        changed = False
+        for _ in range(60):
+            over = rows @ law > limit
+            if not np.any(over):
+                break
+            changed = True
+            worst = int(np.argmax(rows @ law / np.maximum(limit, 1e-12)))
+            law = np.where(rows[worst] > 0.2, law * HELD, law)
+        if changed:
+            notes.append(f"{name} is lowered where the thickness beside it cannot hold ParaBlade's {key}")
+        found[name] = _plain(law)
+    return found
+
+
+def _law(values: Reals, v: Reals, count: int, close: float) -> tuple[Law, int]:
+    """Control points of a law through values (m,), and how many: more than `count` where it is not close otherwise."""
+    if len(v) == 1:
+        return float(values[0]), 1
+    for number in range(count, count + MORE + 1):
+        rows = law_basis(number, v)
+        law = np.linalg.lstsq(rows, values, rcond=None)[0]
+        if np.max(np.abs(rows @ law - values)) <= close:
+            break
+    return _plain(law), number
+
+
+def _spanwise(config: Config, name: str) -> int:
+    if config.dimensions == 2:
+        return 1
+    return max(len(config.laws[f"thickness_{name}_{i}"]) for i in range(1, 7))
+
+
+def _distance(planes: Planes, law: Reals, places: Reals, target: Reals, *, upper: bool) -> float:
+    """Largest distance of target points from the sides that a thickness law makes."""
+    from scipy.spatial import cKDTree
+
+    values = law_basis(law.shape[1], planes.v) @ law.T @ law_basis(law.shape[0], places[2:-2]).T
+    radii = planes.radii
+    controls = side(planes.camber, places, values, 1.0 / radii[0], 1.0 / radii[1], upper=upper)
+    s = (1.0 - np.cos(np.pi * np.linspace(0.0, 1.0, 3001))) / 2.0
+    curves = basis(uniform_knots(len(places), DEGREE), DEGREE, s) @ controls
+    return max(float(np.max(cKDTree(curve).query(points)[0])) for curve, points in zip(curves, target, strict=True))
+
+
+def _interpolated(values: Reals, v: Reals, fine: Reals) -> Reals:
+    if len(v) == 1:
+        return values
+    from scipy.interpolate import make_interp_spline
+
+    return np.asarray(make_interp_spline(v, values, k=3)(fine))
+
+
+def _plain(values: Sequence[float] | Reals) -> Law:
+    return float(values[0]) if len(values) == 1 else tuple(float(each) for each in values)
+
+
+def _clipped(law: Law | tuple[Law, ...], low: float, high: float) -> Law:
+    values = np.clip(np.atleast_1d(np.array(law, dtype=np.float64)), low, high)
+    return _plain(values)
