@@ -45,7 +45,7 @@ def _blade_sheet(fit: Matched) -> Figure:
     figure = Figure(figsize=(16.0, 15.0))
     headed(figure, fit.design.name, fit.design.description, _head(fit))
     top, centre, bottom = rows(figure, 4.5, 4.4, 5.0)
-    axes = top.subplots(1, 2, width_ratios=[2.6, 1.0])
+    axes = top.subplots(1, 2, width_ratios=[2.1, 1.0])
     draw_map(axes[0], fit)
     draw_table(axes[1], fit)
     outlines = [outline_at(fit, span_of(fit, share)) for share in SHARES]
@@ -55,7 +55,7 @@ def _blade_sheet(fit: Matched) -> Figure:
     axes = bottom.subplots(1, 4, width_ratios=[1.0, 1.0, 1.1, 1.3])
     for place, region in zip(axes, ("leading edge", "trailing edge"), strict=False):
         outline = outline_at(fit, worst_span(fit, region))
-        where = f" at {_place(outline.section.span, blade.design.ends)}, its worst"
+        where = f", {_place(outline.section.span, blade.design.ends)}"
         draw_edge_match(place, fit, outline, trailing=region == "trailing edge", where=where)
     draw_histogram(axes[2], fit)
     draw_extrema(axes[3], fit, [blade.section(v) for v in (0.0, 0.5, 1.0)], blade.design.ends)
@@ -66,7 +66,7 @@ def _section_sheet(fit: Matched) -> Figure:
     figure = Figure(figsize=(16.0, 14.0))
     headed(figure, fit.design.name, fit.design.description, _head(fit))
     top, centre, bottom = rows(figure, 3.8, 5.4, 4.6)
-    axes = top.subplots(1, 2, width_ratios=[2.6, 1.0])
+    axes = top.subplots(1, 2, width_ratios=[2.1, 1.0])
     draw_outline_deviation(axes[0], fit)
     draw_table(axes[1], fit)
     outline = outline_at(fit, 0.0)

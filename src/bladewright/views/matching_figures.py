@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
 REGIONS = ("sides", "leading edge", "trailing edge", "ends")
 EDGES = {"leading edge": ORANGE, "trailing edge": GREEN}
-COLUMNS = (0.46, 0.60, 0.73, 0.86, 1.0)
+COLUMNS = (0.415, 0.565, 0.715, 0.86, 1.0)
 """right ends of the table's columns after the first"""
 LINES = 6
 """of failures"""
@@ -69,7 +69,7 @@ def draw_extrema(axes: Axes, fit: Matched, sections: Sequence["Section"], ends: 
             style: dict[str, Any] = {"marker": "o" if name == "upper" else "s", "markersize": 5.0, "zorder": 4.0}
             axes.plot(*marks, linestyle="none", markerfacecolor="white", markeredgecolor=RED, **style)
     counts = ", ".join(f"{fit.extrema[name]} {name}" for name in SIDES if name in fit.extrema)
-    axes.set_title(f"Curvature, its extrema marked: {counts}")
+    axes.set_title(f"Curvature, extrema: {counts}")
 
 
 def draw_table(axes: Axes, fit: Matched) -> None:

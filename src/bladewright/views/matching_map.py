@@ -75,7 +75,7 @@ def draw_outline_deviation(axes: Axes, fit: Matched) -> None:
     values = millimetres(fit, shown)
     axes.scatter(abscissae(fit, shown), values, c=values, linewidths=0.35, edgecolors=INK, **dots)
     outliers = np.flatnonzero(~fit.inliers)
-    held = np.clip(millimetres(fit, outliers), -0.97 * limit, 0.97 * limit)
+    held = np.clip(millimetres(fit, outliers), -0.95 * limit, 0.95 * limit)
     told += crosses(axes, fit, outliers, held)
     axes.axhline(0.0, color=INK, linewidth=0.9)
     if fit.tolerance is not None:
@@ -96,15 +96,16 @@ def crosses(axes: Axes, fit: Matched, index: Index, ordinate: Reals | None = Non
     """Draws a cross for each outlier, and says how many."""
     if len(index) == 0:
         return ""
-    many = len(index) > 1000
+    # so small that many of them do not hide the map
+    size = float(np.clip(6.0 * np.sqrt(200.0 / len(index)), 1.4, 6.0))
     axes.plot(
         abscissae(fit, index),
         fit.v[index] if ordinate is None else ordinate,
         color=INK,
         linestyle="none",
         marker="x",
-        markersize=3.0 if many else 6.0,
-        markeredgewidth=0.5 if many else 1.2,
+        markersize=size,
+        markeredgewidth=0.2 * size,
         rasterized=True,
     )
     return f", {counted(len(index), 'outlier')} crossed"

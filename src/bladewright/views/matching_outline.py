@@ -14,7 +14,7 @@ from bladewright.views.sections import along_curve, size_of
 if TYPE_CHECKING:
     from bladewright.section.section import Section
 
-FINE = 2001
+FINE = 801
 BAND, WIDEST = 0.04, 0.16
 """half height in v of the band whose points are drawn beside a section, and what it may grow to"""
 ENOUGH = 80

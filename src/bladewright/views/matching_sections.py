@@ -5,13 +5,13 @@ from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
 
 from bladewright.nurbs.basis import Reals
-from bladewright.numerics.elementary import length
 from bladewright.views.edges import PART, REACH
 from bladewright.views.matching_outline import Outline
 from bladewright.views.matching_points import (
     COLOURS,
     ROUND,
     SIDES,
+    Index,
     Matched,
     counted,
     drawn,
@@ -21,6 +21,11 @@ from bladewright.views.matching_points import (
 from bladewright.views.sections import COORDINATES
 from bladewright.views.style import INK, MILLIMETRES, PALE, SOFT, titled
 
+INSIDE, OUTSIDE = "#2f7fb5", "#c4553f"
+CLEAR = {"markersize": 2.6, "markeredgewidth": 0.0}
+FINE = {"markersize": 1.2, "markeredgewidth": 0.0}
+THICK = 0.4
+"""of the largest thickness, that the tolerance is drawn within"""
 MOST = 4000
 """points drawn beside a section"""
 HEIGHT = 0.035
@@ -43,26 +48,23 @@ def draw_magnified(axes: Axes, fit: Matched, outline: Outline, name: str) -> Non
     """Draws a section with the deviations of the points near it magnified; outliers crossed, at most 8 % away."""
     factor = magnification(fit)
     axes.fill(*outline.closed.T, color=PALE, linewidth=0.0)
-    if fit.tolerance is not None:
-        for side in SIDES:
-            for sign in (-1.0, 1.0):
-                limit = outline.moved(side, sign * factor * fit.tolerance * MILLIMETRES)
-                axes.plot(*limit.T, color=SOFT, linewidth=0.7, linestyle="--")
+    _draw_tolerance(axes, fit, outline, factor)
     shown = drawn(fit, outline.points & fit.inliers, MOST)
     off = millimetres(fit, shown)
     feet, normals = outline.feet(fit, shown)
     tops = feet + normals * (factor * off)[:, None]
-    whiskers = LineCollection(
-        list(np.stack([feet, tops], axis=1)),
-        colors=COLOURS(scale_of(fit)(off)),
-        linewidths=0.9 if len(shown) < 1500 else 0.5,
-        rasterized=len(shown) > 1500,
-    )
-    axes.add_collection(whiskers)
-    axes.scatter(*tops.T, s=5.0 if len(shown) < 1500 else 2.0, c=INK, linewidths=0.0, rasterized=len(shown) > 1500)
+    many = len(shown) > 1000
+    for colour, own in ((INSIDE, off < 0.0), (OUTSIDE, off >= 0.0)):
+        lines = list(np.stack([feet[own], tops[own]], axis=1))
+        axes.add_collection(LineCollection(lines, colors=colour, linewidths=0.4 if many else 0.9, rasterized=many))
+        axes.plot(
+            *tops[own].T, color=colour, linestyle="none", marker="o", rasterized=many, **(FINE if many else CLEAR)
+        )
     axes.plot(*outline.closed.T, color=INK, linewidth=1.0)
     _cross_outliers(axes, fit, outline, factor, 0.08 * outline.section.chord * MILLIMETRES)
-    titled(axes, f"{name}, deviations × {factor:g}", *COORDINATES[outline.section.plane])
+    abscissa, ordinate = COORDINATES[outline.section.plane]
+    told = "" if fit.tolerance is None else f", dashed: the tolerance × {factor:g}"
+    titled(axes, f"{name}, deviations × {factor:g}", f"{abscissa}{told}", ordinate)
     axes.set_aspect("equal", adjustable="datalim")
     axes.margins(0.06)
 
@@ -76,30 +78,42 @@ def draw_edge_match(axes: Axes, fit: Matched, outline: Outline, *, trailing: boo
     reach = float(np.clip(PART * section.chord * MILLIMETRES, 1.5 * radius, REACH * radius))
     middle = tip + 0.6 * reach * inwards
     axes.fill(*outline.closed.T, color=PALE, linewidth=0.0)
-    if fit.tolerance is not None:
-        limit = fit.tolerance * MILLIMETRES
-        for sign in (-1.0, 1.0):
-            for side in SIDES:
-                axes.plot(*outline.moved(side, sign * limit).T, color=SOFT, linewidth=0.8, linestyle="--")
-    axes.plot(*outline.closed.T, color=INK, linewidth=1.2)
-    feet, normals = outline.feet(fit, np.flatnonzero(outline.points))
+    _draw_tolerance(axes, fit, outline, 1.0)
     near = np.zeros_like(outline.points)
-    at = feet + normals * millimetres(fit, np.flatnonzero(outline.points))[:, None]
-    near[np.flatnonzero(outline.points)[np.max(np.abs(at - middle), axis=-1) <= 1.05 * reach]] = True
-    shown = drawn(fit, near & fit.inliers, MOST)
-    feet, normals = outline.feet(fit, shown)
-    at = feet + normals * millimetres(fit, shown)[:, None]
+    beside = np.flatnonzero(outline.points & fit.inliers)
+    near[beside[np.max(np.abs(_places(fit, outline, beside) - middle), axis=-1) <= 1.05 * reach]] = True
+    shown = drawn(fit, near, MOST)
+    at = _places(fit, outline, shown)
+    # over the points where they would hide it
+    axes.plot(*outline.closed.T, color=INK, linewidth=1.2, zorder=3.5 if len(shown) > 1000 else 2.5)
     size = float(np.clip(6e3 / max(len(shown), 1), 4.0, 26.0))
     colours = {"c": millimetres(fit, shown), "cmap": COLOURS, "norm": scale_of(fit)}
     axes.scatter(*at.T, s=size, linewidths=0.4, edgecolors=INK, zorder=3.0, rasterized=len(shown) > 1500, **colours)
     _cross_outliers(axes, fit, outline, 1.0, np.inf)
     axes.set_xlim(middle[0] - reach, middle[0] + reach)
     axes.set_ylim(middle[1] - reach, middle[1] + reach)
-    axes.set_aspect("equal", adjustable="box")
+    axes.set_aspect("equal", adjustable="box", anchor="N")
     edge = "Trailing" if trailing else "Leading"
     abscissa, ordinate = COORDINATES[section.plane]
-    told = f"{counted(int(np.count_nonzero(near & fit.inliers)), 'point')}, radius {radius:.3g} mm"
-    titled(axes, f"{edge} edge{where}", f"{abscissa}\n{told}", ordinate)
+    told = f"{counted(int(np.count_nonzero(near)), 'point')}, radius {radius:.3g} mm"
+    titled(axes, f"{edge} edge{where}", f"{abscissa}\n{told if not where else 'its worst: ' + told}", ordinate)
+
+
+def _draw_tolerance(axes: Axes, fit: Matched, outline: Outline, factor: float) -> None:
+    if fit.tolerance is None:
+        return
+    off = factor * fit.tolerance * MILLIMETRES
+    # inside a thin section the line would fold
+    inside = off < THICK * outline.section.maximum_thickness[0] * MILLIMETRES
+    for sign in (-1.0, 1.0) if inside else (1.0,):
+        for side in SIDES:
+            axes.plot(*outline.moved(side, sign * off).T, color=SOFT, linewidth=0.8, linestyle="--")
+
+
+def _places(fit: Matched, outline: Outline, index: Index) -> Reals:
+    """Where points (m, 2) lie beside the outline."""
+    feet, normals = outline.feet(fit, index)
+    return feet + normals * millimetres(fit, index)[:, None]
 
 
 def _cross_outliers(axes: Axes, fit: Matched, outline: Outline, factor: float, most: float) -> None:
@@ -108,4 +122,7 @@ def _cross_outliers(axes: Axes, fit: Matched, outline: Outline, factor: float, m
         return
     feet, normals = outline.feet(fit, index)
     at: Reals = feet + normals * np.clip(factor * millimetres(fit, index), -most, most)[:, None]
-    axes.plot(*at.T, color=INK, linestyle="none", marker="x", markersize=5.0, markeredgewidth=1.1, rasterized=True)
+    size = float(np.clip(6.0 * np.sqrt(60.0 / len(index)), 1.4, 6.0))
+    axes.plot(
+        *at.T, color=INK, linestyle="none", marker="x", markersize=size, markeredgewidth=0.2 * size, rasterized=True
+    )
