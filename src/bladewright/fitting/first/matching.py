@@ -24,7 +24,7 @@ SHORTEST, LONGEST = 0.03, 0.97
 """of the extent: tangents of a first camber"""
 THINNEST = 5e-4
 """of the chord: half thickness of a first section"""
-PLACES = np.linspace(0.0, 1.0, 101)
+PLACES = np.linspace(0.0, 1.0, 65)
 """along a side, where the nearest place is sought"""
 
 
@@ -71,48 +71,64 @@ def stations(laid: Laid) -> Reals:
 def nearest(shape: Shape, laid: Laid, laws: Reals) -> tuple[Reals, NDArray[np.bool_], Reals]:
     """Place along the side, side and distance [m] of each point."""
     at = stations(laid)
-    lines = np.concatenate(shape.polylines(numbers_at(laws, at), at, PLACES), axis=1)
-    count = len(PLACES)
-    best = np.empty((len(laid.points), 2))
-    s, upper = np.empty(len(laid.points)), np.empty(len(laid.points), dtype=bool)
-    for block in np.array_split(np.arange(len(laid.points)), max(1, len(laid.points) // 2000)):
-        p = laid.points[block]
-        if laid.flat:
-            on = np.broadcast_to(lines, (len(p), *lines.shape[1:]))
-        else:
-            place = np.clip(laid.v[block], 0.0, 1.0) * (len(at) - 1)
-            low = np.clip(place.astype(int), 0, len(at) - 2)
-            share = (place - low)[:, None, None]
-            on = (1.0 - share) * lines[low] + share * lines[low + 1]
-        start, step = on[:, :-1], on[:, 1:] - on[:, :-1]
-        away = p[:, None] - start
-        t = np.clip(np.sum(away * step, axis=-1) / (np.sum(step**2, axis=-1) + 1e-300), 0.0, 1.0)
-        squares = np.sum((away - t[..., None] * step) ** 2, axis=-1)
-        squares[:, count - 1] = np.inf
-        index = np.argmin(squares, axis=1)
-        row = np.arange(len(p))
-        upper[block] = index < count
-        s[block] = (index % count + t[row, index]) / (count - 1)
-        best[block, 0] = np.sqrt(squares[row, index])
-    return np.clip(s, 0.0, 1.0), upper, best[:, 0] / laid.size
+    lines = np.stack(shape.polylines(numbers_at(laws, at), at, PLACES), axis=1)
+    place = np.clip(laid.v, 0.0, 1.0) * (len(at) - 1)
+    low = np.clip(place.astype(int), 0, max(0, len(at) - 2))
+    high = np.minimum(low + 1, len(at) - 1)
+    share = place - low
+    squares = np.empty((len(low), 2, len(PLACES)))
+    for station in np.unique(low):
+        mask = low == station
+        part, p = share[mask, None, None], laid.points[mask]
+        total = np.zeros((len(p), 2, len(PLACES)))
+        for i in (0, 1):
+            first = lines[station, ..., i]
+            step = lines[min(station + 1, len(at) - 1), ..., i] - first
+            total += (p[:, i, None, None] - first - part * step) ** 2
+        squares[mask] = total
+    index = np.argmin(squares.reshape(len(low), -1), axis=1)
+    upper = index < len(PLACES)
+    side, vertex = index // len(PLACES), index % len(PLACES)
+
+    def on(which: NDArray[np.intp]) -> Reals:
+        part = share[:, None]
+        return np.asarray((1.0 - part) * lines[low, side, which] + part * lines[high, side, which])
+
+    best, s = np.full(len(low), np.inf), np.empty(len(low))
+    middle = on(vertex)
+    for way in (-1, 1):
+        other = np.clip(vertex + way, 0, len(PLACES) - 1)
+        step = on(other) - middle
+        t = np.sum((laid.points - middle) * step, axis=-1) / (np.sum(step**2, axis=-1) + 1e-300)
+        t = np.clip(t, 0.0, 1.0)
+        distance = np.sqrt(np.sum((laid.points - middle - t[:, None] * step) ** 2, axis=-1))
+        nearer = distance < best
+        best = np.where(nearer, distance, best)
+        s = np.where(nearer, PLACES[vertex] + t * (PLACES[other] - PLACES[vertex]), s)
+    return s, upper, best / laid.size
 
 
 def matched(shape: Shape, laid: Laid, laws: Reals, *, turns: int = 25, stiff: float = 1.0) -> Match:
     """Laws near the given ones whose sections lie close to the points."""
     laws = held(shape, laid, laws)
     best: Match | None = None
+    history: list[float] = []
     smooth = 3e-2 * stiff
     for turn in range(turns + 1):
         s, upper, distances = nearest(shape, laid, laws)
         weight = _weights(laid, s, upper, distances, turn / turns)
         # places that no point is near count as well: a side without points is none
-        mean = float(np.sum(weight * distances) / np.sum(weight)) + 0.2 * float(np.mean(np.minimum(distances, 0.1 * laid.chord)))
+        mean = float(np.sum(weight * distances) / np.sum(weight)) + 0.2 * float(
+            np.mean(np.minimum(distances, 0.1 * laid.chord))
+        )
+        history.append(mean)
         if best is None or mean < best.mean:
             best = Match(laws=laws, distances=distances, mean=mean, s=s, upper=upper)
-        if turn == turns:
+        settled = len(history) > 6 and min(history[-3:]) > 0.97 * min(history[:-3])
+        if turn == turns or (settled and smooth <= 1.01e-3 * stiff):
             break
         laws = held(shape, laid, laws + _step(shape, laid, laws, s, upper, weight, smooth))
-        smooth = max(0.7 * smooth, 1e-3 * stiff)
+        smooth = max(0.5 * smooth, 1e-3 * stiff)
     assert best is not None
     return replace(best, mean=float(np.mean(np.sort(best.distances)[: max(1, int(0.94 * len(best.distances)))])))
 
@@ -130,7 +146,7 @@ def held(shape: Shape, laid: Laid, laws: Reals) -> Reals:
     for column, beside, end in ((ROOT_IN, 2, 0), (ROOT_OUT, -3, 1)):
         most = np.full(len(at), np.inf)
         for upper in (True, False):
-            heights, *units = shape.heights(numbers, at, upper)
+            heights, *units, _ = shape.heights(numbers, at, upper)
             most = np.minimum(most, 0.97 * heights[:, beside] / units[end])
         excess = float(np.max(numbers[:, column] / most))
         if excess > 1.0 and len(laws) > 1:
@@ -138,12 +154,19 @@ def held(shape: Shape, laid: Laid, laws: Reals) -> Reals:
             laws[:, column] = np.maximum(capped, 0.2 * least)
             excess = float(np.max((law_basis(len(laws), at) @ laws[:, column]) / most))
         laws[:, column] /= max(excess, 1.0)
+    size = np.median(laid.size)
+    extent = float(np.min(numbers[:, END.start] - numbers[:, START.start])) / size
+    laws[:, [ROOT_IN, ROOT_OUT]] = np.minimum(
+        laws[:, [ROOT_IN, ROOT_OUT]], np.sqrt(0.9 * max(extent, 1e-6 * laid.chord))
+    )
     return laws
 
 
 def _weights(laid: Laid, s: Reals, upper: NDArray[np.bool_], distances: Reals, progress: float) -> Reals:
     """Of the points: as much for each part of a side, less for what lies far off."""
-    bins = (s * 11.999).astype(int) + 12 * upper + 24 * (np.clip(laid.v, 0.0, 1.0) * 3.999).astype(int) * (not laid.flat)
+    bins = (
+        (s * 11.999).astype(int) + 12 * upper + 24 * (np.clip(laid.v, 0.0, 1.0) * 3.999).astype(int) * (not laid.flat)
+    )
     counts = np.bincount(bins)[bins]
     even = 1.0 / np.sqrt(counts / np.mean(counts) + 0.05)
     spread = 1.4826 * float(np.median(distances))

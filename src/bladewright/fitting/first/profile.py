@@ -23,7 +23,7 @@ from bladewright.section.checks import UNITS
 from bladewright.section.unified import UnifiedSection
 
 Unit = Literal["m", "cm", "mm", "um", "in", "ft"]
-MOST = 900
+MOST = 600
 """points that a first section is drawn through"""
 TURNED = 0.03
 """axial share of the chord below which the rounder end leads"""
@@ -47,9 +47,7 @@ def first_section(
     shape = Shape(chordwise=chordwise, samples=samples, clustering=clustering, scale=lambda a, v: np.ones_like(a))
     middle = np.mean(points, axis=0)
     axis, chord = longest(points)
-    laid = Laid(
-        points=points - middle, v=np.zeros(len(points)), size=np.ones(len(points)), chord=chord, flat=True
-    )
+    laid = Laid(points=points - middle, v=np.zeros(len(points)), size=np.ones(len(points)), chord=chord, flat=True)
     match = best_match(shape, laid, axis)
     return built_section(shape, match, middle, chord, name, length_unit)
 
@@ -75,7 +73,7 @@ def best_match(shape: Shape, laid: Laid, axis: float) -> Match:
             continue
         laws = first_laws(shape, laid, direction, 1)
         found.append(matched(shape, laid, laws))
-        if found[-1].mean < 1e-3 * laid.chord:
+        if found[-1].mean < 2e-3 * laid.chord:
             break
     if not found:
         raise FitError("no chord")

@@ -63,8 +63,11 @@ class Shape:
         """Camber parameters of a side's control points."""
         return sample_places(self.samples, self.clustering)
 
-    def heights(self, numbers: Reals, v: Reals, upper: bool) -> tuple[Reals, Reals, Reals]:
-        """Heights (n, k) of a side's control points above the camber, and those of the edges for a root of one."""
+    def heights(self, numbers: Reals, v: Reals, upper: bool) -> tuple[Reals, Reals, Reals, Reals]:
+        """Heights (n, k) of a side's control points above the camber, those of the edges for a root of one, and sizes.
+
+        The sizes (n, k - 2) are those of one metre in the plane at the edges' and the inner control points.
+        """
         line = camber_of(numbers)
         places = self.places
         inner = places[2:-2]
@@ -86,7 +89,7 @@ class Shape:
             zero, (unit_in * numbers[:, ROOT_IN])[:, None], thickness,
             (unit_out * numbers[:, ROOT_OUT])[:, None], zero,
         ]  # fmt: skip
-        return np.concatenate(columns, axis=1), unit_in, unit_out
+        return np.concatenate(columns, axis=1), unit_in, unit_out, scale
 
     def polylines(self, numbers: Reals, v: Reals, s: Reals) -> tuple[Reals, Reals]:
         """Points (m, len(s), 2) of the upper and the lower sides of m sections."""
@@ -106,10 +109,11 @@ class Shape:
         places = self.places
         count = len(places)
         sign = np.where(upper, 1.0, -1.0)
-        both = [self.heights(numbers, v, name) for name in (True, False)]
-        height, unit_in, unit_out = (
-            np.where(upper.reshape(-1, *[1] * (a.ndim - 1)), a, b) for a, b in zip(*both, strict=True)
-        )
+        height, scale = np.empty((len(s), count)), np.empty((len(s), count - 2))
+        unit_in, unit_out = np.empty(len(s)), np.empty(len(s))
+        for name in (True, False):
+            on = upper == name
+            height[on], unit_in[on], unit_out[on], scale[on] = self.heights(numbers[on], v[on], name)
         weights = bernstein(places)
         tangents, speed = _tangents(line, places)
         left = _left(tangents)
@@ -128,12 +132,11 @@ class Shape:
         result = np.zeros((len(s), self.columns))
         result[:, :8] = _by_camber(numbers, by_line)
         sides = sign[:, None] * rows * across
-        scale = self.scale((weights @ line)[..., 0], v)
         for columns, mask, size in (
             (self.upper, upper, self.chordwise[0]),
             (self.lower, ~upper, self.chordwise[1]),
         ):
-            result[mask, columns] = (sides * scale)[mask, 2:-2] @ law_basis(size, places[2:-2])
+            result[mask, columns] = (sides[:, 2:-2] * scale[:, 2:])[mask] @ law_basis(size, places[2:-2])
         result[:, ROOT_IN] = sides[:, 1] * unit_in
         result[:, ROOT_OUT] = sides[:, -2] * unit_out
         return Foot(point=point, normal=normal, slopes=result)

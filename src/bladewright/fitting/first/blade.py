@@ -1,0 +1,276 @@
+"""A first blade from points in space."""
+
+from dataclasses import dataclass, replace
+from typing import Literal
+
+import numpy as np
+
+from bladewright.blade.channel import Channel
+from bladewright.blade.unified import UnifiedBlade
+from bladewright.designs import Point
+from bladewright.errors import DesignError, FitError
+from bladewright.fitting.first.arrangement import found_arrangement
+from bladewright.fitting.first.camber import first_laws
+from bladewright.fitting.first.channel import EDGES, SPAN, Rough, rough_channel
+from bladewright.fitting.first.inliers import thinned, usual
+from bladewright.fitting.first.matching import Laid, Match, matched, numbers_at
+from bladewright.fitting.first.outline import boundary, corner_sets
+from bladewright.fitting.first.shape import (
+    ANGLE_IN,
+    ANGLE_OUT,
+    ROOT_IN,
+    ROOT_OUT,
+    TANGENT_IN,
+    TANGENT_OUT,
+    Shape,
+)
+from bladewright.fitting.structure import Structure
+from bladewright.nurbs.basis import Reals
+from bladewright.section.checks import UNITS
+from bladewright.section.laws import law_basis
+
+Unit = Literal["m", "cm", "mm", "um", "in", "ft"]
+Arrangement = Literal["annular", "linear"]
+MOST = 1200
+"""points that a first blade is drawn through"""
+FEW = 450
+"""points that decide which of several outlines it is"""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Found:
+    """A channel, and sections on its stream surfaces."""
+
+    channel: Rough
+    shape: Shape
+    laid: Laid
+    match: Match
+
+
+def first_blade(
+    points: Reals,
+    *,
+    arrangement: Arrangement | None = None,
+    structure: Structure | None = None,
+    blade_count: int | None = None,
+    pitch: float | None = None,
+    name: str = "blade",
+    length_unit: Unit = "mm",
+) -> UnifiedBlade:
+    """A blade of the unified family near points (n, 3) [m] in the machine's axes, found from them alone.
+
+    `pitch` [m] of a linear cascade. Where blade_count or pitch is not given, one at which neighbours stand apart is
+    taken. Raises FitError where no blade that can be built lies near the points.
+    """
+    points = thinned(usual(np.unique(np.asarray(points, dtype=np.float64), axis=0)), MOST)
+    arrangement = arrangement or found_arrangement(points)
+    machine = coordinates(points, arrangement)
+    found = _found(machine, revolved=arrangement == "annular", structure=structure)
+    wide = float(np.ptp(machine[:, 2]))
+    return built_blade(found, arrangement, structure, blade_count, pitch, wide, name, length_unit)
+
+
+def coordinates(points: Reals, arrangement: Arrangement) -> Reals:
+    """Coordinates (n, 3): x, r and theta [rad] without a jump, or x, z and y of a cascade."""
+    x, y, z = points.T
+    if arrangement == "linear":
+        return np.stack([x, z, y], axis=-1)
+    theta = np.sort(np.arctan2(y, z))
+    gaps = np.diff(np.concatenate([theta, theta[:1] + 2.0 * np.pi]))
+    i = int(np.argmax(gaps))
+    cut = theta[i] + gaps[i] / 2.0
+    wrapped = (np.arctan2(y, z) - cut) % (2.0 * np.pi) + cut
+    wrapped -= 2.0 * np.pi * np.round(np.median(wrapped) / (2.0 * np.pi))
+    return np.stack([x, np.sqrt(y**2 + z**2), wrapped], axis=-1)
+
+
+def _found(machine: Reals, *, revolved: bool, structure: Structure | None) -> Found:
+    counts = dict(structure.channel) if structure and structure.channel else dict.fromkeys(EDGES, 4)
+    line = boundary(machine[:, :2])
+    few = machine[np.random.default_rng(1).permutation(len(machine))[:FEW]]
+    tried: list[Found] = []
+    for pieces in corner_sets(line):
+        for turn in (0, 1):
+            named = _named(pieces, turn)
+            channel = rough_channel(named, dict.fromkeys(EDGES, 5), revolved=revolved)
+            tried.append(_matched(few, channel, (4, 4), 3, turns=10))
+    best = min(tried, key=lambda found: found.match.mean)
+    chordwise = structure.chordwise if structure else (6, 6)
+    samples, clustering = (structure.samples, structure.clustering) if structure else (16, 1.0)
+    count = 4 if len(machine) > 400 else 3
+    found = best
+    for curves in (dict.fromkeys(EDGES, 6), counts):
+        channel = _trimmed(found, curves)
+        found = _continued(machine, channel, found, chordwise, count, samples, clustering)
+    return found
+
+
+def _named(pieces: list[Reals], turn: int) -> dict[str, Reals]:
+    """Four pieces of an anticlockwise boundary by their names, for one of the two ways to pair them.
+
+    Anticlockwise in (x, r) come hub, trailing edge, shroud, leading edge; the flow goes on towards +x.
+    """
+    hub, trailing, shroud, leading = (pieces[(i + turn) % 4] for i in range(4))
+    if np.mean(leading[:, 0]) > np.mean(trailing[:, 0]):
+        hub, trailing, shroud, leading = shroud, leading, hub, trailing
+    return {"hub": hub, "trailing_edge": trailing, "shroud": shroud[::-1], "leading_edge": leading[::-1]}
+
+
+def _laid(machine: Reals, channel: Rough) -> Laid:
+    u, v = channel.places(machine[:, :2])
+    a = channel.abscissa(u, v)
+    size = 1.0 / machine[:, 1] if channel.revolved else np.ones(len(machine))
+    b = machine[:, 2]
+    chord = float(np.median(channel.extents()[1]))
+    return Laid(points=np.stack([a, b], axis=-1), v=np.clip(v, 0.0, 1.0), size=size, chord=chord)
+
+
+def _matched(
+    machine: Reals,
+    channel: Rough,
+    chordwise: tuple[int, int],
+    count: int,
+    *,
+    turns: int,
+    samples: int = 16,
+    clustering: float = 1.0,
+) -> Found:
+    laid = _laid(machine, channel)
+    shape = Shape(chordwise=chordwise, samples=samples, clustering=clustering, scale=channel.size)
+    direction, chord = _direction(laid)
+    laid = replace(laid, chord=chord)
+    match = matched(shape, laid, first_laws(shape, laid, direction, count), turns=turns)
+    return Found(channel=channel, shape=shape, laid=laid, match=match)
+
+
+def _continued(
+    machine: Reals,
+    channel: Rough,
+    before: Found,
+    chordwise: tuple[int, int],
+    count: int,
+    samples: int,
+    clustering: float,
+) -> Found:
+    """What is found in another channel from the sections found in the one before."""
+    old = numbers_at(before.match.laws, SPAN)
+    shape = Shape(chordwise=chordwise, samples=samples, clustering=clustering, scale=channel.size)
+    numbers = np.zeros((len(SPAN), shape.columns))
+    numbers[:, :10] = old[:, :10]
+    numbers[:, 0], numbers[:, 2] = 0.0, channel.extents()[0]
+    u = np.linspace(0.0, 1.0, 15)
+    for now, then in ((shape.upper, before.shape.upper), (shape.lower, before.shape.lower)):
+        values = old[:, then] @ law_basis(then.stop - then.start, u).T
+        numbers[:, now] = np.linalg.lstsq(law_basis(now.stop - now.start, u), values.T, rcond=None)[0].T
+    laws = np.linalg.lstsq(law_basis(count, SPAN), numbers, rcond=None)[0]
+    laid = replace(_laid(machine, channel), chord=before.laid.chord)
+    match = matched(shape, laid, laws, turns=10, stiff=0.3)
+    return Found(channel=channel, shape=shape, laid=laid, match=match)
+
+
+def _direction(laid: Laid) -> tuple[Reals, float]:
+    """Angle (n,) of the chord at each point's place along the span, and the typical chord [m]."""
+    rows = law_basis(3, laid.v)
+    middle = np.linalg.lstsq(rows, laid.points, rcond=None)[0]
+    a, b = (laid.points - rows @ middle).T
+    moments = np.stack([a * a, a * b, b * b], axis=-1)
+    saa, sab, sbb = (rows @ np.linalg.lstsq(rows, moments, rcond=None)[0]).T
+    angle = 0.5 * np.arctan2(2.0 * sab, saa - sbb)
+    angle = np.clip(angle, -np.radians(86.0), np.radians(86.0))
+    along = (np.cos(angle) * a + np.sin(angle) * b) / laid.size
+    return angle, float(np.percentile(along, 98.0) - np.percentile(along, 2.0))
+
+
+def _trimmed(found: Found, counts: dict[str, int]) -> Rough:
+    """The channel between the ends of the camber lines."""
+    numbers = numbers_at(found.match.laws, SPAN)
+    starts, ends = (found.channel.u_at(numbers[:, column]) for column in (0, 2))
+    ends = np.maximum(ends, starts + 0.05)
+    pieces = {
+        "leading_edge": found.channel.position(starts, SPAN),
+        "trailing_edge": found.channel.position(ends, SPAN),
+    }
+    for name, row in (("hub", 0), ("shroud", -1)):
+        u = np.linspace(starts[row], ends[row], 41)
+        pieces[name] = found.channel.position(u, np.full(41, SPAN[row]))
+    return rough_channel(pieces, counts, revolved=found.channel.revolved)
+
+
+def built_blade(
+    found: Found,
+    arrangement: Arrangement,
+    structure: Structure | None,
+    blade_count: int | None,
+    pitch: float | None,
+    wide: float,
+    name: str,
+    length_unit: Unit,
+) -> UnifiedBlade:
+    """The blade of what was found, with thickness raised or edges sharpened until it can be built."""
+    metre = UNITS[length_unit]
+    span = structure.span if structure else {}
+    numbers = numbers_at(found.match.laws, SPAN)
+    shape, channel = found.shape, found.channel
+    _, lengths = channel.extents()
+    linear = arrangement == "linear"
+
+    def law(values: Reals, field: str) -> float | tuple[float, ...]:
+        count = span.get(field, 4)
+        fitted = np.linalg.lstsq(law_basis(count, SPAN), values, rcond=None)[0]
+        fitted = np.clip(fitted, np.min(values), np.max(values))
+        return tuple(float(x) for x in fitted) if count > 1 else float(fitted[0])
+
+    extent = numbers[:, 2] - numbers[:, 0]
+    place = numbers[:, 1]
+    most = float(np.max(numbers[:, shape.columns - sum(shape.chordwise) :]))
+    if linear:
+        around = {"pitch": (pitch if pitch is not None else 2.0 * (wide + most)) / metre}
+    else:
+        count = blade_count if blade_count is not None else max(1, int(np.pi / max(wide, 1e-3)))
+        around = {"blade_count": min(count, 10_000)}
+    error: DesignError | None = None
+    for attempt in range(6):
+        roots = {ROOT_IN: numbers[:, ROOT_IN] ** 2, ROOT_OUT: numbers[:, ROOT_OUT] ** 2}
+        design = UnifiedBlade(
+            name=name,
+            length_unit=length_unit,
+            arrangement=arrangement,
+            **around,
+            **{
+                "leading_edge_y" if linear else "leading_edge_theta": law(
+                    place / metre if linear else np.degrees(place), "place"
+                )
+            },
+            stagger=law(np.degrees(np.arctan2(numbers[:, 3] - numbers[:, 1], extent)), "stagger"),
+            metal_angle_in=law(np.degrees(numbers[:, ANGLE_IN]), "metal_angle_in"),
+            metal_angle_out=law(np.degrees(numbers[:, ANGLE_OUT]), "metal_angle_out"),
+            tangent_in=law(numbers[:, TANGENT_IN], "tangent_in"),
+            tangent_out=law(numbers[:, TANGENT_OUT], "tangent_out"),
+            leading_edge_radius=law(np.clip(roots[ROOT_IN] / lengths, 1e-5, 0.9), "leading_edge_radius"),
+            trailing_edge_radius=law(np.clip(roots[ROOT_OUT] / lengths, 1e-5, 0.9), "trailing_edge_radius"),
+            thickness_upper=tuple(law(t / lengths, "thickness_upper") for t in numbers[:, shape.upper].T),
+            thickness_lower=tuple(law(t / lengths, "thickness_lower") for t in numbers[:, shape.lower].T),
+            channel=Channel(
+                **{
+                    name: tuple(
+                        Point(float(x), float(r))
+                        for x, r in channel.curves[name][slice(1, -1) if name in ("hub", "shroud") else slice(None)]
+                        / metre
+                    )
+                    for name in EDGES
+                }
+            ),
+            samples=shape.samples,
+            clustering=shape.clustering,
+        )
+        try:
+            design.build()
+        except DesignError as refused:
+            error = refused
+            numbers = np.array(numbers)
+            numbers[:, [ROOT_IN, ROOT_OUT]] *= 0.75
+            floor = found.laid.chord * 3e-3 * 1.6**attempt
+            numbers[:, 10:] = np.maximum(numbers[:, 10:], floor)
+        else:
+            return design
+    raise FitError(f"no blade that can be built was found near the points: {error}")

@@ -1,0 +1,139 @@
+"""A rough meridional channel: four curves with shared corners, and the places of points in it."""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from scipy.ndimage import map_coordinates
+from scipy.spatial import cKDTree
+
+from bladewright.nurbs.basis import Reals, basis, uniform_knots
+
+EDGES = ("hub", "shroud", "leading_edge", "trailing_edge")
+PAST = 0.5
+"""how far, in u, stream lines are continued past the edges"""
+SPAN = np.linspace(0.0, 1.0, 25)
+ALONG = np.linspace(-PAST, 1.0 + PAST, 129)
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Rough:
+    """Control points (n, 2) in (x, r) of the four curves; hub and shroud with their corners."""
+
+    curves: dict[str, Reals]
+    revolved: bool
+
+    def position(self, u: Reals, v: Reals) -> Reals:
+        """(x, r) of the transfinite interpolation at u and v of one shape."""
+        hub, shroud, leading, trailing = (
+            _curve(self.curves[name], along.ravel()).reshape(*along.shape, 2)
+            for name, along in zip(EDGES, (u, u, v, v), strict=True)
+        )
+        a, b = self.curves["leading_edge"][[0, -1]]
+        c, d = self.curves["trailing_edge"][[0, -1]]
+        u, v = u[..., None], v[..., None]
+        ruled = (1 - u) * (1 - v) * a + (1 - u) * v * b + u * (1 - v) * c + u * v * d
+        return np.asarray((1 - v) * hub + v * shroud + (1 - u) * leading + u * trailing - ruled)
+
+    def places(self, points: Reals) -> tuple[Reals, Reals]:
+        """u and v (n,) of points (n, 2), past the ends where they lie outside."""
+        u, v = np.meshgrid(np.linspace(-0.3, 1.3, 81), np.linspace(-0.15, 1.15, 66), indexing="ij")
+        _, index = cKDTree(self.position(u, v).reshape(-1, 2)).query(points)
+        u, v = u.ravel()[index], v.ravel()[index]
+        for _ in range(5):
+            h = 1e-5
+            miss = points - self.position(u, v)
+            du = (self.position(u + h, v) - self.position(u - h, v)) / (2 * h)
+            dv = (self.position(u, v + h) - self.position(u, v - h)) / (2 * h)
+            turn = du[:, 0] * dv[:, 1] - du[:, 1] * dv[:, 0]
+            turn = np.where(np.abs(turn) > 1e-30, turn, 1e-30)
+            step_u = (miss[:, 0] * dv[:, 1] - miss[:, 1] * dv[:, 0]) / turn
+            step_v = (du[:, 0] * miss[:, 1] - du[:, 1] * miss[:, 0]) / turn
+            u = np.clip(u + np.clip(step_u, -0.05, 0.05), -PAST, 1.0 + PAST)
+            v = np.clip(v + np.clip(step_v, -0.05, 0.05), -0.2, 1.2)
+        return u, v
+
+    @cached_property
+    def _grid(self) -> tuple[Reals, Reals, Reals]:
+        """Positions (25, 129, 2), abscissae in the plane and metres along stream lines (25, 129), 0 at u = 0."""
+        v, u = np.meshgrid(SPAN, ALONG, indexing="ij")
+        position = self.position(u, v)
+        step = np.sqrt(np.sum(np.diff(position, axis=1) ** 2, axis=-1))
+        metres = np.concatenate([np.zeros((len(SPAN), 1)), np.cumsum(step, axis=1)], axis=1)
+        radius = np.maximum(position[..., 1], 1e-3 * float(np.max(position[..., 1])))
+        middle = (radius[:, 1:] + radius[:, :-1]) / 2.0 if self.revolved else np.ones_like(step)
+        abscissa = np.concatenate([np.zeros((len(SPAN), 1)), np.cumsum(step / middle, axis=1)], axis=1)
+        return position, *(a - np.array([np.interp(0.0, ALONG, row) for row in a])[:, None] for a in (abscissa, metres))
+
+    def abscissa(self, u: Reals, v: Reals) -> Reals:
+        """Abscissa (n,) in the plane of the section at v."""
+        return _taken(self._grid[1], u, v)
+
+    def extents(self) -> tuple[Reals, Reals]:
+        """Extent in the plane and meridional length [m] of the stream lines at SPAN."""
+        return tuple(np.array([np.interp(1.0, ALONG, row) for row in a]) for a in self._grid[1:])  # type: ignore[return-value]
+
+    def u_at(self, abscissa: Reals) -> Reals:
+        """u (25,) of an abscissa on each of the stream lines at SPAN."""
+        rows = self._grid[1]
+        return np.array([np.interp(a, row, ALONG) for a, row in zip(abscissa, rows, strict=True)])
+
+    @cached_property
+    def _sizes(self) -> tuple[Reals, float, float]:
+        position, abscissa, _ = self._grid
+        low, high = float(np.min(abscissa)), float(np.max(abscissa))
+        at = np.linspace(low, high, 200)
+        radius = np.array([np.interp(at, row, r) for row, r in zip(abscissa, position[..., 1], strict=True)])
+        floor = 1e-3 * float(np.max(radius))
+        return 1.0 / np.maximum(radius, floor), low, high
+
+    def size(self, abscissa: Reals, v: Reals) -> Reals:
+        """Size in the plane of one metre by abscissa (n, k) and v (n,)."""
+        if not self.revolved:
+            return np.ones_like(abscissa)
+        table, low, high = self._sizes
+        column = (abscissa - low) / (high - low) * 199.0
+        row = np.broadcast_to((np.clip(v, 0.0, 1.0) * (len(SPAN) - 1))[:, None], abscissa.shape)
+        return np.asarray(map_coordinates(table, [row, column], order=1, mode="nearest"))
+
+
+def rough_channel(pieces: dict[str, Reals], counts: dict[str, int], *, revolved: bool) -> Rough:
+    """A channel whose curves run along polylines by name; its corners are the ends of leading and trailing edge."""
+    corners = {
+        "leading_edge": (pieces["leading_edge"][0], pieces["leading_edge"][-1]),
+        "trailing_edge": (pieces["trailing_edge"][0], pieces["trailing_edge"][-1]),
+    }
+    corners["hub"] = (corners["leading_edge"][0], corners["trailing_edge"][0])
+    corners["shroud"] = (corners["leading_edge"][1], corners["trailing_edge"][1])
+    curves = {name: _through(pieces[name], counts[name], *corners[name]) for name in EDGES}
+    return Rough(curves=curves, revolved=revolved)
+
+
+def _through(line: Reals, count: int, first: Reals, last: Reals) -> Reals:
+    """Control points of a curve along a polyline, by its arc length, between given ends."""
+    if count == 2:
+        return np.stack([first, last])
+    line = np.concatenate([first[None], line[1:-1], last[None]])
+    way = np.concatenate([[0.0], np.cumsum(np.sqrt(np.sum(np.diff(line, axis=0) ** 2, axis=-1)))])
+    t = np.linspace(0.0, 1.0, 61)
+    places = np.stack([np.interp(t * way[-1], way, line[:, i]) for i in (0, 1)], axis=-1)
+    degree = min(count - 1, 5)
+    rows = basis(uniform_knots(count, degree), degree, t)
+    even = np.linspace(first, last, count)
+    tame = 1e-2 * np.diff(np.eye(count), n=2, axis=0)
+    matrix = np.concatenate([rows[:, 1:-1] / np.sqrt(len(t)), tame[:, 1:-1]])
+    ends = np.stack([first, last])
+    aim = np.concatenate([(places - rows[:, [0, -1]] @ ends) / np.sqrt(len(t)), -tame[:, [0, -1]] @ ends])
+    inner = np.linalg.lstsq(matrix, aim, rcond=None)[0]
+    return np.concatenate([even[:1], inner, even[-1:]])
+
+
+def _curve(points: Reals, t: Reals) -> Reals:
+    degree = min(len(points) - 1, 5)
+    return np.asarray(basis(uniform_knots(len(points), degree), degree, t) @ points)
+
+
+def _taken(table: Reals, u: Reals, v: Reals) -> Reals:
+    column = (u + PAST) / (1.0 + 2.0 * PAST) * (len(ALONG) - 1)
+    row = np.clip(v, 0.0, 1.0) * (len(SPAN) - 1)
+    return np.asarray(map_coordinates(table, [row, column], order=3, mode="nearest"))
