@@ -1,0 +1,162 @@
+"""The motion that brings a cloud from anywhere onto the blade or section of a design."""
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from scipy.spatial import cKDTree
+
+from bladewright.errors import FitError
+from bladewright.fitting.alignment.descent import Descent, descended
+from bladewright.fitting.alignment.rigid import FREEDOMS, PLANE_FREEDOMS, free_columns
+from bladewright.fitting.alignment.search import SAMPLES, found_motions
+from bladewright.fitting.alignment.target import Target, target_of
+from bladewright.fitting.alignment.thinning import drawn
+from bladewright.fitting.result import Motion
+from bladewright.nurbs.basis import Reals
+
+if TYPE_CHECKING:
+    from bladewright.blade.unified import UnifiedBlade
+    from bladewright.section.unified import UnifiedSection
+
+POINTS = 5_000
+"""points whose true distances decide"""
+SEARCH_POINTS = 600
+"""points whose true distances choose among the motions that the search finds"""
+GOOD = 2e-3
+"""systematic distance, of the extent, above which every turn is tried"""
+OTHER = 5e-3
+"""systematic distance, of the extent, above which it is another blade"""
+TRIAL_STEPS = 12
+"""of the descent that chooses"""
+SHARE = 0.7
+"""of the points at least must take part, or it is another blade"""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Registration:
+    """A motion that brings a cloud onto a blade or section, and how well it lies there."""
+
+    motion: Motion
+    rms: float
+    """root mean square of the true distances of the points that took part [m]"""
+    systematic: float
+    """part of it that neighbouring points share, which noise is not [m]"""
+    share: float
+    """of the points that took part; the others are outliers"""
+    undetermined: tuple[str, ...]
+    """freedoms that the points do not determine"""
+    covariance: Reals
+    """(k, k) of the free freedoms in their order, turns about the origin of the machine's axes [rad], shifts [m]"""
+    same: bool
+    """whether it may be this blade: the systematic distance and the outliers do not speak against it"""
+    notes: tuple[str, ...]
+
+
+def registration(points: Reals, design: "UnifiedBlade | UnifiedSection") -> Registration:
+    """The motion of points (n, d) [m] that lie anywhere onto what a design builds, found without a guess.
+
+    The search starts from all proper choices of principal axes and, where none leads to small distances, from turns all
+    over; then true distances are brought to a minimum by Tukey's weights (see `descent`). Raises FitError where the
+    points do not fit the dimension of the design, or are too few.
+    """
+    return registered(points, target_of(design.build()))
+
+
+def registered(points: Reals, target: Target) -> Registration:
+    """As `registration`, onto a target."""
+    cloud = _checked(points, target)
+    samples, normals = target.evenly(SAMPLES[cloud.shape[1]])
+    few = drawn(cloud, SEARCH_POINTS)
+    best: tuple[float, Descent] | None = None
+    for everywhere in (False, True):
+        for motion in found_motions(cloud, samples, normals, everywhere=everywhere):
+            descent = descended(target, few, motion, steps=TRIAL_STEPS)
+            score = float(np.mean(np.minimum(descent.contact.distances, 0.02 * target.extent)))
+            if best is None or score < best[0]:
+                best = score, descent
+            if _good(few, best[1], target):
+                break
+        if best is not None and _good(few, best[1], target):
+            break
+    if best is None:
+        raise FitError(f"no motion of the {len(points)} points was found; are they of a blade?")
+    return _reported(cloud, target, descended(target, drawn(cloud, POINTS), best[1].motion), None)
+
+
+def improved(points: Reals, built: Any, motion: Motion, *, freedoms: tuple[str, ...] | None = None) -> Registration:
+    """The motion near `motion` that brings points (n, d) [m] onto a built blade or section, in some freedoms only.
+
+    Turns and shifts are along the machine's axes, after `motion`; see `SEPARABLE` for those that no parameter of a
+    design stands for. Raises FitError for freedoms that do not exist.
+    """
+    target = target_of(built)
+    cloud = _checked(points, target)
+    return _reported(cloud, target, descended(target, drawn(cloud, POINTS), motion, freedoms=freedoms), freedoms)
+
+
+def _checked(points: Reals, target: Target) -> Reals:
+    cloud = np.asarray(points, dtype=np.float64)
+    dimension = target.samples[0].points.shape[1]
+    if cloud.ndim != 2 or cloud.shape[1] != dimension:
+        raise FitError(
+            f"a cloud of shape {cloud.shape} was given for a design in {dimension} dimensions; give (n, {dimension})"
+        )
+    cloud = cloud[np.isfinite(cloud).all(axis=1)]
+    if len(cloud) < 12:
+        raise FitError(f"{len(cloud)} points were given: at least 12 are needed to find where they lie")
+    return cloud
+
+
+def _reported(cloud: Reals, target: Target, descent: Descent, freedoms: tuple[str, ...] | None) -> Registration:
+    dimension, extent = cloud.shape[1], target.extent
+    cloud = drawn(cloud, POINTS)
+    distances, taking = descent.contact.distances, descent.weights > 0.0
+    rms = float(np.sqrt(np.mean(distances[taking] ** 2))) if taking.any() else float("inf")
+    systematic, share = _systematic(cloud, descent), _share(descent)
+    known = [(FREEDOMS if dimension == 3 else PLANE_FREEDOMS)[k] for k in free_columns(dimension, freedoms)]
+    weak = tuple(
+        name for k, name in enumerate(known) if any(abs(direction[k]) > 0.1 for direction in descent.undetermined)
+    )
+    same = systematic <= OTHER * extent and share >= SHARE
+    notes = []
+    if weak:
+        notes.append(
+            f"the points do not determine {', '.join(weak)} of the motion: they are left where the search ended"
+        )
+    if not same:
+        notes.append(
+            f"the cloud does not lie on the design's blade: {1.0 - share:.0%} of its points are away from it, the others "
+            f"miss it systematically by {systematic:.3g} m, {systematic / extent:.2%} of its extent; it is another blade, "
+            f"a mirrored one, or in another unit"
+        )
+    if not descent.settled:
+        notes.append("the motion did not settle")
+    return Registration(
+        motion=descent.motion,
+        rms=rms,
+        systematic=systematic,
+        share=share,
+        undetermined=weak,
+        covariance=descent.covariance,
+        same=same,
+        notes=tuple(notes),
+    )
+
+
+def _good(points: Reals, descent: Descent, target: Target) -> bool:
+    return _systematic(points, descent) < GOOD * target.extent and _share(descent) > SHARE
+
+
+def _share(descent: Descent) -> float:
+    return float(np.mean(descent.weights > 0.0))
+
+
+def _systematic(points: Reals, descent: Descent) -> float:
+    """Root of the mean product of neighbours' signed distances [m]: of noise alone it is about 0."""
+    taking = np.flatnonzero(descent.weights > 0.0)
+    if len(taking) < 3:
+        return float("inf")
+    heights = np.sum(descent.contact.normals * descent.contact.miss, axis=1)[taking]
+    other = cKDTree(points[taking]).query(points[taking], k=3)[1][:, 1:]
+    return float(np.sqrt(max(0.0, float(np.mean(heights[:, None] * heights[other])))))
