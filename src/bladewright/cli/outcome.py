@@ -11,6 +11,9 @@ import click
 
 from bladewright.cli.call import Call
 
+INTERRUPTED = 130
+"""exit status of work that was broken off"""
+
 
 @dataclass(frozen=True, kw_only=True)
 class Outcome:
@@ -22,6 +25,8 @@ class Outcome:
     """for people, the failures in it; nothing is printed where it is empty"""
     failures: tuple[str, ...] = field(default=())
     """checks that failed, each a paragraph"""
+    interrupted: bool = False
+    """whether the work was broken off, and what is here is the best until then"""
 
 
 def printed(outcome: Outcome, call: Call) -> int:
@@ -33,6 +38,8 @@ def printed(outcome: Outcome, call: Call) -> int:
     if call.quiet or call.as_json or not sys.stdout.isatty():
         for failure in outcome.failures:
             click.echo(one_paragraph(failure), err=True)
+    if outcome.interrupted:
+        return INTERRUPTED
     return 1 if outcome.failures else 0
 
 

@@ -8,16 +8,16 @@ import click
 
 from bladewright.cli.build import build
 from bladewright.cli.call import Call, common
+from bladewright.cli.fit import fit
+from bladewright.cli.importing import importing
 from bladewright.cli.mesh import mesh
 from bladewright.cli.new import new
-from bladewright.cli.outcome import Outcome, one_paragraph, printed
+from bladewright.cli.outcome import INTERRUPTED, Outcome, one_paragraph, printed
 from bladewright.cli.schema import schema
 from bladewright.cli.sensitivity import sensitivity
 from bladewright.cli.show import show
 from bladewright.cli.verify import verify
 from bladewright.errors import BladewrightError, FileError
-
-INTERRUPTED = 130
 
 
 def _version(context: click.Context, _: click.Parameter, wanted: bool) -> None:
@@ -50,7 +50,7 @@ def program(context: click.Context) -> None:
         click.echo(context.get_help())
 
 
-for each in (build, verify, mesh, show, sensitivity, new, schema):
+for each in (build, verify, fit, importing, mesh, show, sensitivity, new, schema):
     program.add_command(each)
 
 

@@ -1,7 +1,7 @@
 """Progress of long work, on standard error and only where that is a terminal."""
 
 import sys
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import Protocol
 
@@ -36,3 +36,20 @@ def progress(steps: int, call: Call) -> Iterator[Bar]:
 
     with tqdm(total=steps, file=sys.stderr, leave=False, bar_format="{desc}: {bar} {n_fmt}/{total_fmt}") as bar:
         yield bar
+
+
+@contextmanager
+def told(call: Call) -> Iterator[Callable[[str], None]]:
+    """What says in a line how far work has come whose steps are not known before, gone when the work is done."""
+    if call.quiet or not sys.stderr.isatty():
+        yield lambda _: None
+        return
+
+    def say(text: str) -> None:
+        sys.stderr.write(f"\r\x1b[K{text}")
+        sys.stderr.flush()
+
+    try:
+        yield say
+    finally:
+        say("")

@@ -22,8 +22,8 @@ def matched_thickness(
 ) -> Reals:
     """Control points (chordwise, spanwise) of a thickness law, by bounded least squares of the normal distances.
 
-    `camber` (m, 4, 2), `radii` (m,) and `target` points (m, k, 2) at v (m,); `least` (chordwise, spanwise) the smallest control
-    points; `places` the camber parameters of a side's control points.
+    `camber` (m, 4, 2), `radii` (m,) and `target` points (m, k, 2) at v (m,); `least` (chordwise, spanwise) the
+    smallest control points; `places` the camber parameters of a side's control points.
     """
     from scipy.optimize import lsq_linear
 
@@ -36,18 +36,21 @@ def matched_thickness(
     for _ in range(ROUNDS):
         controls, rates = _side(camber, radii, across @ law.T @ along.T, places, normals, upper)
         curves = dense @ controls
-        blocks, rests = [], []
+        normal_matrix, right = np.zeros((law.size, law.size)), np.zeros(law.size)
         for i in range(len(v)):
             s = _nearest(curves[i], target[i])
             rows, slopes = basis(knots, DEGREE, s), basis(knots, DEGREE, s, 1) @ controls[i]
             normal = turned_left(slopes) / np.sqrt(np.sum(slopes**2, axis=-1, keepdims=True))
-            by_thickness = np.einsum("kc,cpd,kd->kp", rows, rates[i], normal)
-            blocks.append(np.einsum("kp,pa,b->kab", by_thickness, along, across[i]).reshape(len(s), -1))
-            rests.append(np.sum(normal * (target[i] - rows @ controls[i]), axis=-1))
-        # the triangle of the rows serves as well as all of them, and is a hundred times smaller
-        triangle = np.linalg.qr(np.column_stack([np.concatenate(blocks), np.concatenate(rests)]), mode="r")
+            directed = np.einsum("cpd,kd->kcp", rates[i], normal)
+            by_law = np.einsum("kc,kcp->kp", rows, directed) @ along
+            rest = np.sum(normal * (target[i] - rows @ controls[i]), axis=-1)
+            normal_matrix += np.kron(by_law.T @ by_law, np.outer(across[i], across[i]))
+            right += np.kron(by_law.T @ rest, across[i])
+        # a triangle of the normal equations stands for all rows; the ridge is far below what the points tell
+        triangle = np.linalg.cholesky(normal_matrix + 1e-12 * np.trace(normal_matrix) * np.eye(law.size)).T
         low = (least - law).ravel() - 1e-12
-        step = lsq_linear(triangle[:, :-1], triangle[:, -1], bounds=(low, np.full(law.size, 10.0)), method="bvls")
+        wanted = np.linalg.solve(triangle.T, right)
+        step = lsq_linear(triangle, wanted, bounds=(low, np.full(law.size, 10.0)), method="bvls")
         law = np.maximum(law + step.x.reshape(law.shape), least)
     return law
 
@@ -80,7 +83,7 @@ def held_radii(camber: Reals, thickness: tuple[Reals, Reals], places: Reals) -> 
 def _side(
     camber: Reals, radii: tuple[Reals, Reals], values: Reals, places: Reals, normals: Reals, upper: bool
 ) -> tuple[Reals, Reals]:
-    """Control points (m, n, 2) of sides, and their derivatives (m, n, p, 2) by the thicknesses (m, p) at the samples."""
+    """Control points (m, n, 2) of sides, and their derivatives (m, n, p, 2) by the thicknesses at the p samples."""
     controls = side(camber, places, values, 1.0 / radii[0], 1.0 / radii[1], upper=upper)
     m, p = values.shape
     rates = np.zeros((m, len(places), p, 2))

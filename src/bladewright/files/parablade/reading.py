@@ -20,8 +20,8 @@ from bladewright.files.text import read_text
 from bladewright.nurbs.basis import Reals
 from bladewright.section.unified import UnifiedSection
 
-_ALONG = (1.0 - np.cos(np.pi * (np.arange(60) + 0.5) / 60.0)) / 2.0
-_ACROSS = (np.arange(12) + 0.5) / 12.0
+_ALONG = (1.0 - np.cos(np.pi * (np.arange(60.0) + 0.5) / 60.0)) / 2.0
+_ACROSS = np.linspace(1.0 / 24.0, 23.0 / 24.0, 12)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -66,18 +66,24 @@ def read_parablade(path: str | os.PathLike[str]) -> UnifiedBlade | UnifiedSectio
     return import_parablade(path).design
 
 
-def import_parablade(path: str | os.PathLike[str]) -> Imported:
-    """The same, with what was kept and changed, and points of ParaBlade's own blade to measure it with."""
+def import_parablade(path: str | os.PathLike[str], *, chordwise: int | None = None) -> Imported:
+    """The same, with what was kept and changed, and points of ParaBlade's own blade to measure it with.
+
+    `chordwise` is the number of control points that the thickness laws are given along the chord; where not given it
+    is 8, or up to 16 where that brings the sides nearer.
+    """
     path = Path(path)
     config = parsed(read_text(path), f"'{path}'")
     if config.arcs:
         raise FileError(
-            f"'{path}' is of PARAMETRIZATION_TYPE = CONNECTING_ARCS, whose sides are arcs without camber and thickness: "
+            f"'{path}' has PARAMETRIZATION_TYPE = CONNECTING_ARCS, sides that are arcs without camber and thickness: "
             "only CAMBER_THICKNESS is imported; write its points as a cloud with ParaBlade, and fit a design to them"
         )
     name = re.sub(r'[/\\:*?"<>|\s]+', "-", path.stem).strip("-.") or "blade"
+    if chordwise is not None and not 2 <= chordwise <= 40:
+        raise DesignError(f"{chordwise} control points along the chord were asked for: give 2 to 40")
     try:
-        design, changed = _design_of(config, name)
+        design, changed = _design_of(config, name, chordwise)
     except DesignError as error:
         raise DesignError(f"'{path}': the unified family has no such blade: {error}") from error
     return Imported(
@@ -89,11 +95,11 @@ def import_parablade(path: str | os.PathLike[str]) -> Imported:
     )
 
 
-def _design_of(config: Config, name: str) -> tuple[UnifiedBlade | UnifiedSection, list[str]]:
+def _design_of(config: Config, name: str, chordwise: int | None) -> tuple[UnifiedBlade | UnifiedSection, list[str]]:
     if config.dimensions == 2:
-        section, changed = section_of(config, name)
+        section, changed = section_of(config, name, chordwise)
         return section, [*changed, f"N_BLADES = {config.blades} says no pitch: a single section is written"]
-    blade, changed = blade_of(config, name)
+    blade, changed = blade_of(config, name, chordwise)
     if not config.annular:
         changed.append(
             f"no pitch is in the file: {blade.pitch:.4g} mm is taken, one meridional length; set the true one"

@@ -1,6 +1,6 @@
 """From a ParaBlade configuration to the design of the unified family that comes nearest to its blade."""
 
-from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 
@@ -35,13 +35,13 @@ MORE = 3
 HELD = 0.95
 """part of the largest radius that an edge is given where its thickness cannot hold ParaBlade's"""
 
-Laws = dict[str, Law | tuple[Law, ...]]
+Laws = dict[str, Any]
 
 
-def section_of(config: Config, name: str) -> tuple[UnifiedSection, list[str]]:
+def section_of(config: Config, name: str, chordwise: int | None) -> tuple[UnifiedSection, list[str]]:
     """The section of a configuration in two dimensions, and what was changed, each a sentence."""
     planes, start, extent = averaged(config)
-    laws, notes = _laws(config, planes)
+    laws, notes = _laws(config, planes, chordwise)
     design = UnifiedSection(
         name=name,
         length_unit="mm",
@@ -54,16 +54,16 @@ def section_of(config: Config, name: str) -> tuple[UnifiedSection, list[str]]:
     return design, notes
 
 
-def blade_of(config: Config, name: str) -> tuple[UnifiedBlade, list[str]]:
+def blade_of(config: Config, name: str, chordwise: int | None) -> tuple[UnifiedBlade, list[str]]:
     """The blade of a configuration in three dimensions, and what was changed, each a sentence."""
     channel, off = cut_channel(config, UNIT)
     shape = Shape(config=config, v=STATIONS)
     lengths = lengths_of(channel, UNIT, STATIONS)
-    laws, notes = _laws(config, stretched(shape, shape.lengths / lengths))
+    laws, notes = _laws(config, stretched(shape, shape.lengths / lengths), chordwise)
     notes.insert(
         0,
-        "the channel is cut where the camber lines begin and end, as ParaBlade's is filled from nose to nose; its curves "
-        f"lie within {off * 1e3:.2g} mm of those",
+        "the channel is cut where the camber lines begin and end, as ParaBlade's is filled from nose to nose; its "
+        f"curves lie within {off * 1e3:.2g} mm of those",
     )
     y = shape.law("y_leading")
     count = len(config.laws["y_leading"])
@@ -90,7 +90,7 @@ def blade_of(config: Config, name: str) -> tuple[UnifiedBlade, list[str]]:
     return design, notes
 
 
-def _laws(config: Config, planes: Planes) -> tuple[Laws, list[str]]:
+def _laws(config: Config, planes: Planes, wanted: int | None) -> tuple[Laws, list[str]]:
     """Angles, tangents, radii and thicknesses of sections, and what was changed."""
     notes: list[str] = []
     line, v = planes.camber, planes.v
@@ -113,7 +113,7 @@ def _laws(config: Config, planes: Planes) -> tuple[Laws, list[str]]:
     places = sample_places(SAMPLES, 1.0)
     spans = {side_name: _spanwise(config, side_name) for side_name in ("upper", "lower")}
     thickness: dict[str, Reals] = {}
-    for chordwise in CHORDWISE:
+    for chordwise in CHORDWISE if wanted is None else (wanted,):
         off = 0.0
         for side_name, target in (("upper", planes.upper), ("lower", planes.lower)):
             upper = side_name == "upper"
@@ -124,8 +124,8 @@ def _laws(config: Config, planes: Planes) -> tuple[Laws, list[str]]:
         if off <= CLOSE:
             break
     notes.append(
-        f"the sides are quartic, ParaBlade's cubic: their thickness laws have {chordwise} control points along the chord, "
-        f"matched within {100.0 * off:.2g} % of the meridional length"
+        f"the sides are quartic, ParaBlade's cubic: their thickness laws have {chordwise} control points along the "
+        f"chord, matched within {100.0 * off:.2g} % of the meridional length"
     )
     for side_name, law in thickness.items():
         found[f"thickness_{side_name}"] = tuple(_plain(row) for row in law)
@@ -201,10 +201,10 @@ def _interpolated(values: Reals, v: Reals, fine: Reals) -> Reals:
     return np.asarray(make_interp_spline(v, values, k=3)(fine))
 
 
-def _plain(values: Sequence[float] | Reals) -> Law:
+def _plain(values: Any) -> Law:
     return float(values[0]) if len(values) == 1 else tuple(float(each) for each in values)
 
 
-def _clipped(law: Law | tuple[Law, ...], low: float, high: float) -> Law:
+def _clipped(law: Law, low: float, high: float) -> Law:
     values = np.clip(np.atleast_1d(np.array(law, dtype=np.float64)), low, high)
     return _plain(values)
