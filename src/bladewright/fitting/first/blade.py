@@ -1,5 +1,6 @@
 """A first blade from points in space."""
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Literal
 
@@ -13,7 +14,8 @@ from bladewright.fitting.first.arrangement import found_arrangement
 from bladewright.fitting.first.camber import first_laws
 from bladewright.fitting.first.channel import EDGES, SPAN, Rough, rough_channel
 from bladewright.fitting.first.inliers import thinned, usual
-from bladewright.fitting.first.matching import Laid, Match, matched, numbers_at
+from bladewright.fitting.first.taming import tamed
+from bladewright.fitting.first.matching import Laid, Match, matched, nearest, numbers_at
 from bladewright.fitting.first.outline import boundary, corner_sets
 from bladewright.fitting.first.shape import (
     ANGLE_IN,
@@ -100,7 +102,7 @@ def _found(machine: Reals, *, revolved: bool, structure: Structure | None) -> Fo
     count = 4 if len(machine) > 400 else 3
     found = best
     for curves in (dict.fromkeys(EDGES, 6), counts):
-        channel = _trimmed(found, curves)
+        channel = _trimmed(found, curves, machine)
         found = _continued(machine, channel, found, chordwise, count, samples, clustering)
     return found
 
@@ -181,19 +183,44 @@ def _direction(laid: Laid) -> tuple[Reals, float]:
     return angle, float(np.percentile(along, 98.0) - np.percentile(along, 2.0))
 
 
-def _trimmed(found: Found, counts: dict[str, int]) -> Rough:
-    """The channel between the ends of the camber lines."""
+def _trimmed(found: Found, counts: dict[str, int], machine: Reals) -> Rough:
+    """The channel between the ends of the camber lines, and between the points furthest in and out."""
     numbers = numbers_at(found.match.laws, SPAN)
     starts, ends = (found.channel.u_at(numbers[:, column]) for column in (0, 2))
     ends = np.maximum(ends, starts + 0.05)
-    pieces = {
-        "leading_edge": found.channel.position(starts, SPAN),
-        "trailing_edge": found.channel.position(ends, SPAN),
-    }
-    for name, row in (("hub", 0), ("shroud", -1)):
+    low, high = _reached(found, machine)
+    across = np.linspace(0.0, 1.0, 41)
+
+    def edge(u: Reals) -> Reals:
+        first, last = low(u[:1])[0], high(u[-1:])[0]
+        v = first + (last - first) * across
+        return found.channel.position(np.interp(v, SPAN, u), v)
+
+    pieces = {"leading_edge": edge(starts), "trailing_edge": edge(ends)}
+    for name, row, wall in (("hub", 0, low), ("shroud", -1, high)):
         u = np.linspace(starts[row], ends[row], 41)
-        pieces[name] = found.channel.position(u, np.full(41, SPAN[row]))
+        pieces[name] = found.channel.position(u, wall(u))
     return rough_channel(pieces, counts, revolved=found.channel.revolved)
+
+
+def _reached(found: Found, machine: Reals) -> tuple[Callable[[Reals], Reals], Callable[[Reals], Reals]]:
+    """Lowest and highest v of the points by u, as parabolas."""
+    u, v = found.channel.places(machine[:, :2])
+    distances = nearest(found.shape, _laid(machine, found.channel), found.match.laws)[2]
+    good = distances < 4.0 * np.median(distances) + 0.02 * found.laid.chord
+    u, v = u[good], v[good]
+    walls = []
+    for sign in (1.0, -1.0):
+        parts = np.clip((u * 6.0).astype(int), 0, 5)
+        index = [np.flatnonzero(parts == part) for part in range(6)]
+        chosen = np.array([rows[np.argmin(sign * v[rows])] for rows in index if len(rows)])
+        wall = 0.0 if sign > 0.0 else 1.0
+        away = np.clip(v[chosen] - wall, -0.15, 0.15)
+        tame = 0.3 * np.diff(np.eye(3), n=2, axis=0)
+        matrix = np.concatenate([law_basis(3, np.clip(u[chosen], 0.0, 1.0)), tame])
+        law = np.linalg.lstsq(matrix, np.concatenate([away, [0.0]]), rcond=None)[0]
+        walls.append(lambda at, law=law, wall=wall: wall + law_basis(3, np.clip(at, 0.0, 1.0)) @ law)
+    return walls[0], walls[1]
 
 
 def built_blade(
@@ -229,7 +256,7 @@ def built_blade(
         count = blade_count if blade_count is not None else max(1, int(np.pi / max(wide, 1e-3)))
         around = {"blade_count": min(count, 10_000)}
     error: DesignError | None = None
-    for attempt in range(6):
+    for _ in range(8):
         roots = {ROOT_IN: numbers[:, ROOT_IN] ** 2, ROOT_OUT: numbers[:, ROOT_OUT] ** 2}
         design = UnifiedBlade(
             name=name,
@@ -267,10 +294,7 @@ def built_blade(
             design.build()
         except DesignError as refused:
             error = refused
-            numbers = np.array(numbers)
-            numbers[:, [ROOT_IN, ROOT_OUT]] *= 0.75
-            floor = found.laid.chord * 3e-3 * 1.6**attempt
-            numbers[:, 10:] = np.maximum(numbers[:, 10:], floor)
+            numbers = tamed(numbers, shape)
         else:
             return design
     raise FitError(f"no blade that can be built was found near the points: {error}")

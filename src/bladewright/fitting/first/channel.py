@@ -69,6 +69,16 @@ class Rough:
         """Abscissa (n,) in the plane of the section at v."""
         return _taken(self._grid[1], u, v)
 
+    def folding(self) -> float:
+        """The least Jacobian of the map, of its median; the shape turns like x to r where it is positive."""
+        v, u = np.meshgrid(np.linspace(0.0, 1.0, 21), np.linspace(-0.1, 1.1, 49), indexing="ij")
+        position = self.position(u, v)
+        along, across = position[:, 1:] - position[:, :-1], position[1:] - position[:-1]
+        along, across = (along[1:] + along[:-1]) / 2.0, (across[:, 1:] + across[:, :-1]) / 2.0
+        turn = along[..., 0] * across[..., 1] - along[..., 1] * across[..., 0]
+        size = np.sqrt(np.sum(along**2, axis=-1) * np.sum(across**2, axis=-1))
+        return float(np.min(turn) / np.median(size))
+
     def extents(self) -> tuple[Reals, Reals]:
         """Extent in the plane and meridional length [m] of the stream lines at SPAN."""
         return tuple(np.array([np.interp(1.0, ALONG, row) for row in a]) for a in self._grid[1:])  # type: ignore[return-value]
@@ -97,8 +107,27 @@ class Rough:
         return np.asarray(map_coordinates(table, [row, column], order=1, mode="nearest"))
 
 
+FOLDED = 0.02
+"""least Jacobian of a channel, of its median"""
+
+
 def rough_channel(pieces: dict[str, Reals], counts: dict[str, int], *, revolved: bool) -> Rough:
-    """A channel whose curves run along polylines by name; its corners are the ends of leading and trailing edge."""
+    """A channel whose curves run along polylines by name; its corners are the ends of leading and trailing edge.
+
+    The curves are made as plain as they must be so that the channel does not fold.
+    """
+    for most in (9, 5, 4, 3, 2):
+        plain = {name: min(count, most) for name, count in counts.items()}
+        found = _along(pieces, plain, revolved=revolved)
+        if found.folding() > FOLDED:
+            break
+    if plain != counts:
+        t = np.linspace(0.0, 1.0, 41)
+        found = _along({name: _curve(found.curves[name], t) for name in EDGES}, counts, revolved=revolved)
+    return found
+
+
+def _along(pieces: dict[str, Reals], counts: dict[str, int], *, revolved: bool) -> Rough:
     corners = {
         "leading_edge": (pieces["leading_edge"][0], pieces["leading_edge"][-1]),
         "trailing_edge": (pieces["trailing_edge"][0], pieces["trailing_edge"][-1]),

@@ -139,6 +139,7 @@ def held(shape: Shape, laid: Laid, laws: Reals) -> Reals:
     laws[:, [ANGLE_IN, ANGLE_OUT]] = np.clip(laws[:, [ANGLE_IN, ANGLE_OUT]], -STEEPEST, STEEPEST)
     laws[:, [TANGENT_IN, TANGENT_OUT]] = np.clip(laws[:, [TANGENT_IN, TANGENT_OUT]], SHORTEST, LONGEST)
     laws[:, 10:] = np.maximum(laws[:, 10:], THINNEST * laid.chord)
+    laws = _inward(shape, laid, laws)
     least = np.sqrt(2e-4 * laid.chord)
     laws[:, [ROOT_IN, ROOT_OUT]] = np.maximum(laws[:, [ROOT_IN, ROOT_OUT]], least)
     at = stations(laid)
@@ -159,6 +160,18 @@ def held(shape: Shape, laid: Laid, laws: Reals) -> Reals:
     laws[:, [ROOT_IN, ROOT_OUT]] = np.minimum(
         laws[:, [ROOT_IN, ROOT_OUT]], np.sqrt(0.9 * max(extent, 1e-6 * laid.chord))
     )
+    return laws
+
+
+def _inward(shape: Shape, laid: Laid, laws: Reals) -> Reals:
+    """The laws with edges so thin that the sides leave them inwards."""
+    at = stations(laid)
+    numbers = numbers_at(laws, at)
+    for side, upper in ((shape.upper, True), (shape.lower, False)):
+        room = shape.rooms(numbers, at, upper)
+        for column, most in ((side.start, room[0]), (side.stop - 1, room[1])):
+            share = float(np.min(0.8 * most / numbers[:, column]))
+            laws[:, column] = np.maximum(laws[:, column] * min(1.0, share), 0.2 * THINNEST * laid.chord)
     return laws
 
 

@@ -7,11 +7,11 @@ import numpy as np
 from bladewright.errors import DesignError, FitError
 from bladewright.fitting.first.camber import first_laws
 from bladewright.fitting.first.inliers import thinned, usual
+from bladewright.fitting.first.taming import tamed
 from bladewright.fitting.first.matching import Laid, Match, matched
 from bladewright.fitting.first.shape import (
     ANGLE_IN,
     ANGLE_OUT,
-    FIRST_THICKNESS,
     ROOT_IN,
     ROOT_OUT,
     TANGENT_IN,
@@ -49,7 +49,7 @@ def first_section(
     axis, chord = longest(points)
     laid = Laid(points=points - middle, v=np.zeros(len(points)), size=np.ones(len(points)), chord=chord, flat=True)
     match = best_match(shape, laid, axis)
-    return built_section(shape, match, middle, chord, name, length_unit)
+    return built_section(shape, match, middle, name, length_unit)
 
 
 def longest(points: Reals) -> tuple[float, float]:
@@ -81,13 +81,13 @@ def best_match(shape: Shape, laid: Laid, axis: float) -> Match:
 
 
 def built_section(
-    shape: Shape, match: Match, middle: Reals, chord: float, name: str, length_unit: Unit
+    shape: Shape, match: Match, middle: Reals, name: str, length_unit: Unit
 ) -> UnifiedSection:
     """The section of a match, with thickness raised or edges sharpened until it can be built."""
     numbers = match.laws[0].copy()
     metre = UNITS[length_unit]
     error: DesignError | None = None
-    for attempt in range(8):
+    for _ in range(8):
         extent = numbers[2] - numbers[0]
         design = UnifiedSection(
             name=name,
@@ -111,9 +111,7 @@ def built_section(
             design.build()
         except DesignError as refused:
             error = refused
-            numbers[[ROOT_IN, ROOT_OUT]] *= 0.8
-            floor = chord * 2e-3 * 1.6**attempt
-            numbers[FIRST_THICKNESS:] = np.maximum(numbers[FIRST_THICKNESS:], floor)
+            numbers = tamed(numbers[None], shape)[0]
         else:
             return design
     raise FitError(f"no section that can be built was found near the points: {error}")

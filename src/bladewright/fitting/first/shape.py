@@ -91,6 +91,20 @@ class Shape:
         ]  # fmt: skip
         return np.concatenate(columns, axis=1), unit_in, unit_out, scale
 
+    def rooms(self, numbers: Reals, v: Reals, upper: bool) -> tuple[Reals, Reals]:
+        """Half thickness (n,) [m] beside the leading and the trailing edge at which a side leaves the edge sideways."""
+        line = camber_of(numbers)
+        at = self.places[[0, 2, -3, -1]]
+        on, (tangents, _) = bernstein(at) @ line, _tangents(line, at)
+        left = (1.0 if upper else -1.0) * _left(tangents)
+        scale = self.scale(on[..., 0], v)
+        result = []
+        for edge, beside, sign in ((0, 1, 1.0), (3, 2, -1.0)):
+            ahead = sign * np.sum((on[:, beside] - on[:, edge]) * tangents[:, edge], axis=-1)
+            back = -sign * np.sum(left[:, beside] * tangents[:, edge], axis=-1) * scale[:, beside]
+            result.append(np.where(back > 0.0, np.maximum(ahead, 0.0) / np.maximum(back, 1e-12), np.inf))
+        return result[0], result[1]
+
     def polylines(self, numbers: Reals, v: Reals, s: Reals) -> tuple[Reals, Reals]:
         """Points (m, len(s), 2) of the upper and the lower sides of m sections."""
         line = camber_of(numbers)
