@@ -1,0 +1,29 @@
+"""Sections made plainer until they can be built."""
+
+import numpy as np
+
+from bladewright.fitting.first.shape import (
+    ANGLE_IN,
+    ANGLE_OUT,
+    ROOT_IN,
+    ROOT_OUT,
+    TANGENT_IN,
+    TANGENT_OUT,
+    Shape,
+)
+from bladewright.nurbs.basis import Reals
+
+
+def tamed(numbers: Reals, shape: Shape) -> Reals:
+    """Numbers (n, q) of sections that turn less, with sharper edges, longer tangents and more even thickness."""
+    numbers = np.array(numbers)
+    stagger = np.arctan2(numbers[:, 3] - numbers[:, 1], numbers[:, 2] - numbers[:, 0])
+    for column in (ANGLE_IN, ANGLE_OUT):
+        numbers[:, column] = stagger + 0.85 * (numbers[:, column] - stagger)
+    for column in (TANGENT_IN, TANGENT_OUT):
+        numbers[:, column] += 0.3 * (0.35 - numbers[:, column])
+    numbers[:, [ROOT_IN, ROOT_OUT]] *= 0.8
+    for side in (shape.upper, shape.lower):
+        thickness = numbers[:, side]
+        numbers[:, side] = thickness + 0.1 * (np.mean(thickness, axis=1, keepdims=True) - thickness)
+    return numbers
