@@ -209,7 +209,7 @@ def test_every_outlier_is_crossed_on_the_map(count):
     axes = axes_of(draw_map, fit)
     crosses = [line for line in axes.lines if line.get_marker() == "x"]
     assert [len(line.get_xdata()) for line in crosses] == [len(fit.outliers)]
-    assert f"{len(fit.outliers):,} outliers crossed" in axes.get_title(loc="left")
+    assert f"{len(fit.outliers):,} outliers crossed" in axes.get_xlabel()
 
 
 def test_a_small_cloud_is_mapped_point_by_point_and_a_large_one_by_the_means_of_cells():
@@ -224,7 +224,7 @@ def test_a_small_cloud_is_mapped_point_by_point_and_a_large_one_by_the_means_of_
     half = values.shape[1] // 2
     assert values[:, :half].compressed() == pytest.approx(-0.02)
     assert values[:, half:].compressed() == pytest.approx(0.01)
-    assert f"mean in each cell of {3 * MOST:,} points" in axes.get_title(loc="left")
+    assert f"mean in each cell of {3 * MOST:,} points" in axes.get_xlabel()
 
 
 def test_colours_are_symmetric_and_hold_all_but_one_in_a_hundred_points():
@@ -280,7 +280,7 @@ def test_points_on_the_ends_are_not_mapped_and_are_counted():
     places = fit.places.copy()
     places[:7] = "hub"
     axes = axes_of(draw_map, replace(fit, places=places))
-    assert axes.get_title(loc="left").endswith("; 7 points on the ends not shown")
+    assert axes.get_xlabel().endswith("; 7 points on the ends not shown")
 
 
 @pytest.mark.parametrize("draw", [draw_outline_deviation, draw_histogram, draw_table, draw_section])

@@ -15,6 +15,7 @@ from bladewright.views.matching_points import (
     Index,
     Matched,
     counted,
+    cross,
     drawn,
     millimetres,
     on_sides,
@@ -48,13 +49,14 @@ def draw_map(axes: Axes, fit: Matched) -> None:
     dots: dict[str, Any] = {"s": size, "cmap": COLOURS, "norm": scale, "rasterized": True}
     places = abscissae(fit, shown), fit.v[shown]
     axes.scatter(*places, c=millimetres(fit, shown), linewidths=0.25, edgecolors=INK, **dots)
-    told += crosses(axes, fit, np.flatnonzero(on_sides(fit) & ~fit.inliers))
+    outliers = np.flatnonzero(on_sides(fit) & ~fit.inliers)
+    told += _outliers(axes, fit, outliers, fit.v[outliers])
     others = int(np.count_nonzero(~on_sides(fit)))
     if others:
         told += f"; {counted(others, 'point')} on the ends not shown"
     _dressed(axes)
     axes.set_ylim(-0.03, 1.03)
-    titled(axes, f"Deviation from the blade: {told}", ABSCISSA, "span v [-]")
+    titled(axes, "Deviation from the blade", f"{ABSCISSA}\n{told}", "span v [-]")
     bar = axes.figure.colorbar(ScalarMappable(norm=scale, cmap=COLOURS), ax=axes, extend="both", pad=0.012, aspect=28)
     bar.set_label("inside the blade  ←  deviation [mm]  →  outside")
     bar.outline.set_visible(False)  # type: ignore[operator]
@@ -73,18 +75,20 @@ def draw_outline_deviation(axes: Axes, fit: Matched) -> None:
     size = float(np.clip(2e4 / max(len(shown), 1), 4.0, 30.0))
     dots: dict[str, Any] = {"s": size, "cmap": COLOURS, "norm": scale, "rasterized": len(shown) > 2000}
     values = millimetres(fit, shown)
-    axes.scatter(abscissae(fit, shown), values, c=values, linewidths=0.35, edgecolors=INK, **dots)
+    axes.scatter(
+        abscissae(fit, shown), values, c=values, linewidths=0.35 if len(shown) < 2000 else 0.0, edgecolors=INK, **dots
+    )
     outliers = np.flatnonzero(~fit.inliers)
     held = np.clip(millimetres(fit, outliers), -0.95 * limit, 0.95 * limit)
-    told += crosses(axes, fit, outliers, held)
+    told += _outliers(axes, fit, outliers, held)
     axes.axhline(0.0, color=INK, linewidth=0.9)
     if fit.tolerance is not None:
         for sign in (-1.0, 1.0):
             axes.axhline(sign * fit.tolerance * MILLIMETRES, color=SOFT, linewidth=1.0, linestyle="--")
-        told += "; dashed: the tolerance"
+        told += f"; dashed: the tolerance, {fit.tolerance * MILLIMETRES:.3g} mm"
     _dressed(axes)
     axes.set_ylim(-limit, limit)
-    titled(axes, f"Deviation from the section: {told}", ABSCISSA, "deviation, outside positive [mm]")
+    titled(axes, "Deviation from the section", f"{ABSCISSA}\n{told}", "deviation, outside positive [mm]")
 
 
 def abscissae(fit: Matched, index: Index) -> Reals:
@@ -92,22 +96,11 @@ def abscissae(fit: Matched, index: Index) -> Reals:
     return np.where(fit.places[index] == "lower", -fit.u[index], fit.u[index])
 
 
-def crosses(axes: Axes, fit: Matched, index: Index, ordinate: Reals | None = None) -> str:
-    """Draws a cross for each outlier, and says how many."""
+def _outliers(axes: Axes, fit: Matched, index: Index, ordinate: Reals) -> str:
+    """Crosses outliers, and says how many."""
     if len(index) == 0:
         return ""
-    # so small that many of them do not hide the map
-    size = float(np.clip(6.0 * np.sqrt(200.0 / len(index)), 1.4, 6.0))
-    axes.plot(
-        abscissae(fit, index),
-        fit.v[index] if ordinate is None else ordinate,
-        color=INK,
-        linestyle="none",
-        marker="x",
-        markersize=size,
-        markeredgewidth=0.2 * size,
-        rasterized=True,
-    )
+    cross(axes, abscissae(fit, index), ordinate, 200)
     return f", {counted(len(index), 'outlier')} crossed"
 
 

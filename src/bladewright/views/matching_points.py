@@ -4,11 +4,12 @@ from collections.abc import Mapping
 from typing import Any, Protocol
 
 import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.colors import LinearSegmentedColormap, Normalize
 from numpy.typing import NDArray
 
 from bladewright.nurbs.basis import Reals
-from bladewright.views.style import MILLIMETRES
+from bladewright.views.style import INK, MILLIMETRES
 
 Index = NDArray[np.intp]
 SIDES = ("upper", "lower")
@@ -116,6 +117,14 @@ def rounded_up(value: float) -> float:
     """The next round number at or above a positive value."""
     decade = 10.0 ** np.floor(np.log10(value))
     return float(next(each for each in ROUND if each * decade >= value * (1.0 - 1e-9)) * decade)
+
+
+def cross(axes: Axes, abscissae: Reals, ordinates: Reals, few: int) -> None:
+    """Draws a cross for each outlier, smaller and fainter where there are more than `few`, so that they hide nothing."""
+    share = min(1.0, few / max(len(abscissae), 1))
+    size = max(6.0 * share**0.5, 1.4)
+    style: dict[str, Any] = {"markersize": size, "markeredgewidth": 0.2 * size, "alpha": max(share**0.4, 0.08)}
+    axes.plot(abscissae, ordinates, color=INK, linestyle="none", marker="x", rasterized=True, **style)
 
 
 def counted(number: int, what: str) -> str:

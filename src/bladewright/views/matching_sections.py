@@ -14,6 +14,7 @@ from bladewright.views.matching_points import (
     Index,
     Matched,
     counted,
+    cross,
     drawn,
     millimetres,
     scale_of,
@@ -79,16 +80,28 @@ def draw_edge_match(axes: Axes, fit: Matched, outline: Outline, *, trailing: boo
     middle = tip + 0.6 * reach * inwards
     axes.fill(*outline.closed.T, color=PALE, linewidth=0.0)
     _draw_tolerance(axes, fit, outline, 1.0)
+    # how far along u the picture reaches
+    seen = [np.max(np.abs(side - middle), axis=-1) <= 1.2 * reach for side in outline.sides.values()]
+    span = float(np.max(np.abs(outline.u - float(trailing))[seen[0] | seen[1]]))
     near = np.zeros_like(outline.points)
-    beside = np.flatnonzero(outline.points & fit.inliers)
+    ahead = fit.u >= 1.0 - span if trailing else fit.u <= span
+    beside = np.flatnonzero(outline.points & fit.inliers & ahead)
     near[beside[np.max(np.abs(_places(fit, outline, beside) - middle), axis=-1) <= 1.05 * reach]] = True
     shown = drawn(fit, near, MOST)
     at = _places(fit, outline, shown)
     # over the points where they would hide it
     axes.plot(*outline.closed.T, color=INK, linewidth=1.2, zorder=3.5 if len(shown) > 1000 else 2.5)
-    size = float(np.clip(6e3 / max(len(shown), 1), 4.0, 26.0))
+    size = float(np.clip(6e3 / max(len(shown), 1), 3.0, 26.0))
     colours = {"c": millimetres(fit, shown), "cmap": COLOURS, "norm": scale_of(fit)}
-    axes.scatter(*at.T, s=size, linewidths=0.4, edgecolors=INK, zorder=3.0, rasterized=len(shown) > 1500, **colours)
+    axes.scatter(
+        *at.T,
+        s=size,
+        linewidths=0.4 if len(shown) < 1000 else 0.0,
+        edgecolors=INK,
+        zorder=3.0,
+        rasterized=len(shown) > 1500,
+        **colours,
+    )
     _cross_outliers(axes, fit, outline, 1.0, np.inf)
     axes.set_xlim(middle[0] - reach, middle[0] + reach)
     axes.set_ylim(middle[1] - reach, middle[1] + reach)
@@ -122,7 +135,4 @@ def _cross_outliers(axes: Axes, fit: Matched, outline: Outline, factor: float, m
         return
     feet, normals = outline.feet(fit, index)
     at: Reals = feet + normals * np.clip(factor * millimetres(fit, index), -most, most)[:, None]
-    size = float(np.clip(6.0 * np.sqrt(60.0 / len(index)), 1.4, 6.0))
-    axes.plot(
-        *at.T, color=INK, linestyle="none", marker="x", markersize=size, markeredgewidth=0.2 * size, rasterized=True
-    )
+    cross(axes, at[:, 0], at[:, 1], 60)
