@@ -25,8 +25,8 @@ def fit_picture(fit: Matched, path: str | Path) -> None:
 
     On it are the deviations on the unwrapped blade (of a section: along its outline), sections with the deviations
     magnified, both edges close by, the distribution of the deviations, the curvature of the sides and the figures. Of
-    large clouds a part is drawn and the panel says so, but always all outliers and the points farthest off. Raises
-    FileError where the suffix is another or the path cannot be written.
+    large clouds a part is drawn and the panel says so, but always the points farthest off, and on the map all outliers.
+    Raises FileError where the suffix is another or the path cannot be written.
     """
     checked(path)
     figure = fit_sheet(fit)

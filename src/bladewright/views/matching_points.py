@@ -120,7 +120,7 @@ def rounded_up(value: float) -> float:
 
 
 def cross(axes: Axes, abscissae: Reals, ordinates: Reals, few: int) -> None:
-    """Draws a cross for each outlier, smaller and fainter where there are more than `few`, so that they hide nothing."""
+    """Draws a cross for each outlier, smaller and fainter where there are more than a few: they must hide nothing."""
     share = min(1.0, few / max(len(abscissae), 1))
     size = max(6.0 * share**0.5, 1.4)
     style: dict[str, Any] = {"markersize": size, "markeredgewidth": 0.2 * size, "alpha": max(share**0.4, 0.08)}

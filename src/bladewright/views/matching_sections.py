@@ -27,6 +27,8 @@ CLEAR = {"markersize": 2.6, "markeredgewidth": 0.0}
 FINE = {"markersize": 1.2, "markeredgewidth": 0.0}
 THICK = 0.4
 """of the largest thickness, that the tolerance is drawn within"""
+FEW = 60
+"""outliers beside a section up to which all are crossed"""
 MOST = 4000
 """points drawn beside a section"""
 HEIGHT = 0.035
@@ -46,7 +48,10 @@ def magnification(fit: Matched) -> float:
 
 
 def draw_magnified(axes: Axes, fit: Matched, outline: Outline, name: str) -> None:
-    """Draws a section with the deviations of the points near it magnified; outliers crossed, at most 8 % away."""
+    """Draws a section with the deviations of the points near it magnified, outliers crossed.
+
+    An outlier that is too far off stands 8 % of the chord away; where there are many, only those nearer are crossed.
+    """
     factor = magnification(fit)
     axes.fill(*outline.closed.T, color=PALE, linewidth=0.0)
     _draw_tolerance(axes, fit, outline, factor)
@@ -133,6 +138,10 @@ def _cross_outliers(axes: Axes, fit: Matched, outline: Outline, factor: float, m
     index = np.flatnonzero(outline.points & ~fit.inliers)
     if len(index) == 0:
         return
+    off = factor * millimetres(fit, index)
+    if len(index) > FEW:
+        # held at the border they would draw a wall
+        index, off = index[np.abs(off) < most], off[np.abs(off) < most]
     feet, normals = outline.feet(fit, index)
-    at: Reals = feet + normals * np.clip(factor * millimetres(fit, index), -most, most)[:, None]
-    cross(axes, at[:, 0], at[:, 1], 60)
+    at: Reals = feet + normals * np.clip(off, -most, most)[:, None]
+    cross(axes, at[:, 0], at[:, 1], FEW)
