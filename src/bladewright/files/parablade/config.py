@@ -63,6 +63,7 @@ def parsed(text: str, where: str) -> Config:
         laws[key] = _numbers(where, key, entries[key])
         if not laws[key] and key not in MAY_BE_EMPTY:
             raise FileError(f"{where}: {key} is empty: give its control points from hub to shroud")
+    _check_limits(where, laws)
     other = [key for key in entries if key not in {*CHANNEL, *COMMON, *CAMBER, *ARCS, *WORDS}]
     if other:
         notes.append(f"{_listed(other)} {'is' if len(other) == 1 else 'are'} no key of ParaBlade's geometry: ignored")
@@ -117,6 +118,18 @@ def _numbers(where: str, key: str, words: list[str]) -> tuple[float, ...]:
             raise FileError(f"{where}: {key} has {word}: every number must be finite")
         values.append(value)
     return tuple(values)
+
+
+def _check_limits(where: str, laws: Mapping[str, tuple[float, ...]]) -> None:
+    limits = dict.fromkeys(
+        ("stagger", "theta_in", "theta_out"), (-90.0, 90.0, "an angle must lie between -90 and 90 deg")
+    )
+    limits |= dict.fromkeys(("radius_in", "radius_out"), (0.0, 1.0, "an edge radius must lie between 0 and 1"))
+    limits |= dict.fromkeys(("dist_in", "dist_out"), (0.0, 2.0, "a tangent must lie between 0 and 2"))
+    for key, (low, high, what) in limits.items():
+        for value in laws.get(key, ()):
+            if not low < value < high:
+                raise FileError(f"{where}: {key} has {value:g}: {what}")
 
 
 def _cut(line: str) -> str:

@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from bladewright.errors import DesignError
 from bladewright.nurbs.basis import Reals, basis, uniform_knots
 from bladewright.section.camber import camber_tangents, turned_left
 from bladewright.section.laws import law_basis
@@ -12,47 +13,56 @@ LEAST = 1e-5
 START = 0.05
 """thickness that the rounds begin with"""
 ROUNDS = 5
+LARGEST_STEP = 0.02
+"""of a side's parameter, on the way to the nearest place"""
 ROOM = 1.3
 """thickness control point next to an edge over the height that the edge's radius needs, as the law falls off from it"""
 _DENSE = (1.0 - np.cos(np.pi * np.linspace(0.0, 1.0, 1201))) / 2.0
 
 
 def matched_thickness(
-    camber: Reals, radii: tuple[Reals, Reals], target: Reals, least: Reals, v: Reals, places: Reals, *, upper: bool
-) -> Reals:
+    camber: Reals,
+    radii: tuple[Reals, Reals],
+    target: Reals,
+    least: Reals,
+    v: Reals,
+    places: Reals,
+    *,
+    upper: bool,
+) -> tuple[Reals, float]:
     """Control points (chordwise, spanwise) of a thickness law, by bounded least squares of the normal distances.
 
     `camber` (m, 4, 2), `radii` (m,) and `target` points (m, k, 2) at v (m,); `least` (chordwise, spanwise) the
-    smallest control points; `places` the camber parameters of a side's control points.
+    smallest control points; `places` the camber parameters of a side's control points. Given back is also
+    the largest distance that is left. Raises DesignError where the camber turns too fast for the sides.
     """
     from scipy.optimize import lsq_linear
 
     inner = places[2:-2]
     along, across = law_basis(least.shape[0], inner), law_basis(least.shape[1], v)
     normals = turned_left(camber_tangents(camber, inner)) * (1.0 if upper else -1.0)
-    knots = uniform_knots(len(places), DEGREE)
-    dense = basis(knots, DEGREE, _DENSE)
-    law = np.maximum(START, least)
-    for _ in range(ROUNDS):
+    law, feet = np.maximum(START, least), np.zeros(0)
+    for turn in range(ROUNDS + 1):
         controls, rates = _side(camber, radii, across @ law.T @ along.T, places, normals, upper)
-        curves = dense @ controls
-        normal_matrix, right = np.zeros((law.size, law.size)), np.zeros(law.size)
-        for i in range(len(v)):
-            s = _nearest(curves[i], target[i])
-            rows, slopes = basis(knots, DEGREE, s), basis(knots, DEGREE, s, 1) @ controls[i]
-            normal = turned_left(slopes) / np.sqrt(np.sum(slopes**2, axis=-1, keepdims=True))
-            directed = np.einsum("cpd,kd->kcp", rates[i], normal)
-            by_law = np.einsum("kc,kcp->kp", rows, directed) @ along
-            rest = np.sum(normal * (target[i] - rows @ controls[i]), axis=-1)
-            normal_matrix += np.kron(by_law.T @ by_law, np.outer(across[i], across[i]))
-            right += np.kron(by_law.T @ rest, across[i])
+        # steps from nearby may end on the far side of an edge, which the last turn must not believe
+        near = _nearest(controls, target) if turn in (0, ROUNDS) else feet
+        feet = _nearer(controls, target, near)
+        (rows, points), (_, slopes) = (_evaluated(controls, feet, order) for order in (0, 1))
+        normal = turned_left(slopes) / np.sqrt(np.sum(slopes**2, axis=-1, keepdims=True))
+        rest = np.sum(normal * (target - points), axis=-1)
+        if turn == ROUNDS:
+            break
+        directed = np.einsum("mcpd,mkd->mkcp", rates, normal, optimize=True)
+        by_law = np.einsum("mkc,mkcp->mkp", rows, directed) @ along
+        normal_matrix = sum(np.kron(each.T @ each, np.outer(a, a)) for each, a in zip(by_law, across, strict=True))
+        right = sum(np.kron(each.T @ r, a) for each, r, a in zip(by_law, rest, across, strict=True))
         # a triangle of the normal equations stands for all rows; the ridge is far below what the points tell
         triangle = np.linalg.cholesky(normal_matrix + 1e-12 * np.trace(normal_matrix) * np.eye(law.size)).T
         low = (least - law).ravel() - 1e-12
         wanted = np.linalg.solve(triangle.T, right)
         step = lsq_linear(triangle, wanted, bounds=(low, np.full(law.size, 10.0)), method="bvls")
         law = np.maximum(law + step.x.reshape(law.shape), least)
-    return law
+    return law, float(np.sqrt(np.max(np.sum((target - points) ** 2, axis=-1))))
 
 
 def least_thickness(count: int, spanwise: int, radii: tuple[Reals, Reals], v: Reals, places: Reals) -> Reals:
@@ -84,6 +94,9 @@ def _side(
     camber: Reals, radii: tuple[Reals, Reals], values: Reals, places: Reals, normals: Reals, upper: bool
 ) -> tuple[Reals, Reals]:
     """Control points (m, n, 2) of sides, and their derivatives (m, n, p, 2) by the thicknesses at the p samples."""
+    if min(float(np.min(each)) for each in advances(camber, places, values, upper)) <= 0.0:
+        name = "upper" if upper else "lower"
+        raise DesignError(f"next to an edge the {name} side leaves the blade outwards: the camber turns too fast there")
     controls = side(camber, places, values, 1.0 / radii[0], 1.0 / radii[1], upper=upper)
     m, p = values.shape
     rates = np.zeros((m, len(places), p, 2))
@@ -100,19 +113,25 @@ def _side(
     return controls, rates
 
 
-def _nearest(curve: Reals, points: Reals) -> Reals:
-    """Parameters (k,) of the places of a dense polyline nearest to points (k, 2)."""
+def _evaluated(controls: Reals, s: Reals, order: int) -> tuple[Reals, Reals]:
+    """Basis functions (m, k, n) or their derivatives at s (m, k), and what they make of control points (m, n, 2)."""
+    count = controls.shape[1]
+    rows = basis(uniform_knots(count, DEGREE), DEGREE, s.ravel(), order).reshape(*s.shape, count)
+    return rows, rows @ controls
+
+
+def _nearest(controls: Reals, points: Reals) -> Reals:
+    """Parameters (m, k) of the places of sides that are nearest to points (m, k, 2), among many."""
     from scipy.spatial import cKDTree
 
-    index = cKDTree(curve).query(points)[1]
-    index = np.clip(index, 1, len(curve) - 2)
-    before, after = curve[index] - curve[index - 1], curve[index + 1] - curve[index]
-    offset = points - curve[index]
-    forward = np.sum(offset * after, axis=-1) / np.sum(after**2, axis=-1)
-    backward = np.sum(offset * before, axis=-1) / np.sum(before**2, axis=-1)
-    s = _DENSE[index] + np.where(
-        forward > 0.0,
-        np.clip(forward, 0.0, 1.0) * (_DENSE[index + 1] - _DENSE[index]),
-        np.clip(backward, -1.0, 0.0) * (_DENSE[index] - _DENSE[index - 1]),
-    )
-    return np.clip(s, 0.0, 1.0)
+    curves = basis(uniform_knots(controls.shape[1], DEGREE), DEGREE, _DENSE) @ controls
+    return np.stack([_DENSE[cKDTree(curve).query(each)[1]] for curve, each in zip(curves, points, strict=True)])
+
+
+def _nearer(controls: Reals, points: Reals, feet: Reals) -> Reals:
+    """The same from parameters nearby, by two steps of Gauss and Newton."""
+    for _ in range(2):
+        (_, at), (_, slope) = (_evaluated(controls, feet, order) for order in (0, 1))
+        step = np.sum((points - at) * slope, axis=-1) / np.sum(slope**2, axis=-1)
+        feet = np.clip(feet + np.clip(step, -LARGEST_STEP, LARGEST_STEP), 0.0, 1.0)
+    return feet

@@ -88,7 +88,8 @@ class Shape:
 
     def meridional(self, u: Reals) -> Reals:
         """(x, z) (m, k, 2) [m] at u (m, k): the channel's four curves in bilinear blending."""
-        flat = np.clip(u.ravel(), 0.0, 1.0)
+        u = np.clip(u, 0.0, 1.0)
+        flat = u.ravel()
         parts = []
         for axis in "xz":
             ends = {edge: np.array(self.config.laws[f"{axis}_{edge}"]) for edge in ("leading", "trailing")}

@@ -11,10 +11,9 @@ from bladewright.files.parablade.config import Config
 from bladewright.files.parablade.matching import LEAST, held_radii, least_thickness, matched_thickness
 from bladewright.files.parablade.planes import Planes, averaged, stretched
 from bladewright.files.parablade.shape import Shape
-from bladewright.nurbs.basis import Reals, basis, uniform_knots
+from bladewright.nurbs.basis import Reals
 from bladewright.section.laws import law_basis
 from bladewright.section.sampling import sample_places
-from bladewright.section.sides import DEGREE, side
 from bladewright.section.unified import UnifiedSection
 
 UNIT = 1e-3
@@ -118,9 +117,9 @@ def _laws(config: Config, planes: Planes, wanted: int | None) -> tuple[Laws, lis
         for side_name, target in (("upper", planes.upper), ("lower", planes.lower)):
             upper = side_name == "upper"
             least = least_thickness(chordwise, spans[side_name], planes.radii, v, places)
-            law = matched_thickness(line, planes.radii, target, least, v, places, upper=upper)
+            law, distance = matched_thickness(line, planes.radii, target, least, v, places, upper=upper)
             thickness[side_name] = law
-            off = max(off, _distance(planes, law, places, target, upper=upper))
+            off = max(off, distance)
         if off <= CLOSE:
             break
     notes.append(
@@ -178,19 +177,9 @@ def _law(values: Reals, v: Reals, count: int, close: float) -> tuple[Law, int]:
 def _spanwise(config: Config, name: str) -> int:
     if config.dimensions == 2:
         return 1
-    return max(len(config.laws[f"thickness_{name}_{i}"]) for i in range(1, 7))
-
-
-def _distance(planes: Planes, law: Reals, places: Reals, target: Reals, *, upper: bool) -> float:
-    """Largest distance of target points from the sides that a thickness law makes."""
-    from scipy.spatial import cKDTree
-
-    values = law_basis(law.shape[1], planes.v) @ law.T @ law_basis(law.shape[0], places[2:-2]).T
-    radii = planes.radii
-    controls = side(planes.camber, places, values, 1.0 / radii[0], 1.0 / radii[1], upper=upper)
-    s = (1.0 - np.cos(np.pi * np.linspace(0.0, 1.0, 3001))) / 2.0
-    curves = basis(uniform_knots(len(places), DEGREE), DEGREE, s) @ controls
-    return max(float(np.max(cKDTree(curve).query(points)[0])) for curve, points in zip(curves, target, strict=True))
+    # the edge radii are the ends of ParaBlade's thickness laws, and vary along the span with them
+    keys = ("radius_in", *(f"thickness_{name}_{i}" for i in range(1, 7)), "radius_out")
+    return max(len(config.laws[key]) for key in keys)
 
 
 def _interpolated(values: Reals, v: Reals, fine: Reals) -> Reals:
