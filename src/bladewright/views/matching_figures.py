@@ -39,6 +39,7 @@ def draw_histogram(axes: Axes, fit: Matched) -> None:
         if len(own):
             shares = np.full(len(own), 100.0 / len(own))
             axes.hist(own, bins, weights=shares, histtype="step", color=colour, linewidth=1.3, label=name)
+    tallest = max(axes.get_ylim()[1] / 1.05, 1e-9)
     sigma = fit.noise * MILLIMETRES
     width = bins[1] - bins[0]
     if np.isfinite(sigma) and sigma > width / 3.0:
@@ -53,7 +54,8 @@ def draw_histogram(axes: Axes, fit: Matched) -> None:
             axes.axvline(sign * tolerance, color=INK, linewidth=1.1, linestyle="--")
         axes.plot([], [], color=INK, linewidth=1.1, linestyle="--", label=f"tolerance ± {tolerance:.3g} mm")
     axes.set_xlim(-limit, limit)
-    axes.set_ylim(0.0, 1.1 * max(axes.get_ylim()[1] / 1.05, 1e-9))
+    # noise far below the deviations has a needle of a bell
+    axes.set_ylim(0.0, 1.1 * min(max(axes.get_ylim()[1] / 1.05, tallest), 1.5 * tallest))
     titled(axes, "Distribution of the deviations", "deviation, outside positive [mm]", "part of the points [%]")
     legend_below(axes, 2)
 
