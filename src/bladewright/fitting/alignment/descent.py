@@ -20,8 +20,12 @@ WIDTH = 0.04
 """first width of the weights, of the target's extent"""
 SHRINKING = 8.0
 """the width shrinks by this factor"""
+CLOSE = 1e-3
+"""width, of the extent, below which it shrinks three times as fast"""
 TUKEY = 4.685
 """width in standard deviations at which Tukey's weights have 95 % efficiency"""
+NEARBY = 1e-3
+"""a step that is smaller than this, of the extent, leaves the nearest places where they were but for Newton steps"""
 ROUNDING = 1e-13
 """least width, of the target's extent"""
 SETTLED = 1e-13
@@ -56,10 +60,11 @@ def descended(
     columns = free_columns(points.shape[1], freedoms)
     extent = target.extent
     wide, least = width * extent, ROUNDING * extent
-    settled = False
+    settled, small = False, np.inf
+    contact: Contact | None = None
     for _ in range(steps):
         moved = motion(points)
-        contact = target.contact(moved)
+        contact = target.contact(moved, contact if small < NEARBY * extent else None)
         distances = contact.distances
         scatter = TUKEY * 1.4826 * float(np.median(distances[distances < wide])) if np.any(distances < wide) else wide
         weights = tukey(distances, max(wide, least))
@@ -72,9 +77,10 @@ def descended(
             settled = True
             break
         if small < wide / 10.0:
-            wide = max(wide / SHRINKING, min(scatter, wide), least)
+            shrinking = SHRINKING if wide > CLOSE * extent else SHRINKING**3
+            wide = max(wide / shrinking, min(scatter, wide), least)
     moved = motion(points)
-    contact = target.contact(moved)
+    contact = target.contact(moved, contact if small < NEARBY * extent else None)
     weights = tukey(contact.distances, max(wide, least))
     pivot = np.mean(moved, axis=0)
     undetermined, _ = _determined(*equations(moved, contact, weights, pivot), columns, extent)

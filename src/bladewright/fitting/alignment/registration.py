@@ -19,15 +19,17 @@ if TYPE_CHECKING:
     from bladewright.blade.unified import UnifiedBlade
     from bladewright.section.unified import UnifiedSection
 
-POINTS = 5_000
+POINTS = 3_000
 """points whose true distances decide"""
 SEARCH_POINTS = 600
 """points whose true distances choose among the motions that the search finds"""
 GOOD = 2e-3
-"""systematic distance, of the extent, above which every turn is tried"""
+"""systematic distance, of the chord, above which every turn is tried"""
 OTHER = 5e-3
-"""systematic distance, of the extent, above which it is another blade"""
-TRIAL_STEPS = 12
+"""systematic distance, of the chord, above which it is another blade"""
+FINE = 0.01
+"""first width of the weights in the last descent, of the extent"""
+TRIAL_STEPS = 8
 """of the descent that chooses"""
 SHARE = 0.7
 """of the points at least must take part, or it is another blade"""
@@ -81,7 +83,7 @@ def registered(points: Reals, target: Target) -> Registration:
             break
     if best is None:
         raise FitError(f"no motion of the {len(points)} points was found; are they of a blade?")
-    return _reported(cloud, target, descended(target, drawn(cloud, POINTS), best[1].motion), None)
+    return _reported(cloud, target, descended(target, drawn(cloud, POINTS), best[1].motion, width=FINE), None)
 
 
 def improved(points: Reals, built: Any, motion: Motion, *, freedoms: tuple[str, ...] | None = None) -> Registration:
@@ -118,7 +120,7 @@ def _reported(cloud: Reals, target: Target, descent: Descent, freedoms: tuple[st
     weak = tuple(
         name for k, name in enumerate(known) if any(abs(direction[k]) > 0.1 for direction in descent.undetermined)
     )
-    same = systematic <= OTHER * extent and share >= SHARE
+    same = systematic <= OTHER * target.chord and share >= SHARE
     notes = []
     if weak:
         notes.append(
@@ -127,7 +129,7 @@ def _reported(cloud: Reals, target: Target, descent: Descent, freedoms: tuple[st
     if not same:
         notes.append(
             f"the cloud does not lie on the design's blade: {1.0 - share:.0%} of its points are away from it, the others "
-            f"miss it systematically by {systematic:.3g} m, {systematic / extent:.2%} of its extent; it is another blade, "
+            f"miss it systematically by {systematic:.3g} m, {systematic / target.chord:.2%} of its chord; it is another blade, "
             f"a mirrored one, or in another unit"
         )
     if not descent.settled:
@@ -145,7 +147,7 @@ def _reported(cloud: Reals, target: Target, descent: Descent, freedoms: tuple[st
 
 
 def _good(points: Reals, descent: Descent, target: Target) -> bool:
-    return _systematic(points, descent) < GOOD * target.extent and _share(descent) > SHARE
+    return _systematic(points, descent) < GOOD * target.chord and _share(descent) > SHARE
 
 
 def _share(descent: Descent) -> float:
@@ -153,8 +155,12 @@ def _share(descent: Descent) -> float:
 
 
 def _systematic(points: Reals, descent: Descent) -> float:
-    """Root of the mean product of neighbours' signed distances [m]: of noise alone it is about 0."""
-    taking = np.flatnonzero(descent.weights > 0.0)
+    """Root of the mean product of neighbours' signed distances [m]: of noise alone it is about 0.
+
+    Of nine tenths of the points, so that outliers have no part in it and a shape that fits in places does not pass.
+    """
+    distances = descent.contact.distances
+    taking = np.flatnonzero(distances <= np.quantile(distances, 0.9))
     if len(taking) < 3:
         return float("inf")
     heights = np.sum(descent.contact.normals * descent.contact.miss, axis=1)[taking]

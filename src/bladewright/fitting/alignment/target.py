@@ -1,5 +1,6 @@
 """The blade or section that a cloud is moved onto: its sides and ends, sampled once, and true distances from them."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -26,6 +27,13 @@ ACROSS = 9
 """samples of an end face from the upper to the lower side"""
 
 
+BESIDE = 0.02
+"""parameter from an edge within which the nearest place may change to the other side"""
+
+Starts = Callable[[int, NDArray[np.intp]], tuple[NDArray[np.intp], Reals]]
+"""patches and local parameters on a side for some points"""
+
+
 @dataclass(frozen=True, kw_only=True)
 class Contact:
     """The nearest places of n points on the target, in d dimensions."""
@@ -36,6 +44,11 @@ class Contact:
     """(n, d) where the place is on the outer edge of a side the unit vector in the side that points past it, else 0"""
     miss: Reals
     """(n, d) from the place to the point"""
+
+    part: NDArray[np.intp]
+    """(n,) 0 upper side, 1 lower side, 2 and 3 the end faces"""
+    place: Reals
+    """(n, 2) u and v of the nearest place of the sides"""
 
     @property
     def distances(self) -> Reals:
@@ -63,24 +76,33 @@ class Target:
         """Largest extent of the sides along an axis [m]."""
         return max(float(np.ptp(samples.points, axis=0).max()) for samples in self.samples)
 
-    def contact(self, points: Reals) -> Contact:
-        """The nearest places of points (n, d), by damped Newton steps from the nearest samples."""
-        near = np.stack([tree.query(points)[0] for tree in (*self.trees, *self.end_trees)])
-        wanted = near <= NEAR * near.min(axis=0)
-        wanted[:2] = near[:2] <= NEAR * near[:2].min(axis=0)
+    @property
+    def chord(self) -> float:
+        """Mean straight distance from leading to trailing edge [m]."""
+        side = self.sides[0]
+        v = np.linspace(0.0, 1.0, SPANWISE)
+        lines = [np.real(side(u, v) if isinstance(side, Surface) else side(u)) for u in (0.0, 1.0)]
+        return float(np.mean(np.sqrt(np.sum((lines[1] - lines[0]) ** 2, axis=-1))))
+
+    def contact(self, points: Reals, hint: Contact | None = None) -> Contact:
+        """The nearest places of points (n, d), by damped Newton steps from the nearest samples.
+
+        With a `hint`, the contact of the same points a little aside, from the places of that one.
+        """
+        wanted, starts = self._starts(points) if hint is None else self._hinted(hint)
         square = np.full(len(points), np.inf)
-        side = np.zeros(len(points), dtype=np.intp)
-        u, v = np.zeros((2, len(points)))
-        for k, (on, samples, tree) in enumerate(zip(self.patches, self.samples, self.trees, strict=True)):
+        part = np.zeros(len(points), dtype=np.intp)
+        place = np.zeros((len(points), 2))
+        for k, on in enumerate(self.patches):
             rows = np.flatnonzero(wanted[k])
-            index = tree.query(points[rows])[1]
-            found = polished(on, points[rows], samples.patch[index], samples.local[index])
+            patch, local = starts(k, rows)
+            found = polished(on, points[rows], patch, local)
             better = found.square < square[rows]
             rows, patch, local = rows[better], found.patch[better], found.local[better]
             low, high = on.low[patch], on.high[patch]
-            place = np.where(local >= 1.0, high, low + local * (high - low))
-            square[rows], side[rows], u[rows], v[rows] = found.square[better], k, place[:, 0], place[:, 1]
-        feet = placed(points, self.sides, side, u, v)
+            place[rows] = np.where(local >= 1.0, high, low + local * (high - low))
+            square[rows], part[rows] = found.square[better], k
+        feet = placed(points, self.sides, part, place[:, 0], place[:, 1])
         normals, beyond, miss = feet.normals.copy(), feet.beyond.copy(), feet.miss.copy()
         for k in range(len(self.ends)):
             rows = np.flatnonzero(wanted[2 + k])
@@ -90,8 +112,31 @@ class Target:
                 inside &= np.sum(off**2, axis=-1) < square[rows]
                 rows = rows[inside]
                 normals[rows], beyond[rows], miss[rows] = normal[inside], 0.0, off[inside]
-                square[rows] = np.sum(miss[rows] ** 2, axis=-1)
-        return Contact(normals=normals, beyond=beyond, miss=miss)
+                square[rows], part[rows] = np.sum(miss[rows] ** 2, axis=-1), 2 + k
+        return Contact(normals=normals, beyond=beyond, miss=miss, part=part, place=place)
+
+    def _starts(self, points: Reals) -> tuple[NDArray[np.bool_], Starts]:
+        """Which parts may hold the nearest places (k, n), and where to start on a side."""
+        queries = [tree.query(points) for tree in (*self.trees, *self.end_trees)]
+        near = np.stack([distances for distances, _ in queries])
+        wanted = near <= NEAR * near.min(axis=0)
+        wanted[:2] = near[:2] <= NEAR * near[:2].min(axis=0)
+
+        def starts(k: int, rows: NDArray[np.intp]) -> tuple[NDArray[np.intp], Reals]:
+            index = queries[k][1][rows]
+            return self.samples[k].patch[index], self.samples[k].local[index]
+
+        return wanted, starts
+
+    def _hinted(self, hint: Contact) -> tuple[NDArray[np.bool_], Starts]:
+        wanted = np.arange(2 + len(self.ends))[:, None] == hint.part
+        u = hint.place[:, 0]
+        wanted[:2] |= (u < BESIDE) | (u > 1.0 - BESIDE) | (hint.part >= 2)
+
+        def starts(k: int, rows: NDArray[np.intp]) -> tuple[NDArray[np.intp], Reals]:
+            return self.patches[k].at(hint.place[rows, 0], hint.place[rows, 1])
+
+        return wanted, starts
 
     def _on_end(self, k: int, points: Reals) -> tuple[NDArray[np.bool_], Reals, Reals]:
         """Whether the nearest place of the whole wall lies in the end face, the place and the normal."""
