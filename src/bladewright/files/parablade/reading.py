@@ -24,6 +24,10 @@ _ALONG = (1.0 - np.cos(np.pi * (np.arange(60.0) + 0.5) / 60.0)) / 2.0
 _ACROSS = np.linspace(1.0 / 24.0, 23.0 / 24.0, 12)
 
 
+NEAR = 1e-5
+"""of the blade's extent: how much nearer a place may be that is passed over while distances are measured"""
+
+
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Imported:
     """A design from another program's file."""
@@ -47,7 +51,7 @@ class Imported:
             if points.shape[1] == 2:
                 found.append(closest_on_curve(built.curves[name], points).distances)
             else:
-                found.append(closest_on_surface(built.surfaces[name], points).distances)
+                found.append(closest_on_surface(built.surfaces[name], points, tolerance=NEAR).distances)
         return np.concatenate(found)
 
 
