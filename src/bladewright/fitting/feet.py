@@ -16,6 +16,8 @@ from bladewright.nurbs.surface import Surface
 Side = Curve | Surface
 NEAR = 2.0
 """the other side is tried too where its nearest sample is not this much further away"""
+EDGE = 0.02
+"""how near to an edge, in u, a known foot may change sides"""
 SAMPLES = (6, 5)
 """samples along and across a patch; a patch is small where the side bends"""
 CURVE_SAMPLES = (24, 1)
@@ -52,28 +54,49 @@ class Feet:
         return np.sum(self.miss * self.normals, axis=-1)
 
 
-def feet(points: Reals, sides: Sequence[Side]) -> Feet:
+def feet(points: Reals, sides: Sequence[Side], hint: Feet | None = None) -> Feet:
     """The nearest places of points (n, d) on the upper and the lower side.
 
     Each starts from the nearest of samples that are close to each other where the sides bend, and descends by damped
-    Newton steps until it converges.
+    Newton steps until it converges. With a `hint`, the feet on sides that have moved little since, it starts from there.
     """
     on = [patches(side) for side in sides]
-    samples = [sampled(each, *(SAMPLES if each.degrees[1] else CURVE_SAMPLES)) for each in on]
-    trees = [cKDTree(each.points) for each in samples]
-    starts = [tree.query(points) for tree in trees]
-    best = [np.full(len(points), np.inf), np.full(len(points), np.inf)]
+    best = np.full((2, len(points)), np.inf)
     u, v = np.zeros((2, len(points))), np.zeros((2, len(points)))
-    for k in (0, 1):
-        wanted = np.flatnonzero(starts[k][0] <= NEAR * starts[1 - k][0])
-        for part in np.array_split(wanted, max(1, -(-len(wanted) // AT_ONCE))):
-            index = starts[k][1][part]
-            found = polished(on[k], points[part], samples[k].patch[index], samples[k].local[index])
-            best[k][part] = found.square
-            u[k, part], v[k, part] = _parameters(on[k], found)
+    for k, (rows, patch, local) in enumerate(_starts(points, on) if hint is None else _hinted(on, hint)):
+        for part in np.array_split(np.arange(len(rows)), max(1, -(-len(rows) // AT_ONCE))):
+            found = polished(on[k], points[rows[part]], patch[part], local[part])
+            best[k, rows[part]] = found.square
+            u[k, rows[part]], v[k, rows[part]] = _parameters(on[k], found)
     side = (best[1] < best[0]).astype(np.intp)
     rows = np.arange(len(points))
     return placed(points, sides, side, u[side, rows], v[side, rows])
+
+
+Start = tuple[NDArray[np.intp], NDArray[np.intp], Reals]
+"""points that are projected to a side, their patches and local parameters"""
+
+
+def _starts(points: Reals, on: Sequence[Patches]) -> list[Start]:
+    """From the nearest samples of both sides."""
+    samples = [sampled(each, *(SAMPLES if each.degrees[1] else CURVE_SAMPLES)) for each in on]
+    nearest = [cKDTree(each.points).query(points) for each in samples]
+    found = []
+    for k in (0, 1):
+        rows = np.flatnonzero(nearest[k][0] <= NEAR * nearest[1 - k][0])
+        index = nearest[k][1][rows]
+        found.append((rows, samples[k].patch[index], samples[k].local[index]))
+    return found
+
+
+def _hinted(on: Sequence[Patches], hint: Feet) -> list[Start]:
+    """From known feet; beside an edge on both sides."""
+    beside = (hint.u < EDGE) | (hint.u > 1.0 - EDGE)
+    found = []
+    for k, each in enumerate(on):
+        rows = np.flatnonzero((hint.side == k) | beside)
+        found.append((rows, *each.at(hint.u[rows], hint.v[rows])))
+    return found
 
 
 def placed(points: Reals, sides: Sequence[Side], side: NDArray[np.intp], u: Reals, v: Reals) -> Feet:

@@ -1,0 +1,142 @@
+"""Least squares under inequalities: Levenberg's damped steps, each the solution of the linearised problem.
+
+A penalty alone would stop a search at the kink where an inequality begins to hold; a step that sees the inequality
+slides along it. Reference: Lawson and Hanson 1974, chapter 23 (least distance programming by non-negative least
+squares); Nielsen 1999 (damping).
+"""
+
+from abc import ABC, abstractmethod
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.linalg import solve_triangular
+from scipy.optimize import nnls
+
+from bladewright.nurbs.basis import Reals
+
+DAMPING = 1e-6
+"""first damping, of the largest squared column"""
+STRIDE = 2.0
+"""largest change of a variable in one step"""
+PENALTY = 4.0
+"""merit of a violated inequality, in multiples of the largest multiplier seen"""
+SLIGHT = 1e-12
+"""predicted part of the cost below which a step is not worth its evaluation"""
+
+
+class Constrained(ABC):
+    """A vector of residuals to be made small and one of values that may not be positive, both of variables (k,)."""
+
+    @property
+    @abstractmethod
+    def bounds(self) -> tuple[Reals, Reals]:
+        """Lowest and highest values (k,)."""
+
+    @abstractmethod
+    def values(self, z: Reals) -> tuple[Reals, Reals] | None:
+        """Residuals (m,) and constrained values (c,); None where there are none."""
+
+    @abstractmethod
+    def derivatives(self, z: Reals) -> tuple[Reals, Reals]:
+        """Their derivatives (m, k) and (c, k)."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Descent:
+    """Where a descent ended."""
+
+    z: Reals
+    converged: bool
+    """whether no further step promised anything"""
+    damping: float
+    """the last one, for a descent that goes on"""
+
+
+def descended(problem: Constrained, start: Reals, *, steps: int, damping: float = DAMPING) -> Descent:
+    """The variables after at most `steps` evaluations of the residuals."""
+    low, high = problem.bounds
+    z = np.clip(start, low, high)
+    found = problem.values(z)
+    if found is None:
+        return Descent(z=z, converged=False, damping=damping)
+    residuals, constrained = found
+    penalty, growth, done = 0.0, 2.0, 1
+    while done < steps:
+        slopes, walls = problem.derivatives(z)
+        triangle = np.linalg.qr(np.column_stack([slopes, residuals]), mode="r")
+        matrix, aim = triangle[:, :-1], -triangle[:, -1]
+        scale = float(np.max(np.sum(slopes**2, axis=0), initial=1e-300))
+        moved = False
+        while done < steps:
+            step, largest = _step(
+                matrix,
+                aim,
+                damping * scale,
+                walls,
+                constrained,
+                np.maximum(low - z, -STRIDE),
+                np.minimum(high - z, STRIDE),
+            )
+            penalty = max(penalty, PENALTY * largest)
+            before = float(residuals @ residuals) + penalty * float(np.sum(np.maximum(constrained, 0.0)))
+            linear = aim - matrix @ step
+            promised = (
+                float(residuals @ residuals)
+                - float(linear @ linear)
+                + penalty * float(np.sum(np.maximum(constrained, 0.0) - np.maximum(constrained + walls @ step, 0.0)))
+            )
+            if not promised > SLIGHT * before:
+                return Descent(z=z, converged=True, damping=damping)
+            trial = np.clip(z + step, low, high)
+            fresh = problem.values(trial)
+            done += 1
+            after = np.inf
+            if fresh is not None:
+                after = float(fresh[0] @ fresh[0]) + penalty * float(np.sum(np.maximum(fresh[1], 0.0)))
+            gain = (before - after) / promised
+            if gain > 1e-3 and fresh is not None:
+                z, (residuals, constrained) = trial, fresh
+                damping *= max(1.0 / 10.0, 1.0 - (2.0 * min(gain, 1.0) - 1.0) ** 3)
+                damping, growth, moved = max(damping, 1e-16), 2.0, True
+                break
+            damping *= growth
+            growth *= 2.0
+        if not moved:
+            break
+    return Descent(z=z, converged=False, damping=damping)
+
+
+def _step(
+    matrix: Reals, aim: Reals, damping: float, walls: Reals, constrained: Reals, low: Reals, high: Reals
+) -> tuple[Reals, float]:
+    """The damped step within the linearised inequalities, and the largest multiplier of one of them."""
+    count = matrix.shape[1]
+    triangle = np.linalg.qr(
+        np.column_stack(
+            [np.vstack([matrix, np.sqrt(damping) * np.eye(count)]), np.concatenate([aim, np.zeros(count)])]
+        ),
+        mode="r",
+    )
+    upper, right = triangle[:count, :count], triangle[:count, -1]
+    free = solve_triangular(upper, right)
+    # rows @ step <= room; what is violated already need not be mended beyond what bounds allow
+    rows = np.vstack([walls, np.eye(count), -np.eye(count)])
+    room = np.concatenate([-constrained, high, -low])
+    step, multiplier = free, np.zeros(len(rows))
+    working = np.zeros(len(rows), dtype=bool)
+    for _ in range(20):
+        broken = rows @ step - room > 1e-12 * (1.0 + np.abs(room))
+        if not np.any(broken & ~working):
+            break
+        working |= broken
+        within = rows[working]
+        turned = solve_triangular(upper, within.T, trans="T")
+        need = within @ free - room[working]
+        system = np.vstack([-turned, need[None]])
+        weights, _ = nnls(system, np.append(np.zeros(count), 1.0), maxiter=50 * count)
+        rest = system @ weights - np.append(np.zeros(count), 1.0)
+        if not -rest[-1] > 1e-14:
+            break
+        step = free + solve_triangular(upper, -turned @ (weights / -rest[-1]))
+        multiplier[working] = weights / -rest[-1]
+    return step, float(np.max(multiplier[: len(walls)], initial=0.0))

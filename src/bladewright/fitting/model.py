@@ -1,0 +1,208 @@
+"""The sides of a design while it is fitted, and their derivatives by parameters: one final class for each kind of design.
+
+Nothing is refused that a step of a search may pass on its way; knots are held.
+"""
+
+from abc import ABC, abstractmethod
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from types import MappingProxyType
+from typing import Any, final
+
+import numpy as np
+
+from bladewright.blade.blade import Blade, surface_of
+from bladewright.blade.exact import ExactBlade, exact_blade, moved
+from bladewright.blade.fitness import chord_of, knots_for
+from bladewright.blade.knots import DEGREE, Knots
+from bladewright.blade.native import native_sides
+from bladewright.blade.unified import UnifiedBlade
+from bladewright.derivatives.tangents import STEP, side_tangents
+from bladewright.designs import Design
+from bladewright.fitting.feet import Feet, Side
+from bladewright.numerics.elementary import Array, joined, length
+from bladewright.nurbs.basis import Reals
+from bladewright.nurbs.collocation import collocation
+from bladewright.section.camber import camber_points
+from bladewright.section.checks import UNITS
+from bladewright.section.curves import side_curve
+from bladewright.section.sampling import sample_places
+from bladewright.section.unified import UnifiedSection
+
+HOLDING = np.linspace(0.0, 1.0, 7)
+"""places along the span where it is asked whether the thickness can hold the edges' radii"""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Shape:
+    """What a model builds from one design."""
+
+    design: Any
+    sides: tuple[Side, Side]
+    noses: Reals
+    """(2, ...) at each edge of each side by how much the control point that sets the radius stands higher than the
+    thickness beside it, of the section's extent, and how high it stands, of that thickness"""
+    exact: ExactBlade | None = None
+
+    @property
+    def finite(self) -> bool:
+        """Whether there is such a shape at all."""
+        return all(bool(np.isfinite(side.homogeneous).all()) for side in self.sides)
+
+
+class Model(ABC):
+    """A kind of design as a search sees it."""
+
+    chord: float
+    """[m]"""
+
+    @abstractmethod
+    def shape(self, design: Design) -> Shape:
+        """The sides of a design; raises DesignError where there are none at all."""
+
+    @abstractmethod
+    def tangents(self, shape: Shape, paths: Sequence[str]) -> tuple[Reals, Reals]:
+        """Derivatives (k, ..., d) of both sides' homogeneous control points by parameters."""
+
+    @abstractmethod
+    def nose_rates(self, shape: Shape, paths: Sequence[str]) -> Reals:
+        """Derivatives (k, ...) of `shape.noses`."""
+
+    def rates(self, shape: Shape, feet: Feet, paths: Sequence[str]) -> Reals:
+        """Derivatives (n, k, d) of the places, at held parameters."""
+        tangents = self.tangents(shape, paths)
+        found = np.empty((len(feet.u), len(paths), feet.points.shape[1]))
+        for number, (side, rates) in enumerate(zip(shape.sides, tangents, strict=True)):
+            rows = np.flatnonzero(feet.side == number)
+            matrix = collocation(side, feet.u[rows], feet.v[rows])
+            columns = np.moveaxis(rates, 0, -2).reshape(-1, len(paths) * rates.shape[-1])
+            moved_places = (matrix @ columns).reshape(len(rows), len(paths), rates.shape[-1])
+            if side.weights is not None:
+                weight = (matrix @ np.ravel(side.weights))[:, None, None]
+                share = feet.points[rows, None] * moved_places[..., -1:]
+                moved_places = (moved_places[..., :-1] - share) / weight
+            found[rows] = moved_places
+        return found
+
+
+@final
+class SectionModel(Model):
+    """Sections of the unified family."""
+
+    def __init__(self, design: UnifiedSection) -> None:
+        slope = np.cos(np.radians(design.stagger))
+        self.chord = float(design.axial_chord * UNITS[design.length_unit] / slope)
+
+    def shape(self, design: Design) -> Shape:
+        """The sides as curves."""
+        assert isinstance(design, UnifiedSection)
+        line, upper, lower = _outline(design)
+        sides = side_curve(upper[0]), side_curve(lower[0])
+        return Shape(design=design, sides=sides, noses=np.real(_noses(design, line, upper, lower))[..., 0])
+
+    def tangents(self, shape: Shape, paths: Sequence[str]) -> tuple[Reals, Reals]:
+        """From one rebuild with a step on each parameter in a batch."""
+        _, *sides = self._stepped(shape, paths)
+        upper, lower = (np.imag(side)[:, 0] / STEP for side in sides)
+        return upper, lower
+
+    def nose_rates(self, shape: Shape, paths: Sequence[str]) -> Reals:
+        """From one rebuild with a step on each parameter in a batch."""
+        found = np.imag(_noses(shape.design, *self._stepped(shape, paths)))[..., 0] / STEP
+        return np.moveaxis(found, 1, 0)
+
+    @staticmethod
+    def _stepped(shape: Shape, paths: Sequence[str]) -> list[Array]:
+        parts = _outline(shape.design.changed(_batch(shape.design, paths)))
+        return [np.broadcast_to(part, (len(paths), *part.shape[-3:])) for part in parts]
+
+
+@final
+class BladeModel(Model):
+    """Blades of the unified family, at the knots that one of them needs."""
+
+    def __init__(self, design: UnifiedBlade, tolerance: float | None = None) -> None:
+        self.tolerance = design.tolerance if tolerance is None else tolerance
+        exact = exact_blade(design.changed("tolerance", self.tolerance), tentative=True)
+        self.chord = chord_of(exact)
+        self.knots: Knots = knots_for(exact, self.chord)
+
+    def shape(self, design: Design) -> Shape:
+        """The native sides as surfaces."""
+        assert isinstance(design, UnifiedBlade)
+        exact = exact_blade(design, self.knots.tip, tentative=True)
+        upper, lower = native_sides(exact.stations(self.knots.sites_v), self.knots)
+        plane = exact.stations(HOLDING).plane
+        return Shape(
+            design=design,
+            sides=(surface_of(upper, self.knots, DEGREE), surface_of(lower, self.knots, DEGREE)),
+            noses=np.real(_noses(design, plane.camber, plane.upper, plane.lower)),
+            exact=exact,
+        )
+
+    def tangents(self, shape: Shape, paths: Sequence[str]) -> tuple[Reals, Reals]:
+        """By laws as a whole and leaves of the channel."""
+        assert shape.exact is not None
+        blade = Blade(
+            design=shape.design,
+            surfaces=MappingProxyType({}),
+            knots=self.knots,
+            chord=self.chord,
+            exact=shape.exact,
+        )
+        pairs = list(side_tangents(blade, paths))
+        upper, lower = (np.concatenate([pair[side] for pair in pairs]) for side in (0, 1))
+        return upper, lower
+
+    def nose_rates(self, shape: Shape, paths: Sequence[str]) -> Reals:
+        """Those by the laws; by the channel they vanish but for the walls' slopes, which are left out."""
+        assert shape.exact is not None
+        found = np.zeros((len(paths), *shape.noses.shape))
+        laws = [place for place, path in enumerate(paths) if not path.startswith(("channel.", "tip_", "hub_"))]
+        changes = _batch(shape.design, [paths[place] for place in laws])
+        plane = moved(shape.exact, shape.design.changed(changes)).stations(HOLDING).plane
+        rates = np.imag(_noses(shape.design, plane.camber, plane.upper, plane.lower)) / STEP
+        found[laws] = np.moveaxis(rates, 1, 0)
+        return found
+
+
+def model_of(design: Design, tolerance: float | None = None) -> Model:
+    """The model of a kind of design, its knots those that the design needs for a tolerance, of the chord."""
+    if isinstance(design, UnifiedSection):
+        return SectionModel(design)
+    assert isinstance(design, UnifiedBlade)
+    return BladeModel(design, tolerance)
+
+
+def _batch(design: Design, paths: Sequence[str]) -> Mapping[str, Any]:
+    values = design.parameters()
+    kicks = 1j * STEP * np.eye(len(paths))
+    return {path: values[path] + kick for path, kick in zip(paths, kicks, strict=True)}
+
+
+def _outline(design: UnifiedSection) -> tuple[Array, Array, Array]:
+    """Control points (..., 1, n, 2) where the section stands, those of rational sides (..., 1, n, 3)."""
+    line, upper, lower = design.outline(tentative=True)
+    shift = np.asarray(design.leading_edge_x)[..., None, None] * UNITS[design.length_unit]
+    parts = []
+    for part in (line, upper, lower):
+        weight = part[..., 2] if part.shape[-1] == 3 else 1.0
+        abscissa = part[..., 0] + shift * weight
+        others = [np.broadcast_to(part[..., i], abscissa.shape) for i in range(1, part.shape[-1])]
+        parts.append(np.stack([abscissa, *others], axis=-1))
+    return parts[0], parts[1], parts[2]
+
+
+def _noses(design: Any, line: Array, upper: Array, lower: Array) -> Array:
+    """The noses (2, ..., 4, m) of sections, as `Shape` has them."""
+    extent = line[..., 3, 0] - line[..., 0, 0]
+    places = sample_places(design.samples, design.clustering)[[2, -3]]
+    camber = camber_points(line, places)
+    rows = []
+    for side in (upper, lower):
+        plain = side if side.shape[-1] == 2 else side[..., :2] / side[..., 2:]
+        for end, (first, second, third) in enumerate(((0, 1, 2), (-1, -2, -3))):
+            height = length(plain[..., second, :] - plain[..., first, :])
+            beside = length(plain[..., third, :] - camber[..., end, :])
+            rows.append(np.stack([(height - beside) / extent, height / beside])[..., None, :])
+    return joined(rows, axis=-2)

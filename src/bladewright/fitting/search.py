@@ -1,0 +1,179 @@
+"""The search for a design of one structure: rounds of least squares, each with the noise that the last one left.
+
+A round's prior is as strong as the noise is large, so that a search from afar is held together by it, and a search in
+exact data ends free of it. Knots, outliers and what lies at the ends are found anew for every round.
+"""
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from bladewright.designs import Design
+from bladewright.errors import FitError
+from bladewright.fitting.descent import DAMPING, descended
+from bladewright.fitting.feet import feet
+from bladewright.fitting.model import Model, model_of
+from bladewright.fitting.prior import prior_of
+from bladewright.fitting.problem import Problem, State
+from bladewright.fitting.scales import scales_of
+from bladewright.fitting.scatter import Scatter, scatter_of
+from bladewright.fitting.walls import Ends, ends_of
+from bladewright.nurbs.basis import Reals
+
+STEPS = 8
+"""evaluations of the surface in a round"""
+ROUNDS = 12
+SETTLED = 0.995
+"""ratio of a round's misfit to that of the last at which a search ends"""
+FAST = 0.5
+"""ratio below which the next round's misfit is foreseen to fall as much again"""
+EXACT = 3e-14
+"""misfit below which nothing is left to find, of the chord"""
+FINE = 0.1
+"""tolerance of the native surfaces in a round, of the noise"""
+COARSEST = 1e-4
+"""tolerance of the native surfaces, of the chord"""
+SLACK = 2e-6
+"""by how much a nose is at first held below the thickness beside it, of the section's extent"""
+
+Told = Callable[[str], None]
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Task:
+    """What is sought."""
+
+    points: Reals
+    """(n, d) [m]"""
+    weights: Reals
+    """(n,)"""
+    paths: tuple[str, ...]
+    """free parameters"""
+    bounds: Mapping[str, tuple[float, float]]
+    told: Told = lambda _: None
+    smooth: float = 1.0
+    """by how much the prior is stronger"""
+
+    def free(self, design: Design) -> tuple[str, ...]:
+        """The free parameters of a design of another structure: those whose fields are free."""
+        return tuple(path for path in design.parameters() if path in self.paths)
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Found:
+    """Where a search ended."""
+
+    design: Design
+    problem: Problem
+    state: State
+    scatter: Scatter
+    ends: Ends
+    damping: float
+    evaluations: int
+    interrupted: bool = False
+
+    @property
+    def model(self) -> Model:
+        """The model of the last round."""
+        return self.problem.model
+
+    @property
+    def rows(self) -> NDArray[np.bool_]:
+        """(n,) the points that take part as points of the sides."""
+        return self.scatter.inliers & ~self.ends.covered
+
+    @property
+    def rms(self) -> float:
+        """Root mean square of the distances of those, of the chord."""
+        return float(np.sqrt(np.mean(self.state.feet.distances[self.rows] ** 2))) / self.model.chord
+
+    @property
+    def maximum(self) -> float:
+        """Largest distance of those [m]."""
+        return float(np.max(self.state.feet.distances[self.rows]))
+
+
+def searched(task: Task, start: Design, *, rounds: int = ROUNDS, noise: float | None = None) -> Found:
+    """The design nearest to the cloud that a search from `start` finds, with the structure of `start`.
+
+    `noise` is the first round's, of the chord; where None the misfit of the start. Raises FitError where the start has
+    no shape.
+    """
+    found = _prepared(task, start, start, noise)
+    noise = found.problem.noise
+    for number in range(rounds):
+        before = found.rms
+        if before < EXACT or found.interrupted:
+            break
+        fresh = _round(found if number == 0 else _prepared(task, start, found.design, noise, found))
+        ratio = fresh.rms / before
+        if ratio < 1.0 or fresh.interrupted or number == 0:
+            found = fresh
+        task.told(f"{len(found.problem.paths)} parameters, {1e3 * found.rms * found.model.chord:.3g} mm rms")
+        if ratio > SETTLED and number:
+            break
+        noise = found.rms * (max(ratio, 1e-3) if ratio < FAST else 1.0)
+    return found
+
+
+def _prepared(task: Task, start: Design, design: Design, noise: float | None, before: Found | None = None) -> Found:
+    """A design with the problem of the next round."""
+    points, paths = task.points, task.free(start)
+    tolerance = float(np.clip(FINE * (noise or 1.0), getattr(design, "tolerance", 1e-6), COARSEST))
+    model = model_of(design, tolerance)
+    shape = model.shape(design)
+    if not shape.finite:
+        raise FitError("the start design has no shape near its edges: give another start, or none")
+    on = feet(points, shape.sides)
+    scatter = scatter_of(points, on)
+    ends = ends_of(points, on, shape, scatter.inliers)
+    misfit = float(np.sqrt(np.mean(on.distances[scatter.inliers & ~ends.covered] ** 2))) / model.chord
+    scales = scales_of(start, paths, model.chord, task.bounds)
+    prior = prior_of(start, paths, scales.size)
+    problem = Problem(
+        points=points,
+        weights=task.weights * scatter.inliers,
+        model=model,
+        start=start,
+        paths=paths,
+        scales=scales,
+        prior=replace(prior, matrix=task.smooth * prior.matrix, aim=task.smooth * prior.aim),
+        noise=misfit if noise is None else noise,
+        alone=scatter.alone(len(paths)),
+        ends=ends,
+        hint=on,
+        margin=SLACK,
+    )
+    return Found(
+        design=design,
+        problem=problem,
+        state=State(shape=shape, feet=on),
+        scatter=scatter,
+        ends=ends,
+        damping=DAMPING if before is None else before.damping,
+        evaluations=1 if before is None else before.evaluations + 1,
+    )
+
+
+def _round(found: Found) -> Found:
+    """What a descent from a prepared design finds."""
+    problem, interrupted = found.problem, False
+    values = found.design.parameters()
+    first = (np.array([float(values[path]) for path in problem.paths]) - problem.first) / problem.scales.size
+    z, damping = first, found.damping
+    try:
+        descent = descended(problem, first, steps=STEPS, damping=damping)
+        z, damping = descent.z, descent.damping
+    except KeyboardInterrupt:
+        z, interrupted = problem.best, True
+    state = problem.state(z) or found.state
+    return replace(
+        found,
+        design=state.shape.design,
+        state=state,
+        damping=damping,
+        evaluations=found.evaluations + problem.evaluations,
+        interrupted=interrupted,
+    )

@@ -1,0 +1,107 @@
+"""The ends of a blade as its cloud shows them: points that lie at hub and shroud, or where the blade ends."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.spatial import cKDTree
+
+from bladewright.blade.exact import ExactBlade, moved
+from bladewright.derivatives.tangents import STEP
+from bladewright.fitting.feet import Feet
+from bladewright.fitting.model import Shape
+from bladewright.nurbs.basis import Reals
+
+BAND = 0.015
+"""how far from an end, in v, a point may tell of it"""
+FACE, INSIDE, SHARE = 0.1, 5.0, 0.3
+"""a point of an end face has its foot this near the end, in v, lies this many usual distances inside the sides, and is
+this much nearer to the wall than to them"""
+NEAR = 0.05
+"""how far from an end, in v, a point may come to lie past it while the design changes"""
+FEWEST = 5
+ENDS = {"hub": 0.0, "shroud": 1.0}
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Wall:
+    """Places of the cloud at one end of the blade."""
+
+    name: str
+    """of the channel's curve"""
+    places: Reals
+    """(m, 2) in (x, r) [m]"""
+    spread: float
+    """of their distances from one curve: small where the cloud has a row there [m]"""
+
+    def misses(self, exact: ExactBlade) -> tuple[Reals, Reals, Reals]:
+        """Nearest parameters, unit normals and misses (m,), (m, 2), (m, 2) on the channel's curve, continued."""
+        line = exact.channel.line(self.name)
+        if len(self.places) == 0:
+            return np.empty(0), self.places, self.places
+        t = np.linspace(-0.05, 1.05, 400)
+        _, index = cKDTree(np.real(line.values(t))).query(self.places)
+        t = t[index]
+        for _ in range(6):
+            value, first, second = (np.real(line.values(t, order)) for order in range(3))
+            miss = value - self.places
+            rise = np.sum(first**2, axis=-1) + np.sum(miss * second, axis=-1)
+            t = np.clip(t - np.sum(miss * first, axis=-1) / np.where(rise > 0.0, rise, np.inf), -0.1, 1.1)
+        value, first = (np.real(line.values(t, order)) for order in range(2))
+        normal = np.stack([-first[:, 1], first[:, 0]], axis=-1) / np.sqrt(np.sum(first**2, axis=-1))[:, None]
+        return t, normal, self.places - value
+
+    def distances(self, exact: ExactBlade) -> Reals:
+        """Signed distances (m,) from the curve [m]."""
+        _, normal, miss = self.misses(exact)
+        return np.asarray(np.sum(normal * miss, axis=-1))
+
+    def rates(self, shape: Shape, t: Reals, paths: Sequence[str]) -> Reals:
+        """Derivatives (m, k, 2) of the places on the curve at held parameters."""
+        found = np.zeros((len(t), len(paths), 2))
+        exact = shape.exact
+        assert exact is not None
+        moving = [i for i, path in enumerate(paths) if path.startswith(("channel.", "tip_", "hub_"))]
+        values = shape.design.parameters()
+        for i in moving:
+            changed = shape.design.changed(paths[i], values[paths[i]] + STEP * 1j)
+            found[:, i] = np.imag(moved(exact, changed).channel.line(self.name).values(t)) / STEP
+        return found
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Ends:
+    """What a cloud says of the blade's ends."""
+
+    walls: Mapping[str, Wall]
+    covered: NDArray[np.bool_]
+    """(n,) whether a point lies on an end face, inside the blade's outline"""
+    near: NDArray[np.intp]
+    """points that may lie past an end of the sides"""
+
+
+def ends_of(points: Reals, on: Feet, shape: Shape, rows: NDArray[np.bool_]) -> Ends:
+    """The ends as points (n, d) show them, of those in `rows` (n,)."""
+    covered = np.zeros(len(points), dtype=bool)
+    exact = shape.exact
+    if exact is None:
+        return Ends(walls={}, covered=covered, near=np.empty(0, dtype=np.intp))
+    radius = np.sqrt(points[:, 1] ** 2 + points[:, 2] ** 2) if exact.mapping.revolved else points[:, 2]
+    places = np.stack([points[:, 0], radius], axis=-1)
+    usual = 1.4826 * float(np.median(on.distances[rows]))
+    walls = {}
+    for name, end in ENDS.items():
+        inside = np.flatnonzero(rows & (np.abs(on.v - end) < FACE) & (on.heights < -INSIDE * usual))
+        off = Wall(name=name, places=places[inside], spread=0.0).distances(exact)
+        covered[inside[np.abs(off) < -SHARE * on.heights[inside]]] = True
+        row = rows & (np.abs(on.v - end) < BAND) & ~covered
+        chosen = np.flatnonzero(row | (covered & (np.abs(on.v - end) < FACE)))
+        if len(chosen) < FEWEST:
+            continue
+        wall = Wall(name=name, places=places[chosen], spread=0.0)
+        off = wall.distances(exact)
+        spread = 1.4826 * float(np.median(np.abs(off - np.median(off))))
+        walls[name] = Wall(name=name, places=places[chosen], spread=spread)
+    near = np.flatnonzero(((on.v < NEAR) | (on.v > 1.0 - NEAR)) & ~covered)
+    return Ends(walls=walls, covered=covered, near=near)
