@@ -3,84 +3,34 @@
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from itertools import pairwise
-from typing import Any, Literal
+from typing import Any, Literal, final
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from bladewright.errors import FitError, GeometryError
+from bladewright.fitting.fitted import Fitted, asked, checked_logs, checked_points
 from bladewright.fitting.net import Net, Target, periodic
 from bladewright.fitting.ordering import sites_along
-from bladewright.fitting.projection import nearest_parameters, projected
-from bladewright.fitting.stages import Arrived, Way, arrived
+from bladewright.fitting.projection import certified, projected
+from bladewright.fitting.stages import Arrived, Way, within
 from bladewright.nurbs.basis import Reals, breaks, checked_knots, uniform_knots
 from bladewright.nurbs.curve import Curve
 
 FIRST_STIFFNESS = 1e-8
 """weight of the bending of the first curve"""
-ROUNDS = 25
-"""of further knots"""
 NOISY = 1.25
 """root mean square of a knot span's distances, of the noise, up to which it is noise"""
 
 
+@final
 @dataclass(frozen=True, kw_only=True, eq=False)
-class CurveFit:
-    """A curve fitted to n points, in their order."""
+class CurveFit(Fitted):
+    """A curve fitted to n points."""
 
     curve: Curve
     u: Reals
     """(n,) parameters of the nearest places"""
-    distances: Reals
-    """(n,) true distances, in the unit of the points"""
-    inliers: NDArray[np.bool_]
-    """(n,) whether a point took part; the others are outliers, which are only told apart with `robust`"""
-    iterations: int
-    """evaluations of all distances while fitting"""
-    converged: bool
-    """whether the last descent ended by itself"""
-    singular_values: Reals
-    """of the distances by the unknowns, each scaled to length one; largest first"""
-    rank: int
-    """directions of the unknowns that the points determine"""
-    noise: float
-    """standard deviation of a coordinate that neighbouring points show, in the unit of the points"""
-    tolerance: float | None
-    """largest distance of an inlier that was asked for"""
-    notes: tuple[str, ...]
-    """what else there is to know, each a sentence"""
-
-    @property
-    def unknowns(self) -> int:
-        """Number of coordinates and weights that were free."""
-        return len(self.singular_values)
-
-    @property
-    def condition(self) -> float:
-        """Ratio of the largest to the smallest singular value; infinite where the points leave a direction open."""
-        if self.rank < self.unknowns or self.unknowns == 0:
-            return float("inf") if self.unknowns else 1.0
-        return float(self.singular_values[0] / self.singular_values[-1])
-
-    @property
-    def mean(self) -> float:
-        """Mean distance of the inliers."""
-        return float(np.mean(self.distances[self.inliers]))
-
-    @property
-    def rms(self) -> float:
-        """Root mean square of the inliers' distances."""
-        return float(np.sqrt(np.mean(self.distances[self.inliers] ** 2)))
-
-    @property
-    def maximum(self) -> float:
-        """Largest distance of an inlier."""
-        return float(np.max(self.distances[self.inliers]))
-
-    @property
-    def passed(self) -> bool:
-        """Whether the fit converged, within its tolerance where there is one."""
-        return self.converged and (self.tolerance is None or self.maximum <= self.tolerance)
 
 
 def fit_curve(
@@ -118,16 +68,16 @@ def fit_curve(
     the parameter) and a trust region in place of finite differences.
     """
     given = checked_points(points, "a curve")
-    _check_words(weights, ends, power)
+    _check_ends(ends)
     centre, extent = np.mean(given, axis=0), float(np.ptp(given, axis=0).max())
     scaled = (given - centre) / extent
-    weights_free = isinstance(weights, str) and weights == "free"
+    way = asked(weights=weights, power=power, robust=robust, tolerance=tolerance, extent=extent, progress=progress)
     if start is None:
         sites = sites_along(scaled, closed=closed)
         net = _through(scaled, sites, _empty(degree, control_points, knots, weights, scaled.shape[1], closed=closed))
     else:
         net = _of_curve(replace(start, control_points=(start.control_points - centre) / extent), closed=closed)
-        sites = nearest_parameters(net.shape, scaled)[:, 0]
+        sites = projected(net.shape, scaled, closed=closed).parameters[:, 0]
     held = None
     if not closed:
         outermost = np.array([np.argmin(sites), np.argmax(sites)])
@@ -138,12 +88,12 @@ def fit_curve(
             inner = net.points[1:-1]
             net = replace(net, held="corners", points=np.concatenate([pair[:1], inner, pair[1:]]))
     target = Target(points=scaled, weights=np.ones(len(scaled)), held=held)
-    way = Way(power=power, weights_free=weights_free, robust=robust, progress=progress)
-    _check_numbers(net, scaled, weights_free=weights_free)
-    found, notes = _within(net, target, way, _limit(tolerance, extent), extent)
+    _check_numbers(net, scaled, weights_free=way.weights_free)
+    found, notes = within(net, target, way, _further_knots)
     net = found.match.net
     shape = net.shape
     feet = projected(shape, scaled, closed=closed)
+    feet = projected(shape, scaled, certified(shape, scaled, feet), closed=closed)
     if found.rank < len(found.singular_values):
         notes += (
             f"the points determine {found.rank} of {len(found.singular_values)} directions of the unknowns: "
@@ -164,26 +114,6 @@ def fit_curve(
     )
 
 
-def checked_points(points: ArrayLike, what: str, dimensions: tuple[int, ...] = ()) -> Reals:
-    """Points (n, d) that are finite and not all the same; FitError otherwise."""
-    try:
-        given = np.array(points, dtype=np.float64)
-    except (TypeError, ValueError) as error:
-        raise FitError(f"the points of {what} are not numbers ({error}); give an array (n, d)") from error
-    wanted = " or ".join(str(count) for count in dimensions) or "2, 3 or more"
-    if given.ndim != 2 or given.shape[1] < 2 or (dimensions and given.shape[1] not in dimensions):
-        raise FitError(f"points of shape {given.shape} were given for {what}: give (n, d) with d = {wanted} coordinates")
-    wrong = np.flatnonzero(~np.isfinite(given).all(axis=1))
-    if len(wrong):
-        raise FitError(
-            f"{len(wrong)} of {len(given)} points of {what} are not finite, the first in row {wrong[0]} "
-            f"({given[wrong[0]].tolist()}); leave these rows out"
-        )
-    if len(given) < 2 or not (np.ptp(given, axis=0) > 0.0).any():
-        raise FitError(f"{len(given)} points at one place were given for {what}: it needs different ones")
-    return given
-
-
 def noise_along(u: Reals, misses: Reals) -> float:
     """Standard deviation of a coordinate across a curve by how misses (n, d) at parameters (n,) differ from neighbours.
 
@@ -201,26 +131,9 @@ def noise_along(u: Reals, misses: Reals) -> float:
     return float(np.sqrt(np.mean(square) / (misses.shape[1] - 1)))
 
 
-def _within(net: Net, target: Target, way: Way, limit: float | None, extent: float) -> tuple[Arrived, tuple[str, ...]]:
-    """The match within a largest distance, and why it is not where it is not."""
-    found = arrived(net, target, way)
-    evaluations = found.evaluations
-    for _ in range(ROUNDS):
-        feet = found.match.feet
-        if limit is None or feet.distances.max() <= limit:
-            return replace(found, evaluations=evaluations), ()
-        knots, reason = _further_knots(found, target, limit, extent)
-        if not knots:
-            return replace(found, evaluations=evaluations), (reason,)
-        way.say(f"{len(knots)} further knots")
-        found = arrived(found.match.net.refined(knots), target, way, warm=True)
-        evaluations += found.evaluations
-    reason = f"after {ROUNDS} rounds of further knots the tolerance of {(limit or 0.0) * extent:g} is not reached"
-    return replace(found, evaluations=evaluations), (reason,)
-
-
-def _further_knots(found: Arrived, target: Target, limit: float, extent: float) -> tuple[list[float], str]:
+def _further_knots(found: Arrived, target: Target, way: Way, limit: float) -> tuple[Net | None, str]:
     """A knot in each span that is too far off for other reasons than noise, or why there is none."""
+    extent = way.extent
     net, feet = found.match.net, found.match.feet
     u, distances = feet.parameters[:, 0], feet.distances
     misses = feet.points - target.points[found.inliers]
@@ -245,10 +158,12 @@ def _further_knots(found: Arrived, target: Target, limit: float, extent: float) 
             sparse += 1
         else:
             knots.append(knot)
+    if knots:
+        return net.refined(knots), ""
     worst = f"the largest distance is {distances.max() * extent:.3g} where {limit * extent:.3g} was asked for"
     if sparse and not noisy:
-        return knots, f"{worst}: the points are too few for further knots"
-    return knots, f"{worst}: noise of a standard deviation of about {noise * extent:.3g} stops further knots"
+        return None, f"{worst}: the points are too few for further knots"
+    return None, f"{worst}: noise of a standard deviation of about {noise * extent:.3g} stops further knots"
 
 
 def _empty(
@@ -280,23 +195,14 @@ def _empty(
             own = checked_knots(knots, degree, count, "knots")
         except GeometryError as error:
             raise FitError(f"the knots cannot carry a curve: {error}") from error
-    logs = None
-    if not isinstance(weights, str):
-        given = np.array(weights, dtype=np.float64)
-        if given.shape != (count,) or not (given > 0.0).all():
-            raise FitError(f"weights of shape {given.shape} were given: {count} positive ones are needed")
-        logs = np.log(given)
+    logs = checked_logs(weights, (count,))
     return Net(knots=(own,), degrees=(degree,), points=np.zeros((count, dimension)), logs=logs, closed=closed)
 
 
 def _through(points: Reals, sites: Reals, net: Net) -> Net:
     """The net nearest to points at sites (n,) in [0, 1], with some bending left out."""
     low, high = net.knots[0][[0, -1]]
-    matrix = net.basis((low + (high - low) * sites)[:, None])
-    normal = (matrix.T @ matrix).toarray() / len(points)
-    # a hair of every control point holds those that neither points nor bending determine
-    normal += FIRST_STIFFNESS * net.bending + 1e-14 * np.eye(len(normal))
-    return replace(net, points=np.linalg.solve(normal, np.asarray(matrix.T @ points) / len(points)))
+    return net.through(points, (low + (high - low) * sites)[:, None], FIRST_STIFFNESS)
 
 
 def _of_curve(curve: Curve, *, closed: bool) -> Net:
@@ -319,19 +225,9 @@ def _ends(ends: Any, centre: Reals, extent: float) -> Reals:
     return np.asarray((pair - centre) / extent)
 
 
-def _limit(tolerance: float | None, extent: float) -> float | None:
-    if tolerance is not None and not tolerance > 0.0:
-        raise FitError(f"a tolerance of {tolerance} was asked for: it must be positive")
-    return None if tolerance is None else tolerance / extent
-
-
-def _check_words(weights: object, ends: object, power: float) -> None:
-    if isinstance(weights, str) and weights not in ("fixed", "free"):
-        raise FitError(f"weights {weights!r} are unknown: `fixed` (all one), `free`, or positive numbers")
+def _check_ends(ends: object) -> None:
     if isinstance(ends, str) and ends not in ("fixed", "free"):
         raise FitError(f"ends {ends!r} are unknown: `fixed`, `free`, or the first and the last point")
-    if not power >= 2.0:
-        raise FitError(f"power {power} was asked for: at least 2 (least squares); 4 weighs the largest distances more")
 
 
 def _check_numbers(net: Net, points: Reals, *, weights_free: bool) -> None:

@@ -11,7 +11,7 @@ from scipy.linalg import null_space
 from scipy.sparse import csr_array, hstack
 
 from bladewright.fitting.least_squares import Penalty, Quadratic, Solution, minimised, summed
-from bladewright.fitting.projection import Feet, nearest_parameters, projected
+from bladewright.fitting.projection import Feet, certified, projected, sampled_parameters
 from bladewright.numerics.quadrature import panels
 from bladewright.nurbs.basis import Reals, basis, breaks
 from bladewright.nurbs.blossom import knot_change
@@ -147,6 +147,14 @@ class Net:
             logs = np.clip(logs, -LIMIT, LIMIT)
         return replace(self, points=points, logs=logs)
 
+    def through(self, points: Reals, parameters: Reals, stiffness: float) -> "Net":
+        """The net nearest to points (m, d) at parameters (m, k), with a weight of its bending."""
+        matrix = self.basis(parameters)
+        normal = (matrix.T @ matrix).toarray() / len(points)
+        # a hair of every control point holds those that neither points nor bending determine
+        normal += stiffness * self.bending + 1e-14 * np.eye(len(normal))
+        return replace(self, points=np.linalg.solve(normal, np.asarray(matrix.T @ points) / len(points)))
+
     def refined(self, knots: Sequence[float], direction: int = 0) -> "Net":
         """The same shape with further knots."""
         shape = inserted(self.shape, knots, "u" if direction == 0 else "v")
@@ -227,14 +235,15 @@ def matched(
     stiffness: float = 0.0,
     near: Reals | None = None,
     evaluations: int = 200,
-    tolerance: float = 1e-13,
+    tolerance: float = 1e-8,
+    certain: bool = False,
 ) -> Match:
     """The net at which the penalties of true distances, and `stiffness` times its bending, are least.
 
-    Places follow the shape by descent while it moves; after that they are searched for globally, and the whole is
-    repeated where a nearer one is found.
+    Places follow the shape by descent while it moves; after that they are searched for from samples everywhere, with
+    `certain` by bounds, and the whole is repeated where a nearer one is found.
     """
-    places = nearest_parameters(net.shape, target.points) if near is None else near
+    places = sampled_parameters(net.shape, target.points) if near is None else near
     total, converged = 0, False
     for _ in range(GLOBAL):
         search = _Search(net=net, target=target, penalty=penalty, stiffness=stiffness, near=places)
@@ -246,11 +255,37 @@ def matched(
         feet = search.feet(net, search.near)
         everywhere = projected(net.shape, target.points, None, closed=net.closed, held=target.held)
         nearer = everywhere.distances < feet.distances - 1e-8
-        if not nearer.any():
-            break
         places = np.where(nearer[:, None], everywhere.parameters, feet.parameters)
+        if not nearer.any() and certain:
+            places = certified(net.shape, target.points, feet)
+        if np.array_equal(places, feet.parameters):
+            break
     feet = search.feet(net, feet.parameters)
-    return Match(net=net, feet=feet, data=search.of_distances(net, feet), evaluations=total, converged=converged)
+    return Match(
+        net=net, feet=feet, data=quadratic_of(net, target, feet, penalty), evaluations=total, converged=converged
+    )
+
+
+def quadratic_of(net: Net, target: Target, feet: Feet, penalty: Penalty) -> Quadratic:
+    """The objective of distances alone near the present unknowns."""
+    total: Quadratic | None = None
+    for first in range(0, len(feet.points), AT_ONCE):
+        rows = slice(first, first + AT_ONCE)
+        here = np.flatnonzero((feet.across_of >= first) & (feet.across_of < first + AT_ONCE))
+        across_of = feet.across_of[here] - first
+        matrix = net.basis(feet.parameters[rows])
+        places = feet.points[rows]
+        part = summed(
+            net.rows(matrix, places, feet.along[rows]),
+            feet.distances[rows],
+            net.rows(csr_array(matrix[across_of]), places[across_of], feet.across[here]),
+            across_of,
+            penalty,
+            target.weights[rows],
+        )
+        total = part if total is None else total + part
+    assert total is not None  # noqa: S101 - a target has points
+    return total
 
 
 class _Search:
@@ -270,27 +305,7 @@ class _Search:
         net = self.net.changed(unknowns)
         feet = self.feet(net, self.near)
         self.tried = feet.parameters
-        return self.of_distances(net, feet) + self._of_net(net)
-
-    def of_distances(self, net: Net, feet: Feet) -> Quadratic:
-        total: Quadratic | None = None
-        for first in range(0, len(feet.points), AT_ONCE):
-            rows = slice(first, first + AT_ONCE)
-            here = np.flatnonzero((feet.across_of >= first) & (feet.across_of < first + AT_ONCE))
-            across_of = feet.across_of[here] - first
-            matrix = net.basis(feet.parameters[rows])
-            places = feet.points[rows]
-            part = summed(
-                net.rows(matrix, places, feet.along[rows]),
-                feet.distances[rows],
-                net.rows(csr_array(matrix[across_of]), places[across_of], feet.across[here]),
-                across_of,
-                self.penalty,
-                self.target.weights[rows],
-            )
-            total = part if total is None else total + part
-        assert total is not None  # noqa: S101 - a target has points
-        return total
+        return quadratic_of(net, self.target, feet, self.penalty) + self._of_net(net)
 
     def _of_net(self, net: Net) -> Quadratic:
         dimension, free = net.points.shape[1], net.free

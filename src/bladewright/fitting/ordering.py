@@ -37,7 +37,9 @@ def sites_along(points: Reals, *, closed: bool) -> Reals:
     steps = np.sqrt(np.sum(np.diff(path, axis=0) ** 2, axis=-1))
     ends = np.concatenate([[0.0], np.cumsum(steps)])
     share = np.linspace(0.0, 1.0, FINE, endpoint=False)
-    fine = np.concatenate([(path[:-1, None] + share[:, None] * np.diff(path, axis=0)[:, None]).reshape(-1, path.shape[1]), path[-1:]])
+    fine = np.concatenate(
+        [(path[:-1, None] + share[:, None] * np.diff(path, axis=0)[:, None]).reshape(-1, path.shape[1]), path[-1:]]
+    )
     places = np.append((ends[:-1, None] + share * steps[:, None]).ravel(), ends[-1])
     _, nearest = cKDTree(fine).query(points)
     sites = places[nearest]

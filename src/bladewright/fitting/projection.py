@@ -5,9 +5,10 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.spatial import cKDTree
 
 from bladewright.nurbs.basis import Reals, breaks
-from bladewright.nurbs.bezier import Patches, patches
+from bladewright.nurbs.bezier import Patches, patches, sampled
 from bladewright.nurbs.closest import TOLERANCE
 from bladewright.nurbs.curve import Curve
 from bladewright.nurbs.polish import Places, polished
@@ -16,6 +17,12 @@ from bladewright.nurbs.surface import Surface
 
 STEPS = 60
 """of Newton's iteration, halvings among them"""
+NEAR = 1e-9
+"""of the domain: step after which Newton's next one is rounding"""
+SAMPLES = ((6, 6), (24, 1))
+"""places along and across a patch of a surface and of a curve at which a search starts"""
+CERTAIN = 0.01
+"""share of the largest distance that a search for nearer places leaves open"""
 AT_ONCE = 20_000
 """points that are projected onto a surface at a time, to bound the memory"""
 
@@ -54,8 +61,8 @@ def projected(
     A closed curve has no ends to be held at. The places of points `held[0]` (j,) stay at parameters `held[1]` (j, k).
     """
     if near is None:
-        parameters = nearest_parameters(shape, points)
-    elif isinstance(shape, Curve):
+        near = sampled_parameters(shape, points)
+    if isinstance(shape, Curve):
         parameters = _descended_on_curve(shape, points, near[:, 0], closed=closed)[:, None]
     else:
         parameters = _descended_on_surface(shape, points, near)
@@ -73,11 +80,26 @@ def projected(
     return framed(parameters, np.asarray(place), points, tangents, free)
 
 
-def nearest_parameters(shape: Curve | Surface, points: Reals) -> Reals:
-    """Parameters (n, k) of the places on a shape that are nearest to points (n, d) of all."""
+def sampled_parameters(shape: Curve | Surface, points: Reals) -> Reals:
+    """Parameters (n, k) of those of many places on a shape that are nearest to points (n, d)."""
+    on = patches(shape)
+    samples = sampled(on, *SAMPLES[isinstance(shape, Curve)])
+    index = cKDTree(samples.points).query(points)[1]
+    low, high = on.low[samples.patch[index]], on.high[samples.patch[index]]
+    return (low + samples.local[index] * (high - low))[:, : 1 if isinstance(shape, Curve) else 2]
+
+
+def certified(shape: Curve | Surface, points: Reals, feet: Feet) -> Reals:
+    """Parameters (n, k) of places at most a `CERTAIN` of the largest distance further away than the nearest of all.
+
+    Those of `feet` stay where the search has nothing nearer.
+    """
     on = patches(shape)
     extent = float(np.ptp(shape.control_points.reshape(-1, points.shape[1]), axis=0).max())
-    return _parameters(on, nearest(on, points, TOLERANCE * extent))[:, : 1 if isinstance(shape, Curve) else 2]
+    found = nearest(on, points, max(TOLERANCE * extent, CERTAIN * float(feet.distances.max())))
+    nearer = np.sqrt(found.square) < feet.distances * (1.0 - CERTAIN) - TOLERANCE * extent
+    parameters = _parameters(on, found)[:, : feet.parameters.shape[1]]
+    return np.where(nearer[:, None], parameters, feet.parameters)
 
 
 def framed(parameters: Reals, places: Reals, points: Reals, tangents: Sequence[Reals], free: NDArray[np.bool_]) -> Feet:
@@ -126,22 +148,18 @@ def descended(
     step, square = _step(derivatives(u), points)
     for _ in range(STEPS):
         trial = np.clip(u[active] + factor[active] * step[active], *domain)
-        # a step below the spacing of the parameters changes nothing
-        moving = (trial - u[active]) ** 2 > (4e-16 * (domain[1] - domain[0])) ** 2
+        moving = trial != u[active]
         active, trial = active[moving], trial[moving]
         if len(active) == 0:
             break
         new_step, new_square = _step(derivatives(trial), points[active])
-        lower = new_square <= square[active] * (1.0 + 1e-14)
+        # so close to the end, whether the distance falls is rounding, and Newton's step is exact
+        done = (trial - u[active]) ** 2 <= (NEAR * (domain[1] - domain[0])) ** 2
+        lower = done | (new_square <= square[active])
         taken = active[lower]
-        # a step that no longer shrinks is rounding
-        done = new_step[lower] ** 2 >= 0.25 * step[taken] ** 2
-        done &= new_step[lower] ** 2 <= (1e-12 * (domain[1] - domain[0])) ** 2
         u[taken], step[taken], square[taken], factor[taken] = trial[lower], new_step[lower], new_square[lower], 1.0
         factor[active[~lower]] *= 0.5
-        kept = np.ones(len(active), dtype=bool)
-        kept[np.flatnonzero(lower)[done]] = False
-        active = active[kept]
+        active = active[~done]
     return u
 
 

@@ -15,8 +15,10 @@ STIFFNESSES = (1e-4, 1e-6, 1e-8, 1e-10, 1e-13)
 """weights of the bending, in extents of the points squared"""
 NOISE_ALLOWS = 1.002
 """rise of the root mean square that a stiffness may cost where points leave control points undetermined"""
-ROUGH = 1e-6
+ROUGH = 1e-3
 """relative fall of the value at which a match on the way ends"""
+ROUNDS = 25
+"""of further knots"""
 OUTLYING = 4.5
 """deviations of the noise from which a point is an outlier"""
 MEDIAN = 0.6745
@@ -34,6 +36,10 @@ class Way:
     robust: bool = False
     always_stiff: bool = False
     """whether the bending stays as far as the noise allows it, also where every direction is determined"""
+    limit: float | None = None
+    """largest distance, in extents"""
+    extent: float = 1.0
+    """of the points in their own unit, for messages"""
     progress: Callable[[str], None] | None = None
 
     def say(self, text: str) -> None:
@@ -59,6 +65,28 @@ class Arrived:
     def rank(self) -> int:
         """Directions of the unknowns that the points determine."""
         return rank_of(self.singular_values)
+
+
+Further = Callable[[Arrived, Target, Way, float], tuple[Net | None, str]]
+
+
+def within(net: Net, target: Target, way: Way, further: Further) -> tuple[Arrived, tuple[str, ...]]:
+    """The match within a largest distance, where there is one, and why it is not reached where it is not.
+
+    `further` gives a net with further knots, or None and the reason.
+    """
+    found = arrived(net, target, way)
+    evaluations, reason = found.evaluations, ""
+    for _ in range(ROUNDS):
+        if way.limit is None or found.match.feet.distances.max() <= way.limit:
+            return replace(found, evaluations=evaluations), ()
+        more, reason = further(found, target, way, way.limit)
+        if more is None:
+            return replace(found, evaluations=evaluations), (reason,)
+        way.say(f"{len(more.points)} control points")
+        found = arrived(more, target, way, warm=True)
+        evaluations += found.evaluations
+    return replace(found, evaluations=evaluations), (f"the tolerance is not reached after {ROUNDS} rounds of knots",)
 
 
 def arrived(net: Net, target: Target, way: Way, *, warm: bool = False) -> Arrived:
@@ -99,9 +127,7 @@ def _softened(net: Net, target: Target, way: Way, near: Reals | None, *, last: i
     total = 0
     for stiffness in STIFFNESSES[0 if last is None else -last :]:
         way.say(f"{int(np.prod(net.counts))} control points, stiffness {stiffness:g}")
-        match = matched(
-            net, target, penalty=Penalty(), stiffness=stiffness, near=near, evaluations=40, tolerance=ROUGH
-        )
+        match = matched(net, target, penalty=Penalty(), stiffness=stiffness, near=near, evaluations=40, tolerance=ROUGH)
         net, near = match.net, match.feet.parameters
         total += match.evaluations
         tried.append(match)
@@ -111,7 +137,7 @@ def _softened(net: Net, target: Target, way: Way, near: Reals | None, *, last: i
         best = next(i for i, each in enumerate(tried) if _rms(each) <= enough)
         stiffness = STIFFNESSES[-len(tried) :][best]
         net, near = tried[best].net, tried[best].feet.parameters
-    match = matched(net, target, penalty=Penalty(), stiffness=stiffness, near=near)
+    match = matched(net, target, penalty=Penalty(), stiffness=stiffness, near=near, certain=True)
     return replace(match, evaluations=total + match.evaluations)
 
 
@@ -125,9 +151,7 @@ def _rms(match: Match) -> float:
     return float(np.sqrt(np.mean(match.feet.distances**2)))
 
 
-def _without_outliers(
-    net: Net, target: Target, way: Way, *, warm: bool
-) -> tuple[Net, NDArray[np.bool_], int]:
+def _without_outliers(net: Net, target: Target, way: Way, *, warm: bool) -> tuple[Net, NDArray[np.bool_], int]:
     """The net matched softly, and which points are not further from it than noise explains."""
     feet = projected(net.shape, target.points, closed=net.closed)
     near, total = feet.parameters, 0
