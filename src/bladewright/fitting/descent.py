@@ -20,6 +20,10 @@ STRIDE = 2.0
 """largest change of a variable in one step"""
 PENALTY = 4.0
 """merit of a violated inequality, in multiples of the largest multiplier seen"""
+MENDED = (1.0, 0.5, 0.2, 0.05, 0.0)
+"""part of a violation that a step mends: the largest that bounds and other inequalities allow"""
+CHANGES = 20
+"""of the inequalities that hold a step"""
 SLIGHT = 1e-12
 """predicted part of the cost below which a step is not worth its evaluation"""
 
@@ -119,24 +123,36 @@ def _step(
     )
     upper, right = triangle[:count, :count], triangle[:count, -1]
     free = solve_triangular(upper, right)
-    # rows @ step <= room; what is violated already need not be mended beyond what bounds allow
     rows = np.vstack([walls, np.eye(count), -np.eye(count)])
-    room = np.concatenate([-constrained, high, -low])
-    step, multiplier = free, np.zeros(len(rows))
+    for mended in MENDED:
+        room = np.concatenate([np.where(constrained > 0.0, -mended * constrained, -constrained), high, -low])
+        found = _least(upper, free, rows, room)
+        if found is not None:
+            return found[0], float(np.max(found[1][: len(walls)], initial=0.0))
+    return np.zeros(count), 0.0
+
+
+def _least(upper: Reals, free: Reals, rows: Reals, room: Reals) -> tuple[Reals, Reals] | None:
+    """The step with rows @ step <= room nearest to the free one, and the multipliers; None where there is none.
+
+    Distances are measured through the triangle `upper`. Rows join in as a step breaks them.
+    """
+    step, multipliers = free, np.zeros(len(rows))
     working = np.zeros(len(rows), dtype=bool)
-    for _ in range(20):
+    aim = np.append(np.zeros(len(free)), 1.0)
+    for _ in range(CHANGES):
         broken = rows @ step - room > 1e-12 * (1.0 + np.abs(room))
         if not np.any(broken & ~working):
-            break
+            return step, multipliers
         working |= broken
         within = rows[working]
         turned = solve_triangular(upper, within.T, trans="T")
-        need = within @ free - room[working]
-        system = np.vstack([-turned, need[None]])
-        weights, _ = nnls(system, np.append(np.zeros(count), 1.0), maxiter=50 * count)
-        rest = system @ weights - np.append(np.zeros(count), 1.0)
-        if not -rest[-1] > 1e-14:
-            break
-        step = free + solve_triangular(upper, -turned @ (weights / -rest[-1]))
-        multiplier[working] = weights / -rest[-1]
-    return step, float(np.max(multiplier[: len(walls)], initial=0.0))
+        system = np.vstack([-turned, (within @ free - room[working])[None]])
+        weights, _ = nnls(system, aim, maxiter=50 * len(free))
+        short = float(1.0 - system[-1] @ weights)
+        if not short > 1e-14:
+            return None
+        step = free - solve_triangular(upper, turned @ (weights / short))
+        multipliers = np.zeros(len(rows))
+        multipliers[working] = weights / short
+    return None

@@ -12,7 +12,7 @@ from typing import Any, final
 import numpy as np
 
 from bladewright.blade.blade import Blade, surface_of
-from bladewright.blade.exact import ExactBlade, exact_blade, moved
+from bladewright.blade.exact import SURVEY, ExactBlade, exact_blade, moved
 from bladewright.blade.fitness import chord_of, knots_for
 from bladewright.blade.knots import DEGREE, Knots
 from bladewright.blade.native import native_sides
@@ -29,7 +29,7 @@ from bladewright.section.curves import side_curve
 from bladewright.section.sampling import sample_places
 from bladewright.section.unified import UnifiedSection
 
-HOLDING = np.linspace(0.0, 1.0, 7)
+HOLDING = SURVEY
 """places along the span where it is asked whether the thickness can hold the edges' radii"""
 
 
@@ -68,15 +68,18 @@ class Model(ABC):
     def nose_rates(self, shape: Shape, paths: Sequence[str]) -> Reals:
         """Derivatives (k, ...) of `shape.noses`."""
 
-    def rates(self, shape: Shape, feet: Feet, paths: Sequence[str]) -> Reals:
+    @staticmethod
+    def rates(shape: Shape, feet: Feet, tangents: tuple[Reals, Reals]) -> Reals:
         """Derivatives (n, k, d) of the places, at held parameters."""
-        tangents = self.tangents(shape, paths)
-        found = np.empty((len(feet.u), len(paths), feet.points.shape[1]))
+        count = len(tangents[0])
+        found = np.empty((len(feet.u), count, feet.points.shape[1]))
         for number, (side, rates) in enumerate(zip(shape.sides, tangents, strict=True)):
             rows = np.flatnonzero(feet.side == number)
+            if len(rows) == 0:
+                continue
             matrix = collocation(side, feet.u[rows], feet.v[rows])
-            columns = np.moveaxis(rates, 0, -2).reshape(-1, len(paths) * rates.shape[-1])
-            moved_places = (matrix @ columns).reshape(len(rows), len(paths), rates.shape[-1])
+            columns = np.moveaxis(rates, 0, -2).reshape(-1, count * rates.shape[-1])
+            moved_places = (matrix @ columns).reshape(len(rows), count, rates.shape[-1])
             if side.weights is not None:
                 weight = (matrix @ np.ravel(side.weights))[:, None, None]
                 share = feet.points[rows, None] * moved_places[..., -1:]

@@ -11,9 +11,12 @@ from bladewright.fitting.descent import Constrained
 from bladewright.fitting.feet import Feet, feet
 from bladewright.fitting.model import Model, Shape
 from bladewright.fitting.prior import Prior
+from bladewright.fitting.reach import Reach
 from bladewright.fitting.scales import Scales
 from bladewright.fitting.walls import Ends, Wall
 from bladewright.nurbs.basis import Reals
+EDGES = 0.05
+"""part of a cloud that tells of its edges"""
 FULLNESS = (0.8, 0.2)
 """how high the control point that sets an edge's radius usually stands, of the thickness beside it, and its spread"""
 
@@ -42,11 +45,13 @@ class Problem(Constrained):
         noise: float,
         alone: float,
         ends: Ends,
+        reach: Reach,
         hint: Feet,
         margin: float = 0.0,
     ) -> None:
         self.points, self.roots, self.model = points, np.sqrt(weights * ~ends.covered), model
         self.start, self.paths, self.scales = start, tuple(paths), scales
+        self.reach = reach
         self.noise, self.walls, self.ends, self.margin = noise, ends.walls, ends.near, margin
         self.trust = noise / float(np.sqrt(alone))
         """what the prior's spreads are measured by: larger where points repeat each other"""
@@ -110,6 +115,8 @@ class Problem(Constrained):
             _, normal, miss = wall.misses(state.shape.exact)
             rows.append(self._wall_weight(wall) * np.sum(normal * miss, axis=-1) / chord)
         rows.append(self._nose_weight(state.shape) * (np.ravel(state.shape.noses[1]) - FULLNESS[0]))
+        excess = self.reach.excess(self.reach.edges(state.shape))
+        rows.append(self._edge_weight * np.maximum(excess, 0.0) / chord)
         rows.append(self.prior.matrix @ z - self.prior.aim)
         return np.concatenate(rows)
 
@@ -119,7 +126,8 @@ class Problem(Constrained):
         assert state is not None
         chord, size = self.model.chord, self.scales.size
         on = state.feet
-        rates = self.model.rates(state.shape, on, self.paths)
+        tangents = self.model.tangents(state.shape, self.paths)
+        rates = self.model.rates(state.shape, on, tangents)
         along = self.roots[:, None] * on.normals
         out = (self.roots[:, None] * on.beyond)[self.ends]
         blocks = [
@@ -134,7 +142,15 @@ class Problem(Constrained):
         noses = self.model.nose_rates(state.shape, self.paths)
         held, fullness = (noses[:, i].reshape(len(self.paths), -1).T for i in (0, 1))
         blocks.append(self._nose_weight(state.shape) * fullness)
+        edges = self.reach.edges(state.shape)
+        out = edges.normals * (self._edge_weight * (self.reach.excess(edges) > 0.0))[:, None]
+        blocks.append(np.einsum("nkd,nd->nk", self.model.rates(state.shape, edges, tangents), out) / chord)
         return np.concatenate([*(block * size for block in blocks), self.prior.matrix]), held * size
+
+    @property
+    def _edge_weight(self) -> float:
+        """As of so many points, which the part of the cloud has that tells of an edge."""
+        return float(np.sqrt(max(1.0, EDGES * len(self.points) / max(1, len(self.reach.u)))))
 
     def _nose_weight(self, shape: Shape) -> float:
         stations = shape.noses[0].size / 4.0

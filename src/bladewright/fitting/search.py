@@ -17,6 +17,7 @@ from bladewright.fitting.feet import feet
 from bladewright.fitting.model import Model, model_of
 from bladewright.fitting.prior import prior_of
 from bladewright.fitting.problem import Problem, State
+from bladewright.fitting.reach import reach_of
 from bladewright.fitting.scales import scales_of
 from bladewright.fitting.scatter import Scatter, scatter_of
 from bladewright.fitting.walls import Ends, ends_of
@@ -143,6 +144,7 @@ def _prepared(task: Task, start: Design, design: Design, noise: float | None, be
         noise=misfit if noise is None else noise,
         alone=scatter.alone(len(paths)),
         ends=ends,
+        reach=reach_of(points, on, scatter.inliers & ~ends.covered),
         hint=on,
         margin=SLACK,
     )
