@@ -14,7 +14,7 @@ import pytest
 from bladewright.cli import main
 from bladewright.errors import DesignError
 
-COMMANDS = ["build", "verify", "mesh", "show", "new", "schema"]
+COMMANDS = ["build", "verify", "fit", "import", "mesh", "show", "new", "schema"]
 
 
 def test_the_version_names_package_and_opencascade_without_loading_it():

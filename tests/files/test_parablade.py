@@ -1,5 +1,6 @@
 """ParaBlade's designs, imported: the built sides lie on those that ParaBlade evaluates."""
 
+import re
 from functools import cache
 from importlib.util import module_from_spec, spec_from_file_location
 from pathlib import Path
@@ -193,13 +194,23 @@ def test_blades_that_would_intersect_are_fewer_and_it_is_said(file):
         imported.design.changed("blade_count", count + 1).build()
 
 
-def test_an_edge_that_its_thickness_cannot_hold_is_made_sharper_and_it_is_said(file):
-    # two control points along the chord leave no room for a blunt trailing edge on a thin blade
-    text = SECTION.replace("radius_out = 0.006", "radius_out = 0.5")
-    text = text.replace("0.4\ndist_out", "0.3\ndist_out").replace("theta_in = 25", "theta_in = -10")
-    imported = import_parablade(file(text), chordwise=8)
-    assert 0.0 < imported.design.trailing_edge_radius <= 0.51
-    imported.design.build()
+def wild(seed, count):
+    """Radii and thicknesses drawn over three orders of magnitude, as a matcher leaves them that checks nothing."""
+    random, text = np.random.default_rng(seed), BLADE
+    thicknesses = [f"thickness_{side}_{i}" for side in ("upper", "lower") for i in range(1, 7)]
+    for key in ("radius_in", "radius_out", *thicknesses):
+        high = 0.4 if key.startswith("radius") else 0.12
+        values = np.exp(random.uniform(np.log(1e-4), np.log(high), count))
+        text = re.sub(rf"(?m)^{key} = .*", f"{key} = " + ", ".join(f"{x:.5f}" for x in values), text)
+    return text
+
+
+@pytest.mark.parametrize(("seed", "count", "lowered"), [(0, 4, ""), (11, 1, "leading"), (23, 2, "trailing")])
+def test_radii_that_the_thickness_cannot_hold_are_lowered_until_the_blade_builds(seed, count, lowered, file):
+    imported = import_parablade(file(wild(seed, count)))
+    said = [text for text in imported.changed if "is lowered where the thickness beside it cannot hold" in text]
+    assert [text.split("_")[0] for text in said] == ([lowered] if lowered else [])
+    assert imported.design.build().surfaces
 
 
 def test_lines_that_parablade_passes_over_are_said(file):

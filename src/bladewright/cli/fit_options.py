@@ -17,6 +17,15 @@ def columns(_: click.Context, __: click.Parameter, text: str | None) -> tuple[st
     return None if text is None else tuple(word.strip() for word in text.split(","))
 
 
+def name(_: click.Context, __: click.Parameter, text: str | None) -> str | None:
+    """A name that a design may have."""
+    if text is not None and (not text.strip() or any(sign in text for sign in '/\\:*?"<>|')):
+        raise click.BadParameter(
+            f"'{text}' cannot be a design's name: it names files, so leave / \\ : * ? \" < > | out"
+        )
+    return text
+
+
 def bounds(_: click.Context, __: click.Parameter, pairs: Sequence[str]) -> dict[str, tuple[float, float]]:
     """Lowest and highest value by pattern; one that is left out is infinite."""
     found = {}

@@ -8,7 +8,7 @@ from bladewright.blade.unified import UnifiedBlade
 from bladewright.designs import Law
 from bladewright.files.parablade.channel import cut_channel, lengths_of
 from bladewright.files.parablade.config import Config
-from bladewright.files.parablade.matching import LEAST, held_radii, least_thickness, matched_thickness
+from bladewright.files.parablade.matching import held_radii, least_thickness, matched_thickness
 from bladewright.files.parablade.planes import Planes, averaged, stretched
 from bladewright.files.parablade.shape import Shape
 from bladewright.nurbs.basis import Reals
@@ -147,7 +147,7 @@ def _radii(config: Config, planes: Planes, thickness: dict[str, Reals], places: 
         rows = law_basis(count, fine)
         wanted = _interpolated(radii, planes.v, fine)
         law = np.linalg.lstsq(rows, wanted, rcond=None)[0]
-        law = np.clip(law, LEAST / 10.0, 0.999)
+        law = np.clip(law, 0.8 * np.min(radii), 0.999)
         changed = False
         for _ in range(60):
             over = rows @ law > limit
