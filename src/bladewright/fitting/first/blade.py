@@ -12,16 +12,21 @@ from bladewright.designs import Point
 from bladewright.errors import DesignError, FitError
 from bladewright.fitting.first.arrangement import found_arrangement
 from bladewright.fitting.first.camber import first_laws
-from bladewright.fitting.first.channel import EDGES, SPAN, Rough, rough_channel
+from bladewright.fitting.first.channel import EDGES, SPAN, Rough, curve_counts, rough_channel
 from bladewright.fitting.first.inliers import thinned, usual
-from bladewright.fitting.first.taming import tamed
+from bladewright.fitting.first.taming import sharpened, tamed
 from bladewright.fitting.first.matching import Laid, Match, matched, nearest, numbers_at
 from bladewright.fitting.first.outline import boundary, corner_sets
 from bladewright.fitting.first.shape import (
     ANGLE_IN,
     ANGLE_OUT,
+    EXTENT,
+    FIRST_THICKNESS,
+    PLACE,
     ROOT_IN,
     ROOT_OUT,
+    STAGGER,
+    START,
     TANGENT_IN,
     TANGENT_OUT,
     Shape,
@@ -30,6 +35,7 @@ from bladewright.fitting.structure import Structure
 from bladewright.nurbs.basis import Reals
 from bladewright.section.checks import UNITS
 from bladewright.section.laws import law_basis
+from bladewright.section.limits import ANGLES, RADII, TANGENTS, THICKNESSES
 
 Unit = Literal["m", "cm", "mm", "um", "in", "ft"]
 Arrangement = Literal["annular", "linear"]
@@ -37,6 +43,15 @@ MOST = 1200
 """points that a first blade is drawn through"""
 FEW = 450
 """points that decide which of several outlines it is"""
+
+
+LIMITS = {
+    **dict.fromkeys(ANGLES, (-89.0, 89.0)),
+    **dict.fromkeys(TANGENTS, (0.01, 1.0)),
+    **dict.fromkeys(RADII, (1e-5, 0.95)),
+    **dict.fromkeys(THICKNESSES, (1e-5, 9.0)),
+}
+"""of a first blade's laws"""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -87,7 +102,7 @@ def coordinates(points: Reals, arrangement: Arrangement) -> Reals:
 
 
 def _found(machine: Reals, *, revolved: bool, structure: Structure | None) -> Found:
-    counts = dict(structure.channel) if structure and structure.channel else dict.fromkeys(EDGES, 4)
+    counts = dict(structure.channel) if structure and structure.channel else None
     line = boundary(machine[:, :2])
     few = machine[np.random.default_rng(1).permutation(len(machine))[:FEW]]
     tried: list[Found] = []
@@ -101,9 +116,12 @@ def _found(machine: Reals, *, revolved: bool, structure: Structure | None) -> Fo
     samples, clustering = (structure.samples, structure.clustering) if structure else (16, 1.0)
     count = 4 if len(machine) > 400 else 3
     found = best
-    for curves in (dict.fromkeys(EDGES, 6), counts):
-        channel = _trimmed(found, curves, machine)
-        found = _continued(machine, channel, found, chordwise, count, samples, clustering)
+    for step in range(3):
+        channel = _trimmed(
+            found, dict.fromkeys(EDGES, 6) if step == 0 else counts or curve_counts(found.channel), machine
+        )
+        shape = _shape(channel, chordwise, samples, clustering)
+        found = _continued(machine, channel, found, shape, count, ends=step == 2)
     return found
 
 
@@ -122,26 +140,22 @@ def _laid(machine: Reals, channel: Rough) -> Laid:
     u, v = channel.places(machine[:, :2])
     a = channel.abscissa(u, v)
     size = 1.0 / machine[:, 1] if channel.revolved else np.ones(len(machine))
-    b = machine[:, 2]
-    chord = float(np.median(channel.extents()[1]))
-    return Laid(points=np.stack([a, b], axis=-1), v=np.clip(v, 0.0, 1.0), size=size, chord=chord)
+    length = float(np.median(channel.extents()[1]))
+    return Laid(
+        points=np.stack([a, machine[:, 2]], axis=-1), v=np.clip(v, 0.0, 1.0), size=size, chord=length, ratio=1.0
+    )
 
 
-def _matched(
-    machine: Reals,
-    channel: Rough,
-    chordwise: tuple[int, int],
-    count: int,
-    *,
-    turns: int,
-    samples: int = 16,
-    clustering: float = 1.0,
-) -> Found:
+def _shape(channel: Rough, chordwise: tuple[int, int], samples: int, clustering: float) -> Shape:
+    return Shape(chordwise=chordwise, samples=samples, clustering=clustering, scale=channel.size, extent=channel.extent)
+
+
+def _matched(machine: Reals, channel: Rough, chordwise: tuple[int, int], count: int, *, turns: int) -> Found:
     laid = _laid(machine, channel)
-    shape = Shape(chordwise=chordwise, samples=samples, clustering=clustering, scale=channel.size)
-    direction, chord = _direction(laid)
-    laid = replace(laid, chord=chord)
-    match = matched(shape, laid, first_laws(shape, laid, direction, count), turns=turns)
+    shape = _shape(channel, chordwise, 16, 1.0)
+    turn, lean, chord = _direction(shape, laid)
+    laid = replace(laid, chord=chord, ratio=chord / laid.chord)
+    match = matched(shape, laid, first_laws(shape, laid, turn, lean, count), turns=turns)
     return Found(channel=channel, shape=shape, laid=laid, match=match)
 
 
@@ -149,44 +163,54 @@ def _continued(
     machine: Reals,
     channel: Rough,
     before: Found,
-    chordwise: tuple[int, int],
+    shape: Shape,
     count: int,
-    samples: int,
-    clustering: float,
+    *,
+    ends: bool,
 ) -> Found:
     """What is found in another channel from the sections found in the one before."""
     old = numbers_at(before.match.laws, SPAN)
-    shape = Shape(chordwise=chordwise, samples=samples, clustering=clustering, scale=channel.size)
     numbers = np.zeros((len(SPAN), shape.columns))
-    numbers[:, :10] = old[:, :10]
-    numbers[:, 0], numbers[:, 2] = 0.0, channel.extents()[0]
+    numbers[:, :FIRST_THICKNESS] = old[:, :FIRST_THICKNESS]
+    numbers[:, START], numbers[:, EXTENT] = 0.0, 1.0
+    lengths = before.channel.extents()[1] / channel.extents()[1]
+    numbers[:, [ROOT_IN, ROOT_OUT]] *= np.sqrt(lengths)[:, None]
     u = np.linspace(0.0, 1.0, 15)
     for now, then in ((shape.upper, before.shape.upper), (shape.lower, before.shape.lower)):
-        values = old[:, then] @ law_basis(then.stop - then.start, u).T
+        values = lengths[:, None] * (old[:, then] @ law_basis(then.stop - then.start, u).T)
         numbers[:, now] = np.linalg.lstsq(law_basis(now.stop - now.start, u), values.T, rcond=None)[0].T
     laws = np.linalg.lstsq(law_basis(count, SPAN), numbers, rcond=None)[0]
-    laid = replace(_laid(machine, channel), chord=before.laid.chord)
-    match = matched(shape, laid, laws, turns=10, stiff=0.3)
+    laid = _laid(machine, channel)
+    laid = replace(laid, chord=before.laid.chord, ratio=before.laid.chord / laid.chord)
+    match = matched(shape, laid, laws, turns=10, stiff=0.3, ends=ends)
     return Found(channel=channel, shape=shape, laid=laid, match=match)
 
 
-def _direction(laid: Laid) -> tuple[Reals, float]:
-    """Angle (n,) of the chord at each point's place along the span, and the typical chord [m]."""
-    rows = law_basis(3, laid.v)
-    middle = np.linalg.lstsq(rows, laid.points, rcond=None)[0]
-    a, b = (laid.points - rows @ middle).T
-    moments = np.stack([a * a, a * b, b * b], axis=-1)
-    saa, sab, sbb = (rows @ np.linalg.lstsq(rows, moments, rcond=None)[0]).T
-    angle = 0.5 * np.arctan2(2.0 * sab, saa - sbb)
-    angle = np.clip(angle, -np.radians(86.0), np.radians(86.0))
-    along = (np.cos(angle) * a + np.sin(angle) * b) / laid.size
-    return angle, float(np.percentile(along, 98.0) - np.percentile(along, 2.0))
+def _direction(shape: Shape, laid: Laid) -> tuple[Callable[[Reals], Reals], Reals, float]:
+    """Angle of the chord by place along the span, law of the middle ordinate, and the typical chord [m]."""
+    rows, unit = law_basis(3, laid.v), shape.extent(laid.v)
+    a = laid.points[:, 0] / unit
+    a = a - rows @ np.linalg.lstsq(rows, a, rcond=None)[0]
+    lean = np.linalg.lstsq(rows, laid.points[:, 1], rcond=None)[0]
+    b = (laid.points[:, 1] - rows @ lean) / unit
+    moments = np.linalg.lstsq(rows, np.stack([a * a, a * b, b * b], axis=-1), rcond=None)[0]
+
+    def turn(v: Reals) -> Reals:
+        saa, sab, sbb = (law_basis(3, v) @ moments).T
+        return np.clip(0.5 * np.arctan2(2.0 * sab, saa - sbb), -np.radians(86.0), np.radians(86.0))
+
+    angle = turn(laid.v)
+    along = (np.cos(angle) * a + np.sin(angle) * b) * unit / laid.size
+    return turn, lean, float(np.percentile(along, 98.0) - np.percentile(along, 2.0))
 
 
 def _trimmed(found: Found, counts: dict[str, int], machine: Reals) -> Rough:
     """The channel between the ends of the camber lines, and between the points furthest in and out."""
     numbers = numbers_at(found.match.laws, SPAN)
-    starts, ends = (found.channel.u_at(numbers[:, column]) for column in (0, 2))
+    extents = found.channel.extents()[0]
+    first = extents * numbers[:, START]
+    last = first + extents * numbers[:, EXTENT]
+    starts, ends = (found.channel.u_at(a) for a in (first, last))
     ends = np.maximum(ends, starts + 0.05)
     low, high = _reached(found, machine)
     across = np.linspace(0.0, 1.0, 41)
@@ -238,25 +262,25 @@ def built_blade(
     span = structure.span if structure else {}
     numbers = numbers_at(found.match.laws, SPAN)
     shape, channel = found.shape, found.channel
-    _, lengths = channel.extents()
+    lengths = channel.extents()[1]
     linear = arrangement == "linear"
 
     def law(values: Reals, field: str) -> float | tuple[float, ...]:
         count = span.get(field, 4)
         fitted = np.linalg.lstsq(law_basis(count, SPAN), values, rcond=None)[0]
-        fitted = np.clip(fitted, np.min(values), np.max(values))
+        low, high = LIMITS.get(field, (-np.inf, np.inf))
+        fitted = np.clip(fitted, low, high)
         return tuple(float(x) for x in fitted) if count > 1 else float(fitted[0])
 
-    extent = numbers[:, 2] - numbers[:, 0]
-    place = numbers[:, 1]
-    most = float(np.max(numbers[:, shape.columns - sum(shape.chordwise) :]))
+    place = numbers[:, PLACE]
+    most = float(np.max(lengths * np.max(numbers[:, FIRST_THICKNESS:], axis=1)))
     if linear:
         around = {"pitch": (pitch if pitch is not None else 2.0 * (wide + most)) / metre}
     else:
         count = blade_count if blade_count is not None else max(1, int(np.pi / max(wide, 1e-3)))
         around = {"blade_count": min(count, 10_000)}
     error: DesignError | None = None
-    for _ in range(8):
+    for attempt in range(10):
         roots = {ROOT_IN: numbers[:, ROOT_IN] ** 2, ROOT_OUT: numbers[:, ROOT_OUT] ** 2}
         design = UnifiedBlade(
             name=name,
@@ -268,15 +292,15 @@ def built_blade(
                     place / metre if linear else np.degrees(place), "place"
                 )
             },
-            stagger=law(np.degrees(np.arctan2(numbers[:, 3] - numbers[:, 1], extent)), "stagger"),
+            stagger=law(np.degrees(numbers[:, STAGGER]), "stagger"),
             metal_angle_in=law(np.degrees(numbers[:, ANGLE_IN]), "metal_angle_in"),
             metal_angle_out=law(np.degrees(numbers[:, ANGLE_OUT]), "metal_angle_out"),
             tangent_in=law(numbers[:, TANGENT_IN], "tangent_in"),
             tangent_out=law(numbers[:, TANGENT_OUT], "tangent_out"),
-            leading_edge_radius=law(np.clip(roots[ROOT_IN] / lengths, 1e-5, 0.9), "leading_edge_radius"),
-            trailing_edge_radius=law(np.clip(roots[ROOT_OUT] / lengths, 1e-5, 0.9), "trailing_edge_radius"),
-            thickness_upper=tuple(law(t / lengths, "thickness_upper") for t in numbers[:, shape.upper].T),
-            thickness_lower=tuple(law(t / lengths, "thickness_lower") for t in numbers[:, shape.lower].T),
+            leading_edge_radius=law(np.clip(roots[ROOT_IN], 1e-5, 0.9), "leading_edge_radius"),
+            trailing_edge_radius=law(np.clip(roots[ROOT_OUT], 1e-5, 0.9), "trailing_edge_radius"),
+            thickness_upper=tuple(law(t, "thickness_upper") for t in numbers[:, shape.upper].T),
+            thickness_lower=tuple(law(t, "thickness_lower") for t in numbers[:, shape.lower].T),
             channel=Channel(
                 **{
                     name: tuple(
@@ -294,7 +318,7 @@ def built_blade(
             design.build()
         except DesignError as refused:
             error = refused
-            numbers = tamed(numbers, shape)
+            numbers = tamed(numbers, shape) if attempt > 3 else sharpened(numbers)
         else:
             return design
     raise FitError(f"no blade that can be built was found near the points: {error}")

@@ -1,5 +1,7 @@
 """A first camber: the middle between the two sides in a frame along the chord, alternating with which side is which."""
 
+from collections.abc import Callable
+
 import numpy as np
 from numpy.polynomial import chebyshev
 
@@ -7,9 +9,11 @@ from bladewright.fitting.first.matching import LONGEST, SHORTEST, STEEPEST, Laid
 from bladewright.fitting.first.shape import (
     ANGLE_IN,
     ANGLE_OUT,
-    END,
+    EXTENT,
+    PLACE,
     ROOT_IN,
     ROOT_OUT,
+    STAGGER,
     START,
     TANGENT_IN,
     TANGENT_OUT,
@@ -19,19 +23,24 @@ from bladewright.nurbs.basis import Reals
 from bladewright.section.laws import law_basis
 
 
-def first_laws(shape: Shape, laid: Laid, direction: Reals, count: int) -> Reals:
-    """Laws (count, q) of sections whose chord lies along an angle `direction` (n,) [rad] at each point."""
+def first_laws(shape: Shape, laid: Laid, turn: Callable[[Reals], Reals], lean: Reals, count: int) -> Reals:
+    """Laws (count, q) of sections whose chord lies along the angle `turn` [rad] by place along the span.
+
+    `lean` (k,) is a law of the ordinate along which the sections stand.
+    """
+    direction, unit = turn(laid.v), shape.extent(laid.v)
     cosine, sine = np.cos(direction), np.sin(direction)
-    a, b = laid.points.T
+    a = laid.points[:, 0] / unit
+    b = (laid.points[:, 1] - law_basis(len(lean), laid.v) @ lean) / unit
     along, across = cosine * a + sine * b, -sine * a + cosine * b
     rows = law_basis(count, laid.v)
     low, high = _envelope(rows, along, laid.v, -1.0, laid.flat), _envelope(rows, along, laid.v, 1.0, laid.flat)
     start, end = rows @ low, rows @ high
-    t = np.clip((along - start) / np.maximum(end - start, 1e-9 * laid.chord), 0.0, 1.0)
+    t = np.clip((along - start) / np.maximum(end - start, 1e-9), 0.0, 1.0)
     even = _even(t, laid)
     vander = (chebyshev.chebvander(2.0 * t - 1.0, 3)[:, :, None] * rows[:, None, :]).reshape(len(t), -1)
-    middle, half = np.zeros(vander.shape[1]), np.zeros(vander.shape[1])
     upper = across > vander @ _ridged(vander, across, even)
+    middle, half = np.zeros(vander.shape[1]), np.zeros(vander.shape[1])
     for _ in range(6):
         both = [_ridged(vander[mask], across[mask], even[mask]) for mask in (upper, ~upper) if np.any(mask)]
         if len(both) < 2:
@@ -41,52 +50,47 @@ def first_laws(shape: Shape, laid: Laid, direction: Reals, count: int) -> Reals:
         if np.array_equal(now, upper):
             break
         upper = now
-    return _as_laws(shape, laid, direction, count, (low, high), (middle, half))
+    return _as_laws(shape, laid, turn, lean, np.stack([low, high]), np.stack([middle, half]))
 
 
-def _as_laws(shape: Shape, laid: Laid, direction: Reals, count: int, ends: tuple[Reals, Reals], fields: tuple[Reals, Reals]) -> Reals:  # fmt: skip
+def _as_laws(
+    shape: Shape, laid: Laid, turn: Callable[[Reals], Reals], lean: Reals, ends: Reals, fields: Reals
+) -> Reals:
+    count = ends.shape[1]
     at = np.zeros(1) if laid.flat else np.linspace(0.0, 1.0, max(9, 2 * count + 1))
     rows = law_basis(count, at)
-    turn = np.interp(at, *_sorted(laid.v, direction)) if not laid.flat else direction[:1]
+    direction = turn(at)
+    cosine, sine = np.cos(direction)[:, None], np.sin(direction)[:, None]
     start, end = rows @ ends[0], rows @ ends[1]
-    size = np.interp(at, *_sorted(laid.v, laid.size)) if not laid.flat else laid.size[:1]
     to_bezier = np.linalg.inv(np.array([_bernstein(t) for t in (0.0, 1 / 3, 2 / 3, 1.0)]))
-    rows3 = chebyshev.chebvander(np.array([-1.0, -1 / 3, 1 / 3, 1.0]), 3)
-    middle, half = (rows3 @ field.reshape(4, count) @ rows.T for field in fields)
+    even = chebyshev.chebvander(np.array([-1.0, -1 / 3, 1 / 3, 1.0]), 3)
+    middle, half = (even @ field.reshape(4, count) @ rows.T for field in fields)
     ordinates = (to_bezier @ middle).T
     places = start[:, None] + np.array([0.0, 1 / 3, 2 / 3, 1.0]) * (end - start)[:, None]
-    line = np.stack(
-        [
-            np.cos(turn)[:, None] * places - np.sin(turn)[:, None] * ordinates,
-            np.sin(turn)[:, None] * places + np.cos(turn)[:, None] * ordinates,
-        ],
-        axis=-1,
-    )
+    line = np.stack([cosine * places - sine * ordinates, sine * places + cosine * ordinates], axis=-1)
     first, last = line[:, 1] - line[:, 0], line[:, 3] - line[:, 2]
-    extent = np.maximum(line[:, 3, 0] - line[:, 0, 0], 1e-6)
+    chord = line[:, 3] - line[:, 0]
+    extent = np.maximum(chord[:, 0], 0.02)
     numbers = np.zeros((len(at), shape.columns))
-    numbers[:, START], numbers[:, END] = line[:, 0], line[:, 3]
+    numbers[:, START], numbers[:, EXTENT] = line[:, 0, 0], extent
+    numbers[:, PLACE] = line[:, 0, 1] * shape.extent(at) + law_basis(len(lean), at) @ lean
+    numbers[:, STAGGER] = np.clip(np.arctan2(chord[:, 1], extent), -STEEPEST, STEEPEST)
     for angle, tangent, vector in ((ANGLE_IN, TANGENT_IN, first), (ANGLE_OUT, TANGENT_OUT, last)):
         numbers[:, angle] = np.clip(np.arctan2(vector[:, 1], np.maximum(vector[:, 0], 1e-9)), -STEEPEST, STEEPEST)
-        length = np.sqrt(np.sum(vector**2, axis=-1))
-        numbers[:, tangent] = np.clip(length / extent, SHORTEST, LONGEST)
-    thickness = np.maximum(np.mean(half[1:3], axis=0) / size, 2e-3 * laid.chord)
+        numbers[:, tangent] = np.clip(np.sqrt(np.sum(vector**2, axis=-1)) / extent, SHORTEST, LONGEST)
+    size = shape.scale((shape.extent(at) * (line[:, 0, 0] + extent / 2.0))[:, None], at)[:, 0]
+    thickness = np.maximum(np.mean(half[1:3], axis=0) * shape.extent(at) / size, 2e-3 * laid.ratio)
     for side in (shape.upper, shape.lower):
         shares = np.ones(side.stop - side.start)
         shares[[0, -1]] = 0.6
         numbers[:, side] = thickness[:, None] * shares
     numbers[:, [ROOT_IN, ROOT_OUT]] = np.sqrt(0.3 * thickness)[:, None]
-    return np.linalg.lstsq(rows, numbers, rcond=None)[0]
+    return np.asarray(np.linalg.lstsq(rows, numbers, rcond=None)[0])
 
 
 def _bernstein(t: float) -> list[float]:
     w = 1.0 - t
     return [w**3, 3 * w**2 * t, 3 * w * t**2, t**3]
-
-
-def _sorted(v: Reals, values: Reals) -> tuple[Reals, Reals]:
-    order = np.argsort(v)
-    return v[order], values[order]
 
 
 def _envelope(rows: Reals, along: Reals, v: Reals, sign: float, flat: bool) -> Reals:

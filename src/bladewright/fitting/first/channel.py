@@ -94,19 +94,29 @@ class Rough:
         low, high = float(np.min(abscissa)), float(np.max(abscissa))
         at = np.linspace(low, high, 200)
         radius = np.array([np.interp(at, row, r) for row, r in zip(abscissa, position[..., 1], strict=True)])
+        if not self.revolved:
+            radius = np.ones_like(radius)
         floor = 1e-3 * float(np.max(radius))
-        return 1.0 / np.maximum(radius, floor), low, high
+        return self.extents()[1][:, None] / np.maximum(radius, floor), low, high
 
     def size(self, abscissa: Reals, v: Reals) -> Reals:
-        """Size in the plane of one metre by abscissa (n, k) and v (n,)."""
-        if not self.revolved:
-            return np.ones_like(abscissa)
+        """Size in the plane of one meridional length by abscissa (n, k) and v (n,)."""
         table, low, high = self._sizes
         column = (abscissa - low) / (high - low) * 199.0
         row = np.broadcast_to((np.clip(v, 0.0, 1.0) * (len(SPAN) - 1))[:, None], abscissa.shape)
         return np.asarray(map_coordinates(table, [row, column], order=1, mode="nearest"))
 
+    def extent(self, v: Reals) -> Reals:
+        """Extent (n,) of the stream lines in the plane at v."""
+        return np.interp(v, SPAN, self._extents)
 
+    @cached_property
+    def _extents(self) -> Reals:
+        return self.extents()[0]
+
+
+NEAR = 3e-3
+"""of its length: how far a curve may move for fewer control points"""
 FOLDED = 0.02
 """least Jacobian of a channel, of its median"""
 
@@ -125,6 +135,21 @@ def rough_channel(pieces: dict[str, Reals], counts: dict[str, int], *, revolved:
         t = np.linspace(0.0, 1.0, 41)
         found = _along({name: _curve(found.curves[name], t) for name in EDGES}, counts, revolved=revolved)
     return found
+
+
+def curve_counts(channel: Rough) -> dict[str, int]:
+    """Control points, from 2 to 6, that the curves of a channel need so that none moves by more than NEAR."""
+    t = np.linspace(0.0, 1.0, 41)
+    counts = {}
+    for name in EDGES:
+        line = _curve(channel.curves[name], t)
+        size = float(np.sum(np.sqrt(np.sum(np.diff(line, axis=0) ** 2, axis=-1))))
+        for count in range(2, 7):
+            near = _curve(_through(line, count, line[0], line[-1]), t)
+            counts[name] = count
+            if np.max(np.sqrt(np.sum((near - line) ** 2, axis=-1))) < NEAR * size:
+                break
+    return counts
 
 
 def _along(pieces: dict[str, Reals], counts: dict[str, int], *, revolved: bool) -> Rough:

@@ -8,9 +8,12 @@ from numpy.typing import NDArray
 from bladewright.fitting.first.shape import (
     ANGLE_IN,
     ANGLE_OUT,
-    END,
+    EXTENT,
+    FIRST_THICKNESS,
+    PLACE,
     ROOT_IN,
     ROOT_OUT,
+    STAGGER,
     START,
     TANGENT_IN,
     TANGENT_OUT,
@@ -24,6 +27,10 @@ SHORTEST, LONGEST = 0.03, 0.97
 """of the extent: tangents of a first camber"""
 THINNEST = 5e-4
 """of the chord: half thickness of a first section"""
+FLOOR = 1e-3
+"""least weight of what keeps even that which the points leave open"""
+BEND = 0.7
+"""of it, for the bends of the laws along the span"""
 PLACES = np.linspace(0.0, 1.0, 65)
 """along a side, where the nearest place is sought"""
 
@@ -40,6 +47,8 @@ class Laid:
     """(n,) of one metre in the plane"""
     chord: float
     """typical, [m]"""
+    ratio: float
+    """typical chord of the meridional length"""
     flat: bool = False
     """whether all points belong to one section"""
 
@@ -108,8 +117,11 @@ def nearest(shape: Shape, laid: Laid, laws: Reals) -> tuple[Reals, NDArray[np.bo
     return s, upper, best / laid.size
 
 
-def matched(shape: Shape, laid: Laid, laws: Reals, *, turns: int = 25, stiff: float = 1.0) -> Match:
-    """Laws near the given ones whose sections lie close to the points."""
+def matched(shape: Shape, laid: Laid, laws: Reals, *, turns: int = 25, stiff: float = 1.0, ends: bool = False) -> Match:
+    """Laws near the given ones whose sections lie close to the points.
+
+    `ends` holds the ends of the camber lines at those of the stream lines.
+    """
     laws = held(shape, laid, laws)
     best: Match | None = None
     history: list[float] = []
@@ -125,23 +137,20 @@ def matched(shape: Shape, laid: Laid, laws: Reals, *, turns: int = 25, stiff: fl
         if best is None or mean < best.mean:
             best = Match(laws=laws, distances=distances, mean=mean, s=s, upper=upper)
         settled = len(history) > 6 and min(history[-3:]) > 0.97 * min(history[:-3])
-        if turn == turns or (settled and smooth <= 1.01e-3 * stiff):
+        if turn == turns or (settled and smooth <= 1.01 * FLOOR):
             break
-        laws = held(shape, laid, laws + _step(shape, laid, laws, s, upper, weight, smooth))
-        smooth = max(0.5 * smooth, 1e-3 * stiff)
+        laws = held(shape, laid, laws + _step(shape, laid, laws, s, upper, weight, smooth, ends))
+        smooth = max(0.5 * smooth, FLOOR)
     assert best is not None
     return replace(best, mean=float(np.mean(np.sort(best.distances)[: max(1, int(0.94 * len(best.distances)))])))
 
 
 def held(shape: Shape, laid: Laid, laws: Reals) -> Reals:
     """The laws within the family's limits, and radii that the thickness beside them can hold."""
-    laws = np.array(laws)
-    laws[:, [ANGLE_IN, ANGLE_OUT]] = np.clip(laws[:, [ANGLE_IN, ANGLE_OUT]], -STEEPEST, STEEPEST)
-    laws[:, [TANGENT_IN, TANGENT_OUT]] = np.clip(laws[:, [TANGENT_IN, TANGENT_OUT]], SHORTEST, LONGEST)
-    laws[:, 10:] = np.maximum(laws[:, 10:], THINNEST * laid.chord)
+    low, high, _ = _limits(shape, laid, ends=False)
+    laws = np.clip(laws, low, high)
     laws = _inward(shape, laid, laws)
-    least = np.sqrt(2e-4 * laid.chord)
-    laws[:, [ROOT_IN, ROOT_OUT]] = np.maximum(laws[:, [ROOT_IN, ROOT_OUT]], least)
+    least = np.sqrt(2e-4 * laid.ratio)
     at = stations(laid)
     numbers = numbers_at(laws, at)
     for column, beside, end in ((ROOT_IN, 2, 0), (ROOT_OUT, -3, 1)):
@@ -155,11 +164,8 @@ def held(shape: Shape, laid: Laid, laws: Reals) -> Reals:
             laws[:, column] = np.maximum(capped, 0.2 * least)
             excess = float(np.max((law_basis(len(laws), at) @ laws[:, column]) / most))
         laws[:, column] /= max(excess, 1.0)
-    size = np.median(laid.size)
-    extent = float(np.min(numbers[:, END.start] - numbers[:, START.start])) / size
-    laws[:, [ROOT_IN, ROOT_OUT]] = np.minimum(
-        laws[:, [ROOT_IN, ROOT_OUT]], np.sqrt(0.9 * max(extent, 1e-6 * laid.chord))
-    )
+    if laid.flat:
+        laws[:, [ROOT_IN, ROOT_OUT]] = np.minimum(laws[:, [ROOT_IN, ROOT_OUT]], np.sqrt(0.9 * laws[:, [EXTENT]]))
     return laws
 
 
@@ -171,7 +177,7 @@ def _inward(shape: Shape, laid: Laid, laws: Reals) -> Reals:
         room = shape.rooms(numbers, at, upper)
         for column, most in ((side.start, room[0]), (side.stop - 1, room[1])):
             share = float(np.min(0.8 * most / numbers[:, column]))
-            laws[:, column] = np.maximum(laws[:, column] * min(1.0, share), 0.2 * THINNEST * laid.chord)
+            laws[:, column] = np.maximum(laws[:, column] * min(1.0, share), 0.2 * THINNEST * laid.ratio)
     return laws
 
 
@@ -188,7 +194,7 @@ def _weights(laid: Laid, s: Reals, upper: NDArray[np.bool_], distances: Reals, p
 
 
 def _step(
-    shape: Shape, laid: Laid, laws: Reals, s: Reals, upper: NDArray[np.bool_], weight: Reals, smooth: float
+    shape: Shape, laid: Laid, laws: Reals, s: Reals, upper: NDArray[np.bool_], weight: Reals, smooth: float, ends: bool
 ) -> Reals:
     numbers = numbers_at(laws, laid.v)
     foot = shape.feet(numbers, laid.v, s, upper)
@@ -200,7 +206,7 @@ def _step(
     prior, aim = _priors(shape, laid, laws, smooth)
     matrix, away = np.concatenate([matrix, prior]), np.concatenate([away, aim])
     flat = laws.T.reshape(-1)
-    low, high, most = (np.repeat(a, len(laws)) for a in _limits(shape, laid))
+    low, high, most = (np.repeat(a, len(laws)) for a in _limits(shape, laid, ends=ends))
     free = np.ones(len(flat), dtype=bool)
     step = np.zeros(len(flat))
     normal, right = matrix.T @ matrix, matrix.T @ away
@@ -229,39 +235,42 @@ def _priors(shape: Shape, laid: Laid, laws: Reals, smooth: float) -> tuple[Reals
         rows.append((row, weight * aim))
 
     nu, nl = shape.chordwise
-    up, low = shape.upper.start, shape.lower.start
+    up, low, unit = shape.upper.start, shape.lower.start, 1.0 / laid.ratio
     if nu == nl:
         for i in range(nu):
-            add({up + i: 1.0 / laid.chord, low + i: -1.0 / laid.chord}, 0.0, 0.3 * smooth)
+            add({up + i: unit, low + i: -unit}, 0.0, 0.3 * smooth)
     for first, n in ((up, nu), (low, nl)):
         for i in range(n - 2):
-            parts = {first + i: 1.0 / laid.chord, first + i + 1: -2.0 / laid.chord, first + i + 2: 1.0 / laid.chord}
-            add(parts, 0.0, smooth)
+            add({first + i: unit, first + i + 1: -2.0 * unit, first + i + 2: unit}, 0.0, smooth)
     for column in (TANGENT_IN, TANGENT_OUT):
         add({column: 1.0}, 0.35, 0.03 * smooth)
     for column in (ROOT_IN, ROOT_OUT):
-        add({column: 1.0 / np.sqrt(laid.chord)}, 0.05, 0.03 * smooth)
+        add({column: 1.0 / np.sqrt(laid.ratio)}, 0.05, 0.03 * smooth)
     matrix = np.array([np.kron(row, np.eye(k)) for row, _ in rows]).reshape(-1, count * k)
     aims = np.repeat([aim for _, aim in rows], k)
     if k > 2:
-        units = _limits(shape, laid)[2]
+        units = _limits(shape, laid, ends=False)[2]
         bend = np.diff(np.eye(k), n=2, axis=0)
-        extra = np.kron(np.diag(0.05 * smooth / units), bend)
+        extra = np.kron(np.diag(BEND * smooth / units), bend)
         matrix, aims = np.concatenate([matrix, extra]), np.concatenate([aims, np.zeros(len(extra))])
     flat = laws.T.reshape(-1)
     return matrix, aims - matrix @ flat
 
 
-def _limits(shape: Shape, laid: Laid) -> tuple[Reals, Reals, Reals]:
+def _limits(shape: Shape, laid: Laid, *, ends: bool) -> tuple[Reals, Reals, Reals]:
     """Lowest and highest values of the columns, and the most that one step may change them."""
     low, high = np.full(shape.columns, -np.inf), np.full(shape.columns, np.inf)
-    most = np.full(shape.columns, 0.1 * laid.chord)
-    low[[ANGLE_IN, ANGLE_OUT]], high[[ANGLE_IN, ANGLE_OUT]] = -STEEPEST, STEEPEST
-    low[[TANGENT_IN, TANGENT_OUT]], high[[TANGENT_IN, TANGENT_OUT]] = SHORTEST, LONGEST
-    low[10:] = THINNEST * laid.chord
-    low[[ROOT_IN, ROOT_OUT]] = np.sqrt(2e-4 * laid.chord)
-    most[[ANGLE_IN, ANGLE_OUT]] = 0.35
-    most[[TANGENT_IN, TANGENT_OUT]] = 0.3
-    most[[ROOT_IN, ROOT_OUT]] = 0.15 * np.sqrt(laid.chord)
-    most[START] = most[END] = 0.15 * laid.chord * float(np.median(laid.size))
+    most = np.full(shape.columns, 0.1 * laid.ratio)
+    for columns, least, largest, step in (
+        ([START], -2.0 if laid.flat else -0.4, 0.6, 0.1),
+        ([EXTENT], 0.03 if laid.flat else 0.2, 1.5, 0.15),
+        ([STAGGER, ANGLE_IN, ANGLE_OUT], -STEEPEST, STEEPEST, 0.35),
+        ([TANGENT_IN, TANGENT_OUT], SHORTEST, LONGEST, 0.3),
+        ([ROOT_IN, ROOT_OUT], np.sqrt(2e-4 * laid.ratio), 0.95, 0.15 * np.sqrt(laid.ratio)),
+    ):
+        low[columns], high[columns], most[columns] = least, largest, step
+    low[FIRST_THICKNESS:] = THINNEST * laid.ratio
+    most[PLACE] = 0.15 * laid.chord * float(np.median(laid.size))
+    if ends:
+        low[START], high[START], low[EXTENT], high[EXTENT] = 0.0, 0.0, 1.0, 1.0
     return low, high, most

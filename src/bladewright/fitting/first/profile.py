@@ -7,11 +7,15 @@ import numpy as np
 from bladewright.errors import DesignError, FitError
 from bladewright.fitting.first.camber import first_laws
 from bladewright.fitting.first.inliers import thinned, usual
-from bladewright.fitting.first.taming import tamed
+from bladewright.fitting.first.taming import sharpened, tamed
 from bladewright.fitting.first.matching import Laid, Match, matched
 from bladewright.fitting.first.shape import (
     ANGLE_IN,
     ANGLE_OUT,
+    EXTENT,
+    PLACE,
+    STAGGER,
+    START,
     ROOT_IN,
     ROOT_OUT,
     TANGENT_IN,
@@ -44,12 +48,19 @@ def first_section(
     be built lies near the points.
     """
     points = thinned(usual(np.unique(np.asarray(points, dtype=np.float64), axis=0)), MOST)
-    shape = Shape(chordwise=chordwise, samples=samples, clustering=clustering, scale=lambda a, v: np.ones_like(a))
     middle = np.mean(points, axis=0)
     axis, chord = longest(points)
-    laid = Laid(points=points - middle, v=np.zeros(len(points)), size=np.ones(len(points)), chord=chord, flat=True)
+    one = np.ones(len(points))
+    shape = Shape(
+        chordwise=chordwise,
+        samples=samples,
+        clustering=clustering,
+        scale=lambda abscissa, _: np.ones_like(abscissa),
+        extent=np.ones_like,
+    )
+    laid = Laid(points=(points - middle) / chord, v=0.0 * one, size=one, chord=1.0, ratio=1.0, flat=True)
     match = best_match(shape, laid, axis)
-    return built_section(shape, match, middle, name, length_unit)
+    return built_section(shape, match, middle, chord, name, length_unit)
 
 
 def longest(points: Reals) -> tuple[float, float]:
@@ -68,10 +79,10 @@ def best_match(shape: Shape, laid: Laid, axis: float) -> Match:
     """The closest of matches that start from several directions of the chord."""
     found: list[Match] = []
     for turn in (0.0, 0.2, -0.2, 0.5, -0.5):
-        direction = np.full(len(laid.v), axis + turn)
+        direction = axis + turn
         if abs(axis + turn) > np.radians(88.0):
             continue
-        laws = first_laws(shape, laid, direction, 1)
+        laws = first_laws(shape, laid, lambda v, d=direction: np.full(len(v), d), np.zeros(1), 1)
         found.append(matched(shape, laid, laws))
         if found[-1].mean < 2e-3 * laid.chord:
             break
@@ -81,21 +92,21 @@ def best_match(shape: Shape, laid: Laid, axis: float) -> Match:
 
 
 def built_section(
-    shape: Shape, match: Match, middle: Reals, name: str, length_unit: Unit
+    shape: Shape, match: Match, middle: Reals, chord: float, name: str, length_unit: Unit
 ) -> UnifiedSection:
     """The section of a match, with thickness raised or edges sharpened until it can be built."""
     numbers = match.laws[0].copy()
     metre = UNITS[length_unit]
     error: DesignError | None = None
-    for _ in range(8):
-        extent = numbers[2] - numbers[0]
+    for attempt in range(10):
+        extent = float(numbers[EXTENT])
         design = UnifiedSection(
             name=name,
             length_unit=length_unit,
-            leading_edge_x=float((numbers[0] + middle[0]) / metre),
-            leading_edge_y=float((numbers[1] + middle[1]) / metre),
-            axial_chord=float(extent / metre),
-            stagger=float(np.degrees(np.arctan2(numbers[3] - numbers[1], extent))),
+            leading_edge_x=float((chord * numbers[START] + middle[0]) / metre),
+            leading_edge_y=float((chord * numbers[PLACE] + middle[1]) / metre),
+            axial_chord=float(chord * extent / metre),
+            stagger=float(np.degrees(numbers[STAGGER])),
             metal_angle_in=float(np.degrees(numbers[ANGLE_IN])),
             metal_angle_out=float(np.degrees(numbers[ANGLE_OUT])),
             tangent_in=float(numbers[TANGENT_IN]),
@@ -111,7 +122,7 @@ def built_section(
             design.build()
         except DesignError as refused:
             error = refused
-            numbers = tamed(numbers[None], shape)[0]
+            numbers = (tamed(numbers[None], shape) if attempt > 3 else sharpened(numbers[None]))[0]
         else:
             return design
     raise FitError(f"no section that can be built was found near the points: {error}")

@@ -12,15 +12,16 @@ from bladewright.section.laws import law_basis
 from bladewright.section.sampling import sample_places
 from bladewright.section.sides import DEGREE
 
-START, END, ANGLE_IN, ANGLE_OUT, TANGENT_IN, TANGENT_OUT, ROOT_IN, ROOT_OUT = (
-    slice(0, 2), slice(2, 4), 4, 5, 6, 7, 8, 9,
-)  # fmt: skip
+START, PLACE, EXTENT, STAGGER, ANGLE_IN, ANGLE_OUT, TANGENT_IN, TANGENT_OUT, ROOT_IN, ROOT_OUT = range(10)
 FIRST_THICKNESS = 10
-"""columns of a section's numbers: ends of the camber, angles [rad], tangents of the extent, square roots of the edge
-radii [m^(1/2)], half thicknesses of the upper and the lower side [m]"""
+"""columns of a section's numbers: abscissa of the leading edge and extent, both of the stream line's extent; ordinate
+of the leading edge; angles [rad]; tangents of the section's extent; square roots of the edge radii and half thicknesses
+of the upper and the lower side, of the meridional length"""
 
 Scale = Callable[[Reals, Reals], Reals]
-"""size in the plane of one metre by abscissa (n, k) and place along the span (n,)"""
+"""size in the plane of one meridional length by abscissa (n, k) and place along the span (n,)"""
+Along = Callable[[Reals], Reals]
+"""a quantity (n,) by place along the span (n,)"""
 
 
 class Foot(NamedTuple):
@@ -42,6 +43,8 @@ class Shape:
     samples: int
     clustering: float
     scale: Scale
+    extent: Along
+    """extent of the stream lines in the plane"""
 
     @property
     def columns(self) -> int:
@@ -63,12 +66,22 @@ class Shape:
         """Camber parameters of a side's control points."""
         return sample_places(self.samples, self.clustering)
 
+    def camber(self, numbers: Reals, v: Reals) -> Reals:
+        """Control points (n, 4, 2) of the camber lines."""
+        unit = self.extent(v)
+        extent = unit * numbers[:, EXTENT]
+        first = np.stack([unit * numbers[:, START], numbers[:, PLACE]], axis=-1)
+        last = first + np.stack([extent, extent * np.tan(numbers[:, STAGGER])], axis=-1)
+        second = first + (numbers[:, TANGENT_IN] * extent)[:, None] * _along(numbers[:, ANGLE_IN])
+        third = last - (numbers[:, TANGENT_OUT] * extent)[:, None] * _along(numbers[:, ANGLE_OUT])
+        return np.stack([first, second, third, last], axis=1)
+
     def heights(self, numbers: Reals, v: Reals, upper: bool) -> tuple[Reals, Reals, Reals, Reals]:
         """Heights (n, k) of a side's control points above the camber, those of the edges for a root of one, and sizes.
 
         The sizes (n, k - 2) are those of one metre in the plane at the edges' and the inner control points.
         """
-        line = camber_of(numbers)
+        line = self.camber(numbers, v)
         places = self.places
         inner = places[2:-2]
         on = bernstein(inner) @ line
@@ -93,7 +106,7 @@ class Shape:
 
     def rooms(self, numbers: Reals, v: Reals, upper: bool) -> tuple[Reals, Reals]:
         """Half thickness (n,) [m] beside the leading and the trailing edge at which a side leaves the edge sideways."""
-        line = camber_of(numbers)
+        line = self.camber(numbers, v)
         at = self.places[[0, 2, -3, -1]]
         on, (tangents, _) = bernstein(at) @ line, _tangents(line, at)
         left = (1.0 if upper else -1.0) * _left(tangents)
@@ -107,7 +120,7 @@ class Shape:
 
     def polylines(self, numbers: Reals, v: Reals, s: Reals) -> tuple[Reals, Reals]:
         """Points (m, len(s), 2) of the upper and the lower sides of m sections."""
-        line = camber_of(numbers)
+        line = self.camber(numbers, v)
         tangents, _ = _tangents(line, self.places)
         on, left = bernstein(self.places) @ line, _left(tangents)
         count = len(self.places)
@@ -119,7 +132,7 @@ class Shape:
 
     def feet(self, numbers: Reals, v: Reals, s: Reals, upper: np.ndarray) -> Foot:
         """Places at s (n,) of the sides of n sections."""
-        line = camber_of(numbers)
+        line = self.camber(numbers, v)
         places = self.places
         count = len(places)
         sign = np.where(upper, 1.0, -1.0)
@@ -144,7 +157,7 @@ class Shape:
         by_line = normal[:, None, :] * (rows @ weights)[..., None]
         by_line = by_line - np.einsum("nk,nkm,kj->njm", turn, left, _bernstein_slopes(places))
         result = np.zeros((len(s), self.columns))
-        result[:, :8] = _by_camber(numbers, by_line)
+        result[:, :8] = _by_camber(numbers, self.extent(v), by_line)
         sides = sign[:, None] * rows * across
         for columns, mask, size in (
             (self.upper, upper, self.chordwise[0]),
@@ -156,28 +169,18 @@ class Shape:
         return Foot(point=point, normal=normal, slopes=result)
 
 
-def camber_of(numbers: Reals) -> Reals:
-    """Control points (n, 4, 2) of the camber lines."""
-    first, last = numbers[:, START], numbers[:, END]
-    extent = (last - first)[:, :1]
-    second = first + numbers[:, [TANGENT_IN]] * extent * _along(numbers[:, ANGLE_IN])
-    third = last - numbers[:, [TANGENT_OUT]] * extent * _along(numbers[:, ANGLE_OUT])
-    return np.stack([first, second, third, last], axis=1)
-
-
-def _by_camber(numbers: Reals, by_line: Reals) -> Reals:
+def _by_camber(numbers: Reals, unit: Reals, by_line: Reals) -> Reals:
     """Slopes (n, 8) by the camber's numbers from those by its control points (n, 4, 2)."""
     into, out = _along(numbers[:, ANGLE_IN]), _along(numbers[:, ANGLE_OUT])
     tangent_in, tangent_out = numbers[:, TANGENT_IN], numbers[:, TANGENT_OUT]
-    extent = numbers[:, END.start] - numbers[:, START.start]
+    extent, slope = unit * numbers[:, EXTENT], np.tan(numbers[:, STAGGER])
     longer_in, longer_out = np.sum(by_line[:, 1] * into, axis=-1), -np.sum(by_line[:, 2] * out, axis=-1)
-    by_extent = tangent_in * longer_in + tangent_out * longer_out
-    first, last = by_line[:, 0] + by_line[:, 1], by_line[:, 3] + by_line[:, 2]
+    all_four, last = np.sum(by_line, axis=1), by_line[:, 3] + by_line[:, 2]
     columns = [
-        first[:, 0] - by_extent,
-        first[:, 1],
-        last[:, 0] + by_extent,
-        last[:, 1],
+        unit * all_four[:, 0],
+        all_four[:, 1],
+        unit * (last[:, 0] + slope * last[:, 1] + tangent_in * longer_in + tangent_out * longer_out),
+        extent * (1.0 + slope**2) * last[:, 1],
         tangent_in * extent * np.sum(by_line[:, 1] * _left(into), axis=-1),
         -tangent_out * extent * np.sum(by_line[:, 2] * _left(out), axis=-1),
         extent * longer_in,

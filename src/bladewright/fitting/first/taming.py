@@ -7,6 +7,7 @@ from bladewright.fitting.first.shape import (
     ANGLE_OUT,
     ROOT_IN,
     ROOT_OUT,
+    STAGGER,
     TANGENT_IN,
     TANGENT_OUT,
     Shape,
@@ -14,10 +15,17 @@ from bladewright.fitting.first.shape import (
 from bladewright.nurbs.basis import Reals
 
 
+def sharpened(numbers: Reals) -> Reals:
+    """Numbers (n, q) of sections with smaller edge radii."""
+    numbers = np.array(numbers)
+    numbers[:, [ROOT_IN, ROOT_OUT]] *= 0.8
+    return numbers
+
+
 def tamed(numbers: Reals, shape: Shape) -> Reals:
     """Numbers (n, q) of sections that turn less, with sharper edges, longer tangents and more even thickness."""
     numbers = np.array(numbers)
-    stagger = np.arctan2(numbers[:, 3] - numbers[:, 1], numbers[:, 2] - numbers[:, 0])
+    stagger = numbers[:, STAGGER]
     for column in (ANGLE_IN, ANGLE_OUT):
         numbers[:, column] = stagger + 0.85 * (numbers[:, column] - stagger)
     for column in (TANGENT_IN, TANGENT_OUT):
