@@ -37,6 +37,8 @@ TABLES = {
     "comments between": (rows(SOLID[:9], " ") + "% more\n! still more\n\n" + rows(SOLID[9:], " "), SOLID),
     "comments behind": (rows(SOLID, " ").replace("\n", " # measured\n"), SOLID),
     "Windows": (("x;y;z\n" + rows(SOLID, ";")).replace("\n", "\r\n"), SOLID),
+    "an old Macintosh": (rows(SOLID, " ").replace("\n", "\r"), SOLID),
+    "numbers in quotes": ('"x","y"\n"' + rows(FLAT, '","').replace("\n", '"\n"').rstrip('"'), FLAT),
     "a byte-order mark": ("\ufeffx,y,z\n" + rows(SOLID, ","), SOLID),
     "decimal commas": (rows(SOLID, ";").replace(".", ","), SOLID),
     "decimal commas and blanks": (rows(SOLID, "  ", number="{:.22f}").replace(".", ","), SOLID),

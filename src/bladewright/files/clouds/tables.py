@@ -2,6 +2,8 @@
 
 import io
 import re
+from collections.abc import Iterator
+from itertools import islice
 from pathlib import Path
 from typing import NamedTuple
 
@@ -26,6 +28,8 @@ class _Head(NamedTuple):
     names: tuple[str, ...]
     row: str
     title: str
+    above: tuple[int, str]
+    """number and text of the last line of words"""
 
 
 def read_table(path: Path, data: bytes) -> Numbers:
@@ -35,8 +39,11 @@ def read_table(path: Path, data: bytes) -> Numbers:
     body = _plain(text, head)
     try:
         values = np.loadtxt(io.StringIO(body), comments=None, skiprows=head.lines, ndmin=2)
-    except ValueError:
-        raise _refusal(path, body, head) from None
+    except ValueError as error:
+        # numpy counts rows, but not those without numbers, and says not which lines they are
+        row = re.search(r"at row (\d+)", str(error))
+        raise _refusal(path, body, head, int(row[1]) - 2 if row else 0) from None
+    _check_above(path, head, values.shape[1])
     lines = _lines_of(body, head, len(values))
     names = head.names if len(head.names) == values.shape[1] else ()
     whole = _whole(values[:, 0], head.row)
@@ -47,10 +54,13 @@ def read_table(path: Path, data: bytes) -> Numbers:
 
 
 def _decoded(path: Path, data: bytes) -> str:
-    if b"\0" in data[:100_000]:
+    if b"\0" in data:
         raise FileError(f"'{path}' is a binary file of no format that is known: give a table of numbers as text")
+    data = data.removeprefix(b"\xef\xbb\xbf")
+    if b"\r" in data:
+        data = data.replace(b"\r\n", b"\n").replace(b"\r", b"\n")
     try:
-        return data.removeprefix(b"\xef\xbb\xbf").decode("utf-8")
+        return data.decode("utf-8")
     except UnicodeDecodeError:
         # names and comments may be in any code; numbers are the same in all
         text = data.decode("latin-1")
@@ -63,17 +73,17 @@ def _decoded(path: Path, data: bytes) -> str:
 def _head_of(path: Path, text: str) -> _Head:
     """The lines above the numbers; the first line of which every word is a number ends them."""
     names: tuple[str, ...] = ()
-    title, words = "", 0
+    title, above, words = "", (0, ""), 0
     for place, line in enumerate(io.StringIO(text)):
         bare = line.strip()
         comment = bare[:1] in COMMENTS and bare != ""
         row = _split(re.split(f"[{COMMENTS}]", bare)[0], ",;")
         counted = len(row) == 1 and row[0].isdigit()  # the number of rows, as some scanners put it above them
         if not comment and row and not counted and all(_is_number(word) for word in row):
-            return _Head(place, names, bare, title)
+            return _Head(place, names, bare, title, above)
         if not comment and bare:
             words += 1
-            title = title or bare
+            title, above = title or bare, (place + 1, bare)
         if bare:
             names = _names(bare.lstrip(COMMENTS)) or names
         if words > MOST_NAMES or place > 10_000:
@@ -81,6 +91,16 @@ def _head_of(path: Path, text: str) -> _Head:
     first = next((line.strip() for line in io.StringIO(text) if line.strip()), "")
     shown = first if len(first) <= 60 else f"{first[:57]}..."
     raise FileError(f"'{path}' holds no rows of numbers: it begins with '{shown}', where coordinates are needed")
+
+
+def _check_above(path: Path, head: _Head, count: int) -> None:
+    """Refuse a line above the numbers that is a row with a word in it, rather than names or a title."""
+    place, line = head.above
+    row = _split(line, ",;")
+    if len(row) != count or not any(_is_number(word) and "." in word for word in row):
+        return
+    column, word = next((column, word) for column, word in enumerate(row, 1) if not _is_number(word))
+    raise FileError(f"'{path}' has '{word[:40]}' at line {place}, column {column}: a number is needed")
 
 
 def _names(line: str) -> tuple[str, ...]:
@@ -103,7 +123,11 @@ def _plain(text: str, head: _Head) -> str:
     if decimal_comma:
         text = text.translate(str.maketrans(",;", ". "))
     elif "," in text or ";" in text:
-        text = re.sub(r"[,;](?=[ \t]*[,;])", " ? ", text).translate(str.maketrans(",;", "  "))
+        if any(pair in text for pair in (",,", ";;", ", ,", "; ;", ",\t,", ";\t;")):
+            text = re.sub(r"[,;](?=[ \t]*[,;])", " ? ", text)
+        text = text.replace(",", " ").replace(";", " ")
+    if '"' in head.row:
+        text = text.replace('"', " ")
     if _FORTRAN.search(head.row):
         text = text.translate(str.maketrans("dD", "ee"))
     if any(sign in text for sign in COMMENTS):
@@ -117,6 +141,7 @@ def _commas_are_decimal(row: str) -> bool:
 
 
 def _split(line: str, signs: str) -> list[str]:
+    signs += '"'
     return line.translate(str.maketrans(signs, " " * len(signs))).split()
 
 
@@ -141,21 +166,50 @@ def _lines_of(body: str, head: _Head, count: int) -> Reals:
     return np.array(rows[:count], dtype=np.float64)
 
 
-def _refusal(path: Path, body: str, head: _Head) -> FileError:
-    """What is wrong with the first bad row."""
-    rows = [(place, line.split()) for place, line in enumerate(io.StringIO(body), 1) if place > head.lines]
-    rows = [(place, words) for place, words in rows if words]
-    counts = [len(words) for _, words in rows[:100]]
+def _refusal(path: Path, body: str, head: _Head, start: int) -> FileError:
+    """What is wrong with the first bad row, which is none of the first `start`."""
+    counts = [len(words) for _, words in islice(_rows(body, head), 100)]
     usual = max(set(counts), key=counts.count)
-    for number, (place, words) in enumerate(rows):
-        last = number == len(rows) - 1
-        for column, word in enumerate(words, 1):
-            if word == "?":
-                return FileError(f"'{path}' has an empty entry at line {place}, column {column}: a number is needed")
-            if not _is_number(word):
-                cut = "; it is the last line: is the file cut off?" if last else ": a number is needed"
-                return FileError(f"'{path}' has '{word[:40]}' at line {place}, column {column}{cut}")
-        if len(words) != usual:
-            cut = "; it is the last line: is the file cut off?" if last else ": rows must have the same length"
-            return FileError(f"'{path}' has {len(words)} entries in line {place}, and {usual} in the others{cut}")
+    for place, words in _rows(body, head, start):
+        wrong = _wrong(words, place, usual)
+        if wrong:
+            last = not body[_end_of(body, place) :].strip()
+            cure = "it is the last line: is the file cut off?" if last else wrong[1]
+            return FileError(f"'{path}' has {wrong[0]}{'; ' if last else ': '}{cure}")
     return FileError(f"'{path}' is no table of numbers")
+
+
+def _rows(body: str, head: _Head, start: int = 0) -> Iterator[tuple[int, list[str]]]:
+    """Line and words of each row from number `start` on."""
+    row = 0
+    for place, line in enumerate(io.StringIO(body), 1):
+        if place > head.lines and not line.isspace():
+            if row >= start:
+                yield place, line.split()
+            row += 1
+
+
+def _end_of(body: str, line: int) -> int:
+    """Where the line of a number ends."""
+    end = -1
+    for _ in range(line):
+        end = body.find("\n", end + 1)
+        if end < 0:
+            return len(body)
+    return end
+
+
+def _wrong(words: list[str], place: int, usual: int) -> tuple[str, str] | None:
+    """What is wrong with a row, and the cure, if anything is."""
+    try:
+        _ = [float(word) for word in words]
+        numbers = "_" not in "".join(words)
+    except ValueError:
+        numbers = False
+    if not numbers:
+        column, word = next((column, word) for column, word in enumerate(words, 1) if not _is_number(word))
+        what = "an empty entry" if word == "?" else f"'{word[:40]}'"
+        return f"{what} at line {place}, column {column}", "a number is needed"
+    if len(words) != usual:
+        return f"{len(words)} entries in line {place}, and {usual} in the others", "rows must have the same length"
+    return None
