@@ -47,7 +47,7 @@ def draw_histogram(axes: Axes, fit: Matched) -> None:
         bell = 100.0 * width / (sigma * np.sqrt(2.0 * np.pi)) * np.exp(-0.5 * (at / sigma) ** 2)
         axes.plot(at, bell, color=RED, linewidth=1.3, label=f"noise, σ = {sigma:.3g} mm")
     else:
-        axes.plot([], [], color=RED, label=f"noise, σ = {sigma:.2g} mm: too little to draw")
+        axes.plot([], [], color=RED, label=f"noise, σ = {sigma:.2g} mm")
     axes.axvline(0.0, color=SOFT, linewidth=0.8)
     if tolerance is not None:
         for sign in (-1.0, 1.0):

@@ -27,6 +27,8 @@ CLEAR = {"markersize": 2.6, "markeredgewidth": 0.0}
 FINE = {"markersize": 1.2, "markeredgewidth": 0.0}
 THICK = 0.4
 """of the largest thickness, that the tolerance is drawn within"""
+SHARP = 0.01
+"""of the chord, the least half width of the picture of an edge"""
 FEW = 60
 """outliers beside a section up to which all are crossed"""
 MOST = 4000
@@ -81,7 +83,11 @@ def draw_edge_match(axes: Axes, fit: Matched, outline: Outline, *, trailing: boo
     radius = section.edge_radii[int(trailing)] * MILLIMETRES
     tip = outline.sides["upper"][-1 if trailing else 0]
     inwards = -outline.outwards["upper"][-1 if trailing else 0]
-    reach = float(np.clip(PART * section.chord * MILLIMETRES, 1.5 * radius, REACH * radius))
+    chord = float(section.chord) * MILLIMETRES
+    off = fit.by_region.get(f"{'trailing' if trailing else 'leading'} edge")
+    # a nose that came out far too sharp must not hide how far the points are
+    least = max(SHARP * chord, 1.5 * off.maximum * MILLIMETRES if off else 0.0)
+    reach = max(float(np.clip(PART * chord, 1.5 * radius, REACH * radius)), least)
     middle = tip + 0.6 * reach * inwards
     axes.fill(*outline.closed.T, color=PALE, linewidth=0.0)
     _draw_tolerance(axes, fit, outline, 1.0)
