@@ -15,6 +15,7 @@ from bladewright.fitting.reach import Reach
 from bladewright.fitting.scales import Scales
 from bladewright.fitting.walls import Ends, Wall
 from bladewright.nurbs.basis import Reals
+
 EDGES = 0.05
 """part of a cloud that tells of its edges"""
 FULLNESS = (0.8, 0.2)
@@ -29,35 +30,84 @@ class State:
     feet: Feet
 
 
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Measures:
+    """What is measured of a cloud against a shape: points, ends, walls and reach, as residuals in chords."""
+
+    points: Reals
+    """(n, d) [m]"""
+    roots: Reals
+    """(n,) square roots of the points' weights"""
+    model: Model
+    ends: Ends
+    reach: Reach
+    noise: float
+    """of the cloud, in chords: what scatters more counts less"""
+
+    def residuals(self, state: State) -> Reals:
+        """All residuals (m,), those of the points (n,) along their normals first."""
+        on, chord = state.feet, self.model.chord
+        rows = [self.roots * on.heights / chord]
+        rows.append((self.roots * np.sum(on.miss * on.beyond, axis=-1))[self.ends.near] / chord)
+        for wall in self.ends.walls.values():
+            if state.shape.exact is not None:
+                rows.append(self._of_wall(wall) * wall.distances(state.shape.exact) / chord)
+        excess = self.reach.excess(self.reach.edges(state.shape))
+        rows.append(self._of_edge * np.maximum(excess, 0.0) / chord)
+        return np.concatenate(rows)
+
+    def slopes(self, state: State, paths: Sequence[str]) -> Reals:
+        """Derivatives (m, k) by parameters, at held feet: those move along the surface only."""
+        on, shape, chord = state.feet, state.shape, self.model.chord
+        tangents = self.model.tangents(shape, paths)
+        rates = self.model.rates(shape, on, tangents)
+        along = self.roots[:, None] * on.normals
+        near = self.ends.near
+        out = (self.roots[:, None] * on.beyond)[near]
+        blocks = [-np.einsum("nkd,nd->nk", rates, along), -np.einsum("nkd,nd->nk", rates[near], out)]
+        for wall in self.ends.walls.values():
+            if shape.exact is not None:
+                t, normal, _ = wall.misses(shape.exact)
+                moving = wall.rates(shape, t, paths)
+                blocks.append(-self._of_wall(wall) * np.einsum("nkd,nd->nk", moving, normal))
+        edges = self.reach.edges(shape)
+        out = edges.normals * (self._of_edge * (self.reach.excess(edges) > 0.0))[:, None]
+        blocks.append(np.einsum("nkd,nd->nk", self.model.rates(shape, edges, tangents), out))
+        return np.concatenate(blocks) / chord
+
+    def _of_wall(self, wall: Wall) -> float:
+        """Weight of a wall's places: one where they stand in a row, less where they scatter."""
+        spread = wall.spread / self.model.chord
+        return self.noise / max(self.noise, spread) if spread > 0.0 else 1.0
+
+    @property
+    def _of_edge(self) -> float:
+        """Weight as of so many points, which the part of the cloud has that tells of an edge."""
+        return float(np.sqrt(max(1.0, EDGES * len(self.points) / max(1, len(self.reach.u)))))
+
+
 class Problem(Constrained):
-    """Residuals of points, walls, noses and the prior; with the noise they are weighed by."""
+    """Residuals of a cloud, of noses that are not as usual, and of the prior; noses may not exceed their thickness."""
 
     def __init__(
         self,
         *,
-        points: Reals,
-        weights: Reals,
-        model: Model,
+        measures: Measures,
         start: Design,
         paths: Sequence[str],
         scales: Scales,
         prior: Prior,
-        noise: float,
         alone: float,
-        ends: Ends,
-        reach: Reach,
         hint: Feet,
         margin: float = 0.0,
     ) -> None:
-        self.points, self.roots, self.model = points, np.sqrt(weights * ~ends.covered), model
-        self.start, self.paths, self.scales = start, tuple(paths), scales
-        self.reach = reach
-        self.noise, self.walls, self.ends, self.margin = noise, ends.walls, ends.near, margin
-        self.trust = noise / float(np.sqrt(alone))
-        """what the prior's spreads are measured by: larger where points repeat each other"""
-        self.prior = Prior(matrix=prior.matrix * noise, aim=prior.aim * noise)
-        values = start.parameters()
-        self.first = np.array([float(values[path]) for path in self.paths])
+        self.measures, self.model = measures, measures.model
+        self.start, self.paths, self.scales, self.margin = start, tuple(paths), scales, margin
+        self.noise = measures.noise
+        self.trust = self.noise / float(np.sqrt(alone))
+        """what the spread of the noses is measured by: larger where points repeat each other"""
+        self.prior = Prior(matrix=prior.matrix * self.noise, aim=prior.aim * self.noise)
+        self.first = self.values_of(start)
         self.evaluations, self._least = 0, np.inf
         self._hint = hint
         self.best = np.zeros(len(self.paths))
@@ -68,6 +118,15 @@ class Problem(Constrained):
     def bounds(self) -> tuple[Reals, Reals]:
         """Lowest and highest scaled change."""
         return (self.scales.low - self.first) / self.scales.size, (self.scales.high - self.first) / self.scales.size
+
+    def values_of(self, design: Design) -> Reals:
+        """The parameters (k,) of a design, in the units of their fields."""
+        values = design.parameters()
+        return np.array([float(values[path]) for path in self.paths])
+
+    def vector(self, design: Design) -> Reals:
+        """The scaled change (k,) of a design."""
+        return (self.values_of(design) - self.first) / self.scales.size
 
     def design(self, z: Reals) -> Design:
         """The design of a scaled change (k,)."""
@@ -90,7 +149,7 @@ class Problem(Constrained):
             return None
         if not shape.finite:
             return None
-        self._hint = feet(self.points, shape.sides, self._hint)
+        self._hint = feet(self.measures.points, shape.sides, self._hint)
         return State(shape=shape, feet=self._hint)
 
     def values(self, z: Reals) -> tuple[Reals, Reals] | None:
@@ -98,64 +157,24 @@ class Problem(Constrained):
         state = self.state(z)
         if state is None:
             return None
-        rows = self._data(state, z)
+        full = self._of_noses(state.shape) * (np.ravel(state.shape.noses[1]) - FULLNESS[0])
+        rows = np.concatenate([self.measures.residuals(state), full, self.prior.matrix @ z - self.prior.aim])
         held = np.ravel(state.shape.noses[0]) + self.margin
         cost = float(rows @ rows) * (1.0 + 1e3 * float(np.max(held, initial=0.0)))
         if cost < self._least:
             self._least, self.best = cost, np.array(z)
         return rows, held
 
-    def _data(self, state: State, z: Reals) -> Reals:
-        chord = self.model.chord
-        on = state.feet
-        rows = [self.roots * on.heights / chord]
-        rows.append((self.roots * np.sum(on.miss * on.beyond, axis=-1))[self.ends] / chord)
-        for wall in self.walls.values():
-            assert state.shape.exact is not None
-            _, normal, miss = wall.misses(state.shape.exact)
-            rows.append(self._wall_weight(wall) * np.sum(normal * miss, axis=-1) / chord)
-        rows.append(self._nose_weight(state.shape) * (np.ravel(state.shape.noses[1]) - FULLNESS[0]))
-        excess = self.reach.excess(self.reach.edges(state.shape))
-        rows.append(self._edge_weight * np.maximum(excess, 0.0) / chord)
-        rows.append(self.prior.matrix @ z - self.prior.aim)
-        return np.concatenate(rows)
-
     def derivatives(self, z: Reals) -> tuple[Reals, Reals]:
-        """Those (m, k) of all residuals, at held feet: those move along the surface only; and (c, k)."""
+        """Those (m, k) of all residuals and those (c, k) of the noses."""
         state = self.state(z)
-        assert state is not None
-        chord, size = self.model.chord, self.scales.size
-        on = state.feet
-        tangents = self.model.tangents(state.shape, self.paths)
-        rates = self.model.rates(state.shape, on, tangents)
-        along = self.roots[:, None] * on.normals
-        out = (self.roots[:, None] * on.beyond)[self.ends]
-        blocks = [
-            -np.einsum("nkd,nd->nk", rates, along) / chord,
-            -np.einsum("nkd,nd->nk", rates[self.ends], out) / chord,
-        ]
-        for wall in self.walls.values():
-            assert state.shape.exact is not None
-            t, normal, _ = wall.misses(state.shape.exact)
-            moving = wall.rates(state.shape, t, self.paths)
-            blocks.append(-self._wall_weight(wall) * np.einsum("nkd,nd->nk", moving, normal) / chord)
+        if state is None:
+            raise DesignError("there is no shape to differentiate: start from a design that can be built")
         noses = self.model.nose_rates(state.shape, self.paths)
-        held, fullness = (noses[:, i].reshape(len(self.paths), -1).T for i in (0, 1))
-        blocks.append(self._nose_weight(state.shape) * fullness)
-        edges = self.reach.edges(state.shape)
-        out = edges.normals * (self._edge_weight * (self.reach.excess(edges) > 0.0))[:, None]
-        blocks.append(np.einsum("nkd,nd->nk", self.model.rates(state.shape, edges, tangents), out) / chord)
-        return np.concatenate([*(block * size for block in blocks), self.prior.matrix]), held * size
+        held, full = (noses[:, i].reshape(len(self.paths), -1).T for i in (0, 1))
+        rows = np.concatenate([self.measures.slopes(state, self.paths), self._of_noses(state.shape) * full])
+        return np.concatenate([rows * self.scales.size, self.prior.matrix]), held * self.scales.size
 
-    @property
-    def _edge_weight(self) -> float:
-        """As of so many points, which the part of the cloud has that tells of an edge."""
-        return float(np.sqrt(max(1.0, EDGES * len(self.points) / max(1, len(self.reach.u)))))
-
-    def _nose_weight(self, shape: Shape) -> float:
+    def _of_noses(self, shape: Shape) -> float:
         stations = shape.noses[0].size / 4.0
         return self.trust / (FULLNESS[1] * float(np.sqrt(stations)))
-
-    def _wall_weight(self, wall: Wall) -> float:
-        spread = wall.spread / self.model.chord
-        return self.noise / max(self.noise, spread) if spread > 0.0 else 1.0

@@ -16,7 +16,7 @@ from bladewright.fitting.descent import DAMPING, descended
 from bladewright.fitting.feet import feet
 from bladewright.fitting.model import Model, model_of
 from bladewright.fitting.prior import prior_of
-from bladewright.fitting.problem import Problem, State
+from bladewright.fitting.problem import Measures, Problem, State
 from bladewright.fitting.reach import reach_of
 from bladewright.fitting.scales import scales_of
 from bladewright.fitting.scatter import Scatter, scatter_of
@@ -50,16 +50,14 @@ class Task:
     """(n, d) [m]"""
     weights: Reals
     """(n,)"""
-    paths: tuple[str, ...]
-    """free parameters"""
+    free: Callable[[Design], tuple[str, ...]]
+    """the free parameters of a design, whatever its structure"""
     bounds: Mapping[str, tuple[float, float]]
     told: Told = lambda _: None
     smooth: float = 1.0
     """by how much the prior is stronger"""
-
-    def free(self, design: Design) -> tuple[str, ...]:
-        """The free parameters of a design of another structure: those whose fields are free."""
-        return tuple(path for path in design.parameters() if path in self.paths)
+    slack: float = 1.0
+    """by how much noses are held further from what is refused"""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -133,20 +131,23 @@ def _prepared(task: Task, start: Design, design: Design, noise: float | None, be
     misfit = float(np.sqrt(np.mean(on.distances[scatter.inliers & ~ends.covered] ** 2))) / model.chord
     scales = scales_of(start, paths, model.chord, task.bounds)
     prior = prior_of(start, paths, scales.size)
-    problem = Problem(
+    measures = Measures(
         points=points,
-        weights=task.weights * scatter.inliers,
+        roots=np.sqrt(task.weights * (scatter.inliers & ~ends.covered)),
         model=model,
+        ends=ends,
+        reach=reach_of(points, on, scatter.inliers & ~ends.covered),
+        noise=misfit if noise is None else noise,
+    )
+    problem = Problem(
+        measures=measures,
         start=start,
         paths=paths,
         scales=scales,
         prior=replace(prior, matrix=task.smooth * prior.matrix, aim=task.smooth * prior.aim),
-        noise=misfit if noise is None else noise,
         alone=scatter.alone(len(paths)),
-        ends=ends,
-        reach=reach_of(points, on, scatter.inliers & ~ends.covered),
         hint=on,
-        margin=SLACK,
+        margin=SLACK * task.slack,
     )
     return Found(
         design=design,
@@ -162,8 +163,7 @@ def _prepared(task: Task, start: Design, design: Design, noise: float | None, be
 def _round(found: Found) -> Found:
     """What a descent from a prepared design finds."""
     problem, interrupted = found.problem, False
-    values = found.design.parameters()
-    first = (np.array([float(values[path]) for path in problem.paths]) - problem.first) / problem.scales.size
+    first = problem.vector(found.design)
     z, damping = first, found.damping
     try:
         descent = descended(problem, first, steps=STEPS, damping=damping)

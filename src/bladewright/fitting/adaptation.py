@@ -1,0 +1,132 @@
+"""The structure of a design as its cloud asks for it: control points are added until an aim is reached, and no further."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from bladewright.fitting.feet import feet
+from bladewright.fitting.growth import chosen_of, gains, joined
+from bladewright.fitting.reshaping import reshaped
+from bladewright.fitting.search import Found, Task, searched
+from bladewright.fitting.structure import Structure, structure_of
+from bladewright.nurbs.basis import Reals
+
+FIRST = 3e-3
+"""noise of the first round where the start is a guess, of the chord"""
+QUICK = 3
+"""rounds of a search between two steps of growth"""
+LEAST = {2: 5e-7, 3: 5e-5}
+"""largest deviation at which nothing more is added where no aim is stated, of the chord, by dimension"""
+MOST = {2: 80, 3: 260}
+"""parameters above which nothing is added"""
+FEW, MANY = 2500, 12_000
+"""points of a quick and of a thorough search"""
+NOISY = 0.15
+"""part of the misfit that neighbours share below which it is noise"""
+WORTHWHILE = 0.02
+"""part of the sum of squares that growth must be foreseen to gain"""
+SHARPER = 4
+"""times that points are weighed by their distances before anything is added"""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Aim:
+    """What is asked of a match."""
+
+    tolerance: float | None = None
+    """largest distance of an inlier [m]"""
+    parameters: int | None = None
+    structured: bool = False
+    """whether the structure is given"""
+
+
+def thinned(count: int, most: int) -> Reals:
+    """Indices of points spread over a cloud at random."""
+    every = np.arange(count)
+    return every if count <= most else np.sort(np.random.default_rng(1).choice(count, most, replace=False))
+
+
+def adapted(task: Task, start: Callable[[Structure | None], object], aim: Aim, *, guessed: bool) -> tuple[Found, str]:
+    """The match, and why it ends where no aim is met.
+
+    `start` gives the first design of a structure, or of its own where None.
+    """
+    few = _part(task, thinned(len(task.points), FEW))
+    many = _part(task, thinned(len(task.points), MANY))
+    first = start(None)
+    noise = FIRST if guessed else None
+    if aim.structured and aim.tolerance is None:
+        found = searched(few, first, noise=noise)
+        return (found if found.interrupted else searched(many, found.design)), ""
+    found = searched(few, first, noise=noise, rounds=QUICK * 2)
+    reason = ""
+    for _ in range(40):
+        if found.interrupted:
+            return found, ""
+        short, reason = _short(found, aim, few)
+        if not short:
+            break
+        found, grew = _grown(few, found, aim)
+        if not grew:
+            break
+    if found.interrupted:
+        return found, reason
+    found = searched(many, found.design)
+    if aim.tolerance is not None:
+        found = _within(many, found, aim.tolerance)
+    return found, reason
+
+
+def _part(task: Task, rows: Reals) -> Task:
+    return task if len(rows) == len(task.points) else replace(task, points=task.points[rows], weights=task.weights[rows])
+
+
+def _short(found: Found, aim: Aim, task: Task) -> tuple[bool, str]:
+    """Whether more control points are wanted, and if not though the aim is not met, why."""
+    count = len(found.problem.paths)
+    dimension = task.points.shape[1]
+    if aim.parameters is not None:
+        return count < aim.parameters, ""
+    limit = aim.tolerance if aim.tolerance is not None else LEAST[dimension] * found.model.chord
+    if found.maximum <= limit:
+        return False, ""
+    noise = found.scatter.noise
+    if found.scatter.shared < NOISY:
+        return False, f"what is left is the cloud's own noise, {1e3 * noise:.2g} mm: more control points would follow it"
+    if count >= min(MOST[dimension], len(task.points) // 3):
+        return False, f"the design has {count} parameters, and more are not added"
+    return True, ""
+
+
+def _grown(task: Task, found: Found, aim: Aim) -> tuple[Found, bool]:
+    """The match with the control points that promise most, and whether there were any."""
+    emphasis = None
+    if aim.tolerance is not None:
+        distances = found.state.feet.distances / aim.tolerance
+        emphasis = np.clip(distances**2, 0.05, 25.0)
+    ranked = gains(found, emphasis)
+    left = None if aim.parameters is None else aim.parameters - len(found.problem.paths)
+    steps = chosen_of(ranked, left)
+    if not steps:
+        return found, False
+    total = float(np.sum(found.problem.measures.residuals(found.state) ** 2))
+    if aim.parameters is None and emphasis is None and sum(gain for gain, _ in ranked[:3]) < WORTHWHILE * total:
+        return found, False
+    design = reshaped(found.design, joined(structure_of(found.design), steps))
+    fresh = searched(task, design, rounds=QUICK, noise=found.rms)
+    return replace(fresh, evaluations=fresh.evaluations + found.evaluations), True
+
+
+def _within(task: Task, found: Found, tolerance: float) -> Found:
+    """A match whose largest deviations are weighed more, where that brings them within the tolerance."""
+    best, weights = found, task.weights
+    for _ in range(SHARPER):
+        if best.maximum <= tolerance or best.interrupted:
+            break
+        distances = found.state.feet.distances
+        weights = weights * np.clip((distances / tolerance) ** 2, 0.3, 4.0)
+        weights = weights * (np.sum(task.weights) / np.sum(weights))
+        found = searched(replace(task, weights=weights), found.design, rounds=2)
+        best = found if found.maximum < best.maximum else best
+    return best

@@ -1,0 +1,81 @@
+"""What a cloud says of each parameter: covariance, intervals, and what it does not determine."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.stats import t as student
+
+from bladewright.fitting.result import Estimate
+from bladewright.fitting.search import Found
+from bladewright.nurbs.basis import Reals
+
+LEVEL = 0.95
+DETERMINED = 0.3
+"""standard deviation below which a parameter is determined, of its own scale"""
+SHARED = 0.2
+"""part of the misfit that neighbours share above which points do not count as independent"""
+AT_BOUND = 1e-3
+"""how near a parameter is to a bound that it lies on, of its scale"""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Certainty:
+    """How well the parameters of a match are known."""
+
+    estimates: tuple[Estimate, ...]
+    covariance: Reals
+    """(k, k) in the units of the fields"""
+    rank: int
+    condition: float
+
+
+def certainty_of(found: Found) -> Certainty:
+    """From the derivatives of the residuals where a search ended, without the prior.
+
+    The points' distances are taken as independent normal errors of one size; where the misfit is one that neighbours
+    share, as many as share it count as one. Reference: Bates and Watts 1988, section 2.3 (linear approximation).
+    """
+    problem = found.problem
+    size = problem.scales.size
+    rows = problem.measures.residuals(found.state)
+    slopes = problem.measures.slopes(found.state, problem.paths) * size
+    count = int(np.count_nonzero(problem.measures.roots))
+    left = max(count - len(problem.paths), 1)
+    variance = float(np.sum(rows[: len(problem.measures.points)] ** 2)) / left
+    if found.scatter.shared > SHARED:
+        variance /= found.scatter.alone(len(problem.paths))
+    _, values, turns = np.linalg.svd(slopes, full_matrices=False)
+    largest = float(values[0])
+    known = values > 1e-13 * largest
+    spread = np.where(known, np.sqrt(variance) / np.where(known, values, 1.0), np.inf)
+    rank = int(np.count_nonzero(spread < 1.0))
+    deviations = np.sqrt(np.sum((turns.T * np.where(np.isfinite(spread), spread, 1e150)) ** 2, axis=1))
+    kept = turns[np.isfinite(spread)].T * spread[np.isfinite(spread)]
+    covariance = (kept @ kept.T) * np.outer(size, size)
+    factor = float(student.ppf(0.5 + LEVEL / 2.0, left))
+    values_now = problem.values_of(found.design)
+    low, high = problem.scales.low, problem.scales.high
+    estimates = []
+    for i, path in enumerate(problem.paths):
+        determined = bool(deviations[i] < DETERMINED)
+        deviation = float(deviations[i] * size[i]) if deviations[i] < 1e100 else np.inf
+        value = float(values_now[i])
+        near = AT_BOUND * size[i]
+        estimates.append(
+            Estimate(
+                path=path,
+                value=value,
+                deviation=deviation,
+                low=value - factor * deviation,
+                high=value + factor * deviation,
+                identified=determined,
+                at_bound=bool(value - low[i] < min(near, 0.1 * abs(value)) or high[i] - value < near),
+            )
+        )
+    smallest = float(values[-1])
+    return Certainty(
+        estimates=tuple(estimates),
+        covariance=covariance,
+        rank=rank,
+        condition=largest / smallest if smallest > 0.0 else np.inf,
+    )

@@ -1,0 +1,203 @@
+"""From a cloud of points to a design."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+from typing import Any, Literal
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from bladewright.blade.extrema import extrema_of
+from bladewright.blade.unified import UnifiedBlade
+from bladewright.derivatives.patterns import Patterns
+from bladewright.designs import Design
+from bladewright.errors import DesignError, FitError
+from bladewright.fitting.adaptation import FIRST, Aim, adapted
+from bladewright.fitting.aligning import aligned
+from bladewright.fitting.cloud import checked_cloud
+from bladewright.fitting.estimates import certainty_of
+from bladewright.fitting.first.blade import first_blade
+from bladewright.fitting.first.profile import first_section
+from bladewright.fitting.freedom import Freedom, freedom_of
+from bladewright.fitting.judging import judged
+from bladewright.fitting.lean import lean
+from bladewright.fitting.reshaping import reshaped
+from bladewright.fitting.result import Fit
+from bladewright.fitting.search import Found, Task, searched
+from bladewright.fitting.structure import Structure, structure_of
+from bladewright.fitting.verdict import failures_of, notes_of
+from bladewright.nurbs.basis import Reals
+from bladewright.section.checks import choice
+from bladewright.section.unified import UnifiedSection
+
+FAMILIES = ("unified", "unified-section")
+Unit = Literal["m", "cm", "mm", "um", "in", "ft"]
+Told = Callable[[str], None]
+
+
+def fit(
+    cloud: ArrayLike,
+    start: Design | None = None,
+    family: str = "unified",
+    *,
+    like: Design | None = None,
+    tolerance: float | None = None,
+    parameters: int | None = None,
+    free: Patterns = None,
+    fixed: Patterns | Mapping[str, float] = None,
+    bounds: Mapping[str, tuple[float, float]] | None = None,
+    weights: ArrayLike | None = None,
+    align: bool = False,
+    arrangement: Literal["annular", "linear"] | None = None,
+    blade_count: int | None = None,
+    pitch: float | None = None,
+    name: str = "blade",
+    length_unit: Unit = "mm",
+    progress: Told | None = None,
+) -> Fit:
+    """The design of a family that matches a cloud of points (n, 2) or (n, 3) [m], and how well it does.
+
+    Points are in the machine's axes, in any order: (n, 2) of a section give a `UnifiedSection`, (n, 3) a
+    `UnifiedBlade`; with `align` they may lie anywhere in space. No guess is needed; `start` is one, whose structure is
+    kept unless `tolerance` [m] or `parameters` ask for another. `like` is a design whose structure is taken, not its
+    values. Without any of these, control points are added while the cloud tells of them; with `tolerance`, until no
+    inlier lies further away; with `parameters`, up to that number of free ones.
+
+    `free` are patterns of the parameters that may change, `fixed` of those that are held at the start's values, or
+    values by pattern; `bounds` are lowest and highest values by pattern, in the units of the fields. `weights` (n,) of
+    the points, `pitch` in metres. `progress` is told in a few words what is done. Ctrl-C ends the search with the best
+    design so far, `interrupted`.
+
+    The distances are true ones; those of points off the rest are not weighed (`outliers`). Raises FitError where the
+    cloud or the call is wrong, and where no design is found. Reference: Agromayor et al. 2021, section 6.
+    """
+    tell: Told = progress or (lambda _: None)
+    points, notes = checked_cloud(cloud)
+    family_of(family, points.shape[1])
+    _check(points, start, like, tolerance, parameters)
+    motion = None
+    if align:
+        tell("axes")
+        motion, points, arrangement, more = aligned(points, start, arrangement)
+        notes = (*notes, *more)
+    freedom = freedom_of(free, fixed, started=start is not None)
+    task = Task(
+        points=points,
+        weights=_weights(weights, len(points)),
+        free=freedom,
+        bounds=dict(bounds or {}),
+        told=tell,
+    )
+    wanted = None if like is None else structure_of(like)
+
+    def first(structure: Structure | None) -> Design:
+        tell("first design")
+        asked = structure or wanted
+        if start is not None:
+            return freedom.applied(start if asked is None else reshaped(start, asked))
+        if points.shape[1] == 2:
+            lengths = {} if asked is None else _section_of(asked)
+            return freedom.applied(first_section(points, name=name, length_unit=length_unit, **lengths))
+        given: dict[str, Any] = {"blade_count": blade_count, "pitch": pitch, "arrangement": arrangement}
+        if isinstance(like, UnifiedBlade):
+            given = {"arrangement": like.arrangement, "blade_count": like.blade_count, "pitch": None} | {
+                key: value for key, value in given.items() if value is not None
+            }
+        return freedom.applied(first_blade(points, structure=asked, name=name, length_unit=length_unit, **given))
+
+    structured = parameters is None and (start is not None or like is not None)
+    aim = Aim(tolerance=tolerance, parameters=parameters, structured=structured)
+    base = None if structured or like is not None or start is not None else lean(points.shape[1], parameters)
+    found, reason = adapted(task, lambda _: first(base), aim, guessed=start is None)
+    found, built = _built(task, found)
+    return _reported(found, built, points, task, aim, (*notes, *([reason] if reason else [])), motion)
+
+
+def family_of(family: str, dimension: int) -> str:
+    """The family that is meant; raises FitError where it is unknown or of the other dimension."""
+    try:
+        choice("family", family, FAMILIES)
+    except DesignError as error:
+        raise FitError(str(error)) from error
+    if family == "unified-section" and dimension == 3:
+        raise FitError("family is 'unified-section', and the points have three coordinates: give x and y alone")
+    return family
+
+
+def _check(points: Reals, start: Design | None, like: Design | None, tolerance: float | None, count: int | None) -> None:
+    kind: type = UnifiedSection if points.shape[1] == 2 else UnifiedBlade
+    for label, design in (("start", start), ("like", like)):
+        if design is not None and not isinstance(design, kind):
+            raise FitError(
+                f"{label} is a {type(design).__name__}, and points with {points.shape[1]} coordinates need a "
+                f"{kind.__name__}: give such a design, or points of the other kind"
+            )
+    if tolerance is not None and not 0.0 < tolerance < np.inf:
+        raise FitError(f"tolerance is {tolerance!r}: a positive length in metres is needed, such as 5e-5")
+    if tolerance is not None and count is not None:
+        raise FitError("tolerance and parameters are both given: the one decides the other; leave one out")
+    if count is not None and (isinstance(count, bool) or not isinstance(count, int) or not 14 <= count <= 2000):
+        raise FitError(f"parameters is {count!r}: a whole number from 14 to 2000 is needed")
+
+
+def _weights(weights: ArrayLike | None, count: int) -> Reals:
+    if weights is None:
+        return np.ones(count)
+    found = np.asarray(weights, dtype=np.float64)
+    if found.shape != (count,) or not np.all(np.isfinite(found)) or np.any(found < 0.0) or not np.any(found > 0.0):
+        raise FitError(
+            f"weights have shape {found.shape}: one number of 0 or more is needed for each of the {count} points"
+        )
+    return found * (count / np.sum(found))
+
+
+def _section_of(structure: Structure) -> dict[str, Any]:
+    return {"chordwise": structure.chordwise, "samples": structure.samples, "clustering": structure.clustering}
+
+
+def _built(task: Task, found: Found) -> tuple[Found, Any]:
+    """What the found design builds; where it is refused, of a design that keeps further from what is refused."""
+    for slack in (1.0, 30.0, 1000.0):
+        try:
+            return found, found.design.build()
+        except DesignError as error:
+            refusal = str(error)
+        found = searched(replace(task, slack=slack), found.design, rounds=2)
+    try:
+        return found, found.design.build()
+    except DesignError as error:
+        refusal = str(error)
+    raise FitError(f"the nearest design cannot be built ({refusal}); give a start design, or other numbers of parameters")
+
+
+def _reported(
+    found: Found, built: Any, points: Reals, task: Task, aim: Aim, notes: tuple[str, ...], motion: Any
+) -> Fit:
+    task.told("measuring")
+    judgement = judged(points, built)
+    certainty = certainty_of(found)
+    inliers = judgement.scatter.inliers
+    distances = np.abs(judgement.deviations)
+    return Fit(
+        design=found.design,
+        built=built,
+        cloud=points,
+        places=judgement.places,
+        u=judgement.on.u,
+        v=judgement.on.v,
+        deviations=judgement.deviations,
+        regions=judgement.regions,
+        inliers=inliers,
+        estimates=certainty.estimates,
+        covariance=certainty.covariance,
+        rank=certainty.rank,
+        condition=certainty.condition,
+        noise=judgement.scatter.noise,
+        extrema=extrema_of(built),
+        tolerance=aim.tolerance,
+        failures=failures_of(distances, inliers, judgement.regions, found, aim),
+        notes=notes_of(notes, found, certainty, judgement.scatter),
+        evaluations=found.evaluations,
+        motion=motion,
+        interrupted=found.interrupted,
+    )

@@ -1,0 +1,66 @@
+"""The final measure of a match: every point of the cloud against what the design builds."""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from bladewright.blade.blade import Blade
+from bladewright.fitting.deviation import REGIONS
+from bladewright.fitting.feet import Feet, feet
+from bladewright.fitting.model import Shape
+from bladewright.fitting.scatter import Scatter, scatter_of
+from bladewright.fitting.walls import ENDS, Wall, ends_of
+from bladewright.nurbs.basis import Reals
+from bladewright.section.section import Section
+
+EDGE = 0.03
+"""how far the edges reach, in u"""
+BROAD = 20_000
+"""points from which those of the scatter are a part of the cloud"""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Judgement:
+    """Where the n points of a cloud stand."""
+
+    places: NDArray[np.str_]
+    on: Feet
+    deviations: Reals
+    regions: NDArray[np.str_]
+    scatter: Scatter
+
+
+def judged(points: Reals, built: Blade | Section) -> Judgement:
+    """Every point's nearest place and signed distance on a blade or section."""
+    sides = built.sides if isinstance(built, Blade) else (built.curves["upper"], built.curves["lower"])
+    exact = built.exact if isinstance(built, Blade) else None
+    on = feet(points, sides)
+    scatter = scatter_of(points, on)
+    shape = Shape(design=None, sides=sides, noses=np.zeros(0), exact=exact)
+    ends = ends_of(points, on, shape, scatter.inliers)
+    deviations = np.where(on.heights < 0.0, -1.0, 1.0) * on.distances
+    places = np.array(["upper", "lower"], dtype="<U8")[on.side]
+    edge = np.where(on.u < EDGE, "leading edge", np.where(on.u > 1.0 - EDGE, "trailing edge", "sides"))
+    past = np.any(on.beyond != 0.0, axis=1) & (np.abs(np.sum(on.miss * on.beyond, axis=1)) > np.abs(on.heights))
+    regions = np.where(past, "ends", edge).astype(f"<U{max(map(len, REGIONS))}")
+    if exact is not None and np.any(ends.covered):
+        _cover(points, ends.covered, built, deviations, places, regions, on)
+    return Judgement(places=places, on=on, deviations=deviations, regions=regions, scatter=scatter)
+
+
+def _cover(points: Reals, covered: Any, built: Any, deviations: Reals, places: Any, regions: Any, on: Feet) -> None:
+    """Puts the points that lie on end faces there."""
+    exact = built.exact
+    radius = np.sqrt(points[:, 1] ** 2 + points[:, 2] ** 2) if exact.mapping.revolved else points[:, 2]
+    for (name, end), face in zip(ENDS.items(), built.design.ends, strict=True):
+        rows = np.flatnonzero(covered & (np.abs(on.v - end) < 0.5))
+        if len(rows) == 0:
+            continue
+        wall = Wall(name=name, places=np.stack([points[rows, 0], radius[rows]], axis=-1), spread=0.0)
+        outward = wall.distances(exact) * (1.0 if end else -1.0)
+        nearer = np.abs(outward) < np.abs(deviations[rows])
+        deviations[rows[nearer]] = outward[nearer]
+        places[rows[nearer]] = face
+        regions[rows[nearer]] = "ends"
