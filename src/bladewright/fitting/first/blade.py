@@ -103,19 +103,15 @@ def coordinates(points: Reals, arrangement: Arrangement) -> Reals:
 
 def _found(machine: Reals, *, revolved: bool, structure: Structure | None) -> Found:
     counts = dict(structure.channel) if structure and structure.channel else None
-    line = boundary(machine[:, :2])
-    few = machine[np.random.default_rng(1).permutation(len(machine))[:FEW]]
-    tried: list[Found] = []
-    for pieces in corner_sets(line):
-        for turn in (0, 1):
-            named = _named(pieces, turn)
-            channel = rough_channel(named, dict.fromkeys(EDGES, 5), revolved=revolved)
-            tried.append(_matched(few, channel, (4, 4), 3, turns=10))
-    best = min(tried, key=lambda found: found.match.mean)
+    found = _likeliest(machine, revolved=revolved)
+    distances = nearest(found.shape, _laid(machine, found.channel), found.match.laws)[2]
+    kept = distances < 5.0 * np.median(distances) + 0.03 * found.laid.chord
+    if np.mean(kept) < 0.995:
+        machine = machine[kept]
+        found = _likeliest(machine, revolved=revolved)
     chordwise = structure.chordwise if structure else (6, 6)
     samples, clustering = (structure.samples, structure.clustering) if structure else (16, 1.0)
     count = 4 if len(machine) > 400 else 3
-    found = best
     for step in range(3):
         channel = _trimmed(
             found, dict.fromkeys(EDGES, 6) if step == 0 else counts or curve_counts(found.channel), machine
@@ -123,6 +119,25 @@ def _found(machine: Reals, *, revolved: bool, structure: Structure | None) -> Fo
         shape = _shape(channel, chordwise, samples, clustering)
         found = _continued(machine, channel, found, shape, count, ends=step == 2)
     return found
+
+
+def _likeliest(machine: Reals, *, revolved: bool) -> Found:
+    """The closest of the blades whose walls and edges are pieces of the outline."""
+    few = machine[np.random.default_rng(1).permutation(len(machine))[:FEW]]
+    tried = [
+        _matched(few, rough_channel(_named(pieces, turn), dict.fromkeys(EDGES, 5), revolved=revolved), (4, 4), 3, turns=10)
+        for pieces in corner_sets(boundary(machine[:, :2]))
+        for turn in (0, 1)
+    ]
+    return min(tried, key=lambda found: _apart(found, few))
+
+
+def _apart(found: Found, machine: Reals) -> float:
+    """Mean distance [m] of most points from the sections, and from the channel where they lie outside its walls."""
+    u, v = found.channel.places(machine[:, :2])
+    outside = machine[:, :2] - found.channel.position(u, np.clip(v, 0.0, 1.0))
+    distances = np.sqrt(found.match.distances**2 + np.sum(outside**2, axis=-1))
+    return float(np.mean(np.sort(distances)[: max(1, int(0.94 * len(distances)))]))
 
 
 def _named(pieces: list[Reals], turn: int) -> dict[str, Reals]:
@@ -224,7 +239,7 @@ def _trimmed(found: Found, counts: dict[str, int], machine: Reals) -> Rough:
     for name, row, wall in (("hub", 0, low), ("shroud", -1, high)):
         u = np.linspace(starts[row], ends[row], 41)
         pieces[name] = found.channel.position(u, wall(u))
-    return rough_channel(pieces, counts, revolved=found.channel.revolved)
+    return rough_channel(pieces, counts, revolved=found.channel.revolved, past=0.15)
 
 
 def _reached(found: Found, machine: Reals) -> tuple[Callable[[Reals], Reals], Callable[[Reals], Reals]]:

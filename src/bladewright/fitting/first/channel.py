@@ -7,6 +7,7 @@ import numpy as np
 from scipy.ndimage import map_coordinates
 from scipy.spatial import cKDTree
 
+from bladewright.errors import FitError
 from bladewright.nurbs.basis import Reals, basis, uniform_knots
 
 EDGES = ("hub", "shroud", "leading_edge", "trailing_edge")
@@ -69,9 +70,9 @@ class Rough:
         """Abscissa (n,) in the plane of the section at v."""
         return _taken(self._grid[1], u, v)
 
-    def folding(self) -> float:
-        """The least Jacobian of the map, of its median; the shape turns like x to r where it is positive."""
-        v, u = np.meshgrid(np.linspace(0.0, 1.0, 21), np.linspace(-0.1, 1.1, 49), indexing="ij")
+    def folding(self, past: float) -> float:
+        """The least Jacobian of the map, of its median, as far as `past` the edges in u; negative where it folds."""
+        v, u = np.meshgrid(np.linspace(0.0, 1.0, 21), np.linspace(-past, 1.0 + past, 49), indexing="ij")
         position = self.position(u, v)
         along, across = position[:, 1:] - position[:, :-1], position[1:] - position[:-1]
         along, across = (along[1:] + along[:-1]) / 2.0, (across[:, 1:] + across[:, :-1]) / 2.0
@@ -121,16 +122,22 @@ FOLDED = 0.02
 """least Jacobian of a channel, of its median"""
 
 
-def rough_channel(pieces: dict[str, Reals], counts: dict[str, int], *, revolved: bool) -> Rough:
+def rough_channel(pieces: dict[str, Reals], counts: dict[str, int], *, revolved: bool, past: float = 0.03) -> Rough:
     """A channel whose curves run along polylines by name; its corners are the ends of leading and trailing edge.
 
     The curves are made as plain as they must be so that the channel does not fold.
     """
-    for most in (9, 5, 4, 3, 2):
-        plain = {name: min(count, most) for name, count in counts.items()}
-        found = _along(pieces, plain, revolved=revolved)
-        if found.folding() > FOLDED:
+    plain, found, best = counts, None, -np.inf
+    for most in (9, 5, 4, 3, 2) if past > 0.1 else (9, 5, 4, 3):
+        tried = {name: min(count, most) for name, count in counts.items()}
+        channel = _along(pieces, tried, revolved=revolved)
+        least = channel.folding(past)
+        if found is None or least > best:
+            plain, found, best = tried, channel, least
+        if best > FOLDED:
             break
+    if found is None:
+        raise FitError("no channel was found around the points")
     if plain != counts:
         t = np.linspace(0.0, 1.0, 41)
         found = _along({name: _curve(found.curves[name], t) for name in EDGES}, counts, revolved=revolved)
