@@ -1,6 +1,163 @@
 """Clouds as they come: what can be fitted at all, and what is suspicious."""
+
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
+
+from bladewright.errors import FitError
 from bladewright.nurbs.basis import Reals
+
+FEWEST = 100
+"""points that a fit needs"""
+FLAT = 1e-5
+"""of its extent: a cloud that is thinner lies on a line or a plane"""
+LARGEST, SMALLEST = 20.0, 5e-4
+"""extents beyond which another unit is suspected [m]"""
+LOOKED_AT = 3000
+"""points among which neighbours are compared"""
+THIN = 1.3e-3
+"""of its width: a sheet this thin is one side, and no blade"""
+APART = 0.12
+"""of its extent: how far from itself a blade is found again"""
+
+
 def checked_cloud(cloud: ArrayLike) -> tuple[Reals, tuple[str, ...]]:
-    return np.asarray(cloud, dtype=np.float64), ()
+    """The points (n, 2) or (n, 3) [m] as given, and notes on what is suspicious about them.
+
+    Raises FitError for anything but finite numbers in two or three columns, fewer than 100 different points, points on
+    one line or one plane, two blades, and one side of a blade alone.
+    """
+    points = _numbers(cloud)
+    different = np.unique(points, axis=0)
+    if len(different) < FEWEST:
+        raise FitError(
+            f"the cloud has {len(different)} different points: at least {FEWEST} are needed; give more points of the "
+            "blade's surface"
+        )
+    dimension = points.shape[1]
+    middle = np.mean(different, axis=0)
+    spread = np.linalg.svd(different - middle, compute_uv=False)
+    if spread[1] < FLAT * spread[0]:
+        raise FitError(
+            f"all {len(points)} points lie on one line: a blade has two sides; give points of its whole surface"
+        )
+    if dimension == 3 and spread[2] < FLAT * spread[0]:
+        raise FitError(
+            f"all {len(points)} points lie on one plane: give two columns, x and y, for a section, or points of "
+            "sections at several places along the span"
+        )
+    some = different[np.random.default_rng(0).permutation(len(different))[:LOOKED_AT]]
+    found = repeated(some)
+    if found is not None:
+        raise FitError(
+            f"the cloud holds two blades or more: {found} along the pitch lies the same shape again; give the points "
+            "of one blade"
+        )
+    if one_sided(some):
+        raise FitError(
+            "the cloud holds one side of a blade alone, a sheet without thickness: give the points of both sides"
+        )
+    extent = float(np.max(np.ptp(points, axis=0)))
+    notes = ()
+    if not SMALLEST <= extent <= LARGEST:
+        notes = (
+            f"the cloud extends over {extent:.4g} m, which is unusual for a blade: the unit of its coordinates may be "
+            "another one (--unit on the command line)",
+        )
+    return points, notes
+
+
+def _numbers(cloud: ArrayLike) -> Reals:
+    try:
+        points = np.asarray(cloud, dtype=np.float64)
+    except (TypeError, ValueError) as error:
+        raise FitError(f"the cloud is not an array of numbers ({error}): give (n, 2) or (n, 3) in metres") from error
+    if points.ndim != 2 or points.shape[1] not in (2, 3):
+        raise FitError(
+            f"the cloud has the shape {points.shape}: give (n, 2) with x and y, or (n, 3) with x, y and z, in metres"
+        )
+    bad = ~np.all(np.isfinite(points), axis=1)
+    if np.any(bad):
+        raise FitError(
+            f"{np.count_nonzero(bad)} of {len(points)} points are not finite numbers, the first of them point "
+            f"{int(np.argmax(bad))}: leave them out"
+        )
+    return points
+
+
+def repeated(points: Reals) -> str | None:
+    """How far along the pitch, in words, a part of the cloud is found again in another; None where it is not."""
+    parts = [points[rows] for rows in _parts(points)]
+    for i, part in enumerate(parts):
+        for other in parts[i + 1 :]:
+            found = _turned_onto(part, other)
+            if found is not None:
+                return found
+    return None
+
+
+def _parts(points: Reals) -> list[NDArray[np.intp]]:
+    """Indices of the large parts of the cloud that stand apart from each other."""
+    from scipy.sparse.csgraph import connected_components
+    from scipy.spatial import cKDTree
+
+    tree = cKDTree(points)
+    near = np.asarray(tree.query(points, k=2)[0])[:, 1]
+    extent = float(np.max(np.ptp(points, axis=0)))
+    gap = max(3.0 * float(np.percentile(near, 90.0)), 0.01 * extent)
+    _, labels = connected_components(tree.sparse_distance_matrix(tree, gap), directed=False)
+    counts = np.bincount(labels)
+    return [np.flatnonzero(labels == label) for label in np.argsort(-counts)[:6] if counts[label] > 0.08 * len(points)]
+
+
+def _turned_onto(part: Reals, other: Reals) -> str | None:
+    """How far the part must be moved along y, or turned about x, to lie on the other; None where neither is so."""
+    from scipy.spatial import cKDTree
+
+    if not 0.6 < len(part) / len(other) < 1.7:
+        return None
+    extent = float(np.sqrt(np.sum(np.ptp(part, axis=0) ** 2)))
+    tree = cKDTree(other)
+    step = np.zeros(part.shape[1])
+    step[1] = np.mean(other[:, 1]) - np.mean(part[:, 1])
+    moved = [(part + step, abs(float(step[1])), f"{abs(float(step[1])):.4g} m")]
+    if part.shape[1] == 3:
+        angles = [np.arctan2(np.mean(p[:, 1]), np.mean(p[:, 2])) for p in (part, other)]
+        turn = float((angles[1] - angles[0] + np.pi) % (2.0 * np.pi) - np.pi)
+        c, s = np.cos(turn), np.sin(turn)
+        y, z = part[:, 1], part[:, 2]
+        radius = float(np.mean(np.sqrt(y**2 + z**2)))
+        turned = np.stack([part[:, 0], c * y + s * z, -s * y + c * z], axis=-1)
+        moved.append((turned, abs(turn) * radius, f"{abs(np.degrees(turn)):.4g} deg"))
+    for there, distance, said in moved:
+        if distance < APART * extent:
+            continue
+        spacing = float(np.median(tree.query(other, k=2)[0][:, 1]))
+        onto = float(np.mean(tree.query(there)[0]))
+        back = float(np.mean(cKDTree(there).query(other)[0]))
+        if max(onto, back) < 0.005 * extent + 1.5 * spacing:
+            return said
+    return None
+
+
+def one_sided(points: Reals) -> bool:
+    """Whether the points are a single sheet: a smooth one passes through the neighbours of most of them."""
+    from scipy.spatial import cKDTree
+
+    centred = points - np.mean(points, axis=0)
+    axes = np.linalg.svd(centred, full_matrices=False)[2]
+    own = centred @ axes.T
+    along, height = own[:, :-1], own[:, -1]
+    width = float(np.ptp(along[:, -1])) if along.shape[1] > 1 else float(np.ptp(along))
+    count = 14 if along.shape[1] == 1 else 24
+    some = np.linspace(0, len(points) - 1, 200).astype(int)
+    neighbours = cKDTree(along).query(along[some], k=count)[1]
+    residuals = []
+    for rows in neighbours:
+        t = along[rows] - np.mean(along[rows], axis=0)
+        t = t / np.maximum(np.max(np.abs(t), axis=0), 1e-300)
+        powers = [np.ones(count), *t.T, *(t.T**2), *([t[:, 0] * t[:, 1]] if t.shape[1] > 1 else [])]
+        matrix = np.stack(powers, axis=-1)
+        found = np.linalg.lstsq(matrix, height[rows], rcond=1e-8)[0]
+        residuals.append(float(np.sqrt(np.mean((height[rows] - matrix @ found) ** 2))))
+    # where sections are dense at the edges most neighbourhoods are of an edge, which is thin
+    return float(np.percentile(residuals, 85.0)) < THIN * width
