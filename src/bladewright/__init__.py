@@ -41,6 +41,12 @@ if TYPE_CHECKING:
     from bladewright.files.su2 import read_surface_sensitivity as read_surface_sensitivity
     from bladewright.files.su2 import write_surface_points as write_surface_points
     from bladewright.files.writing import write_design as write_design
+    from bladewright.fitting.curves import CurveFit as CurveFit
+    from bladewright.fitting.curves import fit_curve as fit_curve
+    from bladewright.fitting.profile import ProfileFit as ProfileFit
+    from bladewright.fitting.profile import fit_profile as fit_profile
+    from bladewright.fitting.surfaces import SurfaceFit as SurfaceFit
+    from bladewright.fitting.surfaces import fit_surface as fit_surface
     from bladewright.nurbs.curve import Curve as Curve
     from bladewright.nurbs.surface import Surface as Surface
     from bladewright.nurbs.trimmed import TrimmedSurface as TrimmedSurface
@@ -54,21 +60,27 @@ _HOMES = {
     "CadError": "errors",
     "Channel": "blade.channel",
     "Curve": "nurbs.curve",
+    "CurveFit": "fitting.curves",
     "DerivativeError": "errors",
     "DesignError": "errors",
     "FileError": "errors",
     "GeometryError": "errors",
     "MeshError": "errors",
     "Passage": "domain.passage",
+    "ProfileFit": "fitting.profile",
     "SectionPassage": "domain.section",
     "NetJacobian": "derivatives.jacobian",
     "Surface": "nurbs.surface",
+    "SurfaceFit": "fitting.surfaces",
     "SurfacePoints": "derivatives.places",
     "Throat": "blade.throat",
     "TrimmedSurface": "nurbs.trimmed",
     "UnifiedBlade": "blade.unified",
     "UnifiedSection": "section.unified",
     "Variables": "derivatives.variables",
+    "fit_curve": "fitting.curves",
+    "fit_profile": "fitting.profile",
+    "fit_surface": "fitting.surfaces",
     "net_jacobian": "derivatives.nets",
     "passage": "domain.build",
     "placed_points": "derivatives.places",

@@ -12,7 +12,7 @@ from bladewright.errors import FitError, GeometryError
 from bladewright.fitting.fitted import Fitted, asked, checked_logs, checked_points
 from bladewright.fitting.net import Net, Target, periodic
 from bladewright.fitting.ordering import sites_along
-from bladewright.fitting.projection import certified, projected
+from bladewright.fitting.projection import certified, nearer_of, projected
 from bladewright.fitting.stages import Arrived, Way, within
 from bladewright.nurbs.basis import Reals, breaks, checked_knots, uniform_knots
 from bladewright.nurbs.curve import Curve
@@ -94,10 +94,12 @@ def fit_curve(
     shape = net.shape
     feet = projected(shape, scaled, closed=closed)
     feet = projected(shape, scaled, certified(shape, scaled, feet), closed=closed)
+    if held is None:
+        feet = nearer_of(feet, found.match.feet, found.inliers)
     if found.rank < len(found.singular_values):
         notes += (
-            f"the points determine {found.rank} of {len(found.singular_values)} directions of the unknowns: "
-            "the others bend the curve as little as they can",
+            (f"the points determine {found.rank} of {len(found.singular_values)} directions of the unknowns: "
+            "the others bend the curve as little as they can"),
         )
     return CurveFit(
         curve=replace(shape, control_points=shape.control_points * extent + centre),

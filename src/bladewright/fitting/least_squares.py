@@ -21,6 +21,11 @@ ROWS = 8192
 """rows in a full product"""
 LOST = 1e-14
 """eigenvalue of the scaled curvature, of the largest, below which its direction is rounding"""
+SETTLED = 0.02
+"""share of the value that the quadratic at the end would take away, up to which a descent has converged
+
+Where control points slide along the shape the value falls for hundreds of steps by little.
+"""
 DETERMINED = 1e-12
 """eigenvalue of the scaled curvature, of the largest, above which the points determine its direction"""
 
@@ -135,8 +140,14 @@ def minimised(
         gtol=1e-15,
         max_nfev=evaluations,
     )
+    quadratic, residuals, _ = compressed(found.x)
+    # the last residual is the value's part that no step of the quadratic takes away
+    left = quadratic.value - float(residuals[-1]) ** 2
     return Solution(
-        x=found.x, quadratic=compressed(found.x)[0], evaluations=int(found.nfev), converged=bool(found.status > 0)
+        x=found.x,
+        quadratic=quadratic,
+        evaluations=int(found.nfev),
+        converged=bool(found.status > 0) or left <= SETTLED * quadratic.value,
     )
 
 

@@ -234,14 +234,14 @@ def matched(
     penalty: Penalty,
     stiffness: float = 0.0,
     near: Reals | None = None,
-    evaluations: int = 200,
+    evaluations: int = 80,
     tolerance: float = 1e-8,
     certain: bool = False,
 ) -> Match:
     """The net at which the penalties of true distances, and `stiffness` times its bending, are least.
 
-    Places follow the shape by descent while it moves; after that they are searched for from samples everywhere, with
-    `certain` by bounds, and the whole is repeated where a nearer one is found.
+    Places follow the shape by descent while it moves; after that they are searched for from samples everywhere, on
+    a curve with `certain` by bounds as well (on a surface that takes milliseconds a point), and the whole is repeated where a nearer one is found.
     """
     places = sampled_parameters(net.shape, target.points) if near is None else near
     total, converged = 0, False
@@ -256,7 +256,7 @@ def matched(
         everywhere = projected(net.shape, target.points, None, closed=net.closed, held=target.held)
         nearer = everywhere.distances < feet.distances - 1e-8
         places = np.where(nearer[:, None], everywhere.parameters, feet.parameters)
-        if not nearer.any() and certain:
+        if certain and not nearer.any() and isinstance(net.shape, Curve):
             places = certified(net.shape, target.points, feet)
         if np.array_equal(places, feet.parameters):
             break

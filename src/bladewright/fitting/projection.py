@@ -1,7 +1,7 @@
 """Nearest places of points on curves and surfaces, and the directions in which misses count."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -78,6 +78,17 @@ def projected(
         of = shape.derivatives(parameters[:, 0], parameters[:, 1], 1)
         place, tangents = of[0, 0], [of[1, 0], of[0, 1]]
     return framed(parameters, np.asarray(place), points, tangents, free)
+
+
+def nearer_of(feet: Feet, others: Feet, rows: NDArray[np.bool_]) -> Feet:
+    """Feet, or at some rows (n,) the others, one each, where these are nearer; without their directions across."""
+    better = np.zeros(len(rows), dtype=bool)
+    better[rows] = others.distances < feet.distances[rows]
+    chosen = better[rows]
+    changed = {name: getattr(feet, name).copy() for name in ("parameters", "points", "distances", "along")}
+    for name, values in changed.items():
+        values[better] = getattr(others, name)[chosen]
+    return replace(feet, across=feet.across[:0], across_of=feet.across_of[:0], **changed)
 
 
 def sampled_parameters(shape: Curve | Surface, points: Reals) -> Reals:

@@ -125,19 +125,21 @@ def chosen(target: Target, rows: NDArray[np.bool_]) -> Target:
 def _softened(net: Net, target: Target, way: Way, near: Reals | None, *, last: int | None = None) -> Match:
     tried: list[Match] = []
     total = 0
-    for stiffness in STIFFNESSES[0 if last is None else -last :]:
-        way.say(f"{int(np.prod(net.counts))} control points, stiffness {stiffness:g}")
-        match = matched(net, target, penalty=Penalty(), stiffness=stiffness, near=near, evaluations=40, tolerance=ROUGH)
+    levels = list(STIFFNESSES[0 if last is None else -last :])
+    for stiffness in levels:
+        way.say(f"{len(net.points)} control points, stiffness {stiffness:g}")
+        match = matched(net, target, penalty=Penalty(), stiffness=stiffness, near=near, evaluations=20, tolerance=ROUGH)
         net, near = match.net, match.feet.parameters
         total += match.evaluations
         tried.append(match)
-    stiffness = _least(tried[-1])
-    if way.always_stiff or stiffness:
+        if stiffness == levels[-1] and stiffness > 0.0 and _least(match) == 0.0:
+            levels.append(0.0)
+    best = len(tried) - 1
+    if way.always_stiff:
         enough = NOISE_ALLOWS * max(_rms(tried[-1]), EXACT)
         best = next(i for i, each in enumerate(tried) if _rms(each) <= enough)
-        stiffness = STIFFNESSES[-len(tried) :][best]
-        net, near = tried[best].net, tried[best].feet.parameters
-    match = matched(net, target, penalty=Penalty(), stiffness=stiffness, near=near, certain=True)
+    net, near = tried[best].net, tried[best].feet.parameters
+    match = matched(net, target, penalty=Penalty(), stiffness=levels[best], near=near, certain=True)
     return replace(match, evaluations=total + match.evaluations)
 
 

@@ -13,7 +13,7 @@ from bladewright.errors import FitError, GeometryError
 from bladewright.fitting.fitted import Fitted, asked, checked_logs, checked_points
 from bladewright.fitting.least_squares import Penalty
 from bladewright.fitting.net import Net, Target, quadratic_of
-from bladewright.fitting.projection import certified, projected
+from bladewright.fitting.projection import nearer_of, projected
 from bladewright.fitting.stages import Arrived, Way, within
 from bladewright.numerics.elementary import cross2
 from bladewright.nurbs.basis import Reals, breaks, checked_knots, uniform_knots
@@ -101,14 +101,13 @@ def fit_surface(
     _check_numbers(net, scaled, weights_free=way.weights_free)
     found, notes = within(net, Target(points=scaled, weights=np.ones(len(scaled))), way, _further_knots)
     shape = found.match.net.shape
-    feet = projected(shape, scaled)
-    feet = projected(shape, scaled, certified(shape, scaled, feet))
+    feet = nearer_of(projected(shape, scaled), found.match.feet, found.inliers)
     signed = np.sum((feet.points - scaled) * shape.normal(*feet.parameters.T), axis=-1)
     inliers = found.inliers
     if found.rank < len(found.singular_values):
         notes += (
-            f"the points determine {found.rank} of {len(found.singular_values)} directions of the unknowns: "
-            "the others bend the surface as little as they can",
+            (f"the points determine {found.rank} of {len(found.singular_values)} directions of the unknowns: "
+            "the others bend the surface as little as they can"),
         )
     return SurfaceFit(
         surface=replace(shape, control_points=shape.control_points * extent + centre),
