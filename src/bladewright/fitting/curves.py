@@ -91,15 +91,17 @@ def fit_curve(
     _check_numbers(net, scaled, weights_free=way.weights_free)
     found, notes = within(net, target, way, _further_knots)
     net = found.match.net
-    shape = net.shape
+    shape = net.curve
     feet = projected(shape, scaled, closed=closed)
     feet = projected(shape, scaled, certified(shape, scaled, feet), closed=closed)
     if held is None:
         feet = nearer_of(feet, found.match.feet, found.inliers)
     if found.rank < len(found.singular_values):
         notes += (
-            (f"the points determine {found.rank} of {len(found.singular_values)} directions of the unknowns: "
-            "the others bend the curve as little as they can"),
+            (
+                f"the points determine {found.rank} of {len(found.singular_values)} directions of the unknowns: "
+                "the others bend the curve as little as they can"
+            ),
         )
     return CurveFit(
         curve=replace(shape, control_points=shape.control_points * extent + centre),
@@ -142,7 +144,8 @@ def _further_knots(found: Arrived, target: Target, way: Way, limit: float) -> tu
     codimension = misses.shape[1] - 1
     noise = noise_along(u, misses)
     ends = breaks(net.knots[0])
-    knots, noisy, sparse = [], 0, 0
+    knots: list[float] = []
+    noisy = sparse = 0
     for low, high in pairwise(ends):
         here = (u >= low) & (u <= high)
         if not here.any() or distances[here].max() <= limit:

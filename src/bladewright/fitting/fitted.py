@@ -77,7 +77,6 @@ def asked(
     tolerance: float | None,
     extent: float,
     progress: Callable[[str], None] | None,
-    always_stiff: bool = False,
 ) -> Way:
     """What is asked of a fit to points of an extent; FitError where it is unknown or out of its limits."""
     if isinstance(weights, str) and weights not in ("fixed", "free"):
@@ -94,7 +93,6 @@ def asked(
         robust=robust,
         limit=None if tolerance is None else tolerance / extent,
         extent=extent,
-        always_stiff=always_stiff,
         progress=progress,
     )
 

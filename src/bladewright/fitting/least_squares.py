@@ -10,6 +10,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.optimize import least_squares
 from scipy.sparse import csr_array
 
@@ -82,7 +83,7 @@ def summed(
     along: csr_array,
     distances: Reals,
     across: csr_array,
-    across_of: Reals,
+    across_of: NDArray[np.intp],
     penalty: Penalty,
     weights: Reals,
 ) -> Quadratic:
@@ -94,7 +95,7 @@ def summed(
     cost, slope, stretch = penalty(distances)
     slope = slope * weights
     gradient = np.asarray(along.T @ (slope * distances))
-    curvature = _gram(along, slope * stretch) + _gram(across, slope[across_of.astype(np.intp)])
+    curvature = _gram(along, slope * stretch) + _gram(across, slope[across_of])
     return Quadratic(value=float(np.sum(weights * cost)), gradient=gradient, curvature=curvature)
 
 

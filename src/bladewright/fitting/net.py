@@ -24,6 +24,7 @@ LIMIT = 30.0
 """logarithm of a weight beyond which it changes nothing more"""
 PRIOR = 1e-10
 """cost of a unit of a logarithm of a weight, in extents of the points: it holds weights that do nothing"""
+DIRECTIONS: tuple[Literal["u"], Literal["v"]] = ("u", "v")
 AT_ONCE = 100_000
 """points whose rows are built at a time"""
 GLOBAL = 8
@@ -136,6 +137,20 @@ class Net:
             degree_v=self.degrees[1],
         )
 
+    @property
+    def curve(self) -> Curve:
+        """The shape of one direction."""
+        shape = self.shape
+        assert isinstance(shape, Curve)  # noqa: S101 - one direction
+        return shape
+
+    @property
+    def surface(self) -> Surface:
+        """The shape of two directions."""
+        shape = self.shape
+        assert isinstance(shape, Surface)  # noqa: S101 - two directions
+        return shape
+
     def changed(self, unknowns: Reals) -> "Net":
         """The net with other values of its unknowns."""
         points = self.points.copy()
@@ -157,15 +172,14 @@ class Net:
 
     def refined(self, knots: Sequence[float], direction: int = 0) -> "Net":
         """The same shape with further knots."""
-        shape = inserted(self.shape, knots, "u" if direction == 0 else "v")
         every = list(self.knots)
         every[direction] = np.sort(np.concatenate([every[direction], knots]))
-        dimension = self.points.shape[1]
-        if not self.closed:
-            logs = None if shape.weights is None else np.log(shape.weights).ravel()
-            points = np.array(shape.control_points).reshape(-1, dimension)
-            return replace(self, knots=tuple(every), points=points, logs=logs)
-        return replace(periodic(replace(self, knots=tuple(every)), shape), weighted=self.weighted)
+        finer = replace(self, knots=tuple(every))
+        if self.closed:
+            return replace(periodic(finer, inserted(self.curve, knots)), weighted=self.weighted)
+        shape = inserted(self.curve, knots) if len(every) == 1 else inserted(self.surface, knots, DIRECTIONS[direction])
+        logs = None if shape.weights is None else np.log(shape.weights).ravel()
+        return replace(finer, points=shape.control_points.reshape(-1, self.points.shape[1]), logs=logs)
 
     def basis(self, parameters: Reals) -> csr_array:
         """(m, N) matrix whose product with the control points are the places at parameters (m, k)."""
@@ -241,7 +255,8 @@ def matched(
     """The net at which the penalties of true distances, and `stiffness` times its bending, are least.
 
     Places follow the shape by descent while it moves; after that they are searched for from samples everywhere, on
-    a curve with `certain` by bounds as well (on a surface that takes milliseconds a point), and the whole is repeated where a nearer one is found.
+    a curve with `certain` by bounds as well (on a surface that takes milliseconds a point), and the whole is repeated
+    where a nearer one is found.
     """
     places = sampled_parameters(net.shape, target.points) if near is None else near
     total, converged = 0, False

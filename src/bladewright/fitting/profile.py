@@ -11,6 +11,8 @@ from scipy.sparse import csr_array
 from scipy.spatial import ConvexHull, QhullError, cKDTree
 
 from bladewright.errors import FitError
+from bladewright.fitting.camber_thickness import CamberThickness, abscissae_of
+from bladewright.fitting.curves import noise_along
 from bladewright.fitting.fitted import Fitted, asked, checked_points
 from bladewright.fitting.least_squares import Penalty, Quadratic, minimised, rank_of, singular_values, summed
 from bladewright.fitting.net import PRIOR, Net
@@ -21,8 +23,6 @@ from bladewright.nurbs.curve import Curve
 from bladewright.section.camber import turned_left
 
 DEGREE = 3
-THIRD = 0.0625
-"""abscissa of the third control point of the thickness, of the chord (the source's section 4.2)"""
 SAMPLES = 400
 """places of a side at which a search for the nearest one starts"""
 STIFFNESSES = (1e-3, 1e-5, 1e-7, 1e-9)
@@ -48,7 +48,7 @@ class ProfileFit(Fitted):
 
     def side(self, t: ArrayLike, *, upper: bool) -> Reals:
         """Points (m, 2) of a side at parameters t (m,) of the thickness, leading edge at 0."""
-        found = _Profile(camber=self.camber, thickness=self.thickness)
+        found = CamberThickness(camber=self.camber, thickness=self.thickness)
         return found.derivatives(np.atleast_1d(np.asarray(t, dtype=np.float64)), upper=upper)[0]
 
 
@@ -129,65 +129,6 @@ def fit_profile(
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class _Profile:
-    """Camber (x, y) and thickness (x, h), both over [0, 1]."""
-
-    camber: Curve
-    thickness: Curve
-    round_end: bool = False
-
-    def between(self, ends: Reals) -> "_Profile":
-        """The profile with its camber's ends moved, and the abscissae of the thickness with them."""
-        net = self.camber.control_points.copy()
-        net[[0, -1]] = ends
-        abscissae = _abscissae(len(self.thickness.control_points), ends[0, 0], ends[1, 0], round_end=self.round_end)
-        heights = self.thickness.control_points[:, 1]
-        return replace(
-            self,
-            camber=replace(self.camber, control_points=net),
-            thickness=replace(self.thickness, control_points=np.stack([abscissae, heights], axis=-1)),
-        )
-
-    def sites(self, abscissae: Reals) -> Reals:
-        """Camber parameters (n,) at abscissae (n,), by a table and Newton's method."""
-        s = np.linspace(0.0, 1.0, SAMPLES)
-        x = np.maximum.accumulate(self.camber(s)[:, 0])
-        found = np.interp(abscissae, x, s)
-        for _ in range(8):
-            place, slope = self.camber.derivatives(found, 1)
-            rate = slope[:, 0]
-            step = (place[:, 0] - abscissae) / np.where(rate > 1e-9, rate, 1e-9)
-            found = np.clip(found - np.clip(step, -0.1, 0.1), 0.0, 1.0)
-        return np.asarray(found)
-
-    def derivatives(self, t: Reals, *, upper: bool | NDArray[np.bool_]) -> list[Reals]:
-        """The point of a side and its first two derivatives (n, 2) by t (n,)."""
-        sign = np.where(upper, 1.0, -1.0)[..., None]
-        of = self.thickness.derivatives(t, 2)
-        (x1, h1), (x2, h2) = of[1].T, of[2].T
-        s = self.sites(of[0][:, 0])
-        c0, c1, c2, c3 = self.camber.derivatives(s, 3)
-        s1 = x1 / c1[:, 0]
-        s2 = (x2 - c2[:, 0] * s1**2) / c1[:, 0]
-        size = length(c1)
-        normal = turned_left(c1) / size[:, None]
-        tangent = c1 / size[:, None]
-        # the normal turns against the tangent as the camber's curvature times its length
-        turn = (c1[:, 0] * c2[:, 1] - c1[:, 1] * c2[:, 0]) / size**2
-        turn1 = (c1[:, 0] * c3[:, 1] - c1[:, 1] * c3[:, 0]) / size**2 - 2.0 * turn * np.sum(c1 * c2, axis=-1) / size**2
-        n1 = -turn[:, None] * tangent
-        n2 = -turn1[:, None] * tangent - (turn**2)[:, None] * normal
-        h = of[0][:, 1]
-        by_s1, by_s2 = s1[:, None], s2[:, None]
-        first = c1 * by_s1 + sign * (h1[:, None] * normal + h[:, None] * n1 * by_s1)
-        second = c2 * by_s1**2 + c1 * by_s2
-        second = second + sign * (
-            h2[:, None] * normal + 2.0 * (h1 * s1)[:, None] * n1 + h[:, None] * (n2 * by_s1**2 + n1 * by_s2)
-        )
-        return [c0 + sign * h[:, None] * normal, first, second]
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
 class _Search:
     """The objective of a profile: unknowns are its camber's control points, its heights, and logarithms of weights."""
 
@@ -196,7 +137,7 @@ class _Search:
     fixed: bool
     penalty: Penalty
     stiffness: float
-    profile: _Profile
+    profile: CamberThickness
 
     @property
     def moving(self) -> NDArray[np.intp]:
@@ -215,7 +156,9 @@ class _Search:
         """The thickness with unknown weights, for its gauge."""
         of = self.profile.thickness
         points = np.array(of.control_points)
-        return Net(knots=(of.knots,), degrees=(DEGREE,), points=points, logs=np.log(of.weights), weighted=True)
+        return Net(
+            knots=(of.knots,), degrees=(DEGREE,), points=points, logs=np.log(self.profile.weights), weighted=True
+        )
 
     @property
     def unknowns(self) -> Reals:
@@ -224,14 +167,14 @@ class _Search:
             [camber, self.profile.thickness.control_points[self.heights, 1], np.zeros(self.net.gauge.shape[1])]
         )
 
-    def changed(self, unknowns: Reals) -> _Profile:
+    def changed(self, unknowns: Reals) -> CamberThickness:
         """The profile with other values of its unknowns."""
         moved, free = 2 * len(self.moving), len(self.heights)
         camber = self.profile.camber.control_points.copy()
         camber[self.moving] = unknowns[:moved].reshape(-1, 2)
         net = self.profile.thickness.control_points.copy()
         net[self.heights, 1] = unknowns[moved : moved + free]
-        logs = np.log(self.profile.thickness.weights) + self.net.gauge @ unknowns[moved + free :]
+        logs = np.log(self.profile.weights) + self.net.gauge @ unknowns[moved + free :]
         weights = np.exp(np.clip(logs, -10.0, 10.0))
         found = replace(
             self.profile,
@@ -240,7 +183,7 @@ class _Search:
         )
         return found if self.fixed else found.between(camber[[0, -1]])
 
-    def feet(self, profile: _Profile) -> Feet:
+    def feet(self, profile: CamberThickness) -> Feet:
         """The nearest places of the points on their sides."""
         t = np.zeros(len(self.points))
         grid = np.linspace(0.0, 1.0, SAMPLES) ** 1.5
@@ -259,7 +202,7 @@ class _Search:
         profile = self.changed(unknowns)
         return self.of_distances(profile, self.feet(profile)) + self._of_shape(profile, unknowns)
 
-    def of_distances(self, profile: _Profile, feet: Feet) -> Quadratic:
+    def of_distances(self, profile: CamberThickness, feet: Feet) -> Quadratic:
         counts = np.where(self.upper, self.upper.sum(), (~self.upper).sum())
         t, of = feet.parameters[:, 0], feet.across_of
         return summed(
@@ -271,7 +214,7 @@ class _Search:
             1.0 / counts,
         )
 
-    def rows(self, profile: _Profile, t: Reals, upper: NDArray[np.bool_], directions: Reals) -> csr_array:
+    def rows(self, profile: CamberThickness, t: Reals, upper: NDArray[np.bool_], directions: Reals) -> csr_array:
         """(m, n) derivatives by the unknowns of sides at t (m,), along directions (m, 2)."""
         thickness, camber, net = profile.thickness, profile.camber, replace(self, profile=profile).net
         ratio = net.basis(t[:, None]).toarray()
@@ -305,7 +248,7 @@ class _Search:
         ]
         return csr_array(np.concatenate(columns, axis=1))
 
-    def _of_shape(self, profile: _Profile, unknowns: Reals) -> Quadratic:
+    def _of_shape(self, profile: CamberThickness, unknowns: Reals) -> Quadratic:
         count, moved, free = len(unknowns), 2 * len(self.moving), len(self.heights)
         camber, thickness = profile.camber, profile.thickness
         value, gradient, curvature = 0.0, np.zeros(count), np.zeros((count, count))
@@ -319,22 +262,14 @@ class _Search:
         value += float(pull @ thickness.control_points[:, 1])
         gradient[rows] = pull[self.heights]
         curvature[rows, rows] = self.stiffness * net.bending[np.ix_(self.heights, self.heights)]
-        own, cost = net.gauge.T @ np.log(thickness.weights), PRIOR**2 + 1e-2 * self.stiffness
+        own, cost = net.gauge.T @ np.log(profile.weights), PRIOR**2 + 1e-2 * self.stiffness
         value += cost * float(own @ own)
         gradient[moved + free :] = cost * own
         curvature[moved + free :, moved + free :] = cost * np.eye(len(own))
         return Quadratic(value=value, gradient=gradient, curvature=curvature)
 
 
-def _abscissae(count: int, low: float, high: float, *, round_end: bool) -> Reals:
-    """Abscissae (count,) of the thickness's control points."""
-    last = count - 2 if round_end else count - 1
-    inner = np.linspace(THIRD, 1.0, last - 1)
-    share = np.concatenate([[0.0, 0.0], inner, [1.0] if round_end else []])
-    return np.asarray(low + share * (high - low))
-
-
-def _start(points: Reals, camber: int, thickness: int, *, round_end: bool) -> tuple[_Profile, NDArray[np.bool_]]:
+def _start(points: Reals, camber: int, thickness: int, *, round_end: bool) -> tuple[CamberThickness, NDArray[np.bool_]]:
     """A first profile: the middle between the outermost points across the longest chord, and a mean thickness."""
     try:
         hull = points[ConvexHull(points).vertices]
@@ -362,11 +297,11 @@ def _start(points: Reals, camber: int, thickness: int, *, round_end: bool) -> tu
     net[:, 0] = (
         np.linspace(line[:, 0].min(), line[:, 0].max(), camber) if (np.diff(net[:, 0]) <= 0.0).any() else net[:, 0]
     )
-    abscissae = _abscissae(thickness, net[0, 0], net[-1, 0], round_end=round_end)
+    abscissae = abscissae_of(thickness, net[0, 0], net[-1, 0], round_end=round_end)
     heights = np.full(thickness, half)
     heights[0], heights[1] = 0.0, 0.6 * half
     heights[-1] = 0.0 if round_end else 0.3 * half
-    profile = _Profile(
+    profile = CamberThickness(
         camber=Curve(control_points=net, knots=uniform_knots(camber, DEGREE), degree=DEGREE),
         thickness=Curve(
             control_points=np.stack([abscissae, heights], axis=-1),
@@ -379,7 +314,7 @@ def _start(points: Reals, camber: int, thickness: int, *, round_end: bool) -> tu
     return profile, eta > middle(np.clip(xi, 0.0, 1.0))
 
 
-def _upper(profile: _Profile, points: Reals) -> NDArray[np.bool_]:
+def _upper(profile: CamberThickness, points: Reals) -> NDArray[np.bool_]:
     """Which points lie above the camber, which is continued straight past its ends."""
     curve = profile.camber
 
@@ -394,8 +329,6 @@ def _upper(profile: _Profile, points: Reals) -> NDArray[np.bool_]:
 
 
 def _noise(feet: Feet, points: Reals, upper: NDArray[np.bool_]) -> float:
-    from bladewright.fitting.curves import noise_along
-
     squares = []
     for side in (True, False):
         rows = upper == side

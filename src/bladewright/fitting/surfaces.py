@@ -25,6 +25,8 @@ NEIGHBOURS = 6
 """points with which one is compared to see noise"""
 NOISY = 1.25
 """root mean square of a strip's distances, of the noise, up to which it is noise"""
+HELD: dict[str, Literal["none", "corners", "boundary"]] = {"free": "none", "corners": "corners", "fixed": "boundary"}
+"""control points that a boundary holds"""
 FLAT = 1e-9
 """second extent of the points, of the first, below which they lie on a line"""
 
@@ -79,9 +81,8 @@ def fit_surface(
         raise FitError("a fixed boundary was asked for without `start`: give the surface whose boundary is to stay")
     centre, extent = np.mean(given, axis=0), float(np.ptp(given, axis=0).max())
     scaled = (given - centre) / extent
-    way = asked(
-        weights=weights, power=power, robust=robust, tolerance=tolerance, extent=extent, progress=progress, always_stiff=True
-    )  # fmt: skip
+    way = asked(weights=weights, power=power, robust=robust, tolerance=tolerance, extent=extent, progress=progress)
+    way = replace(way, always_stiff=True)
     plane = _principal(scaled)
     if start is None:
         corners = _corners(plane)
@@ -97,17 +98,19 @@ def fit_surface(
             points=((start.control_points - centre) / extent).reshape(-1, 3),
             logs=None if start.weights is None else np.log(start.weights).ravel(),
         )
-    net = replace(net, held={"free": "none", "corners": "corners", "fixed": "boundary"}[boundary])
+    net = replace(net, held=HELD[boundary])
     _check_numbers(net, scaled, weights_free=way.weights_free)
     found, notes = within(net, Target(points=scaled, weights=np.ones(len(scaled))), way, _further_knots)
-    shape = found.match.net.shape
+    shape = found.match.net.surface
     feet = nearer_of(projected(shape, scaled), found.match.feet, found.inliers)
     signed = np.sum((feet.points - scaled) * shape.normal(*feet.parameters.T), axis=-1)
     inliers = found.inliers
     if found.rank < len(found.singular_values):
         notes += (
-            (f"the points determine {found.rank} of {len(found.singular_values)} directions of the unknowns: "
-            "the others bend the surface as little as they can"),
+            (
+                f"the points determine {found.rank} of {len(found.singular_values)} directions of the unknowns: "
+                "the others bend the surface as little as they can"
+            ),
         )
     return SurfaceFit(
         surface=replace(shape, control_points=shape.control_points * extent + centre),
@@ -181,7 +184,7 @@ def _empty(
     weights: str | ArrayLike,
 ) -> Net:
     """A net whose control points are all zero."""
-    if len(degrees) != 2 or len(control_points) != 2 or (knots is not None and len(knots) != 2):
+    if {len(degrees), len(control_points), 2 if knots is None else len(knots)} != {2}:
         raise FitError(
             "a surface has two degrees, two numbers of control points, and two arrays of knots: one for u and v"
         )
@@ -230,11 +233,10 @@ def _noise(parameters: Reals, signed: Reals) -> float:
 
 
 def _further_knots(found: Arrived, target: Target, way: Way, limit: float) -> tuple[Net | None, str]:
-    """Further knots in the strips that are too far off for other reasons than noise, along the direction that gains more."""
+    """Further knots in strips too far off for other reasons than noise, along the direction that gains more."""
     net, feet = found.match.net, found.match.feet
     points = target.points[found.inliers]
-    shape = net.shape
-    assert isinstance(shape, Surface)  # noqa: S101 - two directions
+    shape = net.surface
     signed = np.sum((feet.points - points) * shape.normal(*feet.parameters.T), axis=-1)
     noise = _noise(feet.parameters, signed)
     best: tuple[float, Net | None] = (0.0, None)
