@@ -1,8 +1,12 @@
 """Alignment: the rigid motion of a cloud that lies anywhere into the machine's axes."""
 
+from bladewright.fitting.alignment.axes import Found, Uncertainty, found_axes
 from bladewright.fitting.alignment.registration import (
     Registration,
+    aligned_section,
+    aligned_to,
     improved,
+    refined,
     registered,
     registration,
 )
@@ -12,10 +16,16 @@ __all__ = [
     "FREEDOMS",
     "PLANE_FREEDOMS",
     "SEPARABLE",
+    "Found",
     "Registration",
+    "Uncertainty",
+    "aligned_section",
+    "aligned_to",
     "composed",
+    "found_axes",
     "improved",
     "inverted",
+    "refined",
     "registered",
     "registration",
 ]

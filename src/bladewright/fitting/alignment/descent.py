@@ -54,7 +54,13 @@ class Descent:
 
 
 def descended(
-    target: Target, points: Reals, motion: Motion, *, freedoms: tuple[str, ...] | None = None, width: float = WIDTH, steps: int = STEPS
+    target: Target,
+    points: Reals,
+    motion: Motion,
+    *,
+    freedoms: tuple[str, ...] | None = None,
+    width: float = WIDTH,
+    steps: int = STEPS,
 ) -> Descent:
     """The motion of points (n, d) near `motion` that brings them onto the target."""
     columns = free_columns(points.shape[1], freedoms)

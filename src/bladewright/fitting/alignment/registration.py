@@ -166,3 +166,18 @@ def _systematic(points: Reals, descent: Descent) -> float:
     heights = np.sum(descent.contact.normals * descent.contact.miss, axis=1)[taking]
     other = cKDTree(points[taking]).query(points[taking], k=3)[1][:, 1:]
     return float(np.sqrt(max(0.0, float(np.mean(heights[:, None] * heights[other])))))
+
+
+def aligned_to(points: Reals, design: "UnifiedBlade") -> Motion:
+    """The motion of points (n, 3) [m] that lie anywhere onto a design's blade; see `registration` for how well."""
+    return registration(points, design).motion
+
+
+def aligned_section(points: Reals, design: "UnifiedSection") -> Motion:
+    """The motion of points (n, 2) [m] that lie anywhere in the plane onto a design's section."""
+    return registration(points, design).motion
+
+
+def refined(points: Reals, built: Any, motion: Motion, *, freedoms: tuple[str, ...] | None = None) -> Motion:
+    """The motion near `motion` of points (n, d) [m] onto a built blade or section; see `improved`."""
+    return improved(points, built, motion, freedoms=freedoms).motion
