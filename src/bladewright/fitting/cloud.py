@@ -57,12 +57,13 @@ def checked_cloud(cloud: ArrayLike) -> tuple[Reals, tuple[str, ...]]:
             "the cloud holds one side of a blade alone, a sheet without thickness: give the points of both sides"
         )
     extent = float(np.max(np.ptp(points, axis=0)))
-    notes = ()
+    notes: tuple[str, ...] = ()
     if not SMALLEST <= extent <= LARGEST:
-        notes = (
+        said = (
             f"the cloud extends over {extent:.4g} m, which is unusual for a blade: the unit of its coordinates may be "
-            "another one (--unit on the command line)",
+            "another one (--unit on the command line)"
         )
+        notes = (said,)
     return points, notes
 
 
@@ -103,7 +104,7 @@ def _parts(points: Reals) -> list[NDArray[np.intp]]:
     tree = cKDTree(points)
     near = np.asarray(tree.query(points, k=2)[0])[:, 1]
     extent = float(np.max(np.ptp(points, axis=0)))
-    gap = max(3.0 * float(np.percentile(near, 90.0)), 0.01 * extent)
+    gap = max((4.5 if points.shape[1] == 2 else 2.5) * float(np.percentile(near, 95.0)), 0.01 * extent)
     _, labels = connected_components(tree.sparse_distance_matrix(tree, gap), directed=False)
     counts = np.bincount(labels)
     return [np.flatnonzero(labels == label) for label in np.argsort(-counts)[:6] if counts[label] > 0.08 * len(points)]
@@ -154,10 +155,10 @@ def one_sided(points: Reals) -> bool:
     residuals = []
     for rows in neighbours:
         t = along[rows] - np.mean(along[rows], axis=0)
-        t = t / np.maximum(np.max(np.abs(t), axis=0), 1e-300)
+        t = t / max(float(np.max(np.abs(t))), 1e-300)
         powers = [np.ones(count), *t.T, *(t.T**2), *([t[:, 0] * t[:, 1]] if t.shape[1] > 1 else [])]
         matrix = np.stack(powers, axis=-1)
-        found = np.linalg.lstsq(matrix, height[rows], rcond=1e-8)[0]
+        found = np.linalg.lstsq(matrix, height[rows], rcond=0.03)[0]
         residuals.append(float(np.sqrt(np.mean((height[rows] - matrix @ found) ** 2))))
     # where sections are dense at the edges most neighbourhoods are of an edge, which is thin
-    return float(np.percentile(residuals, 85.0)) < THIN * width
+    return float(np.percentile(residuals, 90.0)) < THIN * width

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 
@@ -14,7 +14,6 @@ from bladewright.fitting.first.arrangement import found_arrangement
 from bladewright.fitting.first.camber import first_laws
 from bladewright.fitting.first.channel import EDGES, SPAN, Rough, curve_counts, rough_channel
 from bladewright.fitting.first.inliers import thinned, usual
-from bladewright.fitting.first.taming import sharpened, tamed
 from bladewright.fitting.first.matching import Laid, Match, matched, nearest, numbers_at
 from bladewright.fitting.first.outline import boundary, corner_sets
 from bladewright.fitting.first.shape import (
@@ -31,6 +30,7 @@ from bladewright.fitting.first.shape import (
     TANGENT_OUT,
     Shape,
 )
+from bladewright.fitting.first.taming import sharpened, tamed
 from bladewright.fitting.structure import Structure
 from bladewright.nurbs.basis import Reals
 from bladewright.section.checks import UNITS
@@ -41,6 +41,8 @@ Unit = Literal["m", "cm", "mm", "um", "in", "ft"]
 Arrangement = Literal["annular", "linear"]
 MOST = 1200
 """points that a first blade is drawn through"""
+GOOD = 4e-3
+"""of the chord: a mean distance with which no other outline is tried"""
 FEW = 450
 """points that decide which of several outlines it is"""
 
@@ -81,10 +83,30 @@ def first_blade(
     """
     points = thinned(usual(np.unique(np.asarray(points, dtype=np.float64), axis=0)), MOST)
     arrangement = arrangement or found_arrangement(points)
-    machine = coordinates(points, arrangement)
-    found = _found(machine, revolved=arrangement == "annular", structure=structure)
+    structure = structure or Structure()
+    machine, outlines = _sorted(coordinates(points, arrangement), revolved=arrangement == "annular")
     wide = float(np.ptp(machine[:, 2]))
-    return built_blade(found, arrangement, structure, blade_count, pitch, wide, name, length_unit)
+    best: tuple[float, UnifiedBlade] | None = None
+    refusal = FitError("no blade was found near the points")
+    for outline in outlines[:3]:
+        found = _refined(outline, machine, structure)
+        apart = _apart(found, machine)
+        if best is not None and apart > best[0]:
+            continue
+        try:
+            design, tamings = built_blade(found, arrangement, structure, blade_count, pitch, wide, name, length_unit)
+        except FitError as error:
+            refusal = error
+            continue
+        # a design that had to be tamed lies further from the points than its sections did
+        apart += 0.004 * tamings * found.laid.chord
+        if best is None or apart < best[0]:
+            best = apart, design
+        if best[0] < GOOD * found.laid.chord:
+            break
+    if best is None:
+        raise refusal
+    return best[1]
 
 
 def coordinates(points: Reals, arrangement: Arrangement) -> Reals:
@@ -101,35 +123,38 @@ def coordinates(points: Reals, arrangement: Arrangement) -> Reals:
     return np.stack([x, np.sqrt(y**2 + z**2), wrapped], axis=-1)
 
 
-def _found(machine: Reals, *, revolved: bool, structure: Structure | None) -> Found:
-    counts = dict(structure.channel) if structure and structure.channel else None
-    found = _likeliest(machine, revolved=revolved)
-    distances = nearest(found.shape, _laid(machine, found.channel), found.match.laws)[2]
-    kept = distances < 5.0 * np.median(distances) + 0.03 * found.laid.chord
+def _sorted(machine: Reals, *, revolved: bool) -> tuple[Reals, list[Found]]:
+    """The points that count, and the blades whose walls and edges are pieces of the outline, the closest first."""
+    found = _likely(machine, revolved=revolved)
+    best = found[0]
+    distances = nearest(best.shape, _laid(machine, best.channel), best.match.laws)[2]
+    kept = distances < 5.0 * np.median(distances) + 0.03 * best.laid.chord
     if np.mean(kept) < 0.995:
         machine = machine[kept]
-        found = _likeliest(machine, revolved=revolved)
-    chordwise = structure.chordwise if structure else (6, 6)
-    samples, clustering = (structure.samples, structure.clustering) if structure else (16, 1.0)
+        found = _likely(machine, revolved=revolved)
+    return machine, found
+
+
+def _likely(machine: Reals, *, revolved: bool) -> list[Found]:
+    few = machine[np.random.default_rng(1).permutation(len(machine))[:FEW]]
+    tried = []
+    for pieces in corner_sets(boundary(machine[:, :2])):
+        for turn in (0, 1):
+            channel = rough_channel(_named(pieces, turn), dict.fromkeys(EDGES, 5), revolved=revolved)
+            tried.append(_matched(few, channel, (4, 4), 3, turns=10))
+    return sorted(tried, key=lambda found: _apart(found, few))
+
+
+def _refined(rough: Found, machine: Reals, structure: Structure) -> Found:
+    """The blade between the ends of its own camber lines, in the numbers of control points that are asked for."""
     count = 4 if len(machine) > 400 else 3
+    found = rough
     for step in range(3):
-        channel = _trimmed(
-            found, dict.fromkeys(EDGES, 6) if step == 0 else counts or curve_counts(found.channel), machine
-        )
-        shape = _shape(channel, chordwise, samples, clustering)
+        counts = dict.fromkeys(EDGES, 6) if step == 0 else dict(structure.channel) or curve_counts(found.channel)
+        channel = _trimmed(found, counts, machine, 0.05 if step == 0 else 0.15)
+        shape = _shape(channel, structure.chordwise, structure.samples, structure.clustering)
         found = _continued(machine, channel, found, shape, count, ends=step == 2)
     return found
-
-
-def _likeliest(machine: Reals, *, revolved: bool) -> Found:
-    """The closest of the blades whose walls and edges are pieces of the outline."""
-    few = machine[np.random.default_rng(1).permutation(len(machine))[:FEW]]
-    tried = [
-        _matched(few, rough_channel(_named(pieces, turn), dict.fromkeys(EDGES, 5), revolved=revolved), (4, 4), 3, turns=10)
-        for pieces in corner_sets(boundary(machine[:, :2]))
-        for turn in (0, 1)
-    ]
-    return min(tried, key=lambda found: _apart(found, few))
 
 
 def _apart(found: Found, machine: Reals) -> float:
@@ -219,7 +244,7 @@ def _direction(shape: Shape, laid: Laid) -> tuple[Callable[[Reals], Reals], Real
     return turn, lean, float(np.percentile(along, 98.0) - np.percentile(along, 2.0))
 
 
-def _trimmed(found: Found, counts: dict[str, int], machine: Reals) -> Rough:
+def _trimmed(found: Found, counts: dict[str, int], machine: Reals, past: float) -> Rough:
     """The channel between the ends of the camber lines, and between the points furthest in and out."""
     numbers = numbers_at(found.match.laws, SPAN)
     extents = found.channel.extents()[0]
@@ -239,7 +264,7 @@ def _trimmed(found: Found, counts: dict[str, int], machine: Reals) -> Rough:
     for name, row, wall in (("hub", 0, low), ("shroud", -1, high)):
         u = np.linspace(starts[row], ends[row], 41)
         pieces[name] = found.channel.position(u, wall(u))
-    return rough_channel(pieces, counts, revolved=found.channel.revolved, past=0.15)
+    return rough_channel(pieces, counts, revolved=found.channel.revolved, past=past)
 
 
 def _reached(found: Found, machine: Reals) -> tuple[Callable[[Reals], Reals], Callable[[Reals], Reals]]:
@@ -265,16 +290,16 @@ def _reached(found: Found, machine: Reals) -> tuple[Callable[[Reals], Reals], Ca
 def built_blade(
     found: Found,
     arrangement: Arrangement,
-    structure: Structure | None,
+    structure: Structure,
     blade_count: int | None,
     pitch: float | None,
     wide: float,
     name: str,
     length_unit: Unit,
-) -> UnifiedBlade:
-    """The blade of what was found, with thickness raised or edges sharpened until it can be built."""
+) -> tuple[UnifiedBlade, int]:
+    """The blade of what was found, with thickness raised or edges sharpened until it can be built, and how far that went."""
     metre = UNITS[length_unit]
-    span = structure.span if structure else {}
+    span = structure.span
     numbers = numbers_at(found.match.laws, SPAN)
     shape, channel = found.shape, found.channel
     lengths = channel.extents()[1]
@@ -297,16 +322,17 @@ def built_blade(
     error: DesignError | None = None
     for attempt in range(10):
         roots = {ROOT_IN: numbers[:, ROOT_IN] ** 2, ROOT_OUT: numbers[:, ROOT_OUT] ** 2}
+        fields: dict[str, Any] = {
+            **around,
+            "leading_edge_y" if linear else "leading_edge_theta": law(
+                place / metre if linear else np.degrees(place), "place"
+            ),
+        }
         design = UnifiedBlade(
             name=name,
             length_unit=length_unit,
             arrangement=arrangement,
-            **around,
-            **{
-                "leading_edge_y" if linear else "leading_edge_theta": law(
-                    place / metre if linear else np.degrees(place), "place"
-                )
-            },
+            **fields,
             stagger=law(np.degrees(numbers[:, STAGGER]), "stagger"),
             metal_angle_in=law(np.degrees(numbers[:, ANGLE_IN]), "metal_angle_in"),
             metal_angle_out=law(np.degrees(numbers[:, ANGLE_OUT]), "metal_angle_out"),
@@ -316,16 +342,7 @@ def built_blade(
             trailing_edge_radius=law(np.clip(roots[ROOT_OUT], 1e-5, 0.9), "trailing_edge_radius"),
             thickness_upper=tuple(law(t, "thickness_upper") for t in numbers[:, shape.upper].T),
             thickness_lower=tuple(law(t, "thickness_lower") for t in numbers[:, shape.lower].T),
-            channel=Channel(
-                **{
-                    name: tuple(
-                        Point(float(x), float(r))
-                        for x, r in channel.curves[name][slice(1, -1) if name in ("hub", "shroud") else slice(None)]
-                        / metre
-                    )
-                    for name in EDGES
-                }
-            ),
+            channel=_as_channel(channel, metre),
             samples=shape.samples,
             clustering=shape.clustering,
         )
@@ -335,5 +352,18 @@ def built_blade(
             error = refused
             numbers = tamed(numbers, shape) if attempt > 3 else sharpened(numbers)
         else:
-            return design
+            return design, max(0, attempt - 3)
     raise FitError(f"no blade that can be built was found near the points: {error}")
+
+
+def _as_channel(channel: Rough, metre: float) -> Channel:
+    def points(name: str, inner: bool) -> tuple[Point, ...]:
+        rows = channel.curves[name] / metre
+        return tuple(Point(float(x), float(r)) for x, r in (rows[1:-1] if inner else rows))
+
+    return Channel(
+        leading_edge=points("leading_edge", False),
+        trailing_edge=points("trailing_edge", False),
+        hub=points("hub", True),
+        shroud=points("shroud", True),
+    )

@@ -5,6 +5,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from bladewright.errors import FitError
 from bladewright.fitting.first.shape import (
     ANGLE_IN,
     ANGLE_OUT,
@@ -141,7 +142,8 @@ def matched(shape: Shape, laid: Laid, laws: Reals, *, turns: int = 25, stiff: fl
             break
         laws = held(shape, laid, laws + _step(shape, laid, laws, s, upper, weight, smooth, ends))
         smooth = max(0.5 * smooth, FLOOR)
-    assert best is not None
+    if best is None:
+        raise FitError("no section was found near the points")
     return replace(best, mean=float(np.mean(np.sort(best.distances)[: max(1, int(0.94 * len(best.distances)))])))
 
 

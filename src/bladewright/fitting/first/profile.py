@@ -1,5 +1,6 @@
 """A first section from points in the plane."""
 
+from functools import partial
 from typing import Literal
 
 import numpy as np
@@ -7,21 +8,21 @@ import numpy as np
 from bladewright.errors import DesignError, FitError
 from bladewright.fitting.first.camber import first_laws
 from bladewright.fitting.first.inliers import thinned, usual
-from bladewright.fitting.first.taming import sharpened, tamed
 from bladewright.fitting.first.matching import Laid, Match, matched
 from bladewright.fitting.first.shape import (
     ANGLE_IN,
     ANGLE_OUT,
     EXTENT,
     PLACE,
-    STAGGER,
-    START,
     ROOT_IN,
     ROOT_OUT,
+    STAGGER,
+    START,
     TANGENT_IN,
     TANGENT_OUT,
     Shape,
 )
+from bladewright.fitting.first.taming import sharpened, tamed
 from bladewright.nurbs.basis import Reals
 from bladewright.section.checks import UNITS
 from bladewright.section.unified import UnifiedSection
@@ -82,7 +83,7 @@ def best_match(shape: Shape, laid: Laid, axis: float) -> Match:
         direction = axis + turn
         if abs(axis + turn) > np.radians(88.0):
             continue
-        laws = first_laws(shape, laid, lambda v, d=direction: np.full(len(v), d), np.zeros(1), 1)
+        laws = first_laws(shape, laid, partial(np.full_like, fill_value=direction), np.zeros(1), 1)
         found.append(matched(shape, laid, laws))
         if found[-1].mean < 2e-3 * laid.chord:
             break
