@@ -22,7 +22,7 @@ from bladewright.fitting.first.shape import (
     TANGENT_OUT,
     Shape,
 )
-from bladewright.fitting.first.taming import sharpened, tamed
+from bladewright.fitting.first.taming import SHARPENINGS, sharpened, tamed
 from bladewright.nurbs.basis import Reals
 from bladewright.section.checks import UNITS
 from bladewright.section.unified import UnifiedSection
@@ -99,7 +99,7 @@ def built_section(
     numbers = match.laws[0].copy()
     metre = UNITS[length_unit]
     error: DesignError | None = None
-    for attempt in range(10):
+    for attempt in range(SHARPENINGS + 6):
         extent = float(numbers[EXTENT])
         design = UnifiedSection(
             name=name,
@@ -123,7 +123,7 @@ def built_section(
             design.build()
         except DesignError as refused:
             error = refused
-            numbers = (tamed(numbers[None], shape) if attempt > 3 else sharpened(numbers[None]))[0]
+            numbers = (sharpened if attempt < SHARPENINGS else tamed)(numbers[None], shape)[0]
         else:
             return design
     raise FitError(f"no section that can be built was found near the points: {error}")

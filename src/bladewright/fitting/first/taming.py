@@ -14,11 +14,16 @@ from bladewright.fitting.first.shape import (
 )
 from bladewright.nurbs.basis import Reals
 
+SHARPENINGS = 8
+"""times that edges are sharpened before anything else is changed"""
 
-def sharpened(numbers: Reals) -> Reals:
-    """Numbers (n, q) of sections with smaller edge radii."""
+
+def sharpened(numbers: Reals, shape: Shape) -> Reals:
+    """Numbers (n, q) of sections with smaller edge radii, and thinner next to the edges."""
     numbers = np.array(numbers)
-    numbers[:, [ROOT_IN, ROOT_OUT]] *= 0.8
+    numbers[:, [ROOT_IN, ROOT_OUT]] *= 0.72
+    for side in (shape.upper, shape.lower):
+        numbers[:, [side.start, side.stop - 1]] *= 0.88
     return numbers
 
 
