@@ -89,7 +89,7 @@ def fit_curve(
             net = replace(net, held="corners", points=np.concatenate([pair[:1], inner, pair[1:]]))
     target = Target(points=scaled, weights=np.ones(len(scaled)), held=held)
     _check_numbers(net, scaled, weights_free=way.weights_free)
-    found, notes = within(net, target, way, _further_knots)
+    found, notes = within(net, target, way, _further_knots, warm=start is not None)
     net = found.match.net
     shape = net.curve
     feet = projected(shape, scaled, closed=closed)

@@ -13,6 +13,7 @@ from scipy.sparse import csr_array, hstack
 from bladewright.fitting.least_squares import Penalty, Quadratic, Solution, minimised, summed
 from bladewright.fitting.projection import Feet, certified, projected, sampled_parameters
 from bladewright.numerics.quadrature import panels
+from bladewright.nurbs.along import Direction
 from bladewright.nurbs.basis import Reals, basis, breaks
 from bladewright.nurbs.blossom import knot_change
 from bladewright.nurbs.collocation import collocation
@@ -24,7 +25,7 @@ LIMIT = 30.0
 """logarithm of a weight beyond which it changes nothing more"""
 PRIOR = 1e-10
 """cost of a unit of a logarithm of a weight, in extents of the points: it holds weights that do nothing"""
-DIRECTIONS: tuple[Literal["u"], Literal["v"]] = ("u", "v")
+DIRECTIONS: tuple[Direction, Direction] = ("u", "v")
 AT_ONCE = 100_000
 """points whose rows are built at a time"""
 GLOBAL = 8

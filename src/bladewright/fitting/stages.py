@@ -15,6 +15,10 @@ STIFFNESSES = (1e-4, 1e-6, 1e-8, 1e-10, 1e-13)
 """weights of the bending, in extents of the points squared"""
 NOISE_ALLOWS = 1.002
 """rise of the root mean square that a stiffness may cost where points leave control points undetermined"""
+WELL = 1e-4
+"""smallest singular value, of the largest, from which every direction is determined well"""
+LAST = (200, 80)
+"""evaluations of the last descent of a curve and of a surface"""
 ROUGH = 1e-3
 """relative fall of the value at which a match on the way ends"""
 ROUNDS = 25
@@ -70,12 +74,12 @@ class Arrived:
 Further = Callable[[Arrived, Target, Way, float], tuple[Net | None, str]]
 
 
-def within(net: Net, target: Target, way: Way, further: Further) -> tuple[Arrived, tuple[str, ...]]:
+def within(net: Net, target: Target, way: Way, further: Further, *, warm: bool) -> tuple[Arrived, tuple[str, ...]]:
     """The match within a largest distance, where there is one, and why it is not reached where it is not.
 
-    `further` gives a net with further knots, or None and the reason.
+    `further` gives a net with further knots, or None and the reason; a `warm` net is near already.
     """
-    found = arrived(net, target, way)
+    found = arrived(net, target, way, warm=warm)
     evaluations, reason = found.evaluations, ""
     for _ in range(ROUNDS):
         if way.limit is None or found.match.feet.distances.max() <= way.limit:
@@ -132,21 +136,30 @@ def _softened(net: Net, target: Target, way: Way, near: Reals | None, *, last: i
         net, near = match.net, match.feet.parameters
         total += match.evaluations
         tried.append(match)
-        if stiffness == levels[-1] and stiffness > 0.0 and _least(match) == 0.0:
+        if stiffness == levels[-1] and stiffness > 0.0 and _least(match, well=way.always_stiff) == 0.0:
             levels.append(0.0)
     best = len(tried) - 1
     if way.always_stiff:
         enough = NOISE_ALLOWS * max(_rms(tried[-1]), EXACT)
         best = next(i for i, each in enumerate(tried) if _rms(each) <= enough)
     net, near = tried[best].net, tried[best].feet.parameters
-    match = matched(net, target, penalty=Penalty(), stiffness=levels[best], near=near, certain=True)
+    match = matched(
+        net,
+        target,
+        penalty=Penalty(),
+        stiffness=levels[best],
+        near=near,
+        certain=True,
+        evaluations=LAST[len(net.knots) - 1],
+    )
     return replace(match, evaluations=total + match.evaluations)
 
 
-def _least(match: Match) -> float:
-    """No stiffness where the points determine all unknowns, else the least one."""
+def _least(match: Match, *, well: bool = False) -> float:
+    """No stiffness where the points determine all unknowns, or determine them `well`; else the least one."""
     values = singular_values(match.data.curvature)
-    return 0.0 if rank_of(values) == len(values) else STIFFNESSES[-1]
+    determined = values[-1] > WELL * values[0] if well and len(values) else rank_of(values) == len(values)
+    return 0.0 if determined else STIFFNESSES[-1]
 
 
 def _rms(match: Match) -> float:

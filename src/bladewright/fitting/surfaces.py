@@ -12,15 +12,20 @@ from scipy.spatial import ConvexHull, QhullError, cKDTree
 from bladewright.errors import FitError, GeometryError
 from bladewright.fitting.fitted import Fitted, asked, checked_logs, checked_points
 from bladewright.fitting.least_squares import Penalty
-from bladewright.fitting.net import Net, Target, quadratic_of
+from bladewright.fitting.net import DIRECTIONS, Net, Target, quadratic_of
 from bladewright.fitting.projection import nearer_of, projected
 from bladewright.fitting.stages import Arrived, Way, within
 from bladewright.numerics.elementary import cross2
 from bladewright.nurbs.basis import Reals, breaks, checked_knots, uniform_knots
+from bladewright.nurbs.domain import extended, reparametrised
 from bladewright.nurbs.surface import Surface
 
 FIRST_STIFFNESS = 1e-6
 """weight of the bending of the first surface"""
+MARGIN = 0.05
+"""of the domain: how far the surface is continued past its edges while it moves"""
+ALIKE = 1e-10
+"""of the domain: difference of two of its ends that is rounding"""
 NEIGHBOURS = 6
 """points with which one is compared to see noise"""
 NOISY = 1.25
@@ -92,17 +97,20 @@ def fit_surface(
             own[[0, -1, -1, 0], [0, 0, -1, -1]] = scaled[corners]
             net = replace(net, points=own.reshape(-1, 3))
     else:
-        net = Net(
-            knots=(start.knots_u, start.knots_v),
-            degrees=(start.degree_u, start.degree_v),
-            points=((start.control_points - centre) / extent).reshape(-1, 3),
-            logs=None if start.weights is None else np.log(start.weights).ravel(),
-        )
+        net = _of_surface(replace(start, control_points=(start.control_points - centre) / extent))
+    domain = net.surface.domain_u, net.surface.domain_v
+    if boundary == "free":
+        net = _of_surface(_widened(net.surface))
     net = replace(net, held=HELD[boundary])
     _check_numbers(net, scaled, weights_free=way.weights_free)
-    found, notes = within(net, Target(points=scaled, weights=np.ones(len(scaled))), way, _further_knots)
-    shape = found.match.net.surface
-    feet = nearer_of(projected(shape, scaled), found.match.feet, found.inliers)
+    found, notes = within(
+        net, Target(points=scaled, weights=np.ones(len(scaled))), way, _further_knots, warm=start is not None
+    )
+    shape, near = found.match.net.surface, found.match.feet.parameters
+    if boundary == "free":
+        shape, near = _cut(shape, near, domain)
+    last = projected(shape, scaled[found.inliers], near)
+    feet = nearer_of(projected(shape, scaled), last, found.inliers)
     signed = np.sum((feet.points - scaled) * shape.normal(*feet.parameters.T), axis=-1)
     inliers = found.inliers
     if found.rank < len(found.singular_values):
@@ -126,6 +134,46 @@ def fit_surface(
         tolerance=tolerance,
         notes=notes,
     )
+
+
+def _of_surface(surface: Surface) -> Net:
+    return Net(
+        knots=(surface.knots_u, surface.knots_v),
+        degrees=(surface.degree_u, surface.degree_v),
+        points=surface.control_points.reshape(-1, 3).copy(),
+        logs=None if surface.weights is None else np.log(surface.weights).ravel(),
+    )
+
+
+def _widened(surface: Surface) -> Surface:
+    """The surface continued past its edges, so that no place is held at one while it moves.
+
+    An edge that moves inwards past a point is a wall for the descent: hundreds of steps where a dozen do.
+    """
+    try:
+        for direction in DIRECTIONS:
+            low, high = surface.domain_u if direction == "u" else surface.domain_v
+            margin = MARGIN * (high - low)
+            surface = extended(surface, low - margin, high + margin, direction)
+    except GeometryError:
+        # weights that fall towards an edge would not stay positive
+        return surface
+    return surface
+
+
+def _cut(surface: Surface, parameters: Reals, domain: tuple[tuple[float, float], ...]) -> tuple[Surface, Reals]:
+    """The surface over the range of its places, whose parameters keep their domain, and the places there."""
+    mapped = parameters.copy()
+    for k, direction in enumerate(DIRECTIONS):
+        low, high = domain[k]
+        size = high - low
+        start, end = float(parameters[:, k].min()), float(parameters[:, k].max())
+        start = low if (start - low) ** 2 <= (ALIKE * size) ** 2 else start
+        end = high if (end - high) ** 2 <= (ALIKE * size) ** 2 else end
+        if (start, end) != (surface.domain_u, surface.domain_v)[k]:
+            surface = reparametrised(extended(surface, start, end, direction), low, high, direction)
+        mapped[:, k] = np.clip(low + (parameters[:, k] - start) / (end - start) * size, low, high)
+    return surface, mapped
 
 
 def _principal(points: Reals) -> Reals:

@@ -1,0 +1,117 @@
+"""Profiles fitted by camber and half thickness."""
+
+import numpy as np
+import pytest
+
+import bladewright as bw
+from bladewright.fitting.camber_thickness import CamberThickness, abscissae_of
+from bladewright.fitting.least_squares import Penalty
+from bladewright.fitting.profile import _Search
+from bladewright.nurbs.basis import uniform_knots
+
+KNOTS = uniform_knots(6, 3)
+CAMBER = np.stack([np.linspace(0.0, 1.0, 6), [0.0, 0.12, 0.2, 0.22, 0.15, 0.05]], axis=-1)
+
+
+def profile(*, round_end):
+    heights = [0.0, 0.03, 0.06, 0.07, 0.05, 0.0 if round_end else 0.01]
+    return CamberThickness(
+        camber=bw.Curve(control_points=CAMBER, knots=KNOTS, degree=3),
+        thickness=bw.Curve(
+            control_points=np.stack([abscissae_of(6, 0.0, 1.0, round_end=round_end), heights], axis=-1),
+            knots=KNOTS,
+            degree=3,
+            weights=np.array([1.0, 1.1, 0.9, 1.2, 1.0, 0.9]),
+        ),
+        round_end=round_end,
+    )
+
+
+def contour(of, count=70):
+    t = np.linspace(0.0, 1.0, count) ** 2
+    upper = np.repeat([True, False], count)
+    return of.derivatives(np.tile(t, 2), upper=upper)[0], upper
+
+
+@pytest.mark.parametrize("trailing_edge", ["blunt", "round"])
+def test_a_known_profile_is_found_again_with_its_sides(trailing_edge):
+    points, upper = contour(profile(round_end=trailing_edge == "round"))
+    order = np.random.default_rng(0).permutation(len(points))
+    fit = bw.fit_profile(points[order], trailing_edge=trailing_edge, ends=CAMBER[[0, -1]])
+    assert fit.mean < 1e-4
+    off_camber = np.min(np.sum((points[order][:, None] - points[None, [0, 69, 139]]) ** 2, axis=-1), axis=1) > 1e-3
+    assert (fit.upper == upper[order])[off_camber].all()
+    np.testing.assert_allclose(fit.camber.control_points[[0, -1]], CAMBER[[0, -1]], atol=1e-12)
+    # the sides are reached at the parameters that are handed back
+    rows = fit.upper
+    reached = fit.side(fit.t[rows], upper=True)
+    np.testing.assert_allclose(
+        np.sqrt(np.sum((reached - points[order][rows]) ** 2, axis=-1)), fit.distances[rows], atol=1e-9
+    )
+
+
+def test_abscissae_stand_where_the_source_puts_them():
+    points, _ = contour(profile(round_end=False))
+    fit = bw.fit_profile(points, power=4, ends=CAMBER[[0, -1]])
+    low, high = fit.camber.control_points[[0, -1], 0]
+    share = (fit.thickness.control_points[:, 0] - low) / (high - low)
+    np.testing.assert_allclose(share, [0.0, 0.0, 0.0625, 0.375, 0.6875, 1.0], atol=1e-12)
+    assert fit.thickness.control_points[0, 1] == 0.0
+    assert fit.maximum < 1e-3
+
+
+@pytest.mark.parametrize("fixed", [False, True])
+@pytest.mark.parametrize("round_end", [False, True])
+def test_the_gradient_is_that_of_central_differences(fixed, round_end):
+    of = profile(round_end=round_end)
+    points, upper = contour(of, 30)
+    points = points + 0.003 * np.random.default_rng(0).normal(size=points.shape)
+    search = _Search(points=points, upper=upper, fixed=fixed, penalty=Penalty(), stiffness=1e-3, profile=of)
+    at, step = search.unknowns, 1e-6
+    exact = search.objective(at).gradient
+    for k, e in enumerate(np.eye(len(at))):
+        found = (search.objective(at + step * e).value - search.objective(at - step * e).value) / (4 * step)
+        # rounding of a value over the step
+        assert found == pytest.approx(exact[k], rel=1e-6, abs=1e-9)
+
+
+def test_derivatives_along_a_side_are_those_of_central_differences():
+    of, t, step = profile(round_end=True), np.linspace(0.05, 0.95, 19), 1e-5
+    for upper in (True, False):
+        _, first, second = of.derivatives(t, upper=upper)
+        ahead, behind = of.derivatives(t + step, upper=upper), of.derivatives(t - step, upper=upper)
+        for order, exact in ((0, first), (1, second)):
+            # the third derivative times the step squared
+            np.testing.assert_allclose((ahead[order] - behind[order]) / (2 * step), exact, atol=1e-5)
+
+
+def test_the_leading_edge_is_round():
+    of, t = profile(round_end=False), np.array([1e-7])
+    ends = [of.derivatives(t, upper=side) for side in (True, False)]
+    bend = [
+        float((first[0, 0] * second[0, 1] - first[0, 1] * second[0, 0]) / np.sum(first[0] ** 2) ** 1.5)
+        for _, first, second in ends
+    ]
+    # both sides leave along the camber's normal with one curvature, whose signs differ as one side runs backwards
+    assert bend[0] == pytest.approx(-bend[1], rel=1e-4)
+    np.testing.assert_allclose(
+        ends[0][1] / np.sqrt(np.sum(ends[0][1] ** 2)), -ends[1][1] / np.sqrt(np.sum(ends[1][1] ** 2)), atol=1e-4
+    )
+
+
+@pytest.mark.parametrize(
+    ("points", "asked", "words"),
+    [
+        (np.ones((40, 3)), {}, "d = 2"),
+        (np.linspace(0, 1, 60)[:, None] * np.ones(2), {}, "line"),
+        (CAMBER, {}, "unknowns"),
+        (contour(profile(round_end=True))[0], {"thickness": 4}, "at least 4 and 5"),
+        (contour(profile(round_end=True))[0], {"trailing_edge": "sharp"}, "'sharp'"),
+        (contour(profile(round_end=True))[0], {"ends": "loose"}, "'loose'"),
+    ],
+)
+def test_what_cannot_be_fitted_is_refused_in_one_paragraph(points, asked, words):
+    with pytest.raises(bw.BladewrightError, match=words) as caught:
+        bw.fit_profile(points, **asked)
+    assert type(caught.value).__name__ == "FitError"
+    assert "\n" not in str(caught.value)
