@@ -23,8 +23,8 @@ DEGREES = (1, 2, 4)
 """of the meridional lines while axes are compared"""
 LAST_STEPS = 200
 """of the least squares that decide"""
-PER_END = 300
-"""points of an end that are used"""
+FEW, PER_END = 150, 400
+"""points of an end by which axes are compared, and those that decide"""
 SURE = 0.2 * np.pi / 180.0
 """largest standard deviation of the axis' direction [rad]"""
 PLACED = 0.01
@@ -63,8 +63,9 @@ def found_axes(points: Reals, *, arrangement: Arrangement | None = None) -> Foun
     """The machine's axes of a cloud (n, 3) [m] of one blade that lies anywhere, without a design.
 
     A prism is a blade of a linear cascade: its direction is the span z, and the chord line is laid along x. Otherwise
-    both ends must lie on surfaces of revolution about the machine axis, and be shown by rows of points: then x = 0 is at
-    the foremost point and theta = 0 in the middle. Raises FitError where the points do not determine the axes.
+    both ends must lie on surfaces of revolution about the machine axis, and be shown by rows of points without
+    noise: then x = 0 is at the foremost point and theta = 0 in the middle. Raises FitError where the points do
+    not determine the axes.
     """
     cloud = np.asarray(points, dtype=np.float64)
     if cloud.ndim != 2 or cloud.shape[1] != 3:
@@ -80,9 +81,9 @@ def found_axes(points: Reals, *, arrangement: Arrangement | None = None) -> Foun
             return _cascade(cloud, prism)
         if arrangement == "linear":
             raise FitError(
-                f"the cloud is no prism: along the best direction its section is blurred by {prism.rms:.3g} m, more than "
-                f"{THIN * extent:.3g} m; of a cascade's tapered or twisted blade the axes are not found. Give --start, or "
-                "move the points into the machine's axes (x downstream, z along the span)"
+                f"the cloud is no prism: along the best direction its section is blurred by {prism.rms:.3g} m, more "
+                f"than {THIN * extent:.3g} m; of a cascade's tapered or twisted blade the axes are not found. Give "
+                "--start, or move the points into the machine's axes (x downstream, z along the span)"
             )
     return _annular(cloud)
 
@@ -108,9 +109,11 @@ def _cascade(cloud: Reals, prism: Prism) -> Found:
         uncertainty=Uncertainty(direction=prism.deviation, offset=0.0),
         notes=(
             "the cloud is a prism, taken as a blade of a linear cascade with its span along z",
-            "a prism does not show where the machine axis lies in its section: x is laid along the chord, from the "
-            "thicker edge (leading) to the thinner one, so that stagger is 0 and all angles count from the chord; the "
-            "camber bulges towards +y, the origin is at the leading edge's lower end",
+            (
+                "a prism does not show where the machine axis lies in its section: x is laid along the chord, from the "
+                "thicker edge (leading) to the thinner one, so that stagger is 0 and all angles count from the chord; "
+                "the camber bulges towards +y, the origin is at the leading edge's lower end"
+            ),
         ),
     )
 
@@ -135,7 +138,7 @@ def _annular(cloud: Reals) -> Found:
     pieces = [pieces_of(sheet, side) for side in range(4)]
     tried: list[tuple[Axis, int]] = []
     for pair in (0, 1):
-        ends = _ends(sheet, pieces[pair], pieces[pair + 2])
+        ends = _ends(sheet, pieces[pair], pieces[pair + 2], FEW)
         if ends is None:
             continue
         for _, start in first_axes([*pieces[pair], *pieces[pair + 2]]):
@@ -147,7 +150,7 @@ def _annular(cloud: Reals) -> Found:
     if not tried:
         raise _undetermined("no end of the blade is shown by a row of points")
     best, pair = tried[0]
-    ends = _ends(sheet, pieces[pair], pieces[pair + 2])
+    ends = _ends(sheet, pieces[pair], pieces[pair + 2], PER_END)
     axis = axis_of(ends, best.motion, steps=LAST_STEPS) if ends is not None else None
     if axis is None or axis.rms > best.rms:
         axis = best
@@ -161,14 +164,14 @@ def _annular(cloud: Reals) -> Found:
     )
 
 
-def _ends(sheet: Sheet, low: list[Piece], high: list[Piece]) -> tuple[End, End] | None:
+def _ends(sheet: Sheet, low: list[Piece], high: list[Piece], count: int) -> tuple[End, End] | None:
     found = []
     for pieces in (low, high):
         if not pieces:
             return None
         rows, first = np.unique(np.concatenate([piece.rows for piece in pieces]), return_index=True)
         along = np.concatenate([piece.along for piece in pieces])[first]
-        some = drawn(np.arange(len(rows), dtype=np.float64)[:, None], PER_END)[:, 0].astype(int)
+        some = drawn(np.arange(len(rows), dtype=np.float64)[:, None], count)[:, 0].astype(int)
         found.append(End(points=sheet.points[rows[some]], along=along[some]))
     return found[0], found[1]
 
@@ -176,7 +179,8 @@ def _ends(sheet: Sheet, low: list[Piece], high: list[Piece]) -> tuple[End, End] 
 def _check(axis: Axis, others: list[Axis], extent: float) -> None:
     if axis.rms > CLOSE * extent:
         raise _undetermined(
-            f"the ends lie {axis.rms:.3g} m off surfaces of revolution about the best axis, more than {CLOSE * extent:.3g} m"
+            f"the ends lie {axis.rms:.3g} m off surfaces of revolution about the best axis, more than "
+            f"{CLOSE * extent:.3g} m"
         )
     if axis.direction > SURE or axis.offset > PLACED * extent:
         raise _undetermined(
@@ -187,14 +191,15 @@ def _check(axis: Axis, others: list[Axis], extent: float) -> None:
         apart = abs(other.motion.rotation[0] @ axis.motion.rotation[0]) < APART
         if apart and other.rms < CLEARLY * max(axis.rms, 1e-9 * extent):
             raise _undetermined(
-                f"another axis fits nearly as well: the ends lie {other.rms:.3g} m off it, and {axis.rms:.3g} m off the best"
+                f"another axis fits nearly as well: the ends lie {other.rms:.3g} m off it, and {axis.rms:.3g} m "
+                "off the best"
             )
 
 
 def _undetermined(why: str) -> FitError:
     return FitError(
-        f"the machine axis cannot be told from the points alone: {why}. Give --start with a design of about this blade, "
-        "or move the points into the machine's axes (x downstream along the machine axis) and leave out --align"
+        f"the machine axis cannot be told from the points alone: {why}. Give --start with a design of about this "
+        "blade, or move the points into the machine's axes (x downstream along the machine axis) and leave out --align"
     )
 
 
@@ -208,14 +213,13 @@ def _placed(cloud: Reals, sheet: Sheet, axis: Axis, pair: int) -> tuple[Motion, 
     places = [float(np.mean(motion(edge)[:, 0])) for edge in edges]
     thick = [_thickness(edge) for edge in edges]
     leading = 0 if thick[0] >= thick[1] else 1
-    notes = [
-        "the machine axis is found from the blade's ends; x = 0 is at the cloud's foremost point and theta = 0 in its middle"
-    ]
+    placed = (
+        "the machine axis is found from the blade's ends; x = 0 is at the foremost point and theta = 0 in the middle"
+    )
+    notes = [placed]
     sign = 1.0 if places[1 - leading] >= places[leading] else -1.0
     if max(thick) < 1.3 * min(thick):
-        notes.append(
-            "the edges are about equally thick: which one is the leading edge, and with it the sense of x, is a guess"
-        )
+        notes.append("the edges are about equally thick: which one is leading, and with it the sense of x, is a guess")
     else:
         notes.append("the thicker edge is taken as the leading one, a guess, and x points from it to the other")
     turn = Motion(rotation=np.diag([sign, sign, 1.0]), translation=np.zeros(3))

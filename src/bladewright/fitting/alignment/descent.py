@@ -67,6 +67,7 @@ def descended(
     extent = target.extent
     wide, least = width * extent, ROUNDING * extent
     settled, small = False, np.inf
+    start, total = motion, np.zeros(len(GENERATORS[points.shape[1]]) + points.shape[1])
     contact: Contact | None = None
     for _ in range(steps):
         moved = motion(points)
@@ -76,9 +77,14 @@ def descended(
         weights = tukey(distances, max(wide, least))
         pivot = np.mean(moved, axis=0) if freedoms is None else np.zeros(points.shape[1])
         rows, right = equations(moved, contact, weights, pivot)
-        change = _step(rows, right, columns, pivot, moved, extent)
-        motion = composed(change, motion)
-        small = float(np.max(np.abs(change(moved) - moved)))
+        step = _step(rows, right, columns, pivot, moved, extent)
+        if freedoms is None:
+            motion = composed(_about(pivot, step), motion)
+        else:
+            # what is held stays exactly so: one turn and one shift after the start, not many small ones in a row
+            total = total + step
+            motion = composed(_about(pivot, total), start)
+        small = float(np.max(np.abs(motion(points) - moved)))
         if wide <= max(scatter, least) * (1.0 + 1e-9) and small < SETTLED * extent:
             settled = True
             break
@@ -118,16 +124,23 @@ def tukey(distances: Reals, width: float) -> Reals:
     return np.asarray(np.maximum(0.0, 1.0 - (distances / width) ** 2) ** 2)
 
 
-def _step(rows: Reals, right: Reals, columns: list[int], pivot: Reals, moved: Reals, extent: float) -> Motion:
-    """The change of the motion: least squares in the freedoms that the rows determine."""
+def _step(rows: Reals, right: Reals, columns: list[int], pivot: Reals, moved: Reals, extent: float) -> Reals:
+    """Changes (k,) of all freedoms: least squares in those that are free and that the rows determine."""
     dimension = moved.shape[1]
     turns = len(GENERATORS[dimension])
     reach = float(np.sqrt(np.max(np.sum((moved - pivot) ** 2, axis=1))))
     scale = np.where(np.arange(rows.shape[1]) < turns, 1.0 / reach, 1.0)
     found = np.linalg.lstsq(rows[:, columns] * scale[columns], right, rcond=WEAK)[0]
-    longest = float(np.max(np.abs(found)))
+    longest = float(np.sqrt(np.max(found**2)))
     step = np.zeros(rows.shape[1])
-    step[columns] = found * scale[columns] * min(1.0, LONGEST * extent / max(longest, 1e-300))
+    shortened = LONGEST * extent / longest if longest > LONGEST * extent else 1.0
+    step[columns] = found * scale[columns] * shortened
+    return step
+
+
+def _about(pivot: Reals, step: Reals) -> Motion:
+    """A turn about a point, then a shift."""
+    turns = len(GENERATORS[len(pivot)])
     rotation = turned(step[:turns])
     return Motion(rotation=rotation, translation=pivot - rotation @ pivot + step[turns:])
 
@@ -136,10 +149,10 @@ def _determined(
     rows: Reals, right: Reals, columns: list[int], extent: float
 ) -> tuple[tuple[Reals, ...], NDArray[np.float64]]:
     turns = len(GENERATORS[2 if rows.shape[1] == 3 else 3])
-    scale = np.where(np.arange(rows.shape[1]) < turns, 1.0 / extent, 1.0)[columns]
+    scale: Reals = np.where(np.arange(rows.shape[1]) < turns, 1.0 / extent, 1.0)[columns]
     _, values, across = np.linalg.svd(rows[:, columns] * scale, full_matrices=False)
     weak = values <= WEAK * values[0]
-    spread = float(np.sum(right**2)) / max(1, np.count_nonzero(right) - len(columns))
+    spread = float(np.sum(right**2)) / max(1, int(np.count_nonzero(right)) - len(columns))
     inverse = np.where(weak, 0.0, 1.0 / np.where(weak, 1.0, values))
     half = scale[:, None] * across.T * inverse
     return tuple(across[weak]), spread * half @ half.T

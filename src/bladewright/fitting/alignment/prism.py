@@ -9,10 +9,12 @@ from bladewright.fitting.alignment.descent import tukey
 from bladewright.fitting.alignment.thinning import drawn
 from bladewright.nurbs.basis import Reals
 
-POINTS = 1_500
+POINTS = 1_200
 DIRECTIONS = 500
 """that are tried, spread evenly over half a sphere"""
-FOLLOWED = 4
+COARSE = 40
+"""cells of a grid in the cloud's extent, by which directions are compared"""
+FOLLOWED = 6
 """of them that are followed"""
 NEAR = 60
 """points of the projection that a piece of the curve is laid through"""
@@ -40,12 +42,9 @@ def prism_of(points: Reals) -> Prism:
     cloud = drawn(points, POINTS)
     cloud = cloud - np.median(cloud, axis=0)
     directions = _hemisphere(DIRECTIONS)
-    scores = []
-    for direction in directions:
-        flat = cloud[:700] @ _across(direction).T
-        reach = cKDTree(flat).query(flat, k=3)[0][:, -1]
-        # points that fill an area are further apart than points on a curve of the same extent
-        scores.append(float(np.median(reach) / np.max(np.ptp(flat, axis=0))))
+    cell = float(np.max(np.ptp(cloud, axis=0))) / COARSE
+    # a curve passes few cells of a grid, whatever rows the points stand in
+    scores = [len(np.unique(np.floor(cloud @ _across(d).T / cell).astype(int) @ [1, 10_000])) for d in directions]
     tried = [_followed(cloud, directions[k]) for k in np.argsort(scores)[:FOLLOWED]]
     return min(tried, key=lambda prism: prism.rms)
 
@@ -63,8 +62,8 @@ def _followed(cloud: Reals, direction: Reals) -> Prism:
         # smoothing by a parabola: what it leaves of a point's distance and of its height
         scale = np.maximum(np.max(np.abs(along), axis=1, keepdims=True), 1e-300)
         vander = np.stack([np.ones_like(along), along / scale, (along / scale) ** 2], axis=-1)
-        solved = np.linalg.pinv(vander)
-        first = np.einsum("nk,nkj->nj", vander[:, 0], solved)
+        normal_matrix = np.einsum("nki,nkj->nij", vander, vander) + 1e-12 * np.eye(3)
+        first = np.einsum("nki,ni->nk", vander, np.linalg.solve(normal_matrix, vander[:, 0, :, None])[..., 0])
         left = off[:, 0] - np.einsum("nj,nj->n", first, off)
         lift = height - np.einsum("nj,nj->n", first, height[near])
         width = max(4.685 * 1.4826 * float(np.median(np.abs(left))), 1e-15)

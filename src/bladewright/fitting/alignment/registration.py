@@ -111,7 +111,7 @@ def _checked(points: Reals, target: Target) -> Reals:
 
 
 def _reported(cloud: Reals, target: Target, descent: Descent, freedoms: tuple[str, ...] | None) -> Registration:
-    dimension, extent = cloud.shape[1], target.extent
+    dimension = cloud.shape[1]
     cloud = drawn(cloud, POINTS)
     distances, taking = descent.contact.distances, descent.weights > 0.0
     rms = float(np.sqrt(np.mean(distances[taking] ** 2))) if taking.any() else float("inf")
@@ -123,14 +123,12 @@ def _reported(cloud: Reals, target: Target, descent: Descent, freedoms: tuple[st
     same = systematic <= OTHER * target.chord and share >= SHARE
     notes = []
     if weak:
-        notes.append(
-            f"the points do not determine {', '.join(weak)} of the motion: they are left where the search ended"
-        )
+        notes.append(f"the points do not determine {', '.join(weak)} of the motion: they stay where the search ended")
     if not same:
         notes.append(
-            f"the cloud does not lie on the design's blade: {1.0 - share:.0%} of its points are away from it, the others "
-            f"miss it systematically by {systematic:.3g} m, {systematic / target.chord:.2%} of its chord; it is another blade, "
-            f"a mirrored one, or in another unit"
+            f"the cloud does not lie on the design's blade: {1.0 - share:.0%} of its points are away from it, the "
+            f"others miss it systematically by {systematic:.3g} m, {systematic / target.chord:.2%} of its chord; it is "
+            "another blade, a mirrored one, or in another unit"
         )
     if not descent.settled:
         notes.append("the motion did not settle")

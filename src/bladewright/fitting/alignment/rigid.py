@@ -14,8 +14,8 @@ PLANE_FREEDOMS = ("turn", "shift_x", "shift_y")
 SEPARABLE = {"annular": ("turn_y", "turn_z", "shift_y", "shift_z"), "linear": ("turn_x", "turn_y")}
 """The freedoms that no free parameter of a design stands for, by arrangement.
 
-A shift along x moves an annular blade as its channel does, a turn about x as `leading_edge_theta` does. In a cascade the
-shifts are those of channel and `leading_edge_y`, and a turn about the span changes `stagger` and both metal angles.
+A shift along x moves an annular blade as its channel does, a turn about x as `leading_edge_theta` does. In a cascade
+the shifts are those of channel and `leading_edge_y`, and a turn about the span changes `stagger` and both metal angles.
 """
 GENERATORS = {
     2: np.array([[[0.0, -1.0], [1.0, 0.0]]]),

@@ -1,7 +1,7 @@
 """Motions that bring a cloud near a target, without a guess: all sign choices of principal axes, then all turns.
 
-Every start is followed by iterative closest points, first point to point (Besl and McKay 1992), then point to plane (Chen
-and Medioni 1992), on evenly spread samples of the target; all starts at once, and those that lag behind are dropped.
+Every start is followed by iterative closest points, first point to point (Besl and McKay 1992), then point to plane
+(Chen and Medioni 1992), on evenly spread samples of the target; all starts at once, and those that lag are dropped.
 """
 
 from itertools import permutations, product

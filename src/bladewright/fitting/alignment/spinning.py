@@ -1,7 +1,7 @@
 """First axes of revolution from planes on the ends of a blade.
 
-The velocities of a turn about the axis are tangential to the ends, so that the planes' normals are perpendicular to them
-(Pottmann and Wallner 2001, section 4). Some planes are not on an end at all, so small draws of them are tried.
+The velocities of a turn about the axis are tangential to the ends, so that the planes' normals are perpendicular to
+them (Pottmann and Wallner 2001, section 4). Some planes are not on an end at all, so small draws of them are tried.
 """
 
 import numpy as np
@@ -13,9 +13,9 @@ from bladewright.nurbs.basis import Reals
 
 SHARE = 0.6
 """of the planes that must agree on an axis"""
-TRIALS, DRAWN = 200, 7
+TRIALS, DRAWN = 400, 7
 """draws of a few planes, and how many each"""
-MOST = 6
+MOST = 10
 """axes that are handed on"""
 DISTINCT = 0.996
 """cosine of the angle from which on directions are different"""

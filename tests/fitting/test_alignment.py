@@ -1,0 +1,160 @@
+"""Clouds that lie anywhere are brought onto a design, or into machine axes that they show themselves."""
+
+from functools import cache
+
+import numpy as np
+import pytest
+from scipy.spatial.transform import Rotation
+
+from bladewright.errors import FitError
+from bladewright.files.examples import example_text
+from bladewright.files.reading import design_from, parsed
+from bladewright.fitting.alignment import (
+    SEPARABLE,
+    aligned_section,
+    composed,
+    found_axes,
+    improved,
+    inverted,
+    registered,
+)
+from bladewright.fitting.alignment.target import target_of
+from bladewright.fitting.result import Motion
+
+
+@cache
+def built(name):
+    return design_from(parsed(example_text(name), name), name).build()
+
+
+@cache
+def target(name):
+    return target_of(built(name))
+
+
+def cloud(name, count, *, span=(0.0, 1.0)):
+    """Points of both sides, a tenth of them in rows at the two ends."""
+    random = np.random.default_rng(7)
+    v = span[0] + (span[1] - span[0]) * random.random(count // 2)
+    v[: count // 20] = np.where(random.random(count // 20) < 0.5, *span)
+    return np.concatenate([side(random.random(count // 2), v) for side in built(name).sides])
+
+
+def rows(name, along, across):
+    """A grid of points on both sides, rows at the ends among them."""
+    u, v = (1.0 - np.cos(np.pi * np.linspace(0.0, 1.0, along))) / 2.0, np.linspace(0.0, 1.0, across)
+    return np.concatenate([side.grid(u, v).reshape(-1, 3) for side in built(name).sides])
+
+
+def thrown(seed):
+    random = np.random.default_rng(seed)
+    return Motion(rotation=Rotation.random(rng=random).as_matrix(), translation=random.normal(size=3))
+
+
+@pytest.mark.parametrize("name", ["radial-turbine", "vki-ls89"])
+def test_points_of_the_design_itself_are_moved_back_within_a_billionth_of_the_chord(name):
+    points = cloud(name, 1200)
+    found = registered(thrown(1)(points), target(name))
+    # what was asked of noise-free points
+    assert np.abs(found.motion(thrown(1)(points)) - points).max() < 1e-9 * built(name).chord
+    assert found.same
+    assert not found.undetermined
+
+
+def test_half_a_span_with_noise_and_outliers_is_put_where_it_belongs():
+    points, random = cloud("fan-rotor", 1500, span=(0.3, 0.8)), np.random.default_rng(3)
+    noisy = points + 2e-5 * random.normal(size=points.shape)
+    box = noisy.min(axis=0) + np.ptp(noisy, axis=0) * (1.6 * random.random((75, 3)) - 0.3)
+    found = registered(thrown(2)(np.concatenate([noisy, box])), target("fan-rotor"))
+    # first-order displacement of the middle of the blade, with the covariance that is reported; five deviations
+    rates = np.concatenate([np.cross(np.eye(3), points.mean(axis=0)), np.eye(3)])
+    deviation = np.sqrt(np.diag(rates.T @ found.covariance @ rates))
+    error = (found.motion(thrown(2)(points)) - points).mean(axis=0)
+    assert np.all(np.sqrt(error**2) < 5.0 * deviation)
+    assert deviation.max() < 2e-5
+    assert found.rms == pytest.approx(2e-5, rel=0.1)
+    assert 0.94 < found.share < 0.97
+
+
+@pytest.mark.slow
+def test_a_mirrored_blade_is_told_from_the_design():
+    points = cloud("radial-turbine", 800) * np.array([1.0, -1.0, 1.0])
+    found = registered(thrown(4)(points), target("radial-turbine"))
+    assert not found.same
+    assert "another blade" in " ".join(found.notes)
+
+
+def test_a_blade_of_another_stagger_is_told_from_the_design():
+    other = built("vki-ls89").design.changed("stagger", -50.0).build()
+    points = np.concatenate([side.grid(np.linspace(0.0, 1.0, 40), np.linspace(0.0, 1.0, 8)) for side in other.sides])
+    found = improved(points.reshape(-1, 3), built("vki-ls89"), Motion(rotation=np.eye(3), translation=np.zeros(3)))
+    assert not found.same
+    assert "another blade" in " ".join(found.notes)
+
+
+def test_a_prism_without_its_ends_leaves_the_shift_along_the_span_undetermined():
+    points = cloud("vki-ls89", 800, span=(0.3, 0.7))
+    found = improved(points, built("vki-ls89"), Motion(rotation=np.eye(3), translation=np.array([2e-4, 1e-4, 0.0])))
+    assert found.undetermined == ("shift_z",)
+
+
+def test_only_the_freedoms_that_are_named_change():
+    away = Motion(rotation=Rotation.from_rotvec([0.0, 2e-3, -1e-3]).as_matrix(), translation=np.array([0, 2e-4, -3e-4]))
+    points = cloud("radial-turbine", 800)
+    given = inverted(away)(points)
+    motion = Motion(rotation=np.eye(3), translation=np.zeros(3))
+    found = improved(given, built("radial-turbine"), motion, freedoms=SEPARABLE["annular"]).motion
+    # the motion sought has no part in the freedoms that are held: it is found as exactly as with all of them
+    assert np.abs(found(given) - points).max() < 1e-9 * built("radial-turbine").chord
+    assert found.translation[0] == 0.0
+    with pytest.raises(FitError, match="turn_w"):
+        improved(points, built("radial-turbine"), motion, freedoms=("turn_w",))
+
+
+def test_a_section_is_found_in_its_plane():
+    design = design_from(parsed(example_text("turbine-section"), "vane"), "vane")
+    u = np.linspace(0.0, 1.0, 150)
+    points = np.concatenate([curve(u) for curve in design.build().curves.values()])
+    c, s = np.cos(2.0), np.sin(2.0)
+    away = Motion(rotation=np.array([[c, -s], [s, c]]), translation=np.array([0.3, -0.1]))
+    back = aligned_section(away(points), design)
+    assert np.abs(back(away(points)) - points).max() < 1e-9 * 0.03
+
+
+def test_a_motion_and_its_inverse_leave_points_where_they_are():
+    points = np.random.default_rng(0).normal(size=(5, 3))
+    assert np.abs(composed(inverted(thrown(5)), thrown(5))(points) - points).max() < 1e-14
+
+
+@pytest.mark.parametrize("points", ["strewn", "rows"])
+def test_a_prism_shows_the_span_of_its_cascade(points):
+    given = cloud("vki-ls89", 4000) if points == "strewn" else rows("vki-ls89", 60, 30)
+    found = found_axes(thrown(6)(given))
+    span = (found.motion.rotation @ thrown(6).rotation)[:, 2]
+    assert found.arrangement == "linear"
+    # neighbours at other heights make a parabola through a bent piece differ by 1e-4 of the chord or so over the span
+    assert np.hypot(*span[:2]) < 1e-3
+    assert any("chord" in note for note in found.notes)
+
+
+def test_rows_at_both_ends_show_the_machine_axis():
+    points = rows("compressor-stator", 69, 36)
+    found = found_axes(thrown(3)(points))
+    axis = composed(found.motion, thrown(3))
+    assert found.arrangement == "annular"
+    # the blade's ends are on cylinders and cones within 1e-10 of the chord; the axis magnifies that 1e5 times
+    assert np.hypot(*axis.rotation[1:, 0]) < 1e-4
+    assert np.hypot(*axis.translation[1:]) < 1e-4 * built("compressor-stator").chord
+    assert axis.rotation[0, 0] > 0.0
+
+
+def test_ends_that_do_not_determine_the_axis_are_refused_with_the_cure():
+    noisy = rows("compressor-stator", 69, 36)
+    noisy = noisy + 2e-5 * np.random.default_rng(1).normal(size=noisy.shape)
+    with pytest.raises(FitError, match="--start"):
+        found_axes(thrown(3)(noisy))
+
+
+def test_a_cloud_of_another_dimension_is_refused():
+    with pytest.raises(FitError, match="3 dimensions"):
+        registered(np.zeros((30, 2)), target("vki-ls89"))
