@@ -30,8 +30,6 @@ from bladewright.section.unified import UnifiedSection
 Unit = Literal["m", "cm", "mm", "um", "in", "ft"]
 MOST = 600
 """points that a first section is drawn through"""
-TURNED = 0.03
-"""axial share of the chord below which the rounder end leads"""
 
 
 def first_section(

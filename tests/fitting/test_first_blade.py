@@ -1,0 +1,77 @@
+"""First blades from points in space."""
+
+from importlib import resources
+
+import numpy as np
+import pytest
+
+from bladewright.blade.blade import Blade
+from bladewright.blade.unified import UnifiedBlade
+from bladewright.files.reading import read_design
+from bladewright.fitting.first import first_blade, found_arrangement
+from bladewright.fitting.structure import structure_of
+from bladewright.nurbs.closest import closest_on_surface
+
+
+def _truth(name: str) -> Blade:
+    with resources.as_file(resources.files("bladewright") / "examples" / f"{name}.toml") as path:
+        built = read_design(path).build()
+    assert isinstance(built, Blade)
+    return built
+
+
+def _cloud(blade: Blade, count: int, low: float = 0.0, high: float = 1.0) -> np.ndarray:
+    draw = np.random.default_rng(3)
+    sides = [blade.surfaces[name] for name in ("upper", "lower")]
+    parts = [side(draw.random(count // 2), low + (high - low) * draw.random(count // 2)) for side in sides]
+    return draw.permutation(np.concatenate(parts))
+
+
+def _share(design: UnifiedBlade, points: np.ndarray) -> float:
+    blade = design.build()
+    on = [closest_on_surface(blade.surfaces[name], points[:300], tolerance=1e-6) for name in ("upper", "lower")]
+    return float(np.mean(np.min([each.distances for each in on], axis=0)) / blade.chord)
+
+
+def test_a_first_blade_lies_within_one_percent_of_the_chord() -> None:
+    points = _cloud(_truth("centrifugal-impeller"), 700)
+    assert _share(first_blade(points, arrangement="annular"), points) < 0.01
+
+
+def test_a_first_blade_has_its_edges_and_walls_where_they_are() -> None:
+    truth = _truth("radial-turbine")
+    found = first_blade(_cloud(truth, 1000), arrangement="annular")
+    for edge in ("leading_edge", "trailing_edge"):
+        for end in (0, -1):
+            there, here = (np.array(getattr(design.channel, edge)[end]) for design in (truth.design, found))
+            # a corner is known as well as the nearest random points tell it
+            assert np.sqrt(np.sum((there - here) ** 2)) < 0.06 * truth.chord * 1e3
+
+
+def test_a_first_blade_is_found_from_part_of_the_span_on_the_other_side_of_the_machine() -> None:
+    truth = _truth("compressor-stator")
+    x, y, z = _cloud(truth, 700, 0.3, 0.8).T
+    points = np.stack([x, -y, -z], axis=-1)
+    assert _share(first_blade(points, arrangement="annular"), points) < 0.01
+
+
+def test_noise_and_outliers_leave_a_first_blade_close() -> None:
+    truth = _truth("mixed-flow-pump")
+    clean = _cloud(truth, 700)
+    draw = np.random.default_rng(2)
+    points = clean + 5e-4 * truth.chord * draw.normal(size=clean.shape)
+    points[::20] += 0.1 * truth.chord * draw.normal(size=points[::20].shape)
+    assert _share(first_blade(points, arrangement="annular"), clean) < 0.015
+
+
+def test_a_first_blade_has_the_structure_that_was_asked_for() -> None:
+    truth = _truth("compressor-stator")
+    asked = structure_of(truth.design)
+    found = first_blade(_cloud(truth, 600), arrangement="annular", structure=asked, blade_count=20, length_unit="m")
+    assert structure_of(found) == asked
+    assert (found.blade_count, found.length_unit) == (20, "m")
+
+
+@pytest.mark.parametrize(("name", "arrangement"), [("vki-ls89", "linear"), ("compressor-stator", "annular")])
+def test_a_cascade_is_told_from_a_ring_of_blades(name: str, arrangement: str) -> None:
+    assert found_arrangement(_cloud(_truth(name), 600)) == arrangement

@@ -1,0 +1,50 @@
+"""What is refused as a cloud, and what is suspicious."""
+
+import numpy as np
+import pytest
+
+from bladewright.errors import FitError
+from bladewright.fitting.cloud import checked_cloud
+
+ANGLES = np.linspace(0.0, 2.0 * np.pi, 400, endpoint=False)
+SECTION = 0.05 * np.stack([np.cos(ANGLES), 0.2 * np.sin(ANGLES) + 0.3 * np.cos(ANGLES) ** 2], axis=-1)
+BLADE = np.array([[x, y, z] for z in np.linspace(0.3, 0.4, 12) for x, y in SECTION[::5]])
+HOLED = np.array(SECTION)
+HOLED[7, 1] = np.nan
+NEXT_SECTION, NEXT_BLADE = SECTION + np.array([0.0, 0.06]), BLADE + np.array([0.0, 0.06, 0.0])
+LINE = np.linspace(0.0, 1.0, 200)[:, None]
+
+
+@pytest.mark.parametrize("cloud", [SECTION, BLADE, np.concatenate([SECTION, SECTION])])
+def test_a_whole_blade_is_taken_as_it_is(cloud: np.ndarray) -> None:
+    points, notes = checked_cloud(cloud)
+    assert np.array_equal(points, cloud)
+    assert notes == ()
+
+
+@pytest.mark.parametrize(
+    ("cloud", "said"),
+    [
+        ([["a", "b"]] * 200, "not an array of numbers"),
+        (np.zeros((200, 4)), "the shape"),
+        (HOLED, "the first of them point 7"),
+        (SECTION[:99], "99 different points"),
+        (np.repeat(SECTION[:50], 4, axis=0), "50 different points"),
+        (LINE * [1.0, 2.0], "one line"),
+        (LINE * [1.0, 2.0, 3.0], "one line"),
+        (SECTION @ [[1.0, 0.0, 0.5], [0.0, 1.0, 0.2]], "one plane"),
+        (np.concatenate([SECTION, NEXT_SECTION]), "two blades"),
+        (np.concatenate([BLADE, NEXT_BLADE]), "two blades"),
+        (np.stack([LINE[:, 0], LINE[:, 0] * (1.0 - LINE[:, 0])], axis=-1), "one side"),
+    ],
+)
+def test_what_is_no_blade_is_refused_in_one_paragraph(cloud: object, said: str) -> None:
+    with pytest.raises(FitError, match=said) as refusal:
+        checked_cloud(cloud)  # type: ignore[arg-type]
+    assert "\n" not in str(refusal.value)
+
+
+@pytest.mark.parametrize("factor", [1000.0, 1e-3])
+def test_an_extent_beyond_all_blades_makes_the_unit_suspicious(factor: float) -> None:
+    _, notes = checked_cloud(SECTION * factor)
+    assert "unit" in notes[0]
