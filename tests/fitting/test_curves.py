@@ -25,7 +25,7 @@ def random_curve(seed, dimension, *, weighted):
 
 
 @pytest.mark.parametrize(
-    ("seed", "dimension", "weights"), [(1, 2, "given"), (2, 3, "given"), (6, 2, "free"), (4, 5, "none")]
+    ("seed", "dimension", "weights"), [(1, 2, "given"), (2, 3, "given"), (8, 2, "free"), (9, 3, "free"), (4, 5, "none")]
 )
 def test_points_of_a_known_curve_give_it_back(seed, dimension, weights):
     curve, rng = random_curve(seed, dimension, weighted=weights != "none")

@@ -19,6 +19,8 @@ from bladewright.nurbs.curve import Curve
 
 FIRST_STIFFNESS = 1e-8
 """weight of the bending of the first curve"""
+SYSTEMATIC = 3.0
+"""root mean square of the distances, of the noise, from which a second way is tried"""
 NOISY = 1.25
 """root mean square of a knot span's distances, of the noise, up to which it is noise"""
 
@@ -90,6 +92,10 @@ def fit_curve(
     target = Target(points=scaled, weights=np.ones(len(scaled)), held=held)
     _check_numbers(net, scaled, weights_free=way.weights_free)
     found, notes = within(net, target, way, _further_knots, warm=start is not None)
+    if start is None and _systematic(found, target):
+        # stiff first curves cut corners that a bent one has; a soft one from the same start ends elsewhere
+        other = within(net, target, way, _further_knots, warm=True)
+        found, notes = min((found, notes), other, key=lambda each: _cost(each[0], power, notes=each[1]))
     net = found.match.net
     shape = net.curve
     feet = projected(shape, scaled, closed=closed)
@@ -169,6 +175,19 @@ def _further_knots(found: Arrived, target: Target, way: Way, limit: float) -> tu
     if sparse and not noisy:
         return None, f"{worst}: the points are too few for further knots"
     return None, f"{worst}: noise of a standard deviation of about {noise * extent:.3g} stops further knots"
+
+
+def _systematic(found: Arrived, target: Target) -> bool:
+    """Whether the distances are more than noise."""
+    feet = found.match.feet
+    noise = noise_along(feet.parameters[:, 0], feet.points - target.points[found.inliers])
+    return float(np.sqrt(np.mean(feet.distances**2))) > SYSTEMATIC * noise
+
+
+def _cost(found: Arrived, power: float, notes: tuple[str, ...]) -> tuple[bool, int, float]:
+    """What is less for a better match: within its tolerance, of fewer control points, at lower distances."""
+    distances = found.match.feet.distances
+    return bool(notes), len(found.match.net.points), float(np.mean((distances / 1e-3) ** power))
 
 
 def _empty(

@@ -23,6 +23,8 @@ from bladewright.nurbs.surface import Surface
 
 LIMIT = 30.0
 """logarithm of a weight beyond which it changes nothing more"""
+TENSION = 0.01
+"""weight of squared first derivatives, of that of squared second ones"""
 PRIOR = 1e-10
 """cost of a unit of a logarithm of a weight, in extents of the points: it holds weights that do nothing"""
 DIRECTIONS: tuple[Direction, Direction] = ("u", "v")
@@ -104,13 +106,17 @@ class Net:
 
     @cached_property
     def bending(self) -> Reals:
-        """(N, N) matrix of the integral of all squared second derivatives by the parameters, over [0, 1]."""
+        """(N, N) matrix of the integral of all squared second derivatives by the parameters, and some of the first.
+
+        The second are the bending; without the first, a stretch that leaves the points would cost nothing.
+        """
         parts = [_products(knots, degree) for knots, degree in zip(self.clamped, self.degrees, strict=True)]
         if len(parts) == 1:
-            found = parts[0][2]
+            found = TENSION * parts[0][1] + parts[0][2]
             return found if self.spread is None else np.asarray(self.spread.T @ found @ self.spread)
         (mass_u, slope_u, bend_u), (mass_v, slope_v, bend_v) = parts
-        return np.asarray(np.kron(bend_u, mass_v) + 2.0 * np.kron(slope_u, slope_v) + np.kron(mass_u, bend_v))
+        bending = np.kron(bend_u, mass_v) + 2.0 * np.kron(slope_u, slope_v) + np.kron(mass_u, bend_v)
+        return np.asarray(bending + TENSION * (np.kron(slope_u, mass_v) + np.kron(mass_u, slope_v)))
 
     @property
     def unknowns(self) -> Reals:
