@@ -137,7 +137,8 @@ def test_a_prism_shows_the_span_of_its_cascade(points):
     assert any("chord" in note for note in found.notes)
 
 
-def test_rows_at_both_ends_show_the_machine_axis():
+def test_rows_at_both_ends_can_show_the_machine_axis():
+    # from this position; from others the search may stop short of the axis, and refuses
     points = rows("compressor-stator", 69, 36)
     found = found_axes(thrown(3)(points))
     axis = composed(found.motion, thrown(3))
