@@ -14,14 +14,20 @@ from bladewright.nurbs.basis import Reals
 
 FIRST = 3e-3
 """noise of the first round where the start is a guess, of the chord"""
-QUICK = 3
+SHAKEN = 0.03
+"""noise from which a match of a section is tried once more, of the chord"""
+FINEST = 1e-6
+"""misfit at which it is not, of that"""
+QUICK = 2
 """rounds of a search between two steps of growth"""
 LEAST = {2: 5e-7, 3: 5e-5}
 """largest deviation at which nothing more is added where no aim is stated, of the chord, by dimension"""
 MOST = {2: 80, 3: 260}
 """parameters above which nothing is added"""
-FEW, MANY = 2500, 12_000
-"""points of a quick and of a thorough search"""
+FEWEST = 3
+"""control points of a thickness"""
+FEW, MANY = {2: 2500, 3: 1000}, 12_000
+"""points of a quick, by dimension, and of a thorough search"""
 NOISY = 0.15
 """part of the misfit that neighbours share below which it is noise"""
 WORTHWHILE = 0.02
@@ -52,14 +58,14 @@ def adapted(task: Task, start: Callable[[Structure | None], object], aim: Aim, *
 
     `start` gives the first design of a structure, or of its own where None.
     """
-    few = _part(task, thinned(len(task.points), FEW))
+    few = _part(task, thinned(len(task.points), FEW[task.points.shape[1]]))
     many = _part(task, thinned(len(task.points), MANY))
     first = start(None)
     noise = FIRST if guessed else None
     if aim.structured and aim.tolerance is None:
         found = searched(few, first, noise=noise)
         return (found if found.interrupted else searched(many, found.design)), ""
-    found = searched(few, first, noise=noise, rounds=QUICK * 2)
+    found = searched(few, first, noise=noise, rounds=2 * QUICK)
     reason = ""
     for _ in range(40):
         if found.interrupted:
@@ -70,12 +76,43 @@ def adapted(task: Task, start: Callable[[Structure | None], object], aim: Aim, *
         found, grew = _grown(few, found, aim)
         if not grew:
             break
+    if aim.parameters is not None and task.points.shape[1] == 2:
+        found = _exchanged(few, found)
     if found.interrupted:
         return found, reason
     found = searched(many, found.design)
+    if guessed and task.points.shape[1] == 2:
+        found = _shaken(many, found)
     if aim.tolerance is not None:
         found = _within(many, found, aim.tolerance)
     return found, reason
+
+
+def _exchanged(task: Task, found: Found) -> Found:
+    """The best of the ways to share the control points of a section's thickness between its sides."""
+    for way in (1, -1):
+        while not found.interrupted:
+            structure = structure_of(found.design)
+            upper, lower = structure.chordwise[0] + way, structure.chordwise[1] - way
+            if min(upper, lower) < FEWEST:
+                break
+            design = reshaped(found.design, replace(structure, chordwise=(upper, lower)))
+            other = searched(task, design, rounds=QUICK + 1, noise=found.rms)
+            evaluations = found.evaluations + other.evaluations
+            if not (other.rms < found.rms or other.interrupted):
+                found = replace(found, evaluations=evaluations)
+                break
+            found = replace(other, evaluations=evaluations)
+    return found
+
+
+def _shaken(task: Task, found: Found) -> Found:
+    """The better of a match and of one that starts from it as if it knew little: a nose may lie beside the right one."""
+    if found.interrupted or found.rms < SHAKEN * FINEST:
+        return found
+    other = searched(task, found.design, noise=SHAKEN)
+    better = other.rms < found.rms or other.interrupted
+    return replace(other if better else found, evaluations=found.evaluations + other.evaluations)
 
 
 def _part(task: Task, rows: Reals) -> Task:
@@ -114,7 +151,7 @@ def _grown(task: Task, found: Found, aim: Aim) -> tuple[Found, bool]:
     if aim.parameters is None and emphasis is None and sum(gain for gain, _ in ranked[:3]) < WORTHWHILE * total:
         return found, False
     design = reshaped(found.design, joined(structure_of(found.design), steps))
-    fresh = searched(task, design, rounds=QUICK, noise=found.rms)
+    fresh = searched(task, design, rounds=1, noise=found.rms)
     return replace(fresh, evaluations=fresh.evaluations + found.evaluations), True
 
 

@@ -16,7 +16,7 @@ from bladewright.nurbs.basis import Reals
 
 DAMPING = 1e-6
 """first damping, of the largest squared column"""
-STRIDE = 2.0
+STRIDE = 1.0
 """largest change of a variable in one step"""
 PENALTY = 4.0
 """merit of a violated inequality, in multiples of the largest multiplier seen"""

@@ -17,7 +17,9 @@ Side = Curve | Surface
 NEAR = 2.0
 """the other side is tried too where its nearest sample is not this much further away"""
 EDGE = 0.02
-"""how near to an edge, in u, a known foot may change sides"""
+"""how near to the trailing edge, in u, a known foot may change sides"""
+CONVERGED = 1e-8
+"""last step of a descent, in the parameters of a patch"""
 SAMPLES = (6, 5)
 """samples along and across a patch; a patch is small where the side bends"""
 CURVE_SAMPLES = (24, 1)
@@ -58,45 +60,64 @@ def feet(points: Reals, sides: Sequence[Side], hint: Feet | None = None) -> Feet
     """The nearest places of points (n, d) on the upper and the lower side.
 
     Each starts from the nearest of samples that are close to each other where the sides bend, and descends by damped
-    Newton steps until it converges. With a `hint`, the feet on sides that have moved little since, it starts from there.
+    Newton steps, around the leading edge where need be, until it converges. With a `hint`, the feet on sides that have
+    moved little since, it starts from there.
     """
-    on = [patches(side) for side in sides]
-    best = np.full((2, len(points)), np.inf)
-    u, v = np.zeros((2, len(points))), np.zeros((2, len(points)))
-    for k, (rows, patch, local) in enumerate(_starts(points, on) if hint is None else _hinted(on, hint)):
+    on = _ring(sides)
+    best, around, v = np.full(len(points), np.inf), np.zeros(len(points)), np.zeros(len(points))
+    for rows, patch, local in _starts(points, on) if hint is None else _hinted(on, hint):
+        if len(rows) == 0:
+            continue
         for part in np.array_split(np.arange(len(rows)), max(1, -(-len(rows) // AT_ONCE))):
-            found = polished(on[k], points[rows[part]], patch[part], local[part])
-            best[k, rows[part]] = found.square
-            u[k, rows[part]], v[k, rows[part]] = _parameters(on[k], found)
-    side = (best[1] < best[0]).astype(np.intp)
-    rows = np.arange(len(points))
-    return placed(points, sides, side, u[side, rows], v[side, rows])
+            where = rows[part]
+            found = polished(on, points[where], patch[part], local[part], converged=CONVERGED)
+            nearer = found.square < best[where]
+            where = where[nearer]
+            best[where] = found.square[nearer]
+            place = _parameters(on, found)
+            around[where], v[where] = place[0][nearer], place[1][nearer]
+    return placed(points, sides, (around < 0.0).astype(np.intp), np.abs(around), v)
 
 
 Start = tuple[NDArray[np.intp], NDArray[np.intp], Reals]
-"""points that are projected to a side, their patches and local parameters"""
+"""points that are projected, their patches and local parameters"""
 
 
-def _starts(points: Reals, on: Sequence[Patches]) -> list[Start]:
-    """From the nearest samples of both sides."""
-    samples = [sampled(each, *(SAMPLES if each.degrees[1] else CURVE_SAMPLES)) for each in on]
-    nearest = [cKDTree(each.points).query(points) for each in samples]
+def _ring(sides: Sequence[Side]) -> Patches:
+    """The patches of both sides as one: u runs from -1, the trailing edge, along the lower side to 0, and on to 1."""
+    upper, lower = (patches(side) for side in sides)
+    rows, columns = lower.shape
+    order = np.arange(rows * columns).reshape(rows, columns)[::-1].ravel()
+    mirror = np.array([-1.0, 1.0])
+    ends = np.where(mirror < 0.0, lower.high, lower.low), np.where(mirror < 0.0, lower.low, lower.high)
+    return Patches(
+        nets=np.concatenate([lower.nets[order, ::-1], upper.nets]),
+        low=np.concatenate([(mirror * ends[0])[order], upper.low]),
+        high=np.concatenate([(mirror * ends[1])[order], upper.high]),
+        shape=(rows + upper.shape[0], columns),
+        rational=lower.rational or upper.rational,
+    )
+
+
+def _starts(points: Reals, on: Patches) -> list[Start]:
+    """From the nearest sample, and from that on the other half where it is not much further."""
+    samples = sampled(on, *(SAMPLES if on.degrees[1] else CURVE_SAMPLES))
+    middle = int(np.searchsorted(on.low[samples.patch, 0], 0.0))
+    halves = slice(0, middle), slice(middle, None)
+    nearest = [cKDTree(samples.points[half]).query(points) for half in halves]
     found = []
-    for k in (0, 1):
+    for k, half in enumerate(halves):
         rows = np.flatnonzero(nearest[k][0] <= NEAR * nearest[1 - k][0])
         index = nearest[k][1][rows]
-        found.append((rows, samples[k].patch[index], samples[k].local[index]))
+        found.append((rows, samples.patch[half][index], samples.local[half][index]))
     return found
 
 
-def _hinted(on: Sequence[Patches], hint: Feet) -> list[Start]:
-    """From known feet; beside an edge on both sides."""
-    beside = (hint.u < EDGE) | (hint.u > 1.0 - EDGE)
-    found = []
-    for k, each in enumerate(on):
-        rows = np.flatnonzero((hint.side == k) | beside)
-        found.append((rows, *each.at(hint.u[rows], hint.v[rows])))
-    return found
+def _hinted(on: Patches, hint: Feet) -> list[Start]:
+    """From known feet, and from the other side of a trailing edge beside it."""
+    around = np.where(hint.side == 0, hint.u, -hint.u)
+    every, beside = np.arange(len(around)), np.flatnonzero(hint.u > 1.0 - EDGE)
+    return [(every, *on.at(around, hint.v)), (beside, *on.at(-around[beside], hint.v[beside]))]
 
 
 def placed(points: Reals, sides: Sequence[Side], side: NDArray[np.intp], u: Reals, v: Reals) -> Feet:

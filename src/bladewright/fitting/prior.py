@@ -16,7 +16,7 @@ from bladewright.fitting.structure import SPANWISE
 from bladewright.nurbs.basis import Reals
 from bladewright.section.limits import THICKNESSES
 
-NEAR = 1.0
+NEAR = 3.0
 """spread of a parameter about its start, in its own scale"""
 CHANNEL = 1.0
 """the same of the channel's control points, which the cloud lets slide along their curves"""

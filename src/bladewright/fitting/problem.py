@@ -52,7 +52,7 @@ class Measures:
         for wall in self.ends.walls.values():
             if state.shape.exact is not None:
                 rows.append(self._of_wall(wall) * wall.distances(state.shape.exact) / chord)
-        excess = self.reach.excess(self.reach.edges(state.shape))
+        excess = self.reach.excess(self.reach.edges(state.shape.sides))
         rows.append(self._of_edge * np.maximum(excess, 0.0) / chord)
         return np.concatenate(rows)
 
@@ -70,7 +70,7 @@ class Measures:
                 t, normal, _ = wall.misses(shape.exact)
                 moving = wall.rates(shape, t, paths)
                 blocks.append(-self._of_wall(wall) * np.einsum("nkd,nd->nk", moving, normal))
-        edges = self.reach.edges(shape)
+        edges = self.reach.edges(shape.sides)
         out = edges.normals * (self._of_edge * (self.reach.excess(edges) > 0.0))[:, None]
         blocks.append(np.einsum("nkd,nd->nk", self.model.rates(shape, edges, tangents), out))
         return np.concatenate(blocks) / chord

@@ -3,29 +3,30 @@
 Without it an edge that sticks out as a thin fin costs nothing, as it is nobody's nearest place.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
-from bladewright.fitting.feet import Feet, placed
-from bladewright.fitting.model import Shape
+from bladewright.fitting.feet import Feet, Side, placed
 from bladewright.nurbs.basis import Reals
+from bladewright.nurbs.surface import Surface
 
-WINDOWS = 12
-"""parts of the span in which the outermost point is sought"""
-FEWEST = 6
-"""points that a window needs"""
-NEAR = 0.5
-"""how far from an edge, in u, a point may be the outermost"""
+STATIONS = (np.arange(16) + 0.5) / 16.0
+"""places along the span at which each edge is looked at"""
+BESIDE = 0.125
+"""how far to both sides, along the edge, a point tells of it, of the span"""
+AROUND = 6
+"""points whose distances from each other are looked at"""
 APART = 1.5
 """allowed distance, of that between neighbours"""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Reach:
-    """Points near both edges, each the outermost of its part of the span."""
+    """Places along both edges, and beside each the outermost point."""
 
     points: Reals
     """(m, d) [m]"""
@@ -36,35 +37,38 @@ class Reach:
     allowed: Reals
     """(m,) [m]"""
 
-    def edges(self, shape: Shape) -> Feet:
-        """The places of the edges beside the points."""
-        return placed(self.points, shape.sides, np.zeros(len(self.u), dtype=np.intp), self.u, self.v)
+    def edges(self, sides: Sequence[Side]) -> Feet:
+        """The places on the edges beside the points."""
+        return placed(self.points, sides, np.zeros(len(self.u), dtype=np.intp), self.u, self.v)
 
     def excess(self, edges: Feet) -> Reals:
         """By how much edges stand out further than allowed (m,) [m]; negative where they do not."""
         return np.asarray(-np.sum(edges.miss * edges.normals, axis=-1) - self.allowed)
 
 
-def reach_of(points: Reals, on: Feet, rows: NDArray[np.bool_]) -> Reach:
-    """The outermost points at each edge, of those in `rows` (n,)."""
-    chosen: list[int] = []
-    ends: list[float] = []
-    allowed: list[float] = []
-    solid = points.shape[1] == 3
-    windows = WINDOWS if solid else 1
-    for end in (0.0, 1.0):
-        inward = np.abs(on.u - end)
-        for window in range(windows):
-            inside = np.flatnonzero(
-                rows & (inward < NEAR) & (on.v >= window / windows) & (on.v <= (window + 1) / windows)
-            )
-            if len(inside) < FEWEST:
-                continue
-            order = inside[np.argsort(inward[inside])]
-            near = points[order[: 2 * FEWEST]]
-            apart = cKDTree(points[inside]).query(near, k=3)[0][:, 1:]
-            chosen.append(int(order[0]))
-            ends.append(end)
-            allowed.append(APART * float(np.median(apart[:, -1])))
-    at = np.array(chosen, dtype=np.intp)
-    return Reach(points=points[at], u=np.array(ends), v=on.v[at], allowed=np.array(allowed))
+def reach_of(points: Reals, sides: Sequence[Side], rows: NDArray[np.bool_]) -> Reach:
+    """The outermost points beside each edge, of those in `rows` (n,)."""
+    upper, cloud = sides[0], points[rows]
+    v = STATIONS if isinstance(upper, Surface) else np.zeros(1)
+    u = np.repeat([0.0, 1.0], len(v))
+    v = np.tile(v, 2)
+    side = np.zeros(len(u), dtype=np.intp)
+    edges = placed(np.zeros((len(u), points.shape[1])), sides, side, u, v)
+    chosen, kept = [], []
+    for i, (at, normal) in enumerate(zip(edges.points, edges.normals, strict=True)):
+        near = np.arange(len(cloud))
+        if isinstance(upper, Surface):
+            along = np.asarray(upper.derivative(u[i : i + 1], v[i : i + 1], 0, 1))[0]
+            span = float(np.sqrt(along @ along))
+            near = np.flatnonzero(np.abs((cloud - at) @ along) < BESIDE * span * span)
+        if len(near) > AROUND:
+            chosen.append(int(near[np.argmax((cloud[near] - at) @ normal)]))
+            kept.append(i)
+    outermost = cloud[chosen] if chosen else np.empty((0, points.shape[1]))
+    allowed = np.empty(0)
+    if chosen:
+        tree = cKDTree(cloud)
+        _, around = tree.query(outermost, k=AROUND)
+        apart = tree.query(cloud[around.ravel()], k=3)[0][:, -1]
+        allowed = APART * np.median(apart.reshape(len(chosen), AROUND), axis=1)
+    return Reach(points=outermost, u=u[kept], v=v[kept], allowed=allowed)

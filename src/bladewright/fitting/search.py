@@ -23,7 +23,7 @@ from bladewright.fitting.scatter import Scatter, scatter_of
 from bladewright.fitting.walls import Ends, ends_of
 from bladewright.nurbs.basis import Reals
 
-STEPS = 8
+STEPS = 10
 """evaluations of the surface in a round"""
 ROUNDS = 12
 SETTLED = 0.995
@@ -71,6 +71,8 @@ class Found:
     ends: Ends
     damping: float
     evaluations: int
+    converged: bool = False
+    """whether the last descent came to its end"""
     interrupted: bool = False
 
     @property
@@ -89,6 +91,12 @@ class Found:
         return float(np.sqrt(np.mean(self.state.feet.distances[self.rows] ** 2))) / self.model.chord
 
     @property
+    def misfit(self) -> float:
+        """The same with what ends, walls and edges add to it."""
+        residuals = self.problem.measures.residuals(self.state)
+        return float(np.sqrt(residuals @ residuals / max(1, np.count_nonzero(self.rows))))
+
+    @property
     def maximum(self) -> float:
         """Largest distance of those [m]."""
         return float(np.max(self.state.feet.distances[self.rows]))
@@ -101,17 +109,14 @@ def searched(task: Task, start: Design, *, rounds: int = ROUNDS, noise: float | 
     no shape.
     """
     found = _prepared(task, start, start, noise)
-    noise = found.problem.noise
     for number in range(rounds):
-        before = found.rms
+        before = found.misfit
         if before < EXACT or found.interrupted:
             break
-        fresh = _round(found if number == 0 else _prepared(task, start, found.design, noise, found))
-        ratio = fresh.rms / before
-        if ratio < 1.0 or fresh.interrupted or number == 0:
-            found = fresh
+        found = _round(found if number == 0 else _prepared(task, start, found.design, noise, found))
         task.told(f"{len(found.problem.paths)} parameters, {1e3 * found.rms * found.model.chord:.3g} mm rms")
-        if ratio > SETTLED and number:
+        ratio = found.misfit / before
+        if number and found.converged and ratio > SETTLED:
             break
         noise = found.rms * (max(ratio, 1e-3) if ratio < FAST else 1.0)
     return found
@@ -136,7 +141,7 @@ def _prepared(task: Task, start: Design, design: Design, noise: float | None, be
         roots=np.sqrt(task.weights * (scatter.inliers & ~ends.covered)),
         model=model,
         ends=ends,
-        reach=reach_of(points, on, scatter.inliers & ~ends.covered),
+        reach=reach_of(points, shape.sides, scatter.inliers & ~ends.covered),
         noise=misfit if noise is None else noise,
     )
     problem = Problem(
@@ -162,12 +167,12 @@ def _prepared(task: Task, start: Design, design: Design, noise: float | None, be
 
 def _round(found: Found) -> Found:
     """What a descent from a prepared design finds."""
-    problem, interrupted = found.problem, False
+    problem, interrupted, converged = found.problem, False, False
     first = problem.vector(found.design)
     z, damping = first, found.damping
     try:
         descent = descended(problem, first, steps=STEPS, damping=damping)
-        z, damping = descent.z, descent.damping
+        z, damping, converged = descent.z, descent.damping, descent.converged
     except KeyboardInterrupt:
         z, interrupted = problem.best, True
     state = problem.state(z) or found.state
@@ -177,5 +182,6 @@ def _round(found: Found) -> Found:
         state=state,
         damping=damping,
         evaluations=found.evaluations + problem.evaluations,
+        converged=converged,
         interrupted=interrupted,
     )

@@ -42,6 +42,18 @@ class Patches:
         place = place + np.where(exists, steps, 0)
         return place[:, 0] * self.shape[1] + place[:, 1], exists
 
+    def at(self, u: Reals, v: Reals) -> tuple[NDArray[np.intp], Reals]:
+        """Indices (m,) of the patches that hold parameters u and v (m,), and the local ones (m, 2) there."""
+        starts = self.low[:: self.shape[1], 0], self.low[: self.shape[1], 1]
+        i, j = (
+            np.clip(np.searchsorted(start, at, side="right") - 1, 0, len(start) - 1)
+            for start, at in zip(starts, (u, v), strict=True)
+        )
+        patch = i * self.shape[1] + j
+        width = self.high[patch] - self.low[patch]
+        local = (np.stack([u, v], axis=-1) - self.low[patch]) / np.where(width > 0.0, width, 1.0)
+        return patch, np.clip(local, 0.0, 1.0)
+
 
 def patches(shape: Curve | Surface) -> Patches:
     """The Bezier patches of a curve or surface (real parts), weighted by one where it has no weights."""

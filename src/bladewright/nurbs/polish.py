@@ -29,13 +29,20 @@ class Places:
     """(m,) squared distance to the query"""
 
 
-def polished(on: Patches, queries: Reals, patch: NDArray[np.intp], local: Reals) -> Places:
-    """Where descent from a start on a patch (m,), (m, 2) ends: a local minimum of the distance to queries (m, d)."""
+def polished(
+    on: Patches, queries: Reals, patch: NDArray[np.intp], local: Reals, *, converged: float = CONVERGED
+) -> Places:
+    """Where descent from a start on a patch (m,), (m, 2) ends: a local minimum of the distance to queries (m, d).
+
+    `converged` is a last step in local parameters; the distance is exact to its square.
+    """
     patch, local = patch.copy(), local.copy()
     square = np.full(len(patch), np.inf)
     moving = np.arange(len(patch))
     for _ in range(ROUNDS):
-        local[moving], square[moving], out = _descended(on.nets[patch[moving]], queries[moving], local[moving])
+        local[moving], square[moving], out = _descended(
+            on.nets[patch[moving]], queries[moving], local[moving], converged
+        )
         onward, exists = on.neighbours(patch[moving], out)
         cross = exists & (out != 0)
         moved = cross.any(axis=1)
@@ -47,7 +54,7 @@ def polished(on: Patches, queries: Reals, patch: NDArray[np.intp], local: Reals)
     return Places(patch=patch, local=local, square=square)
 
 
-def _descended(nets: Reals, queries: Reals, local: Reals) -> tuple[Reals, Reals, NDArray[np.intp]]:
+def _descended(nets: Reals, queries: Reals, local: Reals, converged: float) -> tuple[Reals, Reals, NDArray[np.intp]]:
     """Local parameters (m, 2) and squared distance after descent in each patch, and which way it would leave it."""
     local = local.copy()
     square, gradient, hessian, metric = _model(nets, queries, local)
@@ -56,7 +63,7 @@ def _descended(nets: Reals, queries: Reals, local: Reals) -> tuple[Reals, Reals,
     for _ in range(STEPS):
         step = _step(gradient[active], hessian[active], metric[active], damping[active], local[active])
         trial = np.clip(local[active] + step, 0.0, 1.0)
-        far = np.max((trial - local[active]) ** 2, axis=1) > CONVERGED**2
+        far = np.max((trial - local[active]) ** 2, axis=1) > converged**2
         active, trial = active[far], trial[far]
         if len(active) == 0:
             break
