@@ -182,8 +182,8 @@ def _ends(sheet: Sheet, low: list[Piece], high: list[Piece], count: int) -> tupl
 def _check(axis: Axis, others: list[Axis], extent: float) -> None:
     if axis.rms > CLOSE * extent:
         raise _undetermined(
-            f"of all axes tried, the ends still lie {axis.rms:.3g} m off surfaces of revolution about the best, more than "
-            f"{CLOSE * extent:.3g} m"
+            f"of all axes tried, the ends still lie {axis.rms:.3g} m off surfaces of revolution about the best, more "
+            f"than {CLOSE * extent:.3g} m"
         )
     if axis.direction > SURE or axis.offset > PLACED * extent:
         raise _undetermined(
