@@ -39,7 +39,7 @@ def test_points_of_a_known_curve_give_it_back(seed, dimension, weights):
     assert closest_on_curve(fit.curve, curve(np.linspace(0.0, 1.0, 200))).distances.max() < EXACT
 
 
-def test_the_example_of_the_source_ends_at_its_end_points_and_stays_within_a_few_thousandths():
+def test_the_example_of_the_source_ends_at_its_end_points_and_stays_within_2e_4_of_its_length():
     fit = bw.fit_curve(BENT, power=4)
     assert np.array_equal(fit.curve.knots, [0, 0, 0, 0, 1 / 3, 2 / 3, 1, 1, 1, 1])
     np.testing.assert_allclose(fit.curve.control_points[[0, -1]], BENT[[0, -1]], atol=1e-15)
@@ -70,7 +70,7 @@ def test_finite_differences_as_in_the_source_find_nothing_lower(power):
     assert other.fun > 0.98 * objective(start)
 
 
-def test_ten_times_as_many_knot_spans_make_the_distance_smaller_by_the_order_of_the_degree():
+def test_with_more_knots_the_distance_falls_by_the_order_of_the_degree_or_more():
     spans = np.array([4, 8, 16])
     maxima = [bw.fit_curve(BENT, control_points=int(count) + 2, degree=2).rms for count in spans]
     order = -np.polyfit(np.log(spans), np.log(maxima), 1)[0]
@@ -134,7 +134,7 @@ def test_a_gap_of_points_is_named_and_bridged_by_the_least_bending():
     assert closest_on_curve(fit.curve, BENT).distances.max() < 5e-3
 
 
-def test_moved_scaled_and_reversed_points_give_the_moved_scaled_curve():
+def test_points_far_away_and_in_another_unit_are_fitted_alike():
     plain = bw.fit_curve(BENT)
     other = bw.fit_curve(100.0 + 1e3 * BENT)
     # the same digits but for the rounding of the moved points, which descents end on
