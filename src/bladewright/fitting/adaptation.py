@@ -1,11 +1,10 @@
 """The structure of a design as its cloud asks for it: control points are added until an aim is reached, and no further."""
 
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
 
-from bladewright.fitting.feet import feet
+from bladewright.designs import Design
 from bladewright.fitting.growth import chosen_of, gains, joined
 from bladewright.fitting.reshaping import reshaped
 from bladewright.fitting.search import Found, Task, searched
@@ -53,19 +52,21 @@ def thinned(count: int, most: int) -> Reals:
     return every if count <= most else np.sort(np.random.default_rng(1).choice(count, most, replace=False))
 
 
-def adapted(task: Task, start: Callable[[Structure | None], object], aim: Aim, *, guessed: bool) -> tuple[Found, str]:
+def adapted(task: Task, first: Design, aim: Aim, *, base: Structure | None, guessed: bool) -> tuple[Found, str]:
     """The match, and why it ends where no aim is met.
 
-    `start` gives the first design of a structure, or of its own where None.
+    `first` is a first design, a guess or a start; `base` the structure from which to grow, where it is not that of
+    `first`.
     """
     few = _part(task, thinned(len(task.points), FEW[task.points.shape[1]]))
     many = _part(task, thinned(len(task.points), MANY))
-    first = start(None)
     noise = FIRST if guessed else None
     if aim.structured and aim.tolerance is None:
         found = searched(few, first, noise=noise)
         return (found if found.interrupted else searched(many, found.design)), ""
     found = searched(few, first, noise=noise, rounds=2 * QUICK)
+    if base is not None and not found.interrupted:
+        found = searched(few, reshaped(found.design, base), noise=FIRST, rounds=2 * QUICK)
     reason = ""
     for _ in range(40):
         if found.interrupted:

@@ -90,25 +90,27 @@ def fit(
     )
     wanted = None if like is None else structure_of(like)
 
-    def first(structure: Structure | None) -> Design:
-        tell("first design")
-        asked = structure or wanted
-        if start is not None:
-            return freedom.applied(start if asked is None else reshaped(start, asked))
+    def guess(structure: Structure | None) -> Design:
         if points.shape[1] == 2:
-            lengths = {} if asked is None else _section_of(asked)
-            return freedom.applied(first_section(points, name=name, length_unit=length_unit, **lengths))
+            lengths = {} if structure is None else _section_of(structure)
+            return first_section(points, name=name, length_unit=length_unit, **lengths)
         given: dict[str, Any] = {"blade_count": blade_count, "pitch": pitch, "arrangement": arrangement}
         if isinstance(like, UnifiedBlade):
-            given = {"arrangement": like.arrangement, "blade_count": like.blade_count, "pitch": None} | {
+            given = {"arrangement": like.arrangement, "blade_count": like.blade_count} | {
                 key: value for key, value in given.items() if value is not None
             }
-        return freedom.applied(first_blade(points, structure=asked, name=name, length_unit=length_unit, **given))
+        return first_blade(points, structure=structure, name=name, length_unit=length_unit, **given)
 
+    tell("first design")
+    if start is not None:
+        first = start if wanted is None else reshaped(start, wanted)
+    else:
+        first = guess(wanted)
+    first = freedom.applied(first)
     structured = parameters is None and (start is not None or like is not None)
     aim = Aim(tolerance=tolerance, parameters=parameters, structured=structured)
     base = None if structured or like is not None or start is not None else lean(points.shape[1], parameters)
-    found, reason = adapted(task, lambda _: first(base), aim, guessed=start is None)
+    found, reason = adapted(task, first, aim, base=base, guessed=start is None)
     found, built = _built(task, found)
     return _reported(found, built, points, task, aim, (*notes, *([reason] if reason else [])), motion)
 

@@ -9,7 +9,7 @@ def lean(dimension: int, parameters: int | None) -> Structure:
         count = 4 if parameters is None else min(4, max(2, (parameters - 10) // 2))
         return Structure(chordwise=(count, count))
     if parameters is None:
-        return BLADES[2]
+        return BLADES[1]
     return next((each for each in reversed(BLADES) if size_of(each) <= parameters), BLADES[0])
 
 
@@ -36,8 +36,7 @@ def _blade(chordwise: int, thickness: int, angles: int, tangents: int, radii: in
 
 
 BLADES = (
-    _blade(3, 1, 1, 1, 1, (2, 2, 2, 2)),
-    _blade(5, 1, 1, 1, 1, (2, 2, 2, 2)),
+    _blade(4, 1, 1, 1, 1, (2, 2, 2, 2)),
     _blade(5, 2, 3, 2, 1, (3, 3, 4, 4)),
     _blade(5, 3, 4, 3, 2, (3, 4, 4, 4)),
     _blade(6, 3, 4, 3, 2, (4, 5, 4, 4)),

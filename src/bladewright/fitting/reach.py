@@ -16,8 +16,8 @@ from bladewright.nurbs.surface import Surface
 
 STATIONS = (np.arange(16) + 0.5) / 16.0
 """places along the span at which each edge is looked at"""
-BESIDE = 0.125
-"""how far to both sides, along the edge, a point tells of it, of the span"""
+BESIDE = 0.2
+"""what a distance along the edge counts while the nearest point is sought: a cloud may have few rows"""
 AROUND = 6
 """points whose distances from each other are looked at"""
 APART = 1.5
@@ -26,7 +26,7 @@ APART = 1.5
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Reach:
-    """Places along both edges, and beside each the outermost point."""
+    """Places along both edges, and beside each the nearest point."""
 
     points: Reals
     """(m, d) [m]"""
@@ -47,28 +47,24 @@ class Reach:
 
 
 def reach_of(points: Reals, sides: Sequence[Side], rows: NDArray[np.bool_]) -> Reach:
-    """The outermost points beside each edge, of those in `rows` (n,)."""
+    """The points beside each edge, of those in `rows` (n,)."""
     upper, cloud = sides[0], points[rows]
     v = STATIONS if isinstance(upper, Surface) else np.zeros(1)
     u = np.repeat([0.0, 1.0], len(v))
     v = np.tile(v, 2)
     side = np.zeros(len(u), dtype=np.intp)
     edges = placed(np.zeros((len(u), points.shape[1])), sides, side, u, v)
-    chosen, kept = [], []
-    for i, (at, normal) in enumerate(zip(edges.points, edges.normals, strict=True)):
-        near = np.arange(len(cloud))
+    chosen = []
+    for i, at in enumerate(edges.points):
+        off = cloud - at
+        away = np.sum(off**2, axis=-1)
         if isinstance(upper, Surface):
             along = np.asarray(upper.derivative(u[i : i + 1], v[i : i + 1], 0, 1))[0]
-            span = float(np.sqrt(along @ along))
-            near = np.flatnonzero(np.abs((cloud - at) @ along) < BESIDE * span * span)
-        if len(near) > AROUND:
-            chosen.append(int(near[np.argmax((cloud[near] - at) @ normal)]))
-            kept.append(i)
-    outermost = cloud[chosen] if chosen else np.empty((0, points.shape[1]))
-    allowed = np.empty(0)
-    if chosen:
-        tree = cKDTree(cloud)
-        _, around = tree.query(outermost, k=AROUND)
-        apart = tree.query(cloud[around.ravel()], k=3)[0][:, -1]
-        allowed = APART * np.median(apart.reshape(len(chosen), AROUND), axis=1)
-    return Reach(points=outermost, u=u[kept], v=v[kept], allowed=allowed)
+            away -= (1.0 - BESIDE**2) * (off @ along) ** 2 / (along @ along)
+        chosen.append(int(np.argmin(away)))
+    beside = cloud[chosen]
+    tree = cKDTree(cloud)
+    _, around = tree.query(beside, k=AROUND)
+    apart = tree.query(cloud[around.ravel()], k=3)[0][:, -1]
+    allowed = APART * np.median(apart.reshape(len(chosen), AROUND), axis=1)
+    return Reach(points=beside, u=u, v=v, allowed=allowed)
