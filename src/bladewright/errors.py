@@ -28,5 +28,6 @@ class MeshError(BladewrightError):
 class DerivativeError(BladewrightError):
     """A derivative that cannot be taken: a quantity that loses the step, or parameters that do not exist."""
 
+
 class FitError(BladewrightError):
     """A cloud of points that cannot be fitted, or a fit that was asked for wrongly."""

@@ -1,15 +1,16 @@
-"""The structure of a design as its cloud asks for it: control points are added until an aim is reached, and no further."""
+"""The structure of a design as its cloud asks for it: control points are added until an aim is reached."""
 
 from dataclasses import dataclass, replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from bladewright.designs import Design
+from bladewright.errors import FitError
 from bladewright.fitting.growth import chosen_of, gains, joined
 from bladewright.fitting.reshaping import reshaped
 from bladewright.fitting.search import Found, Task, searched
 from bladewright.fitting.structure import Structure, structure_of
-from bladewright.nurbs.basis import Reals
 
 FIRST = 3e-3
 """noise of the first round where the start is a guess, of the chord"""
@@ -46,10 +47,11 @@ class Aim:
     """whether the structure is given"""
 
 
-def thinned(count: int, most: int) -> Reals:
+def thinned(count: int, most: int) -> NDArray[np.intp]:
     """Indices of points spread over a cloud at random."""
-    every = np.arange(count)
-    return every if count <= most else np.sort(np.random.default_rng(1).choice(count, most, replace=False))
+    if count <= most:
+        return np.arange(count, dtype=np.intp)
+    return np.sort(np.random.default_rng(1).permutation(count)[:most])
 
 
 def adapted(task: Task, first: Design, aim: Aim, *, base: Structure | None, guessed: bool) -> tuple[Found, str]:
@@ -65,8 +67,8 @@ def adapted(task: Task, first: Design, aim: Aim, *, base: Structure | None, gues
         found = searched(few, first, noise=noise)
         return (found if found.interrupted else searched(many, found.design)), ""
     found = searched(few, first, noise=noise, rounds=2 * QUICK)
-    if base is not None and not found.interrupted:
-        found = searched(few, reshaped(found.design, base), noise=FIRST, rounds=2 * QUICK)
+    if base is not None and not found.interrupted and _roomy(found, aim):
+        found = _leaner(few, found, base)
     reason = ""
     for _ in range(40):
         if found.interrupted:
@@ -116,8 +118,23 @@ def _shaken(task: Task, found: Found) -> Found:
     return replace(other if better else found, evaluations=found.evaluations + other.evaluations)
 
 
-def _part(task: Task, rows: Reals) -> Task:
-    return task if len(rows) == len(task.points) else replace(task, points=task.points[rows], weights=task.weights[rows])
+def _roomy(found: Found, aim: Aim) -> bool:
+    """Whether a first design has more parameters than its cloud may need, or than are asked for."""
+    return aim.parameters is None or len(found.problem.paths) > aim.parameters
+
+
+def _leaner(task: Task, found: Found, base: Structure) -> Found:
+    """A match with the structure from which to grow, or the one before where its laws leave no shape so."""
+    try:
+        return searched(task, reshaped(found.design, base), noise=FIRST, rounds=2 * QUICK)
+    except FitError:
+        return found
+
+
+def _part(task: Task, rows: NDArray[np.intp]) -> Task:
+    return (
+        task if len(rows) == len(task.points) else replace(task, points=task.points[rows], weights=task.weights[rows])
+    )
 
 
 def _short(found: Found, aim: Aim, task: Task) -> tuple[bool, str]:
@@ -131,7 +148,10 @@ def _short(found: Found, aim: Aim, task: Task) -> tuple[bool, str]:
         return False, ""
     noise = found.scatter.noise
     if found.scatter.shared < NOISY:
-        return False, f"what is left is the cloud's own noise, {1e3 * noise:.2g} mm: more control points would follow it"
+        return (
+            False,
+            f"what is left is the cloud's own noise, {1e3 * noise:.2g} mm: more control points would follow it",
+        )
     if count >= min(MOST[dimension], len(task.points) // 3):
         return False, f"the design has {count} parameters, and more are not added"
     return True, ""

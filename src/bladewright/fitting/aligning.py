@@ -7,9 +7,7 @@ from bladewright.fitting.result import Motion
 from bladewright.nurbs.basis import Reals
 
 
-def aligned(
-    points: Reals, start: Design | None, arrangement: Any
-) -> tuple[Motion, Reals, Any, tuple[str, ...]]:
+def aligned(points: Reals, start: Design | None, arrangement: Any) -> tuple[Motion, Reals, Any, tuple[str, ...]]:
     """The motion, the points (n, d) after it, the arrangement where it was found, and what is to be said of them."""
     from bladewright.fitting.alignment import found_axes, registration
 

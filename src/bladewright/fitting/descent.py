@@ -67,7 +67,7 @@ def descended(problem: Constrained, start: Reals, *, steps: int, damping: float 
     penalty, growth, done = 0.0, 2.0, 1
     while done < steps:
         slopes, walls = problem.derivatives(z)
-        triangle = np.linalg.qr(np.column_stack([slopes, residuals]), mode="r")
+        triangle = np.asarray(np.linalg.qr(np.column_stack([slopes, residuals]), mode="r"))
         matrix, aim = triangle[:, :-1], -triangle[:, -1]
         scale = float(np.max(np.sum(slopes**2, axis=0), initial=1e-300))
         moved = False
@@ -115,12 +115,8 @@ def _step(
 ) -> tuple[Reals, float]:
     """The damped step within the linearised inequalities, and the largest multiplier of one of them."""
     count = matrix.shape[1]
-    triangle = np.linalg.qr(
-        np.column_stack(
-            [np.vstack([matrix, np.sqrt(damping) * np.eye(count)]), np.concatenate([aim, np.zeros(count)])]
-        ),
-        mode="r",
-    )
+    rows = np.vstack([matrix, np.sqrt(damping) * np.eye(count)])
+    triangle = np.asarray(np.linalg.qr(np.column_stack([rows, np.append(aim, np.zeros(count))]), mode="r"))
     upper, right = triangle[:count, :count], triangle[:count, -1]
     free = solve_triangular(upper, right)
     rows = np.vstack([walls, np.eye(count), -np.eye(count)])

@@ -12,15 +12,15 @@ from bladewright.blade.unified import UnifiedBlade
 from bladewright.derivatives.patterns import Patterns
 from bladewright.designs import Design
 from bladewright.errors import DesignError, FitError
-from bladewright.fitting.adaptation import FIRST, Aim, adapted
+from bladewright.fitting.adaptation import Aim, adapted
 from bladewright.fitting.aligning import aligned
 from bladewright.fitting.cloud import checked_cloud
 from bladewright.fitting.estimates import certainty_of
 from bladewright.fitting.first.blade import first_blade
 from bladewright.fitting.first.profile import first_section
-from bladewright.fitting.freedom import Freedom, freedom_of
+from bladewright.fitting.freedom import freedom_of
 from bladewright.fitting.judging import judged
-from bladewright.fitting.lean import lean
+from bladewright.fitting.lean import lean, rich
 from bladewright.fitting.reshaping import reshaped
 from bladewright.fitting.result import Fit
 from bladewright.fitting.search import Found, Task, searched
@@ -105,7 +105,7 @@ def fit(
     if start is not None:
         first = start if wanted is None else reshaped(start, wanted)
     else:
-        first = guess(wanted)
+        first = guess(wanted or rich(points.shape[1], parameters))
     first = freedom.applied(first)
     structured = parameters is None and (start is not None or like is not None)
     aim = Aim(tolerance=tolerance, parameters=parameters, structured=structured)
@@ -126,7 +126,9 @@ def family_of(family: str, dimension: int) -> str:
     return family
 
 
-def _check(points: Reals, start: Design | None, like: Design | None, tolerance: float | None, count: int | None) -> None:
+def _check(
+    points: Reals, start: Design | None, like: Design | None, tolerance: float | None, count: int | None
+) -> None:
     kind: type = UnifiedSection if points.shape[1] == 2 else UnifiedBlade
     for label, design in (("start", start), ("like", like)):
         if design is not None and not isinstance(design, kind):
@@ -138,7 +140,7 @@ def _check(points: Reals, start: Design | None, like: Design | None, tolerance: 
         raise FitError(f"tolerance is {tolerance!r}: a positive length in metres is needed, such as 5e-5")
     if tolerance is not None and count is not None:
         raise FitError("tolerance and parameters are both given: the one decides the other; leave one out")
-    if count is not None and (isinstance(count, bool) or not isinstance(count, int) or not 14 <= count <= 2000):
+    if count is not None and (isinstance(count, bool) or not 14 <= count <= 2000):
         raise FitError(f"parameters is {count!r}: a whole number from 14 to 2000 is needed")
 
 
@@ -169,7 +171,9 @@ def _built(task: Task, found: Found) -> tuple[Found, Any]:
         return found, found.design.build()
     except DesignError as error:
         refusal = str(error)
-    raise FitError(f"the nearest design cannot be built ({refusal}); give a start design, or other numbers of parameters")
+    raise FitError(
+        f"the nearest design cannot be built ({refusal}); give a start design, or other numbers of parameters"
+    )
 
 
 def _reported(

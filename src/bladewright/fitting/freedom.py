@@ -27,9 +27,7 @@ class Freedom:
         except DesignError as error:
             raise FitError(str(error)) from error
         found = tuple(
-            path
-            for path in wanted
-            if path not in held and (self.free is not None or not path.startswith(GIVEN))
+            path for path in wanted if path not in held and (self.free is not None or not path.startswith(GIVEN))
         )
         if not found:
             raise FitError("no parameter is left to fit: free at least one, or fix fewer")

@@ -1,4 +1,4 @@
-"""More control points where the deviation is: each law in turn is given one more, and what that would gain is foreseen."""
+"""More control points where the deviation is: each law in turn is given one more, and the gain is foreseen."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -101,8 +101,9 @@ def _reduced(slopes: Reals, rows: Reals, roots: Reals, noise: float) -> float:
     """The sum of squares after the step that makes it least, parameters held by the prior's spread."""
     count = slopes.shape[1]
     triangle = np.linalg.qr(np.column_stack([slopes * roots[:, None], rows * roots]), mode="r")
-    matrix = np.vstack([triangle[:, :-1], noise * np.eye(count)])
-    aim = np.concatenate([-triangle[:, -1], np.zeros(count)])
+    reduced = np.asarray(triangle)
+    matrix = np.vstack([reduced[:, :-1], noise * np.eye(count)])
+    aim = np.concatenate([-reduced[:, -1], np.zeros(count)])
     step, *_ = np.linalg.lstsq(matrix, aim, rcond=None)
     return float(np.sum((matrix @ step - aim) ** 2))
 

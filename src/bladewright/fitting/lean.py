@@ -13,6 +13,13 @@ def lean(dimension: int, parameters: int | None) -> Structure:
     return next((each for each in reversed(BLADES) if size_of(each) <= parameters), BLADES[0])
 
 
+def rich(dimension: int, parameters: int | None) -> Structure | None:
+    """The structure of a first design, which finds its edges best with laws that are free enough; None: its own."""
+    if dimension == 2:
+        return None
+    return lean(dimension, max(parameters or 0, size_of(BLADES[-2])))
+
+
 def size_of(structure: Structure) -> int:
     """Number of parameters of a structure."""
     thickness = sum(
@@ -25,7 +32,9 @@ def size_of(structure: Structure) -> int:
     return thickness + laws + 2 * (sum(structure.channel.values()) - 4)
 
 
-def _blade(chordwise: int, thickness: int, angles: int, tangents: int, radii: int, channel: tuple[int, ...]) -> Structure:
+def _blade(
+    chordwise: int, thickness: int, angles: int, tangents: int, radii: int, channel: tuple[int, ...]
+) -> Structure:
     span = {name: angles if name == "stagger" or "angle" in name else tangents for name in SPANWISE}
     span |= {name: radii for name in SPANWISE if name.endswith("radius")}
     return Structure(

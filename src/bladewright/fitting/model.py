@@ -1,11 +1,11 @@
-"""The sides of a design while it is fitted, and their derivatives by parameters: one final class for each kind of design.
+"""The sides of a design while it is fitted, and their derivatives by parameters; a class for each kind of design.
 
 Nothing is refused that a step of a search may pass on its way; knots are held.
 """
 
 from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from types import MappingProxyType
 from typing import Any, final
 
@@ -15,12 +15,14 @@ from bladewright.blade.blade import Blade, surface_of
 from bladewright.blade.exact import SURVEY, ExactBlade, exact_blade, moved
 from bladewright.blade.fitness import chord_of, knots_for
 from bladewright.blade.knots import DEGREE, Knots
+from bladewright.blade.meridional import Meridional
 from bladewright.blade.native import native_sides
 from bladewright.blade.unified import UnifiedBlade
 from bladewright.derivatives.tangents import STEP, side_tangents
 from bladewright.designs import Design
+from bladewright.errors import FitError
 from bladewright.fitting.feet import Feet, Side
-from bladewright.numerics.elementary import Array, joined, length
+from bladewright.numerics.elementary import Array, cross2, joined, length
 from bladewright.nurbs.basis import Reals
 from bladewright.nurbs.collocation import collocation
 from bladewright.section.camber import camber_points
@@ -31,6 +33,10 @@ from bladewright.section.unified import UnifiedSection
 
 HOLDING = SURVEY
 """places along the span where it is asked whether the thickness can hold the edges' radii"""
+FOLDING = (15, 7)
+"""places along and across the channel where it is asked whether it folds over"""
+OPEN = 0.02
+"""smallest Jacobian of the channel, of its median"""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -42,7 +48,10 @@ class Shape:
     noses: Reals
     """(2, ...) at each edge of each side by how much the control point that sets the radius stands higher than the
     thickness beside it, of the section's extent, and how high it stands, of that thickness"""
-    exact: ExactBlade | None = None
+    folds: Reals = field(default_factory=lambda: np.empty(0))
+    """(c,) by how much the channel comes nearer to folding over than it may, of the median of its Jacobian"""
+    exact: Any = None
+    """the exact blade, where it is one"""
 
     @property
     def finite(self) -> bool:
@@ -67,6 +76,10 @@ class Model(ABC):
     @abstractmethod
     def nose_rates(self, shape: Shape, paths: Sequence[str]) -> Reals:
         """Derivatives (k, ...) of `shape.noses`."""
+
+    def fold_rates(self, shape: Shape, paths: Sequence[str]) -> Reals:
+        """Derivatives (k, c) of `shape.folds`."""
+        return np.zeros((len(paths), len(shape.folds)))
 
     @staticmethod
     def rates(shape: Shape, feet: Feet, tangents: tuple[Reals, Reals]) -> Reals:
@@ -96,9 +109,8 @@ class SectionModel(Model):
         slope = np.cos(np.radians(design.stagger))
         self.chord = float(design.axial_chord * UNITS[design.length_unit] / slope)
 
-    def shape(self, design: Design) -> Shape:
+    def shape(self, design: Any) -> Shape:
         """The sides as curves."""
-        assert isinstance(design, UnifiedSection)
         line, upper, lower = _outline(design)
         sides = side_curve(upper[0]), side_curve(lower[0])
         return Shape(design=design, sides=sides, noses=np.real(_noses(design, line, upper, lower))[..., 0])
@@ -130,9 +142,8 @@ class BladeModel(Model):
         self.chord = chord_of(exact)
         self.knots: Knots = knots_for(exact, self.chord)
 
-    def shape(self, design: Design) -> Shape:
+    def shape(self, design: Any) -> Shape:
         """The native sides as surfaces."""
-        assert isinstance(design, UnifiedBlade)
         exact = exact_blade(design, self.knots.tip, tentative=True)
         upper, lower = native_sides(exact.stations(self.knots.sites_v), self.knots)
         plane = exact.stations(HOLDING).plane
@@ -140,12 +151,12 @@ class BladeModel(Model):
             design=design,
             sides=(surface_of(upper, self.knots, DEGREE), surface_of(lower, self.knots, DEGREE)),
             noses=np.real(_noses(design, plane.camber, plane.upper, plane.lower)),
+            folds=np.real(_folds(exact, exact.channel)),
             exact=exact,
         )
 
     def tangents(self, shape: Shape, paths: Sequence[str]) -> tuple[Reals, Reals]:
         """By laws as a whole and leaves of the channel."""
-        assert shape.exact is not None
         blade = Blade(
             design=shape.design,
             surfaces=MappingProxyType({}),
@@ -159,7 +170,6 @@ class BladeModel(Model):
 
     def nose_rates(self, shape: Shape, paths: Sequence[str]) -> Reals:
         """Those by the laws; by the channel they vanish but for the walls' slopes, which are left out."""
-        assert shape.exact is not None
         found = np.zeros((len(paths), *shape.noses.shape))
         laws = [place for place, path in enumerate(paths) if not path.startswith(("channel.", "tip_", "hub_"))]
         changes = _batch(shape.design, [paths[place] for place in laws])
@@ -168,13 +178,34 @@ class BladeModel(Model):
         found[laws] = np.moveaxis(rates, 1, 0)
         return found
 
+    def fold_rates(self, shape: Shape, paths: Sequence[str]) -> Reals:
+        """From one channel with a step on each of its parameters in a batch."""
+        found = np.zeros((len(paths), len(shape.folds)))
+        walls = [place for place, path in enumerate(paths) if path.startswith("channel.")]
+        if walls and shape.exact is not None:
+            changes = _batch(shape.design, [paths[place] for place in walls])
+            channel = moved(shape.exact, shape.design.changed(changes)).channel
+            found[walls] = np.imag(_folds(shape.exact, channel)) / STEP
+        return found
+
 
 def model_of(design: Design, tolerance: float | None = None) -> Model:
     """The model of a kind of design, its knots those that the design needs for a tolerance, of the chord."""
     if isinstance(design, UnifiedSection):
         return SectionModel(design)
-    assert isinstance(design, UnifiedBlade)
-    return BladeModel(design, tolerance)
+    if isinstance(design, UnifiedBlade):
+        return BladeModel(design, tolerance)
+    raise FitError(f"a {type(design).__name__} cannot be fitted: give a design of the unified family")
+
+
+def _folds(exact: ExactBlade, channel: Meridional) -> Array:
+    """How near a channel (...) comes to folding over (..., c), as `Shape` has it."""
+    u = np.linspace(-exact.before, 1.0 + exact.after, FOLDING[0])
+    v = np.linspace(0.0, 1.0, FOLDING[1])
+    along, across = exact.channel.slopes(u, v)
+    size = np.median(np.sqrt(np.sum(np.real(along) ** 2, axis=-1) * np.sum(np.real(across) ** 2, axis=-1)))
+    share = cross2(*channel.slopes(u, v)) / size
+    return np.asarray(OPEN - share.reshape(*share.shape[:-2], -1))
 
 
 def _batch(design: Design, paths: Sequence[str]) -> Mapping[str, Any]:

@@ -1,4 +1,4 @@
-"""What is held of a design where its cloud says nothing: laws that do not wave, sides alike, nothing far from the start.
+"""What is held of a design where its cloud says nothing: smooth laws, sides alike, nothing far from the start.
 
 The rows are linear in the scaled parameters and of variance one: a search weighs them with the noise of the cloud over
 their own spread, so that they vanish beside data that are exact.

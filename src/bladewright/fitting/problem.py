@@ -49,9 +49,9 @@ class Measures:
         on, chord = state.feet, self.model.chord
         rows = [self.roots * on.heights / chord]
         rows.append((self.roots * np.sum(on.miss * on.beyond, axis=-1))[self.ends.near] / chord)
-        for wall in self.ends.walls.values():
-            if state.shape.exact is not None:
-                rows.append(self._of_wall(wall) * wall.distances(state.shape.exact) / chord)
+        exact = state.shape.exact
+        if exact is not None:
+            rows += [self._of_wall(wall) * wall.distances(exact) / chord for wall in self.ends.walls.values()]
         excess = self.reach.excess(self.reach.edges(state.shape.sides))
         rows.append(self._of_edge * np.maximum(excess, 0.0) / chord)
         return np.concatenate(rows)
@@ -153,13 +153,13 @@ class Problem(Constrained):
         return State(shape=shape, feet=self._hint)
 
     def values(self, z: Reals) -> tuple[Reals, Reals] | None:
-        """All residuals (m,), and by how much noses exceed the thickness beside them (c,)."""
+        """All residuals (m,), and (c,) by how much noses exceed the thickness beside them and the channel folds."""
         state = self.state(z)
         if state is None:
             return None
         full = self._of_noses(state.shape) * (np.ravel(state.shape.noses[1]) - FULLNESS[0])
         rows = np.concatenate([self.measures.residuals(state), full, self.prior.matrix @ z - self.prior.aim])
-        held = np.ravel(state.shape.noses[0]) + self.margin
+        held = np.concatenate([np.ravel(state.shape.noses[0]) + self.margin, state.shape.folds])
         cost = float(rows @ rows) * (1.0 + 1e3 * float(np.max(held, initial=0.0)))
         if cost < self._least:
             self._least, self.best = cost, np.array(z)
@@ -172,6 +172,7 @@ class Problem(Constrained):
             raise DesignError("there is no shape to differentiate: start from a design that can be built")
         noses = self.model.nose_rates(state.shape, self.paths)
         held, full = (noses[:, i].reshape(len(self.paths), -1).T for i in (0, 1))
+        held = np.concatenate([held, self.model.fold_rates(state.shape, self.paths).T])
         rows = np.concatenate([self.measures.slopes(state, self.paths), self._of_noses(state.shape) * full])
         return np.concatenate([rows * self.scales.size, self.prior.matrix]), held * self.scales.size
 

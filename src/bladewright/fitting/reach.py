@@ -14,7 +14,7 @@ from bladewright.fitting.feet import Feet, Side, placed
 from bladewright.nurbs.basis import Reals
 from bladewright.nurbs.surface import Surface
 
-STATIONS = (np.arange(16) + 0.5) / 16.0
+STATIONS: Reals = np.linspace(1.0 / 32.0, 31.0 / 32.0, 16)
 """places along the span at which each edge is looked at"""
 BESIDE = 0.2
 """what a distance along the edge counts while the nearest point is sought: a cloud may have few rows"""
@@ -49,9 +49,8 @@ class Reach:
 def reach_of(points: Reals, sides: Sequence[Side], rows: NDArray[np.bool_]) -> Reach:
     """The points beside each edge, of those in `rows` (n,)."""
     upper, cloud = sides[0], points[rows]
-    v = STATIONS if isinstance(upper, Surface) else np.zeros(1)
-    u = np.repeat([0.0, 1.0], len(v))
-    v = np.tile(v, 2)
+    stations: Reals = STATIONS if isinstance(upper, Surface) else np.zeros(1)
+    u, v = np.repeat([0.0, 1.0], len(stations)), np.tile(stations, 2)
     side = np.zeros(len(u), dtype=np.intp)
     edges = placed(np.zeros((len(u), points.shape[1])), sides, side, u, v)
     chosen = []

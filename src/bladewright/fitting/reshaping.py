@@ -8,6 +8,7 @@ import numpy as np
 from bladewright.blade.channel import Channel
 from bladewright.blade.unified import UnifiedBlade
 from bladewright.designs import Design, Law, Point, Points
+from bladewright.errors import FitError
 from bladewright.fitting.structure import SPANWISE, Structure
 from bladewright.nurbs.basis import Reals, basis, uniform_knots
 from bladewright.section.laws import law_basis
@@ -21,12 +22,15 @@ PLACES = np.linspace(0.0, 1.0, 101)
 def reshaped(design: Design, structure: Structure) -> Design:
     """A design of another structure whose laws and curves are nearest to those of `design`, by least squares."""
     if isinstance(design, UnifiedSection):
-        thicknesses = {
+        thicknesses: dict[str, Any] = {
             name: tuple(float(row[0]) for row in _grid(getattr(design, name), count, 1, structure))
             for name, count in zip(THICKNESSES, structure.chordwise, strict=True)
         }
         return replace(design, samples=structure.samples, clustering=structure.clustering, **thicknesses)
-    assert isinstance(design, UnifiedBlade)
+    if not isinstance(design, UnifiedBlade):
+        raise FitError(
+            f"a {type(design).__name__} has no structure of the unified family: give a design of that family"
+        )
     place = "leading_edge_theta" if design.arrangement == "annular" else "leading_edge_y"
     changes: dict[str, Any] = {name: _law(getattr(design, name), structure.span[name]) for name in SPANWISE}
     changes[place] = _law(getattr(design, place), structure.span["place"])
@@ -51,7 +55,7 @@ def _law(law: Law, count: int) -> Law:
     if count == (len(law) if isinstance(law, tuple) else 1):
         return law
     found, *_ = np.linalg.lstsq(law_basis(count, PLACES), _values(law), rcond=None)
-    return _plain(found)
+    return _plain(np.asarray(found, dtype=np.float64))
 
 
 def _plain(values: Reals) -> Law:

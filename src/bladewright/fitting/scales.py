@@ -2,6 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 
@@ -33,31 +34,8 @@ def scales_of(
     design: Design, paths: Sequence[str], chord: float, bounds: Mapping[str, tuple[float, float]] | None = None
 ) -> Scales:
     """Scales of a design's parameters, `chord` in metres, `bounds` by pattern within those of the family."""
-    values = design.parameters()
-    unit = UNITS[getattr(design, "length_unit")]  # noqa: B009 - a field of every family, not of the base
-    largest: dict[str, float] = {}
-    for path, value in values.items():
-        field = path.partition("[")[0]
-        largest[field] = max(largest.get(field, 0.0), float(value))
-    size, low, high = np.empty(len(paths)), np.full(len(paths), -np.inf), np.full(len(paths), np.inf)
-    for i, path in enumerate(paths):
-        field = path.partition("[")[0]
-        if field.startswith(("stagger", "metal_angle")):
-            size[i], low[i], high[i] = (5.0 if field == "stagger" else 10.0), -ANGLE, ANGLE
-        elif field.startswith("tangent"):
-            size[i], low[i], high[i] = 0.2, 0.02, 1.0
-        elif field.endswith("radius"):
-            size[i], low[i], high[i] = max(0.5 * largest[field], 1e-3), LEAST, 1.0
-        elif field.startswith("thickness"):
-            size[i], low[i], high[i] = max(0.5 * largest[field], 0.02), LEAST, 5.0
-        elif field.startswith("weights"):
-            size[i], low[i], high[i] = 0.5 * float(values[path]), 1e-2 * float(values[path]), 1e2 * float(values[path])
-        elif field == "leading_edge_theta":
-            size[i] = np.degrees(0.05)
-        elif field == "axial_chord":
-            size[i], low[i] = 0.05 * chord / unit, 1e-3 * chord / unit
-        else:
-            size[i] = (0.005 if field.startswith("channel") else 0.05) * chord / unit
+    kinds = [_kind(design, path, chord) for path in paths]
+    size, low, high = (np.array([getattr(kind, name) for kind in kinds]) for name in ("size", "low", "high"))
     for pattern, (least, most) in (bounds or {}).items():
         if not least < most:
             raise FitError(f"the bounds of {pattern} are {least:g} to {most:g}: the first must be below the second")
@@ -65,3 +43,30 @@ def scales_of(
             i = list(paths).index(path)
             low[i], high[i] = max(low[i], least), min(high[i], most)
     return Scales(size=size, low=low, high=high)
+
+
+class _Kind(NamedTuple):
+    size: float
+    low: float = -np.inf
+    high: float = np.inf
+
+
+def _kind(design: Design, path: str, chord: float) -> _Kind:
+    values = design.parameters()
+    field = path.partition("[")[0]
+    value = float(values[path])
+    largest = max(float(each) for name, each in values.items() if name.partition("[")[0] == field)
+    length = chord / UNITS[getattr(design, "length_unit")]  # noqa: B009 - a field of every family, not of the base
+    kinds = {
+        "stagger": _Kind(5.0, -ANGLE, ANGLE),
+        "metal_angle": _Kind(10.0, -ANGLE, ANGLE),
+        "tangent": _Kind(0.2, 0.02, 1.0),
+        "leading_edge_radius": _Kind(max(0.5 * largest, 1e-3), LEAST, 1.0),
+        "trailing_edge_radius": _Kind(max(0.5 * largest, 1e-3), LEAST, 1.0),
+        "thickness": _Kind(max(0.5 * largest, 0.02), LEAST, 5.0),
+        "weights": _Kind(0.5 * value, 1e-2 * value, 1e2 * value),
+        "leading_edge_theta": _Kind(float(np.degrees(0.05))),
+        "axial_chord": _Kind(0.05 * length, 1e-3 * length),
+        "channel": _Kind(0.005 * length),
+    }
+    return next((kind for name, kind in kinds.items() if field.startswith(name)), _Kind(0.05 * length))

@@ -4,14 +4,14 @@ A round's prior is as strong as the noise is large, so that a search from afar i
 exact data ends free of it. Knots, outliers and what lies at the ends are found anew for every round.
 """
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from bladewright.designs import Design
-from bladewright.errors import FitError
+from bladewright.errors import DesignError, FitError
 from bladewright.fitting.descent import DAMPING, descended
 from bladewright.fitting.feet import feet
 from bladewright.fitting.model import Model, model_of
@@ -94,7 +94,7 @@ class Found:
     def misfit(self) -> float:
         """The same with what ends, walls and edges add to it."""
         residuals = self.problem.measures.residuals(self.state)
-        return float(np.sqrt(residuals @ residuals / max(1, np.count_nonzero(self.rows))))
+        return float(np.sqrt(np.sum(residuals**2) / max(1.0, float(np.count_nonzero(self.rows)))))
 
     @property
     def maximum(self) -> float:
@@ -108,7 +108,7 @@ def searched(task: Task, start: Design, *, rounds: int = ROUNDS, noise: float | 
     `noise` is the first round's, of the chord; where None the misfit of the start. Raises FitError where the start has
     no shape.
     """
-    found = _prepared(task, start, start, noise)
+    found, idle = _prepared(task, start, start, noise), 0
     for number in range(rounds):
         before = found.misfit
         if before < EXACT or found.interrupted:
@@ -116,7 +116,8 @@ def searched(task: Task, start: Design, *, rounds: int = ROUNDS, noise: float | 
         found = _round(found if number == 0 else _prepared(task, start, found.design, noise, found))
         task.told(f"{len(found.problem.paths)} parameters, {1e3 * found.rms * found.model.chord:.3g} mm rms")
         ratio = found.misfit / before
-        if number and found.converged and ratio > SETTLED:
+        idle = idle + 1 if ratio > SETTLED else 0
+        if number and idle and (found.converged or idle > 1):
             break
         noise = found.rms * (max(ratio, 1e-3) if ratio < FAST else 1.0)
     return found
@@ -126,8 +127,12 @@ def _prepared(task: Task, start: Design, design: Design, noise: float | None, be
     """A design with the problem of the next round."""
     points, paths = task.points, task.free(start)
     tolerance = float(np.clip(FINE * (noise or 1.0), getattr(design, "tolerance", 1e-6), COARSEST))
-    model = model_of(design, tolerance)
-    shape = model.shape(design)
+    try:
+        with np.errstate(invalid="ignore", divide="ignore"):
+            model = model_of(design, tolerance)
+            shape = model.shape(design)
+    except DesignError as error:
+        raise FitError(f"the start design has no shape ({error}); give another start, or none") from error
     if not shape.finite:
         raise FitError("the start design has no shape near its edges: give another start, or none")
     on = feet(points, shape.sides)

@@ -61,12 +61,16 @@ class Wall:
         """Derivatives (m, k, 2) of the places on the curve at held parameters."""
         found = np.zeros((len(t), len(paths), 2))
         exact = shape.exact
-        assert exact is not None
         moving = [i for i, path in enumerate(paths) if path.startswith(("channel.", "tip_", "hub_"))]
+        if not moving or exact is None:
+            return found
         values = shape.design.parameters()
-        for i in moving:
-            changed = shape.design.changed(paths[i], values[paths[i]] + STEP * 1j)
-            found[:, i] = np.imag(moved(exact, changed).channel.line(self.name).values(t)) / STEP
+        kicks = 1j * STEP * np.eye(len(moving))
+        changed = shape.design.changed(
+            {paths[i]: values[paths[i]] + kick for i, kick in zip(moving, kicks, strict=True)}
+        )
+        rows = np.imag(moved(exact, changed).channel.line(self.name).values(t)) / STEP
+        found[:, moving] = np.moveaxis(np.broadcast_to(rows, (len(moving), len(t), 2)), 0, 1)
         return found
 
 

@@ -33,12 +33,12 @@ def draw_histogram(axes: Axes, fit: Matched) -> None:
     limit = 1.12 * (seen if seen > 0.0 else 1.0)
     bins = np.linspace(-limit, limit, 1 + 2 * int(np.clip(np.sqrt(len(off)) / 2.0, 10, 60)))
     weights = np.full(len(off), 100.0 / max(len(off), 1))
-    axes.hist(off, bins, weights=weights, color=BLUE, alpha=0.30, label="all inliers")
+    axes.hist(off, list(bins), weights=weights, color=BLUE, alpha=0.30, label="all inliers")
     for name, colour in EDGES.items():
         own = off[fit.regions[fit.inliers] == name]
         if len(own):
             shares = np.full(len(own), 100.0 / len(own))
-            axes.hist(own, bins, weights=shares, histtype="step", color=colour, linewidth=1.3, label=name)
+            axes.hist(own, list(bins), weights=shares, histtype="step", color=colour, linewidth=1.3, label=name)
     tallest = max(axes.get_ylim()[1] / 1.05, 1e-9)
     sigma = fit.noise * MILLIMETRES
     width = bins[1] - bins[0]

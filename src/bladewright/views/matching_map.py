@@ -59,7 +59,7 @@ def draw_map(axes: Axes, fit: Matched) -> None:
     titled(axes, "Deviation from the blade", f"{ABSCISSA}\n{told}", "span v [-]")
     bar = axes.figure.colorbar(ScalarMappable(norm=scale, cmap=COLOURS), ax=axes, extend="both", pad=0.012, aspect=28)
     bar.set_label("inside the blade  ←  deviation [mm]  →  outside")
-    bar.outline.set_visible(False)  # type: ignore[operator]
+    bar.outline.set_visible(False)
 
 
 def draw_outline_deviation(axes: Axes, fit: Matched) -> None:

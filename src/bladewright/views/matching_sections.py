@@ -65,9 +65,9 @@ def draw_magnified(axes: Axes, fit: Matched, outline: Outline, name: str) -> Non
     for colour, own in ((INSIDE, off < 0.0), (OUTSIDE, off >= 0.0)):
         lines = list(np.stack([feet[own], tops[own]], axis=1))
         axes.add_collection(LineCollection(lines, colors=colour, linewidths=0.4 if many else 0.9, rasterized=many))
-        axes.plot(
-            *tops[own].T, color=colour, linestyle="none", marker="o", rasterized=many, **(FINE if many else CLEAR)
-        )
+        size = FINE if many else CLEAR
+        x, y = tops[own].T
+        axes.plot(x, y, color=colour, linestyle="none", marker="o", rasterized=many, **size)
     axes.plot(*outline.closed.T, color=INK, linewidth=1.0)
     _cross_outliers(axes, fit, outline, factor, 0.08 * outline.section.chord * MILLIMETRES)
     abscissa, ordinate = COORDINATES[outline.section.plane]
@@ -103,15 +103,17 @@ def draw_edge_match(axes: Axes, fit: Matched, outline: Outline, *, trailing: boo
     # over the points where they would hide it
     axes.plot(*outline.closed.T, color=INK, linewidth=1.2, zorder=3.5 if len(shown) > 1000 else 2.5)
     size = float(np.clip(6e3 / max(len(shown), 1), 3.0, 26.0))
-    colours = {"c": millimetres(fit, shown), "cmap": COLOURS, "norm": scale_of(fit)}
     axes.scatter(
-        *at.T,
+        at[:, 0],
+        at[:, 1],
         s=size,
+        c=millimetres(fit, shown),
+        cmap=COLOURS,
+        norm=scale_of(fit),
         linewidths=0.4 if len(shown) < 1000 else 0.0,
         edgecolors=INK,
         zorder=3.0,
         rasterized=len(shown) > 1500,
-        **colours,
     )
     _cross_outliers(axes, fit, outline, 1.0, np.inf)
     axes.set_xlim(middle[0] - reach, middle[0] + reach)
