@@ -110,7 +110,7 @@ def _exchanged(task: Task, found: Found) -> Found:
 
 
 def _shaken(task: Task, found: Found) -> Found:
-    """The better of a match and of one that starts from it as if it knew little: a nose may lie beside the right one."""
+    """The better of a match and of one that starts from it as if it knew little: a nose may lie in a wrong place."""
     if found.interrupted or found.rms < SHAKEN * FINEST:
         return found
     other = searched(task, found.design, noise=SHAKEN)

@@ -12,10 +12,16 @@ from bladewright.errors import FitError
 from bladewright.fitting.structure import SPANWISE, Structure
 from bladewright.nurbs.basis import Reals, basis, uniform_knots
 from bladewright.section.laws import law_basis
-from bladewright.section.limits import THICKNESSES
+from bladewright.section.limits import ANGLES, RADII, TANGENTS, THICKNESSES
 from bladewright.section.sampling import sample_places
 from bladewright.section.unified import UnifiedSection
 
+LIMITS = {
+    **dict.fromkeys(ANGLES, (-88.0, 88.0)),
+    **dict.fromkeys(TANGENTS, (0.03, 0.99)),
+    **dict.fromkeys(RADII, (1e-4, 0.9)),
+}
+"""within which a law is kept that another number of control points would carry past the family's own"""
 PLACES = np.linspace(0.0, 1.0, 101)
 
 
@@ -32,7 +38,9 @@ def reshaped(design: Design, structure: Structure) -> Design:
             f"a {type(design).__name__} has no structure of the unified family: give a design of that family"
         )
     place = "leading_edge_theta" if design.arrangement == "annular" else "leading_edge_y"
-    changes: dict[str, Any] = {name: _law(getattr(design, name), structure.span[name]) for name in SPANWISE}
+    changes: dict[str, Any] = {
+        name: _law(getattr(design, name), structure.span[name], LIMITS[name]) for name in SPANWISE
+    }
     changes[place] = _law(getattr(design, place), structure.span["place"])
     for name, count in zip(THICKNESSES, structure.chordwise, strict=True):
         grid = _grid(getattr(design, name), count, structure.span[name], structure)
@@ -51,11 +59,11 @@ def _values(law: Law) -> Reals:
     return np.asarray(law_basis(len(leaves), PLACES) @ np.array(leaves, dtype=float))
 
 
-def _law(law: Law, count: int) -> Law:
+def _law(law: Law, count: int, limits: tuple[float, float] = (-np.inf, np.inf)) -> Law:
     if count == (len(law) if isinstance(law, tuple) else 1):
         return law
     found, *_ = np.linalg.lstsq(law_basis(count, PLACES), _values(law), rcond=None)
-    return _plain(np.asarray(found, dtype=np.float64))
+    return _plain(np.clip(np.asarray(found, dtype=np.float64), *limits))
 
 
 def _plain(values: Reals) -> Law:

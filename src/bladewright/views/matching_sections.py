@@ -23,8 +23,7 @@ from bladewright.views.sections import COORDINATES
 from bladewright.views.style import INK, MILLIMETRES, PALE, SOFT, titled
 
 INSIDE, OUTSIDE = "#2f7fb5", "#c4553f"
-CLEAR = {"markersize": 2.6, "markeredgewidth": 0.0}
-FINE = {"markersize": 1.2, "markeredgewidth": 0.0}
+CLEAR, FINE = 2.6, 1.2
 THICK = 0.4
 """of the largest thickness, that the tolerance is drawn within"""
 SHARP = 0.01
@@ -67,9 +66,11 @@ def draw_magnified(axes: Axes, fit: Matched, outline: Outline, name: str) -> Non
         axes.add_collection(LineCollection(lines, colors=colour, linewidths=0.4 if many else 0.9, rasterized=many))
         size = FINE if many else CLEAR
         x, y = tops[own].T
-        axes.plot(x, y, color=colour, linestyle="none", marker="o", rasterized=many, **size)
+        axes.plot(
+            x, y, color=colour, linestyle="none", marker="o", rasterized=many, markersize=size, markeredgewidth=0.0
+        )
     axes.plot(*outline.closed.T, color=INK, linewidth=1.0)
-    _cross_outliers(axes, fit, outline, factor, 0.08 * outline.section.chord * MILLIMETRES)
+    _cross_outliers(axes, fit, outline, factor, 0.08 * float(outline.section.chord) * MILLIMETRES)
     abscissa, ordinate = COORDINATES[outline.section.plane]
     told = "" if fit.tolerance is None else f", dashed: the tolerance × {factor:g}"
     titled(axes, f"{name}, deviations × {factor:g}", f"{abscissa}{told}", ordinate)
