@@ -34,8 +34,11 @@ if TYPE_CHECKING:
     from bladewright.errors import DerivativeError as DerivativeError
     from bladewright.errors import DesignError as DesignError
     from bladewright.errors import FileError as FileError
+    from bladewright.errors import FitError as FitError
     from bladewright.errors import GeometryError as GeometryError
     from bladewright.errors import MeshError as MeshError
+    from bladewright.files.clouds import read_cloud as read_cloud
+    from bladewright.files.parablade import read_parablade as read_parablade
     from bladewright.files.reading import read_design as read_design
     from bladewright.files.su2 import read_surface_points as read_surface_points
     from bladewright.files.su2 import read_surface_sensitivity as read_surface_sensitivity
@@ -43,8 +46,10 @@ if TYPE_CHECKING:
     from bladewright.files.writing import write_design as write_design
     from bladewright.fitting.curves import CurveFit as CurveFit
     from bladewright.fitting.curves import fit_curve as fit_curve
+    from bladewright.fitting.fit import fit as fit
     from bladewright.fitting.profile import ProfileFit as ProfileFit
     from bladewright.fitting.profile import fit_profile as fit_profile
+    from bladewright.fitting.result import Fit as Fit
     from bladewright.fitting.surfaces import SurfaceFit as SurfaceFit
     from bladewright.fitting.surfaces import fit_surface as fit_surface
     from bladewright.nurbs.curve import Curve as Curve
@@ -64,6 +69,8 @@ _HOMES = {
     "DerivativeError": "errors",
     "DesignError": "errors",
     "FileError": "errors",
+    "Fit": "fitting.result",
+    "FitError": "errors",
     "GeometryError": "errors",
     "MeshError": "errors",
     "Passage": "domain.passage",
@@ -78,6 +85,7 @@ _HOMES = {
     "UnifiedBlade": "blade.unified",
     "UnifiedSection": "section.unified",
     "Variables": "derivatives.variables",
+    "fit": "fitting.fit",
     "fit_curve": "fitting.curves",
     "fit_profile": "fitting.profile",
     "fit_surface": "fitting.surfaces",
@@ -86,7 +94,9 @@ _HOMES = {
     "placed_points": "derivatives.places",
     "prismatic": "blade.prismatic",
     "pullback": "derivatives.nets",
+    "read_cloud": "files.clouds",
     "read_design": "files.reading",
+    "read_parablade": "files.parablade",
     "section_passage": "domain.section",
     "read_surface_points": "files.su2",
     "read_surface_sensitivity": "files.su2",
