@@ -18,6 +18,8 @@ OUTLYING = 8.0
 """robust standard deviations by which an outlier differs from its neighbours"""
 USUAL, AT_EDGES = 6.0, 60.0
 """usual distances that an outlier exceeds, and near an edge, where a misfit is large and neighbours are few"""
+NEAR = 1e-6
+"""distance up to which no point is an outlier, of the cloud's extent"""
 EDGE = 0.03
 """how near, in u"""
 STANDARD = 1.4826
@@ -56,7 +58,8 @@ def scatter_of(points: Reals, on: Feet, *, outlying: bool = True) -> Scatter:
     if outlying:
         local = STANDARD * np.median(np.abs(heights[around] - middle[:, None]), axis=1)
         past = np.sqrt(np.sum((on.miss - heights[:, None] * on.normals) ** 2, axis=-1))
-        least = np.where((on.u < EDGE) | (on.u > 1.0 - EDGE), AT_EDGES, USUAL) * STANDARD * np.median(distances)
+        near = NEAR * float(np.ptp(points, axis=0).max())
+        least = near + np.where((on.u < EDGE) | (on.u > 1.0 - EDGE), AT_EDGES, USUAL) * STANDARD * np.median(distances)
         inliers = ~((np.abs(off) + past > OUTLYING * np.maximum(noise, local)) & (distances > least))
     # a mean of k neighbours has 1 / k of the variance
     kept = inliers & inliers[around].all(axis=1)

@@ -36,8 +36,9 @@ FINE = 0.1
 """tolerance of the native surfaces in a round, of the noise"""
 COARSEST = 1e-4
 """tolerance of the native surfaces, of the chord"""
-SLACK = 2e-6
-"""by how much a nose is at first held below the thickness beside it, of the section's extent"""
+SLACK = {2: 2e-6, 3: 2e-5}
+"""by how much a nose is at first held below the thickness beside it, of the section's extent, by dimension: a blade is
+    asked between its stations too"""
 
 Told = Callable[[str], None]
 
@@ -157,7 +158,7 @@ def _prepared(task: Task, start: Design, design: Design, noise: float | None, be
         prior=replace(prior, matrix=task.smooth * prior.matrix, aim=task.smooth * prior.aim),
         alone=scatter.alone(len(paths)),
         hint=on,
-        margin=SLACK * task.slack,
+        margin=SLACK[points.shape[1]] * task.slack,
     )
     return Found(
         design=design,
