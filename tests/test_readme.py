@@ -1,4 +1,4 @@
-"""The README's commands and its Python example do what they say."""
+"""The README's commands and its Python examples do what they say."""
 
 import json
 import os
@@ -8,7 +8,11 @@ import subprocess
 import sys
 from pathlib import Path
 
+import click
 import pytest
+
+from bladewright.cli.program import program
+from bladewright.files.examples import example_text
 
 README = (Path(__file__).parents[1] / "README.md").read_text()
 
@@ -47,12 +51,14 @@ def test_the_build_line_proves_what_it_made(built: Path) -> None:
 
 def test_the_python_examples_run_one_after_another(built: Path) -> None:
     blocks = re.findall(r"<!-- python -->\n```python\n(.*?)```", README, re.DOTALL)
-    assert len(blocks) == 2
+    assert len(blocks) == 3
+    (built / "turbine-section.toml").write_text(example_text("turbine-section"))
     run = subprocess.run(
         [
             sys.executable,
             "-c",
-            "\n".join(blocks) + "\nprint(trip.passed, gradient['stagger[1]'], slopes['stagger[0]'])",
+            "\n".join(blocks) + "\nassert trip.passed and fit.passed and upper.passed\nassert fit.maximum < 1e-4"
+            "\nprint(gradient['stagger[1]'], slopes['stagger[0]'])",
         ],
         cwd=built,
         capture_output=True,
@@ -61,3 +67,10 @@ def test_the_python_examples_run_one_after_another(built: Path) -> None:
         check=True,
     )
     assert run.stdout
+
+
+@pytest.mark.parametrize("line", re.findall(r"^bladewright (.*)$", README, re.MULTILINE))
+def test_every_command_line_is_one_that_the_program_takes(line: str) -> None:
+    words = shlex.split(line)
+    command = program.commands[words[0]]
+    assert isinstance(command.make_context(words[0], words[1:]), click.Context)
