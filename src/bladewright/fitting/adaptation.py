@@ -9,7 +9,7 @@ from bladewright.designs import Design
 from bladewright.errors import FitError
 from bladewright.fitting.growth import chosen_of, gains, joined
 from bladewright.fitting.reshaping import reshaped
-from bladewright.fitting.search import Found, Task, searched
+from bladewright.fitting.search import ROUNDS, Found, Task, searched
 from bladewright.fitting.structure import Structure, structure_of
 
 FIRST = 3e-3
@@ -32,6 +32,10 @@ NOISY = 0.15
 """part of the misfit that neighbours share below which it is noise"""
 WORTHWHILE = 0.02
 """part of the sum of squares that growth must be foreseen to gain"""
+EMPHASIS = (0.1, 10.0)
+"""least and largest weight of a point by its distance, where a tolerance is to be met"""
+MANIFOLD = 50
+"""parameters from which a tenth is added at a time"""
 SHARPER = 4
 """times that points are weighed by their distances before anything is added"""
 
@@ -64,7 +68,9 @@ def adapted(task: Task, first: Design, aim: Aim, *, base: Structure | None, gues
     many = _part(task, thinned(len(task.points), MANY))
     noise = FIRST if guessed else None
     if aim.structured and aim.tolerance is None:
-        found = searched(few, first, noise=noise)
+        found = searched(few, first, noise=noise, rounds=ROUNDS if base is None else 2 * QUICK)
+        if base is not None and not found.interrupted:
+            found = _leaner(few, found, base)
         return (found if found.interrupted else searched(many, found.design)), ""
     found = searched(few, first, noise=noise, rounds=2 * QUICK)
     if base is not None and not found.interrupted and _roomy(found, aim):
@@ -126,7 +132,7 @@ def _roomy(found: Found, aim: Aim) -> bool:
 def _leaner(task: Task, found: Found, base: Structure) -> Found:
     """A match with the structure from which to grow, or the one before where its laws leave no shape so."""
     try:
-        return searched(task, reshaped(found.design, base), noise=FIRST, rounds=2 * QUICK)
+        return searched(task, reshaped(found.design, base), noise=FIRST)
     except FitError:
         return found
 
@@ -161,17 +167,20 @@ def _grown(task: Task, found: Found, aim: Aim) -> tuple[Found, bool]:
     """The match with the control points that promise most, and whether there were any."""
     emphasis = None
     if aim.tolerance is not None:
-        distances = found.state.feet.distances / aim.tolerance
-        emphasis = np.clip(distances**2, 0.05, 25.0)
+        emphasis = np.clip((found.state.feet.distances / aim.tolerance) ** 2, *EMPHASIS)
     ranked = gains(found, emphasis)
     left = None if aim.parameters is None else aim.parameters - len(found.problem.paths)
-    steps = chosen_of(ranked, left)
+    count = len(found.problem.paths)
+    steps = chosen_of(ranked, left, 0 if aim.parameters is not None or count < MANIFOLD else count // 10)
     if not steps:
         return found, False
     total = float(np.sum(found.problem.measures.residuals(found.state) ** 2))
     if aim.parameters is None and emphasis is None and sum(gain for gain, _ in ranked[:3]) < WORTHWHILE * total:
         return found, False
     design = reshaped(found.design, joined(structure_of(found.design), steps))
+    if emphasis is not None:
+        weights = task.weights * emphasis
+        task = replace(task, weights=weights * (np.sum(task.weights) / np.sum(weights)))
     fresh = searched(task, design, rounds=1, noise=found.rms)
     return replace(fresh, evaluations=fresh.evaluations + found.evaluations), True
 

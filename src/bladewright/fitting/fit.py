@@ -102,14 +102,17 @@ def fit(
         return first_blade(points, structure=structure, name=name, length_unit=length_unit, **given)
 
     tell("first design")
+    solid = points.shape[1] == 3
     if start is not None:
         first = start if wanted is None else reshaped(start, wanted)
     else:
-        first = guess(wanted or rich(points.shape[1], parameters))
+        first = guess(rich(parameters) if solid else wanted)
     first = freedom.applied(first)
     structured = parameters is None and (start is not None or like is not None)
     aim = Aim(tolerance=tolerance, parameters=parameters, structured=structured)
-    base = None if structured or like is not None or start is not None else lean(points.shape[1], parameters)
+    base = None
+    if start is None and (solid or wanted is None):
+        base = wanted or lean(points.shape[1], parameters)
     found, reason = adapted(task, first, aim, base=base, guessed=start is None)
     found, built = _built(task, found)
     return _reported(found, built, points, task, aim, (*notes, *([reason] if reason else [])), motion)

@@ -108,15 +108,16 @@ def _reduced(slopes: Reals, rows: Reals, roots: Reals, noise: float) -> float:
     return float(np.sum((matrix @ step - aim) ** 2))
 
 
-def chosen_of(ranked: Sequence[tuple[float, Step]], most: int | None = None) -> list[Step]:
-    """The steps that are worth taking together, of at most so many parameters."""
+def chosen_of(ranked: Sequence[tuple[float, Step]], most: int | None = None, least: int = 0) -> list[Step]:
+    """The steps that are worth taking together, of at most so many parameters, and of so many at least if they help."""
     if not ranked:
         return []
     best = ranked[0][0] / ranked[0][1].parameters
     taken: list[Step] = []
     left = np.inf if most is None else most
     for gain, step in ranked:
-        worth = not taken or gain / step.parameters >= WORTH * best
+        added = sum(each.parameters for each in taken)
+        worth = not taken or gain / step.parameters >= WORTH * best or (added < least and gain > 0.0)
         if step.parameters <= left and worth:
             taken.append(step)
             left -= step.parameters

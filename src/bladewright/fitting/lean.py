@@ -13,11 +13,9 @@ def lean(dimension: int, parameters: int | None) -> Structure:
     return next((each for each in reversed(BLADES) if size_of(each) <= parameters), BLADES[0])
 
 
-def rich(dimension: int, parameters: int | None) -> Structure | None:
-    """The structure of a first design, which finds its edges best with laws that are free enough; None: its own."""
-    if dimension == 2:
-        return None
-    return lean(dimension, max(parameters or 0, size_of(BLADES[-2])))
+def rich(parameters: int | None) -> Structure:
+    """The structure of a first blade, which finds its edges best with laws that are free enough."""
+    return lean(3, max(parameters or 0, size_of(BLADES[-2])))
 
 
 def size_of(structure: Structure) -> int:

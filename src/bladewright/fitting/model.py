@@ -33,7 +33,7 @@ from bladewright.section.unified import UnifiedSection
 
 HOLDING = SURVEY
 """places along the span where it is asked whether the thickness can hold the edges' radii"""
-FOLDING = (15, 7)
+FOLDING = (21, 21)
 """places along and across the channel where it is asked whether it folds over"""
 OPEN = 0.02
 """smallest Jacobian of the channel, of its median"""

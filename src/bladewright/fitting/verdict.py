@@ -9,8 +9,10 @@ from bladewright.fitting.scatter import Scatter
 from bladewright.fitting.search import Found
 from bladewright.nurbs.basis import Reals
 
-GROSS = 0.01
-"""mean distance above which a match is none, of the chord"""
+GROSS = (1.5e-3, 5e-3)
+"""mean and largest distance of a match to which no tolerance is stated, of the chord"""
+EXACT, SYSTEMATIC = 1e-9, 3.0
+"""misfit of a given structure that is rounding, of the chord, and one that is not noise, of the cloud's noise"""
 OFF = 0.1
 """part of the points that may be outliers"""
 SHOWN = 5
@@ -36,10 +38,19 @@ def failures_of(
             f"the largest deviation is {1e3 * kept.max():.4g} mm ({regions[worst]}, point {worst}), and "
             f"{1e3 * aim.tolerance:.4g} mm were asked for"
         )
-    if np.mean(kept) > GROSS * chord:
+    elif aim.tolerance is None:
+        for word, value, limit in (("mean", np.mean(kept), GROSS[0]), ("largest", kept.max(), GROSS[1])):
+            if value > limit * chord:
+                failures.append(
+                    f"the {word} deviation is {1e3 * value:.4g} mm, {100 * value / chord:.2g} % of the chord, and "
+                    f"{100 * limit:.2g} % are allowed where no tolerance is stated: give more parameters"
+                )
+    rms, noise = found.rms * chord, found.scatter.noise
+    if aim.structured and aim.tolerance is None and rms > EXACT * chord and rms > SYSTEMATIC * noise:
         failures.append(
-            f"the mean deviation is {1e3 * np.mean(kept):.4g} mm, {100 * np.mean(kept) / chord:.2g} % of the chord: no "
-            "design of this family was found near the points"
+            f"the misfit of the given structure is {1e3 * rms:.3g} mm rms, and the cloud's noise {1e3 * noise:.3g} mm: "
+            "the structure does not hold this blade, or a better design was not found; state a tolerance, or another "
+            "structure"
         )
     return tuple(failures)
 
