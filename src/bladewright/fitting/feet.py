@@ -56,12 +56,13 @@ class Feet:
         return np.sum(self.miss * self.normals, axis=-1)
 
 
-def feet(points: Reals, sides: Sequence[Side], hint: Feet | None = None) -> Feet:
+def feet(points: Reals, sides: Sequence[Side], hint: Feet | None = None, *, converged: float = CONVERGED) -> Feet:
     """The nearest places of points (n, d) on the upper and the lower side.
 
     Each starts from the nearest of samples that are close to each other where the sides bend, and descends by damped
     Newton steps, around the leading edge where need be, until it converges. With a `hint`, the feet on sides that have
-    moved little since, it starts from there.
+    moved little since, it starts from there. `converged` is the last step in the parameters of a patch: heights above
+    the sides are exact to its square, the distances of points on them to itself.
     """
     on = _ring(sides)
     best, around, v = np.full(len(points), np.inf), np.zeros(len(points)), np.zeros(len(points))
@@ -70,7 +71,7 @@ def feet(points: Reals, sides: Sequence[Side], hint: Feet | None = None) -> Feet
             continue
         for part in np.array_split(np.arange(len(rows)), max(1, -(-len(rows) // AT_ONCE))):
             where = rows[part]
-            found = polished(on, points[where], patch[part], local[part], converged=CONVERGED)
+            found = polished(on, points[where], patch[part], local[part], converged=converged)
             nearer = found.square < best[where]
             where = where[nearer]
             best[where] = found.square[nearer]

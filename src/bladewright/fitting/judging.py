@@ -17,8 +17,8 @@ from bladewright.section.section import Section
 
 EDGE = 0.03
 """how far the edges reach, in u"""
-BROAD = 20_000
-"""points from which those of the scatter are a part of the cloud"""
+FINEST = 1e-12
+"""last step of the final descents, in the parameters of a patch"""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -36,7 +36,7 @@ def judged(points: Reals, built: Blade | Section) -> Judgement:
     """Every point's nearest place and signed distance on a blade or section."""
     sides = built.sides if isinstance(built, Blade) else (built.curves["upper"], built.curves["lower"])
     exact = built.exact if isinstance(built, Blade) else None
-    on = feet(points, sides)
+    on = feet(points, sides, converged=FINEST)
     scatter = scatter_of(points, on)
     shape = Shape(design=None, sides=sides, noses=np.zeros(0), exact=exact)
     ends = ends_of(points, on, shape, scatter.inliers)
