@@ -24,7 +24,7 @@ class Linear(Constrained):
     def values(self, z):
         return self.matrix @ z - self.aim, self.walls @ z - self.room
 
-    def derivatives(self, z):
+    def derivatives(self, z):  # noqa: ARG002 - as the base has it
         return self.matrix, self.walls
 
 
@@ -46,7 +46,7 @@ class Valley(Constrained):
 class Nowhere(Linear):
     """Values that do not exist."""
 
-    def values(self, z):
+    def values(self, z):  # noqa: ARG002 - as the base has it
         return None
 
 
@@ -95,7 +95,7 @@ def test_within_inequalities_and_bounds_the_minimum_is_that_of_scipy(seed, feasi
         jac=lambda z: 2.0 * matrix.T @ (matrix @ z - 3.0 * aim),
         method="SLSQP",
         bounds=[(-0.6, 0.5)] * 5,
-        constraints={"type": "ineq", "fun": lambda z: room - walls @ z, "jac": lambda z: -walls},
+        constraints={"type": "ineq", "fun": lambda z: room - walls @ z, "jac": lambda _: -walls},
         options={"ftol": 1e-15, "maxiter": 300},
     )
     assert found.converged

@@ -82,13 +82,14 @@ def test_points_of_the_sides_are_their_own_feet(name):
 def test_heights_are_positive_outside_on_both_sides(name):
     for number, side in enumerate(sides(name)):
         u = np.linspace(0.1, 0.9, 9)
-        on = placed(side(u) if name == "turbine-section" else side(u, 0.5 + 0.0 * u), sides(name), np.full(9, number), u,
-                    0.5 + 0.0 * u)  # fmt: skip
+        v = np.full(9, 0.5)
+        at = side(u) if name == "turbine-section" else side(u, v)
+        on = placed(at, sides(name), np.full(9, number), u, v)
         step = 1e-3 * cloud(name)[1]
         outside = feet(on.points + step * on.normals, sides(name))
         np.testing.assert_allclose(outside.heights, step, rtol=1e-6)
         other = sides(name)[1 - number]
-        middle = other(u) if name == "turbine-section" else other(u, 0.5 + 0.0 * u)
+        middle = other(u) if name == "turbine-section" else other(u, v)
         # the other side is inwards
         assert np.all(np.sum((middle - on.points) * on.normals, axis=-1) < 0.0)
 

@@ -1,0 +1,112 @@
+"""Derivatives of what a search sees of a design, against central differences."""
+
+from functools import cache
+
+import numpy as np
+import pytest
+
+from bladewright.files.examples import example_text
+from bladewright.files.reading import design_from, parsed
+from bladewright.fitting.cloud import checked_cloud
+from bladewright.fitting.feet import feet, placed
+from bladewright.fitting.model import _folds, model_of
+from bladewright.fitting.search import Task, searched
+
+NAMES = ("turbine-section", "compressor-stator")
+
+
+@cache
+def made(name):
+    design = design_from(parsed(example_text(name), name), name)
+    return design, model_of(design)
+
+
+def cloud(name, count=60):
+    _, model = made(name)
+    sides = model.shape(made(name)[0]).sides
+    random = np.random.default_rng(4)
+    u, v = random.random((2, count))
+    points = np.concatenate([side(u) if name == "turbine-section" else side(u, v) for side in sides])
+    return points + 1e-3 * model.chord * random.normal(size=points.shape)
+
+
+def differences(name, quantity):
+    """Central differences (k, ...) of a quantity of the shape, by each parameter."""
+    design, model = made(name)
+    values = design.parameters()
+    found = []
+    for path in paths(name):
+        step = 1e-5 * max(abs(values[path]), 1e-2)
+        ends = [quantity(model.shape(design.changed(path, values[path] + sign * step))) for sign in (1.0, -1.0)]
+        found.append((ends[0] - ends[1]) / (2.0 * step))
+    return np.array(found)
+
+
+def paths(name):
+    """Every parameter of a section, and some of each field of a blade."""
+    every = list(made(name)[0].parameters())
+    if name == "turbine-section":
+        return [path for path in every if path != "pitch"]
+    return [path for path in every[::3] if not path.startswith("tip_")]
+
+
+def scaled(rates):
+    """The largest of each parameter's rates; 1 where it has no effect but rounding."""
+    size = np.max(np.abs(rates.reshape(len(rates), -1)), axis=1)
+    return np.where(size > 1e-9, size, 1.0).reshape(-1, *[1] * (rates.ndim - 1))
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_places_move_as_central_differences_say(name):
+    design, model = made(name)
+    shape = model.shape(design)
+    on = feet(cloud(name), shape.sides)
+    exact = np.moveaxis(model.rates(shape, on, model.tangents(shape, paths(name))), 1, 0)
+    found = differences(name, lambda other: placed(on.points, other.sides, on.side, on.u, on.v).points)
+    # rounding over the step, and the third derivative times its square
+    np.testing.assert_allclose(found / scaled(exact), exact / scaled(exact), atol=3e-6)
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_noses_change_as_central_differences_say(name):
+    design, model = made(name)
+    exact = model.nose_rates(model.shape(design), paths(name))
+    found = differences(name, lambda other: other.noses)
+    laws = [i for i, path in enumerate(paths(name)) if not path.startswith("channel.")]
+    np.testing.assert_allclose((found / scaled(exact))[laws], (exact / scaled(exact))[laws], atol=3e-6)
+    assert np.any(exact[:, 0])
+
+
+def test_folds_of_a_channel_change_as_central_differences_say():
+    design, model = made("compressor-stator")
+    shape = model.shape(design)
+    exact = model.fold_rates(shape, paths("compressor-stator"))
+    # the median that they are a part of is held
+    held = model.shape(design).exact
+
+    def folds(other):
+        return np.real(_folds(held, other.exact.channel))
+
+    found = differences("compressor-stator", folds)
+    np.testing.assert_allclose(found / scaled(exact), exact / scaled(exact), atol=3e-6)
+    assert np.all(shape.folds < 0.0)
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_residuals_change_as_central_differences_say(name):
+    """With feet found anew for each design: as they move along the surface only, to first order it does not matter."""
+    design, _ = made(name)
+    points, _ = checked_cloud(cloud(name, 300))
+    task = Task(points=points, weights=np.ones(len(points)), free=lambda _: tuple(paths(name)), bounds={})
+    problem = searched(task, design, rounds=1, noise=1e-3).problem
+    z = problem.vector(design)
+    exact, _ = problem.derivatives(z)
+    random = np.random.default_rng(0)
+    for _ in range(3):
+        way, step = random.normal(size=len(z)), 1e-5
+        ahead, behind = (problem.values(z + sign * step * way)[0] for sign in (1.0, -1.0))
+        found = (ahead - behind) / (2.0 * step)
+        count = len(points)
+        # near an edge a foot may change sides, and the heights there are not smooth
+        error = np.abs(found - exact @ way)[:count] / np.max(np.abs(found[:count]))
+        assert np.percentile(error, 97.0) < 1e-4
