@@ -12,7 +12,7 @@ from bladewright.blade.unified import UnifiedBlade
 from bladewright.derivatives.patterns import Patterns
 from bladewright.designs import Design
 from bladewright.errors import DesignError, FitError
-from bladewright.fitting.adaptation import Aim, adapted
+from bladewright.fitting.adaptation import MANY, Aim, adapted, thinned
 from bladewright.fitting.aligning import aligned
 from bladewright.fitting.cloud import checked_cloud
 from bladewright.fitting.estimates import certainty_of
@@ -90,16 +90,18 @@ def fit(
     )
     wanted = None if like is None else structure_of(like)
 
+    some = points[thinned(len(points), MANY)]
+
     def guess(structure: Structure | None) -> Design:
         if points.shape[1] == 2:
             lengths = {} if structure is None else _section_of(structure)
-            return first_section(points, name=name, length_unit=length_unit, **lengths)
+            return first_section(some, name=name, length_unit=length_unit, **lengths)
         given: dict[str, Any] = {"blade_count": blade_count, "pitch": pitch, "arrangement": arrangement}
         if isinstance(like, UnifiedBlade):
             given = {"arrangement": like.arrangement, "blade_count": like.blade_count} | {
                 key: value for key, value in given.items() if value is not None
             }
-        return first_blade(points, structure=structure, name=name, length_unit=length_unit, **given)
+        return first_blade(some, structure=structure, name=name, length_unit=length_unit, **given)
 
     tell("first design")
     solid = points.shape[1] == 3
