@@ -36,6 +36,10 @@ EMPHASIS = (0.1, 10.0)
 """least and largest weight of a point by its distance, where a tolerance is to be met"""
 MANIFOLD = 50
 """parameters from which a tenth is added at a time"""
+GROWTHS = 40
+"""times that more is added at most"""
+LATER = 4
+"""times that more is added where points outside the quick searches stay beyond the tolerance"""
 SHARPER = 4
 """times that points are weighed by their distances before anything is added"""
 
@@ -75,26 +79,45 @@ def adapted(task: Task, first: Design, aim: Aim, *, base: Structure | None, gues
     found = searched(few, first, noise=noise, rounds=2 * QUICK)
     if base is not None and not found.interrupted and _roomy(found, aim):
         found = _leaner(few, found, base)
-    reason = ""
-    for _ in range(40):
-        if found.interrupted:
-            return found, ""
-        short, reason = _short(found, aim, few)
-        if not short:
-            break
-        found, grew = _grown(few, found, aim)
-        if not grew:
-            break
-    if aim.parameters is not None and task.points.shape[1] == 2:
-        found = _exchanged(few, found)
+    found, reason = _enough(few, found, aim)
     if found.interrupted:
         return found, reason
     found = searched(many, found.design)
     if guessed and task.points.shape[1] == 2:
         found = _shaken(many, found)
-    if aim.tolerance is not None:
-        found = _within(many, found, aim.tolerance)
+    if aim.tolerance is not None and not reason:
+        found = _everywhere(many, found, aim, aim.tolerance)
     return found, reason
+
+
+def _enough(task: Task, found: Found, aim: Aim) -> tuple[Found, str]:
+    """A match with as many control points as the aim asks for, or why there are no more."""
+    reason = ""
+    for _ in range(GROWTHS):
+        if found.interrupted:
+            return found, ""
+        short, reason = _short(found, aim, task)
+        if not short:
+            break
+        found, grew = _grown(task, found, aim)
+        if not grew:
+            break
+    if aim.parameters is not None and task.points.shape[1] == 2:
+        found = _exchanged(task, found)
+    return found, reason
+
+
+def _everywhere(task: Task, found: Found, aim: Aim, tolerance: float) -> Found:
+    """A match that keeps a tolerance at the points of a thorough search too, where a little more brings it there."""
+    found = _within(task, found, tolerance)
+    for _ in range(LATER):
+        if found.maximum <= tolerance or found.interrupted:
+            break
+        found, grew = _grown(task, found, aim)
+        if not grew:
+            break
+        found = _within(task, found, tolerance)
+    return found
 
 
 def _exchanged(task: Task, found: Found) -> Found:
