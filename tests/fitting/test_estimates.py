@@ -1,0 +1,97 @@
+"""What is said of each parameter, against the closed form of linear least squares."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from scipy.stats import t as student
+
+from bladewright.fitting.estimates import certainty_of
+
+POINTS, COUNT = 400, 5
+SIZE = np.array([5.0, 0.2, 1.0, 0.01, 3.0])
+SPILT = "a direction without effect spills by its rounding over parameters that are determined"
+
+
+def found(slopes, *, shared=0.0, alone=1.0, low=-np.inf, high=np.inf, seed=1, deviation=1e-3):
+    """A match whose residuals are noise, and whose derivatives are given."""
+    rows = deviation * np.random.default_rng(seed).normal(size=len(slopes))
+    problem = SimpleNamespace(
+        scales=SimpleNamespace(size=SIZE, low=np.full(COUNT, low), high=np.full(COUNT, high)),
+        paths=tuple("abcde"),
+        measures=SimpleNamespace(
+            residuals=lambda _: rows, slopes=lambda *_: slopes, roots=np.ones(POINTS), points=np.zeros((POINTS, 2))
+        ),
+        values_of=lambda _: np.arange(1.0, COUNT + 1.0),
+    )
+    scatter = SimpleNamespace(shared=shared, alone=lambda _: alone)
+    return SimpleNamespace(problem=problem, state=None, scatter=scatter, design=None), rows
+
+
+def slopes_of(seed):
+    return np.random.default_rng(seed).normal(size=(POINTS, COUNT)) / SIZE
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_the_covariance_is_that_of_linear_least_squares(seed):
+    slopes = slopes_of(seed)
+    match, rows = found(slopes)
+    certainty = certainty_of(match)
+    variance = np.sum(rows**2) / (POINTS - COUNT)
+    np.testing.assert_allclose(certainty.covariance, variance * np.linalg.inv(slopes.T @ slopes), rtol=1e-9)
+    deviations = np.sqrt(np.diag(certainty.covariance))
+    np.testing.assert_allclose([each.deviation for each in certainty.estimates], deviations, rtol=1e-12)
+    factor = student.ppf(0.975, POINTS - COUNT)
+    for each, deviation in zip(certainty.estimates, deviations, strict=True):
+        assert each.high - each.value == pytest.approx(factor * deviation, rel=1e-9)
+        assert each.value - each.low == pytest.approx(factor * deviation, rel=1e-9)
+        assert each.identified
+    assert certainty.rank == COUNT
+    assert certainty.condition == pytest.approx(np.linalg.cond(slopes * SIZE))
+
+
+def test_intervals_hold_the_truth_as_often_as_they_say():
+    held, slopes = [], slopes_of(0)
+    for seed in range(300):
+        match, rows = found(slopes, seed=seed)
+        # the step to the minimum, whose residuals are what is left
+        step, *_ = np.linalg.lstsq(slopes, -rows, rcond=None)
+        left = rows + slopes @ step
+        match.problem.measures.residuals = lambda _, left=left: left
+        match.problem.values_of = lambda _, step=step: step
+        held += [each.low <= 0.0 <= each.high for each in certainty_of(match).estimates]
+    # three standard errors of a share of 0.95 of 1,500
+    assert np.mean(held) == pytest.approx(0.95, abs=3.0 * np.sqrt(0.95 * 0.05 / 1500))
+
+
+@pytest.mark.xfail(reason=SPILT, strict=True)
+def test_what_no_residual_depends_on_is_not_identified():
+    slopes = slopes_of(0)
+    slopes[:, 2] = 0.0
+    certainty = certainty_of(found(slopes)[0])
+    assert [each.path for each in certainty.estimates if not each.identified] == ["c"]
+    assert certainty.estimates[2].deviation == np.inf
+    assert certainty.rank == COUNT - 1
+    assert certainty.condition > 1e15
+    assert np.isfinite(certainty.covariance).all()
+
+
+@pytest.mark.xfail(reason=SPILT, strict=True)
+def test_parameters_that_do_the_same_are_not_identified():
+    slopes = slopes_of(0)
+    slopes[:, 3] = slopes[:, 1] * SIZE[1] / SIZE[3]
+    certainty = certainty_of(found(slopes)[0])
+    assert [each.path for each in certainty.estimates if not each.identified] == ["b", "d"]
+    assert certainty.rank == COUNT - 1
+
+
+def test_points_that_share_their_misfit_count_as_fewer():
+    plain, shared = (certainty_of(found(slopes_of(0), shared=part, alone=0.01)[0]) for part in (0.0, 0.9))
+    # a hundredth of the points: ten times the deviation
+    np.testing.assert_allclose(shared.covariance, 100.0 * plain.covariance, rtol=1e-9)
+
+
+def test_parameters_on_a_bound_are_said():
+    assert not any(each.at_bound for each in certainty_of(found(slopes_of(0))[0]).estimates)
+    on = certainty_of(found(slopes_of(0), low=2.0, high=5.0 + 1e-4)[0]).estimates
+    assert [each.path for each in on if each.at_bound] == ["a", "b", "e"]

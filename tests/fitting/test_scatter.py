@@ -1,0 +1,93 @@
+"""Noise, misfit and outliers, told from each other by neighbours."""
+
+import numpy as np
+import pytest
+
+from bladewright.fitting.feet import Feet
+from bladewright.fitting.scatter import scatter_of
+
+NOISE = 1e-5
+
+
+def made(seed, count=2000, *, misfit=0.0, dimension=2):
+    """Two flat sides a tenth apart, and heights above them: normal noise and a misfit of one wave."""
+    random = np.random.default_rng(seed)
+    side, u, v = np.arange(count) % 2, random.random(count), random.random(count)
+    sign = np.where(side == 0, 1.0, -1.0)
+    flat = [u, 0.05 * sign] + ([v] if dimension == 3 else [])
+    normals = np.zeros((count, dimension))
+    normals[:, 1] = sign
+    heights = NOISE * random.normal(size=count) + misfit * np.sin(2.0 * np.pi * u)
+    return side, u, v, np.stack(flat, axis=-1), normals, heights
+
+
+def placed_feet(side, u, v, points, normals, heights):
+    return Feet(
+        side=side, u=u, v=v, points=points, normals=normals, beyond=np.zeros_like(points),
+        miss=heights[:, None] * normals,
+    )  # fmt: skip
+
+
+def scattered(*parts):
+    on = placed_feet(*parts)
+    return scatter_of(on.points + on.miss, on)
+
+
+@pytest.mark.parametrize("dimension", [2, 3])
+@pytest.mark.parametrize("seed", range(3))
+def test_noise_is_found_and_is_not_taken_for_misfit(seed, dimension):
+    found = scattered(*made(seed, dimension=dimension))
+    # a median of 2,000 magnitudes, through neighbours that share them
+    assert found.noise == pytest.approx(NOISE, rel=0.1)
+    assert found.shared < 0.1
+    # of normal heights, hardly any is eight robust deviations off
+    assert np.count_nonzero(~found.inliers) <= 2
+
+
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_a_smooth_misfit_is_neither_noise_nor_outliers(dimension):
+    found = scattered(*made(0, misfit=100.0 * NOISE, dimension=dimension))
+    assert found.inliers.all()
+    assert found.shared > 0.95
+    if dimension == 2:
+        assert found.noise == pytest.approx(NOISE, rel=0.15)
+
+
+@pytest.mark.parametrize(("misfit", "off"), [(0.0, 1e-3), (30.0 * NOISE, 4e-3)])
+def test_single_points_off_their_neighbours_are_outliers_whatever_the_misfit(misfit, off):
+    # off by more than the usual distance, which the misfit makes large
+    side, u, v, points, normals, heights = made(1, misfit=misfit)
+    # away from the edges, where more is allowed, and from each other
+    inner = np.argsort(u)[200:1800]
+    wrong = inner[::80]
+    heights[wrong] += np.where(np.arange(len(wrong)) % 2, 1.0, -1.0) * off
+    found = scattered(side, u, v, points, normals, heights)
+    assert not found.inliers[wrong].any()
+    assert np.count_nonzero(~found.inliers) <= len(wrong) + 3
+    # a few wrong points change neither figure
+    assert found.noise == pytest.approx(NOISE, rel=0.15)
+
+
+def test_points_past_an_end_are_outliers_though_they_have_no_height():
+    side, u, v, points, normals, heights = made(2, dimension=3)
+    at = int(np.argmin((u - 0.5) ** 2))
+    on = placed_feet(side, u, v, points, normals, heights)
+    on.miss[at, 2] += 0.01
+    assert not scatter_of(on.points + on.miss, on).inliers[at]
+    assert scatter_of(on.points + on.miss, on, outlying=False).inliers.all()
+
+
+def test_points_repeat_each_other_where_neighbours_share_the_misfit():
+    noise, misfit = scattered(*made(0)), scattered(*made(0, misfit=1e3 * NOISE))
+    assert noise.alone(20) > 0.2
+    # 2,000 points for 20 parameters: one in 50 tells something of its own
+    assert misfit.alone(20) == pytest.approx(40.0 / 2000.0, rel=0.1)
+    assert misfit.alone(1000) == pytest.approx(1.0)
+
+
+def test_few_points_on_a_side_do_not_stop_it():
+    side, u, v, points, normals, heights = made(0, count=12)
+    for count in (0, 1, 2):
+        on = np.where(np.arange(12) < count, 1, 0)
+        assert np.isfinite(scattered(on, u, v, points, normals, heights).noise)
+    assert side.sum() == 6
