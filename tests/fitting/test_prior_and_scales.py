@@ -1,0 +1,113 @@
+"""What is held of a design where its cloud says nothing, and how far a parameter may go."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import bladewright as bw
+from bladewright.files.examples import example_text
+from bladewright.files.reading import design_from, parsed
+from bladewright.fitting.prior import CENTRED, NEAR, SMOOTH, prior_of
+from bladewright.fitting.scales import scales_of
+from bladewright.section.checks import UNITS
+
+
+def design(name):
+    return design_from(parsed(example_text(name), name), name)
+
+
+SECTION = design("turbine-section")
+PATHS = tuple(path for path in SECTION.parameters() if path not in ("pitch", "span"))
+SIZE = scales_of(SECTION, PATHS, 0.035).size
+
+
+def rows(changes, start=SECTION):
+    """The prior's rows for changed parameters, in the unit of the fields."""
+    prior = prior_of(start, PATHS, SIZE)
+    z = np.array([changes.get(path, 0.0) / size for path, size in zip(PATHS, SIZE, strict=True)])
+    return prior.matrix @ z - prior.aim
+
+
+def even(above, below):
+    """A section whose thicknesses are straight along the chord."""
+    names = {"thickness_upper": above, "thickness_lower": below}
+    return SECTION.changed({f"{name}[{i}]": values[i] for name, values in names.items() for i in range(5)})
+
+
+STRAIGHT = even(np.linspace(0.05, 0.13, 5), np.linspace(0.05, 0.13, 5))
+
+
+def test_a_smooth_design_with_sides_alike_satisfies_its_own_prior():
+    np.testing.assert_allclose(rows({}, STRAIGHT), 0.0, atol=1e-12)
+    assert np.max(np.abs(rows({}))) > 0.1
+
+
+def test_a_parameter_that_goes_as_far_as_it_is_near_counts_one():
+    at = PATHS.index("stagger")
+    found = rows({"stagger": NEAR * SIZE[at]}, STRAIGHT)
+    assert np.sum(found**2) == pytest.approx(1.0)
+
+
+def test_another_straight_law_of_both_sides_costs_its_distance_alone():
+    change = {f"{name}[{i}]": 0.01 * (1 + i) for name in ("thickness_upper", "thickness_lower") for i in range(5)}
+    found = rows(change, STRAIGHT)
+    alone = sum((value / SIZE[PATHS.index(path)] / NEAR) ** 2 for path, value in change.items())
+    assert np.sum(found**2) == pytest.approx(alone, rel=1e-9)
+    bent = rows(change | {"thickness_upper[2]": 0.0}, STRAIGHT)
+    assert np.sum(bent**2) > np.sum(found**2)
+
+
+def test_the_rows_of_a_changed_design_are_those_of_a_start_there_but_for_nearness():
+    change = {"thickness_upper[1]": 0.02, "thickness_lower[3]": -0.01}
+    moved = SECTION.changed({path: SECTION.parameters()[path] + value for path, value in change.items()})
+    # the first rows hold the start near; the others are of the values themselves
+    np.testing.assert_allclose(rows(change)[len(PATHS) :], rows({}, moved)[len(PATHS) :], atol=1e-12)
+
+
+def test_held_parameters_take_part_with_their_values():
+    size = np.array([0.02])
+    prior = prior_of(SECTION, ("thickness_upper[1]",), size)
+    above, below = SECTION.thickness_upper, SECTION.thickness_lower
+    bends = [above[i] - 2.0 * above[i + 1] + above[i + 2] for i in (0, 1)]
+    expected = [*(np.array(bends) / SMOOTH / size), (above[1] - below[1]) / CENTRED / size[0]]
+    np.testing.assert_allclose(-prior.aim[1:], expected, rtol=1e-12)
+    np.testing.assert_allclose(prior.matrix[1:, 0], [-2.0 / SMOOTH, 1.0 / SMOOTH, 1.0 / CENTRED], rtol=1e-12)
+
+
+@pytest.mark.parametrize("name", ["turbine-section", "compressor-stator", "radial-turbine", "vki-ls89"])
+def test_scales_are_positive_and_every_value_lies_within_them(name):
+    blade = design(name)
+    paths = tuple(blade.parameters())
+    scales = scales_of(blade, paths, float(blade.build().chord))
+    values = np.array([blade.parameters()[path] for path in paths])
+    assert np.all(scales.size > 0.0)
+    assert np.all((scales.low < values) & (values < scales.high))
+
+
+def test_scales_are_the_same_lengths_in_any_unit():
+    lengths = [path for path in PATHS if path in ("axial_chord", "leading_edge_x", "leading_edge_y")]
+    changes = {name: 1e-3 * getattr(SECTION, name) for name in ("pitch", "span", *lengths) if getattr(SECTION, name)}
+    in_metres = replace(SECTION, length_unit="m", **changes)
+    there, here = (scales_of(each, PATHS, 0.035).size for each in (SECTION, in_metres))
+    factor = np.where([path in lengths for path in PATHS], UNITS["mm"], 1.0)
+    np.testing.assert_allclose(here, there * factor, rtol=1e-12)
+
+
+def test_bounds_narrow_those_of_the_family():
+    scales = scales_of(SECTION, PATHS, 0.035, {"metal_angle_*": (-70.0, 300.0), "stagger": (-32.0, -30.0)})
+    own = scales_of(SECTION, PATHS, 0.035)
+    at = [PATHS.index(path) for path in ("metal_angle_in", "metal_angle_out", "stagger", "tangent_in")]
+    assert scales.low[at].tolist() == [-70.0, -70.0, -32.0, own.low[at[3]]]
+    assert scales.high[at].tolist() == [own.high[at[0]], own.high[at[1]], -30.0, own.high[at[3]]]
+
+
+def test_bounds_the_wrong_way_round_are_refused():
+    with pytest.raises(bw.FitError, match="the first must be below the second"):
+        scales_of(SECTION, PATHS, 0.035, {"stagger": (3.0, 1.0)})
+
+
+def test_bounds_of_a_parameter_that_is_none_are_refused():
+    with pytest.raises(bw.BladewrightError, match="'staggr'") as caught:
+        scales_of(SECTION, PATHS, 0.035, {"staggr": (1.0, 3.0)})
+    assert "\n" not in str(caught.value)

@@ -1,0 +1,126 @@
+"""What a cloud says of a blade's ends and of its edges."""
+
+from functools import cache
+
+import numpy as np
+import pytest
+
+from bladewright.blade.exact import moved
+from bladewright.files.examples import example_text
+from bladewright.files.reading import design_from, parsed
+from bladewright.fitting.feet import feet, placed
+from bladewright.fitting.model import model_of
+from bladewright.fitting.reach import reach_of
+from bladewright.fitting.walls import ends_of
+
+BLADE = "centrifugal-impeller"
+
+
+@cache
+def shape(name):
+    design = design_from(parsed(example_text(name), name), name)
+    model = model_of(design)
+    return design, model, model.shape(design)
+
+
+def sides_cloud(name, count, rows=0):
+    """Points of both sides, and rows at both ends."""
+    random = np.random.default_rng(5)
+    _, _, found = shape(name)
+    u, v = random.random(count), random.uniform(0.06, 0.94, count)
+    parts = [side(u, v) for side in found.sides]
+    along = np.linspace(0.05, 0.95, rows)
+    return np.concatenate(parts + [side(along, np.full(rows, end)) for side in found.sides for end in (0.0, 1.0)])
+
+
+def ends(name, points):
+    _, _, found = shape(name)
+    on = feet(points, found.sides)
+    return ends_of(points, on, found, np.ones(len(points), dtype=bool)), on
+
+
+def test_rows_at_both_ends_lie_on_the_walls():
+    points = sides_cloud(BLADE, 200, rows=20)
+    found, _ = ends(BLADE, points)
+    _, model, there = shape(BLADE)
+    assert set(found.walls) == {"hub", "shroud"}
+    for wall in found.walls.values():
+        assert len(wall.places) >= 40
+        # native sides follow the exact blade within 1e-6 of the chord
+        assert np.max(np.abs(wall.distances(there.exact))) < 3e-6 * model.chord
+        assert wall.spread < 1e-6 * model.chord
+    assert not found.covered.any()
+
+
+def test_without_points_at_the_ends_there_are_no_walls():
+    found, _ = ends(BLADE, sides_cloud(BLADE, 200))
+    assert not found.walls
+
+
+def test_points_past_an_end_are_near_it():
+    points = sides_cloud(BLADE, 100, rows=10)
+    found, on = ends(BLADE, points)
+    assert set(range(200, len(points))) <= set(found.near.tolist())
+    assert np.all((on.v[found.near] < 0.05) | (on.v[found.near] > 0.95))
+
+
+def test_points_of_an_end_face_are_told_from_those_of_the_sides():
+    _, _, there = shape(BLADE)
+    u = np.linspace(0.2, 0.8, 25)
+    upper, lower = (side(u, np.ones(25)) for side in there.sides)
+    theta = [np.arctan2(each[:, 1], each[:, 2]) for each in (upper, lower)]
+    radius = [np.hypot(each[:, 1], each[:, 2]) for each in (upper, lower)]
+    middle, r = (theta[0] + theta[1]) / 2.0, (radius[0] + radius[1]) / 2.0
+    face = np.stack([(upper[:, 0] + lower[:, 0]) / 2.0, r * np.sin(middle), r * np.cos(middle)], axis=-1)
+    points = np.concatenate([sides_cloud(BLADE, 300), face])
+    found, _ = ends(BLADE, points)
+    assert found.covered[600:].all()
+    assert not found.covered[:600].any()
+    assert len(found.walls["shroud"].places) == 25
+
+
+@pytest.mark.parametrize("end", ["hub", "shroud"])
+def test_places_on_a_wall_move_as_central_differences_say(end):
+    design, _, there = shape(BLADE)
+    found, _ = ends(BLADE, sides_cloud(BLADE, 50, rows=20))
+    wall = found.walls[end]
+    t, _, _ = wall.misses(there.exact)
+    paths = [path for path in design.parameters() if path.startswith("channel.")] + ["stagger[0]"]
+    rates, values = wall.rates(there, t, paths), design.parameters()
+    for i, path in enumerate(paths):
+        step = 1e-4
+        ahead, behind = (
+            moved(there.exact, design.changed(path, values[path] + sign * step)).channel.line(end).values(t)
+            for sign in (1.0, -1.0)
+        )
+        # metres a millimetre: rounding of metres over a step
+        np.testing.assert_allclose(rates[:, i], (ahead - behind) / (2.0 * step), atol=1e-10)
+    assert not rates[:, -1].any()
+    assert np.any(rates)
+
+
+def test_edges_within_their_cloud_stand_out_no_further_than_allowed():
+    for name in (BLADE, "turbine-section"):
+        _, model, there = shape(name)
+        u = (1.0 - np.cos(np.pi * np.linspace(0.0, 1.0, 60))) / 2.0
+        grid = [np.repeat(u, 40), np.tile(np.linspace(0.0, 1.0, 40), 60)]
+        points = np.concatenate([side(u) if name == "turbine-section" else side(*grid) for side in there.sides])
+        reach = reach_of(points, there.sides, np.ones(len(points), dtype=bool))
+        assert np.all(reach.excess(reach.edges(there.sides)) <= 0.0)
+        assert np.all(reach.allowed < 0.1 * model.chord)
+        assert set(reach.u) == {0.0, 1.0}
+
+
+@pytest.mark.parametrize(("edge", "path", "sign"), [(0, "leading_edge_x", -1.0), (1, "axial_chord", 1.0)])
+def test_an_edge_that_sticks_out_of_its_cloud_stands_out_by_that_much(edge, path, sign):
+    design, model, there = shape("turbine-section")
+    u = (1.0 - np.cos(np.pi * np.linspace(0.0, 1.0, 100))) / 2.0
+    points = np.concatenate([side(u) for side in there.sides])
+    longer = model.shape(design.changed(path, getattr(design, path) + sign)).sides
+    reach = reach_of(points, longer, np.ones(len(points), dtype=bool))
+    excess = reach.excess(reach.edges(longer))
+    away = longer[0](np.array([float(edge)])) - there.sides[0](np.array([float(edge)]))
+    away = np.sqrt(np.sum(away**2))
+    assert 0.3 * away < excess[edge] <= away
+    again = placed(reach.points, longer, np.zeros(2, dtype=int), reach.u, reach.v)
+    assert np.sum(again.miss[edge] * again.normals[edge]) < 0.0
