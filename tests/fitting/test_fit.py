@@ -1,0 +1,242 @@
+"""From clouds to designs: what is found again, what is said of it, and what is refused."""
+
+from dataclasses import replace
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import bladewright as bw
+from bladewright.errors import FitError
+from bladewright.files.clouds import read_cloud
+from bladewright.files.examples import example_text
+from bladewright.files.reading import design_from, parsed
+from bladewright.fitting import search
+from bladewright.fitting.feet import feet
+from bladewright.fitting.fit import fit
+from bladewright.fitting.reshaping import reshaped
+from bladewright.fitting.structure import Structure
+
+CLOUDS = Path(__file__).parents[3] / "shared" / "data" / "clouds"
+NOISE = 2e-5
+"""[m]"""
+BASE = design_from(parsed(example_text("turbine-section"), "vane"), "vane")
+STATOR = design_from(parsed(example_text("compressor-stator"), "stator"), "stator")
+
+
+@cache
+def truth(seed):
+    """A design drawn about the example."""
+    random, names = np.random.default_rng(seed), ("thickness_upper", "thickness_lower")
+    changes = {
+        "stagger": BASE.stagger + random.uniform(-8.0, 8.0),
+        "metal_angle_in": BASE.metal_angle_in + random.uniform(-10.0, 10.0),
+        "metal_angle_out": BASE.metal_angle_out + random.uniform(-4.0, 4.0),
+        "leading_edge_radius": BASE.leading_edge_radius * random.uniform(0.8, 1.2),
+        "leading_edge_x": random.normal(),
+        "leading_edge_y": random.normal(),
+    }
+    changes |= {f"{n}[{i}]": v * random.uniform(0.9, 1.1) for n in names for i, v in enumerate(getattr(BASE, n))}
+    return BASE.changed(changes)
+
+
+def cloud(seed, count=1000, noise=0.0):
+    random, curves = np.random.default_rng(100 + seed), truth(seed).build().curves
+    points = np.concatenate([curves[side](random.random(count // 2)) for side in ("upper", "lower")])
+    return random.permutation(points + noise * random.normal(size=points.shape))
+
+
+def solid_cloud():
+    """Points of a blade in space."""
+    random, blade = np.random.default_rng(0), STATOR.build()
+    return np.concatenate([side(*random.random((2, 300))) for side in blade.sides])
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_a_section_whose_structure_is_given_is_found_again_within_a_billionth_of_the_chord(seed):
+    found = fit(cloud(seed, 1000), like=BASE)
+    assert found.passed
+    chord = float(found.built.chord)
+    assert found.maximum < 1e-9 * chord
+    u = np.linspace(0.0, 1.0, 200)
+    for side in ("upper", "lower"):
+        # the same curve, not only near the points; the parameters are the same where the structure is
+        miss = found.built.curves[side](u) - truth(seed).build().curves[side](u)
+        assert np.max(np.abs(miss)) < 1e-8 * chord
+    assert not found.outliers.size
+
+
+def test_intervals_of_noisy_clouds_hold_the_truth():
+    held = []
+    for seed in range(3):
+        found = fit(cloud(seed, 600, NOISE), like=BASE)
+        assert found.passed
+        # 600 points less 20 parameters: a standard error of 3 %
+        assert found.deviation.rms == pytest.approx(NOISE, rel=0.09)
+        assert found.noise == pytest.approx(NOISE, rel=0.15)
+        values = truth(seed).parameters()
+        held += [each.low <= values[each.path] <= each.high for each in found.estimates if each.identified]
+        assert found.covariance.shape == (len(found.estimates),) * 2
+    assert len(held) > 45
+    # of some 55 that depend on each other
+    assert np.mean(held) > 0.88
+
+
+def test_outliers_are_listed_and_do_not_spoil():
+    points, random = cloud(1, 1000, NOISE), np.random.default_rng(0)
+    chord = float(truth(1).build().chord)
+    low, size = points.min(axis=0), np.ptp(points, axis=0)
+    wrong = np.sort(random.choice(1000, 50, replace=False))
+    points[wrong] = low + size * (1.6 * random.random((50, 2)) - 0.3)
+    clear = distances(truth(1), points) > 0.04 * chord
+    found = fit(points, like=BASE)
+    assert set(wrong[clear[wrong]]) <= set(found.outliers) <= set(wrong)
+    good = np.delete(np.arange(1000), wrong)
+    assert np.sqrt(np.mean(found.distances[good] ** 2)) == pytest.approx(NOISE, rel=0.1)
+    assert np.max(distances(truth(1), found.built.curves["upper"](np.linspace(0.0, 1.0, 50)))) < 1e-3 * chord
+
+
+def distances(design, points):
+    curves = design.build().curves
+    return feet(points, (curves["upper"], curves["lower"])).distances
+
+
+def test_a_wider_tolerance_is_reached_with_fewer_parameters():
+    points, start = cloud(2, 400), reshaped(truth(2), Structure(chordwise=(3, 3)))
+    wide, tight = (fit(points, start, tolerance=tolerance) for tolerance in (4e-4, 2e-5))
+    for found, tolerance in ((wide, 4e-4), (tight, 2e-5)):
+        assert found.passed
+        assert found.tolerance == tolerance
+        assert found.maximum <= tolerance
+    assert len(wide.estimates) < len(tight.estimates) < 40
+
+
+def test_a_tolerance_below_the_noise_is_not_called_reached_and_the_noise_is_said():
+    found = fit(cloud(0, 400, 10.0 * NOISE), tolerance=NOISE)
+    assert not found.passed
+    assert any("noise" in each for each in found.notes)
+    assert len(found.estimates) < 40
+
+
+def test_as_many_parameters_as_are_asked_for():
+    found = fit(cloud(0, 400), parameters=22)
+    assert len(found.estimates) == 22
+    assert found.maximum < 1e-3 * float(found.built.chord)
+
+
+def test_start_fixed_and_bounds_are_kept():
+    points, start = cloud(0, 400), truth(0).changed({"stagger": BASE.stagger, "tangent_in": 0.45})
+    found = fit(points, start, fixed=["tangent_in"], bounds={"leading_edge_radius": (0.03, 0.04)})
+    assert found.design.tangent_in == 0.45
+    assert len(found.design.thickness_upper) == len(start.thickness_upper)
+    assert "tangent_in" not in [each.path for each in found.estimates]
+    assert 0.03 <= found.design.leading_edge_radius <= 0.04
+    assert found.at_bounds == ("leading_edge_radius",)
+    values = fit(points, like=BASE, fixed={"stagger": truth(0).stagger})
+    assert values.design.stagger == truth(0).stagger
+    assert values.maximum < 1e-9 * float(values.built.chord)
+    free = fit(points, start, free="stagger")
+    assert [each.path for each in free.estimates] == ["stagger"]
+    assert free.design == start.changed("stagger", free.design.stagger)
+
+
+@pytest.mark.xfail(
+    reason="where the start matches, no round is done, and bounds that it breaks are not kept", strict=True
+)
+def test_bounds_are_kept_though_the_start_matches_beyond_them():
+    found = fit(cloud(0, 300), truth(0), bounds={"stagger": (-20.0, 5.0)})
+    assert -20.0 <= found.design.stagger <= 5.0
+
+
+@pytest.mark.parametrize("kept", [0, 1])
+def test_weights_decide_which_points_count(kept):
+    points = cloud(0, 400)
+    copies = [points, points + np.array([0.0, 2e-4])]
+    weights = np.full((2, 400), 1e-6)
+    weights[kept] = 1.0
+    found = fit(np.concatenate(copies), truth(0), weights=weights.ravel(), fixed="thickness_*")
+    misses = [np.mean(found.distances[:400]), np.mean(found.distances[400:])]
+    # halfway without weights
+    assert misses[kept] < 0.2 * misses[1 - kept]
+
+
+def test_an_interrupted_search_hands_back_the_best_design_so_far(monkeypatch):
+    plain, calls = search.feet, []
+
+    def interrupting(*given):
+        calls.append(1)
+        if len(calls) == 9:
+            raise KeyboardInterrupt
+        return plain(*given)
+
+    monkeypatch.setattr("bladewright.fitting.problem.feet", interrupting)
+    found = fit(cloud(0, 400), like=BASE)
+    assert len(calls) >= 9
+    assert found.interrupted
+    assert not found.passed
+    assert any("interrupted" in each for each in found.failures)
+    # nearer than the first design, and built
+    assert found.mean < 0.01 * float(found.built.chord)
+
+
+def test_progress_is_told():
+    told = []
+    fit(cloud(0, 300), truth(0), free="stagger", progress=told.append)
+    assert told[0] == "first design"
+    assert told[-1] == "measuring"
+
+
+@pytest.mark.parametrize(
+    ("points", "asked", "words"),
+    [
+        (np.ones(9), {}, "shape"),
+        (np.ones((9, 4)), {}, "shape"),
+        (np.where(np.arange(400)[:, None] == 7, np.nan, cloud(0, 400)), {}, "point 7"),
+        (cloud(0, 400)[:50], {}, "at least 100"),
+        (cloud(0, 400), {"tolerance": 1e-5, "parameters": 22}, "both given"),
+        (cloud(0, 400), {"tolerance": -1.0}, "tolerance is -1.0"),
+        (cloud(0, 400), {"tolerance": np.nan}, "tolerance is nan"),
+        (cloud(0, 400), {"parameters": 3}, "parameters is 3"),
+        (cloud(0, 400), {"parameters": True}, "parameters is True"),
+        (cloud(0, 400), {"family": "spline"}, "'spline'"),
+        (cloud(0, 400), {"start": STATOR}, "UnifiedSection"),
+        (cloud(0, 400), {"like": STATOR}, "UnifiedSection"),
+        (solid_cloud(), {"family": "unified-section"}, "x and y alone"),
+        (cloud(0, 400), {"weights": np.ones(3)}, "weights"),
+        (cloud(0, 400), {"weights": -np.ones(400)}, "0 or more"),
+        (cloud(0, 400), {"fixed": "stagger"}, "give a start"),
+        (cloud(0, 400), {"start": BASE, "bounds": {"stagger": (3.0, 1.0)}}, "below the second"),
+        pytest.param(
+            cloud(0, 400),
+            {"start": BASE, "bounds": {"staggr": (1.0, 3.0)}},
+            "'staggr'",
+            marks=pytest.mark.xfail(reason="a DesignError, where a FitError is promised", strict=True),
+        ),
+        (cloud(0, 400), {"start": BASE, "free": "staggr"}, "'staggr'"),
+    ],
+)
+def test_clouds_and_calls_that_make_no_sense_are_refused_in_one_paragraph(points, asked, words):
+    with pytest.raises(FitError, match=words) as caught:
+        fit(points, **asked)
+    assert "\n" not in str(caught.value)
+
+
+def test_a_cloud_in_the_wrong_unit_is_said():
+    found = fit(1e3 * cloud(0, 300), replace(truth(0), length_unit="m"), free="stagger")
+    assert any("unit" in each for each in found.notes)
+
+
+def measured(name):
+    path = CLOUDS / f"{name}.txt"
+    if not path.is_file():
+        pytest.skip(f"{path} is not there: the clouds are reference data outside the project")
+    return path
+
+
+def test_a_measured_vane_is_matched_with_22_parameters():
+    found = fit(read_cloud(measured("LS89_2D")).points, parameters=22)
+    assert len(found.estimates) == 22
+    # what was asked for; ParaBlade's own match with as many misses by 0.0398 mm
+    assert found.mean < 2.7e-5
+    assert isinstance(found.design, bw.UnifiedSection)
