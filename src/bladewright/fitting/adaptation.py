@@ -30,6 +30,8 @@ FEW, MANY = {2: 2500, 3: 1000}, 12_000
 """points of a quick, by dimension, and of a thorough search"""
 NOISY = 0.15
 """part of the misfit that neighbours share below which it is noise"""
+WEAK = 0.1
+"""strength of the prior where a match is only made better, of the usual"""
 WORTHWHILE = 0.02
 """part of the sum of squares that growth must be foreseen to gain"""
 EMPHASIS = (0.1, 10.0)
@@ -75,7 +77,7 @@ def adapted(task: Task, first: Design, aim: Aim, *, base: Structure | None, gues
         found = searched(few, first, noise=noise, rounds=ROUNDS if base is None else 2 * QUICK)
         if base is not None and not found.interrupted:
             found = _leaner(few, found, base)
-        return (found if found.interrupted else searched(many, found.design)), ""
+        return (found if found.interrupted else _told_by_points(many, searched(many, found.design))), ""
     found = searched(few, first, noise=noise, rounds=2 * QUICK)
     if base is not None and not found.interrupted and _roomy(found, aim):
         found = _leaner(few, found, base)
@@ -88,6 +90,14 @@ def adapted(task: Task, first: Design, aim: Aim, *, base: Structure | None, gues
     if aim.tolerance is not None and not reason:
         found = _everywhere(many, found, aim, aim.tolerance)
     return found, reason
+
+
+def _told_by_points(task: Task, found: Found) -> Found:
+    """A match whose misfit is noise, with a prior so weak that it does not shift what the points determine."""
+    if found.interrupted or found.scatter.shared > NOISY:
+        return found
+    weak = searched(replace(task, smooth=WEAK), found.design, rounds=2)
+    return replace(weak, evaluations=found.evaluations + weak.evaluations)
 
 
 def _enough(task: Task, found: Found, aim: Aim) -> tuple[Found, str]:

@@ -156,7 +156,7 @@ def _prepared(task: Task, start: Design, design: Design, noise: float | None, be
         paths=paths,
         scales=scales,
         prior=replace(prior, matrix=task.smooth * prior.matrix, aim=task.smooth * prior.aim),
-        alone=scatter.alone(len(paths)),
+        alone=scatter.alone(len(paths)) / task.smooth**2,
         hint=on,
         margin=SLACK[points.shape[1]] * task.slack,
     )
