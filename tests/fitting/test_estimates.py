@@ -10,7 +10,6 @@ from bladewright.fitting.estimates import certainty_of
 
 POINTS, COUNT = 400, 5
 SIZE = np.array([5.0, 0.2, 1.0, 0.01, 3.0])
-SPILT = "a direction without effect spills by its rounding over parameters that are determined"
 
 
 def found(slopes, *, shared=0.0, alone=1.0, low=-np.inf, high=np.inf, seed=1, deviation=1e-3):
@@ -64,7 +63,6 @@ def test_intervals_hold_the_truth_as_often_as_they_say():
     assert np.mean(held) == pytest.approx(0.95, abs=3.0 * np.sqrt(0.95 * 0.05 / 1500))
 
 
-@pytest.mark.xfail(reason=SPILT, strict=True)
 def test_what_no_residual_depends_on_is_not_identified():
     slopes = slopes_of(0)
     slopes[:, 2] = 0.0
@@ -76,7 +74,6 @@ def test_what_no_residual_depends_on_is_not_identified():
     assert np.isfinite(certainty.covariance).all()
 
 
-@pytest.mark.xfail(reason=SPILT, strict=True)
 def test_parameters_that_do_the_same_are_not_identified():
     slopes = slopes_of(0)
     slopes[:, 3] = slopes[:, 1] * SIZE[1] / SIZE[3]

@@ -14,6 +14,8 @@ DETERMINED = 0.3
 """standard deviation below which a parameter is determined, of its own scale"""
 SHARED = 0.2
 """part of the misfit that neighbours share above which points do not count as independent"""
+SPILT = 1e-8
+"""part of a parameter in a direction that nothing depends on below which it is rounding"""
 AT_BOUND = 1e-3
 """how near a parameter is to a bound that it lies on, of its scale"""
 
@@ -49,8 +51,10 @@ def certainty_of(found: Found) -> Certainty:
     known = values > 1e-13 * largest
     spread = np.where(known, np.sqrt(variance) / np.where(known, values, 1.0), np.inf)
     rank = int(np.count_nonzero(spread < 1.0))
-    deviations = np.sqrt(np.sum((turns.T * np.where(np.isfinite(spread), spread, 1e150)) ** 2, axis=1))
-    kept = turns[np.isfinite(spread)].T * spread[np.isfinite(spread)]
+    finite = np.isfinite(spread)
+    deviations = np.sqrt(np.sum((turns[finite].T * spread[finite]) ** 2, axis=1))
+    deviations[np.any(np.abs(turns[~finite]) > SPILT, axis=0)] = np.inf
+    kept = turns[finite].T * spread[finite]
     covariance = (kept @ kept.T) * np.outer(size, size)
     factor = float(student.ppf(0.5 + LEVEL / 2.0, left))
     values_now = problem.values_of(found.design)
@@ -58,7 +62,7 @@ def certainty_of(found: Found) -> Certainty:
     estimates = []
     for i, path in enumerate(problem.paths):
         determined = bool(deviations[i] < DETERMINED)
-        deviation = float(deviations[i] * size[i]) if deviations[i] < 1e100 else np.inf
+        deviation = float(deviations[i] * size[i])
         value = float(values_now[i])
         near = AT_BOUND * size[i]
         estimates.append(

@@ -8,7 +8,7 @@ import numpy as np
 
 from bladewright.derivatives.patterns import matching
 from bladewright.designs import Design
-from bladewright.errors import FitError
+from bladewright.errors import DesignError, FitError
 from bladewright.nurbs.basis import Reals
 from bladewright.section.checks import UNITS
 
@@ -39,7 +39,11 @@ def scales_of(
     for pattern, (least, most) in (bounds or {}).items():
         if not least < most:
             raise FitError(f"the bounds of {pattern} are {least:g} to {most:g}: the first must be below the second")
-        for path in matching(pattern, paths):
+        try:
+            matched = matching(pattern, paths)
+        except DesignError as error:
+            raise FitError(f"bounds: {error}") from error
+        for path in matched:
             i = list(paths).index(path)
             low[i], high[i] = max(low[i], least), min(high[i], most)
     return Scales(size=size, low=low, high=high)

@@ -112,7 +112,7 @@ def searched(task: Task, start: Design, *, rounds: int = ROUNDS, noise: float | 
     found, idle = _prepared(task, start, start, noise), 0
     for number in range(rounds):
         before = found.misfit
-        if before < EXACT or found.interrupted:
+        if (number and before < EXACT) or found.interrupted:
             break
         found = _round(found if number == 0 else _prepared(task, start, found.design, noise, found))
         task.told(f"{len(found.problem.paths)} parameters, {1e3 * found.rms * found.model.chord:.3g} mm rms")
