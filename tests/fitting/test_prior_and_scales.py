@@ -9,7 +9,7 @@ import bladewright as bw
 from bladewright.files.examples import example_text
 from bladewright.files.reading import design_from, parsed
 from bladewright.fitting.prior import CENTRED, NEAR, SMOOTH, prior_of
-from bladewright.fitting.scales import scales_of
+from bladewright.fitting.scales import check_bounds, scales_of
 from bladewright.section.checks import UNITS
 
 
@@ -102,12 +102,24 @@ def test_bounds_narrow_those_of_the_family():
     assert scales.high[at].tolist() == [own.high[at[0]], own.high[at[1]], -30.0, own.high[at[3]]]
 
 
-def test_bounds_the_wrong_way_round_are_refused():
-    with pytest.raises(bw.FitError, match="the first must be below the second"):
-        scales_of(SECTION, PATHS, 0.035, {"stagger": (3.0, 1.0)})
+def test_bounds_of_what_a_structure_lacks_are_passed_over():
+    scales, own = (
+        scales_of(SECTION, PATHS, 0.035, {"thickness_upper[40]": (0.1, 0.2)}),
+        scales_of(SECTION, PATHS, 0.035),
+    )
+    assert scales.low.tolist() == own.low.tolist()
+    assert scales.high.tolist() == own.high.tolist()
 
 
-def test_bounds_of_a_parameter_that_is_none_are_refused():
-    with pytest.raises(bw.BladewrightError, match="'staggr'") as caught:
-        scales_of(SECTION, PATHS, 0.035, {"staggr": (1.0, 3.0)})
+@pytest.mark.parametrize(
+    ("bounds", "words"),
+    [
+        ({"stagger": (3.0, 1.0)}, "the first must be below the second"),
+        ({"staggr": (1.0, 3.0)}, "'staggr'"),
+        ({"stagger": (100.0, 120.0)}, "the family allows -89 to 89"),
+    ],
+)
+def test_bounds_that_make_no_sense_are_refused(bounds, words):
+    with pytest.raises(bw.FitError, match=words) as caught:
+        check_bounds(SECTION, PATHS, bounds)
     assert "\n" not in str(caught.value)

@@ -23,11 +23,12 @@ from bladewright.fitting.judging import judged
 from bladewright.fitting.lean import lean, rich
 from bladewright.fitting.reshaping import reshaped
 from bladewright.fitting.result import Fit
+from bladewright.fitting.scales import check_bounds
 from bladewright.fitting.search import Found, Task, searched
 from bladewright.fitting.structure import Structure, structure_of
 from bladewright.fitting.verdict import failures_of, notes_of
 from bladewright.nurbs.basis import Reals
-from bladewright.section.checks import choice
+from bladewright.section.checks import UNITS, choice
 from bladewright.section.unified import UnifiedSection
 
 FAMILIES = ("unified", "unified-section")
@@ -98,7 +99,8 @@ def fit(
             return first_section(some, name=name, length_unit=length_unit, **lengths)
         given: dict[str, Any] = {"blade_count": blade_count, "pitch": pitch, "arrangement": arrangement}
         if isinstance(like, UnifiedBlade):
-            given = {"arrangement": like.arrangement, "blade_count": like.blade_count} | {
+            own = None if like.pitch is None else like.pitch * UNITS[like.length_unit]
+            given = {"arrangement": like.arrangement, "blade_count": like.blade_count, "pitch": own} | {
                 key: value for key, value in given.items() if value is not None
             }
         return first_blade(some, structure=structure, name=name, length_unit=length_unit, **given)
@@ -110,6 +112,7 @@ def fit(
     else:
         first = guess(rich(parameters) if solid else wanted)
     first = freedom.applied(first)
+    check_bounds(first, freedom(first), task.bounds)
     structured = parameters is None and (start is not None or like is not None)
     aim = Aim(tolerance=tolerance, parameters=parameters, structured=structured)
     base = None
@@ -166,16 +169,14 @@ def _section_of(structure: Structure) -> dict[str, Any]:
 
 def _built(task: Task, found: Found) -> tuple[Found, Any]:
     """What the found design builds; where it is refused, of a design that keeps further from what is refused."""
-    for slack in (1.0, 30.0, 1000.0):
+    refusal = ""
+    for slack in (0.0, 1.0, 30.0, 1000.0):
+        if slack:
+            found = searched(replace(task, slack=slack), found.design, rounds=2)
         try:
             return found, found.design.build()
         except DesignError as error:
             refusal = str(error)
-        found = searched(replace(task, slack=slack), found.design, rounds=2)
-    try:
-        return found, found.design.build()
-    except DesignError as error:
-        refusal = str(error)
     raise FitError(
         f"the nearest design cannot be built ({refusal}); give a start design, or other numbers of parameters"
     )
@@ -207,7 +208,7 @@ def _reported(
         extrema=extrema_of(built),
         tolerance=aim.tolerance,
         failures=failures_of(distances, inliers, judgement.regions, found, aim),
-        notes=notes_of(notes, found, certainty, judgement.scatter),
+        notes=notes_of(notes, certainty),
         evaluations=found.evaluations,
         motion=motion,
         interrupted=found.interrupted,

@@ -37,6 +37,14 @@ def scales_of(
     kinds = [_kind(design, path, chord) for path in paths]
     size, low, high = (np.array([getattr(kind, name) for kind in kinds]) for name in ("size", "low", "high"))
     for pattern, (least, most) in (bounds or {}).items():
+        for i in _matched(pattern, paths):
+            low[i], high[i] = max(low[i], least), min(high[i], most)
+    return Scales(size=size, low=low, high=high)
+
+
+def check_bounds(design: Design, paths: Sequence[str], bounds: Mapping[str, tuple[float, float]]) -> None:
+    """Refuse bounds of no parameter (k,) that is free, in the wrong order, or outside what the family allows."""
+    for pattern, (least, most) in bounds.items():
         if not least < most:
             raise FitError(f"the bounds of {pattern} are {least:g} to {most:g}: the first must be below the second")
         try:
@@ -44,9 +52,21 @@ def scales_of(
         except DesignError as error:
             raise FitError(f"bounds: {error}") from error
         for path in matched:
-            i = list(paths).index(path)
-            low[i], high[i] = max(low[i], least), min(high[i], most)
-    return Scales(size=size, low=low, high=high)
+            kind = _kind(design, path, 1.0)
+            if not max(kind.low, least) < min(kind.high, most):
+                raise FitError(
+                    f"the bounds of {path} are {least:g} to {most:g}, and the family allows {kind.low:g} to "
+                    f"{kind.high:g}: let them overlap"
+                )
+
+
+def _matched(pattern: str, paths: Sequence[str]) -> list[int]:
+    """Places of the paths that a pattern matches: none where a structure has no such parameter."""
+    try:
+        found = set(matching(pattern, paths))
+    except DesignError:
+        return []
+    return [place for place, path in enumerate(paths) if path in found]
 
 
 class _Kind(NamedTuple):

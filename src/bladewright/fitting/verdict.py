@@ -5,7 +5,6 @@ from numpy.typing import NDArray
 
 from bladewright.fitting.adaptation import Aim
 from bladewright.fitting.estimates import Certainty
-from bladewright.fitting.scatter import Scatter
 from bladewright.fitting.search import Found
 from bladewright.nurbs.basis import Reals
 
@@ -55,7 +54,7 @@ def failures_of(
     return tuple(failures)
 
 
-def notes_of(notes: tuple[str, ...], found: Found, certainty: Certainty, scatter: Scatter) -> tuple[str, ...]:
+def notes_of(notes: tuple[str, ...], certainty: Certainty) -> tuple[str, ...]:
     """What else there is to know, each a sentence."""
     said = list(notes)
     unknown = [each.path for each in certainty.estimates if not each.identified]
@@ -65,5 +64,4 @@ def notes_of(notes: tuple[str, ...], found: Found, certainty: Certainty, scatter
     bound = [each.path for each in certainty.estimates if each.at_bound]
     if bound:
         said.append(f"on a bound: {', '.join(bound[:SHOWN])}{'...' if len(bound) > SHOWN else ''}")
-    del found, scatter
     return tuple(said)
