@@ -8,9 +8,12 @@ from numpy.typing import NDArray
 from bladewright.errors import DesignError
 from bladewright.numerics.elementary import joined
 from bladewright.nurbs.basis import Reals
+from bladewright.section.outline import Outline
 
 PLACES = (1.0 - np.cos(np.pi * np.linspace(0.0, 1.0, 49))) / 2.0
 """places along the sides at which outlines are judged, dense at the edges"""
+FINE = (1.0 - np.cos(np.pi * np.linspace(0.0, 1.0, 201))) / 2.0
+"""places at which the outlines of families are judged: where an offset side folds back, it does so in a small loop"""
 
 
 def outlines_of(upper: Reals, lower: Reals) -> Reals:
@@ -29,6 +32,45 @@ def check_outlines(outlines: Reals, where: Sequence[str]) -> None:
             "section: raise the thickness there, lower an edge radius that is larger than the thickness beside it, or "
             "lower the turning of the camber"
         )
+
+
+def closed_outlines(outline: Outline) -> Reals:
+    """Closed real outlines (m, n, 2) of sections at `FINE`; both points of a blunt trailing edge, of a leading as well.
+
+    From the upper side's leading edge over the trailing edge to the lower side's; what is one point occurs once.
+    """
+    upper, lower = (np.real(side).reshape(-1, *side.shape[-2:]) for side in outline.points(FINE))
+    upper, lower = np.broadcast_arrays(upper, lower)
+    back = lower[:, ::-1]
+    back = back[:, 1:] if outline.trailing_edge.kind != "blunt" else back
+    back = back[:, :-1] if outline.leading_edge.kind != "blunt" else back
+    return joined([upper, back], axis=-2)
+
+
+def check_outline(outline: Outline, where: Sequence[str]) -> None:
+    """Refuse sections (m,) of a family that cross themselves or fold back; `where` (m,) each is, in words."""
+    outlines = closed_outlines(outline)
+    for kind, found in (("crosses itself", self_crossings(outlines)), ("folds back on itself", _folding(outlines))):
+        if found is None:
+            continue
+        section, segment = found
+        upper = segment < len(FINE)
+        at = FINE[segment] if upper else FINE[max(outlines.shape[1] - segment, 0)]
+        raise DesignError(
+            f"the section{where[section]} {kind} on its {'upper' if upper else 'lower'} side near s = {at:.3f} (0 is "
+            "the leading, 1 the trailing edge): lower the thickness there, lower the curvature of the camber line "
+            "there, or lower an edge radius that is larger than the thickness beside it"
+        )
+
+
+def _folding(outlines: Reals) -> tuple[int, int] | None:
+    """Outline and point of the first place where one turns by more than a right angle, edges apart."""
+    ahead = np.roll(outlines, -1, axis=1) - outlines
+    back = np.sum(ahead * np.roll(ahead, 1, axis=1), axis=-1) < 0.0
+    edges = [0, len(FINE) - 1, len(FINE) % outlines.shape[1], -1]
+    back[:, edges] = False
+    found = np.argwhere(back)
+    return (int(found[0, 0]), int(found[0, 1])) if len(found) else None
 
 
 def self_crossings(outlines: Reals) -> tuple[int, int] | None:

@@ -3,6 +3,7 @@
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
@@ -32,7 +33,8 @@ class Section:
     plane: str
     """"x-y", "m-y" or "m'-theta" """
     curves: Mapping[str, Curve]
-    """`upper` and `lower`, u from leading to trailing edge"""
+    """`upper` and `lower`, u from leading to trailing edge; `leading_edge` or `trailing_edge` where one is blunt: its
+    face, u from the upper to the lower side"""
     camber: Curve
     stagger: float
     """[rad]"""
@@ -42,6 +44,12 @@ class Section:
     """[rad]"""
     scale: Callable[[Array], Array]
     """metres in a unit of the plane, by the abscissa"""
+    edges: tuple[str, str] = ("round", "round")
+    """how the sides meet at the leading and at the trailing edge: "round", "sharp" or "blunt" """
+    knots: Any = None
+    """what a build at held knots takes, where the family has such knots"""
+    meanline: Callable[[Array], tuple[Array, Array, Array]] | None = None
+    """v and its first two derivatives by u along the chord, in chords, where the section is laid on a meanline"""
 
     @cached_property
     def chord(self) -> Array:
@@ -58,8 +66,8 @@ class Section:
 
     @cached_property
     def perimeter(self) -> Array:
-        """Length () of both sides [m]."""
-        return self._length(self.curves["upper"]) + self._length(self.curves["lower"])
+        """Length () of all curves of the outline [m]."""
+        return np.asarray(sum(self._length(curve) for curve in self.curves.values()))
 
     @cached_property
     def area(self) -> Array:
@@ -78,8 +86,8 @@ class Section:
     def _moment(self, of_abscissa: int, of_ordinate: int) -> Array:
         """Integral over the section of powers of its coordinates, times the scale squared."""
         total: Array = np.zeros(())
-        for name, sign in (("upper", 1.0), ("lower", -1.0)):
-            curve = self.curves[name]
+        for name, curve in self.curves.items():
+            sign = 1.0 if name in ("upper", "trailing_edge") else -1.0
             u, weight = panels(breaks(curve.knots), PER_SPAN)
             point, slope = curve(u), curve.derivative(u)
             density = point[:, 0] ** of_abscissa * self.scale(point[:, 0]) ** 2
@@ -120,10 +128,12 @@ class Section:
 
     @cached_property
     def edge_radii(self) -> tuple[float, float]:
-        """Radii of curvature at the leading and the trailing edge, geodesic on a stream surface [m]."""
+        """Radii of curvature at the leading and the trailing edge, geodesic on a stream surface; 0 if not round [m]."""
         bend = self.curvature("upper", np.array([0.0, 1.0]))
-        radii = 1.0 / np.sqrt(bend * bend)
-        return float(radii[0]), float(radii[1])
+        radii = [
+            1.0 / float(np.sqrt(b * b)) if kind == "round" else 0.0 for b, kind in zip(bend, self.edges, strict=True)
+        ]
+        return radii[0], radii[1]
 
     def curvature(self, name: str, u: Reals) -> Reals:
         """Signed curvature (n,) of a side, geodesic on a stream surface [1/m]; positive where it turns to the left.

@@ -1,0 +1,62 @@
+"""Arc length of a plane line that is known by its points only."""
+
+from collections.abc import Callable, Sequence
+
+import numpy as np
+from numpy.polynomial import chebyshev
+
+from bladewright.numerics.elementary import length
+from bladewright.numerics.roots import bracketed_root
+from bladewright.nurbs.basis import Reals
+
+NODES = 40
+"""Chebyshev points on each piece"""
+
+
+class ArcLength:
+    """Arc length w in [0, 1], of the whole, of a real line that is smooth between the ends of its pieces.
+
+    Each piece is replaced by its Chebyshev interpolant (Trefethen 2013, chapter 3), whose speed is integrated exactly;
+    the speed may vanish at an end of the line.
+    """
+
+    def __init__(self, line: Callable[[Reals], Reals], ends: Sequence[float]) -> None:
+        """`line` returns points (k, 2) at parameters (k,) within the increasing `ends` of the pieces."""
+        self._ends = np.array(ends)
+        nodes = np.cos(np.pi * (np.arange(NODES) + 0.5) / NODES)[::-1]
+        matrix = chebyshev.chebvander(nodes, NODES - 1).T * (2.0 / NODES)
+        matrix[0] /= 2.0
+        half = np.diff(self._ends)[:, None] / 2.0
+        places = self._ends[:-1, None] + half * (1.0 + nodes)
+        points = line(places.ravel()).reshape(*places.shape, 2)
+        slopes = np.stack([chebyshev.chebval(nodes, chebyshev.chebder(matrix @ each)).T for each in points])
+        self._speed = np.stack([matrix @ each for each in length(slopes)])
+        total = np.array([chebyshev.chebval(1.0, chebyshev.chebint(each, lbnd=-1)) for each in self._speed])
+        self._whole = float(np.sum(total))
+        self._start = np.concatenate([[0.0], np.cumsum(total)[:-1]])
+
+    def lengths(self, s: Reals) -> Reals:
+        """Arc lengths (k,) at parameters s (k,)."""
+        return self._values(s)[0]
+
+    def places(self, w: Reals) -> Reals:
+        """Parameters (k,) at arc lengths w (k,) in [0, 1]."""
+        low, high = np.full(np.shape(w), self._ends[0]), np.full(np.shape(w), self._ends[-1])
+
+        def off(s: Reals) -> tuple[Reals, Reals]:
+            value, slope = self._values(s)
+            return value - w, slope
+
+        found = np.asarray(bracketed_root(off, low, high))
+        return np.where(w <= 0.0, low, np.where(w >= 1.0, high, found))
+
+    def _values(self, s: Reals) -> tuple[Reals, Reals]:
+        piece = np.clip(np.searchsorted(self._ends, s, side="right") - 1, 0, len(self._speed) - 1)
+        value, slope = np.empty(np.shape(s)), np.empty(np.shape(s))
+        for i, speed in enumerate(self._speed):
+            here = piece == i
+            half = (self._ends[i + 1] - self._ends[i]) / 2.0
+            x = (s[here] - self._ends[i]) / half - 1.0
+            value[here] = self._start[i] + chebyshev.chebval(x, chebyshev.chebint(speed, lbnd=-1))
+            slope[here] = chebyshev.chebval(x, speed) / half
+        return value / self._whole, slope / self._whole

@@ -1,0 +1,160 @@
+"""Sections of any family as native curves: B-splines that interpolate the exact outline, edges built in."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from bladewright.errors import DesignError
+from bladewright.numerics.elementary import Array, dot, frozen, joined
+from bladewright.numerics.solving import solved
+from bladewright.nurbs.basis import Reals, basis, breaks, greville
+from bladewright.nurbs.curve import Curve
+from bladewright.nurbs.joints import jointed
+from bladewright.section.arc import ArcLength
+from bladewright.section.outline import Outline, Start
+
+DEGREE = 5
+"""degree of the native curves"""
+MOST_POLES = 400
+"""poles of a curve above which a section is refused"""
+SHARES = (0.1, 0.3, 0.5, 0.7, 0.9)
+"""where in each knot span a curve is compared with the outline"""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class SectionKnots:
+    """What stays as it is while a section is differentiated: knots and interpolation sites of its curves."""
+
+    sides: Reals
+    """clamped knots over [0, 1] of both sides, by s"""
+    camber: Reals
+    """clamped knots over [0, 1] of the camber line, by its arc length"""
+    camber_places: Reals
+    """s (n,) of the camber's interpolation sites"""
+
+    def __post_init__(self) -> None:
+        for name in ("sides", "camber", "camber_places"):
+            object.__setattr__(self, name, frozen(getattr(self, name)))
+
+
+def native_curves(
+    outline: Outline, tolerance: float = 1e-10, knots: SectionKnots | None = None
+) -> tuple[Curve, Curve, Curve]:
+    """Upper side, lower side and camber line of one section, an outline of shape () or (1,), in chords.
+
+    The sides are by the outline's s, the camber line by its arc length; `knots` are those to hold, where None they are
+    refined until every point lies within `tolerance` [chords] of the outline's at the same parameter. Both sides have
+    the edges' point and two derivatives in their first three control points, so a round edge is G2. Raises DesignError
+    where the tolerance is not reached within 400 poles.
+    """
+    knots = knots_for(outline, tolerance) if knots is None else knots
+    upper, lower = _sides(outline, knots.sides)
+    camber = _camber(outline, knots.camber, knots.camber_places)
+    curves = [
+        Curve(control_points=points, knots=on, degree=DEGREE)
+        for points, on in ((upper, knots.sides), (lower, knots.sides), (camber, knots.camber))
+    ]
+    return curves[0], curves[1], curves[2]
+
+
+def knots_for(outline: Outline, tolerance: float) -> SectionKnots:
+    """Knots on which the native curves of one section reach the tolerance; raises as `native_curves` does."""
+    joints = [(joint.s, joint.derivatives) for joint in outline.joints]
+
+    def off_sides(knots: Reals, s: Reals) -> Reals:
+        matrix = basis(knots, DEGREE, s)
+        exact = (_single(points) for points in outline.points(s))
+        return np.max([_distance(matrix @ _sides(outline, knots)[i], each) for i, each in enumerate(exact)], axis=0)
+
+    sides = _refined(_first(joints), off_sides, tolerance)
+    arc = ArcLength(lambda s: np.real(_single(outline.camber(s))), [0.0, *(s for s, _ in joints), 1.0])
+
+    def off_camber(knots: Reals, w: Reals) -> Reals:
+        controls = _camber(outline, knots, arc.places(greville(knots, DEGREE)))
+        return _distance(basis(knots, DEGREE, w) @ controls, _single(outline.camber(arc.places(w))))
+
+    lengths = arc.lengths(np.array([s for s, _ in joints]))
+    camber = _refined(
+        _first([(float(w), each[1]) for w, each in zip(lengths, joints, strict=True)]), off_camber, tolerance
+    )
+    return SectionKnots(sides=sides, camber=camber, camber_places=arc.places(greville(camber, DEGREE)))
+
+
+def _sides(outline: Outline, knots: Reals) -> tuple[Array, Array]:
+    """Control points (n, 2) of both sides."""
+    inner = greville(knots, DEGREE)[3:-3]
+    upper, lower = (_single(points) for points in outline.points(inner))
+    start, end = outline.leading_edge, outline.trailing_edge
+    return (
+        _interpolated(upper, inner, knots, start.upper, end.upper),
+        _interpolated(lower, inner, knots, start.lower, end.lower),
+    )
+
+
+def _interpolated(points: Array, sites: Reals, knots: Reals, start: Start, end: Start) -> Array:
+    """Control points (n, 2) through points (n - 6, 2) at the sites, with value and two derivatives at both ends."""
+    first = _end_rows(start, 1.0, knots[DEGREE + 1], knots[DEGREE + 2])
+    last = _end_rows(end, -1.0, 1.0 - knots[-DEGREE - 2], 1.0 - knots[-DEGREE - 3])[::-1]
+    matrix = basis(knots, DEGREE, sites)
+    known = np.stack([*first, *last])
+    right = points - np.concatenate([matrix[:, :3], matrix[:, -3:]], axis=1) @ known
+    return joined([known[:3], solved(matrix[:, 3:-3], right), known[3:]], axis=-2)
+
+
+def _end_rows(edge: Start, sign: float, near: float, far: float) -> list[Array]:
+    """The three control points at a clamped end, whose first two inner knots stand near and far from it."""
+    point, slope, bend = (_single(each[..., None, :])[0] for each in edge)
+    step = sign * slope * (near / DEGREE)
+    second = point + step
+    return [point, second, second + far * (bend * (near / (DEGREE * (DEGREE - 1))) + step / near)]
+
+
+def _camber(outline: Outline, knots: Reals, places: Reals) -> Array:
+    """Control points (n, 2) of the camber line through its points at the places s (n,) of the Greville sites."""
+    return solved(basis(knots, DEGREE, greville(knots, DEGREE)), _single(outline.camber(places)))
+
+
+def _first(joints: list[tuple[float, int]]) -> Reals:
+    """Knots to begin with: about eight spans, and the joints as often as they lose derivatives."""
+    ends = np.array([0.0, *(place for place, _ in joints), 1.0])
+    # an end's three control points and the other's must not be the same ones
+    counts = np.maximum(1 if len(ends) > 2 else 2, np.rint(8.0 * np.diff(ends)).astype(int))
+    inner = [np.linspace(a, b, n + 1)[1:-1] for a, b, n in zip(ends[:-1], ends[1:], counts, strict=True)]
+    knots = np.concatenate([np.zeros(DEGREE + 1), *inner, np.ones(DEGREE + 1)])
+    return jointed(knots, DEGREE, joints)
+
+
+def _refined(knots: Reals, miss: Callable[[Reals, Reals], Reals], tolerance: float) -> Reals:
+    """Knots whose spans are cut, in as many pieces as the order of convergence predicts, until none misses."""
+    before = np.inf
+    while True:
+        ends = breaks(knots)
+        places = (ends[:-1, None] + np.diff(ends)[:, None] * np.array(SHARES)).ravel()
+        worst = np.max(miss(knots, places).reshape(len(ends) - 1, -1), axis=1)
+        reached, poles = float(np.max(worst)), len(knots) - DEGREE - 1
+        if reached <= tolerance:
+            return knots
+        if poles > MOST_POLES or (reached > 0.9 * before and reached < 1e-12):
+            place = float(places[int(np.argmax(worst)) * len(SHARES) + len(SHARES) // 2])
+            raise DesignError(
+                f"tolerance is {tolerance:g} of the chord: the native curves of the section reach {reached:.2g} with "
+                f"{poles} poles, at most {MOST_POLES} are allowed, the worst place is s = {place:.3f}: raise the "
+                "tolerance, or make the section smoother there"
+            )
+        before = reached
+        pieces = np.ones(len(worst), dtype=int)
+        missing = worst > tolerance
+        pieces[missing] = np.clip(np.ceil((2.0 * worst[missing] / tolerance) ** (1.0 / (DEGREE + 1))), 2, 4).astype(int)
+        added = [np.linspace(a, b, n + 1)[1:-1] for a, b, n in zip(ends[:-1], ends[1:], pieces, strict=True)]
+        knots = np.sort(np.concatenate([knots, *added]))
+
+
+def _single(points: Array) -> Array:
+    """Points (k, 2) of shape (k, 2) or (1, k, 2)."""
+    return points[0] if points.ndim == 3 else points
+
+
+def _distance(a: Array, b: Array) -> Reals:
+    off: Reals = np.real(a) - np.real(b)
+    return np.sqrt(dot(off, off))
