@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from bladewright.designs import Design
 from bladewright.errors import FitError
+from bladewright.fitting.freedom import corner_radii
 from bladewright.fitting.growth import chosen_of, gains, joined
 from bladewright.fitting.reshaping import reshaped
 from bladewright.fitting.search import ROUNDS, Found, Task, searched
@@ -42,6 +43,9 @@ GROWTHS = 40
 """times that more is added at most"""
 LATER = 4
 """times that more is added where points outside the quick searches stay beyond the tolerance"""
+IN_ROWS = 1e-3
+"""spread of the points at an end below which they stand in a row on the wall, of the chord"""
+STANDING = "the radii of the channel's corners are read off the points at hub and shroud, held, and not counted"
 SHARPER = 4
 """times that points are weighed by their distances before anything is added"""
 
@@ -78,10 +82,15 @@ def adapted(task: Task, first: Design, aim: Aim, *, base: Structure | None, gues
         if base is not None and not found.interrupted:
             found = _leaner(few, found, base)
         return (found if found.interrupted else _told_by_points(many, searched(many, found.design))), ""
-    found = searched(few, first, noise=noise, rounds=2 * QUICK)
+    found = searched(few, first, noise=noise, rounds=2 * QUICK if base is None else QUICK)
+    standing = aim.parameters is not None and _in_rows(found)
+    if standing:
+        few, many = _on_walls(few), _on_walls(many)
     if base is not None and not found.interrupted and _roomy(found, aim):
         found = _leaner(few, found, base)
     found, reason = _enough(few, found, aim)
+    if standing:
+        reason = STANDING
     if found.interrupted:
         return found, reason
     found = searched(many, found.design)
@@ -157,6 +166,17 @@ def _shaken(task: Task, found: Found) -> Found:
     return replace(other if better else found, evaluations=found.evaluations + other.evaluations)
 
 
+def _in_rows(found: Found) -> bool:
+    """Whether the cloud shows by rows of points where hub and shroud are."""
+    walls = found.ends.walls
+    return len(walls) == 2 and all(wall.spread < IN_ROWS * found.model.chord for wall in walls.values())
+
+
+def _on_walls(task: Task) -> Task:
+    """A task that holds the radii of the channel's corners."""
+    return replace(task, free=lambda design: tuple(p for p in task.free(design) if p not in corner_radii(design)))
+
+
 def _roomy(found: Found, aim: Aim) -> bool:
     """Whether a first design has more parameters than its cloud may need, or than are asked for."""
     return aim.parameters is None or len(found.problem.paths) > aim.parameters
@@ -165,7 +185,7 @@ def _roomy(found: Found, aim: Aim) -> bool:
 def _leaner(task: Task, found: Found, base: Structure) -> Found:
     """A match with the structure from which to grow, or the one before where its laws leave no shape so."""
     try:
-        return searched(task, reshaped(found.design, base), noise=FIRST)
+        return searched(task, reshaped(found.design, base), noise=FIRST, rounds=2 * QUICK)
     except FitError:
         return found
 

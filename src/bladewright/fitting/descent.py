@@ -24,7 +24,7 @@ MENDED = (1.0, 0.5, 0.2, 0.05, 0.0)
 """part of a violation that a step mends: the largest that bounds and other inequalities allow"""
 CHANGES = 20
 """of the inequalities that hold a step"""
-SLIGHT = 1e-12
+SLIGHT = 1e-6
 """predicted part of the cost below which a step is not worth its evaluation"""
 
 

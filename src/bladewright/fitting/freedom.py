@@ -3,6 +3,7 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 
+from bladewright.blade.unified import UnifiedBlade
 from bladewright.derivatives.patterns import Patterns, chosen, matching
 from bladewright.designs import Design
 from bladewright.errors import DesignError, FitError
@@ -54,3 +55,11 @@ def freedom_of(free: Patterns, fixed: "Patterns | Mapping[str, float]", *, start
         held = names[0] if names else "what is not free"
         raise FitError(f"{held} is to be held, but has no value: give a start design, or the value itself")
     return Freedom(free=free, fixed=names)
+
+
+def corner_radii(design: Design) -> tuple[str, ...]:
+    """Paths of the radii at which the edges of a blade stand on hub and shroud."""
+    if not isinstance(design, UnifiedBlade):
+        return ()
+    last = {edge: len(getattr(design.channel, edge)) - 1 for edge in ("leading_edge", "trailing_edge")}
+    return tuple(f"channel.{edge}[{place}].r" for edge, end in last.items() for place in (0, end))
