@@ -1,0 +1,1 @@
+"""Thickness laws: half thicknesses along the chord from parameters along the span."""

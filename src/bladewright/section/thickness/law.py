@@ -1,0 +1,109 @@
+"""What every thickness law is: parameters along the span that give half thicknesses along the chord, exactly.
+
+A law is a part of a design; `at(span)` takes it at places along the span and gives a `Thickness`, which many sections
+share: arrays (..., m, k), leading batch axes before the m places along the span, k places along the chord. Those are
+given by the parameter s of the outline; how u(s) is chosen so that each law's joints stand at fixed s says
+`bladewright.section.thickness.stations`.
+"""
+
+from abc import ABC, abstractmethod
+from dataclasses import dataclass
+from typing import Any, ClassVar, Literal
+
+import numpy as np
+
+from bladewright.designs import Law, Part
+from bladewright.errors import DesignError
+from bladewright.numerics.elementary import Array
+from bladewright.nurbs.basis import Reals
+from bladewright.section import checks
+from bladewright.section.laws import Span
+from bladewright.section.outline import Joint
+from bladewright.section.thickness.series import Series
+
+EdgeKind = Literal["round", "sharp", "blunt"]
+
+
+class Thickness(ABC):
+    """Half thicknesses of sections (..., m) in chords, on both sides of the camber line and normal to it.
+
+    Between the joints u and the half thickness are analytic in s. At a round edge u is even and the half thickness odd
+    in the distance by s from it, so that values at s < 0 or s > 1 are those of the other side.
+    """
+
+    @property
+    @abstractmethod
+    def joints(self) -> tuple[Joint, ...]:
+        """Places s inside (0, 1), increasing, and how many derivatives by s are continuous there."""
+
+    @property
+    @abstractmethod
+    def leading(self) -> EdgeKind:
+        """How the sides meet at s = 0: blunt where the half thickness is positive there."""
+
+    @property
+    @abstractmethod
+    def trailing(self) -> EdgeKind:
+        """How the sides meet at s = 1."""
+
+    @abstractmethod
+    def series(self, s: Reals, order: int) -> tuple[Series, Series]:
+        """Power series about s (k,), not falling, of the chord fraction u and of the half thickness, (..., m, k)."""
+
+    @abstractmethod
+    def half_at(self, u: Reals) -> Array:
+        """Half thicknesses (..., m, k) at chord fractions u (k,) or (..., m, k) in [0, 1]."""
+
+    def u(self, s: Reals) -> Array:
+        """Chord fractions (..., m, k) at s (k,), rising from 0 to 1."""
+        return self.series(s, 0)[0].value
+
+    def half(self, s: Reals) -> Array:
+        """Half thicknesses (..., m, k) at s (k,)."""
+        return self.series(s, 0)[1].value
+
+    def derivatives(self, s: Reals, order: int = 3) -> tuple[Array, Array]:
+        """Derivatives by s of order 0, 1, ... (..., m, k, order + 1) of u and of the half thickness, exact."""
+        u, half = self.series(s, order)
+        return u.derivatives(), half.derivatives()
+
+
+@dataclass(frozen=True, kw_only=True)
+class ThicknessLaw(Part, ABC):
+    """Base of the thickness laws: parameters that evolve along the span."""
+
+    path: ClassVar[str] = "thickness"
+    """where a design holds its law, for messages"""
+
+    @abstractmethod
+    def at(self, span: Span) -> Thickness:
+        """The half thicknesses of the sections at places along the span.
+
+        Raises DesignError where parameters contradict each other.
+        """
+
+    def _kept(self, name: str, low: float, high: float, what: str) -> None:
+        """Keep a field as plain numbers, all within (low, high); raises DesignError with the cure."""
+        path = f"{self.path}.{name}"
+        law = checks.law(path, getattr(self, name))
+        checks.between(path, law, low, high, what)
+        object.__setattr__(self, name, law)
+
+    def _demand(self, met: Array, span: Span, name: str, value: Array, cure: str) -> None:
+        """Refuse the values (..., m) of a field at the first place along the span where a condition is not met."""
+        if np.all(met):
+            return
+        met, value = np.broadcast_arrays(met, np.real(value))
+        worst = np.argwhere(~met)[0]
+        place = span.v[worst[-1]] if met.shape[-1] == len(span.v) else span.v[0]
+        raise DesignError(f"{self.path}.{name} is {value[tuple(worst)]:.6g} at span fraction {place:.4g}: {cure}")
+
+
+def same(first: Law | None, second: Law | None) -> bool:
+    """Whether two laws hold the same real numbers."""
+    one, other = (_reals(law) for law in (first, second))
+    return len(one) == len(other) and all(np.array_equal(a, b) for a, b in zip(one, other, strict=True))
+
+
+def _reals(law: Law | None) -> list[Any]:
+    return [] if law is None else [np.real(leaf) for leaf in (law if isinstance(law, tuple) else (law,))]

@@ -1,0 +1,87 @@
+"""Thickness laws made of pieces along the chord, each a closed formula of the place."""
+
+from collections.abc import Callable, Sequence
+
+import numpy as np
+
+from bladewright.errors import DesignError
+from bladewright.numerics.elementary import Array
+from bladewright.nurbs.basis import Reals
+from bladewright.section.laws import Span
+from bladewright.section.outline import Joint
+from bladewright.section.thickness.law import EdgeKind, Thickness
+from bladewright.section.thickness.series import Series, joined_series
+from bladewright.section.thickness.stations import Place, Stations
+
+Piece = Callable[[Place], Series]
+"""half thickness at a place"""
+
+PLACES = np.linspace(0.0, 1.0, 97)[1:-1]
+"""where the half thickness is asked to be positive"""
+
+
+class PiecewiseThickness(Thickness):
+    """One formula a piece, between the breaks of the stations."""
+
+    def __init__(self, stations: Stations, pieces: Sequence[Piece], *, leading: EdgeKind, trailing: EdgeKind) -> None:
+        self._stations, self._formulas = stations, tuple(pieces)
+        self._leading, self._trailing = leading, trailing
+
+    @property
+    def joints(self) -> tuple[Joint, ...]:
+        return self._stations.joints
+
+    @property
+    def leading(self) -> EdgeKind:
+        return self._leading
+
+    @property
+    def trailing(self) -> EdgeKind:
+        return self._trailing
+
+    def series(self, s: Reals, order: int) -> tuple[Series, Series]:
+        found = [(k, self._stations.place(k, part, order)) for k, part in self._stations.pieces_of(s)]
+        half = joined_series([self._formulas[k](place) for k, place in found])
+        return joined_series([place.u for _, place in found]), half
+
+    def half_at(self, u: Reals) -> Array:
+        zero = Series([np.zeros(())])
+        place = Place(zero + u, zero + (1.0 - u), zero + np.sqrt(u), zero + np.sqrt(1.0 - u))
+        half = self._formulas[0](place).value
+        for k, each in enumerate(self._stations.breaks):
+            later = np.real(u) > np.real(each.u)[..., None]
+            half = np.where(later, _safely(self._formulas[k + 1], place), half)
+        return half
+
+
+def _safely(formula: Piece, place: Place) -> Array:
+    """Values of a formula outside its piece as well, where they are not used."""
+    with np.errstate(invalid="ignore"):
+        return formula(place).value
+
+
+def ellipse(length: Array, height: Array, *, leading: bool) -> Piece:
+    """The round end of semi-axes `length` along the chord and `height` across (..., m), its tip at the edge."""
+    ratio, diameter = (height / length)[..., None], 2.0 * length[..., None]
+
+    def half(place: Place) -> Series:
+        distance, root = (place.u, place.root) if leading else (place.rest, place.rest_root)
+        if root is None:
+            raise ValueError("an ellipse needs a round edge")  # a law that forgot to say so
+        return ratio * root * (diameter - distance).sqrt()
+
+    return half
+
+
+def check_positive(thickness: Thickness, path: str, span: Span) -> None:
+    """Refuse a half thickness that is not positive inside a section; raises DesignError with the place."""
+    u, half = (np.real(each.value) for each in thickness.series(PLACES, 0))
+    u, half = np.broadcast_arrays(u, half)
+    if np.all(half > 0.0):
+        return
+    worst = np.unravel_index(np.argmin(half), half.shape)
+    place = span.v[worst[-2]] if half.shape[-2] == len(span.v) else span.v[0]
+    raise DesignError(
+        f"{path} gives a half thickness of {half[worst]:.3g} chords at u = {u[worst]:.3g}, span fraction {place:.4g}: "
+        f"it must be positive; raise the maximum thickness or the thickness of the edge nearby"
+    )
