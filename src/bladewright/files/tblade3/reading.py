@@ -1,0 +1,123 @@
+"""Reading a T-Blade3 case: its main input file, and the file of control points beside it."""
+
+import os
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+from bladewright.errors import FileError
+from bladewright.files.tblade3.lines import Lines
+from bladewright.files.tblade3.records import TBlade3Case
+from bladewright.files.tblade3.remarks import notes_of, unsupported_of, unused_of
+from bladewright.files.tblade3.sectionwise import read_sectionwise
+from bladewright.files.tblade3.spanwise import read_spanwise
+from bladewright.files.tblade3.switches import read_head
+from bladewright.files.tblade3.tables import read_tables
+from bladewright.files.text import read_text
+
+COMPANIONS = ("spancontrolinputs", "controlinputs")
+_TITLES = (
+    *("blade row", "blade scaling factor", "sectionwise properties", "airfoil camber", "airfoil thickness"),
+    *("control points for sweep", "control points for lean", "streamline data", "x_s"),
+)
+
+
+def is_tblade3(text: str) -> bool:
+    """Whether a text looks like T-Blade3's main input file."""
+    small = text.lower()
+    return sum(title in small for title in _TITLES) >= 4
+
+
+def read_tblade3(path: str | os.PathLike[str]) -> TBlade3Case:
+    """The case of a main input file `3dbgbinput.R.dat` and of the file of control points that it needs beside it.
+
+    That is `spancontrolinputs.R.dat` where the camber switch says `spanwise_spline`, else `controlinputs.R.dat` where
+    camber, thickness, its multiplier or the leading edge need one. Raises FileError, naming file and line, where one is
+    missing, cut short, or says what T-Blade3 does not know or no longer does.
+    """
+    path = Path(path)
+    for name in COMPANIONS:
+        if path.name.lower().startswith(f"{name}."):
+            raise FileError(
+                f"'{path}' holds control points only: name the main input file that goes with it, such as "
+                f"'{path.with_name(f'3dbgbinput.{_suffix(path)}.dat')}'"
+            )
+    notes: list[str] = []
+    lines = Lines(read_text(path), path)
+    found = read_head(lines, notes)
+    count = found.pop("streamline_count")
+    found |= read_tables(lines, count, notes)
+    grid = found.pop("grid_columns")
+    control, companion = _control_points(path, found, count)
+    case = TBlade3Case(
+        file=str(path),
+        companion=str(companion) if companion else None,
+        suffix=_suffix(path),
+        **{**dict.fromkeys(("meanlines", "naca", "multipliers", "leading_edges")), **control},
+        **found,
+    )
+    return replace(
+        case,
+        unused=unused_of(case, grid=grid),
+        unsupported=unsupported_of(case),
+        notes=(*notes, *notes_of(case)),
+    )
+
+
+def _control_points(path: Path, found: dict[str, Any], count: int) -> tuple[dict[str, Any], Path | None]:
+    asked = {"multiplier": found["thickness_multiplier"], "leading_edge": found["leading_edge"] == "spline"}
+    naca = found["thickness"] == "naca"
+    if naca and not found["spanwise"]:
+        raise FileError(
+            f"'{path}' has the thickness switch 5 without 'spanwise_spline' behind the camber switch: that thickness "
+            f"is read from '{COMPANIONS[0]}.{_suffix(path)}.dat' only; write the word on line 14"
+        )
+    if naca and asked["leading_edge"]:
+        raise FileError(
+            f"'{path}' has the leading-edge switch 1 with the thickness switch 5: its file has no table of "
+            "leading edges, which are those of the thickness itself; set the leading-edge switch, line 20, to 0"
+        )
+    if naca:
+        asked["multiplier"] = False
+    if found["spanwise"]:
+        companion = _beside(path, COMPANIONS[0], "the camber switch says 'spanwise_spline'")
+        return read_spanwise(Lines(read_text(companion), companion), naca=naca, **asked), companion
+    asked["curvature"] = found["curvature_camber"]
+    if not any(asked.values()):
+        return {}, None
+    reasons = {
+        "curvature": "the camber is defined by its curvature",
+        "multiplier": "the thickness has a multiplier",
+        "leading_edge": "the leading edge is a spline",
+    }
+    companion = _beside(path, COMPANIONS[1], next(reasons[each] for each in reasons if asked[each]))
+    return read_sectionwise(Lines(read_text(companion), companion), count, **asked), companion
+
+
+def _suffix(path: Path) -> str:
+    """What stands between the last two dots of a file's name."""
+    return path.stem.rpartition(".")[2] if "." in path.stem else ""
+
+
+def _beside(path: Path, kind: str, reason: str) -> Path:
+    """The file of a kind beside the main one, its name told by that of the main one."""
+    suffix = _suffix(path)
+    if not suffix:
+        raise FileError(
+            f"'{path}' needs a file '{kind}.R.dat' beside it, as {reason}; R is what stands between the last two dots "
+            "of the main file's name, which has none: name it 3dbgbinput.R.dat, such as 3dbgbinput.1.dat"
+        )
+    wanted = f"{kind}.{suffix}.dat"
+    exact = path.with_name(wanted)
+    if exact.is_file():
+        return exact
+    try:
+        names = sorted(each.name for each in path.parent.iterdir())
+    except OSError:
+        names = []
+    for name in names:
+        if name.lower() == wanted.lower():
+            return path.with_name(name)
+    others = [name for name in names if name.lower().startswith(tuple(f"{each}." for each in COMPANIONS))]
+    there = f"; beside it are {', '.join(others[:5])}" if others else ""
+    raise FileError(f"'{path}' needs the file '{exact}', as {reason}: there is none{there}")

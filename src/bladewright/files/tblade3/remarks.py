@@ -1,0 +1,117 @@
+"""What a case says without effect, beyond its records, or otherwise than T-Blade3 does it: sentences for a report."""
+
+from collections.abc import Iterator
+
+from bladewright.files.tblade3.records import STAGGER_GIVEN, SpanLaw, TBlade3Case
+
+
+def unused_of(case: TBlade3Case, *, grid: bool) -> tuple[str, ...]:
+    """What stands in the files without effect on the blade; `grid` where the sections have columns of a grid."""
+    return (*_unused_columns(case, grid=grid), *_unused_tables(case))
+
+
+def _unused_columns(case: TBlade3Case, *, grid: bool) -> Iterator[str]:
+    sections = case.sections
+    yield "mrel_in, the relative Mach number at the inlet, has no effect on the geometry"
+    if any(row.secondary_flow_angle for row in sections):
+        yield "Sec. Flow Angle is read but used by no version of T-Blade3"
+    if case.chord != "given" and any(row.chord for row in sections):
+        yield "the column chord has effect with chord switch 1 only: the chord is that between the edges"
+    if case.angle_spline == "inci_dev_spline" and any(row.incidence or row.deviation for row in sections):
+        yield "the columns Incidence and Deviation have no effect with inci_dev_spline, which has tables of them"
+    for column, title, splines in (
+        ("in_beta", "in_Beta", ("inletspline", "inoutspline")),
+        ("out_beta", "out_Beta", ("outletspline", "inoutspline")),
+    ):
+        if case.angle_spline in splines and any(getattr(row, column) for row in sections):
+            yield f"the column {title} has no effect with {case.angle_spline}, which takes it from the table {column}*"
+    if case.thickness == "naca":
+        yield "t/c_max, umxthk, lethk and tethk have no effect with thickness 5, which has its own table"
+    elif case.leading_edge == "spline" and case.leading_edges:
+        yield "lethk and tethk of the sections give way to those of the leading edge's table"
+    if grid:
+        yield "Jcells, eta_ofst and BGgrid belong to a grid that T-Blade3 no longer makes"
+    if case.radial_stacking:
+        yield f"the stacking code {case.stacking_code} gives way to stk_u and stk_v of each section"
+    elif any(row.stack_u or row.stack_v for row in sections):
+        yield "stk_u and stk_v have effect with variable radial stacking only: the stacking code holds for all sections"
+
+
+def _unused_tables(case: TBlade3Case) -> Iterator[str]:
+    yield "the table for blending is read but used by no version of T-Blade3"
+    at_inlet = case.angle_spline in {"inletspline", "inoutspline", "inci_dev_spline"} or case.staggers_given
+    at_exit = case.angle_spline in {"outletspline", "inoutspline", "inci_dev_spline"}
+    thickness = case.thickness != "naca"
+    for name, law, used in (
+        ("in_beta*", case.in_beta, at_inlet),
+        ("out_beta*", case.out_beta, at_exit),
+        ("chord_multiplier", case.chord_multiplier, case.chord == "multiplied"),
+        ("tm/c", case.thickness_multipliers, thickness),
+        ("u_max", case.thickest, thickness),
+    ):
+        if law and not used and _matters(law):
+            yield f"the table {name} has no effect with these switches"
+    if case.meanlines and not case.curvature_camber:
+        yield "the control points of the curvature have no effect with camber switch 0"
+    if case.multipliers and not case.thickness_multiplier:
+        yield "the control points of the thickness multiplier have no effect while its switch is 0"
+    if case.thickness_multiplier and not thickness:
+        yield "the switch of the thickness multiplier has no effect with thickness 5"
+    if case.naca:
+        yield f"the spline switch {case.naca.spline_switch} beside the thickness table is never used: all are B-splines"
+    if case.leading_edges:
+        yield "sting_l, sting_h_top and sting_h_bot belong to a leading edge with a sting, which is not asked for"
+    yield (
+        f"clustering ({case.clustering}) places T-Blade3's 241 points of a section: the surfaces here are exact "
+        "between them"
+    )
+
+
+def unsupported_of(case: TBlade3Case) -> tuple[str, ...]:
+    """What T-Blade3 would make of the files beyond a blade of meanlines and thicknesses."""
+    return tuple(_unsupported(case))
+
+
+def _unsupported(case: TBlade3Case) -> Iterator[str]:
+    kinds: dict[str, list[int]] = {}
+    for index, row in enumerate(case.sections, 1):
+        kinds.setdefault(row.type, []).append(index)
+    for kind, places in kinds.items():
+        if kind != "sect1":
+            which = ", ".join(map(str, places)) if len(places) <= 5 else f"{places[0]} to {places[-1]} ({len(places)})"
+            yield f"sections {which} are of the type '{kind}': only sect1, a meanline with a thickness, is translated"
+    for end, inflation in (("hub", case.hub_inflation), ("tip", case.tip_inflation)):
+        if inflation:
+            yield f"the {end} inflation {inflation:g} asks for one more section, wider than the blade: it is not made"
+    if case.staggers_given:
+        yield (
+            f"in_Beta of the first section is {STAGGER_GIVEN:g}, which gives staggers in the table in_beta* "
+            "in place of inlet angles: a meanline with a thickness needs inlet angles"
+        )
+
+
+def notes_of(case: TBlade3Case) -> tuple[str, ...]:
+    """Where T-Blade3 itself fails on a case, or does something else than it says."""
+    return tuple(_notes(case))
+
+
+def _notes(case: TBlade3Case) -> Iterator[str]:
+    if case.thickness in {"quartic", "quartic-sharp"}:
+        yield "T-Blade3 builds the quartic thickness up to version 1.2.2; later ones stop or crash"
+    if case.leading_edge == "spline":
+        yield "T-Blade3 builds leading edges as splines up to version 1.2.2; later ones refuse them"
+    if case.thickness == "wennerstrom" or not case.curvature_camber:
+        yield "T-Blade3 1.3.1 crashes on thickness 0 and on camber 0; version 1.2.5 builds them"
+    if not case.spanwise and case.companion:
+        yield "T-Blade3 1.3.1 crashes on control points section by section; version 1.2.5 reads them"
+    if case.true_lean_and_sweep and (_matters(case.sweep) or _matters(case.lean)):
+        yield (
+            "T-Blade3 takes true lean and sweep with the wrong stagger (the metal angle's degrees as radians, or 0): "
+            "its blade differs from one with the true stagger"
+        )
+    if case.clustering == "elliptic" and case.thickness != "naca":
+        yield "clustering 4 works with thickness 5 only"
+
+
+def _matters(law: SpanLaw) -> bool:
+    return any(law.values)

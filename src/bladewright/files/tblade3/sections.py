@@ -1,0 +1,163 @@
+"""What a T-Blade3 case says of each section: its laws along the span, evaluated at the sections' spans."""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from bladewright.errors import FileError
+from bladewright.files.tblade3.records import LeadingEdges, Meanlines, Multipliers, SpanLaw, Table, TBlade3Case
+from bladewright.files.tblade3.splines import SpanSpline
+from bladewright.nurbs.basis import Reals
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class SectionValues:
+    """Parameters of the m sections of a case, hub to tip."""
+
+    span: Reals
+    """(m,) from 0 to 1"""
+    chord_multiplier: Reals
+    """(m,), 1 where the chord switch asks for none"""
+    chord: Reals | None
+    """(m,) chords in m', where the chord switch gives them instead of the edges on the streamlines"""
+    sweep: Reals
+    """(m,) shift along the streamline, in m'"""
+    lean: Reals
+    """(m,) shift in theta [rad]"""
+    theta_offset: float
+    """turn of all sections [rad]"""
+    angle_in: Reals
+    """(m,) metal angle at the inlet [deg], in the plane of the case's angles, incidence included; a wing's twist"""
+    angle_out: Reals
+    """(m,) metal angle at the exit [deg], deviation included; a wing's total camber"""
+    stagger: Reals | None
+    """(m,) stagger [deg], where the file gives it in place of an inlet angle"""
+    meanlines: tuple[Reals, ...] | None
+    """for each section control points (k, 2) of the second derivative: u, value; None for straight ends and a cubic"""
+    leading_index: Reals | None
+    """(m,) index I of the leading edge's radius, of the modified NACA thickness"""
+    thickest: Reals
+    """(m,) place of the largest thickness, of the chord"""
+    thickness: Reals
+    """(m,) largest thickness, of the chord"""
+    leading_thickness: Reals | None
+    """(m,) thickness at the leading edge, of the chord; None with the modified NACA thickness"""
+    trailing_thickness: Reals
+    """(m,) thickness at the trailing edge, of the chord"""
+    trailing_slope: Reals | None
+    """(m,) slope of the half thickness at the trailing edge; None where it follows from the place of the largest"""
+    multipliers: tuple[Reals, ...] | None
+    """for each section control points (k, 2) of the thickness multiplier 1 + m: u, m"""
+    leading_edges: Reals | None
+    """(m, 13) parameters of leading edges that are splines, in the order of `LEADING_EDGE`"""
+
+
+def section_spans(leading_edges: ArrayLike) -> Reals:
+    """Spans (m,) of sections whose leading edges lie at (x, r) (m, 2): 0 at the first, 1 at the last.
+
+    The radius is measured, or x where the leading edge extends further along the axis than in radius. Raises FileError
+    where all leading edges are in one place.
+    """
+    points = np.asarray(leading_edges, dtype=np.float64)
+    extent = np.abs(points[-1] - points[0])
+    along = 0 if extent[0] > extent[1] else 1
+    if not extent[along] > 0.0:
+        raise FileError("the leading edges of the first and the last streamline lie in one place: there is no span")
+    found: Reals = np.abs(points[:, along] - points[0, along]) / extent[along]
+    return found
+
+
+def section_values(case: TBlade3Case, span: ArrayLike) -> SectionValues:
+    """The parameters of a case's sections, given their spans (m,), one for each."""
+    at = np.asarray(span, dtype=np.float64)
+    if at.shape != (len(case.sections),):
+        raise FileError(f"{at.size} spans are given for the {len(case.sections)} sections of '{case.file}'")
+    angle_in, angle_out = _angles(case, at)
+    multiplied, given = case.chord == "multiplied", case.chord == "given"
+    return SectionValues(
+        span=at,
+        chord_multiplier=1.0 + _law(case.chord_multiplier, at) if multiplied else np.ones_like(at),
+        chord=_column(case, "chord") if given else None,
+        sweep=_law(case.sweep, at),
+        lean=_law(case.lean, at),
+        theta_offset=float(np.radians(case.theta_offset)),
+        angle_in=angle_in,
+        angle_out=angle_out,
+        stagger=_law(case.in_beta, at) if case.staggers_given else None,
+        meanlines=_curves(case.meanlines, at) if case.curvature_camber else None,
+        multipliers=_curves(case.multipliers, at) if case.thickness_multiplier and case.thickness != "naca" else None,
+        leading_edges=_leading_edges(case.leading_edges, at) if case.leading_edge == "spline" else None,
+        **_thickness(case, at),
+    )
+
+
+def _angles(case: TBlade3Case, at: Reals) -> tuple[Reals, Reals]:
+    """Metal angles [deg] at inlet and exit: flow angles less incidence and deviation, in the sense of the turning."""
+    angle_in, angle_out = _column(case, "in_beta"), _column(case, "out_beta")
+    incidence, deviation = _column(case, "incidence"), _column(case, "deviation")
+    if case.angle_spline == "inci_dev_spline":
+        incidence, deviation = _law(case.in_beta, at), _law(case.out_beta, at)
+    if case.angle_spline in {"inletspline", "inoutspline"}:
+        angle_in = _law(case.in_beta, at)
+    if case.angle_spline in {"outletspline", "inoutspline"}:
+        angle_out = _law(case.out_beta, at)
+    angle_in = np.where(angle_in >= 0.0, angle_in - incidence, angle_in + incidence)
+    angle_out = np.where(angle_out - angle_in <= 0.0, angle_out - deviation, angle_out + deviation)
+    return angle_in, angle_out
+
+
+def _thickness(case: TBlade3Case, at: Reals) -> dict[str, Any]:
+    naca = case.naca
+    if case.thickness == "naca" and naca:
+        found: dict[str, Any] = {
+            name: _spline(naca.span, getattr(naca, name))(at)
+            for name in ("leading_index", "thickest", "thickness", "trailing_thickness")
+        }
+        slope = _spline(naca.span, naca.trailing_slope)(at) if naca.trailing_slope else None
+        if slope is not None and naca.slope_normalised:
+            slope = -found["thickness"] * slope
+        return {**found, "leading_thickness": None, "trailing_slope": slope}
+    thickness, thickest = _column(case, "thickness"), _column(case, "thickest")
+    if case.thickness_multipliers:
+        thickness = thickness * (1.0 + _law(case.thickness_multipliers, at))
+    if case.thickest:
+        places = _law(case.thickest, at)
+        thickest = np.where(places == 0.0, thickest, places)
+    return {
+        "leading_index": None,
+        "thickest": thickest,
+        "thickness": thickness,
+        "leading_thickness": _column(case, "leading_thickness"),
+        "trailing_thickness": _column(case, "trailing_thickness"),
+        "trailing_slope": None,
+    }
+
+
+def _curves(curves: Meanlines | Multipliers | None, at: Reals) -> tuple[Reals, ...] | None:
+    if curves is None:
+        return None
+    values = curves.curvature if isinstance(curves, Meanlines) else curves.values
+    if curves.span is None:
+        return tuple(np.column_stack(pair) for pair in zip(curves.u, values, strict=True))
+    pair = [_spline(curves.span, table)(at) for table in (curves.u, values)]
+    return tuple(np.stack(pair, axis=-1))
+
+
+def _leading_edges(edges: LeadingEdges | None, at: Reals) -> Reals | None:
+    if edges is None:
+        return None
+    return np.array(edges.values) if edges.span is None else _spline(edges.span, edges.values)(at)
+
+
+def _law(law: SpanLaw, at: Reals) -> Reals:
+    return _spline(law.span, law.values)(at)
+
+
+def _spline(span: tuple[float, ...], values: tuple[float, ...] | Table) -> SpanSpline:
+    return SpanSpline(span=np.array(span), values=np.array(values))
+
+
+def _column(case: TBlade3Case, name: str) -> Reals:
+    return np.array([getattr(row, name) for row in case.sections], dtype=np.float64)

@@ -1,0 +1,132 @@
+"""T-Blade3's file `spancontrolinputs.R.dat`: control points of meanline and thickness as tables along the span."""
+
+from itertools import pairwise
+from typing import Any
+
+from bladewright.errors import FileError
+from bladewright.files.tblade3.lines import Lines
+from bladewright.files.tblade3.records import LEADING_EDGE, LeadingEdges, Meanlines, Multipliers, NacaThickness, Table
+
+_SLOPES = {"dy_dx_te": False, "dy_dx_norm": True}
+_CURVATURE = "the control points of the curvature"
+
+
+def read_spanwise(lines: Lines, *, naca: bool, multiplier: bool, leading_edge: bool) -> dict[str, Any]:
+    """Fields of a case from the file, of the current or the older format; what is not asked for may be missing."""
+    lines.texts(5, "the five lines of the head")
+    found: dict[str, Any] = {"meanlines": _meanlines(lines)}
+    if naca:
+        found["naca"] = _naca(lines)
+        return found
+    while not lines.ended and (multiplier or leading_edge):
+        title = lines.skip_words("another table").lower()
+        if "leading" in title or (not multiplier and "thickness" not in title):
+            found["leading_edges"] = _leading_edges(lines)
+            leading_edge = False
+            continue
+        multipliers = _multipliers(lines)
+        if multipliers:
+            found["multipliers"] = multipliers
+            multiplier = False
+    for missing, what in ((multiplier, "thickness multiplier"), (leading_edge, "leading edge")):
+        if missing:
+            raise FileError(
+                f"'{lines.path}' ends without a table of the {what}, which the main input file asks for: the file is "
+                "cut short, or that switch should be 0"
+            )
+    return found
+
+
+def _head(lines: Lines, what: str) -> tuple[int, int, str]:
+    """Number of rows, the number beside it, and the header, in which every name is a word of small letters."""
+    rows, beside = lines.integers(2, f"the numbers of rows and columns of {what}", least=2)
+    return rows, beside, lines.text(f"the header of {what}").lower()
+
+
+def _meanlines(lines: Lines) -> Meanlines:
+    count, points, header = _head(lines, _CURVATURE)
+    if points < 3:
+        raise lines.error(
+            f"the number of control points of the curvature is {points}: at least 3 are needed", lines.place - 1
+        )
+    first = "cur1" in header.split()
+    inner = points - 2
+    spans, places, values = [], [], []
+    for span, *row in lines.table(count, 1 + inner + points - (not first), _CURVATURE):
+        spans.append(span)
+        places.append((0.0, *row[:inner], 1.0))
+        values.append((*(() if first else (0.0,)), *row[inner:]))
+    _check_places(lines, spans, places, _CURVATURE)
+    return Meanlines(span=tuple(spans), u=tuple(places), curvature=tuple(values))
+
+
+def _naca(lines: Lines) -> NacaThickness:
+    what = "the control points of the thickness"
+    if lines.ended:
+        raise FileError(
+            f"'{lines.path}' ends without a table of LE_radius, u_max, t_max and t_TE, which the thickness switch 5 "
+            "needs: the file is cut short, or of the older format, which has no such thickness"
+        )
+    lines.texts(2, f"the title of {what}")
+    count, switch, header = _head(lines, what)
+    words = header.split()
+    if "le_radius" not in words:
+        raise lines.error(
+            f"the header of {what} is '{' '.join(words)}': the thickness switch 5 needs the columns span, LE_radius, "
+            "u_max, t_max and t_TE; a file of the older format has no such thickness"
+        )
+    slopes = [word for word in words if word in _SLOPES]
+    span, *columns = zip(*lines.table(count, 6 if slopes else 5, what), strict=True)
+    return NacaThickness(
+        span=span,
+        leading_index=columns[0],
+        thickest=columns[1],
+        thickness=columns[2],
+        trailing_thickness=columns[3],
+        trailing_slope=columns[4] if slopes else None,
+        slope_normalised=bool(slopes) and _SLOPES[slopes[0]],
+        spline_switch=switch,
+    )
+
+
+def _multipliers(lines: Lines) -> Multipliers | None:
+    """The older format's table of a thickness multiplier; None for the current one's table of the thickness."""
+    what = "the control points of the thickness multiplier"
+    count, points, header = _head(lines, what)
+    if "le_radius" in header.split():
+        lines.table(count, 5, "the control points of the thickness")
+        return None
+    if points < 3:
+        raise lines.error(f"the number of {what} is {points}: at least 3 are needed", lines.place - 1)
+    inner = points - 2
+    spans, places, values = [], [], []
+    for span, *row in lines.table(count, 1 + 2 * inner, what):
+        spans.append(span)
+        places.append((0.0, *row[:inner], 1.0))
+        values.append((0.0, *row[inner:], 0.0))
+    _check_places(lines, spans, places, what)
+    return Multipliers(span=tuple(spans), u=tuple(places), values=tuple(values))
+
+
+def _leading_edges(lines: Lines) -> LeadingEdges:
+    what = "the control points of the leading edge"
+    degree, segments = lines.integers(2, "degree and number of segments of the leading edge", least=3)
+    lines.skip_words(f"the numbers of rows and columns of {what}")
+    count, _, _ = _head(lines, what)
+    rows = lines.table(count, 1 + len(LEADING_EDGE), what)
+    return LeadingEdges(
+        degree=degree,
+        segments=segments,
+        span=tuple(row[0] for row in rows),
+        values=tuple(row[1:] for row in rows),
+    )
+
+
+def _check_places(lines: Lines, spans: list[float], places: Table | list[tuple[float, ...]], what: str) -> None:
+    for span, row in zip(spans, places, strict=True):
+        for low, high in pairwise(row):
+            if not high > low:
+                raise FileError(
+                    f"'{lines.path}': u of {what} is {high:g} after {low:g} at the span {span:g}: the places must "
+                    "increase from 0 to 1, both of which are left out of the table"
+                )

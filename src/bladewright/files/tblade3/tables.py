@@ -1,0 +1,164 @@
+"""The tables of T-Blade3's main input file, from the sections to the streamlines."""
+
+from typing import Any
+
+from bladewright.files.tblade3.lines import Lines, items, number
+from bladewright.files.tblade3.records import CENTROID, Point, SectionRow, SpanLaw, stacking_of
+from bladewright.files.tblade3.switches import ON, read_switch
+
+_ANGLES = ("in_beta", "out_beta", "mach", "chord", "thickness", "incidence", "deviation", "secondary_flow_angle")
+_SHAPES = ("stack_u", "stack_v", "thickest", "leading_thickness", "trailing_thickness")
+_GRID = ("jcells", "eta_ofst", "bggrid")
+
+
+def read_tables(lines: Lines, count: int, notes: list[str]) -> dict[str, Any]:
+    """Fields of a case from the table of sections on, for so many streamlines."""
+    found: dict[str, Any] = {}
+    lines.text("the header of the sectionwise properties")
+    angles = lines.rows(count, 9, "the sectionwise properties")
+    found |= _edge_curves(lines)
+    lines.texts(6, "the titles of the stacking")
+    found["radial_stacking"] = radial = read_switch(lines, "the switch of variable radial stacking", ON)
+    shapes, found["grid_columns"] = _shapes(lines, count, radial=radial)
+    found["sections"] = tuple(
+        SectionRow(
+            label=int(row[0]),
+            type=kind,
+            **dict(zip(_ANGLES, row[1:], strict=True)),
+            **dict(zip(_SHAPES, shape, strict=True)),
+        )
+        for row, (kind, shape) in zip(angles, shapes, strict=True)
+    )
+    lines.texts(2, "the title of the blending")
+    rows, *_ = lines.integers(3, "the number of rows of the blending, and two switches", least=0)
+    lines.text("the header of the blending")
+    found["blending"] = tuple(lines.rows(rows, 3, "the blending"))
+    lines.texts(2, "the title of the stacking axis")
+    found["stacking_code"] = _stacking_code(lines, radial=radial)
+    for name in ("sweep", "lean"):
+        found[name] = _law(lines, name, notes, one_digit=True)
+    for name, title in (("in_beta", "in_beta*"), ("out_beta", "out_beta*"), ("chord_multiplier", "chord_multiplier")):
+        found[name] = _law(lines, title, notes)
+    found |= _thicknesses(lines)
+    lines.text("a blank line")
+    for end in ("hub", "tip"):
+        lines.text(f"the title of the {end} offset")
+        offset, *inflation = lines.numbers(1, f"the {end} offset", most=2)
+        found[f"{end}_offset"], found[f"{end}_inflation"] = offset, inflation[0] if inflation else None
+    found["streamlines"] = _streamlines(lines, count)
+    return found
+
+
+def _edge_curves(lines: Lines) -> dict[str, tuple[Point, ...]]:
+    lines.texts(3, "the titles of the leading- and trailing-edge curves")
+    rows = lines.integer("the number of points of the leading- and trailing-edge curves", least=2)
+    lines.text("the header of the leading- and trailing-edge curves")
+    leading, trailing = [], []
+    for x_in, r_in, x_out, r_out in lines.rows(rows, 4, "the leading- and trailing-edge curves"):
+        leading.append((x_in, r_in))
+        trailing.append((x_out, r_out))
+    return {"leading_curve": tuple(leading), "trailing_curve": tuple(trailing)}
+
+
+def _shapes(lines: Lines, count: int, *, radial: bool) -> tuple[list[tuple[str, tuple[float, ...]]], bool]:
+    """Kind and numbers of each section, and whether columns of a grid follow them."""
+    header = lines.text("the header of the types of section").lower()
+    grid = any(name in header for name in _GRID)
+    found = []
+    for row in range(1, count + 1):
+        what = f"row {row} of {count} of the types of section"
+        words = lines.words(what)
+        values = [number(word) for word in words[2:7]]
+        if len(values) < 5 or None in values or number(words[0]) is None:
+            raise lines.error(
+                f"{what} must be a number, a type such as sect1, and 5 numbers (stk_u, stk_v, umxthk, lethk, tethk), "
+                f"not '{' '.join(words)}'"
+            )
+        shape = tuple(value for value in values if value is not None)
+        if radial and not (0.0 <= shape[0] <= 100.0 or shape[0] == CENTROID):
+            raise lines.error(
+                f"stk_u of {what} is {shape[0]:g}: it must lie between 0 and 100 %, or be 200, the centroid"
+            )
+        if radial and not -100.0 <= shape[1] <= 100.0:
+            raise lines.error(f"stk_v of {what} is {shape[1]:g}: it must lie between -100 and 100 %")
+        found.append((words[1], shape))
+    return found, grid
+
+
+def _stacking_code(lines: Lines, *, radial: bool) -> int:
+    code = lines.integer("the code of the stacking axis")
+    stacking = stacking_of(code)
+    if not radial and not (stacking.along <= 1.0 or stacking.centroid):
+        raise lines.error(
+            f"the code of the stacking axis is {code}, {100.0 * stacking.along:g} % of the chord: its first three "
+            "digits must be 000 to 100, or 200 for the centroid"
+        )
+    if not radial and not -1.0 <= stacking.above <= 1.0:
+        raise lines.error(
+            f"the code of the stacking axis is {code}, {100.0 * stacking.above:g} % of the half thickness: its last "
+            "three digits must be 000 to 100 (the centroid is 200000, a quarter of the chord 025000)"
+        )
+    return code
+
+
+def _count(lines: Lines, name: str, notes: list[str], *, one_digit: bool) -> int:
+    line = lines.peek()
+    rows = lines.integer(f"the number of control points of {name}", least=2)
+    digit = line[11:12]
+    if one_digit and digit != str(rows):
+        notes.append(
+            f"T-Blade3 reads the number of control points of {name} as one digit in column 12 of line {lines.place}, "
+            f"which holds '{digit}': {rows} are taken, as the line says"
+        )
+    return rows
+
+
+def _law(lines: Lines, name: str, notes: list[str], *, one_digit: bool = False) -> SpanLaw:
+    lines.texts(2, f"the title of the control points of {name}")
+    rows = _count(lines, name, notes, one_digit=one_digit)
+    lines.text(f"the header of the control points of {name}")
+    span, values = zip(*lines.table(rows, 2, f"the control points of {name}"), strict=True)
+    return SpanLaw(span=span, values=values)
+
+
+def _thicknesses(lines: Lines) -> dict[str, SpanLaw | None]:
+    """The laws of tm/c and u_max: the header says which there are, and in which order."""
+    name = "the control points of tm/c"
+    lines.texts(2, f"the title of {name}")
+    rows = lines.integer(f"the number of {name}", least=2)
+    header = [word.lower() for word in lines.text(f"the header of {name}").split()]
+    places = {"thickness_multipliers": "tm/c", "thickest": "u_max"}
+    columns = sorted((header.index(word), field) for field, word in places.items() if word in header)
+    if not columns:
+        raise lines.error(
+            f"the header of {name} is '{' '.join(header)}': it must name the columns that follow the span, 'tm/c' or "
+            "'u_max' or both"
+        )
+    span, *values = zip(*lines.table(rows, 1 + len(columns), name), strict=True)
+    found: dict[str, SpanLaw | None] = dict.fromkeys(places)
+    for (_, field), column in zip(columns, values, strict=True):
+        found[field] = SpanLaw(span=span, values=column)
+    return found
+
+
+def _streamlines(lines: Lines, count: int) -> tuple[tuple[Point, ...], ...]:
+    while (items(lines.text("the streamlines, below a line that begins with x_s")) or [None])[0] != "x_s":
+        pass
+    found = []
+    for index in range(1, count + 1):
+        what = f"streamline {index} of {count}"
+        points: list[Point] = []
+        while True:
+            x, r = lines.numbers(2, f"a point of {what}, or the 0 0 that closes it,")
+            if r == 0.0:
+                break
+            if r < 0.0:
+                raise lines.error(f"{what} has the radius {r:g}: it must be positive, or 0 to close the streamline")
+            points.append((x, r))
+        if len(points) < 2:
+            raise lines.error(
+                f"{what} is closed after {len(points)} points: at least 2 are needed; is the number of streamlines, "
+                f"{count}, right?"
+            )
+        found.append(tuple(points))
+    return tuple(found)
