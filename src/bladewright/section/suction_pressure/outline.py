@@ -1,0 +1,98 @@
+"""The outline of a section by suction and pressure side: edges and sides in fixed parts of s."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from bladewright.numerics.elementary import Array
+from bladewright.nurbs.basis import Reals
+from bladewright.section.outline import Edge, Joint, Outline, Start
+from bladewright.section.suction_pressure.edge import EdgeCurve, powers_at
+from bladewright.section.suction_pressure.points import Continuity
+from bladewright.section.suction_pressure.side import DEGREE, Side
+
+EDGE = 0.1
+"""part of s that each edge takes"""
+SHARE = EDGE / (1.0 - 2.0 * EDGE)
+"""part of s of an edge over that of a side"""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class SuctionPressureOutline(Outline):
+    """Half an edge, a side, half an edge: with C2 edges both sides are twice differentiable by s at every joint."""
+
+    edges: tuple[EdgeCurve, EdgeCurve]
+    """leading and trailing"""
+    upper: Side
+    lower: Side
+    continuity: Continuity
+
+    @property
+    def leading_edge(self) -> Edge:
+        """One polynomial across the nose, so a round edge."""
+        return _meeting(self.edges[0], 1.0)
+
+    @property
+    def trailing_edge(self) -> Edge:
+        """As the leading edge, by s."""
+        return _meeting(self.edges[1], -1.0)
+
+    @property
+    def joints(self) -> tuple[Joint, ...]:
+        """The corners, and the inner knots of both sides."""
+        knots = np.unique(np.concatenate([side.knots[DEGREE + 1 : -DEGREE - 1] for side in (self.upper, self.lower)]))
+        smooth = 1 if self.continuity == "C1" else 2
+        inner = [Joint(float(EDGE + w * (1.0 - 2.0 * EDGE)), DEGREE - 1) for w in knots]
+        return (Joint(EDGE, smooth), *inner, Joint(1.0 - EDGE, smooth))
+
+    def points(self, s: Reals) -> tuple[Array, Array]:
+        """Points (..., len(s), 2) of both sides."""
+        found = []
+        for side, sign in ((self.upper, 1.0), (self.lower, -1.0)):
+            first, middle, last = _parts(s)
+            parts = [
+                (first, powers_at(self.edges[0].coefficients, sign * s[first] / EDGE)),
+                (middle, side.points(_fractions(s[middle]))),
+                (last, powers_at(self.edges[1].coefficients, sign * (1.0 - s[last]) / EDGE)),
+            ]
+            found.append(_put(parts, len(s)))
+        return found[0], found[1]
+
+    def camber(self, s: Reals) -> Array:
+        """The middle between the sides at equal s; in the edges' parts it goes on to the noses in their directions."""
+        first, middle, last = _parts(s)
+        w = _fractions(s[middle])
+        parts = [
+            (first, powers_at(self.edges[0].camber, s[first] / EDGE)),
+            (middle, 0.5 * (self.upper.points(w) + self.lower.points(w))),
+            (last, powers_at(self.edges[1].camber, (1.0 - s[last]) / EDGE)),
+        ]
+        return _put(parts, len(s))
+
+
+def _meeting(edge: EdgeCurve, direction: float) -> Edge:
+    point, first, second = (edge.coefficients[..., k, :] * EDGE**-k for k in range(3))
+    upper, lower = (Start(point, sign * direction * first, 2.0 * second) for sign in (1.0, -1.0))
+    return Edge(kind="round", upper=upper, lower=lower)
+
+
+Mask = NDArray[np.bool_]
+
+
+def _parts(s: Reals) -> tuple[Mask, Mask, Mask]:
+    first, last = s < EDGE, s > 1.0 - EDGE
+    return first, ~first & ~last, last
+
+
+def _fractions(s: Reals) -> Reals:
+    return np.clip((s - EDGE) / (1.0 - 2.0 * EDGE), 0.0, 1.0)
+
+
+def _put(parts: list[tuple[Mask, Array]], count: int) -> Array:
+    """Points (..., count, 2) of parts at masks (count,)."""
+    shape = np.broadcast_shapes(*[points.shape[:-2] for _, points in parts])
+    found = np.empty((*shape, count, 2), dtype=np.result_type(*[points for _, points in parts]))
+    for here, points in parts:
+        found[..., here, :] = points
+    return found

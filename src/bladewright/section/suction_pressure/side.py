@@ -1,0 +1,153 @@
+"""A side between its two corners: a clamped cubic B-spline that leaves the edges in given directions."""
+
+from dataclasses import dataclass
+from math import factorial
+
+import numpy as np
+
+from bladewright.numerics.elementary import Array, dot, joined, length
+from bladewright.nurbs.basis import Reals, basis, greville, uniform_knots
+from bladewright.section.suction_pressure.edge import powers_at
+from bladewright.section.suction_pressure.points import Corner
+
+DEGREE = 3
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class End:
+    """A side next to a corner, seen from the corner."""
+
+    taylor: Array
+    """(..., 4, 2) coefficients of its polynomial by the fraction of the knot span"""
+    span: float
+    """length of the knot span next to the corner"""
+    slope: Array
+    """(...) first derivative of the side's own parameter by the section's, at the corner, in fractions of the span"""
+    rise: Array
+    """(...) second derivative"""
+    bend: Array
+    """(..., 2) curvature vector times the edge's speed squared"""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Side:
+    """A side by w in [0, 1] from the leading to the trailing edge, parametrised to continue both edges."""
+
+    controls: Array
+    """(..., n, 2)"""
+    knots: Reals
+    start: End
+    end: End
+
+    def points(self, w: Reals) -> Array:
+        """Points (..., len(w), 2)."""
+        first, last = w < self.start.span, w > 1.0 - self.end.span
+        middle = ~first & ~last
+        parts = [
+            (first, _paced(self.start, w[first] / self.start.span)),
+            (middle, basis(self.knots, DEGREE, w[middle]) @ self.controls),
+            (last, _paced(self.end, (1.0 - w[last]) / self.end.span)),
+        ]
+        shape = np.broadcast_shapes(*[part.shape[:-2] for _, part in parts])
+        found = np.empty((*shape, len(w), 2), dtype=np.result_type(*[part for _, part in parts]))
+        for here, part in parts:
+            found[..., here, :] = part
+        return found
+
+
+def inner_count(free: int) -> int:
+    """Number of inner knots of a side with so many free control points between those on the tangents."""
+    return free + 4 - DEGREE - 1
+
+
+def side_knots(free: int, inner: tuple[float, ...]) -> Reals:
+    """Clamped knots over [0, 1]: uniform where no inner ones are given."""
+    if not inner:
+        return uniform_knots(free + 4, DEGREE)
+    return np.array([0.0] * (DEGREE + 1) + list(inner) + [1.0] * (DEGREE + 1))
+
+
+def spread(knots: Reals) -> Reals:
+    """Default places (free,) of the free control points: their Greville abscissae."""
+    return greville(knots, DEGREE)[2:-2]
+
+
+def controls_of(start: Corner, end: Corner, tangent_in: Array, tangent_out: Array, free: Array) -> Array:
+    """Control points (..., n, 2): corner, one on its tangent, the free ones, one on the other tangent, corner."""
+    ends = [
+        start.point,
+        start.point + tangent_in[..., None] * start.direction,
+        end.point + tangent_out[..., None] * end.direction,
+        end.point,
+    ]
+    rows = [each[..., None, :] for each in ends]
+    return joined([rows[0], rows[1], free, rows[2], rows[3]], axis=-2)
+
+
+def interpolated_free(start: Corner, end: Corner, tangents: tuple[Array, Array], points: Array, knots: Reals) -> Array:
+    """Free control points (..., n - 4, 2) of the side that passes through points (..., n - 4, 2) at `spread`."""
+    matrix = basis(knots, DEGREE, spread(knots))
+    none = np.zeros_like(points)
+    fixed = controls_of(start, end, *tangents, none)
+    return np.asarray(np.linalg.inv(matrix[:, 2:-2]) @ (points - matrix @ fixed))
+
+
+def values_at(controls: Array, knots: Reals, w: Array, order: int = 0) -> Array:
+    """Derivatives (..., k, 2) of the B-spline at parameters w (..., k) that may be complex and differ by section."""
+    real, step = np.real(w), 1j * np.imag(w) if np.iscomplexobj(w) else None
+    count = controls.shape[-2]
+
+    def at(derivative: int) -> Array:
+        rows = basis(knots, DEGREE, real.ravel(), derivative).reshape(*real.shape, count)
+        return np.asarray(rows @ controls)
+
+    found = at(order)
+    if step is not None:
+        for k in range(1, DEGREE - order + 1):
+            found = found + at(order + k) * (step**k / factorial(k))[..., None]
+    return found
+
+
+def parametrised(controls: Array, knots: Reals, start: Corner, end: Corner, share: float) -> Side:
+    """The side whose parametrisation continues the edges' to second order.
+
+    `share` is the part of s that an edge takes, over the part of a side.
+    """
+    width = float(knots[DEGREE + 1]), float(1.0 - knots[-DEGREE - 2])
+    ends = [_end(controls, knots, corner, width[i], (1.0, -1.0)[i], share) for i, corner in enumerate((start, end))]
+    return Side(controls=controls, knots=knots, start=ends[0], end=ends[1])
+
+
+def _end(controls: Array, knots: Reals, corner: Corner, width: float, sign: float, share: float) -> End:
+    at = np.array([0.0 if sign > 0.0 else 1.0])
+    rows = [basis(knots, DEGREE, at, order) * ((sign * width) ** order / factorial(order)) for order in range(4)]
+    taylor = np.concatenate(rows) @ controls
+    speed = length(taylor[..., 1, :])
+    second = 2.0 * taylor[..., 2, :]
+    along = dot(second, corner.direction)
+    slope = corner.speed * (width / share) / speed
+    across = second - along[..., None] * corner.direction
+    return End(
+        taylor=taylor,
+        span=width,
+        slope=slope,
+        rise=-(slope**2) * along / speed,
+        bend=across * ((corner.speed / speed) ** 2)[..., None],
+    )
+
+
+def pace(end: End, x: Reals, order: int = 0) -> Array:
+    """The side's own fraction of the knot span (..., len(x)), or its slope, at fractions x of the section's parameter.
+
+    x - (1 - slope) x (1 - x)^3 (1 + 3 x) + rise x^2 (1 - x)^3 / 2: with value 0, first derivative `slope` and second
+    `rise` at the corner, and no change of value and two derivatives at the span's other end.
+    """
+    y = 1.0 - x
+    slower, rise = (1.0 - end.slope)[..., None], end.rise[..., None]
+    if order == 0:
+        return x - slower * (x * y**3 * (1.0 + 3.0 * x)) + rise * (0.5 * x**2 * y**3)
+    return 1.0 - slower * (y**2 * (1.0 + 5.0 * x) * (1.0 - 3.0 * x)) + rise * (0.5 * x * y**2 * (2.0 - 5.0 * x))
+
+
+def _paced(end: End, x: Reals) -> Array:
+    return powers_at(end.taylor, pace(end, x))
