@@ -101,9 +101,13 @@ class ThicknessLaw(Part, ABC):
 
 def same(first: Law | None, second: Law | None) -> bool:
     """Whether two laws hold the same real numbers."""
-    one, other = (_reals(law) for law in (first, second))
-    return len(one) == len(other) and all(np.array_equal(a, b) for a, b in zip(one, other, strict=True))
+    one, other = leaves_of(first), leaves_of(second)
+    pairs = zip(one, other, strict=False)
+    return len(one) == len(other) and all(np.array_equal(np.real(a), np.real(b)) for a, b in pairs)
 
 
-def _reals(law: Law | None) -> list[Any]:
-    return [] if law is None else [np.real(leaf) for leaf in (law if isinstance(law, tuple) else (law,))]
+def leaves_of(law: Law | None) -> tuple[Any, ...]:
+    """The numbers of a law, none of none."""
+    if law is None:
+        return ()
+    return law if isinstance(law, tuple) else (law,)

@@ -22,9 +22,9 @@ from bladewright.section.thickness.stations import Break, Place, Stations
 
 RADIUS = 2.2038
 """leading edge radius of index 6, in chords for a maximum thickness of one chord"""
-SLOPES = (0.775, 151.0 / 60.0, -13.625, 215.0 / 6.0, -12.5)
-"""slope at the trailing edge, downwards, of the maximum thickness: the polynomial in the place of the maximum through the
-values 1, 1.17, 1.575, 2.325, 3.5 that the NACA series has for 0.2, 0.3 ... 0.6"""
+SLOPES = (0.775, 2.51666667, -13.625, 35.83333333, -12.5)
+"""slope at the trailing edge, downwards, of the maximum thickness: the polynomial in the place of the maximum through
+1, 1.17, 1.575, 2.325, 3.5 of the NACA series at 0.2, 0.3 ... 0.6, in T-Blade3's decimals (151/60 and 215/6)"""
 AT_MAXIMUM, AT_TRAILING_EDGE = 0.4, 0.99
 """fixed coordinates of the joints: their places in a usual blade"""
 

@@ -47,7 +47,7 @@ class PiecewiseThickness(Thickness):
     def half_at(self, u: Reals) -> Array:
         zero = Series([np.zeros(())])
         place = Place(zero + u, zero + (1.0 - u), zero + np.sqrt(u), zero + np.sqrt(1.0 - u))
-        half = self._formulas[0](place).value
+        half = _safely(self._formulas[0], place)
         for k, each in enumerate(self._stations.breaks):
             later = np.real(u) > np.real(each.u)[..., None]
             half = np.where(later, _safely(self._formulas[k + 1], place), half)

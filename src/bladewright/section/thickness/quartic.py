@@ -1,0 +1,148 @@
+"""The quartic B-spline thickness of 18 control points, closed around both edges.
+
+One uniform quartic B-spline of 14 segments runs from the trailing edge along one side to the leading edge and back
+along the other; the sides mirror each other, so eleven control points a side say all of it, the first two being mirrored
+ones. Its segments are the natural parameter: s = segment / 7, and three derivatives are continuous everywhere.
+Reference: Nemnem et al. 2014, ASAT-16-142-PP, "Airfoil thickness distributions"; the conditions as in T-Blade3.
+"""
+
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+
+from bladewright.designs import Law, parameter
+from bladewright.errors import DesignError
+from bladewright.numerics.elementary import Array, radians
+from bladewright.numerics.solving import solved
+from bladewright.nurbs.basis import Reals
+from bladewright.section import checks
+from bladewright.section.laws import Span
+from bladewright.section.thickness.law import Thickness, ThicknessLaw
+from bladewright.section.thickness.uniform import QUARTIC, UniformThickness
+
+SEGMENTS = 7
+CONTROLS = SEGMENTS + 4
+CURVATURE = 0.04
+"""T-Blade3's second derivative of u at the leading edge"""
+WEDGE = 2.5
+"""T-Blade3's angle of a side at a sharp trailing edge [deg]"""
+
+
+@dataclass(frozen=True, kw_only=True)
+class QuarticSpline(ThicknessLaw):
+    """Quartic B-spline thickness through leading edge, maximum and trailing edge; thicknesses are full ones, in chords.
+
+    Three derivatives by s are continuous all along and around the leading edge. A closed trailing edge has the ordinate
+    growing first, almost a blunt one; a sharp one is a wedge.
+    """
+
+    law: Literal["quartic-spline"] = "quartic-spline"
+    """tells this law from the others"""
+    maximum_thickness: Law = parameter("-")
+    """thickness at its maximum, of the chord [-]"""
+    maximum_thickness_at: Law = parameter("-")
+    """place of the maximum, of the chord [-]"""
+    leading_edge_thickness: Law = parameter("-")
+    """thickness at the end of the first segment from the leading edge, of the chord [-]"""
+    trailing_edge_thickness: Law = parameter("-")
+    """thickness at the start of the last segment before the trailing edge, of the chord [-]"""
+    leading_edge_curvature: Law = parameter("-", default=CURVATURE)
+    """second derivative of u by segments at the leading edge: the larger, the rounder [-]"""
+    trailing_edge_curvature: Law | None = parameter("-", default=None)
+    """the same at a closed trailing edge, forwards; none: 0, a flat end [-]"""
+    trailing_edge_wedge_angle: Law | None = parameter("deg", default=None)
+    """angle of each side from the chord line at a sharp trailing edge; none: 2.5 [deg]"""
+    trailing_edge: Literal["closed", "sharp"] = "closed"
+    """shape of the trailing edge"""
+
+    def __post_init__(self) -> None:
+        checks.choice(f"{self.path}.law", self.law, ["quartic-spline"])
+        checks.choice(f"{self.path}.trailing_edge", self.trailing_edge, ["closed", "sharp"])
+        self._kept("maximum_thickness", 0.0, 1.0, "it must be between 0 and 1 chord")
+        self._kept("maximum_thickness_at", 0.05, 0.95, "the maximum must stand between 0.05 and 0.95 of the chord")
+        self._kept("leading_edge_thickness", 0.0, 1.0, "it must be positive")
+        self._kept("trailing_edge_thickness", 0.0, 1.0, "it must be positive")
+        self._kept("leading_edge_curvature", 0.0, float("inf"), "it must be positive")
+        closed = self.trailing_edge == "closed"
+        name, other = ("trailing_edge_curvature", "trailing_edge_wedge_angle")[:: 1 if closed else -1]
+        if getattr(self, other) is not None:
+            raise DesignError(
+                f"{self.path}.{other} is given, but the trailing edge is {self.trailing_edge}: leave it out"
+            )
+        if getattr(self, name) is None:
+            object.__setattr__(self, name, 0.0 if closed else WEDGE)
+        elif closed:
+            self._kept(name, -1e-300, float("inf"), "it must not be negative")
+        else:
+            self._kept(name, 0.0, 90.0, "it must be between 0 and 90 deg")
+
+    def control_points(self, span: Span) -> tuple[Array, Array]:
+        """Control points (..., m, 11) of one side, chord fractions and half thicknesses, leading to trailing edge."""
+        maximum, at = 0.5 * span.values(self.maximum_thickness), span.values(self.maximum_thickness_at)
+        leading, trailing = (
+            0.5 * span.values(getattr(self, f"{end}_edge_thickness")) for end in ("leading", "trailing")
+        )
+        for name, value in (("leading", leading), ("trailing", trailing)):
+            cure = "it must be below the maximum thickness; lower it or raise maximum_thickness"
+            met = np.real(value) < np.real(maximum)
+            self._demand(met, span, f"{name}_edge_thickness", 2.0 * value, cure)
+        zero, one = np.zeros(1), np.ones(1)
+        curvature = span.values(self.leading_edge_curvature)
+        if self.trailing_edge_wedge_angle is not None:
+            last = 1.0 - trailing / np.tan(radians(span.values(self.trailing_edge_wedge_angle)))
+            cure = "the wedge must begin behind the maximum; widen trailing_edge_wedge_angle or thin the trailing edge"
+            self._demand(np.real(last) > np.real(at), span, "trailing_edge_thickness", 2.0 * trailing, cure)
+            edge = [zero, last]
+        else:
+            edge = [zero, -span.values(self.trailing_edge_curvature or 0.0)]
+        closed = self.trailing_edge == "closed"
+        across = _solution(_conditions_u(closed=closed), [zero, at, one, curvature, *edge, zero, zero, zero], 1.0)
+        conditions = _conditions_half(closed=closed)
+        up = _solution(conditions, [leading, maximum, trailing, zero, zero, zero, zero, zero, zero], -1.0)
+        return across, up
+
+    def at(self, span: Span) -> Thickness:
+        kind: Literal["round", "sharp"] = "round" if self.trailing_edge == "closed" else "sharp"
+        thickness = UniformThickness(*self.control_points(span), leading="round", trailing=kind)
+        thickness.check(self.path, span)
+        return thickness
+
+
+def _row(derivative: int, segment: int, mirror: float) -> Reals:
+    """Coefficients (9,) of the unknown control points in a derivative at the start of a segment, 7 being the end."""
+    row = np.zeros(CONTROLS)
+    if segment == SEGMENTS:
+        powers = np.array([_falling(power, derivative) for power in range(5)])
+        row[SEGMENTS - 1 :] = powers @ QUARTIC
+    else:
+        row[segment : segment + 5] = _falling(derivative, derivative) * QUARTIC[derivative]
+    row[3] += mirror * row[0]
+    row[2] += mirror * row[1]
+    return row[2:]
+
+
+def _falling(power: int, derivative: int) -> float:
+    """The derivative of x^power at 1."""
+    return float(np.prod(np.arange(power - derivative + 1, power + 1))) if power >= derivative else 0.0
+
+
+def _conditions_u(*, closed: bool) -> Reals:
+    """Matrix (9, 9) of the conditions on the control points' chord fractions."""
+    edge = [(1, SEGMENTS), (2, SEGMENTS)] if closed else [(2, 6), (0, 6)]
+    rows = [(0, 0), (0, 3), (0, SEGMENTS), (2, 0), *edge, (3, 2), (4, 3), (4, 4)]
+    return np.array([_row(derivative, segment, 1.0) for derivative, segment in rows])
+
+
+def _conditions_half(*, closed: bool) -> Reals:
+    """Matrix (9, 9) of the conditions on the control points' half thicknesses."""
+    edge = (2, SEGMENTS) if closed else (2, 6)
+    rows = [(0, 1), (0, 3), (0, 6), (0, SEGMENTS), edge, (3, SEGMENTS), (4, 1), (1, 3), (3, 5)]
+    return np.array([_row(derivative, segment, -1.0) for derivative, segment in rows])
+
+
+def _solution(matrix: Reals, values: list[Array], mirror: float) -> Array:
+    """Control points (..., m, 11), the mirrored ones in front."""
+    right = np.stack(np.broadcast_arrays(*values), axis=-1)[..., None]
+    found = solved(matrix, right)[..., 0]
+    return np.concatenate([mirror * found[..., 1::-1], found], axis=-1)
