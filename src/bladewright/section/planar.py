@@ -121,10 +121,11 @@ class PlanarSection(Design):
 def _check_plain(part: Part, path: str) -> None:
     """Refuse laws along the span, which a single section has no use for."""
     hints = get_type_hints(type(part))
-    for name, value in ((each.name, getattr(part, each.name)) for each in fields(part)):
+    for each in fields(part):
+        name, value = each.name, getattr(part, each.name)
         if isinstance(value, Part):
             _check_plain(value, f"{path}.{name}")
-        if not isinstance(value, tuple):
+        if not isinstance(value, tuple) or "unit" not in each.metadata:
             continue
         single = float in get_args(hints[name])
         for where, item in [(name, value)] if single else [(f"{name}[{i}]", item) for i, item in enumerate(value)]:
