@@ -91,7 +91,7 @@ class StreamLines:
         if real.ndim > 2:
             flat = real.reshape(-1, *real.shape[-2:])
             real = flat[0]
-        lines = self._real()
+        lines = self.real()
         u = lines.u_at(real)
         # the step's imaginary part alone: all of it that a batch need carry
         carried = replace(lines, series=np.imag(self.series), starts=np.imag(self.starts))
@@ -130,7 +130,8 @@ class StreamLines:
         u = self.panels[:-1, None] + np.diff(self.panels)[:, None] * (1.0 + local) / 2.0
         return u @ _GUESS_SERIES.T
 
-    def _real(self) -> "StreamLines":
+    def real(self) -> "StreamLines":
+        """The same without imaginary parts and batch."""
         first = (0,) * (self.series.ndim - 3)
         return StreamLines(
             mapping=self.mapping,

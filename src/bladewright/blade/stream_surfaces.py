@@ -1,0 +1,235 @@
+"""Native stream surfaces of a flow path: hub, shroud and what lies between them, in one parameter t along the flow."""
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+from scipy.interpolate import BSpline, make_interp_spline
+
+from bladewright.blade.edge_crossing import crossed
+from bladewright.blade.flow_path import FlowPath
+from bladewright.blade.matching import (
+    Match,
+    MatchedLine,
+    Measured,
+    curved_matches,
+    distinct,
+    matched_line,
+    measured,
+    straight_match,
+)
+from bladewright.blade.meridian import Meridian
+from bladewright.blade.meridian_line import MeridianLine, real_first, shifted
+from bladewright.errors import DesignError
+from bladewright.numerics.elementary import Array, cross2
+from bladewright.nurbs.basis import Reals
+from bladewright.section.laws import stacked
+
+SAME = 1e-12
+"""span fractions nearer than this are the same"""
+FOLDED = 1e-4
+"""share of its median below which the Jacobian of the map (t, v) -> (x, r) is taken for a fold"""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class StreamSurfaces:
+    """The map (t, v) -> (x, r) in metres of a flow path: v from 0 at the hub to 1 at the shroud.
+
+    It is `Channelled`: `stream_lines(surfaces, mapping, v, -low, high - 1)` gives its stream lines, t in place of u.
+    """
+
+    matched: tuple[MatchedLine, ...]
+    """hub, given stream surfaces, shroud by t"""
+    spans: Reals
+    """(j,) their span fractions"""
+    low: float
+    """t at which the flow path starts: 0, or less where t counts from a leading edge"""
+    high: float
+    """t at which it ends: 1, or more where t counts to a trailing edge"""
+    walls: dict[str, MeridianLine]
+    """hub and shroud by their own parameters"""
+    measures: tuple[Measured, ...]
+    """hub, given stream surfaces, shroud by their measure"""
+    matches: tuple[Match, ...]
+    """fraction of each measure by t"""
+    chosen: tuple[int, ...] | None = None
+    """the only lines whose joints count, where just some places along the span are asked for"""
+
+    def joints(self) -> Reals:
+        """Where stream lines lose derivatives, t inside (low, high), 0 and 1 apart."""
+        which = range(len(self.matched)) if self.chosen is None else self.chosen
+        places = distinct(np.concatenate([self.matched[j].joints for j in which]), self.low, self.high)
+        ends = np.array([0.0, 1.0])
+        return places[np.min(np.square(places[:, None] - ends), axis=1) > SAME**2]
+
+    def along(self, v: Reals) -> "StreamSurfaces":
+        """The same for v (m,) alone: joints of lines that have no part in these stream lines are left out."""
+        parts = np.any(self.shares(v) != 0.0, axis=0)
+        return replace(self, chosen=tuple(int(j) for j in np.flatnonzero(parts)))
+
+    def span_joints(self) -> Reals:
+        """Inner v at which two derivatives across the stream surfaces are continuous only."""
+        return np.unique(self._cardinals.t)[1:-1]
+
+    def shares(self, v: Array, order: int = 0) -> Array:
+        """Shares (len(v), j) of the lines in the stream lines at v (m,), or their derivatives by v."""
+        at = np.real(v)
+        if np.min(at, initial=0.0) < -SAME or np.max(at, initial=1.0) > 1.0 + SAME:
+            worst = float(at[np.argmax(np.maximum(-at, at - 1.0))])
+            raise DesignError(
+                f"a stream surface was asked at v = {worst:g}: v runs from 0 at the hub to 1 at the shroud"
+            )
+        found: Array = self._cardinals(at, nu=order)
+        if order == 0:
+            near = np.square(at[:, None] - self.spans) < SAME**2
+            found = np.where(np.any(near, axis=1)[:, None], near.astype(float), found)
+        if np.iscomplexobj(v):
+            found = found + 1j * np.imag(v)[:, None] * self.shares(at, order + 1)
+        return found
+
+    def stream_polynomials(self, v: Array, centres: Reals) -> Array:
+        """Coefficients (..., len(v), len(centres), k, 2) of (x, r) in powers of t - centre, around each centre."""
+        shares = self.shares(v)
+        count = max(each.powers.shape[-2] for each in self.matched)
+        total: Array = np.zeros(())
+        for j, each in enumerate(self.matched):
+            if not np.any(shares[:, j]):
+                continue
+            part = shares[:, j, None, None, None] * shifted(each.powers, each.breaks, centres)[..., None, :, :, :]
+            room = [(0, 0)] * (part.ndim - 2) + [(0, count - part.shape[-2]), (0, 0)]
+            total = total + np.pad(part, room)
+        return total
+
+    def at(self, t: Reals, v: Reals) -> tuple[Array, Array, Array]:
+        """(x, r) at pairs of real t and v (m,), and its derivatives by t and by v, (..., m, 2) each."""
+        rows, slopes = ([each.values(t, order) for each in self.matched] for order in (0, 1))
+        shares, by_v = self.shares(v), self.shares(v, 1)
+
+        def mixed(parts: list[Array], weights: Reals) -> Array:
+            return sum((weights[:, j, None] * part for j, part in enumerate(parts)), np.zeros(()))
+
+        return mixed(rows, shares), mixed(slopes, shares), mixed(rows, by_v)
+
+    def counted(self, v: Reals) -> tuple[Array, Array]:
+        """m' (..., m) as lines with `spacing` "conformal" count it: at t = 0, and its increase by t; linear in t.
+
+        Raises DesignError where a line counts its length instead.
+        """
+        wholes = [each.line.counted for each in self.measures]
+        if any(whole is None for whole in wholes):
+            raise DesignError(
+                "hub, shroud or stream_surfaces: m' was asked as the points' spacing counts it, which needs all of "
+                "them given by points with spacing 'conformal'; give them so, or ask for the exact m'"
+            )
+        shares, ends = self.shares(v), np.array([0.0, 1.0])
+        total: Array = np.zeros(())
+        for j, whole in enumerate(wholes):
+            both = np.asarray(whole)[..., None] * self.matches[j].fractions(ends)
+            total = total + both[..., None, :] * shares[:, j, None]
+        return total[..., 0], total[..., 1] - total[..., 0]
+
+    def wall_parameter(self, name: str, t: Reals) -> Reals:
+        """Own parameters (k,) of the hub's or shroud's curve at real t (k,), of the real design."""
+        j = 0 if name == "hub" else -1
+        return real_first(self.measures[j].own(self.matches[j].fractions(t)), 1)
+
+    @cached_property
+    def _cardinals(self) -> BSpline:
+        degree = min(len(self.spans) - 1, 3)
+        return make_interp_spline(self.spans, np.eye(len(self.spans)), degree)
+
+
+def stream_surfaces(path: FlowPath, metre: float, edges: tuple[Meridian, Meridian] | None = None) -> StreamSurfaces:
+    """The native stream surfaces of a flow path whose length unit is `metre` metres.
+
+    `edges` are the leading- and the trailing-edge curve of the blade, needed where the path is matched at them. Raises
+    DesignError where the stream lines fold over, or an edge does not meet one that is given.
+    """
+    curves = [path.hub, *path.stream_surfaces, path.shroud]
+    names = ["hub", *(f"stream_surfaces[{i}]" for i in range(len(path.stream_surfaces))), "shroud"]
+    along = [measured(curve.line(metre)) for curve in curves]
+    spans = np.array([0.0, *path.stream_spans, 1.0])
+    starts: list[Array] = [np.asarray(0.0)] * len(along)
+    ends: list[Array] = [np.asarray(1.0)] * len(along)
+    low, high = 0.0, 1.0
+    if path.matched == "edges":
+        if edges is None:
+            raise DesignError(
+                "matched is 'edges', but no leading- and trailing-edge curves are given: give the blade's edges as "
+                "curves in (x, r), or take matched = 'ends'"
+            )
+        for into, edge, what in ((starts, edges[0], "leading_edge"), (ends, edges[1], "trailing_edge")):
+            line = edge.line(metre)
+            into[:] = [_meets(each, line, what, name) for each, name in zip(along, names, strict=True)]
+        low, high = _common(starts, ends)
+    if path.quasi_orthogonals:
+        matches = list(curved_matches(_pairs(path)))
+    else:
+        matches = [straight_match(start, end) for start, end in zip(starts, ends, strict=True)]
+    surfaces = StreamSurfaces(
+        matched=tuple(matched_line(each, match, low, high) for each, match in zip(along, matches, strict=True)),
+        spans=spans,
+        low=low,
+        high=high,
+        walls={"hub": along[0].line, "shroud": along[-1].line},
+        measures=tuple(along),
+        matches=tuple(matches),
+    )
+    check_stream_surfaces(surfaces)
+    return surfaces
+
+
+def check_stream_surfaces(surfaces: StreamSurfaces) -> None:
+    """Refuse stream surfaces whose map (t, v) -> (x, r) is not one to one."""
+    t, v = np.linspace(surfaces.low, surfaces.high, 101), np.linspace(0.0, 1.0, 41)
+    grid_t, grid_v = (each.ravel() for each in np.meshgrid(t, v, indexing="ij"))
+    point, along, across = (real_first(part, 2) for part in surfaces.at(grid_t, grid_v))
+    share = cross2(along, across)
+    share = share / np.median(np.sqrt(np.sum(along**2, axis=-1) * np.sum(across**2, axis=-1)))
+    if np.all(share < 0.0):
+        raise DesignError(
+            "hub and shroud are swapped, or both run upstream: with the flow from their first to their last points, "
+            "the shroud must lie to the left of the hub in the (x, r) plane; exchange them, or reverse both"
+        )
+    worst = int(np.argmin(share))
+    if share[worst] <= FOLDED:
+        inner = "stream_surfaces" if len(surfaces.matched) > 2 else "quasi_orthogonals"
+        raise DesignError(
+            f"the stream surfaces fold over at (x, r) = ({point[worst, 0]:.5g}, {point[worst, 1]:.5g}) m, v = "
+            f"{grid_v[worst]:.3f} (Jacobian {share[worst]:.3g} of its median, it must be positive): hub and shroud "
+            "cross, or points at equal fractions of their lengths do not lie beside each other there; let both start and "
+            "end "
+            + (
+                "beside each other, or give quasi_orthogonals"
+                if inner == "quasi_orthogonals"
+                else "beside the stream_surfaces, correct their order, or take matched = 'edges'"
+            )
+        )
+
+
+def _meets(along: Measured, edge: MeridianLine, what: str, name: str) -> Array:
+    """The fraction (...) of a line's measure at which an edge curve crosses it."""
+    line = along.line
+
+    def position(t: Reals, order: int) -> Array:
+        return line.values(t[0], order)[..., None, :, :]
+
+    place = crossed(position, (0.0, 1.0), edge, what, [name]).t
+    return along.fractions(place)[..., 0]
+
+
+def _common(starts: list[Array], ends: list[Array]) -> tuple[float, float]:
+    """t from the latest start of a line to the earliest end of one."""
+    pairs = [(float(real_first(a, 0)), float(real_first(b, 0))) for a, b in zip(starts, ends, strict=True)]
+    for a, b in pairs:
+        if a >= b:
+            raise DesignError(
+                "leading_edge and trailing_edge cross, or are swapped: the trailing edge must lie downstream of the "
+                "leading edge on hub, shroud and every stream surface; exchange them, or reverse hub and shroud"
+            )
+    return max(-a / (b - a) for a, b in pairs), min((1.0 - a) / (b - a) for a, b in pairs)
+
+
+def _pairs(path: FlowPath) -> Array:
+    flat = stacked([value for pair in path.quasi_orthogonals for value in pair])
+    return flat.reshape(*flat.shape[:-1], len(path.quasi_orthogonals), 2)
