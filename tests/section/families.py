@@ -9,6 +9,8 @@ from typing import Any
 from bladewright.section.planar import PlanarSection
 
 from .oval import OVAL
+from .suction_pressure_examples import FAN_TIP, STATOR, TEARDROP, TURBINE, WEDGE, section, vane
+from .profiles.examples import PROFILES, PROPERTIES, section_of
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -30,5 +32,13 @@ class Example:
 
 EXAMPLES: dict[str, Example] = {
     "oval": Example(design=OVAL, metal_angles=None, maximum_thickness=0.12),
+    "suction and pressure side of a stator": Example(design=section(STATOR), metal_angles=(42.0, 2.0)),
+    "suction side below and thickness of a fan tip": Example(design=section(FAN_TIP), metal_angles=(-64.0, -58.0)),
+    "pseudo skeleton line of a turbine": Example(design=section(TURBINE), metal_angles=(44.0, -66.0)),
+    "wedge diffuser with a back face": Example(design=vane(WEDGE), metal_angles=(65.0, 65.0)),
+    "wedge diffuser of two circles": Example(
+        design=vane(TEARDROP), metal_angles=(65.0, 65.0), maximum_thickness=0.16
+    ),
+    **{name: Example(design=section_of(profile), **PROPERTIES.get(name, {})) for name, profile in PROFILES.items()},
 }
 """By a name that says what is particular."""

@@ -1,0 +1,140 @@
+"""Profiles laid around a mean line: half thickness to both sides, normal to it, as the published series are built."""
+
+from abc import ABC, abstractmethod
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from bladewright.numerics.elementary import Array
+from bladewright.nurbs.basis import Reals
+from bladewright.section.outline import Edge, Joint, Outline, Start
+from bladewright.section.profiles.analytic import composed, relative_exponential, relative_logarithm, slope
+from bladewright.section.profiles.places import JOINT, Place, Places
+from bladewright.section.thickness.series import Series, polynomial, variable
+
+TrailingEdge = Literal["sharp", "blunt", "round"]
+
+GATHERED = 0.9
+"""share of the steps of s drawn towards an edge that is small"""
+FAR = 0.99
+"""1 - x from which on a round trailing edge is not felt"""
+
+
+class MeanLine(ABC):
+    """Mean lines y(x) of sections (...): 0 at x = 0 and at x = 1, in chords."""
+
+    joint: Array | None = None
+    """x (..., 1) where two pieces meet"""
+    joint_derivatives: int = 0
+    """continuous derivatives of the sides there, which have one less than the mean line"""
+
+    @abstractmethod
+    def ordinate(self, x: Series, aft: NDArray[np.bool_]) -> Series:
+        """y at x (..., k); `aft` (k,) says which lie behind the joint."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Around(Outline):
+    """Sections whose half thickness is a polynomial in sqrt(x), measured normal to the mean line at x.
+
+    A round trailing edge is the thickness T(x) times sqrt(1 - x^n), n = 2 / T(1): a nose of the radius T(1), below the
+    thickness of the blunt edge by more than 1e-3 of itself only over the last 3 T(1) of the chord.
+    """
+
+    mean_line: MeanLine
+    thickness: Sequence[Array]
+    """coefficients (..., 1) of the powers of sqrt(x), from the first on"""
+    end: TrailingEdge
+    bend: float
+    """-c2 / c1 of the coefficients, the same for all sections, not negative"""
+    gathered: float = 0.0
+    """share of the steps of s drawn towards the leading edge"""
+
+    @cached_property
+    def _places(self) -> Places:
+        return Places(
+            round_end=self.end == "round",
+            gathered_in=self.gathered,
+            gathered_out=GATHERED if self.end == "round" else 0.0,
+            bend=self.bend,
+            joint=self.mean_line.joint,
+        )
+
+    def _half(self, place: Place) -> Series:
+        half = polynomial([np.zeros(()), *self.thickness], place.root)
+        if place.end_root is None:
+            return half
+        return half * place.end_root * composed(self._cap(place.rest), place.rest).sqrt()
+
+    def _cap(self, rest: Series) -> Series:
+        """(1 - x^n) / (1 - x) and its derivatives by 1 - x: half the thickness there, as far as they are asked for."""
+        power = 2.0 / sum(self.thickness[1:], self.thickness[0])
+        w = rest.value
+        # so far from the edge x^n vanishes, and its logarithm may not be taken at x = 0
+        far = np.real(w) > FAR
+        near = np.where(far, FAR, w)
+        log = relative_logarithm(-near)
+        value = np.where(far, 1.0 / np.where(far, w, 1.0), relative_exponential(-power * near * log) * power * log)
+        if rest.order == 0:
+            return Series([value])
+        at_edge = np.real(w) == 0.0
+        apart = np.where(at_edge, 1.0, w)
+        left = np.where(far, 0.0, np.exp(-power * near * log))
+        first = np.where(at_edge, -0.5 * power * (power - 1.0), (power * left / (1.0 - near) - value) / apart)
+        bend = -power * (power - 1.0) * left / (1.0 - near) ** 2
+        second = np.where(at_edge, power * (power - 1.0) * (power - 2.0) / 3.0, (bend - 2.0 * first) / apart)
+        return Series([value, first, 0.5 * second])
+
+    def _line(self, x: Series, s: Reals) -> tuple[Series, Series]:
+        """Ordinate and slope of the mean line as series of s."""
+        aft = s > JOINT
+        at = variable(x.value, x.order + 1)
+        ordinate = self.mean_line.ordinate(at, aft)
+        return composed(ordinate, x), composed(slope(ordinate), x)
+
+    def _sides(self, s: Reals, order: int) -> list[Array]:
+        """Points and their derivatives by s, (..., k, 2, order + 1), of both sides."""
+        place = self._places.at(s, order)
+        ordinate, rise = self._line(place.x, s)
+        half = self._half(place)
+        across = half / (rise * rise + 1.0).sqrt()
+        along = across * rise
+        sides = []
+        for sign in (1.0, -1.0):
+            pair = [(place.x - along * sign).derivatives(), (ordinate + across * sign).derivatives()]
+            sides.append(np.stack(np.broadcast_arrays(*pair), axis=-2))
+        return sides
+
+    def points(self, s: Reals) -> tuple[Array, Array]:
+        """Points (..., len(s), 2) of the upper and the lower side."""
+        upper, lower = self._sides(s, 0)
+        return upper[..., 0], lower[..., 0]
+
+    def camber(self, s: Reals) -> Array:
+        """Points (..., len(s), 2) of the mean line."""
+        x = self._places.at(s, 0).x
+        pair = np.broadcast_arrays(x.value, self._line(x, s)[0].value)
+        return np.stack(pair, axis=-1)
+
+    @property
+    def leading_edge(self) -> Edge:
+        """Round, with the radius half the square of the thickness's first coefficient."""
+        return self._edge(0.0, "round")
+
+    @property
+    def trailing_edge(self) -> Edge:
+        """Sharp, blunt or round, as asked."""
+        return self._edge(1.0, self.end)
+
+    @property
+    def joints(self) -> tuple[Joint, ...]:
+        """The mean line's joint, always at the same s."""
+        return () if self.mean_line.joint is None else (Joint(JOINT, self.mean_line.joint_derivatives),)
+
+    def _edge(self, s: float, kind: TrailingEdge) -> Edge:
+        starts = [Start(*(side[..., 0, :, k] for k in range(3))) for side in self._sides(np.array([s]), 2)]
+        return Edge(kind=kind, upper=starts[0], lower=starts[1])

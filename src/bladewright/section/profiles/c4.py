@@ -1,0 +1,63 @@
+"""The British C4 profile (Howell 1942, R. & M. 2095), on a circular-arc mean line."""
+
+from dataclasses import dataclass
+from typing import ClassVar, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from bladewright.designs import Law, parameter
+from bladewright.numerics.elementary import Array, radians
+from bladewright.section.laws import Span
+from bladewright.section.outline import Outline
+from bladewright.section.profiles.around import Around, MeanLine
+from bladewright.section.profiles.closing import Thickened
+from bladewright.section.thickness.series import Series
+
+POLYNOMIAL = {1: 0.3048, 2: -0.0914, 4: -0.8614, 6: 2.1236, 8: -2.9163, 10: 1.9744, 12: -0.5231}
+"""half thickness of a profile of nominally 0.2 chords: coefficients of the powers of sqrt(x)"""
+LARGEST = 0.1001319496141312
+"""the polynomial's maximum"""
+FORM = {power: value * 0.5 / LARGEST for power, value in POLYNOMIAL.items()}
+OWN_END = 0.1058603
+"""thickness that the polynomial has at x = 1, of the maximum thickness"""
+BEND = 0.0914 / 0.3048
+
+
+@dataclass(frozen=True, kw_only=True)
+class C4(Thickened):
+    """A C4 profile: 10C4/30C50 has thickness 0.1, camber angle 30 deg, its largest thickness at 0.3.
+
+    The half thickness is the usual polynomial in sqrt(x) for the published ordinates, scaled to the thickness asked
+    for, normal to the mean line; it meets the ordinates of the profile of 0.1 chords within 2e-4 chords.
+    """
+
+    LIMITS: ClassVar = {"camber_angle": (-120.0, 120.0, "the camber angle must lie between -120 and 120 deg")}
+
+    kind: Literal["c4"] = "c4"
+    """which kind of profile this is"""
+    camber_angle: Law = parameter("deg", default=0.0)
+    """turning of the mean line, a circular arc [deg]"""
+
+    def outline(self, span: Span) -> Outline:
+        """The exact sections (..., m) at the places of the span, in chords, unstaggered."""
+        return Around(
+            mean_line=ArcLine(angle=radians(span.values(self.camber_angle))[..., None]),
+            thickness=self.closed(span, FORM, OWN_END),
+            end=self.trailing_edge,
+            bend=BEND,
+        )
+
+
+@dataclass(frozen=True, kw_only=True)
+class ArcLine(MeanLine):
+    """A circular arc, above the chord line where its angle is positive."""
+
+    angle: Array
+    """the arc's angle (..., 1) [rad]"""
+
+    def ordinate(self, x: Series, aft: NDArray[np.bool_]) -> Series:  # noqa: ARG002 - one piece
+        """k x (1 - x) / (cos(angle / 2) + sqrt(1 - k^2 (x - 1/2)^2)), k = 2 sin(angle / 2) the curvature."""
+        curvature = 2.0 * np.sin(0.5 * self.angle)
+        off = (x - 0.5) * curvature
+        return x * (1.0 - x) * curvature / ((1.0 - off * off).sqrt() + np.cos(0.5 * self.angle))

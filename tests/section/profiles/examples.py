@@ -1,0 +1,31 @@
+"""Examples of every kind of profile, for the shared contract tests and for those of the kinds."""
+
+from bladewright.section.profiles.c4 import C4
+from bladewright.section.profiles.kinds import ProfileSection
+from bladewright.section.profiles.naca4 import Naca4
+from bladewright.section.profiles.naca5 import Naca5
+
+PROFILES = {
+    "naca-2412": Naca4(thickness=0.12, camber=0.02, camber_position=0.4, stagger_angle=10.0),
+    "naca-0012-round": Naca4(thickness=0.12, trailing_edge="round"),
+    "naca-6409-blunt": Naca4(
+        thickness=0.09, camber=0.06, camber_position=0.4, trailing_edge="blunt", trailing_edge_thickness=0.03
+    ),
+    "naca-23012": Naca5(thickness=0.12, design_lift=0.3, camber_position=0.15, trailing_edge="blunt"),
+    "naca-23112": Naca5(thickness=0.12, design_lift=0.3, camber_position=0.15, reflexed=True),
+    "c4": C4(thickness=0.1, camber_angle=30.0, stagger_angle=-36.0, trailing_edge="round"),
+}
+"""By a name that says what is particular."""
+
+
+def section_of(profile):
+    """The profile as a 2D design."""
+    return ProfileSection(name="profile", length_unit="mm", chord=50.0, pitch=60.0, section=profile)
+
+
+PROPERTIES = {
+    # the form with a closed edge is a little thicker than its name says
+    "naca-2412": {"maximum_thickness": 0.12 * 1.000118},
+    "c4": {"maximum_thickness": 0.1, "metal_angles": (-36.0 + 15.0, -36.0 - 15.0)},
+}
+"""What their sections must have."""
