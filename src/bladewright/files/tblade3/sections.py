@@ -141,8 +141,9 @@ def _curves(curves: Meanlines | Multipliers | None, at: Reals) -> tuple[Reals, .
     values = curves.curvature if isinstance(curves, Meanlines) else curves.values
     if curves.span is None:
         return tuple(np.column_stack(pair) for pair in zip(curves.u, values, strict=True))
-    pair = [_spline(curves.span, table)(at) for table in (curves.u, values)]
-    return tuple(np.stack(pair, axis=-1))
+    found = np.stack([_spline(curves.span, table)(at) for table in (curves.u, values)], axis=-1)
+    found[:, [0, -1], 0] = [0.0, 1.0]
+    return tuple(found)
 
 
 def _leading_edges(edges: LeadingEdges | None, at: Reals) -> Reals | None:

@@ -4,7 +4,7 @@ from itertools import pairwise
 from typing import Any
 
 from bladewright.errors import FileError
-from bladewright.files.tblade3.lines import Lines
+from bladewright.files.tblade3.lines import Lines, items, number
 from bladewright.files.tblade3.records import LEADING_EDGE, LeadingEdges, Meanlines, Multipliers, NacaThickness, Table
 
 _SLOPES = {"dy_dx_te": False, "dy_dx_norm": True}
@@ -99,11 +99,14 @@ def _multipliers(lines: Lines) -> Multipliers | None:
     if points < 3:
         raise lines.error(f"the number of {what} is {points}: at least 3 are needed", lines.place - 1)
     inner = points - 2
+    numbers = [number(word) for word in items(lines.peek())]
+    # the table of some versions ends with the multiplier at the trailing edge, which is 0 in those of others
+    last = len(numbers) >= 2 + 2 * inner and numbers[1 + 2 * inner] is not None
     spans, places, values = [], [], []
-    for span, *row in lines.table(count, 1 + 2 * inner, what):
+    for span, *row in lines.table(count, 1 + 2 * inner + last, what):
         spans.append(span)
         places.append((0.0, *row[:inner], 1.0))
-        values.append((0.0, *row[inner:], 0.0))
+        values.append((0.0, *row[inner:], *(() if last else (0.0,))))
     _check_places(lines, spans, places, what)
     return Multipliers(span=tuple(spans), u=tuple(places), values=tuple(values))
 

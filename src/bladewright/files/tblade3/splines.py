@@ -33,11 +33,13 @@ class SpanSpline:
         segment = np.clip(np.searchsorted(places[:, 0], at, side="right") - 1, 0, len(places) - 1)
         powers = _inverted(places[segment], at)[:, None] ** np.arange(4.0)
         found: Reals = np.einsum("mp,mp...->m...", powers, values[segment])
+        for end in (0, -1):
+            found[at == self.span[end]] = self.values[end]
         return found
 
 
 def _polynomials(points: Reals) -> Reals:
-    """Coefficients (n - 1, 4, ...) of rising powers of t in [0, 1], segment by segment, of the spline of points (n, ...)."""
+    """Coefficients (n - 1, 4, ...) of the powers of t in [0, 1] in each segment of the spline of points (n, ...)."""
     points = np.asarray(points, dtype=np.float64)
     extended = np.concatenate([2.0 * points[:1] - points[1:2], points, 2.0 * points[-1:] - points[-2:-1]])
     windows = np.stack([extended[k : k + len(points) - 1] for k in range(4)], axis=1)
