@@ -28,7 +28,8 @@ class Thickness(ABC):
     """Half thicknesses of sections (..., m) in chords, on both sides of the camber line and normal to it.
 
     Between the joints u and the half thickness are analytic in s. At a round edge u is even and the half thickness odd
-    in the distance by s from it, so that values at s < 0 or s > 1 are those of the other side.
+    in the distance by s from it up to their second derivatives at least, so that the sides join with opposite first and
+    equal second derivatives.
     """
 
     @property

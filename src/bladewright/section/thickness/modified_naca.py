@@ -103,9 +103,9 @@ class ModifiedNaca(ThicknessLaw):
         rear, curvature = _rear(maximum, at, end, edge, slope)
         cure = "the thickness has no maximum there; move it, or make the trailing edge's slope steeper"
         self._demand(np.real(curvature) < 0.0, span, "maximum_thickness_at", at, cure)
-        front = _front(maximum, at, curvature, span.values(self.leading_edge_index))
+        front, bend = _front(maximum, at, curvature, span.values(self.leading_edge_index))
         kind: EdgeKind = "round" if self.trailing_edge == "circular" else self.trailing_edge
-        stations = Stations(breaks, leading_round=True, trailing_round=kind == "round")
+        stations = Stations(breaks, leading_round=True, trailing_round=kind == "round", bend=bend)
         thickness = PiecewiseThickness(stations, [front, rear, *pieces], leading="round", trailing=kind)
         check_positive(thickness, self.path, span)
         return thickness
@@ -124,8 +124,8 @@ def _rear(maximum: Array, at: Array, end: Array, edge: Array, slope: Array) -> t
     return half, 2.0 * second
 
 
-def _front(maximum: Array, at: Array, curvature: Array, index: Array) -> Piece:
-    """The radius and the cubic up to the maximum: value, slope 0 and second derivative there."""
+def _front(maximum: Array, at: Array, curvature: Array, index: Array) -> tuple[Piece, Array]:
+    """The radius and the cubic up to the maximum, with value, slope 0 and second derivative there; and a1 / a0."""
     root = np.sqrt(RADIUS) * 2.0 * maximum * index / 6.0
     # what the polynomial must be at the maximum: value / at, slope and at * second derivative
     value = (maximum - root * np.sqrt(at)) / at
@@ -143,4 +143,4 @@ def _front(maximum: Array, at: Array, curvature: Array, index: Array) -> Piece:
             raise ValueError("the front needs a round edge")  # a law that forgot to say so
         return root[..., None] * place.root + place.u * polynomial(coefficients, place.u)
 
-    return half
+    return half, first / root

@@ -11,7 +11,7 @@ from bladewright.section.laws import Span
 from bladewright.section.outline import Joint
 from bladewright.section.thickness.law import EdgeKind, Thickness
 from bladewright.section.thickness.series import Series, joined_series
-from bladewright.section.thickness.stations import Place, Stations
+from bladewright.section.thickness.stations import Break, Place, Stations
 
 Piece = Callable[[Place], Series]
 """half thickness at a place"""
@@ -52,6 +52,33 @@ class PiecewiseThickness(Thickness):
             later = np.real(u) > np.real(each.u)[..., None]
             half = np.where(later, _safely(self._formulas[k + 1], place), half)
         return half
+
+    def parted(self, further: Sequence[Break]) -> "PiecewiseThickness":
+        """The same thickness with further joints at fixed s, those of a meanline that it is laid on.
+
+        Raises ValueError where the breaks do not stand in the order of their fixed coordinates in every section.
+        """
+        own = self._stations.breaks
+        breaks = sorted((*own, *further), key=lambda each: each.sigma)
+        places = np.stack(np.broadcast_arrays(*[np.real(each.u) for each in breaks]))
+        if np.any(np.diff(places, axis=0) <= 0.0):
+            raise ValueError("breaks change their order")
+        owners = [sum(each.sigma <= start for each in own) for start in (0.0, *(each.sigma for each in breaks))]
+        ends = self._stations
+        stations = Stations(breaks, leading_round=ends.leading_round, trailing_round=ends.trailing_round)
+        last = len(owners) - 1
+        formulas = [_anywhere(self._formulas[k], front=i > 0, rear=i < last) for i, k in enumerate(owners)]
+        return PiecewiseThickness(stations, formulas, leading=self._leading, trailing=self._trailing)
+
+
+def _anywhere(formula: Piece, *, front: bool, rear: bool) -> Piece:
+    """A formula also in a part of its piece that no longer reaches the edge in front or behind whose root it takes."""
+
+    def half(place: Place) -> Series:
+        place = place._replace(root=place.u.sqrt()) if front else place
+        return formula(place._replace(rest_root=place.rest.sqrt()) if rear else place)
+
+    return half
 
 
 def _safely(formula: Piece, place: Place) -> Array:

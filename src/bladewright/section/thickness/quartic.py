@@ -1,8 +1,8 @@
 """The quartic B-spline thickness of 18 control points, closed around both edges.
 
 One uniform quartic B-spline of 14 segments runs from the trailing edge along one side to the leading edge and back
-along the other; the sides mirror each other, so eleven control points a side say all of it, the first two being mirrored
-ones. Its segments are the natural parameter: s = segment / 7, and three derivatives are continuous everywhere.
+along the other; the sides mirror each other, so eleven control points a side say all of it, the first two mirrored. Its
+segments are the natural parameter: s = segment / 7, and three derivatives are continuous everywhere.
 Reference: Nemnem et al. 2014, ASAT-16-142-PP, "Airfoil thickness distributions"; the conditions as in T-Blade3.
 """
 

@@ -97,16 +97,19 @@ def _total(terms: Sequence[Array]) -> Array:
 
 
 def variable(values: Array, order: int, slope: float = 1.0) -> Series:
-    """The series of slope * x about `values`, cut at an order."""
+    """The series of values + slope * x, cut at an order."""
     zeros = np.zeros(np.shape(values))
     return Series([values, np.full(np.shape(values), slope), *[zeros] * order][: order + 1])
 
 
-def sine(angle: Array, slope: float, order: int) -> Series:
-    """The series in x of sin(angle + slope x)."""
-    waves = [np.sin(angle), np.cos(angle)]
-    signs = (1.0, 1.0, -1.0, -1.0)
-    return Series([signs[k % 4] * waves[k % 2] * slope**k / factorial(k) for k in range(order + 1)])
+def sine(angle: Series) -> Series:
+    """The sine of a series."""
+    sines, cosines = [np.sin(angle.value)], [np.cos(angle.value)]
+    steps = [power * each for power, each in enumerate(angle.coefficients)]
+    for k in range(1, angle.order + 1):
+        sines.append(_total([steps[i] * cosines[k - i] for i in range(1, k + 1)]) / k)
+        cosines.append(-_total([steps[i] * sines[k - i] for i in range(1, k + 1)]) / k)
+    return Series(sines)
 
 
 def polynomial(coefficients: Sequence[Array], at: Series) -> Series:

@@ -10,6 +10,11 @@ span, but those of an outline stand at the same s in all sections. So u = R(sigm
   (Delbourgo and Gregory 1983): through (sigma_j, u_j), with as many continuous derivatives as the law has there, one or
   two. It is the identity where the joints stand at their usual places, and analytic in every parameter.
 
+A law that begins as sqrt(u) + b u is not odd about its leading edge: seen from the other side the second term has the
+other sign. There s is replaced in the first piece by p(s) = s + k s^2 (1 - s / s_1)^3 / (1 + c s / s_1)^2, which rises
+for every k when c^2 = 1 + (k s_1)^2, keeps two derivatives at the joint s_1, and with k = -b d(sqrt u)/ds makes the
+second derivative of the half thickness vanish at the edge, so that the sides have equal second derivatives there.
+
 Nothing is lost where the law is smooth already: R has joints only where the law has.
 """
 
@@ -68,14 +73,35 @@ class _Piece:
 
 
 class Stations:
-    """The map u(s) of sections (..., m) with given breaks, increasing, and round edges or not."""
+    """The map u(s) of sections (..., m) with given breaks, one or more and increasing, and round edges or not.
 
-    def __init__(self, breaks: Sequence[Break], *, leading_round: bool, trailing_round: bool) -> None:
+    Two breaks of two derivatives must not be neighbours.
+    """
+
+    def __init__(
+        self, breaks: Sequence[Break], *, leading_round: bool, trailing_round: bool, bend: Array | None = None
+    ) -> None:
+        """`bend` (..., m) is b of a half thickness that begins as sqrt(u) + b u at a round leading edge."""
         self.breaks = tuple(breaks)
         self.leading_round, self.trailing_round = leading_round, trailing_round
         self.joints = tuple(Joint(self._placed(each.sigma), each.derivatives) for each in self.breaks)
         self.ends = np.array([each.s for each in self.joints])
         self._pieces = _pieces(self.breaks)
+        self._skew = None if bend is None else -bend[..., None] * self._root_slope()
+
+    def _root_slope(self) -> Array:
+        """d(sqrt u)/ds (..., m, 1) at a round leading edge."""
+        start = self._pieces[0].slope_in
+        return np.sqrt(start) * (0.5 * np.pi if self.trailing_round else np.sqrt(0.125) * np.pi)
+
+    def _skewed(self, s: Series) -> Series:
+        """p(s) in the first piece."""
+        if self._skew is None:
+            return s
+        x = s * (1.0 / self.ends[0])
+        drawn = x * np.sqrt(1.0 + (self._skew * self.ends[0]) ** 2) + 1.0
+        rest = 1.0 - x
+        return s + self._skew * (s * s * rest * rest * rest / (drawn * drawn))
 
     def _placed(self, sigma: float) -> float:
         """The s of a sigma."""
@@ -93,21 +119,24 @@ class Stations:
     def place(self, piece: int, s: Reals, order: int) -> Place:
         """Series in s of the place on a piece at s (k,), which may lie beyond the piece's ends."""
         each = self._pieces[piece]
-        sigma, rest = _fixed(s, order, leading=self.leading_round, trailing=self.trailing_round)
+        at, back = variable(s, order), variable(1.0 - s, order, -1.0)
+        if piece == 0:
+            at = self._skewed(at)
+        sigma, rest = _fixed(at, back, leading=self.leading_round, trailing=self.trailing_round)
         # near an edge the distance from it is what the root is taken of
         end = each.start + each.width
         ahead = sigma[0] if piece == 0 else sigma[0] - each.start
-        behind = rest[0] if piece == len(self.breaks) else end - sigma[0]
+        last = piece == len(self.breaks)
+        behind = rest[0] if last else end - sigma[0]
         zeta, omega = ahead / each.width, behind / each.width
         top, back, bottom = each.risen(zeta, omega)
         factor, factor_back = each.rise * top / bottom, each.rise * back / bottom
         u, left = each.low + factor * zeta, (1.0 - each.low - each.rise) + factor_back * omega
         if piece == 0:
             u = factor * zeta
-        if piece == len(self.breaks):
+        if last:
             left = factor_back * omega
         root = (factor / each.width).sqrt() * sigma[1] if piece == 0 and sigma[1] is not None else None
-        last = piece == len(self.breaks) and rest[1] is not None
         rest_root = (factor_back / each.width).sqrt() * rest[1] if last and rest[1] is not None else None
         return Place(u, left, root, rest_root)
 
@@ -119,19 +148,19 @@ class Stations:
 Rooted = tuple[Series, Series | None]
 
 
-def _fixed(s: Reals, order: int, *, leading: bool, trailing: bool) -> tuple[Rooted, Rooted]:
-    """Series of sigma and of 1 - sigma, each with its signed root where the edge is round."""
+def _fixed(s: Series, back: Series, *, leading: bool, trailing: bool) -> tuple[Rooted, Rooted]:
+    """Series of sigma(s) and, for s = 1 - back, of 1 - sigma, each with its signed root where the edge is round."""
     half, quarter = 0.5 * np.pi, 0.25 * np.pi
     if leading and trailing:
-        first, last = sine(half * s, half, order), sine(half * (1.0 - s), -half, order)
+        first, last = sine(half * s), sine(half * back)
         return (first * first, first), (last * last, last)
     if leading:
-        first = sine(quarter * s, quarter, order) * np.sqrt(2.0)
-        return (first * first, first), (sine(half * (1.0 - s), -half, order), None)
+        first = sine(quarter * s) * np.sqrt(2.0)
+        return (first * first, first), (sine(half * back), None)
     if trailing:
-        last = sine(quarter * (1.0 - s), -quarter, order) * np.sqrt(2.0)
-        return (sine(half * s, half, order), None), (last * last, last)
-    return (variable(s, order), None), (variable(1.0 - s, order, -1.0), None)
+        last = sine(quarter * back) * np.sqrt(2.0)
+        return (sine(half * s), None), (last * last, last)
+    return (s, None), (back, None)
 
 
 def _pieces(breaks: tuple[Break, ...]) -> list[_Piece]:
@@ -139,7 +168,7 @@ def _pieces(breaks: tuple[Break, ...]) -> list[_Piece]:
     widths = np.diff(sigmas)
     lows = [np.zeros((1, 1)), *[each.u[..., None] for each in breaks]]
     rises = [high - low for low, high in pairwise(lows)]
-    rises.append(breaks[-1].rest[..., None] if breaks else np.ones((1, 1)))
+    rises.append(breaks[-1].rest[..., None])
     secants = [rise / width for rise, width in zip(rises, widths, strict=True)]
     slopes: list[Array] = [secants[0], *[np.zeros(())] * len(breaks), secants[-1]]
     once = [k for k, each in enumerate(breaks, 1) if each.derivatives == 1]

@@ -101,6 +101,6 @@ class UniformThickness(Thickness):
             place = span.v[worst[-2]] if slope.shape[-2] == len(span.v) else span.v[0]
             raise DesignError(
                 f"{path} folds back at u = {u[worst]:.3g}, span fraction {place:.4g}: its spline must run forwards; "
-                f"move the maximum towards mid-chord or lower the curvature of the edge nearby"
+                f"put the maximum near 0.3 of the chord, where this law works, or take another law"
             )
         check_positive(self, path, span)
