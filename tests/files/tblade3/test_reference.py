@@ -98,6 +98,21 @@ def test_thicknesses_are_those_of_the_program(name):
 
 
 @each_case
+def test_thicknesses_of_the_edges_are_joints_of_the_quartic_spline_of_the_program(name):
+    reference, values = Reference(name), Reference(name).values
+    for i in range(reference.count):
+        (file,) = list(reference.folder.glob(f"splthickness_tec.{i + 1}.*")) or [None]
+        assert (file is None) == (not reference.case.thickness.startswith("quartic"))
+        if file is not None:
+            points = np.array([row.split()[:2] for row in file.read_text().splitlines()[2:13]], dtype=float)
+            # where the segments of a uniform quartic B-spline meet
+            joints = (points[:-3] + 11.0 * points[1:-2] + 11.0 * points[2:-1] + points[3:]) / 24.0
+            assert 2.0 * joints[1, 1] == pytest.approx(values.leading_thickness[i], abs=CLOSE)
+            assert 2.0 * joints[-2, 1] == pytest.approx(values.trailing_thickness[i], abs=CLOSE)
+            assert joints[3] == pytest.approx([values.thickest[i], values.thickness[i] / 2.0], abs=CLOSE)
+
+
+@each_case
 def test_chords_and_pitch_are_those_of_the_program(name):
     reference = Reference(name)
     meridional = reference.table("cascade_nondim.*", skiprows=4)[:, 5]

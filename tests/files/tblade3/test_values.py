@@ -115,6 +115,9 @@ def test_tables_of_the_older_format_are_splined(tmp_path):
         np.column_stack([[0.0, 0.342, 0.658, 1.0], [0.0, 0.184, 0.284, 0.0]]), abs=CLOSE
     )
     assert values.leading_edges[:, 0] == pytest.approx([0.02, 0.0284, 0.04], abs=CLOSE)
+    # a leading edge that is a spline brings its own thicknesses
+    assert values.leading_thickness.tolist() == values.leading_edges[:, 0].tolist()
+    assert values.trailing_thickness == pytest.approx([0.01, 0.01, 0.01], abs=CLOSE)
 
 
 @pytest.mark.parametrize(

@@ -43,7 +43,7 @@ class SectionValues:
     thickness: Reals
     """(m,) largest thickness, of the chord"""
     leading_thickness: Reals | None
-    """(m,) thickness at the leading edge, of the chord; None with the modified NACA thickness"""
+    """(m,) thickness at the leading edge, of the chord, its own table's where it is a spline; None with the NACA law"""
     trailing_thickness: Reals
     """(m,) thickness at the trailing edge, of the chord"""
     trailing_slope: Reals | None
@@ -75,6 +75,7 @@ def section_values(case: TBlade3Case, span: ArrayLike) -> SectionValues:
     if at.shape != (len(case.sections),):
         raise FileError(f"{at.size} spans are given for the {len(case.sections)} sections of '{case.file}'")
     angle_in, angle_out = _angles(case, at)
+    edges = _leading_edges(case.leading_edges, at) if case.leading_edge == "spline" else None
     multiplied, given = case.chord == "multiplied", case.chord == "given"
     return SectionValues(
         span=at,
@@ -88,8 +89,8 @@ def section_values(case: TBlade3Case, span: ArrayLike) -> SectionValues:
         stagger=_law(case.in_beta, at) if case.staggers_given else None,
         meanlines=_curves(case.meanlines, at) if case.curvature_camber else None,
         multipliers=_curves(case.multipliers, at) if case.thickness_multiplier and case.thickness != "naca" else None,
-        leading_edges=_leading_edges(case.leading_edges, at) if case.leading_edge == "spline" else None,
-        **_thickness(case, at),
+        leading_edges=edges,
+        **_thickness(case, at, edges),
     )
 
 
@@ -108,7 +109,7 @@ def _angles(case: TBlade3Case, at: Reals) -> tuple[Reals, Reals]:
     return angle_in, angle_out
 
 
-def _thickness(case: TBlade3Case, at: Reals) -> dict[str, Any]:
+def _thickness(case: TBlade3Case, at: Reals, edges: Reals | None) -> dict[str, Any]:
     naca = case.naca
     if case.thickness == "naca" and naca:
         found: dict[str, Any] = {
@@ -129,8 +130,8 @@ def _thickness(case: TBlade3Case, at: Reals) -> dict[str, Any]:
         "leading_index": None,
         "thickest": thickest,
         "thickness": thickness,
-        "leading_thickness": _column(case, "leading_thickness"),
-        "trailing_thickness": _column(case, "trailing_thickness"),
+        "leading_thickness": _column(case, "leading_thickness") if edges is None else edges[:, 0],
+        "trailing_thickness": _column(case, "trailing_thickness") if edges is None else edges[:, 1],
         "trailing_slope": None,
     }
 
