@@ -8,9 +8,10 @@ from typing import Any
 
 from bladewright.section.planar import PlanarSection
 
+from .meanline_examples import MEANLINES
 from .oval import OVAL
-from .suction_pressure_examples import FAN_TIP, STATOR, TEARDROP, TURBINE, WEDGE, section, vane
 from .profiles.examples import PROFILES, PROPERTIES, section_of
+from .suction_pressure_examples import FAN_TIP, STATOR, TEARDROP, TURBINE, WEDGE, section, vane
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -36,9 +37,8 @@ EXAMPLES: dict[str, Example] = {
     "suction side below and thickness of a fan tip": Example(design=section(FAN_TIP), metal_angles=(-64.0, -58.0)),
     "pseudo skeleton line of a turbine": Example(design=section(TURBINE), metal_angles=(44.0, -66.0)),
     "wedge diffuser with a back face": Example(design=vane(WEDGE), metal_angles=(65.0, 65.0)),
-    "wedge diffuser of two circles": Example(
-        design=vane(TEARDROP), metal_angles=(65.0, 65.0), maximum_thickness=0.16
-    ),
+    "wedge diffuser of two circles": Example(design=vane(TEARDROP), metal_angles=(65.0, 65.0), maximum_thickness=0.16),
+    **{name: Example(design=design, **having) for name, (design, having) in MEANLINES.items()},
     **{name: Example(design=section_of(profile), **PROPERTIES.get(name, {})) for name, profile in PROFILES.items()},
 }
 """By a name that says what is particular."""

@@ -6,11 +6,12 @@ import numpy as np
 from numpy.polynomial import chebyshev
 
 from bladewright.numerics.elementary import length
-from bladewright.numerics.roots import bracketed_root
 from bladewright.nurbs.basis import Reals
 
 NODES = 40
 """Chebyshev points on each piece"""
+TABLE, STEPS = 50, 6
+"""places on each piece from which the inverse starts, and Newton steps it takes"""
 
 
 class ArcLength:
@@ -31,7 +32,8 @@ class ArcLength:
         points = line(places.ravel()).reshape(*places.shape, 2)
         slopes = np.stack([chebyshev.chebval(nodes, chebyshev.chebder(matrix @ each)).T for each in points])
         self._speed = np.stack([matrix @ each for each in length(slopes)])
-        total = np.array([chebyshev.chebval(1.0, chebyshev.chebint(each, lbnd=-1)) for each in self._speed])
+        self._risen = np.stack([chebyshev.chebint(each, lbnd=-1) for each in self._speed])
+        total = np.array([chebyshev.chebval(1.0, each) for each in self._risen])
         self._whole = float(np.sum(total))
         self._start = np.concatenate([[0.0], np.cumsum(total)[:-1]])
 
@@ -41,22 +43,24 @@ class ArcLength:
 
     def places(self, w: Reals) -> Reals:
         """Parameters (k,) at arc lengths w (k,) in [0, 1]."""
-        low, high = np.full(np.shape(w), self._ends[0]), np.full(np.shape(w), self._ends[-1])
-
-        def off(s: Reals) -> tuple[Reals, Reals]:
+        table = np.unique(self._ends[:-1] + np.diff(self._ends) * np.linspace(0.0, 1.0, TABLE + 1)[:, None])
+        known = self.lengths(table)
+        cell = np.clip(np.searchsorted(known, w, side="right") - 1, 0, len(table) - 2)
+        low, high = table[cell], table[cell + 1]
+        s = np.interp(w, known, table)
+        for _ in range(STEPS):
             value, slope = self._values(s)
-            return value - w, slope
-
-        found = np.asarray(bracketed_root(off, low, high))
-        return np.where(w <= 0.0, low, np.where(w >= 1.0, high, found))
+            still = slope == 0.0
+            s = np.clip(s - np.where(still, 0.0, value - w) / np.where(still, 1.0, slope), low, high)
+        return np.where(w <= 0.0, self._ends[0], np.where(w >= 1.0, self._ends[-1], s))
 
     def _values(self, s: Reals) -> tuple[Reals, Reals]:
         piece = np.clip(np.searchsorted(self._ends, s, side="right") - 1, 0, len(self._speed) - 1)
         value, slope = np.empty(np.shape(s)), np.empty(np.shape(s))
-        for i, speed in enumerate(self._speed):
+        for i in np.unique(piece):
             here = piece == i
             half = (self._ends[i + 1] - self._ends[i]) / 2.0
             x = (s[here] - self._ends[i]) / half - 1.0
-            value[here] = self._start[i] + chebyshev.chebval(x, chebyshev.chebint(speed, lbnd=-1))
-            slope[here] = chebyshev.chebval(x, speed) / half
+            value[here] = self._start[i] + chebyshev.chebval(x, self._risen[i])
+            slope[here] = chebyshev.chebval(x, self._speed[i]) / half
         return value / self._whole, slope / self._whole

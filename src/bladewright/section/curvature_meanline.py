@@ -1,0 +1,193 @@
+"""The curvature-meanline family: a meanline by its second derivative, or of straight ends and a cubic; a thickness law.
+
+The meanline's second derivative along the chord is a B-spline of any number of control points. It is integrated twice,
+exactly, and scaled so that the inlet and outlet metal angles are held; the stagger follows.
+Reference: Nemnem et al. 2014, ASAT-16-142-PP.
+"""
+
+from dataclasses import dataclass
+from typing import Annotated, Literal
+
+import numpy as np
+
+from bladewright.designs import ChordwiseLaw, Law, Part, parameter
+from bladewright.errors import DesignError
+from bladewright.numerics.elementary import Array, degrees, radians
+from bladewright.section import checks
+from bladewright.section.alternatives import ByField
+from bladewright.section.chord_spline import ChordSpline
+from bladewright.section.laws import Span
+from bladewright.section.meanline import (
+    STRAIGHT,
+    CurvatureIntegral,
+    CurvedMeanline,
+    Meanline,
+    MixedMeanline,
+    camber_scale,
+)
+from bladewright.section.offset import OffsetOutline, fixed_joints
+from bladewright.section.outline import Joint
+from bladewright.section.planar import PlanarSection
+from bladewright.section.thickness.law import Thickness
+from bladewright.section.thickness.modified_naca import ModifiedNaca
+from bladewright.section.thickness.pieces import PiecewiseThickness
+from bladewright.section.thickness.quartic import QuarticSpline
+from bladewright.section.thickness.stations import Break
+from bladewright.section.thickness.wennerstrom import Wennerstrom
+
+GRID = np.linspace(0.0, 1.0, 9)
+"""places along the span at which it is seen whether a joint moves"""
+STRAIGHT_AT = (0.1, 0.95)
+"""fixed coordinates of the ends of a mixed camber line's straight parts: their places in a usual blade"""
+
+
+@dataclass(frozen=True, kw_only=True)
+class CurvatureMeanline(Part):
+    """A section on a meanline of given second derivative, between given metal angles."""
+
+    metal_angle_in: Law = parameter("deg")
+    """camber angle at the leading edge [deg]"""
+    metal_angle_out: Law = parameter("deg")
+    """camber angle at the trailing edge [deg]"""
+    camber: Literal["curvature", "mixed"] = "curvature"
+    """curvature: by its second derivative; mixed: straight ends, 0.1 and 0.05 chords long, and a cubic between"""
+    curvature: ChordwiseLaw = parameter("-", default=())
+    """control points of the meanline's second derivative, leading to trailing edge; only their ratios count [-]"""
+    curvature_places: ChordwiseLaw = parameter("-", default=())
+    """chord fractions of the inner control points of the second derivative; none: evenly spaced [-]"""
+    thickness: Annotated[Wennerstrom | ModifiedNaca | QuarticSpline, ByField("law")]
+    """thickness law, told by its `law`"""
+    thickness_multiplier: ChordwiseLaw = parameter("-", default=())
+    """control points of what the half thickness grows by, of itself, leading to trailing edge; none: 0 [-]"""
+    thickness_multiplier_places: ChordwiseLaw = parameter("-", default=())
+    """chord fractions of the inner control points of the multiplier; none: evenly spaced [-]"""
+
+    def __post_init__(self) -> None:
+        for name in ("metal_angle_in", "metal_angle_out"):
+            object.__setattr__(self, name, checks.law(name, getattr(self, name)))
+            what = "an angle must lie between -90 and 90 deg"
+            checks.between(name, getattr(self, name), -90.0, 90.0, what)
+        checks.choice("camber", self.camber, ["curvature", "mixed"])
+        self._keep_spline("curvature", 2)
+        self._keep_spline("thickness_multiplier", 3)
+        if (self.camber == "curvature") != (len(self.curvature) > 0):
+            given = "given" if self.curvature else "not given"
+            cure = "leave it out, or set camber to curvature" if self.curvature else "give it, or set camber to mixed"
+            raise DesignError(f"curvature is {given}, but camber is {self.camber}: {cure}")
+
+    def _keep_spline(self, name: str, least: int) -> None:
+        """Bring control points and their places to tuples of laws; refuse numbers that do not fit."""
+        places = f"{name}_places"
+        for each in (name, places):
+            if getattr(self, each) != ():
+                object.__setattr__(self, each, checks.chordwise(each, getattr(self, each)))
+        checks.between(name, getattr(self, name), -1e9, 1e9, "it must lie between -1e9 and 1e9")
+        checks.between(places, getattr(self, places), 0.0, 1.0, "a place must lie between 0 and 1 chord")
+        count, inner = len(getattr(self, name)), len(getattr(self, places))
+        if 0 < count < least:
+            raise DesignError(f"{name} has {count} control points: at least {least} are needed")
+        if inner and inner != count - 2:
+            raise DesignError(
+                f"{places} has {inner} entries for {count} control points of {name}: give {max(count - 2, 0)}, one for "
+                "each but the first, at 0, and the last, at 1"
+            )
+
+    def meanline(self, span: Span) -> Meanline:
+        """The meanlines (..., m) at the places of the span; raises DesignError where none has the camber asked for."""
+        angle_in, angle_out = self._angles(span)
+        if self.camber == "mixed":
+            stagger = 0.5 * (angle_in + angle_out)
+            return MixedMeanline(angles=(angle_in - stagger, angle_out - stagger))
+        curvature = CurvatureIntegral(places=self._places("curvature", span), values=_values(self.curvature, span))
+        camber = angle_out - angle_in
+        scale, largest = camber_scale(curvature.totals, camber)
+        if np.any(np.isnan(np.real(scale))):
+            missed, asked, most = np.broadcast_arrays(np.isnan(np.real(scale)), np.real(camber), largest)
+            first = tuple(np.argwhere(missed)[0])
+            raise DesignError(
+                f"metal_angle_out less metal_angle_in is {degrees(asked[first]):.4g} deg at span fraction "
+                f"{span.v[first[-1]]:.4g}: a meanline of this curvature can turn by {degrees(most[first]):.4g} deg at "
+                "most, for its second derivative changes sign and turns back what it has turned; lower the difference "
+                "of the angles, or give more of the control points of curvature the same sign"
+            )
+        return CurvedMeanline(curvature=curvature, scale=scale)
+
+    def outline(self, span: Span) -> OffsetOutline:
+        """The exact sections (..., m) at the places of the span; raises DesignError where numbers contradict."""
+        meanline, thickness, grid = self.meanline(span), self.thickness.at(span), Span(GRID)
+        further: tuple[Joint, ...] = ()
+        if isinstance(meanline, MixedMeanline):
+            thickness, further = _parted(thickness, meanline)
+        on_grid = self.thickness.at(grid)
+        if self.camber == "curvature":
+            places = CurvatureIntegral(places=self._places("curvature", grid), values=np.zeros(len(self.curvature)))
+            further += fixed_joints(on_grid, places.joints, 3)
+        multiplier = None
+        if self.thickness_multiplier:
+            multiplier = self._multiplier(span)
+            further += fixed_joints(on_grid, self._multiplier(grid).joints, 3)
+        return OffsetOutline(meanline=meanline, thickness=thickness, multiplier=multiplier, further=further)
+
+    def stagger(self, span: Span) -> Array:
+        """Angles (..., m) of the chord lines [rad], from the metal angle and the meanline's at the leading edge."""
+        return self._angles(span)[0] - self.meanline(span).angle_in
+
+    def _angles(self, span: Span) -> tuple[Array, Array]:
+        return radians(span.values(self.metal_angle_in)), radians(span.values(self.metal_angle_out))
+
+    def _multiplier(self, span: Span) -> ChordSpline:
+        name = "thickness_multiplier"
+        return ChordSpline(places=self._places(name, span), values=_values(self.thickness_multiplier, span))
+
+    def _places(self, name: str, span: Span) -> Array:
+        """Chord fractions (..., m, n) of control points, from 0 to 1."""
+        inner, count = getattr(self, f"{name}_places"), len(getattr(self, name))
+        if not inner:
+            return np.linspace(0.0, 1.0, count)[None]
+        middle = _values(inner, span)
+        ends = np.zeros_like(middle[..., :1])
+        places = np.concatenate([ends, middle, ends + 1.0], axis=-1)
+        falling = np.argwhere(np.diff(np.real(places), axis=-1) <= 0.0)
+        if len(falling):
+            *where, entry = (int(each) for each in falling[0])
+            entry = min(entry, len(inner) - 1)
+            raise DesignError(
+                f"{name}_places[{entry}] is {np.real(middle)[(*where, entry)]:.4g} at span fraction "
+                f"{span.v[where[-1]]:.4g}: places must rise from the leading to the trailing edge"
+            )
+        return places
+
+
+def _parted(thickness: Thickness, meanline: MixedMeanline) -> tuple[Thickness, tuple[Joint, ...]]:
+    """The thickness with the meanline's joints at fixed s, and these, where the sides have kinks."""
+    if not isinstance(thickness, PiecewiseThickness):
+        raise DesignError(
+            "camber is mixed, thickness.law is quartic-spline: the kinks of a mixed camber line need a thickness in "
+            "pieces; set camber to curvature, or take another thickness law"
+        )
+    joints = meanline.joints
+    low = Break(joints[..., 0], 1.0 - joints[..., 0], 1, STRAIGHT_AT[0])
+    high = Break(joints[..., 1], STRAIGHT[1] * np.cos(meanline.angle_out), 1, STRAIGHT_AT[1])
+    try:
+        found = thickness.parted([low, high])
+    except ValueError as error:
+        raise DesignError(
+            "thickness.maximum_thickness_at, or the end of a round edge, lies on the wrong side of an end of the mixed "
+            f"camber line's straight parts, {STRAIGHT[0]:g} chords behind the leading and {STRAIGHT[1]:g} before the "
+            "trailing edge: move the maximum towards mid-chord, thin the edge, or set camber to curvature"
+        ) from error
+    known = {joint.s for joint in thickness.joints}
+    return found, tuple(Joint(joint.s, 0) for joint in found.joints if joint.s not in known)
+
+
+def _values(laws: ChordwiseLaw, span: Span) -> Array:
+    """Values (..., m, n) of laws (n,), one a control point along the chord."""
+    return np.stack(np.broadcast_arrays(*[span.values(law) for law in laws]), axis=-1)
+
+
+@dataclass(frozen=True, kw_only=True)
+class CurvatureMeanlineSection(PlanarSection):
+    """A section on a meanline of given second derivative, in the plane (x, y), x axial and y tangential."""
+
+    section: CurvatureMeanline
+    """meanline and thickness"""

@@ -1,0 +1,258 @@
+"""Meanlines of sections as functions v(u) over the chord, from (0, 0) to (1, 0), many at once."""
+
+from abc import ABC, abstractmethod
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from bladewright.numerics.elementary import Array, joined
+from bladewright.numerics.roots import bracketed_root
+from bladewright.nurbs.basis import Reals
+
+UNIFORM_CUBIC = (
+    np.array([[1.0, 4.0, 1.0, 0.0], [-3.0, 0.0, 3.0, 0.0], [3.0, -6.0, 3.0, 0.0], [-1.0, 3.0, -3.0, 1.0]]) / 6
+)
+"""powers (rows) of the uniform cubic B-spline's four basis functions on a segment"""
+
+
+class Meanline(ABC):
+    """Meanlines (..., m) in chords: v(0) = v(1) = 0, slopes measured from the chord line."""
+
+    @property
+    @abstractmethod
+    def angle_in(self) -> Array:
+        """Camber angle chi (..., m) at the leading edge, from the chord line [rad]."""
+
+    @property
+    @abstractmethod
+    def angle_out(self) -> Array:
+        """Camber angle chi (..., m) at the trailing edge, from the chord line [rad]."""
+
+    @property
+    @abstractmethod
+    def joints(self) -> Array:
+        """Chord fractions (..., m, j), rising, where `smooth` derivatives of v are continuous and the next is not."""
+
+    @property
+    @abstractmethod
+    def smooth(self) -> int:
+        """How many derivatives are continuous at the joints."""
+
+    @abstractmethod
+    def derivatives(self, u: Array) -> tuple[Array, Array, Array, Array]:
+        """v and its first three derivatives (..., m, k) at u (..., m, k) or (k,) in [0, 1]."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class CurvatureIntegral:
+    """A second derivative S(u) with its first two integrals I(u), J(u) from the leading edge, all exact.
+
+    S is the cubic B-spline curve (u(t), S(t)) on the uniform basis; the control polygon is extended at both ends, so
+    that the curve meets its first and last control point. Between two joints u and S are cubic in t, I and J of degree
+    six and nine. Reference: Nemnem et al. 2014, eqs. 5, 6, 9, 10 and 13.
+    """
+
+    places: Array
+    """u (..., m, n) of the control points, rising from 0 to 1"""
+    values: Array
+    """S (..., m, n) of the control points"""
+
+    @cached_property
+    def _powers(self) -> tuple[Array, Array, Array, Array]:
+        """Coefficients (..., m, n - 1, powers of t) of u, S, I and J on each segment."""
+        u, s = (_segments(each) for each in np.broadcast_arrays(self.places, self.values))
+        slope = u[..., 1:] * np.arange(1.0, 4.0)
+        first = _accumulated(_product(s, slope))
+        return u, s, first, _accumulated(_product(first, slope))
+
+    @property
+    def joints(self) -> Array:
+        """Places u (..., m, n - 2) where S has two continuous derivatives."""
+        return self._powers[0][..., 1:, 0]
+
+    @property
+    def totals(self) -> tuple[Array, Array]:
+        """I and J (..., m) over the whole chord."""
+        return np.sum(self._powers[2][..., -1, :], axis=-1), np.sum(self._powers[3][..., -1, :], axis=-1)
+
+    def at(self, u: Array) -> tuple[Array, Array, Array, Array]:
+        """J, I, S and dS/du (..., m, k) at u (..., m, k) or (k,)."""
+        joints = np.real(self.joints)
+        segment = np.sum(np.real(u)[..., None] >= joints[..., None, :], axis=-1)
+        place, bend, first, second = (taken(each, segment) for each in self._powers)
+
+        def off(t: Array) -> tuple[Array, Array]:
+            return polynomial(place, t) - u, polynomial(derived(place), t)
+
+        low = np.zeros(np.broadcast_shapes(np.shape(u), segment.shape))
+        t = bracketed_root(off, low, low + 1.0)
+        slope = polynomial(derived(bend), t) / polynomial(derived(place), t)
+        return polynomial(second, t), polynomial(first, t), polynomial(bend, t), slope
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class CurvedMeanline(Meanline):
+    """The meanline whose second derivative is kappa S(u), kappa so that its ends include the given camber.
+
+    v' = kappa (I - J1), v = kappa (J - u J1), J1 = J(1). Reference: Nemnem et al. 2014, with `scale` in closed form in
+    the place of their secant iteration.
+    """
+
+    curvature: CurvatureIntegral
+    scale: Array
+    """kappa (..., m)"""
+
+    @property
+    def angle_in(self) -> Array:
+        return np.arctan(-self.scale * self.curvature.totals[1])
+
+    @property
+    def angle_out(self) -> Array:
+        first, second = self.curvature.totals
+        return np.arctan(self.scale * (first - second))
+
+    @property
+    def joints(self) -> Array:
+        return self.curvature.joints
+
+    @property
+    def smooth(self) -> int:
+        return 4
+
+    def derivatives(self, u: Array) -> tuple[Array, Array, Array, Array]:
+        second, first, bend, slope = self.curvature.at(u)
+        whole, kappa = self.curvature.totals[1][..., None], self.scale[..., None]
+        return kappa * (second - u * whole), kappa * (first - whole), kappa * bend, kappa * slope
+
+
+def camber_scale(totals: tuple[Array, Array], camber: Array) -> tuple[Array, Reals]:
+    """The scale kappa (..., m) that gives meanlines the camber chi_out - chi_in [rad], and the largest there is (...).
+
+    `totals` are I1 and J1. With P = J1 (I1 - J1), the tangent of chi_out - chi_in is kappa I1 / (1 - kappa^2 P):
+
+        P sin(camber) kappa^2 + I1 cos(camber) kappa - sin(camber) = 0.
+
+    Where P >= 0, exactly one root belongs to the camber rather than to the camber less 180 deg. Where P < 0, the
+    meanline leaves both edges to the same side of the chord line, and there are two roots or none: taken is the
+    smaller, which goes to the straight line as the camber goes to zero. No camber gives kappa = 0 whatever the law,
+    also where I1 = 0 and every kappa would do. Where no root is, kappa is nan, and the largest camber [rad] is below
+    the one asked for.
+    """
+    first, second = totals
+    product = second * (first - second)
+    sine, cosine = np.sin(camber), np.cos(camber)
+    linear = first * cosine
+    square = linear**2 + 4.0 * product * sine**2
+    inflected = np.real(product) < 0.0
+    with np.errstate(invalid="ignore", divide="ignore"):
+        reach = np.arctan(np.sqrt(np.real(first) ** 2 / (-4.0 * np.real(product))))
+        largest = np.where(inflected, reach, np.where(np.real(first) == 0.0, 0.0, np.pi))
+        none = inflected & ((np.real(square) < 0.0) | (np.real(cosine) <= 0.0)) | (np.real(first) == 0.0)
+        side = np.where(np.real(first) < 0.0, -1.0, 1.0)
+        root = side * np.sqrt(np.where(none, 1.0, square))
+        direct = 2.0 * sine / np.where(none, 1.0, linear + root)
+        other = (root - linear) / np.where(none | (np.real(cosine) >= 0.0), 1.0, 2.0 * product * sine)
+    scale = np.where(np.real(cosine) >= 0.0, direct, other)
+    straight = np.real(sine) == 0.0
+    return np.where(none, np.where(straight, 0.0 * scale, np.nan), scale), largest
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class MixedMeanline(Meanline):
+    """A meanline of two straight ends and a cubic between, which meets them with their slopes.
+
+    The ends are `STRAIGHT` chords long and lie along the metal angles.
+    """
+
+    angles: tuple[Array, Array]
+    """chi (..., m) at the leading and at the trailing edge [rad]"""
+
+    @property
+    def angle_in(self) -> Array:
+        return self.angles[0]
+
+    @property
+    def angle_out(self) -> Array:
+        return self.angles[1]
+
+    @property
+    def joints(self) -> Array:
+        ends = np.broadcast_arrays(STRAIGHT[0] * np.cos(self.angles[0]), 1.0 - STRAIGHT[1] * np.cos(self.angles[1]))
+        return np.stack(ends, axis=-1)
+
+    @property
+    def smooth(self) -> int:
+        return 1
+
+    def derivatives(self, u: Array) -> tuple[Array, Array, Array, Array]:
+        low, high = self.joints[..., :1], self.joints[..., 1:]
+        steep, flat = (np.tan(each)[..., None] for each in self.angles)
+        span = high - low
+        rise = flat * (high - 1.0) - steep * low
+        # the cubic's coefficients in w = u - low
+        bend = (3.0 * rise / span - 2.0 * steep - flat) / span
+        twist = (steep + flat - 2.0 * rise / span) / span**2
+        w = u - low
+        ahead, behind = np.real(w) < 0.0, np.real(u) > np.real(high)
+        zero = 0.0 * (w + steep + flat)
+
+        def chosen(first: Array, middle: Array, last: Array) -> Array:
+            return np.where(ahead, first, np.where(behind, last, middle)) + zero
+
+        return (
+            chosen(steep * u, steep * low + w * (steep + w * (bend + w * twist)), flat * (u - 1.0)),
+            chosen(steep, steep + w * (2.0 * bend + 3.0 * w * twist), flat),
+            chosen(zero, 2.0 * bend + 6.0 * w * twist, zero),
+            chosen(zero, 6.0 * twist + zero, zero),
+        )
+
+
+STRAIGHT = (0.10, 0.05)
+"""lengths [chords] of the straight ends of a mixed meanline at the leading and the trailing edge"""
+
+
+def _segments(points: Array) -> Array:
+    """Powers (..., n - 1, 4) on its segments of a curve from the first to the last control point (..., n)."""
+    before = 2.0 * points[..., :1] - points[..., 1:2]
+    after = 2.0 * points[..., -1:] - points[..., -2:-1]
+    extended = joined([before, points, after], axis=-1)
+    count = points.shape[-1] - 1
+    windows = np.stack([extended[..., k : k + count] for k in range(4)], axis=-1)
+    return windows @ UNIFORM_CUBIC.T
+
+
+def _product(a: Array, b: Array) -> Array:
+    """Coefficients of the product of polynomials (..., p) and (..., q)."""
+    total = np.zeros((*a.shape[:-1], a.shape[-1] + b.shape[-1] - 1), dtype=np.result_type(a, b))
+    for k in range(b.shape[-1]):
+        total[..., k : k + a.shape[-1]] += a * b[..., k : k + 1]
+    return total
+
+
+def _accumulated(powers: Array) -> Array:
+    """Coefficients (..., segments, p + 1) of the integral from the first segment's start on."""
+    terms = powers / np.arange(1.0, powers.shape[-1] + 1.0)
+    total = np.cumsum(np.sum(terms, axis=-1), axis=-1)
+    start = joined([np.zeros_like(total[..., :1]), total[..., :-1]], axis=-1)
+    return joined([start[..., None], terms], axis=-1)
+
+
+def derived(powers: Array) -> Array:
+    """Coefficients (..., p - 1) of the derivative of polynomials (..., p)."""
+    return powers[..., 1:] * np.arange(1.0, powers.shape[-1])
+
+
+def taken(powers: Array, segment: Array) -> Array:
+    """Coefficients (..., m, k, p) of the segments (..., m, k) out of (..., m, segments, p)."""
+    shape = np.broadcast_shapes(powers.shape[:-2], segment.shape[:-1])
+    here = np.broadcast_to(segment, (*shape, segment.shape[-1]))[..., None]
+    return np.take_along_axis(np.broadcast_to(powers, (*shape, *powers.shape[-2:])), here, axis=-2)
+
+
+def polynomial(powers: Array, t: Array) -> Array:
+    """Values (...) of polynomials (..., p) at t (...)."""
+    value = powers[..., -1]
+    for k in range(powers.shape[-1] - 2, -1, -1):
+        value = value * t + powers[..., k]
+    return value

@@ -1,0 +1,126 @@
+"""Sections laid on a meanline: a half thickness to both sides, normal to it."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from bladewright.numerics.elementary import Array
+from bladewright.nurbs.basis import Reals
+from bladewright.section.chord_spline import ChordSpline
+from bladewright.section.meanline import Meanline
+from bladewright.section.outline import Edge, Joint, Outline, Start
+from bladewright.section.thickness.law import Thickness
+from bladewright.section.thickness.series import Series, polynomial
+
+APART = 1e-9
+"""distance by s below which two joints are one"""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class OffsetOutline(Outline):
+    """Sides (u - t sin a, v + t cos a) and (u + t sin a, v - t cos a), tan a = v'(u), t the half thickness.
+
+    Reference: Nemnem et al. 2014, eqs. 20 to 22.
+    """
+
+    meanline: Meanline
+    thickness: Thickness
+    multiplier: ChordSpline | None = None
+    """what the half thickness grows by, of itself"""
+    further: tuple[Joint, ...] = ()
+    """joints of meanline and multiplier, where they stand at the same s in all sections"""
+
+    @cached_property
+    def leading_edge(self) -> Edge:
+        return self._edge(0.0, self.thickness.leading)
+
+    @cached_property
+    def trailing_edge(self) -> Edge:
+        return self._edge(1.0, self.thickness.trailing)
+
+    @cached_property
+    def joints(self) -> tuple[Joint, ...]:
+        return merged([*self.thickness.joints, *self.further])
+
+    def points(self, s: Reals) -> tuple[Array, Array]:
+        order = np.argsort(s, kind="stable")
+        sides = self.at(*self._placed(s[order]))
+        back = np.argsort(order)
+        return sides[0][..., back, :], sides[1][..., back, :]
+
+    def at(self, u: Array, half: Array) -> tuple[Array, Array]:
+        """Points (..., m, k, 2) of both sides at chord fractions u with half thicknesses there."""
+        v, slope, _, _ = self.meanline.derivatives(u)
+        across = half / np.sqrt(1.0 + slope**2)
+        along = slope * across
+        return _stacked(u - along, v + across), _stacked(u + along, v - across)
+
+    def half_at(self, u: Reals) -> Array:
+        """Half thicknesses (..., m, k) at chord fractions u (k,), the multiplier included."""
+        half = self.thickness.half_at(u)
+        return half if self.multiplier is None else half * (1.0 + self.multiplier.derivatives(u)[0])
+
+    def camber(self, s: Reals) -> Array:
+        order = np.argsort(s, kind="stable")
+        u = self.thickness.u(s[order])[..., np.argsort(order)]
+        return _stacked(u, self.meanline.derivatives(u)[0])
+
+    def _placed(self, s: Reals) -> tuple[Array, Array]:
+        u, half = (each.value for each in self.thickness.series(s, 0))
+        return u, half if self.multiplier is None else half * (1.0 + self.multiplier.derivatives(u)[0])
+
+    def _edge(self, s: float, kind: str) -> Edge:
+        u, half = self.thickness.series(np.array([s]), 2)
+        if self.multiplier is not None:
+            half = half * (1.0 + self.multiplier.series(u))
+        value, slope, bend, twist = self.meanline.derivatives(u.value)
+        step = u - u.value
+        v = polynomial([value, slope, 0.5 * bend], step)
+        tangent = polynomial([slope, bend, 0.5 * twist], step)
+        across = half / (1.0 + tangent * tangent).sqrt()
+        along = tangent * across
+        upper, lower = _start(u - along, v + across), _start(u + along, v - across)
+        return Edge(kind=kind, upper=upper, lower=lower)  # type: ignore[arg-type]
+
+
+def merged(joints: Sequence[Joint]) -> tuple[Joint, ...]:
+    """Joints in order; of several at one place the least smooth, those at an edge left out."""
+    found: list[Joint] = []
+    for each in sorted(joints):
+        if not APART < each.s < 1.0 - APART:
+            continue
+        if found and each.s - found[-1].s < APART:
+            found[-1] = Joint(found[-1].s, min(found[-1].derivatives, each.derivatives))
+        else:
+            found.append(each)
+    return tuple(found)
+
+
+def fixed_joints(thickness: Thickness, places: Array, derivatives: int) -> tuple[Joint, ...]:
+    """Joints at chord fractions (..., m, j) of sections, those of them that stand at the same s in all sections."""
+    if places.shape[-1] == 0:
+        return ()
+    rows = np.real(places).reshape(-1, places.shape[-1])
+    rows = rows[:, np.ptp(rows, axis=0) <= APART]
+    if rows.shape[-1] == 0:
+        return ()
+    table = np.linspace(0.0, 1.0, 129)
+    first = np.real(thickness.u(table)).reshape(-1, len(table))[0]
+    s = np.interp(rows[0], first, table)
+    for _ in range(8):
+        value, slope = (np.real(each).reshape(-1, len(s))[0] for each in thickness.series(s, 1)[0].coefficients)
+        s = np.clip(s - (value - rows[0]) / np.maximum(slope, APART), 0.0, 1.0)
+    u = np.real(thickness.u(s)).reshape(-1, len(s))
+    same = np.all(np.square(u - rows[0]) < APART**2, axis=0)
+    return tuple(Joint(float(each), derivatives) for each in s[same])
+
+
+def _stacked(x: Array, y: Array) -> Array:
+    return np.stack(np.broadcast_arrays(x, y), axis=-1)
+
+
+def _start(x: Series, y: Series) -> Start:
+    found = _stacked(x.derivatives()[..., 0, :], y.derivatives()[..., 0, :])
+    return Start(found[..., 0, :], found[..., 1, :], found[..., 2, :])
