@@ -1,6 +1,8 @@
 """Examples of every kind of profile, for the shared contract tests and for those of the kinds."""
 
 from bladewright.section.profiles.c4 import C4
+from bladewright.section.profiles.circular_arc import DoubleCircularArc, MultipleCircularArc
+from bladewright.section.profiles.flat_plate import FlatPlate
 from bladewright.section.profiles.kinds import ProfileSection
 from bladewright.section.profiles.naca4 import Naca4
 from bladewright.section.profiles.naca5 import Naca5
@@ -14,6 +16,17 @@ PROFILES = {
     "naca-23012": Naca5(thickness=0.12, design_lift=0.3, camber_position=0.15, trailing_edge="blunt"),
     "naca-23112": Naca5(thickness=0.12, design_lift=0.3, camber_position=0.15, reflexed=True),
     "c4": C4(thickness=0.1, camber_angle=30.0, stagger_angle=-36.0, trailing_edge="round"),
+    "double-circular-arc": DoubleCircularArc(
+        thickness=0.08, camber_angle=30.0, leading_edge_radius=0.004, trailing_edge_radius=0.004, stagger_angle=40.0
+    ),
+    "double-circular-arc-sharp": DoubleCircularArc(thickness=0.05, camber_angle=20.0),
+    "multiple-circular-arc": MultipleCircularArc(
+        thickness=0.06, camber_angle=40.0, transition=0.6, front_camber=0.2, leading_edge_radius=0.004
+    ),
+    "flat-plate": FlatPlate(thickness=0.06),
+    "flat-plate-elliptic": FlatPlate(
+        thickness=0.05, leading_edge="elliptic", leading_edge_ratio=4.0, trailing_edge="blunt"
+    ),
 }
 """By a name that says what is particular."""
 
@@ -26,6 +39,11 @@ def section_of(profile):
 PROPERTIES = {
     # the form with a closed edge is a little thicker than its name says
     "naca-2412": {"maximum_thickness": 0.12 * 1.000118},
+    "double-circular-arc": {"maximum_thickness": 0.08, "metal_angles": (55.0, 25.0)},
+    "double-circular-arc-sharp": {"maximum_thickness": 0.05, "metal_angles": (10.0, -10.0)},
+    "multiple-circular-arc": {"maximum_thickness": 0.06},
+    "flat-plate": {"maximum_thickness": 0.06, "metal_angles": (0.0, 0.0)},
+    "flat-plate-elliptic": {"maximum_thickness": 0.05, "metal_angles": (0.0, 0.0)},
     "c4": {"maximum_thickness": 0.1, "metal_angles": (-36.0 + 15.0, -36.0 - 15.0)},
 }
 """What their sections must have."""

@@ -1,13 +1,17 @@
 """The kinds of standard profiles, and the 2D design of a section of any of them."""
 
 from dataclasses import dataclass
+from typing import Annotated
 
+from bladewright.section.alternatives import ByField
 from bladewright.section.planar import PlanarSection
 from bladewright.section.profiles.c4 import C4
+from bladewright.section.profiles.circular_arc import DoubleCircularArc, MultipleCircularArc
+from bladewright.section.profiles.flat_plate import FlatPlate
 from bladewright.section.profiles.naca4 import Naca4
 from bladewright.section.profiles.naca5 import Naca5
 
-AnyProfile = Naca4 | Naca5 | C4
+AnyProfile = Annotated[Naca4 | Naca5 | C4 | DoubleCircularArc | MultipleCircularArc | FlatPlate, ByField("kind")]
 """One of the kinds, told apart by `kind`."""
 
 
