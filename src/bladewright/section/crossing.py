@@ -79,7 +79,7 @@ def self_crossings(outlines: Reals) -> tuple[int, int] | None:
     parted = _parted(outlines, outlines)
     index = np.arange(count)
     gap = (index[:, None] - index) % count
-    crossed = parted & np.swapaxes(parted, 1, 2) & (gap > 1) & (gap < count - 1)
+    crossed = parted & np.swapaxes(parted, 1, 2) & (gap > 1) & (gap < count - 1) & _overlapping(outlines)
     found = np.argwhere(np.any(crossed, axis=2))
     return (int(found[0, 0]), int(found[0, 1])) if len(found) else None
 
@@ -93,6 +93,15 @@ def touching(outlines: Reals, pitch: float) -> int | None:
     crossed = _parted(near, far) & np.swapaxes(_parted(far, near), 1, 2)
     found = np.flatnonzero(np.any(crossed, axis=(1, 2)))
     return int(high[found[0]]) if len(found) else None
+
+
+def _overlapping(outlines: Reals) -> NDArray[np.bool_]:
+    """Mask (k, n, n) of segments whose extents overlap: those of one straight line part each other by rounding."""
+    after = np.roll(outlines, -1, axis=1)
+    low, high = np.minimum(outlines, after), np.maximum(outlines, after)
+    beside = [low[:, :, None, axis] <= high[:, None, :, axis] for axis in (0, 1)]
+    both = beside[0] & beside[1]
+    return both & np.swapaxes(both, 1, 2)
 
 
 def _parted(lines: Reals, points: Reals) -> NDArray[np.bool_]:

@@ -5,7 +5,36 @@ from dataclasses import dataclass
 import numpy as np
 
 from bladewright.numerics.elementary import Array, dot, joined
+from bladewright.nurbs.basis import Reals
+from bladewright.section.camber import turned_left
 from bladewright.section.suction_pressure.points import Continuity, Points
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class EdgeCamber:
+    """The camber line of an edge by t in [0, 1]: from the nose in the edge's direction, then on to the sides' middle.
+
+    Its height over the edge's direction is a quartic of the way along it, so that it is as smooth by its length as it
+    looks, and continues the middle of the two sides to second order.
+    """
+
+    nose: Array
+    """(2,)"""
+    inward: Array
+    """(..., 2) unit vector"""
+    length: Array
+    """(...) along it to the middle of the two corners"""
+    fraction: Array
+    """(..., 5) of the powers of t: the way along"""
+    height: Array
+    """(..., 5) of the powers of that fraction"""
+
+    def points(self, t: Reals) -> Array:
+        """Points (..., k, 2) at t (k,)."""
+        fraction = powers_at(self.fraction[..., None], t)[..., 0]
+        height = powers_at(self.height[..., None], fraction)
+        inward = self.inward[..., None, :]
+        return self.nose + (self.length[..., None] * fraction)[..., None] * inward + height * turned_left(inward)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -14,8 +43,7 @@ class EdgeCurve:
 
     coefficients: Array
     """(..., 5 or 7, 2) of the powers of t"""
-    camber: Array
-    """(..., 5, 2) of the powers of t in [0, 1] of the camber line from the nose to the middle of the two corners"""
+    camber: EdgeCamber
 
 
 def edge_curve(points: Points, bend_upper: Array, bend_lower: Array, continuity: Continuity) -> EdgeCurve:
@@ -36,11 +64,11 @@ def edge_curve(points: Points, bend_upper: Array, bend_lower: Array, continuity:
         sixth = 0.125 * (even_2 - 5.0 * even_1 + 8.0 * even)
         fourth = 0.5 * (even_1 - 2.0 * even) - 2.0 * sixth
         powers = [nose, odd - third - fifth, even - fourth - sixth, third, fourth, fifth, sixth]
-    return EdgeCurve(coefficients=_stacked(powers), camber=_camber(points, nose, even, even_1, even_2))
+    return EdgeCurve(coefficients=_stacked(powers), camber=_camber(points, even, even_1, even_2))
 
 
 def powers_at(coefficients: Array, t: Array) -> Array:
-    """Values (..., k, 2) of polynomials with coefficients (..., n, 2) at t (k,) or (..., k)."""
+    """Values (..., k, d) of polynomials with coefficients (..., n, d) at t (k,) or (..., k)."""
     found = coefficients[..., -1:, :] + 0.0 * t[..., None]
     for power in range(coefficients.shape[-2] - 2, -1, -1):
         found = found * t[..., None] + coefficients[..., power : power + 1, :]
@@ -50,20 +78,36 @@ def powers_at(coefficients: Array, t: Array) -> Array:
 def _halves(points: Points, bend_upper: Array, bend_lower: Array) -> tuple[tuple[Array, ...], tuple[Array, ...]]:
     """Even and odd parts at t = 1 of the edge about its nose, with two derivatives."""
     upper, lower = points.upper, points.lower
-    at_upper = (upper.point - points.nose, upper.speed[..., None] * upper.direction, bend_upper)
-    at_lower = (lower.point - points.nose, -lower.speed[..., None] * lower.direction, bend_lower)
+    at_upper = (upper.offset, upper.speed[..., None] * upper.direction, bend_upper)
+    at_lower = (lower.offset, -lower.speed[..., None] * lower.direction, bend_lower)
     even = tuple(0.5 * (a + sign * b) for a, b, sign in zip(at_upper, at_lower, (1.0, -1.0, 1.0), strict=True))
     odd = tuple(0.5 * (a - sign * b) for a, b, sign in zip(at_upper, at_lower, (1.0, -1.0, 1.0), strict=True))
     return even, odd
 
 
-def _camber(points: Points, nose: Array, even: Array, even_1: Array, even_2: Array) -> Array:
-    """Quartic from the nose in the edge's direction that continues the middle between the sides to second order."""
-    first = dot(even, points.inward)[..., None] * points.inward
-    value, slope = even - first, even_1 - first
-    fourth = 0.5 * (even_2 - 4.0 * slope + 6.0 * value)
+def _camber(points: Points, even: Array, even_1: Array, even_2: Array) -> EdgeCamber:
+    left = turned_left(points.inward)
+    along, along_1, along_2 = (dot(each, points.inward) for each in (even, even_1, even_2))
+    off, off_1, off_2 = (dot(each, left) for each in (even, even_1, even_2))
+    slope = off_1 / along_1
+    bend = (off_2 - slope * along_2) / along_1**2
+    fraction = _flat_start(np.zeros_like(along), along_1 / along - 1.0, along_2 / along)
+    fraction[..., 1] = 1.0
+    return EdgeCamber(
+        nose=points.nose,
+        inward=points.inward,
+        length=along,
+        fraction=fraction,
+        height=_flat_start(off, slope * along, bend * along**2),
+    )
+
+
+def _flat_start(value: Array, slope: Array, bend: Array) -> Array:
+    """Coefficients (..., 5) of a quartic by its value and two derivatives (...) at 1, both zero but the second at 0."""
+    fourth = 0.5 * (bend - 4.0 * slope + 6.0 * value)
     third = slope - 2.0 * value - 2.0 * fourth
-    return _stacked([nose, first, value - third - fourth, third, fourth])
+    none = np.zeros_like(fourth)
+    return np.stack(np.broadcast_arrays(none, none, value - third - fourth, third, fourth), axis=-1)
 
 
 def _stacked(rows: list[Array]) -> Array:

@@ -64,9 +64,9 @@ class SuctionPressureOutline(Outline):
         first, middle, last = _parts(s)
         w = _fractions(s[middle])
         parts = [
-            (first, powers_at(self.edges[0].camber, s[first] / EDGE)),
+            (first, self.edges[0].camber.points(s[first] / EDGE)),
             (middle, 0.5 * (self.upper.points(w) + self.lower.points(w))),
-            (last, powers_at(self.edges[1].camber, (1.0 - s[last]) / EDGE)),
+            (last, self.edges[1].camber.points((1.0 - s[last]) / EDGE)),
         ]
         return _put(parts, len(s))
 

@@ -25,6 +25,8 @@ class Corner:
 
     point: Array
     """(..., 2)"""
+    offset: Array
+    """(..., 2) of the point from the nose"""
     direction: Array
     """(..., 2) unit vector from the edge along the side, into the blade"""
     speed: Array
@@ -80,8 +82,10 @@ def _corner(
     sine = 1.0 / np.sqrt(1.0 + ratio**2)
     advance, height = stretch * (1.0 - ratio * sine), sine
     c, s = np.cos(0.5 * wedge), np.sin(0.5 * wedge)
+    offset = radius[..., None] * (advance[..., None] * along + height[..., None] * across)
     return Corner(
-        point=nose + radius[..., None] * (advance[..., None] * along + height[..., None] * across),
+        point=nose + offset,
+        offset=offset,
         direction=c[..., None] * along + s[..., None] * across,
         speed=radius * _speed(advance, height, c, s, stretch, continuity),
     )
