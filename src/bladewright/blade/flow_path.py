@@ -52,15 +52,15 @@ class FlowPath(Part):
 
     def _spans(self) -> tuple[float, ...]:
         count = len(self.stream_surfaces)
-        given = checks.law("stream_spans", tuple(self.stream_spans)) if self.stream_spans else None
-        if given is None:
+        if not self.stream_spans:
             return tuple(float(v) for v in np.linspace(0.0, 1.0, count + 2)[1:-1])
-        if not isinstance(given, tuple) or len(given) != count:
+        given = tuple(checks.number(f"stream_spans[{i}]", v) for i, v in enumerate(self.stream_spans))
+        if len(given) != count:
             raise DesignError(
                 f"stream_spans has {len(self.stream_spans)} entries for {count} stream_surfaces: give one for each"
             )
         for i, (before, v, after) in enumerate(zip((0.0, *given), given, (*given[1:], 1.0), strict=False)):
-            if isinstance(v, np.ndarray) or np.iscomplexobj(v) or not before < v < after:
+            if np.ndim(v) > 0 or np.iscomplexobj(v) or not before < v < after:
                 raise DesignError(
                     f"stream_spans[{i}] is {v}: span fractions are plain numbers that increase between 0 at the hub "
                     "and 1 at the shroud; put the stream_surfaces in the order from hub to shroud"

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.polynomial import chebyshev
 
 from bladewright.blade.mapping import Cascade
-from bladewright.blade.meridian_line import MeridianLine, binomials, cubic_pieces, real_first, shifted
+from bladewright.blade.meridian_line import MeridianLine, binomials, cubic_pieces, piecewise, real_first
 from bladewright.blade.streamlines import StreamLines, stream_lines
 from bladewright.errors import DesignError
 from bladewright.numerics.elementary import Array
@@ -76,8 +76,7 @@ class Match:
 
     def fractions(self, t: Reals) -> Array:
         """Fractions (..., k) at real t (k,); past the ends the pieces go on."""
-        rows = shifted(self.powers, self.breaks, t)
-        return rows[..., 0, 0]
+        return piecewise(self.powers, self.breaks, t)[..., 0]
 
     def places(self, levels: Reals, low: float, high: float) -> Reals:
         """t at which real fractions (k,) are passed."""
@@ -131,9 +130,7 @@ class MatchedLine:
 
     def values(self, t: Reals, order: int = 0) -> Array:
         """Points, or derivatives by t (..., m, 2), at real t (m,)."""
-        rows = shifted(self.powers, self.breaks, t)
-        factor = float(np.prod(np.arange(1, order + 1)))
-        return factor * rows[..., order, :] if order < rows.shape[-2] else np.zeros_like(rows[..., 0, :])
+        return piecewise(self.powers, self.breaks, t, order)
 
 
 def matched_line(along: Measured, match: Match, low: float, high: float) -> MatchedLine:
@@ -176,7 +173,7 @@ def _fitted(along: Measured, match: Match, ends: Reals, count: int) -> tuple[Arr
 def _rules(count: int) -> tuple[Reals, Reals, Reals]:
     """Chebyshev places, the matrix from values there to the series, and from the series to powers."""
     places = np.cos(np.pi * (np.arange(count) + 0.5) / count)
-    to_series = np.linalg.inv(chebyshev.chebvander(places, count - 1))
+    to_series = np.asarray(np.linalg.inv(chebyshev.chebvander(places, count - 1)), dtype=np.float64)
     rows = [chebyshev.cheb2poly(row) for row in np.eye(count)]
-    to_powers = np.array([np.pad(row, (0, count - len(row))) for row in rows]).T
+    to_powers = np.array([np.pad(row, (0, count - len(row))) for row in rows], dtype=np.float64).T
     return places, to_series, to_powers

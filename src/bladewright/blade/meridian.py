@@ -7,7 +7,8 @@ from typing import Literal
 
 import numpy as np
 
-from bladewright.blade.meridian_line import MeridianLine, rounded_corners, spline_on, spline_through
+from bladewright.blade.corners import rounded_corners
+from bladewright.blade.meridian_line import MeridianLine, spline_on, spline_through
 from bladewright.designs import Part, Points, parameter
 from bladewright.errors import DesignError
 from bladewright.numerics.elementary import Array

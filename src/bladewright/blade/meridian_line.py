@@ -1,22 +1,14 @@
 """Native meridians: curves in (x, r) of polynomial pieces, each over its part of one real parameter."""
 
 from dataclasses import dataclass
-from math import comb, factorial
+from math import comb, factorial, perm
 from typing import Literal
 
 import numpy as np
 
-from bladewright.errors import DesignError
-from bladewright.numerics.elementary import Array, cross2, dot, length, unit
+from bladewright.numerics.elementary import Array, length
 from bladewright.nurbs.basis import Reals, basis, uniform_knots
 from bladewright.nurbs.curve import Curve
-
-ARC = np.pi / 8.0
-"""largest angle of a piece of an arc [rad]"""
-ARC_DEGREE = 11
-"""degree of a piece of an arc: the series of sine and cosine leaves 1e-17 of the radius"""
-ROOM = 1e-9
-"""share of a straight piece by which arcs may overlap on it: rounding"""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -51,12 +43,7 @@ class MeridianLine:
 
     def values(self, at: Reals, order: int = 0) -> Array:
         """Points, or derivatives (..., m, 2), at real places (m,) of the parameter; past an end its piece goes on."""
-        piece = np.clip(np.searchsorted(self.breaks, at, side="right") - 1, 0, len(self.breaks) - 2)
-        away = at - ((self.breaks[:-1] + self.breaks[1:]) / 2.0)[piece]
-        count = self.powers.shape[-2]
-        factors = [factorial(k) / factorial(k - order) if k >= order else 0.0 for k in range(count)]
-        rows = np.array(factors) * away[:, None] ** np.maximum(np.arange(count) - order, 0)
-        return np.einsum("mk,...mkd->...md", rows, self.powers[..., piece, :, :])
+        return piecewise(self.powers, self.breaks, at, order)
 
     def stream_polynomials(self, v: Reals, centres: Reals) -> Array:
         """Coefficients (..., len(v), len(centres), k, 2) of the powers of the parameter less each centre."""
@@ -66,6 +53,17 @@ class MeridianLine:
     def curve(self) -> Curve:
         """The same as a native curve over its own parameter."""
         return Curve(control_points=self.net, knots=self.knots, degree=self.degree)
+
+
+def piecewise(powers: Array, breaks: Reals, at: Reals, order: int = 0) -> Array:
+    """Values or derivatives (..., m, d) at real places (m,) of pieces (..., p, k, d) in powers around their middles."""
+    piece = np.clip(np.searchsorted(breaks, at, side="right") - 1, 0, len(breaks) - 2)
+    away = (at - ((breaks[:-1] + breaks[1:]) / 2.0)[piece])[:, None]
+    here = powers[..., piece, :, :]
+    found = np.zeros_like(here[..., 0, :])
+    for k in range(powers.shape[-2] - 1, order - 1, -1):
+        found = found * away + perm(k, order) * here[..., k, :]
+    return found
 
 
 def shifted(powers: Array, breaks: Reals, centres: Reals) -> Array:
@@ -110,7 +108,7 @@ def spline_through(
     middles = (breaks[:-1] + breaks[1:]) / 2.0
     powers = binomials(middles - sites[..., :-1], 4) @ powers
     # two derivatives are continuous, but only one of their change as the places of the points move
-    net, knots = _joined(powers, breaks, np.ones(len(breaks) - 2, dtype=int))
+    net, knots = joined_net(powers, breaks, np.ones(len(breaks) - 2, dtype=int))
     return MeridianLine(breaks=breaks, powers=powers, net=net, knots=knots, counted=total if conformal else None)
 
 
@@ -140,14 +138,14 @@ def _bends(h: Array, values: Array, ends: str) -> Array:
     chords = np.diff(values, axis=-2) / h[..., None]
     right = 6.0 * np.diff(chords, axis=-2)
     if count == 2:
-        own = 3.0 if ends == "smooth" else 2.0
+        weight = 3.0 if ends == "smooth" else 2.0
         last = 0.0 if ends == "smooth" else 1.0
-        middle = right[..., 0, :] / (own * (h[..., 0] + h[..., 1]) + last * h[..., 1])[..., None]
+        middle = right[..., 0, :] / (weight * (h[..., 0] + h[..., 1]) + last * h[..., 1])[..., None]
         found[..., 1:, :] = middle[..., None, :]
         found[..., 0, :] = middle if ends == "smooth" else 0.0
         return found
     lower, upper = np.array(h[..., :-1]), np.array(h[..., 1:])
-    own = 2.0 * (h[..., :-1] + h[..., 1:])
+    own = np.asarray(2.0 * (h[..., :-1] + h[..., 1:]))
     if ends == "smooth":
         start = h[..., 0] / h[..., 1]
         end = h[..., -1] / h[..., -2]
@@ -173,93 +171,7 @@ def _bends(h: Array, values: Array, ends: str) -> Array:
     return found
 
 
-def rounded_corners(points: Array, radii: Array, metre: float = 1.0) -> MeridianLine:
-    """Straight pieces from point to point (..., n, 2), the inner ones rounded by tangent arcs of radii (..., n - 2).
-
-    Raises DesignError where an arc does not fit between its neighbours, or the line turns back on itself. `metre` is
-    the length unit of what it says.
-    """
-    along = unit(np.diff(points, axis=-2))
-    sides = length(np.diff(points, axis=-2))
-    turn = cross2(along[..., :-1, :], along[..., 1:, :])
-    onwards = 1.0 + dot(along[..., :-1, :], along[..., 1:, :])
-    _check_turns(real_first(onwards, 1))
-    half = turn / onwards
-    sign = np.where(np.real(turn) < 0.0, -1.0, 1.0)
-    cut = radii * half * sign
-    _check_room(real_first(sides, 1), real_first(cut, 1), metre)
-    cut = np.broadcast_to(cut, (*np.broadcast_shapes(cut.shape[:-1], sides.shape[:-1]), cut.shape[-1]))
-    none = np.zeros_like(cut[..., :1])
-    before, after = np.concatenate([none, cut], axis=-1), np.concatenate([cut, none], axis=-1)
-    starts = points[..., :-1, :] + before[..., None] * along
-    straight = sides - before - after
-    pieces, lengths, smooth = [], [], []
-    whole = float(np.sum(real_first(sides, 1)))
-    for i in range(sides.shape[-1]):
-        if float(real_first(straight, 1)[i]) > ROOM * whole:
-            middle = starts[..., i, :] + 0.5 * straight[..., i, None] * along[..., i, :]
-            pieces.append([middle, straight[..., i, None] * along[..., i, :]])
-            lengths.append(straight[..., i])
-            smooth.append(1)
-        if i == sides.shape[-1] - 1:
-            continue
-        if float(real_first(cut, 1)[i]) <= ROOM * whole:
-            smooth[-1] = int(float(real_first(turn, 1)[i]) ** 2 < ROOM**2)
-            continue
-        angle = 2.0 * np.arctan(half[..., i])
-        end = points[..., i + 1, :] - cut[..., i, None] * along[..., i, :]
-        for piece in _arc(end, along[..., i, :], radii[..., i] * sign[..., i], angle):
-            pieces.append(piece)
-            lengths.append(radii[..., i] * angle * sign[..., i] / _parts(angle))
-            smooth.append(1)
-    steps = np.stack([real_first(each, 0) for each in lengths])
-    breaks = np.concatenate([[0.0], np.cumsum(steps) / np.sum(steps)])
-    breaks[-1] = 1.0
-    widths = np.diff(breaks)
-    degree = max(len(piece) for piece in pieces) - 1
-    powers = np.stack(
-        np.broadcast_arrays(*[_padded(piece, w, degree) for piece, w in zip(pieces, widths, strict=True)])
-    )
-    powers = np.moveaxis(powers, 0, -3)
-    net, knots = _joined(powers, breaks, np.zeros(len(widths) - 1, dtype=int))
-    sharp = tuple(float(breaks[i + 1]) for i, kept in enumerate(smooth[:-1]) if kept == 0)
-    return MeridianLine(breaks=breaks, powers=powers, net=net, knots=knots, corners=sharp)
-
-
-def _arc(start: Array, along: Array, radius: Array, angle: Array) -> list[list[Array]]:
-    """Pieces of an arc that leaves a point (..., 2) along a direction; powers of w from -1/2 to 1/2 of each."""
-    count = _parts(angle)
-    normal = np.stack([-along[..., 1], along[..., 0]], axis=-1)
-    centre = start + radius[..., None] * normal
-    pieces = []
-    for i in range(count):
-        step = angle / count
-        middle = (i + 0.5) * step
-        out = np.sin(middle)[..., None] * along - np.cos(middle)[..., None] * normal
-        on = np.cos(middle)[..., None] * along + np.sin(middle)[..., None] * normal
-        terms = [
-            (radius * step**k)[..., None] * ((-1.0) ** (k // 2) / factorial(k)) * (on if k % 2 else out)
-            for k in range(ARC_DEGREE + 1)
-        ]
-        terms[0] = terms[0] + centre
-        pieces.append(terms)
-    return pieces
-
-
-def _parts(angle: Array) -> int:
-    size = float(real_first(angle, 0))
-    return max(1, int(np.ceil(max(size, -size) / ARC - ROOM)))
-
-
-def _padded(piece: list[Array], width: float, degree: int) -> Array:
-    """Powers (..., degree + 1, 2) of the own parameter from those of w, which runs over one."""
-    batch = np.broadcast_shapes(*[term.shape for term in piece])
-    zero = np.zeros(batch)
-    terms = [np.broadcast_to(term, batch) / width**k for k, term in enumerate(piece)]
-    return np.stack(np.broadcast_arrays(*terms, *[zero] * (degree + 1 - len(terms))), axis=-2)
-
-
-def _joined(powers: Array, breaks: Reals, smooth: Reals) -> tuple[Array, Reals]:
+def joined_net(powers: Array, breaks: Reals, smooth: Reals) -> tuple[Array, Reals]:
     """Control points and knots of a B-spline whose joints keep `smooth` derivatives each, 0 or 1."""
     degree = powers.shape[-2] - 1
     width = np.diff(breaks)[:, None, None]
@@ -279,28 +191,6 @@ def _joined(powers: Array, breaks: Reals, smooth: Reals) -> tuple[Array, Reals]:
         if not last:
             knots.append(np.full(degree - int(smooth[i]), breaks[i + 1]))
     return np.concatenate(parts, axis=-2), np.concatenate([*knots, np.ones(degree + 1)])
-
-
-def _check_turns(onwards: Reals) -> None:
-    for i, value in enumerate(onwards):
-        if value < 1e-6:
-            raise DesignError(
-                f"corners[{i + 1}]: the line turns back on itself there; a corner must turn by less than 180 deg; "
-                "put a further corner in"
-            )
-
-
-def _check_room(sides: Reals, cut: Reals, metre: float) -> None:
-    """Refuse arcs that need more of a straight piece than there is."""
-    ends = np.concatenate([[0.0], cut, [0.0]])
-    needed = ends[:-1] + ends[1:]
-    for i, (asked, there) in enumerate(zip(needed, sides, strict=True)):
-        if asked > there * (1.0 + ROOM):
-            beside = " and ".join(f"radii[{k - 1}]" for k in (i, i + 1) if 0 < k < len(ends) - 1)
-            raise DesignError(
-                f"{beside}: the arcs take {asked / metre:.6g} of the straight piece between corners[{i}] and "
-                f"corners[{i + 1}], which is {there / metre:.6g} long; take smaller radii, or move the corners apart"
-            )
 
 
 def real_first(values: Array, axes: int) -> Reals:

@@ -55,6 +55,11 @@ class StreamSurfaces:
     chosen: tuple[int, ...] | None = None
     """the only lines whose joints count, where just some places along the span are asked for"""
 
+    @property
+    def extent(self) -> tuple[float, float]:
+        """t at which the flow path starts and ends."""
+        return self.low, self.high
+
     def joints(self) -> Reals:
         """Where stream lines lose derivatives, t inside (low, high), 0 and 1 apart."""
         which = range(len(self.matched)) if self.chosen is None else self.chosen
@@ -66,6 +71,11 @@ class StreamSurfaces:
         """The same for v (m,) alone: joints of lines that have no part in these stream lines are left out."""
         parts = np.any(self.shares(v) != 0.0, axis=0)
         return replace(self, chosen=tuple(int(j) for j in np.flatnonzero(parts)))
+
+    def real(self) -> "StreamSurfaces":
+        """The same without imaginary parts and batch, its measures as they are."""
+        matched = tuple(replace(each, powers=real_first(each.powers, 3)) for each in self.matched)
+        return replace(self, matched=matched)
 
     def span_joints(self) -> Reals:
         """Inner v at which two derivatives across the stream surfaces are continuous only."""
@@ -102,13 +112,33 @@ class StreamSurfaces:
 
     def at(self, t: Reals, v: Reals) -> tuple[Array, Array, Array]:
         """(x, r) at pairs of real t and v (m,), and its derivatives by t and by v, (..., m, 2) each."""
-        rows, slopes = ([each.values(t, order) for each in self.matched] for order in (0, 1))
+        rows, slopes = (self._rows(t, order) for order in (0, 1))
         shares, by_v = self.shares(v), self.shares(v, 1)
+        point, along, across = (
+            np.einsum("mj,...jmd->...md", weights, parts)
+            for weights, parts in ((shares, rows), (shares, slopes), (by_v, rows))
+        )
+        return point, along, across
 
-        def mixed(parts: list[Array], weights: Reals) -> Array:
-            return sum((weights[:, j, None] * part for j, part in enumerate(parts)), np.zeros(()))
+    def grid(self, t: Reals, v: Reals) -> tuple[Array, Array, Array]:
+        """(x, r) on a grid of real t (k,) and v (m,), and its derivatives by t and by v, (..., k, m, 2) each."""
+        rows, slopes = (self._rows(t, order) for order in (0, 1))
+        shares, by_v = self.shares(v), self.shares(v, 1)
+        point, along, across = (
+            np.einsum("mj,...jkd->...kmd", weights, parts)
+            for weights, parts in ((shares, rows), (shares, slopes), (by_v, rows))
+        )
+        return point, along, across
 
-        return mixed(rows, shares), mixed(slopes, shares), mixed(rows, by_v)
+    def position(self, v: Reals, t: Reals, order: int = 0) -> Array:
+        """(x, r) or derivatives by t (..., m, k, 2) on the stream lines at v (m,), at real t (m, k)."""
+        shares = np.repeat(self.shares(v), t.shape[1], axis=0)
+        found = np.einsum("mj,...jmd->...md", shares, self._rows(t.ravel(), order))
+        return found.reshape(*found.shape[:-2], *t.shape, 2)
+
+    def _rows(self, t: Reals, order: int) -> Array:
+        """Points, or derivatives by t (..., j, k, 2), of the lines."""
+        return np.stack(np.broadcast_arrays(*[each.values(t, order) for each in self.matched]), axis=-3)
 
     def counted(self, v: Reals) -> tuple[Array, Array]:
         """m' (..., m) as lines with `spacing` "conformal" count it: at t = 0, and its increase by t; linear in t.
@@ -139,7 +169,9 @@ class StreamSurfaces:
         return make_interp_spline(self.spans, np.eye(len(self.spans)), degree)
 
 
-def stream_surfaces(path: FlowPath, metre: float, edges: tuple[Meridian, Meridian] | None = None) -> StreamSurfaces:
+def stream_surfaces(
+    path: FlowPath, metre: float, edges: tuple[Meridian, Meridian] | None = None, *, revolved: bool = True
+) -> StreamSurfaces:
     """The native stream surfaces of a flow path whose length unit is `metre` metres.
 
     `edges` are the leading- and the trailing-edge curve of the blade, needed where the path is matched at them. Raises
@@ -175,15 +207,22 @@ def stream_surfaces(path: FlowPath, metre: float, edges: tuple[Meridian, Meridia
         measures=tuple(along),
         matches=tuple(matches),
     )
-    check_stream_surfaces(surfaces)
+    check_stream_surfaces(surfaces, revolved=revolved)
     return surfaces
 
 
-def check_stream_surfaces(surfaces: StreamSurfaces) -> None:
-    """Refuse stream surfaces whose map (t, v) -> (x, r) is not one to one."""
+def check_stream_surfaces(surfaces: StreamSurfaces, *, revolved: bool = True) -> None:
+    """Refuse stream surfaces whose map (t, v) -> (x, r) is not one to one, or that reach the axis where revolved."""
     t, v = np.linspace(surfaces.low, surfaces.high, 101), np.linspace(0.0, 1.0, 41)
-    grid_t, grid_v = (each.ravel() for each in np.meshgrid(t, v, indexing="ij"))
-    point, along, across = (real_first(part, 2) for part in surfaces.at(grid_t, grid_v))
+    point, along, across = (part.reshape(-1, 2) for part in surfaces.real().grid(t, v))
+    grid_v = np.tile(v, len(t))
+    if revolved and np.min(point[:, 1]) <= 0.0:
+        lowest = int(np.argmin(point[:, 1]))
+        x, r = point[lowest]
+        raise DesignError(
+            f"the flow path has radius {r:.4g} m at x = {x:.5g} m, v = {grid_v[lowest]:.3f}: every radius must be "
+            "positive around the axis; move or shorten the hub so that it keeps clear of the axis"
+        )
     share = cross2(along, across)
     share = share / np.median(np.sqrt(np.sum(along**2, axis=-1) * np.sum(across**2, axis=-1)))
     if np.all(share < 0.0):
@@ -197,8 +236,8 @@ def check_stream_surfaces(surfaces: StreamSurfaces) -> None:
         raise DesignError(
             f"the stream surfaces fold over at (x, r) = ({point[worst, 0]:.5g}, {point[worst, 1]:.5g}) m, v = "
             f"{grid_v[worst]:.3f} (Jacobian {share[worst]:.3g} of its median, it must be positive): hub and shroud "
-            "cross, or points at equal fractions of their lengths do not lie beside each other there; let both start and "
-            "end "
+            "cross, or points at equal fractions of their lengths do not lie beside each other there; let both "
+            "start and end "
             + (
                 "beside each other, or give quasi_orthogonals"
                 if inner == "quasi_orthogonals"
@@ -214,7 +253,7 @@ def _meets(along: Measured, edge: MeridianLine, what: str, name: str) -> Array:
     def position(t: Reals, order: int) -> Array:
         return line.values(t[0], order)[..., None, :, :]
 
-    place = crossed(position, (0.0, 1.0), edge, what, [name]).t
+    place = crossed(position, (0.0, 1.0), edge, what, [f"of the {name}"]).t
     return along.fractions(place)[..., 0]
 
 

@@ -170,7 +170,7 @@ class StreamLines:
         return np.stack([_horner(_rows_of(self.powers[..., i], panel), t, order) for i in (0, 1)], axis=-1)
 
 
-def stream_lines(channel: Channelled, mapping: Mapping, v: Reals, before: float, after: float) -> StreamLines:
+def stream_lines(channel: Channelled, mapping: Mapping, v: Array, before: float, after: float) -> StreamLines:
     """Stream lines at v (m,), continued by `before` and `after` in u.
 
     The densities' Chebyshev series are carried to rounding: panels are halved until their last terms vanish.
@@ -187,7 +187,7 @@ def stream_lines(channel: Channelled, mapping: Mapping, v: Reals, before: float,
     return lines
 
 
-def _on_panels(channel: Channelled, mapping: Mapping, v: Reals, ends: Reals) -> tuple[StreamLines, Reals]:
+def _on_panels(channel: Channelled, mapping: Mapping, v: Array, ends: Reals) -> tuple[StreamLines, Reals]:
     centres, halves = (ends[:-1] + ends[1:]) / 2.0, (ends[1:] - ends[:-1]) / 2.0
     powers = channel.stream_polynomials(v, centres)
     t = halves[:, None] * _NODE_PLACES
