@@ -55,6 +55,11 @@ if TYPE_CHECKING:
     from bladewright.nurbs.curve import Curve as Curve
     from bladewright.nurbs.surface import Surface as Surface
     from bladewright.nurbs.trimmed import TrimmedSurface as TrimmedSurface
+    from bladewright.section.curvature_meanline import CurvatureMeanline as CurvatureMeanline
+    from bladewright.section.curvature_meanline import CurvatureMeanlineSection as CurvatureMeanlineSection
+    from bladewright.section.thickness.modified_naca import ModifiedNaca as ModifiedNaca
+    from bladewright.section.thickness.quartic import QuarticSpline as QuarticSpline
+    from bladewright.section.thickness.wennerstrom import Wennerstrom as Wennerstrom
     from bladewright.section.unified import UnifiedSection as UnifiedSection
 
 __version__ = "0.1.0"
@@ -65,6 +70,8 @@ _HOMES = {
     "CadError": "errors",
     "Channel": "blade.channel",
     "Curve": "nurbs.curve",
+    "CurvatureMeanline": "section.curvature_meanline",
+    "CurvatureMeanlineSection": "section.curvature_meanline",
     "CurveFit": "fitting.curves",
     "DerivativeError": "errors",
     "DesignError": "errors",
@@ -73,8 +80,10 @@ _HOMES = {
     "FitError": "errors",
     "GeometryError": "errors",
     "MeshError": "errors",
+    "ModifiedNaca": "section.thickness.modified_naca",
     "Passage": "domain.passage",
     "ProfileFit": "fitting.profile",
+    "QuarticSpline": "section.thickness.quartic",
     "SectionPassage": "domain.section",
     "NetJacobian": "derivatives.jacobian",
     "Surface": "nurbs.surface",
@@ -85,6 +94,7 @@ _HOMES = {
     "UnifiedBlade": "blade.unified",
     "UnifiedSection": "section.unified",
     "Variables": "derivatives.variables",
+    "Wennerstrom": "section.thickness.wennerstrom",
     "fit": "fitting.fit",
     "fit_curve": "fitting.curves",
     "fit_profile": "fitting.profile",

@@ -1,14 +1,21 @@
 """What is asked of every family that is one part: its exact outline, its derivatives, its native section."""
 
+import jsonschema
 import numpy as np
 import pytest
 
 from bladewright.errors import DesignError
+from bladewright.files.families import FAMILIES
+from bladewright.files.reading import design_from, parsed
+from bladewright.files.schema import schema
+from bladewright.files.writing import text_of
 from bladewright.section.crossing import check_outline
 from bladewright.section.laws import Span
+from bladewright.section.planar import PlanarSection
 
 from .families import EXAMPLES
 
+SCHEMA = jsonschema.Draft202012Validator(schema())
 STEP = 1e-30
 S = np.linspace(0.0, 1.0, 61)
 PAIRS = [(name, path) for name, example in EXAMPLES.items() for path in example.part().parameters()]
@@ -198,6 +205,19 @@ def test_built_curves_carry_a_complex_step_at_held_knots(example, sections):
     step = 1e-5 * max(1e-2, abs(value))
     central = (points(value + step) - points(value - step)) / (2.0 * step)
     assert analytic == pytest.approx(central, abs=1e-6 * np.max(np.abs(analytic)))
+
+
+@pytest.mark.parametrize("name", [name for name, each in EXAMPLES.items() if type(each.design) in FAMILIES.values()])
+def test_a_file_holds_a_design_to_the_bit_and_the_schema_takes_it(name):
+    design = EXAMPLES[name].design
+    document = parsed(text_of(design), name)
+    assert repr(design_from(document, name)) == repr(design)
+    SCHEMA.validate(document)
+
+
+def test_every_family_of_files_that_is_one_part_has_an_example():
+    kinds = {kind for kind in FAMILIES.values() if issubclass(kind, PlanarSection)}
+    assert kinds <= {type(each.design) for each in EXAMPLES.values()}
 
 
 def test_a_single_section_refuses_a_law_along_the_span(example):

@@ -3,11 +3,13 @@
 from bladewright.blade.unified import UnifiedBlade
 from bladewright.designs import Design
 from bladewright.errors import FileError
+from bladewright.section.curvature_meanline import CurvatureMeanlineSection
 from bladewright.section.unified import UnifiedSection
 
 FAMILIES: dict[str, type[Design]] = {
     "unified": UnifiedBlade,
     "unified-section": UnifiedSection,
+    "curvature-meanline-section": CurvatureMeanlineSection,
 }
 """Design class by the `family` of its files."""
 

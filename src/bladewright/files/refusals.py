@@ -11,7 +11,15 @@ from pydantic import ValidationError
 from pydantic_core import ErrorDetails
 
 from bladewright.designs import Design, Point, unknown
+from bladewright.section.alternatives import tags
 
+_WORDS = {
+    float: "a number",
+    bool: "true or false",
+    int: "a whole number",
+    str: "a text in quotes",
+    Point: "a pair of numbers",
+}
 _RANKS = {"unexpected_keyword_argument": 0, "missing": 2}
 
 
@@ -41,17 +49,32 @@ def needed(annotation: Any) -> str:
     """In words, what a field of this type takes."""
     origin, inner = get_origin(annotation), get_args(annotation)
     if origin in (Union, UnionType):
+        parts = [own for _, own in _told(annotation)]
+        if parts:
+            return f"a table whose {next(iter(parts[0]))} is one of " + ", ".join(shown(*own.values()) for own in parts)
         return " or ".join(needed(each) for each in inner if each is not NoneType)
     if origin is Literal:
         return "one of " + ", ".join(shown(each) for each in inner)
     if origin is tuple:
-        entry = needed(inner[0])
-        if Ellipsis not in inner:
-            return "a pair of numbers"
-        return f"a list of {entry[2:]}s" if entry == "a number" else f"a list with, for each entry, {entry}"
+        return _needed_list(inner)
     if is_dataclass(annotation):
         return "a table of " + ", ".join(each.name for each in fields(annotation))
-    return {float: "a number", int: "a whole number", str: "a text in quotes", Point: "a pair of numbers"}[annotation]
+    return _WORDS[annotation]
+
+
+def _needed_list(entries: tuple[Any, ...]) -> str:
+    if Ellipsis not in entries:
+        return "a pair of numbers"
+    entry = needed(entries[0])
+    return f"a list of {entry[2:]}s" if entry == "a number" else f"a list with, for each entry, {entry}"
+
+
+def _told(annotation: Any) -> list[tuple[type[Any], dict[str, Any]]]:
+    """The parts of a union of parts, and by which fields and values they are told."""
+    if get_origin(annotation) not in (Union, UnionType):
+        return []
+    parts: list[Any] = [each for each in get_args(annotation) if is_dataclass(each)]
+    return [(each, tags(each)) for each in parts]
 
 
 class _Place:
@@ -64,7 +87,10 @@ class _Place:
         self.depth_in_list = 0
         node: Any = document
         for step in loc:
-            if isinstance(step, str) and self.depth_in_list == 0 and isinstance(node, Mapping):
+            part = next((part for part, own in _told(self.annotation) if step in own.values()), None)
+            if part is not None:
+                self.annotation = part
+            elif isinstance(step, str) and self.depth_in_list == 0 and isinstance(node, Mapping):
                 self._enter(step)
                 node = node.get(step)
             elif isinstance(step, int) and isinstance(node, list):
@@ -98,14 +124,30 @@ def _said(error: ErrorDetails, place: _Place) -> str:
         return f"{place.path} is missing: {needed(place.annotation)}{unit} must be given"
     if error["type"] == "missing":
         return f"{place.path} is missing: a pair of numbers{unit} is needed"
+    if error["type"].startswith("union_tag"):
+        return _wrong_tag(error, place)
     value = shown(error["input"])
     return f"{place.path or 'the file'} is {value}: {needed(place.annotation)}{unit} is needed{_nearest(error, place)}"
+
+
+def _wrong_tag(error: ErrorDetails, place: _Place) -> str:
+    parts = [own for _, own in _told(place.annotation)]
+    name, known = next(iter(parts[0])), [str(value) for own in parts for value in own.values()]
+    given = error["input"].get(name) if isinstance(error["input"], dict) else None
+    choice = "one of " + ", ".join(shown(each) for each in known)
+    if given is None:
+        return f"{place.path}.{name} is missing: {choice} must be given"
+    return f"{place.path}.{name} is {shown(given)}: {choice} is needed{_meant(given, known)}"
 
 
 def _nearest(error: ErrorDetails, place: _Place) -> str:
     if error["type"] != "literal_error" or not isinstance(error["input"], str):
         return ""
+    return _meant(error["input"], [str(each) for each in get_args(place.annotation)])
+
+
+def _meant(given: object, known: list[str]) -> str:
     from difflib import get_close_matches
 
-    near = get_close_matches(error["input"], [str(each) for each in get_args(place.annotation)], n=1, cutoff=0.4)
+    near = get_close_matches(str(given), known, n=1, cutoff=0.4)
     return f"; did you mean '{near[0]}'?" if near else ""

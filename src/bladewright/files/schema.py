@@ -1,13 +1,14 @@
 """The JSON Schema of design files, from the designs' own fields, units and docstrings."""
 
 from dataclasses import fields, is_dataclass
-from typing import Any, get_type_hints
+from typing import Any, get_args, get_type_hints
 
 from pydantic import TypeAdapter
 
 from bladewright.designs import Part
 from bladewright.files.families import FAMILIES
 from bladewright.files.reading import adapter
+from bladewright.section.alternatives import tags
 
 _DIALECT = "https://json-schema.org/draft/2020-12/schema"
 
@@ -34,16 +35,31 @@ def schema() -> dict[str, Any]:
 def _refine(kind: type[Part], definitions: dict[str, Any]) -> None:
     """Add units, and take away what a TOML file cannot say: null."""
     properties = definitions[kind.__name__]["properties"]
-    hints = get_type_hints(kind)
+    required = definitions[kind.__name__].setdefault("required", [])
+    hints, told_by = get_type_hints(kind), tags(kind)
     for each in fields(kind):
         entry = properties[each.name]
         entry.pop("title", None)
+        if "description" not in entry and (words := _inherited(kind, each.name)):
+            entry["description"] = words
         if "unit" in each.metadata:
             entry["unit"] = each.metadata["unit"]
+        if each.name in told_by:
+            del entry["default"]
+            required.insert(0, each.name)
         if entry.get("default", 0) is None:
             del entry["default"]
             arms = [arm for arm in entry.pop("anyOf") if arm != {"type": "null"}]
             entry.update(arms[0] if len(arms) == 1 else {"anyOf": arms})
-        hint = hints[each.name]
-        if isinstance(hint, type) and is_dataclass(hint) and issubclass(hint, Part):
-            _refine(hint, definitions)
+        for hint in get_args(hints[each.name]) or (hints[each.name],):
+            if isinstance(hint, type) and is_dataclass(hint) and issubclass(hint, Part):
+                _refine(hint, definitions)
+
+
+def _inherited(kind: type[Part], name: str) -> str | None:
+    """The description of a field that a base class has declared; pydantic reads those of the class itself."""
+    for base in kind.__mro__[1:]:
+        if is_dataclass(base) and name in base.__annotations__:
+            found: str | None = TypeAdapter(base).json_schema()["properties"][name].get("description")
+            return found
+    return None

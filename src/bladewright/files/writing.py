@@ -16,6 +16,7 @@ from bladewright.files.families import family_of
 from bladewright.files.literals import literal, plain, same
 from bladewright.files.reading import design_from, parsed
 from bladewright.files.text import read_text, write_text
+from bladewright.section.alternatives import tags
 
 
 def write_design(design: Design, path: str | PathLike[str]) -> None:
@@ -35,14 +36,7 @@ def text_of(design: Design) -> str:
     length = _length_of(design)
     lines = [f'family = "{family_of(design)}"', *_lines(design, "", length, parameters=False), ""]
     lines += _lines(design, "", length, parameters=True)
-    for each in fields(design):
-        value = getattr(design, each.name)
-        if isinstance(value, Part):
-            lines += ["", f"[{each.name}]"]
-            lines += [
-                line for kind in (False, True) for line in _lines(value, f"{each.name}.", length, parameters=kind)
-            ]
-    return "\n".join(lines) + "\n"
+    return "\n".join([*lines, *_tables(design, "", length)]) + "\n"
 
 
 def updated(design: Design, text: str, where: str) -> str:
@@ -80,11 +74,23 @@ def _length_of(design: Design) -> str:
     return str(getattr(design, "length_unit", "length"))
 
 
-def _lines(design: Part, path: str, length: str, *, parameters: bool) -> list[str]:
+def _tables(design: Part, path: str, length: str) -> list[str]:
+    """The tables of the parts of a design or part, each with those of its own parts behind it."""
     lines = []
     for each in fields(design):
+        value, name = getattr(design, each.name), path + each.name
+        if isinstance(value, Part):
+            lines += ["", f"[{name}]"]
+            lines += [line for kind in (False, True) for line in _lines(value, f"{name}.", length, parameters=kind)]
+            lines += _tables(value, f"{name}.", length)
+    return lines
+
+
+def _lines(design: Part, path: str, length: str, *, parameters: bool) -> list[str]:
+    lines, told_by = [], tags(type(design))
+    for each in fields(design):
         value = getattr(design, each.name)
-        left_out = isinstance(value, Part) or _is_default(each, value)
+        left_out = isinstance(value, Part) or (_is_default(each, value) and each.name not in told_by)
         if ("unit" in each.metadata) == parameters and not left_out:
             unit = each.metadata.get("unit", "-").replace("length", length)
             comment = "" if unit == "-" else f"  # {unit}"
@@ -97,6 +103,7 @@ def _is_default(each: Any, value: Any) -> bool:
 
 
 def _merge(table: MutableMapping[str, Any], design: Part, before: Part | None, length: str) -> None:
+    told_by = tags(type(design))
     for each in fields(design):
         value, old = getattr(design, each.name), getattr(before, each.name, None)
         if isinstance(value, Part):
@@ -107,7 +114,7 @@ def _merge(table: MutableMapping[str, Any], design: Part, before: Part | None, l
             table.pop(each.name, None)
         elif each.name in table:
             _put(table, each.name, value, each.name)
-        elif not _is_default(each, value) and not (before is not None and same(plain(old), plain(value))):
+        elif each.name in told_by or not (_is_default(each, value) or (before and same(plain(old), plain(value)))):
             table[each.name] = tomlkit.value(literal(value, each.name))
     for key in set(table) - {each.name for each in fields(design)} - {"family"}:
         del table[key]

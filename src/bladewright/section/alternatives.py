@@ -1,7 +1,7 @@
 """Parts that stand for each other in a design, told apart by a literal field."""
 
 from dataclasses import dataclass, fields
-from typing import Any, get_args, get_type_hints
+from typing import Any, Literal, get_args, get_origin, get_type_hints
 
 
 @dataclass(frozen=True)
@@ -20,6 +20,11 @@ class ByField:
 
     def tag(self, part: type[Any]) -> str:
         """The value by which a part is told."""
-        if self.name not in {each.name for each in fields(part)}:
-            raise TypeError(f"{part.__name__} has no field '{self.name}' that tells it from others")
-        return str(get_args(get_type_hints(part)[self.name])[0])
+        return str(tags(part)[self.name])
+
+
+def tags(part: type[Any]) -> dict[str, Any]:
+    """The fields of a part that can have one value only, and that value: by them it is told from others."""
+    hints = {name: hint for name, hint in get_type_hints(part).items() if get_origin(hint) is Literal}
+    values = {each.name: get_args(hints[each.name]) for each in fields(part) if each.name in hints}
+    return {name: known[0] for name, known in values.items() if len(known) == 1}
