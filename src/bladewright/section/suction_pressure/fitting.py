@@ -5,11 +5,11 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from bladewright.errors import DesignError
-from bladewright.numerics.elementary import Array, cross2, radians
+from bladewright.numerics.elementary import Array, cross2, length, radians
 from bladewright.nurbs.basis import Reals
 from bladewright.section.laws import Span
 from bladewright.section.suction_pressure.points import OPENING, Continuity, Points, opening
-from bladewright.section.suction_pressure.side import Side, pace
+from bladewright.section.suction_pressure.side import DEGREE, Side, pace
 
 if TYPE_CHECKING:
     from bladewright.section.suction_pressure.part import SuctionPressure
@@ -51,11 +51,12 @@ def check_pace(name: str, side: Side, span: Span) -> None:
         slope = np.min(np.real(pace(end, PLACES, 1)), axis=-1)
         if np.any(slope <= 0.0):
             at = _worst(-slope)
-            share = np.broadcast_to(np.real(end.slope), slope.shape)[at] / 2.5
-            cure = f"make it about {share:.2g} times as long" if share > 1.0 else "make it longer"
+            reach = np.broadcast_to(np.real(length(end.taylor[..., 1, :])) / DEGREE, slope.shape)[at]
+            least = reach * max(1.2, float(np.broadcast_to(np.real(end.slope), slope.shape)[at]) / 2.5)
             raise DesignError(
-                f"{name}_tangent_{which} is too short for the {edge}_radius{_where(at, span)}: the {name} side would "
-                f"turn back where it joins the edge; {cure}, or lower {edge}_radius"
+                f"{name}_tangent_{which} is {reach:.3g}{_where(at, span)}: too short for the {edge}_radius, the "
+                f"{name} side would turn back where it joins the edge; make it {least:.2g} or more, or lower "
+                f"{edge}_radius"
             )
 
 

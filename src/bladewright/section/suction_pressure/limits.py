@@ -34,7 +34,7 @@ def checked(part: "SuctionPressure") -> dict[str, Any]:
     for name in TANGENTS:
         if getattr(part, name) is not None or name.startswith("suction"):
             found[name] = checks.law(name, getattr(part, name))
-            what = "a control point on a tangent must lie before its corner, less than 10 chords off"
+            what = "it must lie above 0 and below 10 chords, along the tangent from the corner"
             checks.between(name, found[name], 0.0, 10.0, what)
     checks.choice("suction_side", part.suction_side, ("upper", "lower"))
     checks.choice("edges", part.edges, ("C1", "C2"))
@@ -66,15 +66,19 @@ def _check_counts(found: dict[str, Any]) -> None:
             f"pressure_heights and pressure_thickness: {given}; give heights for a pressure side of its own, or "
             "thicknesses along the suction side, and leave the other out"
         )
-    for name in ("pressure_thickness",):
-        checks.between(name, found[name], 0.0, 1.0, "a thickness must be positive, and below the chord")
+    thickness = found["pressure_thickness"]
+    checks.between("pressure_thickness", thickness, 0.0, 1.0, "a thickness must be positive, and below the chord")
     for places, count in (("suction_places", "suction_heights"), ("pressure_places", _pressure(found))):
         if found[places] and len(found[places]) != len(found[count]):
             raise DesignError(
                 f"{places} has {len(found[places])} entries and {count} has {len(found[count])}: give one place for "
                 f"each, or leave {places} out"
             )
-        checks.between(places, found[places], 0.0, 1.0, "a place must lie between 0 and 1")
+        if count == "pressure_thickness":
+            checks.between(places, found[places], 0.0, 1.0, "a place on the suction side must lie between 0 and 1")
+        else:
+            # past the edges the skeleton goes on, and refined control points may stand there
+            checks.between(places, found[places], -0.5, 1.5, "a place along the skeleton must lie between -0.5 and 1.5")
 
 
 def _knots(name: str, value: Any, count: int, of: str) -> tuple[float, ...]:
