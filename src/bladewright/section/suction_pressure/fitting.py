@@ -9,7 +9,7 @@ from bladewright.numerics.elementary import Array, cross2, length, radians
 from bladewright.nurbs.basis import Reals
 from bladewright.section.laws import Span
 from bladewright.section.suction_pressure.points import OPENING, Continuity, Points, opening
-from bladewright.section.suction_pressure.side import DEGREE, Side, pace
+from bladewright.section.suction_pressure.side import DEGREE, End, Side, pace
 
 if TYPE_CHECKING:
     from bladewright.section.suction_pressure.part import SuctionPressure
@@ -46,16 +46,23 @@ def check_room(leading: Points, trailing: Points, span: Span) -> None:
 
 
 def check_pace(name: str, side: Side, span: Span) -> None:
-    """Refuse a control point on a tangent so near to its corner that the side cannot take over the edge's speed."""
+    """Refuse a control point on a tangent so near to its corner that the side cannot take over the edge's speed.
+
+    With c = reach slope, which the reach leaves alone, and the distance d to the next control point, the rise is about
+    -c^2 d / reach^3, and the pace is monotone up to a rise of about sqrt(72 slope) and a slope of about 2.5.
+    """
     for end, edge, which in ((side.start, "leading_edge", "in"), (side.end, "trailing_edge", "out")):
         slope = np.min(np.real(pace(end, PLACES, 1)), axis=-1)
         if np.any(slope <= 0.0):
             at = _worst(-slope)
-            reach = np.broadcast_to(np.real(length(end.taylor[..., 1, :])) / DEGREE, slope.shape)[at]
-            least = reach * max(1.2, float(np.broadcast_to(np.real(end.slope), slope.shape)[at]) / 2.5)
+            reach, slope_there, next_step = (
+                float(np.broadcast_to(np.real(each), slope.shape)[at])
+                for each in (length(end.taylor[..., 1, :]) / DEGREE, end.slope, _next_step(end))
+            )
+            least = 1.2 * max(reach * slope_there / 2.5, ((reach * slope_there) ** 1.5 * next_step / 8.5) ** 0.4)
             raise DesignError(
                 f"{name}_tangent_{which} is {reach:.3g}{_where(at, span)}: too short for the {edge}_radius, the "
-                f"{name} side would turn back where it joins the edge; make it {least:.2g} or more, or lower "
+                f"{name} side would turn back where it joins the edge; make it about {least:.2g} or more, or lower "
                 f"{edge}_radius"
             )
 
@@ -75,6 +82,12 @@ def check_crossing(part: "SuctionPressure", upper: Side, lower: Side, span: Span
             f"leading to trailing edge (suction_side is the {part.suction_side} one); {gap} there, or lower an edge "
             "radius or a tangent that reaches too far"
         )
+
+
+def _next_step(end: End) -> Array:
+    """Distance (...) from a side's second control point to its third."""
+    first, second = end.taylor[..., 1, :], end.taylor[..., 2, :]
+    return length(2.0 * second + 2.0 * first) / DEGREE
 
 
 def _shape(*values: Array) -> tuple[int, ...]:
