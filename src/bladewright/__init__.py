@@ -57,10 +57,14 @@ if TYPE_CHECKING:
     from bladewright.nurbs.trimmed import TrimmedSurface as TrimmedSurface
     from bladewright.section.curvature_meanline import CurvatureMeanline as CurvatureMeanline
     from bladewright.section.curvature_meanline import CurvatureMeanlineSection as CurvatureMeanlineSection
+    from bladewright.section.suction_pressure.part import SuctionPressure as SuctionPressure
+    from bladewright.section.suction_pressure.part import SuctionPressureSection as SuctionPressureSection
     from bladewright.section.thickness.modified_naca import ModifiedNaca as ModifiedNaca
     from bladewright.section.thickness.quartic import QuarticSpline as QuarticSpline
     from bladewright.section.thickness.wennerstrom import Wennerstrom as Wennerstrom
     from bladewright.section.unified import UnifiedSection as UnifiedSection
+    from bladewright.section.wedge_diffuser import WedgeDiffuser as WedgeDiffuser
+    from bladewright.section.wedge_diffuser import WedgeDiffuserSection as WedgeDiffuserSection
 
 __version__ = "0.1.0"
 
@@ -86,6 +90,8 @@ _HOMES = {
     "QuarticSpline": "section.thickness.quartic",
     "SectionPassage": "domain.section",
     "NetJacobian": "derivatives.jacobian",
+    "SuctionPressure": "section.suction_pressure.part",
+    "SuctionPressureSection": "section.suction_pressure.part",
     "Surface": "nurbs.surface",
     "SurfaceFit": "fitting.surfaces",
     "SurfacePoints": "derivatives.places",
@@ -94,6 +100,8 @@ _HOMES = {
     "UnifiedBlade": "blade.unified",
     "UnifiedSection": "section.unified",
     "Variables": "derivatives.variables",
+    "WedgeDiffuser": "section.wedge_diffuser",
+    "WedgeDiffuserSection": "section.wedge_diffuser",
     "Wennerstrom": "section.thickness.wennerstrom",
     "fit": "fitting.fit",
     "fit_curve": "fitting.curves",

@@ -4,12 +4,16 @@ from bladewright.blade.unified import UnifiedBlade
 from bladewright.designs import Design
 from bladewright.errors import FileError
 from bladewright.section.curvature_meanline import CurvatureMeanlineSection
+from bladewright.section.suction_pressure.part import SuctionPressureSection
 from bladewright.section.unified import UnifiedSection
+from bladewright.section.wedge_diffuser import WedgeDiffuserSection
 
 FAMILIES: dict[str, type[Design]] = {
     "unified": UnifiedBlade,
     "unified-section": UnifiedSection,
     "curvature-meanline-section": CurvatureMeanlineSection,
+    "suction-pressure-section": SuctionPressureSection,
+    "wedge-diffuser-section": WedgeDiffuserSection,
 }
 """Design class by the `family` of its files."""
 
