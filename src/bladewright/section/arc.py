@@ -5,11 +5,13 @@ from collections.abc import Callable, Sequence
 import numpy as np
 from numpy.polynomial import chebyshev
 
-from bladewright.numerics.elementary import length
+from bladewright.numerics.elementary import length, magnitude
 from bladewright.nurbs.basis import Reals
 
-NODES = 40
-"""Chebyshev points on each piece"""
+NODES, MOST = 40, 320
+"""Chebyshev points on each piece to begin with, and at most"""
+RESOLVED = 1e-10
+"""of the largest coefficient of the speed: the last ones stay below it, or the points are doubled"""
 TABLE, STEPS = 50, 6
 """places on each piece from which the inverse starts, and Newton steps it takes"""
 
@@ -24,18 +26,26 @@ class ArcLength:
     def __init__(self, line: Callable[[Reals], Reals], ends: Sequence[float]) -> None:
         """`line` returns points (k, 2) at parameters (k,) within the increasing `ends` of the pieces."""
         self._ends = np.array(ends)
-        nodes = np.cos(np.pi * (np.arange(NODES) + 0.5) / NODES)[::-1]
-        matrix = chebyshev.chebvander(nodes, NODES - 1).T * (2.0 / NODES)
+        count = NODES
+        self._speed = self._speeds(line, count)
+        while count < MOST and np.max(magnitude(self._speed[:, -4:])) > RESOLVED * np.max(magnitude(self._speed)):
+            count *= 2
+            self._speed = self._speeds(line, count)
+        self._risen = np.stack([chebyshev.chebint(each, lbnd=-1) for each in self._speed])
+        total = np.array([chebyshev.chebval(1.0, each) for each in self._risen])
+        self._whole = float(np.sum(total))
+        self._start = np.concatenate([[0.0], np.cumsum(total)[:-1]])
+
+    def _speeds(self, line: Callable[[Reals], Reals], count: int) -> Reals:
+        """Chebyshev coefficients (pieces, count) of the speed on each piece."""
+        nodes = np.cos(np.pi * (np.arange(count) + 0.5) / count)[::-1]
+        matrix = chebyshev.chebvander(nodes, count - 1).T * (2.0 / count)
         matrix[0] /= 2.0
         half = np.diff(self._ends)[:, None] / 2.0
         places = self._ends[:-1, None] + half * (1.0 + nodes)
         points = line(places.ravel()).reshape(*places.shape, 2)
         slopes = np.stack([chebyshev.chebval(nodes, chebyshev.chebder(matrix @ each)).T for each in points])
-        self._speed = np.stack([matrix @ each for each in length(slopes)])
-        self._risen = np.stack([chebyshev.chebint(each, lbnd=-1) for each in self._speed])
-        total = np.array([chebyshev.chebval(1.0, each) for each in self._risen])
-        self._whole = float(np.sum(total))
-        self._start = np.concatenate([[0.0], np.cumsum(total)[:-1]])
+        return np.stack([matrix @ each for each in length(slopes)])
 
     def lengths(self, s: Reals) -> Reals:
         """Arc lengths (k,) at parameters s (k,)."""
@@ -56,11 +66,8 @@ class ArcLength:
 
     def _values(self, s: Reals) -> tuple[Reals, Reals]:
         piece = np.clip(np.searchsorted(self._ends, s, side="right") - 1, 0, len(self._speed) - 1)
-        value, slope = np.empty(np.shape(s)), np.empty(np.shape(s))
-        for i in np.unique(piece):
-            here = piece == i
-            half = (self._ends[i + 1] - self._ends[i]) / 2.0
-            x = (s[here] - self._ends[i]) / half - 1.0
-            value[here] = self._start[i] + chebyshev.chebval(x, self._risen[i])
-            slope[here] = chebyshev.chebval(x, self._speed[i]) / half
+        half = (self._ends[piece + 1] - self._ends[piece]) / 2.0
+        x = (s - self._ends[piece]) / half - 1.0
+        value = self._start[piece] + chebyshev.chebval(x, self._risen[piece].T, tensor=False)
+        slope = chebyshev.chebval(x, self._speed[piece].T, tensor=False) / half
         return value / self._whole, slope / self._whole

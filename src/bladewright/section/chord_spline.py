@@ -6,8 +6,7 @@ from functools import cached_property
 import numpy as np
 
 from bladewright.numerics.elementary import Array, joined
-from bladewright.numerics.roots import bracketed_root
-from bladewright.section.meanline import derived, polynomial, taken
+from bladewright.section.meanline import derived, parameter_at, polynomial, taken
 from bladewright.section.thickness.series import Series
 from bladewright.section.thickness.series import polynomial as composed
 from bladewright.section.thickness.uniform import segments
@@ -41,12 +40,7 @@ class ChordSpline:
         """f and its first two derivatives (..., m, k) at u (..., m, k) or (k,) in [0, 1]."""
         segment = np.sum(np.real(u)[..., None] >= np.real(self.joints)[..., None, :], axis=-1)
         place, value = (taken(each, segment) for each in self._powers)
-
-        def off(t: Array) -> tuple[Array, Array]:
-            return polynomial(place, t) - u, polynomial(derived(place), t)
-
-        low = np.zeros(np.broadcast_shapes(np.shape(u), segment.shape))
-        t = bracketed_root(off, low, low + 1.0)
+        t = parameter_at(place, u)
         run, rise = polynomial(derived(place), t), polynomial(derived(value), t)
         bend = polynomial(derived(derived(value)), t) - rise / run * polynomial(derived(derived(place)), t)
         return polynomial(value, t), rise / run, bend / run**2

@@ -114,19 +114,27 @@ class CurvatureMeanline(Part):
 
     def outline(self, span: Span) -> OffsetOutline:
         """The exact sections (..., m) at the places of the span; raises DesignError where numbers contradict."""
-        meanline, thickness, grid = self.meanline(span), self.thickness.at(span), Span(GRID)
-        further: tuple[Joint, ...] = ()
+        meanline, thickness = self.meanline(span), self.thickness.at(span)
+        kinks: tuple[Joint, ...] = ()
         if isinstance(meanline, MixedMeanline):
-            thickness, further = _parted(thickness, meanline)
-        on_grid = self.thickness.at(grid)
-        if self.camber == "curvature":
-            places = CurvatureIntegral(places=self._places("curvature", grid), values=np.zeros(len(self.curvature)))
-            further += fixed_joints(on_grid, places.joints, 3)
-        multiplier = None
+            thickness, kinks = _parted(thickness, meanline)
+        return OffsetOutline(
+            meanline=meanline,
+            thickness=thickness,
+            multiplier=self._multiplier(span) if self.thickness_multiplier else None,
+            further=lambda: (*kinks, *self._steady_joints()),
+        )
+
+    def _steady_joints(self) -> list[Joint]:
+        """Joints of the splines along the chord that stand at the same s all along the span."""
+        span = Span(GRID)
+        thickness, found = self.thickness.at(span), list[Joint]()
+        if self.curvature:
+            flat = CurvatureIntegral(places=self._places("curvature", span), values=np.zeros(len(self.curvature)))
+            found += fixed_joints(thickness, flat.joints, 3)
         if self.thickness_multiplier:
-            multiplier = self._multiplier(span)
-            further += fixed_joints(on_grid, self._multiplier(grid).joints, 3)
-        return OffsetOutline(meanline=meanline, thickness=thickness, multiplier=multiplier, further=further)
+            found += fixed_joints(thickness, self._multiplier(span).joints, 3)
+        return found
 
     def stagger(self, span: Span) -> Array:
         """Angles (..., m) of the chord lines [rad], from the metal angle and the meanline's at the leading edge."""

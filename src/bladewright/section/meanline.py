@@ -16,6 +16,10 @@ UNIFORM_CUBIC = (
 """powers (rows) of the uniform cubic B-spline's four basis functions on a segment"""
 
 
+NEWTON = 12
+"""Newton's steps that the parameter of a spline may take"""
+
+
 class Meanline(ABC):
     """Meanlines (..., m) in chords: v(0) = v(1) = 0, slopes measured from the chord line."""
 
@@ -81,12 +85,7 @@ class CurvatureIntegral:
         joints = np.real(self.joints)
         segment = np.sum(np.real(u)[..., None] >= joints[..., None, :], axis=-1)
         place, bend, first, second = (taken(each, segment) for each in self._powers)
-
-        def off(t: Array) -> tuple[Array, Array]:
-            return polynomial(place, t) - u, polynomial(derived(place), t)
-
-        low = np.zeros(np.broadcast_shapes(np.shape(u), segment.shape))
-        t = bracketed_root(off, low, low + 1.0)
+        t = parameter_at(place, u)
         slope = polynomial(derived(bend), t) / polynomial(derived(place), t)
         return polynomial(second, t), polynomial(first, t), polynomial(bend, t), slope
 
@@ -248,6 +247,36 @@ def taken(powers: Array, segment: Array) -> Array:
     shape = np.broadcast_shapes(powers.shape[:-2], segment.shape[:-1])
     here = np.broadcast_to(segment, (*shape, segment.shape[-1]))[..., None]
     return np.take_along_axis(np.broadcast_to(powers, (*shape, *powers.shape[-2:])), here, axis=-2)
+
+
+def parameter_at(powers: Array, values: Array) -> Array:
+    """t (...) in [0, 1] at which rising polynomials (..., p) have the values (...).
+
+    By Newton's steps on real parts, by bisection where these do not settle; then one more step, which also carries
+    imaginary parts. Batches that share their real parts, as those of a complex step do, are solved once.
+    """
+    shape = np.broadcast_shapes(powers.shape[:-1], np.shape(values))
+    real, asked = _unbatched(np.real(powers), 3), _unbatched(np.real(values), 2)
+    slopes = derived(real)
+    t = np.clip((asked - real[..., 0]) / np.sum(real[..., 1:], axis=-1), 0.0, 1.0)
+    for _ in range(NEWTON):
+        step = (polynomial(real, t) - asked) / polynomial(slopes, t)
+        t = np.clip(t - step, 0.0, 1.0)
+        if np.all(step**2 < 1e-28):
+            break
+    else:
+        t = bracketed_root(lambda t: (polynomial(real, t) - asked, polynomial(slopes, t)), 0.0 * t, 0.0 * t + 1.0)
+    if not (np.iscomplexobj(powers) or np.iscomplexobj(values)):
+        return np.broadcast_to(t, shape)
+    step = np.imag(polynomial(powers, t) - values) / polynomial(slopes, t)
+    return np.broadcast_to(t - 1j * step, shape)
+
+
+def _unbatched(values: Reals, rank: int) -> Reals:
+    """One of the values along leading axes beyond `rank` where they are all the same there."""
+    while values.ndim > rank and np.array_equal(values, np.broadcast_to(values[:1], values.shape)):
+        values = values[0]
+    return values
 
 
 def polynomial(powers: Array, t: Array) -> Array:

@@ -1,6 +1,6 @@
 """Sections laid on a meanline: a half thickness to both sides, normal to it."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -29,8 +29,8 @@ class OffsetOutline(Outline):
     thickness: Thickness
     multiplier: ChordSpline | None = None
     """what the half thickness grows by, of itself"""
-    further: tuple[Joint, ...] = ()
-    """joints of meanline and multiplier, where they stand at the same s in all sections"""
+    further: Callable[[], Sequence[Joint]] = tuple
+    """joints of meanline and multiplier, where they stand at the same s in all sections; found when asked for"""
 
     @cached_property
     def leading_edge(self) -> Edge:
@@ -42,7 +42,7 @@ class OffsetOutline(Outline):
 
     @cached_property
     def joints(self) -> tuple[Joint, ...]:
-        return merged([*self.thickness.joints, *self.further])
+        return merged([*self.thickness.joints, *self.further()])
 
     def points(self, s: Reals) -> tuple[Array, Array]:
         order = np.argsort(s, kind="stable")
