@@ -6,6 +6,8 @@ from bladewright.section.profiles.flat_plate import FlatPlate
 from bladewright.section.profiles.kinds import ProfileSection
 from bladewright.section.profiles.naca4 import Naca4
 from bladewright.section.profiles.naca5 import Naca5
+from bladewright.section.profiles.naca6 import Naca6
+from bladewright.section.profiles.naca65 import Naca65
 
 PROFILES = {
     "naca-2412": Naca4(thickness=0.12, camber=0.02, camber_position=0.4, stagger_angle=10.0),
@@ -15,6 +17,10 @@ PROFILES = {
     ),
     "naca-23012": Naca5(thickness=0.12, design_lift=0.3, camber_position=0.15, trailing_edge="blunt"),
     "naca-23112": Naca5(thickness=0.12, design_lift=0.3, camber_position=0.15, reflexed=True),
+    "naca-64-212": Naca6(series="64", thickness=0.12, design_lift=0.2, uniform_load=0.8),
+    "naca-66-415-round": Naca6(series="66", thickness=0.15, design_lift=0.4, uniform_load=0.5, trailing_edge="round"),
+    "naca-65-(12)10": Naca65(thickness=0.1, lift_coefficient=1.2, stagger_angle=30.0, trailing_edge="round"),
+    "naca-65-(-4)06": Naca65(thickness=0.06, lift_coefficient=-0.4),
     "c4": C4(thickness=0.1, camber_angle=30.0, stagger_angle=-36.0, trailing_edge="round"),
     "double-circular-arc": DoubleCircularArc(
         thickness=0.08, camber_angle=30.0, leading_edge_radius=0.004, trailing_edge_radius=0.004, stagger_angle=40.0

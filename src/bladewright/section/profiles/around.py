@@ -1,7 +1,6 @@
 """Profiles laid around a mean line: half thickness to both sides, normal to it, as the published series are built."""
 
 from abc import ABC, abstractmethod
-from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Literal
@@ -13,8 +12,9 @@ from bladewright.numerics.elementary import Array
 from bladewright.nurbs.basis import Reals
 from bladewright.section.outline import Edge, Joint, Outline, Start
 from bladewright.section.profiles.analytic import composed, relative_exponential, relative_logarithm, slope
+from bladewright.section.profiles.forms import Form
 from bladewright.section.profiles.places import JOINT, Place, Places
-from bladewright.section.thickness.series import Series, polynomial, variable
+from bladewright.section.thickness.series import Series, variable
 
 TrailingEdge = Literal["sharp", "blunt", "round"]
 
@@ -39,20 +39,19 @@ class MeanLine(ABC):
 
 @dataclass(frozen=True, kw_only=True)
 class Around(Outline):
-    """Sections whose half thickness is a polynomial in sqrt(x), measured normal to the mean line at x.
+    """Sections whose half thickness is measured normal to the mean line at x.
 
     A round trailing edge is the thickness T(x) times sqrt(1 - x^n), n = 2 / T(1): a nose of the radius T(1), below the
     thickness of the blunt edge by more than 1e-3 of itself only over the last 3 T(1) of the chord.
     """
 
     mean_line: MeanLine
-    thickness: Sequence[Array]
-    """coefficients (..., 1) of the powers of sqrt(x), from the first on"""
+    thickness: Form
     end: TrailingEdge
-    bend: float
-    """-c2 / c1 of the coefficients, the same for all sections, not negative"""
     gathered: float = 0.0
     """share of the steps of s drawn towards the leading edge"""
+    crowded: float = 0.0
+    """how the steps crowd at a sharp or blunt trailing edge"""
 
     @cached_property
     def _places(self) -> Places:
@@ -60,19 +59,20 @@ class Around(Outline):
             round_end=self.end == "round",
             gathered_in=self.gathered,
             gathered_out=GATHERED if self.end == "round" else 0.0,
-            bend=self.bend,
+            crowded=0.0 if self.end == "round" else self.crowded,
+            bend=self.thickness.bend,
             joint=self.mean_line.joint,
         )
 
     def _half(self, place: Place) -> Series:
-        half = polynomial([np.zeros(()), *self.thickness], place.root)
+        half = self.thickness.half(place.root)
         if place.end_root is None:
             return half
         return half * place.end_root * composed(self._cap(place.rest), place.rest).sqrt()
 
     def _cap(self, rest: Series) -> Series:
         """(1 - x^n) / (1 - x) and its derivatives by 1 - x: half the thickness there, as far as they are asked for."""
-        power = 2.0 / sum(self.thickness[1:], self.thickness[0])
+        power = 2.0 / self.thickness.end
         w = rest.value
         # so far from the edge x^n vanishes, and its logarithm may not be taken at x = 0
         far = np.real(w) > FAR

@@ -12,6 +12,7 @@ from bladewright.section.laws import Span
 from bladewright.section.outline import Outline
 from bladewright.section.profiles.around import Around, MeanLine
 from bladewright.section.profiles.closing import Thickened
+from bladewright.section.profiles.forms import Powers
 from bladewright.section.thickness.series import Series
 
 POLYNOMIAL = {1: 0.3048, 2: -0.0914, 4: -0.8614, 6: 2.1236, 8: -2.9163, 10: 1.9744, 12: -0.5231}
@@ -43,9 +44,8 @@ class C4(Thickened):
         """The exact sections (..., m) at the places of the span, in chords, unstaggered."""
         return Around(
             mean_line=ArcLine(angle=radians(span.values(self.camber_angle))[..., None]),
-            thickness=self.closed(span, FORM, OWN_END),
+            thickness=Powers(coefficients=self.closed(span, FORM, OWN_END), bend=BEND),
             end=self.trailing_edge,
-            bend=BEND,
         )
 
 

@@ -53,11 +53,12 @@ class Thickened(Profile):
         for; `own` is the published one, of the maximum thickness.
         """
         held = dict(form)
-        held[POWER] = held.get(POWER, 0.0) + 0.5 * self._end(span, own) - sum(form.values())
+        held[POWER] = held.get(POWER, 0.0) + 0.5 * self.end_share(span, own) - sum(form.values())
         thickness = span.values(self.thickness)[..., None]
         return [thickness * held.get(k, 0.0) for k in range(1, max(held) + 1)]
 
-    def _end(self, span: Span, own: float) -> Array:
+    def end_share(self, span: Span, own: float) -> Array:
+        """Thickness at the trailing edge (..., m, 1), of the maximum thickness."""
         if self.trailing_edge == "sharp":
             return np.zeros((len(span.v), 1))
         given = self.trailing_edge_thickness

@@ -10,8 +10,12 @@ from bladewright.section.profiles.circular_arc import DoubleCircularArc, Multipl
 from bladewright.section.profiles.flat_plate import FlatPlate
 from bladewright.section.profiles.naca4 import Naca4
 from bladewright.section.profiles.naca5 import Naca5
+from bladewright.section.profiles.naca6 import Naca6
+from bladewright.section.profiles.naca65 import Naca65
 
-AnyProfile = Annotated[Naca4 | Naca5 | C4 | DoubleCircularArc | MultipleCircularArc | FlatPlate, ByField("kind")]
+AnyProfile = Annotated[
+    Naca4 | Naca5 | Naca6 | Naca65 | C4 | DoubleCircularArc | MultipleCircularArc | FlatPlate, ByField("kind")
+]
 """One of the kinds, told apart by `kind`."""
 
 

@@ -14,6 +14,7 @@ from bladewright.section.laws import Span
 from bladewright.section.outline import Outline
 from bladewright.section.profiles.around import Around, MeanLine
 from bladewright.section.profiles.closing import Thickened
+from bladewright.section.profiles.forms import Powers
 from bladewright.section.thickness.series import Series
 
 FORM = {1: 1.4845, 2: -0.6300, 4: -1.7580, 6: 1.4215, 8: -0.5075}
@@ -60,9 +61,8 @@ class Naca4(Thickened):
             line = FourDigitLine(camber=camber, joint=position)
         return Around(
             mean_line=line,
-            thickness=self.closed(span, FORM, OWN_END),
+            thickness=Powers(coefficients=self.closed(span, FORM, OWN_END), bend=BEND),
             end=self.trailing_edge,
-            bend=BEND,
         )
 
 

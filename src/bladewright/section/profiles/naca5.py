@@ -14,6 +14,7 @@ from bladewright.section.laws import Span
 from bladewright.section.outline import Outline
 from bladewright.section.profiles.around import Around, MeanLine
 from bladewright.section.profiles.closing import Thickened
+from bladewright.section.profiles.forms import Powers
 from bladewright.section.profiles.naca4 import BEND, FORM, OWN_END
 from bladewright.section.thickness.series import Series
 
@@ -55,9 +56,8 @@ class Naca5(Thickened):
         ratio = _ratio(joint, position) if self.reflexed else 0.0 * joint
         return Around(
             mean_line=FiveDigitLine(factor=lift / _integral(joint, ratio, _lift), joint=joint, ratio=ratio),
-            thickness=self.closed(span, FORM, OWN_END),
+            thickness=Powers(coefficients=self.closed(span, FORM, OWN_END), bend=BEND),
             end=self.trailing_edge,
-            bend=BEND,
         )
 
 

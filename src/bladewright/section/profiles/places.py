@@ -7,7 +7,7 @@ import numpy as np
 
 from bladewright.numerics.elementary import Array
 from bladewright.nurbs.basis import Reals
-from bladewright.section.profiles.analytic import waves
+from bladewright.section.profiles.analytic import hyperbolic_tangent, waves
 from bladewright.section.thickness.series import Series, variable
 
 JOINT = 0.5
@@ -38,7 +38,9 @@ class Places:
     gathered_in: float
     """share of the steps of s drawn towards the leading edge, 0 to below 1"""
     gathered_out: float
-    """the same at the trailing edge, where it is round"""
+    """the same at a round trailing edge"""
+    crowded: float
+    """k of the hyperbolic tangent that crowds the steps exponentially at a trailing edge that is not round; 0: none"""
     bend: float
     """-a1 / a0 of a thickness a0 sqrt(x) + a1 x + ...: with it the thickness has no second derivative at s = 0"""
     joint: Array | None
@@ -63,15 +65,16 @@ class Places:
         return Place(root=x_root, x=x_root * x_root, rest=before * kept, end_root=end)
 
     def _phase(self, s: Reals, order: int) -> Series:
-        """The angle that runs from 0 to pi / 2; steps gathered at round edges, odd about them."""
+        """The angle that runs from 0 to pi / 2; steps gathered at the edges, odd about them."""
         angle = variable(s, order) * np.pi
         once, _ = waves(angle)
         twice, _ = waves(angle * 2.0)
         both = twice * 0.25 * (self.gathered_in + self.gathered_out)
         drawn = both + once * 0.5 * (self.gathered_in - self.gathered_out)
-        if not self.round_end:
-            drawn = once * self.gathered_in
-        return (angle - drawn) * 0.5
+        phase = (angle - drawn) * 0.5
+        if not self.crowded:
+            return phase
+        return hyperbolic_tangent(phase * (2.0 / np.pi * self.crowded)) * (0.5 * np.pi / np.tanh(self.crowded))
 
     def _ratio(self, joint: Array) -> Array:
         """What brings the joint to its s: a projective map of x."""
