@@ -37,8 +37,10 @@ WORTHWHILE = 0.02
 """part of the sum of squares that growth must be foreseen to gain"""
 EMPHASIS = (0.1, 10.0)
 """least and largest weight of a point by its distance, where a tolerance is to be met"""
-MANIFOLD = 50
-"""parameters from which a tenth is added at a time"""
+GROWN = 3
+"""part, one in so many, of the parameters that are left which is added at a time"""
+MANIFOLD, MANY_MORE = 50, 10
+"""parameters from which one in so many is added at a time"""
 GROWTHS = 40
 """times that more is added at most"""
 LATER = 4
@@ -224,7 +226,8 @@ def _grown(task: Task, found: Found, aim: Aim) -> tuple[Found, bool]:
     ranked = gains(found, emphasis)
     left = None if aim.parameters is None else aim.parameters - len(found.problem.paths)
     count = len(found.problem.paths)
-    steps = chosen_of(ranked, left, 0 if aim.parameters is not None or count < MANIFOLD else count // 10)
+    least = left // GROWN if left is not None else count // MANY_MORE if count >= MANIFOLD else 0
+    steps = chosen_of(ranked, left, least)
     if not steps:
         return found, False
     total = float(np.sum(found.problem.measures.residuals(found.state) ** 2))

@@ -36,4 +36,4 @@ def found_arrangement(points: Reals) -> Arrangement:
         away.append(found[0].match.mean)
         if away[0] < NEAR * found[0].laid.chord:
             return "annular"
-    return "linear" if away[1] < 0.6 * away[0] else "annular"
+    return "linear" if away[1] < 0.5 * away[0] else "annular"

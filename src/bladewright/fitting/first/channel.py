@@ -118,6 +118,8 @@ class Rough:
 
 NEAR = 3e-3
 """of its length: how far a curve may move for fewer control points"""
+RAGGED = 0.9
+"""how far a boundary is off its curve, of the distance between points"""
 FOLDED = 0.02
 """least Jacobian of a channel, of its median"""
 
@@ -157,6 +159,32 @@ def curve_counts(channel: Rough) -> dict[str, int]:
             if np.max(np.sqrt(np.sum((near - line) ** 2, axis=-1))) < NEAR * size:
                 break
     return counts
+
+
+def needed_counts(pieces: dict[str, Reals], most: int, count: int) -> dict[str, int]:
+    """Control points, from 2 to `most`, that the boundary of `count` points needs to be met as well as it is known.
+
+    Where few points lie a boundary is ragged, by about their distance from each other.
+    """
+    loop = np.concatenate(
+        [pieces["hub"], pieces["trailing_edge"], pieces["shroud"][::-1], pieces["leading_edge"][::-1]]
+    )
+    x, r = loop.T
+    area = abs(float(np.sum(x * np.roll(r, -1) - r * np.roll(x, -1)))) / 2.0
+    ragged = RAGGED * float(np.sqrt(area / count))
+    counts = {}
+    for name, line in pieces.items():
+        left = (_left_by(line, each) for each in range(2, most + 1))
+        counts[name] = next((each for each, miss in enumerate(left, 2) if miss <= ragged), most)
+    return counts
+
+
+def _left_by(line: Reals, count: int) -> float:
+    """Root mean square distance that a curve of so many control points leaves to a polyline, at equal lengths."""
+    way = np.concatenate([[0.0], np.cumsum(np.sqrt(np.sum(np.diff(line, axis=0) ** 2, axis=-1)))])
+    t = np.linspace(0.0, 1.0, 61)
+    places = np.stack([np.interp(t * way[-1], way, line[:, i]) for i in (0, 1)], axis=-1)
+    return float(np.sqrt(np.mean(np.sum((_curve(_through(line, count, line[0], line[-1]), t) - places) ** 2, axis=-1))))
 
 
 def _along(pieces: dict[str, Reals], counts: dict[str, int], *, revolved: bool) -> Rough:

@@ -19,6 +19,10 @@ from bladewright.fitting.first.shape import (
 from bladewright.nurbs.basis import Reals
 from bladewright.section.laws import law_basis
 
+BANDS, FEWEST, TOLD = 9, 12, 3
+"""bands along the span whose points tell the direction of the chord there, the least of them, and control points of
+what is told"""
+
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Found:
@@ -85,20 +89,28 @@ def continued_in(
 
 def _direction(shape: Shape, laid: Laid) -> tuple[Callable[[Reals], Reals], Reals, float]:
     """Angle of the chord by place along the span, law of the middle ordinate, and the typical chord [m]."""
-    rows, unit = law_basis(3, laid.v), shape.extent(laid.v)
-    a = laid.points[:, 0] / unit
-    a = a - rows @ np.linalg.lstsq(rows, a, rcond=None)[0]
-    lean = np.asarray(np.linalg.lstsq(rows, laid.points[:, 1], rcond=None)[0])
-    b = (laid.points[:, 1] - rows @ lean) / unit
-    moments = np.linalg.lstsq(rows, np.stack([a * a, a * b, b * b], axis=-1), rcond=None)[0]
+    rows = law_basis(TOLD, laid.v) / laid.size[:, None]
+    lean = np.asarray(np.linalg.lstsq(rows, laid.points[:, 1] / laid.size, rcond=None)[0])
+    places, angles, chords = [], [], []
+    for middle in np.linspace(0.0, 1.0, BANDS):
+        band = (laid.v - middle) ** 2 < (1.5 / BANDS) ** 2
+        if np.count_nonzero(band) < FEWEST:
+            continue
+        metres = laid.points[band] / np.median(laid.size[band])
+        trend = np.column_stack([np.ones(len(metres)), laid.v[band]])
+        metres = metres - trend @ np.linalg.lstsq(trend, metres, rcond=None)[0]
+        _, turned = np.linalg.eigh(metres.T @ metres)
+        along = metres @ turned[:, 1]
+        places.append(float(np.mean(laid.v[band])))
+        angles.append(float(np.arctan2(*(turned[::-1, 1] * np.sign(turned[0, 1] + 1e-300)))))
+        chords.append(float(np.percentile(along, 98.0) - np.percentile(along, 2.0)))
+    count = min(TOLD, len(places))
+    law = np.linalg.lstsq(law_basis(count, np.array(places)), np.array(angles), rcond=None)[0]
 
     def turn(v: Reals) -> Reals:
-        saa, sab, sbb = (law_basis(3, v) @ moments).T
-        return np.clip(0.5 * np.arctan2(2.0 * sab, saa - sbb), -np.radians(86.0), np.radians(86.0))
+        return np.clip(law_basis(count, v) @ law, -np.radians(86.0), np.radians(86.0))
 
-    angle = turn(laid.v)
-    along = (np.cos(angle) * a + np.sin(angle) * b) * unit / laid.size
-    return turn, lean, float(np.percentile(along, 98.0) - np.percentile(along, 2.0))
+    return turn, lean, float(np.median(chords))
 
 
 def apart(found: Found, machine: Reals) -> float:

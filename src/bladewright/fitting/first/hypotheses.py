@@ -1,8 +1,9 @@
 """Which pieces of a cloud's meridional outline are its walls, and which its edges."""
 
 import numpy as np
+from scipy.spatial import cKDTree
 
-from bladewright.fitting.first.channel import EDGES, rough_channel
+from bladewright.fitting.first.channel import needed_counts, rough_channel
 from bladewright.fitting.first.found import Found, apart, laid_in, matched_in
 from bladewright.fitting.first.matching import nearest
 from bladewright.fitting.first.outline import boundary, corner_sets
@@ -11,7 +12,13 @@ from bladewright.nurbs.basis import Reals
 
 FEW = 450
 """points that decide which of several outlines it is"""
-
+CURVE = 5
+"""control points of a piece of the outline at most"""
+BESIDE, FEWEST, CORNER = 0.06, 24, 0.12
+"""part and least number of the points that tell beside a piece of the outline whether the sides meet there, clear of
+its ends by so much of it"""
+OPEN = 1.4
+"""ratio of the openings at which two opposite pieces are the walls"""
 CLEAR = 3e-3
 """of the chord: a mean distance that settles the outline where the other pairing lies three times as far off"""
 RADIAL = 0.05
@@ -48,16 +55,49 @@ def _likely(machine: Reals, *, revolved: bool) -> list[Found]:
     few = machine[np.random.default_rng(1).permutation(len(machine))[:FEW]]
     tried = []
     for pieces in corner_sets(boundary(machine[:, :2])):
-        for turn in (0, 1):
+        for turn in _turns(machine, pieces, revolved=revolved):
             named = _named(pieces, turn)
             found = _tried(few, named, revolved=revolved)
             if _radial(named) and _rounder_at_end(found):
                 found = _tried(few, _reversed(named), revolved=revolved)
             tried.append(found)
         away = sorted(apart(found, few) for found in tried)
-        if away[0] < min(CLEAR * tried[0].laid.chord, away[1] / 3.0):
+        if away[0] < min([CLEAR * tried[0].laid.chord, *(each / 3.0 for each in away[1:2])]):
             break
     return sorted(tried, key=lambda found: apart(found, few))
+
+
+def _turns(machine: Reals, pieces: list[Reals], *, revolved: bool) -> tuple[int, ...]:
+    """Which of the two ways to pair the pieces are to be tried: at walls the sides stand apart, at edges they meet."""
+    openings = [_opening(machine, piece, revolved=revolved) for piece in pieces]
+    pairs = [[opening for opening in openings[start::2] if opening is not None] for start in (0, 1)]
+    if not all(pairs):
+        return (0, 1)
+    even, odd = (float(np.mean(pair)) for pair in pairs)
+    if even > OPEN * odd:
+        return (0,)
+    return (1,) if odd > OPEN * even else (0, 1)
+
+
+def _opening(machine: Reals, piece: Reals, *, revolved: bool) -> float | None:
+    """Root mean square tangential distance [m] of the points beside a piece of the outline from one sheet there.
+
+    None where too few points are beside it.
+    """
+    way = np.concatenate([[0.0], np.cumsum(np.sqrt(np.sum(np.diff(piece, axis=0) ** 2, axis=-1)))])
+    t = np.linspace(0.0, 1.0, 400)
+    line = np.stack([np.interp(t * way[-1], way, piece[:, i]) for i in (0, 1)], axis=-1)
+    away, index = cKDTree(line).query(machine[:, :2])
+    along = t[index]
+    beside = np.flatnonzero((along > CORNER) & (along < 1.0 - CORNER))
+    beside = beside[np.argsort(away[beside])[: max(FEWEST, int(BESIDE * len(machine)))]]
+    if len(beside) < FEWEST:
+        return None
+    across = machine[beside, 2] * (machine[beside, 1] if revolved else 1.0)
+    depth = away[beside] / max(float(np.max(away[beside])), 1e-300)
+    sheet = np.column_stack([np.vander(along[beside], 4), depth, depth * along[beside]])
+    left = across - sheet @ np.linalg.lstsq(sheet, across, rcond=None)[0]
+    return float(np.sqrt(np.mean(left**2)))
 
 
 def _named(pieces: list[Reals], turn: int) -> dict[str, Reals]:
@@ -72,7 +112,7 @@ def _named(pieces: list[Reals], turn: int) -> dict[str, Reals]:
 
 
 def _tried(few: Reals, named: dict[str, Reals], *, revolved: bool) -> Found:
-    channel = rough_channel(named, dict.fromkeys(EDGES, 5), revolved=revolved)
+    channel = rough_channel(named, needed_counts(named, CURVE, len(few)), revolved=revolved)
     return matched_in(few, channel, (4, 4), 3, turns=10)
 
 

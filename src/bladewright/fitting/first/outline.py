@@ -7,6 +7,8 @@ from bladewright.nurbs.basis import Reals
 
 STEPS = 120
 """places of the boundary between which corners are sought"""
+FINER, AROUND = 10, 14
+"""places of the finer ring to one of them, and how far on it a corner is sought around a cut"""
 SHORTEST = 0.03
 """of the boundary: one of its four curves"""
 SHARP = 0.01
@@ -75,23 +77,32 @@ def corner_sets(line: Reals, sets: int = 2) -> list[list[Reals]]:
     spread = np.ptp(line, axis=0)
     away = np.sqrt(np.sum((np.diff(closed, axis=0) / spread) ** 2, axis=-1))
     way = np.concatenate([[0.0], np.cumsum(away)])
-    at = np.linspace(0.0, way[-1], STEPS, endpoint=False)
-    ring = np.stack([np.interp(at, way, closed[:, i]) for i in (0, 1)], axis=-1)
+    at = np.linspace(0.0, way[-1], FINER * STEPS, endpoint=False)
+    fine = np.stack([np.interp(at, way, closed[:, i]) for i in (0, 1)], axis=-1)
+    ring = fine[::FINER]
     cost = _costs(ring / spread) - SHARP * _turns(ring / spread)[:, None]
     found = []
     for _ in range(sets):
         cuts = _best_cuts(cost)
         if cuts is None:
             break
-        found.append(
-            [ring[np.arange(i, j + 1) % STEPS] for i, j in zip(cuts, [*cuts[1:], cuts[0] + STEPS], strict=True)]
-        )
+        corners = [_outermost(fine / spread, FINER * cut) for cut in cuts]
+        ends = [*corners[1:], corners[0] + len(fine)]
+        found.append([fine[np.arange(i, j + 1) % len(fine)] for i, j in zip(corners, ends, strict=True)])
         # the next set has another place for one of the corners
         cost = np.array(cost)
         for cut in cuts[:1]:
             near = (np.arange(STEPS) - cut + 3) % STEPS <= 6
             cost[near] += 1.0
     return found
+
+
+def _outermost(fine: Reals, cut: int) -> int:
+    """The place of a ring near a cut that stands out furthest: where the corner is."""
+    near = np.arange(cut - AROUND, cut + AROUND + 1)
+    places = fine[near % len(fine)] - fine[(cut - AROUND) % len(fine)]
+    along = places[-1]
+    return int(near[np.argmax(places[:, 0] * along[1] - places[:, 1] * along[0])])
 
 
 def _costs(ring: Reals) -> Reals:
