@@ -1,5 +1,6 @@
 """2D designs of the families that are one part: the part's section laid in the plane (x, y)."""
 
+from collections.abc import Callable
 from dataclasses import dataclass, fields
 from types import MappingProxyType
 from typing import Any, Literal, Protocol, get_args, get_type_hints
@@ -16,6 +17,7 @@ from bladewright.section import checks
 from bladewright.section.crossing import check_outline, closed_outlines, touching
 from bladewright.section.laws import Span
 from bladewright.section.limits import check_labels
+from bladewright.section.meanline import Meanline
 from bladewright.section.native import SectionKnots, knots_for, native_curves
 from bladewright.section.outline import Outline
 from bladewright.section.section import Section
@@ -109,13 +111,23 @@ class PlanarSection(Design):
             scale=np.ones_like,
             edges=(outline.leading_edge.kind, outline.trailing_edge.kind),
             knots=knots,
-            meanline=None if meanline is None else meanline(span),
+            meanline=None if meanline is None else _single_meanline(meanline(span)),
         )
 
     def _check_pitch(self, outlines: Reals, pitch: float) -> None:
         """Refuse a pitch at which neighbours (m, n, 2) in chords meet."""
         if touching(outlines, float(np.real(pitch)) / float(np.real(self.chord))) is not None:
             raise DesignError(f"pitch is {pitch:g}: neighbouring sections intersect; take a larger pitch")
+
+
+def _single_meanline(line: Meanline) -> Callable[[Array], tuple[Array, Array, Array]]:
+    """v and its first two derivatives (k,) by u (k,) of the first of meanlines (m,)."""
+
+    def derivatives(u: Array) -> tuple[Array, Array, Array]:
+        value, slope, bend, _ = line.derivatives(u)
+        return value[..., 0, :], slope[..., 0, :], bend[..., 0, :]
+
+    return derivatives
 
 
 def _check_plain(part: Part, path: str) -> None:
