@@ -101,7 +101,7 @@ class ModifiedNaca(ThicknessLaw):
             breaks.append(Break(1.0 - edge, edge, 1, AT_TRAILING_EDGE))
             pieces.append(ellipse(radius, radius, leading=False))
         rear, curvature = _rear(maximum, at, end, edge, slope)
-        cure = "the thickness has no maximum there; move it, or make the trailing edge's slope steeper"
+        cure = "the rear would bulge instead; move it forward, thin the trailing edge or give it a flatter slope"
         self._demand(np.real(curvature) < 0.0, span, "maximum_thickness_at", at, cure)
         front, bend = _front(maximum, at, curvature, span.values(self.leading_edge_index))
         kind: EdgeKind = "round" if self.trailing_edge == "circular" else self.trailing_edge
