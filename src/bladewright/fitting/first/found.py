@@ -54,7 +54,7 @@ def matched_in(machine: Reals, channel: Rough, chordwise: tuple[int, int], count
     """What is found in a channel without a guess: `count` control points of the laws along the span."""
     laid = laid_in(machine, channel)
     shape = shape_in(channel, chordwise, 16, 1.0)
-    turn, lean, chord = _direction(shape, laid)
+    turn, lean, chord = _direction(laid)
     laid = replace(laid, chord=chord, ratio=chord / laid.chord)
     match = matched(shape, laid, first_laws(shape, laid, turn, lean, count), turns=turns)
     return Found(channel=channel, shape=shape, laid=laid, match=match)
@@ -87,7 +87,7 @@ def continued_in(
     return Found(channel=channel, shape=shape, laid=laid, match=match)
 
 
-def _direction(shape: Shape, laid: Laid) -> tuple[Callable[[Reals], Reals], Reals, float]:
+def _direction(laid: Laid) -> tuple[Callable[[Reals], Reals], Reals, float]:
     """Angle of the chord by place along the span, law of the middle ordinate, and the typical chord [m]."""
     rows = law_basis(TOLD, laid.v) / laid.size[:, None]
     lean = np.asarray(np.linalg.lstsq(rows, laid.points[:, 1] / laid.size, rcond=None)[0])
