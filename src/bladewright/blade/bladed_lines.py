@@ -32,7 +32,7 @@ class Stretch:
     """t at 1"""
 
     def joints(self) -> Reals:
-        """Where stream lines lose derivatives."""
+        """Where the polynomials of stream lines end."""
         own = (np.concatenate([self.surfaces.joints(), [0.0, 1.0]]) - self.low) / (self.high - self.low)
         return np.sort(own[(own > ROOM) & (own < 1.0 - ROOM)])
 
@@ -151,13 +151,14 @@ class BladedLines:
         row, downstream = int(worst[-2]), bool(share[worst] > 1.0)
         surfaces, v = self.stretch.surfaces, self.v[row]
         end = "downstream" if downstream else "upstream"
-        if (surfaces.high > self.stretch.high) if downstream else (surfaces.low < self.stretch.low):
+        room = ROOM * (surfaces.high - surfaces.low)
+        if surfaces.high - self.stretch.high > room if downstream else self.stretch.low - surfaces.low > room:
             edge, far = (self.trailing, self.stretch.high) if downstream else (self.leading, self.stretch.low)
             beside = (far - edge) / (self.trailing - self.leading)
             share_of = 100.0 * float(np.max(np.square(real_first(beside, 1)[row])) ** 0.5)
             raise DesignError(
-                f"the section at v = {v:.4g} reaches more than {share_of:.3g}% of its meridional extent {end} of its edge: "
-                "a nose must keep beside it; lower the thickness or the stagger there, or move the edge curve"
+                f"the section at v = {v:.4g} reaches more than {share_of:.3g}% of its meridional extent {end} of its "
+                "edge: a nose must keep beside it; lower the thickness or the stagger there, or move the edge curve"
             )
         much = 100.0 * float(past[worst] / np.broadcast_to(np.real(self._speed)[..., None], past.shape)[worst])
         raise DesignError(

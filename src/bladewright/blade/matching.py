@@ -84,7 +84,11 @@ class Match:
             middle, slope = real_first(self.powers, 3)[0, :, 0]
             return np.asarray((levels - middle) / slope + 0.5 * (self.breaks[0] + self.breaks[1]))
         t = np.linspace(low, high, 513)
-        return crossings(self.fractions, t, real_first(self.fractions(t), 1), levels)
+
+        def fractions(at: Reals) -> Reals:
+            return real_first(self.fractions(at), 1)
+
+        return crossings(fractions, t, fractions(t), levels)
 
 
 def straight_match(start: Array, end: Array) -> Match:
@@ -101,9 +105,10 @@ def curved_matches(pairs: Array) -> tuple[Match, Match]:
     batch = pairs.shape[:-2]
     ends = [np.broadcast_to(value, (*batch, 1, 2)) for value in (0.0, 1.0)]
     all_pairs = np.concatenate([ends[0], pairs, ends[1]], axis=-2)
-    t = np.mean(real_first(all_pairs, 2), axis=-1)
-    sites, powers = cubic_pieces(np.diff(t), all_pairs)
-    powers = binomials(np.diff(sites) / 2.0, 4) @ powers
+    means = np.mean(all_pairs, axis=-1)
+    sites, powers = cubic_pieces(np.diff(means), all_pairs)
+    t = real_first(means, 1)
+    powers = binomials((t[:-1] + t[1:]) / 2.0 - sites[..., :-1], 4) @ powers
     found = [Match(breaks=t, powers=powers[..., k : k + 1]) for k in (0, 1)]
     for match, name in zip(found, ("hub", "shroud"), strict=True):
         at = np.linspace(0.0, 1.0, 513)
@@ -125,8 +130,6 @@ class MatchedLine:
     """(p + 1,) ends of the panels in t"""
     powers: Array
     """(..., p, k, 2) coefficients of (x, r) in powers of t less the middle of the panel"""
-    joints: Reals
-    """where the line loses derivatives"""
 
     def values(self, t: Reals, order: int = 0) -> Array:
         """Points, or derivatives by t (..., m, 2), at real t (m,)."""
@@ -137,8 +140,7 @@ def matched_line(along: Measured, match: Match, low: float, high: float) -> Matc
     """A line as polynomials of t from `low` to `high`, to rounding: panels are halved until the series settle."""
     levels = real_first(along.fractions(along.line.joints()), 1)
     own = np.sort(np.concatenate([match.places(levels, low, high), match.breaks[1:-1]]))
-    joints = distinct(own, low, high)
-    ends = np.concatenate([[low], joints, [high]])
+    ends = np.concatenate([[low], distinct(own, low, high), [high]])
     count = FEW if along.lines is None and match.powers.shape[-2] == 2 else NODES
     for _ in range(HALVINGS):
         powers, tail = _fitted(along, match, ends, count)
@@ -146,7 +148,7 @@ def matched_line(along: Measured, match: Match, low: float, high: float) -> Matc
         if not np.any(poor) or count == FEW:
             break
         ends = np.sort(np.concatenate([ends, ((ends[:-1] + ends[1:]) / 2.0)[poor]]))
-    return MatchedLine(breaks=ends, powers=powers, joints=joints)
+    return MatchedLine(breaks=ends, powers=powers)
 
 
 def distinct(places: Reals, low: float, high: float) -> Reals:

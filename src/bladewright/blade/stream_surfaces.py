@@ -61,9 +61,9 @@ class StreamSurfaces:
         return self.low, self.high
 
     def joints(self) -> Reals:
-        """Where stream lines lose derivatives, t inside (low, high), 0 and 1 apart."""
+        """Where the polynomials of stream lines end, t inside (low, high), 0 and 1 apart."""
         which = range(len(self.matched)) if self.chosen is None else self.chosen
-        places = distinct(np.concatenate([self.matched[j].joints for j in which]), self.low, self.high)
+        places = distinct(np.concatenate([self.matched[j].breaks for j in which]), self.low, self.high)
         ends = np.array([0.0, 1.0])
         return places[np.min(np.square(places[:, None] - ends), axis=1) > SAME**2]
 
@@ -180,7 +180,6 @@ def stream_surfaces(
     curves = [path.hub, *path.stream_surfaces, path.shroud]
     names = ["hub", *(f"stream_surfaces[{i}]" for i in range(len(path.stream_surfaces))), "shroud"]
     along = [measured(curve.line(metre)) for curve in curves]
-    spans = np.array([0.0, *path.stream_spans, 1.0])
     starts: list[Array] = [np.asarray(0.0)] * len(along)
     ends: list[Array] = [np.asarray(1.0)] * len(along)
     low, high = 0.0, 1.0
@@ -200,7 +199,7 @@ def stream_surfaces(
         matches = [straight_match(start, end) for start, end in zip(starts, ends, strict=True)]
     surfaces = StreamSurfaces(
         matched=tuple(matched_line(each, match, low, high) for each, match in zip(along, matches, strict=True)),
-        spans=spans,
+        spans=np.array(path.spans),
         low=low,
         high=high,
         walls={"hub": along[0].line, "shroud": along[-1].line},
@@ -218,7 +217,7 @@ def check_stream_surfaces(surfaces: StreamSurfaces, *, revolved: bool = True) ->
     grid_v = np.tile(v, len(t))
     if revolved and np.min(point[:, 1]) <= 0.0:
         lowest = int(np.argmin(point[:, 1]))
-        x, r = point[lowest]
+        x, r = (round(float(each), 9) + 0.0 for each in point[lowest])
         raise DesignError(
             f"the flow path has radius {r:.4g} m at x = {x:.5g} m, v = {grid_v[lowest]:.3f}: every radius must be "
             "positive around the axis; move or shorten the hub so that it keeps clear of the axis"
