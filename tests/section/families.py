@@ -8,6 +8,7 @@ from typing import Any
 
 from bladewright.section.planar import PlanarSection
 
+from .camber_angle_examples import ANGLES, CAMBER_ANGLES, angle_section_of
 from .meanline_examples import MEANLINES
 from .oval import OVAL
 from .profiles.examples import PROFILES, PROPERTIES, section_of
@@ -39,6 +40,7 @@ EXAMPLES: dict[str, Example] = {
     "wedge diffuser with a back face": Example(design=vane(WEDGE), metal_angles=(65.0, 65.0)),
     "wedge diffuser of two circles": Example(design=vane(TEARDROP), metal_angles=(65.0, 65.0), maximum_thickness=0.16),
     **{name: Example(design=design, **having) for name, (design, having) in MEANLINES.items()},
+    **{name: Example(design=angle_section_of(part), metal_angles=ANGLES[name]) for name, part in CAMBER_ANGLES.items()},
     **{name: Example(design=section_of(profile), **PROPERTIES.get(name, {})) for name, profile in PROFILES.items()},
 }
 """By a name that says what is particular."""
