@@ -6,7 +6,7 @@ from functools import cached_property
 import numpy as np
 
 from bladewright.numerics.elementary import Array, joined
-from bladewright.section.meanline import derived, parameter_at, polynomial, taken
+from bladewright.section.piecewise import by_first
 from bladewright.section.thickness.series import Series
 from bladewright.section.thickness.series import polynomial as composed
 from bladewright.section.thickness.uniform import segments
@@ -26,24 +26,21 @@ class ChordSpline:
     """f (..., m, n) of the control points"""
 
     @cached_property
-    def _powers(self) -> tuple[Array, Array]:
-        """Coefficients (..., m, n, 5) of u and f on each segment; the first and the last are used by half."""
+    def _powers(self) -> Array:
+        """Coefficients (..., m, n, 5, 2) of u and f on each segment; the first and the last are used by half."""
         places, values = np.broadcast_arrays(self.places, self.values)
-        return _segments(places), _segments(values)
+        return np.stack([_segments(places), _segments(values)], axis=-1)
 
     @property
     def joints(self) -> Array:
         """Places u (..., m, n - 1) where f has three continuous derivatives."""
-        return self._powers[0][..., 1:, 0]
+        return self._powers[..., 1:, 0, 0]
 
     def derivatives(self, u: Array) -> tuple[Array, Array, Array]:
         """f and its first two derivatives (..., m, k) at u (..., m, k) or (k,) in [0, 1]."""
-        segment = np.sum(np.real(u)[..., None] >= np.real(self.joints)[..., None, :], axis=-1)
-        place, value = (taken(each, segment) for each in self._powers)
-        t = parameter_at(place, u)
-        run, rise = polynomial(derived(place), t), polynomial(derived(value), t)
-        bend = polynomial(derived(derived(value)), t) - rise / run * polynomial(derived(derived(place)), t)
-        return polynomial(value, t), rise / run, bend / run**2
+        point, first, second = by_first(self._powers, u)
+        run, rise = first[..., 0], first[..., 1]
+        return point[..., 1], rise / run, (second[..., 1] - rise / run * second[..., 0]) / run**2
 
     def series(self, u: Series) -> Series:
         """Power series of f at a series of u, up to the second power."""

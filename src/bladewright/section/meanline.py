@@ -7,17 +7,13 @@ from functools import cached_property
 import numpy as np
 
 from bladewright.numerics.elementary import Array, joined
-from bladewright.numerics.roots import bracketed_root
 from bladewright.nurbs.basis import Reals
+from bladewright.section.piecewise import by_first
 
 UNIFORM_CUBIC = (
     np.array([[1.0, 4.0, 1.0, 0.0], [-3.0, 0.0, 3.0, 0.0], [3.0, -6.0, 3.0, 0.0], [-1.0, 3.0, -3.0, 1.0]]) / 6
 )
 """powers (rows) of the uniform cubic B-spline's four basis functions on a segment"""
-
-
-NEWTON = 12
-"""Newton's steps that the parameter of a spline may take"""
 
 
 class Meanline(ABC):
@@ -63,31 +59,30 @@ class CurvatureIntegral:
     """S (..., m, n) of the control points"""
 
     @cached_property
-    def _powers(self) -> tuple[Array, Array, Array, Array]:
-        """Coefficients (..., m, n - 1, powers of t) of u, S, I and J on each segment."""
+    def _powers(self) -> Array:
+        """Coefficients (..., m, n - 1, powers of t, 4) of u, S, I and J on each segment."""
         u, s = (_segments(each) for each in np.broadcast_arrays(self.places, self.values))
         slope = u[..., 1:] * np.arange(1.0, 4.0)
         first = _accumulated(_product(s, slope))
-        return u, s, first, _accumulated(_product(first, slope))
+        second = _accumulated(_product(first, slope))
+        padded = [np.pad(each, [(0, 0)] * (each.ndim - 1) + [(0, 10 - each.shape[-1])]) for each in (u, s, first)]
+        return np.stack([*padded, second], axis=-1)
 
     @property
     def joints(self) -> Array:
         """Places u (..., m, n - 2) where S has two continuous derivatives."""
-        return self._powers[0][..., 1:, 0]
+        return self._powers[..., 1:, 0, 0]
 
-    @property
+    @cached_property
     def totals(self) -> tuple[Array, Array]:
         """I and J (..., m) over the whole chord."""
-        return np.sum(self._powers[2][..., -1, :], axis=-1), np.sum(self._powers[3][..., -1, :], axis=-1)
+        ends = np.sum(self._powers[..., -1, :, 2:], axis=-2)
+        return ends[..., 0], ends[..., 1]
 
     def at(self, u: Array) -> tuple[Array, Array, Array, Array]:
         """J, I, S and dS/du (..., m, k) at u (..., m, k) or (k,)."""
-        joints = np.real(self.joints)
-        segment = np.sum(np.real(u)[..., None] >= joints[..., None, :], axis=-1)
-        place, bend, first, second = (taken(each, segment) for each in self._powers)
-        t = parameter_at(place, u)
-        slope = polynomial(derived(bend), t) / polynomial(derived(place), t)
-        return polynomial(second, t), polynomial(first, t), polynomial(bend, t), slope
+        value, rate, _ = by_first(self._powers, u)
+        return value[..., 3], value[..., 2], value[..., 1], rate[..., 1] / rate[..., 0]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -235,53 +230,3 @@ def _accumulated(powers: Array) -> Array:
     total = np.cumsum(np.sum(terms, axis=-1), axis=-1)
     start = joined([np.zeros_like(total[..., :1]), total[..., :-1]], axis=-1)
     return joined([start[..., None], terms], axis=-1)
-
-
-def derived(powers: Array) -> Array:
-    """Coefficients (..., p - 1) of the derivative of polynomials (..., p)."""
-    return powers[..., 1:] * np.arange(1.0, powers.shape[-1])
-
-
-def taken(powers: Array, segment: Array) -> Array:
-    """Coefficients (..., m, k, p) of the segments (..., m, k) out of (..., m, segments, p)."""
-    shape = np.broadcast_shapes(powers.shape[:-2], segment.shape[:-1])
-    here = np.broadcast_to(segment, (*shape, segment.shape[-1]))[..., None]
-    return np.take_along_axis(np.broadcast_to(powers, (*shape, *powers.shape[-2:])), here, axis=-2)
-
-
-def parameter_at(powers: Array, values: Array) -> Array:
-    """t (...) in [0, 1] at which rising polynomials (..., p) have the values (...).
-
-    By Newton's steps on real parts, by bisection where these do not settle; then one more step, which also carries
-    imaginary parts. Batches that share their real parts, as those of a complex step do, are solved once.
-    """
-    shape = np.broadcast_shapes(powers.shape[:-1], np.shape(values))
-    real, asked = _unbatched(np.real(powers), 3), _unbatched(np.real(values), 2)
-    slopes = derived(real)
-    t = np.clip((asked - real[..., 0]) / np.sum(real[..., 1:], axis=-1), 0.0, 1.0)
-    for _ in range(NEWTON):
-        step = (polynomial(real, t) - asked) / polynomial(slopes, t)
-        t = np.clip(t - step, 0.0, 1.0)
-        if np.all(step**2 < 1e-28):
-            break
-    else:
-        t = bracketed_root(lambda t: (polynomial(real, t) - asked, polynomial(slopes, t)), 0.0 * t, 0.0 * t + 1.0)
-    if not (np.iscomplexobj(powers) or np.iscomplexobj(values)):
-        return np.broadcast_to(t, shape)
-    step = np.imag(polynomial(powers, t) - values) / polynomial(slopes, t)
-    return np.broadcast_to(t - 1j * step, shape)
-
-
-def _unbatched(values: Reals, rank: int) -> Reals:
-    """One of the values along leading axes beyond `rank` where they are all the same there."""
-    while values.ndim > rank and np.array_equal(values, np.broadcast_to(values[:1], values.shape)):
-        values = values[0]
-    return values
-
-
-def polynomial(powers: Array, t: Array) -> Array:
-    """Values (...) of polynomials (..., p) at t (...)."""
-    value = powers[..., -1]
-    for k in range(powers.shape[-1] - 2, -1, -1):
-        value = value * t + powers[..., k]
-    return value
