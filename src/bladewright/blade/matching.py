@@ -1,6 +1,7 @@
 """Meridians brought to one common parameter t, in which points of different ones belong together."""
 
 from dataclasses import dataclass
+from functools import cache
 
 import numpy as np
 from numpy.polynomial import chebyshev
@@ -172,6 +173,7 @@ def _fitted(along: Measured, match: Match, ends: Reals, count: int) -> tuple[Arr
     return (to_powers @ series) / (halves[:, None] ** np.arange(count))[..., None], tail
 
 
+@cache
 def _rules(count: int) -> tuple[Reals, Reals, Reals]:
     """Chebyshev places, the matrix from values there to the series, and from the series to powers."""
     places = np.cos(np.pi * (np.arange(count) + 0.5) / count)
