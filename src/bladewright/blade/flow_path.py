@@ -47,13 +47,19 @@ class FlowPath(Part):
         for i, each in enumerate(self.stream_surfaces):
             meridian_at(f"stream_surfaces[{i}]", each)
         put(self, "stream_surfaces", tuple(self.stream_surfaces))
-        put(self, "stream_spans", self._spans())
+        put(self, "stream_spans", self._given_spans())
         put(self, "quasi_orthogonals", self._pairs())
 
-    def _spans(self) -> tuple[float, ...]:
+    @property
+    def spans(self) -> tuple[float, ...]:
+        """Span fractions of hub, stream surfaces and shroud."""
+        equal = np.linspace(0.0, 1.0, len(self.stream_surfaces) + 2)
+        return (0.0, *self.stream_spans, 1.0) if self.stream_spans else tuple(float(v) for v in equal)
+
+    def _given_spans(self) -> tuple[float, ...]:
         count = len(self.stream_surfaces)
         if not self.stream_spans:
-            return tuple(float(v) for v in np.linspace(0.0, 1.0, count + 2)[1:-1])
+            return ()
         given = tuple(checks.number(f"stream_spans[{i}]", v) for i, v in enumerate(self.stream_spans))
         if len(given) != count:
             raise DesignError(
