@@ -8,6 +8,19 @@ from bladewright.section.profiles.naca4 import Naca4
 from bladewright.section.profiles.naca5 import Naca5
 from bladewright.section.profiles.naca6 import Naca6
 from bladewright.section.profiles.naca65 import Naca65
+from bladewright.section.profiles.points import Points
+
+OVAL = [(1.0, 0.0), (0.9, 0.04), (0.5, 0.11), (0.1, 0.065), (0.0, 0.0), (0.1, -0.035), (0.5, -0.01), (0.9, -0.01)]
+CUT = [(0.0, 0.0), (-0.02, 0.04), (0.05, 0.1), (0.3, 0.14), (0.6, 0.12), (1.0, 0.03), (1.01, -0.01), (0.5, 0.02)]
+CUT += [(0.1, -0.02)]
+LENS = [(0.0, 0.0), (0.2, 0.04), (0.4, 0.06), (0.6, 0.06), (0.8, 0.04), (1.0, 0.0), (0.8, -0.02), (0.6, -0.03)]
+LENS += [(0.4, -0.03), (0.2, -0.02)]
+
+
+def through(points, **fields):
+    """A profile through points (n, 2)."""
+    return Points(abscissas=tuple(x for x, _ in points), ordinates=tuple(y for _, y in points), **fields)
+
 
 PROFILES = {
     "naca-2412": Naca4(thickness=0.12, camber=0.02, camber_position=0.4, stagger_angle=10.0),
@@ -29,6 +42,9 @@ PROFILES = {
     "multiple-circular-arc": MultipleCircularArc(
         thickness=0.06, camber_angle=40.0, transition=0.6, front_camber=0.2, leading_edge_radius=0.004
     ),
+    "points-round": through(OVAL),
+    "points-blunt": through(CUT[::-1], stagger_angle=20.0),
+    "points-lens": through(LENS),
     "flat-plate": FlatPlate(thickness=0.06),
     "flat-plate-elliptic": FlatPlate(
         thickness=0.05, leading_edge="elliptic", leading_edge_ratio=4.0, trailing_edge="blunt"

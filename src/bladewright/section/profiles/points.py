@@ -1,0 +1,63 @@
+"""Profiles through any closed set of points."""
+
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+
+from bladewright.designs import ChordwiseLaw, parameter
+from bladewright.errors import DesignError
+from bladewright.numerics.elementary import dot, joined
+from bladewright.section import checks
+from bladewright.section.laws import Span
+from bladewright.section.outline import Outline
+from bladewright.section.profiles.contour import contour
+from bladewright.section.profiles.points_outline import PointsOutline
+from bladewright.section.profiles.profile import Profile
+
+LEAST = 8
+"""points of a contour, at least"""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Points(Profile):
+    """A profile through points: a closed contour in order, from any point, in either sense, of any size and direction.
+
+    A spline of degree 5 with four continuous derivatives runs through the points, at centripetal parameters (Lee 1989);
+    it is broken at sharp edges (one corner) and blunt ones (two). A corner is a point where the polygon turns by 30 deg
+    or more, ten times as much as beside it. A round edge is the point of the spline farthest from the other edge. The
+    chord line is brought to (0, 0)-(1, 0), the leading edge being the end with the smaller abscissa. The camber line is
+    the polynomial of degree 8 that is nearest to the middle between the sides, away from the edges.
+    """
+
+    kind: Literal["points"] = "points"
+    """which kind of profile this is"""
+    abscissas: ChordwiseLaw = parameter("-")
+    """of the points along the contour [-]"""
+    ordinates: ChordwiseLaw = parameter("-")
+    """of the points along the contour [-]"""
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        for name in ("abscissas", "ordinates"):
+            object.__setattr__(self, name, checks.chordwise(name, getattr(self, name)))
+        if len(self.abscissas) != len(self.ordinates):
+            raise DesignError(
+                f"abscissas has {len(self.abscissas)} entries and ordinates {len(self.ordinates)}: give each point both"
+            )
+        if len(self.abscissas) < LEAST:
+            raise DesignError(f"abscissas has {len(self.abscissas)} entries: a contour needs at least {LEAST} points")
+
+    def outline(self, span: Span) -> Outline:
+        """The exact sections (..., m) at the places of the span, in chords, unstaggered."""
+        axes = [joined([span.values(law)[..., None] for law in laws], -1) for laws in (self.abscissas, self.ordinates)]
+        points = np.stack(np.broadcast_arrays(*axes), axis=-1)
+        first = np.real(points).reshape(-1, *points.shape[-2:])[0]
+        if np.all(first[0] == first[-1]):
+            points, first = points[..., :-1, :], first[:-1]
+        steps = np.roll(first, -1, axis=0) - first
+        still = np.flatnonzero(dot(steps, steps) == 0.0)
+        if len(still):
+            raise DesignError(f"abscissas[{still[0]}] and ordinates[{still[0]}]: the point is given twice; drop one")
+        shape = contour(first)
+        return PointsOutline(given=points[..., shape.order, :], contour=shape)

@@ -1,0 +1,231 @@
+"""Outlines of splines through points, between the two ends of their chord line."""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from bladewright.errors import DesignError
+from bladewright.numerics.elementary import Array, dot, magnitude
+from bladewright.numerics.roots import bracketed_root
+from bladewright.nurbs.basis import Reals
+from bladewright.section.offset import merged
+from bladewright.section.outline import Edge, Joint, Outline, Start
+from bladewright.section.profiles.contour import Contour
+from bladewright.section.profiles.interpolation import LEAST, QuinticSpline
+from bladewright.section.thickness.series import Series, polynomial, variable
+
+PACE = 0.5
+"""pace of s at the edges, of the mean of both sides"""
+STEPS, SETTLED = 40, 1e-8
+"""Newton steps to the ends of the chord line, at most, and the size of the last, of the longest that is taken"""
+CAMBER, MIDDLE, MIDDLES = 6, (0.15, 0.85), 43
+"""degree of the camber line less two, the s between which it is fitted, and at how many places"""
+APART = 1e-9
+"""distance by s below which a joint stands at the same place in all sections"""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Side:
+    """A piece of a spline, from leading to trailing edge."""
+
+    spline: QuinticSpline
+    start: Array
+    """parameter (...) at the leading edge"""
+    end: Array
+    """parameter (...) at the trailing edge"""
+
+    def parameter(self, s: Series, pace: Array) -> Series:
+        """The spline's parameter at s (k,): at both ends with a pace (...) and without a second derivative."""
+        way = (self.end - self.start)[..., None]
+        own = np.where(np.real(way) < 0.0, -1.0, 1.0) * pace[..., None]
+        eased = polynomial(
+            [np.zeros(()), np.zeros(()), np.zeros(()), np.array(10.0), np.array(-15.0), np.array(6.0)], s
+        )
+        return s * own + eased * (way - own) + self.start[..., None]
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class PointsOutline(Outline):
+    """Sections (...) through points (..., n, 2) in the order of their contour."""
+
+    given: Array
+    contour: Contour
+
+    @property
+    def leading_edge(self) -> Edge:
+        """Round, sharp or blunt, as the points are."""
+        return self._edge(0.0, 0)
+
+    @property
+    def trailing_edge(self) -> Edge:
+        """Round, sharp or blunt, as the points are."""
+        return self._edge(1.0, 1)
+
+    @cached_property
+    def joints(self) -> tuple[Joint, ...]:
+        """Knots of the splines, where they stand at the same s in all sections."""
+        found = []
+        for side in self._sides:
+            lengths = [np.real(side.start)[..., None], np.real(side.end)[..., None]]
+            knots, pace = side.spline.breaks, np.real(self._pace)
+            whole = np.real(side.spline.sites)[..., -1:] if side.spline.closed else 0.0
+            for shift in (-1.0, 0.0, 1.0) if side.spline.closed else (0.0,):
+                places = knots + shift * whole
+                low, high = np.minimum(*lengths), np.maximum(*lengths)
+                inside = np.all((places > low) & (places < high), axis=tuple(range(places.ndim - 1)))
+                if np.any(inside):
+                    found += self._joints_of(side, places[..., inside], pace)
+        return merged(found)
+
+    def points(self, s: Reals) -> tuple[Array, Array]:
+        """Points (..., len(s), 2) of the upper and the lower side."""
+        upper, lower = (
+            np.stack(np.broadcast_arrays(*(each.value for each in self._laid(side, s, 0))), axis=-1)
+            for side in self._sides
+        )
+        return upper, lower
+
+    def camber(self, s: Reals) -> Array:
+        """Points (..., len(s), 2) of the polynomial nearest to the middle between the sides, away from the edges."""
+        x = np.sin(0.5 * np.pi * s) ** 2
+        rows = np.polynomial.chebyshev.chebvander(2.0 * x - 1.0, CAMBER) * (x * (1.0 - x))[:, None]
+        height = self._camber @ rows.T
+        return np.stack(np.broadcast_arrays(x, height), axis=-1)
+
+    @cached_property
+    def _camber(self) -> Array:
+        """Coefficients (..., c) of the Chebyshev polynomials that x (1 - x) is multiplied by, by least squares."""
+        upper, lower = self.points(np.linspace(*MIDDLE, MIDDLES))
+        middle = 0.5 * (upper + lower)
+        x = middle[..., 0]
+        rows = [x * (1.0 - x)]
+        rows.append(rows[0] * (2.0 * x - 1.0))
+        for _ in range(CAMBER - 1):
+            rows.append(2.0 * (2.0 * x - 1.0) * rows[-1] - rows[-2])
+        matrix = np.stack(rows, axis=-1)
+        turned = np.swapaxes(matrix, -1, -2)
+        # the normal equations stay analytic, and so few polynomials are well apart
+        return np.linalg.solve(turned @ matrix, turned @ middle[..., 1:])[..., 0]
+
+    @cached_property
+    def _sides(self) -> tuple[Side, Side]:
+        """The upper and the lower side."""
+        given, shape = self.given, self.contour
+        closing = np.concatenate([given, given[..., :1, :]], axis=-2)
+        zero = 0.0 * given[..., 0, 0]
+        if shape.kinds == ("round", "round"):
+            spline = QuinticSpline(points=given, closed=True)
+            whole = spline.sites[..., -1]
+            leading, trailing = self._ends(spline, spline.sites[..., shape.leading[0]], zero)
+            return (
+                Side(spline=spline, start=leading, end=trailing),
+                Side(spline=spline, start=leading, end=trailing + whole),
+            )
+        broken = 0 if shape.kinds[1] == "round" else 1
+        around = closing if shape.kinds[broken] == "sharp" else given
+        if "round" in shape.kinds:
+            spline = QuinticSpline(points=around, closed=False)
+            last = spline.sites[..., -1]
+            own = shape.leading if broken else shape.trailing
+            tip = 0.5 * (around[..., 0, :] + around[..., -1, :])
+            edge = self._farthest(spline, spline.sites[..., own[0]], tip)
+            if broken:
+                return Side(spline=spline, start=edge, end=zero), Side(spline=spline, start=edge, end=last)
+            return Side(spline=spline, start=last, end=edge), Side(spline=spline, start=zero, end=edge)
+        sides = {"upper": shape.leading[0] + 1, "lower": around.shape[-2] - shape.leading[-1]}
+        for name, count in sides.items():
+            if count < LEAST:
+                raise DesignError(
+                    f"abscissas has {count} points on the {name} side, between corners: at least {LEAST} are needed"
+                )
+        upper = QuinticSpline(points=given[..., : shape.leading[0] + 1, :], closed=False)
+        lower = QuinticSpline(points=around[..., shape.leading[-1] :, :], closed=False)
+        return (
+            Side(spline=upper, start=upper.sites[..., -1], end=zero),
+            Side(spline=lower, start=zero, end=lower.sites[..., -1]),
+        )
+
+    @staticmethod
+    def _farthest(spline: QuinticSpline, start: Array, tip: Array) -> Array:
+        """Parameter (...) of the spline's point farthest from a tip (..., 2), near a start, by Newton's method."""
+        t = start
+        limit = 0.02 * np.real(spline.sites[..., -1])
+        for _ in range(STEPS):
+            x, y = (each.coefficients for each in spline.at(variable(t[..., None], 2)))
+            point, first, second = (np.stack([x[k][..., 0], y[k][..., 0]], axis=-1) * (1, 1, 2)[k] for k in range(3))
+            off = point - tip
+            step = -dot(off, first) / (dot(first, first) + dot(off, second))
+            t = t + np.where(magnitude(np.real(step)) > limit, np.copysign(limit, np.real(step)), step)
+            if np.all(magnitude(np.real(step)) <= SETTLED * limit):
+                break
+        return t
+
+    @staticmethod
+    def _ends(spline: QuinticSpline, leading: Array, trailing: Array) -> tuple[Array, Array]:
+        """Parameters (...) of the two points farthest from each other, near given ones, by Newton's method."""
+        limit = 0.02 * np.real(spline.sites[..., -1])
+        for _ in range(STEPS):
+            rows = []
+            for t in (leading, trailing):
+                x, y = (each.coefficients for each in spline.at(variable(t[..., None], 2)))
+                rows.append([np.stack([x[k][..., 0], y[k][..., 0]], axis=-1) * (1, 1, 2)[k] for k in range(3)])
+            (a, da, dda), (b, db, ddb) = rows
+            off = a - b
+            values = dot(off, da), -dot(off, db)
+            own = dot(da, da) + dot(off, dda), dot(db, db) - dot(off, ddb)
+            both = -dot(da, db)
+            determinant = own[0] * own[1] - both * both
+            steps = (
+                -(values[0] * own[1] - values[1] * both) / determinant,
+                -(values[1] * own[0] - values[0] * both) / determinant,
+            )
+            leading, trailing = (
+                t + np.where(magnitude(np.real(step)) > limit, np.copysign(limit, np.real(step)), step)
+                for t, step in zip((leading, trailing), steps, strict=True)
+            )
+            if all(np.all(magnitude(np.real(step)) <= SETTLED * limit) for step in steps):
+                break
+        return leading, trailing
+
+    @cached_property
+    def _pace(self) -> Array:
+        ways = [side.end - side.start for side in self._sides]
+        return 0.5 * PACE * (magnitude(ways[0]) + magnitude(ways[1]))
+
+    @cached_property
+    def _chord(self) -> tuple[Array, Array]:
+        """The leading edge (..., 2), and the way to the trailing edge (..., 2)."""
+        tips = []
+        for at in ("start", "end"):
+            found = []
+            for side in self._sides:
+                pair = side.spline.at(Series([getattr(side, at)[..., None]]))
+                found.append(np.stack([each.value[..., 0] for each in pair], axis=-1))
+            tips.append(0.5 * (found[0] + found[1]))
+        return tips[0], tips[1] - tips[0]
+
+    def _laid(self, side: Side, s: Reals, order: int) -> tuple[Series, Series]:
+        x, y = side.spline.at(side.parameter(variable(s, order), self._pace))
+        start, way = self._chord
+        square = dot(way, way)[..., None]
+        off = x - start[..., 0, None], y - start[..., 1, None]
+        cosine, sine = way[..., 0, None] / square, way[..., 1, None] / square
+        return off[0] * cosine + off[1] * sine, off[1] * cosine - off[0] * sine
+
+    def _joints_of(self, side: Side, places: Reals, pace: Reals) -> list[Joint]:
+        def off(s: Array) -> tuple[Array, Array]:
+            found = side.parameter(variable(s, 1), pace)
+            return np.real(found.value) - places, np.real(found.coefficients[1])
+
+        s = bracketed_root(off, np.zeros(places.shape), np.ones(places.shape))
+        rows = s.reshape(-1, s.shape[-1])
+        return [Joint(float(row[0]), 4) for row in rows.T if np.ptp(row) <= APART]
+
+    def _edge(self, s: float, end: int) -> Edge:
+        starts = []
+        for side in self._sides:
+            x, y = (each.derivatives() for each in self._laid(side, np.array([s]), 2))
+            both = np.stack(np.broadcast_arrays(x, y), axis=-1)[..., 0, :, :]
+            starts.append(Start(*(both[..., k, :] for k in range(3))))
+        return Edge(kind=self.contour.kinds[end], upper=starts[0], lower=starts[1])
