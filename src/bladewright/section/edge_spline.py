@@ -4,7 +4,8 @@ What the section has at its leading edge is taken away up to a contact on each s
 nine control points closes the gap: at both contacts it has the sides' point and first three derivatives by s, so
 curvature and its slope are continuous there, and it passes the tip in the middle of the third of its five segments.
 That is nine conditions for nine control points. Reference: Nemnem et al. 2014, ASAT-16-142-PP, "Leading edge option",
-figures 15 and 16; they match ratios of parametric derivatives (eq. 23), from finite differences, instead.
+figures 15 and 16; they match ratios of parametric derivatives (eq. 23) instead, which T-Blade3 takes from differences
+that rounding decides: `design/edge_spline_tblade3.py`.
 """
 
 from dataclasses import dataclass
