@@ -55,8 +55,20 @@ if TYPE_CHECKING:
     from bladewright.nurbs.curve import Curve as Curve
     from bladewright.nurbs.surface import Surface as Surface
     from bladewright.nurbs.trimmed import TrimmedSurface as TrimmedSurface
+    from bladewright.section.camber_angle import CamberAngle as CamberAngle
+    from bladewright.section.camber_angle import CamberAngleSection as CamberAngleSection
     from bladewright.section.curvature_meanline import CurvatureMeanline as CurvatureMeanline
     from bladewright.section.curvature_meanline import CurvatureMeanlineSection as CurvatureMeanlineSection
+    from bladewright.section.profiles.c4 import C4 as C4
+    from bladewright.section.profiles.circular_arc import DoubleCircularArc as DoubleCircularArc
+    from bladewright.section.profiles.circular_arc import MultipleCircularArc as MultipleCircularArc
+    from bladewright.section.profiles.flat_plate import FlatPlate as FlatPlate
+    from bladewright.section.profiles.kinds import ProfileSection as ProfileSection
+    from bladewright.section.profiles.naca4 import Naca4 as Naca4
+    from bladewright.section.profiles.naca5 import Naca5 as Naca5
+    from bladewright.section.profiles.naca6 import Naca6 as Naca6
+    from bladewright.section.profiles.naca65 import Naca65 as Naca65
+    from bladewright.section.profiles.points import PointsProfile as PointsProfile
     from bladewright.section.suction_pressure.part import SuctionPressure as SuctionPressure
     from bladewright.section.suction_pressure.part import SuctionPressureSection as SuctionPressureSection
     from bladewright.section.thickness.modified_naca import ModifiedNaca as ModifiedNaca
@@ -71,25 +83,37 @@ __version__ = "0.1.0"
 _HOMES = {
     "Blade": "blade.blade",
     "BladewrightError": "errors",
+    "C4": "section.profiles.c4",
     "CadError": "errors",
+    "CamberAngle": "section.camber_angle",
+    "CamberAngleSection": "section.camber_angle",
     "Channel": "blade.channel",
-    "Curve": "nurbs.curve",
     "CurvatureMeanline": "section.curvature_meanline",
     "CurvatureMeanlineSection": "section.curvature_meanline",
+    "Curve": "nurbs.curve",
     "CurveFit": "fitting.curves",
     "DerivativeError": "errors",
     "DesignError": "errors",
+    "DoubleCircularArc": "section.profiles.circular_arc",
     "FileError": "errors",
     "Fit": "fitting.result",
     "FitError": "errors",
+    "FlatPlate": "section.profiles.flat_plate",
     "GeometryError": "errors",
     "MeshError": "errors",
     "ModifiedNaca": "section.thickness.modified_naca",
+    "MultipleCircularArc": "section.profiles.circular_arc",
+    "Naca4": "section.profiles.naca4",
+    "Naca5": "section.profiles.naca5",
+    "Naca6": "section.profiles.naca6",
+    "Naca65": "section.profiles.naca65",
+    "NetJacobian": "derivatives.jacobian",
     "Passage": "domain.passage",
+    "PointsProfile": "section.profiles.points",
     "ProfileFit": "fitting.profile",
+    "ProfileSection": "section.profiles.kinds",
     "QuarticSpline": "section.thickness.quartic",
     "SectionPassage": "domain.section",
-    "NetJacobian": "derivatives.jacobian",
     "SuctionPressure": "section.suction_pressure.part",
     "SuctionPressureSection": "section.suction_pressure.part",
     "Surface": "nurbs.surface",

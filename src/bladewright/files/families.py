@@ -3,7 +3,9 @@
 from bladewright.blade.unified import UnifiedBlade
 from bladewright.designs import Design
 from bladewright.errors import FileError
+from bladewright.section.camber_angle import CamberAngleSection
 from bladewright.section.curvature_meanline import CurvatureMeanlineSection
+from bladewright.section.profiles.kinds import ProfileSection
 from bladewright.section.suction_pressure.part import SuctionPressureSection
 from bladewright.section.unified import UnifiedSection
 from bladewright.section.wedge_diffuser import WedgeDiffuserSection
@@ -14,6 +16,8 @@ FAMILIES: dict[str, type[Design]] = {
     "curvature-meanline-section": CurvatureMeanlineSection,
     "suction-pressure-section": SuctionPressureSection,
     "wedge-diffuser-section": WedgeDiffuserSection,
+    "camber-angle-section": CamberAngleSection,
+    "profile-section": ProfileSection,
 }
 """Design class by the `family` of its files."""
 

@@ -8,7 +8,7 @@ from bladewright.section.profiles.naca4 import Naca4
 from bladewright.section.profiles.naca5 import Naca5
 from bladewright.section.profiles.naca6 import Naca6
 from bladewright.section.profiles.naca65 import Naca65
-from bladewright.section.profiles.points import Points
+from bladewright.section.profiles.points import PointsProfile
 
 OVAL = [(1.0, 0.0), (0.9, 0.04), (0.5, 0.11), (0.1, 0.065), (0.0, 0.0), (0.1, -0.035), (0.5, -0.01), (0.9, -0.01)]
 CUT = [(0.0, 0.0), (-0.02, 0.04), (0.05, 0.1), (0.3, 0.14), (0.6, 0.12), (1.0, 0.03), (1.01, -0.01), (0.5, 0.02)]
@@ -19,7 +19,7 @@ LENS += [(0.4, -0.03), (0.2, -0.02)]
 
 def through(points, **fields):
     """A profile through points (n, 2)."""
-    return Points(abscissas=tuple(x for x, _ in points), ordinates=tuple(y for _, y in points), **fields)
+    return PointsProfile(abscissas=tuple(x for x, _ in points), ordinates=tuple(y for _, y in points), **fields)
 
 
 PROFILES = {

@@ -12,10 +12,10 @@ from bladewright.section.profiles.naca4 import Naca4
 from bladewright.section.profiles.naca5 import Naca5
 from bladewright.section.profiles.naca6 import Naca6
 from bladewright.section.profiles.naca65 import Naca65
-from bladewright.section.profiles.points import Points
+from bladewright.section.profiles.points import PointsProfile
 
 AnyProfile = Annotated[
-    Naca4 | Naca5 | Naca6 | Naca65 | C4 | DoubleCircularArc | MultipleCircularArc | FlatPlate | Points,
+    Naca4 | Naca5 | Naca6 | Naca65 | C4 | DoubleCircularArc | MultipleCircularArc | FlatPlate | PointsProfile,
     ByField("kind"),
 ]
 """One of the kinds, told apart by `kind`."""

@@ -20,7 +20,7 @@ LEAST = 8
 
 
 @dataclass(frozen=True, kw_only=True)
-class Points(Profile):
+class PointsProfile(Profile):
     """A profile through points: a closed contour in order, from any point, in either sense, of any size and direction.
 
     A spline of degree 5 with four continuous derivatives runs through the points, at centripetal parameters (Lee 1989);
