@@ -13,12 +13,12 @@ middle of the two contacts. Measured:
 * y'''/x''' would then be y_uuu / x_u^3, which is 285, -290, 532 and -545. It is 218, -356, 463 and -845: third
   differences of numbers rounded to 7e-18 over (2e-6)^3. That rounding decides much of the shape: the third control
   point stands 1.15 of the contact's ordinate high on one side, the seventh 0.99 on the other.
-* Sixteen of the eighteen equations are these. The two left, blends of ordinates by a factor of 0.6, were not found: no
-  four of the coordinates, combined by 0.4, 0.5, 0.6, 1, 1.6 and 2, hold in both sections.
+* Sixteen of the eighteen equations are these. The two left, blends of ordinates by a factor of 0.6, were not found:
+  no four of the coordinates, combined by 0.4, 0.5, 0.6, 1, 1.6 and 2, hold in both sections.
 
 With y''' as printed, the exact ratio changes x''' by 6e-5 and so one of four control points by 7e-6 at least: to agree
-within 1e-6 a program must round as T-Blade3 does. `bladewright.section.edge_spline` keeps the nine control points, droop
-and elongation, and matches derivatives by s in the place of ratios.
+within 1e-6 a program must round as T-Blade3 does. `bladewright.section.edge_spline` keeps the nine control points,
+droop and elongation, and matches derivatives by s.
 
     python design/edge_spline_tblade3.py
 """
