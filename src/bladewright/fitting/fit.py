@@ -12,7 +12,7 @@ from bladewright.blade.unified import UnifiedBlade
 from bladewright.derivatives.patterns import Patterns
 from bladewright.designs import Design
 from bladewright.errors import DesignError, FitError
-from bladewright.fitting.adaptation import MANY, Aim, adapted, thinned
+from bladewright.fitting.adaptation import MANY, Aim, adapted
 from bladewright.fitting.aligning import aligned
 from bladewright.fitting.cloud import checked_cloud
 from bladewright.fitting.estimates import certainty_of
@@ -26,6 +26,7 @@ from bladewright.fitting.result import Fit
 from bladewright.fitting.scales import check_bounds
 from bladewright.fitting.search import Found, Task, searched
 from bladewright.fitting.structure import Structure, structure_of
+from bladewright.fitting.thinning import drawn
 from bladewright.fitting.verdict import failures_of, notes_of
 from bladewright.nurbs.basis import Reals
 from bladewright.section.checks import UNITS, choice
@@ -91,7 +92,7 @@ def fit(
     )
     wanted = None if like is None else structure_of(like)
 
-    some = points[thinned(len(points), MANY)]
+    some = points[drawn(len(points), MANY)]
 
     def guess(structure: Structure | None) -> Design:
         if points.shape[1] == 2:

@@ -6,17 +6,20 @@ from typing import Literal
 import numpy as np
 
 from bladewright.errors import FitError
+from bladewright.fitting.alignment.company import accompanied
 from bladewright.fitting.alignment.pieces import Piece, pieces_of
 from bladewright.fitting.alignment.prism import Prism, flat_ends, prism_of
 from bladewright.fitting.alignment.revolution import Axis, End, axis_of
 from bladewright.fitting.alignment.rigid import composed
 from bladewright.fitting.alignment.sheet import Sheet, unrolled
 from bladewright.fitting.alignment.spinning import first_axes
-from bladewright.fitting.alignment.thinning import MOST, accompanied, drawn
 from bladewright.fitting.result import Motion
+from bladewright.fitting.thinning import drawn
 from bladewright.nurbs.basis import Reals
 
 Arrangement = Literal["annular", "linear"]
+MOST = 50_000
+"""points that are looked at: more say nothing new about where a blade lies"""
 THIN = 1e-3
 """of the extent: a projection that is thinner is that of a prism"""
 DEGREES = (1, 2, 4)
@@ -73,7 +76,8 @@ def found_axes(points: Reals, *, arrangement: Arrangement | None = None) -> Foun
     cloud = np.asarray(points, dtype=np.float64)
     if cloud.ndim != 2 or cloud.shape[1] != 3:
         raise FitError(f"axes were asked of a cloud of shape {cloud.shape}: give points (n, 3)")
-    cloud = drawn(cloud[np.isfinite(cloud).all(axis=1)], MOST)
+    cloud = cloud[np.isfinite(cloud).all(axis=1)]
+    cloud = cloud[drawn(len(cloud), MOST)]
     cloud = cloud[accompanied(cloud)]
     if len(cloud) < 100:
         raise FitError(f"axes were asked of {len(cloud)} points: at least 100 are needed; give --start, or the axes")
@@ -174,7 +178,7 @@ def _ends(sheet: Sheet, low: list[Piece], high: list[Piece], count: int) -> tupl
             return None
         rows, first = np.unique(np.concatenate([piece.rows for piece in pieces]), return_index=True)
         along = np.concatenate([piece.along for piece in pieces])[first]
-        some = drawn(np.arange(len(rows), dtype=np.float64)[:, None], count)[:, 0].astype(int)
+        some = drawn(len(rows), count)
         found.append(End(points=sheet.points[rows[some]], along=along[some]))
     return found[0], found[1]
 

@@ -6,7 +6,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from bladewright.fitting.alignment.descent import tukey
-from bladewright.fitting.alignment.thinning import drawn
+from bladewright.fitting.thinning import drawn
 from bladewright.nurbs.basis import Reals
 
 POINTS = 1_200
@@ -39,7 +39,7 @@ class Prism:
 
 def prism_of(points: Reals) -> Prism:
     """The direction in which the projection of points (n, 3) is thinnest."""
-    cloud = drawn(points, POINTS)
+    cloud = points[drawn(len(points), POINTS)]
     cloud = cloud - np.median(cloud, axis=0)
     directions = _hemisphere(DIRECTIONS)
     cell = float(np.max(np.ptp(cloud, axis=0))) / COARSE

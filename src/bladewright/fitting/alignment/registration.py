@@ -11,8 +11,8 @@ from bladewright.fitting.alignment.descent import Descent, descended
 from bladewright.fitting.alignment.rigid import FREEDOMS, PLANE_FREEDOMS, free_columns
 from bladewright.fitting.alignment.search import SAMPLES, found_motions
 from bladewright.fitting.alignment.target import Target, target_of
-from bladewright.fitting.alignment.thinning import drawn
 from bladewright.fitting.result import Motion
+from bladewright.fitting.thinning import drawn
 from bladewright.nurbs.basis import Reals
 
 if TYPE_CHECKING:
@@ -69,7 +69,7 @@ def registered(points: Reals, target: Target) -> Registration:
     """As `registration`, onto a target."""
     cloud = _checked(points, target)
     samples, normals = target.evenly(SAMPLES[cloud.shape[1]])
-    few = drawn(cloud, SEARCH_POINTS)
+    few = cloud[drawn(len(cloud), SEARCH_POINTS)]
     best: tuple[float, Descent] | None = None
     for everywhere in (False, True):
         for motion in found_motions(cloud, samples, normals, everywhere=everywhere):
@@ -83,7 +83,8 @@ def registered(points: Reals, target: Target) -> Registration:
             break
     if best is None:
         raise FitError(f"no motion of the {len(points)} points was found; are they of a blade?")
-    return _reported(cloud, target, descended(target, drawn(cloud, POINTS), best[1].motion, width=FINE), None)
+    some = cloud[drawn(len(cloud), POINTS)]
+    return _reported(cloud, target, descended(target, some, best[1].motion, width=FINE), None)
 
 
 def improved(points: Reals, built: Any, motion: Motion, *, freedoms: tuple[str, ...] | None = None) -> Registration:
@@ -94,7 +95,8 @@ def improved(points: Reals, built: Any, motion: Motion, *, freedoms: tuple[str, 
     """
     target = target_of(built)
     cloud = _checked(points, target)
-    return _reported(cloud, target, descended(target, drawn(cloud, POINTS), motion, freedoms=freedoms), freedoms)
+    some = cloud[drawn(len(cloud), POINTS)]
+    return _reported(cloud, target, descended(target, some, motion, freedoms=freedoms), freedoms)
 
 
 def _checked(points: Reals, target: Target) -> Reals:
@@ -112,7 +114,7 @@ def _checked(points: Reals, target: Target) -> Reals:
 
 def _reported(cloud: Reals, target: Target, descent: Descent, freedoms: tuple[str, ...] | None) -> Registration:
     dimension = cloud.shape[1]
-    cloud = drawn(cloud, POINTS)
+    cloud = cloud[drawn(len(cloud), POINTS)]
     distances, taking = descent.contact.distances, descent.weights > 0.0
     rms = float(np.sqrt(np.mean(distances[taking] ** 2))) if taking.any() else float("inf")
     systematic, share = _systematic(cloud, descent), _share(descent)

@@ -10,9 +10,10 @@ import numpy as np
 from scipy.spatial import cKDTree
 from scipy.spatial.transform import Rotation
 
+from bladewright.fitting.alignment.company import accompanied
 from bladewright.fitting.alignment.rigid import GENERATORS, turned
-from bladewright.fitting.alignment.thinning import accompanied, drawn, thinned
 from bladewright.fitting.result import Motion
+from bladewright.fitting.thinning import drawn, spread
 from bladewright.nurbs.basis import Reals
 
 SAMPLES = {2: 800, 3: 4000}
@@ -37,9 +38,9 @@ def found_motions(cloud: Reals, samples: Reals, normals: Reals, *, everywhere: b
     They start from the principal axes of both or, `everywhere`, from turns all over the space of turns.
     """
     dimension = cloud.shape[1]
-    cloud = drawn(cloud, 20_000)
+    cloud = cloud[drawn(len(cloud), 20_000)]
     cloud = cloud[accompanied(cloud)]
-    cloud = cloud[thinned(cloud, 8 * POINTS[dimension])]
+    cloud = cloud[spread(cloud, 8 * POINTS[dimension])]
     pivot, centre = np.mean(cloud, axis=0), np.mean(samples, axis=0)
     axes, goals = _axes(cloud - pivot), _axes(samples - centre)
     if everywhere:
@@ -51,7 +52,7 @@ def found_motions(cloud: Reals, samples: Reals, normals: Reals, *, everywhere: b
     lags = np.ptp((cloud - pivot) @ axes, axis=0) < 0.9 * extents
     steps = [(-SHIFTS, 0.0, SHIFTS) if lag and not everywhere else (0.0,) for lag in lags[:2]]
     shifts = np.array([goals[:, :2] @ (np.array(step) * extents[:2]) for step in product(*steps)])
-    points = drawn(cloud - pivot, POINTS[dimension])
+    points = (cloud - pivot)[drawn(len(cloud), POINTS[dimension])]
     rotations = np.repeat(turns, len(shifts), axis=0)
     places = centre + np.tile(shifts, (len(turns), 1))
     rotations, places, scores = _descended(points, samples, normals, rotations, places)

@@ -13,7 +13,7 @@ from scipy.sparse import csr_array
 from scipy.sparse.csgraph import connected_components, dijkstra
 from scipy.spatial import ConvexHull, cKDTree
 
-from bladewright.fitting.alignment.thinning import thinned
+from bladewright.fitting.thinning import spread
 from bladewright.nurbs.basis import Reals
 
 NEIGHBOURS = 12
@@ -59,7 +59,7 @@ class Sheet:
 
 def unrolled(points: Reals) -> Sheet:
     """The sheet of points (n, 3) that are spread over a blade's sides."""
-    even = points[thinned(points, EVEN)]
+    even = points[spread(points, EVEN)]
     graph = _graph(even)
     label = connected_components(graph, directed=False)[1]
     most = np.flatnonzero(label == np.argmax(np.bincount(label)))
@@ -91,7 +91,7 @@ def _graph(points: Reals) -> csr_array:
 
 def _scaled(graph: csr_array, points: Reals) -> Reals:
     """Coordinates (n, 2) whose distances are nearest to the ways through the graph."""
-    marks = thinned(points, LANDMARKS)
+    marks = spread(points, LANDMARKS)
     square = dijkstra(graph, directed=False, indices=marks) ** 2
     own = square[:, marks]
     mean = own.mean(axis=0)

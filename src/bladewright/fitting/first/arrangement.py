@@ -5,7 +5,8 @@ from typing import Literal
 import numpy as np
 
 from bladewright.fitting.first.hypotheses import coordinates, ranked
-from bladewright.fitting.first.inliers import thinned, usual
+from bladewright.fitting.first.inliers import usual
+from bladewright.fitting.thinning import spread
 from bladewright.nurbs.basis import Reals
 
 Arrangement = Literal["annular", "linear"]
@@ -29,7 +30,8 @@ def found_arrangement(points: Reals) -> Arrangement:
         return "linear"
     if np.ptp(z) < 0.05 * np.ptp(radius):
         return "annular"
-    some = thinned(usual(np.unique(points, axis=0)), MOST)
+    some = usual(np.unique(points, axis=0))
+    some = some[spread(some, MOST)]
     away: list[float] = []
     for name in ("annular", "linear"):
         _, found = ranked(coordinates(some, name), revolved=name == "annular")

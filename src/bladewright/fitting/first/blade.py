@@ -9,9 +9,10 @@ from bladewright.fitting.first.channel import EDGES, curve_counts
 from bladewright.fitting.first.designed import Unit, built_blade
 from bladewright.fitting.first.found import Found, apart, continued_in, shape_in
 from bladewright.fitting.first.hypotheses import coordinates, ranked
-from bladewright.fitting.first.inliers import thinned, usual
+from bladewright.fitting.first.inliers import usual
 from bladewright.fitting.first.trimming import trimmed
 from bladewright.fitting.structure import Structure
+from bladewright.fitting.thinning import spread
 from bladewright.nurbs.basis import Reals
 
 MOST = 1200
@@ -35,7 +36,8 @@ def first_blade(
     `pitch` [m] of a linear cascade. Where blade_count or pitch is not given, one at which neighbours stand apart is
     taken. Raises FitError where no blade that can be built lies near the points.
     """
-    points = thinned(usual(np.unique(np.asarray(points, dtype=np.float64), axis=0)), MOST)
+    points = usual(np.unique(np.asarray(points, dtype=np.float64), axis=0))
+    points = points[spread(points, MOST)]
     structure = structure or Structure()
     arrangement = arrangement or found_arrangement(points)
     machine, outlines = ranked(coordinates(points, arrangement), revolved=arrangement == "annular")

@@ -1,4 +1,4 @@
-"""Points that belong to the blade, and few enough of them."""
+"""Points that belong to the blade."""
 
 import numpy as np
 from scipy.spatial import cKDTree
@@ -17,18 +17,3 @@ def usual(points: Reals, neighbours: int = 5) -> Reals:
     if np.mean(lonely) > 0.12:
         lonely &= own >= np.percentile(own, 90.0)
     return np.asarray(points[~lonely])
-
-
-def thinned(points: Reals, most: int) -> Reals:
-    """At most `most` points, spread evenly over the cloud."""
-    if len(points) <= most:
-        return points
-    low, extent = np.min(points, axis=0), float(np.max(np.ptp(points, axis=0)))
-    shuffled = np.random.default_rng(0).permutation(len(points))
-    cell = extent / 2000.0
-    while True:
-        keys = np.floor((points[shuffled] - low) / cell).astype(np.int64)
-        _, first = np.unique(keys, axis=0, return_index=True)
-        if len(first) <= most:
-            return np.asarray(points[shuffled[first]])
-        cell *= 1.15

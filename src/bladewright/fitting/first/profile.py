@@ -7,7 +7,7 @@ import numpy as np
 
 from bladewright.errors import DesignError, FitError
 from bladewright.fitting.first.camber import first_laws
-from bladewright.fitting.first.inliers import thinned, usual
+from bladewright.fitting.first.inliers import usual
 from bladewright.fitting.first.matching import Laid, Match, matched
 from bladewright.fitting.first.shape import (
     ANGLE_IN,
@@ -23,6 +23,7 @@ from bladewright.fitting.first.shape import (
     Shape,
 )
 from bladewright.fitting.first.taming import SHARPENINGS, sharpened, tamed
+from bladewright.fitting.thinning import spread
 from bladewright.nurbs.basis import Reals
 from bladewright.section.checks import UNITS
 from bladewright.section.unified import UnifiedSection
@@ -46,7 +47,8 @@ def first_section(
     `chordwise` are the control points of the upper and the lower thickness. Raises FitError where no section that can
     be built lies near the points.
     """
-    points = thinned(usual(np.unique(np.asarray(points, dtype=np.float64), axis=0)), MOST)
+    points = usual(np.unique(np.asarray(points, dtype=np.float64), axis=0))
+    points = points[spread(points, MOST)]
     middle = np.mean(points, axis=0)
     axis, chord = longest(points)
     one = np.ones(len(points))

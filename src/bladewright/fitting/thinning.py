@@ -1,0 +1,48 @@
+"""Fewer points of a cloud: drawn at random, or spread evenly."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from bladewright.nurbs.basis import Reals
+
+FINEST = 12
+"""halvings of the extent in the finest grid"""
+TRIALS = 9
+"""grids that are tried"""
+
+
+def drawn(count: int, most: int) -> NDArray[np.intp]:
+    """Indices, in order, of at most `most` of `count` points, drawn at random but always the same.
+
+    What is drawn is as dense and as noisy as the cloud itself.
+    """
+    if count <= most:
+        return np.arange(count, dtype=np.intp)
+    return np.sort(np.random.default_rng(0).choice(count, most, replace=False))
+
+
+def spread(points: Reals, most: int) -> NDArray[np.intp]:
+    """Indices, in order, of at most `most` of points (n, d), the middle one of each cell of a grid.
+
+    It is the finest grid with so few cells that have points. The order of the points does not matter.
+    """
+    if len(points) <= most:
+        return np.arange(len(points), dtype=np.intp)
+    offset = points - points.min(axis=0)
+    size = float(offset.max()) * (1.0 + 1e-9) or 1.0
+    coarse, fine = 0.0, float(FINEST)
+    for _ in range(TRIALS):
+        middle = 0.5 * (coarse + fine)
+        few = len(np.unique(_cells(offset / size, middle)[0])) <= most
+        coarse, fine = (middle, fine) if few else (coarse, middle)
+    keys, off_middle = _cells(offset / size, coarse)
+    inward = np.argsort(off_middle, kind="stable")
+    return np.sort(inward[np.unique(keys[inward], return_index=True)[1]])
+
+
+def _cells(places: Reals, halvings: float) -> tuple[NDArray[np.intp], Reals]:
+    """Numbers (n,) of the cells of a grid in which places (n, d) in [0, 1) are, and how far off their middles."""
+    count = int(2.0**halvings)
+    corner = np.floor(places * count)
+    keys = corner.astype(np.intp) @ (count + 1) ** np.arange(places.shape[1])
+    return keys, np.sum((places * count - corner - 0.5) ** 2, axis=1)
