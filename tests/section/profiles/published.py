@@ -42,3 +42,49 @@ SIX_SERIES = {
 }
 """half thickness by series and thickness, recomputed from NASA TM X-3069 (R. L. Carmichael, PDAS)"""
 SIX_SERIES = {key: np.array(row.split(), dtype=float) for key, row in SIX_SERIES.items()}
+_COMPRESSOR = (
+    "0.772 0.932 1.169 1.574 2.177 2.647 3.040 3.666 4.143 4.503 4.760 4.924 4.996 4.963 4.812 4.530 4.146 3.682 3.156 "
+    "2.584 1.987 1.385 0.810 0.306"
+)
+COMPRESSOR = np.array(_COMPRESSOR.split(), dtype=float)
+"""half thickness of 65-010 (Herrig, Emery and Erwin 1951, NACA RM L51G31, table 1)"""
+C4_STATIONS = np.array([1.25, 2.5, 5, 7.5, 10, 15, 20, 30, 40, 50, 60, 70, 80, 90, 95])
+C4_ORDINATES = np.array(
+    [1.65, 2.27, 3.08, 3.62, 4.02, 4.55, 4.83, 5.00, 4.89, 4.57, 4.05, 3.37, 2.54, 1.60, 1.06]
+)  # fmt: skip
+"""half thickness of the C4 profile of 10 % (Howell 1942)"""
+NACA_0012 = {0.5: 1.2213, 1.25: 1.8939, 5: 3.5547, 10: 4.6828, 30: 6.0017, 50: 5.2940, 70: 3.6639, 95: 0.8066}
+"""half thickness by x (NACA Report 460, recomputed by PDAS)"""
+NACA_2412 = {
+    "upper": [
+        (0.3800, 1.2651),
+        (2.2559, 2.8455),
+        (9.6498, 5.5447),
+        (29.8500, 7.8749),
+        (40.0, 7.8030),
+        (70.1221, 5.1619),
+    ],
+    "lower": [(0.6200, -1.1657), (2.7441, -2.3611), (20.2865, -4.2304), (40.0, -3.8030), (69.8779, -2.1619)],
+}
+"""points of the sides (recomputed by PDAS)"""
+NACA_23012 = {
+    "upper": [
+        (-0.0607, 0.5624),
+        (1.9153, 3.2148),
+        (9.7113, 6.3761),
+        (26.1318, 7.5975),
+        (50.1170, 6.3976),
+        (90.032, 1.6683),
+    ],
+    "lower": [(0.2607, -0.5016), (5.0887, -2.2755), (23.8694, -4.2322), (49.8830, -4.1878), (89.968, -1.2264)],
+}
+"""points of the sides (recomputed by PDAS with the published r and k1)"""
+FIVE_DIGIT = {0.10: (0.1260, 51.64), 0.15: (0.2025, 15.957), 0.20: (0.2900, 6.643), 0.25: (0.3910, 3.230)}
+"""r and k1 of mean lines of lift 0.3 by the place of the largest camber (NACA Report 537)"""
+FIVE_DIGIT_REFLEXED = {
+    0.10: (0.1300, 51.99, 0.000764),
+    0.15: (0.2170, 15.793, 0.00677),
+    0.20: (0.3180, 6.520, 0.0303),
+    0.25: (0.4410, 3.191, 0.1355),
+}
+"""r, k1 and k2 / k1 of reflexed ones"""

@@ -41,8 +41,8 @@ class MeanLine(ABC):
 class Around(Outline):
     """Sections whose half thickness is measured normal to the mean line at x.
 
-    A round trailing edge is the thickness T(x) times sqrt(1 - x^n), n = 2 / T(1): a nose of the radius T(1), below the
-    thickness of the blunt edge by more than 1e-3 of itself only over the last 3 T(1) of the chord.
+    A round trailing edge is the thickness T(x) times sqrt(1 - x^n), n = 2 / (T(1) cos(angle of the mean line there)): a
+    nose of the radius T(1), below the blunt profile by more than 1e-3 of itself only over the last 3 T(1) of the chord.
     """
 
     mean_line: MeanLine
@@ -72,7 +72,7 @@ class Around(Outline):
 
     def _cap(self, rest: Series) -> Series:
         """(1 - x^n) / (1 - x) and its derivatives by 1 - x: half the thickness there, as far as they are asked for."""
-        power = 2.0 / self.thickness.end
+        power = 2.0 / self.thickness.end * self._steepness
         w = rest.value
         # so far from the edge x^n vanishes, and its logarithm may not be taken at x = 0
         far = np.real(w) > FAR
@@ -88,6 +88,12 @@ class Around(Outline):
         bend = -power * (power - 1.0) * left / (1.0 - near) ** 2
         second = np.where(at_edge, power * (power - 1.0) * (power - 2.0) / 3.0, (bend - 2.0 * first) / apart)
         return Series([value, first, 0.5 * second])
+
+    @cached_property
+    def _steepness(self) -> Array:
+        """1 / cos of the mean line's angle at the trailing edge (..., 1): x runs slower there than the mean line."""
+        line = self.mean_line.ordinate(variable(np.ones(1), 1), np.ones(1, dtype=bool))
+        return np.sqrt(1.0 + line.coefficients[1] ** 2)
 
     def _line(self, x: Series, s: Reals) -> tuple[Series, Series]:
         """Ordinate and slope of the mean line as series of s."""
@@ -122,7 +128,7 @@ class Around(Outline):
 
     @property
     def leading_edge(self) -> Edge:
-        """Round, with the radius half the square of the thickness's first coefficient."""
+        """Round: half the square of the thickness's first coefficient, times the cosine of the mean line there."""
         return self._edge(0.0, "round")
 
     @property

@@ -80,12 +80,12 @@ def _corners(points: Reals) -> Indices:
     behind = np.roll(ahead, 1, axis=0)
     turning = np.degrees(np.arctan2(cross2(behind, ahead), dot(behind, ahead)))  # real: points to judge by
     size = np.abs(turning)  # real: angles
-    # the other corner of a blunt edge is no smooth neighbour
-    sides = np.minimum(np.maximum(np.roll(size, 1), np.roll(size, -1)), np.inf)
-    smoother = np.minimum(np.roll(size, 1), np.roll(size, -1))
-    pair = (size > CORNER) & ((np.roll(size, 1) > CORNER) | (np.roll(size, -1) > CORNER))
-    beside = np.where(pair, smoother, sides)
-    return np.flatnonzero((size >= CORNER) & (beside <= ALONE * size))
+    before, after = np.roll(size, 1), np.roll(size, -1)
+    # at a blunt edge the other corner is no smooth neighbour: both are judged together, by the neighbours outside
+    paired = (size >= CORNER) & (np.maximum(before, after) >= CORNER)
+    whole = np.where(paired, size + np.maximum(before, after), size)
+    beside = np.where(paired, np.minimum(before, after), np.maximum(before, after))
+    return np.flatnonzero((size >= CORNER) & (beside <= ALONE * whole))
 
 
 def _misplaced(index: int, point: Reals) -> DesignError:

@@ -10,8 +10,6 @@ from bladewright.nurbs.basis import Reals
 from bladewright.section.thickness.series import Series, polynomial, variable
 
 DEGREE = 5
-LEAST = DEGREE + 1
-"""points of a curve, at least"""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

@@ -12,6 +12,7 @@ from bladewright.section import checks
 from bladewright.section.laws import Span
 from bladewright.section.outline import Outline
 from bladewright.section.profiles.contour import contour
+from bladewright.section.profiles.interpolation import DEGREE
 from bladewright.section.profiles.points_outline import PointsOutline
 from bladewright.section.profiles.profile import Profile
 
@@ -25,9 +26,10 @@ class PointsProfile(Profile):
 
     A spline of degree 5 with four continuous derivatives runs through the points, at centripetal parameters (Lee 1989);
     it is broken at sharp edges (one corner) and blunt ones (two). A corner is a point where the polygon turns by 30 deg
-    or more, ten times as much as beside it. A round edge is the point of the spline farthest from the other edge. The
-    chord line is brought to (0, 0)-(1, 0), the leading edge being the end with the smaller abscissa. The camber line is
-    the polynomial of degree 8 that is nearest to the middle between the sides, away from the edges.
+    or more, ten times as much as beside it; so do the two of a blunt edge together. A round edge is the point of the
+    spline farthest from the other edge. The chord line is brought to (0, 0)-(1, 0), the leading edge being the end with
+    the smaller abscissa. The camber line is the polynomial of degree 8 that is nearest to the middle between the sides,
+    away from the edges.
     """
 
     kind: Literal["points"] = "points"
@@ -60,4 +62,13 @@ class PointsProfile(Profile):
         if len(still):
             raise DesignError(f"abscissas[{still[0]}] and ordinates[{still[0]}]: the point is given twice; drop one")
         shape = contour(first)
+        if "round" not in shape.kinds:
+            closing = 1 if shape.kinds[1] == "sharp" else 0
+            sides = {"upper": shape.leading[0] + 1, "lower": len(first) + closing - shape.leading[-1]}
+            for name, count in sides.items():
+                if count <= DEGREE:
+                    raise DesignError(
+                        f"abscissas has {count} points on the {name} side, between the corners of its edges: at least "
+                        f"{DEGREE + 1} are needed"
+                    )
         return PointsOutline(given=points[..., shape.order, :], contour=shape)

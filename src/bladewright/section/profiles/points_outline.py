@@ -5,14 +5,13 @@ from functools import cached_property
 
 import numpy as np
 
-from bladewright.errors import DesignError
 from bladewright.numerics.elementary import Array, dot, magnitude
 from bladewright.numerics.roots import bracketed_root
 from bladewright.nurbs.basis import Reals
 from bladewright.section.offset import merged
 from bladewright.section.outline import Edge, Joint, Outline, Start
 from bladewright.section.profiles.contour import Contour
-from bladewright.section.profiles.interpolation import LEAST, QuinticSpline
+from bladewright.section.profiles.interpolation import QuinticSpline
 from bladewright.section.thickness.series import Series, polynomial, variable
 
 PACE = 0.5
@@ -133,12 +132,6 @@ class PointsOutline(Outline):
             if broken:
                 return Side(spline=spline, start=edge, end=zero), Side(spline=spline, start=edge, end=last)
             return Side(spline=spline, start=last, end=edge), Side(spline=spline, start=zero, end=edge)
-        sides = {"upper": shape.leading[0] + 1, "lower": around.shape[-2] - shape.leading[-1]}
-        for name, count in sides.items():
-            if count < LEAST:
-                raise DesignError(
-                    f"abscissas has {count} points on the {name} side, between corners: at least {LEAST} are needed"
-                )
         upper = QuinticSpline(points=given[..., : shape.leading[0] + 1, :], closed=False)
         lower = QuinticSpline(points=around[..., shape.leading[-1] :, :], closed=False)
         return (
