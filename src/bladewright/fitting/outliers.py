@@ -1,0 +1,157 @@
+"""Which points of a cloud lie off the surface that the others show.
+
+Along a surface the heights of points change steadily, by noise and by what a design misses: outliers are small groups,
+of one point or of many, that no step within the noise leads to. Where the design misses less than the noise, distances
+alone tell too, but near an edge, where few points may tell of much.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse import csr_array
+from scipy.sparse.csgraph import connected_components
+from scipy.spatial import cKDTree
+
+from bladewright.fitting.feet import Feet
+from bladewright.fitting.thinning import spread
+from bladewright.nurbs.basis import Reals
+
+NEIGHBOURS = {2: 4, 3: 8}
+"""neighbours asked, by dimension"""
+OUTLYING = 8.0
+"""deviations of the noise that an outlier exceeds"""
+STEP = 5.0
+"""deviations of the noise by which neighbours on one surface differ at most"""
+USUAL, AT_EDGES = 6.0, 60.0
+"""usual misfits that an outlier exceeds, and near an edge, where a misfit is large and neighbours are few"""
+STEEP = 40.0
+"""usual misfits by which the misfit may change along the extent"""
+EDGE = 0.03
+"""how near, in u"""
+APART = 0.05
+"""how far apart the two sides of a thin blade are taken to be, of the extent"""
+GROUP, FEW = 0.05, 20
+"""largest group of outliers, of the points, and however few there are"""
+AROUND, SITES = 64, 5000
+"""points around each of so many sites whose noise is taken to be alike"""
+QUARTILE = 3.1384
+"""standard deviation of normal noise over the lower quartile of its magnitude, which a group of outliers spoils less"""
+CORE = 3
+"""points of the large groups beside a small one to which a step may lead"""
+NEAR = 1e-6
+"""distance up to which no point is an outlier, of the cloud's extent"""
+STANDARD = 1.4826
+"""standard deviation of normal noise over its median magnitude"""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Surroundings:
+    """Which of n points are beside each other on the sides of a design."""
+
+    places: Reals
+    """(n, d + 1) the feet, and how far from both edges, so that the sides are apart but at the edges"""
+    index: NDArray[np.intp]
+    """(n, k) the nearest others; a point itself where there are no others"""
+    extent: float
+    """[m]"""
+
+
+def surroundings_of(points: Reals, on: Feet) -> Surroundings:
+    """The neighbours of points (n, d) with known feet."""
+    extent = float(np.ptp(points, axis=0).max())
+    inward = np.minimum(np.minimum(on.u, 1.0 - on.u) / EDGE, 1.0)
+    lifted = np.where(on.side == 0, 1.0, -1.0) * APART * extent * inward
+    places = np.column_stack([on.points, lifted])
+    count = NEIGHBOURS[points.shape[1]]
+    asked = min(count + 1, len(points))
+    index = np.reshape(cKDTree(places).query(places, k=asked)[1], (len(points), asked))
+    # among points in one place a point is not always the first that is found
+    own = index == np.arange(len(points))[:, None]
+    index = np.where(own, index[:, :1], index)[:, 1:]
+    return Surroundings(
+        places=places, index=np.pad(index, ((0, 0), (0, count - asked + 1)), mode="edge"), extent=extent
+    )
+
+
+def outliers_of(
+    heights: Reals, past: Reals, distances: Reals, weights: Reals, on: Feet, around: Surroundings
+) -> NDArray[np.bool_]:
+    """Which of n points are outliers, by their heights above the surface, their way past its ends and distances [m].
+
+    Weights are positive, and inverse variances relative to each other.
+    """
+    index, roots = around.index, np.sqrt(weights)
+    # a median of k neighbours has about 1 / k of the variance
+    spread_out = np.sqrt(1.0 / weights + np.mean(1.0 / weights[index], axis=1) / index.shape[1])
+    off = np.abs(heights - np.median(heights[index], axis=1)) / spread_out * np.sqrt(1.0 + 1.0 / index.shape[1])
+    noise = STANDARD * float(np.median(off))
+    usual = STANDARD * float(np.median(roots * distances))
+    misfit = float(np.sqrt(max(usual**2 - noise**2, 0.0)))
+    level = np.maximum(noise, _local(off, around)) / roots
+    edge = (on.u < EDGE) | (on.u > 1.0 - EDGE)
+    least = np.hypot(OUTLYING * level, np.where(edge, AT_EDGES, USUAL) * misfit) + NEAR * around.extent
+    far = distances > least
+    if not np.any(far):
+        return far
+    largest = min(max(FEW, int(GROUP * len(heights))), len(heights) // 5)
+    beyond = past > least
+    found = far & (beyond | _cut_off(heights, level, beyond, STEEP * misfit / around.extent, largest, around))
+    if misfit == 0.0:
+        # a patch that rises steadily, as a fillet does
+        steady = far & ~edge & ~found
+        found |= steady & (_sizes(_groups(steady, steady, index)) <= largest)
+    return found
+
+
+def _local(off: Reals, around: Surroundings) -> Reals:
+    """The noise (n,) around each point."""
+    sites = spread(around.places, SITES)
+    _, near = cKDTree(around.places).query(around.places[sites], k=min(AROUND, len(off)))
+    noise = QUARTILE * np.quantile(off[near.reshape(len(sites), -1)], 0.25, axis=1)
+    return np.asarray(noise[cKDTree(around.places[sites]).query(around.places)[1]])
+
+
+def _cut_off(
+    heights: Reals, level: Reals, beyond: NDArray[np.bool_], slope: float, largest: int, around: Surroundings
+) -> NDArray[np.bool_]:
+    """Whether points (n,) are in a group of at most `largest` that no step leads to."""
+
+    def steps(start: NDArray[np.intp], end: NDArray[np.intp]) -> NDArray[np.bool_]:
+        way = np.sqrt(np.sum((around.places[end] - around.places[start]) ** 2, axis=-1))
+        allowed = STEP * np.maximum(level[start], level[end]) + slope * way + NEAR * around.extent
+        return (np.abs(heights[end] - heights[start]) <= allowed) & ~beyond[start] & ~beyond[end]
+
+    index = around.index
+    own = np.broadcast_to(np.arange(len(heights))[:, None], index.shape)
+    linked = steps(own, index)
+    label = _groups(np.ones(len(heights), dtype=bool), linked, index)
+    size = _sizes(label)
+    core = np.flatnonzero(size > largest if np.any(size > largest) else size == size.max())
+    apart = np.flatnonzero(~np.isin(np.arange(len(heights)), core))
+    if len(apart) == 0:
+        return np.zeros(len(heights), dtype=bool)
+    _, near = cKDTree(around.places[core]).query(around.places[apart], k=min(CORE, len(core)))
+    near = core[near.reshape(len(apart), -1)]
+    reached = np.any(steps(np.broadcast_to(apart[:, None], near.shape), near), axis=1)
+    joined = np.zeros(len(heights), dtype=bool)
+    joined[label[core]] = True
+    joined[label[apart[reached]]] = True
+    return ~joined[label]
+
+
+def _groups(rows: NDArray[np.bool_], linked: NDArray[np.bool_], index: NDArray[np.intp]) -> NDArray[np.intp]:
+    """Labels (n,) of the groups that neighbours (n, k) make with each other where they are `linked`.
+
+    Only points in `rows` are in groups with others; `linked` is (n, k), or (n,) for all ways from a point.
+    """
+    count = len(index)
+    taken = rows[:, None] & rows[index] & (linked if linked.ndim == 2 else linked[:, None])
+    start, way = np.nonzero(taken)
+    graph = csr_array((np.ones(len(start), dtype=np.int8), (start, index[start, way])), shape=(count, count))
+    return np.asarray(connected_components(graph, directed=False)[1], dtype=np.intp)
+
+
+def _sizes(label: NDArray[np.intp]) -> NDArray[np.intp]:
+    """Number of points (n,) in the group of each."""
+    return np.bincount(label)[label]
