@@ -1,8 +1,7 @@
 """Which points of a cloud lie off the surface that the others show.
 
 Along a surface the heights of points change steadily, by noise and by what a design misses: outliers are small groups,
-of one point or of many, that no step within the noise leads to. Where the design misses less than the noise, distances
-alone tell too, but near an edge, where few points may tell of much.
+of one point or of many, that no step within the noise leads to. Where the rest is matched well, distances alone tell.
 """
 
 from dataclasses import dataclass
@@ -27,10 +26,16 @@ USUAL, AT_EDGES = 6.0, 60.0
 """usual misfits that an outlier exceeds, and near an edge, where a misfit is large and neighbours are few"""
 STEEP = 40.0
 """usual misfits by which the misfit may change along the extent"""
+STEEPER = 4.0
+"""by how much steeper than around a point the misfit may become"""
 EDGE = 0.03
 """how near, in u"""
 APART = 0.05
 """how far apart the two sides of a thin blade are taken to be, of the extent"""
+STEADY = 100.0
+"""usual misfits from which a small group is no misfit, though heights rise to it steadily; more at an edge"""
+CHANCE = 3.0
+"""by how much more than the noise distances may usually be by chance, of the root of the number of points"""
 GROUP, FEW = 0.05, 20
 """largest group of outliers, of the points, and however few there are"""
 AROUND, SITES = 64, 5000
@@ -87,21 +92,22 @@ def outliers_of(
     off = np.abs(heights - np.median(heights[index], axis=1)) / spread_out * np.sqrt(1.0 + 1.0 / index.shape[1])
     noise = STANDARD * float(np.median(off))
     usual = STANDARD * float(np.median(roots * distances))
-    misfit = float(np.sqrt(max(usual**2 - noise**2, 0.0)))
+    chance = 1.0 + CHANCE / np.sqrt(len(heights))
+    misfit = float(np.sqrt(max(usual**2 - (chance * noise) ** 2, 0.0)))
     level = np.maximum(noise, _local(off, around)) / roots
     edge = (on.u < EDGE) | (on.u > 1.0 - EDGE)
-    least = np.hypot(OUTLYING * level, np.where(edge, AT_EDGES, USUAL) * misfit) + NEAR * around.extent
+    near = NEAR * around.extent
+    least = np.hypot(OUTLYING * level, np.where(edge, AT_EDGES, USUAL) * misfit) + near
     far = distances > least
     if not np.any(far):
         return far
     largest = min(max(FEW, int(GROUP * len(heights))), len(heights) // 5)
     beyond = past > least
-    found = far & (beyond | _cut_off(heights, level, beyond, STEEP * misfit / around.extent, largest, around))
-    if misfit == 0.0:
-        # a patch that rises steadily, as a fillet does
-        steady = far & ~edge & ~found
-        found |= steady & (_sizes(_groups(steady, steady, index)) <= largest)
-    return found
+    slopes = _slopes(heights, level, misfit, around)
+    found = far & (beyond | _cut_off(heights, level, beyond, slopes, largest, around))
+    much = np.where(edge, AT_EDGES / USUAL, 1.0)
+    steady = ~found & (distances > much * np.hypot(OUTLYING * level, STEADY * misfit) + near)
+    return found | (steady & (_sizes(_groups(steady, steady, index)) <= largest))
 
 
 def _local(off: Reals, around: Surroundings) -> Reals:
@@ -112,14 +118,31 @@ def _local(off: Reals, around: Surroundings) -> Reals:
     return np.asarray(noise[cKDTree(around.places[sites]).query(around.places)[1]])
 
 
+def _slopes(heights: Reals, level: Reals, misfit: float, around: Surroundings) -> Reals:
+    """How much heights may change along the surface (n,) by a misfit that varies steadily."""
+    if misfit == 0.0:
+        return np.zeros(len(heights))
+    index = around.index
+    way = np.sqrt(np.sum((around.places[index] - around.places[:, None]) ** 2, axis=-1)) + NEAR * around.extent
+    change = np.maximum(np.abs(heights[index] - heights[:, None]) - STEP * level[:, None], 0.0) / way
+    return STEEPER * _lower(_lower(change)[index]) + STEEP * misfit / around.extent
+
+
+def _lower(values: Reals) -> Reals:
+    """The lower median (n,) of values (n, k)."""
+    middle = (values.shape[1] - 1) // 2
+    return np.asarray(np.partition(values, middle, axis=1)[:, middle])
+
+
 def _cut_off(
-    heights: Reals, level: Reals, beyond: NDArray[np.bool_], slope: float, largest: int, around: Surroundings
+    heights: Reals, level: Reals, beyond: NDArray[np.bool_], slopes: Reals, largest: int, around: Surroundings
 ) -> NDArray[np.bool_]:
     """Whether points (n,) are in a group of at most `largest` that no step leads to."""
 
     def steps(start: NDArray[np.intp], end: NDArray[np.intp]) -> NDArray[np.bool_]:
         way = np.sqrt(np.sum((around.places[end] - around.places[start]) ** 2, axis=-1))
-        allowed = STEP * np.maximum(level[start], level[end]) + slope * way + NEAR * around.extent
+        allowed = STEP * np.maximum(level[start], level[end]) + NEAR * around.extent
+        allowed += np.minimum(slopes[start], slopes[end]) * way
         return (np.abs(heights[end] - heights[start]) <= allowed) & ~beyond[start] & ~beyond[end]
 
     index = around.index
