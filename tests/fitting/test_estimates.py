@@ -19,7 +19,7 @@ def found(slopes, *, shared=0.0, alone=1.0, low=-np.inf, high=np.inf, seed=1, de
         scales=SimpleNamespace(size=SIZE, low=np.full(COUNT, low), high=np.full(COUNT, high)),
         paths=tuple("abcde"),
         measures=SimpleNamespace(
-            residuals=lambda _: rows, slopes=lambda *_: slopes, roots=np.ones(POINTS), points=np.zeros((POINTS, 2))
+            residuals=lambda _: rows, slopes=lambda *_: slopes, roots=np.ones(POINTS), points=np.zeros((POINTS, 2)), precision=None
         ),
         values_of=lambda _: np.arange(1.0, COUNT + 1.0),
     )

@@ -193,9 +193,10 @@ def _leaner(task: Task, found: Found, base: Structure) -> Found:
 
 
 def _part(task: Task, rows: NDArray[np.intp]) -> Task:
-    return (
-        task if len(rows) == len(task.points) else replace(task, points=task.points[rows], weights=task.weights[rows])
-    )
+    if len(rows) == len(task.points):
+        return task
+    precision = None if task.precision is None else task.precision[rows]
+    return replace(task, points=task.points[rows], weights=task.weights[rows], precision=precision)
 
 
 def _short(found: Found, aim: Aim, task: Task) -> tuple[bool, str]:

@@ -89,6 +89,7 @@ def fit(
         free=freedom,
         bounds=dict(bounds or {}),
         told=tell,
+        precision=None if weights is None else _weights(weights, len(points)),
     )
     wanted = None if like is None else structure_of(like)
 
@@ -187,7 +188,7 @@ def _reported(
     found: Found, built: Any, points: Reals, task: Task, aim: Aim, notes: tuple[str, ...], motion: Any
 ) -> Fit:
     task.told("measuring")
-    judgement = judged(points, built)
+    judgement = judged(points, built, task.precision)
     certainty = certainty_of(found)
     inliers = judgement.scatter.inliers
     distances = np.abs(judgement.deviations)

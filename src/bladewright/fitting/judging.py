@@ -32,12 +32,15 @@ class Judgement:
     scatter: Scatter
 
 
-def judged(points: Reals, built: Blade | Section) -> Judgement:
-    """Every point's nearest place and signed distance on a blade or section."""
+def judged(points: Reals, built: Blade | Section, precision: Reals | None = None) -> Judgement:
+    """Every point's nearest place and signed distance on a blade or section.
+
+    `precision` (n,) are inverse variances of the points, relative to each other.
+    """
     sides = built.sides if isinstance(built, Blade) else (built.curves["upper"], built.curves["lower"])
     exact = built.exact if isinstance(built, Blade) else None
     on = feet(points, sides, converged=FINEST)
-    scatter = scatter_of(points, on)
+    scatter = scatter_of(points, on, precision)
     shape = Shape(design=None, sides=sides, noses=np.zeros(0), exact=exact)
     ends = ends_of(points, on, shape, scatter.inliers)
     deviations = np.where(on.heights < 0.0, -1.0, 1.0) * on.distances

@@ -43,6 +43,8 @@ class Measures:
     reach: Reach
     noise: float
     """of the cloud, in chords: what scatters more counts less"""
+    precision: Reals | None = None
+    """(n,) inverse variances of the points, relative to each other; where None, as they are weighed"""
 
     def residuals(self, state: State) -> Reals:
         """All residuals (m,), those of the points (n,) along their normals first."""

@@ -59,6 +59,8 @@ class Task:
     """by how much the prior is stronger"""
     slack: float = 1.0
     """by how much noses are held further from what is refused"""
+    precision: Reals | None = None
+    """(n,) inverse variances of the points, relative to each other; where None they are alike"""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -137,7 +139,7 @@ def _prepared(task: Task, start: Design, design: Design, noise: float | None, be
     if not shape.finite:
         raise FitError("the start design has no shape near its edges: give another start, or none")
     on = feet(points, shape.sides)
-    scatter = scatter_of(points, on)
+    scatter = scatter_of(points, on, task.precision)
     ends = ends_of(points, on, shape, scatter.inliers)
     misfit = float(np.sqrt(np.mean(on.distances[scatter.inliers & ~ends.covered] ** 2))) / model.chord
     scales = scales_of(start, paths, model.chord, task.bounds)
@@ -149,6 +151,7 @@ def _prepared(task: Task, start: Design, design: Design, noise: float | None, be
         ends=ends,
         reach=reach_of(points, shape.sides, scatter.inliers & ~ends.covered),
         noise=misfit if noise is None else noise,
+        precision=np.ones(len(points)) if task.precision is None else task.precision,
     )
     problem = Problem(
         measures=measures,
