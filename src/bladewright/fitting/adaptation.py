@@ -7,11 +7,14 @@ from numpy.typing import NDArray
 
 from bladewright.designs import Design
 from bladewright.errors import FitError
+from bladewright.fitting.economy import calmed, spared
 from bladewright.fitting.freedom import corner_radii
-from bladewright.fitting.growth import chosen_of, gains, joined
+from bladewright.fitting.growth import FEWEST, chosen_of, gains, joined
+from bladewright.fitting.identification import EXACT, identified
 from bladewright.fitting.reshaping import reshaped
 from bladewright.fitting.search import ROUNDS, Found, Task, searched
 from bladewright.fitting.structure import Structure, structure_of
+from bladewright.fitting.thinning import drawn
 
 FIRST = 3e-3
 """noise of the first round where the start is a guess, of the chord"""
@@ -19,14 +22,14 @@ SHAKEN = 0.03
 """noise from which a match of a section is tried once more, of the chord"""
 FINEST = 1e-6
 """misfit at which it is not, of that"""
+STRAIGHT = {"tangent_*": (0.12, 1.0)}
+"""bounds while a guess is far off: an edge that lies beside the nose would be reached by a hook of the camber"""
 QUICK = 2
 """rounds of a search between two steps of growth"""
 LEAST = {2: 5e-7, 3: 5e-5}
 """largest deviation at which nothing more is added where no aim is stated, of the chord, by dimension"""
 MOST = {2: 80, 3: 260}
 """parameters above which nothing is added"""
-FEWEST = 3
-"""control points of a thickness"""
 FEW, MANY = {2: 2500, 3: 1000}, 12_000
 """points of a quick, by dimension, and of a thorough search"""
 NOISY = 0.15
@@ -62,12 +65,10 @@ class Aim:
     structured: bool = False
     """whether the structure is given"""
 
-
-def thinned(count: int, most: int) -> NDArray[np.intp]:
-    """Indices of points spread over a cloud at random."""
-    if count <= most:
-        return np.arange(count, dtype=np.intp)
-    return np.sort(np.random.default_rng(1).permutation(count)[:most])
+    @property
+    def open(self) -> bool:
+        """Whether nothing is asked for."""
+        return self.tolerance is None and self.parameters is None and not self.structured
 
 
 def adapted(task: Task, first: Design, aim: Aim, *, base: Structure | None, guessed: bool) -> tuple[Found, str]:
@@ -76,8 +77,8 @@ def adapted(task: Task, first: Design, aim: Aim, *, base: Structure | None, gues
     `first` is a first design, a guess or a start; `base` the structure from which to grow, where it is not that of
     `first`.
     """
-    few = _part(task, thinned(len(task.points), FEW[task.points.shape[1]]))
-    many = _part(task, thinned(len(task.points), MANY))
+    few = _part(task, drawn(len(task.points), FEW[task.points.shape[1]]))
+    many = _part(task, drawn(len(task.points), MANY))
     noise = FIRST if guessed else None
     if aim.structured and aim.tolerance is None:
         found = searched(few, first, noise=noise, rounds=ROUNDS if base is None else 2 * QUICK)
@@ -85,6 +86,10 @@ def adapted(task: Task, first: Design, aim: Aim, *, base: Structure | None, gues
             found = _leaner(few, found, base)
         return (found if found.interrupted else _told_by_points(many, searched(many, found.design))), ""
     found = searched(few, first, noise=noise, rounds=2 * QUICK if base is None else QUICK)
+    if guessed and aim.open and task.points.shape[1] == 2 and found.scatter.shared > NOISY:
+        found = identified(few, found)
+        if found.rms < EXACT:
+            return searched(many, found.design), ""
     standing = aim.parameters is not None and _in_rows(found)
     if standing:
         few, many = _on_walls(few), _on_walls(many)
@@ -100,6 +105,7 @@ def adapted(task: Task, first: Design, aim: Aim, *, base: Structure | None, gues
         found = _shaken(many, found)
     if aim.tolerance is not None and not reason:
         found = _everywhere(many, found, aim, aim.tolerance)
+        found = calmed(many, spared(many, found, aim.tolerance), aim.tolerance)
     return found, reason
 
 
@@ -238,7 +244,10 @@ def _grown(task: Task, found: Found, aim: Aim) -> tuple[Found, bool]:
     if emphasis is not None:
         weights = task.weights * emphasis
         task = replace(task, weights=weights * (np.sum(task.weights) / np.sum(weights)))
-    fresh = searched(task, design, rounds=1, noise=found.rms)
+    try:
+        fresh = searched(task, design, rounds=1, noise=found.rms)
+    except FitError:
+        return found, False
     return replace(fresh, evaluations=fresh.evaluations + found.evaluations), True
 
 

@@ -21,6 +21,8 @@ FINER = 8
 """control points along the chord from which a thickness grows by a quarter at a time"""
 SPARE = 4
 """samples along the chord beyond a thickness's control points"""
+FEWEST = 3
+"""control points of a thickness"""
 MOST_SAMPLES, MOST_SPAN, MOST_CURVE = 60, 12, 10
 
 
@@ -51,14 +53,37 @@ def steps_from(structure: Structure) -> list[Step]:
         if count < MOST_SPAN:
             wider = replace(structure, span={**structure.span, name: count + 1})
             added = structure.chordwise[THICKNESSES.index(name)] if name in THICKNESSES else 1
-            field = "leading_edge_theta" if name == "place" else name
-            fields = ("leading_edge_theta", "leading_edge_y") if name == "place" else (field,)
-            found.append(Step(fields=fields, structure=wider, parameters=added))
+            found.append(Step(fields=_fields(name), structure=wider, parameters=added))
     for name, count in structure.channel.items():
         if count < MOST_CURVE:
             wider = replace(structure, channel={**structure.channel, name: count + 1})
             found.append(Step(fields=(f"channel.{name}",), structure=wider, parameters=2))
     return found
+
+
+def steps_back(structure: Structure) -> list[Step]:
+    """What may shrink by one control point, and by how many parameters."""
+    found = []
+    for side, name in enumerate(THICKNESSES):
+        if structure.chordwise[side] > FEWEST:
+            counts = [*structure.chordwise]
+            counts[side] -= 1
+            narrower = replace(structure, chordwise=(counts[0], counts[1]))
+            found.append(Step(fields=(name,), structure=narrower, parameters=structure.span.get(name, 1)))
+    for name, count in structure.span.items():
+        if count > 1:
+            narrower = replace(structure, span={**structure.span, name: count - 1})
+            left_out = structure.chordwise[THICKNESSES.index(name)] if name in THICKNESSES else 1
+            found.append(Step(fields=_fields(name), structure=narrower, parameters=left_out))
+    for name, count in structure.channel.items():
+        if count > 2:
+            narrower = replace(structure, channel={**structure.channel, name: count - 1})
+            found.append(Step(fields=(f"channel.{name}",), structure=narrower, parameters=2))
+    return found
+
+
+def _fields(name: str) -> tuple[str, ...]:
+    return ("leading_edge_theta", "leading_edge_y") if name == "place" else (name,)
 
 
 def joined(structure: Structure, steps: Sequence[Step]) -> Structure:
@@ -68,6 +93,15 @@ def joined(structure: Structure, steps: Sequence[Step]) -> Structure:
     channel = {name: max(step.structure.channel[name] for step in steps) for name in structure.channel}
     samples = max(step.structure.samples for step in steps)
     return replace(structure, chordwise=(chordwise[0], chordwise[1]), span=span, channel=channel, samples=samples)
+
+
+def least(steps: Sequence[Step]) -> Structure:
+    """The structure that several steps back lead to together."""
+    structures = [step.structure for step in steps]
+    chordwise = [min(each.chordwise[side] for each in structures) for side in (0, 1)]
+    span = {name: min(each.span[name] for each in structures) for name in structures[0].span}
+    channel = {name: min(each.channel[name] for each in structures) for name in structures[0].channel}
+    return replace(structures[0], chordwise=(chordwise[0], chordwise[1]), span=span, channel=channel)
 
 
 def gains(found: Found, emphasis: Reals | None = None) -> list[tuple[float, Step]]:
@@ -89,12 +123,31 @@ def gains(found: Found, emphasis: Reals | None = None) -> list[tuple[float, Step
             continue
         kept = [i for i, path in enumerate(problem.paths) if path not in own]
         try:
-            columns = _columns(found, step)
+            _, columns = _at(found, step)
         except DesignError:
             continue
         after = _reduced(np.concatenate([slopes[:, kept], columns], axis=1), rows, roots, problem.noise)
         result.append((before - after, step))
     return sorted(result, key=lambda pair: -pair[0] / pair[1].parameters)
+
+
+def losses(found: Found) -> list[tuple[float, Step]]:
+    """What each step back would add to the sum of squares, foreseen linearly, least for each parameter first."""
+    problem = found.problem
+    slopes = problem.measures.slopes(found.state, problem.paths) * problem.scales.size
+    roots = np.ones(len(slopes))
+    result = []
+    for step in steps_back(structure_of(found.design)):
+        own = [path for path in found.design.parameters() if path.startswith(step.fields)]
+        if not set(own) <= set(problem.paths):
+            continue
+        kept = [i for i, path in enumerate(problem.paths) if path not in own]
+        try:
+            rows, columns = _at(found, step)
+        except DesignError:
+            continue
+        result.append((_reduced(np.concatenate([slopes[:, kept], columns], axis=1), rows, roots, problem.noise), step))
+    return sorted(result, key=lambda pair: pair[0] / pair[1].parameters)
 
 
 def _reduced(slopes: Reals, rows: Reals, roots: Reals, noise: float) -> float:
@@ -124,13 +177,14 @@ def chosen_of(ranked: Sequence[tuple[float, Step]], most: int | None = None, lea
     return taken
 
 
-def _columns(found: Found, step: Step) -> Reals:
-    """Derivatives of the residuals by the parameters of the law that grows, where its cloud stands now."""
-    wider = reshaped(found.design, step.structure)
-    paths = tuple(path for path in wider.parameters() if path.startswith(step.fields))
+def _at(found: Found, step: Step) -> tuple[Reals, Reals]:
+    """Residuals after a step, and their derivatives by the parameters of its law, where the cloud stands now."""
+    other = reshaped(found.design, step.structure)
+    paths = tuple(path for path in other.parameters() if path.startswith(step.fields))
     measures, on = found.problem.measures, found.state.feet
-    shape = measures.model.shape(wider)
+    shape = measures.model.shape(other)
     if not shape.finite:
-        raise DesignError("a law that grows left no shape: take another one")
+        raise DesignError("a law with another number of control points left no shape: take another one")
     state = State(shape=shape, feet=placed(measures.points, shape.sides, on.side, on.u, on.v))
-    return measures.slopes(state, paths) * scales_of(wider, paths, found.model.chord).size
+    slopes = measures.slopes(state, paths) * scales_of(other, paths, found.model.chord).size
+    return measures.residuals(state), slopes

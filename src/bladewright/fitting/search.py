@@ -116,7 +116,11 @@ def searched(task: Task, start: Design, *, rounds: int = ROUNDS, noise: float | 
         before = found.misfit
         if (number and before < EXACT) or found.interrupted:
             break
-        found = _round(found if number == 0 else _prepared(task, start, found.design, noise, found))
+        try:
+            found = _round(found if number == 0 else _prepared(task, start, found.design, noise, found))
+        except FitError:
+            # at finer knots the design has no shape: it stays as it was found
+            break
         task.told(f"{len(found.problem.paths)} parameters, {1e3 * found.rms * found.model.chord:.3g} mm rms")
         ratio = found.misfit / before
         idle = idle + 1 if ratio > SETTLED else 0

@@ -1,5 +1,7 @@
 """A first blade from points in space."""
 
+from itertools import product
+
 import numpy as np
 
 from bladewright.blade.unified import UnifiedBlade
@@ -44,8 +46,8 @@ def first_blade(
     wide = float(np.ptp(machine[:, 2]))
     best: tuple[float, UnifiedBlade] | None = None
     refusal = FitError("no blade was found near the points")
-    for outline in outlines[:3]:
-        found = _refined(outline, machine, structure)
+    for outline, parting in product(outlines[:3], (True, False)):
+        found = _refined(outline, machine, structure, parting=parting)
         away = apart(found, machine)
         if best is not None and away > best[0]:
             continue
@@ -65,13 +67,16 @@ def first_blade(
     return best[1]
 
 
-def _refined(rough: Found, machine: Reals, structure: Structure) -> Found:
-    """The blade between the ends of its own camber lines, in the numbers of control points that are asked for."""
+def _refined(rough: Found, machine: Reals, structure: Structure, *, parting: bool) -> Found:
+    """The blade between the ends of its own camber lines, in the numbers of control points that are asked for.
+
+    `parting` holds points to the side that they are seen to belong to.
+    """
     count = 4 if len(machine) > 400 else 3
     found = rough
     for step in range(3):
         counts = dict.fromkeys(EDGES, 6) if step == 0 else dict(structure.channel) or curve_counts(found.channel)
         channel = trimmed(found, counts, machine, 0.05 if step == 0 else 0.15)
         shape = shape_in(channel, structure.chordwise, structure.samples, structure.clustering)
-        found = continued_in(machine, channel, found, shape, count, ends=step == 2)
+        found = continued_in(machine, channel, found, shape, count, ends=step == 2, parting=parting)
     return found

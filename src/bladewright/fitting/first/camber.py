@@ -1,9 +1,11 @@
 """A first camber: the middle between the two sides in a frame along the chord, alternating with which side is which."""
 
 from collections.abc import Callable
+from typing import NamedTuple
 
 import numpy as np
 from numpy.polynomial import chebyshev
+from numpy.typing import NDArray
 
 from bladewright.fitting.first.matching import LONGEST, SHORTEST, STEEPEST, Laid
 from bladewright.fitting.first.shape import (
@@ -23,10 +25,31 @@ from bladewright.nurbs.basis import Reals
 from bladewright.section.laws import law_basis
 
 
-def first_laws(shape: Shape, laid: Laid, turn: Callable[[Reals], Reals], lean: Reals, count: int) -> Reals:
-    """Laws (count, q) of sections whose chord lies along the angle `turn` [rad] by place along the span.
+COUNT = 4
+"""control points along the span of the camber that parts the sides"""
+SURE = 0.3
+"""of the half thickness: how far off the middle a point's side is sure"""
 
-    `lean` (k,) is a law of the ordinate along which the sections stand.
+
+class Parted(NamedTuple):
+    """Points in a frame along the chord, parted by the middle between the two sheets that they make."""
+
+    upper: NDArray[np.bool_]
+    """(n,) whether a point belongs to the upper sheet"""
+    sure: NDArray[np.bool_]
+    """(n,) whether that is sure: it lies clear of the middle"""
+    ends: Reals
+    """(2, k) control points along the span of where sections begin and end along the chord"""
+    middle: Reals
+    """(4 k,) of the middle across the chord, Chebyshev series along it"""
+    half: Reals
+    """(4 k,) of the half thickness"""
+
+
+def parted(shape: Shape, laid: Laid, turn: Callable[[Reals], Reals], lean: Reals, count: int = COUNT) -> Parted:
+    """The sides of points whose chord lies along the angle `turn` [rad] by place along the span.
+
+    `lean` (k,) is a law of the ordinate along which the sections stand, `count` the control points along the span.
     """
     direction, unit = turn(laid.v), shape.extent(laid.v)
     cosine, sine = np.cos(direction), np.sin(direction)
@@ -50,7 +73,15 @@ def first_laws(shape: Shape, laid: Laid, turn: Callable[[Reals], Reals], lean: R
         if np.array_equal(now, upper):
             break
         upper = now
-    return _as_laws(shape, laid, turn, lean, np.stack([low, high]), np.stack([middle, half]))
+    off = across - vander @ middle
+    sure = off**2 > (SURE * (vander @ half)) ** 2
+    return Parted(upper=upper, sure=sure, ends=np.stack([low, high]), middle=middle, half=half)
+
+
+def first_laws(shape: Shape, laid: Laid, turn: Callable[[Reals], Reals], lean: Reals, count: int) -> Reals:
+    """Laws (count, q) of sections through the middle between the sides of points, as `parted` has them."""
+    found = parted(shape, laid, turn, lean, count)
+    return _as_laws(shape, laid, turn, lean, found.ends, np.stack([found.middle, found.half]))
 
 
 def _as_laws(

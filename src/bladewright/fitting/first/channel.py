@@ -120,6 +120,8 @@ NEAR = 3e-3
 """of its length: how far a curve may move for fewer control points"""
 RAGGED = 0.9
 """how far a boundary is off its curve, of the distance between points"""
+PLAIN = 0.03
+"""how far a curve that is made plainer may be off its polyline, of its length"""
 FOLDED = 0.02
 """least Jacobian of a channel, of its median"""
 
@@ -132,6 +134,8 @@ def rough_channel(pieces: dict[str, Reals], counts: dict[str, int], *, revolved:
     plain, found, best = counts, None, -np.inf
     for most in (9, 5, 4, 3, 2) if past > 0.1 else (9, 5, 4, 3):
         tried = {name: min(count, most) for name, count in counts.items()}
+        if found is not None and any(_off(pieces[name], count) > PLAIN for name, count in tried.items()):
+            break
         channel = _along(pieces, tried, revolved=revolved)
         least = channel.folding(past)
         if found is None or least > best:
@@ -177,6 +181,11 @@ def needed_counts(pieces: dict[str, Reals], most: int, count: int) -> dict[str, 
         left = (_left_by(line, each) for each in range(2, most + 1))
         counts[name] = next((each for each, miss in enumerate(left, 2) if miss <= ragged), most)
     return counts
+
+
+def _off(line: Reals, count: int) -> float:
+    """What a curve of so many control points leaves to a polyline, of its length."""
+    return _left_by(line, count) / float(np.sum(np.sqrt(np.sum(np.diff(line, axis=0) ** 2, axis=-1))))
 
 
 def _left_by(line: Reals, count: int) -> float:

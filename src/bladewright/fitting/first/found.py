@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from bladewright.fitting.first.camber import first_laws
+from bladewright.fitting.first.camber import first_laws, parted
 from bladewright.fitting.first.channel import SPAN, Rough
 from bladewright.fitting.first.matching import Laid, Match, matched, numbers_at
 from bladewright.fitting.first.shape import (
@@ -56,6 +56,8 @@ def matched_in(machine: Reals, channel: Rough, chordwise: tuple[int, int], count
     shape = shape_in(channel, chordwise, 16, 1.0)
     turn, lean, chord = _direction(laid)
     laid = replace(laid, chord=chord, ratio=chord / laid.chord)
+    known = parted(shape, laid, turn, lean)
+    laid = replace(laid, upper=known.upper, sure=known.sure)
     match = matched(shape, laid, first_laws(shape, laid, turn, lean, count), turns=turns)
     return Found(channel=channel, shape=shape, laid=laid, match=match)
 
@@ -68,8 +70,12 @@ def continued_in(
     count: int,
     *,
     ends: bool,
+    parting: bool,
 ) -> Found:
-    """What is found in another channel from the sections found in the one before."""
+    """What is found in another channel from the sections found in the one before.
+
+    `parting` holds points to the side that they are seen to belong to.
+    """
     old = numbers_at(before.match.laws, SPAN)
     numbers = np.zeros((len(SPAN), shape.columns))
     numbers[:, :FIRST_THICKNESS] = old[:, :FIRST_THICKNESS]
@@ -83,6 +89,10 @@ def continued_in(
     laws = np.asarray(np.linalg.lstsq(law_basis(count, SPAN), numbers, rcond=None)[0])
     laid = laid_in(machine, channel)
     laid = replace(laid, chord=before.laid.chord, ratio=before.laid.chord / laid.chord)
+    if parting:
+        turn, lean, _ = _direction(laid)
+        known = parted(shape, laid, turn, lean)
+        laid = replace(laid, upper=known.upper, sure=known.sure)
     match = matched(shape, laid, laws, turns=10, stiff=0.3, ends=ends)
     return Found(channel=channel, shape=shape, laid=laid, match=match)
 

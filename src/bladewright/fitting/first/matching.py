@@ -52,6 +52,10 @@ class Laid:
     """typical chord of the meridional length"""
     flat: bool = False
     """whether all points belong to one section"""
+    upper: NDArray[np.bool_] | None = None
+    """(n,) which side a point belongs to"""
+    sure: NDArray[np.bool_] | None = None
+    """(n,) whether that is known"""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -96,6 +100,8 @@ def nearest(shape: Shape, laid: Laid, laws: Reals) -> tuple[Reals, NDArray[np.bo
             step = lines[min(station + 1, len(at) - 1), ..., i] - first
             total += (p[:, i, None, None] - first - part * step) ** 2
         squares[mask] = total
+    if laid.upper is not None and laid.sure is not None:
+        squares[laid.sure, np.where(laid.upper, 1, 0)[laid.sure]] = np.inf
     index = np.argmin(squares.reshape(len(low), -1), axis=1)
     upper = index < len(PLACES)
     side, vertex = index // len(PLACES), index % len(PLACES)
