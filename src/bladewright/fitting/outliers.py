@@ -33,7 +33,7 @@ EDGE = 0.03
 APART = 0.05
 """how far apart the two sides of a thin blade are taken to be, of the extent"""
 STEADY = 100.0
-"""usual misfits from which a small group is no misfit, though heights rise to it steadily; more at an edge"""
+"""usual misfits from which a small group away from the edges is no misfit, though heights rise to it steadily"""
 CHANCE = 3.0
 """by how much more than the noise distances may usually be by chance, of the root of the number of points"""
 GROUP, FEW = 0.05, 20
@@ -103,11 +103,14 @@ def outliers_of(
         return far
     largest = min(max(FEW, int(GROUP * len(heights))), len(heights) // 5)
     beyond = past > least
-    slopes = _slopes(heights, level, misfit, around)
+    # what differs by more than the noise is no noise
+    noisy = misfit == 0.0 and noise > near
+    slopes = np.zeros(len(heights)) if noisy else _slopes(heights, level, misfit, around)
     found = far & (beyond | _cut_off(heights, level, beyond, slopes, largest, around))
-    much = np.where(edge, AT_EDGES / USUAL, 1.0)
-    steady = ~found & (distances > much * np.hypot(OUTLYING * level, STEADY * misfit) + near)
-    return found | (steady & (_sizes(_groups(steady, steady, index)) <= largest))
+    steady = ~found & (distances > np.hypot(OUTLYING * level, STEADY * misfit) + near)
+    label = _groups(steady, steady, index)
+    # around an edge a few points are all that tells of a radius: it may be wrong alone
+    return found | (steady & (_sizes(label) <= largest) & ~np.isin(label, label[edge & steady]))
 
 
 def _local(off: Reals, around: Surroundings) -> Reals:
@@ -120,8 +123,6 @@ def _local(off: Reals, around: Surroundings) -> Reals:
 
 def _slopes(heights: Reals, level: Reals, misfit: float, around: Surroundings) -> Reals:
     """How much heights may change along the surface (n,) by a misfit that varies steadily."""
-    if misfit == 0.0:
-        return np.zeros(len(heights))
     index = around.index
     way = np.sqrt(np.sum((around.places[index] - around.places[:, None]) ** 2, axis=-1)) + NEAR * around.extent
     change = np.maximum(np.abs(heights[index] - heights[:, None]) - STEP * level[:, None], 0.0) / way
