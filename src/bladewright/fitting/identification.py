@@ -7,10 +7,10 @@ from bladewright.fitting.reshaping import reshaped
 from bladewright.fitting.search import Found, Task, searched
 from bladewright.fitting.structure import structure_of
 
-COUNTS = range(3, 10)
+COUNTS = range(3, 9)
 """control points of a thickness that are tried"""
 SWEEPS = 2
-ROUNDS = 3
+ROUNDS = 6
 EXACT = 1e-9
 """misfit at which the numbers are known, of the chord"""
 

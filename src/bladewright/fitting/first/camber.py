@@ -24,7 +24,6 @@ from bladewright.fitting.first.shape import (
 from bladewright.nurbs.basis import Reals
 from bladewright.section.laws import law_basis
 
-
 COUNT = 4
 """control points along the span of the camber that parts the sides"""
 SURE = 0.3

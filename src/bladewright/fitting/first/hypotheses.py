@@ -55,7 +55,7 @@ def _likely(machine: Reals, *, revolved: bool) -> list[Found]:
     few = machine[np.random.default_rng(1).permutation(len(machine))[:FEW]]
     tried = []
     for pieces in corner_sets(boundary(machine[:, :2])):
-        for turn in _turns(machine, pieces, revolved=revolved):
+        for turn in pairings(machine, pieces, revolved=revolved):
             named = _named(pieces, turn)
             found = _tried(few, named, revolved=revolved)
             if _radial(named) and _rounder_at_end(found):
@@ -67,7 +67,7 @@ def _likely(machine: Reals, *, revolved: bool) -> list[Found]:
     return sorted(tried, key=lambda found: apart(found, few))
 
 
-def _turns(machine: Reals, pieces: list[Reals], *, revolved: bool) -> tuple[int, ...]:
+def pairings(machine: Reals, pieces: list[Reals], *, revolved: bool) -> tuple[int, ...]:
     """Which of the two ways to pair the pieces are to be tried: at walls the sides stand apart, at edges they meet."""
     openings = [_opening(machine, piece, revolved=revolved) for piece in pieces]
     pairs = [[opening for opening in openings[start::2] if opening is not None] for start in (0, 1)]

@@ -1,0 +1,93 @@
+"""Fewer control points, and fewer waves, where a tolerance allows."""
+
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+
+from bladewright.files.examples import example_text
+from bladewright.files.reading import design_from, parsed
+from bladewright.fitting import economy
+from bladewright.fitting.economy import calmed, spared
+from bladewright.fitting.freedom import corner_radii, freedom_of
+from bladewright.fitting.growth import least, losses, steps_back
+from bladewright.fitting.identification import identified
+from bladewright.fitting.reshaping import reshaped
+from bladewright.fitting.search import Task, searched
+from bladewright.fitting.structure import structure_of
+
+BASE = design_from(parsed(example_text("turbine-section"), "vane"), "vane")
+MADE = replace(
+    BASE, thickness_upper=(0.05, 0.13, 0.21, 0.16, 0.12, 0.05, 0.03), thickness_lower=(0.04, 0.07, 0.11, 0.05, 0.02)
+)
+
+
+@cache
+def match(chordwise):
+    """Points of the made section, and the match that starts from it with other numbers of control points."""
+    curves, random = MADE.build().curves, np.random.default_rng(4)
+    points = np.concatenate([curves[side](random.random(90)) for side in ("upper", "lower")])
+    task = Task(points=points, weights=np.ones(180), free=freedom_of(None, None, started=True), bounds={})
+    start = reshaped(MADE, replace(structure_of(MADE), chordwise=chordwise))
+    return task, searched(task, start, rounds=2)
+
+
+def test_control_points_that_a_tolerance_does_not_need_are_taken_away():
+    task, found = match((8, 7))
+    tolerance = 2e-3 * found.model.chord
+    fewer = spared(task, found, tolerance)
+    assert len(fewer.problem.paths) < len(found.problem.paths) - 2
+    assert fewer.maximum <= tolerance
+    assert fewer.evaluations > found.evaluations
+
+
+def test_nothing_is_taken_away_where_the_tolerance_is_not_kept_even_now():
+    task, found = match((8, 7))
+    assert spared(task, found, 0.5 * found.maximum) is found
+    assert calmed(task, found, 0.5 * found.maximum) is found
+
+
+def test_the_step_back_that_costs_least_is_foreseen_first():
+    _, found = match((8, 7))
+    ranked = losses(found)
+    assert {step.fields for _, step in ranked} == {("thickness_upper",), ("thickness_lower",)}
+    assert [loss for loss, _ in ranked] == sorted(loss for loss, _ in ranked)
+    assert least([step for _, step in ranked]).chordwise == (7, 6)
+
+
+def test_steps_back_leave_three_control_points_of_a_thickness():
+    structure = replace(structure_of(MADE), chordwise=(3, 4))
+    assert [step.structure.chordwise for step in steps_back(structure)] == [(3, 3)]
+
+
+def test_a_wavy_match_is_smoothed_as_far_as_the_tolerance_allows(monkeypatch):
+    task, found = match((8, 7))
+    waves = {id(found): 12}
+    seen = []
+
+    def counted(of):
+        seen.append(of)
+        return waves.get(id(of), 12 - len(seen))
+
+    monkeypatch.setattr(economy, "_waves", counted)
+    tolerance = 1e-3 * found.model.chord
+    calm = calmed(task, found, tolerance)
+    assert len(seen) > 1
+    assert calm is not found
+    assert calm.maximum <= tolerance
+
+
+def test_the_numbers_of_control_points_that_a_section_was_made_with_are_found():
+    task, found = match((6, 5))
+    known = identified(task, found)
+    assert structure_of(known.design).chordwise == (7, 5)
+    assert known.rms < 1e-9
+
+
+def test_the_radii_of_the_corners_are_those_of_both_edges_at_both_walls():
+    stator = design_from(parsed(example_text("compressor-stator"), "stator"), "stator")
+    last = len(stator.channel.leading_edge) - 1
+    assert len(corner_radii(stator)) == 4
+    assert {"channel.leading_edge[0].r", f"channel.leading_edge[{last}].r"} < set(corner_radii(stator))
+    assert set(corner_radii(stator)) < set(stator.parameters())
+    assert corner_radii(BASE) == ()

@@ -1,0 +1,56 @@
+"""Which pieces of an outline are the walls: there the sides stand apart, and at the edges they meet."""
+
+import numpy as np
+import pytest
+
+from bladewright.files.examples import example_text
+from bladewright.files.reading import design_from, parsed
+from bladewright.fitting.first.channel import needed_counts
+from bladewright.fitting.first.hypotheses import coordinates, pairings
+from bladewright.fitting.first.outline import boundary, corner_sets
+
+
+def cloud(name, count=1000):
+    """Points on the sides of an example in x, r and theta."""
+    blade, random = design_from(parsed(example_text(name), name), name).build(), np.random.default_rng(3)
+    return coordinates(
+        np.concatenate([side(*random.random((2, count // 2))) for side in blade.sides]), "annular"
+    ), blade
+
+
+@pytest.mark.parametrize("name", ["propeller", "centrifugal-impeller", "compressor-stator", "radial-turbine"])
+def test_the_walls_of_long_short_and_radial_blades_are_told_from_their_edges(name):
+    machine, blade = cloud(name)
+    pieces = corner_sets(boundary(machine[:, :2]))[0]
+    tried = pairings(machine, pieces, revolved=True)
+    assert len(tried) == 1
+    middles = [np.mean(piece, axis=0) for piece in pieces]
+    channel = blade.exact.channel.real()
+    walls = [channel.line(name).values(np.array([0.5]))[0] for name in ("hub", "shroud")]
+    for wall in walls:
+        nearest = int(np.argmin([np.sum((wall - middle) ** 2) for middle in middles]))
+        assert nearest % 2 == tried[0]
+
+
+def test_corners_stand_where_the_outline_does():
+    square = np.array([[0.0, 0.0], [4.0, 0.0], [4.0, 1.0], [0.0, 1.0]])
+    closed = np.concatenate([square, square[:1]])
+    line = np.concatenate([a + (b - a) * np.linspace(0.0, 1.0, 37)[:-1, None] for a, b in zip(closed, closed[1:])])
+    pieces = corner_sets(line, sets=1)[0]
+    found = np.array([piece[0] for piece in pieces])
+    off = np.min(np.sum((found[:, None] - square) ** 2, axis=-1), axis=1) ** 0.5
+    assert np.max(off) < 10.0 / 1200.0
+
+
+def test_a_ragged_wall_is_drawn_as_plainly_as_its_points_tell():
+    t = np.linspace(0.0, 1.0, 60)
+    ragged = np.stack([t, 0.01 * np.sin(40.0 * t)], axis=-1)
+    pieces = {
+        "hub": ragged,
+        "shroud": np.stack([t, 1.0 + 0.0 * t], axis=-1),
+        "leading_edge": np.stack([0.0 * t, t], axis=-1),
+        "trailing_edge": np.stack([1.0 + 0.2 * np.sin(np.pi * t), t], axis=-1),
+    }
+    counts = needed_counts(pieces, 5, 400)
+    assert counts["hub"] == counts["shroud"] == counts["leading_edge"] == 2
+    assert counts["trailing_edge"] > 2
