@@ -1,5 +1,7 @@
 """Which pieces of an outline are the walls: there the sides stand apart, and at the edges they meet."""
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 
@@ -35,7 +37,7 @@ def test_the_walls_of_long_short_and_radial_blades_are_told_from_their_edges(nam
 def test_corners_stand_where_the_outline_does():
     square = np.array([[0.0, 0.0], [4.0, 0.0], [4.0, 1.0], [0.0, 1.0]])
     closed = np.concatenate([square, square[:1]])
-    line = np.concatenate([a + (b - a) * np.linspace(0.0, 1.0, 37)[:-1, None] for a, b in zip(closed, closed[1:])])
+    line = np.concatenate([a + (b - a) * np.linspace(0.0, 1.0, 37)[:-1, None] for a, b in pairwise(closed)])
     pieces = corner_sets(line, sets=1)[0]
     found = np.array([piece[0] for piece in pieces])
     off = np.min(np.sum((found[:, None] - square) ** 2, axis=-1), axis=1) ** 0.5
