@@ -19,7 +19,11 @@ def found(slopes, *, shared=0.0, alone=1.0, low=-np.inf, high=np.inf, seed=1, de
         scales=SimpleNamespace(size=SIZE, low=np.full(COUNT, low), high=np.full(COUNT, high)),
         paths=tuple("abcde"),
         measures=SimpleNamespace(
-            residuals=lambda _: rows, slopes=lambda *_: slopes, roots=np.ones(POINTS), points=np.zeros((POINTS, 2)), precision=None
+            residuals=lambda _: rows,
+            slopes=lambda *_: slopes,
+            roots=np.ones(POINTS),
+            points=np.zeros((POINTS, 2)),
+            precision=None,
         ),
         values_of=lambda _: np.arange(1.0, COUNT + 1.0),
     )
@@ -92,3 +96,22 @@ def test_parameters_on_a_bound_are_said():
     assert not any(each.at_bound for each in certainty_of(found(slopes_of(0))[0]).estimates)
     on = certainty_of(found(slopes_of(0), low=2.0, high=5.0 + 1e-4)[0]).estimates
     assert [each.path for each in on if each.at_bound] == ["a", "b", "e"]
+
+
+def test_weights_of_a_search_that_are_no_inverse_variances_take_no_error_away():
+    slopes, random = slopes_of(0), np.random.default_rng(0)
+    roots = np.sqrt(random.uniform(0.1, 10.0, POINTS))
+    match, rows = found(slopes)
+    measures = match.problem.measures
+    measures.precision, measures.roots = np.ones(POINTS), roots
+    measures.ends = SimpleNamespace(near=np.empty(0, dtype=int))
+    measures.residuals, measures.slopes = lambda _: roots * rows, lambda *_: roots[:, None] * slopes
+    # of errors of one size, by hand: the inverse of the weighted curvature on both sides of what the errors do
+    inverse = np.linalg.inv(slopes.T @ (roots[:, None] ** 2 * slopes))
+    variance = np.sum(rows**2) / (POINTS - COUNT)
+    expected = variance * inverse @ (slopes.T @ (roots[:, None] ** 4 * slopes)) @ inverse
+    np.testing.assert_allclose(certainty_of(match).covariance, expected, rtol=1e-9)
+    # as inverse variances the same weights give the plain formula
+    measures.precision = roots**2
+    variance = np.sum((roots * rows) ** 2) / (POINTS - COUNT)
+    np.testing.assert_allclose(certainty_of(match).covariance, variance * inverse, rtol=1e-9)
