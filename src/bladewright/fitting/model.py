@@ -65,9 +65,15 @@ class Model(ABC):
     chord: float
     """[m]"""
 
-    @abstractmethod
     def shape(self, design: Design) -> Shape:
         """The sides of a design; raises DesignError where there are none at all."""
+        # what is not finite is told by the shape itself
+        with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
+            return self._shape(design)
+
+    @abstractmethod
+    def _shape(self, design: Any) -> Shape:
+        """The same."""
 
     @abstractmethod
     def tangents(self, shape: Shape, paths: Sequence[str]) -> tuple[Reals, Reals]:
@@ -109,8 +115,7 @@ class SectionModel(Model):
         slope = np.cos(np.radians(design.stagger))
         self.chord = float(design.axial_chord * UNITS[design.length_unit] / slope)
 
-    def shape(self, design: Any) -> Shape:
-        """The sides as curves."""
+    def _shape(self, design: Any) -> Shape:
         line, upper, lower = _outline(design)
         sides = side_curve(upper[0]), side_curve(lower[0])
         return Shape(design=design, sides=sides, noses=np.real(_noses(design, line, upper, lower))[..., 0])
@@ -142,8 +147,7 @@ class BladeModel(Model):
         self.chord = chord_of(exact)
         self.knots: Knots = knots_for(exact, self.chord)
 
-    def shape(self, design: Any) -> Shape:
-        """The native sides as surfaces."""
+    def _shape(self, design: Any) -> Shape:
         exact = exact_blade(design, self.knots.tip, tentative=True)
         upper, lower = native_sides(exact.stations(self.knots.sites_v), self.knots)
         plane = exact.stations(HOLDING).plane
@@ -194,7 +198,8 @@ def model_of(design: Design, tolerance: float | None = None) -> Model:
     if isinstance(design, UnifiedSection):
         return SectionModel(design)
     if isinstance(design, UnifiedBlade):
-        return BladeModel(design, tolerance)
+        with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
+            return BladeModel(design, tolerance)
     raise FitError(f"a {type(design).__name__} cannot be fitted: give a design of the unified family")
 
 

@@ -145,8 +145,7 @@ class Problem(Constrained):
     def _state(self, z: Reals) -> State | None:
         self.evaluations += 1
         try:
-            with np.errstate(invalid="ignore", divide="ignore"):
-                shape = self.model.shape(self.design(z))
+            shape = self.model.shape(self.design(z))
         except DesignError:
             return None
         if not shape.finite:

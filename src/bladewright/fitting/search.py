@@ -135,9 +135,8 @@ def _prepared(task: Task, start: Design, design: Design, noise: float | None, be
     points, paths = task.points, task.free(start)
     tolerance = float(np.clip(FINE * (noise or 1.0), getattr(design, "tolerance", 1e-6), COARSEST))
     try:
-        with np.errstate(invalid="ignore", divide="ignore"):
-            model = model_of(design, tolerance)
-            shape = model.shape(design)
+        model = model_of(design, tolerance)
+        shape = model.shape(design)
     except DesignError as error:
         raise FitError(f"the start design has no shape ({error}); give another start, or none") from error
     if not shape.finite:
