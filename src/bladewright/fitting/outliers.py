@@ -38,6 +38,8 @@ CHANCE = 3.0
 """by how much more than the noise distances may usually be by chance, of the root of the number of points"""
 GROUP, FEW = 0.05, 20
 """largest group of outliers, of the points, and however few there are"""
+MOST = 0.15
+"""part of the points from which it is the design that lies off, and not they"""
 AROUND, SITES = 64, 5000
 """points around each of so many sites whose noise is taken to be alike"""
 QUARTILE = 3.1384
@@ -110,7 +112,8 @@ def outliers_of(
     steady = ~found & (distances > np.hypot(OUTLYING * level, STEADY * misfit) + near)
     label = _groups(steady, steady, index)
     # around an edge a few points are all that tells of a radius: it may be wrong alone
-    return found | (steady & (_sizes(label) <= largest) & ~np.isin(label, label[edge & steady]))
+    found |= steady & (_sizes(label) <= largest) & ~np.isin(label, label[edge & steady])
+    return found if np.mean(found) < MOST else np.zeros_like(found)
 
 
 def _local(off: Reals, around: Surroundings) -> Reals:
