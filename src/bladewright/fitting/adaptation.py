@@ -1,20 +1,22 @@
 """The structure of a design as its cloud asks for it: control points are added until an aim is reached."""
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from bladewright.designs import Design
 from bladewright.errors import FitError
-from bladewright.fitting.economy import calmed, spared
+from bladewright.fitting.aim import NOISY, Aim, short_of
 from bladewright.fitting.freedom import corner_radii
-from bladewright.fitting.growth import FEWEST, chosen_of, gains, joined
+from bladewright.fitting.growing import grown
+from bladewright.fitting.growth import FEWEST
 from bladewright.fitting.identification import EXACT, identified
 from bladewright.fitting.reshaping import reshaped
 from bladewright.fitting.search import ROUNDS, Found, Task, searched
 from bladewright.fitting.structure import Structure, structure_of
 from bladewright.fitting.thinning import drawn
+from bladewright.fitting.tolerance import kept
 
 FIRST = 3e-3
 """noise of the first round where the start is a guess, of the chord"""
@@ -26,49 +28,15 @@ STRAIGHT = {"tangent_*": (0.12, 1.0)}
 """bounds while a guess is far off: an edge that lies beside the nose would be reached by a hook of the camber"""
 QUICK = 2
 """rounds of a search between two steps of growth"""
-LEAST = {2: 5e-7, 3: 5e-5}
-"""largest deviation at which nothing more is added where no aim is stated, of the chord, by dimension"""
-MOST = {2: 80, 3: 260}
-"""parameters above which nothing is added"""
 FEW, MANY = {2: 2500, 3: 1000}, 12_000
 """points of a quick, by dimension, and of a thorough search"""
-NOISY = 0.15
-"""part of the misfit that neighbours share below which it is noise"""
 WEAK = 0.1
 """strength of the prior where a match is only made better, of the usual"""
-WORTHWHILE = 0.02
-"""part of the sum of squares that growth must be foreseen to gain"""
-EMPHASIS = (0.1, 10.0)
-"""least and largest weight of a point by its distance, where a tolerance is to be met"""
-GROWN = 3
-"""part, one in so many, of the parameters that are left which is added at a time"""
-MANIFOLD, MANY_MORE = 50, 10
-"""parameters from which one in so many is added at a time"""
 GROWTHS = 40
 """times that more is added at most"""
-LATER = 4
-"""times that more is added where points outside the quick searches stay beyond the tolerance"""
 IN_ROWS = 1e-3
 """spread of the points at an end below which they stand in a row on the wall, of the chord"""
 STANDING = "the radii of the channel's corners are read off the points at hub and shroud, held, and not counted"
-SHARPER = 4
-"""times that points are weighed by their distances before anything is added"""
-
-
-@dataclass(frozen=True, kw_only=True)
-class Aim:
-    """What is asked of a match."""
-
-    tolerance: float | None = None
-    """largest distance of an inlier [m]"""
-    parameters: int | None = None
-    structured: bool = False
-    """whether the structure is given"""
-
-    @property
-    def open(self) -> bool:
-        """Whether nothing is asked for."""
-        return self.tolerance is None and self.parameters is None and not self.structured
 
 
 def adapted(task: Task, first: Design, aim: Aim, *, base: Structure | None, guessed: bool) -> tuple[Found, str]:
@@ -104,8 +72,7 @@ def adapted(task: Task, first: Design, aim: Aim, *, base: Structure | None, gues
     if guessed and task.points.shape[1] == 2:
         found = _shaken(many, found)
     if aim.tolerance is not None and not reason:
-        found = _everywhere(many, found, aim, aim.tolerance)
-        found = calmed(many, spared(many, found, aim.tolerance), aim.tolerance)
+        found = kept(many, found, aim, aim.tolerance)
     return found, reason
 
 
@@ -123,28 +90,15 @@ def _enough(task: Task, found: Found, aim: Aim) -> tuple[Found, str]:
     for _ in range(GROWTHS):
         if found.interrupted:
             return found, ""
-        short, reason = _short(found, aim, task)
+        short, reason = short_of(found, aim, task)
         if not short:
             break
-        found, grew = _grown(task, found, aim)
+        found, grew = grown(task, found, aim)
         if not grew:
             break
     if aim.parameters is not None and task.points.shape[1] == 2:
         found = _exchanged(task, found)
     return found, reason
-
-
-def _everywhere(task: Task, found: Found, aim: Aim, tolerance: float) -> Found:
-    """A match that keeps a tolerance at the points of a thorough search too, where a little more brings it there."""
-    found = _within(task, found, tolerance)
-    for _ in range(LATER):
-        if found.maximum <= tolerance or found.interrupted:
-            break
-        found, grew = _grown(task, found, aim)
-        if not grew:
-            break
-        found = _within(task, found, tolerance)
-    return found
 
 
 def _exchanged(task: Task, found: Found) -> Found:
@@ -203,63 +157,3 @@ def _part(task: Task, rows: NDArray[np.intp]) -> Task:
         return task
     precision = None if task.precision is None else task.precision[rows]
     return replace(task, points=task.points[rows], weights=task.weights[rows], precision=precision)
-
-
-def _short(found: Found, aim: Aim, task: Task) -> tuple[bool, str]:
-    """Whether more control points are wanted, and if not though the aim is not met, why."""
-    count = len(found.problem.paths)
-    dimension = task.points.shape[1]
-    if aim.parameters is not None:
-        return count < aim.parameters, ""
-    limit = aim.tolerance if aim.tolerance is not None else LEAST[dimension] * found.model.chord
-    if found.maximum <= limit:
-        return False, ""
-    noise = found.scatter.noise
-    if found.scatter.shared < NOISY:
-        return (
-            False,
-            f"what is left is the cloud's own noise, {1e3 * noise:.2g} mm: more control points would follow it",
-        )
-    if count >= min(MOST[dimension], len(task.points) // 3):
-        return False, f"the design has {count} parameters, and more are not added"
-    return True, ""
-
-
-def _grown(task: Task, found: Found, aim: Aim) -> tuple[Found, bool]:
-    """The match with the control points that promise most, and whether there were any."""
-    emphasis = None
-    if aim.tolerance is not None:
-        emphasis = np.clip((found.state.feet.distances / aim.tolerance) ** 2, *EMPHASIS)
-    ranked = gains(found, emphasis)
-    left = None if aim.parameters is None else aim.parameters - len(found.problem.paths)
-    count = len(found.problem.paths)
-    least = left // GROWN if left is not None else count // MANY_MORE if count >= MANIFOLD else 0
-    steps = chosen_of(ranked, left, least)
-    if not steps:
-        return found, False
-    total = float(np.sum(found.problem.measures.residuals(found.state) ** 2))
-    if aim.parameters is None and emphasis is None and sum(gain for gain, _ in ranked[:3]) < WORTHWHILE * total:
-        return found, False
-    design = reshaped(found.design, joined(structure_of(found.design), steps))
-    if emphasis is not None:
-        weights = task.weights * emphasis
-        task = replace(task, weights=weights * (np.sum(task.weights) / np.sum(weights)))
-    try:
-        fresh = searched(task, design, rounds=1, noise=found.rms)
-    except FitError:
-        return found, False
-    return replace(fresh, evaluations=fresh.evaluations + found.evaluations), True
-
-
-def _within(task: Task, found: Found, tolerance: float) -> Found:
-    """A match whose largest deviations are weighed more, where that brings them within the tolerance."""
-    best, weights = found, task.weights
-    for _ in range(SHARPER):
-        if best.maximum <= tolerance or best.interrupted:
-            break
-        distances = found.state.feet.distances
-        weights = weights * np.clip((distances / tolerance) ** 2, 0.3, 4.0)
-        weights = weights * (np.sum(task.weights) / np.sum(weights))
-        found = searched(replace(task, weights=weights), found.design, rounds=2)
-        best = found if found.maximum < best.maximum else best
-    return best

@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from bladewright.fitting.adaptation import Aim
+from bladewright.fitting.aim import Aim
 from bladewright.fitting.estimates import Certainty
 from bladewright.fitting.search import Found
 from bladewright.nurbs.basis import Reals

@@ -7,14 +7,14 @@ import numpy as np
 
 from bladewright.files.examples import example_text
 from bladewright.files.reading import design_from, parsed
-from bladewright.fitting import economy
-from bladewright.fitting.economy import calmed, spared
+from bladewright.fitting import tolerance as keeping
 from bladewright.fitting.freedom import corner_radii, freedom_of
 from bladewright.fitting.growth import least, losses, steps_back
 from bladewright.fitting.identification import identified
 from bladewright.fitting.reshaping import reshaped
 from bladewright.fitting.search import Task, searched
 from bladewright.fitting.structure import structure_of
+from bladewright.fitting.tolerance import calmed, spared
 
 BASE = design_from(parsed(example_text("turbine-section"), "vane"), "vane")
 MADE = replace(
@@ -69,7 +69,7 @@ def test_a_wavy_match_is_smoothed_as_far_as_the_tolerance_allows(monkeypatch):
         seen.append(of)
         return waves.get(id(of), 12 - len(seen))
 
-    monkeypatch.setattr(economy, "_waves", counted)
+    monkeypatch.setattr(keeping, "_waves", counted)
     tolerance = 1e-3 * found.model.chord
     calm = calmed(task, found, tolerance)
     assert len(seen) > 1

@@ -1,14 +1,22 @@
-"""No more control points than a tolerance asks for, and no more waves than it allows."""
+"""A match within a tolerance: at every point, with no more control points than it asks for and as calm as it allows."""
 
 from collections.abc import Sequence
 from dataclasses import replace
 
+import numpy as np
+
 from bladewright.blade.extrema import extrema_of
 from bladewright.errors import DesignError, FitError
+from bladewright.fitting.aim import Aim
+from bladewright.fitting.growing import grown
 from bladewright.fitting.growth import Step, least, losses
 from bladewright.fitting.reshaping import reshaped
 from bladewright.fitting.search import Found, Task, searched
 
+LATER = 4
+"""times that more is added where points outside the quick searches stay beyond the tolerance"""
+SHARPER = 4
+"""times that points are weighed by their distances before anything is added"""
 ROUNDS = 2
 AT_ONCE = 4
 """laws that lose a control point together, those first of which it is foreseen to cost least; half as many where that
@@ -17,6 +25,39 @@ SMOOTHER = (10.0, 100.0, 1000.0)
 """strengths of the prior, in turn"""
 CALM = 4
 """extrema of a side's curvature that a plain section has"""
+
+
+def kept(task: Task, found: Found, aim: Aim, tolerance: float) -> Found:
+    """The match that keeps a tolerance, where a little more brings it there, with as little as keeps it."""
+    found = _everywhere(task, found, aim, tolerance)
+    return calmed(task, spared(task, found, tolerance), tolerance)
+
+
+def _everywhere(task: Task, found: Found, aim: Aim, tolerance: float) -> Found:
+    """A match that keeps a tolerance at the points of a thorough search too, where a little more brings it there."""
+    found = _within(task, found, tolerance)
+    for _ in range(LATER):
+        if found.maximum <= tolerance or found.interrupted:
+            break
+        found, grew = grown(task, found, aim)
+        if not grew:
+            break
+        found = _within(task, found, tolerance)
+    return found
+
+
+def _within(task: Task, found: Found, tolerance: float) -> Found:
+    """A match whose largest deviations are weighed more, where that brings them within the tolerance."""
+    best, weights = found, task.weights
+    for _ in range(SHARPER):
+        if best.maximum <= tolerance or best.interrupted:
+            break
+        distances = found.state.feet.distances
+        weights = weights * np.clip((distances / tolerance) ** 2, 0.3, 4.0)
+        weights = weights * (np.sum(task.weights) / np.sum(weights))
+        found = searched(replace(task, weights=weights), found.design, rounds=2)
+        best = found if found.maximum < best.maximum else best
+    return best
 
 
 def spared(task: Task, found: Found, tolerance: float) -> Found:

@@ -1,0 +1,47 @@
+"""A match with more control points, those that promise most."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from bladewright.errors import FitError
+from bladewright.fitting.aim import Aim
+from bladewright.fitting.growth import chosen_of, gains, joined
+from bladewright.fitting.reshaping import reshaped
+from bladewright.fitting.search import Found, Task, searched
+from bladewright.fitting.structure import structure_of
+
+WORTHWHILE = 0.02
+"""part of the sum of squares that growth must be foreseen to gain"""
+EMPHASIS = (0.1, 10.0)
+"""least and largest weight of a point by its distance, where a tolerance is to be met"""
+GROWN = 3
+"""part, one in so many, of the parameters that are left which is added at a time"""
+MANIFOLD, MANY_MORE = 50, 10
+"""parameters from which one in so many is added at a time"""
+
+
+def grown(task: Task, found: Found, aim: Aim) -> tuple[Found, bool]:
+    """The match with the control points that promise most, and whether there were any."""
+    emphasis = None
+    if aim.tolerance is not None:
+        emphasis = np.clip((found.state.feet.distances / aim.tolerance) ** 2, *EMPHASIS)
+    ranked = gains(found, emphasis)
+    left = None if aim.parameters is None else aim.parameters - len(found.problem.paths)
+    count = len(found.problem.paths)
+    least = left // GROWN if left is not None else count // MANY_MORE if count >= MANIFOLD else 0
+    steps = chosen_of(ranked, left, least)
+    if not steps:
+        return found, False
+    total = float(np.sum(found.problem.measures.residuals(found.state) ** 2))
+    if aim.parameters is None and emphasis is None and sum(gain for gain, _ in ranked[:3]) < WORTHWHILE * total:
+        return found, False
+    design = reshaped(found.design, joined(structure_of(found.design), steps))
+    if emphasis is not None:
+        weights = task.weights * emphasis
+        task = replace(task, weights=weights * (np.sum(task.weights) / np.sum(weights)))
+    try:
+        fresh = searched(task, design, rounds=1, noise=found.rms)
+    except FitError:
+        return found, False
+    return replace(fresh, evaluations=fresh.evaluations + found.evaluations), True
