@@ -10,6 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from bladewright.blade.channel import Channel
+from bladewright.blade.sectioned import SectionedBlade
 from bladewright.blade.unified import UnifiedBlade
 from bladewright.errors import DesignError, FileError
 from bladewright.files.examples import example_text, examples
@@ -84,8 +85,10 @@ DESIGNS = {
         span=st.none() | length,
     ),
 }
-# the families that are one part are written and read among the shared contract tests of sections
-designs = st.one_of([DESIGNS[family] for family, kind in FAMILIES.items() if not issubclass(kind, PlanarSection)])
+# the families that are one part are written and read among the shared contract tests of sections and their blades
+designs = st.one_of(
+    [DESIGNS[family] for family, kind in FAMILIES.items() if not issubclass(kind, PlanarSection | SectionedBlade)]
+)
 
 
 def to_the_bit(design):

@@ -9,10 +9,11 @@ from typing import TYPE_CHECKING, cast
 import numpy as np
 
 from bladewright.blade.ends import ruled_end
-from bladewright.blade.exact import ExactBlade
 from bladewright.blade.fitness import Misfit, misfit
 from bladewright.blade.knots import Knots
+from bladewright.blade.meant import Meant
 from bladewright.blade.properties import blade_properties
+from bladewright.blade.sectioned import SectionedBlade
 from bladewright.blade.unified import UnifiedBlade
 from bladewright.errors import DesignError
 from bladewright.numerics.elementary import Array
@@ -33,14 +34,15 @@ Faces = Mapping[str, Surface | TrimmedSurface]
 class Blade:
     """A closed blade of native surfaces."""
 
-    design: UnifiedBlade
+    design: UnifiedBlade | SectionedBlade
     surfaces: Faces
-    """`upper` and `lower` (u from leading to trailing edge, v from end to end), and the two `design.ends`; metres"""
+    """`upper` and `lower` (u from leading to trailing edge, v from end to end), `leading_edge` and `trailing_edge`
+    where they are blunt (u from the upper to the lower side), and the two `design.ends`; metres"""
     knots: Knots
     """of both sides; give them to `design.build(knots=...)` to hold them"""
     chord: float
     """mean straight distance from leading to trailing edge [m]"""
-    exact: ExactBlade
+    exact: Meant
     """the blade that is meant"""
     moments: Callable[[], Array] | None = None
     """gives the moments of the volume, as `blade_moments` does, where they are known without quadrature"""
@@ -69,7 +71,8 @@ class Blade:
     def orientations(self) -> Mapping[str, int]:
         """+1 for the faces whose dS/du x dS/dv points out of the blade, -1 for the others."""
         low, high = self.design.ends
-        return MappingProxyType({"upper": -1, "lower": 1, low: -1, high: 1})
+        blunt = {name: sign for name, sign in (("leading_edge", 1), ("trailing_edge", -1)) if name in self.surfaces}
+        return MappingProxyType({"upper": -1, "lower": 1, **blunt, low: -1, high: 1})
 
     @property
     def tolerance(self) -> float:
@@ -111,6 +114,13 @@ class Blade:
 
         return promises_of(self)
 
+    @cached_property
+    def sections(self) -> tuple["Section", ...]:
+        """Sections at hub, mid-span and shroud, and on the flow path's given stream surfaces, from hub to shroud."""
+        path = getattr(self.design, "flow_path", None)
+        spans = {0.0, 0.5, 1.0} | (set() if path is None else set(path.spans))
+        return tuple(self.section(v) for v in sorted(spans))
+
     def section(self, v: float) -> "Section":
         """The exact section at v in [0, 1], in its plane, with the properties it has on its stream surface."""
         from bladewright.blade.sections import section_at
@@ -126,6 +136,12 @@ class Blade:
         if not 0.0 < span <= 0.5:
             raise DesignError(f"an extension by {span:g} of the span was asked: it must be above 0 and at most 0.5")
         low, high = (0.0 if name == "tip" else span for name in self.design.ends)
+        blunt = [name for name in ("leading_edge", "trailing_edge") if name in self.surfaces]
+        if blunt:
+            raise DesignError(
+                f"an extension was asked of a blade whose {blunt[0]} is blunt: its ends are closed by caps between two "
+                "sides; take a sharp or a round edge"
+            )
         upper, lower = (reparametrised(extended(side, -low, 1.0 + high, "v"), 0.0, 1.0, "v") for side in self.sides)
         ends = {
             name: self.surfaces[name] if name == "tip" else ruled_end(upper, lower, row)

@@ -5,7 +5,7 @@ from functools import cached_property, partial
 
 import numpy as np
 
-from bladewright.blade.edge_crossing import crossed, nearest
+from bladewright.blade.edge_crossing import Meeting, crossed, nearest
 from bladewright.blade.mapping import Cascade, Mapping
 from bladewright.blade.meridian_line import MeridianLine, real_first
 from bladewright.blade.planes import Counted
@@ -99,9 +99,16 @@ class BladedLines:
     @cached_property
     def lengths(self) -> Array:
         """(..., m) meridional length between the edges [m]."""
-        by_length = stream_lines(self.stretch, Cascade(), self.v, 0.0, 0.0)
-        both = by_length.abscissa(self._own(np.array([0.0, 1.0])))
-        return both[..., 1] - both[..., 0]
+        return self.meridional(np.array([1.0]))[..., 0]
+
+    def meridional(self, u: Array) -> Array:
+        """Meridional length (..., m, k) from the leading edge [m] at u (..., m, k) or (k,)."""
+        found = self._by_length.abscissa(self._own(u))
+        return found - self._by_length.abscissa(self._start[..., None])
+
+    @cached_property
+    def _by_length(self) -> StreamLines:
+        return stream_lines(self.stretch, Cascade(), self.v, 0.0, 0.0)
 
     def rows(self, which: list[int]) -> "BladedLines":
         """Some of the stream lines, by their number along the span."""
@@ -183,12 +190,20 @@ class Bladed:
 
         Raises DesignError where they do not meet, or not in this order.
         """
-        position = partial(self.surfaces.position, v)
-        leading, trailing = (
-            crossed(position, self.surfaces.extent, edge, name, labels(v)).t
-            for edge, name in ((self.leading_edge, "leading_edge"), (self.trailing_edge, "trailing_edge"))
-        )
+        leading, trailing = (meeting.t for meeting in self._meetings(v))
         return leading, trailing
+
+    def edge_places(self, v: Reals) -> tuple[Array, Array]:
+        """Own parameters (..., m) of the edge curves where they meet the stream lines at v (m,)."""
+        leading, trailing = (meeting.q for meeting in self._meetings(v))
+        return leading, trailing
+
+    def _meetings(self, v: Reals) -> list[Meeting]:
+        position = partial(self.surfaces.position, v)
+        return [
+            crossed(position, self.surfaces.extent, edge, name, labels(v))
+            for edge, name in ((self.leading_edge, "leading_edge"), (self.trailing_edge, "trailing_edge"))
+        ]
 
     def lines(self, v: Reals, mapping: Mapping) -> BladedLines:
         """Stream lines at v (m,) by u between the edges."""

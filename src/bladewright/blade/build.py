@@ -3,12 +3,16 @@
 from types import MappingProxyType
 
 from bladewright.blade.blade import Blade, Faces, surface_of
-from bladewright.blade.checks import check_channel, check_clearance, check_sections
+from bladewright.blade.checks import check_channel, check_clearance, check_pitch, check_sections
+from bladewright.blade.edge_faces import edge_faces
 from bladewright.blade.ends import trimmed_ends
 from bladewright.blade.exact import exact_blade
 from bladewright.blade.fitness import WALL_TOLERANCE, chord_of, knots_for
 from bladewright.blade.knots import DEGREE, MOST_POLES, Knots
+from bladewright.blade.meant import Meant
 from bladewright.blade.native import native_sides
+from bladewright.blade.sectioned import SectionedBlade
+from bladewright.blade.sectioned_exact import sectioned_exact
 from bladewright.blade.unified import UnifiedBlade
 from bladewright.errors import DesignError
 
@@ -22,13 +26,28 @@ def built(design: UnifiedBlade, knots: Knots | None = None) -> Blade:
     check_channel(exact)
     check_sections(exact)
     check_clearance(exact)
+    return blade_of(exact, knots)
+
+
+def built_of_sections(design: SectionedBlade, knots: Knots | None = None) -> Blade:
+    """The same of a design of sections."""
+    exact = sectioned_exact(design)
+    check_pitch(exact)
+    return blade_of(exact, knots)
+
+
+def blade_of(exact: Meant, knots: Knots | None = None) -> Blade:
+    """The native blade of what is meant, at given knots or at knots refined until the design's tolerance holds."""
     chord = chord_of(exact)
     held = knots is not None
     knots = knots if knots is not None else knots_for(exact, chord)
-    nets = native_sides(exact.stations(knots.sites_v), knots)
+    stations = exact.stations(knots.sites_v)
+    nets = native_sides(stations, knots)
     sides = surface_of(nets[0], knots, DEGREE), surface_of(nets[1], knots, DEGREE)
-    surfaces: Faces = MappingProxyType({"upper": sides[0], "lower": sides[1], **trimmed_ends(exact, *sides, chord)})
-    blade = Blade(design=design, surfaces=surfaces, knots=knots, chord=chord, exact=exact)
+    edges = edge_faces(stations, *sides, knots)
+    ends = trimmed_ends(exact, *sides, chord, faces=edges)
+    surfaces: Faces = MappingProxyType({"upper": sides[0], "lower": sides[1], **edges, **ends})
+    blade = Blade(design=exact.design, surfaces=surfaces, knots=knots, chord=chord, exact=exact)
     if not held:
         _check_reached(blade)
     return blade

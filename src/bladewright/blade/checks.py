@@ -4,16 +4,19 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from bladewright.blade.meridian_line import real_first
 from bladewright.blade.meridional import Meridional
 from bladewright.blade.unified import UnifiedBlade
 from bladewright.errors import DesignError
 from bladewright.numerics.elementary import cross2
 from bladewright.nurbs.basis import Reals
 from bladewright.section.checks import UNITS
-from bladewright.section.crossing import PLACES, check_outlines, outlines_of, touching
+from bladewright.section.crossing import PLACES, check_outlines, closed_outlines, outlines_of, touching
 
 if TYPE_CHECKING:
     from bladewright.blade.exact import ExactBlade
+    from bladewright.blade.sectioned import SectionedBlade
+    from bladewright.blade.sectioned_exact import SectionedExact
 
 
 def check_channel(exact: "ExactBlade") -> None:
@@ -79,7 +82,17 @@ def check_sections(exact: "ExactBlade") -> None:
     _check_neighbours(exact.design, stations.v, np.real(outlines)[first])
 
 
-def _check_neighbours(design: UnifiedBlade, places: Reals, outlines: Reals) -> None:
+def check_pitch(exact: "SectionedExact") -> None:
+    """Refuse neighbouring blades of sections that intersect."""
+    stations = exact.survey
+    outlines = real_first(stations.plane.placed(closed_outlines(stations.plane.outline)), 3)
+    if not exact.mapping.keeps_ordinate:
+        u, _, across = stations.on_lines(outlines)
+        outlines = np.stack([real_first(u, 2), real_first(across, 2)], axis=-1)
+    _check_neighbours(exact.design, stations.v, outlines)
+
+
+def _check_neighbours(design: "UnifiedBlade | SectionedBlade", places: Reals, outlines: Reals) -> None:
     """Refuse a pitch by which an outline (m, n, 2) whose ordinate is theta, or y, meets itself."""
     metre = UNITS[design.length_unit]
     pitch = 2.0 * np.pi / design.blade_count if design.blade_count else metre * _first(design.pitch)

@@ -4,30 +4,31 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from bladewright.blade.exact import ExactBlade
+from bladewright.blade.meant import Meant
 from bladewright.blade.outline import Trace, Wall, followed
 from bladewright.errors import DesignError
 from bladewright.numerics.elementary import joined
 from bladewright.nurbs.basis import Reals
 from bladewright.nurbs.curve import Curve
-from bladewright.nurbs.domain import extended
 from bladewright.nurbs.domain import reversed as reversed_
 from bladewright.nurbs.surface import Surface
 from bladewright.nurbs.trimmed import TrimmedSurface
 
 
 def trimmed_ends(
-    exact: ExactBlade,
+    exact: Meant,
     upper: Surface,
     lower: Surface,
     chord: float,
     like: Mapping[str, TrimmedSurface] | None = None,
+    faces: Mapping[str, Surface] | None = None,
 ) -> dict[str, TrimmedSurface]:
     """The pieces of the hub and shroud walls, or of a clearance surface, inside the ends of the sides.
 
-    The walls are the channel's, revolved about the axis or drawn along y in a cascade, exact; their u is the channel's.
-    `like` are the ends of a blade a small step away: their stretches of the walls and their knots are taken. Raises
-    DesignError where the blade winds a full turn around the axis.
+    The walls are the channel's or the flow path's, revolved about the axis or drawn along y in a cascade, exact; their
+    u is the wall's own. `like` are the ends of a blade a small step away: their stretches of the walls and their knots
+    are taken. `faces` are those of blunt edges, of a blade that has no `like`. Raises DesignError where the blade winds
+    a full turn around the axis.
     """
     places = np.unique(upper.knots_u)
     stations = exact.survey
@@ -37,28 +38,44 @@ def trimmed_ends(
     across = lines.mapping.tangential(plane[..., 1], lines.position(u)[..., 1], lines.lengths[..., None])
     first = (0,) * (u.ndim - 2)
     u, across = np.real(u)[first], np.real(across)[first]
+    own = exact.wall_places(u)
     ends = {}
     for wall, row in (("hub", 0), ("shroud", -1)):
-        meridian = extended(exact.channel.curve(wall), -exact.before, 1.0 + exact.after)
-        name, inner = exact.design.ends[row], exact.channel.line(wall).joints()
-        if name == "tip":
-            # at a single knot the fitted meridian is smooth up to what it misses
-            inner = inner[np.sum(inner[:, None] == inner, axis=0) > 1]
+        name, (meridian, inner) = exact.design.ends[row], exact.end_wall(row)
         traces = [
-            Trace(_end(side, row), meridian, exact.mapping.revolved, places, u[row, part], across[row, part])
+            Trace(_end(side, row), meridian, exact.mapping.revolved, places, own[row, part], across[row, part])
             for side, part in ((upper, slice(None, len(places))), (lower, slice(len(places), None)))
         ]
-        ends[name] = _trimmed(traces, inner, wall, chord, None if like is None else like[name])
+        blunt = {}
+        for edge, face in ({} if faces is None else faces).items():
+            at = 0 if edge == "leading_edge" else len(places) - 1
+            both, two = [at, len(places) + at], np.array([0.0, 1.0])
+            blunt[edge] = Trace(
+                _end(face, row), meridian, exact.mapping.revolved, two, own[row, both], across[row, both]
+            )
+        ends[name] = _trimmed(traces, blunt, inner, wall, chord, None if like is None else like[name])
     return ends
 
 
-def _trimmed(traces: list[Trace], inner: Reals, name: str, chord: float, like: TrimmedSurface | None) -> TrimmedSurface:
+def _trimmed(
+    traces: list[Trace],
+    blunt: Mapping[str, Trace],
+    inner: Reals,
+    name: str,
+    chord: float,
+    like: TrimmedSurface | None,
+) -> TrimmedSurface:
     first = traces[0]
     low, high = _stretch(traces, name) if like is None else _stretch_of(like)
     wall = Wall(meridian=first.meridian, inner=inner, revolved=first.revolved, low=low, high=high)
     held = [None, None] if like is None else [reversed_(like.boundary[1]).knots, like.boundary[0].knots]
-    curves = [followed(wall, trace, chord, knots) for trace, knots in zip(traces, held, strict=True)]
-    return TrimmedSurface(surface=wall.surface, boundary=(curves[1], reversed_(curves[0])), revolution=wall.revolution)
+    upper, lower = (followed(wall, trace, chord, knots) for trace, knots in zip(traces, held, strict=True))
+    faces = {edge: followed(wall, trace, chord) for edge, trace in blunt.items()}
+    chain = [lower]
+    chain += [reversed_(faces["trailing_edge"])] if "trailing_edge" in faces else []
+    chain += [reversed_(upper)]
+    chain += [faces["leading_edge"]] if "leading_edge" in faces else []
+    return TrimmedSurface(surface=wall.surface, boundary=tuple(chain), revolution=wall.revolution)
 
 
 def _stretch(traces: list[Trace], name: str) -> tuple[float, float]:

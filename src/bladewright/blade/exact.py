@@ -6,7 +6,9 @@ from functools import cached_property
 import numpy as np
 
 from bladewright.blade.clearance import Clearance, clearance_of, cleared
+from bladewright.blade.knots import breaks_along_u, breaks_along_v
 from bladewright.blade.mapping import Mapping, mapping_of
+from bladewright.blade.meant import EndWall, Meant
 from bladewright.blade.meridional import Meridional, meridional
 from bladewright.blade.stations import Stations, stations_at
 from bladewright.blade.streamlines import stream_lines
@@ -14,6 +16,7 @@ from bladewright.blade.unified import UnifiedBlade
 from bladewright.errors import DesignError
 from bladewright.numerics.elementary import joined
 from bladewright.nurbs.basis import Reals
+from bladewright.nurbs.domain import extended
 from bladewright.section.checks import UNITS
 from bladewright.section.sampling import sample_places
 
@@ -24,7 +27,7 @@ REACH = 0.6
 
 
 @dataclass(frozen=True, kw_only=True)
-class ExactBlade:
+class ExactBlade(Meant):
     """The blade that is meant, in metres and radians: what the native surfaces interpolate and are measured against."""
 
     design: UnifiedBlade
@@ -44,6 +47,26 @@ class ExactBlade:
     """the survey, where it is at hand"""
     tentative: bool = False
     """whether edge radii that the thickness cannot hold are let through, as on the way of a search"""
+
+    def moved_to(self, design: UnifiedBlade) -> "ExactBlade":
+        return moved(self, design)
+
+    def breaks_along_u(self) -> Reals:
+        return breaks_along_u(self)
+
+    def breaks_along_v(self) -> Reals:
+        return breaks_along_v(self)
+
+    def end_wall(self, row: int) -> EndWall:
+        wall = ("hub", "shroud")[row]
+        inner = self.channel.line(wall).joints()
+        if self.design.ends[row] == "tip":
+            # at a single knot the fitted meridian is smooth up to what it misses
+            inner = inner[np.sum(inner[:, None] == inner, axis=0) > 1]
+        return EndWall(extended(self.channel.curve(wall), -self.before, 1.0 + self.after), inner)
+
+    def wall_places(self, u: Reals) -> Reals:
+        return u
 
     @property
     def tip_knots(self) -> Reals | None:
@@ -86,6 +109,16 @@ def exact_blade(design: UnifiedBlade, tip_knots: Reals | None = None, *, tentati
         after=after,
         surveyed=survey,
         tentative=tentative,
+    )
+
+
+def in_channel(exact: Meant, what: str) -> ExactBlade:
+    """The exact blade of the unified family; DesignError that `what` is not made for blades from sections."""
+    if isinstance(exact, ExactBlade):
+        return exact
+    raise DesignError(
+        f"{what} is asked of '{exact.design.name}', a blade from sections: it is made for blades of the unified family "
+        "only; take the blade itself, its sections, its derivatives or its CAD files"
     )
 
 

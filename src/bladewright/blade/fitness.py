@@ -4,10 +4,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bladewright.blade.exact import ExactBlade
-from bladewright.blade.knots import DEGREE, MOST_POLES, Knots, breaks_along_u, breaks_along_v, clamped, refined
-from bladewright.blade.native import interpolated_along_u
-from bladewright.blade.stations import EdgeRow
+from bladewright.blade.knots import DEGREE, MOST_POLES, Knots, clamped, refined
+from bladewright.blade.laid import EdgeRow
+from bladewright.blade.meant import Meant
+from bladewright.blade.native import interpolated_along_u, lower_edges
 from bladewright.numerics.elementary import dot, length
 from bladewright.nurbs.basis import Reals, basis, greville
 from bladewright.nurbs.surface import Surface
@@ -18,28 +18,29 @@ RESERVE = 0.4
 """share of a tolerance that one direction may use while knots are sought"""
 
 
-def chord_of(exact: ExactBlade) -> float:
+def chord_of(exact: Meant) -> float:
     """Mean straight distance from leading to trailing edge along the span [m]."""
     stations = exact.survey
     return float(np.mean(np.real(length(stations.trailing_edge().point - stations.leading_edge().point))))
 
 
-def knots_for(exact: ExactBlade, chord: float) -> Knots:
+def knots_for(exact: Meant, chord: float) -> Knots:
     """Knots with which the native sides meet the design's tolerance, and their ends lie on the walls."""
     tolerance = exact.design.tolerance * chord
-    along_u = refined(clamped(breaks_along_u(exact)), _LinesAlongU(exact, tolerance, chord), MOST_POLES[0])
-    along_v = refined(clamped(breaks_along_v(exact)), _LinesAlongV(exact, tolerance, along_u), MOST_POLES[1])
+    along_u = refined(clamped(exact.breaks_along_u()), _LinesAlongU(exact, tolerance, chord), MOST_POLES[0])
+    along_v = refined(clamped(exact.breaks_along_v()), _LinesAlongV(exact, tolerance, along_u), MOST_POLES[1])
     return Knots(u=along_u, v=along_v, tip=exact.tip_knots)
 
 
 class _LinesAlongU:
     """Error over tolerance along sections of the exact blade that are interpolated in u alone."""
 
-    def __init__(self, exact: ExactBlade, tolerance: float, chord: float) -> None:
+    def __init__(self, exact: Meant, tolerance: float, chord: float) -> None:
         self.stations = exact.survey
         self.tolerance = RESERVE * tolerance
         self.wall_tolerance = RESERVE * min(WALL_TOLERANCE * chord, tolerance)
-        self.edges = self.stations.leading_edge(), self.stations.trailing_edge()
+        upper = self.stations.leading_edge(), self.stations.trailing_edge()
+        self.edges = upper, lower_edges(upper, self.stations.lower_edges())
 
     def __call__(self, knots: Reals, places: Reals) -> Reals:
         sites = greville(knots, DEGREE)[3:-3]
@@ -47,12 +48,11 @@ class _LinesAlongU:
         order = np.argsort(both)
         back = np.argsort(order)
         worst = np.zeros(len(places))
-        for side, sign in zip(
-            zip(*self.stations.points_and_normals(both[order]), strict=True), (1.0, -1.0), strict=True
-        ):
+        sides = zip(*self.stations.points_and_normals(both[order]), strict=True)
+        for side, edges in zip(sides, self.edges, strict=True):
             points, normals = side[0][:, back], side[1][:, back]
             lines = np.swapaxes(points[:, : len(sites)], 0, 1)
-            net = interpolated_along_u(lines, *self.edges, sign, knots)
+            net = interpolated_along_u(lines, *edges, knots)
             native = np.tensordot(basis(knots, DEGREE, places), net, axes=1).swapaxes(0, 1)
             error = native - points[:, len(sites) :]
             worst = np.maximum(worst, np.max(length(error), axis=0) / self.tolerance)
@@ -65,7 +65,7 @@ class _LinesAlongU:
 class _LinesAlongV:
     """Error over tolerance along lines of constant u that are interpolated in v alone."""
 
-    def __init__(self, exact: ExactBlade, tolerance: float, knots_u: Reals) -> None:
+    def __init__(self, exact: Meant, tolerance: float, knots_u: Reals) -> None:
         self.exact = exact
         self.tolerance = RESERVE * tolerance
         spans = np.unique(knots_u)
@@ -83,9 +83,8 @@ class _LinesAlongV:
             native = basis(knots, DEGREE, places) @ np.linalg.solve(matrix, flat[: len(sites)])
             miss = (native - flat[len(sites) :]).reshape(len(places), -1, 3)
             errors.append(np.max(length(miss), axis=1) / self.tolerance)
-        errors += [
-            self._edge_miss(row, matrix, knots, places) for row in (stations.leading_edge(), stations.trailing_edge())
-        ]
+        rows = [stations.leading_edge(), stations.trailing_edge(), *stations.lower_edges()]
+        errors += [self._edge_miss(row, matrix, knots, places) for row in rows if row is not None]
         return np.max(errors, axis=0)
 
     @staticmethod
@@ -112,7 +111,7 @@ class Misfit(NamedTuple):
     v: float
 
 
-def misfit(exact: ExactBlade, upper: Surface, lower: Surface) -> Misfit:
+def misfit(exact: Meant, upper: Surface, lower: Surface) -> Misfit:
     """The distance of the sides from the exact blade: at equal parameters, so it bounds the true distance."""
     u, v = (_between(knots) for knots in (upper.knots_u, upper.knots_v))
     v = np.concatenate([[0.0], v, [1.0]])

@@ -1,17 +1,19 @@
 """Native sides that interpolate the exact blade, with the edges' two derivatives built into their control points."""
 
+from collections.abc import Sequence
+from itertools import islice
 from typing import NamedTuple
 
 import numpy as np
 
 from bladewright.blade.knots import DEGREE, Knots
-from bladewright.blade.stations import EdgeRow, Stations
+from bladewright.blade.laid import EdgeRow, Laid
 from bladewright.numerics.elementary import Array, joined
 from bladewright.numerics.solving import solved
 from bladewright.nurbs.basis import Reals, basis, greville
 
 
-def native_sides(stations: Stations, knots: Knots) -> tuple[Array, Array]:
+def native_sides(stations: Laid, knots: Knots) -> tuple[Array, Array]:
     """Control nets (..., n_u, n_v, 3) of the upper and the lower side from stations at `knots.sites_v`.
 
     Across each edge the sides share the row P0, the rows P0 + D and P0 - D and the row of second derivatives E, so
@@ -29,34 +31,42 @@ class Skeleton(NamedTuple):
     """points (..., m, n_u - 6, 3)"""
     lower: Array
     """points (..., m, n_u - 6, 3)"""
+    lower_edges: tuple[EdgeRow | None, EdgeRow | None] = (None, None)
+    """the lower side at both edges where it does not mirror the upper one"""
 
 
-def skeleton_of(stations: Stations, knots: Knots) -> Skeleton:
+def skeleton_of(stations: Laid, knots: Knots) -> Skeleton:
     """The skeleton of stations at `knots.sites_v`."""
-    return Skeleton(stations.leading_edge(), stations.trailing_edge(), *stations.points(knots.sites_u))
+    edges = stations.leading_edge(), stations.trailing_edge()
+    return Skeleton(*edges, *stations.points(knots.sites_u), stations.lower_edges())
 
 
 def sides_through(skeleton: Skeleton, knots: Knots) -> tuple[Array, Array]:
     """Control nets (..., n_u, n_v, 3) of the upper and the lower side that interpolate a skeleton."""
     matrix = basis(knots.v, DEGREE, knots.sites_v)
-    ends = solved(matrix, joined([*skeleton.leading_edge, *skeleton.trailing_edge], axis=-1))
-    parts = np.split(ends, 6, axis=-1)
-    edges = EdgeRow(*parts[:3]), EdgeRow(*parts[3:])
+    own = [skeleton.leading_edge, skeleton.trailing_edge, *(row for row in skeleton.lower_edges if row is not None)]
+    ends = solved(matrix, joined([part for row in own for part in row], axis=-1))
+    parts = iter(np.split(ends, 3 * len(own), axis=-1))
+    upper = EdgeRow(*islice(parts, 3)), EdgeRow(*islice(parts, 3))
+    lower = [None if row is None else EdgeRow(*islice(parts, 3)) for row in skeleton.lower_edges]
     sides = []
-    for points, sign in ((skeleton.upper, 1.0), (skeleton.lower, -1.0)):
+    for points, edges in ((skeleton.upper, upper), (skeleton.lower, lower_edges(upper, lower))):
         rows = solved(matrix, points.reshape(*points.shape[:-2], -1)).reshape(points.shape)
-        sides.append(interpolated_along_u(np.swapaxes(rows, -3, -2), *edges, sign, knots.u))
+        sides.append(interpolated_along_u(np.swapaxes(rows, -3, -2), *edges, knots.u))
     return sides[0], sides[1]
 
 
-def interpolated_along_u(lines: Array, start: EdgeRow, end: EdgeRow, sign: float, knots_u: Reals) -> Array:
-    """Control points (..., n_u, m, 3) through points (..., n_u - 6, m, 3), with two end derivatives (..., m, 3).
+def lower_edges(upper: Sequence[EdgeRow], lower: Sequence[EdgeRow | None]) -> tuple[EdgeRow, EdgeRow]:
+    """The lower side at both edges: its own, or the upper side's mirrored."""
+    first, last = (edge.mirrored() if own is None else own for edge, own in zip(upper, lower, strict=True))
+    return first, last
 
-    `sign` is +1 for the upper side and -1 for the lower, whose first derivatives are opposite.
-    """
+
+def interpolated_along_u(lines: Array, start: EdgeRow, end: EdgeRow, knots_u: Reals) -> Array:
+    """Control points (..., n_u, m, 3) of a side through points (..., n_u - 6, m, 3), with its edges built in."""
     sites = greville(knots_u, DEGREE)[3:-3]
-    first = _end_rows(start, sign, knots_u[DEGREE + 1], knots_u[DEGREE + 2])
-    last = _end_rows(end, -sign, 1.0 - knots_u[-DEGREE - 2], 1.0 - knots_u[-DEGREE - 3])[::-1]
+    first = _end_rows(start, 1.0, knots_u[DEGREE + 1], knots_u[DEGREE + 2])
+    last = _end_rows(end, -1.0, 1.0 - knots_u[-DEGREE - 2], 1.0 - knots_u[-DEGREE - 3])[::-1]
     known = np.stack([*first, *last], axis=-3)
     matrix = basis(knots_u, DEGREE, sites)
     outer = np.concatenate([matrix[:, :3], matrix[:, -3:]], axis=1)

@@ -1,16 +1,30 @@
 """The prismatic blade of a 2D section: a linear cascade between two planes."""
 
+from typing import Any, overload
+
+import numpy as np
+
 from bladewright.blade.channel import Channel
+from bladewright.blade.families import BLADE_OF
+from bladewright.blade.flow_path import FlowPath
+from bladewright.blade.meridian import ThroughPoints
+from bladewright.blade.sectioned import SectionedBlade
 from bladewright.blade.unified import UnifiedBlade
 from bladewright.designs import Point
 from bladewright.errors import DesignError
+from bladewright.section.laws import Span
+from bladewright.section.planar import PlanarSection
 from bladewright.section.unified import UnifiedSection
 
 WIDE = 1e3
 """pitch of a section that has none, in axial chords"""
 
 
-def prismatic(section: UnifiedSection, span: float | None = None) -> UnifiedBlade:
+@overload
+def prismatic(section: UnifiedSection, span: float | None = None) -> UnifiedBlade: ...
+@overload
+def prismatic(section: PlanarSection, span: float | None = None) -> SectionedBlade: ...
+def prismatic(section: UnifiedSection | PlanarSection, span: float | None = None) -> UnifiedBlade | SectionedBlade:
     """The design of the blade that a section becomes when drawn along z, `span` high [length].
 
     Raises DesignError where neither the call nor the section has a span.
@@ -18,6 +32,8 @@ def prismatic(section: UnifiedSection, span: float | None = None) -> UnifiedBlad
     height = section.span if span is None else span
     if height is None:
         raise DesignError("span is missing: a section becomes a solid by its height; set span in the design")
+    if isinstance(section, PlanarSection):
+        return _of_family(section, height)
     start, end = section.leading_edge_x, section.leading_edge_x + section.axial_chord
     same = {
         name: getattr(section, name)
@@ -50,4 +66,34 @@ def prismatic(section: UnifiedSection, span: float | None = None) -> UnifiedBlad
         channel=Channel(
             leading_edge=(Point(start, 0.0), Point(start, height)), trailing_edge=(Point(end, 0.0), Point(end, height))
         ),
+    )
+
+
+def _of_family(section: PlanarSection, height: float) -> SectionedBlade:
+    """The same of a section of a family: hub and shroud are straight, and reach a chord past both edges."""
+    stagger = section.section.stagger(Span(np.zeros(1)))[..., 0]
+    start: Any = section.leading_edge_x
+    end = start + section.chord * np.cos(stagger)
+    if np.ndim(end) == 0:
+        end = end.item()
+    reach = float(np.real(np.ravel(section.chord)[0]))
+    x = [float(np.real(np.ravel(each)[0])) for each in (start, end)]
+
+    def line(*ends: tuple[Any, float]) -> ThroughPoints:
+        return ThroughPoints(points=tuple(Point(*each) for each in ends))
+
+    hub, shroud = (line((x[0] - reach, z), (x[1] + reach, z)) for z in (0.0, height))
+    return BLADE_OF[type(section)](
+        name=section.name,
+        length_unit=section.length_unit,
+        arrangement="linear",
+        pitch=WIDE * section.chord if section.pitch is None else section.pitch,
+        leading_edge_y=section.leading_edge_y,
+        flow_path=FlowPath(hub=hub, shroud=shroud),
+        leading_edge=line((start, 0.0), (start, height)),
+        trailing_edge=line((end, 0.0), (end, height)),
+        section=section.section,
+        description=section.description,
+        author=section.author,
+        organisation=section.organisation,
     )

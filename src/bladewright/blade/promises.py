@@ -1,11 +1,15 @@
 """What the built surfaces keep of what was asked, measured on them and not on what they were made from."""
 
+from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from bladewright.blade.clearance import off_distance
+from bladewright.blade.exact import ExactBlade
+from bladewright.blade.laid import Laid
+from bladewright.blade.meridian_line import real_first
 from bladewright.blade.stations import Stations
 from bladewright.numerics.elementary import Array, cross2, degrees, dot, length, unit
 from bladewright.nurbs.basis import Reals
@@ -20,16 +24,18 @@ if TYPE_CHECKING:
 class Promises:
     """Largest misses of the built blade; each has its limit in `LIMITS`."""
 
-    metal_angle_at_walls: float
-    """of the camber's angle at both edges from the metal angle, at hub and shroud [deg]"""
-    metal_angle_between: float
+    metal_angle_at_walls: float | None
+    """of the camber's angle at both edges from the metal angle, at hub and shroud; none for sections of families, whose
+    camber need not stand upright on the nose [deg]"""
+    metal_angle_between: float | None
     """the same at every span between [deg]"""
-    edge_radius: float
-    """of the edges' radius in the stream surface from the radius asked for, relative [-]"""
-    edge_tangent_planes: float
-    """angle between the sides' tangent planes across an edge [rad]"""
-    edge_curvatures: float
-    """jump of the normal curvatures across an edge, of the largest of them [-]"""
+    edge_radius: float | None
+    """of the radius of round edges in the stream surface from the radius asked for, or from the exact section's,
+    relative; none where no edge is round [-]"""
+    edge_tangent_planes: float | None
+    """angle between the sides' tangent planes across round edges [rad]"""
+    edge_curvatures: float | None
+    """jump of the normal curvatures across round edges, of the largest of them and not less than 1 / chord [-]"""
     stream_surfaces: float
     """distance of curves of constant v from their stream surfaces, of the chord [-]"""
     walls: float
@@ -59,6 +65,8 @@ LIMITS = {
     "edge_curvatures": 1e-6,
     "walls": 1e-7,
 }
+FLAT = 100.0
+"""radius in chords from which on an edge is taken for flat, as the back face of a wedge diffuser's vane is"""
 CLEARANCE = 1e-8
 """limit of the clearance's miss"""
 
@@ -74,33 +82,43 @@ def promises_of(blade: "Blade") -> Promises:
     v = np.concatenate([[0.0], inner, [1.0]])
     stations = blade.exact.stations(v)
     angles, radii, planes, bends = [], [], [], []
-    for end, name in ((0.0, "leading"), (1.0, "trailing")):
-        row = _edge(upper, lower, end, v)
-        turn, radius = _angle_and_radius(stations, row, end)
-        meant = stations.angle_out if end else stations.angle_in
-        law = getattr(blade.design, f"{name}_edge_radius")
-        angles.append(np.abs(degrees(turn - np.real(meant))))  # real: a measured angle
-        asked = np.real(Span(v).values(law) * stations.lines.lengths)
-        radii.append(np.abs(radius / asked - 1.0))  # real: a measured radius
-        plane, bend = _smoothness(row)
+    for end, own in zip((0, 1), stations.lower_edges(), strict=True):
+        if own is not None:
+            continue
+        row = _edge(upper, lower, float(end), v)
+        turn, radius = _angle_and_radius(stations, row[0], end)
+        if isinstance(stations, Stations):
+            meant = stations.angle_out if end else stations.angle_in
+            angles.append(np.abs(degrees(turn - np.real(meant))))  # real: a measured angle
+            law = getattr(blade.design, ("leading_edge_radius", "trailing_edge_radius")[end])
+            asked = np.real(Span(v).values(law) * stations.lines.lengths)
+        else:
+            exact = stations.trailing_edge() if end else stations.leading_edge()
+            asked = _angle_and_radius(stations, dict(zip(_ALONG, map(_real_row, exact), strict=True)), end)[1]
+        if np.max(asked) < FLAT * blade.chord:
+            radii.append(np.abs(radius / asked - 1.0))  # real: a measured radius
+        plane, bend = _smoothness(row, 1.0 / blade.chord)
         planes.append(plane)
         bends.append(bend)
     walls = [np.max(angle[[0, -1]]) for angle in angles]
     off, ends = _off_stream_surfaces(stations, upper, lower)
     tolerance = blade.design.tolerance
+    figures = {
+        "metal_angle_at_walls": _largest(walls),
+        "metal_angle_between": _largest(angles),
+        "edge_radius": _largest(radii),
+        "edge_tangent_planes": _largest(planes),
+        "edge_curvatures": _largest(bends),
+    }
+    lost = {"metal_angle_at_walls", "metal_angle_between", "edge_radius"}
+    lost = lost if getattr(blade.design, "mapping", "conformal") == "paper" else set()
     limits = {**LIMITS, "stream_surfaces": tolerance, "surface": tolerance}
-    if blade.design.mapping == "paper":
-        for lost in ("metal_angle_at_walls", "metal_angle_between", "edge_radius"):
-            del limits[lost]
+    limits = {name: limit for name, limit in limits.items() if name not in lost and figures.get(name, 0.0) is not None}
     clearance = _off_clearance(blade)
     if clearance is not None:
         limits["clearance"] = CLEARANCE
     return Promises(
-        metal_angle_at_walls=float(max(walls)),
-        metal_angle_between=float(np.max(angles)),
-        edge_radius=float(np.max(radii)),
-        edge_tangent_planes=float(np.max(planes)),
-        edge_curvatures=float(np.max(bends)),
+        **figures,
         stream_surfaces=off / blade.chord,
         walls=max(ends / blade.chord, blade.wall_error),
         surface=blade.error,
@@ -109,16 +127,27 @@ def promises_of(blade: "Blade") -> Promises:
     )
 
 
+_ALONG = ((0, 0), (1, 0), (2, 0))
+
+
+def _real_row(values: Array) -> Reals:
+    return real_first(values, 2)
+
+
+def _largest(values: Sequence[Array]) -> float | None:
+    return float(np.max(values)) if values else None
+
+
 def _edge(upper: Surface, lower: Surface, end: float, v: Reals) -> list[dict[tuple[int, int], Array]]:
     orders = ((0, 0), (1, 0), (0, 1), (2, 0), (1, 1), (0, 2))
     at = np.array([end])
     return [{order: np.real(side.grid(at, v, *order))[0] for order in orders} for side in (upper, lower)]
 
 
-def _angle_and_radius(stations: Stations, row: list[dict[tuple[int, int], Array]], end: float) -> tuple[Reals, Reals]:
+def _angle_and_radius(stations: Laid, row: dict[tuple[int, int], Array], end: int) -> tuple[Reals, Reals]:
     """Camber angle [rad] and radius in the stream surface [m] of the upper side at an edge, (m,) each."""
-    first, second, point = row[0][1, 0], row[0][2, 0], row[0][0, 0]
-    slope = unit(np.real(stations.lines.position(np.array([end]), 1))[..., 0, :])
+    first, second, point = row[1, 0], row[2, 0], row[0, 0]
+    slope = unit(np.real(stations.lines.position(np.array([float(end)]), 1))[..., 0, :])
     slope = slope.reshape(-1, *slope.shape[-2:])[0]
     if stations.mapping.revolved:
         around = unit(point[:, 1:])
@@ -137,8 +166,11 @@ def _angle_and_radius(stations: Stations, row: list[dict[tuple[int, int], Array]
     return turn, 1.0 / np.abs(curvature)  # real: a measured radius
 
 
-def _smoothness(row: list[dict[tuple[int, int], Array]]) -> tuple[Reals, Reals]:
-    """Angle between the tangent planes [rad] and relative jump of the normal curvatures across an edge, (m,) each."""
+def _smoothness(row: list[dict[tuple[int, int], Array]], least: float) -> tuple[Reals, Reals]:
+    """Angle between the tangent planes [rad] and jump of the normal curvatures across an edge, (m,) each.
+
+    The jump is relative to the largest of the curvatures, or to the `least` [1/m] where the edge is flat.
+    """
     normals = [unit(np.cross(side[1, 0], side[0, 1])) for side in row]
     plane = length(np.cross(normals[0], normals[1]))
     forms = []
@@ -147,13 +179,13 @@ def _smoothness(row: list[dict[tuple[int, int], Array]]) -> tuple[Reals, Reals]:
         terms = [dot(side[2, 0], normal) / sizes[0] ** 2, dot(side[1, 1], normal) * sign / (sizes[0] * sizes[1])]
         forms.append(np.stack([*terms, dot(side[0, 2], normal) / sizes[1] ** 2], axis=-1) * sign)
     jump = np.max(np.abs(forms[0] - forms[1]), axis=-1)  # real: measured curvatures
-    return plane, jump / np.max(np.abs(forms[0]), axis=-1)  # real: measured curvatures
+    return plane, jump / np.maximum(np.max(np.abs(forms[0]), axis=-1), least)  # real: measured curvatures
 
 
 def _off_clearance(blade: "Blade") -> float | None:
     """Largest miss of the tip surface's distance from its wall between the edges, of the chord."""
     exact = blade.exact
-    if exact.clearance is None:
+    if not isinstance(exact, ExactBlade) or exact.clearance is None:
         return None
     u = np.linspace(0.0, 1.0, 401)
     x, y, z = np.moveaxis(np.real(blade.surfaces["tip"](u, np.full_like(u, 0.5))), -1, 0)
@@ -161,7 +193,7 @@ def _off_clearance(blade: "Blade") -> float | None:
     return float(np.max(off_distance(exact.full_channel, exact.clearance, u, points))) / blade.chord
 
 
-def _off_stream_surfaces(stations: Stations, upper: Surface, lower: Surface) -> tuple[float, float]:
+def _off_stream_surfaces(stations: Laid, upper: Surface, lower: Surface) -> tuple[float, float]:
     """Largest distances [m] of curves of constant v, and of the ends among them, from their stream surfaces."""
     spans = np.unique(upper.knots_u)
     u = np.sort(np.concatenate([spans, (spans[1:] + spans[:-1]) / 2.0]))

@@ -1,29 +1,41 @@
 """Sections of the exact blade as curves in their plane."""
 
+from collections.abc import Callable
 from types import MappingProxyType
+from typing import cast
 
 import numpy as np
 
-from bladewright.blade.exact import ExactBlade
+from bladewright.blade.meant import Meant
+from bladewright.blade.outline_stations import StaggeredSections
+from bladewright.blade.stations import Stations
 from bladewright.errors import DesignError
 from bladewright.numerics.elementary import Array
 from bladewright.section.curves import camber_curve, side_curve
+from bladewright.section.laws import Span
+from bladewright.section.native import knots_for
+from bladewright.section.native_section import meanline_of, native_section
 from bladewright.section.section import Section
 
+TOLERANCE = 1e-10
+"""distance of a family's native curves from the exact section, of the chord"""
 
-def section_at(exact: ExactBlade, v: float) -> Section:
+
+def section_at(exact: Meant, v: float) -> Section:
     """The exact section at v in [0, 1]; raises DesignError outside."""
     if not 0.0 <= v <= 1.0:
         raise DesignError(f"a section was asked at v = {v:g}: v runs from 0 at the blade's hub end to 1 at its other")
     stations = exact.stations(np.array([v]))
-    plane, lines = stations.plane, stations.lines
+    lines = stations.lines
 
     def scale(abscissa: Array) -> Array:
         u = lines.u_at(np.atleast_1d(abscissa)[None])
-        position = lines.position(u)
         speed = np.sqrt(np.sum(lines.position(u, 1) ** 2, axis=-1))
-        return (speed / exact.mapping.density(position, lines.position(u, 1)))[0]
+        return (speed / lines.densities(u)[0])[0]
 
+    if not isinstance(stations, Stations):
+        return _of_family(exact, v, scale)
+    plane = stations.plane
     ends = plane.camber[0, [0, 3]]
     return Section(
         span=v,
@@ -34,4 +46,21 @@ def section_at(exact: ExactBlade, v: float) -> Section:
         metal_angle_in=float(np.real(stations.angle_in[0])),
         metal_angle_out=float(np.real(stations.angle_out[0])),
         scale=scale,
+    )
+
+
+def _of_family(exact: Meant, v: float, scale: Callable[[Array], Array]) -> Section:
+    at, part = np.array([v]), exact.design.section
+    plane = cast(StaggeredSections, exact.stations(at).plane)
+    turn, chord, start = (np.ravel(each)[0] for each in (plane.stagger, plane.chord, plane.start))
+    return native_section(
+        plane.outline,
+        knots_for(plane.outline, TOLERANCE),
+        turn=turn,
+        chord=chord,
+        shift=np.array([0.0, start]),
+        span=v,
+        plane=exact.mapping.plane,
+        scale=scale,
+        meanline=meanline_of(part, Span(at)),
     )

@@ -1,14 +1,13 @@
 """Sections of the exact blade at places along the span: in their planes, and laid on their stream surfaces."""
 
 from dataclasses import dataclass
-from typing import NamedTuple
 
 import numpy as np
 
-from bladewright.blade.mapping import Conformal, Mapping, Taylor
+from bladewright.blade.laid import EdgeRow, Laid
 from bladewright.blade.streamlines import StreamLines
 from bladewright.blade.unified import UnifiedBlade
-from bladewright.numerics.elementary import Array, joined, radians, unit
+from bladewright.numerics.elementary import Array, radians, unit
 from bladewright.nurbs.basis import Reals
 from bladewright.section.camber import camber_line, camber_points
 from bladewright.section.checks import UNITS
@@ -20,19 +19,8 @@ from bladewright.section.sides import side
 _ENDS = np.array([0.0, 1.0])
 
 
-class EdgeRow(NamedTuple):
-    """An edge in space: its points and, by s along the upper side, the sides' derivatives there (..., m, 3).
-
-    The lower side has the opposite first and the same second derivative.
-    """
-
-    point: Array
-    first: Array
-    second: Array
-
-
-@dataclass(frozen=True, kw_only=True)
-class Stations:
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Stations(Laid):
     """The exact blade's sections at places v (m,) along the span."""
 
     v: Reals
@@ -47,41 +35,13 @@ class Stations:
     curvature_out: Array
     """(..., m) curvature of the trailing edge in the plane"""
 
-    @property
-    def mapping(self) -> Mapping:
-        """The sections' plane and its way to space."""
-        return self.lines.mapping
-
-    def on_lines(self, plane: Array) -> tuple[Array, Array, Array]:
-        """u, (x, r) and theta or y (..., m, k) of plane points (..., m, k, 2)."""
-        u = self.lines.u_at(plane[..., 0])
-        position = self.lines.position(u)
-        return u, position, self.mapping.tangential(plane[..., 1], position[..., 1], self.lines.lengths[..., None])
-
-    def points(self, s: Reals) -> tuple[Array, Array]:
-        """Points (..., m, len(s), 3) in metres of the upper and the lower side."""
-        _, position, tangential = self.on_lines(joined(self.plane.points(s), axis=-2))
-        both = self.mapping.in_space(position[..., 0], position[..., 1], tangential)
-        return both[..., : len(s), :], both[..., len(s) :, :]
-
-    def points_and_normals(self, s: Reals) -> tuple[tuple[Array, Array], tuple[Array, Array]]:
-        """The same, with the unit normals of the stream surfaces there, towards the shroud."""
-        u, position, tangential = self.on_lines(joined(self.plane.points(s), axis=-2))
-        both = self.mapping.in_space(position[..., 0], position[..., 1], tangential)
-        slope = unit(self.lines.position(u, 1))
-        if not self.mapping.revolved:
-            tangential = np.zeros_like(tangential)
-        normals = Conformal().in_space(-slope[..., 1], slope[..., 0], tangential)
-        points, directions = ((array[..., : len(s), :], array[..., len(s) :, :]) for array in (both, normals))
-        return points, directions
-
     def leading_edge(self) -> EdgeRow:
         """The leading edge in space."""
         edge, turn = self.plane.leading_edge, self.angle_in
         normal = np.stack([-np.sin(turn), np.cos(turn)], axis=-1)
         bend = (self.curvature_in * edge.normal_speed**2)[..., None] * np.stack([np.cos(turn), np.sin(turn)], axis=-1)
         first = edge.normal_speed[..., None] * normal
-        return self._row(0.0, self.plane.camber[..., 0, :], first, bend + edge.tangential[..., None] * normal)
+        return self.row(_ENDS[:1], self.plane.camber[..., 0, :], first, bend + edge.tangential[..., None] * normal)
 
     def trailing_edge(self) -> EdgeRow:
         """The trailing edge in space."""
@@ -89,22 +49,7 @@ class Stations:
         normal = np.stack([-np.sin(turn), np.cos(turn)], axis=-1)
         bend = (self.curvature_out * edge.normal_speed**2)[..., None] * np.stack([np.cos(turn), np.sin(turn)], axis=-1)
         first = -edge.normal_speed[..., None] * normal
-        return self._row(1.0, self.plane.camber[..., 3, :], first, edge.tangential[..., None] * normal - bend)
-
-    def _row(self, u: float, start: Array, first: Array, second: Array) -> EdgeRow:
-        at = np.array([u])
-        position, slope, bend = (self.lines.position(at, order)[..., 0, :] for order in range(3))
-        density = self.mapping.density(position, slope)
-        growth = self.mapping.density_slope(position, slope, bend)
-        u_first = first[..., 0] / density
-        u_second = (second[..., 0] - growth * u_first**2) / density
-        x, radius = (
-            Taylor(position[..., i], slope[..., i] * u_first, bend[..., i] * u_first**2 + slope[..., i] * u_second)
-            for i in (0, 1)
-        )
-        ordinate = Taylor(start[..., 1], first[..., 1], second[..., 1])
-        tangential = self.mapping.tangential_series(ordinate, radius, self.lines.lengths)
-        return EdgeRow(*self.mapping.series_in_space(x, radius, tangential))
+        return self.row(_ENDS[1:], self.plane.camber[..., 3, :], first, edge.tangential[..., None] * normal - bend)
 
 
 def stations_at(

@@ -62,6 +62,11 @@ class StreamLines:
         u = np.broadcast_to(u, np.broadcast_shapes((*self.starts.shape[:-1], 1), np.shape(u)))
         return self._by_panel(u, lambda panel, part: self._polynomial(panel, part, order))
 
+    def densities(self, u: Array) -> tuple[Array, Array]:
+        """da/du and d2a/du2 (..., m, k) at u (..., m, k) or (k,)."""
+        position, slope, bend = (self.position(u, order) for order in range(3))
+        return self.mapping.density(position, slope), self.mapping.density_slope(position, slope, bend)
+
     def rows(self, which: list[int]) -> "StreamLines":
         """Some of the stream lines, by their number along the span."""
         return StreamLines(

@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal
 
+from bladewright.blade.arrangement import check_arrangement
 from bladewright.blade.channel import Channel
 from bladewright.designs import ChordwiseLaw, Design, Law, parameter
 from bladewright.errors import DesignError
@@ -86,32 +87,12 @@ class UnifiedBlade(Design):
         checks.choice("arrangement", self.arrangement, ["annular", "linear"])
         checks.choice("mapping", self.mapping, ["conformal", "paper"])
         check_laws(self)
-        self._check_arrangement()
+        check_arrangement(self)
         self._check_clearances()
         check_sampling(self)
         check_range(self, "tolerance", 1e-9, 1e-2)
         if not isinstance(self.channel, Channel):
             raise DesignError(f"channel is {self.channel!r}: a Channel with leading_edge and trailing_edge is needed")
-
-    def _check_arrangement(self) -> None:
-        put = object.__setattr__
-        own, other = ("annular", "linear") if self.arrangement == "annular" else ("linear", "annular")
-        fields_of = {"annular": ("blade_count", "leading_edge_theta"), "linear": ("pitch", "leading_edge_y")}
-        for name in fields_of[other]:
-            if getattr(self, name) is not None:
-                mine = fields_of[own][fields_of[other].index(name)]
-                raise DesignError(
-                    f"{name} is given, but arrangement is '{own}': give {mine}, or arrangement = '{other}'"
-                )
-        count, place = fields_of[own]
-        if getattr(self, count) is None:
-            raise DesignError(f"{count} is missing: arrangement '{own}' needs it")
-        put(self, place, checks.law(place, 0.0 if getattr(self, place) is None else getattr(self, place)))
-        if own == "annular":
-            put(self, count, checks.integer(count, self.blade_count, 1, 10_000, "a whole number of blades is needed"))
-        else:
-            put(self, count, checks.number(count, self.pitch))
-            checks.between(count, self.pitch, 0.0, float("inf"), "the pitch must be positive")
 
     def _check_clearances(self) -> None:
         given = [name for name in ("tip_clearance", "hub_clearance") if getattr(self, name) is not None]

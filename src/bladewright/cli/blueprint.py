@@ -36,10 +36,11 @@ def body_from(design: Any, path: Path, extend: float) -> Any:
     Raises DesignError, naming the file at `path`, where the shape is impossible.
     """
     from bladewright.blade.prismatic import prismatic
+    from bladewright.section.planar import PlanarSection
     from bladewright.section.unified import UnifiedSection
 
     try:
-        blade = (prismatic(design) if isinstance(design, UnifiedSection) else design).build()
+        blade = (prismatic(design) if isinstance(design, UnifiedSection | PlanarSection) else design).build()
         return blade.extended(extend) if extend else blade
     except DesignError as error:
         raise DesignError(f"{path}: {error}") from error

@@ -7,10 +7,9 @@ from typing import Any
 
 import numpy as np
 
-from bladewright.blade.unified import UnifiedBlade
 from bladewright.derivatives.jacobian import Bars, NetJacobian, Shape
 from bladewright.derivatives.patterns import Patterns, chosen
-from bladewright.derivatives.steps import built, stepped
+from bladewright.derivatives.steps import built, stepped, two_sided
 from bladewright.derivatives.tangents import STEP, side_tangents
 from bladewright.designs import Design, unknown
 from bladewright.errors import DerivativeError
@@ -68,7 +67,7 @@ def pullback(
 def _rates(
     design: Design, base: Any, of: Part | None, paths: tuple[str, ...], shapes: Mapping[str, Shape]
 ) -> dict[str, Array]:
-    if of is None and isinstance(design, UnifiedBlade) and set(shapes) <= {"upper", "lower"}:
+    if of is None and two_sided(base) and set(shapes) <= {"upper", "lower"}:
         pairs = list(side_tangents(base, paths)) if paths else []
         sides = [np.concatenate([pair[side] for pair in pairs]) for side in (0, 1)]
         return {name: sides[("upper", "lower").index(name)] for name in shapes}

@@ -3,18 +3,16 @@
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property, partial
-from typing import Any
+from typing import Any, TypeGuard
 
 import numpy as np
 
 from bladewright.blade.blade import Blade
 from bladewright.blade.ends import trimmed_ends
-from bladewright.blade.exact import moved
 from bladewright.blade.fitness import chord_of
 from bladewright.blade.moments import moment_gradient
 from bladewright.blade.native import native_sides
 from bladewright.blade.properties import blade_moments, middle_of
-from bladewright.blade.unified import UnifiedBlade
 from bladewright.derivatives.tangents import AT_ONCE, STEP, Nets, side_tangents
 from bladewright.designs import Design
 from bladewright.numerics.elementary import Array
@@ -32,10 +30,10 @@ def built(design: Design, knots: Any = None) -> Any:
 def stepped(design: Design, base: Any, paths: Sequence[str]) -> Iterator[Any]:
     """What the design builds with an imaginary step on each parameter in turn, at the knots of `base`, its build.
 
-    A unified blade is made from its nets and their derivatives, its ends when they are asked for.
+    A blade of two sides is made from its nets and their derivatives, its ends when they are asked for.
     """
     values = design.parameters()
-    if not (isinstance(design, UnifiedBlade) and isinstance(base, Blade)):
+    if not two_sided(base):
         for path in paths:
             yield built(design.changed(path, values[path] + STEP * 1j), getattr(base, "knots", None))
         return
@@ -53,7 +51,7 @@ def varied(design: Design, base: Any, changes: Sequence[Mapping[str, complex]]) 
 
     For small changes: also what a build chooses besides knots is that of `base`.
     """
-    if not (isinstance(design, UnifiedBlade) and isinstance(base, Blade)):
+    if not two_sided(base):
         for each in changes:
             yield built(design.changed(each), getattr(base, "knots", None))
         return
@@ -65,16 +63,21 @@ def varied(design: Design, base: Any, changes: Sequence[Mapping[str, complex]]) 
             yield replace(blade, chord=chord_of(blade.exact))
 
 
+def two_sided(built: Any) -> TypeGuard[Blade]:
+    """Whether it is a blade whose faces are two sides and two ends: one without blunt edges."""
+    return isinstance(built, Blade) and set(built.surfaces) == {"upper", "lower", *built.design.ends}
+
+
 def varied_nets(blade: Blade, changes: Sequence[Mapping[str, complex]]) -> Nets:
     """Nets (k, n_u, n_v, 3) of the upper and lower side with each of k changes of parameters, at the blade's knots."""
-    if len(changes) > 1 and blade.exact.clearance is not None and any(map(_moves_walls, changes)):
+    if len(changes) > 1 and blade.exact.tip_knots is not None and any(map(_moves_walls, changes)):
         # where a clearance surface lies is found for one real channel at a time
         alone = [varied_nets(blade, [each]) for each in changes]
         return np.concatenate([nets[0] for nets in alone]), np.concatenate([nets[1] for nets in alone])
     values = blade.design.parameters()
     paths = dict.fromkeys(path for each in changes for path in each)
     batch = {path: np.array([each.get(path, values[path]) for each in changes]) for path in paths}
-    exact = moved(blade.exact, blade.design.changed(batch))
+    exact = blade.exact.moved_to(blade.design.changed(batch))
     upper, lower = native_sides(exact.stations(blade.knots.sites_v), blade.knots)
     shape = (len(changes), *upper.shape[-3:])
     return np.broadcast_to(upper, shape), np.broadcast_to(lower, shape)
@@ -129,8 +132,8 @@ class _Faces(Mapping[str, Face]):
         return len(self._names)
 
 
-def _blade(base: Blade, design: UnifiedBlade, upper: Array, lower: Array) -> Blade:
-    exact = moved(base.exact, design)
+def _blade(base: Blade, design: Any, upper: Array, lower: Array) -> Blade:
+    exact = base.exact.moved_to(design)
     sides = [replace(side, control_points=net) for side, net in zip(base.sides, (upper, lower), strict=True)]
 
     def ends() -> Mapping[str, Face]:

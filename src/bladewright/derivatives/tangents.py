@@ -1,20 +1,21 @@
-"""Derivatives of a unified blade's control nets by its parameters, many in one rebuild.
+"""Derivatives of a blade's control nets by its parameters, many in one rebuild.
 
-A law of evolution acts on the section at v by its value there alone, so a step of the whole law gives the section's
-derivative, and that of control point j is N_j(v) times it. Nets are linear in the sections' points. What is left, the
-channel above all, is stepped leaf by leaf.
+A law of evolution of the unified family acts on the section at v by its value there alone, so a step of the whole law
+gives the section's derivative, and that of control point j is N_j(v) times it. Nets are linear in the sections' points.
+What is left, the channel above all, and every parameter of a blade from sections, is stepped leaf by leaf.
 """
 
 import re
 from collections.abc import Iterator, Sequence
+from itertools import islice
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from bladewright.blade.blade import Blade
-from bladewright.blade.exact import moved
+from bladewright.blade.laid import EdgeRow
 from bladewright.blade.native import Skeleton, sides_through, skeleton_of
-from bladewright.blade.stations import EdgeRow
+from bladewright.blade.sectioned import SectionedBlade
 from bladewright.blade.unified import UnifiedBlade
 from bladewright.numerics.elementary import Array, joined
 from bladewright.nurbs.basis import Reals
@@ -49,16 +50,17 @@ def side_tangents(blade: Blade, paths: Sequence[str]) -> Iterator[Nets]:
     sources = [_source(blade.design, path) for path in paths]
     steps = list(dict.fromkeys(source.step for source in sources))
     rates = np.concatenate([_rates(blade, steps[i : i + AT_ONCE]) for i in range(0, len(steps), AT_ONCE)])
+    mirrored = [edge is None for edge in blade.exact.survey.lower_edges()]
     for first in range(0, len(paths), AT_ONCE):
         chunk = sources[first : first + AT_ONCE]
         shares = np.stack([_share(source, blade.knots.sites_v) for source in chunk])
         rows = rates[[steps.index(source.step) for source in chunk]] * shares[..., None]
-        yield sides_through(_parted(rows), blade.knots)
+        yield sides_through(_parted(rows, mirrored), blade.knots)
 
 
-def _source(design: UnifiedBlade, path: str) -> _Source:
+def _source(design: UnifiedBlade | SectionedBlade, path: str) -> _Source:
     name, *places = re.findall(r"\w+", path)
-    if name not in (*LAWS, *CHORDWISE):
+    if not isinstance(design, UnifiedBlade) or name not in (*LAWS, *CHORDWISE):
         return _Source(path)
     depth = 1 if name in CHORDWISE else 0
     if len(places) == depth:
@@ -79,15 +81,21 @@ def _rates(blade: Blade, steps: Sequence[str]) -> Array:
         kick = np.zeros(len(steps), dtype=np.complex128)
         kick[place] = STEP * 1j
         changes |= {path: value + kick for path, value in values.items() if path == step or path.startswith(f"{step}[")}
-    stations = moved(blade.exact, blade.design.changed(changes)).stations(blade.knots.sites_v)
+    stations = blade.exact.moved_to(blade.design.changed(changes)).stations(blade.knots.sites_v)
     skeleton = skeleton_of(stations, blade.knots)
     sides = [side.reshape(*side.shape[:-2], -1) for side in (skeleton.upper, skeleton.lower)]
-    rows = joined([*skeleton.leading_edge, *skeleton.trailing_edge, *sides], axis=-1)
+    edges = [skeleton.leading_edge, skeleton.trailing_edge, *skeleton.lower_edges]
+    rows = joined([part for edge in edges if edge is not None for part in edge] + sides, axis=-1)
     return np.broadcast_to(np.imag(rows) / STEP, (len(steps), *rows.shape[-2:]))
 
 
-def _parted(rows: Array) -> Skeleton:
-    edges, upper, lower = np.split(rows, [18, (18 + rows.shape[-1]) // 2], axis=-1)
-    parts = np.split(edges, 6, axis=-1)
+def _parted(rows: Array, mirrored: Sequence[bool]) -> Skeleton:
+    """The skeleton in rows; `mirrored` says of which edges the lower side has no derivatives of its own."""
+    count = 2 + sum(not each for each in mirrored)
+    edges, upper, lower = np.split(rows, [9 * count, (9 * count + rows.shape[-1]) // 2], axis=-1)
+    parts = iter(np.split(edges, 3 * count, axis=-1))
+    found = [EdgeRow(*islice(parts, 3)) for _ in range(count)]
+    own = iter(found[2:])
+    first, last = (None if each else next(own) for each in mirrored)
     sides = [side.reshape(*side.shape[:-1], -1, 3) for side in (upper, lower)]
-    return Skeleton(EdgeRow(*parts[:3]), EdgeRow(*parts[3:]), *sides)
+    return Skeleton(found[0], found[1], sides[0], sides[1], (first, last))

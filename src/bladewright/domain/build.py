@@ -6,7 +6,7 @@ from types import MappingProxyType
 import numpy as np
 
 from bladewright.blade.blade import Blade
-from bladewright.blade.exact import ExactBlade, exact_blade
+from bladewright.blade.exact import ExactBlade, exact_blade, in_channel
 from bladewright.blade.knots import DEGREE, breaks_along_v
 from bladewright.domain.camber import CamberLines, camber_lines
 from bladewright.domain.checks import check_duct, check_folds, check_pitch
@@ -86,8 +86,9 @@ def passage(
 
 def _whole(blade: Blade) -> ExactBlade:
     """The exact blade without gaps, from wall to wall of the channel."""
-    gaps = [name for name in ("tip_clearance", "hub_clearance") if getattr(blade.design, name, None) is not None]
-    return exact_blade(blade.design.changed(dict.fromkeys(gaps))) if gaps else blade.exact
+    exact = in_channel(blade.exact, "passage")
+    gaps = [name for name in ("tip_clearance", "hub_clearance") if getattr(exact.design, name) is not None]
+    return exact_blade(exact.design.changed(dict.fromkeys(gaps))) if gaps else exact
 
 
 def _slope(name: str, degrees: complex | None) -> Array | None:
@@ -111,7 +112,7 @@ def _real_half(half: Array) -> float:
 
 
 def _check_within(blade: Blade, half: Array) -> None:
-    exact = blade.exact
+    exact = in_channel(blade.exact, "passage")
     duct = Duct(
         channel=exact.channel,
         start=-exact.before,

@@ -1,5 +1,12 @@
 """The families of designs that a file can hold: one entry each."""
 
+from bladewright.blade.families import (
+    CamberAngleBlade,
+    CurvatureMeanlineBlade,
+    ProfileBlade,
+    SuctionPressureBlade,
+    WedgeDiffuserBlade,
+)
 from bladewright.blade.unified import UnifiedBlade
 from bladewright.designs import Design
 from bladewright.errors import FileError
@@ -18,6 +25,11 @@ FAMILIES: dict[str, type[Design]] = {
     "wedge-diffuser-section": WedgeDiffuserSection,
     "camber-angle-section": CamberAngleSection,
     "profile-section": ProfileSection,
+    "curvature-meanline": CurvatureMeanlineBlade,
+    "suction-pressure": SuctionPressureBlade,
+    "wedge-diffuser": WedgeDiffuserBlade,
+    "camber-angle": CamberAngleBlade,
+    "profile": ProfileBlade,
 }
 """Design class by the `family` of its files."""
 

@@ -74,7 +74,7 @@ def _told(annotation: Any) -> list[tuple[type[Any], dict[str, Any]]]:
     if get_origin(annotation) not in (Union, UnionType):
         return []
     parts: list[Any] = [each for each in get_args(annotation) if is_dataclass(each)]
-    return [(each, tags(each)) for each in parts]
+    return [(each, own) for each in parts if (own := tags(each))]
 
 
 class _Place:

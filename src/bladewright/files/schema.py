@@ -1,5 +1,6 @@
 """The JSON Schema of design files, from the designs' own fields, units and docstrings."""
 
+from collections.abc import Iterator
 from dataclasses import fields, is_dataclass
 from typing import Any, get_args, get_type_hints
 
@@ -18,11 +19,12 @@ def schema() -> dict[str, Any]:
     inputs = [(family, "validation", adapter(kind)) for family, kind in FAMILIES.items()]
     _, shared = TypeAdapter.json_schemas(inputs)  # type: ignore[arg-type]
     definitions: dict[str, Any] = shared["$defs"]
+    refined: set[type[Part]] = set()
     for family, kind in FAMILIES.items():
         own = definitions[kind.__name__]
         own["properties"] = {"family": {"const": family, "description": own["description"]}, **own["properties"]}
         own["required"] = ["family", *own["required"]]
-        _refine(kind, definitions)
+        _refine(kind, definitions, refined)
     return {
         "$schema": _DIALECT,
         "title": "bladewright design file",
@@ -32,8 +34,11 @@ def schema() -> dict[str, Any]:
     }
 
 
-def _refine(kind: type[Part], definitions: dict[str, Any]) -> None:
-    """Add units, and take away what a TOML file cannot say: null."""
+def _refine(kind: type[Part], definitions: dict[str, Any], refined: set[type[Part]]) -> None:
+    """Add units, and take away what a TOML file cannot say: null; once for each part, however many designs have it."""
+    if kind in refined:
+        return
+    refined.add(kind)
     properties = definitions[kind.__name__]["properties"]
     required = definitions[kind.__name__].setdefault("required", [])
     hints, told_by = get_type_hints(kind), tags(kind)
@@ -51,9 +56,16 @@ def _refine(kind: type[Part], definitions: dict[str, Any]) -> None:
             del entry["default"]
             arms = [arm for arm in entry.pop("anyOf") if arm != {"type": "null"}]
             entry.update(arms[0] if len(arms) == 1 else {"anyOf": arms})
-        for hint in get_args(hints[each.name]) or (hints[each.name],):
-            if isinstance(hint, type) and is_dataclass(hint) and issubclass(hint, Part):
-                _refine(hint, definitions)
+        for hint in _parts_in(hints[each.name]):
+            _refine(hint, definitions, refined)
+
+
+def _parts_in(hint: Any) -> Iterator[type[Part]]:
+    """The parts that a field may hold, alone, in a choice or in a list."""
+    if isinstance(hint, type) and is_dataclass(hint) and issubclass(hint, Part):
+        yield hint
+    for inner in get_args(hint):
+        yield from _parts_in(inner)
 
 
 def _inherited(kind: type[Part], name: str) -> str | None:

@@ -8,7 +8,7 @@ from typing import Any
 
 import tomlkit
 from tomlkit.exceptions import TOMLKitError
-from tomlkit.items import Array
+from tomlkit.items import AoT, Array
 
 from bladewright.designs import Design, Part
 from bladewright.errors import BladewrightError, DesignError, FileError
@@ -83,14 +83,24 @@ def _tables(design: Part, path: str, length: str) -> list[str]:
             lines += ["", f"[{name}]"]
             lines += [line for kind in (False, True) for line in _lines(value, f"{name}.", length, parameters=kind)]
             lines += _tables(value, f"{name}.", length)
+        for part in value if _is_parts(value) else ():
+            lines += ["", f"[[{name}]]"]
+            lines += [line for kind in (False, True) for line in _lines(part, f"{name}.", length, parameters=kind)]
     return lines
+
+
+def _is_parts(value: Any) -> bool:
+    """Whether it is a list of parts, which stands in tables of its own."""
+    return isinstance(value, tuple) and len(value) > 0 and all(isinstance(item, Part) for item in value)
 
 
 def _lines(design: Part, path: str, length: str, *, parameters: bool) -> list[str]:
     lines, told_by = [], tags(type(design))
     for each in fields(design):
         value = getattr(design, each.name)
-        left_out = isinstance(value, Part) or (_is_default(each, value) and each.name not in told_by)
+        left_out = (
+            isinstance(value, Part) or _is_parts(value) or (_is_default(each, value) and each.name not in told_by)
+        )
         if ("unit" in each.metadata) == parameters and not left_out:
             unit = each.metadata.get("unit", "-").replace("length", length)
             comment = "" if unit == "-" else f"  # {unit}"
@@ -112,12 +122,26 @@ def _merge(table: MutableMapping[str, Any], design: Part, before: Part | None, l
             _merge(table[each.name], value, old if isinstance(old, Part) else None, length)
         elif value is None:
             table.pop(each.name, None)
+        elif _is_parts(value):
+            if each.name not in table or not same(plain(old), plain(value)):
+                table[each.name] = _rows(value, length)
         elif each.name in table:
             _put(table, each.name, value, each.name)
         elif each.name in told_by or not (_is_default(each, value) or (before and same(plain(old), plain(value)))):
             table[each.name] = tomlkit.value(literal(value, each.name))
     for key in set(table) - {each.name for each in fields(design)} - {"family"}:
         del table[key]
+
+
+def _rows(parts: tuple[Part, ...], length: str) -> AoT:
+    rows = tomlkit.aot()
+    for part in parts:
+        lines = [line for kind in (False, True) for line in _lines(part, "", length, parameters=kind)]
+        row = tomlkit.table()
+        for key, item in tomlkit.parse("\n".join(lines)).items():
+            row[key] = item
+        rows.append(row)
+    return rows
 
 
 def _put(holder: Any, key: str | int, value: Any, path: str) -> None:

@@ -1,10 +1,12 @@
 """Laws of evolution: clamped uniform B-splines of degree min(n - 1, 3) over [0, 1]."""
 
-from typing import Any
+from collections.abc import Iterator
+from dataclasses import fields
+from typing import Any, get_args, get_type_hints
 
 import numpy as np
 
-from bladewright.designs import ChordwiseLaw, Law
+from bladewright.designs import ChordwiseLaw, Law, Part
 from bladewright.numerics.elementary import Array
 from bladewright.nurbs.basis import Reals, basis, uniform_knots
 
@@ -45,6 +47,18 @@ class Span:
         """Values (..., m, len(u)) at u along the chord of control points that are laws along the span."""
         controls = np.stack(np.broadcast_arrays(*[self.values(law) for law in laws]), axis=-1)
         return controls @ law_basis(len(laws), u).T
+
+
+def laws_of(part: Part) -> Iterator[Law]:
+    """The laws of evolution among the parameters of a part, and of the parts in it."""
+    hints = get_type_hints(type(part))
+    for each in fields(part):
+        value = getattr(part, each.name)
+        if isinstance(value, Part):
+            yield from laws_of(value)
+        elif "unit" in each.metadata and isinstance(value, tuple):
+            # a list of numbers is a law where one number could stand for it, and a row of laws elsewhere
+            yield from [value] if float in get_args(hints[each.name]) else value
 
 
 def inner_knots(count: int) -> Reals:

@@ -1,38 +1,20 @@
 """2D designs of the families that are one part: the part's section laid in the plane (x, y)."""
 
-from collections.abc import Callable
 from dataclasses import dataclass, fields
-from types import MappingProxyType
-from typing import Any, Literal, Protocol, get_args, get_type_hints
+from typing import Any, Literal, get_args, get_type_hints
 
 import numpy as np
 
 from bladewright.designs import Design, Part, parameter
 from bladewright.errors import DesignError
-from bladewright.numerics.elementary import Array, angle, frozen
 from bladewright.nurbs.basis import Reals
-from bladewright.nurbs.curve import Curve
-from bladewright.nurbs.transform import transformed
 from bladewright.section import checks
 from bladewright.section.crossing import check_outline, closed_outlines, touching
 from bladewright.section.laws import Span
 from bladewright.section.limits import check_labels
-from bladewright.section.meanline import Meanline
-from bladewright.section.native import SectionKnots, knots_for, native_curves
-from bladewright.section.outline import Outline
+from bladewright.section.native import SectionKnots, knots_for
+from bladewright.section.native_section import Family, meanline_of, native_section
 from bladewright.section.section import Section
-
-
-class Family(Protocol):
-    """A family's part: its sections along a span, each number of it a law."""
-
-    def outline(self, span: Span) -> Outline:
-        """The exact sections (..., m) at the places of the span, in chords, unstaggered."""
-        ...
-
-    def stagger(self, span: Span) -> Array:
-        """Angles (..., m) of the chord lines [rad]."""
-        ...
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -87,47 +69,25 @@ class PlanarSection(Design):
         outline = family.outline(span)
         turn = family.stagger(span)[..., 0]
         check_outline(outline, [""])
-        chord = self.chord * metre
-        rotation = np.array([[np.cos(turn), -np.sin(turn)], [np.sin(turn), np.cos(turn)]])
         if self.pitch is not None:
+            rotation = np.array([[np.cos(turn), -np.sin(turn)], [np.sin(turn), np.cos(turn)]])
             self._check_pitch(closed_outlines(outline) @ np.real(rotation).T, self.pitch)
-        knots = knots_for(outline, self.tolerance) if knots is None else knots
-        upper, lower, camber = native_curves(outline, knots=knots)
-        shift = np.array([self.leading_edge_x * metre, self.leading_edge_y * metre])
-        sides = {"upper": upper, "lower": lower, **_faces(outline, upper, lower)}
-        curves = {name: transformed(curve, chord * rotation, shift) for name, curve in sides.items()}
-        line = transformed(camber, chord * rotation, shift)
-        slope = line.derivative(np.array([0.0, 1.0]))
-        metal = np.real(angle(slope[:, 1], slope[:, 0]))
-        meanline = getattr(family, "meanline", None)
-        return Section(
+        return native_section(
+            outline,
+            knots_for(outline, self.tolerance) if knots is None else knots,
+            turn=turn,
+            chord=np.asarray(self.chord * metre),
+            shift=np.array([self.leading_edge_x * metre, self.leading_edge_y * metre]),
             span=0.0,
             plane="x-y",
-            curves=MappingProxyType(curves),
-            camber=line,
-            stagger=float(np.real(turn)),
-            metal_angle_in=float(metal[0]),
-            metal_angle_out=float(metal[1]),
             scale=np.ones_like,
-            edges=(outline.leading_edge.kind, outline.trailing_edge.kind),
-            knots=knots,
-            meanline=None if meanline is None else _single_meanline(meanline(span)),
+            meanline=meanline_of(family, span),
         )
 
     def _check_pitch(self, outlines: Reals, pitch: float) -> None:
         """Refuse a pitch at which neighbours (m, n, 2) in chords meet."""
         if touching(outlines, float(np.real(pitch)) / float(np.real(self.chord))) is not None:
             raise DesignError(f"pitch is {pitch:g}: neighbouring sections intersect; take a larger pitch")
-
-
-def _single_meanline(line: Meanline) -> Callable[[Array], tuple[Array, Array, Array]]:
-    """v and its first two derivatives (k,) by u (k,) of the first of meanlines (m,)."""
-
-    def derivatives(u: Array) -> tuple[Array, Array, Array]:
-        value, slope, bend, _ = line.derivatives(u)
-        return value[..., 0, :], slope[..., 0, :], bend[..., 0, :]
-
-    return derivatives
 
 
 def _check_plain(part: Part, path: str) -> None:
@@ -143,14 +103,3 @@ def _check_plain(part: Part, path: str) -> None:
         for where, item in [(name, value)] if single else [(f"{name}[{i}]", item) for i, item in enumerate(value)]:
             if isinstance(item, tuple):
                 raise DesignError(f"{path}.{where} is a list: a law along the span; a single section takes a number")
-
-
-def _faces(outline: Outline, upper: Curve, lower: Curve) -> dict[str, Curve]:
-    """The straight faces of blunt edges, each from the upper to the lower side."""
-    faces = {}
-    for i, edge in enumerate((outline.leading_edge, outline.trailing_edge)):
-        if edge.kind == "blunt":
-            ends = frozen(np.stack([upper.control_points[-i], lower.control_points[-i]]))
-            knots = np.array([0.0, 0.0, 1.0, 1.0])
-            faces[("leading_edge", "trailing_edge")[i]] = Curve(control_points=ends, knots=knots, degree=1)
-    return faces

@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING, cast
 import numpy as np
 from matplotlib.axes import Axes
 
+from bladewright.blade.exact import in_channel
 from bladewright.nurbs.basis import Reals
 from bladewright.nurbs.surface import Surface
 from bladewright.views.meridional import CURVES, blade_outline
@@ -36,10 +37,11 @@ def draw_duct(axes: Axes, passage: "Passage") -> None:
         edge = "leading_edge" if name == "inlet" else "trailing_edge"
         line = _meridional(passage, side, np.array([end]), across)[0]
         axes.plot(*line.T, color=CURVES[edge], label=edge.replace("_", " "))
-    clearance = blade.exact.clearance
+    exact = in_channel(blade.exact, "picture")
+    clearance = exact.clearance
     if clearance is not None:
         inside = np.linspace(0.0, 1.0, 101)
-        tip = np.real(blade.exact.channel.curve(clearance.wall)(inside)) * MILLIMETRES
+        tip = np.real(exact.channel.curve(clearance.wall)(inside)) * MILLIMETRES
         apart = MILLIMETRES * np.real(clearance.real().distance(inside[[0, -1]]))
         stated = " to ".join(dict.fromkeys(f"{each:.3g}" for each in apart))
         axes.plot(*tip.T, color=INK, linestyle="--", linewidth=1.0, label=f"clearance {stated} mm")

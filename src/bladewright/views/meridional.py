@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from matplotlib.axes import Axes
 
+from bladewright.blade.exact import in_channel
 from bladewright.nurbs.basis import Reals
 from bladewright.views.sections import along_curve
 from bladewright.views.style import BLUE, GREEN, INK, MILLIMETRES, ORANGE, RED, SOFT, legend_below, titled
@@ -17,7 +18,7 @@ CURVES = {"hub": BLUE, "shroud": ORANGE, "leading_edge": GREEN, "trailing_edge":
 
 def draw_meridional(axes: Axes, blade: "Blade") -> None:
     """Draws the channel in the (x, r) plane, or (x, z) of a cascade, equal lengths equal on both axes."""
-    exact = blade.exact
+    exact = in_channel(blade.exact, "picture")
     u = np.linspace(-exact.before, 1.0 + exact.after, 201)
     inside = np.linspace(0.0, 1.0, 201)
     noses = blade_outline(blade) * MILLIMETRES

@@ -1,0 +1,63 @@
+"""What every kind of exact blade answers: the blade that is meant, in metres and radians."""
+
+from abc import ABC, abstractmethod
+from dataclasses import dataclass
+from typing import Any, NamedTuple, Self
+
+from bladewright.blade.laid import Laid
+from bladewright.blade.mapping import Mapping
+from bladewright.nurbs.basis import Reals
+from bladewright.nurbs.curve import Curve
+
+
+class EndWall(NamedTuple):
+    """The wall that an end of a blade lies on."""
+
+    meridian: Curve
+    """(x, r), or (x, z) in a cascade"""
+    inner: Reals
+    """its inner knots where it loses derivatives, each as often as it occurs"""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Meant(ABC):
+    """The blade that is meant: what the native surfaces interpolate and are measured against."""
+
+    design: Any
+    """it has `ends`, `tolerance` and `length_unit`"""
+    mapping: Mapping
+    """the sections' plane and its way to space"""
+
+    @property
+    @abstractmethod
+    def survey(self) -> Laid:
+        """Sections from end to end on which the shape is judged."""
+
+    @abstractmethod
+    def stations(self, v: Reals) -> Laid:
+        """Sections at v (m,)."""
+
+    @abstractmethod
+    def moved_to(self, design: Any) -> Self:
+        """That of a design that is a small step away; what is chosen for the shape stays."""
+
+    @abstractmethod
+    def breaks_along_u(self) -> Reals:
+        """Inner knots that the sides need by s, each as often as derivatives are lost."""
+
+    @abstractmethod
+    def breaks_along_v(self) -> Reals:
+        """Inner knots that the sides need along the span, each as often as derivatives are lost."""
+
+    @abstractmethod
+    def end_wall(self, row: int) -> EndWall:
+        """The wall of the end at v = 0 (row 0) or v = 1 (row -1)."""
+
+    @abstractmethod
+    def wall_places(self, u: Reals) -> Reals:
+        """Parameters (2, k) of both walls' meridians at u (2, k) on the first and the last stream line."""
+
+    @property
+    def tip_knots(self) -> Reals | None:
+        """Knots of the meridian of a clearance surface, where there is one."""
+        return None

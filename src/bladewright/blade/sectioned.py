@@ -1,0 +1,87 @@
+"""Blades from sections as designs: a family's section between edge curves in a flow path."""
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Literal
+
+from bladewright.blade.arrangement import check_arrangement
+from bladewright.blade.flow_path import FlowPath
+from bladewright.blade.meridian import Meridian, meridian_at
+from bladewright.designs import Design, Law, Part, parameter
+from bladewright.errors import DesignError
+from bladewright.section import checks
+from bladewright.section.limits import check_labels, check_range
+
+if TYPE_CHECKING:
+    from bladewright.blade.blade import Blade
+    from bladewright.blade.knots import Knots
+
+
+@dataclass(frozen=True, kw_only=True)
+class SectionedBlade(Design):
+    """Base of the blades from sections; each has a final subclass that says of which family.
+
+    At every v the family's section is laid on the stream surface of that span fraction: its chord line reaches from the
+    leading- to the trailing-edge curve, and stands at the section's stagger. Every number of the section is a law: a
+    constant, or the control points of a clamped uniform B-spline of degree min(n - 1, 3) along the span.
+    """
+
+    name: str
+    """the part's name, used in files"""
+    length_unit: Literal["m", "cm", "mm", "um", "in", "ft"]
+    """unit of every length in the design"""
+    arrangement: Literal["annular", "linear"] = "annular"
+    """blades around the machine axis, or side by side in a cascade"""
+    blade_count: int | None = None
+    """number of blades of an annular row [-]"""
+    pitch: float | None = parameter("length", default=None)
+    """tangential distance of neighbours in a linear cascade [length]"""
+    leading_edge_theta: Law | None = parameter("deg", default=None)
+    """circumferential position of the leading edge, annular; 0 where not given [deg]"""
+    leading_edge_y: Law | None = parameter("length", default=None)
+    """tangential position of the leading edge, linear; 0 where not given [length]"""
+    plane: Literal["m'-theta", "m-r*theta", "x-y"] = "m'-theta"
+    """the plane of each stream surface that sections are laid out in; in a cascade the first two are (m, y)"""
+    flow_path: FlowPath
+    """hub, shroud and stream surfaces"""
+    leading_edge: Meridian
+    """the leading edge in (x, r), from hub to shroud or past them"""
+    trailing_edge: Meridian
+    """the trailing edge in (x, r), from hub to shroud or past them"""
+    section: Any
+    """the family's parameters, each a law along the span"""
+    tolerance: float = 1e-6
+    """largest distance of the native surfaces from the exact blade, of the chord [-]"""
+    description: str = ""
+    """one line for the header of CAD files"""
+    author: str = ""
+    """for the header of CAD files"""
+    organisation: str = ""
+    """for the header of CAD files"""
+
+    def __post_init__(self) -> None:
+        check_labels(self)
+        checks.choice("arrangement", self.arrangement, ["annular", "linear"])
+        planes = ["m'-theta", "m-r*theta"] if self.arrangement == "annular" else ["m'-theta", "m-r*theta", "x-y"]
+        checks.choice("plane", self.plane, planes)
+        check_arrangement(self)
+        check_range(self, "tolerance", 1e-9, 1e-2)
+        if not isinstance(self.flow_path, FlowPath):
+            raise DesignError(f"flow_path is {self.flow_path!r}: a FlowPath with hub and shroud is needed")
+        for name in ("leading_edge", "trailing_edge"):
+            meridian_at(name, getattr(self, name))
+        if not isinstance(self.section, Part):
+            raise DesignError(f"section is {self.section!r}: the family's parameters are needed")
+
+    @property
+    def ends(self) -> tuple[str, str]:
+        """Names of the blade's ends at v = 0 and v = 1."""
+        return "hub", "shroud"
+
+    def build(self, knots: "Knots | None" = None) -> "Blade":
+        """The native blade in metres; `knots=blade.knots` holds another build's knots and interpolation sites.
+
+        Raises DesignError where the shape is impossible or the tolerance cannot be reached within 200 x 100 poles.
+        """
+        from bladewright.blade.build import built_of_sections
+
+        return built_of_sections(self, knots)
