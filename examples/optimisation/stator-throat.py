@@ -25,7 +25,11 @@ def area(blade):
 started = time.perf_counter()
 start = example("aachen-stator").changed({"name": "stator-throat", "tolerance": 1e-5})
 # the thickness beside both edges, which holds their radii, stays
-inner = [f"thickness_*[{i}][*]" for i in range(1, 6)]
+inner = [
+    f"thickness_{side}[{i}]"
+    for side, law in (("upper", start.thickness_upper), ("lower", start.thickness_lower))
+    for i in range(1, len(law) - 1)
+]
 space = bw.variables(start, free=["stagger*", "metal_angle_*", "tangent_*", "leading_edge_theta*", *inner])
 opening, x0 = space.objective(area), space.x0
 target = OPENED * opening.value(x0)

@@ -12,10 +12,10 @@ from bladewright.nurbs.closest import closest_on_surface
 
 CLOUDS = Path(__file__).parents[3] / "shared" / "data" / "clouds"
 EXAMPLES = {
-    "vki-ls89": ("LS89_2D", 31),
-    "aachen-stator": ("Aachen_3D", 52),
-    "nasa-rotor-67": ("NASA_R67", 108),
-    "radial-turbine": ("APU_rotor", 112),
+    "vki-ls89": ("LS89_2D", 29),
+    "aachen-stator": ("Aachen_3D", 30),
+    "nasa-rotor-67": ("NASA_R67", 107),
+    "radial-turbine": ("APU_rotor", 101),
 }
 """cloud and number of parameters: a fit with more of them would prove less"""
 
@@ -53,8 +53,8 @@ def test_the_cloud_lies_within_half_a_percent_of_the_chord_in_the_mean(name):
     chord = built(name).chord
     distances, _ = nearest(name)
     assert distances.mean() < 0.005 * chord
-    # the fits reach 0.05 % and less in the mean and 0.35 % at worst, next to an edge: a later change must not lose that
-    assert distances.mean() < 0.0006 * chord
+    # the fits reach 0.036 % in the mean and 0.37 % at worst, next to an edge: a later change must not lose that
+    assert distances.mean() < 0.0004 * chord
     assert distances.max() < 0.004 * chord
 
 
