@@ -190,15 +190,11 @@ class Bladed:
 
         Raises DesignError where they do not meet, or not in this order.
         """
-        leading, trailing = (meeting.t for meeting in self._meetings(v))
+        leading, trailing = (meeting.t for meeting in self.meetings(v))
         return leading, trailing
 
-    def edge_places(self, v: Reals) -> tuple[Array, Array]:
-        """Own parameters (..., m) of the edge curves where they meet the stream lines at v (m,)."""
-        leading, trailing = (meeting.q for meeting in self._meetings(v))
-        return leading, trailing
-
-    def _meetings(self, v: Reals) -> list[Meeting]:
+    def meetings(self, v: Reals) -> list[Meeting]:
+        """Where the stream lines at v (m,) meet the leading and the trailing edge."""
         position = partial(self.surfaces.position, v)
         return [
             crossed(position, self.surfaces.extent, edge, name, labels(v))

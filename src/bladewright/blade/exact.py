@@ -117,8 +117,8 @@ def in_channel(exact: Meant, what: str) -> ExactBlade:
     if isinstance(exact, ExactBlade):
         return exact
     raise DesignError(
-        f"{what} is asked of '{exact.design.name}', a blade from sections: it is made for blades of the unified family "
-        "only; take the blade itself, its sections, its derivatives or its CAD files"
+        f"{what} is asked of {exact.design.name!r}, a blade from sections, but is made for the unified family only; "
+        "there are its solid, its sections, its promises and its derivatives"
     )
 
 

@@ -17,8 +17,7 @@ from bladewright.blade.planes import plane_of
 from bladewright.blade.sectioned import SectionedBlade
 from bladewright.blade.stream_surfaces import StreamSurfaces, stream_surfaces
 from bladewright.errors import DesignError
-from bladewright.numerics.elementary import Array, radians
-from bladewright.numerics.roots import crossings
+from bladewright.numerics.elementary import Array, cross2, radians
 from bladewright.nurbs.basis import Reals
 from bladewright.section.camber_angle import CamberAngle
 from bladewright.section.checks import UNITS
@@ -29,6 +28,8 @@ from bladewright.section.outline import Outline
 
 SPANS = 8
 """knot spans along a side to begin with"""
+NEWTON = 6
+"""Newton's steps from an interpolated place to the span fraction of an edge curve's joint"""
 STEEP = np.radians(89.0)
 """largest angle of a chord line: beyond it the extent between the edges says nothing of the chord"""
 
@@ -103,19 +104,23 @@ class SectionedExact(Meant):
         levels, counts = np.unique(line.knots[line.degree + 1 : -line.degree - 1], return_counts=True)
         if len(levels) == 0:
             return []
-        v = np.linspace(0.0, 1.0, 33)
-        values = self._along_edge(which, v)
-        found = []
-        for times in np.unique(counts):
-            # a spline through points keeps two derivatives, though its knots would let it lose one
-            smooth = 2 if isinstance(edge, ThroughPoints) else line.degree - int(times)
-            places = crossings(lambda at: self._along_edge(which, at), v, values, levels[counts == times])
-            found += [(float(place), smooth) for place in places]
-        return found
-
-    def _along_edge(self, which: int, v: Reals) -> Reals:
-        """Real own parameters (m,) of an edge curve at v (m,)."""
-        return real_first(self.bladed.edge_places(v)[which], 1)
+        # a spline through points keeps two derivatives, though its knots would let it lose one
+        smooth = [2 if isinstance(edge, ThroughPoints) else line.degree - int(count) for count in counts]
+        v = np.linspace(0.0, 1.0, 17)
+        meeting = self.bladed.meetings(v)[which]
+        t, q = real_first(meeting.t, 1), real_first(meeting.q, 1)
+        if q[0] > q[-1]:
+            t, q, v = t[::-1], q[::-1], v[::-1]
+        met = (levels > q[0]) & (levels < q[-1])
+        at = np.interp(levels[met], q, v)
+        own = np.interp(levels[met], q, t)
+        target = real_first(line.values(levels[met]), 2)
+        for _ in range(NEWTON):
+            point, along, across = (real_first(each, 2) for each in self.surfaces.at(own, at))
+            turn, miss = cross2(along, across), target - point
+            own = np.clip(own + cross2(miss, across) / turn, self.surfaces.low, self.surfaces.high)
+            at = np.clip(at + cross2(along, miss) / turn, 0.0, 1.0)
+        return list(zip(at.tolist(), np.array(smooth)[met].tolist(), strict=True))
 
     def end_wall(self, row: int) -> EndWall:
         curve = self.surfaces.walls[("hub", "shroud")[row]].curve()

@@ -13,6 +13,7 @@ from bladewright.blade.fitness import chord_of
 from bladewright.blade.moments import moment_gradient
 from bladewright.blade.native import native_sides
 from bladewright.blade.properties import blade_moments, middle_of
+from bladewright.blade.unified import UnifiedBlade
 from bladewright.derivatives.tangents import AT_ONCE, STEP, Nets, side_tangents
 from bladewright.designs import Design
 from bladewright.numerics.elementary import Array
@@ -70,8 +71,8 @@ def two_sided(built: Any) -> TypeGuard[Blade]:
 
 def varied_nets(blade: Blade, changes: Sequence[Mapping[str, complex]]) -> Nets:
     """Nets (k, n_u, n_v, 3) of the upper and lower side with each of k changes of parameters, at the blade's knots."""
-    if len(changes) > 1 and blade.exact.tip_knots is not None and any(map(_moves_walls, changes)):
-        # where a clearance surface lies is found for one real channel at a time
+    if len(changes) > 1 and any(_is_sought(blade, each) for each in changes):
+        # where a clearance surface lies, or edges meet stream lines, is found for one real channel at a time
         alone = [varied_nets(blade, [each]) for each in changes]
         return np.concatenate([nets[0] for nets in alone]), np.concatenate([nets[1] for nets in alone])
     values = blade.design.parameters()
@@ -83,10 +84,13 @@ def varied_nets(blade: Blade, changes: Sequence[Mapping[str, complex]]) -> Nets:
     return np.broadcast_to(upper, shape), np.broadcast_to(lower, shape)
 
 
-def _moves_walls(change: Mapping[str, complex]) -> bool:
-    """Whether the real channel, or the clearance in it, is another."""
-    of_walls = [value for path, value in change.items() if path.startswith("channel.") or "clearance" in path]
-    return any(not np.iscomplexobj(value) for value in of_walls)
+def _is_sought(blade: Blade, change: Mapping[str, complex]) -> bool:
+    """Whether the blade is found by a search that a real change leads to another place."""
+    real = [path for path, value in change.items() if not np.iscomplexobj(value)]
+    if isinstance(blade.design, UnifiedBlade):
+        walls = any(path.startswith("channel.") or "clearance" in path for path in real)
+        return walls and blade.exact.tip_knots is not None
+    return not all(path.startswith(("section.", "leading_edge_theta", "leading_edge_y", "pitch")) for path in real)
 
 
 class _Moments:

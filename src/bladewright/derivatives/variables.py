@@ -185,4 +185,5 @@ def _scale(design: Design, base: Any, path: str) -> float:
         metre = UNITS[getattr(design, "length_unit", "m")]
         return SHARE * float(np.real(base.chord)) / metre
     field = path.partition("[")[0]
-    return max(float(value) for name, value in design.parameters().items() if name.partition("[")[0] == field)
+    squares = [float(value) ** 2 for name, value in design.parameters().items() if name.partition("[")[0] == field]
+    return float(np.sqrt(max(squares))) or 1.0

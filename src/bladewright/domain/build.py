@@ -86,7 +86,7 @@ def passage(
 
 def _whole(blade: Blade) -> ExactBlade:
     """The exact blade without gaps, from wall to wall of the channel."""
-    exact = in_channel(blade.exact, "passage")
+    exact = in_channel(blade.exact, "a passage")
     gaps = [name for name in ("tip_clearance", "hub_clearance") if getattr(exact.design, name) is not None]
     return exact_blade(exact.design.changed(dict.fromkeys(gaps))) if gaps else exact
 
@@ -112,7 +112,7 @@ def _real_half(half: Array) -> float:
 
 
 def _check_within(blade: Blade, half: Array) -> None:
-    exact = in_channel(blade.exact, "passage")
+    exact = in_channel(blade.exact, "a passage")
     duct = Duct(
         channel=exact.channel,
         start=-exact.before,

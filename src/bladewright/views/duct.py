@@ -37,7 +37,7 @@ def draw_duct(axes: Axes, passage: "Passage") -> None:
         edge = "leading_edge" if name == "inlet" else "trailing_edge"
         line = _meridional(passage, side, np.array([end]), across)[0]
         axes.plot(*line.T, color=CURVES[edge], label=edge.replace("_", " "))
-    exact = in_channel(blade.exact, "picture")
+    exact = in_channel(blade.exact, "a picture")
     clearance = exact.clearance
     if clearance is not None:
         inside = np.linspace(0.0, 1.0, 101)

@@ -18,7 +18,7 @@ CURVES = {"hub": BLUE, "shroud": ORANGE, "leading_edge": GREEN, "trailing_edge":
 
 def draw_meridional(axes: Axes, blade: "Blade") -> None:
     """Draws the channel in the (x, r) plane, or (x, z) of a cascade, equal lengths equal on both axes."""
-    exact = in_channel(blade.exact, "picture")
+    exact = in_channel(blade.exact, "a picture")
     u = np.linspace(-exact.before, 1.0 + exact.after, 201)
     inside = np.linspace(0.0, 1.0, 201)
     noses = blade_outline(blade) * MILLIMETRES

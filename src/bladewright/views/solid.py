@@ -110,7 +110,7 @@ def blade_meshes(
 
 def _hub(blade: "Blade", turns: list[float]) -> list[Mesh]:
     """The wall that the blades drawn stand on [mm], a little longer than they are; of a whole row with its bore."""
-    exact = in_channel(blade.exact, "picture")
+    exact = in_channel(blade.exact, "a picture")
     margin = max(exact.before, exact.after, 0.06)
     wall = MILLIMETRES * np.real(exact.full_channel.curve("hub")(np.linspace(-margin, 1.0 + margin, 61)))
     feet = MILLIMETRES * np.concatenate(
@@ -147,7 +147,7 @@ def viewpoint(blade: "Blade") -> Reals:
     """Right, up and towards of a viewer who looks at the smaller end of the hub, or from upstream on an even one."""
     if not blade.exact.mapping.revolved:
         return axes_towards((-0.55, -0.75, 0.50), (0.0, 0.0, 1.0))
-    first, last = np.real(in_channel(blade.exact, "picture").full_channel.hub.points)[[0, -1]]
+    first, last = np.real(in_channel(blade.exact, "a picture").full_channel.hub.points)[[0, -1]]
     narrows = first[1] - last[1] > 0.15 * first[1]
     smaller, larger = (last, first) if narrows else (first, last)
     return axes_towards((0.74 if smaller[0] > larger[0] else -0.74, 0.42, 0.52), (0.0, 0.0, 1.0))
