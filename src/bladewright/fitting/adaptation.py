@@ -58,7 +58,7 @@ def adapted(task: Task, first: Design, aim: Aim, *, base: Structure | None, gues
         found = identified(few, found)
         if found.rms < EXACT:
             return searched(many, found.design), ""
-    standing = aim.parameters is not None and _in_rows(found)
+    standing, everything = aim.parameters is not None and _in_rows(found), few
     if standing:
         few, many = _on_walls(few), _on_walls(many)
     if base is not None and not found.interrupted and _roomy(found, aim):
@@ -66,6 +66,7 @@ def adapted(task: Task, first: Design, aim: Aim, *, base: Structure | None, gues
     found, reason = _enough(few, found, aim)
     if standing:
         reason = STANDING
+        found = found if found.interrupted else searched(everything, found.design, rounds=QUICK)
     if found.interrupted:
         return found, reason
     found = searched(many, found.design)

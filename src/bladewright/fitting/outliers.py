@@ -38,6 +38,8 @@ CHANCE = 3.0
 """by how much more than the noise distances may usually be by chance, of the root of the number of points"""
 GROUP, FEW = 0.05, 20
 """largest group of outliers, of the points, and however few there are"""
+BESIDE, WRONG = 0.02, 0.2
+"""how near an end of the blade points are, in v, and the part of them which past it shows that the end is wrong"""
 MOST = 0.15
 """part of the points from which it is the design that lies off, and not they"""
 AROUND, SITES = 64, 5000
@@ -103,8 +105,8 @@ def outliers_of(
     far = distances > least
     if not np.any(far):
         return far
+    beyond = (past > least) & ~_short_of_ends(far & (past > least), on)
     largest = min(max(FEW, int(GROUP * len(heights))), len(heights) // 5)
-    beyond = past > least
     # what differs by more than the noise is no noise
     noisy = misfit == 0.0 and noise > near
     slopes = np.zeros(len(heights)) if noisy else _slopes(heights, level, misfit, around)
@@ -114,6 +116,15 @@ def outliers_of(
     # around an edge a few points are all that tells of a radius: it may be wrong alone
     found |= steady & (_sizes(label) <= largest) & ~np.isin(label, label[edge & steady])
     return found if np.mean(found) < MOST else np.zeros_like(found)
+
+
+def _short_of_ends(past: NDArray[np.bool_], on: Feet) -> NDArray[np.bool_]:
+    """Whether points (n,) are at an end of the blade that so many are past that it is the end which is wrong."""
+    wrong = np.zeros(len(past), dtype=bool)
+    for beside in (on.v < BESIDE, on.v > 1.0 - BESIDE):
+        if np.count_nonzero(past & beside) > WRONG * np.count_nonzero(beside):
+            wrong |= beside
+    return wrong
 
 
 def _local(off: Reals, around: Surroundings) -> Reals:

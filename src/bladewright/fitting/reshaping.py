@@ -72,6 +72,8 @@ def _plain(values: Reals) -> Law:
 
 def _grid(laws: tuple[Law, ...], count: int, span: int, structure: Structure) -> Reals:
     """Control points (count, span) of a thickness, positive."""
+    if len(laws) == count and all((len(law) if isinstance(law, tuple) else 1) == span for law in laws):
+        return np.array([law if isinstance(law, tuple) else (law,) for law in laws], dtype=float)
     rows = np.stack([np.linalg.lstsq(law_basis(span, PLACES), _values(law), rcond=None)[0] for law in laws])
     if len(laws) != count:
         # where the samples of the sides stand, the law matters most
