@@ -204,3 +204,18 @@ def test_a_blade_from_sections_has_no_passage_yet_and_says_so(blades):
 def test_what_cannot_be_is_refused_with_its_cause(design, message):
     with pytest.raises(DesignError, match=message):
         design.build()
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "message"),
+    [
+        ("[[0.0, 80.0]", '[["near", 80.0]', r'leading_edge.points\[0\].x is "near": a number'),
+        ("points = [[-60.0, 90.0]", "pts = [[-60.0, 90.0]", "flow_path.hub.pts does not exist"),
+        ("[0.0, 128.0]", "[0.0, true]", r"flow_path.stream_surfaces\[0\].points\[1\].r is true: a number"),
+    ],
+)
+def test_a_meridian_that_a_file_gets_wrong_is_refused_where_it_is_wrong(old, new, message):
+    text = text_of(STATOR)
+    assert old in text
+    with pytest.raises(DesignError, match=message):
+        design_from(parsed(text.replace(old, new, 1), "file"), "file")

@@ -3,7 +3,7 @@
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import Literal
+from typing import Annotated, Literal
 
 import numpy as np
 
@@ -13,6 +13,7 @@ from bladewright.designs import Part, Points, parameter
 from bladewright.errors import DesignError
 from bladewright.numerics.elementary import Array
 from bladewright.section import checks
+from bladewright.section.alternatives import ByKey
 from bladewright.section.laws import stacked
 
 
@@ -104,7 +105,7 @@ class StraightsAndArcs(_Curve):
         return rounded_corners(_array(self.corners, metre), radii, metre)
 
 
-Meridian = ThroughPoints | ControlPolygon | StraightsAndArcs
+Meridian = Annotated[ThroughPoints | ControlPolygon | StraightsAndArcs, ByKey()]
 """A curve in (x, r) of any kind: which one follows from what is given."""
 MERIDIANS = (ThroughPoints, ControlPolygon, StraightsAndArcs)
 """The kinds of meridians."""

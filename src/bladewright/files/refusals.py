@@ -77,6 +77,14 @@ def _told(annotation: Any) -> list[tuple[type[Any], dict[str, Any]]]:
     return [(each, own) for each in parts if (own := tags(each))]
 
 
+def _arm(annotation: Any, step: int | str) -> type[Any] | None:
+    """The part of a union that a step names: by the value that tells it, or by its class where its keys tell it."""
+    arms = get_args(annotation) if get_origin(annotation) in (Union, UnionType) else ()
+    parts: list[Any] = [each for each in arms if is_dataclass(each)]
+    named = (each for each in parts if step in tags(each).values() or (not tags(each) and step == each.__name__))
+    return next(named, None)
+
+
 class _Place:
     """Where in a file pydantic stopped: the dotted path, the field's type there, the table that holds it."""
 
@@ -87,9 +95,9 @@ class _Place:
         self.depth_in_list = 0
         node: Any = document
         for step in loc:
-            part = next((part for part, own in _told(self.annotation) if step in own.values()), None)
+            part = _arm(self.annotation, step)
             if part is not None:
-                self.annotation = part
+                self.annotation, self.depth_in_list = part, 0
             elif isinstance(step, str) and self.depth_in_list == 0 and isinstance(node, Mapping):
                 self._enter(step)
                 node = node.get(step)

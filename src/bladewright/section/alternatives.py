@@ -1,6 +1,8 @@
 """Parts that stand for each other in a design, told apart by a literal field."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass, fields
+from difflib import get_close_matches
 from typing import Any, Literal, get_args, get_origin, get_type_hints
 
 
@@ -21,6 +23,26 @@ class ByField:
     def tag(self, part: type[Any]) -> str:
         """The value by which a part is told."""
         return str(tags(part)[self.name])
+
+
+@dataclass(frozen=True)
+class ByKey:
+    """Annotates a union of parts that are told apart in files by the first field of each, which it must have."""
+
+    def __get_pydantic_core_schema__(self, source: Any, handler: Any) -> Any:
+        """How a file is validated: by the part whose first field is there, or is the nearest to a key that is."""
+        from pydantic_core import core_schema
+
+        first = {fields(each)[0].name: each.__name__ for each in get_args(source)}
+
+        def told(value: Any) -> str | None:
+            if not isinstance(value, Mapping):
+                return type(value).__name__
+            near = [key for given in value for key in get_close_matches(given, first, n=1, cutoff=0.6)]
+            return next((first[key] for key in (*(key for key in first if key in value), *near, *first)), None)
+
+        choices = {each.__name__: handler.generate_schema(each) for each in get_args(source)}
+        return core_schema.tagged_union_schema(choices, discriminator=told)
 
 
 def tags(part: type[Any]) -> dict[str, Any]:
