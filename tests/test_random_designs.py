@@ -12,7 +12,7 @@ import pytest
 sys.path.insert(0, str(Path(__file__).parents[1] / "design"))
 import random_designs
 
-COUNT = 50
+COUNT = 36
 
 
 @pytest.fixture(scope="module")

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from matplotlib.figure import Figure
 
+from bladewright.blade.exact import ExactBlade
 from bladewright.views.solid import _places, draw_solid, viewpoint
 
 
@@ -77,6 +78,8 @@ def test_a_blade_without_near_neighbours_stands_alone(cascade_drawn):
 @pytest.mark.parametrize(("hub", "upstream"), [((50, 20), False), ((20, 50), True), ((20, 20), True)])
 def test_the_viewer_looks_at_the_smaller_end_of_the_hub(hub, upstream):
     channel = SimpleNamespace(hub=SimpleNamespace(points=np.array([[0.0, hub[0]], [40.0, hub[1]]])))
-    mapping = SimpleNamespace(revolved=True)
-    towards = viewpoint(SimpleNamespace(exact=SimpleNamespace(full_channel=channel, mapping=mapping)))[2]
+    exact = object.__new__(ExactBlade)
+    for name, value in (("full_channel", channel), ("mapping", SimpleNamespace(revolved=True))):
+        object.__setattr__(exact, name, value)
+    towards = viewpoint(SimpleNamespace(exact=exact))[2]
     assert (towards[0] < 0.0) == upstream

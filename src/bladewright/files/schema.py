@@ -2,6 +2,7 @@
 
 from collections.abc import Iterator
 from dataclasses import fields, is_dataclass
+from functools import cache
 from typing import Any, get_args, get_type_hints
 
 from pydantic import TypeAdapter
@@ -72,6 +73,13 @@ def _inherited(kind: type[Part], name: str) -> str | None:
     """The description of a field that a base class has declared; pydantic reads those of the class itself."""
     for base in kind.__mro__[1:]:
         if is_dataclass(base) and name in base.__annotations__:
-            found: str | None = TypeAdapter(base).json_schema()["properties"][name].get("description")
+            found: str | None = _properties(base)[name].get("description")
             return found
     return None
+
+
+@cache
+def _properties(kind: type) -> dict[str, Any]:
+    """The properties of a class as pydantic describes them."""
+    found: dict[str, Any] = TypeAdapter(kind).json_schema()["properties"]
+    return found
