@@ -8,6 +8,7 @@ from matplotlib.figure import Figure
 
 from bladewright.blade.blade import Blade
 from bladewright.blade.unified import UnifiedBlade
+from bladewright.designs import Design
 from bladewright.domain.passage import Passage
 from bladewright.domain.section import SectionPassage
 from bladewright.errors import DesignError
@@ -86,7 +87,12 @@ def passage_view(passage: Passage, path: str | Path) -> None:
 
 
 def sheet(design: Drawable, blade: Built | None = None) -> Figure:
-    """The figure that `picture` writes."""
+    """The figure that `picture` writes; DesignError for a design of another family than the unified one."""
+    if isinstance(design, Design) and not isinstance(design, UnifiedBlade | UnifiedSection):
+        raise DesignError(
+            f"a picture is asked of a {type(design).__name__}, but is made for the unified family only; there are its "
+            "solid, its sections and its derivatives"
+        )
     built: Any = design if isinstance(design, Built) else (blade or design.build())
     asked: Any = None if isinstance(design, Section | SectionPassage) else design
     with manner():
