@@ -12,6 +12,15 @@ if TYPE_CHECKING:
     from bladewright import meshing as meshing
     from bladewright.blade.blade import Blade as Blade
     from bladewright.blade.channel import Channel as Channel
+    from bladewright.blade.families import CamberAngleBlade as CamberAngleBlade
+    from bladewright.blade.families import CurvatureMeanlineBlade as CurvatureMeanlineBlade
+    from bladewright.blade.families import ProfileBlade as ProfileBlade
+    from bladewright.blade.families import SuctionPressureBlade as SuctionPressureBlade
+    from bladewright.blade.families import WedgeDiffuserBlade as WedgeDiffuserBlade
+    from bladewright.blade.flow_path import FlowPath as FlowPath
+    from bladewright.blade.meridian import ControlPolygon as ControlPolygon
+    from bladewright.blade.meridian import StraightsAndArcs as StraightsAndArcs
+    from bladewright.blade.meridian import ThroughPoints as ThroughPoints
     from bladewright.blade.prismatic import prismatic as prismatic
     from bladewright.blade.throat import Throat as Throat
     from bladewright.blade.throat import throat as throat
@@ -86,9 +95,12 @@ _HOMES = {
     "C4": "section.profiles.c4",
     "CadError": "errors",
     "CamberAngle": "section.camber_angle",
+    "CamberAngleBlade": "blade.families",
     "CamberAngleSection": "section.camber_angle",
     "Channel": "blade.channel",
+    "ControlPolygon": "blade.meridian",
     "CurvatureMeanline": "section.curvature_meanline",
+    "CurvatureMeanlineBlade": "blade.families",
     "CurvatureMeanlineSection": "section.curvature_meanline",
     "Curve": "nurbs.curve",
     "CurveFit": "fitting.curves",
@@ -99,6 +111,7 @@ _HOMES = {
     "Fit": "fitting.result",
     "FitError": "errors",
     "FlatPlate": "section.profiles.flat_plate",
+    "FlowPath": "blade.flow_path",
     "GeometryError": "errors",
     "MeshError": "errors",
     "ModifiedNaca": "section.thickness.modified_naca",
@@ -110,21 +123,26 @@ _HOMES = {
     "NetJacobian": "derivatives.jacobian",
     "Passage": "domain.passage",
     "PointsProfile": "section.profiles.points",
+    "ProfileBlade": "blade.families",
     "ProfileFit": "fitting.profile",
     "ProfileSection": "section.profiles.kinds",
     "QuarticSpline": "section.thickness.quartic",
     "SectionPassage": "domain.section",
+    "StraightsAndArcs": "blade.meridian",
     "SuctionPressure": "section.suction_pressure.part",
+    "SuctionPressureBlade": "blade.families",
     "SuctionPressureSection": "section.suction_pressure.part",
     "Surface": "nurbs.surface",
     "SurfaceFit": "fitting.surfaces",
     "SurfacePoints": "derivatives.places",
     "Throat": "blade.throat",
+    "ThroughPoints": "blade.meridian",
     "TrimmedSurface": "nurbs.trimmed",
     "UnifiedBlade": "blade.unified",
     "UnifiedSection": "section.unified",
     "Variables": "derivatives.variables",
     "WedgeDiffuser": "section.wedge_diffuser",
+    "WedgeDiffuserBlade": "blade.families",
     "WedgeDiffuserSection": "section.wedge_diffuser",
     "Wennerstrom": "section.thickness.wennerstrom",
     "fit": "fitting.fit",
@@ -139,9 +157,9 @@ _HOMES = {
     "read_cloud": "files.clouds",
     "read_design": "files.reading",
     "read_parablade": "files.parablade",
-    "section_passage": "domain.section",
     "read_surface_points": "files.su2",
     "read_surface_sensitivity": "files.su2",
+    "section_passage": "domain.section",
     "sensitivity": "derivatives.sensitivity",
     "surface_points": "derivatives.places",
     "throat": "blade.throat",

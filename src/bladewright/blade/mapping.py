@@ -128,11 +128,8 @@ class Conformal(Mapping):
         return radius / (fraction * lengths) + (-climb if trailing else climb)
 
 
-class Cascade(Mapping):
-    """The plane (m, y) of a linear cascade's stream surface, a cylinder along y: lengths are true."""
-
-    revolved = False
-    plane = "m-y"
+class TrueLengths(Mapping, ABC):
+    """A plane whose abscissa is the meridional length."""
 
     def density(self, position: Array, slope: Array) -> Array:
         del position
@@ -148,6 +145,13 @@ class Cascade(Mapping):
     def edge_curvature(self, fraction: Array, lengths: Array, radius: Array, climb: Array, trailing: bool) -> Array:
         del radius, climb, trailing
         return 1.0 / (fraction * lengths)
+
+
+class Cascade(TrueLengths):
+    """The plane (m, y) of a linear cascade's stream surface, a cylinder along y: lengths are true."""
+
+    revolved = False
+    plane = "m-y"
 
 
 class Paper(Mapping):

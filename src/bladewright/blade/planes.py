@@ -2,13 +2,13 @@
 
 import numpy as np
 
-from bladewright.blade.mapping import Cascade, Conformal, Mapping, Taylor
+from bladewright.blade.mapping import Cascade, Conformal, Mapping, Taylor, TrueLengths
 from bladewright.errors import DesignError
-from bladewright.numerics.elementary import Array, dot, length
+from bladewright.numerics.elementary import Array
 from bladewright.section import checks
 
 
-class Unrolled(Mapping):
+class Unrolled(TrueLengths):
     """The plane (m, r theta) of a stream surface of revolution: its abscissa is a length, r that at the point.
 
     Angles are true only where theta = 0 or r stands still. Voss et al. 2025, section 2.
@@ -17,21 +17,6 @@ class Unrolled(Mapping):
     revolved = True
     plane = "m-r*theta"
     keeps_ordinate = False
-
-    def density(self, position: Array, slope: Array) -> Array:
-        del position
-        return length(slope)
-
-    def density_slope(self, position: Array, slope: Array, bend: Array) -> Array:
-        del position
-        return dot(slope, bend) / length(slope)
-
-    def scale(self, radius: Array, lengths: Array) -> Array:
-        return lengths + 0.0 * radius
-
-    def edge_curvature(self, fraction: Array, lengths: Array, radius: Array, climb: Array, trailing: bool) -> Array:
-        del radius, climb, trailing
-        return 1.0 / (fraction * lengths)
 
     def start(self, tangential: Array, radius: Array, lengths: Array) -> Array:
         del lengths
@@ -46,12 +31,13 @@ class Unrolled(Mapping):
         return ordinate * radius.inverse()
 
 
-class Level(Cascade):
+class Level(TrueLengths):
     """The plane (x, y) of a linear cascade: the section as it is seen along the span.
 
     Raises DesignError where a stream line does not go forwards in x.
     """
 
+    revolved = False
     plane = "x-y"
 
     def density(self, position: Array, slope: Array) -> Array:

@@ -1,6 +1,6 @@
 """More control points where the deviation is: each law in turn is given one more, and the gain is foreseen."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -116,38 +116,38 @@ def gains(found: Found, emphasis: Reals | None = None) -> list[tuple[float, Step
     if emphasis is not None:
         roots[: len(emphasis)] = np.sqrt(emphasis)
     before = _reduced(slopes, rows, roots, problem.noise)
-    result = []
-    for step in steps_from(structure_of(found.design)):
-        own = [path for path in found.design.parameters() if path.startswith(step.fields)]
-        if not set(own) <= set(problem.paths):
-            continue
-        kept = [i for i, path in enumerate(problem.paths) if path not in own]
-        try:
-            _, columns = _at(found, step)
-        except DesignError:
-            continue
-        after = _reduced(np.concatenate([slopes[:, kept], columns], axis=1), rows, roots, problem.noise)
-        result.append((before - after, step))
+    result = [
+        (before - _reduced(wider, rows, roots, problem.noise), step)
+        for step, _, wider in _stepped(found, slopes, steps_from(structure_of(found.design)))
+    ]
     return sorted(result, key=lambda pair: -pair[0] / pair[1].parameters)
 
 
 def losses(found: Found) -> list[tuple[float, Step]]:
-    """What each step back would add to the sum of squares, foreseen linearly, least for each parameter first."""
+    """What each step back would leave of the sum of squares, foreseen linearly, least for each parameter first."""
     problem = found.problem
     slopes = problem.measures.slopes(found.state, problem.paths) * problem.scales.size
     roots = np.ones(len(slopes))
-    result = []
-    for step in steps_back(structure_of(found.design)):
+    result = [
+        (_reduced(narrower, rows, roots, problem.noise), step)
+        for step, rows, narrower in _stepped(found, slopes, steps_back(structure_of(found.design)))
+    ]
+    return sorted(result, key=lambda pair: pair[0] / pair[1].parameters)
+
+
+def _stepped(found: Found, slopes: Reals, steps: Sequence[Step]) -> Iterator[tuple[Step, Reals, Reals]]:
+    """The steps of laws that are free, with the residuals after each and their derivatives (m, k)."""
+    paths = found.problem.paths
+    for step in steps:
         own = [path for path in found.design.parameters() if path.startswith(step.fields)]
-        if not set(own) <= set(problem.paths):
+        if not set(own) <= set(paths):
             continue
-        kept = [i for i, path in enumerate(problem.paths) if path not in own]
+        kept = [i for i, path in enumerate(paths) if path not in own]
         try:
             rows, columns = _at(found, step)
         except DesignError:
             continue
-        result.append((_reduced(np.concatenate([slopes[:, kept], columns], axis=1), rows, roots, problem.noise), step))
-    return sorted(result, key=lambda pair: pair[0] / pair[1].parameters)
+        yield step, rows, np.concatenate([slopes[:, kept], columns], axis=1)
 
 
 def _reduced(slopes: Reals, rows: Reals, roots: Reals, noise: float) -> float:
