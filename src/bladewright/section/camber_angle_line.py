@@ -134,9 +134,9 @@ class AngleLine:
     def _panel(self, start: Array, end: Array) -> Array:
         """Integral (..., k) of tan(beta) from start to end (..., k), between which it is smooth."""
         share, weight = gauss(ORDER)
-        width = end - start
-        total: Array = np.zeros(())
-        for each, part in zip(share, weight, strict=True):
-            turning = self.turning(Series([start + each * width])).value
-            total = total + part * np.tan(turning)
-        return total * width
+        start, width = np.broadcast_arrays(start, end - start)
+        places = start[..., None] + width[..., None] * share
+        turning = self.turning(Series([places.reshape(*places.shape[:-2], -1)])).value
+        rates = np.tan(turning)
+        parts: Array = rates.reshape(*rates.shape[:-1], -1, ORDER) @ weight
+        return parts * width
