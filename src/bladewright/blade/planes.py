@@ -73,7 +73,7 @@ class Counted(Conformal):
 
 
 PLANES: dict[str, dict[str, type[Mapping]]] = {
-    "annular": {"m'-theta": Conformal, "m-r*theta": Unrolled},
+    "annular": {"m'-theta": Conformal, "m-r*theta": Unrolled, "counted-m'-theta": Counted},
     "linear": {"m-y": Cascade, "x-y": Level},
 }
 """The planes that there are of each arrangement."""

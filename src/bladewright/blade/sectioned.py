@@ -39,8 +39,9 @@ class SectionedBlade(Design):
     """circumferential position of the leading edge, annular; 0 where not given [deg]"""
     leading_edge_y: Law | None = parameter("length", default=None)
     """tangential position of the leading edge, linear; 0 where not given [length]"""
-    plane: Literal["m'-theta", "m-r*theta", "x-y"] = "m'-theta"
-    """the plane of each stream surface that sections are laid out in; in a cascade the first two are (m, y)"""
+    plane: Literal["m'-theta", "m-r*theta", "x-y", "counted-m'-theta"] = "m'-theta"
+    """the plane of each stream surface that sections are laid out in; in a cascade the first two are (m, y). The last
+    takes m' as the points of hub, shroud and stream surfaces count it, whose spacing is "conformal", as in T-Blade3"""
     flow_path: FlowPath
     """hub, shroud and stream surfaces"""
     leading_edge: Meridian
@@ -61,8 +62,8 @@ class SectionedBlade(Design):
     def __post_init__(self) -> None:
         check_labels(self)
         checks.choice("arrangement", self.arrangement, ["annular", "linear"])
-        planes = ["m'-theta", "m-r*theta"] if self.arrangement == "annular" else ["m'-theta", "m-r*theta", "x-y"]
-        checks.choice("plane", self.plane, planes)
+        own = ["counted-m'-theta"] if self.arrangement == "annular" else ["x-y"]
+        checks.choice("plane", self.plane, ["m'-theta", "m-r*theta", *own])
         check_arrangement(self)
         check_range(self, "tolerance", 1e-9, 1e-2)
         if not isinstance(self.flow_path, FlowPath):

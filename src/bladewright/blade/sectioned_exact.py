@@ -13,7 +13,7 @@ from bladewright.blade.meant import EndWall, Meant
 from bladewright.blade.meridian import Meridian, ThroughPoints
 from bladewright.blade.meridian_line import MeridianLine, real_first
 from bladewright.blade.outline_stations import OutlineStations, StaggeredSections
-from bladewright.blade.planes import plane_of
+from bladewright.blade.planes import Counted, plane_of
 from bladewright.blade.sectioned import SectionedBlade
 from bladewright.blade.stream_surfaces import StreamSurfaces, stream_surfaces
 from bladewright.errors import DesignError
@@ -131,6 +131,17 @@ class SectionedExact(Meant):
         t = real_first(self.survey.lines.rows([0, -1]).t(u), 2)
         return np.stack([self.surfaces.wall_parameter(name, t[i]) for i, name in enumerate(("hub", "shroud"))])
 
+    @cached_property
+    def plan(self) -> Plan:
+        """Walls, edges, stream lines and stream surfaces in the meridional plane."""
+        return flow_path_plan(self)
+
+    def wall_line(self, name: str, u: Reals) -> Reals:
+        v = np.array([("hub", "shroud").index(name)], dtype=np.float64)
+        start, end = (float(real_first(t, 1)[0]) for t in self.bladed.edges(v))
+        t = np.unique(np.clip(start + (end - start) * u, self.surfaces.low, self.surfaces.high))
+        return np.asarray(np.real(self.surfaces.real().position(v, t[None])[0]))
+
 
 def sectioned_exact(design: SectionedBlade, *, checked: bool = True) -> SectionedExact:
     """The exact blade of a design of sections.
@@ -146,7 +157,8 @@ def sectioned_exact(design: SectionedBlade, *, checked: bool = True) -> Sectione
         )
     except DesignError as error:
         raise DesignError(f"flow_path: {error}") from error
-    bladed = between(surfaces, design.leading_edge.line(metre), design.trailing_edge.line(metre))
+    edges = [edge.line(metre) for edge in (design.leading_edge, design.trailing_edge)]
+    bladed = between(surfaces, *edges, counted=isinstance(mapping, Counted))
     exact = SectionedExact(design=design, mapping=mapping, surfaces=surfaces, bladed=bladed)
     if checked:
         outline = exact.survey.plane.outline
