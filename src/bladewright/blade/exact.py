@@ -10,6 +10,7 @@ from bladewright.blade.knots import breaks_along_u, breaks_along_v
 from bladewright.blade.mapping import Mapping, mapping_of
 from bladewright.blade.meant import EndWall, Meant
 from bladewright.blade.meridional import Meridional, meridional
+from bladewright.blade.plan import Plan, channel_plan
 from bladewright.blade.stations import Stations, stations_at
 from bladewright.blade.streamlines import stream_lines
 from bladewright.blade.unified import UnifiedBlade
@@ -67,6 +68,14 @@ class ExactBlade(Meant):
 
     def wall_places(self, u: Reals) -> Reals:
         return u
+
+    @cached_property
+    def plan(self) -> Plan:
+        """Walls, edges and stream lines in the meridional plane."""
+        return channel_plan(self)
+
+    def wall_line(self, name: str, u: Reals) -> Reals:
+        return np.real(self.full_channel.curve(name)(u))
 
     @property
     def tip_knots(self) -> Reals | None:

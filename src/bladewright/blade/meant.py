@@ -6,6 +6,7 @@ from typing import Any, NamedTuple, Self
 
 from bladewright.blade.laid import Laid
 from bladewright.blade.mapping import Mapping
+from bladewright.blade.plan import Plan
 from bladewright.nurbs.basis import Reals
 from bladewright.nurbs.curve import Curve
 
@@ -56,6 +57,15 @@ class Meant(ABC):
     @abstractmethod
     def wall_places(self, u: Reals) -> Reals:
         """Parameters (2, k) of both walls' meridians at u (2, k) on the first and the last stream line."""
+
+    @property
+    @abstractmethod
+    def plan(self) -> Plan:
+        """Walls, edges as asked for and stream lines in the meridional plane."""
+
+    @abstractmethod
+    def wall_line(self, name: str, u: Reals) -> Reals:
+        """Points (k, 2) of the hub or shroud by u, past the edges as far as there is a wall."""
 
     @property
     def tip_knots(self) -> Reals | None:

@@ -13,6 +13,7 @@ from bladewright.blade.meant import EndWall, Meant
 from bladewright.blade.meridian import Meridian, ThroughPoints
 from bladewright.blade.meridian_line import MeridianLine, real_first
 from bladewright.blade.outline_stations import OutlineStations, StaggeredSections
+from bladewright.blade.plan import Plan, flow_path_plan
 from bladewright.blade.planes import Counted, plane_of
 from bladewright.blade.sectioned import SectionedBlade
 from bladewright.blade.stream_surfaces import StreamSurfaces, stream_surfaces
