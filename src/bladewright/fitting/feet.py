@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
+from bladewright.fitting.curve_feet import walked
 from bladewright.nurbs.basis import Reals
 from bladewright.nurbs.bezier import Patches, patches, sampled
 from bladewright.nurbs.curve import Curve
@@ -71,13 +72,25 @@ def feet(points: Reals, sides: Sequence[Side], hint: Feet | None = None, *, conv
             continue
         for part in np.array_split(np.arange(len(rows)), max(1, -(-len(rows) // AT_ONCE))):
             where = rows[part]
-            found = polished(on, points[where], patch[part], local[part], converged=converged)
-            nearer = found.square < best[where]
+            square, *place = _descended(on, points[where], patch[part], local[part], converged)
+            nearer = square < best[where]
             where = where[nearer]
-            best[where] = found.square[nearer]
-            place = _parameters(on, found)
+            best[where] = square[nearer]
             around[where], v[where] = place[0][nearer], place[1][nearer]
     return placed(points, sides, (around < 0.0).astype(np.intp), np.abs(around), v)
+
+
+def _descended(
+    on: Patches, points: Reals, patch: NDArray[np.intp], local: Reals, converged: float
+) -> tuple[Reals, Reals, Reals]:
+    """Squared distances (m,) where descents from places on patches end, and both parameters there."""
+    if not (on.degrees[1] or on.rational):
+        low = on.low[patch, 0]
+        start = low + local[:, 0] * (on.high[patch, 0] - low)
+        around, square = walked(on, points, start, converged=converged)
+        return square, around, np.zeros(len(points))
+    found = polished(on, points, patch, local, converged=converged)
+    return found.square, *_parameters(on, found)
 
 
 Start = tuple[NDArray[np.intp], NDArray[np.intp], Reals]

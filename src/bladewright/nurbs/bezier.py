@@ -1,7 +1,7 @@
 """Bezier pieces of curves and surfaces, and the algebra of Bernstein coefficients."""
 
 from dataclasses import dataclass
-from functools import cache
+from functools import cache, lru_cache
 from math import comb
 
 import numpy as np
@@ -148,7 +148,14 @@ def _binomials(degree: int) -> Reals:
 
 
 def _pieces(knots: Reals, degree: int, net: Reals) -> Reals:
-    ends = breaks(knots)
-    full = np.concatenate([knots[:1], np.repeat(ends, degree), knots[-1:]])
-    control = np.tensordot(knot_change(knots, degree, full), net, axes=1)
-    return np.stack([control[i * degree : i * degree + degree + 1] for i in range(len(ends) - 1)])
+    control = np.tensordot(_extraction(np.asarray(knots, dtype=np.float64).tobytes(), degree), net, axes=1)
+    starts = np.arange((len(control) - 1) // degree) * degree
+    return np.asarray(control[starts[:, None] + np.arange(degree + 1)])
+
+
+@lru_cache(maxsize=32)
+def _extraction(knots: bytes, degree: int) -> Reals:
+    """The matrix to the control points of the pieces, which share those at the breaks; knots as they lie in memory."""
+    plain = np.frombuffer(knots)
+    full = np.concatenate([plain[:1], np.repeat(breaks(plain), degree), plain[-1:]])
+    return knot_change(plain, degree, full)
