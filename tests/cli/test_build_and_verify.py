@@ -174,3 +174,27 @@ def test_a_cad_file_that_is_missing_or_a_directory_is_refused(run, vane_file, tm
         assert (found.status, found.err.count("\n")) == (2, 1), found
         assert str(path) in found.err
         assert "fault of bladewright" not in found.err
+
+
+def test_several_designs_are_made_side_by_side_though_one_is_refused(run, vane_file, tmp_path):
+    text, other, broken = vane_file.read_text(), tmp_path / "other.toml", tmp_path / "broken.toml"
+    other.write_text(text.replace('name = "vane"', 'name = "other"'))
+    broken.write_text('family = "unified"\nname = "broken"\n')
+    asked = run("build", vane_file, broken, other, "--as", "step", "-o", tmp_path / "made", "--json")
+    assert asked.status == 2
+    assert [each["name"] for each in asked.json["designs"]] == ["vane", "other"]
+    assert asked.json["passed"] is False
+    assert [Path(each["file"]).name for each in asked.json["refused"]] == ["broken.toml"]
+    assert asked.err.startswith("bladewright: ")
+    assert "broken.toml" in asked.err
+    names = {"vane.step", "vane.roundtrip.json", "other.step", "other.roundtrip.json"}
+    assert {path.name for path in (tmp_path / "made").iterdir()} == names
+
+
+def test_designs_whose_files_would_be_the_same_are_refused(run, vane_file, tmp_path):
+    twin = tmp_path / "twin.toml"
+    twin.write_text(vane_file.read_text())
+    asked = run("build", vane_file, twin, "-o", tmp_path / "made")
+    assert asked.status == 2
+    assert "both named 'vane'" in asked.err
+    assert not (tmp_path / "made").exists()

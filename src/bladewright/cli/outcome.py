@@ -25,6 +25,8 @@ class Outcome:
     """for people, the failures in it; nothing is printed where it is empty"""
     failures: tuple[str, ...] = field(default=())
     """checks that failed, each a paragraph"""
+    refusals: tuple[str, ...] = field(default=())
+    """inputs among several that were refused, each a paragraph"""
     interrupted: bool = False
     """whether the work was broken off, and what is here is the best until then"""
 
@@ -38,8 +40,12 @@ def printed(outcome: Outcome, call: Call) -> int:
     if call.quiet or call.as_json or not sys.stdout.isatty():
         for failure in outcome.failures:
             click.echo(one_paragraph(failure), err=True)
+    for refusal in outcome.refusals:
+        click.echo(f"bladewright: {one_paragraph(refusal)}", err=True)
     if outcome.interrupted:
         return INTERRUPTED
+    if outcome.refusals:
+        return 2
     return 1 if outcome.failures else 0
 
 

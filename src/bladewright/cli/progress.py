@@ -18,7 +18,9 @@ class Bar(Protocol):
         """Say that so many steps are done."""
 
 
-class _Silent:
+class Silent:
+    """A bar that shows nothing."""
+
     def set_description_str(self, text: str) -> None:
         pass
 
@@ -30,7 +32,7 @@ class _Silent:
 def progress(steps: int, call: Call) -> Iterator[Bar]:
     """A bar of so many steps, gone when the work is done."""
     if call.quiet or not sys.stderr.isatty():
-        yield _Silent()
+        yield Silent()
         return
     from tqdm import tqdm
 
