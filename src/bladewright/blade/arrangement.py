@@ -20,11 +20,30 @@ def check_arrangement(design: "UnifiedBlade | SectionedBlade") -> None:
             mine = fields_of[own][fields_of[other].index(name)]
             raise DesignError(f"{name} is given, but arrangement is '{own}': give {mine}, or arrangement = '{other}'")
     count, place = fields_of[own]
+    _check_place(design, place, fields_of[other][1])
     if getattr(design, count) is None:
         raise DesignError(f"{count} is missing: arrangement '{own}' needs it")
-    put(design, place, checks.law(place, 0.0 if getattr(design, place) is None else getattr(design, place)))
     if own == "annular":
         put(design, count, checks.integer(count, design.blade_count, 1, 10_000, "a whole number of blades is needed"))
     else:
         put(design, count, checks.number(count, design.pitch))
         checks.between(count, design.pitch, 0.0, float("inf"), "the pitch must be positive")
+
+
+def _check_place(design: "UnifiedBlade | SectionedBlade", place: str, other: str) -> None:
+    """Refuse two tangential positions; without any, the leading edge's is 0."""
+    stacking = getattr(design, "stacking", None)
+    if stacking is None:
+        given = getattr(design, place)
+        object.__setattr__(design, place, checks.law(place, 0.0 if given is None else given))
+        return
+    of = {"leading_edge_theta": "theta", "leading_edge_y": "y"}
+    if getattr(design, place) is not None:
+        raise DesignError(
+            f"{place} is given together with stacking, whose {of[place]} places the reference point: leave {place} "
+            f"out and give stacking.{of[place]}"
+        )
+    if getattr(stacking, of[other]) is not None:
+        raise DesignError(
+            f"stacking.{of[other]} is given, but arrangement is '{design.arrangement}': give stacking.{of[place]}"
+        )

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any, Literal
 from bladewright.blade.arrangement import check_arrangement
 from bladewright.blade.flow_path import FlowPath
 from bladewright.blade.meridian import Meridian, meridian_at
+from bladewright.blade.stacking import Stacking
 from bladewright.designs import Design, Law, Part, parameter
 from bladewright.errors import DesignError
 from bladewright.section import checks
@@ -20,9 +21,13 @@ if TYPE_CHECKING:
 class SectionedBlade(Design):
     """Base of the blades from sections; each has a final subclass that says of which family.
 
-    At every v the family's section is laid on the stream surface of that span fraction: its chord line reaches from the
-    leading- to the trailing-edge curve, and stands at the section's stagger. Every number of the section is a law: a
-    constant, or the control points of a clamped uniform B-spline of degree min(n - 1, 3) along the span.
+    At every v the family's section is laid on the stream surface of that span fraction, its chord line at the section's
+    stagger. Either the leading- and the trailing-edge curve say from where to where it reaches, or `stacking` says how
+    long it is and where its reference point stands. Every number of the section is a law: a constant, or the control
+    points of a clamped uniform B-spline of degree min(n - 1, 3) along the span.
+
+    `sweep` and `lean` then shift each section as it is, in its plane: its reference point, the leading edge where there
+    is no `stacking`, moves along its stream line and around the axis.
     """
 
     name: str
@@ -36,18 +41,30 @@ class SectionedBlade(Design):
     pitch: float | None = parameter("length", default=None)
     """tangential distance of neighbours in a linear cascade [length]"""
     leading_edge_theta: Law | None = parameter("deg", default=None)
-    """circumferential position of the leading edge, annular; 0 where not given [deg]"""
+    """circumferential position of the leading edge, annular; 0 where neither it nor `stacking` is given [deg]"""
     leading_edge_y: Law | None = parameter("length", default=None)
-    """tangential position of the leading edge, linear; 0 where not given [length]"""
+    """tangential position of the leading edge, linear; 0 where neither it nor `stacking` is given [length]"""
     plane: Literal["m'-theta", "m-r*theta", "x-y", "counted-m'-theta"] = "m'-theta"
     """the plane of each stream surface that sections are laid out in; in a cascade the first two are (m, y). The last
     takes m' as the points of hub, shroud and stream surfaces count it, whose spacing is "conformal", as in T-Blade3"""
     flow_path: FlowPath
     """hub, shroud and stream surfaces"""
-    leading_edge: Meridian
+    leading_edge: Meridian | None = None
     """the leading edge in (x, r), from hub to shroud or past them"""
-    trailing_edge: Meridian
+    trailing_edge: Meridian | None = None
     """the trailing edge in (x, r), from hub to shroud or past them"""
+    stacking: Stacking | None = None
+    """the sections' reference point, and where it stands; without edge curves the chord as well"""
+    sweep: Law | None = parameter("length", default=None)
+    """shift of each section after stacking, downstream, in one of `shift_directions` [length]"""
+    lean: Law | None = parameter("length", default=None)
+    """shift of each section after stacking, towards larger theta, or y; an arc at the reference point's radius after
+    the shift; a bow is a lean of three control points or more [length]"""
+    conformal_sweep: Law | None = parameter("-", default=None)
+    """further shift downstream as an increase of the plane's m', annular [-]"""
+    shift_directions: Literal["meridional-tangential", "chordwise-normal"] = "meridional-tangential"
+    """directions of sweep and lean: along the stream line and around the axis; or true sweep and true lean, along the
+    chord line and normal to it"""
     section: Any
     """the family's parameters, each a law along the span"""
     tolerance: float = 1e-6
@@ -68,10 +85,40 @@ class SectionedBlade(Design):
         check_range(self, "tolerance", 1e-9, 1e-2)
         if not isinstance(self.flow_path, FlowPath):
             raise DesignError(f"flow_path is {self.flow_path!r}: a FlowPath with hub and shroud is needed")
-        for name in ("leading_edge", "trailing_edge"):
-            meridian_at(name, getattr(self, name))
+        self._check_placing()
         if not isinstance(self.section, Part):
             raise DesignError(f"section is {self.section!r}: the family's parameters are needed")
+
+    def _check_placing(self) -> None:
+        """What says where the sections stand: edge curves, stacking, and shifts."""
+        edges = [name for name in ("leading_edge", "trailing_edge") if getattr(self, name) is not None]
+        for name in edges:
+            meridian_at(name, getattr(self, name))
+        if len(edges) == 1:
+            other = "trailing_edge" if edges[0] == "leading_edge" else "leading_edge"
+            raise DesignError(f"{other} is missing beside {edges[0]}: edge curves are given both, or none and stacking")
+        if self.stacking is None and not edges:
+            raise DesignError(
+                "neither edge curves nor stacking are given: give leading_edge and trailing_edge, curves in (x, r), or "
+                "stacking with chord and a place of the reference points"
+            )
+        if self.stacking is not None:
+            if not isinstance(self.stacking, Stacking):
+                raise DesignError(f"stacking is {self.stacking!r}: a Stacking with reference and place is needed")
+            self.stacking.check_beside(edges=bool(edges))
+            if self.flow_path.matched == "edges" and not edges:
+                raise DesignError(
+                    "flow_path.matched is 'edges', but stacking stands in place of edge curves: take matched = 'ends'"
+                )
+        checks.choice("shift_directions", self.shift_directions, ["meridional-tangential", "chordwise-normal"])
+        for name in ("sweep", "lean", "conformal_sweep"):
+            if getattr(self, name) is not None:
+                object.__setattr__(self, name, checks.law(name, getattr(self, name)))
+        if self.conformal_sweep is not None and (self.arrangement == "linear" or not self.plane.endswith("m'-theta")):
+            raise DesignError(
+                "conformal_sweep is given, but sections are laid out by lengths: it counts in m', of the planes "
+                "(m', theta) of an annular row; give sweep"
+            )
 
     @property
     def ends(self) -> tuple[str, str]:
