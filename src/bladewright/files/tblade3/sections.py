@@ -54,18 +54,21 @@ class SectionValues:
     """(m, 13) parameters of leading edges that are splines, in the order of `LEADING_EDGE`"""
 
 
-def section_spans(leading_edges: ArrayLike) -> Reals:
+def section_spans(leading_edges: ArrayLike, *, along_axis: bool = False) -> Reals:
     """Spans (m,) of sections whose leading edges lie at (x, r) (m, 2): 0 at the first, 1 at the last.
 
-    The radius is measured, or x where the leading edge extends further along the axis than in radius. Raises FileError
-    where all leading edges are in one place.
+    The radius is measured, or x where the span runs `along_axis`, as in a radial machine. Raises FileError where the
+    first and the last leading edge do not differ in it.
     """
     points = np.asarray(leading_edges, dtype=np.float64)
-    extent = np.abs(points[-1] - points[0])
-    along = 0 if extent[0] > extent[1] else 1
-    if not extent[along] > 0.0:
-        raise FileError("the leading edges of the first and the last streamline lie in one place: there is no span")
-    found: Reals = np.abs(points[:, along] - points[0, along]) / extent[along]
+    along = points[:, 0 if along_axis else 1]
+    extent = abs(along[-1] - along[0])
+    if not extent > 0.0:
+        raise FileError(
+            f"the leading edges of the first and the last streamline have the same {'x' if along_axis else 'radius'}: "
+            "T-Blade3 measures the span by it, and there is none"
+        )
+    found: Reals = np.abs(along - along[0]) / extent
     return found
 
 

@@ -1,0 +1,136 @@
+"""A T-Blade3 case's stream lines with the blade's edges on them, by T-Blade3's own rules."""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from bladewright.blade.edge_crossing import crossed
+from bladewright.blade.meridian import ThroughPoints
+from bladewright.blade.meridian_line import MeridianLine
+from bladewright.designs import Point
+from bladewright.errors import DesignError, FileError
+from bladewright.files.tblade3.records import TBlade3Case
+from bladewright.files.tblade3.sections import section_spans
+from bladewright.nurbs.basis import Reals
+
+LEAST_RADIUS = 1e-12
+"""radius, of the scale, at and below which a point of a stream line is on the axis"""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class CaseFlow:
+    """The m stream lines of a case, offsets included, and the edges' places on them by m'.
+
+    m' is counted from a line's first point on, the chords over the mean radii of their ends; x and r are cubic splines
+    of it, without second derivative at the first and without third at the last point.
+    """
+
+    meridians: tuple[ThroughPoints, ...]
+    """stream lines in the case's unit"""
+    lines: tuple[MeridianLine, ...]
+    """the same in metres"""
+    edges: tuple[ThroughPoints, ThroughPoints]
+    """the leading- and the trailing-edge curve as the case gives them, in its unit"""
+    leading: Reals
+    """(m,) m' at the leading edge"""
+    trailing: Reals
+    """(m,) m' at the trailing edge"""
+
+    @cached_property
+    def totals(self) -> Reals:
+        """(m,) m' of the stream lines' last points."""
+        return np.array([float(np.real(line.counted)) for line in self.lines])
+
+    def at(self, places: Reals, order: int = 0) -> Reals:
+        """(x, r) [m] (m, 2) at m' (m,) on each line, or derivatives by m'; past a line's ends its spline goes on."""
+        found = [
+            np.real(line.values(np.array([place / total]), order)[0]) / total**order
+            for line, place, total in zip(self.lines, places, self.totals, strict=True)
+        ]
+        return np.array(found)
+
+    @cached_property
+    def slopes(self) -> tuple[Reals, Reals]:
+        """phi = atan(dr/dx) (m,) [rad] of the stream lines at the leading and the trailing edge."""
+        found = []
+        for places in (self.leading, self.trailing):
+            rate = self.at(places, 1)
+            with np.errstate(divide="ignore"):
+                found.append(np.arctan(rate[:, 1] / rate[:, 0]))
+        return found[0], found[1]
+
+    @cached_property
+    def spans(self) -> Reals:
+        """(m,) spans of the sections: by the radius of their leading edges, or by x in a radial machine.
+
+        For T-Blade3, a machine is radial whose last stream line is somewhere as steep as 45 degrees, and whose first
+        and last line start at one radius.
+        """
+        first, last = self.meridians[0].points[0], self.meridians[-1].points[0]
+        line = self.lines[-1]
+        rates = np.real(line.values(line.breaks, 1))
+        steep = bool(np.any(rates[:, 1] ** 2 >= rates[:, 0] ** 2))
+        return section_spans(self.at(self.leading), along_axis=steep and first.r == last.r)
+
+
+def case_flow(case: TBlade3Case) -> CaseFlow:
+    """The stream lines of a case, and where its edge curves cross them.
+
+    Raises FileError where a stream line is none, or an edge curve does not cross it once.
+    """
+    meridians = [_stream_line(case, index) for index in range(len(case.streamlines))]
+    metre = case.unit_length / case.scale
+    for index, offset, side in ((0, case.hub_offset, 1.0), (len(meridians) - 1, case.tip_offset, -1.0)):
+        if offset:
+            meridians[index] = _shifted(meridians[index], side * offset * case.scale)
+    lines = tuple(each.line(metre) for each in meridians)
+    edges = _edge(case, "leading", case.leading_curve), _edge(case, "trailing", case.trailing_curve)
+    places = [
+        np.array([_met(case, line, edge, name, index) for index, line in enumerate(lines, 1)])
+        for name, edge in zip(("leading", "trailing"), (each.line(metre) for each in edges), strict=True)
+    ]
+    return CaseFlow(meridians=tuple(meridians), lines=lines, edges=edges, leading=places[0], trailing=places[1])
+
+
+def _stream_line(case: TBlade3Case, index: int) -> ThroughPoints:
+    points = [(x * case.scale, r * case.scale) for x, r in case.streamlines[index] if r > LEAST_RADIUS]
+    return _through(case, f"streamline {index + 1}", points, "conformal")
+
+
+def _edge(case: TBlade3Case, name: str, curve: tuple[tuple[float, float], ...]) -> ThroughPoints:
+    return _through(case, f"the {name}-edge curve", [(x * case.scale, r * case.scale) for x, r in curve], "length")
+
+
+def _through(case: TBlade3Case, what: str, points: list[tuple[float, float]], spacing: str) -> ThroughPoints:
+    try:
+        return ThroughPoints(points=tuple(Point(*each) for each in points), spacing=spacing, ends="released")  # type: ignore[arg-type]
+    except DesignError as error:
+        raise FileError(
+            f"'{case.file}': {what} cannot be splined: {error} (T-Blade3 breaks its spline at a repeated point, which "
+            "is not translated)"
+        ) from error
+
+
+def _shifted(line: ThroughPoints, by: float) -> ThroughPoints:
+    """A stream line whose points are moved along their normals, to the right of its direction."""
+    own = line.line(1.0)
+    at = np.real(own.values(own.breaks))
+    rate = np.real(own.values(own.breaks, 1))
+    normals = np.stack([rate[:, 1], -rate[:, 0]], axis=-1)
+    moved = at + by * normals / np.sqrt(np.sum(rate**2, axis=-1, keepdims=True))
+    points = tuple(Point(float(x), float(r)) for x, r in moved)
+    return ThroughPoints(points=points, spacing=line.spacing, ends=line.ends)
+
+
+def _met(case: TBlade3Case, line: MeridianLine, edge: MeridianLine, name: str, index: int) -> float:
+    """m' where an edge curve crosses a stream line."""
+
+    def position(t: Reals, order: int) -> Reals:
+        return np.real(line.values(t[0], order))[None]
+
+    try:
+        place = crossed(position, (0.0, 1.0), edge, f"the {name}-edge curve", [f"of section {index}"]).t[0]
+    except DesignError as error:
+        raise FileError(f"'{case.file}': {error}") from error
+    return float(np.real(place) * np.real(line.counted))

@@ -1,0 +1,163 @@
+"""From a T-Blade3 case to the blade of sections on curvature meanlines that has its sections."""
+
+import re
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from bladewright.blade.families import CurvatureMeanlineBlade
+from bladewright.blade.flow_path import FlowPath
+from bladewright.blade.meridian import ThroughPoints
+from bladewright.designs import Point
+from bladewright.errors import DesignError, FileError
+from bladewright.files.tblade3.angles import metal_angles
+from bladewright.files.tblade3.flow import CaseFlow, case_flow
+from bladewright.files.tblade3.laws import law_through, section_places
+from bladewright.files.tblade3.parts import Parameters, parameters
+from bladewright.files.tblade3.records import TBlade3Case
+from bladewright.files.tblade3.sections import SectionValues, section_values
+from bladewright.files.tblade3.stacking import stacking_point
+from bladewright.nurbs.basis import Reals
+from bladewright.section.laws import Span
+
+FEW = 4
+"""sections up to which an edge curve that is not shifted stays as the case gives it, to shape what is between them"""
+BELOW = 1e-9
+"""share of a stream line by which a section may reach past its end: rounding"""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class CaseSections:
+    """The m sections of a case, as T-Blade3 places them."""
+
+    case: TBlade3Case
+    flow: CaseFlow
+    values: SectionValues
+    numbers: Parameters
+
+    @cached_property
+    def places(self) -> Reals:
+        """(m,) span fractions of the design at which the sections stand."""
+        return section_places(self.flow.spans)
+
+    @cached_property
+    def stagger(self) -> Reals:
+        """(m,) [rad]."""
+        one = Span(np.zeros(1))
+        return np.array([float(np.real(self.numbers.of(i).stagger(one)[0])) for i in range(len(self.places))])
+
+    @cached_property
+    def extents(self) -> Reals:
+        """(m,) of the chord lines in m'."""
+        given = self.values.chord
+        if given is not None:
+            return given * np.cos(self.stagger)
+        return (self.flow.trailing - self.flow.leading) * self.values.chord_multiplier
+
+    @cached_property
+    def chords(self) -> Reals:
+        """(m,) lengths of the chord lines in the plane (m', theta)."""
+        return self.extents / np.cos(self.stagger)
+
+    @property
+    def true_share(self) -> Reals:
+        """(m,) what T-Blade3 multiplies sweep and lean by, where it is asked for true ones.
+
+        The cosine of the inlet angle's degrees taken for radians; of 0 where the chord is that between the edges.
+        """
+        if not self.case.true_lean_and_sweep or self.case.chord == "meridional":
+            return np.ones(len(self.places))
+        return np.abs(np.cos(self.values.angle_in))
+
+    @cached_property
+    def leading(self) -> Reals:
+        """(m,) m' of the sections' leading edges on their stream lines."""
+        return self.flow.leading + self.values.sweep * self.true_share
+
+    @cached_property
+    def trailing(self) -> Reals:
+        """(m,) m' of their trailing edges."""
+        return self.leading + self.extents
+
+    @cached_property
+    def theta(self) -> Reals:
+        """(m,) of the leading edges [rad]: of what stacking, lean and the turn of the blade make."""
+        found = []
+        for i, (turn, stacking) in enumerate(zip(self.stagger, self.case.stackings, strict=True)):
+            point = stacking_point(self.numbers.of(i), stacking)
+            found.append(-self.chords[i] * (point[0] * np.sin(turn) + point[1] * np.cos(turn)))
+        return np.array(found) + self.values.lean * self.true_share + self.values.theta_offset
+
+
+def case_sections(case: TBlade3Case) -> CaseSections:
+    """The sections of a case. Raises FileError where they are none of the family's, or leave their stream lines."""
+    refused = [text for text in case.unsupported if "inflation" not in text]
+    if refused:
+        raise FileError(f"'{case.file}': {refused[0]}")
+    flow = case_flow(case)
+    values = section_values(case, flow.spans)
+    sections = CaseSections(
+        case=case,
+        flow=flow,
+        values=values,
+        numbers=parameters(case, values, metal_angles(case, values, *flow.slopes)),
+    )
+    _check_within(sections)
+    return sections
+
+
+def blade_of(sections: CaseSections) -> CurvatureMeanlineBlade:
+    """The design that has the sections of a case, each at its place; raises FileError where the family has no such."""
+    case, flow, places = sections.case, sections.flow, sections.places
+    hub, *between, shroud = flow.meridians
+    try:
+        return CurvatureMeanlineBlade(
+            name=name_of(case),
+            length_unit=case.unit,
+            arrangement="annular",
+            blade_count=case.blade_count,
+            plane="counted-m'-theta",
+            flow_path=FlowPath(
+                hub=hub,
+                shroud=shroud,
+                stream_surfaces=tuple(between),
+                stream_spans=tuple(float(v) for v in places[1:-1]),
+                matched="edges",
+            ),
+            leading_edge=_edge(sections, flow.edges[0], flow.leading, sections.leading),
+            trailing_edge=_edge(sections, flow.edges[1], flow.trailing, sections.trailing),
+            leading_edge_theta=law_through(np.degrees(sections.theta), places),
+            section=sections.numbers.along(places),
+            description=f"T-Blade3 case {case.name}" if case.name.isprintable() else "T-Blade3 case",
+        )
+    except DesignError as error:
+        raise FileError(f"'{case.file}': the curvature-meanline family has no such blade: {error}") from error
+
+
+def name_of(case: TBlade3Case) -> str:
+    """A name for files: that of the case, and its row."""
+    word = re.sub(r"[^\w.+-]+", "-", case.name).strip("-.") or "blade"
+    return f"{word}-{case.suffix}" if case.suffix and not word.endswith(f"-{case.suffix}") else word
+
+
+def _edge(sections: CaseSections, given: ThroughPoints, before: Reals, after: Reals) -> ThroughPoints:
+    """An edge curve: as it is given, or through the points at which the sections' ends lie on their stream lines."""
+    case = sections.case
+    if len(before) <= FEW and np.array_equal(before, after):
+        return given
+    metre = case.unit_length / case.scale
+    points = sections.flow.at(after) / metre
+    return ThroughPoints(points=tuple(Point(float(x), float(r)) for x, r in points))
+
+
+def _check_within(sections: CaseSections) -> None:
+    for which, places in (("leading", sections.leading), ("trailing", sections.trailing)):
+        past = np.flatnonzero((places < -BELOW) | (places > sections.flow.totals * (1.0 + BELOW)))
+        if len(past):
+            i = int(past[0])
+            raise FileError(
+                f"'{sections.case.file}': the {which} edge of section {i + 1} lies at m' = {places[i]:.5g}, outside of "
+                f"its streamline, which reaches from 0 to {sections.flow.totals[i]:.5g}: T-Blade3 continues its spline "
+                "there; give the streamline more points"
+            )
