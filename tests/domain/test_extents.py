@@ -51,7 +51,7 @@ def test_a_duct_whose_walls_cross_is_refused_with_the_extent_that_is_possible(fa
         passage(fan.blade, upstream=12.0)
     most = float(re.search(r"at most ([\d.]+) is possible", str(refused.value))[1])
     assert 0.5 < most < 12.0
-    check_duct(replace(fan.passage.duct, upstream=0.95 * most))
+    check_duct(replace(fan.passage.duct, low=-0.95 * most), fan.blade.exact.course)
 
 
 def test_a_blade_outside_its_passage_is_refused_with_span_and_distance(cascade):

@@ -6,9 +6,11 @@ from functools import cached_property
 import numpy as np
 
 from bladewright.blade.clearance import Clearance, clearance_of, cleared
+from bladewright.blade.course import OwnCourse
 from bladewright.blade.knots import breaks_along_u, breaks_along_v
 from bladewright.blade.mapping import Mapping, mapping_of
 from bladewright.blade.meant import EndWall, Meant
+from bladewright.blade.meridian_line import real_first
 from bladewright.blade.meridional import Meridional, meridional
 from bladewright.blade.plan import Plan, channel_plan
 from bladewright.blade.stations import Stations, stations_at
@@ -76,6 +78,22 @@ class ExactBlade(Meant):
 
     def wall_line(self, name: str, u: Reals) -> Reals:
         return np.real(self.full_channel.curve(name)(u))
+
+    @property
+    def meridians(self) -> Meridional:
+        return self.channel
+
+    @property
+    def course(self) -> OwnCourse:
+        ends = -self.before, 1.0 + self.after
+        length = float(np.mean(real_first(self.survey.lines.lengths, 1)))
+        return OwnCourse(
+            channel=self.channel, start=ends[0], end=ends[1], noses=ends, edges=(0.0, 1.0), length=length, unit=1.0
+        )
+
+    def whole(self) -> "ExactBlade":
+        gaps = [name for name in ("tip_clearance", "hub_clearance") if getattr(self.design, name) is not None]
+        return exact_blade(self.design.changed(dict.fromkeys(gaps))) if gaps else self
 
     @property
     def tip_knots(self) -> Reals | None:

@@ -76,6 +76,23 @@ class Laid(ABC):
     def trailing_edge(self) -> EdgeRow:
         """The upper side at the trailing edge in space."""
 
+    @property
+    @abstractmethod
+    def kinds(self) -> tuple[str, str]:
+        """How the sides meet at the leading and at the trailing edge: "round", "sharp" or "blunt"."""
+
+    @abstractmethod
+    def camber(self, share: Reals) -> Array:
+        """Points (..., m, k, 2) of smooth camber lines at shares (k,) from the leading to the trailing edge."""
+
+    @abstractmethod
+    def camber_ends(self) -> tuple[Array, Array]:
+        """The directions (..., m, 2) of the camber lines at both edges, downstream, of any length."""
+
+    @abstractmethod
+    def on_course(self, u: Array) -> Array:
+        """The parameter of the exact blade's `course` at u (..., m, k) or (k,)."""
+
     def lower_edges(self) -> tuple[EdgeRow | None, EdgeRow | None]:
         """The lower side at both edges in space; None where the edge is round: the upper side's `mirrored`."""
         return None, None

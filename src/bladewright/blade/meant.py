@@ -4,9 +4,11 @@ from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from typing import Any, NamedTuple, Self
 
+from bladewright.blade.course import Course
 from bladewright.blade.laid import Laid
 from bladewright.blade.mapping import Mapping
 from bladewright.blade.plan import Plan
+from bladewright.blade.streamlines import Channelled
 from bladewright.nurbs.basis import Reals
 from bladewright.nurbs.curve import Curve
 
@@ -66,6 +68,20 @@ class Meant(ABC):
     @abstractmethod
     def wall_line(self, name: str, u: Reals) -> Reals:
         """Points (k, 2) of the hub or shroud by u, past the edges as far as there is a wall."""
+
+    @property
+    @abstractmethod
+    def meridians(self) -> Channelled:
+        """The channel, or the flow path, that it stands in."""
+
+    @property
+    @abstractmethod
+    def course(self) -> Course:
+        """The same, with the places of its edges, which a survey finds."""
+
+    @abstractmethod
+    def whole(self) -> Self:
+        """The same without gaps, from wall to wall of the channel."""
 
     @property
     def tip_knots(self) -> Reals | None:

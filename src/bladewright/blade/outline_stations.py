@@ -9,6 +9,7 @@ from bladewright.blade.laid import EdgeRow, Laid
 from bladewright.numerics.elementary import Array
 from bladewright.nurbs.basis import Reals
 from bladewright.section.outline import Outline, Start
+from bladewright.section.outline_camber import camber_line
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -53,6 +54,17 @@ class OutlineStations(Laid):
     def kinds(self) -> tuple[str, str]:
         """How the sides meet at the leading and at the trailing edge: "round", "sharp" or "blunt"."""
         return self.plane.outline.leading_edge.kind, self.plane.outline.trailing_edge.kind
+
+    def camber(self, share: Reals) -> Array:
+        return self.plane.placed(camber_line(self.plane.outline).points(share))
+
+    def camber_ends(self) -> tuple[Array, Array]:
+        line = camber_line(self.plane.outline)
+        first, last = (self.plane.turned(each[..., None, :])[..., 0, :] for each in (line.first, line.last))
+        return first, last
+
+    def on_course(self, u: Array) -> Array:
+        return self.lines.t(u)
 
     def leading_edge(self) -> EdgeRow:
         return self._row(0, self.plane.outline.leading_edge.upper)

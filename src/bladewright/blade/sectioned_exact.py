@@ -13,6 +13,7 @@ from bladewright.blade.meant import EndWall, Meant
 from bladewright.blade.meridian import Meridian, ThroughPoints
 from bladewright.blade.meridian_line import MeridianLine, real_first
 from bladewright.blade.outline_stations import OutlineStations, StaggeredSections
+from bladewright.blade.path_course import PathCourse, path_course
 from bladewright.blade.plan import Plan, flow_path_plan
 from bladewright.blade.planes import Counted, plane_of
 from bladewright.blade.sectioned import SectionedBlade
@@ -122,6 +123,17 @@ class SectionedExact(Meant):
             own = np.clip(own + cross2(miss, across) / turn, self.surfaces.low, self.surfaces.high)
             at = np.clip(at + cross2(along, miss) / turn, 0.0, 1.0)
         return list(zip(at.tolist(), np.array(smooth)[met].tolist(), strict=True))
+
+    @property
+    def meridians(self) -> StreamSurfaces:
+        return self.surfaces
+
+    @cached_property
+    def course(self) -> PathCourse:
+        return path_course(self.surfaces, self.survey)
+
+    def whole(self) -> "SectionedExact":
+        return self
 
     def end_wall(self, row: int) -> EndWall:
         curve = self.surfaces.walls[("hub", "shroud")[row]].curve()

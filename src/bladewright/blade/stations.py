@@ -35,6 +35,20 @@ class Stations(Laid):
     curvature_out: Array
     """(..., m) curvature of the trailing edge in the plane"""
 
+    @property
+    def kinds(self) -> tuple[str, str]:
+        return "round", "round"
+
+    def camber(self, share: Reals) -> Array:
+        return camber_points(self.plane.camber, share)
+
+    def camber_ends(self) -> tuple[Array, Array]:
+        line = self.plane.camber
+        return line[..., 1, :] - line[..., 0, :], line[..., 3, :] - line[..., 2, :]
+
+    def on_course(self, u: Array) -> Array:
+        return u
+
     def leading_edge(self) -> EdgeRow:
         """The leading edge in space."""
         edge, turn = self.plane.leading_edge, self.angle_in

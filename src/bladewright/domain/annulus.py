@@ -20,8 +20,8 @@ def annulus_volume(duct: Duct, span_joints: Reals) -> Array:
     Pappus and Green: the integral of pi r^2 dx around the meridional outline. `span_joints` are the places along v
     where inlet and outlet lose derivatives.
     """
-    ends = np.array([-duct.upstream, 1.0 + duct.downstream])
-    u, along = panels(np.unique([*ends, 0.0, *duct.joints(), 1.0]), POINTS)
+    ends = np.array([duct.low, duct.high])
+    u, along = panels(np.unique([*ends, *duct.edges, *duct.joints_within()]), POINTS)
     walls = duct.lines(np.array([0.0, 1.0]))
     point, slope = walls.position(u), walls.position(u, 1)
     flux = np.sum(along * _height(duct, point[..., 1]) * slope[..., 0], axis=-1)

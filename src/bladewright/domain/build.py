@@ -1,18 +1,19 @@
 """From a native blade to its flow passage."""
 
 from collections.abc import Mapping
+from dataclasses import replace
 from types import MappingProxyType
 
 import numpy as np
 
 from bladewright.blade.blade import Blade
-from bladewright.blade.exact import ExactBlade, exact_blade, in_channel
-from bladewright.blade.knots import DEGREE, breaks_along_v
+from bladewright.blade.knots import DEGREE
+from bladewright.blade.meant import Meant
 from bladewright.domain.camber import CamberLines, camber_lines
 from bladewright.domain.checks import check_duct, check_folds, check_pitch
 from bladewright.domain.crossing import CROSSINGS, Crossing
 from bladewright.domain.duct import Duct
-from bladewright.domain.extents import extents, mean_length, openings
+from bladewright.domain.extents import extents, openings, shortest_duct
 from bladewright.domain.fitness import RESERVE, TOLERANCE, knots_across, knots_along, knots_beside, knots_span
 from bladewright.domain.folding import ROOMY, least_share
 from bladewright.domain.knots import PassageKnots
@@ -58,7 +59,7 @@ def passage(
         raise DesignError(
             "passage: a 2D section was given: use section_passage for its flow domain, or build prismatic(design) first"
         )
-    full = _whole(blade)
+    full = blade.exact.whole()
     turned = _slope("inlet_angle", inlet_angle), _slope("outlet_angle", outlet_angle)
     half = _half_pitch(blade)
     held = knots is not None
@@ -84,13 +85,6 @@ def passage(
     return made
 
 
-def _whole(blade: Blade) -> ExactBlade:
-    """The exact blade without gaps, from wall to wall of the channel."""
-    exact = in_channel(blade.exact, "a passage")
-    gaps = [name for name in ("tip_clearance", "hub_clearance") if getattr(exact.design, name) is not None]
-    return exact_blade(exact.design.changed(dict.fromkeys(gaps))) if gaps else exact
-
-
 def _slope(name: str, degrees: complex | None) -> Array | None:
     if degrees is None:
         return None
@@ -112,61 +106,48 @@ def _real_half(half: Array) -> float:
 
 
 def _check_within(blade: Blade, half: Array) -> None:
-    exact = in_channel(blade.exact, "a passage")
-    duct = Duct(
-        channel=exact.channel,
-        start=-exact.before,
-        end=1.0 + exact.after,
-        upstream=exact.before,
-        downstream=exact.after,
-        revolved=exact.mapping.revolved,
-        length=mean_length(exact),
-    )
-    check_pitch(camber_lines(exact.survey, duct), blade, _real_half(half))
+    exact = blade.exact
+    check_pitch(camber_lines(exact.survey, shortest_duct(exact)), blade, _real_half(half))
 
 
-def _duct(full: ExactBlade, knots: PassageKnots) -> Duct:
+def _duct(full: Meant, knots: PassageKnots) -> Duct:
     return Duct(
-        channel=full.channel,
+        channel=full.meridians,
         start=knots.start,
         end=knots.end,
-        upstream=knots.upstream,
-        downstream=knots.downstream,
-        revolved=full.mapping.revolved,
+        edges=knots.edges,
         length=knots.length,
+        unit=knots.unit,
+        low=knots.low,
+        high=knots.high,
+        revolved=full.mapping.revolved,
     )
 
 
 def _plane(
-    blade: Blade, full: ExactBlade, knots: PassageKnots, half: Array, turned: Turned, v: Reals
+    blade: Blade, full: Meant, knots: PassageKnots, half: Array, turned: Turned, v: Reals
 ) -> tuple[CamberLines, Mapping[str, WallHalf]]:
     """Camber lines and walls' halves with stations at v (m,), hub first and shroud last."""
-    camber = camber_lines(full.stations(v), _duct(full, knots), turned, np.unique(breaks_along_v(full)))
+    camber = camber_lines(full.stations(v), _duct(full, knots), turned, np.unique(full.breaks_along_v()))
     touched = {wall: wall in blade.surfaces for wall in ("hub", "shroud")}
     return camber, halves(camber, touched, half, knots.opening, knots.crossing)
 
 
-def _knots(blade: Blade, full: ExactBlade, half: Array, turned: Turned, asked: Asked) -> PassageKnots:
+def _knots(blade: Blade, full: Meant, half: Array, turned: Turned, asked: Asked) -> PassageKnots:
     start, walls = _crossed(blade, full, half, turned, asked)
     tolerance = RESERVE * TOLERANCE * blade.chord
-    return PassageKnots(
-        length=start.length,
-        upstream=start.upstream,
-        downstream=start.downstream,
-        start=start.start,
-        end=start.end,
-        opening=start.opening,
-        crossing=start.crossing,
+    return replace(
+        start,
         blade=knots_beside(walls, blade.knots.u, tolerance),
         inlet=knots_along(walls, "inlet", tolerance),
         outlet=knots_along(walls, "outlet", tolerance),
         across=knots_across(walls, tolerance),
-        span=knots_span(lambda v: _plane(blade, full, start, half, turned, v)[0], breaks_along_v(full), tolerance),
+        span=knots_span(lambda v: _plane(blade, full, start, half, turned, v)[0], full.breaks_along_v(), tolerance),
     )
 
 
 def _crossed(
-    blade: Blade, full: ExactBlade, half: Array, turned: Turned, asked: Asked
+    blade: Blade, full: Meant, half: Array, turned: Turned, asked: Asked
 ) -> tuple[PassageKnots, Mapping[str, WallHalf]]:
     """The first way for cross-lines in which no wall is near to folding, or else the best, and the walls.
 
@@ -176,7 +157,7 @@ def _crossed(
     for crossing in CROSSINGS:
         try:
             start = _rough(blade, full, half, crossing, extents(full, half, crossing, *asked))
-            check_duct(_duct(full, start))
+            check_duct(_duct(full, start), full.course)
         except DesignError:
             if not tried:
                 raise
@@ -189,16 +170,19 @@ def _crossed(
     return start, walls
 
 
-def _rough(
-    blade: Blade, full: ExactBlade, half: Array, crossing: Crossing, reaches: tuple[float, float]
-) -> PassageKnots:
+def _rough(blade: Blade, full: Meant, half: Array, crossing: Crossing, reaches: tuple[float, float]) -> PassageKnots:
     rough = np.concatenate([np.zeros(DEGREE + 1), np.ones(DEGREE + 1)])
+    course = full.course
     return PassageKnots(
-        length=mean_length(full),
+        length=course.length,
+        unit=course.unit,
+        edges=course.edges,
         upstream=reaches[0],
         downstream=reaches[1],
-        start=-full.before,
-        end=1.0 + full.after,
+        low=course.place(0, reaches[0]),
+        high=course.place(1, reaches[1]),
+        start=course.start,
+        end=course.end,
         opening=openings(full, _real_half(half)),
         crossing=crossing,
         blade=blade.knots.u,

@@ -4,20 +4,19 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from bladewright.blade.laid import Laid
 from bladewright.blade.mapping import Taylor
-from bladewright.blade.stations import Stations
 from bladewright.blade.streamlines import StreamLines
 from bladewright.domain.duct import Duct
 from bladewright.numerics.elementary import Array, unit
 from bladewright.nurbs.basis import Reals
-from bladewright.section.camber import bernstein
 
 
 @dataclass(frozen=True, kw_only=True)
 class CamberLines:
     """Continued camber lines (..., m) in the planes (m', theta) of their stream surfaces, (m, y) in a cascade."""
 
-    stations: Stations
+    stations: Laid
     duct: Duct
     lines: StreamLines
     """of the duct, at the stations' v"""
@@ -31,10 +30,10 @@ class CamberLines:
     def points(self, piece: str, t: Reals) -> Array:
         """Points (..., m, k, 2) at t (k,) in [0, 1] along `inlet`, `blade` or `outlet`."""
         if piece == "blade":
-            return self.in_plane(bernstein(_parameter(t)) @ self.stations.plane.camber)
+            return self.in_plane(self.stations.camber(_parameter(t)))
         past = 0 if piece == "inlet" else 1
         edge = self.points("blade", np.array([float(past)]))
-        end = np.array([-self.duct.upstream if past == 0 else 1.0 + self.duct.downstream])
+        end = np.array([self.duct.high if past else self.duct.low])
         reach = self.lines.abscissa(end) - edge[..., 0]
         share = 1.0 - t if past == 0 else t
         slope, turn = self.slopes[past][..., None], self.turned[past]
@@ -50,11 +49,12 @@ class CamberLines:
 
     def in_plane(self, section: Array) -> Array:
         """Points (..., m, k, 2) in (m', theta) of points in the sections' own planes."""
-        mapping = self.stations.mapping
-        if type(mapping) is type(self.lines.mapping):
-            return section
-        u, _, tangential = self.stations.on_lines(section)
-        return np.stack([self.lines.abscissa(u), tangential], axis=-1)
+        stations = self.stations
+        if type(stations.mapping) is type(self.lines.mapping):
+            start = self.lines.abscissa(stations.on_course(np.zeros(1)))
+            return np.stack(np.broadcast_arrays(start + section[..., 0], section[..., 1]), axis=-1)
+        u, _, tangential = stations.on_lines(section)
+        return np.stack([self.lines.abscissa(stations.on_course(u)), tangential], axis=-1)
 
 
 QUICK = 0.5
@@ -67,7 +67,7 @@ def _parameter(t: Reals) -> Reals:
 
 
 def camber_lines(
-    stations: Stations,
+    stations: Laid,
     duct: Duct,
     turned: tuple[Array | None, Array | None] = (None, None),
     joints: Reals | None = None,
@@ -85,16 +85,15 @@ def camber_lines(
     )
 
 
-def _slope(stations: Stations, lines: StreamLines, past: int) -> Array:
+def _slope(stations: Laid, lines: StreamLines, past: int) -> Array:
     """d theta / dm' (..., m) of the camber at an edge."""
-    camber = stations.plane.camber
-    along = camber[..., 1, :] - camber[..., 0, :] if past == 0 else camber[..., 3, :] - camber[..., 2, :]
     at = np.array([float(past)])
+    along, point = stations.camber_ends()[past], stations.camber(at)[..., 0, :]
     position, slope = (stations.lines.position(at, order)[..., 0, :] for order in range(2))
-    by_u = along[..., 0] / stations.mapping.density(position, slope)
+    by_u = along[..., 0] / stations.lines.densities(at)[0][..., 0]
     nothing = np.zeros_like(by_u)
     tangential = stations.mapping.tangential_series(
-        Taylor(camber[..., 3 * past, 1], along[..., 1], nothing),
+        Taylor(point[..., 1], along[..., 1], nothing),
         Taylor(position[..., 1], slope[..., 1] * by_u, nothing),
         stations.lines.lengths,
     )

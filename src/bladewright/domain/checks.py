@@ -3,6 +3,7 @@
 import numpy as np
 
 from bladewright.blade.blade import Blade
+from bladewright.blade.course import Course
 from bladewright.domain.camber import CamberLines
 from bladewright.domain.duct import Duct
 from bladewright.domain.knots import PIECES
@@ -14,17 +15,17 @@ SIDES = np.concatenate([np.linspace(0.0, 0.05, 25)[:-1], np.linspace(0.05, 0.95,
 """places along a side where its distance from the periodic boundaries is taken"""
 
 
-def check_duct(duct: Duct) -> None:
+def check_duct(duct: Duct, course: Course) -> None:
     """Refuse extents over which the continued channel folds over or meets the axis."""
-    for name in ("upstream", "downstream"):
+    for past, name in enumerate(("upstream", "downstream")):
         found = duct.limit(name)
         if found is None:
             continue
         what = "meets the machine axis" if found.sunk else "folds back on itself, as hub and shroud cross"
         raise DesignError(
-            f"{name} is {getattr(duct, name):g} meridional lengths of the blade: the continued channel {what} at "
-            f"u = {found.u:.3f}; at most {found.most:.3g} is possible, or let hub and shroud leave the blade more "
-            "parallel"
+            f"{name} is {course.extent(past, (duct.low, duct.high)[past]):g} meridional lengths of the blade: the "
+            f"continued channel {what} at u = {found.u:.3f}; at most {course.extent(past, found.last):.3g} is "
+            "possible, or let hub and shroud leave the blade more parallel"
         )
 
 

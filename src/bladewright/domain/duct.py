@@ -6,9 +6,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bladewright.blade.mapping import Cascade, Conformal
-from bladewright.blade.meridional import Meridional
-from bladewright.blade.streamlines import StreamLines, stream_lines
+from bladewright.blade.mapping import Cascade, Conformal, Mapping
+from bladewright.blade.streamlines import Channelled, StreamLines, stream_lines
 from bladewright.numerics.elementary import Array, cross2
 from bladewright.nurbs.basis import Reals, basis, greville
 from bladewright.nurbs.curve import Curve
@@ -16,35 +15,45 @@ from bladewright.nurbs.curve import Curve
 WALL = 7
 """degree of a wall's meridian"""
 BEND = 0.08
-"""extent, in u, over which a continued stream line loses its curvature"""
+"""extent, in mean meridional lengths, over which a continued stream line loses its curvature"""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Duct:
-    """The channel over start - upstream ... in its own u: polynomial over the blade, straight far from it.
+    """The channel from inlet to outlet by its own u: polynomial over the blade, straight far from it.
 
-    From u = `start` down and from u = `end` up, u counts the length along the stream line over `length`. Its curvature,
-    and what distinguishes its direction from the walls', fade to zero over BEND as 1 - 3 t^2 + 2 t^3.
+    From u = `start` down and from u = `end` up, u counts the length along the stream line over `length`, times `unit`.
+    Its curvature, and what distinguishes its direction from the walls', fade to zero over BEND as 1 - 3 t^2 + 2 t^3.
     """
 
-    channel: Meridional
+    channel: Channelled
     start: float
-    """u, at most 0, down to which stream lines continue the channel's own polynomials"""
+    """u, at most 0, down to which stream lines keep to the channel's own polynomials"""
     end: float
     """u, at least 1, up to which they do"""
+    edges: tuple[float, float]
+    """mean u of the blade's edges"""
     length: float
     """mean meridional length of the blade [m]"""
-    upstream: float
-    """how far, in u, the duct reaches upstream of the leading edge"""
-    downstream: float
-    """how far, in u, it reaches downstream of the trailing edge"""
+    unit: float
+    """how much of u such a length takes"""
+    low: float
+    """u of the inlet"""
+    high: float
+    """u of the outlet"""
     revolved: bool
     """whether it is an annulus; a cascade's duct otherwise"""
 
     def joints(self) -> Reals:
-        """Where stream lines lose derivatives."""
-        own = [self.start - BEND, self.start, *self.channel.joints(), self.end, self.end + BEND]
-        return np.array([u for u in own if -self.upstream < u < 1.0 + self.downstream])
+        """Where stream lines lose derivatives, past inlet and outlet too."""
+        bend = BEND * self.unit
+        own = np.array([self.start - bend, self.start, *self.channel.joints(), self.end, self.end + bend])
+        return own[(own > min(self.low, 0.0)) & (own < max(self.high, 1.0))]
+
+    def joints_within(self) -> Reals:
+        """Those of them between inlet and outlet."""
+        own = self.joints()
+        return own[(own > self.low) & (own < self.high)]
 
     def stream_polynomials(self, v: Reals, centres: Reals) -> Array:
         """Coefficients (..., len(v), len(centres), k, 2) of the stream lines' powers of u - centre; v from 0 to 1."""
@@ -59,15 +68,17 @@ class Duct:
             if outside.size:
                 powers = self.channel.stream_polynomials(all_v, np.array([edge]))[..., 0, :, :]
             for i in outside:
-                found = _continued(powers, self.length, all_v, sign, sign * (float(centres[i]) - edge))[..., 1:-1, :, :]
+                away = sign * (float(centres[i]) - edge)
+                found = _continued(powers, self.length / self.unit, BEND * self.unit, all_v, sign, away)
+                found = found[..., 1:-1, :, :]
                 total[..., i, :, :] = 0.0
                 total[..., i, : found.shape[-2], :] = found
         return total
 
     def limit(self, name: str) -> "Limit | None":
-        """Where, in steps of a fortieth of `upstream` or `downstream`, the duct folds over or meets the axis."""
+        """Where `upstream` or `downstream`, in steps of a fortieth, the duct folds over or meets the axis."""
         v = np.linspace(0.0, 1.0, 33)
-        u = np.linspace(0.0, -self.upstream, 41) if name == "upstream" else np.linspace(1.0, 1.0 + self.downstream, 41)
+        u = np.linspace(*((self.edges[0], self.low) if name == "upstream" else (self.edges[1], self.high)), 41)
         powers = self.stream_polynomials(v, u)
         while powers.ndim > 4:
             powers = powers[0]
@@ -80,12 +91,11 @@ class Duct:
         if not np.any(folded | sunk):
             return None
         first = int(np.argmax(folded | sunk))
-        before = float(u[first - 1] - u[0]) * (1.0 if name == "downstream" else -1.0) if first else 0.0
-        return Limit(u=float(u[first]), sunk=bool(sunk[first]), most=before)
+        return Limit(u=float(u[first]), sunk=bool(sunk[first]), last=float(u[max(first - 1, 0)]))
 
     def lines(self, v: Reals) -> StreamLines:
         """Stream lines at v (m,) from inlet to outlet, with the conformal length m' - m in a cascade - as abscissa."""
-        return stream_lines(self, Conformal() if self.revolved else Cascade(), v, self.upstream, self.downstream)
+        return self._lines(Conformal() if self.revolved else Cascade(), v)
 
     def wall(self, name: str) -> Curve:
         """The meridian (x, r) of `hub` or `shroud` from inlet to outlet, over [0, 1] in proportion to its length.
@@ -93,9 +103,9 @@ class Duct:
         It interpolates the stream line in so many places, up to 384 spans, that it misses it by 1e-12 of its length.
         """
         row = np.array([0.0 if name == "hub" else 1.0])
-        along = stream_lines(self, Cascade(), row, self.upstream, self.downstream)
-        first, last = along.abscissa(np.array([-self.upstream, 1.0 + self.downstream]))[..., 0, :]
-        joints = np.real(along.abscissa(self.joints())[0] - first) / np.real(last - first)
+        along = self._lines(Cascade(), row)
+        first, last = along.abscissa(np.array([self.low, self.high]))[..., 0, :]
+        joints = np.real(along.abscissa(self.joints_within())[0] - first) / np.real(last - first)
         for spans in (24, 48, 96, 192, 384):
             inner = np.linspace(0.0, 1.0, spans + 1)[1:-1]
             inner = inner[np.all(np.abs(inner[:, None] - joints) > 0.1 / spans, axis=1)]  # real: knots
@@ -110,6 +120,10 @@ class Duct:
                 break
         return Curve(control_points=net, knots=knots, degree=WALL)
 
+    def _lines(self, mapping: Mapping, v: Reals) -> StreamLines:
+        """Stream lines at v (m,) over inlet, outlet, 0 and 1."""
+        return stream_lines(self, mapping, v, max(-self.low, 0.0), max(self.high - 1.0, 0.0))
+
 
 class Limit(NamedTuple):
     """Where a duct ends."""
@@ -117,8 +131,8 @@ class Limit(NamedTuple):
     u: float
     sunk: bool
     """whether it meets the axis there; it folds over otherwise"""
-    most: float
-    """the extent that is possible"""
+    last: float
+    """u up to which it is found to be possible"""
 
 
 FADING = np.array([1.0, 0.0, -3.0, 2.0])
@@ -127,18 +141,21 @@ KEPT = 3
 """powers of the length past an edge, from 0, that a continued stream line has of its own"""
 
 
-def _continued(powers: Array, length_of_u: float, v: Reals, sign: float, away: float) -> Array:
-    """Powers (..., m, k, 2) of u - centre for stream lines with the given powers at an edge, continued by `away`."""
+def _continued(powers: Array, length_of_u: float, bend: float, v: Reals, sign: float, away: float) -> Array:
+    """Powers (..., m, k, 2) of u - centre for stream lines with the given powers at an edge, continued by `away`.
+
+    `bend` is how much of u they take to become straight.
+    """
     by_length = _by_length(powers * (sign ** np.arange(powers.shape[-2]))[:, None])
     own = by_length * (length_of_u ** np.arange(KEPT))[:, None]
     point, slope = own[..., 0, :], own[..., 1, :]
     ruled = (1.0 - v)[:, None] * slope[..., :1, :] + v[:, None] * slope[..., -1:, :]
-    fading = FADING / BEND ** np.arange(len(FADING))
+    fading = FADING / bend ** np.arange(len(FADING))
     turning = _integrated(_integrated(_times(_derived(_derived(own)), fading)))
     bowing = _integrated(_times((slope - ruled)[..., None, :], fading))
     terms = [turning, bowing]
-    if away >= BEND:
-        terms = [_tangent(term) for term in terms]
+    if away >= bend:
+        terms = [_tangent(term, bend) for term in terms]
     total = np.zeros((*point.shape[:-1], turning.shape[-2], 2), dtype=powers.dtype)
     total[..., 0, :] = point
     total[..., 1, :] = ruled
@@ -198,8 +215,8 @@ def _times(powers: Array, factor: Reals) -> Array:
     return product
 
 
-def _tangent(powers: Array) -> Array:
-    """The straight line that a polynomial of the distance goes on as from BEND."""
-    at = BEND ** np.arange(powers.shape[-2])
+def _tangent(powers: Array, bend: float) -> Array:
+    """The straight line that a polynomial of the distance goes on as from `bend`."""
+    at = bend ** np.arange(powers.shape[-2])
     value, slope = at @ powers, at[:-1] @ _derived(powers)
-    return np.stack([value - BEND * slope, slope], axis=-2)
+    return np.stack([value - bend * slope, slope], axis=-2)

@@ -4,29 +4,32 @@ from dataclasses import replace
 
 import numpy as np
 
-from bladewright.blade.exact import ExactBlade
+from bladewright.blade.meant import Meant
 from bladewright.domain.camber import CamberLines, camber_lines
 from bladewright.domain.crossing import Crossing
 from bladewright.domain.duct import Duct
 from bladewright.domain.wall import lean, opening
 from bladewright.errors import DesignError
 from bladewright.numerics.elementary import Array
+from bladewright.nurbs.basis import Reals
 from bladewright.section.checks import number
 
 USUAL = 0.5
-"""extent, in u, where none is given and the pitch needs no more"""
+"""extent, in mean meridional lengths, where none is given and the pitch needs no more"""
 STEP = 0.25
 """extents that the pitch needs are rounded up to multiples of this, so that small changes of a design keep them"""
 MOST = 20.0
-"""extent, in u, above which a duct is refused"""
+"""extent, in mean meridional lengths, above which a duct is refused"""
 ROOM = 1.25
 """extents of the walls' patches in which lines of equal v lie, over the bulge of the cross-lines at the edge"""
+NOSE = 0.05
+"""how much further than the nose, in mean meridional lengths, a duct reaches"""
 
 
 def extents(
-    full: ExactBlade, half_pitch: Array, crossing: Crossing, upstream: float | None, downstream: float | None
+    full: Meant, half_pitch: Array, crossing: Crossing, upstream: float | None, downstream: float | None
 ) -> tuple[float, float]:
-    """Extents up- and downstream in u: those given where they suffice, else the usual or the needed ones.
+    """Extents up- and downstream in mean meridional lengths: those given where they suffice, else usual or needed ones.
 
     A usual one is shortened where the duct would fold over or meet the axis. Raises DesignError where one is not a
     number above what the nose and the pitch need.
@@ -35,7 +38,7 @@ def extents(
     for past, (name, given) in enumerate((("upstream", upstream), ("downstream", downstream))):
         needed = _needed(full, half_pitch, crossing, past)
         if given is None:
-            found.append(_usual(full, name, needed))
+            found.append(_usual(full, past, needed))
             continue
         value = float(np.real(number(name, given)))
         if not needed <= value <= MOST:
@@ -47,65 +50,65 @@ def extents(
     return found[0], found[1]
 
 
-def _usual(full: ExactBlade, name: str, needed: float) -> float:
-    """The usual extent; more where it is needed, less where the duct ends before that."""
-    wanted = max(USUAL, STEP * float(np.ceil(needed / STEP)))
-    duct = _camber(full).duct
-    limit = replace(
-        duct,
-        upstream=wanted if name == "upstream" else duct.upstream,
-        downstream=wanted if name == "downstream" else duct.downstream,
-    ).limit(name)
-    return wanted if limit is None else max(needed, 0.8 * limit.most)
+def shortest_duct(full: Meant) -> Duct:
+    """The duct that reaches just past the noses."""
+    course = full.course
+    return Duct(
+        channel=course.channel,
+        start=course.start,
+        end=course.end,
+        edges=course.edges,
+        length=course.length,
+        unit=course.unit,
+        low=course.noses[0],
+        high=course.noses[1],
+        revolved=full.mapping.revolved,
+    )
 
 
-def mean_length(exact: ExactBlade) -> float:
-    """Mean meridional length of the blade's sections [m]."""
-    lengths = np.real(exact.survey.lines.lengths)
-    return float(np.mean(lengths.reshape(-1, lengths.shape[-1])[0]))
-
-
-def openings(full: ExactBlade, half_pitch: float) -> tuple[float, float]:
+def openings(full: Meant, half_pitch: float) -> tuple[float, float]:
     """The share of the width at which cross-lines leave the blade, on hub and shroud."""
-    hub, shroud = np.real(_camber(full).lines.abscissa(np.array([1.0])))[..., 0].reshape(-1, 2)[0]
+    edges = [_at_edge(_camber(full), past) for past in (0, 1)]
+    hub, shroud = edges[1][:, 0] - edges[0][:, 0]
     return opening(half_pitch, hub), opening(half_pitch, shroud)
 
 
-def _needed(full: ExactBlade, half_pitch: Array, crossing: Crossing, past: int) -> float:
+def _at_edge(camber: CamberLines, past: int) -> Reals:
+    """Real points (m, 2) of the camber at an edge."""
+    points = np.real(camber.points("blade", np.array([float(past)])))[..., 0, :]
+    return np.asarray(points.reshape(-1, *points.shape[-2:])[0])
+
+
+def _usual(full: Meant, past: int, needed: float) -> float:
+    """The usual extent; more where it is needed, less where the duct ends before that."""
+    course = full.course
+    wanted = max(USUAL, STEP * float(np.ceil(needed / STEP)))
+    duct, end = shortest_duct(full), course.place(past, wanted)
+    longer = replace(duct, high=end) if past else replace(duct, low=end)
+    limit = longer.limit("downstream" if past else "upstream")
+    return wanted if limit is None else max(needed, 0.8 * course.extent(past, limit.last))
+
+
+def _needed(full: Meant, half_pitch: Array, crossing: Crossing, past: int) -> float:
     """The extension must outlast the bulge of the cross-lines, and reach past the nose."""
-    return max((full.before, full.after)[past] + 0.05, ROOM * _bulge(full, half_pitch, crossing, past))
+    course, sign = full.course, 1.0 if past else -1.0
+    nose = course.noses[past] + sign * NOSE * course.unit
+    places = _bulges(full, half_pitch, crossing, past)
+    return course.extent(past, float(np.max([nose, *places]) if past else np.min([nose, *places])))
 
 
-def _bulge(full: ExactBlade, half_pitch: Array, crossing: Crossing, past: int) -> float:
-    """How far, in u, cross-lines from an edge reach past it."""
+def _bulges(full: Meant, half_pitch: Array, crossing: Crossing, past: int) -> Reals:
+    """u (2,) on hub and shroud up to which a duct must reach past cross-lines from an edge."""
     camber = _camber(full)
-    direction = np.real(camber.direction(past))
-    at = np.array([float(past)])
-    density = np.real(camber.lines.mapping.density(camber.lines.position(at), camber.lines.position(at, 1)))[..., 0]
+    direction = np.real(camber.direction(past)).reshape(-1, 2, 2)[0]
+    u = np.broadcast_to(np.real(camber.stations.on_course(np.array([float(past)]))), (2, 1))
+    density = np.real(camber.lines.densities(u)[0])
     half = float(np.real(half_pitch).flat[0])
-    share = np.array(openings(full, half))
-    bulges = [
-        np.max(
-            crossing.bulge
-            * share
-            * lean(direction[..., 1], half, sign, past, crossing.lean)
-            * direction[..., 0]
-            / density
-        )
-        for sign in (1, -1)
-    ]
-    return max(float(each) for each in bulges)
+    size = np.max([lean(direction[:, 1], half, each, past, crossing.lean) for each in (1, -1)], axis=0)
+    bulge = crossing.bulge * np.array(openings(full, half)) * size * direction[:, 0]
+    reach = ROOM * bulge / density.reshape(-1, 2)[0]
+    return np.asarray(u[:, 0] + (reach if past else -reach))
 
 
-def _camber(full: ExactBlade) -> CamberLines:
-    duct = Duct(
-        channel=full.channel,
-        start=-full.before,
-        end=1.0 + full.after,
-        upstream=full.before,
-        downstream=full.after,
-        revolved=full.mapping.revolved,
-        length=mean_length(full),
-    )
-    stations = full.stations(np.array([0.0, 1.0]))
-    return camber_lines(stations, duct)
+def _camber(full: Meant) -> CamberLines:
+    return camber_lines(full.stations(np.array([0.0, 1.0])), shortest_duct(full))

@@ -6,7 +6,6 @@ import numpy as np
 
 from bladewright.blade.knots import DEGREE, clamped, refined
 from bladewright.domain.camber import CamberLines
-from bladewright.domain.duct import BEND
 from bladewright.domain.knots import PIECES
 from bladewright.domain.nets import through
 from bladewright.domain.wall import WallHalf
@@ -51,8 +50,9 @@ def knots_along(walls: Mapping[str, WallHalf], piece: str, tolerance: float) -> 
         return worst
 
     duct = next(iter(walls.values())).camber.duct
-    edge, reach = (-duct.start, duct.upstream) if piece == "inlet" else (duct.end - 1.0, duct.downstream)
-    joints = np.array([place / reach for place in (edge, edge + BEND) if place < reach])
+    edge, end = (duct.edges[0], duct.low) if piece == "inlet" else (duct.edges[1], duct.high)
+    joints = (duct.joints_within() - edge) / (end - edge)
+    joints = joints[joints > 0.0]
     inner = 1.0 - joints if piece == "inlet" else joints
     return refined(clamped(np.concatenate([[0.5], inner])), miss, MOST_POLES)
 

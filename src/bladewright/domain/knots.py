@@ -22,12 +22,20 @@ class PassageKnots:
 
     length: float
     """mean meridional length of the blade [m], in which extents count"""
+    unit: float
+    """how much of the channel's u it takes"""
+    edges: tuple[float, float]
+    """mean u of the blade's edges"""
     upstream: float
-    """extent upstream of the leading edge, in u"""
+    """extent upstream of the leading edge, in mean meridional lengths"""
     downstream: float
-    """extent downstream of the trailing edge, in u"""
+    """extent downstream of the trailing edge, in mean meridional lengths"""
+    low: float
+    """u of the inlet"""
+    high: float
+    """u of the outlet"""
     start: float
-    """u down to which the duct continues the channel's polynomials"""
+    """u down to which the duct keeps to the channel's polynomials"""
     end: float
     """u up to which it does"""
     opening: tuple[float, float]

@@ -24,7 +24,7 @@ from bladewright.nurbs.trimmed import TrimmedSurface
 PLACES = 65
 """places on an edge from which its way along the wall is followed"""
 ROOM = 0.02
-"""how much further than to inlet and outlet, in u, the walls reach that are trimmed there"""
+"""how much further than to inlet and outlet, in mean meridional lengths, walls reach that are trimmed there"""
 OUTWARD = MappingProxyType(
     {"hub": -1, "shroud": 1, "inlet": -1, "outlet": 1, "periodic_upper": -1, "periodic_lower": 1}
 )
@@ -61,7 +61,8 @@ def sector(name: str, faces: Mapping[str, Surface], duct: Duct, chord: float) ->
 
 def _wall(faces: Mapping[str, Surface], duct: Duct, row: int, name: str, chord: float) -> TrimmedSurface:
     """A wall within its edges: along the lower periodic boundary, the outlet, and back."""
-    meridian = replace(duct, upstream=duct.upstream + ROOM, downstream=duct.downstream + ROOM).wall(name)
+    room = ROOM * duct.unit
+    meridian = replace(duct, low=duct.low - room, high=duct.high + room).wall(name)
     traces = [
         trace
         for face, at in (

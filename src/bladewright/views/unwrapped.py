@@ -58,7 +58,7 @@ def unwrapped(passage: "Passage", wall: str, points: Reals, aside: Reals | float
     x, y, z = np.moveaxis(points, -1, 0)
     revolved, line = passage.duct.revolved, passage.walls[f"{wall}_upper"].line
     target = np.stack([x, np.sqrt(y * y + z * z) if revolved else z], axis=-1).reshape(-1, 2)
-    places = np.linspace(-passage.duct.upstream, 1.0 + passage.duct.downstream, 2001)
+    places = np.linspace(passage.duct.low, passage.duct.high, 2001)
     u = places[cKDTree(np.real(line.position(places))[0]).query(target)[1]]
     for _ in range(3):
         slope = np.real(line.position(u, 1))[0]

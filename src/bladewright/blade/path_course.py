@@ -1,0 +1,76 @@
+"""A flow path as the course of a blade from sections."""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from bladewright.blade.course import Course
+from bladewright.blade.mapping import Cascade
+from bladewright.blade.meridian_line import real_first
+from bladewright.blade.outline_stations import OutlineStations
+from bladewright.blade.stream_surfaces import StreamSurfaces
+from bladewright.blade.streamlines import StreamLines, stream_lines
+from bladewright.numerics.roots import bracketed_root
+from bladewright.nurbs.basis import Reals
+
+SIDES = np.sin(0.5 * np.pi * np.linspace(0.0, 1.0, 65)) ** 2
+"""places along the sides between which a blade's least and greatest t are looked for"""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class PathCourse(Course):
+    """A flow path, by t; extents are the mean of the meridional lengths along its stream lines."""
+
+    channel: StreamSurfaces
+    v: Reals
+    """(m,) span fractions of the stream lines that the mean is taken of"""
+    edges_at: tuple[Reals, Reals]
+    """t (m,) on them at the leading and at the trailing edge"""
+
+    def extent(self, past: int, u: float) -> float:
+        own = min(max(u, self.start), self.end)
+        lengths = np.mean(self._lines.abscissa(np.array([own]))[:, 0] - self._edge_lengths[past])
+        return float((lengths / self.length + (u - own) / self.unit) * (1.0 if past else -1.0))
+
+    def place(self, past: int, extent: float) -> float:
+        sign, end, edge = (1.0, self.end, self.edges[1]) if past else (-1.0, self.start, self.edges[0])
+        short = extent - self.extent(past, end)
+        if short >= 0.0:
+            return end + sign * short * self.unit
+
+        def over(u: Reals) -> tuple[Reals, Reals]:
+            away = self.extent(past, float(u)) - extent
+            return np.asarray(away), np.asarray(sign / self.unit)
+
+        return float(bracketed_root(over, edge - sign * 0.5 * self.unit, end))
+
+    @cached_property
+    def _lines(self) -> StreamLines:
+        surfaces = self.channel.along(self.v).real()
+        return stream_lines(surfaces, Cascade(), self.v, max(-self.start, 0.0), max(self.end - 1.0, 0.0))
+
+    @cached_property
+    def _edge_lengths(self) -> list[Reals]:
+        return [self._lines.abscissa(at[:, None])[:, 0] for at in self.edges_at]
+
+
+def path_course(surfaces: StreamSurfaces, survey: OutlineStations) -> PathCourse:
+    """The course of a blade in a flow path, from its sections from end to end."""
+    lines = survey.lines
+    leading, trailing = (real_first(each, 1) for each in (lines.leading, lines.trailing))
+    abscissae = np.stack([real_first(side[..., 0], 2) for side in survey.plane.points(SIDES)])
+    u = np.stack([np.min(abscissae, axis=(0, 2)), np.max(abscissae, axis=(0, 2))], axis=-1)
+    noses = real_first(lines.t(lines.u_at(u)), 2)
+    edges = float(np.mean(leading)), float(np.mean(trailing))
+    return PathCourse(
+        channel=surfaces,
+        start=surfaces.low,
+        end=surfaces.high,
+        noses=(min(float(np.min(noses)), edges[0]), max(float(np.max(noses)), edges[1])),
+        edges=edges,
+        length=float(np.mean(real_first(lines.lengths, 1))),
+        unit=edges[1] - edges[0],
+        v=survey.v,
+        edges_at=(leading, trailing),
+    )
