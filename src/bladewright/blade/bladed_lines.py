@@ -96,6 +96,23 @@ class BladedLines:
         """(..., m) extent in the plane: the abscissa on the trailing edge."""
         return self.abscissa(np.array([1.0]))[..., 0]
 
+    def reach(self) -> tuple[Reals, Reals]:
+        """Least and greatest abscissa (m,) that the stream lines are laid out to."""
+        ends = self.lines.starts[..., [0, -1]] - self._origin[..., None]
+        ends = real_first(ends if self.rate is None else ends * self.rate[..., None], 2)
+        return ends[:, 0], ends[:, 1]
+
+    def real(self) -> "BladedLines":
+        """The same without imaginary parts and batch."""
+        return replace(
+            self,
+            stretch=replace(self.stretch, surfaces=self.stretch.surfaces.real()),
+            lines=self.lines.real(),
+            leading=real_first(self.leading, 1),
+            trailing=real_first(self.trailing, 1),
+            rate=None if self.rate is None else real_first(self.rate, 1),
+        )
+
     @cached_property
     def lengths(self) -> Array:
         """(..., m) meridional length between the edges [m]."""
@@ -105,6 +122,13 @@ class BladedLines:
         """Meridional length (..., m, k) from the leading edge [m] at u (..., m, k) or (k,)."""
         found = self._by_length.abscissa(self._own(u))
         return found - self._by_length.abscissa(self._start[..., None])
+
+    def u_at_length(self, meridional: Array) -> Array:
+        """u (..., m, k) at meridional lengths (..., m, k) from the leading edge [m]."""
+        own = meridional + self._by_length.abscissa(self._start[..., None])
+        ends = real_first(self._by_length.starts[..., [0, -1]], 2)
+        self._check((np.real(own) - ends[:, :1]) / np.diff(ends, axis=1))
+        return (self._by_length.u_at(own) - self._start[..., None]) / self._speed[..., None]
 
     @cached_property
     def _by_length(self) -> StreamLines:

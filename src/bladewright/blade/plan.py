@@ -88,19 +88,23 @@ def channel_plan(exact: "ExactBlade") -> Plan:
 
 
 def flow_path_plan(exact: "SectionedExact") -> Plan:
-    """The plan of a blade between edge curves in a flow path."""
+    """The plan of a blade in a flow path; edges that no curves are given for, or that are shifted, are those built."""
     design, surfaces = exact.design, exact.surfaces.real()
     path, metre = design.flow_path, UNITS[design.length_unit]
     t = np.linspace(surfaces.low, surfaces.high, COUNT)
     v = np.linspace(0.0, 1.0, COUNT)
-    edges = {
-        "leading_edge": (design.leading_edge, exact.bladed.leading_edge),
-        "trailing_edge": (design.trailing_edge, exact.bladed.trailing_edge),
-    }
-    walls = {name: (getattr(path, name), surfaces.walls[name]) for name in ("hub", "shroud")}
     drawn = {
-        name: _line(meridian, np.real(line.values(v)), metre) for name, (meridian, line) in (walls | edges).items()
+        name: _line(getattr(path, name), np.real(surfaces.walls[name].values(v)), metre) for name in ("hub", "shroud")
     }
+    built = np.real(exact.stations(v).lines.position(np.array([0.0, 1.0])))
+    shifted = any(law is not None for law in (design.sweep, design.lean, design.conformal_sweep))
+    for end, name in enumerate(("leading_edge", "trailing_edge")):
+        given, line = getattr(design, name), getattr(exact.place, name, None)
+        drawn[name] = (
+            PlanLine(points=built[:, end], given=np.empty((0, 2)), polygon=False)
+            if shifted or given is None or line is None
+            else _line(given, np.real(line.values(v)), metre)
+        )
     given = zip(path.stream_surfaces, surfaces.measures[1:-1], strict=True)
     on_hub = np.array([float(np.real(pair[0])) for pair in path.quasi_orthogonals])
     joined = surfaces.grid(surfaces.matches[0].places(on_hub, surfaces.low, surfaces.high), v)[0] if len(on_hub) else ()

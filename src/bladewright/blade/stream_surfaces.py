@@ -120,6 +120,15 @@ class StreamSurfaces:
         )
         return point, along, across
 
+    def bends(self, t: Reals, v: Reals) -> tuple[Array, Array]:
+        """Second derivatives (..., m, 2) of (x, r) by t, and by t and v, at pairs of real t and v (m,)."""
+        slopes, bends = (self._rows(t, order) for order in (1, 2))
+        along, mixed = (
+            np.einsum("mj,...jmd->...md", weights, parts)
+            for weights, parts in ((self.shares(v), bends), (self.shares(v, 1), slopes))
+        )
+        return along, mixed
+
     def grid(self, t: Reals, v: Reals) -> tuple[Array, Array, Array]:
         """(x, r) on a grid of real t (k,) and v (m,), and its derivatives by t and by v, (..., k, m, 2) each."""
         rows, slopes = (self._rows(t, order) for order in (0, 1))
