@@ -13,6 +13,7 @@ from bladewright.blade.mapping import Mapping
 from bladewright.blade.meant import EndWall, Meant
 from bladewright.blade.meridian_line import real_first
 from bladewright.blade.outline_stations import OutlineStations
+from bladewright.blade.path_course import PathCourse, path_course
 from bladewright.blade.plan import Plan, flow_path_plan
 from bladewright.blade.planes import Counted, plane_of
 from bladewright.blade.sectioned import SectionedBlade
@@ -96,6 +97,13 @@ class SectionedExact(Meant):
             return [(float(joint), 2) for joint in place.path.joints]
         meridian = place.stacking.line
         return [] if meridian is None else curve_joints(self.surfaces, meridian, place.line, v, place.meeting(v))
+
+    @cached_property
+    def course(self) -> PathCourse:
+        return path_course(self.surfaces, self.survey)
+
+    def whole(self) -> "SectionedExact":
+        return self
 
     def end_wall(self, row: int) -> EndWall:
         curve = self.surfaces.walls[("hub", "shroud")[row]].curve()
