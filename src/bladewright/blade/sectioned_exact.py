@@ -98,6 +98,10 @@ class SectionedExact(Meant):
         meridian = place.stacking.line
         return [] if meridian is None else curve_joints(self.surfaces, meridian, place.line, v, place.meeting(v))
 
+    @property
+    def meridians(self) -> StreamSurfaces:
+        return self.surfaces
+
     @cached_property
     def course(self) -> PathCourse:
         return path_course(self.surfaces, self.survey)
