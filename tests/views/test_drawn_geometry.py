@@ -116,8 +116,8 @@ def test_the_meridional_outline_holds_the_native_sides(blade_drawn):
 
 def test_every_law_of_the_design_is_drawn_from_hub_to_shroud(blade_drawn):
     design, drawn = blade_drawn.design, 0
-    for title, factor in (("Angles", 1.0), ("Leading edge", 1.0), ("Camber tangents", 100.0), ("Edge radii", 100.0)):
-        if title == "Leading edge" and blade_drawn.name != "cascade":
+    for title, factor in (("Angles", 1.0), ("Position", 1.0), ("Camber tangents", 100.0), ("Edge radii", 100.0)):
+        if title == "Position" and blade_drawn.name != "cascade":
             continue
         panel = blade_drawn.panel(title)
         named = [line.get_label() for line in panel.get_lines() if not line.get_label().startswith("_")]

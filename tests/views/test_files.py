@@ -9,7 +9,7 @@ from matplotlib import rcParams
 from matplotlib.figure import Figure
 from matplotlib.image import imread
 
-from bladewright import WedgeDiffuser, WedgeDiffuserSection, views
+from bladewright import views
 from bladewright.errors import DesignError, FileError
 from bladewright.views.style import manner
 from bladewright.views.writing import write
@@ -50,18 +50,6 @@ def test_the_blade_alone_is_drawn_in_its_row(cascade_drawn, tmp_path):
     ink = (image[..., :3].min(axis=-1) < 0.97).mean()
     assert 0.1 < ink < 0.9
     assert ((image[..., 2] > 1.25 * image[..., 0]).mean()) > 0.01
-
-
-def test_a_picture_of_another_family_is_refused_in_one_paragraph(tmp_path):
-    design = WedgeDiffuserSection(
-        name="wedge",
-        length_unit="mm",
-        chord=60.0,
-        section=WedgeDiffuser(stagger_angle=20.0, leading_edge_radius=0.005, trailing_edge_radius=0.04),
-    )
-    with pytest.raises(DesignError, match=r"made for the unified family only"):
-        views.picture(design, tmp_path / "wedge.png")
-    assert list(tmp_path.iterdir()) == []
 
 
 def test_a_section_has_no_view_in_space(section_drawn, tmp_path):

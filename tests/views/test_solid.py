@@ -1,12 +1,12 @@
 """The view in space: the blade where it stands, its neighbours and the hub."""
 
 from types import SimpleNamespace
+from typing import NamedTuple
 
 import numpy as np
 import pytest
 from matplotlib.figure import Figure
 
-from bladewright.blade.exact import ExactBlade
 from bladewright.views.solid import _places, draw_solid, viewpoint
 
 
@@ -75,11 +75,26 @@ def test_a_blade_without_near_neighbours_stands_alone(cascade_drawn):
     assert _places(wide, 2) == [0.0]
 
 
+class Walls(NamedTuple):
+    """An exact blade that knows its walls alone."""
+
+    hub: list
+    shroud: list
+    mapping: SimpleNamespace = SimpleNamespace(revolved=True)
+
+    def wall_line(self, name, u):
+        ends = np.array(getattr(self, name), dtype=float)
+        return ends[0] + u[:, None] * (ends[1] - ends[0])
+
+
 @pytest.mark.parametrize(("hub", "upstream"), [((50, 20), False), ((20, 50), True), ((20, 20), True)])
 def test_the_viewer_looks_at_the_smaller_end_of_the_hub(hub, upstream):
-    channel = SimpleNamespace(hub=SimpleNamespace(points=np.array([[0.0, hub[0]], [40.0, hub[1]]])))
-    exact = object.__new__(ExactBlade)
-    for name, value in (("full_channel", channel), ("mapping", SimpleNamespace(revolved=True))):
-        object.__setattr__(exact, name, value)
-    towards = viewpoint(SimpleNamespace(exact=exact))[2]
+    walls = Walls([(0, hub[0]), (40, hub[1])], [(0, 60), (40, 60)])
+    towards = viewpoint(SimpleNamespace(exact=walls))[2]
     assert (towards[0] < 0.0) == upstream
+
+
+@pytest.mark.parametrize("side", [-20.0, 20.0])
+def test_the_viewer_looks_at_a_disc_from_the_side_of_its_blades(side):
+    walls = Walls([(0, 50), (0, 90)], [(side, 50), (side, 90)])
+    assert np.sign(viewpoint(SimpleNamespace(exact=walls))[2][0]) == np.sign(side)

@@ -1,6 +1,8 @@
 """The meridional plan of a blade: every line that a design or its build has in (x, r), or in (x, z) of a cascade."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
+from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -37,10 +39,8 @@ class PlanLine:
 class Plan:
     """The lines by what they are."""
 
-    hub: PlanLine
-    shroud: PlanLine
-    leading_edge: PlanLine
-    trailing_edge: PlanLine
+    lines: Mapping[str, PlanLine]
+    """`hub`, `shroud`, `leading_edge` and `trailing_edge`"""
     stream_lines: tuple[Reals, ...]
     """(n, 2) at `STREAM_LINES` [m]"""
     stream_surfaces: tuple[PlanLine, ...] = ()
@@ -51,16 +51,6 @@ class Plan:
     """(n, 2) the clearance surface [m]"""
     clearance: tuple[float, ...] = ()
     """its distances from the wall at the leading and the trailing edge [m]"""
-
-    @property
-    def named(self) -> dict[str, PlanLine]:
-        """The four lines of every machine."""
-        return {
-            "hub": self.hub,
-            "shroud": self.shroud,
-            "leading_edge": self.leading_edge,
-            "trailing_edge": self.trailing_edge,
-        }
 
 
 def channel_plan(exact: "ExactBlade") -> Plan:
@@ -80,7 +70,7 @@ def channel_plan(exact: "ExactBlade") -> Plan:
     tip = None if clearance is None else np.real(exact.channel.curve(clearance.wall)(inside))
     apart = () if clearance is None else np.real(clearance.real().distance(inside[[0, -1]])).tolist()
     return Plan(
-        **lines,
+        lines=MappingProxyType(lines),
         stream_lines=tuple(np.real(exact.stations(STREAM_LINES).lines.position(u))),
         tip=tip,
         clearance=tuple(apart),
@@ -109,7 +99,7 @@ def flow_path_plan(exact: "SectionedExact") -> Plan:
     on_hub = np.array([float(np.real(pair[0])) for pair in path.quasi_orthogonals])
     joined = surfaces.grid(surfaces.matches[0].places(on_hub, surfaces.low, surfaces.high), v)[0] if len(on_hub) else ()
     return Plan(
-        **drawn,
+        lines=MappingProxyType(drawn),
         stream_lines=tuple(np.real(surfaces.position(STREAM_LINES, np.tile(t, (len(STREAM_LINES), 1))))),
         stream_surfaces=tuple(_line(meridian, np.real(each.line.values(v)), metre) for meridian, each in given),
         quasi_orthogonals=tuple(np.real(joined)),

@@ -5,10 +5,9 @@ from typing import TYPE_CHECKING, cast
 import numpy as np
 from matplotlib.axes import Axes
 
-from bladewright.blade.exact import in_channel
 from bladewright.nurbs.basis import Reals
 from bladewright.nurbs.surface import Surface
-from bladewright.views.meridional import CURVES, blade_outline
+from bladewright.views.meridional import CURVES, blade_outline, draw_clearance
 from bladewright.views.sections import along_curve
 from bladewright.views.style import INK, MILLIMETRES, SOFT, legend_below, titled
 
@@ -37,14 +36,7 @@ def draw_duct(axes: Axes, passage: "Passage") -> None:
         edge = "leading_edge" if name == "inlet" else "trailing_edge"
         line = _meridional(passage, side, np.array([end]), across)[0]
         axes.plot(*line.T, color=CURVES[edge], label=edge.replace("_", " "))
-    exact = in_channel(blade.exact, "a picture")
-    clearance = exact.clearance
-    if clearance is not None:
-        inside = np.linspace(0.0, 1.0, 101)
-        tip = np.real(exact.channel.curve(clearance.wall)(inside)) * MILLIMETRES
-        apart = MILLIMETRES * np.real(clearance.real().distance(inside[[0, -1]]))
-        stated = " to ".join(dict.fromkeys(f"{each:.3g}" for each in apart))
-        axes.plot(*tip.T, color=INK, linestyle="--", linewidth=1.0, label=f"clearance {stated} mm")
+    draw_clearance(axes, blade.exact.plan)
     titled(axes, "Meridional duct", "x [mm]", "r [mm]" if passage.duct.revolved else "z [mm]")
     axes.set_aspect("equal", adjustable="datalim")
     legend_below(axes, 3)

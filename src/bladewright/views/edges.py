@@ -1,41 +1,75 @@
-"""An edge of a section close by, with the circle of its radius."""
+"""An edge of a section close by, with the circle of its radius where it is round."""
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.patches import Circle
+from matplotlib.ticker import MaxNLocator
 
-from bladewright.numerics.elementary import unit
+from bladewright.numerics.elementary import length, unit
 from bladewright.views.sections import COORDINATES, along_curve, developed, outline
-from bladewright.views.style import CAMBER, INK, MILLIMETRES, RED, span_colour, titled
+from bladewright.views.style import CAMBER, INK, MILLIMETRES, RED, span_colour, span_name, titled
 
 if TYPE_CHECKING:
+    from matplotlib.figure import SubFigure
+
     from bladewright.section.section import Section
 
 REACH, PART = 5.0, 0.15
 """half width of the picture, in edge radii, but no more than a part of the chord"""
+SHARP = 0.01
+"""what stands for the radius of a sharp edge, of the chord"""
+
+
+def draw_edges(strip: "SubFigure", sections: Sequence["Section"], ends: tuple[str, str]) -> None:
+    """Draws both edges of sections along the span beside each other."""
+    axes = strip.subplots(1, 2 * len(sections))
+    for index, section in enumerate(sections):
+        for trailing in (False, True):
+            place = axes[index + len(sections) * trailing]
+            draw_edge(place, section, trailing=trailing)
+            name, _, said = place.get_title(loc="left").partition(", ")
+            place.set_title(f"{name}, {span_name(section.span, ends)}\n{said}", fontsize=9.5)
+            place.set_ylabel("")
+            place.xaxis.set_major_locator(MaxNLocator(3))
+            place.yaxis.set_major_locator(MaxNLocator(4))
 
 
 def draw_edge(axes: Axes, section: "Section", *, trailing: bool) -> None:
-    """Draws the leading or the trailing edge of a section, the circle of curvature and the camber line there."""
-    radius = section.edge_radii[int(trailing)] * MILLIMETRES
-    at = np.array([float(trailing)])
+    """Draws the leading or the trailing edge of a section and the camber line there, of a round one the circle too."""
+    at, kind = np.array([float(trailing)]), section.edges[int(trailing)]
     tip = developed(section, section.camber(at))[0]
     inwards = np.real(unit(section.camber.derivative(at)))[0] * (-1.0 if trailing else 1.0)
-    centre = tip + radius * inwards
     shape = outline(section)
     colour = span_colour(section.span)
     axes.fill(*shape.T, color=colour, alpha=0.14, linewidth=0.0)
     axes.plot(*shape.T, color=colour)
     camber = developed(section, section.camber(along_curve()))
     axes.plot(*camber.T, color=INK, linewidth=0.9, linestyle=CAMBER)
-    axes.add_patch(Circle((centre[0], centre[1]), radius, fill=False, edgecolor=RED, linewidth=1.1, linestyle="--"))
-    axes.plot(*centre, marker="+", color=RED, markersize=7.0)
-    reach = float(np.clip(PART * section.chord * MILLIMETRES, 1.5 * radius, REACH * radius))
+    size, said = _size(section, trailing=trailing)
+    if kind == "round":
+        centre = tip + size * inwards
+        axes.add_patch(Circle((centre[0], centre[1]), size, fill=False, edgecolor=RED, linewidth=1.1, linestyle="--"))
+        axes.plot(*centre, marker="+", color=RED, markersize=7.0)
+    reach = float(np.clip(PART * section.chord * MILLIMETRES, 1.5 * size, REACH * size))
     middle = tip + 0.6 * reach * inwards
     axes.set_xlim(middle[0] - reach, middle[0] + reach)
     axes.set_ylim(middle[1] - reach, middle[1] + reach)
     axes.set_aspect("equal", adjustable="box")
-    edge = "Trailing" if trailing else "Leading"
-    titled(axes, f"{edge} edge, radius {radius:.4g} mm", *COORDINATES[section.plane])
+    edge = "Trailing edge" if trailing else "Leading edge"
+    titled(axes, f"{edge}, {said}", *COORDINATES[section.plane])
+
+
+def _size(section: "Section", *, trailing: bool) -> tuple[float, str]:
+    """A length [mm] that says how large the edge is, and how it is called."""
+    kind, end = section.edges[int(trailing)], -1 if trailing else 0
+    if kind == "round":
+        radius = section.edge_radii[int(trailing)] * MILLIMETRES
+        return radius, f"radius {radius:.4g} mm"
+    sides = [developed(section, section.curves[name](np.array([0.0, 1.0]))) for name in ("upper", "lower")]
+    width = float(length(sides[0][end] - sides[1][end]))
+    if kind == "blunt":
+        return 0.5 * width, f"blunt, {width:.4g} mm"
+    return SHARP * float(np.real(section.chord)) * MILLIMETRES, "sharp"

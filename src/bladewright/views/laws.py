@@ -1,14 +1,19 @@
 """Laws of evolution along the span, with their control points."""
 
-from typing import Any, NamedTuple
+from collections.abc import Callable
+from dataclasses import fields
+from typing import Any, NamedTuple, get_args, get_type_hints
 
 import numpy as np
 from matplotlib.axes import Axes
 
-from bladewright.designs import Law, unit_of
+from bladewright.designs import ChordwiseLaw, Law, Part
 from bladewright.section.laws import Span
 from bladewright.views.style import LOWER, SERIES, UPPER, legend_below, titled
 from bladewright.views.thickness import control_places
+
+MOST = 16
+"""control points along the chord above which a row of laws has no panel: the points of a given profile"""
 
 
 class Panel(NamedTuple):
@@ -21,24 +26,86 @@ class Panel(NamedTuple):
     """by the name in the legend"""
 
 
+class _Kind(NamedTuple):
+    """What laws measure that share a panel."""
+
+    title: str
+    abscissa: str
+    factor: float
+    holds: Callable[[str, str], bool]
+    """whether a law by its name and unit belongs here"""
+
+
+_KINDS = (
+    _Kind("Angles", "angle [deg]", 1.0, lambda _, unit: unit == "deg"),
+    _Kind("Position of the leading edge", "y [{unit}]", 1.0, lambda name, _: name == "leading_edge_y"),
+    _Kind("Lengths", "length [{unit}]", 1.0, lambda _, unit: unit == "length"),
+    _Kind("Camber tangents", "length [% of extent]", 100.0, lambda name, _: name.startswith("tangent_")),
+    _Kind("Tangents", "length [% of chord]", 100.0, lambda name, _: "_tangent_" in name),
+    _Kind("Edge radii", "radius [% of {length}]", 100.0, lambda name, _: name.endswith("_edge_radius")),
+    _Kind("Half thickness", "control point [% of {length}]", 100.0, lambda name, _: name.startswith("thickness_")),
+    _Kind("Thickness", "thickness [% of chord]", 100.0, lambda name, _: name.endswith("thickness")),
+    _Kind("Weights", "control point [-]", 1.0, lambda name, _: name.startswith("weights_")),
+    _Kind("Places", "place [% of chord]", 100.0, lambda name, _: name.endswith(("_at", "_position"))),
+)
+"""the first that fits is taken"""
+_REST = _Kind("Further parameters", "value [-]", 1.0, lambda *_: True)
+
+
+class _Row(NamedTuple):
+    """Control points along the chord, each a law."""
+
+    name: str
+    unit: str
+    laws: tuple[Law, ...]
+
+
 def panels_of(design: Any) -> list[Panel]:
     """Every law along the span of a blade's design, grouped by what it measures."""
+    single, rows = _laws(design)
+    words = {"unit": design.length_unit, "length": "chord" if hasattr(design, "section") else "length"}
+    found: dict[str, Panel] = {}
 
-    def of(*names: str) -> dict[str, Law]:
-        return {name.replace("_", " "): getattr(design, name) for name in names}
+    def put(kind: _Kind, title: str, name: str, law: Law) -> None:
+        empty = Panel(title, kind.abscissa.format(**words), kind.factor, {})
+        found.setdefault(title, empty).laws[name.replace("_", " ")] = law
 
-    start = "leading_edge_theta" if design.arrangement == "annular" else "leading_edge_y"
-    angles = ["stagger", "metal_angle_in", "metal_angle_out"]
-    panels = [
-        Panel("Angles", "angle [deg]", 1.0, of(*angles, *([start] if unit_of(design, start) == "deg" else []))),
-        Panel("Camber tangents", "length [% of extent]", 100.0, of("tangent_in", "tangent_out")),
-        Panel("Edge radii", "radius [% of length]", 100.0, of("leading_edge_radius", "trailing_edge_radius")),
-        Panel("Half thickness", "control point [% of length]", 100.0, _chordwise(design, "thickness")),
-    ]
-    if design.arrangement == "linear":
-        panels.insert(1, Panel("Leading edge", f"y [{design.length_unit}]", 1.0, of(start)))
-    weights = _chordwise(design, "weights")
-    return [*panels, Panel("Weights", "control point [-]", 1.0, weights)] if weights else panels
+    for name, unit, law in single:
+        kind = next(each for each in (*_KINDS, _REST) if each.holds(name, unit))
+        put(kind, kind.title, name, law)
+    for row in rows:
+        if len(row.laws) > MOST:
+            continue
+        stem, _, side = row.name.rpartition("_")
+        if side in ("upper", "lower") and stem in ("thickness", "weights"):
+            kind = next(each for each in _KINDS if each.holds(row.name, row.unit))
+            for i, law in enumerate(row.laws):
+                put(kind, kind.title, f"{side}_{i + 1}", law)
+            continue
+        title = row.name.replace("_", " ").capitalize()
+        kind = _Kind(title, "control point [deg]" if row.unit == "deg" else "control point [-]", 1.0, _REST.holds)
+        for i, law in enumerate(row.laws):
+            put(kind, title, str(i + 1), law)
+    order = [kind.title for kind in (*_KINDS[:-2], _REST)]
+    return sorted(found.values(), key=lambda panel: order.index(panel.title) if panel.title in order else len(order))
+
+
+def _laws(part: Part) -> tuple[list[tuple[str, str, Law]], list[_Row]]:
+    """Names, units and values of all laws, and the rows of laws, of a design and of the parts in it."""
+    hints, single, rows = get_type_hints(type(part)), list[tuple[str, str, Law]](), list[_Row]()
+    for each in fields(part):
+        value, unit = getattr(part, each.name), each.metadata.get("unit")
+        if isinstance(value, Part):
+            deeper = _laws(value)
+            single += deeper[0]
+            rows += deeper[1]
+        elif unit is None or value is None or value == ():
+            continue
+        elif hints[each.name] == ChordwiseLaw:
+            rows.append(_Row(each.name, unit, value))
+        elif tuple[float, ...] in get_args(hints[each.name]):
+            single.append((each.name, unit, value))
+    return single, rows
 
 
 def draw_laws(axes: Axes, panel: Panel) -> None:
@@ -46,7 +113,7 @@ def draw_laws(axes: Axes, panel: Panel) -> None:
     v = np.linspace(0.0, 1.0, 101)
     span = Span(v)
     for index, (name, law) in enumerate(panel.laws.items()):
-        sided = "upper" in name or "lower" in name
+        sided = name.startswith(("upper ", "lower "))
         number = name.rpartition(" ")[2] if sided else ""
         colour = SERIES[(int(number) - 1 if sided else index) % len(SERIES)]
         style, marker = (LOWER, "s") if "lower" in name else (UPPER, "o")
@@ -70,11 +137,3 @@ def draw_laws(axes: Axes, panel: Panel) -> None:
     many = len(panel.laws) > 8
     # at most four rows: more would push the legend of a low panel over its axis
     legend_below(axes, -(-len(panel.laws) // 4), handlelength=0.9 if many else 2.0, columnspacing=0.6 if many else 1.2)
-
-
-def _chordwise(design: Any, what: str) -> dict[str, Law]:
-    return {
-        f"{side} {index + 1}": law
-        for side in ("upper", "lower")
-        for index, law in enumerate(getattr(design, f"{what}_{side}"))
-    }

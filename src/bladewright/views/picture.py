@@ -1,5 +1,6 @@
 """The sheet of everything an engineer looks for on a design, and a picture of the blade alone."""
 
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -7,15 +8,16 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from bladewright.blade.blade import Blade
+from bladewright.blade.sectioned import SectionedBlade
 from bladewright.blade.unified import UnifiedBlade
-from bladewright.designs import Design
 from bladewright.domain.passage import Passage
 from bladewright.domain.section import SectionPassage
 from bladewright.errors import DesignError
+from bladewright.section.planar import PlanarSection
 from bladewright.section.section import Section
 from bladewright.section.unified import UnifiedSection
 from bladewright.views.curvature import draw_curvature
-from bladewright.views.edges import draw_edge
+from bladewright.views.edges import draw_edge, draw_edges
 from bladewright.views.laws import draw_laws, panels_of
 from bladewright.views.meridional import draw_meridional
 from bladewright.views.pages import headed, laid_out, rows
@@ -31,10 +33,14 @@ DOTS = 150
 """to an inch of a PNG"""
 SPANS = (0.0, 0.25, 0.5, 0.75, 1.0)
 FEW = (0.0, 0.5, 1.0)
+ACROSS = 6
+"""panels of laws beside each other"""
 VIEW = (1250, 1000)
 """of a passage that is drawn alone, at most [pixels]"""
 Built = Blade | Section | Passage | SectionPassage
-Drawable = UnifiedBlade | UnifiedSection | Built
+BladeDesign = UnifiedBlade | SectionedBlade
+SectionDesign = UnifiedSection | PlanarSection
+Drawable = BladeDesign | SectionDesign | Built
 
 
 def picture(design: Drawable, path: str | Path, *, blade: Built | None = None) -> None:
@@ -51,18 +57,18 @@ def picture(design: Drawable, path: str | Path, *, blade: Built | None = None) -
         write(figure, path, DOTS)
 
 
-def blade_view(blade: Blade | UnifiedBlade, path: str | Path) -> None:
+def blade_view(blade: Blade | BladeDesign, path: str | Path) -> None:
     """Draws the blade in its row on the hub, shaded; as PNG, SVG or PDF by the suffix of `path`.
 
     Raises FileError where the suffix is another or the path cannot be written.
     """
     checked(path)
-    if not isinstance(blade, Blade | UnifiedBlade):
+    if not isinstance(blade, Blade | BladeDesign):
         raise DesignError(
             f"a {type(blade).__name__} was given: only a blade has a 3D view; draw the one that "
             "prismatic(section, span) makes"
         )
-    built = blade.build() if isinstance(blade, UnifiedBlade) else blade
+    built = blade if isinstance(blade, Blade) else blade.build()
     with manner():
         figure = Figure(figsize=(10.0, 8.0), layout="constrained")
         draw_solid(figure.add_subplot(), built, neighbours=None, width=1250)
@@ -87,12 +93,7 @@ def passage_view(passage: Passage, path: str | Path) -> None:
 
 
 def sheet(design: Drawable, blade: Built | None = None) -> Figure:
-    """The figure that `picture` writes; DesignError for a design of another family than the unified one."""
-    if isinstance(design, Design) and not isinstance(design, UnifiedBlade | UnifiedSection):
-        raise DesignError(
-            f"a picture is asked of a {type(design).__name__}, but is made for the unified family only; there are its "
-            "solid, its sections and its derivatives"
-        )
+    """The figure that `picture` writes."""
     built: Any = design if isinstance(design, Built) else (blade or design.build())
     asked: Any = None if isinstance(design, Section | SectionPassage) else design
     with manner():
@@ -110,27 +111,38 @@ def _blade_sheet(blade: Blade) -> Figure:
     few = [section for section in sections if section.span in FEW]
     middle = sections[2]
     pitch = pitch_of(blade, middle)
-    figure = Figure(figsize=(16.0, 15.0))
+    panels = panels_of(blade.design)
+    charts = [partial(draw_laws, panel=panel) for panel in panels]
+    if hasattr(blade.design, "thickness_upper"):
+        charts.append(partial(draw_thickness_laws, design=blade.design, sections=few, length_name="length"))
+    strips = -(-len(charts) // ACROSS)
+    heights = [5.4, 4.6, 3.6, *[4.4] * strips]
+    figure = Figure(figsize=(16.0, sum(heights) + 0.9))
     headed(figure, blade.name, blade.description, _blade_figures(blade, middle, pitch))
-    top, centre, bottom = rows(figure, 5.4, 4.6, 4.4)
+    top, centre, near, *bottom = rows(figure, *heights)
     axes = top.subplots(1, 3, width_ratios=[1.25, 1.0, 1.0])
     draw_solid(axes[0], blade, neighbours=2, width=760)
     axes[0].set_title("Blade with neighbours")
     draw_sections(axes[1], sections, blade.design.ends)
-    draw_passage(axes[2], middle, pitch, "Mid span")
+    draw_passage(axes[2], middle, pitch, "Mid span", blade)
     axes = centre.subplots(1, 3)
     draw_meridional(axes[0], blade)
     draw_curvature(axes[1], few, blade.design.ends)
     draw_thickness(axes[2], sections, blade.design.ends)
-    panels = panels_of(blade.design)
-    axes = bottom.subplots(1, len(panels) + 1, width_ratios=[1.0] * len(panels) + [1.6])
-    for place, panel in zip(axes, panels, strict=False):
-        draw_laws(place, panel)
-    draw_thickness_laws(axes[-1], blade.design, few, "length")
+    draw_edges(near, few, blade.design.ends)
+    across = -(-len(charts) // strips)
+    for index, strip in enumerate(bottom):
+        own = charts[index * across : (index + 1) * across]
+        widths = [1.6 if each.func is draw_thickness_laws else 1.0 for each in own]
+        places = strip.subplots(1, across, width_ratios=widths + [1.0] * (across - len(own)), squeeze=False)[0]
+        for place, draw in zip(places, own, strict=False):
+            draw(place)
+        for place in places[len(own) :]:
+            place.remove()
     return figure
 
 
-def _section_sheet(design: UnifiedSection | None, section: Section) -> Figure:
+def _section_sheet(design: SectionDesign | None, section: Section) -> Figure:
     from bladewright.section.checks import UNITS
 
     pitch = None
@@ -144,10 +156,11 @@ def _section_sheet(design: UnifiedSection | None, section: Section) -> Figure:
     draw_passage(axes[0], section, pitch, "Section")
     draw_edge(axes[1], section, trailing=False)
     draw_edge(axes[2], section, trailing=True)
-    axes = bottom.subplots(1, 3 if design is not None else 2)
+    lawful = design is not None and hasattr(design, "thickness_upper")
+    axes = bottom.subplots(1, 3 if lawful else 2)
     draw_curvature(axes[0], [section])
     draw_thickness(axes[1], [section])
-    if design is not None:
+    if lawful:
         draw_thickness_laws(axes[2], design, [section], "axial chord")
     return figure
 

@@ -30,6 +30,7 @@ COORDINATES = {
     "x-y": ("x [mm]", "y [mm]"),
     "m-y": ("m [mm]", "y [mm]"),
     "m'-theta": (r"$m'\,\bar{r}$ [mm]", r"$\theta\,\bar{r}$ [mm]"),
+    "m-r*theta": ("m [mm]", r"$r\,\theta$ [mm]"),
     "u-y/L": (r"$u\,L$ [mm]", r"$r\,\theta$ [mm]"),
 }
 """the developed planes' axes; a bar is the mean along the section, so that angles are true and lengths near it"""
@@ -57,7 +58,8 @@ def outline(section: "Section") -> Reals:
     """The closed section (n, 2) in millimetres: upper side from leading to trailing edge, lower side back."""
     u = along_curve()
     upper, lower = (developed(section, section.curves[name](u)) for name in ("upper", "lower"))
-    return np.concatenate([upper, lower[::-1]])
+    closing = upper[:1] if section.edges[0] == "blunt" else upper[:0]
+    return np.concatenate([upper, lower[::-1], closing])
 
 
 def pitch_of(blade: "Blade", section: "Section") -> float:
@@ -74,6 +76,18 @@ def pitch_of(blade: "Blade", section: "Section") -> float:
     return 2.0 * np.pi / (design.blade_count or 1) * radius
 
 
+def neighbours(blade: "Blade", section: "Section", shape: Reals) -> Reals:
+    """The closed section (n, 2) [mm] one pitch away from a drawn one of a blade."""
+    mapping, pitch = blade.exact.mapping, pitch_of(blade, section)
+    aside = np.full(len(shape), pitch)
+    if not mapping.keeps_ordinate and mapping.revolved:
+        lines = blade.exact.stations(np.array([section.span])).lines
+        radius = lines.position(lines.u_at((shape[:, 0] / size_of(section))[None]))[..., 1]
+        turn = np.full(radius.shape, 2.0 * np.pi / (blade.design.blade_count or 1))
+        aside = np.real(mapping.start(turn, radius, lines.lengths[..., None]))[0] * size_of(section)
+    return np.stack([shape[:, 0], shape[:, 1] + aside], axis=-1)
+
+
 def draw_sections(axes: Axes, sections: Sequence["Section"], ends: tuple[str, str] = WALLS) -> None:
     """Draws sections along the span over one another, each with its camber line."""
     for section in sections:
@@ -88,8 +102,11 @@ def draw_sections(axes: Axes, sections: Sequence["Section"], ends: tuple[str, st
     legend_below(axes, 5, handlelength=1.0, columnspacing=0.9)
 
 
-def draw_passage(axes: Axes, section: "Section", pitch: float | None, title: str) -> None:
-    """Draws a section with its camber line, and its neighbour one pitch [mm] away with the narrowest gap between."""
+def draw_passage(axes: Axes, section: "Section", pitch: float | None, title: str, blade: "Blade | None" = None) -> None:
+    """Draws a section with its camber line, and its neighbour one pitch [mm] away with the narrowest gap between.
+
+    The neighbour's place is the blade's where one is given.
+    """
     shape = outline(section)
     colour = span_colour(section.span)
     chord = section.chord * MILLIMETRES
@@ -99,7 +116,7 @@ def draw_passage(axes: Axes, section: "Section", pitch: float | None, title: str
     axes.plot(*camber.T, color=INK, linewidth=0.9, linestyle=CAMBER, label="camber line")
     axes.plot(*camber[[0, -1]].T, color=SOFT, linewidth=0.8, linestyle=":", label=f"chord {chord:.4g} mm")
     if pitch is not None and pitch < ALONE * chord:
-        neighbour = shape + np.array([0.0, pitch])
+        neighbour = shape + np.array([0.0, pitch]) if blade is None else neighbours(blade, section, shape)
         axes.fill(*neighbour.T, color=PALE, linewidth=0.0)
         axes.plot(*neighbour.T, color=SOFT)
         gap = narrowest(shape, neighbour)

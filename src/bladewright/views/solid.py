@@ -5,7 +5,6 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from matplotlib.axes import Axes
 
-from bladewright.blade.exact import in_channel
 from bladewright.nurbs.basis import Reals
 from bladewright.views.raster import Camera, Mesh, Trace, axes_towards, framed, rendered
 from bladewright.views.sections import ALONE, along_curve
@@ -21,6 +20,8 @@ EDGE = (0.05, 0.16, 0.26)
 FAINT = (0.55, 0.60, 0.65)
 BORE = 0.8
 """radius of the bore of a hub, of the hub's smallest radius"""
+FLAT = 0.2
+"""run of a hub along the axis, of its rise, below which it is a disc"""
 GRID, COARSE = (121, 41), (57, 17)
 """points along and across a side, of the blade and of its neighbours"""
 
@@ -98,6 +99,8 @@ def blade_meshes(
         size_of_normals = np.sqrt(np.sum(normals**2, axis=-1, keepdims=True))
         meshes.append(Mesh(points=points, normals=normals / np.maximum(size_of_normals, 1e-300), colour=colour))
         rims.append(points)
+    blunt = [blade.surfaces[name] for name in ("leading_edge", "trailing_edge") if name in blade.surfaces]
+    meshes += [_face(face, v, colour) for face in blunt]
     lines = []
     for row in (-1,) if blade.exact.mapping.revolved and blade.design.ends[0] == "hub" else (0, -1):
         ends = np.stack([rim[:, row] for rim in rims], axis=1)
@@ -108,11 +111,20 @@ def blade_meshes(
     return meshes, lines
 
 
+def _face(face: Any, v: Reals, colour: tuple[float, float, float]) -> Mesh:
+    """The face of a blunt edge [mm]."""
+    w = np.linspace(0.0, 1.0, 5)
+    normals = np.cross(np.real(face.grid(w, v, 1, 0)), np.real(face.grid(w, v, 0, 1)))
+    size = np.sqrt(np.sum(normals**2, axis=-1, keepdims=True))
+    return Mesh(
+        points=MILLIMETRES * np.real(face.grid(w, v)), normals=normals / np.maximum(size, 1e-300), colour=colour
+    )
+
+
 def _hub(blade: "Blade", turns: list[float]) -> list[Mesh]:
     """The wall that the blades drawn stand on [mm], a little longer than they are; of a whole row with its bore."""
-    exact = in_channel(blade.exact, "a picture")
-    margin = max(exact.before, exact.after, 0.06)
-    wall = MILLIMETRES * np.real(exact.full_channel.curve("hub")(np.linspace(-margin, 1.0 + margin, 61)))
+    exact, low, high = blade.exact, *_reach(blade)
+    wall = MILLIMETRES * exact.wall_line("hub", np.linspace(low, high, 61))
     feet = MILLIMETRES * np.concatenate(
         [np.real(blade.surfaces[name](along_curve(41), 0.0)) for name in ("upper", "lower")]
     )
@@ -139,15 +151,29 @@ def _hub(blade: "Blade", turns: list[float]) -> list[Mesh]:
     return meshes
 
 
+def _reach(blade: "Blade") -> tuple[float, float]:
+    """From which to which u the hub is drawn: past the noses."""
+    stations = blade.exact.stations(np.zeros(1))
+    u = np.real(stations.on_lines(np.concatenate(stations.plane.points(along_curve(41)), axis=-2))[0])
+    return min(float(u.min()), 0.0) - 0.06, max(float(u.max()), 1.0) + 0.06
+
+
 def _hub_mesh(grid: Reals) -> Mesh:
     return Mesh(points=grid, normals=np.cross(np.gradient(grid, axis=0), np.gradient(grid, axis=1)), colour=HUB)
 
 
 def viewpoint(blade: "Blade") -> Reals:
-    """Right, up and towards of a viewer who looks at the smaller end of the hub, or from upstream on an even one."""
+    """Right, up and towards of a viewer who looks at the smaller end of the hub, or from upstream on an even one.
+
+    A hub that is a disc is looked at from the shroud's side.
+    """
     if not blade.exact.mapping.revolved:
         return axes_towards((-0.55, -0.75, 0.50), (0.0, 0.0, 1.0))
-    first, last = np.real(in_channel(blade.exact, "a picture").full_channel.hub.points)[[0, -1]]
+    first, last = blade.exact.wall_line("hub", np.array([0.0, 1.0]))
+    run, rise = last - first
+    if FLAT * abs(rise) > abs(run):
+        aside = blade.exact.wall_line("shroud", np.array([0.0, 1.0]))[:, 0] - np.array([first[0], last[0]])
+        return axes_towards((0.74 if float(np.mean(aside)) > 0.0 else -0.74, 0.42, 0.52), (0.0, 0.0, 1.0))
     narrows = first[1] - last[1] > 0.15 * first[1]
     smaller, larger = (last, first) if narrows else (first, last)
     return axes_towards((0.74 if smaller[0] > larger[0] else -0.74, 0.42, 0.52), (0.0, 0.0, 1.0))
