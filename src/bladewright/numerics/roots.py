@@ -7,6 +7,7 @@ from numpy.typing import ArrayLike
 
 from bladewright.numerics.elementary import Array
 
+EPSILON = float(np.finfo(np.float64).eps)
 STEPS = 80
 """bisection alone needs no more: the bracket is then below the spacing of doubles"""
 
@@ -41,17 +42,20 @@ def bracketed_root(function: Callable[[Array], tuple[Array, Array]], low: ArrayL
 
 
 def crossings(function: Callable[[Array], Array], places: ArrayLike, values: ArrayLike, levels: ArrayLike) -> Array:
-    """Places (k,), rising, where a continuous real function passes a level, or any of several, by bisection.
+    """Places (k,), rising, where a continuous real function passes a level, or any of several, to rounding.
 
     `values` (m,) are the function's at `places` (m,), rising; what crosses twice between two of them is not seen.
     """
     at, asked = np.asarray(places, dtype=np.float64), np.atleast_1d(np.asarray(levels, dtype=np.float64))
     off = np.asarray(values, dtype=np.float64) - asked[:, None]
     row, first = np.nonzero(off[:, :-1] * off[:, 1:] < 0.0)
-    level, side = asked[row], off[row, first]
-    low, high = at[first], at[first + 1]
-    for _ in range(STEPS if len(first) else 0):
-        middle = 0.5 * (low + high)
-        same = (np.real(function(middle)) - level) * side > 0.0
-        low, high = np.where(same, middle, low), np.where(same, high, middle)
-    return np.sort(np.concatenate([0.5 * (low + high), at[np.nonzero(off == 0.0)[1]]]))
+    found = at[np.nonzero(off == 0.0)[1]]
+    if len(first):
+        from scipy.optimize import elementwise
+
+        bracket, exact = (at[first], at[first + 1]), {"xatol": 0.0, "xrtol": EPSILON, "fatol": 0.0, "frtol": 0.0}
+        roots = elementwise.find_root(
+            lambda x, level: function(x) - level, bracket, args=(asked[row],), tolerances=exact, maxiter=STEPS
+        )
+        found = np.concatenate([roots.x, found])
+    return np.sort(found)
