@@ -5,6 +5,7 @@ from functools import cached_property, partial
 
 import numpy as np
 
+from bladewright.blade.counted_lines import CountedStreamLines
 from bladewright.blade.edge_crossing import Meeting, crossed, nearest
 from bladewright.blade.mapping import Cascade, Mapping
 from bladewright.blade.meridian_line import MeridianLine, real_first
@@ -12,7 +13,7 @@ from bladewright.blade.planes import Counted
 from bladewright.blade.stream_surfaces import StreamSurfaces
 from bladewright.blade.streamlines import StreamLines, stream_lines
 from bladewright.errors import DesignError
-from bladewright.numerics.elementary import Array
+from bladewright.numerics.elementary import Array, length
 from bladewright.nurbs.basis import Reals
 
 ROOM = 1e-9
@@ -50,7 +51,7 @@ class BladedLines:
     stretch: Stretch
     v: Reals
     """(m,) span fractions"""
-    lines: StreamLines
+    lines: StreamLines | CountedStreamLines
     """the same by the parameter of the stretch"""
     leading: Array
     """(..., m) t on the leading edge"""
@@ -116,7 +117,10 @@ class BladedLines:
     @cached_property
     def lengths(self) -> Array:
         """(..., m) meridional length between the edges [m]."""
-        return self.meridional(np.array([1.0]))[..., 0]
+        if self.rate is None:
+            return self.meridional(np.array([1.0]))[..., 0]
+        # to 1e-9 of itself or better, without the panels of all joints of lines through many points
+        return np.sum(length(self.position(_GAUSS[0], 1)) * _GAUSS[1], axis=-1)
 
     def meridional(self, u: Array) -> Array:
         """Meridional length (..., m, k) from the leading edge [m] at u (..., m, k) or (k,)."""
@@ -265,10 +269,24 @@ def bladed_lines(
     high = min(surfaces.high, float(np.max(end + after * (end - start))))
     stretch = Stretch(surfaces=surfaces.along(v), low=low, high=high)
     rate = surfaces.counted(v)[1] * (high - low) if counted else None
-    lines = stream_lines(stretch, Counted() if counted else mapping, v, 0.0, 0.0)
+    lines: StreamLines | CountedStreamLines
+    if counted:
+        lines = CountedStreamLines(mapping=Counted(), surfaces=stretch.surfaces, v=v, low=low, high=high)
+    else:
+        lines = stream_lines(stretch, mapping, v, 0.0, 0.0)
     return BladedLines(stretch=stretch, v=v, lines=lines, leading=leading, trailing=trailing, rate=rate)
 
 
 def labels(v: Reals) -> list[str]:
     """What stream lines are called in messages."""
     return [f"at v = {each:.4g}" for each in v]
+
+
+def _gauss() -> tuple[Reals, Reals]:
+    """Places (n,) in [0, 1] and weights of Gauss's rule on equal panels."""
+    nodes, weights = np.polynomial.legendre.leggauss(6)
+    starts = np.arange(24.0)[:, None]
+    return np.ravel(starts + 0.5 * (1.0 + nodes)) / 24.0, np.tile(weights, 24) / 48.0
+
+
+_GAUSS = _gauss()

@@ -40,7 +40,7 @@ class CaseFlow:
     @cached_property
     def totals(self) -> Reals:
         """(m,) m' of the stream lines' last points."""
-        return np.array([float(np.real(line.counted)) for line in self.lines])
+        return np.array([_counted(line) for line in self.lines])
 
     def at(self, places: Reals, order: int = 0) -> Reals:
         """(x, r) [m] (m, 2) at m' (m,) on each line, or derivatives by m'; past a line's ends its spline goes on."""
@@ -133,4 +133,9 @@ def _met(case: TBlade3Case, line: MeridianLine, edge: MeridianLine, name: str, i
         place = crossed(position, (0.0, 1.0), edge, f"the {name}-edge curve", [f"of section {index}"]).t[0]
     except DesignError as error:
         raise FileError(f"'{case.file}': {error}") from error
-    return float(np.real(place) * np.real(line.counted))
+    return float(np.real(place)) * _counted(line)
+
+
+def _counted(line: MeridianLine) -> float:
+    """m' of a stream line's last point."""
+    return float(np.real(0.0 if line.counted is None else line.counted))

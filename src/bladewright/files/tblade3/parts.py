@@ -92,9 +92,7 @@ def _angles(angles: MetalAngles) -> tuple[Reals, Reals]:
     return twist - 0.5 * camber, twist + 0.5 * camber
 
 
-def _turned(
-    case: TBlade3Case, angles: MetalAngles, places: Reals, curvature: Reals
-) -> tuple[Reals, Reals, Reals]:
+def _turned(case: TBlade3Case, angles: MetalAngles, places: Reals, curvature: Reals) -> tuple[Reals, Reals, Reals]:
     """Metal angles (m,) [rad] at inlet and exit, and the scale (m,) of the second derivative."""
     camber = np.asarray(angles.camber)
     integral = CurvatureIntegral(places=places, values=curvature)
@@ -171,7 +169,7 @@ def _straight_end(case: TBlade3Case, values: SectionValues) -> str:
     before = values.thickest < 0.5
     if np.all(before) or not np.any(before):
         return "trailing" if before[0] else "leading"
-    if np.array_equal(values.leading_thickness, values.trailing_thickness):
+    if np.array_equal(np.asarray(values.leading_thickness), values.trailing_thickness):
         return "farther"
     odd = int(np.flatnonzero(before != before[0])[0])
     raise FileError(
@@ -180,5 +178,3 @@ def _straight_end(case: TBlade3Case, values: SectionValues) -> str:
         "so that between two sections the shape would jump; keep the maxima on one side of 0.5, or give both edges one "
         "thickness"
     )
-
-
