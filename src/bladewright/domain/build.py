@@ -3,6 +3,7 @@
 from collections.abc import Mapping
 from dataclasses import replace
 from types import MappingProxyType
+from typing import cast
 
 import numpy as np
 
@@ -17,8 +18,9 @@ from bladewright.domain.extents import extents, openings, shortest_duct
 from bladewright.domain.fitness import RESERVE, TOLERANCE, knots_across, knots_along, knots_beside, knots_span
 from bladewright.domain.folding import ROOMY, least_share
 from bladewright.domain.knots import PassageKnots
-from bladewright.domain.nets import native_nets
+from bladewright.domain.nets import BladeNets, native_nets
 from bladewright.domain.passage import Passage
+from bladewright.domain.strip import ACROSS, EDGE_FACES, STRIPS, WallStrip, strips
 from bladewright.domain.wall import WallHalf, halves
 from bladewright.errors import DesignError
 from bladewright.numerics.elementary import Array, radians
@@ -72,13 +74,27 @@ def passage(
                 raise DesignError(
                     f"{name} is {given!r}, but the knots given hold {getattr(knots, name):g}: leave one of them out"
                 )
-    camber, walls = _plane(blade, full, knots, half, turned, knots.sites("span"))
+    camber, walls, between = _plane(blade, full, knots, half, turned, knots.sites("span"))
     upper, lower = (_with_knots(side, knots.blade) for side in blade.sides)
-    nets = native_nets(camber, walls, (upper.control_points, lower.control_points), knots, half)
+    own = BladeNets(
+        upper.control_points,
+        lower.control_points,
+        [cast(Surface, blade.surfaces[name]).control_points if name in blade.surfaces else None for name in EDGE_FACES],
+    )
+    nets = native_nets(camber, walls, between, own, knots, half)
     surfaces: dict[str, Surface | TrimmedSurface] = {name: _surface(net, name, knots) for name, net in nets.items()}
     surfaces |= {"blade_upper": upper, "blade_lower": lower}
+    surfaces |= {f"blade_{name}": blade.surfaces[name] for name in EDGE_FACES if name in blade.surfaces}
     surfaces |= {name: face for name, face in blade.surfaces.items() if name == "tip"}
-    made = Passage(blade=blade, whole=MappingProxyType(surfaces), knots=knots, camber=camber, walls=walls, split=split)
+    made = Passage(
+        blade=blade,
+        whole=MappingProxyType(surfaces),
+        knots=knots,
+        camber=camber,
+        walls=walls,
+        strips=between,
+        split=split,
+    )
     if not held:
         check_folds(made.folds)
         _check_reached(made)
@@ -126,11 +142,11 @@ def _duct(full: Meant, knots: PassageKnots) -> Duct:
 
 def _plane(
     blade: Blade, full: Meant, knots: PassageKnots, half: Array, turned: Turned, v: Reals
-) -> tuple[CamberLines, Mapping[str, WallHalf]]:
-    """Camber lines and walls' halves with stations at v (m,), hub first and shroud last."""
+) -> tuple[CamberLines, Mapping[str, WallHalf], Mapping[str, WallStrip]]:
+    """Camber lines, walls' halves and strips with stations at v (m,), hub first and shroud last."""
     camber = camber_lines(full.stations(v), _duct(full, knots), turned, np.unique(full.breaks_along_v()))
     touched = {wall: wall in blade.surfaces for wall in ("hub", "shroud")}
-    return camber, halves(camber, touched, half, knots.opening, knots.crossing)
+    return camber, halves(camber, touched, half, knots.opening, knots.crossing), strips(camber, touched)
 
 
 def _knots(blade: Blade, full: Meant, half: Array, turned: Turned, asked: Asked) -> PassageKnots:
@@ -185,6 +201,7 @@ def _rough(blade: Blade, full: Meant, half: Array, crossing: Crossing, reaches: 
         end=course.end,
         opening=openings(full, _real_half(half)),
         crossing=crossing,
+        blunt=(EDGE_FACES[0] in blade.surfaces, EDGE_FACES[1] in blade.surfaces),
         blade=blade.knots.u,
         inlet=rough,
         outlet=rough,
@@ -205,7 +222,9 @@ def _with_knots(side: Surface, knots: Reals) -> Surface:
 
 def _surface(net: Array, name: str, knots: PassageKnots) -> Surface:
     if name in {"inlet", "outlet"}:
-        along, across = knots.around, knots.span
+        along, across = knots.around(int(name == "outlet")), knots.span
+    elif name.endswith(STRIPS):
+        along, across = knots.outlet if name.endswith(STRIPS[1]) else knots.inlet, ACROSS
     elif name.startswith("periodic"):
         along, across = knots.u, knots.span
     else:

@@ -27,12 +27,16 @@ class CamberLines:
     joints: Reals
     """where, along the span, laws of evolution and the channel's edges lose derivatives"""
 
-    def points(self, piece: str, t: Reals) -> Array:
-        """Points (..., m, k, 2) at t (k,) in [0, 1] along `inlet`, `blade` or `outlet`."""
+    def points(self, piece: str, t: Reals, sign: int = 0) -> Array:
+        """Points (..., m, k, 2) at t (k,) in [0, 1] along `inlet`, `blade` or `outlet`.
+
+        With `sign` +1 or -1, up- or downstream of the blade: of the line that starts where the upper or the lower side
+        ends, which is another where the edge is blunt.
+        """
         if piece == "blade":
             return self.in_plane(self.stations.camber(_parameter(t)))
         past = 0 if piece == "inlet" else 1
-        edge = self.points("blade", np.array([float(past)]))
+        edge = self.start(past, sign)
         end = np.array([self.duct.high if past else self.duct.low])
         reach = self.lines.abscissa(end) - edge[..., 0]
         share = 1.0 - t if past == 0 else t
@@ -41,6 +45,13 @@ class CamberLines:
         if turn is not None:
             rise = rise + (turn - slope) * share**3 / 3.0
         return np.stack([edge[..., 0] + reach * share, edge[..., 1] + reach * rise], axis=-1)
+
+    def start(self, past: int, sign: int = 0) -> Array:
+        """The end (..., m, 1, 2) of the camber at an edge; of the upper (+1) or lower side (-1) where it is blunt."""
+        at = np.array([float(past)])
+        if sign == 0 or self.stations.kinds[past] != "blunt":
+            return self.points("blade", at)
+        return self.in_plane(self.stations.plane.points(at)[0 if sign > 0 else 1])
 
     def direction(self, past: int) -> Array:
         """Unit vectors (..., m, 2) along the camber, downstream, at the leading (0) or trailing (1) edge."""

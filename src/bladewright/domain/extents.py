@@ -105,6 +105,8 @@ def _bulges(full: Meant, half_pitch: Array, crossing: Crossing, past: int) -> Re
     density = np.real(camber.lines.densities(u)[0])
     half = float(np.real(half_pitch).flat[0])
     size = np.max([lean(direction[:, 1], half, each, past, crossing.lean) for each in (1, -1)], axis=0)
+    if camber.stations.kinds[past] != "round":
+        size = 0.0 * size
     bulge = crossing.bulge * np.array(openings(full, half)) * size * direction[:, 0]
     reach = ROOM * bulge / density.reshape(-1, 2)[0]
     return np.asarray(u[:, 0] + (reach if past else -reach))

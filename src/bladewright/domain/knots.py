@@ -14,6 +14,10 @@ PIECES = ("inlet", "blade", "outlet")
 """pieces of a passage's faces along the flow"""
 BLADE_AT = (0.25, 0.75)
 """u of the leading and the trailing edge on the passage's faces"""
+MIDDLE = (0.5,)
+"""u of inlet and outlet amid both halves of the walls"""
+STRIP_AT = (0.4, 0.6)
+"""the same where a strip lies between the halves: on both its sides"""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -40,6 +44,8 @@ class PassageKnots:
     """u up to which it does"""
     opening: tuple[float, float]
     """share of the passage's width at which cross-lines leave the blade, on hub and shroud"""
+    blunt: tuple[bool, bool]
+    """whether the leading and the trailing edge have a face"""
     crossing: Crossing
     """how cross-lines leave the edges and turn back"""
     blade: Reals
@@ -73,8 +79,14 @@ class PassageKnots:
         full = [np.full(DEGREE, edge) for edge in BLADE_AT]
         return clamped(np.concatenate([parts[0], full[0], parts[1], full[1], parts[2]]))
 
-    @cached_property
-    def around(self) -> Reals:
-        """Knots of inlet and outlet from one periodic boundary to the other, full in the middle."""
+    def around(self, past: int) -> Reals:
+        """Knots of inlet (0) or outlet (1) from one periodic boundary to the other, full where walls have creases."""
         inner = self.across[DEGREE + 1 : -DEGREE - 1]
-        return clamped(np.concatenate([0.5 - inner[::-1] / 2.0, np.full(DEGREE, 0.5), 0.5 + inner / 2.0]))
+        cuts = self.cuts(past)
+        low, high = cuts[0], cuts[-1]
+        full = [np.full(DEGREE, cut) for cut in cuts]
+        return clamped(np.concatenate([low - low * inner[::-1], *full, high + (1.0 - high) * inner]))
+
+    def cuts(self, past: int) -> tuple[float, ...]:
+        """Places along u of inlet (0) or outlet (1) where walls have creases: two where the edge is blunt."""
+        return STRIP_AT if self.blunt[past] else MIDDLE

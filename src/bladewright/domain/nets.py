@@ -1,38 +1,51 @@
 """Control nets of a passage's faces: neighbours share their boundary control points exactly."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from typing import NamedTuple
 
 import numpy as np
 
 from bladewright.blade.knots import DEGREE
 from bladewright.domain.camber import CamberLines
 from bladewright.domain.knots import PIECES, PassageKnots
+from bladewright.domain.strip import ACROSS, STRIPS, WallStrip
 from bladewright.domain.wall import WallHalf, widening
 from bladewright.numerics.elementary import Array, joined
 from bladewright.nurbs.basis import Reals, basis, greville
 
 
+class BladeNets(NamedTuple):
+    """The blade's control nets (..., n_u, n_v, 3)."""
+
+    upper: Array
+    lower: Array
+    edges: Sequence[Array | None]
+    """of the faces of leading and trailing edge, where they are blunt; u from the upper to the lower side"""
+
+
 def native_nets(
     camber: CamberLines,
     walls: Mapping[str, WallHalf],
-    sides: tuple[Array, Array],
+    between: Mapping[str, WallStrip],
+    blade: BladeNets,
     knots: PassageKnots,
     half_pitch: Array,
 ) -> dict[str, Array]:
-    """Control nets (..., n_u, n_v, 3) of the walls' halves, the periodic boundaries, inlet and outlet.
+    """Control nets (..., n_u, n_v, 3) of the walls' halves and strips, the periodic boundaries, inlet and outlet.
 
-    `sides` are the nets of the blade's upper and lower side, whose ends the walls that the blade stands on take over.
+    The walls that the blade stands on take over the ends of its nets.
     """
     middle = _middle(camber, knots)
     shifted = {f"periodic_{half}": _shifted(camber, middle, sign * half_pitch) for half, sign in _HALVES}
     nets = dict(shifted)
     for name, wall in walls.items():
         half = name.removeprefix("hub_").removeprefix("shroud_")
-        net = _wall(wall, knots)
-        line = middle[..., wall.row, :]
-        if wall.touched:
-            line = _with_blade(line, sides[0 if wall.sign > 0 else 1][..., wall.row, :], knots)
-        nets[name] = _edged(net, line, shifted[f"periodic_{half}"][..., wall.row, :], -2)
+        line = _beside(wall, blade, knots) if wall.touched else middle[..., wall.row, :]
+        nets[name] = _edged(_wall(wall, knots), line, shifted[f"periodic_{half}"][..., wall.row, :], -2)
+    for name, strip in between.items():
+        wall_name = name.partition("_")[0]
+        lines = [nets[f"{wall_name}_{half}"][..., 0, :] for half in ("lower", "upper")]
+        nets[name] = _strip(strip, blade, lines, knots)
     for name, end in (("inlet", 0), ("outlet", -1)):
         nets[name] = _opening(camber, walls, nets, knots, end)
     return nets
@@ -72,10 +85,37 @@ def _wall(wall: WallHalf, knots: PassageKnots) -> Array:
     return through(_along(points, knots, -3), knots.across, -2)
 
 
-def _with_blade(line: Array, side: Array, knots: PassageKnots) -> Array:
-    """The continued camber line's control points with those of a side's end between its edges."""
-    first, last = (len(getattr(knots, piece)) - DEGREE - 1 for piece in ("inlet", "outlet"))
-    return joined([line[..., : first - 1, :], side, line[..., line.shape[-2] - last + 1 :, :]], -2)
+def _beside(wall: WallHalf, blade: BladeNets, knots: PassageKnots) -> Array:
+    """Control points along the blade's side at a wall, continued along the camber to inlet and outlet."""
+    camber = wall.camber
+    ahead, behind = (
+        through(_line_in_space(camber, wall, piece, knots.sites(piece)), getattr(knots, piece), -2)
+        for piece in ("inlet", "outlet")
+    )
+    side = (blade.upper if wall.sign > 0 else blade.lower)[..., wall.row, :]
+    return joined([ahead[..., :-1, :], side, behind[..., 1:, :]], -2)
+
+
+def _line_in_space(camber: CamberLines, wall: WallHalf, piece: str, t: Reals) -> Array:
+    """Points (..., k, 3) of the line that continues a half's side."""
+    plane = camber.points(piece, t, wall.sign)[..., wall.row, :, :][..., None, :, :]
+    position = wall.line.position(wall.line.u_at(plane[..., 0]))
+    return wall.line.mapping.in_space(position[..., 0], position[..., 1], plane[..., 1])[..., 0, :, :]
+
+
+def _strip(strip: WallStrip, blade: BladeNets, lines: Sequence[Array], knots: PassageKnots) -> Array:
+    """Net of a strip between the lower and the upper half, which run along `lines` (..., n, 3) from inlet to outlet."""
+    sites = knots.sites(strip.piece)
+    net = through(strip.in_space(strip.piece, sites, greville(ACROSS, DEGREE))[0], getattr(knots, strip.piece), -3)
+    net = through(net, ACROSS, -2)
+    part = slice(-len(sites), None) if strip.past else slice(len(sites))
+    face = blade.edges[strip.past]
+    if face is None:
+        raise AssertionError("a strip lies past the face of a blunt edge")
+    own = face[..., ::-1, strip.row, :]
+    far = net[..., -1 if strip.past else 0, :, :]
+    net = _edged(net, *((own, far) if strip.past else (far, own)), -3)
+    return _edged(net, lines[0][..., part, :], lines[1][..., part, :], -2)
 
 
 def _opening(
@@ -87,15 +127,32 @@ def _opening(
     position = camber.lines.position(camber.lines.u_at(plane[..., 0]))
     v, across = knots.sites("span")[:, None], knots.sites("across")
     share = (1.0 - v) * widening(knots.opening[0], across) + v * widening(knots.opening[1], across)
-    halves = []
-    for wall in (walls["hub_upper"], walls["hub_lower"]):
-        tangential = plane[..., 1] + wall.sign * wall.half_pitch[..., None, None] * share
+    half = walls["hub_upper"].half_pitch[..., None, None]
+    edges = {sign: camber.points(piece, np.array([t]), sign)[..., 1] for sign in (-1, 1)}
+
+    def part(tangential: Array, along: Reals) -> Array:
         x, radius = (np.broadcast_to(position[..., i], tangential.shape) for i in (0, 1))
         points = camber.lines.mapping.in_space(x, radius, tangential)
-        halves.append(through(through(points, knots.across, -2), knots.span, -3))
-    net = np.concatenate([halves[1][..., ::-1, :], halves[0][..., 1:, :]], axis=-2)
+        return through(through(points, along, -2), knots.span, -3)
+
+    lower, upper = (
+        part(edges[sign] + (plane[..., 1] + sign * half - edges[sign]) * share, knots.across) for sign in (-1, 1)
+    )
+    parts, between = [lower[..., ::-1, :], upper[..., 1:, :]], []
+    if knots.blunt[end]:
+        strip = part(edges[-1] + (edges[1] - edges[-1]) * greville(ACROSS, DEGREE), ACROSS)
+        parts[1:1] = [strip[..., 1:, :]]
+        between = [STRIPS[end]]
+    net = joined(parts, -2)
     hub, shroud = (
-        joined([nets[f"{name}_lower"][..., end, ::-1, :], nets[f"{name}_upper"][..., end, 1:, :]], -2)
+        joined(
+            [
+                nets[f"{name}_lower"][..., end, ::-1, :],
+                *(nets[f"{name}_{strip}"][..., end, 1:, :] for strip in between),
+                nets[f"{name}_upper"][..., end, 1:, :],
+            ],
+            -2,
+        )
         for name in ("hub", "shroud")
     )
     lower, upper = (nets[f"periodic_{half}"][..., end, :, :] for half in ("lower", "upper"))

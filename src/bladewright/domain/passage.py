@@ -15,6 +15,7 @@ from bladewright.domain.duct import Duct
 from bladewright.domain.knots import BLADE_AT, PIECES, PassageKnots
 from bladewright.domain.pieces import pieces_of
 from bladewright.domain.sector import Sector, sector
+from bladewright.domain.strip import WallStrip
 from bladewright.domain.wall import WallHalf
 from bladewright.numerics.elementary import Array, dot
 from bladewright.nurbs.basis import Reals, breaks
@@ -34,6 +35,12 @@ OUTWARD = MappingProxyType(
         "periodic_lower": 1,
         "blade_upper": 1,
         "blade_lower": -1,
+        "hub_stagnation": -1,
+        "hub_wake": -1,
+        "shroud_stagnation": 1,
+        "shroud_wake": 1,
+        "blade_leading_edge": -1,
+        "blade_trailing_edge": 1,
     }
 )
 """+1 for the faces whose dS/du x dS/dv points out of the passage"""
@@ -47,13 +54,17 @@ class Passage:
     whole: Faces
     """walls' halves (u inlet to outlet, v from the blade to a periodic boundary), periodic boundaries (u inlet to
     outlet, v hub to shroud), inlet and outlet (u from the lower to the upper periodic boundary, v hub to shroud), the
-    blade's sides, and its tip where there is a gap; metres"""
+    blade's sides, and its tip where there is a gap; where an edge is blunt, its face as `blade_trailing_edge`, and the
+    strips of the walls downstream of it, `hub_wake` and `shroud_wake` (u along the flow, v from the lower to the upper
+    half), or `blade_leading_edge`, `hub_stagnation` and `shroud_stagnation`; metres"""
     knots: PassageKnots
     """give them to `passage(..., knots=...)` to hold them"""
     camber: CamberLines
     """continued camber lines, from hub to shroud"""
     walls: Mapping[str, WallHalf]
     """the exact halves of hub and shroud that the native ones interpolate"""
+    strips: Mapping[str, WallStrip]
+    """the exact strips between them past blunt edges"""
     split: bool = False
     """whether `surfaces` are cut where the whole faces have a crease"""
 
@@ -64,7 +75,7 @@ class Passage:
             return self.whole
         pieces: dict[str, Surface | TrimmedSurface] = {}
         for name, face in self.whole.items():
-            pieces |= {name: face} if isinstance(face, TrimmedSurface) else pieces_of(name, face)
+            pieces |= {name: face} if isinstance(face, TrimmedSurface) else pieces_of(name, face, self.knots)
         return MappingProxyType(pieces)
 
     @property
@@ -98,7 +109,7 @@ class Passage:
         senses = dict(OUTWARD)
         if "tip" in self.whole:
             senses["tip"] = -self.blade.orientations["tip"]
-        whole = sorted(senses, key=len, reverse=True)
+        whole = sorted(self.whole, key=len, reverse=True)
         return MappingProxyType(
             {name: senses[next(face for face in whole if name.startswith(face))] for name in self.surfaces}
         )
@@ -127,7 +138,8 @@ class Passage:
     def sector(self) -> Sector:
         """Passage and blade together, between exact surfaces of revolution."""
         faces = {name: cast(Surface, face) for name, face in self.whole.items() if name != "tip"}
-        return sector(f"{self.blade.name}-sector", faces, self.duct, self.blade.chord)
+        cuts = self.knots.cuts(0), self.knots.cuts(1)
+        return sector(f"{self.blade.name}-sector", faces, self.duct, self.blade.chord, cuts)
 
     @cached_property
     def folds(self) -> dict[str, tuple[float, float, float]]:
@@ -137,7 +149,8 @@ class Passage:
     @cached_property
     def wall_error(self) -> float:
         """Largest distance of hub and shroud from their surfaces of revolution, of the chord."""
-        return max(self._off(name, wall) for name, wall in self.walls.items()) / self.blade.chord
+        halves = [self._off(name, wall) for name, wall in self.walls.items()]
+        return max([*halves, *(self._off_strip(name, strip) for name, strip in self.strips.items())]) / self.blade.chord
 
     def _least(self, name: str, wall: WallHalf) -> tuple[float, float, float]:
         face = cast(Surface, self.whole[name])
@@ -165,6 +178,12 @@ class Passage:
             off = dot(np.real(face.grid(start + (end - start) * t, v)) - points, upright)
             worst = max(worst, float(np.max(np.abs(off))))  # real: a measured distance
         return worst
+
+    def _off_strip(self, name: str, strip: WallStrip) -> float:
+        face = cast(Surface, self.whole[name])
+        t, v = _between(getattr(self.knots, strip.piece), (0.31, 0.74)), np.linspace(0.0, 1.0, 9)
+        points, upright = (np.real(part) for part in strip.in_space(strip.piece, t, v))
+        return float(np.max(np.abs(dot(np.real(face.grid(t, v)) - points, upright))))  # real: a measured distance
 
     @staticmethod
     def _pieces() -> tuple[tuple[str, float, float], ...]:

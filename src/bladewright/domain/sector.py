@@ -50,16 +50,20 @@ class Sector:
         return mass_properties([(self.surfaces[name], sign) for name, sign in OUTWARD.items()])
 
 
-def sector(name: str, faces: Mapping[str, Surface], duct: Duct, chord: float) -> Sector:
+Cuts = tuple[tuple[float, ...], tuple[float, ...]]
+"""places along u of inlet and outlet where their ends have creases"""
+
+
+def sector(name: str, faces: Mapping[str, Surface], duct: Duct, chord: float, cuts: Cuts) -> Sector:
     """The sector of a passage with the given faces: its inlet, outlet and periodic boundaries."""
     surfaces: dict[str, Surface | TrimmedSurface] = {
-        wall: _wall(faces, duct, row, wall, chord) for wall, row in (("hub", 0), ("shroud", -1))
+        wall: _wall(faces, duct, row, wall, chord, cuts) for wall, row in (("hub", 0), ("shroud", -1))
     }
     surfaces |= {face: faces[face] for face in ("inlet", "outlet", "periodic_upper", "periodic_lower")}
     return Sector(name=name, surfaces=MappingProxyType(surfaces))
 
 
-def _wall(faces: Mapping[str, Surface], duct: Duct, row: int, name: str, chord: float) -> TrimmedSurface:
+def _wall(faces: Mapping[str, Surface], duct: Duct, row: int, name: str, chord: float, cuts: Cuts) -> TrimmedSurface:
     """A wall within its edges: along the lower periodic boundary, the outlet, and back."""
     room = ROOM * duct.unit
     meridian = replace(duct, low=duct.low - room, high=duct.high + room).wall(name)
@@ -67,9 +71,9 @@ def _wall(faces: Mapping[str, Surface], duct: Duct, row: int, name: str, chord: 
         trace
         for face, at in (
             ("periodic_lower", BLADE_AT),
-            ("outlet", (0.5,)),
+            ("outlet", cuts[1]),
             ("periodic_upper", BLADE_AT),
-            ("inlet", (0.5,)),
+            ("inlet", cuts[0]),
         )
         for trace in _traces(faces[face], row, np.array(at), meridian, duct)
     ]
@@ -89,9 +93,10 @@ def _wall(faces: Mapping[str, Surface], duct: Duct, row: int, name: str, chord: 
         high=float(across.max()) + room,
     )
     curves = [followed(wall, trace, chord) for trace in traces]
-    ahead, back = curves[:5], [run_back(curve) for curve in curves[5:][::-1]]
+    first, last = (len(BLADE_AT) + 2 + len(cuts[1])), len(cuts[0]) + 1
+    ahead, back = curves[:first], [run_back(curve) for curve in curves[first:][::-1]]
     # the upper boundary and the inlet are run against their own sense: outlet to inlet, then upper to lower
-    boundary = (*ahead, *back[2:], *back[:2])
+    boundary = (*ahead, *back[last:], *back[:last])
     return TrimmedSurface(surface=wall.surface, boundary=boundary, revolution=wall.revolution)
 
 

@@ -5,18 +5,19 @@ extension that fades from the edge:
 
     P(u, v) = S + (N - S) w(v) + A g(v),   w = o v + (1 - o) v^2,   g = o v (1 - v)^e.
 
-At an edge the cross-line leaves inside the right angle between side and extension, so that the patch does not fold
-there though its sides turn by that angle.
+At a round edge the cross-line leaves inside the right angle between side and extension, so that the patch does not
+fold there though its sides turn by that angle; at sharp and blunt edges, where the extension goes on as the side ends,
+A is nothing.
 """
 
 from dataclasses import dataclass
 
 import numpy as np
 
-from bladewright.blade.streamlines import StreamLines
 from bladewright.domain.camber import CamberLines
 from bladewright.domain.crossing import Crossing
-from bladewright.numerics.elementary import Array, unit
+from bladewright.domain.patch import WallPatch
+from bladewright.numerics.elementary import Array
 from bladewright.nurbs.basis import Reals
 
 FADE = 16
@@ -42,14 +43,9 @@ def lean(sine: Array, half_pitch: Array | float, sign: int, past: int, least: fl
 
 
 @dataclass(frozen=True, kw_only=True)
-class WallHalf:
+class WallHalf(WallPatch):
     """A half of a wall: `sign` +1 above the blade, -1 below it; `touched` where the blade stands on the wall."""
 
-    camber: CamberLines
-    line: StreamLines
-    """the duct's stream line along the wall"""
-    row: int
-    """which of the camber's stations"""
     sign: int
     touched: bool
     half_pitch: Array
@@ -58,13 +54,12 @@ class WallHalf:
     crossing: Crossing
 
     def plane(self, piece: str, t: Reals, v: Reals) -> Array:
-        """Points (..., k, l, 2) in the plane at t (k,) along a piece and v (l,) across."""
         middle = self.camber.points(piece, t)[..., self.row, :, :]
         width = self.sign * self.half_pitch[..., None, None] * np.array([0.0, 1.0])
         w = widening(self.opening, v)
         if not self.touched:
             return middle[..., None, :] + width[..., None, :] * w[:, None]
-        south = self._side(t) if piece == "blade" else middle
+        south = self._side(t) if piece == "blade" else self.camber.points(piece, t, self.sign)[..., self.row, :, :]
         north = middle + width
         g = self.opening * v * (1.0 - v) ** self.crossing.ease
         across = (north - south)[..., None, :] * w[:, None]
@@ -82,23 +77,12 @@ class WallHalf:
 
     def _edge_lean(self, past: int) -> Array:
         direction = self.camber.direction(past)[..., self.row, :]
+        if self.camber.stations.kinds[past] != "round":
+            return np.zeros_like(direction)[..., None, :]
         reach = (-1.0 if past == 0 else 1.0) * lean(
             direction[..., 1], self.half_pitch, self.sign, past, self.crossing.lean
         )
         return reach[..., None, None] * direction[..., None, :]
-
-    def in_space(self, piece: str, t: Reals, v: Reals) -> tuple[Array, Array]:
-        """Points (..., k, l, 3) in metres, and the wall's unit normals there, towards the shroud."""
-        plane = self.plane(piece, t, v)
-        flat = plane.reshape(*plane.shape[:-3], 1, -1, 2)
-        lines = self.line
-        u = lines.u_at(flat[..., 0])
-        position, slope = lines.position(u), unit(lines.position(u, 1))
-        mapping, tangential = lines.mapping, flat[..., 1]
-        points = mapping.in_space(position[..., 0], position[..., 1], tangential)
-        upright = mapping.in_space(-slope[..., 1], slope[..., 0], tangential if mapping.revolved else 0.0 * tangential)
-        shape = (*plane.shape[:-1], 3)
-        return points.reshape(shape), upright.reshape(shape)
 
 
 def halves(
