@@ -69,7 +69,7 @@ def test_a_design_file_that_is_there_keeps_its_comments(run, configuration):
 @pytest.mark.parametrize(
     ("content", "message"),
     [
-        ("1 2 3\n4 5 6\n", "is of no format that can be imported: known is ParaBlade's .cfg"),
+        ("1 2 3\n4 5 6\n", "is of no format that can be imported: known are ParaBlade's .cfg"),
         ('family = "unified"\n', "is of no format that can be imported"),
         (CONFIGURATION.replace("stagger = -30\n", ""), "stagger is missing"),
         (CONFIGURATION.replace("CAMBER_THICKNESS", "CONNECTING_ARCS"), "wedge_in is missing"),

@@ -1,6 +1,7 @@
 """`bladewright import`: another program's design becomes a design file, and its distance from the original is said."""
 
 from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 import click
 
@@ -9,7 +10,10 @@ from bladewright.cli.call import Call, common
 from bladewright.cli.outcome import Outcome
 from bladewright.cli.progress import progress
 
-KNOWN = "ParaBlade's .cfg"
+if TYPE_CHECKING:
+    from bladewright.files.imported import Imported
+
+KNOWN = "ParaBlade's .cfg and T-Blade3's 3dbgbinput.*.dat"
 
 
 @click.command("import", short_help="Another program's design to a design file.")
@@ -26,20 +30,16 @@ KNOWN = "ParaBlade's .cfg"
 @common
 @click.pass_obj
 def importing(call: Call, /, file: Path, output: Path | None, chordwise: int | None) -> Outcome:
-    """Write the design of the unified family that comes nearest to the blade of FILE, another program's design.
+    """Write the design of the blade in FILE, another program's design.
 
-    Known is ParaBlade's .cfg with camber and thickness. What was kept and what was changed is said, and how far the
-    built surfaces lie from points of the other program's blade. A file that is there keeps its comments.
+    Known are ParaBlade's .cfg with camber and thickness, which becomes the nearest design of the unified family, and
+    T-Blade3's 3dbgbinput.*.dat with the file of control points beside it, whose sections are kept. What was kept and
+    what was changed is said, and how far the built surfaces lie from points of the other program's blade. A file that
+    is there keeps its comments.
     """
-    from bladewright.cli.starting import parablade_text
-    from bladewright.errors import FileError
-    from bladewright.files.parablade import import_parablade
-
-    if parablade_text(file) is None:
-        raise FileError(f"'{file}' is of no format that can be imported: known is {KNOWN}")
     with progress(3, call) as bar:
         bar.set_description_str("sections")
-        found = import_parablade(file, chordwise=chordwise)
+        found = _imported(file, chordwise)
         bar.update(1)
         bar.set_description_str("surfaces")
         built = built_from(found.design, file)
@@ -61,13 +61,38 @@ def importing(call: Call, /, file: Path, output: Path | None, chordwise: int | N
         "parameters": len(found.design.parameters()),
         "kept": found.kept,
         "changed": found.changed,
-        "deviation": {"points": len(distances), "mean_m": mean, "maximum_m": most, "chord_m": chord},
+        "notes": found.notes,
+        "deviation": {
+            "points": len(distances),
+            "mean_m": mean,
+            "maximum_m": most,
+            "chord_m": chord,
+            "source": found.source,
+        },
     }
     lines = [f"{found.design.name}: {found.program}, {data['parameters']} parameters"]
     lines += [f"  kept: {text}" for text in found.kept]
     lines += [f"  changed: {text}" for text in found.changed]
+    lines += [f"  note: {text}" for text in found.notes]
     lines.append(
         f"  the built sides lie {mean * 1e3:.3g} mm in the mean and {most * 1e3:.3g} mm at most from {found.program}'s "
-        f"({mean / chord:.2g} and {most / chord:.2g} of the chord)"
+        f"({mean / chord:.2g} and {most / chord:.2g} of the chord), by {found.source}"
     )
     return Outcome(data=data, text="\n".join([*lines, f"wrote {design}"]))
+
+
+def _imported(file: Path, chordwise: int | None) -> "Imported[Any]":
+    from bladewright.errors import FileError
+    from bladewright.files.parablade import import_parablade, is_parablade
+    from bladewright.files.tblade3 import import_tblade3, is_tblade3
+    from bladewright.files.tblade3.reading import COMPANIONS
+    from bladewright.files.text import read_text
+
+    text = read_text(file)
+    if is_parablade(text):
+        return import_parablade(file, chordwise=chordwise)
+    if is_tblade3(text) or file.name.lower().startswith(tuple(f"{each}." for each in COMPANIONS)):
+        if chordwise is not None:
+            raise click.UsageError("--chordwise is for ParaBlade's thickness laws: T-Blade3's sections are kept")
+        return import_tblade3(file)
+    raise FileError(f"'{file}' is of no format that can be imported: known are {KNOWN}")

@@ -55,11 +55,12 @@ def test_a_spline_is_continuous_where_its_segments_meet():
         assert spline(joints + shift) == pytest.approx(there, abs=1e-12)
 
 
-def test_spans_are_measured_by_radius_or_along_the_axis_whichever_is_longer():
+def test_spans_are_measured_by_radius_or_along_the_axis():
     assert section_spans([(0.0, 0.5), (0.3, 0.6), (0.1, 1.0)]) == pytest.approx([0.0, 0.2, 1.0])
-    assert section_spans([(0.0, 1.0), (-0.1, 0.9), (-0.4, 1.0)]) == pytest.approx([0.0, 0.25, 1.0])
-    with pytest.raises(FileError, match="there is no span"):
-        section_spans([(0.1, 0.5), (0.1, 0.5)])
+    assert section_spans([(0.0, 1.0), (-0.1, 0.9), (-0.4, 1.0)], along_axis=True) == pytest.approx([0.0, 0.25, 1.0])
+    for along_axis, points in ((False, [(0.1, 0.5), (0.4, 0.5)]), (True, [(0.1, 0.5), (0.1, 0.9)])):
+        with pytest.raises(FileError, match="there is none"):
+            section_spans(points, along_axis=along_axis)
 
 
 def test_a_law_is_evaluated_at_each_section_and_only_where_its_switch_asks_for_it(tmp_path):

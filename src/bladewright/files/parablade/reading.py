@@ -2,10 +2,7 @@
 
 import os
 import re
-from collections.abc import Mapping
-from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
@@ -13,6 +10,7 @@ from bladewright.blade.checks import check_sections
 from bladewright.blade.exact import exact_blade
 from bladewright.blade.unified import UnifiedBlade
 from bladewright.errors import DesignError, FileError
+from bladewright.files.imported import Imported
 from bladewright.files.parablade.config import CHANNEL, COMMON, WORDS, Config, parsed
 from bladewright.files.parablade.shape import shape_at, side_basis
 from bladewright.files.parablade.translation import blade_of, section_of
@@ -22,37 +20,6 @@ from bladewright.section.unified import UnifiedSection
 
 _ALONG = (1.0 - np.cos(np.pi * (np.arange(60.0) + 0.5) / 60.0)) / 2.0
 _ACROSS = np.linspace(1.0 / 24.0, 23.0 / 24.0, 12)
-
-
-NEAR = 1e-5
-"""of the blade's extent: how much nearer a place may be that is passed over while distances are measured"""
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
-class Imported:
-    """A design from another program's file."""
-
-    design: UnifiedBlade | UnifiedSection
-    program: str
-    """whose file it is"""
-    kept: tuple[str, ...]
-    """what is as it was, each a sentence"""
-    changed: tuple[str, ...]
-    """what is not, each a sentence"""
-    points: Mapping[str, Reals]
-    """points (k, 2) or (k, 3) [m] of the other program's sides, by the side that they should lie on"""
-
-    def distances(self, built: Any) -> Reals:
-        """Distances (n,) [m] of the other program's points from the sides of what the design builds."""
-        from bladewright.nurbs.closest import closest_on_curve, closest_on_surface
-
-        found = []
-        for name, points in self.points.items():
-            if points.shape[1] == 2:
-                found.append(closest_on_curve(built.curves[name], points).distances)
-            else:
-                found.append(closest_on_surface(built.surfaces[name], points, tolerance=NEAR).distances)
-        return np.concatenate(found)
 
 
 def is_parablade(text: str) -> bool:
@@ -70,7 +37,9 @@ def read_parablade(path: str | os.PathLike[str]) -> UnifiedBlade | UnifiedSectio
     return import_parablade(path).design
 
 
-def import_parablade(path: str | os.PathLike[str], *, chordwise: int | None = None) -> Imported:
+def import_parablade(
+    path: str | os.PathLike[str], *, chordwise: int | None = None
+) -> Imported[UnifiedBlade | UnifiedSection]:
     """The same, with what was kept and changed, and points of ParaBlade's own blade to measure it with.
 
     `chordwise` is the number of control points that the thickness laws are given along the chord; where not given it

@@ -2,6 +2,7 @@
 
 from bladewright.files.tblade3.angles import MetalAngles as MetalAngles
 from bladewright.files.tblade3.angles import metal_angles as metal_angles
+from bladewright.files.tblade3.importing import import_tblade3 as import_tblade3
 from bladewright.files.tblade3.reading import is_tblade3 as is_tblade3
 from bladewright.files.tblade3.reading import read_tblade3 as read_tblade3
 from bladewright.files.tblade3.records import TBlade3Case as TBlade3Case

@@ -14,8 +14,8 @@ from bladewright.files.tblade3.records import TBlade3Case
 from bladewright.files.tblade3.sections import section_spans
 from bladewright.nurbs.basis import Reals
 
-LEAST_RADIUS = 1e-12
-"""radius, of the scale, at and below which a point of a stream line is on the axis"""
+NEAR_AXIS = 1e-5
+"""radius, of the scale, below which T-Blade3 takes a point of a stream line for one on the axis"""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -94,8 +94,11 @@ def case_flow(case: TBlade3Case) -> CaseFlow:
 
 
 def _stream_line(case: TBlade3Case, index: int) -> ThroughPoints:
-    points = [(x * case.scale, r * case.scale) for x, r in case.streamlines[index] if r > LEAST_RADIUS]
-    return _through(case, f"streamline {index + 1}", points, "conformal")
+    first, *others = case.streamlines[index]
+    # a point near the axis takes the place of the first
+    first = next((point for point in reversed(others) if point[1] < NEAR_AXIS), first)
+    kept = [first, *(point for point in others if point[1] >= NEAR_AXIS)]
+    return _through(case, f"streamline {index + 1}", [(x * case.scale, r * case.scale) for x, r in kept], "conformal")
 
 
 def _edge(case: TBlade3Case, name: str, curve: tuple[tuple[float, float], ...]) -> ThroughPoints:
@@ -138,4 +141,4 @@ def _met(case: TBlade3Case, line: MeridianLine, edge: MeridianLine, name: str, i
 
 def _counted(line: MeridianLine) -> float:
     """m' of a stream line's last point."""
-    return float(np.real(0.0 if line.counted is None else line.counted))
+    return 0.0 if line.counted is None else float(line.counted.real)

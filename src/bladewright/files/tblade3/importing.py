@@ -1,0 +1,100 @@
+"""A T-Blade3 case as a design, with what was kept and changed, and points of T-Blade3's blade to measure it with."""
+
+import os
+from collections.abc import Iterator
+
+import numpy as np
+
+from bladewright.blade.families import CurvatureMeanlineBlade
+from bladewright.files.imported import Imported
+from bladewright.files.tblade3.computed import SIDE, section_points, written_points
+from bladewright.files.tblade3.reading import read_tblade3
+from bladewright.files.tblade3.records import SpanLaw
+from bladewright.files.tblade3.translation import CaseSections, blade_of, case_sections
+from bladewright.nurbs.basis import Reals
+
+MOST = 1500
+"""points that the built sides are measured with, about"""
+_ALONG = (1.0 - np.cos(np.pi * np.linspace(0.0, 1.0, SIDE))) / 2.0
+
+
+def import_tblade3(path: str | os.PathLike[str]) -> Imported[CurvatureMeanlineBlade]:
+    """The blade of T-Blade3's main input file `3dbgbinput.R.dat` and the file of control points beside it.
+
+    At every section of the case the design's section is T-Blade3's to rounding; between them, where T-Blade3 says
+    nothing, every number is a cubic spline. Raises FileError, naming the file, where it is none of T-Blade3's, or asks
+    for what the curvature-meanline family does not have.
+    """
+    case = read_tblade3(path)
+    sections = case_sections(case)
+    design = blade_of(sections)
+    points, source = _points(sections)
+    return Imported(
+        design=design,
+        program="T-Blade3",
+        kept=tuple(_kept(sections)),
+        changed=tuple(_changed(sections)),
+        notes=(*case.unused, *case.notes),
+        points=points,
+        source=source,
+    )
+
+
+def _points(sections: CaseSections) -> tuple[dict[str, Reals], str]:
+    written = written_points(sections.case)
+    if written is not None:
+        sides = {"upper": written[:, :SIDE], "lower": written[:, SIDE - 1 :]}
+        source = f"blade3d.{sections.case.name}.dat"
+    else:
+        both = [section_points(sections, i, _ALONG) for i in range(len(sections.places))]
+        sides = {name: np.stack([pair[k] for pair in both]) for k, name in enumerate(("upper", "lower"))}
+        source = "its formulas"
+    every = max(1, 2 * SIDE * len(sections.places) // MOST)
+    return {name: points[:, ::every].reshape(-1, 3) for name, points in sides.items()}, source
+
+
+def _kept(sections: CaseSections) -> Iterator[str]:
+    case = sections.case
+    yield (
+        f"all {len(case.sections)} sections: meanline, thickness, stagger, chord and place, each law going through "
+        "T-Blade3's values at them"
+    )
+    yield (
+        "m' as T-Blade3 counts it, chords over mean radii (the plane counted-m'-theta), and its splines of the stream "
+        "lines"
+    )
+
+
+def _changed(sections: CaseSections) -> Iterator[str]:
+    case = sections.case
+    if len(case.sections) > 2:
+        yield (
+            "between its sections T-Blade3 has no blade: here every number is a cubic spline through its values there, "
+            "over a span fraction v that counts sections"
+        )
+    yield "stacking, lean and the turn of the blade are one law, leading_edge_theta"
+    moved = np.max(np.abs(sections.leading - sections.flow.leading))
+    if moved > 0.0 or not np.array_equal(sections.trailing, sections.flow.trailing):
+        what = " and ".join(
+            name
+            for name, there in (("sweep", moved > 0.0), ("the sections' own chords", case.chord != "meridional"))
+            if there
+        )
+        yield f"the edge curves go through the ends of the sections, as {what or 'the chords'} put them"
+    if case.angles == "wing":
+        yield "twist and total camber of the wing are given as metal angles"
+    if case.true_lean_and_sweep and (_matters(case.sweep) or _matters(case.lean)):
+        yield (
+            "true lean and sweep are as T-Blade3 computes them: times the cosine of the inlet angle's degrees taken "
+            "for radians, or of 0 where the chord is that between the edges; the true stagger has no part"
+        )
+    if any(each.centroid or each.above for each in case.stackings):
+        yield (
+            "the stacking point is that of the exact section; T-Blade3 takes it from its 241 points of it, so that "
+            "theta may differ by some 1e-5 of the chord"
+        )
+    yield from (text for text in case.unsupported if "inflation" in text)
+
+
+def _matters(law: SpanLaw) -> bool:
+    return any(law.values)
