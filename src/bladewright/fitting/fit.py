@@ -17,6 +17,8 @@ from bladewright.fitting.aim import Aim
 from bladewright.fitting.aligning import aligned
 from bladewright.fitting.cloud import checked_cloud
 from bladewright.fitting.estimates import certainty_of
+from bladewright.fitting.families.kinds import KINDS, Kind, kind_of
+from bladewright.fitting.families.sections import Frame, matched_section
 from bladewright.fitting.first.blade import first_blade
 from bladewright.fitting.first.profile import first_section
 from bladewright.fitting.freedom import freedom_of
@@ -76,8 +78,8 @@ def fit(
     """
     tell: Told = progress or (lambda _: None)
     points, notes = checked_cloud(cloud)
-    family_of(family, points.shape[1])
-    _check(points, start, like, tolerance, parameters)
+    kind = family_of(family, points.shape[1], start if start is not None else like)
+    _check(points, kind, start, like, tolerance, parameters)
     motion = None
     if align:
         tell("axes")
@@ -92,6 +94,13 @@ def fit(
         told=tell,
         precision=None if weights is None else _weights(weights, len(points)),
     )
+    structured = parameters is None and (start is not None or like is not None)
+    aim = Aim(tolerance=tolerance, parameters=parameters, structured=structured)
+    if kind is not None:
+        frame = Frame(name=name, length_unit=length_unit, pitch=pitch)
+        first = None if start is None else freedom.applied(start)
+        found, reason = matched_section(task, kind, first, like, frame, aim)
+        return _reported(found, _only(found), points, task, aim, (*notes, *([reason] if reason else [])), motion)
     wanted = None if like is None else structure_of(like)
 
     some = points[drawn(len(points), MANY)]
@@ -116,8 +125,6 @@ def fit(
         first = guess(rich(parameters) if solid else wanted)
     first = freedom.applied(first)
     check_bounds(first, freedom(first), task.bounds)
-    structured = parameters is None and (start is not None or like is not None)
-    aim = Aim(tolerance=tolerance, parameters=parameters, structured=structured)
     base = None
     if start is None and (solid or wanted is None):
         base = wanted or lean(points.shape[1], parameters)
@@ -126,33 +133,59 @@ def fit(
     return _reported(found, built, points, task, aim, (*notes, *([reason] if reason else [])), motion)
 
 
-def family_of(family: str, dimension: int) -> str:
-    """The family that is meant; raises FitError where it is unknown or of the other dimension."""
+def family_of(family: str, dimension: int, given: Design | None = None) -> Kind | None:
+    """The family that is meant, that of a given design where none is named; None is the unified one.
+
+    Raises FitError where it is unknown or of the other dimension.
+    """
+    known = [*FAMILIES, *KINDS, *(f"{name}-section" for name in KINDS)]
     try:
-        choice("family", family, FAMILIES)
+        choice("family", family, known)
     except DesignError as error:
         raise FitError(str(error)) from error
-    if family == "unified-section" and dimension == 3:
-        raise FitError("family is 'unified-section', and the points have three coordinates: give x and y alone")
-    return family
+    if family.endswith("-section") and dimension == 3:
+        raise FitError(f"family is '{family}', and the points have three coordinates: give x and y alone")
+    named = KINDS.get(family.removesuffix("-section"))
+    own = None if given is None else kind_of(given)
+    return own if named is None and own is not None else named
 
 
 def _check(
-    points: Reals, start: Design | None, like: Design | None, tolerance: float | None, count: int | None
+    points: Reals,
+    family: Kind | None,
+    start: Design | None,
+    like: Design | None,
+    tolerance: float | None,
+    count: int | None,
 ) -> None:
-    kind: type = UnifiedSection if points.shape[1] == 2 else UnifiedBlade
+    flat = points.shape[1] == 2
+    kind: type = UnifiedSection if flat else UnifiedBlade
+    if family is not None:
+        kind = family.section if flat else family.blade
     for label, design in (("start", start), ("like", like)):
         if design is not None and not isinstance(design, kind):
             raise FitError(
                 f"{label} is a {type(design).__name__}, and points with {points.shape[1]} coordinates need a "
-                f"{kind.__name__}: give such a design, or points of the other kind"
+                f"{kind.__name__}{'' if family is None else f' of the family {family.name}'}: give such a design, or "
+                "points of the other kind"
             )
     if tolerance is not None and not 0.0 < tolerance < np.inf:
         raise FitError(f"tolerance is {tolerance!r}: a positive length in metres is needed, such as 5e-5")
     if tolerance is not None and count is not None:
         raise FitError("tolerance and parameters are both given: the one decides the other; leave one out")
-    if count is not None and (isinstance(count, bool) or not 14 <= count <= 2000):
-        raise FitError(f"parameters is {count!r}: a whole number from 14 to 2000 is needed")
+    least = 14 if family is None else 4
+    if count is not None and (isinstance(count, bool) or not least <= count <= 2000):
+        raise FitError(f"parameters is {count!r}: a whole number from {least} to 2000 is needed")
+
+
+def _only(found: Found) -> Any:
+    """What a design of a family that is one part builds."""
+    try:
+        return found.design.build()
+    except DesignError as error:
+        raise FitError(
+            f"the nearest design cannot be built ({error}); give a start design, or bounds that keep off it"
+        ) from error
 
 
 def _weights(weights: ArrayLike | None, count: int) -> Reals:

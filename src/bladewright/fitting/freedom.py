@@ -7,6 +7,7 @@ from bladewright.blade.unified import UnifiedBlade
 from bladewright.derivatives.patterns import Patterns, chosen, matching
 from bladewright.designs import Design
 from bladewright.errors import DesignError, FitError
+from bladewright.fitting.families.standing import standing
 
 GIVEN = ("pitch", "span", "tip_clearance", "hub_clearance")
 """fields that a cloud of one blade's points says nothing of"""
@@ -27,9 +28,9 @@ class Freedom:
             held = {path for pattern in self.fixed for path in matching(pattern, design.parameters())}
         except DesignError as error:
             raise FitError(str(error)) from error
-        found = tuple(
-            path for path in wanted if path not in held and (self.free is not None or not path.startswith(GIVEN))
-        )
+        if self.free is None:
+            held |= standing(design) | {path for path in wanted if path.startswith(GIVEN)}
+        found = tuple(path for path in wanted if path not in held)
         if not found:
             raise FitError("no parameter is left to fit: free at least one, or fix fewer")
         return found

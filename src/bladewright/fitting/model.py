@@ -28,6 +28,7 @@ from bladewright.nurbs.collocation import collocation
 from bladewright.section.camber import camber_points
 from bladewright.section.checks import UNITS
 from bladewright.section.curves import side_curve
+from bladewright.section.planar import PlanarSection
 from bladewright.section.sampling import sample_places
 from bladewright.section.unified import UnifiedSection
 
@@ -46,8 +47,8 @@ class Shape:
     design: Any
     sides: tuple[Side, Side]
     noses: Reals
-    """(2, ...) at each edge of each side by how much the control point that sets the radius stands higher than the
-    thickness beside it, of the section's extent, and how high it stands, of that thickness"""
+    """(2, ...) by how much, at each edge of each side that is set by one, the control point that sets the radius stands
+    higher than the thickness beside it, of the section's extent, and how high it stands, of that thickness"""
     folds: Reals = field(default_factory=lambda: np.empty(0))
     """(c,) by how much the channel comes nearer to folding over than it may, of the median of its Jacobian"""
     exact: Any = None
@@ -204,6 +205,10 @@ def model_of(design: Design, tolerance: float | None = None) -> Model:
     if isinstance(design, UnifiedBlade):
         with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
             return BladeModel(design, tolerance)
+    if isinstance(design, PlanarSection):
+        from bladewright.fitting.families.planar import PlanarModel
+
+        return PlanarModel(design, tolerance)
     raise FitError(f"a {type(design).__name__} cannot be fitted: give a design of the unified family")
 
 

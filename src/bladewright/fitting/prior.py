@@ -11,7 +11,8 @@ from typing import Any
 
 import numpy as np
 
-from bladewright.designs import Design
+from bladewright.designs import Design, Part
+from bladewright.fitting.families.laws import lines_of
 from bladewright.fitting.structure import SPANWISE
 from bladewright.nurbs.basis import Reals
 from bladewright.section.limits import THICKNESSES
@@ -65,11 +66,20 @@ def _bends(start: Design) -> Iterator[tuple[Terms, float]]:
         counts = {len(line) for line in grid}
         lines = [*grid, *(zip(*grid, strict=True) if len(counts) == 1 else ())]
         for line in lines:
-            for before, at, after in zip(line, line[1:], line[2:], strict=False):
-                yield [(before, 1.0), (at, -2.0), (after, 1.0)], SMOOTH
+            yield from _bend(line)
+    if isinstance(getattr(start, "section", None), Part):
+        for line in lines_of(start.section, "section"):  # type: ignore[attr-defined]
+            yield from _bend(line)
+
+
+def _bend(line: Sequence[str]) -> Iterator[tuple[Terms, float]]:
+    for before, at, after in zip(line, line[1:], line[2:], strict=False):
+        yield [(before, 1.0), (at, -2.0), (after, 1.0)], SMOOTH
 
 
 def _sides_apart(start: Design) -> Iterator[tuple[Terms, float]]:
+    if not hasattr(start, THICKNESSES[0]):
+        return
     above, below = (paths_of(name, getattr(start, name)) for name in THICKNESSES)
     if [len(row) for row in above] == [len(row) for row in below]:
         for pair in zip(chain(*above), chain(*below), strict=True):

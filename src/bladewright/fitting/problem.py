@@ -178,5 +178,5 @@ class Problem(Constrained):
         return np.concatenate([rows * self.scales.size, self.prior.matrix]), held * self.scales.size
 
     def _of_noses(self, shape: Shape) -> float:
-        stations = shape.noses[0].size / 4.0
+        stations = max(shape.noses[0].size / 4.0, 1.0)
         return self.trust / (FULLNESS[1] * float(np.sqrt(stations)))

@@ -2,13 +2,13 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import NamedTuple
 
 import numpy as np
 
 from bladewright.derivatives.patterns import matching
-from bladewright.designs import Design
+from bladewright.designs import Design, unit_at
 from bladewright.errors import DesignError, FitError
+from bladewright.fitting.families.limits import Kind, part_kind
 from bladewright.nurbs.basis import Reals
 from bladewright.section.checks import UNITS
 
@@ -69,28 +69,25 @@ def _matched(pattern: str, paths: Sequence[str]) -> list[int]:
     return [place for place, path in enumerate(paths) if path in found]
 
 
-class _Kind(NamedTuple):
-    size: float
-    low: float = -np.inf
-    high: float = np.inf
-
-
-def _kind(design: Design, path: str, chord: float) -> _Kind:
+def _kind(design: Design, path: str, chord: float) -> Kind:
     values = design.parameters()
     field = path.partition("[")[0]
     value = float(values[path])
     largest = max(float(each) for name, each in values.items() if name.partition("[")[0] == field)
+    if path.startswith("section."):
+        among = [float(each) ** 2 for name, each in values.items() if name.partition("[")[0] == field]
+        return part_kind(path, unit_at(design, path), value, float(np.sqrt(max(among))))
     length = chord / UNITS[getattr(design, "length_unit")]  # noqa: B009 - a field of every family, not of the base
     kinds = {
-        "stagger": _Kind(5.0, -ANGLE, ANGLE),
-        "metal_angle": _Kind(10.0, -ANGLE, ANGLE),
-        "tangent": _Kind(0.2, 0.02, 1.0),
-        "leading_edge_radius": _Kind(max(0.5 * largest, 1e-3), LEAST, 1.0),
-        "trailing_edge_radius": _Kind(max(0.5 * largest, 1e-3), LEAST, 1.0),
-        "thickness": _Kind(max(0.5 * largest, 0.02), LEAST, 5.0),
-        "weights": _Kind(0.5 * value, 1e-2 * value, 1e2 * value),
-        "leading_edge_theta": _Kind(float(np.degrees(0.05))),
-        "axial_chord": _Kind(0.05 * length, 1e-3 * length),
-        "channel": _Kind(0.005 * length),
+        "stagger": Kind(5.0, -ANGLE, ANGLE),
+        "metal_angle": Kind(10.0, -ANGLE, ANGLE),
+        "tangent": Kind(0.2, 0.02, 1.0),
+        "leading_edge_radius": Kind(max(0.5 * largest, 1e-3), LEAST, 1.0),
+        "trailing_edge_radius": Kind(max(0.5 * largest, 1e-3), LEAST, 1.0),
+        "thickness": Kind(max(0.5 * largest, 0.02), LEAST, 5.0),
+        "weights": Kind(0.5 * value, 1e-2 * value, 1e2 * value),
+        "leading_edge_theta": Kind(float(np.degrees(0.05))),
+        "axial_chord": Kind(0.05 * length, 1e-3 * length),
+        "channel": Kind(0.005 * length),
     }
-    return next((kind for name, kind in kinds.items() if field.startswith(name)), _Kind(0.05 * length))
+    return next((kind for name, kind in kinds.items() if field.startswith(name)), Kind(0.05 * length))

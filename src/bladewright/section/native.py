@@ -61,13 +61,7 @@ def native_curves(
 def knots_for(outline: Outline, tolerance: float) -> SectionKnots:
     """Knots on which the native curves of one section reach the tolerance; raises as `native_curves` does."""
     joints = [(joint.s, joint.derivatives) for joint in outline.joints]
-
-    def off_sides(knots: Reals, s: Reals) -> Reals:
-        matrix = basis(knots, DEGREE, s)
-        exact = (_single(points) for points in outline.points(s))
-        return np.max([_distance(matrix @ _sides(outline, knots)[i], each) for i, each in enumerate(exact)], axis=0)
-
-    sides = _refined(_first(joints), off_sides, tolerance)
+    sides = side_knots_for(outline, tolerance)
     arc = ArcLength(lambda s: np.real(_single(outline.camber(s))), [0.0, *(s for s, _ in joints), 1.0])
 
     def off_camber(knots: Reals, w: Reals) -> Reals:
@@ -79,6 +73,17 @@ def knots_for(outline: Outline, tolerance: float) -> SectionKnots:
         _first([(float(w), each[1]) for w, each in zip(lengths, joints, strict=True)]), off_camber, tolerance
     )
     return SectionKnots(sides=sides, camber=camber, camber_places=arc.places(greville(camber, DEGREE)))
+
+
+def side_knots_for(outline: Outline, tolerance: float) -> Reals:
+    """The knots of both sides alone on which they reach the tolerance; raises as `native_curves` does."""
+
+    def off(knots: Reals, s: Reals) -> Reals:
+        matrix = basis(knots, DEGREE, s)
+        exact = (_single(points) for points in outline.points(s))
+        return np.max([_distance(matrix @ _sides(outline, knots)[i], each) for i, each in enumerate(exact)], axis=0)
+
+    return _refined(_first([(joint.s, joint.derivatives) for joint in outline.joints]), off, tolerance)
 
 
 def _sides(outline: Outline, knots: Reals) -> tuple[Array, Array]:

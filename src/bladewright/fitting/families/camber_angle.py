@@ -1,0 +1,77 @@
+"""Where a section by its camber angle begins, and what may grow in it."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from bladewright.fitting.families.planar import ALONE
+from bladewright.fitting.families.sampled import PLACES, Sampled
+from bladewright.nurbs.basis import Reals
+from bladewright.section.camber_angle import CamberAngle
+from bladewright.section.laws import law_basis
+
+ANGLES, THICKNESSES = 4, 5
+"""control points to begin with"""
+MOST = 14
+"""control points of either"""
+TEMPLATES: tuple[CamberAngle, ...] = tuple(
+    CamberAngle(camber_angle=(0.0,) * ANGLES, half_thickness=(0.02,) * THICKNESSES, trailing_edge=edge)
+    for edge in ("round", "blunt", "sharp")
+)
+"""structures that are tried where none is given"""
+
+
+def started(section: Sampled, like: CamberAngle) -> CamberAngle:
+    """The part of a structure nearest to a section, by least squares of its angle and its half thickness."""
+    fraction = _fractions(section, PLACES)
+    slope = np.arctan(section.mean(PLACES, 1))
+    rows = law_basis(len(like.camber_angle), fraction)
+    angles = np.degrees(section.stagger + np.linalg.lstsq(rows, slope, rcond=None)[0])
+    heights = _heights(like, fraction, section.half)
+    return replace(
+        like,
+        camber_angle=tuple(float(np.clip(each, -88.0, 88.0)) for each in angles),
+        half_thickness=tuple(float(np.clip(each, 1e-3, 0.39)) for each in heights),
+    )
+
+
+def _fractions(section: Sampled, u: Reals) -> Reals:
+    """Fractions of the meridional extent at chord fractions."""
+    cosine, sine = np.cos(section.stagger), np.sin(section.stagger)
+    return np.asarray((u * cosine - section.mean(u) * sine) / cosine)
+
+
+def _heights(like: CamberAngle, fraction: Reals, half: Reals) -> Reals:
+    """Control points of the half thickness, their places and weights held."""
+    plain = replace(like, half_thickness=tuple(0.01 for _ in like.half_thickness))
+    outline = plain.outline(ALONE)
+    weights, places = (np.real(each.controls)[0] for each in (outline.weights, outline.places))
+    t = np.linspace(0.0, 1.0, 201)
+    rows = law_basis(len(weights), t)
+    total = rows @ weights
+    at = (rows @ places) / total
+    count = len(like.half_thickness)
+    matrix = (rows * weights)[:, 1 : 1 + count] / total[:, None]
+    return np.asarray(np.linalg.lstsq(matrix, np.interp(at, fraction, half, left=0.0), rcond=None)[0])
+
+
+def grown(part: CamberAngle, section: Sampled) -> Sequence[CamberAngle]:  # noqa: ARG001 - what every family answers
+    """The same with one control point more of the angle, or of the half thickness."""
+    found = []
+    if len(part.camber_angle) < MOST:
+        at = np.linspace(0.0, 1.0, 101)
+        angles = law_basis(len(part.camber_angle), at) @ np.array(part.camber_angle)
+        wider = np.linalg.lstsq(law_basis(len(part.camber_angle) + 1, at), angles, rcond=None)[0]
+        found.append(replace(part, camber_angle=tuple(wider.tolist())))
+    if len(part.half_thickness) < MOST and not part.thickness_places and not part.thickness_weights:
+        outline = part.outline(ALONE)
+        t = np.linspace(0.0, 1.0, 401)
+        places, heights = (
+            law_basis(each.controls.shape[-1], t) @ np.real(each.controls)[0]
+            for each in (outline.places, outline.heights)
+        )
+        more = replace(part, half_thickness=(*part.half_thickness, part.half_thickness[-1]))
+        wider = _heights(more, places, heights)
+        found.append(replace(more, half_thickness=tuple(np.clip(wider, 1e-3, 0.39).tolist())))
+    return found

@@ -1,0 +1,188 @@
+"""From points in the plane to a design of a family that is one part: the best of its structures, and more of it."""
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, replace
+from functools import partial
+from typing import Any, Literal
+
+import numpy as np
+
+from bladewright.designs import Design
+from bladewright.errors import DesignError, FitError
+from bladewright.fitting.aim import Aim, short_of
+from bladewright.fitting.families.kinds import Kind
+from bladewright.fitting.families.sampled import Sampled, sampled
+from bladewright.fitting.first.profile import first_section
+from bladewright.fitting.freedom import Freedom
+from bladewright.fitting.search import Found, Task, searched
+from bladewright.fitting.thinning import drawn
+from bladewright.section.checks import UNITS
+from bladewright.section.section import Section
+
+Unit = Literal["m", "cm", "mm", "um", "in", "ft"]
+FEWEST = 500
+"""points by which structures are told apart"""
+FEW, MANY = 2500, 12_000
+"""points of a quick and of a thorough search"""
+ROUGH, QUICK = 2, 4
+"""rounds of a search that tells structures apart, and of one between two steps of growth"""
+NEAR = 3.0
+"""ratio of misfits within which a structure is searched on after the rough search"""
+WORTH = 0.9
+"""ratio of misfits from which one control point more is worth it where no aim is stated"""
+PATIENCE = 2
+"""control points in a row that may bring nothing before growth ends"""
+EXACT = 1e-9
+"""misfit at which a structure is known, of the chord"""
+GROWTHS = 30
+
+
+@dataclass(frozen=True, kw_only=True)
+class Frame:
+    """What a design of a family has besides its part."""
+
+    name: str
+    length_unit: Unit
+    pitch: float | None = None
+    """[m]"""
+
+
+def matched_section(task: Task, kind: Kind, start: Any, like: Any, frame: Frame, aim: Aim) -> tuple[Found, str]:
+    """The match of points (n, 2) by a section of the family, and why it ends where no aim is met.
+
+    `start` and `like` are sections of the family, or None. Raises FitError where no structure of the family has a shape
+    near the points.
+    """
+    many = _thinned(task, MANY)
+    few = _thinned(task, FEW)
+    if start is not None and like is None:
+        found = searched(few, start)
+    else:
+        section = _closed(few, frame) if start is None else section_samples(start.build())
+        rough = _thinned(task, FEWEST)
+        parts = kind.templates if like is None else [like.section]
+        found = _best(rough, few, _designs(kind, section, parts, frame, task))
+    reason = ""
+    if not (aim.structured or found.interrupted):
+        found, reason = _enough(few, kind, found, aim)
+    return (found if found.interrupted else _thorough(many, found)), reason
+
+
+def section_samples(built: Section) -> Sampled:
+    """The samples of a built section."""
+    radii = built.edge_radii
+    return sampled(built.curves["upper"], built.curves["lower"], radii)
+
+
+def _closed(task: Task, frame: Frame) -> Sampled:
+    """The section that points alone show, closed around both edges."""
+    task = Task(points=task.points, weights=task.weights, free=Freedom(), bounds={}, told=task.told)
+    first = first_section(task.points, name=frame.name, length_unit=frame.length_unit)
+    for design in (searched(task, first, noise=3e-3, rounds=QUICK).design, first):
+        try:
+            return section_samples(design.build())
+        except DesignError:
+            continue
+    raise FitError("no closed section was found near the points: give a start design")
+
+
+def _designs(
+    kind: Kind, section: Sampled, parts: Sequence[Any], frame: Frame, task: Task
+) -> Iterator[Callable[[], Design]]:
+    metre = UNITS[frame.length_unit]
+
+    def made(part: Any) -> Design:
+        design = kind.section(
+            name=frame.name,
+            length_unit=frame.length_unit,
+            chord=section.chord / metre,
+            pitch=None if frame.pitch is None else frame.pitch / metre,
+            leading_edge_x=float(section.start[0]) / metre,
+            leading_edge_y=float(section.start[1]) / metre,
+            section=kind.started(section, part),
+        )
+        return task.free.applied(design) if isinstance(task.free, Freedom) else design
+
+    for part in parts:
+        yield partial(made, part)
+
+
+def _best(rough: Task, few: Task, designs: Iterator[Callable[[], Design]]) -> Found:
+    """The nearest of several structures; raises the last refusal where none has a shape."""
+    tried: list[Found] = []
+    refusal = FitError("no structure of the family was tried")
+    for made in designs:
+        try:
+            tried.append(searched(rough, made(), rounds=ROUGH))
+        except (DesignError, FitError) as error:
+            refusal = FitError(str(error))
+            continue
+        if tried[-1].interrupted:
+            break
+    if not tried:
+        raise FitError(f"no section of the family was found near the points ({refusal}); give a start design")
+    least = min(each.rms for each in tried)
+    found: Found | None = None
+    for each in sorted(tried, key=lambda one: one.rms):
+        if each.interrupted:
+            return each
+        if each.rms > NEAR * least and found is not None:
+            break
+        fresh = searched(few, each.design)
+        if found is None or fresh.rms < found.rms:
+            found = fresh
+        if found.rms < EXACT or found.interrupted:
+            break
+    assert found is not None  # noqa: S101 - one was tried at least
+    return found
+
+
+def _enough(task: Task, kind: Kind, found: Found, aim: Aim) -> tuple[Found, str]:
+    """A match with as many control points as the aim asks for, or why there are no more."""
+    best, idle = found, 0
+    for _ in range(GROWTHS):
+        short, reason = short_of(found, aim, task)
+        if not short or found.interrupted:
+            return found if found.rms <= best.rms or aim.parameters is not None else best, reason
+        tried = [each for each in _wider(task, kind, found) if _allowed(each, aim)]
+        if not tried:
+            return best, f"no control point can be added to the {kind.name} section: its parameters are all there are"
+        found = min(tried, key=lambda each: each.rms)
+        idle = idle + 1 if found.rms > WORTH * best.rms else 0
+        best = found if found.rms < WORTH * best.rms or aim.parameters is not None else best
+        if aim.open and idle > PATIENCE:
+            return best, "further control points bring the section hardly nearer to the points"
+    return best, f"control points were added {GROWTHS} times, and no more are"
+
+
+def _allowed(found: Found, aim: Aim) -> bool:
+    return aim.parameters is None or len(found.problem.paths) <= aim.parameters
+
+
+def _wider(task: Task, kind: Kind, found: Found) -> Iterator[Found]:
+    """Matches with a control point more, each of another law."""
+    design: Any = found.design
+    try:
+        parts = kind.grown(design.section, section_samples(design.build()))
+    except DesignError:
+        return
+    for part in parts:
+        try:
+            fresh = searched(task, replace(design, section=part), rounds=QUICK)
+        except (DesignError, FitError):
+            continue
+        yield replace(fresh, evaluations=fresh.evaluations + found.evaluations)
+
+
+def _thorough(task: Task, found: Found) -> Found:
+    fresh = searched(task, found.design)
+    better = fresh if np.isfinite(fresh.rms) else found
+    return replace(better, evaluations=found.evaluations + fresh.evaluations)
+
+
+def _thinned(task: Task, count: int) -> Task:
+    rows = drawn(len(task.points), count)
+    if len(rows) == len(task.points):
+        return task
+    precision = None if task.precision is None else task.precision[rows]
+    return replace(task, points=task.points[rows], weights=task.weights[rows], precision=precision)

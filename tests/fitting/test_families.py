@@ -1,0 +1,148 @@
+"""Sections of the families that are one part, found again from points."""
+
+from functools import cache
+from typing import Any
+
+import numpy as np
+import pytest
+
+from bladewright.errors import FitError
+from bladewright.fitting.families.faces import closed_sides
+from bladewright.fitting.families.kinds import KINDS, kind_of
+from bladewright.fitting.families.sections import section_samples
+from bladewright.fitting.fit import fit
+from bladewright.fitting.freedom import Freedom
+from bladewright.fitting.model import model_of
+from bladewright.fitting.scales import scales_of
+
+from ..section.families import EXAMPLES
+from ..section.meanline_examples import BLUNT, on_meanline
+
+FLAT = "curvature meanline, blunt behind"
+MEMBERS: dict[str, Any] = {FLAT: on_meanline(curvature=(0.8, 1.0, 0.4), thickness=BLUNT)}
+MEMBERS |= {
+    name: each.design
+    for name, each in EXAMPLES.items()
+    # an example of the contract's own tests is of no family; a profile through points has no numbers besides them
+    if name != "oval" and not name.startswith("points")
+}
+FEW = (
+    "suction and pressure side of a stator",
+    "wedge diffuser with a back face",
+    FLAT,
+    "camber-angle-blunt",
+    "naca-2412",
+)
+"""one of each family"""
+
+
+@cache
+def built(name):
+    return MEMBERS[name].build()
+
+
+def cloud(name, count=150, noise=0.0):
+    """Points of a section, those of its faces among them [m]."""
+    random = np.random.default_rng(7)
+    points = np.concatenate([side(random.random(count)) for side in closed_sides(built(name))])
+    return random.permutation(points + noise * random.normal(size=points.shape))
+
+
+def shaken(design, part=0.1):
+    """The design with every parameter that a fit finds moved by a part of what matters."""
+    paths, values = Freedom()(design), design.parameters()
+    size = scales_of(design, paths, float(built_chord(design))).size
+    random = np.random.default_rng(3)
+    steps = part * size * random.uniform(-1.0, 1.0, len(paths))
+    return design.changed({path: float(values[path] + step) for path, step in zip(paths, steps, strict=True)})
+
+
+def built_chord(design):
+    return design.chord * 1e-3
+
+
+@pytest.mark.parametrize("name", MEMBERS)
+def test_the_derivatives_of_a_sections_sides_are_those_of_the_sides_built_with_a_difference(name):
+    design = MEMBERS[name]
+    model, paths = model_of(design, 1e-6), Freedom()(design)
+    shape = model.shape(design)
+    rates = model.tangents(shape, paths)
+    values = design.parameters()
+    sizes = scales_of(design, paths, model.chord).size
+    # every parameter has its own share in the direction, so that none can be wrong unseen
+    direction = sizes * np.random.default_rng(5).uniform(0.5, 1.0, len(paths))
+    sides = []
+    for step in (1e-5, -1e-5):
+        changed = {path: float(values[path] + step * way) for path, way in zip(paths, direction, strict=True)}
+        sides.append(model.shape(design.changed(changed)).sides)
+    for rate, above, below in zip(rates, *sides, strict=True):
+        slope = (above.control_points - below.control_points) / 2e-5
+        # of second order in the step, 1e-10 of what matters, times derivatives of up to a thousand at small edges
+        assert np.tensordot(direction, rate, axes=1) == pytest.approx(slope, abs=1e-6 * model.chord)
+
+
+@pytest.mark.parametrize("name", MEMBERS)
+def test_a_sections_samples_are_those_of_the_part_it_is_made_of(name):
+    section, design = section_samples(built(name)), MEMBERS[name]
+    assert section.chord == pytest.approx(design.chord * 1e-3, rel=1e-9)
+    started = kind_of(design).started(section, design.section)
+    assert type(started) is type(design.section)
+    assert started.parameters().keys() == design.section.parameters().keys()
+
+
+@pytest.mark.parametrize("name", FEW)
+def test_a_section_is_found_again_from_a_start_that_is_off(name):
+    found = fit(cloud(name), start=shaken(MEMBERS[name]))
+    assert type(found.design) is type(MEMBERS[name])
+    # the tolerance of a section's native curves is 1e-10 of its chord
+    assert found.maximum < 1e-9 * found.built.chord
+    assert found.passed
+
+
+@pytest.mark.parametrize("name", FEW)
+def test_a_section_is_found_again_when_its_structure_is_given(name):
+    design = MEMBERS[name]
+    found = fit(cloud(name), family=kind_of(design).name, like=design)
+    assert found.maximum < 1e-9 * found.built.chord
+    assert found.passed
+    truth = design.parameters()
+    for each in found.estimates:
+        # control points of the second derivative count by their ratios alone
+        if not each.path.startswith("section.curvature["):
+            assert each.value == pytest.approx(truth[each.path], rel=1e-5, abs=1e-7), each.path
+
+
+def test_points_on_a_blunt_face_are_said_to_be_there():
+    name = "camber-angle-blunt"
+    found = fit(cloud(name, 400), start=MEMBERS[name])
+    assert set(found.places) == {"upper", "lower", "trailing_edge"}
+    assert set(found.regions[found.places == "trailing_edge"]) == {"trailing edge"}
+
+
+def test_a_vane_is_found_from_its_points_and_its_familys_name_alone():
+    design = MEMBERS["wedge diffuser with a back face"]
+    found = fit(cloud("wedge diffuser with a back face"), family="wedge-diffuser")
+    assert found.maximum < 1e-6 * found.built.chord
+    assert found.design.section.parameters() == pytest.approx(design.section.parameters(), rel=1e-5)
+
+
+@pytest.mark.parametrize(
+    ("options", "said"),
+    [
+        ({"family": "camber-angel"}, "did you mean 'camber-angle'|camber-angle"),
+        ({"family": "camber-angle", "like": MEMBERS["naca-2412"]}, "CamberAngleSection of the family camber-angle"),
+        ({"family": "profile", "parameters": 2}, "from 4 to 2000"),
+        ({"start": MEMBERS["naca-2412"], "free": "section.wedge_angle"}, "section.wedge_angle"),
+    ],
+)
+def test_what_is_wrong_is_said_in_one_paragraph(options, said):
+    with pytest.raises(FitError, match=said) as refusal:
+        fit(cloud("naca-2412"), **options)
+    assert "\n" not in str(refusal.value)
+
+
+def test_a_sections_family_has_no_points_in_space():
+    points = np.random.default_rng(0).random((200, 3))
+    for name in KINDS:
+        with pytest.raises(FitError, match="give x and y alone"):
+            fit(points, family=f"{name}-section")
