@@ -89,7 +89,7 @@ class BladedLines:
         """da/du and d2a/du2 (..., m, k) at u (..., m, k) or (k,)."""
         position, slope, bend = (self.position(u, order) for order in range(3))
         if self.rate is not None:
-            first = self.extents()[..., None] * np.ones(position.shape[:-1])
+            first = (self.rate * self._speed)[..., None] * np.ones(position.shape[:-1])
             return first, np.zeros_like(first)
         return self.mapping.density(position, slope), self.mapping.density_slope(position, slope, bend)
 
@@ -137,6 +137,13 @@ class BladedLines:
     @cached_property
     def _by_length(self) -> StreamLines:
         return stream_lines(self.stretch, Cascade(), self.v, 0.0, 0.0)
+
+    def between(self, leading: Array, trailing: Array) -> "BladedLines":
+        """The same stream lines by u from 0 at t = `leading` to 1 at t = `trailing`, (..., m) each."""
+        found = replace(self, leading=leading, trailing=trailing)
+        # it does not depend on where u counts from
+        found.__dict__["_by_length"] = self._by_length
+        return found
 
     def rows(self, which: list[int]) -> "BladedLines":
         """Some of the stream lines, by their number along the span."""

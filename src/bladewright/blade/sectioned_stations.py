@@ -9,7 +9,7 @@ from bladewright.blade.bladed_lines import Bladed, BladedLines
 from bladewright.blade.mapping import Mapping
 from bladewright.blade.outline_stations import OutlineStations, StaggeredSections
 from bladewright.blade.sectioned import SectionedBlade
-from bladewright.blade.stacking_chord import lines_of_chord
+from bladewright.blade.stacking_chord import chord_ruler
 from bladewright.blade.stacking_place import StackingPlace
 from bladewright.blade.stacking_reference import reference_points
 from bladewright.blade.stacking_shift import shift_of, shifted_lines
@@ -24,10 +24,12 @@ from bladewright.section.outline import Outline
 STEEP = np.radians(89.0)
 """largest angle of a chord line: beyond it its extent along the flow says nothing of the chord"""
 ROUNDS = 60
-"""tries in which a chord line's angle and its place, where each depends on the other, settle; mostly ten do"""
+"""tries in which a chord line's angle and its place, where each depends on the other, settle; mostly five do"""
 
 Place = Bladed | StackingPlace
 """what puts sections on their stream lines: edge curves, or reference points"""
+Found = tuple[BladedLines, Outline, Array, Array]
+"""stream lines between the sections' edges, sections, their stagger and reference points"""
 
 
 def placed_sections(design: SectionedBlade, place: Place, mapping: Mapping, v: Reals) -> OutlineStations:
@@ -66,37 +68,50 @@ def family_sections(design: SectionedBlade, span: Span, lines: BladedLines) -> t
     return part.outline(span, meridional), part.stagger(span, meridional)
 
 
-def _stacked(
-    design: SectionedBlade, place: StackingPlace, mapping: Mapping, span: Span
-) -> tuple[BladedLines, Outline, Array, Array]:
-    """Stream lines between the sections' edges, sections, their stagger and reference points."""
+def _stacked(design: SectionedBlade, place: StackingPlace, mapping: Mapping, span: Span) -> Found:
     stacking, v = place.stacking, span.v
     chord = place.metre * span.values(0.0 if stacking.chord is None else stacking.chord)
-    t = place.t(v)
+    ruler = chord_ruler(place.surfaces, v, mapping, place.t(v), chord)
 
-    def laid(outline: Outline, stagger: Array) -> tuple[BladedLines, Outline, Array, Array]:
+    def laid(outline: Outline, stagger: Array) -> Found:
         _check_stagger(stagger, v)
         reference = reference_points(stacking, outline, span)
         share = reference[..., 0] - reference[..., 1] * np.tan(stagger)
-        lines = lines_of_chord(place.surfaces, v, mapping, t, share, chord * np.cos(stagger))
+        lines = ruler.between(share, chord * np.cos(stagger))
         return lines, outline, stagger, reference
 
     part = design.section
-    found = laid(part.outline(span), part.stagger(span))
+    outline, stagger = part.outline(span), part.stagger(span)
     if not (isinstance(part, CamberAngle) and mapping.plane == "m'-theta"):
-        return found
-    return _settled(lambda lines: laid(*family_sections(design, span, lines)), found)
+        return laid(outline, stagger)
+
+    def again(lines: BladedLines) -> tuple[Outline, Array]:
+        return family_sections(design, span, lines)
+
+    return _settled(laid, again, outline, stagger)
 
 
-def _settled(again: Callable[[BladedLines], Any], found: Any) -> Any:
-    """Sections whose shape follows from the stream lines that they are laid on, repeated until the stagger stays."""
+def _settled(
+    laid: Callable[[Outline, Array], Found],
+    again: Callable[[BladedLines], tuple[Outline, Array]],
+    outline: Outline,
+    stagger: Array,
+) -> Found:
+    """Sections whose stagger follows from the stream lines that they are laid on, by the secant method."""
+    weight: Any = -1.0
+    before: tuple[Reals, Reals] | None = None
     for _ in range(ROUNDS):
-        before, found = found[2], again(found[0])
-        change = found[2] - before
-        steady = np.max(np.square(np.real(change))) < 1e-28
-        carried = np.max(np.square(np.imag(found[2])), initial=0.0)
-        if steady and np.max(np.square(np.imag(change)), initial=0.0) <= 1e-26 * carried:
-            return found
+        outline, found = again(laid(outline, stagger)[0])
+        off = found - stagger
+        real, carried = np.real(off), np.max(np.square(np.imag(found)), initial=0.0)
+        if np.max(np.square(real)) < 1e-26 and np.max(np.square(np.imag(off)), initial=0.0) <= 1e-24 * carried:
+            return laid(outline, found)
+        if before is not None:
+            moved, turned = np.real(stagger) - before[0], real - before[1]
+            with np.errstate(all="ignore"):
+                weight = np.where(np.square(turned) > 1e-16, moved / turned, weight)
+        before = np.real(stagger), real
+        stagger = stagger - weight * off
     raise DesignError(
         "stacking: the sections' chord lines turn with the place that their chord gives them, and do not settle: "
         "give leading_edge and trailing_edge, which say where the sections begin and end"
