@@ -81,6 +81,11 @@ class Laid(ABC):
     def kinds(self) -> tuple[str, str]:
         """How the sides meet at the leading and at the trailing edge: "round", "sharp" or "blunt"."""
 
+    @property
+    @abstractmethod
+    def gathered(self) -> bool:
+        """Whether s is gathered at edges: whether sides leave them slower than camber lines do."""
+
     @abstractmethod
     def camber(self, share: Reals) -> Array:
         """Points (..., m, k, 2) of smooth camber lines at shares (k,) from the leading to the trailing edge."""

@@ -55,6 +55,10 @@ class OutlineStations(Laid):
         """How the sides meet at the leading and at the trailing edge: "round", "sharp" or "blunt"."""
         return self.plane.outline.leading_edge.kind, self.plane.outline.trailing_edge.kind
 
+    @property
+    def gathered(self) -> bool:
+        return True
+
     def camber(self, share: Reals) -> Array:
         return self.plane.placed(camber_line(self.plane.outline).points(share))
 

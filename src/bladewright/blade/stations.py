@@ -39,6 +39,10 @@ class Stations(Laid):
     def kinds(self) -> tuple[str, str]:
         return "round", "round"
 
+    @property
+    def gathered(self) -> bool:
+        return False
+
     def camber(self, share: Reals) -> Array:
         return camber_points(self.plane.camber, share)
 

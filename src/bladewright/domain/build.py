@@ -12,7 +12,7 @@ from bladewright.blade.knots import DEGREE
 from bladewright.blade.meant import Meant
 from bladewright.domain.camber import CamberLines, camber_lines
 from bladewright.domain.checks import check_duct, check_folds, check_pitch
-from bladewright.domain.crossing import CROSSINGS, Crossing
+from bladewright.domain.crossing import CROSSINGS, GATHERED, Crossing
 from bladewright.domain.duct import Duct
 from bladewright.domain.extents import extents, openings, shortest_duct
 from bladewright.domain.fitness import RESERVE, TOLERANCE, knots_across, knots_along, knots_beside, knots_span
@@ -144,7 +144,9 @@ def _plane(
     blade: Blade, full: Meant, knots: PassageKnots, half: Array, turned: Turned, v: Reals
 ) -> tuple[CamberLines, Mapping[str, WallHalf], Mapping[str, WallStrip]]:
     """Camber lines, walls' halves and strips with stations at v (m,), hub first and shroud last."""
-    camber = camber_lines(full.stations(v), _duct(full, knots), turned, np.unique(full.breaks_along_v()))
+    camber = camber_lines(
+        full.stations(v), _duct(full, knots), turned, np.unique(full.breaks_along_v()), knots.crossing.quick
+    )
     touched = {wall: wall in blade.surfaces for wall in ("hub", "shroud")}
     return camber, halves(camber, touched, half, knots.opening, knots.crossing), strips(camber, touched)
 
@@ -170,7 +172,7 @@ def _crossed(
     What comes back has extents, but no knots yet.
     """
     tried: list[tuple[float, PassageKnots, Mapping[str, WallHalf]]] = []
-    for crossing in CROSSINGS:
+    for crossing in GATHERED if full.survey.gathered else CROSSINGS:
         try:
             start = _rough(blade, full, half, crossing, extents(full, half, crossing, *asked))
             check_duct(_duct(full, start), full.course)

@@ -24,6 +24,8 @@ class CamberLines:
     """(..., m) d theta / dm' at the leading and the trailing edge"""
     turned: tuple[Array | None, Array | None]
     """() d theta / dm' at inlet and outlet where an angle is stated"""
+    quick: float
+    """how much faster than on average `points` pass the edges"""
     joints: Reals
     """where, along the span, laws of evolution and the channel's edges lose derivatives"""
 
@@ -34,7 +36,7 @@ class CamberLines:
         ends, which is another where the edge is blunt.
         """
         if piece == "blade":
-            return self.in_plane(self.stations.camber(_parameter(t)))
+            return self.in_plane(self.stations.camber(abreast(t, self.quick)))
         past = 0 if piece == "inlet" else 1
         edge = self.start(past, sign)
         end = np.array([self.duct.high if past else self.duct.low])
@@ -68,13 +70,9 @@ class CamberLines:
         return np.stack([self.lines.abscissa(stations.on_course(u)), tangential], axis=-1)
 
 
-QUICK = 0.5
-"""how much faster than on average periodic boundaries pass the edges: the faster, the less cross-lines need to lean"""
-
-
-def _parameter(t: Reals) -> Reals:
-    """The camber's parameter abreast of t on the blade's sides."""
-    return (1.0 + QUICK) * t - 3.0 * QUICK * t**2 + 2.0 * QUICK * t**3
+def abreast(t: Reals, quick: float) -> Reals:
+    """The camber's parameter abreast of t on the blade's sides, faster at the edges by `quick` than on average."""
+    return (1.0 + quick) * t - 3.0 * quick * t**2 + 2.0 * quick * t**3
 
 
 def camber_lines(
@@ -82,6 +80,7 @@ def camber_lines(
     duct: Duct,
     turned: tuple[Array | None, Array | None] = (None, None),
     joints: Reals | None = None,
+    quick: float = 0.0,
 ) -> CamberLines:
     """Continued camber lines of stations; `turned` holds d theta / dm' at inlet and outlet, None to keep the edge's."""
     lines = duct.lines(stations.v)
@@ -92,6 +91,7 @@ def camber_lines(
         lines=lines,
         slopes=slopes,
         turned=turned,
+        quick=quick,
         joints=np.empty(0) if joints is None else joints,
     )
 

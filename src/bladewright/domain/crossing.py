@@ -10,6 +10,10 @@ class Crossing(NamedTuple):
     """the power e: the smaller, the later they turn back, and the further the extension must reach"""
     lean: float
     """tangent of their least angle to the normal of the extension, times the camber's cosine"""
+    fade: int = 16
+    """power of 1 - t with which the lean fades from an edge along the blade"""
+    quick: float = 0.5
+    """how much faster than on average periodic boundaries pass the edges: the faster, the less they need to lean"""
 
     @property
     def bulge(self) -> float:
@@ -20,3 +24,5 @@ class Crossing(NamedTuple):
 
 CROSSINGS = (Crossing(3, 1.0), Crossing(1, 1.0), Crossing(1, 2.0))
 """the ways that are tried in turn: most blades need the first, blunt ones beside narrow passages the others"""
+GATHERED = tuple(Crossing(each.ease, each.lean, fade=5, quick=-0.65) for each in CROSSINGS)
+"""the same for sides whose parameter is gathered at their edges"""

@@ -20,8 +20,6 @@ from bladewright.domain.patch import WallPatch
 from bladewright.numerics.elementary import Array
 from bladewright.nurbs.basis import Reals
 
-FADE = 16
-"""power of 1 - t with which the lean of the cross-lines fades from an edge along the blade"""
 ROOM = 4.0
 """half pitch, in meridional extents of the blade, beyond which cross-lines leave the blade more slowly"""
 
@@ -72,7 +70,8 @@ class WallHalf(WallPatch):
     def _lean(self, piece: str, t: Reals) -> Array:
         """A (..., k, 2): at an edge, what turns the cross-line into the right angle."""
         if piece == "blade":
-            return self._edge_lean(0) * ((1.0 - t) ** FADE)[:, None] + self._edge_lean(1) * (t**FADE)[:, None]
+            fade = self.crossing.fade
+            return self._edge_lean(0) * ((1.0 - t) ** fade)[:, None] + self._edge_lean(1) * (t**fade)[:, None]
         return self._edge_lean(0) * t[:, None] if piece == "inlet" else self._edge_lean(1) * (1.0 - t)[:, None]
 
     def _edge_lean(self, past: int) -> Array:
