@@ -8,9 +8,11 @@ import numpy as np
 from bladewright.files.examples import example_text
 from bladewright.files.reading import design_from, parsed
 from bladewright.fitting import tolerance as keeping
+from bladewright.fitting.cambers import cambers
 from bladewright.fitting.freedom import corner_radii, freedom_of
 from bladewright.fitting.growth import least, losses, steps_back
-from bladewright.fitting.identification import identified
+from bladewright.fitting.identification import identified, plainest, tried
+from bladewright.fitting.opening import opened
 from bladewright.fitting.reshaping import reshaped
 from bladewright.fitting.search import Task, searched
 from bladewright.fitting.structure import structure_of
@@ -79,9 +81,30 @@ def test_a_wavy_match_is_smoothed_as_far_as_the_tolerance_allows(monkeypatch):
 
 def test_the_numbers_of_control_points_that_a_section_was_made_with_are_found():
     task, found = match((6, 5))
-    known = identified(task, found)
+    known = identified(task, found.design)
     assert structure_of(known.design).chordwise == (7, 5)
     assert known.rms < 1e-9
+
+
+def test_a_section_is_found_from_a_camber_that_leaves_its_edge_the_wrong_way():
+    task, _ = match((6, 5))
+    hooked = opened(MADE.changed({"metal_angle_out": MADE.stagger + 40.0, "tangent_out": 0.1}))
+    direct = searched(task, hooked, noise=3e-3, rounds=6)
+    found = tried(task, hooked, [structure_of(MADE)])
+    assert found.rms < 1e-9 < direct.rms
+
+
+def test_cambers_hold_what_is_not_free():
+    others = cambers(MADE, lambda _: ("tangent_in", "tangent_out", "metal_angle_in"))
+    assert {each.metal_angle_out for each in others} == {MADE.metal_angle_out}
+    assert MADE in others
+    assert len({each.metal_angle_in for each in others}) > 1
+
+
+def test_thicknesses_lose_the_control_points_that_the_shape_does_not_need():
+    wider = reshaped(MADE, replace(structure_of(MADE), chordwise=(7, 7)))
+    assert structure_of(plainest(wider)).chordwise == (7, 5)
+    assert plainest(MADE) is MADE
 
 
 def test_the_radii_of_the_corners_are_those_of_both_edges_at_both_walls():

@@ -2,21 +2,20 @@
 
 from dataclasses import replace
 
-import numpy as np
-from numpy.typing import NDArray
-
 from bladewright.designs import Design
 from bladewright.errors import FitError
 from bladewright.fitting.aim import NOISY, Aim, short_of
 from bladewright.fitting.freedom import corner_radii
 from bladewright.fitting.growing import grown
 from bladewright.fitting.growth import FEWEST
-from bladewright.fitting.identification import EXACT, identified
+from bladewright.fitting.identification import EXACT, identified, tried
+from bladewright.fitting.opening import opened
 from bladewright.fitting.reshaping import reshaped
 from bladewright.fitting.search import ROUNDS, Found, Task, searched
 from bladewright.fitting.structure import Structure, structure_of
 from bladewright.fitting.thinning import drawn
 from bladewright.fitting.tolerance import kept
+from bladewright.section.unified import UnifiedSection
 
 FIRST = 3e-3
 """noise of the first round where the start is a guess, of the chord"""
@@ -24,8 +23,6 @@ SHAKEN = 0.03
 """noise from which a match of a section is tried once more, of the chord"""
 FINEST = 1e-6
 """misfit at which it is not, of that"""
-STRAIGHT = {"tangent_*": (0.12, 1.0)}
-"""bounds while a guess is far off: an edge that lies beside the nose would be reached by a hook of the camber"""
 QUICK = 2
 """rounds of a search between two steps of growth"""
 FEW, MANY = {2: 2500, 3: 1000}, 12_000
@@ -45,19 +42,24 @@ def adapted(task: Task, first: Design, aim: Aim, *, base: Structure | None, gues
     `first` is a first design, a guess or a start; `base` the structure from which to grow, where it is not that of
     `first`.
     """
-    few = _part(task, drawn(len(task.points), FEW[task.points.shape[1]]))
-    many = _part(task, drawn(len(task.points), MANY))
+    few = task.part(drawn(len(task.points), FEW[task.points.shape[1]]))
+    many = task.part(drawn(len(task.points), MANY))
     noise = FIRST if guessed else None
     if aim.structured and aim.tolerance is None:
         found = searched(few, first, noise=noise, rounds=ROUNDS if base is None else 2 * QUICK)
+        if guessed and isinstance(first, UnifiedSection) and found.rms > EXACT and _misses(found):
+            other = tried(few, first, [structure_of(first)])
+            if other is not None:
+                nearer = min((found, other), key=lambda each: each.rms)
+                found = replace(nearer, interrupted=other.interrupted)
         if base is not None and not found.interrupted:
             found = _leaner(few, found, base)
         return (found if found.interrupted else _told_by_points(many, searched(many, found.design))), ""
     found = searched(few, first, noise=noise, rounds=2 * QUICK if base is None else QUICK)
-    if guessed and aim.open and task.points.shape[1] == 2 and found.scatter.shared > NOISY:
-        found = identified(few, found)
-        if found.rms < EXACT:
-            return searched(many, found.design), ""
+    if guessed and aim.open and isinstance(first, UnifiedSection) and _misses(found):
+        known = identified(few, first)
+        if known is not None:
+            return (known if known.interrupted else searched(many, known.design)), ""
     standing, everything = aim.parameters is not None and _in_rows(found), few
     if standing:
         few, many = _on_walls(few), _on_walls(many)
@@ -75,6 +77,11 @@ def adapted(task: Task, first: Design, aim: Aim, *, base: Structure | None, gues
     if aim.tolerance is not None and not reason:
         found = kept(many, found, aim, aim.tolerance)
     return found, reason
+
+
+def _misses(found: Found) -> bool:
+    """Whether a search came to its end at a misfit that is no noise."""
+    return found.scatter.shared > NOISY and not found.interrupted
 
 
 def _told_by_points(task: Task, found: Found) -> Found:
@@ -110,7 +117,7 @@ def _exchanged(task: Task, found: Found) -> Found:
             upper, lower = structure.chordwise[0] + way, structure.chordwise[1] - way
             if min(upper, lower) < FEWEST:
                 break
-            design = reshaped(found.design, replace(structure, chordwise=(upper, lower)))
+            design = opened(reshaped(found.design, replace(structure, chordwise=(upper, lower))))
             other = searched(task, design, rounds=QUICK + 1, noise=found.rms)
             evaluations = found.evaluations + other.evaluations
             if not (other.rms < found.rms or other.interrupted):
@@ -151,10 +158,3 @@ def _leaner(task: Task, found: Found, base: Structure) -> Found:
         return searched(task, reshaped(found.design, base), noise=FIRST, rounds=2 * QUICK)
     except FitError:
         return found
-
-
-def _part(task: Task, rows: NDArray[np.intp]) -> Task:
-    if len(rows) == len(task.points):
-        return task
-    precision = None if task.precision is None else task.precision[rows]
-    return replace(task, points=task.points[rows], weights=task.weights[rows], precision=precision)

@@ -22,6 +22,12 @@ PENALTY = 4.0
 """merit of a violated inequality, in multiples of the largest multiplier seen"""
 MENDED = (1.0, 0.5, 0.2, 0.05, 0.0)
 """part of a violation that a step mends: the largest that bounds and other inequalities allow"""
+PROBE = 0.1
+"""part of a step at which the bend of the residuals is taken"""
+EVEN = 0.8
+"""gain of the last step, of what was promised, from which the next one goes straight"""
+CURVED = 0.4
+"""largest change of a step by that bend, of the step"""
 CHANGES = 20
 """of the inequalities that hold a step"""
 SLIGHT = 1e-6
@@ -64,33 +70,32 @@ def descended(problem: Constrained, start: Reals, *, steps: int, damping: float 
     if found is None:
         return Descent(z=z, converged=False, damping=damping)
     residuals, constrained = found
-    penalty, growth, done = 0.0, 2.0, 1
+    penalty, growth, gain, done = 0.0, 2.0, 1.0, 1
     while done < steps:
         slopes, walls = problem.derivatives(z)
-        triangle = np.asarray(np.linalg.qr(np.column_stack([slopes, residuals]), mode="r"))
-        matrix, aim = triangle[:, :-1], -triangle[:, -1]
+        turned, matrix = np.linalg.qr(slopes)
+        aim = -turned.T @ residuals
         scale = float(np.max(np.sum(slopes**2, axis=0), initial=1e-300))
+        sizes = np.sqrt(np.sum(slopes**2, axis=0) + damping * scale)
         moved = False
         while done < steps:
-            step, largest = _step(
-                matrix,
-                aim,
-                damping * scale,
-                walls,
-                constrained,
-                np.maximum(low - z, -STRIDE),
-                np.minimum(high - z, STRIDE),
-            )
+            within = damping * scale, walls, constrained, np.maximum(low - z, -STRIDE), np.minimum(high - z, STRIDE)
+            step, largest = _step(matrix, aim, *within)
             penalty = max(penalty, PENALTY * largest)
             before = float(residuals @ residuals) + penalty * float(np.sum(np.maximum(constrained, 0.0)))
             linear = aim - matrix @ step
             promised = (
-                float(residuals @ residuals)
+                float(aim @ aim)
                 - float(linear @ linear)
                 + penalty * float(np.sum(np.maximum(constrained, 0.0) - np.maximum(constrained + walls @ step, 0.0)))
             )
             if not promised > SLIGHT * before:
                 return Descent(z=z, converged=True, damping=damping)
+            bend = _bend(problem, z, step, residuals, slopes) if gain < EVEN else None
+            if bend is not None:
+                curved, _ = _step(matrix, aim - 0.5 * turned.T @ bend, *within)
+                if np.sum(((curved - step) * sizes) ** 2) <= CURVED**2 * np.sum((step * sizes) ** 2):
+                    step = curved
             trial = np.clip(z + step, low, high)
             fresh = problem.values(trial)
             done += 1
@@ -108,6 +113,18 @@ def descended(problem: Constrained, start: Reals, *, steps: int, damping: float 
         if not moved:
             break
     return Descent(z=z, converged=False, damping=damping)
+
+
+def _bend(problem: Constrained, z: Reals, step: Reals, residuals: Reals, slopes: Reals) -> Reals | None:
+    """Second derivative of the residuals (m,) along a step; None where there are none beside it."""
+    low, high = problem.bounds
+    part = PROBE * step
+    if np.any(z + part < low) or np.any(z + part > high):
+        return None
+    beside = problem.values(z + part)
+    if beside is None:
+        return None
+    return np.asarray(2.0 / PROBE * ((beside[0] - residuals) / PROBE - slopes @ step))
 
 
 def _step(

@@ -24,6 +24,7 @@ from bladewright.fitting.first.profile import first_section
 from bladewright.fitting.freedom import freedom_of
 from bladewright.fitting.judging import judged
 from bladewright.fitting.lean import lean, rich
+from bladewright.fitting.opening import opened
 from bladewright.fitting.reshaping import reshaped
 from bladewright.fitting.result import Fit
 from bladewright.fitting.scales import check_bounds
@@ -123,7 +124,9 @@ def fit(
         first = start if wanted is None else reshaped(start, wanted)
     else:
         first = guess(rich(parameters) if solid else wanted)
-    first = freedom.applied(first)
+    guessed, first = first, freedom.applied(first)
+    if start is None and first is not guessed:
+        first = opened(first)
     check_bounds(first, freedom(first), task.bounds)
     base = None
     if start is None and (solid or wanted is None):

@@ -7,6 +7,7 @@ import numpy as np
 from bladewright.errors import FitError
 from bladewright.fitting.aim import Aim
 from bladewright.fitting.growth import chosen_of, gains, joined
+from bladewright.fitting.opening import opened
 from bladewright.fitting.reshaping import reshaped
 from bladewright.fitting.search import Found, Task, searched
 from bladewright.fitting.structure import structure_of
@@ -41,7 +42,7 @@ def grown(task: Task, found: Found, aim: Aim) -> tuple[Found, bool]:
         weights = task.weights * emphasis
         task = replace(task, weights=weights * (np.sum(task.weights) / np.sum(weights)))
     try:
-        fresh = searched(task, design, rounds=1, noise=found.rms)
+        fresh = searched(task, design if task.points.shape[1] == 3 else opened(design), rounds=1, noise=found.rms)
     except FitError:
         return found, False
     return replace(fresh, evaluations=fresh.evaluations + found.evaluations), True

@@ -61,6 +61,15 @@ class Task:
     """by how much noses are held further from what is refused"""
     precision: Reals | None = None
     """(n,) inverse variances of the points, relative to each other; where None they are alike"""
+    outlying: bool = True
+    """whether points may be outliers"""
+
+    def part(self, rows: NDArray[np.intp]) -> "Task":
+        """The same with some of the points (m,)."""
+        if len(rows) == len(self.points):
+            return self
+        precision = None if self.precision is None else self.precision[rows]
+        return replace(self, points=self.points[rows], weights=self.weights[rows], precision=precision)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -142,7 +151,7 @@ def _prepared(task: Task, start: Design, design: Design, noise: float | None, be
     if not shape.finite:
         raise FitError("the start design has no shape near its edges: give another start, or none")
     on = feet(points, shape.sides)
-    scatter = scatter_of(points, on, task.precision)
+    scatter = scatter_of(points, on, task.precision, outlying=task.outlying)
     ends = ends_of(points, on, shape, scatter.inliers)
     misfit = float(np.sqrt(np.mean(on.distances[scatter.inliers & ~ends.covered] ** 2))) / model.chord
     scales = scales_of(start, paths, model.chord, task.bounds)

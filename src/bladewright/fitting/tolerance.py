@@ -21,7 +21,7 @@ ROUNDS = 2
 AT_ONCE = 4
 """laws that lose a control point together, those first of which it is foreseen to cost least; half as many where that
 is too much"""
-SMOOTHER = (10.0, 100.0, 1000.0)
+SMOOTHER = (3.0, 10.0, 30.0, 100.0, 1000.0)
 """strengths of the prior, in turn"""
 CALM = 4
 """extrema of a side's curvature that a plain section has"""

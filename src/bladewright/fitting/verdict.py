@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from bladewright.fitting.aim import Aim
+from bladewright.fitting.aim import LEAST, Aim
 from bladewright.fitting.estimates import Certainty
 from bladewright.fitting.search import Found
 from bladewright.nurbs.basis import Reals
@@ -12,6 +12,8 @@ GROSS = (1.5e-3, 5e-3)
 """mean and largest distance of a match to which no tolerance is stated, of the chord"""
 EXACT, SYSTEMATIC = 1e-9, 3.0
 """misfit of a given structure that is rounding, of the chord, and one that is not noise, of the cloud's noise"""
+SHARED = 0.5
+"""part of the misfit that neighbours share from which it is the shape's, where nothing is asked for"""
 OFF = 0.1
 """part of the points that may be outliers"""
 SHOWN = 5
@@ -50,6 +52,12 @@ def failures_of(
             f"the misfit of the given structure is {1e3 * rms:.3g} mm rms, and the cloud's noise {1e3 * noise:.3g} mm: "
             "the structure does not hold this blade, or a better design was not found; state a tolerance, or another "
             "structure"
+        )
+    enough = LEAST[found.problem.measures.points.shape[1]] * chord
+    if aim.open and not found.interrupted and kept.max() > 2.0 * enough and found.scatter.shared > SHARED:
+        failures.append(
+            f"the shape is not found: deviations go on from point to point, {1e3 * rms:.3g} mm rms where the cloud's "
+            f"own noise is {1e3 * noise:.3g} mm; state the tolerance that is enough, a number of parameters, or a start"
         )
     return tuple(failures)
 
