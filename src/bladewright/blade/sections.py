@@ -16,6 +16,7 @@ from bladewright.section.laws import Span
 from bladewright.section.native import knots_for
 from bladewright.section.native_section import meanline_of, native_section
 from bladewright.section.section import Section
+from bladewright.section.smoothness import Smoothness, smoothness
 
 TOLERANCE = 1e-10
 """distance of a family's native curves from the exact section, of the chord"""
@@ -47,6 +48,14 @@ def section_at(exact: Meant, v: float) -> Section:
         metal_angle_out=float(np.real(stations.angle_out[0])),
         scale=scale,
     )
+
+
+def smoothness_at(exact: Meant, v: float) -> Smoothness:
+    """Curvature, its slope and their jumps along the exact section at v in [0, 1], in chords of its plane."""
+    stations = exact.stations(np.array([v]))
+    if isinstance(stations, Stations):
+        return smoothness(section_at(exact, v))
+    return smoothness(cast(StaggeredSections, stations.plane).outline)
 
 
 def _of_family(exact: Meant, v: float, scale: Callable[[Array], Array]) -> Section:

@@ -72,6 +72,22 @@ class AngleOutline(Outline):
         x, _ = self._thickness(s, 0)
         return np.stack(np.broadcast_arrays(*(each.value for each in self._laid(x))), axis=-1)
 
+    def derivatives(self, s: Reals, order: int) -> tuple[Array, Array]:
+        """Points and derivatives by s (..., k, 2, order + 1) of both sides, exact."""
+        upper, lower = self._sides(s, order)
+        return upper, lower
+
+    @property
+    def camber_breaks(self) -> Reals:
+        """Knots of the camber angle, by the fraction of m'."""
+        rows = np.real(self.line.knots)
+        return rows[(0,) * (rows.ndim - 1)]
+
+    def camber_derivatives(self, t: Reals, order: int) -> Array:
+        """Points and derivatives by the fraction of m' (..., k, 2, order + 1) of the camber line, exact."""
+        pair = (each.derivatives() for each in self._laid(variable(t, order)))
+        return np.stack(np.broadcast_arrays(*pair), axis=-2)
+
     def _sides(self, s: Reals, order: int) -> list[Array]:
         """Points and their derivatives by s, (..., k, 2, order + 1), of both sides."""
         x, height = self._thickness(s, order)

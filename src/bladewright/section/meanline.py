@@ -43,6 +43,10 @@ class Meanline(ABC):
     def derivatives(self, u: Array) -> tuple[Array, Array, Array, Array]:
         """v and its first three derivatives (..., m, k) at u (..., m, k) or (k,) in [0, 1]."""
 
+    @abstractmethod
+    def fourth(self, u: Array) -> Array:
+        """The fourth derivative of v (..., m, k) there."""
+
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class CurvatureIntegral:
@@ -84,6 +88,11 @@ class CurvatureIntegral:
         value, rate, _ = by_first(self._powers, u)
         return value[..., 3], value[..., 2], value[..., 1], rate[..., 1] / rate[..., 0]
 
+    def bend(self, u: Array) -> Array:
+        """The second derivative of S (..., m, k) at u (..., m, k) or (k,)."""
+        _, rate, bend = by_first(self._powers, u)
+        return (bend[..., 1] - rate[..., 1] / rate[..., 0] * bend[..., 0]) / rate[..., 0] ** 2
+
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class CurvedMeanline(Meanline):
@@ -118,6 +127,9 @@ class CurvedMeanline(Meanline):
         second, first, bend, slope = self.curvature.at(u)
         whole, kappa = self.curvature.totals[1][..., None], self.scale[..., None]
         return kappa * (second - u * whole), kappa * (first - whole), kappa * bend, kappa * slope
+
+    def fourth(self, u: Array) -> Array:
+        return np.asarray(self.scale[..., None] * self.curvature.bend(u))
 
 
 def camber_scale(totals: tuple[Array, Array], camber: Array) -> tuple[Array, Reals]:
@@ -200,6 +212,10 @@ class MixedMeanline(Meanline):
             chosen(zero, 2.0 * bend + 6.0 * w * twist, zero),
             chosen(zero, 6.0 * twist + zero, zero),
         )
+
+    def fourth(self, u: Array) -> Array:
+        steep, flat = self.angles
+        return 0.0 * (u + (steep + flat)[..., None])
 
 
 STRAIGHT = (0.10, 0.05)

@@ -62,6 +62,7 @@ def native_section(
         edges=(outline.leading_edge.kind, outline.trailing_edge.kind),
         knots=knots,
         meanline=meanline,
+        outline=outline,
     )
 
 

@@ -3,6 +3,7 @@
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from math import factorial
 
 import numpy as np
 
@@ -12,7 +13,7 @@ from bladewright.section.chord_spline import ChordSpline
 from bladewright.section.meanline import Meanline
 from bladewright.section.outline import Edge, Joint, Outline, Start
 from bladewright.section.thickness.law import Thickness
-from bladewright.section.thickness.series import Series, polynomial
+from bladewright.section.thickness.series import Series, polynomial, variable
 
 APART = 1e-9
 """distance by s below which two joints are one"""
@@ -71,18 +72,54 @@ class OffsetOutline(Outline):
         u, half = (each.value for each in self.thickness.series(s, 0))
         return u, half if self.multiplier is None else half * (1.0 + self.multiplier.derivatives(u)[0])
 
+    @property
+    def breaks(self) -> Reals:
+        """Joints of thickness, meanline and multiplier of a single section."""
+        found = [*self.thickness.joints, *fixed_joints(self.thickness, self.meanline.joints, self.meanline.smooth - 1)]
+        if self.multiplier is not None:
+            found += fixed_joints(self.thickness, self.multiplier.joints, 3)
+        return np.array([joint.s for joint in merged(found)])
+
+    def derivatives(self, s: Reals, order: int) -> tuple[Array, Array]:
+        """Points and derivatives by s (..., m, k, 2, order + 1) of both sides, exact; s rises, and order is 3 at most.
+
+        With a multiplier, those of the base class: it is not known to third order in closed form.
+        """
+        if self.multiplier is not None:
+            return super().derivatives(s, order)
+        upper, lower = self._series(s, order)
+        return _differentiated(*upper), _differentiated(*lower)
+
+    @property
+    def camber_breaks(self) -> Reals:
+        """Joints of the meanline, by u."""
+        rows = np.real(self.meanline.joints)
+        return rows[(0,) * (rows.ndim - 1)]
+
+    def camber_derivatives(self, t: Reals, order: int) -> Array:
+        """Points and derivatives by u (..., m, k, 2, order + 1) of the meanline, exact; order is 4 at most."""
+        values = np.stack(np.broadcast_arrays(*self.meanline.derivatives(t), self.meanline.fourth(t)), axis=-1)
+        u = variable(t, order).derivatives()
+        return np.stack(np.broadcast_arrays(u, values[..., : order + 1]), axis=-2)
+
     def _edge(self, s: float, kind: str) -> Edge:
-        u, half = self.thickness.series(np.array([s]), 2)
+        upper, lower = self._series(np.array([s]), 2)
+        return Edge(kind=kind, upper=_start(*upper), lower=_start(*lower))  # type: ignore[arg-type]
+
+    def _series(self, s: Reals, order: int) -> tuple[tuple[Series, Series], tuple[Series, Series]]:
+        """Coordinates of both sides as series of s, the third order without a multiplier only."""
+        u, half = self.thickness.series(s, order)
         if self.multiplier is not None:
             half = half * (1.0 + self.multiplier.series(u))
-        value, slope, bend, twist = self.meanline.derivatives(u.value)
+        rates = [*self.meanline.derivatives(u.value)]
+        if order > 2:
+            rates.append(self.meanline.fourth(u.value))
         step = u - u.value
-        v = polynomial([value, slope, 0.5 * bend], step)
-        tangent = polynomial([slope, bend, 0.5 * twist], step)
+        v = polynomial([each / factorial(k) for k, each in enumerate(rates[: order + 1])], step)
+        tangent = polynomial([each / factorial(k) for k, each in enumerate(rates[1 : order + 2])], step)
         across = half / (1.0 + tangent * tangent).sqrt()
         along = tangent * across
-        upper, lower = _start(u - along, v + across), _start(u + along, v - across)
-        return Edge(kind=kind, upper=upper, lower=lower)  # type: ignore[arg-type]
+        return (u - along, v + across), (u + along, v - across)
 
 
 def merged(joints: Sequence[Joint]) -> tuple[Joint, ...]:
@@ -119,6 +156,11 @@ def fixed_joints(thickness: Thickness, places: Array, derivatives: int) -> tuple
 
 def _stacked(x: Array, y: Array) -> Array:
     return np.stack(np.broadcast_arrays(x, y), axis=-1)
+
+
+def _differentiated(x: Series, y: Series) -> Array:
+    """Derivatives (..., k, 2, order + 1)."""
+    return np.stack(np.broadcast_arrays(x.derivatives(), y.derivatives()), axis=-2)
 
 
 def _start(x: Series, y: Series) -> Start:

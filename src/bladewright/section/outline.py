@@ -4,8 +4,13 @@ from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from typing import Literal, NamedTuple
 
+import numpy as np
+
 from bladewright.numerics.elementary import Array
 from bladewright.nurbs.basis import Reals
+
+STEP = 1e-4
+"""step by s from an edge that tells a camber line with a speed there from one without"""
 
 
 class Start(NamedTuple):
@@ -64,3 +69,58 @@ class Outline(ABC):
     @abstractmethod
     def camber(self, s: Reals) -> Array:
         """Points (..., len(s), 2) of the camber line at s (k,) in [0, 1], from (0, 0) to (1, 0)."""
+
+    @property
+    def breaks(self) -> Reals:
+        """Places s (j,) inside (0, 1) of a single section where a side is not analytic; `joints` hold for all."""
+        return np.array([joint.s for joint in self.joints])
+
+    def derivatives(self, s: Reals, order: int) -> tuple[Array, Array]:
+        """Points and derivatives by s (k, 2, order + 1) of both sides of a single section at s (k,), beside the breaks.
+
+        Unless a family knows them in closed form, those of Chebyshev series on the pieces.
+        """
+        from bladewright.section.analytic_pieces import Pieces
+
+        def sides(s: Reals) -> Reals:
+            return np.concatenate([_single(side) for side in self.points(s)], axis=-1)
+
+        found = Pieces(sides, np.array([0.0, *self.breaks, 1.0])).derivatives(s, order)
+        return found[:, :2], found[:, 2:]
+
+    @property
+    def camber_breaks(self) -> Reals:
+        """Places t (j,) inside (0, 1) of a single section where the camber line is not analytic."""
+        return self._abscissae(self.breaks) if self._stands_still else self.breaks
+
+    def camber_derivatives(self, t: Reals, order: int) -> Array:
+        """Points and derivatives by t (k, 2, order + 1) of a single section's camber line at t (k,) in [0, 1].
+
+        t is a parameter in which the line has a speed everywhere: s, or where it has none by s at an edge the abscissa,
+        where a family says nothing else.
+        """
+        from bladewright.section.analytic_pieces import Pieces, inverse
+
+        ends = np.array([0.0, *self.breaks, 1.0])
+        if not self._stands_still:
+            return Pieces(lambda s: _single(self.camber(s)), ends).derivatives(t, order)
+        place = inverse(self._abscissae, ends)
+
+        def line(x: Reals) -> Reals:
+            return np.stack([x, _single(self.camber(place(x)))[:, 1]], axis=-1)
+
+        return Pieces(line, np.array([0.0, *self.camber_breaks, 1.0])).derivatives(t, order)
+
+    def _abscissae(self, s: Reals) -> Reals:
+        return _single(self.camber(s))[:, 0] if len(s) else s
+
+    @property
+    def _stands_still(self) -> bool:
+        """Whether the camber line has no speed by s at an edge, as of a half thickness that is odd there."""
+        near = self._abscissae(np.array([STEP, 1.0 - STEP]))
+        return bool(min(near[0], 1.0 - near[1]) < STEP**1.5)
+
+
+def _single(points: Array) -> Reals:
+    """Real points (k, 2) of one section, (k, 2) or (1, k, 2)."""
+    return np.asarray(np.real(points[0] if points.ndim == 3 else points), dtype=np.float64)

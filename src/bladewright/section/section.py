@@ -11,6 +11,7 @@ from bladewright.numerics.elementary import Array, cross2, dot, length
 from bladewright.numerics.quadrature import panels
 from bladewright.nurbs.basis import Reals, breaks
 from bladewright.nurbs.curve import Curve
+from bladewright.section.outline import Outline
 
 STEP = 1e-30
 """imaginary step that differentiates the scale"""
@@ -50,6 +51,9 @@ class Section:
     """what a build at held knots takes, where the family has such knots"""
     meanline: Callable[[Array], tuple[Array, Array, Array]] | None = None
     """v and its first two derivatives by u along the chord, in chords, where the section is laid on a meanline"""
+
+    outline: Outline | None = None
+    """the exact section in chords, unstaggered, where the family has one"""
 
     @cached_property
     def chord(self) -> Array:
@@ -105,13 +109,19 @@ class Section:
         total = np.zeros(len(u))
         for curve, sign in zip((self.curves["upper"], self.curves["lower"]), (1.0, -1.0), strict=True):
             total[1:-1] += _ray_lengths(curve, point[1:-1], sign * normal[1:-1])
+        for end, name in ((0, "leading_edge"), (-1, "trailing_edge")):
+            if name in self.curves:
+                face = np.real(self.curves[name].control_points)
+                total[end] = length(face[-1] - face[0])
         return u, total * np.real(self.scale(point[:, 0]))
 
     @cached_property
     def maximum_thickness(self) -> tuple[float, float]:
         """Largest thickness across the camber [m], and the camber parameter where it stands."""
         u, thickness = self.thickness
-        i = int(np.clip(np.argmax(thickness), 1, len(u) - 2))
+        i = int(np.argmax(thickness))
+        if i in (0, len(u) - 1):
+            return float(thickness[i]), float(u[i])
         parabola = np.polyfit(u[i - 1 : i + 2], thickness[i - 1 : i + 2], 2)
         place = float(-parabola[1] / (2.0 * parabola[0])) if parabola[0] < 0.0 else float(u[i])
         return float(np.polyval(parabola, place)) if parabola[0] < 0.0 else float(thickness[i]), place

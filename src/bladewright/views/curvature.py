@@ -59,14 +59,14 @@ def draw_curvature(axes: Axes, sections: Sequence["Section"], ends: tuple[str, s
     axes.set_xlim(-0.01, 1.01)
     place = "part of the arc, leading to trailing edge [-]"
     titled(axes, "Curvature of the sides, convex positive", place, "curvature [1/mm]")
-    sides_legend(axes, sections, ends)
+    sides_legend(axes, [section.span for section in sections], ends)
 
 
-def sides_legend(axes: Axes, sections: Sequence["Section"], ends: tuple[str, str] = WALLS) -> None:
+def sides_legend(axes: Axes, spans: Sequence[float], ends: tuple[str, str] = WALLS) -> None:
     """A legend under the panel: the spans by colour, where there are several, and the sides by line."""
-    handles = [Line2D([], [], color=span_colour(each.span), label=span_name(each.span, ends)) for each in sections]
-    ink = INK if len(sections) > 1 else span_colour(sections[0].span)
+    handles = [Line2D([], [], color=span_colour(v), label=span_name(v, ends)) for v in spans]
+    ink = INK if len(spans) > 1 else span_colour(spans[0])
     styles = {"upper": UPPER, "lower": LOWER}
     sides = [Line2D([], [], color=ink, linestyle=style, label=name) for name, style in styles.items()]
-    handles = [*(handles if len(sections) > 1 else []), *sides]
+    handles = [*(handles if len(spans) > 1 else []), *sides]
     legend_below(axes, 3, handles=handles)

@@ -34,7 +34,7 @@ def draw_passage_solid(axes: Axes, passage: "Passage", *, size: tuple[int, int])
     solid, glass, traces = [], [], []
     for name, sense in outer_faces(passage).items():
         colour = COLOURS.get(name.partition("_")[0], OPENING)
-        for piece in pieces_of(name, cast(Surface, passage.whole[name])).values():
+        for piece in pieces_of(name, cast(Surface, passage.whole[name]), passage.knots).values():
             points, normals = _grid(piece, sense)
             solid.append(Mesh(points=points, normals=normals, colour=colour, side=-1))
             glass.append(Mesh(points=points, normals=normals, colour=GLASS, side=1))

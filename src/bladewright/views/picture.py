@@ -9,12 +9,14 @@ from matplotlib.figure import Figure
 
 from bladewright.blade.blade import Blade
 from bladewright.blade.sectioned import SectionedBlade
+from bladewright.blade.sections import smoothness_at
 from bladewright.blade.unified import UnifiedBlade
 from bladewright.domain.passage import Passage
 from bladewright.domain.section import SectionPassage
 from bladewright.errors import DesignError
 from bladewright.section.planar import PlanarSection
 from bladewright.section.section import Section
+from bladewright.section.smoothness import smoothness
 from bladewright.section.unified import UnifiedSection
 from bladewright.views.curvature import draw_curvature
 from bladewright.views.edges import draw_edge, draw_edges
@@ -24,6 +26,7 @@ from bladewright.views.pages import headed, laid_out, rows
 from bladewright.views.passage import passage_sheet, section_passage_sheet
 from bladewright.views.passage_solid import draw_passage_solid
 from bladewright.views.sections import draw_passage, draw_sections, pitch_of
+from bladewright.views.smoothness import draw_smoothness
 from bladewright.views.solid import draw_solid
 from bladewright.views.style import MILLIMETRES, manner
 from bladewright.views.thickness import draw_thickness, draw_thickness_laws
@@ -116,10 +119,10 @@ def _blade_sheet(blade: Blade) -> Figure:
     if hasattr(blade.design, "thickness_upper"):
         charts.append(partial(draw_thickness_laws, design=blade.design, sections=few, length_name="length"))
     strips = -(-len(charts) // ACROSS)
-    heights = [5.4, 4.6, 3.6, *[4.4] * strips]
+    heights = [5.4, 4.6, 3.6, 4.4, *[4.4] * strips]
     figure = Figure(figsize=(16.0, sum(heights) + 0.9))
     headed(figure, blade.name, blade.description, _blade_figures(blade, middle, pitch))
-    top, centre, near, *bottom = rows(figure, *heights)
+    top, centre, near, smooth, *bottom = rows(figure, *heights)
     axes = top.subplots(1, 3, width_ratios=[1.25, 1.0, 1.0])
     draw_solid(axes[0], blade, neighbours=2, width=760)
     axes[0].set_title("Blade with neighbours")
@@ -130,6 +133,7 @@ def _blade_sheet(blade: Blade) -> Figure:
     draw_curvature(axes[1], few, blade.design.ends)
     draw_thickness(axes[2], sections, blade.design.ends)
     draw_edges(near, few, blade.design.ends)
+    draw_smoothness(smooth, {v: smoothness_at(blade.exact, v) for v in FEW}, blade.design.ends)
     across = -(-len(charts) // strips)
     for index, strip in enumerate(bottom):
         own = charts[index * across : (index + 1) * across]
@@ -148,14 +152,15 @@ def _section_sheet(design: SectionDesign | None, section: Section) -> Figure:
     pitch = None
     if design is not None and design.pitch is not None:
         pitch = design.pitch * UNITS[design.length_unit] * MILLIMETRES
-    figure = Figure(figsize=(16.0, 11.0))
+    figure = Figure(figsize=(16.0, 15.4))
     name, description = (design.name, design.description) if design is not None else ("section", "")
     headed(figure, name, description, _section_figures(section, pitch))
-    top, bottom = rows(figure, 6.0, 4.6)
+    top, bottom, smooth = rows(figure, 6.0, 4.6, 4.4)
     axes = top.subplots(1, 3, width_ratios=[1.6, 1.0, 1.0])
     draw_passage(axes[0], section, pitch, "Section")
     draw_edge(axes[1], section, trailing=False)
     draw_edge(axes[2], section, trailing=True)
+    draw_smoothness(smooth, {section.span: smoothness(section)})
     lawful = design is not None and hasattr(design, "thickness_upper")
     axes = bottom.subplots(1, 3 if lawful else 2)
     draw_curvature(axes[0], [section])

@@ -63,4 +63,4 @@ def draw_thickness_laws(axes: Axes, design: Any, sections: Sequence["Section"], 
     axes.set_ylim(bottom=0.0)
     axes.set_xlim(-0.03, 1.03)
     titled(axes, "Half thickness along the chord", CHORD, f"half thickness [% of {length_name}]")
-    sides_legend(axes, sections, getattr(design, "ends", WALLS))
+    sides_legend(axes, [section.span for section in sections], getattr(design, "ends", WALLS))

@@ -85,12 +85,23 @@ class PointsOutline(Outline):
         )
         return upper, lower
 
+    def derivatives(self, s: Reals, order: int) -> tuple[Array, Array]:
+        """Points and derivatives by s (..., k, 2, order + 1) of both sides, exact."""
+        pairs = ([each.derivatives() for each in self._laid(side, s, order)] for side in self._sides)
+        upper, lower = (np.stack(np.broadcast_arrays(*pair), axis=-2) for pair in pairs)
+        return upper, lower
+
     def camber(self, s: Reals) -> Array:
         """Points (..., len(s), 2) of the polynomial nearest to the middle between the sides, away from the edges."""
         x = np.sin(0.5 * np.pi * s) ** 2
         rows = np.polynomial.chebyshev.chebvander(2.0 * x - 1.0, CAMBER) * (x * (1.0 - x))[:, None]
         height = self._camber @ rows.T
         return np.stack(np.broadcast_arrays(x, height), axis=-1)
+
+    @property
+    def camber_breaks(self) -> Reals:
+        """None: the camber line is one polynomial."""
+        return np.empty(0)
 
     @cached_property
     def _camber(self) -> Array:

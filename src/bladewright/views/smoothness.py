@@ -1,0 +1,97 @@
+"""Smoothness along sections: the slope of the curvature, the camber line's curvature, and what jumps at joints."""
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import SubFigure
+
+from bladewright.nurbs.basis import Reals
+from bladewright.section.smoothness import SmoothLine, Smoothness
+from bladewright.views.curvature import sides_legend
+from bladewright.views.style import INK, LOWER, SOFT, UPPER, WALLS, span_colour, span_name, titled
+
+ALONG = "part of the arc, leading to trailing edge [-]"
+ENDS = 0.02
+"""part of the arc at either end that does not decide the scale"""
+
+
+def draw_smoothness(strip: SubFigure, found: Mapping[float, Smoothness], ends: tuple[str, str] = WALLS) -> None:
+    """Draws the slope of the sides' curvature, curvature and slope of the camber lines, and a table of jumps.
+
+    `found` is by span; everything is in the section's plane, by its chord.
+    """
+    axes = strip.subplots(1, 4, width_ratios=[1.0, 0.85, 0.85, 1.15])
+    spans = list(found)
+    for v, each in found.items():
+        colour = span_colour(v)
+        _draw(axes[0], each.upper, each.upper.slope, colour, UPPER, kept=1)
+        # seen from the other side the same bend turns the other way
+        _draw(axes[0], each.lower, -each.lower.slope, colour, LOWER, kept=1)
+        _draw(axes[1], each.camber, each.camber.curvature, colour, UPPER, kept=0)
+        _draw(axes[2], each.camber, each.camber.slope, colour, UPPER, kept=1)
+    sides = [line for each in found.values() for line in (each.upper, each.lower)]
+    _logarithmic(axes[0], np.concatenate([line.slope[_inside(line)] for line in sides]))
+    for place, name in ((axes[1], "curvature"), (axes[2], "slope")):
+        _limited(place, [getattr(each.camber, name)[_inside(each.camber)] for each in found.values()])
+    titled(axes[0], "Slope of the curvature of the sides", ALONG, "d curvature / d arc × chord² [-]")
+    titled(axes[1], "Curvature of the camber line", ALONG, "curvature × chord [-]")
+    titled(axes[2], "Slope of the camber's curvature", ALONG, "d curvature / d arc × chord² [-]")
+    for place in axes[:3]:
+        place.axhline(0.0, color=SOFT, linewidth=0.8)
+        place.set_xlim(-0.01, 1.01)
+    sides_legend(axes[0], spans, ends)
+    _table(axes[3], found, ends)
+
+
+def _draw(axes: Axes, line: SmoothLine, values: Reals, colour: Any, style: Any, *, kept: int) -> None:
+    """One line, parted at joints where it jumps, with a dot on either side."""
+    broken = [jump.at for jump in line.jumps if jump.place == "joint" and not jump.continuous[kept]]
+    cuts = [int(np.searchsorted(line.arc, at, side="right")) for at in broken]
+    for part in np.split(np.arange(len(values)), cuts):
+        axes.plot(line.arc[part], values[part], color=colour, linestyle=style, linewidth=1.2)
+    dots = np.array([k for cut in cuts for k in (cut - 1, cut) if cut < len(values)], dtype=int)
+    axes.plot(line.arc[dots], values[dots], color=colour, linestyle="none", marker="o", markersize=2.6)
+
+
+def _inside(line: SmoothLine) -> Any:
+    return (line.arc > ENDS) & (line.arc < 1.0 - ENDS)
+
+
+def _logarithmic(axes: Axes, values: Reals) -> None:
+    """Linear where most of the values are, logarithmic beyond."""
+    usual = float(np.median(np.sqrt(values * values), axis=None)) if len(values) else 1.0
+    threshold = 10.0 ** np.ceil(np.log10(max(2.0 * usual, 1e-3)))
+    axes.set_yscale("symlog", linthresh=threshold, linscale=1.5)
+
+
+def _limited(axes: Axes, values: Sequence[Reals]) -> None:
+    """Limits that hold the values and zero, with room."""
+    low, high = min(0.0, *(float(each.min()) for each in values)), max(0.0, *(float(each.max()) for each in values))
+    room = 0.08 * (high - low) or 1.0
+    axes.set_ylim(low - room, high + room)
+
+
+def _table(axes: Axes, found: Mapping[float, Smoothness], ends: tuple[str, str]) -> None:
+    """The largest jumps at joints, of the largest value on the line."""
+    axes.set_axis_off()
+    axes.set_title("Largest jumps at joints, of the largest value")
+    place: dict[str, Any] = {"transform": axes.transAxes, "va": "top", "fontsize": 9.5}
+    columns = (0.36, 0.70)
+    for x, name in zip(columns, ("curvature", "its slope"), strict=True):
+        axes.text(x, 0.97, name, color=INK, fontweight="bold", **place)
+    rows = [(v, line) for v, each in found.items() for line in each.lines]
+    step = 0.92 / (len(rows) + 1)
+    for index, (v, line) in enumerate(rows):
+        height = 0.97 - step * (index + 1)
+        name = line.name if len(found) == 1 else f"{span_name(v, ends)}, {line.name}"
+        axes.text(0.0, height, name, color=span_colour(v), **place)
+        for x, smooth, jump in zip(columns, line.continuous, (line.curvature_jump, line.slope_jump), strict=True):
+            axes.text(x, height, "continuous" if smooth else said(jump), color=INK, **place)
+
+
+def said(share: float) -> str:
+    """A share in percent, to two digits."""
+    percent = 100.0 * share
+    return f"{percent:.0f} %" if percent >= 10.0 else f"{percent:.2g} %" if percent >= 1e-2 else f"{percent:.0e} %"
