@@ -1,15 +1,19 @@
 """Sections of any family at places along the span: staggered in their planes, and laid on their stream surfaces."""
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
 from bladewright.blade.bladed_lines import BladedLines
-from bladewright.blade.laid import EdgeRow, Laid
+from bladewright.blade.laid import EdgeRow
+from bladewright.blade.meridian_line import real_first
+from bladewright.blade.path_stations import PathStations
 from bladewright.numerics.elementary import Array
 from bladewright.nurbs.basis import Reals
+from bladewright.section.crossing import closed_outlines
 from bladewright.section.outline import Outline, Start
-from bladewright.section.outline_camber import camber_line
+from bladewright.section.outline_camber import CamberLine, camber_line
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -43,32 +47,32 @@ class StaggeredSections:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class OutlineStations(Laid):
+class OutlineStations(PathStations):
     """The exact sections of a family at places v (m,) along the span."""
 
     v: Reals
     lines: BladedLines
     plane: StaggeredSections
 
-    @property
+    @cached_property
     def kinds(self) -> tuple[str, str]:
         """How the sides meet at the leading and at the trailing edge: "round", "sharp" or "blunt"."""
         return self.plane.outline.leading_edge.kind, self.plane.outline.trailing_edge.kind
 
-    @property
-    def gathered(self) -> bool:
-        return True
-
     def camber(self, share: Reals) -> Array:
-        return self.plane.placed(camber_line(self.plane.outline).points(share))
+        return self.plane.placed(self._camber_line.points(share))
 
     def camber_ends(self) -> tuple[Array, Array]:
-        line = camber_line(self.plane.outline)
+        line = self._camber_line
         first, last = (self.plane.turned(each[..., None, :])[..., 0, :] for each in (line.first, line.last))
         return first, last
 
-    def on_course(self, u: Array) -> Array:
-        return self.lines.t(u)
+    @cached_property
+    def _camber_line(self) -> CamberLine:
+        return camber_line(self.plane.outline)
+
+    def outlines(self) -> Reals:
+        return real_first(self.plane.placed(closed_outlines(self.plane.outline)), 3)
 
     def leading_edge(self) -> EdgeRow:
         return self._row(0, self.plane.outline.leading_edge.upper)

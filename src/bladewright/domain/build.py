@@ -14,7 +14,7 @@ from bladewright.domain.camber import CamberLines, camber_lines
 from bladewright.domain.checks import check_duct, check_folds, check_pitch
 from bladewright.domain.crossing import CROSSINGS, GATHERED, Crossing
 from bladewright.domain.duct import Duct
-from bladewright.domain.extents import extents, openings, shortest_duct
+from bladewright.domain.extents import end_cambers, extents, openings, shortest_duct
 from bladewright.domain.fitness import RESERVE, TOLERANCE, knots_across, knots_along, knots_beside, knots_span
 from bladewright.domain.folding import ROOMY, least_share
 from bladewright.domain.knots import PassageKnots
@@ -144,11 +144,12 @@ def _plane(
     blade: Blade, full: Meant, knots: PassageKnots, half: Array, turned: Turned, v: Reals
 ) -> tuple[CamberLines, Mapping[str, WallHalf], Mapping[str, WallStrip]]:
     """Camber lines, walls' halves and strips with stations at v (m,), hub first and shroud last."""
-    camber = camber_lines(
-        full.stations(v), _duct(full, knots), turned, np.unique(full.breaks_along_v()), knots.crossing.quick
+    duct, joints = _duct(full, knots), np.unique(full.breaks_along_v())
+    camber, ends = (
+        camber_lines(full.stations(places), duct, turned, joints, knots.crossing.quick) for places in (v, v[[0, -1]])
     )
     touched = {wall: wall in blade.surfaces for wall in ("hub", "shroud")}
-    return camber, halves(camber, touched, half, knots.opening, knots.crossing), strips(camber, touched)
+    return camber, halves(ends, touched, half, knots.opening, knots.crossing), strips(ends, touched)
 
 
 def _knots(blade: Blade, full: Meant, half: Array, turned: Turned, asked: Asked) -> PassageKnots:
@@ -201,7 +202,7 @@ def _rough(blade: Blade, full: Meant, half: Array, crossing: Crossing, reaches: 
         high=course.place(1, reaches[1]),
         start=course.start,
         end=course.end,
-        opening=openings(full, _real_half(half)),
+        opening=openings(end_cambers(full), _real_half(half)),
         crossing=crossing,
         blunt=(EDGE_FACES[0] in blade.surfaces, EDGE_FACES[1] in blade.surfaces),
         blade=blade.knots.u,

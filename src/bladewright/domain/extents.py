@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from bladewright.blade.course import Course
 from bladewright.blade.meant import Meant
 from bladewright.domain.camber import CamberLines, camber_lines
 from bladewright.domain.crossing import Crossing
@@ -34,9 +35,9 @@ def extents(
     A usual one is shortened where the duct would fold over or meet the axis. Raises DesignError where one is not a
     number above what the nose and the pitch need.
     """
-    found = []
+    found, ends = [], end_cambers(full)
     for past, (name, given) in enumerate((("upstream", upstream), ("downstream", downstream))):
-        needed = _needed(full, half_pitch, crossing, past)
+        needed = _needed(full.course, ends, half_pitch, crossing, past)
         if given is None:
             found.append(_usual(full, past, needed))
             continue
@@ -66,9 +67,9 @@ def shortest_duct(full: Meant) -> Duct:
     )
 
 
-def openings(full: Meant, half_pitch: float) -> tuple[float, float]:
+def openings(ends: CamberLines, half_pitch: float) -> tuple[float, float]:
     """The share of the width at which cross-lines leave the blade, on hub and shroud."""
-    edges = [_at_edge(_camber(full), past) for past in (0, 1)]
+    edges = [_at_edge(ends, past) for past in (0, 1)]
     hub, shroud = edges[1][:, 0] - edges[0][:, 0]
     return opening(half_pitch, hub), opening(half_pitch, shroud)
 
@@ -89,17 +90,16 @@ def _usual(full: Meant, past: int, needed: float) -> float:
     return wanted if limit is None else max(needed, 0.8 * course.extent(past, limit.last))
 
 
-def _needed(full: Meant, half_pitch: Array, crossing: Crossing, past: int) -> float:
+def _needed(course: Course, ends: CamberLines, half_pitch: Array, crossing: Crossing, past: int) -> float:
     """The extension must outlast the bulge of the cross-lines, and reach past the nose."""
-    course, sign = full.course, 1.0 if past else -1.0
+    sign = 1.0 if past else -1.0
     nose = course.noses[past] + sign * NOSE * course.unit
-    places = _bulges(full, half_pitch, crossing, past)
+    places = _bulges(ends, half_pitch, crossing, past)
     return course.extent(past, float(np.max([nose, *places]) if past else np.min([nose, *places])))
 
 
-def _bulges(full: Meant, half_pitch: Array, crossing: Crossing, past: int) -> Reals:
+def _bulges(camber: CamberLines, half_pitch: Array, crossing: Crossing, past: int) -> Reals:
     """u (2,) on hub and shroud up to which a duct must reach past cross-lines from an edge."""
-    camber = _camber(full)
     direction = np.real(camber.direction(past)).reshape(-1, 2, 2)[0]
     u = np.broadcast_to(np.real(camber.stations.on_course(np.array([float(past)]))), (2, 1))
     density = np.real(camber.lines.densities(u)[0])
@@ -107,10 +107,11 @@ def _bulges(full: Meant, half_pitch: Array, crossing: Crossing, past: int) -> Re
     size = np.max([lean(direction[:, 1], half, each, past, crossing.lean) for each in (1, -1)], axis=0)
     if camber.stations.kinds[past] != "round":
         size = 0.0 * size
-    bulge = crossing.bulge * np.array(openings(full, half)) * size * direction[:, 0]
+    bulge = crossing.bulge * np.array(openings(camber, half)) * size * direction[:, 0]
     reach = ROOM * bulge / density.reshape(-1, 2)[0]
     return np.asarray(u[:, 0] + (reach if past else -reach))
 
 
-def _camber(full: Meant) -> CamberLines:
+def end_cambers(full: Meant) -> CamberLines:
+    """Camber lines on hub and shroud, barely continued."""
     return camber_lines(full.stations(np.array([0.0, 1.0])), shortest_duct(full))
