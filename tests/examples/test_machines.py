@@ -7,12 +7,13 @@ import numpy as np
 import pytest
 
 from bladewright.blade.prismatic import prismatic
-from bladewright.blade.unified import UnifiedBlade
 from bladewright.files.examples import example_text, examples
 from bladewright.files.reading import design_from
+from bladewright.section.unified import UnifiedSection
 
 NAMES = sorted(examples())
-OWN = ("centrifugal-impeller", "compressor-stator", "fan-rotor", "mixed-flow-pump", "propeller", "turbine-section")
+REAL = ("aachen-stator", "nasa-rotor-67", "radial-turbine", "vki-ls89")
+OWN = tuple(name for name in NAMES if name not in REAL)
 
 
 @cache
@@ -23,7 +24,7 @@ def design(name):
 @cache
 def blade(name):
     found = design(name)
-    return (found if isinstance(found, UnifiedBlade) else prismatic(found)).build()
+    return (prismatic(found) if isinstance(found, UnifiedSection) else found).build()
 
 
 def edges(name, v):
