@@ -10,6 +10,7 @@ from bladewright.blade.checks import check_sections
 from bladewright.blade.exact import exact_blade
 from bladewright.blade.unified import UnifiedBlade
 from bladewright.errors import DesignError, FileError
+from bladewright.files.blade_count import standing_apart
 from bladewright.files.imported import Imported
 from bladewright.files.parablade.config import CHANNEL, COMMON, WORDS, Config, parsed
 from bladewright.files.parablade.shape import shape_at, side_basis
@@ -78,35 +79,15 @@ def _design_of(config: Config, name: str, chordwise: int | None) -> tuple[Unifie
             f"no pitch is in the file: {blade.pitch:.4g} mm is taken, one meridional length; set the true one"
         )
         return blade, changed
-    standing = _standing_apart(blade)
+    standing = standing_apart(
+        int(blade.blade_count or 1), lambda count: check_sections(exact_blade(blade.changed("blade_count", count)))
+    )
     said = f"N_BLADES = {config.blades} has no effect in ParaBlade, and may be any number there"
     if standing != blade.blade_count:
         changed.append(f"{said}: so many blades intersect, and {standing} are taken; set the true number")
         return blade.changed("blade_count", standing), changed
     changed.append(f"{said}: it is taken as it is; set the true one")
     return blade, changed
-
-
-def _standing_apart(blade: UnifiedBlade) -> int:
-    """The largest number of blades, at most the design's, that do not intersect."""
-
-    def apart(count: int) -> bool:
-        try:
-            check_sections(exact_blade(blade.changed("blade_count", count)))
-        except DesignError as error:
-            if "blade_count" in str(error):
-                return False
-            raise
-        return True
-
-    most = int(blade.blade_count or 1)
-    if apart(most):
-        return most
-    low, high = 1, most
-    while high - low > 1:
-        middle = (low + high) // 2
-        low, high = (middle, high) if apart(middle) else (low, middle)
-    return low
 
 
 def _kept(config: Config) -> tuple[str, ...]:

@@ -55,9 +55,9 @@ class CaseFlow:
         """phi = atan(dr/dx) (m,) [rad] of the stream lines at the leading and the trailing edge."""
         found = []
         for places in (self.leading, self.trailing):
-            rate = self.at(places, 1)
-            with np.errstate(divide="ignore"):
-                found.append(np.arctan(rate[:, 1] / rate[:, 0]))
+            x, r = self.at(places, 1).T
+            upright = np.where(x == 0.0, np.copysign(0.5 * np.pi, r), 0.0)
+            found.append(np.where(x == 0.0, upright, np.arctan(r / np.where(x == 0.0, 1.0, x))))
         return found[0], found[1]
 
     @cached_property

@@ -2,10 +2,15 @@
 
 import os
 from collections.abc import Iterator
+from dataclasses import replace
 
 import numpy as np
 
+from bladewright.blade.checks import check_pitch
 from bladewright.blade.families import CurvatureMeanlineBlade
+from bladewright.blade.sectioned_exact import sectioned_exact
+from bladewright.errors import DesignError, FileError
+from bladewright.files.blade_count import standing_apart
 from bladewright.files.imported import Imported
 from bladewright.files.tblade3.computed import SIDE, section_points, written_points
 from bladewright.files.tblade3.reading import read_tblade3
@@ -27,17 +32,37 @@ def import_tblade3(path: str | os.PathLike[str]) -> Imported[CurvatureMeanlineBl
     """
     case = read_tblade3(path)
     sections = case_sections(case)
-    design = blade_of(sections)
+    design, changed = blade_of(sections), list(_changed(sections))
+    standing = _standing(design, case.file)
+    if standing != case.blade_count:
+        changed.append(
+            f"{case.blade_count} blades would intersect, of which T-Blade3 says nothing: {standing} are taken; set the "
+            "true number"
+        )
+        design = design.changed("blade_count", standing)
     points, source = _points(sections)
     return Imported(
         design=design,
         program="T-Blade3",
         kept=tuple(_kept(sections)),
-        changed=tuple(_changed(sections)),
+        changed=tuple(changed),
         notes=(*case.unused, *case.notes),
         points=points,
         source=source,
     )
+
+
+def _standing(design: CurvatureMeanlineBlade, file: str) -> int:
+    """How many of the case's blades do not intersect; raises FileError where its sections make no blade."""
+    try:
+        exact = sectioned_exact(design)
+
+        def check(count: int) -> None:
+            check_pitch(replace(exact, design=design.changed("blade_count", count)))
+
+        return standing_apart(int(design.blade_count or 1), check)
+    except DesignError as error:
+        raise FileError(f"'{file}': its sections make no blade: {error}") from error
 
 
 def _points(sections: CaseSections) -> tuple[dict[str, Reals], str]:
@@ -72,6 +97,8 @@ def _changed(sections: CaseSections) -> Iterator[str]:
             "between its sections T-Blade3 has no blade: here every number is a cubic spline through its values there, "
             "over a span fraction v that counts sections"
         )
+    if sections.reversed:
+        yield "the last streamline is the hub and the first the shroud, which lies to the left, seen along the flow"
     yield "stacking, lean and the turn of the blade are one law, leading_edge_theta"
     moved = np.max(np.abs(sections.leading - sections.flow.leading))
     if moved > 0.0 or not np.array_equal(sections.trailing, sections.flow.trailing):

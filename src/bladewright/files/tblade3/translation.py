@@ -38,8 +38,21 @@ class CaseSections:
 
     @cached_property
     def places(self) -> Reals:
-        """(m,) span fractions of the design at which the sections stand."""
-        return section_places(self.flow.spans)
+        """(m,) span fractions of the design at which the sections stand, falling where they are `reversed`."""
+        places = section_places(self.flow.spans)
+        return 1.0 - places if self.reversed else places
+
+    @cached_property
+    def reversed(self) -> bool:
+        """Whether the last section lies to the right of the first, seen along the flow: it is the design's hub then."""
+        edge = self.flow.at(self.flow.leading)
+        across, along = edge[-1] - edge[0], np.sum(self.flow.at(self.flow.leading, 1), axis=0)
+        return bool(along[0] * across[1] - along[1] * across[0] < 0.0)
+
+    @property
+    def order(self) -> list[int]:
+        """The sections' numbers from the design's hub to its shroud."""
+        return [int(i) for i in np.argsort(self.places)]
 
     @cached_property
     def stagger(self) -> Reals:
@@ -103,6 +116,7 @@ def case_sections(case: TBlade3Case) -> CaseSections:
         values=values,
         numbers=parameters(case, values, metal_angles(case, values, *flow.slopes)),
     )
+    _check_directions(sections)
     _check_within(sections)
     return sections
 
@@ -110,7 +124,7 @@ def case_sections(case: TBlade3Case) -> CaseSections:
 def blade_of(sections: CaseSections) -> CurvatureMeanlineBlade:
     """The design that has the sections of a case, each at its place; raises FileError where the family has no such."""
     case, flow, places = sections.case, sections.flow, sections.places
-    hub, *between, shroud = flow.meridians
+    hub, *between, shroud = (flow.meridians[i] for i in sections.order)
     try:
         return CurvatureMeanlineBlade(
             name=name_of(case),
@@ -122,7 +136,7 @@ def blade_of(sections: CaseSections) -> CurvatureMeanlineBlade:
                 hub=hub,
                 shroud=shroud,
                 stream_surfaces=tuple(between),
-                stream_spans=tuple(float(v) for v in places[1:-1]),
+                stream_spans=tuple(float(v) for v in np.sort(places)[1:-1]),
                 matched="edges",
             ),
             leading_edge=_edge(sections, flow.edges[0], flow.leading, sections.leading),
@@ -147,8 +161,22 @@ def _edge(sections: CaseSections, given: ThroughPoints, before: Reals, after: Re
     if len(before) <= FEW and np.array_equal(before, after):
         return given
     metre = case.unit_length / case.scale
-    points = sections.flow.at(after) / metre
+    points = sections.flow.at(after)[sections.order] / metre
     return ThroughPoints(points=tuple(Point(float(x), float(r)) for x, r in points))
+
+
+def _check_directions(sections: CaseSections) -> None:
+    """Refuse angles beta_r that change their sign with the lean of the stream lines."""
+    case = sections.case
+    for which, end, phi in zip(("in", "out"), (0, -1), sections.flow.slopes, strict=True):
+        turned = np.flatnonzero(np.sign(phi) != np.sign(phi[0]))
+        if len(turned) and case.angles.split("-")[end] == "radial":
+            raise FileError(
+                f"'{case.file}': {which}_beta is beta_r, which T-Blade3 multiplies by sin(atan(dr/dx)) of the "
+                f"streamline: that is {np.sin(phi[0]):.4g} at section 1 and {np.sin(phi[turned[0]]):.4g} at section "
+                f"{turned[0] + 1}, whose streamlines lean to different sides, so that the angle changes its sign "
+                "between them; let all streamlines lean to one side there, or give axial angles"
+            )
 
 
 def _check_within(sections: CaseSections) -> None:

@@ -44,7 +44,7 @@ class ModifiedNaca(ThicknessLaw):
     trailing_edge_thickness: Law | None = parameter("-", default=None)
     """thickness where the trailing edge's circle begins, or of the blunt edge, of the chord; none: a sharp edge [-]"""
     trailing_edge_slope: Law | None = parameter("-", default=None)
-    """slope d(half thickness)/du at the trailing edge, negative; none: that of the NACA series [-]"""
+    """slope d(half thickness)/du at the trailing edge, negative or 0; none: that of the NACA series [-]"""
     trailing_edge_slope_factor: Law | None = parameter("-", default=None)
     """slope at the trailing edge in place of the former, downwards, of the maximum thickness [-]"""
     trailing_edge: Literal["circular", "blunt", "sharp"] = "circular"
@@ -69,7 +69,8 @@ class ModifiedNaca(ThicknessLaw):
             names = f"{self.path}.trailing_edge_slope and trailing_edge_slope_factor"
             raise DesignError(f"{names} are both given: they say the same; leave one out")
         if self.trailing_edge_slope is not None:
-            self._kept("trailing_edge_slope", -inf, 0.0, "the blade must grow thinner towards the edge: negative")
+            what = "the blade must not grow thicker towards the edge: negative, or 0"
+            self._kept("trailing_edge_slope", -inf, 1e-300, what)
         if self.trailing_edge_slope_factor is not None:
             self._kept("trailing_edge_slope_factor", 0.0, inf, "it must be positive")
 
