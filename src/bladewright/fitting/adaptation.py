@@ -46,15 +46,7 @@ def adapted(task: Task, first: Design, aim: Aim, *, base: Structure | None, gues
     many = task.part(drawn(len(task.points), MANY))
     noise = FIRST if guessed else None
     if aim.structured and aim.tolerance is None:
-        found = searched(few, first, noise=noise, rounds=ROUNDS if base is None else 2 * QUICK)
-        if guessed and isinstance(first, UnifiedSection) and found.rms > EXACT and _misses(found):
-            other = tried(few, first, [structure_of(first)])
-            if other is not None:
-                nearer = min((found, other), key=lambda each: each.rms)
-                found = replace(nearer, interrupted=other.interrupted)
-        if base is not None and not found.interrupted:
-            found = _leaner(few, found, base)
-        return (found if found.interrupted else _told_by_points(many, searched(many, found.design))), ""
+        return _structured(few, many, first, base, guessed=guessed), ""
     found = searched(few, first, noise=noise, rounds=2 * QUICK if base is None else QUICK)
     if guessed and aim.open and isinstance(first, UnifiedSection) and _misses(found):
         known = identified(few, first)
@@ -77,6 +69,19 @@ def adapted(task: Task, first: Design, aim: Aim, *, base: Structure | None, gues
     if aim.tolerance is not None and not reason:
         found = kept(many, found, aim, aim.tolerance)
     return found, reason
+
+
+def _structured(few: Task, many: Task, first: Design, base: Structure | None, *, guessed: bool) -> Found:
+    """The match with the structure of a first design, or with that of `base`."""
+    found = searched(few, first, noise=FIRST if guessed else None, rounds=ROUNDS if base is None else 2 * QUICK)
+    if guessed and isinstance(first, UnifiedSection) and found.rms > EXACT and _misses(found):
+        other = tried(few, first, [structure_of(first)])
+        if other is not None:
+            nearer = min((found, other), key=lambda each: each.rms)
+            found = replace(nearer, interrupted=other.interrupted)
+    if base is not None and not found.interrupted:
+        found = _leaner(few, found, base)
+    return found if found.interrupted else _told_by_points(many, searched(many, found.design))
 
 
 def _misses(found: Found) -> bool:

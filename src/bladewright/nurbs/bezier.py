@@ -90,6 +90,27 @@ def bernstein(degree: int, s: Reals, order: int = 0) -> Reals:
     return np.asarray(_binomials(degree) * s[:, None] ** k * (1.0 - s[:, None]) ** (degree - k))
 
 
+def bernsteins(degree: int, s: Reals) -> Reals:
+    """Bernstein polynomials and their first two derivatives (m, 3, degree + 1) at s (m,) in [0, 1].
+
+    Those of each degree are means of those of the one below (de Casteljau's triangle), and derivatives its differences.
+    """
+    lower = [np.ones((len(s), 1))]
+    right, left = s[:, None], 1.0 - s[:, None]
+    for k in range(1, degree + 1):
+        row = np.zeros((len(s), k + 1))
+        np.multiply(lower[-1], left, out=row[:, :-1])
+        row[:, 1:] += lower[-1] * right
+        lower.append(row)
+    found = np.zeros((len(s), 3, degree + 1))
+    found[:, 0] = lower[degree]
+    for order in range(1, min(degree, 2) + 1):
+        row = np.prod(np.arange(degree, degree - order, -1)) * lower[degree - order]
+        for i, sign in enumerate(((-1.0, 1.0), (1.0, -2.0, 1.0))[order - 1]):
+            found[:, order, i : i + row.shape[1]] += sign * row
+    return found
+
+
 @dataclass(frozen=True, kw_only=True)
 class Samples:
     """Points on patches, a grid in each: where a search for nearest places starts."""
