@@ -11,7 +11,7 @@ from bladewright.errors import DesignError
 from bladewright.numerics.elementary import cross2
 from bladewright.nurbs.basis import Reals
 from bladewright.section.checks import UNITS
-from bladewright.section.crossing import PLACES, check_outlines, closed_outlines, outlines_of, touching
+from bladewright.section.crossing import PLACES, check_outlines, outlines_of, touching
 
 if TYPE_CHECKING:
     from bladewright.blade.exact import ExactBlade
@@ -85,7 +85,7 @@ def check_sections(exact: "ExactBlade") -> None:
 def check_pitch(exact: "SectionedExact") -> None:
     """Refuse neighbouring blades of sections that intersect."""
     stations = exact.survey
-    outlines = real_first(stations.plane.placed(closed_outlines(stations.plane.outline)), 3)
+    outlines = stations.outlines()
     if not exact.mapping.keeps_ordinate:
         u, _, across = stations.on_lines(outlines)
         outlines = np.stack([real_first(u, 2), real_first(across, 2)], axis=-1)

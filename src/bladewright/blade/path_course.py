@@ -8,7 +8,7 @@ import numpy as np
 from bladewright.blade.course import Course
 from bladewright.blade.mapping import Cascade
 from bladewright.blade.meridian_line import real_first
-from bladewright.blade.outline_stations import OutlineStations
+from bladewright.blade.path_stations import PathStations
 from bladewright.blade.stream_surfaces import StreamSurfaces
 from bladewright.blade.streamlines import StreamLines, stream_lines
 from bladewright.numerics.roots import bracketed_root
@@ -55,7 +55,7 @@ class PathCourse(Course):
         return [self._lines.abscissa(at[:, None])[:, 0] for at in self.edges_at]
 
 
-def path_course(surfaces: StreamSurfaces, survey: OutlineStations) -> PathCourse:
+def path_course(surfaces: StreamSurfaces, survey: PathStations) -> PathCourse:
     """The course of a blade in a flow path, from its sections from end to end."""
     lines = survey.lines
     leading, trailing = (real_first(each, 1) for each in (lines.leading, lines.trailing))

@@ -10,6 +10,7 @@ from bladewright.blade.stacking import Stacking
 from bladewright.designs import Design, Law, Part, parameter
 from bladewright.errors import DesignError
 from bladewright.section import checks
+from bladewright.section.laws import named_laws
 from bladewright.section.limits import check_labels, check_range
 
 if TYPE_CHECKING:
@@ -65,6 +66,9 @@ class SectionedBlade(Design):
     shift_directions: Literal["meridional-tangential", "chordwise-normal"] = "meridional-tangential"
     """directions of sweep and lean: along the stream line and around the axis; or true sweep and true lean, along the
     chord line and normal to it"""
+    skinning: Literal["sections", "ruled", "developable"] = "sections"
+    """what lies between hub and shroud: the section at every v; straight lines between the points of equal s of the
+    sections at hub and shroud; or the hub's section moved along parallel straight lines, as a flank cutter makes it"""
     section: Any
     """the family's parameters, each a law along the span"""
     tolerance: float = 1e-6
@@ -88,6 +92,30 @@ class SectionedBlade(Design):
         self._check_placing()
         if not isinstance(self.section, Part):
             raise DesignError(f"section is {self.section!r}: the family's parameters are needed")
+        self._check_skinning()
+
+    def _check_skinning(self) -> None:
+        """Laws that have no part in the blade: those between hub and shroud, or of the shroud."""
+        checks.choice("skinning", self.skinning, ["sections", "ruled", "developable"])
+        if self.skinning == "sections":
+            return
+        of_sections = 2 if self.skinning == "ruled" else 1
+        what = "at hub and shroud" if self.skinning == "ruled" else "at the hub"
+        of_stacking = {"stacking.chord": "chord", "stacking.chord_fraction": "chord_fraction"}
+        places = ["sweep", "lean", "conformal_sweep", "leading_edge_theta", "leading_edge_y"]
+        laws = [(f"section.{path}", law, of_sections) for path, law in named_laws(self.section)]
+        laws += [(name, getattr(self, name), 2) for name in places]
+        if self.stacking is not None:
+            laws += [(path, getattr(self.stacking, name), of_sections) for path, name in of_stacking.items()]
+            laws += [(f"stacking.{name}", getattr(self.stacking, name), 2) for name in ("theta", "y")]
+        for path, law, most in laws:
+            if isinstance(law, tuple) and len(law) > most:
+                kept = what if most == of_sections else "at hub and shroud"
+                raise DesignError(
+                    f"{path} has {len(law)} control points, but skinning is '{self.skinning}', for which it counts "
+                    f"{kept} alone: give {most if most > 1 else 'one number'}"
+                    f"{' control points at most' if most > 1 else ''}, or take skinning = 'sections'"
+                )
 
     def _check_placing(self) -> None:
         """What says where the sections stand: edge curves, stacking, and shifts."""

@@ -6,6 +6,7 @@ from functools import cached_property
 import numpy as np
 
 from bladewright.blade.bladed_lines import Bladed, between
+from bladewright.blade.developable import developed_stations
 from bladewright.blade.edge_joints import curve_joints
 from bladewright.blade.exact import SURVEY
 from bladewright.blade.knots import DEGREE
@@ -14,19 +15,25 @@ from bladewright.blade.meant import EndWall, Meant
 from bladewright.blade.meridian_line import real_first
 from bladewright.blade.outline_stations import OutlineStations
 from bladewright.blade.path_course import PathCourse, path_course
+from bladewright.blade.path_stations import PathStations
 from bladewright.blade.plan import Plan, flow_path_plan
 from bladewright.blade.planes import Counted, plane_of
+from bladewright.blade.ruled import RuledStations, check_ruled, ruled_stations
 from bladewright.blade.sectioned import SectionedBlade
 from bladewright.blade.sectioned_stations import Place, placed_sections
 from bladewright.blade.stacking_place import StackingPlace
+from bladewright.blade.stacking_reference import reference_points
 from bladewright.blade.stream_surfaces import StreamSurfaces, stream_surfaces
 from bladewright.errors import DesignError
+from bladewright.numerics.elementary import Array
 from bladewright.nurbs.basis import Reals
 from bladewright.section.checks import UNITS
 from bladewright.section.crossing import check_outline
 from bladewright.section.laws import DEGREE as LAW_DEGREE
-from bladewright.section.laws import inner_knots, laws_of
+from bladewright.section.laws import Span, inner_knots, laws_of
 
+ENDS = np.array([0.0, 1.0])
+"""hub and shroud"""
 SPANS = 8
 """knot spans along a side to begin with"""
 
@@ -41,19 +48,39 @@ class SectionedExact(Meant):
     """what puts the sections on their stream lines: edge curves, or reference points"""
 
     @cached_property
-    def survey(self) -> OutlineStations:
+    def survey(self) -> PathStations:
         """Stations from end to end on which the shape is judged."""
         return self.stations(SURVEY)
 
-    def stations(self, v: Reals) -> OutlineStations:
-        """Sections at v (m,); raises DesignError where there are none, or they do not fit in the flow path."""
+    def stations(self, v: Reals) -> PathStations:
+        """What the blade is at v (m,), as its skinning has it."""
+        if self.design.skinning == "ruled":
+            return ruled_stations(self.rails, self.sections(v))
+        if self.design.skinning == "developable":
+            return developed_stations(self.surfaces, self.sections(ENDS[:1]), self.references, v)
+        return self.sections(v)
+
+    def sections(self, v: Reals) -> OutlineStations:
+        """The design's sections at v (m,); raises DesignError where there are none, or they leave the flow path."""
         return placed_sections(self.design, self.place, self.mapping, v)
+
+    @cached_property
+    def rails(self) -> OutlineStations:
+        """The design's sections at hub and shroud."""
+        return self.sections(ENDS)
+
+    @property
+    def references(self) -> Array:
+        """The reference points (..., 2, 3) of hub and shroud in space [m]."""
+        plane = self.rails.plane
+        points = reference_points(self.design.stacking, plane.outline, Span(ENDS))
+        return self.rails.in_space(plane.placed(points[..., None, :]))[..., 0, :]
 
     def moved_to(self, design: SectionedBlade) -> "SectionedExact":
         return sectioned_exact(design, checked=False)
 
     def breaks_along_u(self) -> Reals:
-        joints = self.survey.plane.outline.joints
+        joints = self.rails.plane.outline.joints
         ends = np.array([0.0, *(joint.s for joint in joints), 1.0])
         counts = np.maximum(1 if len(ends) > 2 else 2, np.rint(SPANS * np.diff(ends)).astype(int))
         parts = [np.linspace(a, b, n + 1)[1:-1] for a, b, n in zip(ends[:-1], ends[1:], counts, strict=True)]
@@ -61,6 +88,8 @@ class SectionedExact(Meant):
         return np.sort(np.concatenate(parts))
 
     def breaks_along_v(self) -> Reals:
+        if self.design.skinning == "ruled":
+            return np.empty(0)
         times: dict[float, int] = {}
 
         def needed(place: float, smooth: int) -> None:
@@ -148,8 +177,10 @@ def sectioned_exact(design: SectionedBlade, *, checked: bool = True) -> Sectione
         raise DesignError(f"flow_path: {error}") from error
     exact = SectionedExact(design=design, mapping=mapping, surfaces=surfaces, place=_place(design, surfaces, mapping))
     if checked:
-        outline = exact.survey.plane.outline
-        check_outline(outline, [f" at v = {v:.3f}" for v in SURVEY])
+        v = {"sections": SURVEY, "ruled": ENDS, "developable": ENDS[:1]}[design.skinning]
+        check_outline(exact.sections(v).plane.outline, [f" at v = {each:.3f}" for each in v])
+        if isinstance(exact.survey, RuledStations):
+            check_ruled(exact.survey)
     return exact
 
 

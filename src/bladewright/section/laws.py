@@ -51,14 +51,20 @@ class Span:
 
 def laws_of(part: Part) -> Iterator[Law]:
     """The laws of evolution among the parameters of a part, and of the parts in it."""
+    return (law for _, law in named_laws(part))
+
+
+def named_laws(part: Part) -> Iterator[tuple[str, Law]]:
+    """The same with the path of each in the part."""
     hints = get_type_hints(type(part))
     for each in fields(part):
         value = getattr(part, each.name)
         if isinstance(value, Part):
-            yield from laws_of(value)
+            yield from ((f"{each.name}.{path}", law) for path, law in named_laws(value))
         elif "unit" in each.metadata and isinstance(value, tuple):
             # a list of numbers is a law where one number could stand for it, and a row of laws elsewhere
-            yield from [value] if float in get_args(hints[each.name]) else value
+            whole = float in get_args(hints[each.name])
+            yield from [(each.name, value)] if whole else ((f"{each.name}[{i}]", law) for i, law in enumerate(value))
 
 
 def inner_knots(count: int) -> Reals:
