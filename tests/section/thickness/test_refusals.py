@@ -18,7 +18,7 @@ CASES = [
     (NACA, {"trailing_edge_thickness": None}, "is not given for a circular trailing edge: give it, or set"),
     (NACA, {"trailing_edge": "sharp"}, "is given for a sharp trailing edge: leave it out"),
     (NACA, {"trailing_edge": "round"}, "it must be one of circular, blunt, sharp"),
-    (NACA, {"trailing_edge_slope": 0.1}, "trailing_edge_slope is 0.1: the blade must grow thinner"),
+    (NACA, {"trailing_edge_slope": 0.1}, "trailing_edge_slope is 0.1: the blade must not grow thicker"),
     (NACA, {"trailing_edge_slope": -0.1, "trailing_edge_slope_factor": 1.0}, "both given: they say the same"),
     (NACA, {"trailing_edge_slope": -2.0}, "the rear would bulge instead; move it forward"),
     (NACA, {"maximum_thickness": 0.3, "maximum_thickness_at": 0.9, "trailing_edge_thickness": 0.28,
