@@ -14,8 +14,6 @@ from bladewright.nurbs.basis import Reals, basis, greville
 
 TOLERANCE = 1e-7
 """distance of hub and shroud from their surfaces of revolution, of the chord"""
-RESERVE = 0.25
-"""share of it that one direction may use while knots are sought"""
 MOST_POLES = 80
 """poles of a piece in one direction above which a passage is refused"""
 _ALONG = np.array([0.0, 0.03, 0.1, 0.25, 0.5, 0.75, 0.9, 0.97, 1.0])

@@ -16,6 +16,12 @@ GROUPS = (
     "outlet",
     "blade_upper",
     "blade_lower",
+    "blade_leading_edge",
+    "blade_trailing_edge",
+    "hub_stagnation",
+    "hub_wake",
+    "shroud_stagnation",
+    "shroud_wake",
     "tip",
 )
 """Physical groups of a passage's mesh; a face that is a piece of one is called GROUP_PIECE."""

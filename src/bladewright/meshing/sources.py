@@ -31,9 +31,18 @@ class Source:
 
 
 def sources(passage: Passage, curvature: float) -> tuple[Source, ...]:
-    """The blade's edges, with `curvature` elements on a circle as tight, and its tip, with one across the gap."""
+    """The blade's edges, with `curvature` elements on a circle as tight, and its tip, with one across the gap.
+
+    The face of a blunt edge is as fine as a round edge of its width.
+    """
     upper, tip = passage.surfaces["blade_upper"], passage.surfaces.get("tip")
-    found = [_edge(upper, u, curvature) for u in (0.0, 1.0)] if isinstance(upper, Surface) else []
+    found = []
+    for u, name in ((0.0, "blade_leading_edge"), (1.0, "blade_trailing_edge")):
+        face = passage.surfaces.get(name)
+        if isinstance(face, Surface):
+            found.append(_face(name, face, curvature))
+        elif isinstance(upper, Surface):
+            found.append(_edge(upper, u, curvature))
     if isinstance(tip, TrimmedSurface):
         found.append(_tip(passage, tip))
     return tuple(found)
@@ -44,6 +53,15 @@ def _edge(side: Surface, u: float, curvature: float) -> Source:
     x, y, z = line(0.5).tolist()
     size = 2.0 * np.pi * _radius(side, u) / curvature
     return Source(face="", place=(x, y, z), size=size, extent=float(arc_length(line)))
+
+
+def _face(name: str, face: Surface, curvature: float) -> Source:
+    v = np.linspace(0.0, 1.0, 33)
+    first, last = face(0.0, v).real, face(1.0, v).real
+    widths, steps = length(last - first), length(np.diff(0.5 * (first + last), axis=0))
+    x, y, z = (0.5 * (first + last))[len(v) // 2].tolist()
+    area = float(np.sum(0.5 * (widths[1:] + widths[:-1]) * steps))
+    return Source(face=name, place=(x, y, z), size=np.pi * float(np.median(widths)) / curvature, extent=area)
 
 
 def _radius(side: Surface, u: float) -> float:
