@@ -97,6 +97,37 @@ def test_show_draws_a_picture(run, vane_file, tmp_path):
     assert picture.read_bytes().startswith(b"\x89PNG")
 
 
+SECTION = """
+family = "profile-section"
+name = "vane"
+length_unit = "mm"
+chord = 60.0
+[section]
+kind = "naca-4"
+thickness = 0.12
+camber = 0.04
+camber_position = 0.4
+"""
+
+
+def test_show_says_how_smooth_a_section_is(run, tmp_path):
+    (tmp_path / "vane.toml").write_text(SECTION)
+    found = run("show", tmp_path / "vane.toml", "--json")
+    assert found.status == 0
+    section = found.json["smoothness"][0]
+    assert section["span"] == 0.0
+    # two parabolas of 2 m / p^2 and 2 m / (1 - p)^2, level where they meet
+    assert section["camber"]["joints"][0]["curvature"] == pytest.approx([-0.5, -0.08 / 0.36], rel=1e-6)
+    text = run("show", tmp_path / "vane.toml").out
+    assert "camber line           curvature jumps by 55.6 % of its largest, its slope with it" in text
+
+
+def test_show_says_how_smooth_a_blade_is_from_hub_to_shroud(run, vane_file):
+    found = run("show", vane_file, "--json").json["smoothness"]
+    assert [each["span"] for each in found] == [0.0, 0.5, 1.0]
+    assert all(each["upper"]["curvature_continuous"] for each in found)
+
+
 def test_a_picture_of_an_unknown_kind_is_refused(run, vane_file, tmp_path):
     found = run("show", vane_file, "-o", tmp_path / "vane.bmpx")
     assert found.status == 2

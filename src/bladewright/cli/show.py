@@ -12,6 +12,7 @@ from bladewright.cli.options import design_argument, set_option
 from bladewright.cli.outcome import Outcome
 from bladewright.cli.passage import flow_domain, passage_data, passage_rows
 from bladewright.cli.progress import progress
+from bladewright.cli.smoothness import smoothness_data, smoothness_rows
 from bladewright.cli.summary import broken_promises, data_of, text_of
 
 
@@ -28,10 +29,10 @@ from bladewright.cli.summary import broken_promises, data_of, text_of
 def show(call: Call, /, design: Path, output: Path | None, body: str, changes: dict[str, Any], **reach: Any) -> Outcome:
     """Print the properties of what DESIGN builds and the promises it keeps; draw it where -o names a picture.
 
-    The picture shows sections, curvature, the meridional channel, the laws of evolution and a 3D view; with --body
-    passage a see-through view of the flow passage, its duct, and its walls unwrapped with the lines of their patches.
-    The flow domain of a 2D design is the curves around its section, and reaches are in axial chords. The exit status is
-    1 where a promise is not kept.
+    The picture shows sections, curvature and its slope, the meridional channel, edges from close by, the laws of
+    evolution and a 3D view; with --body passage a see-through view of the flow passage, its duct, and its walls
+    unwrapped with the lines of their patches. The flow domain of a 2D design is the curves around its section, and
+    reaches are in axial chords. The exit status is 1 where a promise is not kept.
     """
     check_options((body,), 0.0, reach)
     blueprint: Any = design_at(design, changes)
@@ -43,6 +44,7 @@ def show(call: Call, /, design: Path, output: Path | None, body: str, changes: d
         else:
             built = built_from(blueprint, design)
             data = data_of(blueprint, built)
+            data["smoothness"] = smoothness_data(built)
         bar.update(1)
         if output is not None:
             from bladewright import views
@@ -51,5 +53,6 @@ def show(call: Call, /, design: Path, output: Path | None, body: str, changes: d
             views.picture(blueprint, output, blade=built)
             data["picture"] = str(output)
             bar.update(1)
-    text = text_of(data, passage_rows(data)) + (f"\nwrote {output}" if output else "")
+    rows = [*passage_rows(data), *smoothness_rows(data.get("smoothness", []))]
+    text = text_of(data, rows) + (f"\nwrote {output}" if output else "")
     return Outcome(data=data, text=text, failures=broken_promises(data))

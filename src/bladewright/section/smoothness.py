@@ -20,8 +20,10 @@ BESIDE = 1e-9
 PER_PIECE = 48
 """places on a piece, but for those close to its ends"""
 SAME = 1e-6
-"""jump, of the larger value beside the joint, below which a quantity counts as continuous: above the rounding of third
-derivatives; a slope is also held against the square of the curvature there, as both have the same unit"""
+"""jump, of the larger value beside the joint, below which a quantity counts as continuous: above rounding"""
+STEADY = 1e-4
+"""jump of the slope, of the square of the curvature beside the joint or of one chord's, below which it counts as
+continuous: above the rounding of third derivatives on arcs a hundredth of a chord long"""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -48,12 +50,17 @@ class Jump:
         return float(np.max(np.ptp(self.slope)))
 
     @property
-    def continuous(self) -> tuple[bool, bool]:
-        """Whether curvature and slope are the same on both sides, within rounding; without the one the other is not."""
+    def apart(self) -> tuple[bool, bool]:
+        """Whether curvature and slope differ on both sides by more than rounding."""
         bend = _largest(np.array([1.0, *self.curvature]))
-        twist = _largest(np.array([bend * bend, *self.slope]))
-        same = self.of_curvature <= SAME * bend
-        return same, same and self.of_slope <= SAME * twist
+        rounding = max(SAME * _largest(np.array(self.slope)), STEADY * bend * bend)
+        return self.of_curvature > SAME * bend, self.of_slope > rounding
+
+    @property
+    def continuous(self) -> tuple[bool, bool]:
+        """Whether curvature and slope are continuous; where the curvature jumps there is no slope either."""
+        bend, slope = self.apart
+        return not bend, not (bend or slope)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -74,12 +81,12 @@ class SmoothLine:
     @property
     def curvature_jump(self) -> float:
         """Largest jump of the curvature, of its largest value on the line; those within rounding are none [-]."""
-        return _share([jump.of_curvature for jump in self.jumps if not jump.continuous[0]], self.curvature)
+        return _share([jump.of_curvature for jump in self.jumps if jump.apart[0]], self.curvature)
 
     @property
     def slope_jump(self) -> float:
         """Largest jump of the slope, of its largest value on the line; those within rounding are none [-]."""
-        return _share([jump.of_slope for jump in self.jumps if not jump.continuous[1]], self.slope)
+        return _share([jump.of_slope for jump in self.jumps if jump.apart[1]], self.slope)
 
     @property
     def continuous(self) -> tuple[bool, bool]:

@@ -19,6 +19,8 @@ if TYPE_CHECKING:
 
 REACH, PART = 5.0, 0.15
 """half width of the picture, in edge radii, but no more than a part of the chord"""
+FLAT = 100.0
+"""radius, in chords, from which on an edge is called flat"""
 SHARP = 0.01
 """what stands for the radius of a sharp edge, of the chord"""
 
@@ -38,7 +40,10 @@ def draw_edges(strip: "SubFigure", sections: Sequence["Section"], ends: tuple[st
 
 
 def draw_edge(axes: Axes, section: "Section", *, trailing: bool) -> None:
-    """Draws the leading or the trailing edge of a section and the camber line there, of a round one the circle too."""
+    """Draws the leading or the trailing edge of a section and the camber line there, of a round one the circle too.
+
+    A flat one that is round by its directions alone, as the back face of a wedge diffuser's vane, has no circle.
+    """
     at, kind = np.array([float(trailing)]), section.edges[int(trailing)]
     tip = developed(section, section.camber(at))[0]
     inwards = np.real(unit(section.camber.derivative(at)))[0] * (-1.0 if trailing else 1.0)
@@ -49,11 +54,12 @@ def draw_edge(axes: Axes, section: "Section", *, trailing: bool) -> None:
     camber = developed(section, section.camber(along_curve()))
     axes.plot(*camber.T, color=INK, linewidth=0.9, linestyle=CAMBER)
     size, said = _size(section, trailing=trailing)
-    if kind == "round":
+    widest = PART * float(np.real(section.chord)) * MILLIMETRES
+    if kind == "round" and size < widest:
         centre = tip + size * inwards
         axes.add_patch(Circle((centre[0], centre[1]), size, fill=False, edgecolor=RED, linewidth=1.1, linestyle="--"))
         axes.plot(*centre, marker="+", color=RED, markersize=7.0)
-    reach = float(np.clip(PART * section.chord * MILLIMETRES, 1.5 * size, REACH * size))
+    reach = min(max(widest, 1.5 * size), REACH * size) if size < widest else widest
     middle = tip + 0.6 * reach * inwards
     axes.set_xlim(middle[0] - reach, middle[0] + reach)
     axes.set_ylim(middle[1] - reach, middle[1] + reach)
@@ -67,7 +73,8 @@ def _size(section: "Section", *, trailing: bool) -> tuple[float, str]:
     kind, end = section.edges[int(trailing)], -1 if trailing else 0
     if kind == "round":
         radius = section.edge_radii[int(trailing)] * MILLIMETRES
-        return radius, f"radius {radius:.4g} mm"
+        flat = radius > FLAT * float(np.real(section.chord)) * MILLIMETRES
+        return radius, "flat" if flat else f"radius {radius:.4g} mm"
     sides = [developed(section, section.curves[name](np.array([0.0, 1.0]))) for name in ("upper", "lower")]
     width = float(length(sides[0][end] - sides[1][end]))
     if kind == "blunt":

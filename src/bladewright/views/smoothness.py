@@ -8,12 +8,12 @@ from matplotlib.axes import Axes
 from matplotlib.figure import SubFigure
 
 from bladewright.nurbs.basis import Reals
-from bladewright.section.smoothness import SmoothLine, Smoothness
+from bladewright.section.smoothness import STEADY, SmoothLine, Smoothness
 from bladewright.views.curvature import sides_legend
 from bladewright.views.style import INK, LOWER, SOFT, UPPER, WALLS, span_colour, span_name, titled
 
 ALONG = "part of the arc, leading to trailing edge [-]"
-ENDS = 0.02
+ENDS = 0.05
 """part of the arc at either end that does not decide the scale"""
 
 
@@ -32,7 +32,8 @@ def draw_smoothness(strip: SubFigure, found: Mapping[float, Smoothness], ends: t
         _draw(axes[1], each.camber, each.camber.curvature, colour, UPPER, kept=0)
         _draw(axes[2], each.camber, each.camber.slope, colour, UPPER, kept=1)
     sides = [line for each in found.values() for line in (each.upper, each.lower)]
-    _logarithmic(axes[0], np.concatenate([line.slope[_inside(line)] for line in sides]))
+    bend = max(float(np.median(line.curvature**2)) for line in sides)
+    _logarithmic(axes[0], np.concatenate([line.slope[_inside(line)] for line in sides]), least=STEADY * bend)
     for place, name in ((axes[1], "curvature"), (axes[2], "slope")):
         _limited(place, [getattr(each.camber, name)[_inside(each.camber)] for each in found.values()])
     titled(axes[0], "Slope of the curvature of the sides", ALONG, "d curvature / d arc × chord² [-]")
@@ -48,7 +49,7 @@ def draw_smoothness(strip: SubFigure, found: Mapping[float, Smoothness], ends: t
 def _draw(axes: Axes, line: SmoothLine, values: Reals, colour: Any, style: Any, *, kept: int) -> None:
     """One line, parted at joints where it jumps, with a dot on either side."""
     broken = [jump.at for jump in line.jumps if jump.place == "joint" and not jump.continuous[kept]]
-    cuts = [int(np.searchsorted(line.arc, at, side="right")) for at in broken]
+    cuts = [int(np.searchsorted(line.arc, at, side="left")) for at in broken]
     for part in np.split(np.arange(len(values)), cuts):
         axes.plot(line.arc[part], values[part], color=colour, linestyle=style, linewidth=1.2)
     dots = np.array([k for cut in cuts for k in (cut - 1, cut) if cut < len(values)], dtype=int)
@@ -59,11 +60,13 @@ def _inside(line: SmoothLine) -> Any:
     return (line.arc > ENDS) & (line.arc < 1.0 - ENDS)
 
 
-def _logarithmic(axes: Axes, values: Reals) -> None:
-    """Linear where most of the values are, logarithmic beyond."""
+def _logarithmic(axes: Axes, values: Reals, *, least: float) -> None:
+    """Linear where most of the values are, and `least` about zero, logarithmic beyond."""
     usual = float(np.median(np.sqrt(values * values), axis=None)) if len(values) else 1.0
-    threshold = 10.0 ** np.ceil(np.log10(max(2.0 * usual, 1e-3)))
+    threshold = 10.0 ** np.ceil(np.log10(max(2.0 * usual, least, 1e-3)))
     axes.set_yscale("symlog", linthresh=threshold, linscale=1.5)
+    low, high = axes.get_ylim()
+    axes.set_ylim(min(low, -threshold), max(high, threshold))
 
 
 def _limited(axes: Axes, values: Sequence[Reals]) -> None:
@@ -76,22 +79,22 @@ def _limited(axes: Axes, values: Sequence[Reals]) -> None:
 def _table(axes: Axes, found: Mapping[float, Smoothness], ends: tuple[str, str]) -> None:
     """The largest jumps at joints, of the largest value on the line."""
     axes.set_axis_off()
-    axes.set_title("Largest jumps at joints, of the largest value")
+    axes.set_title("Jumps at joints, of the largest value")
     place: dict[str, Any] = {"transform": axes.transAxes, "va": "top", "fontsize": 9.5}
     columns = (0.36, 0.70)
     for x, name in zip(columns, ("curvature", "its slope"), strict=True):
         axes.text(x, 0.97, name, color=INK, fontweight="bold", **place)
     rows = [(v, line) for v, each in found.items() for line in each.lines]
-    step = 0.92 / (len(rows) + 1)
+    step = min(0.92 / (len(rows) + 1), 0.1)
     for index, (v, line) in enumerate(rows):
         height = 0.97 - step * (index + 1)
         name = line.name if len(found) == 1 else f"{span_name(v, ends)}, {line.name}"
         axes.text(0.0, height, name, color=span_colour(v), **place)
         for x, smooth, jump in zip(columns, line.continuous, (line.curvature_jump, line.slope_jump), strict=True):
-            axes.text(x, height, "continuous" if smooth else said(jump), color=INK, **place)
+            axes.text(x, height, "continuous" if smooth else said(jump) if jump else "with it", color=INK, **place)
 
 
 def said(share: float) -> str:
     """A share in percent, to two digits."""
     percent = 100.0 * share
-    return f"{percent:.0f} %" if percent >= 10.0 else f"{percent:.2g} %" if percent >= 1e-2 else f"{percent:.0e} %"
+    return f"{percent:.0f} %" if percent >= 10.0 else f"{percent:.2g} %" if percent >= 1e-3 else f"{percent:.0e} %"

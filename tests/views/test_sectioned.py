@@ -1,0 +1,195 @@
+"""Blades from sections on the sheet: flow path, blunt edges, laws of any family, smoothness."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from matplotlib.figure import Figure
+
+from bladewright.blade.sectioned_exact import sectioned_exact
+from bladewright.blade.sections import smoothness_at
+from bladewright.section.profiles.points import PointsProfile
+from bladewright.section.smoothness import smoothness
+from bladewright.views.edges import draw_edge
+from bladewright.views.laws import panels_of
+from bladewright.views.meridional import built_edges
+from bladewright.views.picture import sheet
+from bladewright.views.sections import neighbours, outline, size_of
+from bladewright.views.smoothness import draw_smoothness, said
+from bladewright.views.solid import blade_meshes, draw_solid
+
+from ..blade.sectioned import BLUNT, COMPRESSOR, DESIGNS, IMPELLER, STATOR, VANE
+from ..section.families import EXAMPLES
+from .test_sheet import texts_of
+
+ROUGH = 1e-4
+"""tolerance of blades that are only drawn"""
+
+
+@pytest.fixture(scope="module")
+def impeller():
+    return replace(IMPELLER, tolerance=ROUGH).build()
+
+
+@pytest.fixture(scope="module")
+def drawn(impeller):
+    figure = sheet(impeller)
+    figure.canvas.draw()
+    return figure
+
+
+def titles(figure):
+    return [axes.get_title(loc="left") for axes in figure.axes]
+
+
+def panel(figure, title):
+    return next(axes for axes in figure.axes if axes.get_title(loc="left").startswith(title))
+
+
+def test_every_panel_is_there_and_no_text_covers_another(drawn):
+    for title in ("Blade with", "Sections", "Mid span", "Meridional", "Slope of the curvature", "Camber angle"):
+        assert panel(drawn, title)
+    assert sum(title.startswith("Trailing edge, ") and "blunt" in title for title in titles(drawn)) == 3
+    renderer = drawn.canvas.get_renderer()
+    boxes = [text.get_window_extent(renderer) for text in texts_of(drawn)]
+    assert len(boxes) > 100
+    edges = np.array([[box.x0, box.x1, box.y0, box.y1] for box in boxes])
+    wide = np.minimum(edges[:, None, 1], edges[None, :, 1]) - np.maximum(edges[:, None, 0], edges[None, :, 0])
+    high = np.minimum(edges[:, None, 3], edges[None, :, 3]) - np.maximum(edges[:, None, 2], edges[None, :, 2])
+    overlap = np.minimum(wide, high)[np.triu_indices(len(boxes), 1)]
+    assert overlap.max() <= 1.0  # a pixel: boxes are rounded outwards
+
+
+def test_the_edges_that_are_built_lie_on_the_curves_that_were_asked_for(impeller):
+    plan = impeller.exact.plan
+    assert len(plan.quasi_orthogonals) == len(IMPELLER.flow_path.quasi_orthogonals)
+    built = built_edges(impeller)
+    assert len(built) == 3  # a blunt edge has two
+    asked = plan.lines["leading_edge"].points
+    gap = np.sqrt(np.min(np.sum((built[0][:, None] - asked[None]) ** 2, axis=-1), axis=1))
+    assert gap.max() < 2e-3 * impeller.chord  # the curve is 201 points
+
+
+def test_quasi_orthogonals_divide_the_walls_as_they_were_given(impeller):
+    plan = impeller.exact.plan
+    for pair, line in zip(IMPELLER.flow_path.quasi_orthogonals, plan.quasi_orthogonals, strict=True):
+        for fraction, end, wall in zip(pair, line[[0, -1]], ("hub", "shroud"), strict=True):
+            points = plan.lines[wall].points
+            along = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(points, axis=0).T))])
+            nearest = int(np.argmin(np.hypot(*(points - end).T)))
+            assert along[nearest] / along[-1] == pytest.approx(fraction, abs=6e-3)  # 201 points
+
+
+def test_given_stream_surfaces_are_part_of_the_plan():
+    surface = sectioned_exact(STATOR).plan.stream_surfaces[0]
+    assert not surface.polygon
+    assert surface.given * 1e3 == pytest.approx(np.array([(-60, 125), (0, 128), (40, 131), (120, 132)]))
+    assert surface.points[[0, -1]] == pytest.approx(surface.given[[0, -1]])
+
+
+@pytest.mark.parametrize("name", ["diffuser", "inlet-vane"])
+def test_a_wall_is_continued_past_the_edges_and_no_farther_than_it_reaches(name):
+    exact = sectioned_exact(DESIGNS[name])
+    wall, inside = exact.wall_line("hub", np.linspace(-50.0, 51.0, 41)), exact.wall_line("hub", np.array([0.0, 1.0]))
+    given = exact.plan.lines["hub"].points
+    assert wall[[0, -1]] == pytest.approx(given[[0, -1]], abs=1e-9)
+    lines = exact.stations(np.zeros(1)).lines
+    assert inside == pytest.approx(np.real(lines.position(np.array([0.0, 1.0])))[0], abs=1e-12)
+
+
+def test_a_blunt_edge_is_a_face_of_the_drawn_blade(impeller):
+    meshes, _ = blade_meshes(impeller, (21, 9), (0.0, 0.0, 1.0))
+    face = next(mesh for mesh in meshes if mesh.points.shape == (5, 9, 3))
+    v = np.linspace(0.0, 1.0, 9)
+    for row, side in ((0, "upper"), (-1, "lower")):
+        assert face.points[row] == pytest.approx(1e3 * impeller.surfaces[side](1.0, v), abs=1e-9)
+
+
+def test_an_impeller_is_seen_from_its_shroud(impeller):
+    axes = Figure().add_subplot()
+    draw_solid(axes, impeller, neighbours=0, width=160)
+    picture = np.asarray(axes.get_images()[0].get_array())
+    assert ((picture[..., 2] > 1.25 * picture[..., 0]) & (picture[..., 3] > 0.5)).sum() > 300
+
+
+@pytest.mark.parametrize("design", [*DESIGNS.values(), BLUNT], ids=lambda each: each.name)
+def test_every_law_of_a_family_has_a_place_in_a_panel(design):
+    drawn = sum(len(panel.laws) for panel in panels_of(design))
+    apart = ("flow_path", "leading_edge.", "leading_edge_", "trailing_edge.", "pitch")
+    paths = {path.split("[")[0] for path in design.parameters() if not path.startswith(apart)}
+    rows = sum(
+        len(value) - 1
+        for path in paths
+        if isinstance(value := _at(design, path), tuple) and any(isinstance(each, tuple) for each in value)
+    )
+    assert drawn >= len(paths) + rows
+    assert all(len(panel.laws) > 0 for panel in panels_of(design))
+
+
+def _at(part, path):
+    for name in path.split("."):
+        part = getattr(part, name)
+    return part
+
+
+def test_points_of_a_given_profile_have_no_panel_each():
+    turn = np.linspace(0.0, 2.0 * np.pi, 20, endpoint=False)
+    abscissas, ordinates = (tuple(each.tolist()) for each in (0.5 + 0.5 * np.cos(turn), 0.1 * np.sin(turn)))
+    blade = replace(VANE, section=PointsProfile(abscissas=abscissas, ordinates=ordinates))
+    assert [panel.title for panel in panels_of(blade)] == ["Angles", "Position of the leading edge"]
+
+
+def test_neighbours_in_a_plane_of_lengths_stand_as_far_apart_as_their_radius_says():
+    design = replace(COMPRESSOR, plane="m-r*theta", tolerance=1e-3)
+    blade = design.build()
+    section = blade.section(0.5)
+    shape = outline(section)
+    aside = neighbours(blade, section, shape)[:, 1] - shape[:, 1]
+    lines = blade.exact.stations(np.array([0.5])).lines
+    radius = np.real(lines.position(lines.u_at(shape[None, :, 0] / size_of(section))))[0, :, 1]
+    assert aside == pytest.approx(1e3 * radius * 2.0 * np.pi / 22, rel=1e-9)
+    assert np.ptp(aside) > 0.1
+
+
+@pytest.mark.parametrize(
+    ("name", "said"),
+    [
+        ("naca-2412", "Trailing edge, sharp"),
+        ("naca-6409-blunt", "Trailing edge, blunt, "),
+        ("wedge diffuser with a back face", "Trailing edge, flat"),
+        ("c4", "Trailing edge, radius "),
+    ],
+)
+def test_an_edge_is_called_what_it_is(name, said):
+    section, axes = EXAMPLES[name].design.build(), Figure().add_subplot()
+    draw_edge(axes, section, trailing=True)
+    assert axes.get_title().startswith(said)
+    low, high = axes.get_xlim()
+    assert 0.0 < high - low < 1e3 * section.chord
+    assert len(axes.patches) == 1 + (said.endswith("radius "))  # the fill, and the circle of a round one
+
+
+def test_the_thickness_at_a_blunt_edge_is_that_of_the_edge():
+    section = EXAMPLES["naca-6409-blunt"].design.build()
+    face = section.curves["trailing_edge"].control_points
+    assert section.thickness[1][-1] == pytest.approx(np.hypot(*(face[1] - face[0])))
+    assert section.maximum_thickness[0] == pytest.approx(0.09 * section.chord, rel=1e-2)
+
+
+def test_smoothness_is_drawn_in_pieces_with_the_jumps_in_a_table():
+    found = smoothness(EXAMPLES["naca-2412"].design.build())
+    figure = Figure(layout="constrained")
+    draw_smoothness(figure.subfigures(), {0.0: found})
+    camber = figure.axes[1].get_lines()
+    dots = next(line for line in camber if line.get_marker() == "o").get_ydata()
+    assert dots == pytest.approx(found.camber.jumps[0].curvature, rel=1e-6)  # the places beside the joint
+    texts = [text.get_text() for text in figure.axes[3].texts]
+    assert said(found.camber.curvature_jump) in texts
+    assert [said(share) for share in (2.0, 0.0712, 4e-5, 1e-7)] == ["200 %", "7.1 %", "0.004 %", "1e-05 %"]
+
+
+def test_smoothness_of_a_blade_is_that_of_its_exact_sections(impeller):
+    found = smoothness_at(impeller.exact, 0.5)
+    assert found.to_dict() == smoothness(impeller.section(0.5)).to_dict()
+    assert found.camber.continuous == (True, True)
+    assert [line.continuous[0] for line in found.lines] == [True] * 3
