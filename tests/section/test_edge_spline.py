@@ -139,8 +139,13 @@ def test_an_edge_that_cannot_be_is_refused(changes, message):
         MOVED.changed(changes).applied(outline, SPAN)
 
 
-def test_a_contact_at_a_joint_is_refused():
+def test_a_contact_close_before_a_joint_is_refused_and_one_at_it_taken():
     outline = MEANLINES[ROUND[0]][0].section.outline(SPAN)
     joint = next(joint.s for joint in outline.joints if 0.02 < joint.s < 0.5)
     with pytest.raises(DesignError, match=r"the section is not smooth at s = .*; move the contact beyond"):
-        MOVED.changed("contact", joint).applied(outline, SPAN)
+        MOVED.changed("contact", joint - 1e-3).applied(outline, SPAN)
+    found = MOVED.changed("contact", joint).applied(outline, SPAN)
+    assert [each.s for each in found.joints].count(joint) == 1
+    np.testing.assert_allclose(
+        derivatives(found, joint, -0.03)[..., 2, :], derivatives(found, joint, 0.03)[..., 2, :], atol=1e-7
+    )

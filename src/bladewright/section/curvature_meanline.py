@@ -16,6 +16,7 @@ from bladewright.numerics.elementary import Array, degrees, radians
 from bladewright.section import checks
 from bladewright.section.alternatives import ByField
 from bladewright.section.chord_spline import ChordSpline
+from bladewright.section.edge_spline import EdgeSpline
 from bladewright.section.laws import Span
 from bladewright.section.meanline import (
     STRAIGHT,
@@ -26,7 +27,7 @@ from bladewright.section.meanline import (
     camber_scale,
 )
 from bladewright.section.offset import OffsetOutline, fixed_joints
-from bladewright.section.outline import Joint
+from bladewright.section.outline import Joint, Outline
 from bladewright.section.planar import PlanarSection
 from bladewright.section.thickness.law import Thickness
 from bladewright.section.thickness.modified_naca import ModifiedNaca
@@ -61,6 +62,8 @@ class CurvatureMeanline(Part):
     """control points of what the half thickness grows by, of itself, leading to trailing edge; none: 0 [-]"""
     thickness_multiplier_places: ChordwiseLaw = parameter("-", default=())
     """chord fractions of the inner control points of the multiplier; none: evenly spaced [-]"""
+    leading_edge_spline: EdgeSpline | None = None
+    """a quartic B-spline in the place of the thickness's leading edge, with droop and elongation; none: as it is"""
 
     def __post_init__(self) -> None:
         for name in ("metal_angle_in", "metal_angle_out"):
@@ -93,7 +96,10 @@ class CurvatureMeanline(Part):
             )
 
     def meanline(self, span: Span) -> Meanline:
-        """The meanlines (..., m) at the places of the span; raises DesignError where none has the camber asked for."""
+        """The meanlines (..., m) at the places of the span; raises DesignError where none has the camber asked for.
+
+        They are in chords of the section without leading_edge_spline.
+        """
         angle_in, angle_out = self._angles(span)
         if self.camber == "mixed":
             stagger = 0.5 * (angle_in + angle_out)
@@ -112,8 +118,13 @@ class CurvatureMeanline(Part):
             )
         return CurvedMeanline(curvature=curvature, scale=scale)
 
-    def outline(self, span: Span) -> OffsetOutline:
+    def outline(self, span: Span) -> Outline:
         """The exact sections (..., m) at the places of the span; raises DesignError where numbers contradict."""
+        whole = self.unsplined(span)
+        return whole if self.leading_edge_spline is None else self.leading_edge_spline.applied(whole, span)
+
+    def unsplined(self, span: Span) -> OffsetOutline:
+        """The same without leading_edge_spline, in chords of their own."""
         meanline, thickness = self.meanline(span), self.thickness.at(span)
         kinks: tuple[Joint, ...] = ()
         if isinstance(meanline, MixedMeanline):
@@ -137,8 +148,14 @@ class CurvatureMeanline(Part):
         return found
 
     def stagger(self, span: Span) -> Array:
-        """Angles (..., m) of the chord lines [rad], from the metal angle and the meanline's at the leading edge."""
-        return self._angles(span)[0] - self.meanline(span).angle_in
+        """Angles (..., m) of the chord lines [rad], from the metal angle and the meanline's at the leading edge.
+
+        A tip that a leading_edge_spline has moved turns the chord line with it.
+        """
+        turn = self._angles(span)[0] - self.meanline(span).angle_in
+        if self.leading_edge_spline is None:
+            return turn
+        return turn + self.leading_edge_spline.applied(self.unsplined(span), span).turned
 
     def _angles(self, span: Span) -> tuple[Array, Array]:
         return radians(span.values(self.metal_angle_in)), radians(span.values(self.metal_angle_out))

@@ -26,8 +26,12 @@ from bladewright.section.outline import Edge, Joint, Outline, Start
 from bladewright.section.thickness.uniform import QUARTIC, segments
 
 SEGMENTS = 5
+SAME = 1e-9
+"""difference by s below which a contact stands at a joint: the derivatives behind it count"""
 WINDOW, DEGREE = 0.05, 9
 """how far behind the contact, by s, the polynomial reaches that the derivatives there are taken from, and its degree"""
+NARROW = 0.01
+"""how far it must reach at least"""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -57,7 +61,7 @@ class EdgeSpline(Part):
     def applied(self, outline: Outline, span: Span) -> "SplinedOutline":
         """The outline with this leading edge, at the places of the span.
 
-        Raises DesignError where a contact stands at a joint of the outline, or the edge folds back on itself.
+        Raises DesignError where a joint of the outline follows a contact closely, or the edge folds back on itself.
         """
         found = SplinedOutline(
             outline=outline,
@@ -136,7 +140,7 @@ class SplinedOutline(Outline):
     @property
     def joints(self) -> tuple[Joint, ...]:
         own = (Joint(self.contact * share, 3) for share in (0.2, 0.6, 1.0))
-        return (*own, *(joint for joint in self.outline.joints if joint.s > self.contact))
+        return (*own, *(joint for joint in self.outline.joints if joint.s > self.contact + SAME))
 
     def points(self, s: Reals) -> tuple[Array, Array]:
         inside = s < self.contact
@@ -174,9 +178,9 @@ class SplinedOutline(Outline):
     @cached_property
     def _at_contact(self) -> tuple[Array, Array]:
         """Point and three derivatives by s (..., m, 4, 2) of the upper and the lower side at the contact."""
-        after = [joint.s for joint in self.outline.joints if joint.s > self.contact - 1e-9]
+        after = [joint.s for joint in self.outline.joints if joint.s > self.contact + SAME]
         reach = min([WINDOW, 1.0 - self.contact, *(place - self.contact for place in after)])
-        if reach < 0.2 * WINDOW:
+        if reach < NARROW:
             raise DesignError(
                 f"contact is {self.contact:g}: the section is not smooth at s = {self.contact + reach:.4g}, too near "
                 f"behind it; move the contact beyond"

@@ -23,14 +23,22 @@ MOST = 1500
 _ALONG = (1.0 - np.cos(np.pi * np.linspace(0.0, 1.0, SIDE))) / 2.0
 
 
-def import_tblade3(path: str | os.PathLike[str]) -> Imported[CurvatureMeanlineBlade]:
+def import_tblade3(path: str | os.PathLike[str], *, edge_spline: bool = False) -> Imported[CurvatureMeanlineBlade]:
     """The blade of T-Blade3's main input file `3dbgbinput.R.dat` and the file of control points beside it.
 
     At every section of the case the design's section is T-Blade3's to rounding; between them, where T-Blade3 says
-    nothing, every number is a cubic spline. Raises FileError, naming the file, where it is none of T-Blade3's, or asks
-    for what the curvature-meanline family does not have.
+    nothing, every number is a cubic spline. A leading edge that is a spline is refused, or with `edge_spline` becomes
+    the family's own. Raises FileError, naming the file, where it is none of T-Blade3's, or asks for what the
+    curvature-meanline family does not have.
     """
     case = read_tblade3(path)
+    if case.leading_edge == "spline" and not edge_spline:
+        raise FileError(
+            f"'{case.file}': the leading edges are splines (switch 1 on line 20), whose shape T-Blade3 takes from "
+            "differences of rounding: the sections of its own example miss these edges and fold back on themselves, "
+            "and make no blade; --edge-spline puts the family's spline with the same contacts, droop and elongation "
+            "in their place, or set the switch to 0"
+        )
     sections = case_sections(case)
     design, changed = blade_of(sections), list(_changed(sections))
     standing = _standing(design, case.file)
@@ -73,7 +81,7 @@ def _points(sections: CaseSections) -> tuple[dict[str, Reals], str]:
     else:
         both = [section_points(sections, i, _ALONG) for i in range(len(sections.places))]
         sides = {name: np.stack([pair[k] for pair in both]) for k, name in enumerate(("upper", "lower"))}
-        source = "its formulas"
+        source = "its formulas" if sections.numbers.edges is None else "its formulas with these leading edges"
     every = max(1, 2 * SIDE * len(sections.places) // MOST)
     return {name: points[:, ::every].reshape(-1, 3) for name, points in sides.items()}, source
 
@@ -108,6 +116,11 @@ def _changed(sections: CaseSections) -> Iterator[str]:
             if there
         )
         yield f"the edge curves go through the ends of the sections, as {what or 'the chords'} put them"
+    if case.leading_edge == "spline":
+        yield (
+            "the leading edges are splines of the family, smooth at the contacts, their tips where T-Blade3 means its "
+            "own; their other control points are not T-Blade3's, nor are the points of its sections there"
+        )
     if case.angles == "wing":
         yield "twist and total camber of the wing are given as metal angles"
     if case.true_lean_and_sweep and (_matters(case.sweep) or _matters(case.lean)):

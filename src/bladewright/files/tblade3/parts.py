@@ -1,6 +1,6 @@
 """T-Blade3's sections as parts of the curvature-meanline family: one each, or one with laws along the span."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -8,10 +8,12 @@ import numpy as np
 from bladewright.errors import FileError
 from bladewright.files.tblade3.angles import MetalAngles
 from bladewright.files.tblade3.laws import law_through, laws_through
+from bladewright.files.tblade3.leading_edges import Moved, moved_edges
 from bladewright.files.tblade3.records import TBlade3Case
 from bladewright.files.tblade3.sections import SectionValues
 from bladewright.nurbs.basis import Reals
 from bladewright.section.curvature_meanline import CurvatureMeanline
+from bladewright.section.edge_spline import EdgeSpline
 from bladewright.section.meanline import CurvatureIntegral, CurvedMeanline, camber_scale
 from bladewright.section.thickness.law import ThicknessLaw
 from bladewright.section.thickness.modified_naca import ModifiedNaca
@@ -31,6 +33,8 @@ class Parameters:
     thickness: dict[str, Any]
     """fields of the thickness"""
     law: type[ThicknessLaw]
+    edges: Moved | None = None
+    """leading edges that are splines"""
 
     def of(self, index: int) -> CurvatureMeanline:
         """The part of one section, holding numbers."""
@@ -54,8 +58,13 @@ class Parameters:
 
     def _made(self, kind: Any) -> CurvatureMeanline:
         thickness = self.law(**{name: kind(value) for name, value in self.thickness.items()})
+        edge = None
+        if self.edges is not None:
+            contact, elongation, droop = self.edges
+            edge = EdgeSpline(contact=contact, elongation=kind(elongation), droop=kind(droop))
         return CurvatureMeanline(
             thickness=thickness,  # type: ignore[arg-type]
+            leading_edge_spline=edge,
             **{name: kind(value) for name, value in self.section.items()},
         )
 
@@ -80,7 +89,11 @@ def parameters(case: TBlade3Case, values: SectionValues, angles: MetalAngles) ->
         section["thickness_multiplier_places"] = multiplied[:, 1:-1, 0]
     law, thickness = _thickness(case, values)
     angles_of = {"metal_angle_in": np.degrees(inlet), "metal_angle_out": np.degrees(end)}
-    return Parameters(section={**angles_of, **section}, thickness=thickness, law=law)
+    found = Parameters(section={**angles_of, **section}, thickness=thickness, law=law)
+    if values.leading_edges is None:
+        return found
+    alone = [found.of(i) for i in range(len(values.span))]
+    return replace(found, edges=moved_edges(alone, values.leading_edges))
 
 
 def _angles(angles: MetalAngles) -> tuple[Reals, Reals]:

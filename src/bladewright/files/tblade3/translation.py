@@ -1,7 +1,7 @@
 """From a T-Blade3 case to the blade of sections on curvature meanlines that has its sections."""
 
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -19,6 +19,7 @@ from bladewright.files.tblade3.records import TBlade3Case
 from bladewright.files.tblade3.sections import SectionValues, section_values
 from bladewright.files.tblade3.stacking import stacking_point
 from bladewright.nurbs.basis import Reals
+from bladewright.section.edge_spline import SplinedOutline
 from bladewright.section.laws import Span
 
 FEW = 4
@@ -55,23 +56,44 @@ class CaseSections:
         return [int(i) for i in np.argsort(self.places)]
 
     @cached_property
-    def stagger(self) -> Reals:
-        """(m,) [rad]."""
+    def _turns(self) -> Reals:
+        """(m, 2) stagger [rad] of the sections without a leading edge that is a spline, and with it."""
         one = Span(np.zeros(1))
-        return np.array([float(np.real(self.numbers.of(i).stagger(one)[0])) for i in range(len(self.places))])
+        parts = [self.numbers.of(i) for i in range(len(self.places))]
+        both = [(replace(part, leading_edge_spline=None), part) for part in parts]
+        return np.array([[float(np.real(part.stagger(one)[0])) for part in pair] for pair in both])
 
     @cached_property
-    def extents(self) -> Reals:
-        """(m,) of the chord lines in m'."""
-        given = self.values.chord
-        if given is not None:
-            return given * np.cos(self.stagger)
-        return (self.flow.trailing - self.flow.leading) * self.values.chord_multiplier
+    def tips(self) -> Reals:
+        """(m, 2) where the leading edges stand, in T-Blade3's chords: (0, 0) but where they are splines."""
+        if self.numbers.edges is None:
+            return np.zeros((len(self.places), 2))
+        outlines = [self.numbers.of(i).outline(Span(np.zeros(1))) for i in range(len(self.places))]
+        return np.array([np.real(each.tip)[0] for each in outlines if isinstance(each, SplinedOutline)])
+
+    @property
+    def stagger(self) -> Reals:
+        """(m,) of the chord lines from tip to trailing edge [rad]."""
+        return self._turns[:, 1]
+
+    @cached_property
+    def own_chords(self) -> Reals:
+        """(m,) T-Blade3's chords in the plane (m', theta): without what a spline has moved."""
+        if self.values.chord is not None:
+            return self.values.chord
+        extents = (self.flow.trailing - self.flow.leading) * self.values.chord_multiplier
+        return extents / np.cos(self._turns[:, 0])
 
     @cached_property
     def chords(self) -> Reals:
         """(m,) lengths of the chord lines in the plane (m', theta)."""
-        return self.extents / np.cos(self.stagger)
+        lines = np.array([1.0, 0.0]) - self.tips
+        return self.own_chords * np.sqrt(np.sum(lines**2, axis=-1))
+
+    @property
+    def extents(self) -> Reals:
+        """(m,) of the chord lines in m'."""
+        return self.chords * np.cos(self.stagger)
 
     @property
     def true_share(self) -> Reals:
@@ -97,9 +119,9 @@ class CaseSections:
     def theta(self) -> Reals:
         """(m,) of the leading edges [rad]: of what stacking, lean and the turn of the blade make."""
         found = []
-        for i, (turn, stacking) in enumerate(zip(self.stagger, self.case.stackings, strict=True)):
-            point = stacking_point(self.numbers.of(i), stacking)
-            found.append(-self.chords[i] * (point[0] * np.sin(turn) + point[1] * np.cos(turn)))
+        for i, (turn, stacking) in enumerate(zip(self._turns[:, 0], self.case.stackings, strict=True)):
+            along, across = self.tips[i] - stacking_point(self.numbers.of(i), stacking)
+            found.append(self.own_chords[i] * (along * np.sin(turn) + across * np.cos(turn)))
         return np.array(found) + self.values.lean * self.true_share + self.values.theta_offset
 
 
