@@ -5,13 +5,14 @@ from dataclasses import replace
 from bladewright.designs import Design
 from bladewright.errors import FitError
 from bladewright.fitting.aim import NOISY, Aim, short_of
+from bladewright.fitting.descent import SLIGHT
 from bladewright.fitting.freedom import corner_radii
 from bladewright.fitting.growing import grown
 from bladewright.fitting.growth import FEWEST
 from bladewright.fitting.identification import EXACT, identified, tried
 from bladewright.fitting.opening import opened
 from bladewright.fitting.reshaping import reshaped
-from bladewright.fitting.search import ROUNDS, Found, Task, searched
+from bladewright.fitting.search import ROUGH, ROUNDS, Found, Task, searched
 from bladewright.fitting.structure import Structure, structure_of
 from bladewright.fitting.thinning import drawn
 from bladewright.fitting.tolerance import kept
@@ -23,6 +24,8 @@ SHAKEN = 0.03
 """noise from which a match of a section is tried once more, of the chord"""
 FINEST = 1e-6
 """misfit at which it is not, of that"""
+FINE = 1e-3
+"""part of the cost that a step of the last search must promise, where the cloud is not taken for exact"""
 QUICK = 2
 """rounds of a search between two steps of growth"""
 FEW, MANY = {2: 2500, 3: 1000}, 12_000
@@ -47,7 +50,7 @@ def adapted(task: Task, first: Design, aim: Aim, *, base: Structure | None, gues
     noise = FIRST if guessed else None
     if aim.structured and aim.tolerance is None:
         return _structured(few, many, first, base, guessed=guessed), ""
-    found = searched(few, first, noise=noise, rounds=2 * QUICK if base is None else QUICK)
+    found = searched(few, first, noise=noise, rounds=2 * QUICK if base is None else QUICK, slight=ROUGH)
     if guessed and aim.open and isinstance(first, UnifiedSection) and _misses(found):
         known = identified(few, first)
         if known is not None:
@@ -60,10 +63,10 @@ def adapted(task: Task, first: Design, aim: Aim, *, base: Structure | None, gues
     found, reason = _enough(few, found, aim)
     if standing:
         reason = STANDING
-        found = found if found.interrupted else searched(everything, found.design, rounds=QUICK)
+        found = found if found.interrupted else searched(everything, found.design, rounds=1, slight=ROUGH)
     if found.interrupted:
         return found, reason
-    found = searched(many, found.design)
+    found = searched(many, found.design, slight=SLIGHT if aim.open else FINE)
     if guessed and task.points.shape[1] == 2:
         found = _shaken(many, found)
     if aim.tolerance is not None and not reason:
@@ -123,7 +126,7 @@ def _exchanged(task: Task, found: Found) -> Found:
             if min(upper, lower) < FEWEST:
                 break
             design = opened(reshaped(found.design, replace(structure, chordwise=(upper, lower))))
-            other = searched(task, design, rounds=QUICK + 1, noise=found.rms)
+            other = searched(task, design, rounds=QUICK + 1, noise=found.rms, slight=ROUGH)
             evaluations = found.evaluations + other.evaluations
             if not (other.rms < found.rms or other.interrupted):
                 found = replace(found, evaluations=evaluations)
@@ -160,6 +163,6 @@ def _roomy(found: Found, aim: Aim) -> bool:
 def _leaner(task: Task, found: Found, base: Structure) -> Found:
     """A match with the structure from which to grow, or the one before where its laws leave no shape so."""
     try:
-        return searched(task, reshaped(found.design, base), noise=FIRST, rounds=2 * QUICK)
+        return searched(task, reshaped(found.design, base), noise=FIRST, rounds=2 * QUICK, slight=ROUGH)
     except FitError:
         return found

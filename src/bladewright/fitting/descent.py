@@ -62,8 +62,13 @@ class Descent:
     """the last one, for a descent that goes on"""
 
 
-def descended(problem: Constrained, start: Reals, *, steps: int, damping: float = DAMPING) -> Descent:
-    """The variables after at most `steps` evaluations of the residuals."""
+def descended(
+    problem: Constrained, start: Reals, *, steps: int, damping: float = DAMPING, slight: float = SLIGHT
+) -> Descent:
+    """The variables after at most `steps` evaluations of the residuals.
+
+    `slight` is the promised part of the cost up to which a step is not worth it.
+    """
     low, high = problem.bounds
     z = np.clip(start, low, high)
     found = problem.values(z)
@@ -89,7 +94,7 @@ def descended(problem: Constrained, start: Reals, *, steps: int, damping: float 
                 - float(linear @ linear)
                 + penalty * float(np.sum(np.maximum(constrained, 0.0) - np.maximum(constrained + walls @ step, 0.0)))
             )
-            if not promised > SLIGHT * before:
+            if not promised > slight * before:
                 return Descent(z=z, converged=True, damping=damping)
             bend = _bend(problem, z, step, residuals, slopes) if gain < EVEN else None
             if bend is not None:

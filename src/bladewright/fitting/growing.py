@@ -9,7 +9,7 @@ from bladewright.fitting.aim import Aim
 from bladewright.fitting.growth import chosen_of, gains, joined
 from bladewright.fitting.opening import opened
 from bladewright.fitting.reshaping import reshaped
-from bladewright.fitting.search import Found, Task, searched
+from bladewright.fitting.search import ROUGH, Found, Task, searched
 from bladewright.fitting.structure import structure_of
 
 WORTHWHILE = 0.02
@@ -42,7 +42,8 @@ def grown(task: Task, found: Found, aim: Aim) -> tuple[Found, bool]:
         weights = task.weights * emphasis
         task = replace(task, weights=weights * (np.sum(task.weights) / np.sum(weights)))
     try:
-        fresh = searched(task, design if task.points.shape[1] == 3 else opened(design), rounds=1, noise=found.rms)
+        start = design if task.points.shape[1] == 3 else opened(design)
+        fresh = searched(task, start, rounds=1, noise=found.rms, slight=ROUGH)
     except FitError:
         return found, False
     return replace(fresh, evaluations=fresh.evaluations + found.evaluations), True

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from bladewright.designs import Design
 from bladewright.errors import DesignError, FitError
-from bladewright.fitting.descent import DAMPING, descended
+from bladewright.fitting.descent import DAMPING, SLIGHT, descended
 from bladewright.fitting.feet import feet
 from bladewright.fitting.model import Model, model_of
 from bladewright.fitting.prior import prior_of
@@ -28,6 +28,8 @@ STEPS = 10
 ROUNDS = 12
 SETTLED = 0.995
 """ratio of a round's misfit to that of the last at which a search ends"""
+ROUGH = 0.01
+"""part of the cost that a step must promise while a search is only one on the way"""
 FAST = 0.5
 """ratio below which the next round's misfit is foreseen to fall as much again"""
 EXACT = 3e-14
@@ -114,11 +116,13 @@ class Found:
         return float(np.max(self.state.feet.distances[self.rows]))
 
 
-def searched(task: Task, start: Design, *, rounds: int = ROUNDS, noise: float | None = None) -> Found:
+def searched(
+    task: Task, start: Design, *, rounds: int = ROUNDS, noise: float | None = None, slight: float = SLIGHT
+) -> Found:
     """The design nearest to the cloud that a search from `start` finds, with the structure of `start`.
 
-    `noise` is the first round's, of the chord; where None the misfit of the start. Raises FitError where the start has
-    no shape.
+    `noise` is the first round's, of the chord; where None the misfit of the start. `slight` is the part of the cost
+    that a step must promise. Raises FitError where the start has no shape.
     """
     found, idle = _prepared(task, start, start, noise), 0
     for number in range(rounds):
@@ -126,13 +130,13 @@ def searched(task: Task, start: Design, *, rounds: int = ROUNDS, noise: float | 
         if (number and before < EXACT) or found.interrupted:
             break
         try:
-            found = _round(found if number == 0 else _prepared(task, start, found.design, noise, found))
+            found = _round(found if number == 0 else _prepared(task, start, found.design, noise, found), slight)
         except FitError:
             # at finer knots the design has no shape: it stays as it was found
             break
         task.told(f"{len(found.problem.paths)} parameters, {1e3 * found.rms * found.model.chord:.3g} mm rms")
         ratio = found.misfit / before
-        idle = idle + 1 if ratio > SETTLED else 0
+        idle = idle + 1 if ratio**2 > min(SETTLED**2, 1.0 - slight) else 0
         if number and idle and (found.converged or idle > 1):
             break
         noise = found.rms * (max(ratio, 1e-3) if ratio < FAST else 1.0)
@@ -186,13 +190,13 @@ def _prepared(task: Task, start: Design, design: Design, noise: float | None, be
     )
 
 
-def _round(found: Found) -> Found:
+def _round(found: Found, slight: float) -> Found:
     """What a descent from a prepared design finds."""
     problem, interrupted, converged = found.problem, False, False
     first = problem.vector(found.design)
     z, damping = first, found.damping
     try:
-        descent = descended(problem, first, steps=STEPS, damping=damping)
+        descent = descended(problem, first, steps=STEPS, damping=damping, slight=slight)
         z, damping, converged = descent.z, descent.damping, descent.converged
     except KeyboardInterrupt:
         z, interrupted = problem.best, True
