@@ -89,7 +89,7 @@ def _passage(asked: Asked, knots: PassageKnots, split: bool) -> Passage:
     surfaces: dict[str, Surface | TrimmedSurface] = {name: _surface(net, name, knots) for name, net in nets.items()}
     surfaces |= {"blade_upper": upper, "blade_lower": lower}
     surfaces |= {f"blade_{name}": blade.surfaces[name] for name in EDGE_FACES if name in blade.surfaces}
-    surfaces |= {name: face for name, face in blade.surfaces.items() if name == "tip"}
+    surfaces |= {name: blade.surfaces[name] for name in blade.design.ends if name == "tip"}
     return Passage(
         blade=blade,
         whole=MappingProxyType(surfaces),
