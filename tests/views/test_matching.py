@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 from itertools import combinations
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -17,12 +18,14 @@ from bladewright.fitting.result import Estimate, Fit
 from bladewright.numerics.elementary import angle
 from bladewright.views.matching import fit_picture, fit_sheet
 from bladewright.views.matching_figures import draw_histogram, draw_table
-from bladewright.views.matching_map import MOST, draw_map, draw_outline_deviation
+from bladewright.views.matching_map import MOST, abscissae, draw_map, draw_outline_deviation
 from bladewright.views.matching_outline import outline_at, span_of, worst_span
 from bladewright.views.matching_points import WORST, drawn, rounded_up, scale_of
 from bladewright.views.matching_sections import HEIGHT, draw_magnified, magnification
 from bladewright.views.sections import size_of
 from bladewright.views.style import manner
+
+from ..section.families import EXAMPLES
 
 NAMES = {"section": "turbine-section", "annular": "fan-rotor", "linear": "vki-ls89"}
 _BUILT = {}
@@ -280,7 +283,7 @@ def test_points_on_the_ends_are_not_mapped_and_are_counted():
     places = fit.places.copy()
     places[:7] = "hub"
     axes = axes_of(draw_map, replace(fit, places=places))
-    assert axes.get_xlabel().endswith("; 7 points on the ends not shown")
+    assert axes.get_xlabel().endswith("; 7 points on ends and blunt edges not shown")
 
 
 @pytest.mark.parametrize("draw", [draw_outline_deviation, draw_histogram, draw_table, draw_section])
@@ -302,3 +305,26 @@ def test_the_sheet_is_written_whole(tmp_path, monkeypatch):
 def test_a_path_that_will_not_do_is_refused_before_anything_is_drawn(tmp_path):
     with pytest.raises(FileError, match=r"ends in '.jpg'"):
         fit_picture(None, tmp_path / "fit.jpg")
+
+
+def test_points_on_a_blunt_edge_are_drawn_on_its_face():
+    section = EXAMPLES["naca-6409-blunt"].design.build()
+    face, u = section.curves["trailing_edge"], np.array([0.25, 0.5])
+    upper, off = np.array([0.2, 0.9]), np.array([1e-5, -1e-5, 2e-5, 0.0])
+    places = np.array(["upper", "upper", "trailing_edge", "trailing_edge"])
+    fit = SimpleNamespace(
+        cloud=np.concatenate([section.curves["upper"](upper), face(u)]),
+        built=section,
+        places=places,
+        u=np.concatenate([upper, u]),
+        v=np.zeros(4),
+        inliers=np.ones(4, dtype=bool),
+        deviations=off,
+    )
+    outline = outline_at(fit, 0.0)
+    assert outline.points.all()
+    feet, normals = outline.feet(fit, np.arange(4))
+    assert feet[2:] == pytest.approx(1e3 * face(u), abs=1e-9)
+    chord_line = section.camber.derivative(np.ones(1))[0]
+    assert normals[2] == pytest.approx(chord_line / np.linalg.norm(chord_line), abs=1e-9)
+    assert abscissae(fit, np.arange(4)).tolist() == [0.2, 0.9, 1.0, 1.0]

@@ -53,13 +53,12 @@ def draw_edge(axes: Axes, section: "Section", *, trailing: bool) -> None:
     axes.plot(*shape.T, color=colour)
     camber = developed(section, section.camber(along_curve()))
     axes.plot(*camber.T, color=INK, linewidth=0.9, linestyle=CAMBER)
-    size, said = _size(section, trailing=trailing)
-    widest = PART * float(np.real(section.chord)) * MILLIMETRES
-    if kind == "round" and size < widest:
+    size, said = edge_size(section, trailing=trailing)
+    if kind == "round" and size < PART * float(np.real(section.chord)) * MILLIMETRES:
         centre = tip + size * inwards
         axes.add_patch(Circle((centre[0], centre[1]), size, fill=False, edgecolor=RED, linewidth=1.1, linestyle="--"))
         axes.plot(*centre, marker="+", color=RED, markersize=7.0)
-    reach = min(max(widest, 1.5 * size), REACH * size) if size < widest else widest
+    reach = edge_reach(section, size)
     middle = tip + 0.6 * reach * inwards
     axes.set_xlim(middle[0] - reach, middle[0] + reach)
     axes.set_ylim(middle[1] - reach, middle[1] + reach)
@@ -68,7 +67,13 @@ def draw_edge(axes: Axes, section: "Section", *, trailing: bool) -> None:
     titled(axes, f"{edge}, {said}", *COORDINATES[section.plane])
 
 
-def _size(section: "Section", *, trailing: bool) -> tuple[float, str]:
+def edge_reach(section: "Section", size: float) -> float:
+    """Half width [mm] of the picture of an edge of a size [mm]."""
+    widest = PART * float(np.real(section.chord)) * MILLIMETRES
+    return min(max(widest, 1.5 * size), REACH * size) if size < widest else widest
+
+
+def edge_size(section: "Section", *, trailing: bool) -> tuple[float, str]:
     """A length [mm] that says how large the edge is, and how it is called."""
     kind, end = section.edges[int(trailing)], -1 if trailing else 0
     if kind == "round":

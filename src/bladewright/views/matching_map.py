@@ -53,7 +53,7 @@ def draw_map(axes: Axes, fit: Matched) -> None:
     told += _outliers(axes, fit, outliers, fit.v[outliers])
     others = int(np.count_nonzero(~on_sides(fit)))
     if others:
-        told += f"; {counted(others, 'point')} on the ends not shown"
+        told += f"; {counted(others, 'point')} on ends and blunt edges not shown"
     _dressed(axes)
     axes.set_ylim(-0.03, 1.03)
     titled(axes, "Deviation from the blade", f"{ABSCISSA}\n{told}", "span v [-]")
@@ -92,8 +92,10 @@ def draw_outline_deviation(axes: Axes, fit: Matched) -> None:
 
 
 def abscissae(fit: Matched, index: Index) -> Reals:
-    """u of points on the upper side, -u of those on the lower."""
-    return np.where(fit.places[index] == "lower", -fit.u[index], fit.u[index])
+    """u of points on the upper side, -u of those on the lower; those on the face of a blunt edge stand at the edge."""
+    places = fit.places[index]
+    u = np.where(places == "leading_edge", 0.0, np.where(places == "trailing_edge", 1.0, fit.u[index]))
+    return np.where(places == "lower", -u, u)
 
 
 def _outliers(axes: Axes, fit: Matched, index: Index, ordinate: Reals) -> str:

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from bladewright.numerics.elementary import length
+from bladewright.numerics.elementary import length, unit
 from bladewright.nurbs.basis import Reals
 from bladewright.views.matching_points import SIDES, Index, Matched, on_sides
 from bladewright.views.sections import along_curve, size_of
@@ -15,6 +15,8 @@ if TYPE_CHECKING:
     from bladewright.section.section import Section
 
 FINE = 801
+FACES = ("leading_edge", "trailing_edge")
+"""faces of blunt edges"""
 BAND, WIDEST = 0.04, 0.16
 """half height in v of the band whose points are drawn beside a section, and what it may grow to"""
 ENOUGH = 80
@@ -54,7 +56,20 @@ class Outline:
             for table, found in ((self.sides, feet), (self.outwards, normals)):
                 for axis in (0, 1):
                     found[own, axis] = np.interp(fit.u[index[own]], self.u, table[name][:, axis])
+        for end, name in enumerate(FACES):
+            own = fit.places[index] == name
+            upper, lower = (self.sides[side][-end] for side in SIDES)
+            feet[own] = upper + fit.u[index[own], None] * (lower - upper)
+            normals[own] = -self.inwards(trailing=bool(end))
         return feet, normals
+
+    def inwards(self, *, trailing: bool) -> Reals:
+        """Direction (2,) into the section from its leading or its trailing edge."""
+        end = -1 if trailing else 0
+        if self.section.edges[end] == "round":
+            return -self.outwards["upper"][end]
+        slope = np.real(unit(self.section.camber.derivative(np.array([float(trailing)]))))[0]
+        return np.asarray(-slope if trailing else slope)
 
 
 def outline_at(fit: Matched, v: float) -> Outline:
@@ -74,7 +89,7 @@ def outline_at(fit: Matched, v: float) -> Outline:
         tangent = np.gradient(sides[name], u, axis=0, edge_order=2)
         tangent /= length(tangent)[:, None]
         outwards[name] = sign * np.stack([-tangent[:, 1], tangent[:, 0]], axis=-1)
-    near, band = _near(fit, v) if solid else (on_sides(fit), 0.0)
+    near, band = _near(fit, v) if solid else (_around(fit), 0.0)
     return Outline(
         section=section,
         u=u,
@@ -100,8 +115,13 @@ def span_of(fit: Matched, share: float) -> float:
     return float(np.clip(low + share * (high - low), 0.0, 1.0))
 
 
+def _around(fit: Matched) -> NDArray[np.bool_]:
+    """Whether each point (n,) lies nearest to a side or to the face of a blunt edge."""
+    return on_sides(fit) | np.isin(fit.places, FACES)
+
+
 def _near(fit: Matched, v: float) -> tuple[NDArray[np.bool_], float]:
-    sides, band = on_sides(fit), BAND
+    sides, band = _around(fit), BAND
     while True:
         near = sides & (np.abs(fit.v - v) <= band)
         if np.count_nonzero(near) >= ENOUGH or band >= WIDEST:

@@ -5,8 +5,8 @@ from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
 
 from bladewright.nurbs.basis import Reals
-from bladewright.views.edges import PART, REACH
-from bladewright.views.matching_outline import Outline
+from bladewright.views.edges import edge_reach, edge_size
+from bladewright.views.matching_outline import FACES, Outline
 from bladewright.views.matching_points import (
     COLOURS,
     ROUND,
@@ -81,14 +81,15 @@ def draw_magnified(axes: Axes, fit: Matched, outline: Outline, name: str) -> Non
 def draw_edge_match(axes: Axes, fit: Matched, outline: Outline, *, trailing: bool, where: str) -> None:
     """Draws the leading or the trailing edge of a section with the points there, as they are."""
     section = outline.section
-    radius = section.edge_radii[int(trailing)] * MILLIMETRES
-    tip = outline.sides["upper"][-1 if trailing else 0]
-    inwards = -outline.outwards["upper"][-1 if trailing else 0]
+    size, called = edge_size(section, trailing=trailing)
+    end = -1 if trailing else 0
+    tip = 0.5 * (outline.sides["upper"][end] + outline.sides["lower"][end])
+    inwards = outline.inwards(trailing=trailing)
     chord = float(section.chord) * MILLIMETRES
     off = fit.by_region.get(f"{'trailing' if trailing else 'leading'} edge")
     # a nose that came out far too sharp must not hide how far the points are
     least = max(SHARP * chord, 1.5 * off.maximum * MILLIMETRES if off else 0.0)
-    reach = max(float(np.clip(PART * chord, 1.5 * radius, REACH * radius)), least)
+    reach = max(edge_reach(section, size), least)
     middle = tip + 0.6 * reach * inwards
     axes.fill(*outline.closed.T, color=PALE, linewidth=0.0)
     _draw_tolerance(axes, fit, outline, 1.0)
@@ -96,18 +97,18 @@ def draw_edge_match(axes: Axes, fit: Matched, outline: Outline, *, trailing: boo
     seen = [np.max(np.abs(side - middle), axis=-1) <= 1.2 * reach for side in outline.sides.values()]
     span = float(np.max(np.abs(outline.u - float(trailing))[seen[0] | seen[1]]))
     near = np.zeros_like(outline.points)
-    ahead = fit.u >= 1.0 - span if trailing else fit.u <= span
+    ahead = np.isin(fit.places, FACES) | (fit.u >= 1.0 - span if trailing else fit.u <= span)
     beside = np.flatnonzero(outline.points & fit.inliers & ahead)
     near[beside[np.max(np.abs(_places(fit, outline, beside) - middle), axis=-1) <= 1.05 * reach]] = True
     shown = drawn(fit, near, MOST)
     at = _places(fit, outline, shown)
     # over the points where they would hide it
     axes.plot(*outline.closed.T, color=INK, linewidth=1.2, zorder=3.5 if len(shown) > 1000 else 2.5)
-    size = float(np.clip(6e3 / max(len(shown), 1), 3.0, 26.0))
+    dot = float(np.clip(6e3 / max(len(shown), 1), 3.0, 26.0))
     axes.scatter(
         at[:, 0],
         at[:, 1],
-        s=size,
+        s=dot,
         c=millimetres(fit, shown),
         cmap=COLOURS,
         norm=scale_of(fit),
@@ -122,7 +123,7 @@ def draw_edge_match(axes: Axes, fit: Matched, outline: Outline, *, trailing: boo
     axes.set_aspect("equal", adjustable="box", anchor="N")
     edge = "Trailing" if trailing else "Leading"
     abscissa, ordinate = COORDINATES[section.plane]
-    told = f"{counted(int(np.count_nonzero(near)), 'point')}, radius {radius:.3g} mm"
+    told = f"{counted(int(np.count_nonzero(near)), 'point')}, {called}"
     titled(axes, f"{edge} edge{where}", f"{abscissa}\n{told if not where else 'its worst: ' + told}", ordinate)
 
 
