@@ -15,6 +15,9 @@ from bladewright.section.laws import DEGREE, law_basis
 HELD = 1e-13
 """deviation of a law from its values, of the largest, that is rounding"""
 
+ROUNDING = 1e-15
+"""control points smaller than this, of the largest value, are 0"""
+
 
 def section_places(spans: Reals) -> Reals:
     """Span fractions (m,) of a design at which the sections with given spans (m,) stand, from 0 to 1."""
@@ -41,9 +44,13 @@ def law_through(values: Reals, places: Reals) -> Law:
         rows = law_basis(count, places)
         controls = np.linalg.lstsq(rows, values, rcond=None)[0]
         if np.max(np.abs(rows @ controls - values)) <= HELD * scale:
-            return tuple(float(each) for each in controls)
-    controls = np.linalg.solve(law_basis(len(values), places), values)
-    return tuple(float(each) for each in controls)
+            return _plain(controls, scale)
+    return _plain(np.linalg.solve(law_basis(len(values), places), values), scale)
+
+
+def _plain(controls: Reals, scale: float) -> Law:
+    """Control points, rounding about 0 left out: it may have the sign that a number must not have."""
+    return tuple(0.0 if abs(each) < ROUNDING * scale else float(each) for each in controls)
 
 
 def laws_through(values: Reals, places: Reals) -> ChordwiseLaw:
