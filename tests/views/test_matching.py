@@ -316,7 +316,7 @@ def test_points_on_a_blunt_edge_are_drawn_on_its_face():
         cloud=np.concatenate([section.curves["upper"](upper), face(u)]),
         built=section,
         places=places,
-        u=np.concatenate([upper, u]),
+        u=np.append(upper, [1.0, 1.0]),
         v=np.zeros(4),
         inliers=np.ones(4, dtype=bool),
         deviations=off,

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from bladewright.numerics.elementary import length, unit
+from bladewright.numerics.elementary import dot, length, unit
 from bladewright.nurbs.basis import Reals
 from bladewright.views.matching_points import SIDES, Index, Matched, on_sides
 from bladewright.views.sections import along_curve, size_of
@@ -59,7 +59,7 @@ class Outline:
         for end, name in enumerate(FACES):
             own = fit.places[index] == name
             upper, lower = (self.sides[side][-end] for side in SIDES)
-            feet[own] = upper + fit.u[index[own], None] * (lower - upper)
+            feet[own] = upper + _across(fit, index[own], float(end))[:, None] * (lower - upper)
             normals[own] = -self.inwards(trailing=bool(end))
         return feet, normals
 
@@ -113,6 +113,16 @@ def span_of(fit: Matched, share: float) -> float:
     covered = fit.v[fit.inliers & on_sides(fit)]
     low, high = (float(covered.min()), float(covered.max())) if len(covered) else (0.0, 1.0)
     return float(np.clip(low + share * (high - low), 0.0, 1.0))
+
+
+def _across(fit: Matched, index: Index, end: float) -> Reals:
+    """Shares (m,) of the way from the upper to the lower side at which points stand on the face of a blunt edge."""
+    if fit.cloud.shape[-1] == 3:
+        upper, lower = (np.real(fit.built.surfaces[name](end, fit.v[index])) for name in SIDES)
+    else:
+        upper, lower = (np.real(fit.built.curves[name](np.full(len(index), end))) for name in SIDES)
+    way = lower - upper
+    return np.clip(dot(fit.cloud[index] - upper, way) / dot(way, way), 0.0, 1.0)
 
 
 def _around(fit: Matched) -> NDArray[np.bool_]:
