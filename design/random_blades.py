@@ -62,6 +62,11 @@ def random_fields(seed):
     return {**blade, **random_clearance(seed, channel), "channel": Channel(**channel)}
 
 
+def random_shape(seed):
+    """The kind of channel of a seed."""
+    return random_fields(seed)["description"].split(",")[0]
+
+
 def random_clearance(seed, channel):
     """A gap at one end of some blades, of a thousandth to a tenth of the span, drawn apart from the rest."""
     draw = np.random.default_rng([seed, 1])

@@ -1,10 +1,12 @@
 """Designs drawn at random: each is refused with a reason, or becomes a solid that passes its round trip.
 
     python design/random_designs.py --count 2000 --jobs 2 --record design/random_designs.md
+    python design/random_designs.py --of sections --count 1000 --jobs 2 --record design/random_sections.md
     python design/random_designs.py --seed 17 --count 1 --show
 
-A design follows from its seed alone (random_blades.py). It is built in a process that may die, so that a crash of the
-kernel or a hang is a result like any other. The result of the first command is recorded in design/random_designs.md.
+A design follows from its seed alone (random_blades.py, random_sections.py). It is built in a process that may die, so
+that a crash of the kernel or a hang is a result like any other. The results of the first commands are recorded in the
+files that they name.
 """
 
 import argparse
@@ -17,11 +19,16 @@ import tempfile
 import time
 import traceback
 from collections import Counter, defaultdict
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, is_dataclass
+from functools import cache
 from pathlib import Path
 
 import numpy as np
-from random_blades import random_design, random_fields
+import random_blades
+import random_sections
+
+DRAWN = {"unified": random_blades, "sections": random_sections}
+"""what designs are drawn by"""
 
 LIMIT = 60.0
 """seconds of processor time that a design may take; ten times as much on the clock"""
@@ -73,12 +80,12 @@ class Outcome:
     shape: str
 
 
-def judged(seed, directory, samples=SAMPLES):
+def judged(seed, directory, samples=SAMPLES, of="unified"):
     """What becomes of the design of a seed: its kind, and why."""
     from bladewright.errors import DesignError
 
     try:
-        design = random_design(seed)
+        design = DRAWN[of].random_design(seed)
         blade = design.build()
     except DesignError as error:
         wrong = unclear(str(error))
@@ -116,16 +123,25 @@ def with_passage(blade):
 
 def unclear(message):
     """What is wrong with a refusal that is not one clear paragraph that names a parameter, or nothing."""
-    from bladewright.blade.channel import Channel
-    from bladewright.blade.unified import UnifiedBlade
-
-    names = [each.name for kind in (UnifiedBlade, Channel) for each in fields(kind)]
-    names += ["upstream", "downstream"]
+    names = {each.name for kind in _parts() for each in fields(kind)} | {"upstream", "downstream"}
     if "\n" in message or not 40 <= len(message) <= 500:
         return "not one paragraph"
     if not re.search(rf"\b({'|'.join(names)})\b", message):
         return "names no parameter"
     return ""
+
+
+@cache
+def _parts():
+    """The classes whose fields are the parameters of designs."""
+    from bladewright.designs import Part
+
+    found, todo = [], [Part]
+    while todo:
+        kind = todo.pop()
+        todo += kind.__subclasses__()
+        found += [kind] if is_dataclass(kind) else []
+    return found
 
 
 def reason_of(message):
@@ -136,23 +152,23 @@ def reason_of(message):
 def _work(pipe):
     with tempfile.TemporaryDirectory() as directory:
         while True:
-            seed, samples, limit = pipe.recv()
+            seed, samples, limit, of = pipe.recv()
             # the kernel ends a process that reaches it, in compiled code too
             signal.setitimer(signal.ITIMER_PROF, limit)
             start = time.process_time()
             try:
-                kind, message = judged(seed, directory, samples)
+                kind, message = judged(seed, directory, samples, of)
             except Exception:  # noqa: BLE001 - whatever it is, it is what became of the design
                 kind, message = "failed", traceback.format_exc()
             signal.setitimer(signal.ITIMER_PROF, 0.0)
             pipe.send((kind, message, time.process_time() - start))
 
 
-def outcomes(seeds, jobs=1, limit=LIMIT, samples=SAMPLES):
+def outcomes(seeds, jobs=1, limit=LIMIT, samples=SAMPLES, of="unified"):
     """Yield the outcome of each seed, in any order, from `jobs` processes that are replaced where they die."""
     context = multiprocessing.get_context("spawn")
     todo = list(reversed(seeds))
-    workers = [_Worker(context, todo.pop(), limit, samples) for _ in range(min(jobs, len(todo)))]
+    workers = [_Worker(context, todo.pop(), limit, samples, of) for _ in range(min(jobs, len(todo)))]
     while workers:
         ready = multiprocessing.connection.wait(
             [waitable for worker in workers for waitable in (worker.pipe, worker.process.sentinel)], timeout=0.2
@@ -170,8 +186,8 @@ def outcomes(seeds, jobs=1, limit=LIMIT, samples=SAMPLES):
 
 
 class _Worker:
-    def __init__(self, context, seed, limit, samples):
-        self.context, self.limit, self.samples = context, limit, samples
+    def __init__(self, context, seed, limit, samples, of):
+        self.context, self.limit, self.samples, self.of = context, limit, samples, of
         self._start()
         self.ask(seed)
 
@@ -183,7 +199,7 @@ class _Worker:
 
     def ask(self, seed):
         self.seed, self.since = seed, time.perf_counter()
-        self.pipe.send((seed, self.samples, self.limit))
+        self.pipe.send((seed, self.samples, self.limit, self.of))
 
     def outcome(self, ready):
         if self.pipe in ready:
@@ -205,7 +221,7 @@ class _Worker:
         return self._outcome("crashed", f"exit code {code}", float("nan"))
 
     def _outcome(self, kind, message, seconds):
-        shape = random_fields(self.seed)["description"].split(",")[0]
+        shape = DRAWN[self.of].random_shape(self.seed)
         return Outcome(seed=self.seed, kind=kind, message=message, seconds=seconds, shape=shape)
 
     def end(self):
@@ -264,12 +280,14 @@ def main():
     parser.add_argument("--jobs", type=int, default=1)
     parser.add_argument("--samples", type=int, default=SAMPLES)
     parser.add_argument("--record", type=Path, help="Markdown file for the result")
+    parser.add_argument("--of", choices=list(DRAWN), default="unified", help="what is drawn")
     parser.add_argument("--show", action="store_true", help="print each design as its file holds it")
     given = parser.parse_args()
     if given.show:
-        _show(range(given.seed, given.seed + given.count))
+        _show(range(given.seed, given.seed + given.count), given.of)
     found = []
-    for outcome in outcomes(range(given.seed, given.seed + given.count), jobs=given.jobs, samples=given.samples):
+    seeds = range(given.seed, given.seed + given.count)
+    for outcome in outcomes(seeds, jobs=given.jobs, samples=given.samples, of=given.of):
         found.append(outcome)
         if outcome.kind != "refused" or given.show:
             print(f"seed {outcome.seed}: {outcome.kind} in {outcome.seconds:.1f} s: {outcome.message}", flush=True)
@@ -281,7 +299,7 @@ def main():
     return 1 if any(outcome.kind not in FINE for outcome in found) else 0
 
 
-def _show(seeds):
+def _show(seeds, of):
     from bladewright.errors import DesignError
     from bladewright.files.writing import write_design
 
@@ -289,7 +307,7 @@ def _show(seeds):
         with tempfile.TemporaryDirectory() as directory:
             path = Path(directory) / "design.toml"
             try:
-                write_design(random_design(seed), path)
+                write_design(DRAWN[of].random_design(seed), path)
                 print(path.read_text())
             except DesignError as error:
                 print(f"seed {seed}: {error}")

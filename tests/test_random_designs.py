@@ -42,8 +42,9 @@ def test_a_fair_share_of_random_designs_is_built_and_another_refused(outcomes):
 
 
 def test_a_random_design_follows_from_its_seed_alone():
-    assert random_designs.random_fields(7) == random_designs.random_fields(7)
-    assert random_designs.random_fields(7) != random_designs.random_fields(8)
+    for drawn in random_designs.DRAWN.values():
+        assert drawn.random_design(7) == drawn.random_design(7)
+        assert drawn.random_design(7) != drawn.random_design(8)
 
 
 def test_a_design_that_takes_too_long_is_a_hang_and_the_next_one_is_built_all_the_same():

@@ -143,12 +143,13 @@ def matched_line(along: Measured, match: Match, low: float, high: float) -> Matc
     own = np.sort(np.concatenate([match.places(levels, low, high), match.breaks[1:-1]]))
     ends = np.concatenate([[low], distinct(own, low, high), [high]])
     count = FEW if along.lines is None and match.powers.shape[-2] == 2 else NODES
-    for _ in range(HALVINGS):
-        powers, tail = _fitted(along, match, ends, count)
+    powers, tail = _fitted(along, match, ends, count)
+    for _ in range(0 if count == FEW else HALVINGS):
         poor = tail > SETTLED
-        if not np.any(poor) or count == FEW:
+        if not np.any(poor):
             break
         ends = np.sort(np.concatenate([ends, ((ends[:-1] + ends[1:]) / 2.0)[poor]]))
+        powers, tail = _fitted(along, match, ends, count)
     return MatchedLine(breaks=ends, powers=powers)
 
 
