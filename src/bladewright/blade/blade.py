@@ -116,10 +116,11 @@ class Blade:
 
     @cached_property
     def sections(self) -> tuple["Section", ...]:
-        """Sections at hub, mid-span and shroud, and on the flow path's given stream surfaces, from hub to shroud."""
-        path = getattr(self.design, "flow_path", None)
-        spans = {0.0, 0.5, 1.0} | (set() if path is None else set(path.spans))
-        return tuple(self.section(v) for v in sorted(spans))
+        """Sections at hub, mid-span and shroud, and where a design gives more, from hub to shroud.
+
+        Ruled blades have those at hub and shroud, developable ones that at the hub.
+        """
+        return tuple(self.section(v) for v in self.exact.section_spans)
 
     def section(self, v: float) -> "Section":
         """The exact section at v in [0, 1], in its plane, with the properties it has on its stream surface."""

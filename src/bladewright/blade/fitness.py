@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bladewright.blade.knots import DEGREE, MOST_POLES, Knots, clamped, refined
+from bladewright.blade.knots import DEGREE, MOST_POLES, Knots, clamped, refined, sites_through
 from bladewright.blade.laid import EdgeRow
 from bladewright.blade.meant import Meant
 from bladewright.blade.native import interpolated_along_u, lower_edges
@@ -12,10 +12,18 @@ from bladewright.numerics.elementary import dot, length
 from bladewright.nurbs.basis import Reals, basis, greville
 from bladewright.nurbs.surface import Surface
 
+SECTIONS = 1e-9
+"""distance of the sides' curves of constant v from the sections that are given, of the chord"""
+SECTIONS_SHARE = 1e-3
+"""the same as a share of the tolerance, where that is coarser"""
 WALL_TOLERANCE = 1e-7
 """distance of the blade's ends from hub and shroud, of the chord"""
+SAME = 1e-9
+"""span fractions nearer than this are one"""
 RESERVE = 0.4
 """share of a tolerance that one direction may use while knots are sought"""
+SECTIONS_RESERVE = 0.8
+"""the same of the limit of sections that are given"""
 
 
 def chord_of(exact: Meant) -> float:
@@ -26,18 +34,33 @@ def chord_of(exact: Meant) -> float:
 
 def knots_for(exact: Meant, chord: float) -> Knots:
     """Knots with which the native sides meet the design's tolerance, and their ends lie on the walls."""
-    tolerance = exact.design.tolerance * chord
-    along_u = refined(clamped(exact.breaks_along_u()), _LinesAlongU(exact, tolerance, chord), MOST_POLES[0])
-    along_v = refined(clamped(exact.breaks_along_v()), _LinesAlongV(exact, tolerance, along_u), MOST_POLES[1])
-    return Knots(u=along_u, v=along_v, tip=exact.tip_knots)
+    tolerance, spans = exact.design.tolerance * chord, exact.given_spans
+    starts = clamped(exact.breaks_along_u()), exact.breaks_along_v()
+    along_u = refined(starts[0], _LinesAlongU(exact, tolerance, chord, spans), MOST_POLES[0])
+    if len(spans) and len(along_u) - DEGREE - 1 > MOST_POLES[0]:
+        spans = spans[:0]
+        along_u = refined(starts[0], _LinesAlongU(exact, tolerance, chord, spans), MOST_POLES[0])
+    # a knot at each makes sure of a site nearby
+    own = [v for v in spans if 0.0 < v < 1.0 and np.min(np.square(starts[1] - v), initial=1.0) > SAME**2]
+    lines = _LinesAlongV(exact, tolerance, along_u, spans)
+    along_v = refined(clamped(np.concatenate([starts[1], own])), lines, MOST_POLES[1])
+    return Knots(u=along_u, v=along_v, tip=exact.tip_knots, sections=spans if len(spans) else None)
+
+
+def sections_limit(tolerance: float) -> float:
+    """Largest distance of curves of constant v from the sections that are given, of the chord, by the tolerance."""
+    return max(SECTIONS, SECTIONS_SHARE * tolerance)
 
 
 class _LinesAlongU:
     """Error over tolerance along sections of the exact blade that are interpolated in u alone."""
 
-    def __init__(self, exact: Meant, tolerance: float, chord: float) -> None:
-        self.stations = exact.survey
-        self.tolerance = RESERVE * tolerance
+    def __init__(self, exact: Meant, tolerance: float, chord: float, spans: Reals) -> None:
+        v = np.union1d(exact.survey.v, spans)
+        self.stations = exact.survey if len(v) == len(exact.survey.v) else exact.stations(v)
+        # along v there is no error at these, so that most of their limit is left for u
+        limit = min(SECTIONS_RESERVE * sections_limit(tolerance / chord) * chord, RESERVE * tolerance)
+        self.tolerance = np.where(np.isin(v, spans), limit, RESERVE * tolerance)[:, None]
         self.wall_tolerance = RESERVE * min(WALL_TOLERANCE * chord, tolerance)
         upper = self.stations.leading_edge(), self.stations.trailing_edge()
         self.edges = upper, lower_edges(upper, self.stations.lower_edges())
@@ -55,7 +78,7 @@ class _LinesAlongU:
             net = interpolated_along_u(lines, *edges, knots)
             native = np.tensordot(basis(knots, DEGREE, places), net, axes=1).swapaxes(0, 1)
             error = native - points[:, len(sites) :]
-            worst = np.maximum(worst, np.max(length(error), axis=0) / self.tolerance)
+            worst = np.maximum(worst, np.max(length(error) / self.tolerance, axis=0))
             off = dot(error, normals[:, len(sites) :])[[0, -1]]
             gap = np.max(np.abs(off), axis=0)  # real: knots come from the real design
             worst = np.maximum(worst, gap / self.wall_tolerance)
@@ -65,15 +88,15 @@ class _LinesAlongU:
 class _LinesAlongV:
     """Error over tolerance along lines of constant u that are interpolated in v alone."""
 
-    def __init__(self, exact: Meant, tolerance: float, knots_u: Reals) -> None:
-        self.exact = exact
+    def __init__(self, exact: Meant, tolerance: float, knots_u: Reals, through: Reals) -> None:
+        self.exact, self.through = exact, through
         self.tolerance = RESERVE * tolerance
         spans = np.unique(knots_u)
         step = max(1, (len(spans) - 1) // 24)
         self.s = np.concatenate([[0.0], (spans[:-1:step] + spans[1::step]) / 2.0, [1.0]])
 
     def __call__(self, knots: Reals, places: Reals) -> Reals:
-        sites = greville(knots, DEGREE)
+        sites = sites_through(knots, self.through)
         both = np.concatenate([sites, places])
         stations = self.exact.stations(both)
         matrix = basis(knots, DEGREE, sites)

@@ -1,7 +1,7 @@
 """The flow path of blades from sections, as a design: hub, shroud and the stream surfaces between them."""
 
 from dataclasses import dataclass
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 
@@ -60,18 +60,11 @@ class FlowPath(Part):
         count = len(self.stream_surfaces)
         if not self.stream_spans:
             return ()
-        given = tuple(checks.number(f"stream_spans[{i}]", v) for i, v in enumerate(self.stream_spans))
-        if len(given) != count:
+        if checks.is_sequence(self.stream_spans) and len(self.stream_spans) != count:
             raise DesignError(
                 f"stream_spans has {len(self.stream_spans)} entries for {count} stream_surfaces: give one for each"
             )
-        for i, (before, v, after) in enumerate(zip((0.0, *given), given, (*given[1:], 1.0), strict=False)):
-            if np.ndim(v) > 0 or np.iscomplexobj(v) or not before < v < after:
-                raise DesignError(
-                    f"stream_spans[{i}] is {v}: span fractions are plain numbers that increase between 0 at the hub "
-                    "and 1 at the shroud; put the stream_surfaces in the order from hub to shroud"
-                )
-        return given
+        return increasing_spans("stream_spans", self.stream_spans, "; put stream_surfaces in the order from the hub")
 
     def _pairs(self) -> tuple[Pair, ...]:
         if not self.quasi_orthogonals:
@@ -98,3 +91,17 @@ class FlowPath(Part):
                 before[k] = real
             pairs.append((both[0], both[1]))
         return tuple(pairs)
+
+
+def increasing_spans(path: str, value: Any, cure: str = "") -> tuple[float, ...]:
+    """Span fractions that increase inside 0 and 1, or a refusal that ends on a cure."""
+    if not checks.is_sequence(value):
+        raise DesignError(f"{path} is {value!r}: a list of span fractions is needed")
+    given = tuple(checks.number(f"{path}[{i}]", v) for i, v in enumerate(value))
+    for i, (before, v, after) in enumerate(zip((0.0, *given), given, (*given[1:], 1.0), strict=False)):
+        if np.ndim(v) > 0 or np.iscomplexobj(v) or not before < v < after:
+            raise DesignError(
+                f"{path}[{i}] is {v}: span fractions are plain numbers that increase between 0 at the hub and 1 at the "
+                f"shroud{cure}"
+            )
+    return given

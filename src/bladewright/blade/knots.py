@@ -29,12 +29,16 @@ class Knots:
     v: Reals
     tip: Reals | None = None
     """of the meridian of its clearance surface, where it has one"""
+    sections: Reals | None = None
+    """places along v that are interpolated besides, as far as there are sites near them"""
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "u", frozen(self.u))
         object.__setattr__(self, "v", frozen(self.v))
         if self.tip is not None:
             object.__setattr__(self, "tip", frozen(self.tip))
+        if self.sections is not None:
+            object.__setattr__(self, "sections", frozen(self.sections))
 
     @property
     def sites_u(self) -> Reals:
@@ -44,12 +48,30 @@ class Knots:
     @property
     def sites_v(self) -> Reals:
         """Places along v where the sides are interpolated."""
-        return greville(self.v, DEGREE)
+        return sites_through(self.v, self.sections)
 
     @property
     def poles(self) -> tuple[int, int]:
         """Control points along u and v."""
         return len(self.u) - DEGREE - 1, len(self.v) - DEGREE - 1
+
+
+def sites_through(knots: Reals, places: Reals | None) -> Reals:
+    """Places where a spline is interpolated: Greville's abscissae, of which the nearest are moved to given places.
+
+    One is not moved where it would leave the stretch on which its basis function is not zero, without which there is no
+    spline, or where another place has moved it already.
+    """
+    sites = np.array(greville(knots, DEGREE))
+    moved = {0, len(sites) - 1}
+    for place in () if places is None else np.sort(places):
+        if place in sites:
+            continue
+        i = int(np.argmin(np.square(sites - place)))
+        if i not in moved and knots[i] < place < knots[i + DEGREE + 1] and sites[i - 1] < place < sites[i + 1]:
+            sites[i] = place
+            moved.add(i)
+    return sites
 
 
 def breaks_along_u(exact: "ExactBlade") -> Reals:

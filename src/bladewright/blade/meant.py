@@ -4,6 +4,8 @@ from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from typing import Any, NamedTuple, Self
 
+import numpy as np
+
 from bladewright.blade.course import Course
 from bladewright.blade.laid import Laid
 from bladewright.blade.mapping import Mapping
@@ -82,6 +84,16 @@ class Meant(ABC):
     @abstractmethod
     def whole(self) -> Self:
         """The same without gaps, from wall to wall of the channel."""
+
+    @property
+    def given_spans(self) -> Reals:
+        """Span fractions (n,) at which curves of constant v of the sides are to be the sections that are given."""
+        return np.empty(0)
+
+    @property
+    def section_spans(self) -> tuple[float, ...]:
+        """Span fractions of the sections that are shown."""
+        return 0.0, 0.5, 1.0
 
     @property
     def tip_knots(self) -> Reals | None:

@@ -8,8 +8,10 @@ import numpy as np
 
 from bladewright.blade.clearance import off_distance
 from bladewright.blade.exact import ExactBlade
+from bladewright.blade.fitness import sections_limit
 from bladewright.blade.laid import Laid
 from bladewright.blade.meridian_line import real_first
+from bladewright.blade.ruled import RuledStations
 from bladewright.blade.stations import Stations
 from bladewright.numerics.elementary import Array, cross2, degrees, dot, length, unit
 from bladewright.nurbs.basis import Reals
@@ -36,8 +38,9 @@ class Promises:
     """angle between the sides' tangent planes across round edges [rad]"""
     edge_curvatures: float | None
     """jump of the normal curvatures across round edges, of the largest of them and not less than 1 / chord [-]"""
-    stream_surfaces: float
-    """distance of curves of constant v from their stream surfaces, of the chord [-]"""
+    stream_surfaces: float | None
+    """distance of curves of constant v from their stream surfaces, of the chord; none of ruled blades, whose curves lie
+    on none [-]"""
     walls: float
     """distance of the blade's ends from hub and shroud, or from the clearance surface, of the chord [-]"""
     surface: float
@@ -46,6 +49,9 @@ class Promises:
     """what each may be"""
     clearance: float | None = None
     """of the tip surface's distance from its wall from the stated one, of the chord, where there is a clearance [-]"""
+    sections: float | None = None
+    """distance of the sides' curves of constant v from the sections that a design gives, at equal parameters, of the
+    chord; limited where 200 poles along the sections suffice [-]"""
 
     @property
     def kept(self) -> bool:
@@ -112,18 +118,22 @@ def promises_of(blade: "Blade") -> Promises:
     }
     lost = {"metal_angle_at_walls", "metal_angle_between", "edge_radius"}
     lost = lost if getattr(blade.design, "mapping", "conformal") == "paper" else set()
-    limits = {**LIMITS, "stream_surfaces": tolerance, "surface": tolerance}
+    ruled = isinstance(stations, RuledStations)
+    limits = {**LIMITS, "surface": tolerance} | ({} if ruled else {"stream_surfaces": tolerance})
     limits = {name: limit for name, limit in limits.items() if name not in lost and figures.get(name, 0.0) is not None}
     clearance = _off_clearance(blade)
     if clearance is not None:
         limits["clearance"] = CLEARANCE
+    if blade.knots.sections is not None:
+        limits["sections"] = sections_limit(tolerance)
     return Promises(
         **figures,
-        stream_surfaces=off / blade.chord,
+        stream_surfaces=None if ruled else off / blade.chord,
         walls=max(ends / blade.chord, blade.wall_error),
         surface=blade.error,
         limits=limits,
         clearance=clearance,
+        sections=_off_sections(blade),
     )
 
 
@@ -163,7 +173,8 @@ def _angle_and_radius(stations: Laid, row: dict[tuple[int, int], Array], end: in
     plane_first = np.stack([along, across], axis=-1)
     plane_second = np.stack([dot(second, meridional), dot(second, tangential)], axis=-1)
     curvature = cross2(plane_first, plane_second) / length(plane_first) ** 3
-    return turn, 1.0 / np.abs(curvature)  # real: a measured radius
+    with np.errstate(divide="ignore"):
+        return turn, 1.0 / np.abs(curvature)  # real: a measured radius, without end where the edge is flat
 
 
 def _smoothness(row: list[dict[tuple[int, int], Array]], least: float) -> tuple[Reals, Reals]:
@@ -180,6 +191,18 @@ def _smoothness(row: list[dict[tuple[int, int], Array]], least: float) -> tuple[
         forms.append(np.stack([*terms, dot(side[0, 2], normal) / sizes[1] ** 2], axis=-1) * sign)
     jump = np.max(np.abs(forms[0] - forms[1]), axis=-1)  # real: measured curvatures
     return plane, jump / np.maximum(np.max(np.abs(forms[0]), axis=-1), least)  # real: measured curvatures
+
+
+def _off_sections(blade: "Blade") -> float | None:
+    """Largest distance of the sides from the exact sections at the spans that a design gives, of the chord."""
+    spans = blade.exact.given_spans
+    if len(spans) == 0:
+        return None
+    knots = np.unique(blade.sides[0].knots_u)
+    u = np.sort(np.concatenate([knots[:-1] + share * np.diff(knots) for share in (0.21, 0.5, 0.83)]))
+    sides = zip(blade.sides, blade.exact.stations(spans).points(u), strict=True)
+    misses = [np.real(side.grid(u, spans).swapaxes(0, 1) - points) for side, points in sides]
+    return float(np.max(length(np.stack([miss.reshape(-1, *miss.shape[-2:]) for miss in misses])))) / blade.chord
 
 
 def _off_clearance(blade: "Blade") -> float | None:

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Literal
 
 from bladewright.blade.arrangement import check_arrangement
-from bladewright.blade.flow_path import FlowPath
+from bladewright.blade.flow_path import FlowPath, increasing_spans
 from bladewright.blade.meridian import Meridian, meridian_at
 from bladewright.blade.stacking import Stacking
 from bladewright.designs import Design, Law, Part, parameter
@@ -69,6 +69,9 @@ class SectionedBlade(Design):
     skinning: Literal["sections", "ruled", "developable"] = "sections"
     """what lies between hub and shroud: the section at every v; straight lines between the points of equal s of the
     sections at hub and shroud; or the hub's section moved along parallel straight lines, as a flank cutter makes it"""
+    section_spans: tuple[float, ...] = ()
+    """further span fractions, increasing inside 0 and 1, at which the built surface's curve of constant v is the
+    section to 1e-9 of the chord, as at hub, shroud and the flow path's stream surfaces it is [-]"""
     section: Any
     """the family's parameters, each a law along the span"""
     tolerance: float = 1e-6
@@ -93,6 +96,7 @@ class SectionedBlade(Design):
         if not isinstance(self.section, Part):
             raise DesignError(f"section is {self.section!r}: the family's parameters are needed")
         self._check_skinning()
+        object.__setattr__(self, "section_spans", increasing_spans("section_spans", self.section_spans))
 
     def _check_skinning(self) -> None:
         """Laws that have no part in the blade: those between hub and shroud, or of the shroud."""

@@ -76,6 +76,19 @@ class SectionedExact(Meant):
         points = reference_points(self.design.stacking, plane.outline, Span(ENDS))
         return self.rails.in_space(plane.placed(points[..., None, :]))[..., 0, :]
 
+    @property
+    def given_spans(self) -> Reals:
+        if self.design.skinning == "ruled":
+            return ENDS
+        return np.unique([*self.design.flow_path.spans, *self.design.section_spans])
+
+    @property
+    def section_spans(self) -> tuple[float, ...]:
+        if self.design.skinning == "developable":
+            return (0.0,)
+        spans = np.union1d(self.given_spans, [] if self.design.skinning == "ruled" else [0.5])
+        return tuple(float(v) for v in spans)
+
     def moved_to(self, design: SectionedBlade) -> "SectionedExact":
         return sectioned_exact(design, checked=False)
 

@@ -7,7 +7,8 @@ from typing import cast
 import numpy as np
 
 from bladewright.blade.meant import Meant
-from bladewright.blade.outline_stations import StaggeredSections
+from bladewright.blade.outline_stations import OutlineStations
+from bladewright.blade.sectioned_exact import SectionedExact
 from bladewright.blade.stations import Stations
 from bladewright.errors import DesignError
 from bladewright.numerics.elementary import Array
@@ -55,12 +56,11 @@ def smoothness_at(exact: Meant, v: float) -> Smoothness:
     stations = exact.stations(np.array([v]))
     if isinstance(stations, Stations):
         return smoothness(section_at(exact, v))
-    return smoothness(cast(StaggeredSections, stations.plane).outline)
+    return smoothness(_laid(exact, v).plane.outline)
 
 
 def _of_family(exact: Meant, v: float, scale: Callable[[Array], Array]) -> Section:
-    at, part = np.array([v]), exact.design.section
-    plane = cast(StaggeredSections, exact.stations(at).plane)
+    at, part, plane = np.array([v]), exact.design.section, _laid(exact, v).plane
     turn, chord, start = (np.ravel(each)[0] for each in (plane.stagger, plane.chord, plane.start))
     return native_section(
         plane.outline,
@@ -73,3 +73,15 @@ def _of_family(exact: Meant, v: float, scale: Callable[[Array], Array]) -> Secti
         scale=scale,
         meanline=meanline_of(part, Span(at)),
     )
+
+
+def _laid(exact: Meant, v: float) -> OutlineStations:
+    """The family's section at v; DesignError where the blade has none there."""
+    own = cast(SectionedExact, exact)
+    if own.design.skinning != "sections" and v not in own.section_spans:
+        where = "hub and shroud" if own.design.skinning == "ruled" else "the hub"
+        raise DesignError(
+            f"a section was asked at v = {v:g} of a blade whose skinning is '{own.design.skinning}': it has the "
+            f"design's sections at {where} alone; ask there, or take skinning = 'sections'"
+        )
+    return own.sections(np.array([v]))
