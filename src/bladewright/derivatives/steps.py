@@ -90,6 +90,9 @@ def _is_sought(blade: Blade, change: Mapping[str, complex]) -> bool:
     if isinstance(blade.design, UnifiedBlade):
         walls = any(path.startswith("channel.") or "clearance" in path for path in real)
         return walls and blade.exact.tip_knots is not None
+    if blade.design.leading_edge is None or blade.design.skinning == "developable":
+        # the edges follow from the sections
+        return len(real) > 0
     return not all(path.startswith(("section.", "leading_edge_theta", "leading_edge_y", "pitch")) for path in real)
 
 
