@@ -4,6 +4,7 @@ from typing import Any
 
 from bladewright.blade.blade import Blade
 from bladewright.blade.sections import smoothness_at
+from bladewright.blade.shown_spans import shown_spans
 from bladewright.section.section import Section
 from bladewright.section.smoothness import smoothness
 
@@ -16,7 +17,7 @@ def smoothness_data(built: Blade | Section) -> list[dict[str, Any]]:
     """Curvature and slope with their jumps, by line, of the sections at hub, mid-span and shroud, or of one section."""
     if isinstance(built, Section):
         return [{"span": built.span, **smoothness(built).to_dict()}]
-    return [{"span": v, **smoothness_at(built.exact, v).to_dict()} for v in SPANS]
+    return [{"span": v, **smoothness_at(built.exact, v).to_dict()} for v in shown_spans(built.exact, SPANS)]
 
 
 def smoothness_rows(found: list[dict[str, Any]]) -> list[tuple[str, str]]:

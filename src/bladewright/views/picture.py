@@ -10,6 +10,7 @@ from matplotlib.figure import Figure
 from bladewright.blade.blade import Blade
 from bladewright.blade.sectioned import SectionedBlade
 from bladewright.blade.sections import smoothness_at
+from bladewright.blade.shown_spans import MIDDLE, shown_spans
 from bladewright.blade.unified import UnifiedBlade
 from bladewright.domain.passage import Passage
 from bladewright.domain.section import SectionPassage
@@ -28,7 +29,7 @@ from bladewright.views.passage_solid import draw_passage_solid
 from bladewright.views.sections import draw_passage, draw_sections, pitch_of
 from bladewright.views.smoothness import draw_smoothness
 from bladewright.views.solid import draw_solid
-from bladewright.views.style import MILLIMETRES, manner
+from bladewright.views.style import MILLIMETRES, manner, span_name
 from bladewright.views.thickness import draw_thickness, draw_thickness_laws
 from bladewright.views.writing import checked, write
 
@@ -110,9 +111,9 @@ def sheet(design: Drawable, blade: Built | None = None) -> Figure:
 
 
 def _blade_sheet(blade: Blade) -> Figure:
-    sections = [blade.section(v) for v in SPANS]
+    sections = [blade.section(v) for v in shown_spans(blade.exact, SPANS)]
     few = [section for section in sections if section.span in FEW]
-    middle = sections[2]
+    middle = sections[len(sections) // 2]
     pitch = pitch_of(blade, middle)
     panels = panels_of(blade.design)
     charts = [partial(draw_laws, panel=panel) for panel in panels]
@@ -127,13 +128,15 @@ def _blade_sheet(blade: Blade) -> Figure:
     draw_solid(axes[0], blade, neighbours=2, width=760)
     axes[0].set_title("Blade with neighbours")
     draw_sections(axes[1], sections, blade.design.ends)
-    draw_passage(axes[2], middle, pitch, "Mid span", blade)
+    draw_passage(axes[2], middle, pitch, _place(middle, blade.design.ends), blade)
     axes = centre.subplots(1, 3)
     draw_meridional(axes[0], blade)
     draw_curvature(axes[1], few, blade.design.ends)
     draw_thickness(axes[2], sections, blade.design.ends)
     draw_edges(near, few, blade.design.ends)
-    draw_smoothness(smooth, {v: smoothness_at(blade.exact, v) for v in FEW}, blade.design.ends)
+    draw_smoothness(
+        smooth, {v: smoothness_at(blade.exact, v) for v in shown_spans(blade.exact, FEW)}, blade.design.ends
+    )
     across = -(-len(charts) // strips)
     for index, strip in enumerate(bottom):
         own = charts[index * across : (index + 1) * across]
@@ -176,11 +179,16 @@ def _blade_figures(blade: Blade, middle: Section, pitch: float) -> list[str]:
     return [
         "linear cascade" if count is None else f"{count} blade{'s' if count > 1 else ''}",
         f"mean chord {blade.chord * MILLIMETRES:.4g} mm",
-        f"chord / pitch at mid span {middle.chord * MILLIMETRES / pitch:.3g}",
+        f"chord / pitch at {_place(middle, blade.design.ends).lower()} {middle.chord * MILLIMETRES / pitch:.3g}",
         f"{columns} x {rows} poles a side",
         f"error {blade.error:.1e} of the chord",
         "every promise kept" if blade.promises.kept else "a promise is not kept",
     ]
+
+
+def _place(section: Section, ends: tuple[str, str]) -> str:
+    """What the title of a section in the passage says of its place."""
+    return "Mid span" if section.span == MIDDLE else span_name(section.span, ends).capitalize()
 
 
 def _section_figures(section: Section, pitch: float | None) -> list[str]:
