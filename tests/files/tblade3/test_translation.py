@@ -14,6 +14,7 @@ from bladewright.files.reading import read_design
 from bladewright.files.tblade3 import import_tblade3, read_tblade3
 from bladewright.files.tblade3.computed import placed, section_points
 from bladewright.files.tblade3.laws import law_through, section_places
+from bladewright.files.tblade3.stacking import chord_stations
 from bladewright.files.tblade3.translation import blade_of, case_sections
 from bladewright.files.writing import write_design
 from bladewright.section.laws import Span
@@ -96,8 +97,8 @@ CASES = {
     "incidence and deviation": {"angles": "  0  inci_dev_spline"},
     "centimetres, turned": {"scale_title": " Blade Scaling factor (cm):", "scale": " 12.5  7.0"},
     "slope at the trailing edge": {"companion": OTHER},
-    "straight ends": {"camber": " 0  spanwise_spline", "thickness": " 0", "clustering": " 1 2.0"},
-    "quartic, sharp": {"thickness": "  2", "clustering": " 1 2.0", **THICK},
+    "straight ends": {"camber": " 0  spanwise_spline", "thickness": " 0", "clustering": " 2 2.0"},
+    "quartic, sharp": {"thickness": "  2", "clustering": " 2 2.0", **THICK},
     "quartic, multiplied": {"thickness": "  1", "multiplier": "  1", "companion": OLDER, **THICK},
 }
 
@@ -116,6 +117,22 @@ def test_sections_of_the_design_are_those_of_t_blade3s_formulas(changes, tmp_pat
     # a stacking point on a side or of the area is taken off polygons by the witness
     coarse = any(each.centroid or each.above for each in case.stackings)
     np.testing.assert_allclose(found, expected, rtol=0.0, atol=1e-6 if coarse else 1e-12)
+
+
+@pytest.mark.parametrize("code", ["200000", "030040", "-030040"])
+def test_stacking_points_are_those_of_the_programs_polygons_where_its_stations_are_known(code, tmp_path):
+    exact, coarse, fine = (
+        case_sections(read_tblade3(written(tmp_path, code=code, clustering=clustering)))
+        for clustering in ("  4  15", "  0", "  1  2.0")
+    )
+    away = [np.max(np.abs(each.theta - exact.theta)) for each in (coarse, fine)]
+    # a polygon of 120 chords is off by an eighth of the square of their length times the curvature, or of the edges
+    assert all(0.0 < each < 3e-4 for each in away)
+
+
+def test_sine_stations_are_those_of_the_program():
+    sections = reference("Wennerstrom_r37_v1.2.5")
+    assert chord_stations(sections.case) == pytest.approx(stations("Wennerstrom_r37_v1.2.5", 3), abs=1e-15)
 
 
 def test_sweep_and_chords_move_the_ends_of_the_edge_curves(tmp_path):
@@ -186,7 +203,7 @@ def test_so_many_blades_are_taken_as_do_not_intersect(tmp_path):
 
 
 def test_leading_edges_that_are_splines_become_the_familys_where_asked(tmp_path):
-    changes = {"thickness": "  0", "edge": "  1", "camber": "   1", "multiplier": "  0", "clustering": " 1 2.0"}
+    changes = {"thickness": "  0", "edge": "  1", "camber": "   1", "multiplier": "  0", "clustering": " 2 2.0"}
     companion = SECTIONWISE.replace(" 4\nu", " 4\nu")
     main = written(tmp_path, _equal(companion), "controlinputs", **changes)
     with pytest.raises(FileError, match=r"fold back on themselves.*--edge-spline"):
@@ -233,6 +250,6 @@ def test_what_makes_no_blade_is_refused_in_one_paragraph(changes, message, tmp_p
 
 
 def test_sections_need_equal_numbers_of_control_points(tmp_path):
-    changes = {"camber": "   1", "thickness": "  0", "clustering": " 1 2.0"}
+    changes = {"camber": "   1", "thickness": "  0", "clustering": " 2 2.0"}
     with pytest.raises(FileError, match=r"section 2 has 5 control points of the curvature, section 1 has 4"):
         import_tblade3(written(tmp_path, SECTIONWISE, "controlinputs", **changes))

@@ -5,12 +5,10 @@ from pathlib import Path
 import numpy as np
 
 from bladewright.files.tblade3.records import TBlade3Case
+from bladewright.files.tblade3.stacking import SIDE
 from bladewright.files.tblade3.translation import CaseSections
 from bladewright.nurbs.basis import Reals
 from bladewright.section.laws import Span
-
-SIDE = 121
-"""points that T-Blade3 gives a side, both ends among them"""
 
 
 def section_points(sections: CaseSections, index: int, places: Reals) -> tuple[Reals, Reals]:

@@ -12,9 +12,10 @@ from bladewright.blade.sectioned_exact import sectioned_exact
 from bladewright.errors import DesignError, FileError
 from bladewright.files.blade_count import standing_apart
 from bladewright.files.imported import Imported
-from bladewright.files.tblade3.computed import SIDE, section_points, written_points
+from bladewright.files.tblade3.computed import section_points, written_points
 from bladewright.files.tblade3.reading import read_tblade3
 from bladewright.files.tblade3.records import SpanLaw
+from bladewright.files.tblade3.stacking import SIDE, chord_stations
 from bladewright.files.tblade3.translation import CaseSections, blade_of, case_sections
 from bladewright.nurbs.basis import Reals
 
@@ -128,10 +129,10 @@ def _changed(sections: CaseSections) -> Iterator[str]:
             "true lean and sweep are as T-Blade3 computes them: times the cosine of the inlet angle's degrees taken "
             "for radians, or of 0 where the chord is that between the edges; the true stagger has no part"
         )
-    if any(each.centroid or each.above for each in case.stackings):
+    if any(each.centroid or each.above for each in case.stackings) and chord_stations(case) is None:
         yield (
-            "the stacking point is that of the exact section; T-Blade3 takes it from its 241 points of it, so that "
-            "theta may differ by some 1e-5 of the chord"
+            f"the stacking point is that of the exact section; T-Blade3 takes it from its 241 points, whose clustering "
+            f"({case.clustering}) is not followed, so that theta may differ by some 1e-5 of the chord"
         )
     yield from (text for text in case.unsupported if "inflation" in text)
 

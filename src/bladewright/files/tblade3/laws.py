@@ -42,10 +42,10 @@ def law_through(values: Reals, places: Reals) -> Law:
         return float(values[len(values) // 2])
     for count in range(2, len(values)):
         rows = law_basis(count, places)
-        controls = np.linalg.lstsq(rows, values, rcond=None)[0]
+        controls: Reals = np.asarray(np.linalg.lstsq(rows, values, rcond=None)[0], dtype=np.float64)
         if np.max(np.abs(rows @ controls - values)) <= HELD * scale:
             return _plain(controls, scale)
-    return _plain(np.linalg.solve(law_basis(len(values), places), values), scale)
+    return _plain(np.asarray(np.linalg.solve(law_basis(len(values), places), values), dtype=np.float64), scale)
 
 
 def _plain(controls: Reals, scale: float) -> Law:

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from bladewright.files.tblade3.records import Stacking
+from bladewright.files.tblade3.records import Stacking, TBlade3Case
 from bladewright.numerics.elementary import cross2
 from bladewright.nurbs.basis import Reals
 from bladewright.section.curvature_meanline import CurvatureMeanline
@@ -10,26 +10,52 @@ from bladewright.section.edge_spline import SplinedOutline
 from bladewright.section.laws import Span
 from bladewright.section.outline import Outline
 
+SIDE = 121
+"""points that T-Blade3 gives a side, both ends among them"""
 ALONG = (1.0 - np.cos(np.pi * np.linspace(0.0, 1.0, 2001))) / 2.0
 """places along the sides between which the centre of area is that of polygons: exact to 1e-7 chords"""
-STEPS = 60
-"""bisections of the place at which a side passes a chord fraction"""
+STEPS = 8
+"""times that a place is sought among 64 parts of where it was found before: to rounding"""
 
 
-def stacking_point(part: CurvatureMeanline, stacking: Stacking) -> Reals:
+def chord_stations(case: TBlade3Case) -> Reals | None:
+    """The chord fractions (121,) at which T-Blade3 computes a section's sides; None where they are not known here.
+
+    Uniform, or with steps in proportion to sin^p(pi i / 121), i = 1 to 120.
+    """
+    if case.leading_edge == "spline":
+        return None
+    if case.clustering == "uniform":
+        return np.linspace(0.0, 1.0, SIDE)
+    if case.clustering == "sine" and case.clustering_parameter is not None:
+        steps = np.sin(np.pi * np.arange(1, SIDE) / SIDE) ** case.clustering_parameter
+        return np.append(0.0, np.minimum(np.cumsum(steps) / np.sum(steps), 1.0))
+    return None
+
+
+def stacking_point(part: CurvatureMeanline, stacking: Stacking, stations: Reals | None = None) -> Reals:
     """The stacking point (2,) of a section in chords, its leading edge at (0, 0), its chord line along the first axis.
+
+    At `stations` (k,) the section is the polygon that T-Blade3 takes it for, else it is exact.
 
     Where a leading edge is a spline, that is the section's chord line without it, which T-Blade3 goes on to count from.
     Along the chord it is a share of the upper side's end; across, on the chord line, or from the mean of both sides
     towards one of them; or it is the centre of area. `part` holds numbers, not laws.
     """
     sides = _Sides(part)
+    polygons = None
+    if stations is not None and (stacking.centroid or stacking.above):
+        outline = part.unsplined(Span(np.zeros(1)))
+        polygons = tuple(np.real(side)[0] for side in outline.at(stations, outline.half_at(stations)))
     if stacking.centroid:
-        return _centre(sides)
+        return _centre(*sides(ALONG)) if polygons is None else _middle(*polygons)
     along = float(sides(np.ones(1))[0][0, 0]) * stacking.along
     if stacking.above == 0.0:
         return np.array([along, 0.0])
-    upper, lower = (_ordinate(sides, along, side) for side in (0, 1))
+    if polygons is None:
+        upper, lower = (_ordinate(sides, along, side) for side in (0, 1))
+    else:
+        upper, lower = (_on_polygon(side, along) for side in polygons)
     middle = 0.5 * (upper + lower)
     reach = abs((upper if stacking.above > 0.0 else lower) - middle)
     return np.array([along, middle + stacking.above * reach])
@@ -66,14 +92,33 @@ def _ordinate(sides: "_Sides", along: float, side: int) -> float:
         return float(sides(np.array([at]))[side][0, 1])
     low, high = s[past[0]], s[past[0] + 1]
     for _ in range(STEPS):
-        middle = 0.5 * (low + high)
-        below = sides(np.array([middle]))[side][0, 0] < along
-        low, high = (middle, high) if below else (low, middle)
-    return float(sides(np.array([low]))[side][0, 1])
+        between = np.linspace(low, high, 65)
+        first = int(np.argmax(sides(between)[side][:, 0] > along))
+        low, high = (between[first - 1], between[first]) if first else (between[-2], between[-1])
+    return float(sides(np.array([0.5 * (low + high)]))[side][0, 1])
 
 
-def _centre(sides: "_Sides") -> Reals:
-    upper, lower = sides(ALONG)
+def _on_polygon(side: Reals, along: float) -> float:
+    """Ordinate of the first part of a polygon (k, 2) that passes an abscissa, or of the first part continued."""
+    x = side[:, 0]
+    past = np.flatnonzero((x[:-1] <= along) & (along <= x[1:]))
+    i = int(past[0]) if len(past) else 0
+    share = (along - x[i]) / (x[i + 1] - x[i])
+    return float(side[i, 1] + share * (side[i + 1, 1] - side[i, 1]))
+
+
+def _middle(upper: Reals, lower: Reals) -> Reals:
+    """The centre of area by the middles of a polygon's edges, as T-Blade3 has it: sums of x y dx and y y dx / 2."""
+    around = np.concatenate([upper[::-1], lower[1:]])
+    following = np.roll(around, -1, axis=0)
+    x, y = (0.5 * (around + following)).T
+    areas = y * (around - following)[:, 0]
+    found: Reals = np.array([np.sum(x * areas), 0.5 * np.sum(y * areas)]) / np.sum(areas)
+    return found
+
+
+def _centre(upper: Reals, lower: Reals) -> Reals:
+    """The same to rounding of a fine polygon."""
     around = np.concatenate([upper, lower[::-1]])
     following = np.roll(around, -1, axis=0)
     areas = cross2(around, following)

@@ -17,7 +17,7 @@ from bladewright.files.tblade3.laws import law_through, section_places
 from bladewright.files.tblade3.parts import Parameters, parameters
 from bladewright.files.tblade3.records import TBlade3Case
 from bladewright.files.tblade3.sections import SectionValues, section_values
-from bladewright.files.tblade3.stacking import stacking_point
+from bladewright.files.tblade3.stacking import chord_stations, stacking_point
 from bladewright.nurbs.basis import Reals
 from bladewright.section.edge_spline import SplinedOutline
 from bladewright.section.laws import Span
@@ -119,8 +119,9 @@ class CaseSections:
     def theta(self) -> Reals:
         """(m,) of the leading edges [rad]: of what stacking, lean and the turn of the blade make."""
         found = []
+        stations = chord_stations(self.case)
         for i, (turn, stacking) in enumerate(zip(self._turns[:, 0], self.case.stackings, strict=True)):
-            along, across = self.tips[i] - stacking_point(self.numbers.of(i), stacking)
+            along, across = self.tips[i] - stacking_point(self.numbers.of(i), stacking, stations)
             found.append(self.own_chords[i] * (along * np.sin(turn) + across * np.cos(turn)))
         return np.array(found) + self.values.lean * self.true_share + self.values.theta_offset
 
