@@ -82,6 +82,11 @@ class Laid(ABC):
         """How the sides meet at the leading and at the trailing edge: "round", "sharp" or "blunt"."""
 
     @property
+    def back(self) -> float | None:
+        """The s from which both sides are one straight back face, where they are."""
+        return None
+
+    @property
     @abstractmethod
     def gathered(self) -> bool:
         """Whether s is gathered at edges: whether sides leave them slower than camber lines do."""

@@ -59,6 +59,10 @@ class OutlineStations(PathStations):
         """How the sides meet at the leading and at the trailing edge: "round", "sharp" or "blunt"."""
         return self.plane.outline.leading_edge.kind, self.plane.outline.trailing_edge.kind
 
+    @property
+    def back(self) -> float | None:
+        return self.plane.outline.back
+
     def camber(self, share: Reals) -> Array:
         return self.plane.placed(self._camber_line.points(share))
 

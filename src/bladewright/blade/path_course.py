@@ -17,6 +17,9 @@ from bladewright.nurbs.basis import Reals
 SIDES = np.sin(0.5 * np.pi * np.linspace(0.0, 1.0, 65)) ** 2
 """places along the sides between which a blade's least and greatest t are looked for"""
 
+SAME = 1e-9
+"""extent, in mean lengths, by which a place and an end of the flow path may differ by rounding"""
+
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class PathCourse(Course):
@@ -36,6 +39,8 @@ class PathCourse(Course):
     def place(self, past: int, extent: float) -> float:
         sign, end, edge = (1.0, self.end, self.edges[1]) if past else (-1.0, self.start, self.edges[0])
         short = extent - self.extent(past, end)
+        if short**2 < SAME**2:
+            return end
         if short >= 0.0:
             return end + sign * short * self.unit
 

@@ -16,7 +16,7 @@ from bladewright.domain.fitness import TOLERANCE
 from bladewright.domain.knots import PassageKnots
 from bladewright.domain.nets import BladeNets, native_nets
 from bladewright.domain.passage import Passage
-from bladewright.domain.strip import ACROSS, EDGE_FACES, STRIPS
+from bladewright.domain.strip import EDGE_FACES, STRIPS
 from bladewright.errors import DesignError
 from bladewright.numerics.elementary import Array, radians
 from bladewright.nurbs.basis import Reals
@@ -79,7 +79,7 @@ def _passage(asked: Asked, knots: PassageKnots, split: bool) -> Passage:
     """The passage at given knots."""
     blade = asked.blade
     camber, walls, between = asked.plane(knots, knots.sites("span"))
-    upper, lower = (_with_knots(side, knots.blade) for side in blade.sides)
+    upper, lower = (_with_knots(side, knots.side) for side in blade.sides)
     own = BladeNets(
         upper.control_points,
         lower.control_points,
@@ -128,7 +128,8 @@ def _with_knots(side: Surface, knots: Reals) -> Surface:
         return side
     missing = list(knots)
     for knot in side.knots_u:
-        missing.remove(knot)
+        # where sides have a back face, knots come back from another scale
+        del missing[int(np.argmin(np.square(np.array(missing) - knot)))]
     return inserted(side, np.array(missing), "u")
 
 
@@ -136,7 +137,8 @@ def _surface(net: Array, name: str, knots: PassageKnots) -> Surface:
     if name in {"inlet", "outlet"}:
         along, across = knots.around(int(name == "outlet")), knots.span
     elif name.endswith(STRIPS):
-        along, across = knots.outlet if name.endswith(STRIPS[1]) else knots.inlet, ACROSS
+        past = int(name.endswith(STRIPS[1]))
+        along, across = knots.outlet if past else knots.inlet, knots.strip(past)
     elif name.startswith("periodic"):
         along, across = knots.u, knots.span
     else:

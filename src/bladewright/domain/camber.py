@@ -50,10 +50,20 @@ class CamberLines:
 
     def start(self, past: int, sign: int = 0) -> Array:
         """The end (..., m, 1, 2) of the camber at an edge; of the upper (+1) or lower side (-1) where it is blunt."""
-        at = np.array([float(past)])
-        if sign == 0 or self.stations.kinds[past] != "blunt":
-            return self.points("blade", at)
-        return self.in_plane(self.stations.plane.points(at)[0 if sign > 0 else 1])
+        if sign == 0 or not self.parted[past]:
+            return self.points("blade", np.array([float(past)]))
+        return self.side(np.array([float(past)]), sign)
+
+    @property
+    def parted(self) -> tuple[bool, bool]:
+        """Whether a face stands between the sides' ends at the leading, and at the trailing edge."""
+        first, last = (kind == "blunt" for kind in self.stations.kinds)
+        return first, last or self.stations.back is not None
+
+    def side(self, t: Reals, sign: int) -> Array:
+        """Points (..., m, k, 2) of the upper (+1) or the lower side (-1) at shares t (k,) of it, a back face apart."""
+        whole = 1.0 if self.stations.back is None else self.stations.back
+        return self.in_plane(self.stations.plane.points(whole * t)[0 if sign > 0 else 1])
 
     def direction(self, past: int) -> Array:
         """Unit vectors (..., m, 2) along the camber, downstream, at the leading (0) or trailing (1) edge."""

@@ -24,5 +24,9 @@ class Crossing(NamedTuple):
 
 CROSSINGS = (Crossing(3, 1.0), Crossing(1, 1.0), Crossing(1, 2.0))
 """the ways that are tried in turn: most blades need the first, blunt ones beside narrow passages the others"""
-GATHERED = tuple(Crossing(each.ease, each.lean, fade=5, quick=-0.65) for each in CROSSINGS)
-"""the same for sides whose parameter is gathered at their edges"""
+GATHERED = (
+    *(Crossing(each.ease, each.lean, fade=5, quick=-0.65) for each in CROSSINGS),
+    Crossing(1, 3.0, fade=8, quick=1.0),
+    Crossing(1, 5.0, fade=16, quick=1.5),
+)
+"""the same for sides whose parameter is gathered at their edges, the last two for corners beside a back face"""

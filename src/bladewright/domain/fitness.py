@@ -16,6 +16,8 @@ TOLERANCE = 1e-7
 """distance of hub and shroud from their surfaces of revolution, of the chord"""
 MOST_POLES = 80
 """poles of a piece in one direction above which a passage is refused"""
+NEAR = 1e-4
+"""share of a piece by which knots at joints stand apart from each other and from its ends"""
 _ALONG = np.array([0.0, 0.03, 0.1, 0.25, 0.5, 0.75, 0.9, 0.97, 1.0])
 _ACROSS = np.array([0.0, 0.2, 0.45, 0.7, 1.0])
 
@@ -50,9 +52,8 @@ def knots_along(walls: Mapping[str, WallHalf], piece: str, tolerance: float) -> 
     duct = next(iter(walls.values())).camber.duct
     edge, end = (duct.edges[0], duct.low) if piece == "inlet" else (duct.edges[1], duct.high)
     joints = (duct.joints_within() - edge) / (end - edge)
-    joints = joints[joints > 0.0]
     inner = 1.0 - joints if piece == "inlet" else joints
-    return refined(clamped(np.concatenate([[0.5], inner])), miss, MOST_POLES)
+    return refined(clamped(_apart(np.append(inner, 0.5))), miss, MOST_POLES)
 
 
 def knots_beside(walls: Mapping[str, WallHalf], own: Reals, tolerance: float) -> Reals:
@@ -103,6 +104,12 @@ def _off(knots: Reals, places: Reals, points: Array, normals: Array) -> Reals:
     count = len(points) - len(places)
     native = np.tensordot(basis(knots, DEGREE, places), through(points[:count], knots, 0), axes=1)
     return np.abs(dot(native - points[count:], normals[count:]))  # real: knots come from the real design
+
+
+def _apart(places: Reals) -> Reals:
+    """Those inside (0, 1), of two that are nearly the same the first."""
+    inside = np.sort(places[(places > NEAR) & (places < 1.0 - NEAR)])
+    return inside[np.diff(inside, prepend=0.0) > NEAR]
 
 
 def _plain(spans: int) -> Reals:

@@ -44,12 +44,16 @@ class PassageKnots:
     """u up to which it does"""
     opening: tuple[float, float]
     """share of the passage's width at which cross-lines leave the blade, on hub and shroud"""
-    blunt: tuple[bool, bool]
-    """whether the leading and the trailing edge have a face"""
+    parted: tuple[bool, bool]
+    """whether a face stands between the sides' ends at the leading, and at the trailing edge"""
+    back: float | None
+    """u from which both sides are that face themselves, where they are"""
+    tail: Reals
+    """the blade's own knots along u from there on"""
     crossing: Crossing
     """how cross-lines leave the edges and turn back"""
     blade: Reals
-    """the blade's own along u, and what the walls need besides"""
+    """the blade's own along u, up to a back face of its sides, and what the walls need besides"""
     inlet: Reals
     """of the piece upstream of the blade, along u"""
     outlet: Reals
@@ -60,7 +64,7 @@ class PassageKnots:
     """of inlet, outlet and periodic boundaries, along v"""
 
     def __post_init__(self) -> None:
-        for name in (*PIECES, "across", "span"):
+        for name in (*PIECES, "across", "span", "tail"):
             object.__setattr__(self, name, frozen(getattr(self, name)))
 
     def sites(self, piece: str) -> Reals:
@@ -85,8 +89,25 @@ class PassageKnots:
         cuts = self.cuts(past)
         low, high = cuts[0], cuts[-1]
         full = [np.full(DEGREE, cut) for cut in cuts]
+        if self.parted[past]:
+            full[1:1] = [low + (high - low) * self.strip(past)[DEGREE + 1 : -DEGREE - 1]]
         return clamped(np.concatenate([low - low * inner[::-1], *full, high + (1.0 - high) * inner]))
+
+    @property
+    def side(self) -> Reals:
+        """Knots of the blade's sides along u: full where a back face begins."""
+        if self.back is None:
+            return self.blade
+        inner = [self.back * self.blade[DEGREE + 1 : -DEGREE - 1], np.full(DEGREE, self.back)]
+        return clamped(np.concatenate([*inner, self.tail[DEGREE + 1 : -DEGREE - 1]]))
+
+    def strip(self, past: int) -> Reals:
+        """Knots across a strip, from the lower to the upper half: one polynomial, or as both sides along the back."""
+        if self.back is None or not past:
+            return clamped(np.empty(0))
+        ahead = 0.5 * (self.tail[DEGREE + 1 : -DEGREE - 1] - self.back) / (1.0 - self.back)
+        return clamped(np.concatenate([ahead, np.full(DEGREE, 0.5), 1.0 - ahead[::-1]]))
 
     def cuts(self, past: int) -> tuple[float, ...]:
         """Places along u of inlet (0) or outlet (1) where walls have creases: two where the edge is blunt."""
-        return STRIP_AT if self.blunt[past] else MIDDLE
+        return STRIP_AT if self.parted[past] else MIDDLE

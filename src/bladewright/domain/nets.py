@@ -8,7 +8,7 @@ import numpy as np
 from bladewright.blade.knots import DEGREE
 from bladewright.domain.camber import CamberLines
 from bladewright.domain.knots import PIECES, PassageKnots
-from bladewright.domain.strip import ACROSS, STRIPS, WallStrip
+from bladewright.domain.strip import STRIPS, WallStrip
 from bladewright.domain.wall import WallHalf, widening
 from bladewright.numerics.elementary import Array, joined
 from bladewright.nurbs.basis import Reals, basis, greville
@@ -92,7 +92,7 @@ def _beside(wall: WallHalf, blade: BladeNets, knots: PassageKnots) -> Array:
         through(_line_in_space(camber, wall, piece, knots.sites(piece)), getattr(knots, piece), -2)
         for piece in ("inlet", "outlet")
     )
-    side = (blade.upper if wall.sign > 0 else blade.lower)[..., wall.row, :]
+    side = (blade.upper if wall.sign > 0 else blade.lower)[..., : _poles(knots.blade), wall.row, :]
     return joined([ahead[..., :-1, :], side, behind[..., 1:, :]], -2)
 
 
@@ -103,16 +103,23 @@ def _line_in_space(camber: CamberLines, wall: WallHalf, piece: str, t: Reals) ->
     return wall.line.mapping.in_space(position[..., 0], position[..., 1], plane[..., 1])[..., 0, :, :]
 
 
+def _poles(knots: Reals) -> int:
+    return len(knots) - DEGREE - 1
+
+
 def _strip(strip: WallStrip, blade: BladeNets, lines: Sequence[Array], knots: PassageKnots) -> Array:
     """Net of a strip between the lower and the upper half, which run along `lines` (..., n, 3) from inlet to outlet."""
     sites = knots.sites(strip.piece)
-    net = through(strip.in_space(strip.piece, sites, greville(ACROSS, DEGREE))[0], getattr(knots, strip.piece), -3)
-    net = through(net, ACROSS, -2)
+    across = knots.strip(strip.past)
+    net = through(strip.in_space(strip.piece, sites, greville(across, DEGREE))[0], getattr(knots, strip.piece), -3)
+    net = through(net, across, -2)
     part = slice(-len(sites), None) if strip.past else slice(len(sites))
     face = blade.edges[strip.past]
     if face is None:
-        raise AssertionError("a strip lies past the face of a blunt edge")
-    own = face[..., ::-1, strip.row, :]
+        lower, upper = (side[..., _poles(knots.blade) - 1 :, strip.row, :] for side in (blade.lower, blade.upper))
+        own = joined([lower, upper[..., -2::-1, :]], -2)
+    else:
+        own = face[..., ::-1, strip.row, :]
     far = net[..., -1 if strip.past else 0, :, :]
     net = _edged(net, *((own, far) if strip.past else (far, own)), -3)
     return _edged(net, lines[0][..., part, :], lines[1][..., part, :], -2)
@@ -139,8 +146,9 @@ def _opening(
         part(edges[sign] + (plane[..., 1] + sign * half - edges[sign]) * share, knots.across) for sign in (-1, 1)
     )
     parts, between = [lower[..., ::-1, :], upper[..., 1:, :]], []
-    if knots.blunt[end]:
-        strip = part(edges[-1] + (edges[1] - edges[-1]) * greville(ACROSS, DEGREE), ACROSS)
+    if knots.parted[end]:
+        width = knots.strip(end % 2)
+        strip = part(edges[-1] + (edges[1] - edges[-1]) * greville(width, DEGREE), width)
         parts[1:1] = [strip[..., 1:, :]]
         between = [STRIPS[end]]
     net = joined(parts, -2)

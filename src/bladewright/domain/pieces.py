@@ -17,6 +17,6 @@ def pieces_of(name: str, face: Surface, knots: PassageKnots) -> dict[str, Surfac
     if name in {"inlet", "outlet"}:
         past = int(name == "outlet")
         cuts = knots.cuts(past)
-        ends = ("lower", STRIPS[past], "upper") if knots.blunt[past] else ("lower", "upper")
+        ends = ("lower", STRIPS[past], "upper") if knots.parted[past] else ("lower", "upper")
     parts = split(face, np.array(cuts), "u")
     return {f"{name}_{end}": reparametrised(part) for end, part in zip(ends, parts, strict=True)}

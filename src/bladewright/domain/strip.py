@@ -2,9 +2,6 @@
 
 from dataclasses import dataclass
 
-import numpy as np
-
-from bladewright.blade.knots import DEGREE
 from bladewright.domain.camber import CamberLines
 from bladewright.domain.patch import WallPatch
 from bladewright.numerics.elementary import Array
@@ -14,8 +11,6 @@ STRIPS = ("stagnation", "wake")
 """what a strip upstream of the leading, and downstream of the trailing edge is called"""
 EDGE_FACES = ("leading_edge", "trailing_edge")
 """the faces of blunt edges"""
-ACROSS = np.repeat([0.0, 1.0], DEGREE + 1)
-"""knots across a strip, from the lower to the upper half of the wall: one polynomial, as across the edge's face"""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -40,6 +35,6 @@ def strips(camber: CamberLines, touched: dict[str, bool]) -> dict[str, WallStrip
     return {
         f"{wall}_{STRIPS[past]}": WallStrip(camber=camber, line=camber.lines.rows([row]), row=row, past=past)
         for wall, row in (("hub", 0), ("shroud", -1))
-        for past, kind in enumerate(camber.stations.kinds)
-        if kind == "blunt" and touched[wall]
+        for past, parted in enumerate(camber.parted)
+        if parted and touched[wall]
     }

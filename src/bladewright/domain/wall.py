@@ -57,15 +57,12 @@ class WallHalf(WallPatch):
         w = widening(self.opening, v)
         if not self.touched:
             return middle[..., None, :] + width[..., None, :] * w[:, None]
-        south = self._side(t) if piece == "blade" else self.camber.points(piece, t, self.sign)[..., self.row, :, :]
+        own = self.camber.side(t, self.sign) if piece == "blade" else self.camber.points(piece, t, self.sign)
+        south = own[..., self.row, :, :]
         north = middle + width
         g = self.opening * v * (1.0 - v) ** self.crossing.ease
         across = (north - south)[..., None, :] * w[:, None]
         return south[..., None, :] + across + self._lean(piece, t)[..., None, :] * g[:, None]
-
-    def _side(self, t: Reals) -> Array:
-        section = self.camber.stations.plane.points(t)[0 if self.sign > 0 else 1]
-        return self.camber.in_plane(section)[..., self.row, :, :]
 
     def _lean(self, piece: str, t: Reals) -> Array:
         """A (..., k, 2): at an edge, what turns the cross-line into the right angle."""

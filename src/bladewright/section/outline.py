@@ -62,6 +62,11 @@ class Outline(ABC):
     def joints(self) -> tuple[Joint, ...]:
         """Places inside (0, 1), increasing."""
 
+    @property
+    def back(self) -> float | None:
+        """The s from which both sides are one straight back face, square to the chord line at a round trailing edge."""
+        return None
+
     @abstractmethod
     def points(self, s: Reals) -> tuple[Array, Array]:
         """Points (..., len(s), 2) of the upper and the lower side at s (k,) in [0, 1]."""

@@ -59,6 +59,10 @@ class WedgeOutline(Outline):
         """Where straight lines and circles touch."""
         return tuple(Joint(s, 1) for s in (EDGE, CORNER, *(() if self.face is None else (FACE,))))
 
+    @property
+    def back(self) -> float | None:
+        return None if self.face is None else FACE
+
     def points(self, s: Reals) -> tuple[Array, Array]:
         """Points (..., len(s), 2) of both sides, each the other's mirror image."""
         upper = self._upper(s)
