@@ -17,6 +17,7 @@ from bladewright.fitting.aim import Aim
 from bladewright.fitting.aligning import aligned
 from bladewright.fitting.cloud import checked_cloud
 from bladewright.fitting.estimates import certainty_of
+from bladewright.fitting.families.blades import matched_blade
 from bladewright.fitting.families.kinds import KINDS, Kind, kind_of
 from bladewright.fitting.families.sections import Frame, matched_section
 from bladewright.fitting.first.blade import first_blade
@@ -98,9 +99,10 @@ def fit(
     structured = parameters is None and (start is not None or like is not None)
     aim = Aim(tolerance=tolerance, parameters=parameters, structured=structured)
     if kind is not None:
-        frame = Frame(name=name, length_unit=length_unit, pitch=pitch)
+        frame = Frame(name=name, length_unit=length_unit, pitch=pitch, arrangement=arrangement, blade_count=blade_count)
         first = None if start is None else freedom.applied(start)
-        found, reason = matched_section(task, kind, first, like, frame, aim)
+        matched = matched_section if points.shape[1] == 2 else matched_blade
+        found, reason = matched(task, kind, first, like, frame, aim)
         return _reported(found, _only(found), points, task, aim, (*notes, *([reason] if reason else [])), motion)
     wanted = None if like is None else structure_of(like)
 

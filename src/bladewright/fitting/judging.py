@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from bladewright.blade.blade import Blade
 from bladewright.fitting.deviation import REGIONS
-from bladewright.fitting.families.faces import closed_sides, on_sides
+from bladewright.fitting.families.faces import edges_of, on_sides, sides_of
 from bladewright.fitting.feet import Feet, feet
 from bladewright.fitting.model import Shape
 from bladewright.fitting.scatter import Scatter, scatter_of
@@ -38,7 +38,7 @@ def judged(points: Reals, built: Blade | Section, precision: Reals | None = None
 
     `precision` (n,) are inverse variances of the points, relative to each other.
     """
-    sides = built.sides if isinstance(built, Blade) else closed_sides(built)
+    sides = sides_of(built)
     exact = built.exact if isinstance(built, Blade) else None
     on = feet(points, sides, converged=FINEST)
     scatter = scatter_of(points, on, precision)
@@ -47,8 +47,9 @@ def judged(points: Reals, built: Blade | Section, precision: Reals | None = None
     deviations = np.where(on.heights < 0.0, -1.0, 1.0) * on.distances
     places = np.array(["upper", "lower"], dtype="<U13")[on.side]
     edge = np.where(on.u < EDGE, "leading edge", np.where(on.u > 1.0 - EDGE, "trailing edge", "sides"))
-    if isinstance(built, Section) and "blunt" in built.edges:
-        on, faces = on_sides(on, built.edges)
+    edges = edges_of(built)
+    if "blunt" in edges:
+        on, faces = on_sides(on, edges)
         for side, name in ((-1, "leading_edge"), (1, "trailing_edge")):
             places = np.where(faces == side, name, places)
     past = np.any(on.beyond != 0.0, axis=1) & (np.abs(np.sum(on.miss * on.beyond, axis=1)) > np.abs(on.heights))

@@ -17,6 +17,7 @@ from bladewright.blade.fitness import chord_of, knots_for
 from bladewright.blade.knots import DEGREE, Knots
 from bladewright.blade.meridional import Meridional
 from bladewright.blade.native import native_sides
+from bladewright.blade.sectioned import SectionedBlade
 from bladewright.blade.unified import UnifiedBlade
 from bladewright.derivatives.tangents import STEP, side_tangents
 from bladewright.designs import Design
@@ -209,6 +210,11 @@ def model_of(design: Design, tolerance: float | None = None) -> Model:
         from bladewright.fitting.families.planar import PlanarModel
 
         return PlanarModel(design, tolerance)
+    if isinstance(design, SectionedBlade):
+        from bladewright.fitting.families.sectioned import SectionedModel
+
+        with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
+            return SectionedModel(design, tolerance)
     raise FitError(f"a {type(design).__name__} cannot be fitted: give a design of the unified family")
 
 

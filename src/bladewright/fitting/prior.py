@@ -21,6 +21,8 @@ NEAR = 3.0
 """spread of a parameter about its start, in its own scale"""
 CHANNEL = 1.0
 """the same of the channel's control points, which the cloud lets slide along their curves"""
+MERIDIANS = ("channel.", "flow_path.", "leading_edge.", "trailing_edge.")
+"""beginnings of the paths of those, and of the edge curves and walls of blades from sections"""
 SMOOTH = 0.5
 """spread of second differences of a law"""
 CENTRED = 0.3
@@ -41,7 +43,7 @@ class Prior:
 
 def prior_of(start: Design, paths: Sequence[str], size: Reals) -> Prior:
     """The prior about a start, for parameters (k,) of scale `size`."""
-    spread = np.where([path.startswith("channel.") for path in paths], CHANNEL, NEAR)
+    spread = np.where([path.startswith(MERIDIANS) for path in paths], CHANNEL, NEAR)
     rows, aims = [np.diag(1.0 / spread)], [np.zeros(len(paths))]
     values = start.parameters()
     index = {path: i for i, path in enumerate(paths)}

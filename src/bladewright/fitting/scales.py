@@ -88,6 +88,7 @@ def _kind(design: Design, path: str, chord: float) -> Kind:
         "weights": Kind(0.5 * value, 1e-2 * value, 1e2 * value),
         "leading_edge_theta": Kind(float(np.degrees(0.05))),
         "axial_chord": Kind(0.05 * length, 1e-3 * length),
-        "channel": Kind(0.005 * length),
+        **dict.fromkeys(("channel", "flow_path.", "leading_edge.", "trailing_edge."), Kind(0.005 * length)),
+        "stacking.theta": Kind(float(np.degrees(0.05))),
     }
     return next((kind for name, kind in kinds.items() if field.startswith(name)), Kind(0.05 * length))

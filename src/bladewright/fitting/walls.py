@@ -2,12 +2,13 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
-from bladewright.blade.exact import ExactBlade, moved
+from bladewright.blade.exact import moved
 from bladewright.derivatives.tangents import STEP
 from bladewright.fitting.feet import Feet
 from bladewright.fitting.model import Shape
@@ -35,9 +36,9 @@ class Wall:
     spread: float
     """of their distances from one curve: small where the cloud has a row there [m]"""
 
-    def misses(self, exact: ExactBlade) -> tuple[Reals, Reals, Reals]:
+    def misses(self, exact: Any) -> tuple[Reals, Reals, Reals]:
         """Nearest parameters, unit normals and misses (m,), (m, 2), (m, 2) on the channel's curve, continued."""
-        line = exact.channel.line(self.name)
+        line = _line(exact, self.name)
         if len(self.places) == 0:
             return np.empty(0), self.places, self.places
         t = np.linspace(-0.05, 1.05, 400)
@@ -52,7 +53,7 @@ class Wall:
         normal = np.stack([-first[:, 1], first[:, 0]], axis=-1) / np.sqrt(np.sum(first**2, axis=-1))[:, None]
         return t, normal, self.places - value
 
-    def distances(self, exact: ExactBlade) -> Reals:
+    def distances(self, exact: Any) -> Reals:
         """Signed distances (m,) from the curve [m]."""
         _, normal, miss = self.misses(exact)
         return np.asarray(np.sum(normal * miss, axis=-1))
@@ -83,6 +84,11 @@ class Ends:
     """(n,) whether a point lies on an end face, inside the blade's outline"""
     near: NDArray[np.intp]
     """points that may lie past an end of the sides"""
+
+
+def _line(exact: Any, name: str) -> Any:
+    """Hub or shroud of a channel, or of a flow path: points and derivatives by its own parameter."""
+    return exact.channel.line(name) if hasattr(exact, "channel") else exact.meridians.walls[name]
 
 
 def ends_of(points: Reals, on: Feet, shape: Shape, rows: NDArray[np.bool_]) -> Ends:

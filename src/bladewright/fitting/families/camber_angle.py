@@ -11,7 +11,7 @@ from bladewright.nurbs.basis import Reals
 from bladewright.section.camber_angle import CamberAngle
 from bladewright.section.laws import law_basis
 
-ANGLES, THICKNESSES = 4, 5
+ANGLES, THICKNESSES = 4, 4
 """control points to begin with"""
 MOST = 14
 """control points of either"""
@@ -74,4 +74,15 @@ def grown(part: CamberAngle, section: Sampled) -> Sequence[CamberAngle]:  # noqa
         more = replace(part, half_thickness=(*part.half_thickness, part.half_thickness[-1]))
         wider = _heights(more, places, heights)
         found.append(replace(more, half_thickness=tuple(np.clip(wider, 1e-3, 0.39).tolist())))
+    if not part.thickness_places:
+        found.append(replace(part, thickness_places=_inner_places(part)))
+    elif not part.thickness_weights:
+        found.append(replace(part, thickness_weights=(1.0,) * len(part.half_thickness)))
     return found
+
+
+def _inner_places(part: CamberAngle) -> tuple[float, ...]:
+    """The places of the control points of the half thickness that do not stand at an edge."""
+    outline = part.outline(ALONE)
+    at = np.real(outline.places.controls / outline.weights.controls)[0]
+    return tuple(at[2 : -2 if part.trailing_edge == "round" else -1].tolist())

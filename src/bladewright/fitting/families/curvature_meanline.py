@@ -21,6 +21,8 @@ STRAIGHT = np.radians(0.5)
 """camber below which the second derivative is as good as even"""
 LEAST = 0.1
 """smallest control point of the second derivative to begin with, of the largest"""
+LEAST_INNER = 2
+"""control points of the second derivative that have no places of their own"""
 BACK = 0.7
 """part of its bending that a meanline which bends back turns at most"""
 _EVEN = (1.0,) * CURVATURES
@@ -138,6 +140,9 @@ def grown(part: CurvatureMeanline, section: Sampled) -> Sequence[CurvatureMeanli
     found = []
     if part.curvature and not part.curvature_places and len(part.curvature) < MOST:
         found.append(replace(part, curvature=_wider(part.curvature)))
+    if len(part.curvature) > LEAST_INNER and not part.curvature_places:
+        places = np.linspace(0.0, 1.0, len(part.curvature))[1:-1]
+        found.append(replace(part, curvature_places=tuple(places.tolist())))
     count = len(part.thickness_multiplier)
     if not part.thickness_multiplier_places and count < MOST:
         wider = _wider(part.thickness_multiplier) if count else (0.0,) * MULTIPLIERS

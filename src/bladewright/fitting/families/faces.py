@@ -1,18 +1,20 @@
-"""The sides of sections with a blunt edge, each with its half of the straight face: together they close the outline.
+"""The sides of sections and blades with blunt edges, each with its half of the face: they close the outline.
 
-A side and half a face are one curve with a corner, so that the nearest place of a point may lie on either.
+A side and half a face are one curve, or surface, with a corner, so that the nearest place of a point may lie on either.
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 
+from bladewright.blade.blade import Blade
 from bladewright.fitting.feet import Feet
 from bladewright.numerics.elementary import Array
 from bladewright.nurbs.basis import Reals
 from bladewright.nurbs.curve import Curve
+from bladewright.nurbs.surface import Surface
 from bladewright.section.section import Section
 
 SHARE = 0.02
@@ -49,6 +51,51 @@ def closed_nets(upper: Array, lower: Array, degree: int, blunt: Blunt) -> tuple[
 def bounds_of(blunt: Blunt) -> tuple[float, float]:
     """Where the side itself begins and ends."""
     return (SHARE if blunt[0] else 0.0), (1.0 - SHARE if blunt[1] else 1.0)
+
+
+def closed_with(upper: Surface, lower: Surface, faces: Mapping[str, Surface]) -> tuple[Surface, Surface]:
+    """Two sides of a blade with the halves of the faces of its blunt edges, by the names of these."""
+    blunt = "leading_edge" in faces, "trailing_edge" in faces
+    if not any(blunt):
+        return upper, lower
+    degree = upper.degree_u
+    knots = closed_knots(upper.knots_u, degree, blunt)
+    found = []
+    for side, first in ((upper, True), (lower, False)):
+        parts = [side.control_points]
+        for name in faces:
+            halves = _halved(faces[name].control_points)
+            half = halves[0] if first else halves[1][::-1]
+            parts = [half[:0:-1], *parts] if name == "leading_edge" else [*parts, half[1:]]
+        found.append(replace(side, control_points=np.concatenate(parts), knots_u=knots))
+    return found[0], found[1]
+
+
+def _halved(net: Reals) -> tuple[Reals, Reals]:
+    """Both halves of a polynomial with control points (n, ...), by de Casteljau's construction."""
+    rows, first, last = net, [net[0]], [net[-1]]
+    while len(rows) > 1:
+        rows = 0.5 * (rows[:-1] + rows[1:])
+        first.append(rows[0])
+        last.append(rows[-1])
+    return np.stack(first), np.stack(last[::-1])
+
+
+def sides_of(built: Blade | Section) -> tuple[Curve, Curve] | tuple[Surface, Surface]:
+    """The sides of what is built with the halves of the faces of its blunt edges."""
+    if isinstance(built, Section):
+        return closed_sides(built)
+    faces = {name: built.surfaces[name] for name in ("leading_edge", "trailing_edge") if name in built.surfaces}
+    upper, lower = built.sides
+    return closed_with(upper, lower, {name: face for name, face in faces.items() if isinstance(face, Surface)})
+
+
+def edges_of(built: Blade | Section) -> tuple[str, str]:
+    """How the sides meet at the leading and at the trailing edge."""
+    if isinstance(built, Section):
+        return built.edges
+    first, last = ("blunt" if name in built.surfaces else "closed" for name in ("leading_edge", "trailing_edge"))
+    return first, last
 
 
 def closed_sides(section: Section) -> tuple[Curve, Curve]:

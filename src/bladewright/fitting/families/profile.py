@@ -12,6 +12,7 @@ from bladewright.section.profiles.circular_arc import DoubleCircularArc
 from bladewright.section.profiles.flat_plate import FlatPlate
 from bladewright.section.profiles.naca4 import Naca4
 from bladewright.section.profiles.naca5 import Naca5
+from bladewright.section.profiles.naca6 import Naca6
 from bladewright.section.profiles.naca65 import Naca65
 from bladewright.section.profiles.points import PointsProfile
 from bladewright.section.profiles.profile import Profile
@@ -21,12 +22,15 @@ LIFT = 4.0 * np.pi / np.log(2.0)
 TEMPLATES: tuple[Profile, ...] = (
     Naca4(thickness=0.1, camber=0.02, camber_position=0.4),
     Naca4(thickness=0.1, camber=0.02, camber_position=0.4, trailing_edge="round"),
+    Naca4(thickness=0.1, camber=0.02, camber_position=0.4, trailing_edge="blunt", trailing_edge_thickness=0.01),
     Naca65(thickness=0.1, lift_coefficient=0.5),
     Naca65(thickness=0.1, lift_coefficient=0.5, trailing_edge="round"),
     C4(thickness=0.1, camber_angle=20.0, trailing_edge="round"),
     DoubleCircularArc(thickness=0.06, camber_angle=20.0, leading_edge_radius=0.003, trailing_edge_radius=0.003),
     DoubleCircularArc(thickness=0.06, camber_angle=20.0),
     Naca5(thickness=0.1),
+    Naca5(thickness=0.1, trailing_edge="blunt"),
+    Naca6(series="65", thickness=0.1, design_lift=0.2),
     FlatPlate(thickness=0.06),
 )
 """kinds that are tried where none is given"""

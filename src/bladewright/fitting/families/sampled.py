@@ -99,6 +99,20 @@ class Sampled:
         return 2.0 * float(np.arctan((self.half_at(places[1]) - self.half_at(places[0])) / (far - near)))
 
 
+def reversed_flow(section: Sampled) -> Sampled:
+    """The same section for the flow that comes from the other side: its edges exchanged, its sides as they are."""
+    turn = np.array([-1.0, 1.0])
+    end = section.start + section.chord * np.array([np.cos(section.stagger), np.sin(section.stagger)])
+    return Sampled(
+        chord=section.chord,
+        stagger=-section.stagger,
+        start=turn * end,
+        upper=np.array([1.0, 0.0]) + turn * section.upper[::-1],
+        lower=np.array([1.0, 0.0]) + turn * section.lower[::-1],
+        radii=section.radii[::-1],
+    )
+
+
 def sampled(upper: Curve, lower: Curve, radii: tuple[float, float]) -> Sampled:
     """The samples of a section in its plane, from its sides [m] and its edges' radii [m]."""
     u = (1.0 - np.cos(np.pi * np.linspace(0.0, 1.0, POINTS))) / 2.0

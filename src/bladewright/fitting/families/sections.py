@@ -2,7 +2,6 @@
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
-from functools import partial
 from typing import Any, Literal
 
 import numpy as np
@@ -14,15 +13,16 @@ from bladewright.fitting.families.kinds import Kind
 from bladewright.fitting.families.sampled import Sampled, sampled
 from bladewright.fitting.first.profile import first_section
 from bladewright.fitting.freedom import Freedom
-from bladewright.fitting.search import Found, Task, searched
+from bladewright.fitting.scales import check_bounds
+from bladewright.fitting.search import ROUNDS, Found, Task, searched
 from bladewright.fitting.thinning import drawn
 from bladewright.section.checks import UNITS
 from bladewright.section.section import Section
 
 Unit = Literal["m", "cm", "mm", "um", "in", "ft"]
-FEWEST = 500
+FEWEST = 400
 """points by which structures are told apart"""
-FEW, MANY = 2500, 12_000
+FEW, MANY = 1000, 12_000
 """points of a quick and of a thorough search"""
 ROUGH, QUICK = 2, 4
 """rounds of a search that tells structures apart, and of one between two steps of growth"""
@@ -45,6 +45,8 @@ class Frame:
     length_unit: Unit
     pitch: float | None = None
     """[m]"""
+    arrangement: Literal["annular", "linear"] | None = None
+    blade_count: int | None = None
 
 
 def matched_section(task: Task, kind: Kind, start: Any, like: Any, frame: Frame, aim: Aim) -> tuple[Found, str]:
@@ -53,15 +55,16 @@ def matched_section(task: Task, kind: Kind, start: Any, like: Any, frame: Frame,
     `start` and `like` are sections of the family, or None. Raises FitError where no structure of the family has a shape
     near the points.
     """
-    many = _thinned(task, MANY)
-    few = _thinned(task, FEW)
+    many = thinned(task, MANY)
+    few = thinned(task, FEW)
     if start is not None and like is None:
+        check_bounds(start, task.free(start), task.bounds)
         found = searched(few, start)
     else:
         section = _closed(few, frame) if start is None else section_samples(start.build())
-        rough = _thinned(task, FEWEST)
+        rough = thinned(task, FEWEST)
         parts = kind.templates if like is None else [like.section]
-        found = _best(rough, few, _designs(kind, section, parts, frame, task))
+        found = best_of(rough, few, _maker(kind, section, frame, task), parts)
     reason = ""
     if not (aim.structured or found.interrupted):
         found, reason = _enough(few, kind, found, aim)
@@ -86,13 +89,12 @@ def _closed(task: Task, frame: Frame) -> Sampled:
     raise FitError("no closed section was found near the points: give a start design")
 
 
-def _designs(
-    kind: Kind, section: Sampled, parts: Sequence[Any], frame: Frame, task: Task
-) -> Iterator[Callable[[], Design]]:
+def _maker(kind: Kind, section: Sampled, frame: Frame, task: Task) -> Callable[[Any], Design]:
+    """The design that a structure begins with."""
     metre = UNITS[frame.length_unit]
 
     def made(part: Any) -> Design:
-        design = kind.section(
+        design: Design = kind.section(
             name=frame.name,
             length_unit=frame.length_unit,
             chord=section.chord / metre,
@@ -101,19 +103,22 @@ def _designs(
             leading_edge_y=float(section.start[1]) / metre,
             section=kind.started(section, part),
         )
-        return task.free.applied(design) if isinstance(task.free, Freedom) else design
+        design = task.free.applied(design) if isinstance(task.free, Freedom) else design
+        check_bounds(design, task.free(design), task.bounds)
+        return design
 
-    for part in parts:
-        yield partial(made, part)
+    return made
 
 
-def _best(rough: Task, few: Task, designs: Iterator[Callable[[], Design]]) -> Found:
-    """The nearest of several structures; raises the last refusal where none has a shape."""
+def best_of(
+    rough: Task, few: Task, made: Callable[[Any], Design], parts: Sequence[Any], *, rounds: int = ROUNDS
+) -> Found:
+    """The nearest match of several structures; raises the last refusal where none has a shape."""
     tried: list[Found] = []
     refusal = FitError("no structure of the family was tried")
-    for made in designs:
+    for part in parts:
         try:
-            tried.append(searched(rough, made(), rounds=ROUGH))
+            tried.append(searched(rough, made(part), rounds=ROUGH))
         except (DesignError, FitError) as error:
             refusal = FitError(str(error))
             continue
@@ -128,7 +133,7 @@ def _best(rough: Task, few: Task, designs: Iterator[Callable[[], Design]]) -> Fo
             return each
         if each.rms > NEAR * least and found is not None:
             break
-        fresh = searched(few, each.design)
+        fresh = searched(few, each.design, rounds=rounds)
         if found is None or fresh.rms < found.rms:
             found = fresh
         if found.rms < EXACT or found.interrupted:
@@ -180,7 +185,8 @@ def _thorough(task: Task, found: Found) -> Found:
     return replace(better, evaluations=found.evaluations + fresh.evaluations)
 
 
-def _thinned(task: Task, count: int) -> Task:
+def thinned(task: Task, count: int) -> Task:
+    """A task with so many of its points at most."""
     rows = drawn(len(task.points), count)
     if len(rows) == len(task.points):
         return task

@@ -2,16 +2,41 @@
 
 import re
 
+import numpy as np
+
+from bladewright.blade.sectioned import SectionedBlade
 from bladewright.designs import Design
+
+EDGES = ("leading_edge", "trailing_edge")
 
 
 def standing(design: Design) -> frozenset[str]:
-    """Paths of what is held: of control points that count by their ratios alone, the largest."""
+    """Paths of what is held.
+
+    Of control points that count by their ratios alone it is the largest. Of a blade it is the flow path, which a blade
+    shows by its ends only, and that coordinate of the points of its edge curves along which they slide on the curve.
+    """
     section = getattr(design, "section", None)
     if section is None:
         return frozenset()
-    values = section.parameters()
-    return frozenset(f"section.{path}" for path in _largest(values))
+    found = {f"section.{path}" for path in _largest(section.parameters())}
+    if isinstance(design, SectionedBlade):
+        values = design.parameters()
+        found |= {path for path in values if path.startswith("flow_path.")}
+        for edge in EDGES:
+            along = sliding(design, edge)
+            found |= {path for path in values if path.startswith(f"{edge}.") and path.endswith(f".{along}")}
+    return frozenset(found)
+
+
+def sliding(design: SectionedBlade, edge: str) -> str:
+    """The coordinate, x or r, in which an edge curve has its extent."""
+    curve = getattr(design, edge)
+    if curve is None:
+        return "r"
+    points = np.real(curve.line(1.0).net[[0, -1]])
+    across = (points[1] - points[0]) ** 2
+    return "x" if across[0] > across[1] else "r"
 
 
 def _largest(values: dict[str, float]) -> list[str]:

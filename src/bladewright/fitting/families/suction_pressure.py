@@ -13,7 +13,7 @@ from bladewright.section.suction_pressure.assembly import characteristic, sides,
 from bladewright.section.suction_pressure.part import SuctionPressure
 from bladewright.section.suction_pressure.side import DEGREE, side_knots, spread
 
-HEIGHTS = 3
+HEIGHTS = 2
 """free control points of each side to begin with"""
 MOST = 12
 """of each side"""
@@ -71,7 +71,7 @@ def started(section: Sampled, like: SuctionPressure) -> SuctionPressure:
 
 
 def grown(part: SuctionPressure, section: Sampled) -> Sequence[SuctionPressure]:
-    """The same with one free control point more on the suction, or on the pressure side."""
+    """The same with one free control point more on the suction or the pressure side, or with free places on one."""
     found = []
     if len(part.suction_heights) < MOST and not part.suction_places:
         wider = replace(part, suction_heights=(*part.suction_heights, 0.0), suction_knots=())
@@ -79,6 +79,11 @@ def grown(part: SuctionPressure, section: Sampled) -> Sequence[SuctionPressure]:
     if part.pressure_heights and len(part.pressure_heights) < MOST and not part.pressure_places:
         wider = replace(part, pressure_heights=(*part.pressure_heights, 0.0), pressure_knots=())
         found.append(_through(wider, section))
+    for name in ("suction", "pressure"):
+        count = len(getattr(part, f"{name}_heights"))
+        if count and not getattr(part, f"{name}_places"):
+            places = spread(side_knots(count, getattr(part, f"{name}_knots"))).tolist()
+            found.append(part.changed({f"{name}_places": tuple(places)}))
     return found
 
 

@@ -95,7 +95,7 @@ class QuarticSpline(ThicknessLaw):
             self._demand(np.real(last) > np.real(at), span, "trailing_edge_thickness", 2.0 * trailing, cure)
             edge = [zero, last]
         else:
-            edge = [zero, -span.values(self.trailing_edge_curvature or 0.0)]
+            edge = [zero, -span.values(0.0 if self.trailing_edge_curvature is None else self.trailing_edge_curvature)]
         closed = self.trailing_edge == "closed"
         across = _solution(_conditions_u(closed=closed), [zero, at, one, curvature, *edge, zero, zero, zero], 1.0)
         conditions = _conditions_half(closed=closed)

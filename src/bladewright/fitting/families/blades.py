@@ -1,0 +1,179 @@
+"""From points in space to a blade from sections of a family."""
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from bladewright.blade.blade import Blade
+from bladewright.designs import Design
+from bladewright.errors import DesignError, FitError
+from bladewright.fitting.aim import Aim
+from bladewright.fitting.families.flow import Channelled
+from bladewright.fitting.families.kinds import Kind
+from bladewright.fitting.families.sampled import Sampled, reversed_flow, sampled
+from bladewright.fitting.families.sections import Frame, best_of, thinned
+from bladewright.fitting.families.spanwise import along_span, counts_of, law_through, plain
+from bladewright.fitting.families.standing import EDGES, standing
+from bladewright.fitting.first.blade import first_blade
+from bladewright.fitting.freedom import Freedom
+from bladewright.fitting.lean import rich
+from bladewright.fitting.scales import check_bounds
+from bladewright.fitting.search import Found, Task, searched
+from bladewright.nurbs.basis import Reals
+from bladewright.section.checks import UNITS
+from bladewright.section.section import Section
+
+FEW, MANY = 1000, 12_000
+"""points of a quick and of a thorough search"""
+QUICK = 4
+"""rounds of the search for the closed blade that says where to begin"""
+SPANS: Reals = np.linspace(0.0, 1.0, 7)
+"""places of the sections that a start is taken from"""
+LAW = 3
+"""control points of each law along the span, where none is given"""
+CHOSEN = 3
+"""number of the section by which structures are told apart"""
+EVERY = 4
+"""part, one in so many, of a section's samples that structures are told apart by"""
+
+
+def matched_blade(task: Task, kind: Kind, start: Any, like: Any, frame: Frame, aim: Aim) -> tuple[Found, str]:
+    """The match of points (n, 3) by a blade of the family, and why it ends where no aim is met.
+
+    `start` and `like` are blades of the family, or None. Raises FitError where no blade of the family has a shape near
+    the points.
+    """
+    many, few = thinned(task, MANY), thinned(task, FEW)
+    first = start
+    if start is None or like is not None:
+        closed = _closed(few, frame, like) if start is None else start.build()
+        task.told("first design of the family")
+        first = _first(closed, kind, like, frame)
+    first = task.free.applied(first) if isinstance(task.free, Freedom) else first
+    check_bounds(first, task.free(first), task.bounds)
+    found = searched(few, first)
+    if not found.interrupted:
+        fresh = searched(many, found.design)
+        found = replace(fresh, evaluations=found.evaluations + fresh.evaluations)
+    return found, _reason(found, aim)
+
+
+def _reason(found: Found, aim: Aim) -> str:
+    short = aim.tolerance is not None and found.maximum > aim.tolerance
+    more = aim.parameters is not None and len(found.problem.paths) < aim.parameters
+    if not (short or more):
+        return ""
+    return (
+        "control points are not added to blades from sections: give a start, or `like`, with more of them in its laws"
+    )
+
+
+def _closed(task: Task, frame: Frame, like: Any) -> Blade:
+    """The closed blade in a channel that points alone show."""
+    given: dict[str, Any] = {"arrangement": frame.arrangement, "blade_count": frame.blade_count, "pitch": frame.pitch}
+    if like is not None:
+        own = None if like.pitch is None else like.pitch * UNITS[like.length_unit]
+        theirs = {"arrangement": like.arrangement, "blade_count": like.blade_count, "pitch": own}
+        given = {name: theirs[name] if value is None else value for name, value in given.items()}
+    first = first_blade(task.points, structure=rich(None), name=frame.name, length_unit=frame.length_unit, **given)
+    plain_task = Task(points=task.points, weights=task.weights, free=Freedom(), bounds={}, told=task.told)
+    for design in (searched(plain_task, first, noise=3e-3, rounds=QUICK).design, first):
+        built = _built(design)
+        if built is not None:
+            return built
+    raise FitError("no closed blade was found near the points: give a start design")
+
+
+def _built(design: Any) -> Blade | None:
+    try:
+        blade: Blade = design.build()
+    except DesignError:
+        return None
+    return blade
+
+
+def _first(closed: Blade, kind: Kind, like: Any, frame: Frame) -> Design:
+    """The blade of the family whose sections are those of a closed blade."""
+    design = closed.design
+    metre = UNITS[frame.length_unit]
+    found = Channelled(blade=closed, backwards=_backwards(Channelled(blade=closed), kind, like))
+    sections = [_samples(closed.section(float(v))) for v in SPANS]
+    if found.backwards:
+        sections = [reversed_flow(each) for each in sections[::-1]]
+    templates = kind.templates if like is None else [plain(like.section)]
+    chosen = _matched(kind, sections[CHOSEN], templates)
+    parts = [chosen if i == CHOSEN else _matched(kind, each, [chosen]) for i, each in enumerate(sections)]
+    counts = dict.fromkeys(counts_of(chosen), LAW) if like is None else counts_of(like.section)
+    linear = design.arrangement == "linear"
+    place = [float(each.start[1]) / metre if linear else float(np.degrees(each.start[1])) for each in sections]
+    fields: dict[str, Any] = {
+        "name": frame.name,
+        "length_unit": frame.length_unit,
+        "arrangement": design.arrangement,
+        "blade_count": design.blade_count,
+        "pitch": None if design.pitch is None else design.pitch * UNITS[design.length_unit] / metre,
+        "section": _laws(parts, counts),
+    }
+    name = "leading_edge_y" if linear else "leading_edge_theta"
+    given = LAW if like is None else _count(getattr(like, name))
+    fields[name] = law_through(place, SPANS, given)
+    if like is None:
+        fields |= {edge: found.edge(edge, metre) for edge in EDGES}
+        return kind.blade(**fields, flow_path=found.flow_path(metre))
+    fields |= {edge: found.edge_like(edge, getattr(like, edge), metre) for edge in EDGES}
+    changed: Design = replace(like, **fields)
+    return changed
+
+
+def _backwards(found: Channelled, kind: Kind, like: Any) -> bool:
+    """Whether the flow comes from the other side than the one that the closed blade was found with.
+
+    Points do not tell it: `like` does, and that the passages of a diffuser of vanes lead outwards.
+    """
+    middle = np.array([0.5])
+    first, last = (found.values(edge, middle)[0] for edge in EDGES)
+    if like is not None and like.leading_edge is not None:
+        metre = UNITS[like.length_unit]
+        own = [np.real(getattr(like, edge).line(metre).values(middle))[0] for edge in EDGES]
+        return float((last - first) @ (own[1] - own[0])) < 0.0
+    return kind.name == "wedge-diffuser" and last[1] < first[1] and abs(last[1] - first[1]) > abs(last[0] - first[0])
+
+
+def _laws(parts: list[Any], counts: Any) -> Any:
+    """One part of laws; of constants where laws are refused."""
+    try:
+        return along_span(parts, SPANS, counts)
+    except DesignError:
+        return along_span(parts, SPANS, dict.fromkeys(counts, 1))
+
+
+def _count(law: Any) -> int:
+    return len(law) if isinstance(law, tuple) else 1
+
+
+def _samples(section: Section) -> Sampled:
+    """The samples of a section in the plane of its stream surface."""
+    upper, lower = section.curves["upper"], section.curves["lower"]
+    ends = np.real(section.camber.control_points[[0, -1], 0])
+    scale = np.real(section.scale(ends))
+    return sampled(upper, lower, (section.edge_radii[0] / scale[0], section.edge_radii[1] / scale[1]))
+
+
+def _matched(kind: Kind, section: Sampled, templates: Any) -> Any:
+    """The part of the best of several structures, matched to a section's samples."""
+    cosine, sine = np.cos(section.stagger), np.sin(section.stagger)
+    turn = np.array([[cosine, sine], [-sine, cosine]])
+    points = np.concatenate([section.upper[::EVERY], section.lower[EVERY // 2 :: EVERY]]) @ turn
+    task = Task(points=points, weights=np.ones(len(points)), free=_of_section, bounds={})
+
+    def made(template: Any) -> Design:
+        return kind.section(name="section", length_unit="m", chord=1.0, section=kind.started(section, template))
+
+    found: Any = best_of(task, task, made, templates, rounds=QUICK).design
+    return found.section
+
+
+def _of_section(design: Design) -> tuple[str, ...]:
+    held = standing(design)
+    return tuple(path for path in design.parameters() if path.startswith("section.") and path not in held)

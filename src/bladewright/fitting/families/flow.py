@@ -1,0 +1,111 @@
+"""The flow path and the edge curves of a blade from sections, as a closed blade in a channel shows them."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from bladewright.blade.blade import Blade
+from bladewright.blade.flow_path import FlowPath
+from bladewright.blade.meridian import ControlPolygon, Meridian, ThroughPoints
+from bladewright.designs import Point
+from bladewright.errors import FitError
+from bladewright.nurbs.basis import Reals, basis, uniform_knots
+
+WALL = 9
+"""points on each wall beside the blade"""
+AHEAD = (0.25, 0.5, 0.8)
+"""where points stand on its straight continuation, of its length"""
+EDGE = 4
+"""points on an edge curve"""
+PAST = 0.06
+"""how far an edge curve reaches past the walls, of its length"""
+REACH = 4.0
+"""how often that far, where the points of another curve say how far it reaches"""
+OTHER = {"leading_edge": "trailing_edge", "trailing_edge": "leading_edge", "hub": "shroud", "shroud": "hub"}
+"""the curve that is in its place where the flow comes from the other side"""
+FINE: Reals = np.linspace(0.0, 1.0, 201)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Channelled:
+    """A closed blade's channel, for the flow that it was found with, or for the one from the other side."""
+
+    blade: Blade
+    backwards: bool = False
+
+    def values(self, name: str, at: Reals) -> Reals:
+        """Points (m, 2) of one of the four curves in (x, r) [m]: walls downstream, edges from hub to shroud."""
+        channel: Any = self.blade.exact.channel  # type: ignore[attr-defined]
+        if self.backwards:
+            name, at = OTHER[name], 1.0 - at
+        return np.asarray(np.real(channel.line(name).values(at)))
+
+    def flow_path(self, metre: float) -> FlowPath:
+        """Hub and shroud, lengthened straight on; fractions count from edge to edge."""
+        at = np.linspace(0.0, 1.0, WALL)
+        hub, shroud = (_points(_lengthened(self.values(name, at)), metre) for name in ("hub", "shroud"))
+        return FlowPath(hub=ThroughPoints(points=hub), shroud=ThroughPoints(points=shroud), matched="edges")
+
+    def edge(self, name: str, metre: float) -> ThroughPoints:
+        """An edge as a curve through a few points that reaches past both walls."""
+        line = _past(self.values(name, FINE))
+        at = np.linspace(0.0, len(line) - 1.0, EDGE)
+        return ThroughPoints(points=_points(_along(line, at), metre))
+
+    def edge_like(self, name: str, curve: Any, metre: float) -> Meridian:
+        """The edge with the points of another curve: where these stand along the edge, they stay."""
+        if isinstance(curve, ThroughPoints):
+            own, field = curve.points, "points"
+        elif isinstance(curve, ControlPolygon):
+            own, field = curve.control_points, "control_points"
+        else:
+            raise FitError(
+                f"the {name} of `like` is given by corners or by a stacking: only points or control points are "
+                "fitted; give the design as start"
+            )
+        given = metre * np.array([[float(np.real(each.x)), float(np.real(each.r))] for each in own])
+        line = _past(self.values(name, FINE), REACH)
+        # the coordinate in which the edge has its extent is held, the other is the edge's there
+        held = 1 if np.ptp(given[:, 1]) >= np.ptp(given[:, 0]) else 0
+        order = np.argsort(line[:, held])
+        if isinstance(curve, ThroughPoints):
+            free = np.interp(given[:, held], line[order, held], line[order, 1 - held])
+        else:
+            degree = min(len(given) - 1, curve.degree)
+            rows = basis(uniform_knots(len(given), degree), degree, FINE)
+            wanted = np.interp(rows @ given[:, held], line[order, held], line[order, 1 - held])
+            free = np.linalg.lstsq(rows, wanted, rcond=None)[0]
+        found = given.copy()
+        found[:, 1 - held] = free
+        return replace(curve, **{field: _points(found, metre)})
+
+
+def _lengthened(line: Reals) -> Reals:
+    """A line (n, 2) with points on its straight continuation at both ends."""
+    size = float(np.sum(np.sqrt(np.sum(np.diff(line, axis=0) ** 2, axis=1))))
+    first, last = _unit(line[0] - line[1]), _unit(line[-1] - line[-2])
+    steps = size * np.array(AHEAD)[:, None]
+    return np.concatenate([(line[0] + steps * first)[::-1], line, line[-1] + steps * last])
+
+
+def _past(line: Reals, times: float = 1.0) -> Reals:
+    """A line (n, 2) that goes on straight past both ends."""
+    size = float(np.sum(np.sqrt(np.sum(np.diff(line, axis=0) ** 2, axis=1))))
+    steps = times * PAST * size * np.linspace(0.0, 1.0, 13)[1:, None]
+    first, last = _unit(line[0] - line[1]), _unit(line[-1] - line[-2])
+    return np.concatenate([(line[0] + steps * first)[::-1], line, line[-1] + steps * last])
+
+
+def _unit(vector: Reals) -> Reals:
+    return np.asarray(vector / np.sqrt(np.sum(vector**2)))
+
+
+def _along(line: Reals, at: Reals) -> Reals:
+    index = np.arange(len(line), dtype=np.float64)
+    return np.stack([np.interp(at, index, line[:, i]) for i in (0, 1)], axis=-1)
+
+
+def _points(rows: Reals | Sequence[Reals], metre: float) -> tuple[Point, ...]:
+    return tuple(Point(float(x) / metre, float(r) / metre) for x, r in rows)

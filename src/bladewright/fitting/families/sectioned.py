@@ -1,0 +1,57 @@
+"""Blades from sections, as a search sees them."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+from types import MappingProxyType
+from typing import Any, final
+
+import numpy as np
+
+from bladewright.blade.blade import Blade, surface_of
+from bladewright.blade.edge_faces import edge_faces
+from bladewright.blade.fitness import chord_of, knots_for
+from bladewright.blade.knots import DEGREE, Knots
+from bladewright.blade.native import native_sides
+from bladewright.blade.sectioned import SectionedBlade
+from bladewright.blade.sectioned_exact import sectioned_exact
+from bladewright.derivatives.tangents import side_tangents
+from bladewright.fitting.families.faces import Blunt, closed_nets, closed_with
+from bladewright.fitting.model import Model, Shape
+from bladewright.nurbs.basis import Reals
+
+
+@final
+class SectionedModel(Model):
+    """A blade of any family from sections, at the knots that one of them needs for a tolerance, of the chord."""
+
+    def __init__(self, design: SectionedBlade, tolerance: float | None = None) -> None:
+        own = replace(design, tolerance=design.tolerance if tolerance is None else tolerance)
+        exact = sectioned_exact(own, checked=False)
+        self.chord = chord_of(exact)
+        self.knots: Knots = knots_for(exact, self.chord)
+        kinds = exact.survey.kinds
+        self.blunt: Blunt = kinds[0] == "blunt", kinds[1] == "blunt"
+
+    def _shape(self, design: Any) -> Shape:
+        exact = sectioned_exact(design, checked=False)
+        stations = exact.stations(self.knots.sites_v)
+        sides = [surface_of(net, self.knots, DEGREE) for net in native_sides(stations, self.knots)]
+        faces = edge_faces(stations, sides[0], sides[1], self.knots) if any(self.blunt) else {}
+        upper, lower = closed_with(sides[0], sides[1], faces)
+        return Shape(design=design, sides=(upper, lower), noses=np.zeros((2, 0)), exact=exact)
+
+    def tangents(self, shape: Shape, paths: Sequence[str]) -> tuple[Reals, Reals]:
+        """By every parameter in a batch; a face of a blunt edge moves as the straight one between its edges."""
+        blade = Blade(
+            design=shape.design, surfaces=MappingProxyType({}), knots=self.knots, chord=self.chord, exact=shape.exact
+        )
+        pairs = list(side_tangents(blade, paths))
+        upper, lower = (np.concatenate([pair[side] for pair in pairs]) for side in (0, 1))
+        if not any(self.blunt):
+            return upper, lower
+        rates = closed_nets(np.moveaxis(upper, 1, -2), np.moveaxis(lower, 1, -2), DEGREE, self.blunt)
+        return np.moveaxis(rates[0], -2, 1), np.moveaxis(rates[1], -2, 1)
+
+    def nose_rates(self, shape: Shape, paths: Sequence[str]) -> Reals:  # noqa: ARG002 - the contract's
+        """None: what may not be is refused by the parts themselves."""
+        return np.zeros((len(paths), 2, 0))

@@ -1,0 +1,105 @@
+"""Blades from sections, found again from points in space."""
+
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+import pytest
+
+from bladewright.errors import FitError
+from bladewright.fitting.families.faces import sides_of
+from bladewright.fitting.families.flow import Channelled
+from bladewright.fitting.families.sampled import reversed_flow, sampled
+from bladewright.fitting.families.spanwise import along_span, counts_of, plain
+from bladewright.fitting.families.standing import sliding, standing
+from bladewright.fitting.fit import fit
+from bladewright.fitting.freedom import Freedom
+from bladewright.fitting.model import model_of
+from bladewright.fitting.scales import scales_of
+from bladewright.section.laws import Span
+
+from ..blade.sectioned import BLUNT, COMPRESSOR, DESIGNS, DIFFUSER
+
+VANE = replace(DIFFUSER, tolerance=1e-4)
+"""a blade that is built fast"""
+MODELS = {each.name: replace(each, tolerance=1e-3) for each in (DIFFUSER, DESIGNS["inlet-vane"], BLUNT)}
+
+
+@cache
+def cloud(count=120):
+    """Points of the vane [m]."""
+    random = np.random.default_rng(4)
+    return np.concatenate([side(*random.random((2, count))) for side in sides_of(VANE.build())])
+
+
+def shaken(design, part=0.05):
+    """The design with every parameter that a fit finds moved by a part of what matters."""
+    paths, values = Freedom()(design), design.parameters()
+    size = scales_of(design, paths, 0.1).size
+    random = np.random.default_rng(3)
+    return design.changed(
+        {p: float(values[p] + part * s * random.uniform(-1.0, 1.0)) for p, s in zip(paths, size, strict=True)}
+    )
+
+
+@pytest.mark.parametrize("name", MODELS)
+def test_the_derivatives_of_a_blades_sides_are_those_of_the_sides_built_with_a_difference(name):
+    design = MODELS[name]
+    model, paths = model_of(design), Freedom()(design)
+    values, sizes = design.parameters(), scales_of(design, paths, model.chord).size
+    direction = sizes * np.random.default_rng(5).uniform(0.5, 1.0, len(paths))
+    sides = []
+    for step in (1e-5, -1e-5):
+        changed = {path: float(values[path] + step * way) for path, way in zip(paths, direction, strict=True)}
+        sides.append(model.shape(design.changed(changed)).sides)
+    for rate, above, below in zip(model.tangents(model.shape(design), paths), *sides, strict=True):
+        slope = (above.control_points - below.control_points) / 2e-5
+        # a blunt face moves as a straight one does
+        own = slice(None, -5 if model.blunt[1] else None)
+        # of second order in the step, as of sections
+        assert np.tensordot(direction, rate, axes=1)[own] == pytest.approx(slope[own], abs=1e-6 * model.chord)
+
+
+def test_a_vane_is_found_again_from_a_start_that_is_off():
+    found = fit(cloud(), start=shaken(VANE))
+    assert found.maximum < 1e-9 * found.built.chord
+    assert found.passed
+    assert not any(each.path.startswith("flow_path") for each in found.estimates)
+
+
+def test_flow_path_and_the_way_along_edge_curves_stand():
+    held = standing(COMPRESSOR)
+    assert {"flow_path.hub.points[0].x", "leading_edge.points[1].r", "section.curvature[1]"} <= held
+    assert "leading_edge.points[1].x" not in held
+    assert sliding(COMPRESSOR, "trailing_edge") == "r"
+    assert sliding(DIFFUSER, "trailing_edge") == "x"
+
+
+def test_a_part_of_laws_is_made_again_from_its_sections_and_its_numbers_of_control_points():
+    part, v = DESIGNS["compressor-rotor"].section, np.linspace(0.0, 1.0, 7)
+    at = Span(v)
+    parts = []
+    for i in range(len(v)):
+        numbers = plain(part).parameters()
+        angles = {name: float(at.values(getattr(part, name))[i]) for name in ("metal_angle_in", "metal_angle_out")}
+        parts.append(plain(part).changed({path: angles.get(path, value) for path, value in numbers.items()}))
+    again = along_span(parts, v, counts_of(part))
+    assert again.metal_angle_in == pytest.approx(part.metal_angle_in, abs=1e-9)
+    assert counts_of(again) == counts_of(part)
+
+
+def test_a_section_for_the_flow_from_the_other_side_has_its_edges_exchanged_and_its_sides_kept():
+    built = COMPRESSOR.build().section(0.5)
+    section = sampled(built.curves["upper"], built.curves["lower"], (1e-3, 2e-3))
+    other = reversed_flow(section)
+    assert np.all(np.interp(0.5, *other.upper.T) > np.interp(0.5, *other.lower.T))
+    assert other.radii == section.radii[::-1]
+    again = reversed_flow(other)
+    assert again.upper == pytest.approx(section.upper, abs=1e-15)
+    assert again.start == pytest.approx(section.start, abs=1e-15)
+    assert again.stagger == section.stagger
+
+
+def test_edges_of_another_kind_than_points_are_refused():
+    with pytest.raises(FitError, match="give the design as start"):
+        Channelled(blade=None).edge_like("leading_edge", None, 1e-3)
