@@ -1,8 +1,16 @@
 """`bladewright import`: another program's design is written as a design file, with what changed and how far it lies."""
 
+from importlib.util import module_from_spec, spec_from_file_location
+from pathlib import Path
+
+import numpy as np
 import pytest
 
 import bladewright as bw
+
+_SPEC = spec_from_file_location("tblade3_inputs", Path(__file__).parents[1] / "files" / "tblade3" / "inputs.py")
+inputs = module_from_spec(_SPEC)
+_SPEC.loader.exec_module(inputs)
 
 CONFIGURATION = """\
 NDIM = 2
@@ -86,3 +94,60 @@ def test_what_cannot_be_imported_is_refused_and_leaves_nothing(content, message,
     assert found.status == 2
     assert message in found.err
     assert sorted(tmp_path.iterdir()) == before
+
+
+@pytest.fixture
+def windmill(tmp_path, monkeypatch):
+    """The path of a T-Blade3 case in a folder of its own, which is the current one."""
+    monkeypatch.chdir(tmp_path)
+    return inputs.written(tmp_path).relative_to(tmp_path)
+
+
+def test_a_case_of_tblade3_becomes_a_design_that_builds(run, windmill):
+    found = run("import", windmill)
+    assert found.status == 0, found.err
+    for part in ("kept: all 3 sections", "changed: ", "note: ", "by its formulas", "wrote windmill-7.toml"):
+        assert part in found.out
+    assert bw.read_design("windmill-7.toml").plane == "counted-m'-theta"
+
+
+def test_points_that_tblade3_has_written_beside_its_input_are_measured(run, windmill):
+    from bladewright.files.tblade3 import read_tblade3
+    from bladewright.files.tblade3.computed import section_points
+    from bladewright.files.tblade3.translation import case_sections
+
+    sections = case_sections(read_tblade3(windmill))
+    places = np.linspace(0.0, 1.0, 121)
+    rows = ["  241  3"]
+    for i in range(3):
+        upper, lower = (side / 1e-3 for side in section_points(sections, i, places))
+        rows += [" ".join(f"{value:.16e}" for value in point) for point in [*upper[::-1], *lower[1:]]]
+    Path("blade3d.windmill.dat").write_text("\n".join(rows) + "\n")
+    deviation = run("import", windmill, "--json").json["deviation"]
+    assert deviation["source"] == "blade3d.windmill.dat"
+    assert deviation["maximum_m"] < 1e-6 * deviation["chord_m"]
+
+
+@pytest.mark.parametrize(
+    ("name", "spoilt", "message"),
+    [
+        ("3dbgbinput.7.dat", lambda text: text[:400], "the file is cut short"),
+        ("3dbgbinput.7.dat", lambda text: text.replace("  250.0", "  large"), "line 8: the scaling factor"),
+        ("3dbgbinput.7.dat", lambda text: text.replace("sect1", "s809m", 1), "sections 1 are of the type 's809m'"),
+        ("spancontrolinputs.7.dat", lambda text: text, "holds control points only: name the main input file"),
+        ("spancontrolinputs.7.dat", None, "there is none"),
+    ],
+)
+def test_cases_of_tblade3_that_cannot_be_are_refused_and_leave_nothing(name, spoilt, message, run, windmill):
+    path = Path(name)
+    if spoilt is None:
+        path.unlink()
+        path = windmill
+    else:
+        path.write_text(spoilt(path.read_text()))
+    before = sorted(Path().iterdir())
+    found = run("import", path)
+    assert found.status == 2
+    assert message in found.err
+    assert found.err.count("\n") == 1
+    assert sorted(Path().iterdir()) == before

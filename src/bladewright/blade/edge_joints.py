@@ -21,6 +21,9 @@ def curve_joints(
     `meeting` is where the stream lines at increasing v (m,), from 0 to 1, meet it.
     """
     levels, counts = np.unique(line.knots[line.degree + 1 : -line.degree - 1], return_counts=True)
+    if isinstance(meridian, ThroughPoints) and meridian.ends == "smooth":
+        # one cubic goes over the first two intervals, and one over the last two
+        levels, counts = levels[1:-1], counts[1:-1]
     if len(levels) == 0:
         return []
     # a spline through points keeps two derivatives, though its knots would let it lose one

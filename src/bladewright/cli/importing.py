@@ -90,13 +90,13 @@ def _imported(file: Path, chordwise: int | None, *, edge_spline: bool) -> "Impor
     from bladewright.errors import FileError
     from bladewright.files.parablade import import_parablade, is_parablade
     from bladewright.files.tblade3 import import_tblade3, is_tblade3
-    from bladewright.files.tblade3.reading import COMPANIONS
+    from bladewright.files.tblade3.reading import COMPANIONS, MAIN
     from bladewright.files.text import read_text
 
     text = read_text(file)
     if is_parablade(text):
         return import_parablade(file, chordwise=chordwise)
-    if is_tblade3(text) or file.name.lower().startswith(tuple(f"{each}." for each in COMPANIONS)):
+    if is_tblade3(text) or file.name.lower().startswith(tuple(f"{each}." for each in (MAIN, *COMPANIONS))):
         if chordwise is not None:
             raise click.UsageError("--chordwise is for ParaBlade's thickness laws: T-Blade3's sections are kept")
         return import_tblade3(file, edge_spline=edge_spline)

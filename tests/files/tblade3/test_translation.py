@@ -197,9 +197,9 @@ def test_what_was_kept_and_changed_is_said(tmp_path):
 
 
 def test_so_many_blades_are_taken_as_do_not_intersect(tmp_path):
-    found = import_tblade3(written(tmp_path, blades="  400"))
-    assert 2 < found.design.blade_count < 400
-    assert any("400 blades would intersect" in text for text in found.changed)
+    found = import_tblade3(written(tmp_path, blades="  200"))
+    assert 2 < found.design.blade_count < 200
+    assert any("200 blades would intersect" in text for text in found.changed)
 
 
 def test_leading_edges_that_are_splines_become_the_familys_where_asked(tmp_path):
@@ -208,11 +208,10 @@ def test_leading_edges_that_are_splines_become_the_familys_where_asked(tmp_path)
     main = written(tmp_path, _equal(companion), "controlinputs", **changes)
     with pytest.raises(FileError, match=r"fold back on themselves.*--edge-spline"):
         import_tblade3(main)
-    found = import_tblade3(main, edge_spline=True)
-    assert found.design.section.leading_edge_spline.contact == pytest.approx(0.1, abs=0.1)
-    assert any("leading edges are splines" in text for text in found.changed)
     sections = case_sections(read_tblade3(main))
-    exact = sectioned_exact(found.design, checked=False)
+    design = blade_of(sections)
+    assert 0.02 < design.section.leading_edge_spline.contact < 0.3
+    exact = sectioned_exact(design, checked=False)
     points = np.stack(exact.stations(sections.places).points(PLACES), axis=1)
     expected = np.array([section_points(sections, i, PLACES) for i in range(3)])
     np.testing.assert_allclose(points, expected, rtol=0.0, atol=1e-9 * MM)

@@ -15,6 +15,7 @@ from bladewright.files.tblade3.switches import read_head
 from bladewright.files.tblade3.tables import read_tables
 from bladewright.files.text import read_text
 
+MAIN = "3dbgbinput"
 COMPANIONS = ("spancontrolinputs", "controlinputs")
 _TITLES = (
     *("blade row", "blade scaling factor", "sectionwise properties", "airfoil camber", "airfoil thickness"),
