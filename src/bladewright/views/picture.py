@@ -163,13 +163,13 @@ def _section_sheet(design: SectionDesign | None, section: Section) -> Figure:
     draw_passage(axes[0], section, pitch, "Section")
     draw_edge(axes[1], section, trailing=False)
     draw_edge(axes[2], section, trailing=True)
-    draw_smoothness(smooth, {section.span: smoothness(section)})
     lawful = design is not None and hasattr(design, "thickness_upper")
     axes = bottom.subplots(1, 3 if lawful else 2)
     draw_curvature(axes[0], [section])
     draw_thickness(axes[1], [section])
     if lawful:
         draw_thickness_laws(axes[2], design, [section], "axial chord")
+    draw_smoothness(smooth, {section.span: smoothness(section)})
     return figure
 
 
