@@ -14,6 +14,7 @@ from bladewright.files.schema import schema
 from bladewright.files.writing import text_of, updated
 from bladewright.section.laws import Span
 
+from . import stacked
 from .sectioned import BLUNT, COMPRESSOR, DESIGNS, DIFFUSER, STATOR, VANE, through
 
 SWAPPED = replace(COMPRESSOR.flow_path, hub=COMPRESSOR.flow_path.shroud, shroud=COMPRESSOR.flow_path.hub)
@@ -172,7 +173,7 @@ def test_derivatives_by_the_complex_step_are_those_of_differences(design, paths)
 
 def test_a_design_file_holds_each_to_the_bit_and_keeps_to_the_schema():
     validator = jsonschema.Draft202012Validator(schema())
-    for design in DESIGNS.values():
+    for design in (*DESIGNS.values(), *stacked.ALL):
         document = parsed(text_of(design), "file")
         assert repr(design_from(document, "file")) == repr(design)
         validator.validate(document)

@@ -47,8 +47,8 @@ def placed_sections(design: SectionedBlade, place: Place, mapping: Mapping, v: R
     along = chord * (reference[..., 0] * turned[0] - reference[..., 1] * turned[1])
     across = chord * (reference[..., 0] * turned[1] + reference[..., 1] * turned[0])
     shift = shift_of(design, span, stagger)
-    lines, step = shifted_lines(place.surfaces, lines, along, shift)
-    radius = lines.position(lines.u_at((along + step)[..., None]))[..., 0, 1]
+    lines = shifted_lines(place.surfaces, lines, along, shift)
+    radius = lines.position(lines.u_at(along[..., None]))[..., 0, 1]
     around = shift.tangential / radius if mapping.revolved else shift.tangential
     start = mapping.start(_tangential(design, span) + around, radius, lines.lengths) - across
     plane = StaggeredSections(outline=outline, stagger=stagger, chord=chord, start=start)

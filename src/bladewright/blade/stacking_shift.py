@@ -49,16 +49,14 @@ def shift_of(design: "SectionedBlade", span: Span, stagger: Array) -> Shift:
     )
 
 
-def shifted_lines(
-    surfaces: StreamSurfaces, lines: BladedLines, reference: Array, shift: Shift
-) -> tuple[BladedLines, Array]:
-    """Stream lines by u between the edges of the shifted sections, and the reference points' shift (..., m) [abscissa].
+def shifted_lines(surfaces: StreamSurfaces, lines: BladedLines, reference: Array, shift: Shift) -> BladedLines:
+    """Stream lines by u between the edges of the shifted sections.
 
-    `reference` (..., m) is the abscissa of the reference points from the leading edge before the shift. A section's
-    extent in its plane stays. Raises DesignError where it would leave the flow path.
+    `reference` (..., m) is the abscissa of the reference points from the leading edge. A section's extent in its plane
+    stays. Raises DesignError where it would leave the flow path.
     """
     if shift.meridional is None and shift.conformal is None:
-        return lines, np.zeros(reference.shape)
+        return lines
     mapping, v = lines.mapping, lines.v
     ruler = _long_enough(surfaces, lines, shift)
     moved = reference
@@ -69,7 +67,7 @@ def shifted_lines(
         moved = moved + shift.conformal
     step = moved - reference
     leading, trailing = (ruler.t(ruler.u_at(place[..., None]))[..., 0] for place in (step, lines.extents() + step))
-    return bladed_lines(surfaces, v, mapping, leading, trailing, counted=isinstance(mapping, Counted)), step
+    return bladed_lines(surfaces, v, mapping, leading, trailing, counted=isinstance(mapping, Counted))
 
 
 def _long_enough(surfaces: StreamSurfaces, lines: BladedLines, shift: Shift) -> BladedLines:
