@@ -13,12 +13,15 @@ middle of the two contacts. Measured:
 * y'''/x''' would then be y_uuu / x_u^3, which is 285, -290, 532 and -545. It is 218, -356, 463 and -845: third
   differences of numbers rounded to 7e-18 over (2e-6)^3. That rounding decides much of the shape: the third control
   point stands 1.15 of the contact's ordinate high on one side, the seventh 0.99 on the other.
-* Sixteen of the eighteen equations are these. The two left, blends of ordinates by a factor of 0.6, were not found:
-  no four of the coordinates, combined by 0.4, 0.5, 0.6, 1, 1.6 and 2, hold in both sections.
+* Sixteen of the eighteen equations are these. The two left make the third control point's ordinate a blend of its
+  neighbours', c of the second and 1 - c of the fourth, and the seventh's likewise. The factors are none of the file's
+  (0.6): T-Blade3 seeks them between 0 and 4 by golden sections, to 1e-5, so that the polygon turns least. They are
+  0.974 and 0.858 in the first section, 2.146 and 0.960 in the second.
 
-With y''' as printed, the exact ratio changes x''' by 6e-5 and so one of four control points by 7e-6 at least: to agree
-within 1e-6 a program must round as T-Blade3 does. `bladewright.section.edge_spline` keeps the nine control points,
-droop and elongation, and matches derivatives by s.
+So all equations are known, and their numbers are not: with y''' as printed, the exact ratio changes x''' by 6e-5 and so
+one of four control points by 7e-6 at least, before the search for the factors starts from it. To agree within 1e-6 a
+program must round as T-Blade3 does. `bladewright.section.edge_spline` keeps the nine control points, droop and
+elongation, and matches derivatives by s.
 
     python design/edge_spline_tblade3.py
 """
@@ -98,3 +101,5 @@ for n in SECTIONS:
         print(f"second {(SECOND @ points[:, 1] / step**2) / (y[2] / x[2]) - 1.0:.1e}", end=", ")
         print(f"third {y[3] / x[3]:.1f} where the section has {third:.1f}", end=", ")
         print(f"third control point {row[2, 1] / points[0, 1]:.4f} of the contact's ordinate")
+    blends = [(row[2, 1] - row[3, 1]) / (row[1, 1] - row[3, 1]) for row in (controls, controls[::-1])]
+    print(f"  blends {blends[0]:.4f} and {blends[1]:.4f}")
