@@ -126,6 +126,7 @@ def _curvature_meanline(draw, wild, stagger, turn):
     spread = 2.0 + 10.0 * wild
     thick = float(np.exp(draw.uniform(np.log(0.03), np.log(0.15))))
     edge = thick * draw.uniform(0.1, 0.4)
+    end = str(draw.choice(["elliptic", "blunt", "sharp"]))
     laws = (
         ModifiedNaca(
             leading_edge_index=draw.uniform(2.0, 7.0),
@@ -138,13 +139,11 @@ def _curvature_meanline(draw, wild, stagger, turn):
             maximum_thickness=law(draw, thick, 0.2 * thick, (0.01, 0.3)),
             maximum_thickness_at=draw.uniform(0.35, 0.6),
             leading_edge_thickness=edge,
-            trailing_edge=str(draw.choice(["elliptic", "blunt", "sharp"])),
-            trailing_edge_thickness=edge,
+            trailing_edge=end,
+            **({} if end == "sharp" else {"trailing_edge_thickness": edge}),
         ),
     )
     thickness = laws[int(draw.integers(2))]
-    if isinstance(thickness, Wennerstrom) and thickness.trailing_edge == "sharp":
-        thickness = thickness.changed("trailing_edge_thickness", 0.0)
     return CurvatureMeanline(
         metal_angle_in=law(draw, stagger + turn / 2.0, spread, 80.0),
         metal_angle_out=law(draw, stagger - turn / 2.0, spread, 80.0),

@@ -12,33 +12,28 @@ import pytest
 sys.path.insert(0, str(Path(__file__).parents[1] / "design"))
 import random_designs
 
-COUNT = 36
+COUNT = {"unified": 24, "sections": 10}
 
 
-@pytest.fixture(scope="module")
-def outcomes():
-    """What became of the designs of the first seeds, each built in a process that may die."""
-    return list(random_designs.outcomes(range(COUNT), samples=1000))
-
-
-def test_each_random_design_is_refused_with_a_reason_or_passes_its_round_trip(outcomes):
-    assert sorted(outcome.seed for outcome in outcomes) == list(range(COUNT))
-    assert [outcome for outcome in outcomes if outcome.kind not in random_designs.FINE] == []
+@pytest.mark.parametrize("of", COUNT)
+def test_each_random_design_is_refused_with_a_reason_or_passes_its_round_trip_and_a_fair_share_of_each(of):
+    count = COUNT[of]
+    found = list(random_designs.outcomes(range(count), samples=1000, of=of))
+    assert sorted(outcome.seed for outcome in found) == list(range(count))
+    assert [outcome for outcome in found if outcome.kind not in random_designs.FINE] == []
+    kinds = Counter(outcome.kind for outcome in found)
+    assert kinds["built"] + kinds["blade only"] >= count // 4
+    # each with a passage that fills its ring
+    assert kinds["built"] >= count // 8
+    assert kinds["refused"] >= count // 4
+    assert len({outcome.shape for outcome in found if outcome.kind == "built"}) >= 2
 
 
 @pytest.mark.slow
-def test_each_of_two_thousand_random_designs_is_refused_with_a_reason_or_passes_its_round_trip():
-    found = random_designs.outcomes(range(2000), jobs=2)
+@pytest.mark.parametrize(("of", "count"), [("unified", 2000), ("sections", 500)])
+def test_each_of_many_random_designs_is_refused_with_a_reason_or_passes_its_round_trip(of, count):
+    found = random_designs.outcomes(range(count), jobs=2, of=of)
     assert [outcome for outcome in found if outcome.kind not in random_designs.FINE] == []
-
-
-def test_a_fair_share_of_random_designs_is_built_and_another_refused(outcomes):
-    kinds = Counter(outcome.kind for outcome in outcomes)
-    assert kinds["built"] + kinds["blade only"] >= COUNT // 4
-    # each with a passage that fills its ring
-    assert kinds["built"] >= COUNT // 8
-    assert kinds["refused"] >= COUNT // 4
-    assert len({outcome.shape for outcome in outcomes if outcome.kind == "built"}) >= 3
 
 
 def test_a_random_design_follows_from_its_seed_alone():

@@ -11,6 +11,8 @@ from bladewright.files.examples import examples
 
 ROOT = Path(__file__).parents[2]
 EXPORTS = ROOT / "exports"
+SECOND = ("backswept-impeller", "exhaust-strut", "inflow-nozzle", "inlet-guide-vane", "mixed-flow-compressor")
+"""second machines of a family"""
 SCRIPTS = sorted(path.stem for path in (ROOT / "examples").glob("*.py") if path.stem not in {"_common", "make_all"})
 
 
@@ -18,7 +20,9 @@ def test_every_built_in_machine_but_the_readme_s_has_a_script():
     assert set(SCRIPTS) == set(examples()) - {"fan-rotor"}
 
 
-@pytest.mark.parametrize("name", SCRIPTS)
+@pytest.mark.parametrize(
+    "name", [pytest.param(name, marks=[pytest.mark.slow] if name in SECOND else []) for name in SCRIPTS]
+)
 def test_a_script_makes_verified_files_and_its_number_holds(name, tmp_path, monkeypatch, capsys):
     monkeypatch.syspath_prepend(ROOT / "examples")
     monkeypatch.setattr(sys, "argv", [f"{name}.py", str(tmp_path)])
