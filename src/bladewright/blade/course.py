@@ -22,7 +22,7 @@ class Course(ABC):
     length: float
     """mean meridional length of the blade [m]"""
     unit: float
-    """how much of u one such length takes; exactly, where the channel has ended"""
+    """how much of u one such length takes; on hub and shroud exactly, where the channel has ended"""
 
     @abstractmethod
     def extent(self, past: int, u: float) -> float:

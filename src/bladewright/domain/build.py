@@ -10,7 +10,7 @@ from bladewright.blade.knots import DEGREE
 from bladewright.domain.asked import Asked
 from bladewright.domain.camber import camber_lines
 from bladewright.domain.checks import check_folds, check_pitch
-from bladewright.domain.choice import crossed, knots_for
+from bladewright.domain.choice import crossed, knots_for, spanned
 from bladewright.domain.extents import shortest_duct
 from bladewright.domain.fitness import TOLERANCE
 from bladewright.domain.knots import PassageKnots
@@ -66,8 +66,9 @@ def passage(
         return _passage(asked, knots, split)
     _check_within(asked)
     start, walls = crossed(asked, upstream, downstream)
+    start = spanned(asked, start, RESERVES[0] * TOLERANCE * blade.chord)
     for reserve in RESERVES:
-        made = _passage(asked, knots_for(asked, start, walls, reserve * TOLERANCE * blade.chord), split)
+        made = _passage(asked, knots_for(start, walls, reserve * TOLERANCE * blade.chord), split)
         if made.wall_error <= TOLERANCE:
             break
     check_folds(made.folds)

@@ -7,7 +7,6 @@ import numpy as np
 from bladewright.blade.knots import DEGREE, clamped, refined
 from bladewright.domain.camber import CamberLines
 from bladewright.domain.knots import PIECES
-from bladewright.domain.nets import through
 from bladewright.domain.wall import WallHalf
 from bladewright.numerics.elementary import Array, dot, length
 from bladewright.nurbs.basis import Reals, basis, greville
@@ -27,11 +26,11 @@ def knots_across(walls: Mapping[str, WallHalf], tolerance: float) -> Reals:
 
     def miss(knots: Reals, places: Reals) -> Reals:
         v = np.concatenate([greville(knots, DEGREE), places])
-        worst = np.zeros(len(places))
+        worst, at = np.zeros(len(places)), _at(knots, places)
         for wall in walls.values():
             for piece in PIECES:
                 points, normals = (np.real(part) for part in wall.in_space(piece, _ALONG, v))
-                off = _off(knots, places, np.swapaxes(points, 0, 1), np.swapaxes(normals, 0, 1))
+                off = _off(at, np.swapaxes(points, 0, 1), np.swapaxes(normals, 0, 1))
                 worst = np.maximum(worst, np.max(off, axis=1) / tolerance)
         return worst
 
@@ -43,10 +42,10 @@ def knots_along(walls: Mapping[str, WallHalf], piece: str, tolerance: float) -> 
 
     def miss(knots: Reals, places: Reals) -> Reals:
         t = np.concatenate([greville(knots, DEGREE), places])
-        worst = np.zeros(len(places))
+        worst, at = np.zeros(len(places)), _at(knots, places)
         for wall in walls.values():
             points, normals = (np.real(part) for part in wall.in_space(piece, t, _ACROSS))
-            worst = np.maximum(worst, np.max(_off(knots, places, points, normals), axis=1) / tolerance)
+            worst = np.maximum(worst, np.max(_off(at, points, normals), axis=1) / tolerance)
         return worst
 
     duct = next(iter(walls.values())).camber.duct
@@ -63,10 +62,10 @@ def knots_beside(walls: Mapping[str, WallHalf], own: Reals, tolerance: float) ->
         t = np.concatenate([greville(knots, DEGREE), places])
         order = np.argsort(t)
         back = np.argsort(order)
-        worst = np.zeros(len(places))
+        worst, at = np.zeros(len(places)), _at(knots, places)
         for wall in walls.values():
             points, normals = (np.real(part)[back] for part in wall.in_space("blade", t[order], _ACROSS))
-            worst = np.maximum(worst, np.max(_off(knots, places, points, normals), axis=1) / tolerance)
+            worst = np.maximum(worst, np.max(_off(at, points, normals), axis=1) / tolerance)
         return worst
 
     return refined(own, miss, MOST_POLES + len(own))
@@ -81,13 +80,13 @@ def knots_span(camber_at: Callable[[Reals], CamberLines], inner: Reals, toleranc
     def miss(knots: Reals, places: Reals) -> Reals:
         camber = camber_at(np.concatenate([greville(knots, DEGREE), places]))
         mapping, count = camber.lines.mapping, len(knots) - DEGREE - 1
-        worst = np.zeros(len(places))
+        worst, at = np.zeros(len(places)), _at(knots, places)
         for piece, t in (("inlet", 0.0), ("outlet", 1.0)):
             plane = np.real(camber.points(piece, np.array([t])))
             position = np.real(camber.lines.position(camber.lines.u_at(plane[..., 0])))
             x, radius, tangential = position[:, 0, 0], position[:, 0, 1], plane[:, 0, 1]
             points = mapping.in_space(x, radius, tangential)
-            error = basis(knots, DEGREE, places) @ through(points[:count], knots, 0) - points[count:]
+            error = at @ points[:count] - points[count:]
             if mapping.revolved:
                 outwards = mapping.in_space(0.0 * x, 1.0 + 0.0 * x, tangential)[count:]
                 error = np.stack([error[:, 0], dot(error, outwards)], axis=-1)
@@ -99,10 +98,15 @@ def knots_span(camber_at: Callable[[Reals], CamberLines], inner: Reals, toleranc
     return refined(clamped(np.concatenate([inner, extra])), miss, MOST_POLES)
 
 
-def _off(knots: Reals, places: Reals, points: Array, normals: Array) -> Reals:
+def _at(knots: Reals, places: Reals) -> Reals:
+    """The matrix (k, n) from points at the Greville abscissae to the interpolant's at places (k,)."""
+    return np.asarray(basis(knots, DEGREE, places) @ np.linalg.inv(basis(knots, DEGREE, greville(knots, DEGREE))))
+
+
+def _off(at: Reals, points: Array, normals: Array) -> Reals:
     """Distance (k, l) along the normals of the interpolant of points (n + k, l, 3) from the last k of them."""
-    count = len(points) - len(places)
-    native = np.tensordot(basis(knots, DEGREE, places), through(points[:count], knots, 0), axes=1)
+    count = at.shape[1]
+    native = np.tensordot(at, points[:count], axes=1)
     return np.abs(dot(native - points[count:], normals[count:]))  # real: knots come from the real design
 
 
