@@ -139,16 +139,6 @@ def exact_blade(design: UnifiedBlade, tip_knots: Reals | None = None, *, tentati
     )
 
 
-def in_channel(exact: Meant, what: str) -> ExactBlade:
-    """The exact blade of the unified family; DesignError that `what` is not made for blades from sections."""
-    if isinstance(exact, ExactBlade):
-        return exact
-    raise DesignError(
-        f"{what} is asked of {exact.design.name!r}, a blade from sections, but is made for the unified family only; "
-        "there are its solid, its sections, its promises and its derivatives"
-    )
-
-
 def moved(exact: ExactBlade, design: UnifiedBlade) -> ExactBlade:
     """The exact blade of a design that is a small step away, its channel continued as far as that of `exact`."""
     full, channel, clearance = _channels_of(design, exact.tip_knots)
