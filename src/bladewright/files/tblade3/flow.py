@@ -36,6 +36,8 @@ class CaseFlow:
     """(m,) m' at the leading edge"""
     trailing: Reals
     """(m,) m' at the trailing edge"""
+    dropped: int = 0
+    """points that an offset would put past the axis, and that are left out"""
 
     @cached_property
     def totals(self) -> Reals:
@@ -80,17 +82,27 @@ def case_flow(case: TBlade3Case) -> CaseFlow:
     Raises FileError where a stream line is none, or an edge curve does not cross it once.
     """
     meridians = [_stream_line(case, index) for index in range(len(case.streamlines))]
-    metre = case.unit_length / case.scale
+    metre, dropped = case.unit_length / case.scale, 0
     for index, offset, side in ((0, case.hub_offset, 1.0), (len(meridians) - 1, case.tip_offset, -1.0)):
         if offset:
-            meridians[index] = _shifted(meridians[index], side * offset * case.scale)
+            points = _shifted(meridians[index], side * offset * case.scale)
+            kept = [point for point in points if point[1] > 0.0]
+            dropped += len(points) - len(kept)
+            meridians[index] = _through(case, f"streamline {index + 1}, as it is offset,", kept, "conformal")
     lines = tuple(each.line(metre) for each in meridians)
     edges = _edge(case, "leading", case.leading_curve), _edge(case, "trailing", case.trailing_curve)
     places = [
         np.array([_met(case, line, edge, name, index) for index, line in enumerate(lines, 1)])
         for name, edge in zip(("leading", "trailing"), (each.line(metre) for each in edges), strict=True)
     ]
-    return CaseFlow(meridians=tuple(meridians), lines=lines, edges=edges, leading=places[0], trailing=places[1])
+    return CaseFlow(
+        meridians=tuple(meridians),
+        lines=lines,
+        edges=edges,
+        leading=places[0],
+        trailing=places[1],
+        dropped=dropped,
+    )
 
 
 def _stream_line(case: TBlade3Case, index: int) -> ThroughPoints:
@@ -115,15 +127,14 @@ def _through(case: TBlade3Case, what: str, points: list[tuple[float, float]], sp
         ) from error
 
 
-def _shifted(line: ThroughPoints, by: float) -> ThroughPoints:
-    """A stream line whose points are moved along their normals, to the right of its direction."""
+def _shifted(line: ThroughPoints, by: float) -> list[tuple[float, float]]:
+    """The points of a stream line moved along their normals, to the right of its direction."""
     own = line.line(1.0)
     at = np.real(own.values(own.breaks))
     rate = np.real(own.values(own.breaks, 1))
     normals = np.stack([rate[:, 1], -rate[:, 0]], axis=-1)
     moved = at + by * normals / np.sqrt(np.sum(rate**2, axis=-1, keepdims=True))
-    points = tuple(Point(float(x), float(r)) for x, r in moved)
-    return ThroughPoints(points=points, spacing=line.spacing, ends=line.ends)
+    return [(float(x), float(r)) for x, r in moved]
 
 
 def _met(case: TBlade3Case, line: MeridianLine, edge: MeridianLine, name: str, index: int) -> float:

@@ -122,6 +122,11 @@ def _changed(sections: CaseSections) -> Iterator[str]:
             "the leading edges are splines of the family, smooth at the contacts, their tips where T-Blade3 means its "
             "own; their other control points are not T-Blade3's, nor are the points of its sections there"
         )
+    if sections.flow.dropped:
+        yield (
+            f"{sections.flow.dropped} points of the offset streamlines lie past the axis and are left out: the splines "
+            "change by what such points do to them at the blade"
+        )
     if case.angles == "wing":
         yield "twist and total camber of the wing are given as metal angles"
     if case.true_lean_and_sweep and (_matters(case.sweep) or _matters(case.lean)):
