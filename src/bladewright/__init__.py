@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from bladewright.blade.meridian import StraightsAndArcs as StraightsAndArcs
     from bladewright.blade.meridian import ThroughPoints as ThroughPoints
     from bladewright.blade.prismatic import prismatic as prismatic
+    from bladewright.blade.stacking import Stacking as Stacking
     from bladewright.blade.throat import Throat as Throat
     from bladewright.blade.throat import throat as throat
     from bladewright.blade.unified import UnifiedBlade as UnifiedBlade
@@ -128,6 +129,7 @@ _HOMES = {
     "ProfileSection": "section.profiles.kinds",
     "QuarticSpline": "section.thickness.quartic",
     "SectionPassage": "domain.section",
+    "Stacking": "blade.stacking",
     "StraightsAndArcs": "blade.meridian",
     "SuctionPressure": "section.suction_pressure.part",
     "SuctionPressureBlade": "blade.families",
