@@ -124,3 +124,14 @@ def test_an_edge_that_sticks_out_of_its_cloud_stands_out_by_that_much(edge, path
     assert 0.3 * away < excess[edge] <= away
     again = placed(reach.points, longer, np.zeros(2, dtype=int), reach.u, reach.v)
     assert np.sum(again.miss[edge] * again.normals[edge]) < 0.0
+
+
+@pytest.mark.parametrize(("shown", "held"), [(1.0, True), (0.7, False)])
+def test_the_ends_of_an_edge_are_held_where_the_cloud_shows_them(shown, held):
+    _, _, there = shape(BLADE)
+    u = (1.0 - np.cos(np.pi * np.linspace(0.0, 1.0, 60))) / 2.0
+    grid = [np.repeat(u, 40), np.tile(np.linspace(0.0, shown, 40), 60)]
+    points = np.concatenate([side(*grid) for side in there.sides])
+    reach = reach_of(points, there.sides, np.ones(len(points), dtype=bool))
+    assert np.all(np.isfinite(reach.allowed[reach.v == 1.0]) == held)
+    assert np.all(np.isfinite(reach.allowed[reach.v < 1.0]))

@@ -21,6 +21,7 @@ from bladewright.fitting.families.blades import matched_blade
 from bladewright.fitting.families.kinds import KINDS, Kind, kind_of
 from bladewright.fitting.families.sections import Frame, matched_section
 from bladewright.fitting.first.blade import first_blade
+from bladewright.fitting.first.designed import AXES
 from bladewright.fitting.first.profile import first_section
 from bladewright.fitting.freedom import freedom_of
 from bladewright.fitting.judging import judged
@@ -65,7 +66,9 @@ def fit(
     """The design of a family that matches a cloud of points (n, 2) or (n, 3) [m], and how well it does.
 
     Points are in the machine's axes, in any order: (n, 2) of a section give a `UnifiedSection`, (n, 3) a
-    `UnifiedBlade`; with `align` they may lie anywhere in space. No guess is needed; `start` is one, whose structure is
+    `UnifiedBlade`, or the section or blade of the `family` that is named, or that `start` or `like` is of; with `align`
+    they may lie anywhere in space. The flow path of a blade from sections is that of `start` or `like`, or found, and
+    stands. No guess is needed; `start` is one, whose structure is
     kept unless `tolerance` [m] or `parameters` ask for another. `like` is a design whose structure is taken, not its
     values. Without any of these, control points are added while the cloud tells of them; with `tolerance`, until no
     inlier lies further away; with `parameters`, up to that number of free ones.
@@ -133,8 +136,13 @@ def fit(
     base = None
     if start is None and (solid or wanted is None):
         base = wanted or lean(points.shape[1], parameters)
-    found, reason = adapted(task, first, aim, base=base, guessed=start is None)
-    found, built = _built(task, found)
+    try:
+        found, reason = adapted(task, first, aim, base=base, guessed=start is None)
+        found, built = _built(task, found)
+    except FitError as error:
+        if blade_count is None and isinstance(guessed, UnifiedBlade) and guessed.blade_count == 1:
+            raise FitError(f"{error}; the points go far around x: {AXES}") from error
+        raise
     return _reported(found, built, points, task, aim, (*notes, *([reason] if reason else [])), motion)
 
 
@@ -171,8 +179,8 @@ def _check(
         if design is not None and not isinstance(design, kind):
             raise FitError(
                 f"{label} is a {type(design).__name__}, and points with {points.shape[1]} coordinates need a "
-                f"{kind.__name__}{'' if family is None else f' of the family {family.name}'}: give such a design, or "
-                "points of the other kind"
+                f"{kind.__name__}{'' if family is None else f' of the family {family.name}'}: give such a design, "
+                f"or {'points of the other kind' if family is None else 'another family'}"
             )
     if tolerance is not None and not 0.0 < tolerance < np.inf:
         raise FitError(f"tolerance is {tolerance!r}: a positive length in metres is needed, such as 5e-5")

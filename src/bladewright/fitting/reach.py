@@ -14,8 +14,10 @@ from bladewright.fitting.feet import Feet, Side, placed
 from bladewright.nurbs.basis import Reals
 from bladewright.nurbs.surface import Surface
 
-STATIONS: Reals = np.linspace(1.0 / 32.0, 31.0 / 32.0, 16)
+STATIONS: Reals = np.concatenate([[0.0], np.linspace(1.0 / 32.0, 31.0 / 32.0, 16), [1.0]])
 """places along the span at which each edge is looked at"""
+COVERED = 0.05
+"""how far, in v, the nearest point may be from an end of the span: a cloud may show a part of the span only"""
 BESIDE = 0.2
 """what a distance along the edge counts while the nearest point is sought: a cloud may have few rows"""
 AROUND = 6
@@ -35,7 +37,7 @@ class Reach:
     v: Reals
     """(m,)"""
     allowed: Reals
-    """(m,) [m]"""
+    """(m,) [m]; infinite where the cloud does not tell"""
 
     def edges(self, sides: Sequence[Side]) -> Feet:
         """The places on the edges beside the points."""
@@ -53,17 +55,19 @@ def reach_of(points: Reals, sides: Sequence[Side], rows: NDArray[np.bool_]) -> R
     u, v = np.repeat([0.0, 1.0], len(stations)), np.tile(stations, 2)
     side = np.zeros(len(u), dtype=np.intp)
     edges = placed(np.zeros((len(u), points.shape[1])), sides, side, u, v)
-    chosen = []
+    chosen, shown = [], np.ones(len(u), dtype=bool)
     for i, at in enumerate(edges.points):
         off = cloud - at
         away = np.sum(off**2, axis=-1)
         if isinstance(upper, Surface):
             along = np.asarray(upper.derivative(u[i : i + 1], v[i : i + 1], 0, 1))[0]
-            away -= (1.0 - BESIDE**2) * (off @ along) ** 2 / (along @ along)
+            way = off @ along / (along @ along)
+            away -= (1.0 - BESIDE**2) * way**2 * (along @ along)
+            shown[i] = 0.0 < v[i] < 1.0 or abs(way[np.argmin(away)]) < COVERED
         chosen.append(int(np.argmin(away)))
     beside = cloud[chosen]
     tree = cKDTree(cloud)
     _, around = tree.query(beside, k=AROUND)
     apart = tree.query(cloud[around.ravel()], k=3)[0][:, -1]
-    allowed = APART * np.median(apart.reshape(len(chosen), AROUND), axis=1)
+    allowed = np.where(shown, APART * np.median(apart.reshape(len(chosen), AROUND), axis=1), np.inf)
     return Reach(points=beside, u=u, v=v, allowed=allowed)

@@ -40,6 +40,10 @@ LIMITS = {
 """of a first blade's laws"""
 
 
+AXES = "x must be the machine axis: say which column is which (--columns), or let the axis be found (--align)"
+"""what may be wrong with a cloud that no blade is found near"""
+
+
 def built_blade(
     found: Found,
     arrangement: Arrangement,
@@ -106,7 +110,7 @@ def built_blade(
             numbers = (sharpened if attempt < SHARPENINGS else tamed)(numbers, shape)
         else:
             return design, max(0, attempt - SHARPENINGS)
-    raise FitError(f"no blade that can be built was found near the points: {error}")
+    raise FitError(f"no blade that can be built was found near the points ({error}); {AXES}")
 
 
 def _as_channel(channel: Rough, metre: float) -> Channel:
