@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from bladewright.errors import FitError
+from bladewright.fitting.families.edges import split
 from bladewright.fitting.families.faces import closed_sides
 from bladewright.fitting.families.kinds import KINDS, kind_of
 from bladewright.fitting.families.sections import section_samples
@@ -26,14 +27,10 @@ MEMBERS |= {
     # an example of the contract's own tests is of no family; a profile through points has no numbers besides them
     if name != "oval" and not name.startswith("points")
 }
-FEW = (
-    "suction and pressure side of a stator",
-    "wedge diffuser with a back face",
-    FLAT,
-    "camber-angle-blunt",
-    "naca-2412",
-)
-"""one of each family"""
+STARTED = ("wedge diffuser with a back face", "camber-angle-blunt", "naca-2412")
+LIKE = ("suction and pressure side of a stator", FLAT, "naca-2412")
+"""with those, one of each family"""
+SAMPLED = (*STARTED, *LIKE, "double-circular-arc-sharp", "flat-plate-elliptic", "mixed camber line", "naca-6409-blunt")
 
 
 @cache
@@ -81,7 +78,7 @@ def test_the_derivatives_of_a_sections_sides_are_those_of_the_sides_built_with_a
         assert np.tensordot(direction, rate, axes=1) == pytest.approx(slope, abs=1e-6 * model.chord)
 
 
-@pytest.mark.parametrize("name", MEMBERS)
+@pytest.mark.parametrize("name", sorted(set(SAMPLED)))
 def test_a_sections_samples_are_those_of_the_part_it_is_made_of(name):
     section, design = section_samples(built(name)), MEMBERS[name]
     assert section.chord == pytest.approx(design.chord * 1e-3, rel=1e-9)
@@ -90,7 +87,7 @@ def test_a_sections_samples_are_those_of_the_part_it_is_made_of(name):
     assert started.parameters().keys() == design.section.parameters().keys()
 
 
-@pytest.mark.parametrize("name", FEW)
+@pytest.mark.parametrize("name", STARTED)
 def test_a_section_is_found_again_from_a_start_that_is_off(name):
     found = fit(cloud(name), start=shaken(MEMBERS[name]))
     assert type(found.design) is type(MEMBERS[name])
@@ -99,7 +96,7 @@ def test_a_section_is_found_again_from_a_start_that_is_off(name):
     assert found.passed
 
 
-@pytest.mark.parametrize("name", FEW)
+@pytest.mark.parametrize("name", LIKE)
 def test_a_section_is_found_again_when_its_structure_is_given(name):
     design = MEMBERS[name]
     found = fit(cloud(name), family=kind_of(design).name, like=design)
@@ -146,3 +143,20 @@ def test_a_sections_family_has_no_points_in_space():
     for name in KINDS:
         with pytest.raises(FitError, match="give x and y alone"):
             fit(points, family=f"{name}-section")
+
+
+def test_the_edge_of_a_thick_nose_is_in_the_middle_of_its_turn_wherever_its_sides_part():
+    turn = np.linspace(0.5 * np.pi, 1.5 * np.pi, 200)
+    nose = np.stack([0.1 + 0.1 * np.cos(turn), 0.1 * np.sin(turn)], axis=-1)
+    tail = np.stack([np.linspace(0.1, 1.0, 200), np.linspace(0.1, 0.0, 200)], axis=-1)
+    # the sides part 60 deg up the nose
+    cut = int(np.searchsorted(turn, np.pi - np.radians(60.0)))
+    upper = np.concatenate([nose[cut::-1], tail])
+    lower = np.concatenate([nose[cut:], tail * [1.0, -1.0]])
+    above, below, radii = split(upper, lower)
+    # within a step of the samples
+    assert above[0] == pytest.approx([0.0, 0.0], abs=0.01)
+    assert above[-1] == pytest.approx([1.0, 0.0], abs=0.01)
+    assert np.all(above[10:-10, 1] > 0.0)
+    assert np.all(below[10:-10, 1] < 0.0)
+    assert radii[0] == pytest.approx(0.1, rel=0.05)

@@ -38,7 +38,12 @@ UNITS = ("m", "cm", "mm", "um", "in", "ft")
     metavar="DESIGN",
     help="Design whose numbers of control points are taken.",
 )
-@click.option("--family", default="unified", show_default=True, help="Family of the design.")
+@click.option(
+    "--family",
+    default="unified",
+    show_default=True,
+    help="Family of the design, as in design files; that of --start or --like where none is named.",
+)
 @click.option("--unit", type=click.Choice(UNITS), help="Unit of the cloud's lengths; the file's own, or m.")
 @click.option(
     "--columns",

@@ -67,11 +67,10 @@ def fit(
 
     Points are in the machine's axes, in any order: (n, 2) of a section give a `UnifiedSection`, (n, 3) a
     `UnifiedBlade`, or the section or blade of the `family` that is named, or that `start` or `like` is of; with `align`
-    they may lie anywhere in space. The flow path of a blade from sections is that of `start` or `like`, or found, and
-    stands. No guess is needed; `start` is one, whose structure is
-    kept unless `tolerance` [m] or `parameters` ask for another. `like` is a design whose structure is taken, not its
-    values. Without any of these, control points are added while the cloud tells of them; with `tolerance`, until no
-    inlier lies further away; with `parameters`, up to that number of free ones.
+    they may lie anywhere in space. No guess is needed; `start` is one, whose structure is kept unless `tolerance` [m]
+    or `parameters` ask for another. `like` is a design whose structure is taken, not its values; the flow path of a
+    blade from sections is part of it. Without any of these, control points are added while the cloud tells of them;
+    with `tolerance`, until no inlier lies further away; with `parameters`, up to that number of free ones.
 
     `free` are patterns of the parameters that may change, `fixed` of those that are held at the start's values, or
     values by pattern; `bounds` are lowest and highest values by pattern, in the units of the fields. `weights` (n,) of

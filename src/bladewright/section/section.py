@@ -140,9 +140,12 @@ class Section:
     def edge_radii(self) -> tuple[float, float]:
         """Radii of curvature at the leading and the trailing edge, geodesic on a stream surface; 0 if not round [m]."""
         bend = self.curvature("upper", np.array([0.0, 1.0]))
-        radii = [
-            1.0 / float(np.sqrt(b * b)) if kind == "round" else 0.0 for b, kind in zip(bend, self.edges, strict=True)
-        ]
+        # an edge may be round, and flat at its very point
+        with np.errstate(divide="ignore"):
+            radii = [
+                float(1.0 / np.sqrt(b * b)) if kind == "round" else 0.0
+                for b, kind in zip(bend, self.edges, strict=True)
+            ]
         return radii[0], radii[1]
 
     def curvature(self, name: str, u: Reals) -> Reals:

@@ -13,6 +13,8 @@ from bladewright.section.laws import law_basis
 
 ANGLES, THICKNESSES = 4, 4
 """control points to begin with"""
+LEAST = 0.1
+"""smallest half thickness to begin with, of the largest: beside a round edge it may rise so much only"""
 MOST = 14
 """control points of either"""
 TEMPLATES: tuple[CamberAngle, ...] = tuple(
@@ -32,7 +34,7 @@ def started(section: Sampled, like: CamberAngle) -> CamberAngle:
     return replace(
         like,
         camber_angle=tuple(float(np.clip(each, -88.0, 88.0)) for each in angles),
-        half_thickness=tuple(float(np.clip(each, 1e-3, 0.39)) for each in heights),
+        half_thickness=tuple(np.clip(heights, max(1e-3, LEAST * float(np.max(heights))), 0.39).tolist()),
     )
 
 

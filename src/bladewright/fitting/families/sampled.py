@@ -5,6 +5,7 @@ from functools import cached_property
 
 import numpy as np
 
+from bladewright.fitting.families.edges import split
 from bladewright.nurbs.basis import Reals
 from bladewright.nurbs.curve import Curve
 
@@ -116,7 +117,8 @@ def reversed_flow(section: Sampled) -> Sampled:
 def sampled(upper: Curve, lower: Curve, radii: tuple[float, float]) -> Sampled:
     """The samples of a section in its plane, from its sides [m] and its edges' radii [m]."""
     u = (1.0 - np.cos(np.pi * np.linspace(0.0, 1.0, POINTS))) / 2.0
-    sides = [np.real(side(u)) for side in (upper, lower)]
+    above, below, found = split(np.real(upper(u)), np.real(lower(u)))
+    sides, radii = [above, below], found or radii
     # the chord line ends in the middle of a blunt edge
     start, end = (0.5 * (sides[0][at] + sides[1][at]) for at in (0, -1))
     along = end - start
@@ -129,7 +131,7 @@ def sampled(upper: Curve, lower: Curve, radii: tuple[float, float]) -> Sampled:
         start=start,
         upper=first,
         lower=second,
-        radii=(radii[0] / chord, radii[1] / chord),
+        radii=(min(radii[0] / chord, 0.5), min(radii[1] / chord, 0.5)),
     )
 
 
