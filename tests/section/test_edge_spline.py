@@ -1,5 +1,7 @@
 """The quartic B-spline leading edge: smooth at its contacts, its tip where asked, nothing else moved."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -149,3 +151,18 @@ def test_a_contact_close_before_a_joint_is_refused_and_one_at_it_taken():
     np.testing.assert_allclose(
         derivatives(found, joint, -0.03)[..., 2, :], derivatives(found, joint, 0.03)[..., 2, :], atol=1e-7
     )
+
+
+def test_a_section_has_it_as_its_leading_edge_and_its_chord_line_turns_with_the_tip():
+    plain = MEANLINES[ELLIPSE][0].section
+    part = replace(plain, leading_edge_spline=MOVED)
+    found, whole = part.outline(SPAN), plain.outline(SPAN)
+    np.testing.assert_array_equal(found.control_points, MOVED.applied(whole, SPAN).control_points)
+    np.testing.assert_allclose(part.stagger(SPAN) - plain.stagger(SPAN), found.turned, atol=1e-15)
+    # turned back and stretched, the sides behind the contact are those without it
+    s = np.linspace(MOVED.contact, 1.0, 30)
+    across = np.array([1.0, 0.0]) - found.tip
+    for new, old in zip(found.points(s), whole.points(s), strict=True):
+        x, y = np.moveaxis(new, -1, 0)
+        back = [x * across[:, :1] - y * across[:, 1:], x * across[:, 1:] + y * across[:, :1]]
+        np.testing.assert_allclose(found.tip[:, None] + np.stack(back, -1), old, atol=1e-14)

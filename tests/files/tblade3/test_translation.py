@@ -130,6 +130,26 @@ def test_stacking_points_are_those_of_the_programs_polygons_where_its_stations_a
     assert all(0.0 < each < 3e-4 for each in away)
 
 
+@pytest.mark.parametrize(
+    "path",
+    ["flow_path.hub.points[2].r", "leading_edge.points[1].x", "trailing_edge.points[2].r", "leading_edge_theta[1]"],
+)
+def test_derivatives_go_through_a_counted_m(path, tmp_path):
+    design = blade_of(case_sections(read_tblade3(written(tmp_path))))
+    value, step = design.parameters()[path], 1e-5
+
+    def points(changed):
+        stations = sectioned_exact(design.changed(path, changed), checked=False).stations(
+            np.array([0.0, 0.3, 0.7, 1.0])
+        )
+        return np.stack(stations.points(PLACES))
+
+    exact = np.imag(points(value + 1e-30j)) / 1e-30
+    differences = (points(value + step) - points(value - step)) / (2.0 * step)
+    # differences of 1e-16 m over 2e-5 mm
+    np.testing.assert_allclose(exact, differences, rtol=0.0, atol=1e-10 + 1e-7 * np.max(np.abs(exact)))
+
+
 def test_sine_stations_are_those_of_the_program():
     sections = reference("Wennerstrom_r37_v1.2.5")
     assert chord_stations(sections.case) == pytest.approx(stations("Wennerstrom_r37_v1.2.5", 3), abs=1e-15)
