@@ -136,6 +136,6 @@ def _check_stagger(stagger: Array, v: Reals) -> None:
         row, at = steep[0]
         raise DesignError(
             f"section: its chord line stands at {np.degrees(real[row, at]):.4g} deg at v = {v[at]:.3f}: it must keep "
-            "below 89 deg to both sides, for the edge curves give the chord by its extent along the flow; lower the "
+            "below 89 deg to both sides, for beyond it the extent along the flow says nothing of the chord; lower the "
             "stagger angle there"
         )
