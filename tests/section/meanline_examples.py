@@ -1,6 +1,7 @@
 """Sections on meanlines: by name the design, and what its section must have."""
 
 from bladewright.section.curvature_meanline import CurvatureMeanline, CurvatureMeanlineSection
+from bladewright.section.edge_spline import EdgeSpline
 from bladewright.section.thickness.modified_naca import ModifiedNaca
 from bladewright.section.thickness.quartic import QuarticSpline
 from bladewright.section.thickness.wennerstrom import Wennerstrom
@@ -70,6 +71,14 @@ MEANLINES = {
             # where nothing is turned, how the turning is spread has no effect
             "dead": ("curvature[0]", "curvature[1]"),
         },
+    ),
+    "curvature meanline with a leading edge that is a spline": (
+        on_meanline(
+            curvature=(0.2, 0.6, 0.5, 0.2),
+            thickness=ELLIPTIC,
+            leading_edge_spline=EdgeSpline(contact=0.17, elongation=0.2, droop=0.15),
+        ),
+        {},
     ),
     "mixed camber line": (
         on_meanline(metal_angle_in=-60.0, metal_angle_out=-40.0, camber="mixed", thickness=ELLIPTIC),

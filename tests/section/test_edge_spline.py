@@ -19,6 +19,7 @@ ROUND = [
     for name, (design, _) in MEANLINES.items()
     # a mixed camber line bends where its angle says, which is no joint of the outline
     if design.section.camber == "curvature" and design.section.thickness.at(SPAN).leading == "round"
+    if design.section.leading_edge_spline is None
 ]
 ELLIPSE = next(name for name in ROUND if MEANLINES[name][0].section.thickness.law == "wennerstrom")
 MOVED = EdgeSpline(contact=0.17, elongation=(0.2, 0.1), droop=(-0.1, 0.15))
@@ -142,7 +143,9 @@ def test_an_edge_that_cannot_be_is_refused(changes, message):
 
 
 def test_a_contact_close_before_a_joint_is_refused_and_one_at_it_taken():
-    outline = MEANLINES[ROUND[0]][0].section.outline(SPAN)
+    # a multiplier's third derivative is not known in closed form
+    name = next(name for name in ROUND if MEANLINES[name][0].section.thickness_multiplier)
+    outline = MEANLINES[name][0].section.outline(SPAN)
     joint = next(joint.s for joint in outline.joints if 0.02 < joint.s < 0.5)
     with pytest.raises(DesignError, match=r"the section is not smooth at s = .*; move the contact beyond"):
         MOVED.changed("contact", joint - 1e-3).applied(outline, SPAN)

@@ -179,7 +179,7 @@ def test_a_mixed_camber_line_is_straight_at_its_ends_and_smooth_once():
 
 def test_the_half_thickness_stands_normal_to_the_meanline_on_both_sides():
     for design, _ in MEANLINES.values():
-        outline, s = design.section.outline(HUB), np.linspace(0.0, 1.0, 57)
+        outline, s = design.section.unsplined(HUB), np.linspace(0.0, 1.0, 57)
         upper, lower = (points[0] for points in outline.points(s))
         u = outline.thickness.u(s)[0]
         slope = outline.meanline.derivatives(u)[1][0]

@@ -22,6 +22,7 @@ from bladewright.numerics.solving import solved
 from bladewright.nurbs.basis import Reals
 from bladewright.section import checks
 from bladewright.section.laws import Span
+from bladewright.section.offset import OffsetOutline
 from bladewright.section.outline import Edge, Joint, Outline, Start
 from bladewright.section.thickness.uniform import QUARTIC, segments
 
@@ -29,7 +30,8 @@ SEGMENTS = 5
 SAME = 1e-9
 """difference by s below which a contact stands at a joint: the derivatives behind it count"""
 WINDOW, DEGREE = 0.05, 9
-"""how far behind the contact, by s, the polynomial reaches that the derivatives there are taken from, and its degree"""
+"""how far behind the contact, by s, the polynomial reaches that the derivatives there are taken from where a section
+does not know them exactly, and its degree"""
 NARROW = 0.01
 """how far it must reach at least"""
 
@@ -125,14 +127,18 @@ class SplinedOutline(Outline):
         first = np.sum(powers[..., 1:] * (np.arange(1, 5) * half[:4]), axis=-1) * step
         second = np.sum(powers[..., 2:] * (np.array([2, 6, 12]) * half[:3]), axis=-1) * step**2
         origin = np.zeros_like(first)
-        first, second = self._turned(first), self._turned(second)
+        first, second = (self._turned(each[..., None, :])[..., 0, :] for each in (first, second))
         return Edge(kind="round", upper=Start(origin, first, second), lower=Start(origin, -first, second))
 
     @cached_property
     def trailing_edge(self) -> Edge:
         edge = self.outline.trailing_edge
         upper, lower = (
-            Start(self._placed(side.point), self._turned(side.first), self._turned(side.second))
+            Start(
+                self._placed(side.point[..., None, :])[..., 0, :],
+                self._turned(side.first[..., None, :])[..., 0, :],
+                self._turned(side.second[..., None, :])[..., 0, :],
+            )
             for side in (edge.upper, edge.lower)
         )
         return Edge(kind=edge.kind, upper=upper, lower=lower)
@@ -178,15 +184,22 @@ class SplinedOutline(Outline):
     @cached_property
     def _at_contact(self) -> tuple[Array, Array]:
         """Point and three derivatives by s (..., m, 4, 2) of the upper and the lower side at the contact."""
-        after = [joint.s for joint in self.outline.joints if joint.s > self.contact + SAME]
-        reach = min([WINDOW, 1.0 - self.contact, *(place - self.contact for place in after)])
+        outline, contact = self.outline, self.contact
+        joints = [joint.s for joint in outline.joints]
+        exact = isinstance(outline, OffsetOutline) and outline.multiplier is None
+        if exact and not any((place - contact) ** 2 < SAME**2 for place in joints):
+            sides = outline.derivatives(np.array([contact]), 3)
+            upper, lower = (np.swapaxes(each[..., 0, :, :], -1, -2) for each in sides)
+            return upper, lower
+        after = [place for place in joints if place > contact + SAME]
+        reach = min([WINDOW, 1.0 - contact, *(place - contact for place in after)])
         if reach < NARROW:
             raise DesignError(
-                f"contact is {self.contact:g}: the section is not smooth at s = {self.contact + reach:.4g}, too near "
-                f"behind it; move the contact beyond"
+                f"contact is {contact:g}: the section is not smooth at s = {contact + reach:.4g}, too near behind it; "
+                "move the contact beyond"
             )
         places, weights = _differences(reach)
-        upper, lower = (weights @ side for side in self.outline.points(self.contact + places))
+        upper, lower = (weights @ side for side in outline.points(contact + places))
         return upper, lower
 
     def _spline(self, s: Reals) -> Array:
@@ -200,13 +213,12 @@ class SplinedOutline(Outline):
         return basis @ self.control_points
 
     def _placed(self, points: Array) -> Array:
-        tip = self.tip if points.ndim == self.tip.ndim else self.tip[..., None, :]
-        return self._turned(points - tip)
+        """Points (..., m, k, 2) in chords of the section from those in chords of `outline`."""
+        return self._turned(points - self.tip[..., None, :])
 
     def _turned(self, vectors: Array) -> Array:
-        """Vectors divided, as complex numbers are, by that from the tip to the trailing edge."""
-        chord = np.array([1.0, 0.0]) - self.tip
-        chord = chord if vectors.ndim == chord.ndim else chord[..., None, :]
+        """Vectors (..., m, k, 2) divided, as complex numbers are, by that from the tip to the trailing edge."""
+        chord = (np.array([1.0, 0.0]) - self.tip)[..., None, :]
         square = np.sum(chord * chord, axis=-1)
         x = (vectors[..., 0] * chord[..., 0] + vectors[..., 1] * chord[..., 1]) / square
         y = (vectors[..., 1] * chord[..., 0] - vectors[..., 0] * chord[..., 1]) / square
