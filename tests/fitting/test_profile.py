@@ -1,5 +1,8 @@
 """Profiles fitted by camber and half thickness."""
 
+from dataclasses import replace
+from functools import cache
+
 import numpy as np
 import pytest
 
@@ -7,6 +10,7 @@ import bladewright as bw
 from bladewright.fitting.camber_thickness import CamberThickness, abscissae_of
 from bladewright.fitting.least_squares import Penalty
 from bladewright.fitting.profile import _Search
+from bladewright.fitting.profile_growing import within
 from bladewright.nurbs.basis import uniform_knots
 
 KNOTS = uniform_knots(6, 3)
@@ -97,6 +101,48 @@ def test_the_leading_edge_is_round():
     np.testing.assert_allclose(
         ends[0][1] / np.sqrt(np.sum(ends[0][1] ** 2)), -ends[1][1] / np.sqrt(np.sum(ends[1][1] ** 2)), atol=1e-4
     )
+
+
+@cache
+def plain():
+    return bw.fit_profile(contour(profile(round_end=False), 30)[0], thickness=5, ends=CAMBER[[0, -1]], tolerance=1.0)
+
+
+def missing_by(largest, *, noise):
+    """Fits whose largest distance is that of a table by control points; each asked for is listed."""
+    asked = []
+
+    def fitted(camber, thickness):
+        asked.append((camber, thickness))
+        distances = np.full(len(plain().distances), largest.get((camber, thickness), 1.0))
+        return replace(plain(), distances=distances, noise=noise, tolerance=0.1)
+
+    return fitted, asked
+
+
+def test_a_tolerance_that_is_kept_adds_nothing():
+    assert plain().passed
+    assert len(plain().thickness.control_points) == 5
+    assert plain().notes == ()
+
+
+def test_control_points_are_added_where_they_help_most_until_the_tolerance_is_kept():
+    fitted, asked = missing_by({(6, 6): 0.9, (6, 7): 0.3, (7, 6): 0.8, (6, 8): 0.05, (7, 7): 0.2}, noise=0.0)
+    found = within(fitted, 6, 6, 0.1)
+    assert found.passed
+    assert found.maximum == 0.05
+    assert (6, 8) in asked
+    assert (8, 8) not in asked
+    assert found.iterations == len(asked) * plain().iterations
+
+
+@pytest.mark.parametrize(("noise", "words"), [(0.4, "noise"), (0.0, "no nearer")])
+def test_growth_ends_at_the_noise_and_where_it_brings_nothing(noise, words):
+    fitted, asked = missing_by({}, noise=noise)
+    found = within(fitted, 6, 6, 0.1)
+    assert not found.passed
+    assert words in found.notes[-1]
+    assert len(asked) == (1 if noise else 4)
 
 
 @pytest.mark.parametrize(

@@ -16,7 +16,9 @@ from bladewright.fitting.curves import noise_along
 from bladewright.fitting.fitted import Fitted, asked, checked_points
 from bladewright.fitting.least_squares import Penalty, Quadratic, minimised, rank_of, singular_values, summed
 from bladewright.fitting.net import PRIOR, Net
+from bladewright.fitting.profile_growing import within
 from bladewright.fitting.projection import Feet, descended, framed
+from bladewright.fitting.stages import Way
 from bladewright.numerics.elementary import length
 from bladewright.nurbs.basis import Reals, basis, uniform_knots
 from bladewright.nurbs.curve import Curve
@@ -71,18 +73,38 @@ def fit_profile(
     its first point lies on the camber's end and the second at the same abscissa, which makes the leading edge round;
     the third stands at 6.25 % of the abscissa, the others at equal steps after that, the last at the trailing edge. A
     `round` trailing edge is made like the leading edge, a `blunt` one is open. `ends` of the camber are `free`, or
-    `fixed` where the points begin and end, or two points. `power` 4 is the source's objective.
+    `fixed` where the points begin and end, or two points. `power` 4 is the source's objective. With a `tolerance`
+    control points of either are added until no point lies further away.
 
     Raises FitError where points are too few, not finite or on a line, or a choice is unknown.
     Source: the freeform NURBS blading paper, sections 3.1 and 4.2 (its objective with power 4); the thickness is laid
     off along the camber's normals.
     """
     given = checked_points(points, "a profile", (2,))
-    _check(given, camber, thickness, ends, trailing_edge)
-    centre, extent = np.mean(given, axis=0), float(np.ptp(given, axis=0).max())
+
+    def fitted(camber: int, thickness: int) -> ProfileFit:
+        _check(given, camber, thickness, ends, trailing_edge)
+        extent = float(np.ptp(given, axis=0).max())
+        way = asked(weights="free", power=power, robust=False, tolerance=tolerance, extent=extent, progress=progress)
+        return _fitted(given, camber, thickness, ends, way, round_end=trailing_edge == "round", tolerance=tolerance)
+
+    return fitted(camber, thickness) if tolerance is None else within(fitted, camber, thickness, tolerance)
+
+
+def _fitted(
+    given: Reals,
+    camber: int,
+    thickness: int,
+    ends: str | tuple[ArrayLike, ArrayLike],
+    way: Way,
+    *,
+    round_end: bool,
+    tolerance: float | None,
+) -> ProfileFit:
+    """The fit with so many control points."""
+    centre, extent, power = np.mean(given, axis=0), way.extent, way.power
     scaled = (given - centre) / extent
-    way = asked(weights="free", power=power, robust=False, tolerance=tolerance, extent=extent, progress=progress)
-    start, upper = _start(scaled, camber, thickness, round_end=trailing_edge == "round")
+    start, upper = _start(scaled, camber, thickness, round_end=round_end)
     if not isinstance(ends, str):
         pair = (np.array(ends, dtype=np.float64) - centre) / extent
         start = start.between(pair)
