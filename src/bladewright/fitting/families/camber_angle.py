@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
+from scipy.optimize import lsq_linear
 
 from bladewright.fitting.families.planar import ALONE
 from bladewright.fitting.families.sampled import PLACES, Sampled
@@ -17,9 +18,11 @@ LEAST = 0.1
 """smallest half thickness to begin with, of the largest: beside a round edge it may rise so much only"""
 MOST = 14
 """control points of either"""
-TEMPLATES: tuple[CamberAngle, ...] = tuple(
-    CamberAngle(camber_angle=(0.0,) * ANGLES, half_thickness=(0.02,) * THICKNESSES, trailing_edge=edge)
-    for edge in ("round", "blunt", "sharp")
+_FEW, _ANGLES = (0.02,) * THICKNESSES, (0.0,) * ANGLES
+TEMPLATES = (
+    CamberAngle(camber_angle=_ANGLES, half_thickness=_FEW),
+    CamberAngle(camber_angle=_ANGLES, half_thickness=_FEW, trailing_edge="blunt"),
+    CamberAngle(camber_angle=_ANGLES, half_thickness=_FEW, trailing_edge="sharp"),
 )
 """structures that are tried where none is given"""
 
@@ -34,7 +37,7 @@ def started(section: Sampled, like: CamberAngle) -> CamberAngle:
     return replace(
         like,
         camber_angle=tuple(float(np.clip(each, -88.0, 88.0)) for each in angles),
-        half_thickness=tuple(np.clip(heights, max(1e-3, LEAST * float(np.max(heights))), 0.39).tolist()),
+        half_thickness=tuple(heights.tolist()),
     )
 
 
@@ -55,7 +58,9 @@ def _heights(like: CamberAngle, fraction: Reals, half: Reals) -> Reals:
     at = (rows @ places) / total
     count = len(like.half_thickness)
     matrix = (rows * weights)[:, 1 : 1 + count] / total[:, None]
-    return np.asarray(np.linalg.lstsq(matrix, np.interp(at, fraction, half, left=0.0), rcond=None)[0])
+    least = max(1e-3, LEAST * float(np.max(half)))
+    wanted = np.interp(at, fraction, half, left=0.0)
+    return np.asarray(lsq_linear(matrix, wanted, bounds=(least, 0.39)).x)
 
 
 def grown(part: CamberAngle, section: Sampled) -> Sequence[CamberAngle]:  # noqa: ARG001 - what every family answers
@@ -75,7 +80,7 @@ def grown(part: CamberAngle, section: Sampled) -> Sequence[CamberAngle]:  # noqa
         )
         more = replace(part, half_thickness=(*part.half_thickness, part.half_thickness[-1]))
         wider = _heights(more, places, heights)
-        found.append(replace(more, half_thickness=tuple(np.clip(wider, 1e-3, 0.39).tolist())))
+        found.append(replace(more, half_thickness=tuple(wider.tolist())))
     if not part.thickness_places:
         found.append(replace(part, thickness_places=_inner_places(part)))
     elif not part.thickness_weights:

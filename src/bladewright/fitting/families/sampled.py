@@ -15,6 +15,8 @@ PLACES: Reals = (1.0 - np.cos(np.pi * np.linspace(0.0, 1.0, 121)[1:-1])) / 2.0
 """chord fractions of the mean line and the half thickness"""
 POWERS = 5
 """of the polynomial that multiplies u (1 - u) in the mean line"""
+BESIDE, STEP = (0.02, 0.06), 0.06
+"""how far behind an edge, and over which part of the chord, its wedge is seen, of the chord"""
 TURNS = 6
 """times that the mean line is brought to the middle"""
 
@@ -94,10 +96,11 @@ class Sampled:
         at = int(np.argmax(values**2))
         return float(values[at]), float(PLACES[at])
 
-    def wedge(self, end: int, near: float = 0.06, far: float = 0.16) -> float:
-        """Angle between the sides near the leading (0) or the trailing edge (1) [rad]."""
-        places = (near, far) if end == 0 else (1.0 - near, 1.0 - far)
-        return 2.0 * float(np.arctan((self.half_at(places[1]) - self.half_at(places[0])) / (far - near)))
+    def wedge(self, end: int) -> float:
+        """Angle between the sides where they leave the leading (0) or the trailing edge (1) [rad]."""
+        near = float(np.clip(self.radii[end], *BESIDE))
+        places = (near, near + STEP) if end == 0 else (1.0 - near, 1.0 - near - STEP)
+        return 2.0 * float(np.arctan((self.half_at(places[1]) - self.half_at(places[0])) / STEP))
 
 
 def reversed_flow(section: Sampled) -> Sampled:

@@ -50,7 +50,7 @@ def started(section: Sampled, like: SuctionPressure) -> SuctionPressure:
     """The part of a structure nearest to a section: edges by their radii and the sides' directions, sides by points."""
     angles = [float(np.degrees(np.clip(section.stagger + each, -1.5, 1.5))) for each in section.angles]
     radii = [float(np.clip(each, 8e-4, 0.15)) for each in section.radii]
-    wedges = [float(np.clip(np.degrees(section.wedge(end)), 2.0, 60.0)) for end in (0, 1)]
+    wedges = [float(np.clip(np.degrees(section.wedge(end)), 2.0, 80.0)) for end in (0, 1)]
     cambered = section.most_cambered[0] > 0.0
     found = replace(
         like,
