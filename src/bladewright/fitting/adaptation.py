@@ -2,6 +2,8 @@
 
 from dataclasses import replace
 
+import numpy as np
+
 from bladewright.designs import Design
 from bladewright.errors import FitError
 from bladewright.fitting.aim import NOISY, Aim, short_of
@@ -32,6 +34,8 @@ FEW, MANY = {2: 2500, 3: 1000}, 12_000
 """points of a quick, by dimension, and of a thorough search"""
 WEAK = 0.1
 """strength of the prior where a match is only made better, of the usual"""
+NEARLY = (0.3, 0.02)
+"""root mean square distance, of a tolerance, and part of the points beyond it with which no more is added at first"""
 GROWTHS = 40
 """times that more is added at most"""
 IN_ROWS = 1e-3
@@ -66,7 +70,8 @@ def adapted(task: Task, first: Design, aim: Aim, *, base: Structure | None, gues
         found = found if found.interrupted else searched(everything, found.design, rounds=1, slight=ROUGH)
     if found.interrupted:
         return found, reason
-    found = searched(many, found.design, slight=SLIGHT if aim.open else FINE)
+    rounds = QUICK if aim.tolerance is not None and task.points.shape[1] == 3 else ROUNDS
+    found = searched(many, found.design, rounds=rounds, slight=SLIGHT if aim.open else FINE)
     if guessed and task.points.shape[1] == 2:
         found = _shaken(many, found)
     if aim.tolerance is not None and not reason:
@@ -107,7 +112,7 @@ def _enough(task: Task, found: Found, aim: Aim) -> tuple[Found, str]:
         if found.interrupted:
             return found, ""
         short, reason = short_of(found, aim, task)
-        if not short:
+        if not short or _nearly(found, aim):
             break
         found, grew = grown(task, found, aim)
         if not grew:
@@ -115,6 +120,14 @@ def _enough(task: Task, found: Found, aim: Aim) -> tuple[Found, str]:
     if aim.parameters is not None and task.points.shape[1] == 2:
         found = _exchanged(task, found)
     return found, reason
+
+
+def _nearly(found: Found, aim: Aim) -> bool:
+    """Whether all but a few points of a blade keep a tolerance: weighing those more may do."""
+    on = found.state.feet
+    if aim.tolerance is None or on.points.shape[1] == 2 or found.rms * found.model.chord > NEARLY[0] * aim.tolerance:
+        return False
+    return bool(np.mean(on.distances[found.rows] > aim.tolerance) < NEARLY[1])
 
 
 def _exchanged(task: Task, found: Found) -> Found:
@@ -157,6 +170,8 @@ def _on_walls(task: Task) -> Task:
 
 def _roomy(found: Found, aim: Aim) -> bool:
     """Whether a first design has more parameters than its cloud may need, or than are asked for."""
+    if aim.tolerance is not None and found.rms * found.model.chord > aim.tolerance:
+        return False
     return aim.parameters is None or len(found.problem.paths) > aim.parameters
 
 

@@ -6,7 +6,7 @@ from bladewright.fitting.search import Found, Task
 
 LEAST = {2: 5e-7, 3: 5e-5}
 """largest deviation at which nothing more is added where no aim is stated, of the chord, by dimension"""
-MOST = {2: 80, 3: 260}
+MOST = {2: 80, 3: 340}
 """parameters above which nothing is added"""
 NOISY = 0.15
 """part of the misfit that neighbours share below which it is noise"""

@@ -6,6 +6,7 @@ import numpy as np
 
 from bladewright.errors import FitError
 from bladewright.fitting.aim import Aim
+from bladewright.fitting.edgewise import edge_steps
 from bladewright.fitting.growth import chosen_of, gains, joined
 from bladewright.fitting.opening import opened
 from bladewright.fitting.reshaping import reshaped
@@ -20,6 +21,8 @@ GROWN = 3
 """part, one in so many, of the parameters that are left which is added at a time"""
 MANIFOLD, MANY_MORE = 50, 10
 """parameters from which one in so many is added at a time"""
+FAR = 0.5
+"""of the tolerance: root mean square above which twice as many are"""
 
 
 def grown(task: Task, found: Found, aim: Aim) -> tuple[Found, bool]:
@@ -30,8 +33,13 @@ def grown(task: Task, found: Found, aim: Aim) -> tuple[Found, bool]:
     ranked = gains(found, emphasis)
     left = None if aim.parameters is None else aim.parameters - len(found.problem.paths)
     count = len(found.problem.paths)
-    least = left // GROWN if left is not None else count // MANY_MORE if count >= MANIFOLD else 0
+    least = left // GROWN if left is not None else 0
+    if left is None and count >= MANIFOLD:
+        far = aim.tolerance is not None and found.rms * found.model.chord > FAR * aim.tolerance
+        least = count // (MANY_MORE // 2 if far else MANY_MORE)
     steps = chosen_of(ranked, left, least)
+    if aim.tolerance is not None:
+        steps += edge_steps(found, aim.tolerance)
     if not steps:
         return found, False
     total = float(np.sum(found.problem.measures.residuals(found.state) ** 2))

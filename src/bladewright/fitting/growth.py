@@ -23,7 +23,7 @@ SPARE = 4
 """samples along the chord beyond a thickness's control points"""
 FEWEST = 3
 """control points of a thickness"""
-MOST_SAMPLES, MOST_SPAN, MOST_CURVE = 60, 12, 10
+MOST_SAMPLES, MOST_SPAN, MOST_CURVE = 60, 12, 12
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -154,11 +154,11 @@ def _reduced(slopes: Reals, rows: Reals, roots: Reals, noise: float) -> float:
     """The sum of squares after the step that makes it least, parameters held by the prior's spread."""
     count = slopes.shape[1]
     triangle = np.linalg.qr(np.column_stack([slopes * roots[:, None], rows * roots]), mode="r")
-    reduced = np.asarray(triangle)
-    matrix = np.vstack([reduced[:, :-1], noise * np.eye(count)])
-    aim = np.concatenate([-reduced[:, -1], np.zeros(count)])
-    step, *_ = np.linalg.lstsq(matrix, aim, rcond=None)
-    return float(np.sum((matrix @ step - aim) ** 2))
+    held = np.zeros((count, count + 1))
+    held[:, :-1] = noise * np.eye(count)
+    # the last diagonal entry is what no step takes away
+    left = np.asarray(np.linalg.qr(np.vstack([np.asarray(triangle), held]), mode="r"))[-1, -1]
+    return float(left**2)
 
 
 def chosen_of(ranked: Sequence[tuple[float, Step]], most: int | None = None, least: int = 0) -> list[Step]:

@@ -8,10 +8,11 @@ import numpy as np
 from bladewright.blade.extrema import extrema_of
 from bladewright.errors import DesignError, FitError
 from bladewright.fitting.aim import Aim
+from bladewright.fitting.descent import SLIGHT
 from bladewright.fitting.growing import grown
 from bladewright.fitting.growth import Step, least, losses
 from bladewright.fitting.reshaping import reshaped
-from bladewright.fitting.search import Found, Task, searched
+from bladewright.fitting.search import ROUGH, Found, Task, searched
 
 LATER = 4
 """times that more is added where points outside the quick searches stay beyond the tolerance"""
@@ -55,7 +56,7 @@ def _within(task: Task, found: Found, tolerance: float) -> Found:
         distances = found.state.feet.distances
         weights = weights * np.clip((distances / tolerance) ** 2, 0.3, 4.0)
         weights = weights * (np.sum(task.weights) / np.sum(weights))
-        found = searched(replace(task, weights=weights), found.design, rounds=2)
+        found = searched(replace(task, weights=weights), found.design, rounds=ROUNDS, slight=_slight(task))
         best = found if found.maximum < best.maximum else best
     return best
 
@@ -75,10 +76,17 @@ def spared(task: Task, found: Found, tolerance: float) -> Found:
 
 def _without(task: Task, found: Found, steps: Sequence[Step]) -> Found | None:
     try:
-        fresh = searched(task, reshaped(found.design, least(steps)), rounds=ROUNDS, noise=found.rms)
+        fresh = searched(
+            task, reshaped(found.design, least(steps)), rounds=ROUNDS, noise=found.rms, slight=_slight(task)
+        )
     except FitError:
         return None
     return replace(fresh, evaluations=fresh.evaluations + found.evaluations)
+
+
+def _slight(task: Task) -> float:
+    """What a step must promise: searches of blades are dear."""
+    return SLIGHT if task.points.shape[1] == 2 else ROUGH
 
 
 def calmed(task: Task, found: Found, tolerance: float) -> Found:
