@@ -131,15 +131,25 @@ def best_of(
     for each in sorted(tried, key=lambda one: one.rms):
         if each.interrupted:
             return each
-        if each.rms > NEAR * least and found is not None:
+        if each.rms > NEAR * least and found is not None and _sound(found):
             break
         fresh = searched(few, each.design, rounds=rounds)
-        if found is None or fresh.rms < found.rms:
+        if found is None or (fresh.rms < found.rms and _sound(fresh)) or not _sound(found):
             found = fresh
         if found.rms < EXACT or found.interrupted:
             break
     assert found is not None  # noqa: S101 - one was tried at least
     return found
+
+
+def _sound(found: Found) -> bool:
+    """Whether the design can be built: whether its section does not cross itself."""
+    design: Any = found.design
+    try:
+        design.build()
+    except DesignError:
+        return False
+    return True
 
 
 def _enough(task: Task, kind: Kind, found: Found, aim: Aim) -> tuple[Found, str]:
@@ -149,9 +159,12 @@ def _enough(task: Task, kind: Kind, found: Found, aim: Aim) -> tuple[Found, str]
         short, reason = short_of(found, aim, task)
         if not short or found.interrupted:
             return found if found.rms <= best.rms or aim.parameters is not None else best, reason
-        tried = [each for each in _wider(task, kind, found) if _allowed(each, aim)]
+        tried = [each for each in _wider(task, kind, found) if _allowed(each, aim) and _sound(each)]
         if not tried:
-            return best, f"no control point can be added to the {kind.name} section: its parameters are all there are"
+            return (
+                best,
+                f"no control point can be added to the {kind.name} section that leaves it one that can be built",
+            )
         found = min(tried, key=lambda each: each.rms)
         idle = idle + 1 if found.rms > WORTH * best.rms else 0
         best = found if found.rms < WORTH * best.rms or aim.parameters is not None else best
@@ -168,7 +181,9 @@ def _wider(task: Task, kind: Kind, found: Found) -> Iterator[Found]:
     """Matches with a control point more, each of another law."""
     design: Any = found.design
     try:
-        parts = kind.grown(design.section, section_samples(design.build()))
+        # a section that crosses itself on the way has sides all the same
+        sides: Any = found.state.shape.sides
+        parts = kind.grown(design.section, sampled(sides[0], sides[1], (0.0, 0.0)))
     except DesignError:
         return
     for part in parts:

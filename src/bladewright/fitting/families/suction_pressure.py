@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
@@ -73,18 +74,30 @@ def started(section: Sampled, like: SuctionPressure) -> SuctionPressure:
 def grown(part: SuctionPressure, section: Sampled) -> Sequence[SuctionPressure]:
     """The same with one free control point more on the suction or the pressure side, or with free places on one."""
     found = []
-    if len(part.suction_heights) < MOST and not part.suction_places:
-        wider = replace(part, suction_heights=(*part.suction_heights, 0.0), suction_knots=())
-        found.append(_through(wider, section))
-    if part.pressure_heights and len(part.pressure_heights) < MOST and not part.pressure_places:
-        wider = replace(part, pressure_heights=(*part.pressure_heights, 0.0), pressure_knots=())
-        found.append(_through(wider, section))
+    for name in ("suction", "pressure"):
+        heights, places = getattr(part, f"{name}_heights"), _numbers(getattr(part, f"{name}_places"))
+        if 0 < len(heights) < MOST:
+            wider: dict[str, Any] = {
+                f"{name}_heights": (*heights, 0.0),
+                f"{name}_knots": (),
+                f"{name}_places": _wider(places),
+            }
+            found.append(_through(replace(part, **wider), section))
     for name in ("suction", "pressure"):
         count = len(getattr(part, f"{name}_heights"))
         if count and not getattr(part, f"{name}_places"):
             places = spread(side_knots(count, getattr(part, f"{name}_knots"))).tolist()
             found.append(part.changed({f"{name}_places": tuple(places)}))
     return found
+
+
+def _wider(places: list[float]) -> tuple[float, ...]:
+    """The places with one more in the middle of the widest gap; none where none are given."""
+    if not places:
+        return ()
+    ends = np.array([0.0, *places, 1.0])
+    at = int(np.argmax(np.diff(ends)))
+    return (*places[:at], float(0.5 * (ends[at] + ends[at + 1])), *places[at:])
 
 
 def _through(part: SuctionPressure, section: Sampled) -> SuctionPressure:
