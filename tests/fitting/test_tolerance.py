@@ -43,6 +43,18 @@ def test_control_points_that_a_tolerance_does_not_need_are_taken_away():
     assert fewer.evaluations > found.evaluations
 
 
+def test_a_wall_may_lose_its_last_control_point_between_the_corners():
+    stator = design_from(parsed(example_text("compressor-stator"), "stator"), "stator")
+    structure = structure_of(stator)
+    short = reshaped(stator, replace(structure, channel={**structure.channel, "hub": 3}))
+    random = np.random.default_rng(4)
+    points = np.concatenate([side(*random.random((2, 60))) for side in short.build().sides])
+    task = Task(points=points, weights=np.ones(120), free=freedom_of(None, None, started=True), bounds={})
+    found = searched(task, short, rounds=0)
+    (loss,) = (loss for loss, step in losses(found) if step.fields == ("channel.hub",))
+    assert loss >= 0.0
+
+
 def test_nothing_is_taken_away_where_the_tolerance_is_not_kept_even_now():
     task, found = match((8, 7))
     assert spared(task, found, 0.5 * found.maximum) is found

@@ -34,6 +34,8 @@ FEW, MANY = {2: 2500, 3: 1000}, 12_000
 """points of a quick, by dimension, and of a thorough search"""
 WEAK = 0.1
 """strength of the prior where a match is only made better, of the usual"""
+QUIET = 0.1
+"""part of the misfit that is noise up to which a cloud may be exact"""
 NEARLY = (0.3, 0.02)
 """root mean square distance, of a tolerance, and part of the points beyond it with which no more is added at first"""
 GROWTHS = 40
@@ -55,7 +57,7 @@ def adapted(task: Task, first: Design, aim: Aim, *, base: Structure | None, gues
     if aim.structured and aim.tolerance is None:
         return _structured(few, many, first, base, guessed=guessed), ""
     found = searched(few, first, noise=noise, rounds=2 * QUICK if base is None else QUICK, slight=ROUGH)
-    if guessed and aim.open and isinstance(first, UnifiedSection) and _misses(found):
+    if guessed and aim.open and isinstance(first, UnifiedSection) and _misses(found, QUIET):
         known = identified(few, first)
         if known is not None:
             return (known if known.interrupted else searched(many, known.design)), ""
@@ -92,9 +94,10 @@ def _structured(few: Task, many: Task, first: Design, base: Structure | None, *,
     return found if found.interrupted else _told_by_points(many, searched(many, found.design))
 
 
-def _misses(found: Found) -> bool:
-    """Whether a search came to its end at a misfit that is no noise."""
-    return found.scatter.shared > NOISY and not found.interrupted
+def _misses(found: Found, most: float = np.inf) -> bool:
+    """Whether a search came to its end at a misfit that is no noise, and of which the noise is `most` at most."""
+    quiet = found.scatter.noise < most * found.rms * found.model.chord
+    return quiet and found.scatter.shared > NOISY and not found.interrupted
 
 
 def _told_by_points(task: Task, found: Found) -> Found:

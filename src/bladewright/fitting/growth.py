@@ -186,5 +186,8 @@ def _at(found: Found, step: Step) -> tuple[Reals, Reals]:
     if not shape.finite:
         raise DesignError("a law with another number of control points left no shape: take another one")
     state = State(shape=shape, feet=placed(measures.points, shape.sides, on.side, on.u, on.v))
-    slopes = measures.slopes(state, paths) * scales_of(other, paths, found.model.chord).size
-    return measures.residuals(state), slopes
+    rows = measures.residuals(state)
+    if not paths:
+        # a wall between its corners alone
+        return rows, np.zeros((len(rows), 0))
+    return rows, measures.slopes(state, paths) * scales_of(other, paths, found.model.chord).size
