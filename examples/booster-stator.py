@@ -1,4 +1,4 @@
-"""A compressor stator by suction and pressure side: its diffusion factor, and its section on the given stream surface."""
+"""A compressor stator by suction and pressure side: its diffusion factor, and how it keeps the given stream surface."""
 
 import numpy as np
 from _common import example, export
@@ -19,7 +19,9 @@ x, y, z = np.moveaxis(blade.surfaces["upper"](u, np.full_like(u, 0.5)), -1, 0)
 given = np.array([[point.x, point.r] for point in blade.design.flow_path.stream_surfaces[0].points]) * 1e-3
 # the spline through those points is nearly straight: between them a parabola is as good
 off = np.hypot(y, z) - np.polyval(np.polyfit(given[:, 0], given[:, 1], 3), x)
-print(f"diffusion factor {diffusion:.3f} at mid span, solidity {solidity:.3f}, off by {1e6 * np.max(np.abs(off)):.2f} um")
+print(
+    f"diffusion factor {diffusion:.3f} at mid span, solidity {solidity:.3f}, off by {1e6 * np.max(np.abs(off)):.2f} um"
+)
 
 # Lieblein 1953: losses rise from 0.6 on
 assert 0.35 < diffusion < 0.55

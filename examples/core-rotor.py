@@ -12,7 +12,8 @@ turning = np.degrees(np.arctan(end) - np.arctan(start))
 
 # the slope of v'' a little before and behind the places where its polynomials meet
 step = 1e-5
-rates = [np.diff([section.meanline(joints + at)[2] for at in (side, side + step)], axis=0) for side in (-2 * step, step)]
+ends = ((-2 * step, -step), (step, 2 * step))
+rates = [np.diff([section.meanline(joints + at)[2] for at in both], axis=0) for both in ends]
 jump = np.max(np.abs(rates[1] - rates[0]) / step) / np.max(np.abs(section.meanline(np.linspace(0, 1, 101))[2]))
 print(f"turning {turning:.6f} deg at mid span; the slope of the curvature jumps by {jump:.1e} of it")
 
