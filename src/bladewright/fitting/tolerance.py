@@ -19,9 +19,9 @@ LATER = 4
 SHARPER = 4
 """times that points are weighed by their distances before anything is added"""
 ROUNDS = 2
-AT_ONCE = 4
+AT_ONCE = {2: (4, 1), 3: (8, 4)}
 """laws that lose a control point together, those first of which it is foreseen to cost least; half as many where that
-is too much"""
+is too much, down to so few: searches of blades are dear"""
 SMOOTHER = (3.0, 10.0, 30.0, 100.0, 1000.0)
 """strengths of the prior, in turn"""
 CALM = 4
@@ -63,8 +63,9 @@ def _within(task: Task, found: Found, tolerance: float) -> Found:
 
 def spared(task: Task, found: Found, tolerance: float) -> Found:
     """A match within a tolerance without the control points that it does not need."""
-    at_once = AT_ONCE
-    while at_once and found.maximum <= tolerance and not found.interrupted:
+    most, least_at_once = AT_ONCE[task.points.shape[1]]
+    at_once = most
+    while at_once >= least_at_once and found.maximum <= tolerance and not found.interrupted:
         steps = [step for _, step in losses(found)[:at_once]]
         fewer = _without(task, found, steps) if steps else None
         if fewer is not None and fewer.maximum <= tolerance and not fewer.interrupted:
