@@ -1,20 +1,23 @@
 """Smoothness of what a design built, as nested figures and as lines to read."""
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from bladewright.blade.blade import Blade
-from bladewright.blade.sections import smoothness_at
-from bladewright.blade.shown_spans import shown_spans
-from bladewright.section.section import Section
-from bladewright.section.smoothness import smoothness
+if TYPE_CHECKING:
+    from bladewright.blade.blade import Blade
+    from bladewright.section.section import Section
 
 SPANS = (0.0, 0.5, 1.0)
 LINES = {"upper": "upper side", "lower": "lower side", "camber": "camber line"}
 QUANTITIES = {"curvature": "curvature", "slope": "its slope"}
 
 
-def smoothness_data(built: Blade | Section) -> list[dict[str, Any]]:
+def smoothness_data(built: "Blade | Section") -> list[dict[str, Any]]:
     """Curvature and slope with their jumps, by line, of the sections at hub, mid-span and shroud, or of one section."""
+    from bladewright.blade.sections import smoothness_at
+    from bladewright.blade.shown_spans import shown_spans
+    from bladewright.section.section import Section
+    from bladewright.section.smoothness import smoothness
+
     if isinstance(built, Section):
         return [{"span": built.span, **smoothness(built).to_dict()}]
     return [{"span": v, **smoothness_at(built.exact, v).to_dict()} for v in shown_spans(built.exact, SPANS)]
