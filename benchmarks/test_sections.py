@@ -3,10 +3,12 @@
 import subprocess
 import sys
 import time
-
-from compressor_rows import rows
+from pathlib import Path
 
 from bladewright.files.writing import write_design
+
+sys.path.insert(0, str(Path(__file__).parent))
+from compressor_rows import rows
 
 
 def test_a_row_to_a_verified_step_file(benchmark, tmp_path):
