@@ -19,6 +19,7 @@ PROMISES = (
     "edge_curvatures",
     "surface",
     "walls",
+    "sections",
 )
 
 
@@ -48,7 +49,9 @@ def main():
             blade = (bw.prismatic(design) if isinstance(design, UnifiedSection) else design).build()
             assert blade.promises.kept, name
             for promise in PROMISES:
-                worst[promise] = max(worst[promise], (getattr(blade.promises, promise), name))
+                value = getattr(blade.promises, promise)
+                # a family without metal angles promises none
+                worst[promise] = max(worst[promise], (0.0 if value is None else value, name))
             for kind, found in files.items():
                 trip = cad.write(blade, Path(directory) / f"{name}.{kind}")
                 assert trip.passed, (name, trip.failures)
