@@ -12,7 +12,7 @@ import pytest
 sys.path.insert(0, str(Path(__file__).parents[1] / "design"))
 import random_designs
 
-COUNT = {"unified": 24, "sections": 10}
+COUNT = {"unified": 18, "sections": 10}
 
 
 @pytest.mark.parametrize("of", COUNT)
