@@ -1,7 +1,6 @@
 """From a cloud of points to a design."""
 
 from collections.abc import Callable, Mapping
-from dataclasses import replace
 from typing import Any, Literal
 
 import numpy as np
@@ -12,34 +11,25 @@ from bladewright.blade.unified import UnifiedBlade
 from bladewright.derivatives.patterns import Patterns
 from bladewright.designs import Design
 from bladewright.errors import DesignError, FitError
-from bladewright.fitting.adaptation import MANY, adapted
 from bladewright.fitting.aim import Aim
 from bladewright.fitting.aligning import aligned
 from bladewright.fitting.cloud import checked_cloud
 from bladewright.fitting.estimates import certainty_of
 from bladewright.fitting.families.blades import matched_blade
 from bladewright.fitting.families.kinds import KINDS, Kind, kind_of
-from bladewright.fitting.families.sections import Frame, matched_section
-from bladewright.fitting.first.blade import first_blade
-from bladewright.fitting.first.designed import AXES
-from bladewright.fitting.first.profile import first_section
+from bladewright.fitting.families.sections import matched_section
+from bladewright.fitting.frame import Frame, Unit
 from bladewright.fitting.freedom import freedom_of
 from bladewright.fitting.judging import judged
-from bladewright.fitting.lean import lean, rich
-from bladewright.fitting.opening import opened
-from bladewright.fitting.reshaping import reshaped
 from bladewright.fitting.result import Fit
-from bladewright.fitting.scales import check_bounds
-from bladewright.fitting.search import Found, Task, searched
-from bladewright.fitting.structure import Structure, structure_of
-from bladewright.fitting.thinning import drawn
+from bladewright.fitting.search import Found, Task
+from bladewright.fitting.unified import matched_unified
 from bladewright.fitting.verdict import failures_of, notes_of
 from bladewright.nurbs.basis import Reals
-from bladewright.section.checks import UNITS, choice
+from bladewright.section.checks import choice
 from bladewright.section.unified import UnifiedSection
 
 FAMILIES = ("unified", "unified-section")
-Unit = Literal["m", "cm", "mm", "um", "in", "ft"]
 Told = Callable[[str], None]
 
 
@@ -100,48 +90,14 @@ def fit(
     )
     structured = parameters is None and (start is not None or like is not None)
     aim = Aim(tolerance=tolerance, parameters=parameters, structured=structured)
-    if kind is not None:
-        frame = Frame(name=name, length_unit=length_unit, pitch=pitch, arrangement=arrangement, blade_count=blade_count)
+    frame = Frame(name=name, length_unit=length_unit, pitch=pitch, arrangement=arrangement, blade_count=blade_count)
+    if kind is None:
+        found, built, reason = matched_unified(task, start, like, frame, aim)
+    else:
         first = None if start is None else freedom.applied(start)
         matched = matched_section if points.shape[1] == 2 else matched_blade
         found, reason = matched(task, kind, first, like, frame, aim)
-        return _reported(found, _only(found), points, task, aim, (*notes, *([reason] if reason else [])), motion)
-    wanted = None if like is None else structure_of(like)
-
-    some = points[drawn(len(points), MANY)]
-
-    def guess(structure: Structure | None) -> Design:
-        if points.shape[1] == 2:
-            lengths = {} if structure is None else _section_of(structure)
-            return first_section(some, name=name, length_unit=length_unit, **lengths)
-        given: dict[str, Any] = {"blade_count": blade_count, "pitch": pitch, "arrangement": arrangement}
-        if isinstance(like, UnifiedBlade):
-            own = None if like.pitch is None else like.pitch * UNITS[like.length_unit]
-            given = {"arrangement": like.arrangement, "blade_count": like.blade_count, "pitch": own} | {
-                key: value for key, value in given.items() if value is not None
-            }
-        return first_blade(some, structure=structure, name=name, length_unit=length_unit, **given)
-
-    tell("first design")
-    solid = points.shape[1] == 3
-    if start is not None:
-        first = start if wanted is None else reshaped(start, wanted)
-    else:
-        first = guess(rich(parameters) if solid else wanted)
-    guessed, first = first, freedom.applied(first)
-    if start is None and first is not guessed:
-        first = opened(first)
-    check_bounds(first, freedom(first), task.bounds)
-    base = None
-    if start is None and (solid or wanted is None):
-        base = wanted or lean(points.shape[1], parameters)
-    try:
-        found, reason = adapted(task, first, aim, base=base, guessed=start is None)
-        found, built = _built(task, found)
-    except FitError as error:
-        if blade_count is None and isinstance(guessed, UnifiedBlade) and guessed.blade_count == 1:
-            raise FitError(f"{error}; the points go far around x: {AXES}") from error
-        raise
+        built = _only(found)
     return _reported(found, built, points, task, aim, (*notes, *([reason] if reason else [])), motion)
 
 
@@ -209,25 +165,6 @@ def _weights(weights: ArrayLike | None, count: int) -> Reals:
             f"weights have shape {found.shape}: one number of 0 or more is needed for each of the {count} points"
         )
     return found * (count / np.sum(found))
-
-
-def _section_of(structure: Structure) -> dict[str, Any]:
-    return {"chordwise": structure.chordwise, "samples": structure.samples, "clustering": structure.clustering}
-
-
-def _built(task: Task, found: Found) -> tuple[Found, Any]:
-    """What the found design builds; where it is refused, of a design that keeps further from what is refused."""
-    refusal = ""
-    for slack in (0.0, 1.0, 30.0, 1000.0):
-        if slack:
-            found = searched(replace(task, slack=slack), found.design, rounds=2)
-        try:
-            return found, found.design.build()
-        except DesignError as error:
-            refusal = str(error)
-    raise FitError(
-        f"the nearest design cannot be built ({refusal}); give a start design, or other numbers of parameters"
-    )
 
 
 def _reported(

@@ -50,7 +50,7 @@ class Span:
 
 
 def laws_of(part: Part) -> Iterator[Law]:
-    """The laws of evolution among the parameters of a part, and of the parts in it."""
+    """The laws of evolution among the parameters of a part, constant ones too, and of the parts in it."""
     return (law for _, law in named_laws(part))
 
 
@@ -61,10 +61,13 @@ def named_laws(part: Part) -> Iterator[tuple[str, Law]]:
         value = getattr(part, each.name)
         if isinstance(value, Part):
             yield from ((f"{each.name}.{path}", law) for path, law in named_laws(value))
-        elif "unit" in each.metadata and isinstance(value, tuple):
-            # a list of numbers is a law where one number could stand for it, and a row of laws elsewhere
-            whole = float in get_args(hints[each.name])
-            yield from [(each.name, value)] if whole else ((f"{each.name}[{i}]", law) for i, law in enumerate(value))
+        elif "unit" not in each.metadata or value is None:
+            continue
+        elif float in get_args(hints[each.name]) or not isinstance(value, tuple):
+            yield each.name, value
+        else:
+            # a list of numbers is a row of laws where one number could not stand for it
+            yield from ((f"{each.name}[{i}]", law) for i, law in enumerate(value))
 
 
 def inner_knots(count: int) -> Reals:

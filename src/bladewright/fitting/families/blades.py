@@ -12,10 +12,11 @@ from bladewright.fitting.aim import Aim
 from bladewright.fitting.families.flow import Channelled
 from bladewright.fitting.families.kinds import Kind
 from bladewright.fitting.families.sampled import Sampled, reversed_flow, sampled
-from bladewright.fitting.families.sections import Frame, best_of, thinned
-from bladewright.fitting.families.spanwise import along_span, counts_of, law_through, plain
+from bladewright.fitting.families.sections import best_of, thinned
+from bladewright.fitting.families.spanwise import along_span, counts_of, nearest_law, plain
 from bladewright.fitting.families.standing import EDGES, standing
 from bladewright.fitting.first.blade import first_blade
+from bladewright.fitting.frame import Frame
 from bladewright.fitting.freedom import Freedom
 from bladewright.fitting.lean import rich
 from bladewright.fitting.scales import check_bounds
@@ -71,12 +72,8 @@ def _reason(found: Found, aim: Aim) -> str:
 
 def _closed(task: Task, frame: Frame, like: Any) -> Blade:
     """The closed blade in a channel that points alone show."""
-    given: dict[str, Any] = {"arrangement": frame.arrangement, "blade_count": frame.blade_count, "pitch": frame.pitch}
-    if like is not None:
-        own = None if like.pitch is None else like.pitch * UNITS[like.length_unit]
-        theirs = {"arrangement": like.arrangement, "blade_count": like.blade_count, "pitch": own}
-        given = {name: theirs[name] if value is None else value for name, value in given.items()}
-    first = first_blade(task.points, structure=rich(None), name=frame.name, length_unit=frame.length_unit, **given)
+    row = frame.row(like)
+    first = first_blade(task.points, structure=rich(None), name=frame.name, length_unit=frame.length_unit, **row)
     plain_task = Task(points=task.points, weights=task.weights, free=Freedom(), bounds={}, told=task.told)
     for design in (searched(plain_task, first, noise=3e-3, rounds=QUICK).design, first):
         built = _built(design)
@@ -117,7 +114,7 @@ def _first(closed: Blade, kind: Kind, like: Any, frame: Frame) -> Design:
     }
     name = "leading_edge_y" if linear else "leading_edge_theta"
     given = LAW if like is None else _count(getattr(like, name))
-    fields[name] = law_through(place, SPANS, given)
+    fields[name] = nearest_law(place, SPANS, given)
     if like is None:
         fields |= {edge: found.edge(edge, metre) for edge in EDGES}
         return kind.blade(**fields, flow_path=found.flow_path(metre))

@@ -1,8 +1,8 @@
 """From points in the plane to a design of a family that is one part: the best of its structures, and more of it."""
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, replace
-from typing import Any, Literal
+from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
@@ -12,6 +12,7 @@ from bladewright.fitting.aim import Aim, short_of
 from bladewright.fitting.families.kinds import Kind
 from bladewright.fitting.families.sampled import Sampled, sampled
 from bladewright.fitting.first.profile import first_section
+from bladewright.fitting.frame import Frame
 from bladewright.fitting.freedom import Freedom
 from bladewright.fitting.scales import check_bounds
 from bladewright.fitting.search import ROUNDS, Found, Task, searched
@@ -19,7 +20,6 @@ from bladewright.fitting.thinning import drawn
 from bladewright.section.checks import UNITS
 from bladewright.section.section import Section
 
-Unit = Literal["m", "cm", "mm", "um", "in", "ft"]
 FEWEST = 400
 """points by which structures are told apart"""
 FEW, MANY = 1000, 12_000
@@ -35,18 +35,6 @@ PATIENCE = 2
 EXACT = 1e-9
 """misfit at which a structure is known, of the chord"""
 GROWTHS = 30
-
-
-@dataclass(frozen=True, kw_only=True)
-class Frame:
-    """What a design of a family has besides its part."""
-
-    name: str
-    length_unit: Unit
-    pitch: float | None = None
-    """[m]"""
-    arrangement: Literal["annular", "linear"] | None = None
-    blade_count: int | None = None
 
 
 def matched_section(task: Task, kind: Kind, start: Any, like: Any, frame: Frame, aim: Aim) -> tuple[Found, str]:

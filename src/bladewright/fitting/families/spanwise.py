@@ -1,49 +1,33 @@
 """Laws along the span of a family's part: from sections at several places, in a structure."""
 
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import fields
-from typing import Any, get_args, get_type_hints
+from collections.abc import Mapping, Sequence
+from typing import Any
 
 import numpy as np
 
 from bladewright.designs import Law, Part
 from bladewright.nurbs.basis import Reals
-from bladewright.section.laws import law_basis
-
-
-def laws_by_path(part: Part, stem: str = "") -> Iterator[tuple[str, Law]]:
-    """Every law of a part with its path, whatever its number of control points."""
-    hints = get_type_hints(type(part))
-    for each in fields(part):
-        value, path = getattr(part, each.name), f"{stem}{each.name}"
-        if isinstance(value, Part):
-            yield from laws_by_path(value, f"{path}.")
-        elif "unit" not in each.metadata or value is None:
-            continue
-        elif float in get_args(hints[each.name]) or not isinstance(value, tuple):
-            yield path, value
-        else:
-            yield from ((f"{path}[{i}]", law) for i, law in enumerate(value))
+from bladewright.section.laws import law_basis, named_laws
 
 
 def plain(part: Any) -> Any:
     """The part with a number in place of each law: its mean."""
-    return part.changed({path: float(np.mean(law)) for path, law in laws_by_path(part)})
+    return part.changed({path: float(np.mean(law)) for path, law in named_laws(part)})
 
 
 def counts_of(part: Part) -> Mapping[str, int]:
     """The number of control points of each law of a part by its path."""
-    return {path: len(law) if isinstance(law, tuple) else 1 for path, law in laws_by_path(part)}
+    return {path: len(law) if isinstance(law, tuple) else 1 for path, law in named_laws(part)}
 
 
 def along_span(parts: Sequence[Any], v: Reals, counts: Mapping[str, int]) -> Any:
     """One part of laws from parts of numbers at places v (m,) along the span, by least squares of each number."""
     values = [_scaled(part).parameters() for part in parts]
     middle = parts[len(parts) // 2]
-    return middle.changed({path: law_through([each[path] for each in values], v, counts[path]) for path in values[0]})
+    return middle.changed({path: nearest_law([each[path] for each in values], v, counts[path]) for path in values[0]})
 
 
-def law_through(values: Sequence[float], v: Reals, count: int) -> Law:
+def nearest_law(values: Sequence[float], v: Reals, count: int) -> Law:
     """The law of so many control points nearest to values (m,) at places v (m,), inside their range."""
     at = np.asarray(values)
     if count == 1:
