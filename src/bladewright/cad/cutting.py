@@ -3,9 +3,8 @@
 import os
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Protocol
+from typing import TYPE_CHECKING, Protocol
 
-import cadquery
 import numpy as np
 from OCP.Bnd import Bnd_Box
 from OCP.BOPAlgo import BOPAlgo_MakerVolume
@@ -27,6 +26,9 @@ from bladewright.cad.solids import Body, body
 from bladewright.cad.step import Schema, write_step
 from bladewright.errors import CadError, GeometryError
 from bladewright.numerics.elementary import Array
+
+if TYPE_CHECKING:
+    import cadquery
 
 PAST = 0.05
 """Part of its span by which the blade stands out of the walls that cut it."""
@@ -88,8 +90,10 @@ class CutPassage:
     """[m] largest distance of two faces at an edge"""
 
     @property
-    def solid(self) -> cadquery.Solid:
+    def solid(self) -> "cadquery.Solid":
         """The closed solid, in millimetres."""
+        import cadquery
+
         return cadquery.Solid(self.body.solid)
 
 

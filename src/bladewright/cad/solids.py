@@ -3,8 +3,8 @@
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import lru_cache
+from typing import TYPE_CHECKING
 
-import cadquery
 import numpy as np
 from OCP.BRep import BRep_Builder
 from OCP.BRepCheck import BRepCheck_Analyzer
@@ -32,6 +32,9 @@ from bladewright.nurbs.curve import Curve
 from bladewright.nurbs.surface import Surface
 from bladewright.nurbs.trimmed import TrimmedSurface
 
+if TYPE_CHECKING:
+    import cadquery
+
 CONFUSION = 1e-7
 """[mm] The kernel's own smallest tolerance."""
 
@@ -46,11 +49,13 @@ class Body:
     """[mm] largest tolerance that its edges need"""
 
 
-def solid(built: Built) -> cadquery.Solid:
+def solid(built: Built) -> "cadquery.Solid":
     """The closed solid of a built object, in millimetres: its untrimmed faces pole for pole, its walls exact.
 
     Raises CadError where the surfaces do not close up, or where OpenCASCADE finds the solid invalid.
     """
+    import cadquery  # its own import takes as long as the kernel's, and files need the kernel alone
+
     return cadquery.Solid(body(built).solid)
 
 
