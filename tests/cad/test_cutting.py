@@ -5,13 +5,21 @@ import pytest
 
 import bladewright as bw
 from bladewright import cad
+from bladewright.blade.families import ProfileBlade
+from bladewright.blade.flow_path import FlowPath
+from bladewright.blade.meridian import ThroughPoints
 from bladewright.cad.closure import closure
 from bladewright.cad.reopen import reopened
 from bladewright.errors import CadError
 from bladewright.files.examples import example_text
 from bladewright.nurbs.revolve import arc
+from bladewright.section.profiles.flat_plate import FlatPlate
 
 from .sectors import Cuttable, sector, standing
+
+
+def through(*points):
+    return ThroughPoints(points=points)
 
 
 @pytest.fixture(scope="module")
@@ -86,7 +94,10 @@ def test_a_sector_that_winds_more_than_a_turn_is_refused():
 
 
 QUICK = ("vki-ls89",)
-LONG = ("nasa-rotor-67", "aachen-stator", "compressor-stator", "fan-rotor", "centrifugal-impeller", "radial-turbine")
+LONG = (
+    *("nasa-rotor-67", "aachen-stator", "compressor-stator", "fan-rotor", "centrifugal-impeller", "radial-turbine"),
+    *("backswept-impeller", "wedge-diffuser", "vaned-diffuser"),
+)
 
 
 @pytest.mark.parametrize("name", [*QUICK, *(pytest.param(name, marks=pytest.mark.slow) for name in LONG)])
@@ -99,3 +110,23 @@ def test_patches_and_cut_enclose_the_same_volume(name, tmp_path):
     native = float(passage.properties.volume)
     assert cut.properties.volume == pytest.approx(native, rel=1e-8)
     assert cut.properties.volume_error < 1e-6 * native
+
+
+def test_a_blade_with_faces_at_its_edges_is_cut_out_with_them():
+    edges = ("leading_edge", "trailing_edge")
+    plate = ProfileBlade(
+        name="plate",
+        length_unit="mm",
+        arrangement="linear",
+        pitch=40.0,
+        flow_path=FlowPath(hub=through((-60, 0), (120, 0)), shroud=through((-60, 50), (120, 60))),
+        leading_edge=through((0, 0), (4, 60)),
+        trailing_edge=through((40, 0), (36, 60)),
+        tolerance=1e-4,
+        section=FlatPlate(thickness=0.08, stagger_angle=(20.0, 25.0), **dict.fromkeys(edges, "blunt")),
+    )
+    passage = bw.passage(plate.build())
+    cut = cad.cut_passage(passage)
+    assert {f"blade_{edge}" for edge in edges} <= set(cut.body.faces)
+    # the walls of a cascade are planes for both
+    assert cut.properties.volume == pytest.approx(float(passage.properties.volume), rel=1e-9)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, cast
 
 import numpy as np
 
-from bladewright.blade.ends import ruled_end
+from bladewright.blade.caps import EDGES, cap, parted
 from bladewright.blade.fitness import Misfit, misfit
 from bladewright.blade.knots import Knots
 from bladewright.blade.meant import Meant
@@ -71,7 +71,7 @@ class Blade:
     def orientations(self) -> Mapping[str, int]:
         """+1 for the faces whose dS/du x dS/dv points out of the blade, -1 for the others."""
         low, high = self.design.ends
-        blunt = {name: sign for name, sign in (("leading_edge", 1), ("trailing_edge", -1)) if name in self.surfaces}
+        blunt = {name: sign for name, sign in zip(EDGES, (1, -1), strict=True) if name in self.surfaces}
         return MappingProxyType({"upper": -1, "lower": 1, **blunt, low: -1, high: 1})
 
     @property
@@ -131,26 +131,28 @@ class Blade:
     def extended(self, span: float) -> "Blade":
         """The blade continued past hub and shroud by `span` of its own span at each end, for a later cut.
 
-        The sides continue their own polynomials, and the part between is unchanged; ruled caps close the ends. An end
-        that stands off its wall stays as it is. Raises DesignError where span is not above 0 and at most 0.5.
+        Sides and the faces of blunt edges continue their own polynomials, and the part between is unchanged; caps close
+        the ends. An end that stands off its wall stays as it is. Raises DesignError where span is not above 0 and at
+        most 0.5.
         """
         if not 0.0 < span <= 0.5:
             raise DesignError(f"an extension by {span:g} of the span was asked: it must be above 0 and at most 0.5")
         low, high = (0.0 if name == "tip" else span for name in self.design.ends)
-        blunt = [name for name in ("leading_edge", "trailing_edge") if name in self.surfaces]
-        if blunt:
-            raise DesignError(
-                f"an extension was asked of a blade whose {blunt[0]} is blunt: its ends are closed by caps between two "
-                "sides; take a sharp or a round edge"
-            )
-        upper, lower = (reparametrised(extended(side, -low, 1.0 + high, "v"), 0.0, 1.0, "v") for side in self.sides)
+        back = self.exact.survey.back
+        sides = {name: parted(side, back) for name, side in zip(("upper", "lower"), self.sides, strict=True)}
+        edges = {name: cast(Surface, self.surfaces[name]) for name in EDGES if name in self.surfaces}
+        around = {
+            name: reparametrised(extended(face, -low, 1.0 + high, "v"), 0.0, 1.0, "v")
+            for name, face in {**sides, **edges}.items()
+        }
+        faces = {name: around[name] for name in edges}
         ends = {
-            name: self.surfaces[name] if name == "tip" else ruled_end(upper, lower, row)
+            name: self.surfaces[name] if name == "tip" else cap(around["upper"], around["lower"], faces, back, row)
             for name, row in zip(self.design.ends, (0, -1), strict=True)
         }
         return Blade(
             design=self.design.changed("name", f"{self.name}-extended"),
-            surfaces=MappingProxyType({"upper": upper, "lower": lower, **ends}),
+            surfaces=MappingProxyType({**around, **ends}),
             knots=self.knots,
             chord=self.chord,
             exact=self.exact,

@@ -92,6 +92,10 @@ class DevelopedStations(PathStations):
         return self._hub.kinds
 
     @property
+    def back(self) -> float | None:
+        return self._hub.back
+
+    @property
     def _hub(self) -> OutlineStations:
         return self.plane.rulings.hub
 

@@ -1,4 +1,4 @@
-"""The ends of a blade: trimmed pieces of hub and shroud, or ruled caps where a blade stands past them."""
+"""The ends of a blade that stands on its walls: trimmed pieces of hub and shroud, or of a clearance surface."""
 
 from collections.abc import Mapping
 
@@ -100,15 +100,3 @@ def _stretch_of(end: TrimmedSurface) -> tuple[float, float]:
 
 def _end(side: Surface, row: int) -> Curve:
     return Curve(control_points=side.control_points[:, row], knots=side.knots_u, degree=side.degree_u)
-
-
-def ruled_end(upper: Surface, lower: Surface, row: int) -> Surface:
-    """The ruled surface between the ends of the sides: v = 0 on the lower, v = 1 on the upper side's end."""
-    ends = [np.array(side.control_points[:, row]) for side in (lower, upper)]
-    return Surface(
-        control_points=np.stack(ends, axis=1),
-        knots_u=upper.knots_u,
-        knots_v=np.array([0.0, 0.0, 1.0, 1.0]),
-        degree_u=upper.degree_u,
-        degree_v=1,
-    )

@@ -37,6 +37,10 @@ class RuledStations(PathStations):
     def kinds(self) -> tuple[str, str]:
         return self.rails.kinds
 
+    @property
+    def back(self) -> float | None:
+        return self.rails.back
+
     def camber(self, share: Reals) -> Array:
         return self.beside.camber(share)
 

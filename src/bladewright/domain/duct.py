@@ -104,8 +104,9 @@ class Duct:
         """
         row = np.array([0.0 if name == "hub" else 1.0])
         along = self._lines(Cascade(), row)
-        first, last = along.abscissa(np.array([self.low, self.high]))[..., 0, :]
-        joints = np.real(along.abscissa(self.joints_within())[0] - first) / np.real(last - first)
+        # evaluated with the ends, as there may be no joints
+        first, *between, last = along.abscissa(np.array([self.low, *self.joints_within(), self.high]))[..., 0, :]
+        joints = np.real(np.array(between) - first) / np.real(last - first)
         for spans in (24, 48, 96, 192, 384):
             inner = np.linspace(0.0, 1.0, spans + 1)[1:-1]
             inner = inner[np.all(np.abs(inner[:, None] - joints) > 0.1 / spans, axis=1)]  # real: knots

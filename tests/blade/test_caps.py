@@ -1,0 +1,49 @@
+"""Blades continued past their walls: caps that close them, whatever their edges."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from bladewright import cad
+from bladewright.section.profiles.flat_plate import FlatPlate
+
+from .sectioned import DIFFUSER, VANE
+
+COARSE = 1e-4
+"""tolerance of the blades, of the chord: what caps keep does not depend on it"""
+FORMS = {
+    "round and round": VANE,
+    "blunt and blunt": replace(VANE, section=FlatPlate(thickness=0.1, leading_edge="blunt", trailing_edge="blunt")),
+    "round and blunt": replace(VANE, section=FlatPlate(thickness=0.1, trailing_edge="blunt", stagger_angle=20.0)),
+    "round and back face": DIFFUSER,
+}
+
+
+@pytest.fixture(params=list(FORMS), scope="module")
+def blade(request):
+    return FORMS[request.param].changed("tolerance", COARSE).build()
+
+
+def test_a_blade_past_its_walls_is_a_closed_solid_whatever_its_edges(blade, tmp_path):
+    longer = blade.extended(0.1)
+    assert set(longer.surfaces) == set(blade.surfaces)
+    trip = cad.write(longer, tmp_path / "longer.step", samples=400)
+    assert trip.passed, trip.failures
+    assert longer.properties.openness < 1e-13
+
+
+def test_its_sides_and_faces_go_on_as_they_were(blade):
+    longer, at = blade.extended(0.1), np.linspace(0.0, 1.0, 9)
+    for name in set(blade.surfaces) - {"hub", "shroud"}:
+        before, after = (body.surfaces[name] for body in (blade, longer))
+        miss = after.grid(at, (0.1 + at) / 1.2) - before.grid(at, at)
+        assert np.max(np.abs(miss)) < 1e-12 * blade.chord
+
+
+def test_a_cap_never_turns_over(blade):
+    """The caps of blades whose sections are convex; along a degenerate edge a normal has no direction."""
+    at = np.linspace(0.01, 0.99, 41)
+    for name in ("hub", "shroud"):
+        normals = blade.extended(0.1).surfaces[name].normal(at[:, None], at)
+        assert np.min(normals @ normals[20, 20]) > 0.99
