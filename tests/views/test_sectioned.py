@@ -169,6 +169,18 @@ def test_an_edge_is_called_what_it_is(name, said):
     assert len(axes.patches) == 1 + (said.endswith("radius "))  # the fill, and the circle of a round one
 
 
+def test_a_blunt_edge_of_an_impeller_is_drawn_as_wide_as_its_face_is(impeller):
+    for v, section in ((each.span, each) for each in impeller.sections):
+        ends = [side(1.0, v) for side in impeller.sides]
+        width = 1e3 * np.sqrt(np.sum((ends[0] - ends[1]) ** 2))
+        axes = Figure().add_subplot()
+        draw_edge(axes, section, trailing=True)
+        # the chord of an arc about the axis; the title has four figures
+        assert float(axes.get_title().split()[-2]) == pytest.approx(width, rel=1e-3)
+        shape = axes.patches[0].get_xy()
+        assert np.min(np.abs(np.hypot(*np.diff(shape, axis=0).T) - width)) < 1e-3 * width
+
+
 def test_the_thickness_at_a_blunt_edge_is_that_of_the_edge():
     section = EXAMPLES["naca-6409-blunt"].design.build()
     face = section.curves["trailing_edge"].control_points

@@ -9,7 +9,7 @@ from matplotlib.patches import Circle
 from matplotlib.ticker import MaxNLocator
 
 from bladewright.numerics.elementary import length, unit
-from bladewright.views.sections import COORDINATES, along_curve, developed, outline
+from bladewright.views.sections import COORDINATES, along_curve, developed, outline, size_of
 from bladewright.views.style import CAMBER, INK, MILLIMETRES, RED, span_colour, span_name, titled
 
 if TYPE_CHECKING:
@@ -23,6 +23,8 @@ FLAT = 100.0
 """radius, in chords, from which on an edge is called flat"""
 SHARP = 0.01
 """what stands for the radius of a sharp edge, of the chord"""
+AT_EDGE = {"m'-theta": (r"$m'\,r_e$ [mm]", r"$\theta\,r_e$ [mm]")}
+"""axes where lengths are true at the edge, whose radius is r_e; otherwise they are `COORDINATES`"""
 
 
 def draw_edges(strip: "SubFigure", sections: Sequence["Section"], ends: tuple[str, str]) -> None:
@@ -42,16 +44,18 @@ def draw_edges(strip: "SubFigure", sections: Sequence["Section"], ends: tuple[st
 def draw_edge(axes: Axes, section: "Section", *, trailing: bool) -> None:
     """Draws the leading or the trailing edge of a section and the camber line there, of a round one the circle too.
 
-    A flat one that is round by its directions alone, as the back face of a wedge diffuser's vane, has no circle.
+    Lengths are true at the edge. A flat one that is round by its directions alone, as the back face of a wedge
+    diffuser's vane, has no circle.
     """
+    true = magnified(section, trailing=trailing)
     at, kind = np.array([float(trailing)]), section.edges[int(trailing)]
-    tip = developed(section, section.camber(at))[0]
+    tip = true * developed(section, section.camber(at))[0]
     inwards = np.real(unit(section.camber.derivative(at)))[0] * (-1.0 if trailing else 1.0)
-    shape = outline(section)
+    shape = true * outline(section)
     colour = span_colour(section.span)
     axes.fill(*shape.T, color=colour, alpha=0.14, linewidth=0.0)
     axes.plot(*shape.T, color=colour)
-    camber = developed(section, section.camber(along_curve()))
+    camber = true * developed(section, section.camber(along_curve()))
     axes.plot(*camber.T, color=INK, linewidth=0.9, linestyle=CAMBER)
     size, said = edge_size(section, trailing=trailing)
     if kind == "round" and size < PART * float(np.real(section.chord)) * MILLIMETRES:
@@ -64,7 +68,13 @@ def draw_edge(axes: Axes, section: "Section", *, trailing: bool) -> None:
     axes.set_ylim(middle[1] - reach, middle[1] + reach)
     axes.set_aspect("equal", adjustable="box")
     edge = "Trailing edge" if trailing else "Leading edge"
-    titled(axes, f"{edge}, {said}", *COORDINATES[section.plane])
+    titled(axes, f"{edge}, {said}", *AT_EDGE.get(section.plane, COORDINATES[section.plane]))
+
+
+def magnified(section: "Section", *, trailing: bool) -> float:
+    """Lengths at an edge over those of the developed section there, which is scaled by its mean radius."""
+    end = np.real(section.camber.control_points[-1 if trailing else 0, :1])
+    return float(np.real(section.scale(end))[0]) * MILLIMETRES / size_of(section)
 
 
 def edge_reach(section: "Section", size: float) -> float:
@@ -81,7 +91,7 @@ def edge_size(section: "Section", *, trailing: bool) -> tuple[float, str]:
         flat = radius > FLAT * float(np.real(section.chord)) * MILLIMETRES
         return radius, "flat" if flat else f"radius {radius:.4g} mm"
     sides = [developed(section, section.curves[name](np.array([0.0, 1.0]))) for name in ("upper", "lower")]
-    width = float(length(sides[0][end] - sides[1][end]))
+    width = magnified(section, trailing=trailing) * float(length(sides[0][end] - sides[1][end]))
     if kind == "blunt":
         return 0.5 * width, f"blunt, {width:.4g} mm"
     return SHARP * float(np.real(section.chord)) * MILLIMETRES, "sharp"
