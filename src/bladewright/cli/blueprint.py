@@ -1,6 +1,7 @@
 """The design that a command is given, and what it builds."""
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -19,19 +20,26 @@ def design_at(path: Path, changes: Mapping[str, Any]) -> Design:
     return design.changed(changes) if changes else design
 
 
+@contextmanager
+def named(path: Path) -> Iterator[None]:
+    """Name the design file at `path` in what is refused of its design."""
+    try:
+        yield
+    except DesignError as error:
+        raise DesignError(f"{path}: {error}") from error
+
+
 def built_from(design: Any, path: Path) -> Any:
     """What a design builds: a blade, or a section of a 2D family.
 
     Raises DesignError, naming the file at `path`, where the shape is impossible.
     """
-    try:
+    with named(path):
         return design.build()
-    except DesignError as error:
-        raise DesignError(f"{path}: {error}") from error
 
 
-def body_from(design: Any, path: Path, extend: float) -> Any:
-    """The blade of a design, a prismatic one where it is 2D, extended past both ends by a part of its span.
+def blade_from(design: Any, path: Path) -> Any:
+    """The blade of a design, a prismatic one where it is 2D.
 
     Raises DesignError, naming the file at `path`, where the shape is impossible.
     """
@@ -39,8 +47,5 @@ def body_from(design: Any, path: Path, extend: float) -> Any:
     from bladewright.section.planar import PlanarSection
     from bladewright.section.unified import UnifiedSection
 
-    try:
-        blade = (prismatic(design) if isinstance(design, UnifiedSection | PlanarSection) else design).build()
-        return blade.extended(extend) if extend else blade
-    except DesignError as error:
-        raise DesignError(f"{path}: {error}") from error
+    with named(path):
+        return (prismatic(design) if isinstance(design, UnifiedSection | PlanarSection) else design).build()

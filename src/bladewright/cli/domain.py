@@ -1,12 +1,12 @@
 """The bodies that a design is made into: its blade, and the passage around it with the options of that."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any, TypeVar
 
 import click
 
-from bladewright.cli.blueprint import body_from
+from bladewright.cli.blueprint import blade_from, named
 from bladewright.errors import DesignError
 
 BODIES = ("blade", "passage")
@@ -41,22 +41,36 @@ def check_options(bodies: Sequence[str], extend: float, reach: Mapping[str, Any]
         raise click.UsageError("--extend lengthens a blade: ask for one with --body blade")
 
 
-def named_body(body: str, design: Any, path: Path, extend: float, reach: Mapping[str, Any]) -> Any:
-    """The blade of a design, or its passage. Raises DesignError where the shape is impossible."""
-    return passage_from(design, path, **reach) if body == "passage" else body_from(design, path, extend)
+def bodies_from(
+    bodies: Sequence[str], design: Any, path: Path, extend: float, reach: Mapping[str, Any]
+) -> Iterator[Any]:
+    """The bodies of a design, of BODIES, one after another around one blade.
+
+    A blade is extended past both ends by a part `extend` of its span, a passage has the options `reach`. Raises
+    DesignError, naming the file at `path`, where a shape is impossible.
+    """
+    blade = blade_from(design, path)
+    for body in bodies:
+        if body == "passage":
+            yield _passage_around(blade, design, path, **reach)
+            continue
+        with named(path):
+            long = blade.extended(extend) if extend else blade
+        yield long
 
 
-def passage_from(design: Any, path: Path, *, split: bool = False, **reach: Any) -> Any:
+def passage_from(design: Any, path: Path, **reach: Any) -> Any:
     """The passage of a design, around a prismatic blade where it is 2D.
 
     Raises DesignError, naming the file at `path`, where the shape is impossible.
     """
+    return _passage_around(blade_from(design, path), design, path, **reach)
+
+
+def _passage_around(blade: Any, design: Any, path: Path, *, split: bool = False, **reach: Any) -> Any:
     from bladewright.domain.build import passage
 
-    if getattr(design, "pitch", 0.0) is None and getattr(design, "blade_count", None) is None:
-        raise DesignError(f"{path}: pitch is missing: a passage lies between neighbours; set pitch in the design")
-    blade = body_from(design, path, 0.0)
-    try:
+    with named(path):
+        if getattr(design, "pitch", 0.0) is None and getattr(design, "blade_count", None) is None:
+            raise DesignError("pitch is missing: a passage lies between neighbours; set pitch in the design")
         return passage(blade, split=split, **reach)
-    except DesignError as error:
-        raise DesignError(f"{path}: {error}") from error

@@ -8,7 +8,7 @@ from typing import Any, Literal
 
 from bladewright.cli.blueprint import design_at
 from bladewright.cli.directory import tidy
-from bladewright.cli.domain import named_body
+from bladewright.cli.domain import bodies_from
 from bladewright.cli.outcome import Outcome, jsonable
 from bladewright.cli.progress import Bar
 
@@ -56,9 +56,8 @@ def made(path: Path, making: Making, bar: Bar) -> Outcome:
     ]
     directory, trips = making.directory, list[Any]()
     with tidy(directory, [*files, *reports]):
-        for body in making.bodies:
-            bar.set_description_str(body)
-            built = named_body(body, blueprint, path, making.extend, making.reach)
+        bar.set_description_str(" and ".join(making.bodies))
+        for built in bodies_from(making.bodies, blueprint, path, making.extend, making.reach):
             bar.update(1)
             from bladewright import cad
 

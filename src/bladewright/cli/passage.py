@@ -6,6 +6,7 @@ from typing import Any
 
 import click
 
+from bladewright.cli.blueprint import named
 from bladewright.cli.domain import passage_from
 from bladewright.cli.outcome import jsonable
 from bladewright.cli.summary import data_of
@@ -32,10 +33,8 @@ def flow_domain(design: Any, path: Path, reach: Mapping[str, Any]) -> Any:
     if design.pitch is None:
         raise DesignError(f"{path}: pitch is missing: a passage lies between neighbours; set pitch in the design")
     asked = {name: value for name, value in reach.items() if name != "split" and value is not None}
-    try:
+    with named(path):
         return section_passage(design.build(), design.pitch * UNITS[design.length_unit], **asked)
-    except DesignError as error:
-        raise DesignError(f"{path}: {error}") from error
 
 
 def passage_data(design: Any, made: Any) -> dict[str, Any]:
