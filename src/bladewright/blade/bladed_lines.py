@@ -1,5 +1,6 @@
 """Stream lines of a flow path by u: 0 on the blade's leading and 1 on its trailing edge, and on past them."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
 
@@ -230,6 +231,17 @@ class Bladed:
 
     def meetings(self, v: Reals) -> list[Meeting]:
         """Where the stream lines at v (m,) meet the leading and the trailing edge."""
+        new = np.array([each for each in np.unique(v) if each not in self._met])
+        if len(new):
+            self._met.update(zip(new, zip(*map(_each, self._sought(new)), strict=True), strict=True))
+        return [_together([self._met[each][edge] for each in v]) for edge in (0, 1)]
+
+    @cached_property
+    def _met(self) -> dict[float, tuple[Meeting, ...]]:
+        """Meetings with both edges by v: sections, their edges and their joints ask at many of the same places."""
+        return {}
+
+    def _sought(self, v: Reals) -> list[Meeting]:
         position = partial(self.surfaces.position, v)
         return [
             crossed(position, self.surfaces.extent, edge, name, labels(v))
@@ -287,6 +299,16 @@ def bladed_lines(
 def labels(v: Reals) -> list[str]:
     """What stream lines are called in messages."""
     return [f"at v = {each:.4g}" for each in v]
+
+
+def _each(meeting: Meeting) -> list[Meeting]:
+    """The meetings (...) of each stream line."""
+    return [Meeting(meeting.t[..., i], meeting.q[..., i]) for i in range(meeting.t.shape[-1])]
+
+
+def _together(meetings: Sequence[Meeting]) -> Meeting:
+    """Meetings (..., m) of m stream lines."""
+    return Meeting(*(np.stack(each, axis=-1) for each in zip(*meetings, strict=True)))
 
 
 def _gauss() -> tuple[Reals, Reals]:
