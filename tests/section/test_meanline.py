@@ -9,7 +9,7 @@ from bladewright.errors import DesignError
 from bladewright.section.chord_spline import ChordSpline
 from bladewright.section.crossing import check_outline
 from bladewright.section.laws import Span
-from bladewright.section.meanline import CurvatureIntegral, CurvedMeanline, MixedMeanline, camber_scale
+from bladewright.section.meanline import CurvatureIntegral, CurvedMeanline, MixedMeanline, backward, camber_scale
 from bladewright.section.offset import merged
 from bladewright.section.outline import Joint
 
@@ -311,3 +311,31 @@ def test_a_built_section_has_its_meanline():
     )
     local = camber @ turn.T / 40e-3
     assert section.meanline(np.clip(local[:, 0], 0.0, 1.0))[0] == pytest.approx(local[:, 1], abs=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("places", "wrong"),
+    [
+        ((0.0, 0.3, 0.3, 1.0), ()),
+        ((0.0, 0.2, 0.2, 0.6, 0.6, 1.0), ()),
+        ((0.0, 0.3, 0.3, 0.3, 1.0), (2,)),
+        ((0.0, 0.0, 0.5, 1.0), (0,)),
+        ((0.0, 0.5, 1.0, 1.0), (2,)),
+        ((0.0, 0.5, 0.4, 1.0), (1,)),
+    ],
+)
+def test_two_inner_control_points_may_stand_at_one_place_and_nothing_else(places, wrong):
+    assert tuple(np.flatnonzero(backward(np.array(places)))) == wrong
+
+
+def test_control_points_at_one_place_are_the_limit_of_those_that_draw_near():
+    values, camber = (0.0, 0.1, 0.2, 0.15, 0.05), 0.6
+    limit = line_of(values, camber, (0.0, 0.4, 0.7, 0.7, 1.0))
+    near = line_of(values, camber, (0.0, 0.4, 0.7 - 1e-9, 0.7 + 1e-9, 1.0))
+    for own, other in zip(limit.derivatives(U), near.derivatives(U), strict=True):
+        # the third derivative is the steepest in the places
+        assert own[0] == pytest.approx(other[0], rel=1e-6, abs=1e-6)
+    # the slope's integral, by a rule that knows nothing of splines
+    assert quad(lambda u: limit.derivatives(np.array([u]))[1][0, 0], 0.0, 1.0, limit=200)[0] == pytest.approx(
+        0.0, abs=1e-9
+    )

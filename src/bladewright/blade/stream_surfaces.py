@@ -29,6 +29,8 @@ SAME = 1e-12
 """span fractions nearer than this are the same"""
 FOLDED = 1e-4
 """share of its median below which the Jacobian of the map (t, v) -> (x, r) is taken for a fold"""
+KEPT = 0.1
+"""how far before and behind the blade, in t, surfaces matched at its edges must not fold; they end where they do"""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -184,7 +186,8 @@ def stream_surfaces(
     """The native stream surfaces of a flow path whose length unit is `metre` metres.
 
     `edges` are the leading- and the trailing-edge curve of the blade, needed where the path is matched at them. Raises
-    DesignError where the stream lines fold over, or an edge does not meet one that is given.
+    DesignError where the stream lines fold over, or an edge does not meet one that is given. Matched at the edges, they
+    end where they start to fold well before or behind the blade, as lines do that start or end at odds.
     """
     curves = [path.hub, *path.stream_surfaces, path.shroud]
     names = ["hub", *(f"stream_surfaces[{i}]" for i in range(len(path.stream_surfaces))), "shroud"]
@@ -215,13 +218,15 @@ def stream_surfaces(
         measures=tuple(along),
         matches=tuple(matches),
     )
+    if path.matched == "edges":
+        surfaces = _unfolded(surfaces)
     check_stream_surfaces(surfaces, revolved=revolved)
     return surfaces
 
 
 def check_stream_surfaces(surfaces: StreamSurfaces, *, revolved: bool = True) -> None:
     """Refuse stream surfaces whose map (t, v) -> (x, r) is not one to one, or that reach the axis where revolved."""
-    t, v = np.linspace(surfaces.low, surfaces.high, 101), np.linspace(0.0, 1.0, 41)
+    t, v = _grid(surfaces)
     point, along, across = (part.reshape(-1, 2) for part in surfaces.real().grid(t, v))
     grid_v = np.tile(v, len(t))
     if revolved and np.min(point[:, 1]) <= 0.0:
@@ -231,8 +236,7 @@ def check_stream_surfaces(surfaces: StreamSurfaces, *, revolved: bool = True) ->
             f"the flow path has radius {r:.4g} m at x = {x:.5g} m, v = {grid_v[lowest]:.3f}: every radius must be "
             "positive around the axis; move or shorten the hub so that it keeps clear of the axis"
         )
-    share = cross2(along, across)
-    share = share / np.median(np.sqrt(np.sum(along**2, axis=-1) * np.sum(across**2, axis=-1)))
+    share = _jacobian(along, across)
     if np.all(share < 0.0):
         raise DesignError(
             "hub and shroud are swapped, or both run upstream: with the flow from their first to their last points, "
@@ -252,6 +256,29 @@ def check_stream_surfaces(surfaces: StreamSurfaces, *, revolved: bool = True) ->
                 else "beside the stream_surfaces, correct their order, or take matched = 'edges'"
             )
         )
+
+
+def _grid(surfaces: StreamSurfaces) -> tuple[Reals, Reals]:
+    """The t and v at which folds are looked for."""
+    return np.linspace(surfaces.low, surfaces.high, 101), np.linspace(0.0, 1.0, 41)
+
+
+def _jacobian(along: Reals, across: Reals) -> Reals:
+    """The Jacobian of the map (t, v) -> (x, r), of the median of the derivatives' product."""
+    found: Reals = cross2(along, across)
+    return found / np.median(np.sqrt(np.sum(along**2, axis=-1) * np.sum(across**2, axis=-1)))
+
+
+def _unfolded(surfaces: StreamSurfaces) -> StreamSurfaces:
+    """The part of the surfaces around the blade in which they do not fold."""
+    t, v = _grid(surfaces)
+    _, along, across = surfaces.real().grid(t, v)
+    folded = t[np.min(_jacobian(along, across), axis=1) <= FOLDED]
+    before, behind = folded[folded < -KEPT], folded[folded > 1.0 + KEPT]
+    step = t[1] - t[0]
+    low = float(before[-1] + step) if len(before) else surfaces.low
+    high = float(behind[0] - step) if len(behind) else surfaces.high
+    return replace(surfaces, low=min(low, -KEPT), high=max(high, 1.0 + KEPT)) if len(folded) else surfaces
 
 
 def _meets(along: Measured, edge: MeridianLine, what: str, name: str) -> Array:

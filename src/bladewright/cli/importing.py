@@ -32,9 +32,16 @@ KNOWN = "ParaBlade's .cfg and T-Blade3's 3dbgbinput.*.dat"
     is_flag=True,
     help="The family's own splines in the place of T-Blade3's leading edges that are splines, which are refused else.",
 )
+@click.option(
+    "--true-stagger",
+    is_flag=True,
+    help="True sweep and lean by the stagger of each section, where T-Blade3 takes a wrong one.",
+)
 @common
 @click.pass_obj
-def importing(call: Call, /, file: Path, output: Path | None, chordwise: int | None, edge_spline: bool) -> Outcome:
+def importing(
+    call: Call, /, file: Path, output: Path | None, chordwise: int | None, edge_spline: bool, true_stagger: bool
+) -> Outcome:
     """Write the design of the blade in FILE, another program's design.
 
     Known are ParaBlade's .cfg with camber and thickness, which becomes the nearest design of the unified family, and
@@ -44,7 +51,7 @@ def importing(call: Call, /, file: Path, output: Path | None, chordwise: int | N
     """
     with progress(3, call) as bar:
         bar.set_description_str("sections")
-        found = _imported(file, chordwise, edge_spline=edge_spline)
+        found = _imported(file, chordwise, edge_spline=edge_spline, true_stagger=true_stagger)
         bar.update(1)
         bar.set_description_str("surfaces")
         built = built_from(found.design, file)
@@ -86,7 +93,7 @@ def importing(call: Call, /, file: Path, output: Path | None, chordwise: int | N
     return Outcome(data=data, text="\n".join([*lines, f"wrote {design}"]))
 
 
-def _imported(file: Path, chordwise: int | None, *, edge_spline: bool) -> "Imported[Any]":
+def _imported(file: Path, chordwise: int | None, *, edge_spline: bool, true_stagger: bool) -> "Imported[Any]":
     from bladewright.errors import FileError
     from bladewright.files.parablade import import_parablade, is_parablade
     from bladewright.files.tblade3 import import_tblade3, is_tblade3
@@ -99,5 +106,5 @@ def _imported(file: Path, chordwise: int | None, *, edge_spline: bool) -> "Impor
     if is_tblade3(text) or file.name.lower().startswith(tuple(f"{each}." for each in (MAIN, *COMPANIONS))):
         if chordwise is not None:
             raise click.UsageError("--chordwise is for ParaBlade's thickness laws: T-Blade3's sections are kept")
-        return import_tblade3(file, edge_spline=edge_spline)
+        return import_tblade3(file, edge_spline=edge_spline, true_stagger=true_stagger)
     raise FileError(f"'{file}' is of no format that can be imported: known are {KNOWN}")

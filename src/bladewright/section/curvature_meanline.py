@@ -24,6 +24,7 @@ from bladewright.section.meanline import (
     CurvedMeanline,
     Meanline,
     MixedMeanline,
+    backward,
     camber_scale,
 )
 from bladewright.section.offset import OffsetOutline, fixed_joints
@@ -172,13 +173,14 @@ class CurvatureMeanline(Part):
         middle = _values(inner, span)
         ends = np.zeros_like(middle[..., :1])
         places = np.concatenate([ends, middle, ends + 1.0], axis=-1)
-        falling = np.argwhere(np.diff(np.real(places), axis=-1) <= 0.0)
+        falling = np.argwhere(backward(np.real(places)))
         if len(falling):
             *where, entry = (int(each) for each in falling[0])
             entry = min(entry, len(inner) - 1)
             raise DesignError(
                 f"{name}_places[{entry}] is {np.real(middle)[(*where, entry)]:.4g} at span fraction "
-                f"{span.v[where[-1]]:.4g}: places must rise from the leading to the trailing edge"
+                f"{span.v[where[-1]]:.4g}: places must rise from the leading to the trailing edge, but for two inner "
+                "ones that may be equal"
             )
         return places
 

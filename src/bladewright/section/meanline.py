@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
+from numpy.typing import NDArray
 
 from bladewright.numerics.elementary import Array, joined
 from bladewright.nurbs.basis import Reals
@@ -48,6 +49,18 @@ class Meanline(ABC):
         """The fourth derivative of v (..., m, k) there."""
 
 
+def backward(places: Reals) -> NDArray[np.bool_]:
+    """Which steps (..., n - 1) of control points' places (..., n) keep u(t) of their spline from rising.
+
+    A step may be none between two inner places; at an end, or beside another one, u'(t) would be zero at a joint.
+    """
+    steps = np.diff(places, axis=-1)
+    still = steps == 0.0
+    lone = still & ~np.roll(still, 1, axis=-1)
+    lone[..., [0, -1]] = False
+    return np.asarray((steps <= 0.0) & ~lone)
+
+
 @dataclass(frozen=True, kw_only=True, eq=False)
 class CurvatureIntegral:
     """A second derivative S(u) with its first two integrals I(u), J(u) from the leading edge, all exact.
@@ -58,7 +71,7 @@ class CurvatureIntegral:
     """
 
     places: Array
-    """u (..., m, n) of the control points, rising from 0 to 1"""
+    """u (..., m, n) of the control points, rising from 0 to 1, none of their steps `backward`"""
     values: Array
     """S (..., m, n) of the control points"""
 

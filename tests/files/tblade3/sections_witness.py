@@ -74,17 +74,24 @@ class Witness:
         chord = (self.trailing - self.leading)[index] * self.values.chord_multiplier[index] / np.cos(turn)
         if self.values.chord is not None:
             chord = self.values.chord[index]
-        share = 1.0
-        if self.case.true_lean_and_sweep and self.case.chord != "meridional":
-            share = abs(np.cos(self.values.angle_in[index]))
+        sweep, lean = self.values.sweep[index], self.values.lean[index]
+        believed = 0.0 if self.case.chord == "meridional" else self.values.angle_in[index]
+        cosine, sine = abs(np.cos(believed)), abs(np.sin(believed))
+        match self.case.true_sweep, self.case.true_lean:
+            case True, True:
+                sweep, lean = sweep * cosine, lean * cosine
+            case True, False:
+                sweep, lean = sweep * cosine, sweep * cosine * sine
+            case False, True:
+                sweep, lean = lean * sine, lean * cosine
         u_stack, v_stack = self.stack(outline, self.case.stackings[index])
         found = []
         for side in outline.points(s):
             u, v = side[0].T
-            m = self.leading[index] + self.values.sweep[index] * share
+            m = self.leading[index] + sweep
             m = m + chord * (u * np.cos(turn) - v * np.sin(turn))
             theta = chord * ((u - u_stack) * np.sin(turn) + (v - v_stack) * np.cos(turn))
-            theta = theta + self.values.lean[index] * share + self.values.theta_offset
+            theta = theta + lean + self.values.theta_offset
             x, r = self.lines[index].at(m).T
             found.append(np.stack([x, r * np.sin(theta), r * np.cos(theta)], -1))
         return np.array(found)

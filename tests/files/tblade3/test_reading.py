@@ -36,7 +36,8 @@ def test_every_number_of_the_main_file_is_in_the_case(tmp_path):
         "elliptic",
         "multiplied",
     )
-    assert (case.true_lean_and_sweep, case.clustering, case.clustering_parameter) == (False, "elliptic", 15.0)
+    assert (case.true_sweep, case.true_lean) == (False, False)
+    assert (case.clustering, case.clustering_parameter) == ("elliptic", 15.0)
     row = case.sections[1]
     assert (row.label, row.in_beta, row.out_beta, row.mach, row.chord) == (2, -45.0, -20.0, 0.72, 0.45)
     assert (row.thickness, row.incidence, row.deviation, row.secondary_flow_angle) == (0.08, 1.0, 2.0, 0.0)
@@ -190,7 +191,8 @@ def test_line_ends_of_windows_and_a_byte_order_mark_change_nothing(tmp_path):
         ({"angles": " 0 inci_dev_spline"}, "angle_spline", "inci_dev_spline"),
         ({"chord": "0"}, "chord", "meridional"),
         ({"chord": "1"}, "chord", "given"),
-        ({"true": "1"}, "true_lean_and_sweep", True),
+        ({"true": "1"}, "true_sweep", True),
+        ({"true": "1"}, "true_lean", True),
         ({"clustering": "0"}, "clustering", "uniform"),
         ({"clustering": "1 2.5"}, "clustering_parameter", 2.5),
         ({"clustering": "2 1"}, "clustering", "exponential"),
@@ -264,9 +266,33 @@ def test_a_unit_that_the_columns_contradict_is_that_of_the_columns_and_said(tmp_
 
 def test_an_early_file_without_the_later_switches_is_read(tmp_path):
     case = read_tblade3(written(tmp_path, without=("true_title", "true", "clustering_title", "clustering")))
-    assert (case.true_lean_and_sweep, case.clustering) == (False, "uniform")
+    assert (case.true_sweep, case.true_lean, case.clustering) == (False, False, "uniform")
     assert len(case.sections) == 3
     assert any("early version" in note for note in case.notes)
+
+
+EARLY = ("true_title", "true", "clustering_title", "clustering")
+
+
+@pytest.mark.parametrize("switch", ["0", "1"])
+def test_an_early_file_has_true_sweep_and_lean_in_a_third_column_where_column_15_is_a_switch(tmp_path, switch):
+    rows = {f"lean_{i}": f"  {span}  9.0  {value}" for i, span, value in ((1, 0.0, 0.3), (2, 0.4, 0.2), (3, 1.0, 0.1))}
+    case = read_tblade3(written(tmp_path, without=EARLY, lean_count=f"           3  {switch}", **rows))
+    assert (case.true_sweep, case.true_lean) == (False, switch == "1")
+    assert case.lean.values == (0.3, 0.2, 0.1)
+    assert case.sweep.values == read_tblade3(written(tmp_path)).sweep.values
+
+
+def test_a_third_column_of_an_early_file_without_its_switch_has_no_effect_and_that_is_said(tmp_path):
+    changes = {"sweep_header": " span delta_m true_sweep", "sweep_2": "  0.5  0.02  7.0"}
+    case = read_tblade3(written(tmp_path, without=EARLY, **changes))
+    assert case.sweep.values[1] == 0.02
+    assert any("the column true_sweep has no effect: column 15" in note for note in case.notes)
+
+
+def test_a_current_file_has_no_switch_in_column_15(tmp_path):
+    case = read_tblade3(written(tmp_path, lean_count="           3  1"))
+    assert not case.true_lean
 
 
 def test_the_files_of_a_case_share_the_text_between_the_last_two_dots(tmp_path):
@@ -356,3 +382,15 @@ def test_a_word_is_the_number_that_fortran_reads(word, value):
 @pytest.mark.parametrize("word", ["", "one", "1.2.3", "1e", "nan", "inf", "1e999", "--1", "0x10", "1_000", None])
 def test_a_word_that_is_no_number_is_none(word):
     assert number(word) is None
+
+
+def test_a_table_of_multipliers_that_is_not_asked_for_may_hold_anything(tmp_path):
+    odd = OLDER.replace("   0.3  0.7  0.10  0.20", "   0.3").replace("   0.4  0.6  0.30  0.40", "   0.4")
+    case = read_tblade3(written(tmp_path, odd, thickness="1", edge="1"))
+    assert case.multipliers is None
+    assert len(case.leading_edges.values) == 2
+
+
+def test_a_table_of_multipliers_along_the_span_is_taken_whole_and_that_is_said(tmp_path):
+    case = read_tblade3(written(tmp_path, OLDER, thickness="1", multiplier="1"))
+    assert any("reads the first half of the table" in note for note in case.notes)

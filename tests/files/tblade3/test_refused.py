@@ -81,6 +81,12 @@ def test_a_wrong_value_is_refused_with_its_line(tmp_path, key, line, said):
     assert f"line {place_of(key)}:" in message or re.search(rf"line {place_of(key) + 1}:.*after", message)
 
 
+def test_a_switch_of_an_early_file_that_is_none_is_refused_with_its_line(tmp_path):
+    early = ("true_title", "true", "clustering_title", "clustering")
+    message = refusal(written(tmp_path, without=early, sweep_count="           3  x"))
+    assert f"line {place_of('sweep_count') - 4}: column 15 holds 'x'" in message
+
+
 def test_a_title_without_airfoil_is_refused_where_the_camber_switch_stands_alone(tmp_path):
     path = written(tmp_path, SECTIONWISE, "controlinputs", camber="1", thickness="1", thickness_title=" Thickness")
     assert f"line {place_of('thickness_title')}: " in refusal(path)

@@ -19,7 +19,7 @@ from bladewright.files.tblade3.translation import blade_of, case_sections
 from bladewright.files.writing import write_design
 from bladewright.section.laws import Span
 
-from .inputs import OLDER, SECTIONWISE, SPANWISE, written
+from .inputs import LAWS, OLDER, SECTIONWISE, SPANWISE, written
 from .sections_witness import Witness
 
 DATA = Path(__file__).parents[4] / "shared" / "data" / "tblade3"
@@ -76,6 +76,15 @@ def test_the_design_goes_through_all_sections_of_the_program(name, tmp_path):
     np.testing.assert_allclose(found, expected, rtol=0.0, atol=1e-9 * MM)
 
 
+EARLY = ("true_title", "true", "clustering_title", "clustering")
+TRUE = {
+    name: {f"{name}_count": "           3  1"}
+    | {f"{name}_{i}": f"  {span}  0.0  {value}" for i, (span, value) in enumerate(LAWS[name][1], 1)}
+    for name in ("sweep", "lean")
+}
+STILL = (
+    SPANWISE.replace("0.2   0.50", "0.45  0.45").replace("0.25  0.55", "0.45  0.45").replace("0.3   0.60", "0.5 0.5")
+)
 OTHER = SPANWISE.replace("t_TE\n", "t_TE dy_dx_TE\n").replace("0.02\n", "0.02 -0.2\n")
 OTHER = OTHER.replace("0.015\n", "0.015 -0.1\n").replace("0.01\n", "0.01 0.0\n")
 # where the quartic thickness does not fold back
@@ -88,9 +97,14 @@ CASES = {
     "chord given": {"chord": " 1"},
     "true lean and sweep": {"true": " 1"},
     "true lean and sweep of edges": {"true": " 1", "chord": " 0"},
+    "an early file's true sweep": {"without": EARLY, "code": " 055000", **TRUE["sweep"]},
+    "an early file's true lean": {"without": EARLY, "code": " 055000", **TRUE["lean"]},
+    "an early file's true sweep and lean": {"without": EARLY, "code": " 055000", **TRUE["sweep"], **TRUE["lean"]},
+    "control points at one place": {"companion": STILL},
     "stacking of its own in each section": {"radial": " 1"},
     "centre of area": {"code": " 200000"},
     "below the meanline": {"code": " -030040"},
+    "lines that cross far upstream": {"stream_1_1": "  -0.5  0.9"},
     "offsets": {"hub": "  0.01", "tip": " -0.02"},
     "a wing": {"angles": "  4"},
     "angles of the tables": {"angles": "  0  inoutspline"},
@@ -178,7 +192,7 @@ def test_streamlines_given_from_shroud_to_hub_are_turned_round(tmp_path):
     backwards = case_sections(case)
     assert backwards.reversed
     assert not forwards.reversed
-    assert backwards.places == pytest.approx(1.0 - section_places(backwards.flow.spans))
+    assert backwards.places == pytest.approx(1.0 - section_places(backwards.flow.spans, *backwards.flow.distances))
     assert blade_of(backwards).flow_path.hub == blade_of(forwards).flow_path.hub
 
 
@@ -195,6 +209,24 @@ def test_a_law_goes_through_its_values_and_uneven_sections_leave_it_calm(count):
     between = Span(np.linspace(0.0, 1.0, 400)).values(law)
     # no wave: a rising row of values stays one
     assert np.all(np.diff(between) > -1e-12)
+
+
+def test_sections_that_are_nearest_at_any_edge_stand_as_near_along_the_span():
+    even, near = np.linspace(0.0, 1.0, 9), np.array([0.0, 0.02, *np.linspace(0.125, 1.0, 8)[1:]])
+    # of the first two of six spans between knots, a share of 2 in 25
+    assert section_places(even, near)[:3] == pytest.approx([0.0, 0.02 / 0.25 / 6.0, 1.0 / 6.0])
+    assert section_places(even, near)[2:] == pytest.approx(section_places(even)[2:])
+
+
+def test_true_sweep_takes_the_true_stagger_where_it_is_asked_for(tmp_path):
+    path = written(tmp_path, true=" 1")
+    case = read_tblade3(path)
+    wrong, right = (case_sections(case, true_stagger=each) for each in (False, True))
+    assert right.shifts[0] == pytest.approx(right.values.sweep * np.cos(right.stagger))
+    assert right.shifts[1] == pytest.approx(right.values.lean * np.cos(right.stagger))
+    assert wrong.shifts[0] == pytest.approx(wrong.values.sweep * np.abs(np.cos(wrong.values.angle_in)))
+    said = import_tblade3(path, true_stagger=True).changed
+    assert any("follow the stagger of each section" in text for text in said)
 
 
 def test_a_law_has_the_fewest_control_points_that_do():

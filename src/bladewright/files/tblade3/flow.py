@@ -62,6 +62,13 @@ class CaseFlow:
             found.append(np.where(x == 0.0, upright, np.arctan(r / np.where(x == 0.0, 1.0, x))))
         return found[0], found[1]
 
+    @property
+    def distances(self) -> tuple[Reals, Reals]:
+        """(m,) of the sections from the first one, along the leading and along the trailing edge [m]."""
+        steps = [np.diff(self.at(places), axis=0) for places in (self.leading, self.trailing)]
+        lead, trail = (np.append(0.0, np.cumsum(np.sqrt(np.sum(each**2, axis=-1)))) for each in steps)
+        return lead, trail
+
     @cached_property
     def spans(self) -> Reals:
         """(m,) spans of the sections: by the radius of their leading edges, or by x in a radial machine.

@@ -24,12 +24,15 @@ MOST = 1500
 _ALONG = (1.0 - np.cos(np.pi * np.linspace(0.0, 1.0, SIDE))) / 2.0
 
 
-def import_tblade3(path: str | os.PathLike[str], *, edge_spline: bool = False) -> Imported[CurvatureMeanlineBlade]:
+def import_tblade3(
+    path: str | os.PathLike[str], *, edge_spline: bool = False, true_stagger: bool = False
+) -> Imported[CurvatureMeanlineBlade]:
     """The blade of T-Blade3's main input file `3dbgbinput.R.dat` and the file of control points beside it.
 
     At every section of the case the design's section is T-Blade3's to rounding; between them, where T-Blade3 says
     nothing, every number is a cubic spline. A leading edge that is a spline is refused, or with `edge_spline` becomes
-    the family's own. Raises FileError, naming the file, where it is none of T-Blade3's, or asks for what the
+    the family's own. True sweep and lean are T-Blade3's, with its wrong stagger, or with
+    `true_stagger` right ones. Raises FileError, naming the file, where it is none of T-Blade3's, or asks for what the
     curvature-meanline family does not have.
     """
     case = read_tblade3(path)
@@ -40,7 +43,7 @@ def import_tblade3(path: str | os.PathLike[str], *, edge_spline: bool = False) -
             "and make no blade; --edge-spline puts the family's spline with the same contacts, droop and elongation "
             "in their place, or set the switch to 0"
         )
-    sections = case_sections(case)
+    sections = case_sections(case, true_stagger=true_stagger)
     design, changed = blade_of(sections), list(_changed(sections))
     standing = _standing(design, case.file)
     if standing != case.blade_count:
@@ -76,7 +79,7 @@ def _standing(design: CurvatureMeanlineBlade, file: str) -> int:
 
 def _points(sections: CaseSections) -> tuple[dict[str, Reals], str]:
     written = written_points(sections.case)
-    if written is not None:
+    if written is not None and not sections.true_stagger:
         sides = {"upper": written[:, :SIDE], "lower": written[:, SIDE - 1 :]}
         source = f"blade3d.{sections.case.name}.dat"
     else:
@@ -129,11 +132,15 @@ def _changed(sections: CaseSections) -> Iterator[str]:
         )
     if case.angles == "wing":
         yield "twist and total camber of the wing are given as metal angles"
-    if case.true_lean_and_sweep and (_matters(case.sweep) or _matters(case.lean)):
-        yield (
-            "true lean and sweep are as T-Blade3 computes them: times the cosine of the inlet angle's degrees taken "
-            "for radians, or of 0 where the chord is that between the edges; the true stagger has no part"
-        )
+    if (case.true_sweep or case.true_lean) and (_matters(case.sweep) or _matters(case.lean)):
+        if sections.true_stagger:
+            yield "true lean and sweep follow the stagger of each section, which T-Blade3's do not"
+        else:
+            yield (
+                "true lean and sweep are as T-Blade3 computes them: times the cosine of the inlet angle's degrees "
+                "taken for radians, or of 0 where the chord is that between the edges; --true-stagger takes the "
+                "stagger instead"
+            )
     if any(each.centroid or each.above for each in case.stackings) and chord_stations(case) is None:
         yield (
             f"the stacking point is that of the exact section; T-Blade3 takes it from its 241 points, whose clustering "

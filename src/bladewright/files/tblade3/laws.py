@@ -19,19 +19,22 @@ ROUNDING = 1e-15
 """control points smaller than this, of the largest value, are 0"""
 
 
-def section_places(spans: Reals) -> Reals:
-    """Span fractions (m,) of a design at which the sections with given spans (m,) stand, from 0 to 1."""
+def section_places(spans: Reals, *further: Reals) -> Reals:
+    """Span fractions (m,) of a design at which the sections with given spans (m,) stand, from 0 to 1.
+
+    `further` are other measures (m,) of the same sections, such as their distances at another edge. The second and the
+    last section but one stand as near to the ends as any measure has them: a cubic spline through sections that stand
+    nearer to each other than their places say would swing, and their stream surfaces fold over.
+    """
     count = len(spans)
     rising = bool(np.all(np.diff(spans) > 0.0))
     if count <= DEGREE + 1:
         return spans if rising else np.linspace(0.0, 1.0, count)
     knots = np.linspace(0.0, 1.0, count - DEGREE + 1)
-    shares = (
-        ((spans[1] - spans[0]) / (spans[2] - spans[0]), (spans[-1] - spans[-2]) / (spans[-1] - spans[-3]))
-        if rising
-        else (0.5, 0.5)
-    )
-    beside = shares[0] * knots[1], 1.0 - shares[1] * (1.0 - knots[-2])
+    measures = [each for each in (spans, *further) if np.all(np.diff(each) > 0.0)]
+    first = min([(each[1] - each[0]) / (each[2] - each[0]) for each in measures], default=0.5)
+    last = min([(each[-1] - each[-2]) / (each[-1] - each[-3]) for each in measures], default=0.5)
+    beside = first * knots[1], 1.0 - last * (1.0 - knots[-2])
     return np.concatenate([[0.0, beside[0]], knots[1:-1], [beside[1], 1.0]])
 
 

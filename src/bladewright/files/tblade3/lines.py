@@ -149,13 +149,16 @@ class Lines:
         """So many lines of so many numbers."""
         return [self.numbers(width, f"row {row} of {count} of {what}") for row in range(1, count + 1)]
 
-    def table(self, count: int, width: int, what: str, first: str = "span") -> list[tuple[float, ...]]:
-        """The same, the first number of each line increasing from 0 to 1."""
+    def table(
+        self, count: int, width: int, what: str, first: str = "span", *, equal: bool = False
+    ) -> list[tuple[float, ...]]:
+        """The same, the first number of each line increasing from 0 to 1; two inner ones may be `equal`."""
         found: list[tuple[float, ...]] = []
         for row in range(1, count + 1):
             found.append(self.numbers(width, f"row {row} of {count} of {what}"))
             value = found[-1][0]
-            if row > 1 and not value > found[-2][0]:
+            lone = equal and 2 < row < count and found[-3][0] < value
+            if row > 1 and not (value > found[-2][0] or (lone and value == found[-2][0])):
                 raise self.error(f"{first} of {what} is {value:g} after {found[-2][0]:g}: it must increase")
             for end, at in ((0.0, 1), (1.0, count)):
                 if row == at and abs(value - end) > END:

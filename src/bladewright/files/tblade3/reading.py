@@ -47,7 +47,7 @@ def read_tblade3(path: str | os.PathLike[str]) -> TBlade3Case:
     lines = Lines(read_text(path), path)
     found = read_head(lines, notes)
     count = found.pop("streamline_count")
-    found |= read_tables(lines, count, notes)
+    found |= read_tables(lines, count, notes, early=found.pop("early"))
     grid = found.pop("grid_columns")
     control, companion = _control_points(path, found, count)
     case = TBlade3Case(

@@ -159,7 +159,10 @@ class TBlade3Case:
     thickness_multiplier: bool
     leading_edge: Literal["elliptic", "spline"]
     chord: Literal["meridional", "given", "multiplied"]
-    true_lean_and_sweep: bool
+    true_sweep: bool
+    """whether sweep runs along the chord"""
+    true_lean: bool
+    """whether lean runs across the chord"""
     clustering: Literal["uniform", "sine", "exponential", "hyperbolic", "elliptic"]
     clustering_parameter: float | None
     sections: tuple[SectionRow, ...]

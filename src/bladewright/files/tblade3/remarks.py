@@ -104,10 +104,15 @@ def _notes(case: TBlade3Case) -> Iterator[str]:
         yield "T-Blade3 1.3.1 crashes on thickness 0 and on camber 0; version 1.2.5 builds them"
     if not case.spanwise and case.companion:
         yield "T-Blade3 1.3.1 crashes on control points section by section; version 1.2.5 reads them"
-    if case.true_lean_and_sweep and (_matters(case.sweep) or _matters(case.lean)):
+    if (case.true_sweep or case.true_lean) and (_matters(case.sweep) or _matters(case.lean)):
         yield (
-            "T-Blade3 takes true lean and sweep with the wrong stagger (the metal angle's degrees as radians, or 0): "
-            "its blade differs from one with the true stagger"
+            "T-Blade3 takes true lean and sweep with the wrong stagger (the metal angle's degrees as radians, or 0), "
+            "and has no switch for the true one, which --true-stagger takes"
+        )
+    if case.multipliers and case.spanwise:
+        yield (
+            "T-Blade3 reads the first half of the table of the thickness multiplier only, and takes what happens to "
+            "stand in memory for the rest: here all of it is taken"
         )
     if case.clustering == "elliptic" and case.thickness != "naca":
         yield "clustering 4 works with thickness 5 only"

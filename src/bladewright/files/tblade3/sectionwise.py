@@ -55,7 +55,7 @@ def _sections(lines: Lines, count: int, what: str) -> tuple[Table, Table]:
         lines.texts(2, f"the title of {name}")
         points = lines.integer(f"the number of {name}", least=3)
         lines.text(f"the header of {name}")
-        u, value = zip(*lines.table(points, 2, name, first="u"), strict=True)
+        u, value = zip(*lines.table(points, 2, name, first="u", equal=True), strict=True)
         places.append(u)
         values.append(value)
     return tuple(places), tuple(values)

@@ -1,11 +1,13 @@
 """T-Blade3's file `spancontrolinputs.R.dat`: control points of meanline and thickness as tables along the span."""
 
-from itertools import pairwise
 from typing import Any
+
+import numpy as np
 
 from bladewright.errors import FileError
 from bladewright.files.tblade3.lines import Lines, items, number
 from bladewright.files.tblade3.records import LEADING_EDGE, LeadingEdges, Meanlines, Multipliers, NacaThickness, Table
+from bladewright.section.meanline import backward
 
 _SLOPES = {"dy_dx_te": False, "dy_dx_norm": True}
 _CURVATURE = "the control points of the curvature"
@@ -24,7 +26,7 @@ def read_spanwise(lines: Lines, *, naca: bool, multiplier: bool, leading_edge: b
             found["leading_edges"] = _leading_edges(lines)
             leading_edge = False
             continue
-        multipliers = _multipliers(lines)
+        multipliers = _multipliers(lines, asked=multiplier)
         if multipliers:
             found["multipliers"] = multipliers
             multiplier = False
@@ -89,10 +91,16 @@ def _naca(lines: Lines) -> NacaThickness:
     )
 
 
-def _multipliers(lines: Lines) -> Multipliers | None:
-    """The older format's table of a thickness multiplier; None for the current one's table of the thickness."""
+def _multipliers(lines: Lines, *, asked: bool) -> Multipliers | None:
+    """The older format's table of a thickness multiplier; None where it is not asked for, or is the current format's.
+
+    One that is not asked for may hold anything, as in files that never had another.
+    """
     what = "the control points of the thickness multiplier"
     count, points, header = _head(lines, what)
+    if not asked:
+        lines.rows(count, 1, what)
+        return None
     if "le_radius" in header.split():
         lines.table(count, 5, "the control points of the thickness")
         return None
@@ -103,7 +111,7 @@ def _multipliers(lines: Lines) -> Multipliers | None:
     # the table of some versions ends with the multiplier at the trailing edge, which is 0 in those of others
     last = len(numbers) >= 2 + 2 * inner and numbers[1 + 2 * inner] is not None
     spans, places, values = [], [], []
-    for span, *row in lines.table(count, 1 + 2 * inner + last, what):
+    for span, *row in lines.table(count, 1 + 2 * inner + last, f"{what} (span, {inner} places u, {inner} values)"):
         spans.append(span)
         places.append((0.0, *row[:inner], 1.0))
         values.append((0.0, *row[inner:], *(() if last else (0.0,))))
@@ -127,9 +135,10 @@ def _leading_edges(lines: Lines) -> LeadingEdges:
 
 def _check_places(lines: Lines, spans: list[float], places: Table | list[tuple[float, ...]], what: str) -> None:
     for span, row in zip(spans, places, strict=True):
-        for low, high in pairwise(row):
-            if not high > low:
-                raise FileError(
-                    f"'{lines.path}': u of {what} is {high:g} after {low:g} at the span {span:g}: the places must "
-                    "increase from 0 to 1, both of which are left out of the table"
-                )
+        wrong = np.flatnonzero(backward(np.array(row)))
+        if len(wrong):
+            i = int(wrong[0])
+            raise FileError(
+                f"'{lines.path}': u of {what} is {row[i + 1]:g} after {row[i]:g} at the span {span:g}: the places must "
+                "increase from 0 to 1, both of which are left out of the table; two inner ones may be equal"
+            )

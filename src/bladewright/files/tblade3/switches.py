@@ -45,21 +45,32 @@ def read_head(lines: Lines, notes: list[str]) -> dict[str, Any]:
     found["leading_edge"] = _switch(lines, "the switch of the leading edge", LEADING_EDGES, sting)
     lines.text("the title of the chord switch")
     found["chord"] = _switch(lines, "the chord switch", CHORDS)
-    found["true_lean_and_sweep"], found["clustering"], found["clustering_parameter"] = False, "uniform", None
-    for name in ("true_lean_and_sweep", "clustering"):
-        title = lines.text("the title of true lean and sweep, or of the clustering")
-        if "sectionwise" in title.lower():
-            notes.append(
-                f"the file is of an early version without a switch of {name.replace('_', ' ')}: it is taken as 0; "
-                "current versions do not read such a file"
-            )
-            return found
-        if name == "clustering":
-            found |= _clustering(lines)
-        else:
-            found[name] = _switch(lines, "the switch of true lean and sweep", ON)
+    found |= {"true_sweep": False, "true_lean": False, "early": False}
+    found |= {"clustering": "uniform", "clustering_parameter": None}
+    title = lines.text("the title of true lean and sweep, or of the sectionwise properties")
+    if _is_table(title):
+        notes.append(
+            "the file is of an early version without switches of true lean and sweep and of the clustering: sweep and "
+            "lean are true where column 15 beside the number of their control points holds a 1, and the clustering is "
+            "taken as uniform; current versions do not read such a file"
+        )
+        return found | {"early": True}
+    true = _switch(lines, "the switch of true lean and sweep", ON)
+    found |= {"true_sweep": true, "true_lean": true}
+    title = lines.text("the title of the clustering, or of the sectionwise properties")
+    if _is_table(title):
+        notes.append(
+            "the file is of an early version without a switch of the clustering, which is taken as uniform; current "
+            "versions do not read such a file"
+        )
+        return found
+    found |= _clustering(lines)
     lines.text("the title of the sectionwise properties")
     return found
+
+
+def _is_table(title: str) -> bool:
+    return "sectionwise" in title.lower()
 
 
 def _unit(lines: Lines, notes: list[str]) -> str:

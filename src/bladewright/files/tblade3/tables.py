@@ -11,8 +11,11 @@ _SHAPES = ("stack_u", "stack_v", "thickest", "leading_thickness", "trailing_thic
 _GRID = ("jcells", "eta_ofst", "bggrid")
 
 
-def read_tables(lines: Lines, count: int, notes: list[str]) -> dict[str, Any]:
-    """Fields of a case from the table of sections on, for so many streamlines."""
+def read_tables(lines: Lines, count: int, notes: list[str], *, early: bool) -> dict[str, Any]:
+    """Fields of a case from the table of sections on, for so many streamlines.
+
+    An `early` file has switches of true sweep and lean beside the numbers of their control points.
+    """
     found: dict[str, Any] = {}
     lines.text("the header of the sectionwise properties")
     angles = lines.rows(count, 9, "the sectionwise properties")
@@ -36,7 +39,9 @@ def read_tables(lines: Lines, count: int, notes: list[str]) -> dict[str, Any]:
     lines.texts(2, "the title of the stacking axis")
     found["stacking_code"] = _stacking_code(lines, radial=radial)
     for name in ("sweep", "lean"):
-        found[name] = _law(lines, name, notes, one_digit=True)
+        true, found[name] = _shift(lines, name, notes, early=early)
+        if early:
+            found[f"true_{name}"] = true
     for name, title in (("in_beta", "in_beta*"), ("out_beta", "out_beta*"), ("chord_multiplier", "chord_multiplier")):
         found[name] = _law(lines, title, notes)
     found |= _thicknesses(lines)
@@ -101,7 +106,7 @@ def _stacking_code(lines: Lines, *, radial: bool) -> int:
     return code
 
 
-def _count(lines: Lines, name: str, notes: list[str], *, one_digit: bool) -> int:
+def _count(lines: Lines, name: str, notes: list[str], *, one_digit: bool = False) -> int:
     line = lines.peek()
     rows = lines.integer(f"the number of control points of {name}", least=2)
     digit = line[11:12]
@@ -113,9 +118,30 @@ def _count(lines: Lines, name: str, notes: list[str], *, one_digit: bool) -> int
     return rows
 
 
-def _law(lines: Lines, name: str, notes: list[str], *, one_digit: bool = False) -> SpanLaw:
+def _shift(lines: Lines, name: str, notes: list[str], *, early: bool) -> tuple[bool, SpanLaw]:
+    """Sweep or lean, and whether it is a true one as an early file says it.
+
+    There a digit in column 15 of the line of the count says so, and that the values stand in the third column.
+    """
     lines.texts(2, f"the title of the control points of {name}")
-    rows = _count(lines, name, notes, one_digit=one_digit)
+    switch = lines.peek()[14:15].strip() if early else ""
+    rows = _count(lines, name, notes, one_digit=True)
+    if switch not in {"", "0", "1"}:
+        raise lines.error(
+            f"column 15 holds '{switch}', where an early version reads the switch of true {name}: it must be 0, 1 or "
+            "blank"
+        )
+    header = lines.text(f"the header of the control points of {name}")
+    if early and not switch and "true_" in header:
+        notes.append(f"the column true_{name} has no effect: column 15 of line {lines.place - 1}, its switch, is blank")
+    columns = zip(*lines.table(rows, 3 if switch else 2, f"the control points of {name}"), strict=True)
+    span, *values = columns
+    return switch == "1", SpanLaw(span=span, values=values[-1])
+
+
+def _law(lines: Lines, name: str, notes: list[str]) -> SpanLaw:
+    lines.texts(2, f"the title of the control points of {name}")
+    rows = _count(lines, name, notes)
     lines.text(f"the header of the control points of {name}")
     span, values = zip(*lines.table(rows, 2, f"the control points of {name}"), strict=True)
     return SpanLaw(span=span, values=values)

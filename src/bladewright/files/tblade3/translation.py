@@ -36,11 +36,13 @@ class CaseSections:
     flow: CaseFlow
     values: SectionValues
     numbers: Parameters
+    true_stagger: bool = False
+    """whether true sweep and lean take the section's stagger, instead of what T-Blade3 takes for it"""
 
     @cached_property
     def places(self) -> Reals:
         """(m,) span fractions of the design at which the sections stand, falling where they are `reversed`."""
-        places = section_places(self.flow.spans)
+        places = section_places(self.flow.spans, *self.flow.distances)
         return 1.0 - places if self.reversed else places
 
     @cached_property
@@ -95,20 +97,29 @@ class CaseSections:
         """(m,) of the chord lines in m'."""
         return self.chords * np.cos(self.stagger)
 
-    @property
-    def true_share(self) -> Reals:
-        """(m,) what T-Blade3 multiplies sweep and lean by, where it is asked for true ones.
+    @cached_property
+    def shifts(self) -> tuple[Reals, Reals]:
+        """(m,) sweep in m' and (m,) lean [rad] of the sections.
 
-        The cosine of the inlet angle's degrees taken for radians; of 0 where the chord is that between the edges.
+        True ones are multiplied by the cosine of the stagger; where one of both is true, it takes the other's place
+        times the sine. T-Blade3's stagger is the inlet angle's degrees taken for radians, or 0 where the chord is
+        that between the edges.
         """
-        if not self.case.true_lean_and_sweep or self.case.chord == "meridional":
-            return np.ones(len(self.places))
-        return np.abs(np.cos(self.values.angle_in))
+        case, sweep, lean = self.case, self.values.sweep, self.values.lean
+        if self.true_stagger:
+            stagger = self._turns[:, 0]
+        else:
+            stagger = 0.0 * sweep if case.chord == "meridional" else self.values.angle_in
+        along, across = np.abs(np.cos(stagger)), np.abs(np.sin(stagger))
+        if not case.true_sweep and not case.true_lean:
+            return sweep, lean
+        swept = sweep * along if case.true_sweep else lean * across
+        return swept, lean * along if case.true_lean else swept * across
 
     @cached_property
     def leading(self) -> Reals:
         """(m,) m' of the sections' leading edges on their stream lines."""
-        return self.flow.leading + self.values.sweep * self.true_share
+        return self.flow.leading + self.shifts[0]
 
     @cached_property
     def trailing(self) -> Reals:
@@ -123,10 +134,10 @@ class CaseSections:
         for i, (turn, stacking) in enumerate(zip(self._turns[:, 0], self.case.stackings, strict=True)):
             along, across = self.tips[i] - stacking_point(self.numbers.of(i), stacking, stations)
             found.append(self.own_chords[i] * (along * np.sin(turn) + across * np.cos(turn)))
-        return np.array(found) + self.values.lean * self.true_share + self.values.theta_offset
+        return np.array(found) + self.shifts[1] + self.values.theta_offset
 
 
-def case_sections(case: TBlade3Case) -> CaseSections:
+def case_sections(case: TBlade3Case, *, true_stagger: bool = False) -> CaseSections:
     """The sections of a case. Raises FileError where they are none of the family's, or leave their stream lines."""
     refused = [text for text in case.unsupported if "inflation" not in text]
     if refused:
@@ -138,6 +149,7 @@ def case_sections(case: TBlade3Case) -> CaseSections:
         flow=flow,
         values=values,
         numbers=parameters(case, values, metal_angles(case, values, *flow.slopes)),
+        true_stagger=true_stagger,
     )
     _check_directions(sections)
     _check_within(sections)
