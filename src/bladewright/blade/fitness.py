@@ -32,17 +32,20 @@ def chord_of(exact: Meant) -> float:
     return float(np.mean(np.real(length(stations.trailing_edge().point - stations.leading_edge().point))))
 
 
-def knots_for(exact: Meant, chord: float) -> Knots:
-    """Knots with which the native sides meet the design's tolerance, and their ends lie on the walls."""
+def knots_for(exact: Meant, chord: float, *, slack: float = 1.0) -> Knots:
+    """Knots with which the native sides meet the design's tolerance, and their ends lie on the walls.
+
+    What is promised besides, of walls and of the edges' angles and radii, may be missed by `slack` times as much.
+    """
     tolerance, spans = exact.design.tolerance * chord, exact.given_spans
     starts = clamped(exact.breaks_along_u()), exact.breaks_along_v()
-    along_u = refined(starts[0], _LinesAlongU(exact, tolerance, chord, spans), MOST_POLES[0])
+    along_u = refined(starts[0], _LinesAlongU(exact, tolerance, chord, spans, slack), MOST_POLES[0])
     if len(spans) and len(along_u) - DEGREE - 1 > MOST_POLES[0]:
         spans = spans[:0]
-        along_u = refined(starts[0], _LinesAlongU(exact, tolerance, chord, spans), MOST_POLES[0])
+        along_u = refined(starts[0], _LinesAlongU(exact, tolerance, chord, spans, slack), MOST_POLES[0])
     # a knot at each makes sure of a site nearby
     own = [v for v in spans if 0.0 < v < 1.0 and np.min(np.square(starts[1] - v), initial=1.0) > SAME**2]
-    lines = _LinesAlongV(exact, tolerance, along_u, spans)
+    lines = _LinesAlongV(exact, tolerance, along_u, spans, slack)
     along_v = refined(clamped(np.concatenate([starts[1], own])), lines, MOST_POLES[1])
     return Knots(u=along_u, v=along_v, tip=exact.tip_knots, sections=spans if len(spans) else None)
 
@@ -55,13 +58,13 @@ def sections_limit(tolerance: float) -> float:
 class _LinesAlongU:
     """Error over tolerance along sections of the exact blade that are interpolated in u alone."""
 
-    def __init__(self, exact: Meant, tolerance: float, chord: float, spans: Reals) -> None:
+    def __init__(self, exact: Meant, tolerance: float, chord: float, spans: Reals, slack: float) -> None:
         v = np.union1d(exact.survey.v, spans)
         self.stations = exact.survey if len(v) == len(exact.survey.v) else exact.stations(v)
         # along v there is no error at these, so that most of their limit is left for u
         limit = min(SECTIONS_RESERVE * sections_limit(tolerance / chord) * chord, RESERVE * tolerance)
         self.tolerance = np.where(np.isin(v, spans), limit, RESERVE * tolerance)[:, None]
-        self.wall_tolerance = RESERVE * min(WALL_TOLERANCE * chord, tolerance)
+        self.wall_tolerance = RESERVE * min(slack * WALL_TOLERANCE * chord, tolerance)
         upper = self.stations.leading_edge(), self.stations.trailing_edge()
         self.edges = upper, lower_edges(upper, self.stations.lower_edges())
 
@@ -88,8 +91,8 @@ class _LinesAlongU:
 class _LinesAlongV:
     """Error over tolerance along lines of constant u that are interpolated in v alone."""
 
-    def __init__(self, exact: Meant, tolerance: float, knots_u: Reals, through: Reals) -> None:
-        self.exact, self.through = exact, through
+    def __init__(self, exact: Meant, tolerance: float, knots_u: Reals, through: Reals, slack: float) -> None:
+        self.exact, self.through, self.slack = exact, through, slack
         self.tolerance = RESERVE * tolerance
         spans = np.unique(knots_u)
         step = max(1, (len(spans) - 1) // 24)
@@ -107,7 +110,7 @@ class _LinesAlongV:
             miss = (native - flat[len(sites) :]).reshape(len(places), -1, 3)
             errors.append(np.max(length(miss), axis=1) / self.tolerance)
         rows = [stations.leading_edge(), stations.trailing_edge(), *stations.lower_edges()]
-        errors += [self._edge_miss(row, matrix, knots, places) for row in rows if row is not None]
+        errors += [self._edge_miss(row, matrix, knots, places) / self.slack for row in rows if row is not None]
         return np.max(errors, axis=0)
 
     @staticmethod

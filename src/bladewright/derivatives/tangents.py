@@ -13,6 +13,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from bladewright.blade.blade import Blade
+from bladewright.blade.knots import Knots
 from bladewright.blade.laid import EdgeRow
 from bladewright.blade.native import Skeleton, sides_through, skeleton_of
 from bladewright.blade.sectioned import SectionedBlade
@@ -31,7 +32,7 @@ CHORDWISE = (*THICKNESSES, *WEIGHTS)
 Nets = tuple[Array, Array]
 
 
-class _Source(NamedTuple):
+class Source(NamedTuple):
     """Where a parameter's derivative comes from."""
 
     step: str
@@ -47,7 +48,7 @@ def side_tangents(blade: Blade, paths: Sequence[str]) -> Iterator[Nets]:
 
     Metres per unit of the parameter's field, at the blade's knots.
     """
-    sources = [_source(blade.design, path) for path in paths]
+    sources = [source_of(blade.design, path) for path in paths]
     steps = list(dict.fromkeys(source.step for source in sources))
     rates = np.concatenate([_rates(blade, steps[i : i + AT_ONCE]) for i in range(0, len(steps), AT_ONCE)])
     mirrored = [edge is None for edge in blade.exact.survey.lower_edges()]
@@ -55,41 +56,52 @@ def side_tangents(blade: Blade, paths: Sequence[str]) -> Iterator[Nets]:
         chunk = sources[first : first + AT_ONCE]
         shares = np.stack([_share(source, blade.knots.sites_v) for source in chunk])
         rows = rates[[steps.index(source.step) for source in chunk]] * shares[..., None]
-        yield sides_through(_parted(rows, mirrored), blade.knots)
+        yield sides_through(parted(rows, mirrored), blade.knots)
 
 
-def _source(design: UnifiedBlade | SectionedBlade, path: str) -> _Source:
+def source_of(design: UnifiedBlade | SectionedBlade, path: str) -> Source:
+    """Where the derivative of a design by one of its parameters comes from."""
     name, *places = re.findall(r"\w+", path)
     if not isinstance(design, UnifiedBlade) or name not in (*LAWS, *CHORDWISE):
-        return _Source(path)
+        return Source(path)
     depth = 1 if name in CHORDWISE else 0
     if len(places) == depth:
-        return _Source(path, 0, 1)
+        return Source(path, 0, 1)
     law = getattr(design, name)[int(places[0])] if depth else getattr(design, name)
-    return _Source(path.rpartition("[")[0], int(places[-1]), len(law))
+    return Source(path.rpartition("[")[0], int(places[-1]), len(law))
 
 
-def _share(source: _Source, v: Reals) -> Reals:
+def _share(source: Source, v: Reals) -> Reals:
     return law_basis(source.points, v)[:, source.place] if source.points else np.ones(len(v))
 
 
 def _rates(blade: Blade, steps: Sequence[str]) -> Array:
     """Derivatives (len(steps), m, k) of the skeleton, in a row for each section, by laws as a whole and by leaves."""
-    values = blade.design.parameters()
+    moved = blade.exact.moved_to(stepped(blade.design, steps))
+    return skeleton_rates(moved.stations(blade.knots.sites_v), blade.knots, len(steps))
+
+
+def stepped(design: UnifiedBlade | SectionedBlade, steps: Sequence[str]) -> Any:
+    """A design with a batch (len(steps),) of imaginary steps, each of a law as a whole or of a leaf."""
+    values = design.parameters()
     changes: dict[str, Any] = {}
     for place, step in enumerate(steps):
         kick = np.zeros(len(steps), dtype=np.complex128)
         kick[place] = STEP * 1j
         changes |= {path: value + kick for path, value in values.items() if path == step or path.startswith(f"{step}[")}
-    stations = blade.exact.moved_to(blade.design.changed(changes)).stations(blade.knots.sites_v)
-    skeleton = skeleton_of(stations, blade.knots)
+    return design.changed(changes)
+
+
+def skeleton_rates(stations: Any, knots: Knots, count: int) -> Array:
+    """Derivatives (count, m, k) of the skeleton of stations with as many imaginary steps, in a row for each section."""
+    skeleton = skeleton_of(stations, knots)
     sides = [side.reshape(*side.shape[:-2], -1) for side in (skeleton.upper, skeleton.lower)]
     edges = [skeleton.leading_edge, skeleton.trailing_edge, *skeleton.lower_edges]
     rows = joined([part for edge in edges if edge is not None for part in edge] + sides, axis=-1)
-    return np.broadcast_to(np.imag(rows) / STEP, (len(steps), *rows.shape[-2:]))
+    return np.broadcast_to(np.imag(rows) / STEP, (count, *rows.shape[-2:]))
 
 
-def _parted(rows: Array, mirrored: Sequence[bool]) -> Skeleton:
+def parted(rows: Array, mirrored: Sequence[bool]) -> Skeleton:
     """The skeleton in rows; `mirrored` says of which edges the lower side has no derivatives of its own."""
     count = 2 + sum(not each for each in mirrored)
     edges, upper, lower = np.split(rows, [9 * count, (9 * count + rows.shape[-1]) // 2], axis=-1)

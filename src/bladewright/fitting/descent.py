@@ -26,6 +26,8 @@ PROBE = 0.1
 """part of a step at which the bend of the residuals is taken"""
 EVEN = 0.8
 """gain of the last step, of what was promised, from which the next one goes straight"""
+LEFT = 0.05
+"""part of what an even step promised that the next one is taken to promise, where the step kept all of it"""
 CURVED = 0.4
 """largest change of a step by that bend, of the step"""
 CHANGES = 20
@@ -112,6 +114,8 @@ def descended(
                 z, (residuals, constrained) = trial, fresh
                 damping *= max(1.0 / 10.0, 1.0 - (2.0 * min(gain, 1.0) - 1.0) ** 3)
                 damping, growth, moved = max(damping, 1e-16), 2.0, True
+                if gain > EVEN and max(1.0 - gain, LEFT) * promised < slight * after:
+                    return Descent(z=z, converged=True, damping=damping)
                 break
             damping *= growth
             growth *= 2.0

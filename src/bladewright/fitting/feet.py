@@ -1,7 +1,8 @@
 """Nearest places of a cloud on the two sides of a blade or section."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -55,6 +56,16 @@ class Feet:
     def heights(self) -> Reals:
         """(n,) signed distances along the normals."""
         return np.sum(self.miss * self.normals, axis=-1)
+
+    def part(self, rows: NDArray[Any]) -> "Feet":
+        """Some of them, by their numbers or as a mask (n,)."""
+        return Feet(**{each.name: getattr(self, each.name)[rows] for each in fields(Feet)})
+
+
+def joined(parts: Sequence[Feet]) -> Feet:
+    """Feet one after the other."""
+    names = [each.name for each in fields(Feet)]
+    return Feet(**{name: np.concatenate([getattr(part, name) for part in parts]) for name in names})
 
 
 def feet(points: Reals, sides: Sequence[Side], hint: Feet | None = None, *, converged: float = CONVERGED) -> Feet:

@@ -19,9 +19,10 @@ from bladewright.blade.meridional import Meridional
 from bladewright.blade.native import native_sides
 from bladewright.blade.sectioned import SectionedBlade
 from bladewright.blade.unified import UnifiedBlade
-from bladewright.derivatives.tangents import STEP, side_tangents
+from bladewright.derivatives.tangents import STEP, side_tangents, stepped
 from bladewright.designs import Design
 from bladewright.errors import FitError
+from bladewright.fitting.chain import chain_of, own_walls, parts_of, shifted, shifts_of
 from bladewright.fitting.feet import Feet, Side
 from bladewright.numerics.elementary import Array, cross2, joined, length
 from bladewright.nurbs.basis import Reals
@@ -37,6 +38,9 @@ HOLDING = SURVEY
 """places along the span where it is asked whether the thickness can hold the edges' radii"""
 FOLDING = (21, 21)
 """places along and across the channel where it is asked whether it folds over"""
+COARSE, SLACK = 3.0, 100.0
+"""tolerance of a search, of the design's own, from which what its knots promise of walls and edges may be missed, and by
+how many times as much"""
 OPEN = 0.02
 """smallest Jacobian of the channel, of its median"""
 
@@ -88,6 +92,10 @@ class Model(ABC):
     def fold_rates(self, shape: Shape, paths: Sequence[str]) -> Reals:
         """Derivatives (k, c) of `shape.folds`."""
         return np.zeros((len(paths), len(shape.folds)))
+
+    def along(self, shape: Shape, on: Feet, ways: Reals, paths: Sequence[str]) -> Reals:
+        """Derivatives (n, k) of the places along directions (n, d), at held parameters."""
+        return np.einsum("nkd,nd->nk", self.rates(shape, on, self.tangents(shape, paths)), ways)
 
     @staticmethod
     def rates(shape: Shape, feet: Feet, tangents: tuple[Reals, Reals]) -> Reals:
@@ -151,7 +159,8 @@ class BladeModel(Model):
         self.tolerance = design.tolerance if tolerance is None else tolerance
         exact = exact_blade(design.changed("tolerance", self.tolerance), tentative=True)
         self.chord = chord_of(exact)
-        self.knots: Knots = knots_for(exact, self.chord)
+        slack = SLACK if self.tolerance > COARSE * design.tolerance else 1.0
+        self.knots: Knots = knots_for(exact, self.chord, slack=slack)
 
     def _shape(self, design: Any) -> Shape:
         exact = exact_blade(design, self.knots.tip, tentative=True)
@@ -178,14 +187,20 @@ class BladeModel(Model):
         upper, lower = (np.concatenate([pair[side] for pair in pairs]) for side in (0, 1))
         return upper, lower
 
+    def along(self, shape: Shape, on: Feet, ways: Reals, paths: Sequence[str]) -> Reals:
+        """From the motion with whole laws."""
+        return chain_of(shape.exact, self.knots, on, ways, paths).columns(paths)
+
     def nose_rates(self, shape: Shape, paths: Sequence[str]) -> Reals:
         """Those by the laws; by the channel they vanish but for the walls' slopes, which are left out."""
         found = np.zeros((len(paths), *shape.noses.shape))
         laws = [place for place, path in enumerate(paths) if not path.startswith(("channel.", "tip_", "hub_"))]
-        changes = _batch(shape.design, [paths[place] for place in laws])
-        plane = moved(shape.exact, shape.design.changed(changes)).stations(HOLDING).plane
-        rates = np.imag(_noses(shape.design, plane.camber, plane.upper, plane.lower)) / STEP
-        found[laws] = np.moveaxis(rates, 1, 0)
+        parts = [next(parts_of(shape.design, paths[place], HOLDING)) for place in laws]
+        steps = list(dict.fromkeys(step for step, _ in parts))
+        plane = moved(shape.exact, stepped(shape.design, [str(step) for step in steps])).stations(HOLDING).plane
+        rates = np.moveaxis(np.imag(_noses(shape.design, plane.camber, plane.upper, plane.lower)), 1, 0) / STEP
+        for place, (step, share) in zip(laws, parts, strict=True):
+            found[place] = rates[steps.index(step)] * share
         return found
 
     def fold_rates(self, shape: Shape, paths: Sequence[str]) -> Reals:
@@ -193,9 +208,14 @@ class BladeModel(Model):
         found = np.zeros((len(paths), len(shape.folds)))
         walls = [place for place, path in enumerate(paths) if path.startswith("channel.")]
         if walls and shape.exact is not None:
-            changes = _batch(shape.design, [paths[place] for place in walls])
-            channel = moved(shape.exact, shape.design.changed(changes)).channel
-            found[walls] = np.imag(_folds(shape.exact, channel)) / STEP
+            some = [paths[place] for place in walls]
+            if own_walls(shape.design):
+                metre = UNITS[shape.design.length_unit]
+                channel = shifted(shape.exact.channel, [shifts_of(shape.design, path) for path in some])
+            else:
+                metre = 1.0
+                channel = moved(shape.exact, shape.design.changed(_batch(shape.design, some))).channel
+            found[walls] = np.imag(_folds(shape.exact, channel)) / STEP * metre
         return found
 
 

@@ -8,7 +8,7 @@ import numpy as np
 from bladewright.designs import Design
 from bladewright.errors import DesignError
 from bladewright.fitting.descent import Constrained
-from bladewright.fitting.feet import Feet, feet
+from bladewright.fitting.feet import Feet, feet, joined
 from bladewright.fitting.model import Model, Shape
 from bladewright.fitting.prior import Prior
 from bladewright.fitting.reach import Reach
@@ -60,22 +60,26 @@ class Measures:
 
     def slopes(self, state: State, paths: Sequence[str]) -> Reals:
         """Derivatives (m, k) by parameters, at held feet: those move along the surface only."""
-        on, shape, chord = state.feet, state.shape, self.model.chord
-        tangents = self.model.tangents(shape, paths)
-        rates = self.model.rates(shape, on, tangents)
-        along = self.roots[:, None] * on.normals
-        near = self.ends.near
-        out = (self.roots[:, None] * on.beyond)[near]
-        blocks = [-np.einsum("nkd,nd->nk", rates, along), -np.einsum("nkd,nd->nk", rates[near], out)]
+        shape, chord = state.shape, self.model.chord
+        every, edges = np.split(self.model.along(shape, *self.places(state), paths), [-len(self.reach.u)])
+        blocks = [every]
         for wall in self.ends.walls.values():
             if shape.exact is not None:
                 t, normal, _ = wall.misses(shape.exact)
                 moving = wall.rates(shape, t, paths)
                 blocks.append(-self._of_wall(wall) * np.einsum("nkd,nd->nk", moving, normal))
-        edges = self.reach.edges(shape.sides)
-        out = edges.normals * (self._of_edge * (self.reach.excess(edges) > 0.0))[:, None]
-        blocks.append(np.einsum("nkd,nd->nk", self.model.rates(shape, edges, tangents), out))
-        return np.concatenate(blocks) / chord
+        return np.concatenate([*blocks, edges]) / chord
+
+    def places(self, state: State) -> tuple[Feet, Reals]:
+        """The places on the sides whose motion changes residuals, and the directions (n, d) that count.
+
+        Those of the points, those of points past an end, and those of the edges' reach, last.
+        """
+        on, near = state.feet, self.ends.near
+        edges = self.reach.edges(state.shape.sides)
+        ways = [-self.roots[:, None] * on.normals, -(self.roots[:, None] * on.beyond)[near]]
+        ways.append(edges.normals * (self._of_edge * (self.reach.excess(edges) > 0.0))[:, None])
+        return joined([on, on.part(near), edges]), np.concatenate(ways)
 
     def _of_wall(self, wall: Wall) -> float:
         """Weight of a wall's places: one where they stand in a row, less where they scatter."""

@@ -3,7 +3,7 @@
 A misfit of the design varies slowly along the surface; noise does not.
 """
 
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -63,7 +63,7 @@ def scatter_of(points: Reals, on: Feet, weights: Reals | None = None, *, outlyin
 def _of_weighed(points: Reals, on: Feet, weights: Reals, *, outlying: bool) -> Scatter:
     """The scatter of the points that have a weight, and where the others are."""
     rows = weights > 0.0
-    part = Feet(**{each.name: getattr(on, each.name)[rows] for each in fields(Feet)})
+    part = on.part(rows)
     found = scatter_of(points[rows], part, weights[rows], outlying=outlying)
     inliers = np.ones(len(points), dtype=bool)
     inliers[rows] = found.inliers

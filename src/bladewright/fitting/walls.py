@@ -8,11 +8,13 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
-from bladewright.blade.exact import moved
+from bladewright.blade.exact import ExactBlade, moved
 from bladewright.derivatives.tangents import STEP
+from bladewright.fitting.chain import own_walls, shifts_of
 from bladewright.fitting.feet import Feet
 from bladewright.fitting.model import Shape
-from bladewright.nurbs.basis import Reals
+from bladewright.nurbs.basis import Reals, basis
+from bladewright.section.checks import UNITS
 
 BAND = 0.015
 """how far from an end, in v, a point may tell of it"""
@@ -64,6 +66,14 @@ class Wall:
         exact = shape.exact
         moving = [i for i, path in enumerate(paths) if path.startswith(("channel.", "tip_", "hub_"))]
         if not moving or exact is None:
+            return found
+        if isinstance(exact, ExactBlade) and own_walls(shape.design):
+            line = exact.channel.line(self.name)
+            rows, metre = basis(line.knots, line.degree, t), UNITS[shape.design.length_unit]
+            for i in moving:
+                for curve, place, axis in shifts_of(shape.design, paths[i]):
+                    if curve == self.name:
+                        found[:, i, axis] = metre * rows[:, place]
             return found
         values = shape.design.parameters()
         kicks = 1j * STEP * np.eye(len(moving))
