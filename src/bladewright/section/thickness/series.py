@@ -39,20 +39,18 @@ class Series:
         """The series at some places of the last axis."""
         return Series([each[..., where] for each in self.coefficients])
 
-    def _other(self, other: "Series | Array | complex") -> tuple[Array, ...]:
-        if isinstance(other, Series):
-            return other.coefficients
-        zero = np.zeros(())
-        return (np.asarray(other), *[zero] * self.order)
-
     def __neg__(self) -> "Series":
         return Series([-each for each in self.coefficients])
 
     def __add__(self, other: "Series | Array | complex") -> "Series":
-        return Series([a + b for a, b in zip(self.coefficients, self._other(other), strict=True)])
+        if not isinstance(other, Series):
+            return Series([self.coefficients[0] + other, *self.coefficients[1:]])
+        return Series([a + b for a, b in zip(self.coefficients, other.coefficients, strict=True)])
 
     def __sub__(self, other: "Series | Array | complex") -> "Series":
-        return self + (-other)
+        if not isinstance(other, Series):
+            return self + (-other)
+        return Series([a - b for a, b in zip(self.coefficients, other.coefficients, strict=True)])
 
     def __rsub__(self, other: Array | complex) -> "Series":
         return -self + other
@@ -74,7 +72,7 @@ class Series:
         return Series(quotient)
 
     def __rtruediv__(self, other: Array | complex) -> "Series":
-        return Series(self._other(other)) / self
+        return Series([np.asarray(other), *[np.zeros(())] * self.order]) / self
 
     def sqrt(self) -> "Series":
         """The root with a positive value; the value must not be zero where the order is above zero."""
