@@ -85,6 +85,13 @@ def _arm(annotation: Any, step: int | str) -> type[Any] | None:
     return next(named, None)
 
 
+def _given(annotation: Any) -> Any:
+    """The type of a part that may be left out, without what stands for its absence."""
+    arms = [each for each in get_args(annotation) if each is not NoneType]
+    alone = get_origin(annotation) in (Union, UnionType) and len(arms) == 1 and is_dataclass(arms[0])
+    return arms[0] if alone else annotation
+
+
 class _Place:
     """Where in a file pydantic stopped: the dotted path, the field's type there, the table that holds it."""
 
@@ -110,7 +117,7 @@ class _Place:
             return
         self.names = [each.name for each in fields(self.annotation)]
         self.unit = next((each.metadata.get("unit", "") for each in fields(self.annotation) if each.name == name), "")
-        self.annotation = get_type_hints(self.annotation).get(name)
+        self.annotation = _given(get_type_hints(self.annotation).get(name))
         self.path = self.field = f"{self.path}.{name}" if self.path else name
 
     def _index(self, index: int) -> None:
@@ -139,9 +146,12 @@ def _said(error: ErrorDetails, place: _Place) -> str:
 
 
 def _wrong_tag(error: ErrorDetails, place: _Place) -> str:
-    parts = [own for _, own in _told(place.annotation)]
+    parts, value = [own for _, own in _told(place.annotation)], error["input"]
+    if not parts or not isinstance(value, dict):
+        # what its keys tell apart, or what is no table at all
+        return f"{place.path} is {shown(value)}: {needed(place.annotation)} is needed"
     name, known = next(iter(parts[0])), [str(value) for own in parts for value in own.values()]
-    given = error["input"].get(name) if isinstance(error["input"], dict) else None
+    given = value.get(name)
     choice = "one of " + ", ".join(shown(each) for each in known)
     if given is None:
         return f"{place.path}.{name} is missing: {choice} must be given"

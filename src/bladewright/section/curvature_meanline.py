@@ -114,8 +114,8 @@ class CurvatureMeanline(Part):
             raise DesignError(
                 f"metal_angle_out less metal_angle_in is {degrees(asked[first]):.4g} deg at span fraction "
                 f"{span.v[first[-1]]:.4g}: a meanline of this curvature can turn by {degrees(most[first]):.4g} deg at "
-                "most, for its second derivative changes sign and turns back what it has turned; lower the difference "
-                "of the angles, or give more of the control points of curvature the same sign"
+                "most, for its second derivative is zero, or changes sign and turns back what it has turned; lower the "
+                "difference of the angles, or give more of the control points of curvature the same sign"
             )
         return CurvedMeanline(curvature=curvature, scale=scale)
 
