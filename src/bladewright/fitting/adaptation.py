@@ -13,7 +13,9 @@ from bladewright.fitting.growing import grown
 from bladewright.fitting.growth import FEWEST
 from bladewright.fitting.identification import EXACT, identified, tried
 from bladewright.fitting.opening import opened
+from bladewright.fitting.pressing import little, pressed
 from bladewright.fitting.reshaping import reshaped
+from bladewright.fitting.rounding import rounded
 from bladewright.fitting.search import ROUGH, ROUNDS, Found, Task, searched
 from bladewright.fitting.structure import Structure, structure_of
 from bladewright.fitting.thinning import drawn
@@ -57,7 +59,8 @@ def adapted(task: Task, first: Design, aim: Aim, *, base: Structure | None, gues
     if aim.structured and aim.tolerance is None:
         return _structured(few, many, first, base, guessed=guessed), ""
     found = searched(few, first, noise=noise, rounds=2 * QUICK if base is None else QUICK, slight=ROUGH)
-    if guessed and aim.open and isinstance(first, UnifiedSection) and _misses(found, QUIET):
+    exact = guessed and aim.open and isinstance(first, UnifiedSection) and not rounded(task.points)
+    if exact and _misses(found, QUIET):
         known = identified(few, first)
         if known is not None:
             return (known if known.interrupted else searched(many, known.design)), ""
@@ -117,8 +120,11 @@ def _enough(task: Task, found: Found, aim: Aim) -> tuple[Found, str]:
         short, reason = short_of(found, aim, task)
         if not short or _nearly(found, aim):
             break
+        before = found.rms
         found, grew = grown(task, found, aim)
         if not grew:
+            found, grew = pressed(task, found, aim)
+        if not grew or little(task, found, aim, before):
             break
     if aim.parameters is not None and task.points.shape[1] == 2:
         found = _exchanged(task, found)

@@ -10,6 +10,8 @@ MOST = {2: 80, 3: 340}
 """parameters above which nothing is added"""
 NOISY = 0.15
 """part of the misfit that neighbours share below which it is noise"""
+POINTS = {2: 2, 3: 3}
+"""points for each parameter at least, by dimension: published profiles have few and exact ones"""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -43,6 +45,6 @@ def short_of(found: Found, aim: Aim, task: Task) -> tuple[bool, str]:
             False,
             f"what is left is the cloud's own noise, {1e3 * noise:.2g} mm: more control points would follow it",
         )
-    if count >= min(MOST[dimension], len(task.points) // 3):
+    if count >= min(MOST[dimension], len(task.points) // POINTS[dimension]):
         return False, f"the design has {count} parameters, and more are not added"
     return True, ""

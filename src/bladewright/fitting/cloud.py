@@ -6,8 +6,8 @@ from numpy.typing import ArrayLike, NDArray
 from bladewright.errors import FitError
 from bladewright.nurbs.basis import Reals
 
-FEWEST = 100
-"""points that a fit needs"""
+FEWEST = {2: 24, 3: 100}
+"""points that a fit of a section and of a blade needs"""
 FLAT = 1e-5
 """of its extent: a cloud that is thinner lies on a line or a plane"""
 LARGEST, SMALLEST = 20.0, 5e-4
@@ -23,17 +23,17 @@ APART = 0.12
 def checked_cloud(cloud: ArrayLike) -> tuple[Reals, tuple[str, ...]]:
     """The points (n, 2) or (n, 3) [m] as given, and notes on what is suspicious about them.
 
-    Raises FitError for anything but finite numbers in two or three columns, fewer than 100 different points, points on
+    Raises FitError for anything but finite numbers in two or three columns, fewer than 24 different points (100 in space), points on
     one line or one plane, two blades, and one side of a blade alone.
     """
     points = _numbers(cloud)
     different = np.unique(points, axis=0)
-    if len(different) < FEWEST:
-        raise FitError(
-            f"the cloud has {len(different)} different points: at least {FEWEST} are needed; give more points of the "
-            "blade's surface"
-        )
     dimension = points.shape[1]
+    if len(different) < FEWEST[dimension]:
+        raise FitError(
+            f"the cloud has {len(different)} different points: at least {FEWEST[dimension]} are needed; give more "
+            "points of the blade's surface"
+        )
     middle = np.mean(different, axis=0)
     spread = np.linalg.svd(different - middle, compute_uv=False)
     if spread[1] < FLAT * spread[0]:

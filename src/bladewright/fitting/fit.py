@@ -193,7 +193,7 @@ def _reported(
         extrema=extrema_of(built),
         tolerance=aim.tolerance,
         failures=failures_of(distances, inliers, judgement.regions, found, aim),
-        notes=notes_of(notes, certainty),
+        notes=notes_of(notes, certainty, distances, inliers, found, aim),
         evaluations=found.evaluations,
         motion=motion,
         interrupted=found.interrupted,

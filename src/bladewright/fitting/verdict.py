@@ -14,6 +14,9 @@ EXACT, SYSTEMATIC = 1e-9, 3.0
 """misfit of a given structure that is rounding, of the chord, and one that is not noise, of the cloud's noise"""
 SHARED = 0.5
 """part of the misfit that neighbours share from which it is the shape's, where nothing is asked for"""
+FAIR = {2: 5e-5, 3: 1e-4}
+"""root mean square misfit of the shape, of the chord, below which it is near enough where nothing is asked for, by
+dimension: below what a blade can be made to"""
 OFF = 0.1
 """part of the points that may be outliers"""
 SHOWN = 5
@@ -53,18 +56,38 @@ def failures_of(
             "the structure does not hold this blade, or a better design was not found; state a tolerance, or another "
             "structure"
         )
-    enough = LEAST[found.problem.measures.points.shape[1]] * chord
-    if aim.open and not found.interrupted and kept.max() > 2.0 * enough and found.scatter.shared > SHARED:
-        failures.append(
-            f"the shape is not found: deviations go on from point to point, {1e3 * rms:.3g} mm rms where the cloud's "
-            f"own noise is {1e3 * noise:.3g} mm; state the tolerance that is enough, a number of parameters, or a start"
-        )
+    if missing(distances, inliers, found, aim) and not _fair(found):
+        failures.append(_unmet(found))
     return tuple(failures)
 
 
-def notes_of(notes: tuple[str, ...], certainty: Certainty) -> tuple[str, ...]:
+def missing(distances: Reals, inliers: NDArray[np.bool_], found: Found, aim: Aim) -> bool:
+    """Whether nothing was asked for, and the shape of the cloud is not met as far as its noise lets it be told."""
+    enough = LEAST[found.problem.measures.points.shape[1]] * found.model.chord
+    largest = float(np.max(distances[inliers]))
+    return aim.open and not found.interrupted and largest > 2.0 * enough and found.scatter.shared > SHARED
+
+
+def _fair(found: Found) -> bool:
+    return found.rms <= FAIR[found.problem.measures.points.shape[1]]
+
+
+def _unmet(found: Found) -> str:
+    rms = found.rms * found.model.chord
+    return (
+        f"the shape is not found: deviations go on from point to point, {1e3 * rms:.3g} mm rms where the cloud's own "
+        f"noise is {1e3 * found.scatter.noise:.3g} mm; state the tolerance that is enough, a number of parameters, or a "
+        "start"
+    )
+
+
+def notes_of(
+    notes: tuple[str, ...], certainty: Certainty, distances: Reals, inliers: NDArray[np.bool_], found: Found, aim: Aim
+) -> tuple[str, ...]:
     """What else there is to know, each a sentence."""
     said = list(notes)
+    if missing(distances, inliers, found, aim) and _fair(found):
+        said.append(f"near enough to make, but {_unmet(found)}")
     unknown = [each.path for each in certainty.estimates if not each.identified]
     if unknown:
         more = f" and {len(unknown) - SHOWN} more" if len(unknown) > SHOWN else ""
