@@ -30,7 +30,7 @@ def test_a_whole_blade_is_taken_as_it_is(cloud: np.ndarray) -> None:
         (HOLED, "the first of them point 7"),
         (SECTION[:23], "23 different points"),
         (BLADE[:99], "99 different points"),
-        (np.repeat(SECTION[:50], 4, axis=0), "50 different points"),
+        (np.repeat(BLADE[:50], 4, axis=0), "50 different points"),
         (LINE * [1.0, 2.0], "one line"),
         (LINE * [1.0, 2.0, 3.0], "one line"),
         (SECTION @ [[1.0, 0.0, 0.5], [0.0, 1.0, 0.2]], "one plane"),

@@ -23,8 +23,8 @@ APART = 0.12
 def checked_cloud(cloud: ArrayLike) -> tuple[Reals, tuple[str, ...]]:
     """The points (n, 2) or (n, 3) [m] as given, and notes on what is suspicious about them.
 
-    Raises FitError for anything but finite numbers in two or three columns, fewer than 24 different points (100 in space), points on
-    one line or one plane, two blades, and one side of a blade alone.
+    Raises FitError for anything but finite numbers in two or three columns, fewer than 24 different points (100 in
+    space), points on one line or one plane, two blades, and one side of a blade alone.
     """
     points = _numbers(cloud)
     different = np.unique(points, axis=0)

@@ -73,11 +73,10 @@ def _fair(found: Found) -> bool:
 
 
 def _unmet(found: Found) -> str:
-    rms = found.rms * found.model.chord
+    rms, noise = 1e3 * found.rms * found.model.chord, 1e3 * found.scatter.noise
     return (
-        f"the shape is not found: deviations go on from point to point, {1e3 * rms:.3g} mm rms where the cloud's own "
-        f"noise is {1e3 * found.scatter.noise:.3g} mm; state the tolerance that is enough, a number of parameters, or a "
-        "start"
+        f"the shape is not found: deviations go on from point to point, {rms:.3g} mm rms where the cloud's own noise "
+        f"is {noise:.3g} mm; state the tolerance that is enough, a number of parameters, or a start"
     )
 
 
