@@ -394,3 +394,23 @@ def test_a_table_of_multipliers_that_is_not_asked_for_may_hold_anything(tmp_path
 def test_a_table_of_multipliers_along_the_span_is_taken_whole_and_that_is_said(tmp_path):
     case = read_tblade3(written(tmp_path, OLDER, thickness="1", multiplier="1"))
     assert any("reads the first half of the table" in note for note in case.notes)
+
+
+@pytest.mark.parametrize(
+    "changed",
+    [
+        lambda text: text.replace("\n", "\r\n"),
+        lambda text: text.replace("\n", "\r"),
+        lambda text: text.replace("\n", " \f\n"),
+        lambda text: text.replace("\n", " \u2028\n"),
+        lambda text: text.rstrip("\n"),
+        lambda text: "\ufeff" + text,
+    ],
+    ids=["of Windows", "of old", "a form feed", "a separator", "none at the end", "a mark before the first"],
+)
+def test_line_ends_and_marks_of_editors_change_nothing(tmp_path, changed):
+    path = written(tmp_path)
+    expected = plain(read_tblade3(path))
+    for file in tmp_path.glob("*.dat"):
+        file.write_bytes(changed(file.read_text()).encode())
+    assert plain(read_tblade3(path)) == expected

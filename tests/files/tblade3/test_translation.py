@@ -248,6 +248,21 @@ def test_what_was_kept_and_changed_is_said(tmp_path):
     assert any("mrel_in" in text for text in found.notes)
 
 
+@pytest.mark.parametrize(
+    ("changes", "said"),
+    [
+        ({"companion": SPANWISE.replace("0.05   ", "0.0    ")}, "section 3: thickness.maximum_thickness is 0"),
+        ({"companion": SPANWISE.replace("0.10  0.60", "1e10  0.60")}, "section 1: curvature[0] is 1e+10"),
+    ],
+)
+def test_numbers_that_make_no_section_are_refused_with_file_and_section(changes, said, tmp_path):
+    path = written(tmp_path, **changes)
+    with pytest.raises(FileError) as caught:
+        import_tblade3(path)
+    assert str(caught.value).startswith(f"'{path}': ")
+    assert said in str(caught.value)
+
+
 def test_so_many_blades_are_taken_as_do_not_intersect(tmp_path):
     found = import_tblade3(written(tmp_path, blades="  200"))
     assert 2 < found.design.blade_count < 200

@@ -14,7 +14,7 @@ from bladewright.files.blade_count import standing_apart
 from bladewright.files.imported import Imported
 from bladewright.files.tblade3.computed import section_points, written_points
 from bladewright.files.tblade3.reading import read_tblade3
-from bladewright.files.tblade3.records import SpanLaw
+from bladewright.files.tblade3.records import SpanLaw, TBlade3Case
 from bladewright.files.tblade3.stacking import SIDE, chord_stations
 from bladewright.files.tblade3.translation import CaseSections, blade_of, case_sections
 from bladewright.nurbs.basis import Reals
@@ -36,6 +36,13 @@ def import_tblade3(
     curvature-meanline family does not have.
     """
     case = read_tblade3(path)
+    try:
+        return _translated(case, edge_spline=edge_spline, true_stagger=true_stagger)
+    except DesignError as error:
+        raise FileError(f"'{case.file}': {error}") from error
+
+
+def _translated(case: TBlade3Case, *, edge_spline: bool, true_stagger: bool) -> Imported[CurvatureMeanlineBlade]:
     if case.leading_edge == "spline" and not edge_spline:
         raise FileError(
             f"'{case.file}': the leading edges are splines (switch 1 on line 20), whose shape T-Blade3 takes from "

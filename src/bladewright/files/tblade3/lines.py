@@ -52,7 +52,10 @@ class Lines:
 
     def __init__(self, text: str, path: Path) -> None:
         self.path = path
-        self._lines = text.splitlines()
+        # the line ends of Fortran and of editors alone: a form feed is a blank
+        self._lines = re.split(r"\r\n|\n|\r", text)
+        if not self._lines[-1]:
+            self._lines.pop()
         self._next = 0
 
     @property

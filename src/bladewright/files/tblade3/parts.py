@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from bladewright.errors import FileError
+from bladewright.errors import DesignError, FileError
 from bladewright.files.tblade3.angles import MetalAngles
 from bladewright.files.tblade3.laws import law_through, laws_through
 from bladewright.files.tblade3.leading_edges import Moved, moved_edges
@@ -37,14 +37,17 @@ class Parameters:
     """leading edges that are splines"""
 
     def of(self, index: int) -> CurvatureMeanline:
-        """The part of one section, holding numbers."""
+        """The part of one section, holding numbers; raises DesignError, naming the section, where it has none."""
 
         def one(value: Any) -> Any:
             if not isinstance(value, np.ndarray):
                 return value
             return float(value[index]) if value.ndim == 1 else tuple(float(each) for each in value[index])
 
-        return self._made(one)
+        try:
+            return self._made(one)
+        except DesignError as error:
+            raise DesignError(f"section {index + 1}: {error}") from error
 
     def along(self, places: Reals) -> CurvatureMeanline:
         """The part of all sections, its laws along the span going through their numbers at places (m,)."""
