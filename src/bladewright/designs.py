@@ -47,14 +47,14 @@ class Part:
         Raises DesignError where the path does not exist or the value is refused.
         """
         names = [each.name for each in fields(self)]
-        put: dict[str, Any] = {}
+        put: dict[str, list[_Change]] = {}
         for where, what in ({path: value} if isinstance(path, str) else path).items():
             name, *rest = _steps(where) or [""]
             name = str(name)
             if name not in names:
                 raise DesignError(unknown(where, name, names))
-            put[name] = _with(put.get(name, getattr(self, name)), rest, what, where)
-        return replace(self, **put)
+            put.setdefault(name, []).append((rest, what, where))
+        return replace(self, **{name: _with(getattr(self, name), changes) for name, changes in put.items()})
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -116,25 +116,43 @@ def _steps(path: str) -> list[str | int]:
     return steps
 
 
-def _with(node: Any, steps: list[str | int], value: Any, path: str) -> Any:
-    if not steps:
-        return value
-    step, rest = steps[0], steps[1:]
-    if isinstance(node, Part) and isinstance(step, str):
-        names = [each.name for each in fields(node)]
+_Change = tuple[list[str | int], Any, str]
+"""steps from a node, the value there, and the whole path"""
+
+
+def _with(node: Any, changes: list[_Change]) -> Any:
+    """A node with several changes, of which later ones go before earlier ones."""
+    for number in reversed(range(len(changes))):
+        steps, value, _ = changes[number]
+        if not steps:
+            node, changes = value, changes[number + 1 :]
+            break
+    groups: dict[str | int, list[_Change]] = {}
+    for steps, value, path in changes:
+        step = steps[0]
+        _check_step(node, step, path)
+        place = step % len(node) if isinstance(step, int) else step
+        place = Point._fields[place] if isinstance(node, Point) and isinstance(place, int) else place
+        groups.setdefault(place, []).append((steps[1:], value, path))
+    if not groups:
+        return node
+    if isinstance(node, tuple) and not isinstance(node, Point):
+        return tuple(_with(item, groups[place]) if place in groups else item for place, item in enumerate(node))
+    parts: dict[str, Any] = {str(step): _with(getattr(node, str(step)), group) for step, group in groups.items()}
+    return node._replace(**parts) if isinstance(node, Point) else replace(node, **parts)
+
+
+def _check_step(node: Any, step: str | int, path: str) -> None:
+    """Refuse a step that leads nowhere."""
+    if isinstance(node, Part | Point) and isinstance(step, str):
+        names = [*Point._fields] if isinstance(node, Point) else [each.name for each in fields(node)]
         if step not in names:
             raise DesignError(unknown(path, step, names))
-        return replace(node, **{step: _with(getattr(node, step), rest, value, path)})
-    if isinstance(node, Point) and isinstance(step, str):
-        if step not in Point._fields:
-            raise DesignError(unknown(path, step, list(Point._fields)))
-        return node._replace(**{step: _with(getattr(node, step), rest, value, path)})
+        return
     if isinstance(node, tuple) and isinstance(step, int):
         if not -len(node) <= step < len(node):
             raise DesignError(f"{path} does not exist: it has {len(node)} entries, 0 to {len(node) - 1}")
-        items = list(node)
-        items[step] = _with(node[step], rest, value, path)
-        return tuple(items)
+        return
     kind = "a single number" if not isinstance(node, tuple | Part) else "a list"
     raise DesignError(f"{path} does not exist: what stands before '{step}' is {kind}; see design.parameters()")
 

@@ -5,8 +5,10 @@ from dataclasses import replace
 import numpy as np
 
 from bladewright.designs import Design
-from bladewright.errors import FitError
+from bladewright.errors import DesignError, FitError
 from bladewright.fitting.aim import NOISY, Aim, short_of
+from bladewright.fitting.chain import own_walls
+from bladewright.fitting.choosing import chosen_match
 from bladewright.fitting.descent import SLIGHT
 from bladewright.fitting.freedom import corner_radii
 from bladewright.fitting.growing import grown
@@ -36,6 +38,8 @@ FEW, MANY = {2: 2500, 3: 1000}, 12_000
 """points of a quick, by dimension, and of a thorough search"""
 WEAK = 0.1
 """strength of the prior where a match is only made better, of the usual"""
+FURTHER = 30.0
+"""by how much noses are held further from what is refused, where a design is"""
 QUIET = 0.1
 """part of the misfit that is noise up to which a cloud may be exact"""
 NEARLY = (0.3, 0.02)
@@ -67,15 +71,15 @@ def adapted(task: Task, first: Design, aim: Aim, *, base: Structure | None, gues
     standing, everything = aim.parameters is not None and _in_rows(found), few
     if standing:
         few, many = _on_walls(few), _on_walls(many)
-    if base is not None and not found.interrupted and _roomy(found, aim):
-        found = _leaner(few, found, base)
-    found, reason = _enough(few, found, aim)
+    found, reason = _structured_for(few, found, aim, base, guessed=guessed)
     if standing:
         reason = STANDING
         found = found if found.interrupted else searched(everything, found.design, rounds=1, slight=ROUGH)
     if found.interrupted:
         return found, reason
-    rounds = QUICK if aim.tolerance is not None and task.points.shape[1] == 3 else ROUNDS
+    rounds = QUICK if not aim.open and task.points.shape[1] == 3 else ROUNDS
+    if task.points.shape[1] == 3 and not aim.open and _refused(found):
+        many = replace(many, slack=FURTHER * many.slack)
     found = searched(many, found.design, rounds=rounds, slight=SLIGHT if aim.open else FINE)
     if guessed and task.points.shape[1] == 2:
         found = _shaken(many, found)
@@ -95,6 +99,20 @@ def _structured(few: Task, many: Task, first: Design, base: Structure | None, *,
     if base is not None and not found.interrupted:
         found = _leaner(few, found, base)
     return found if found.interrupted else _told_by_points(many, searched(many, found.design))
+
+
+def _structured_for(task: Task, found: Found, aim: Aim, base: Structure | None, *, guessed: bool) -> tuple[Found, str]:
+    """A match with as many control points as the aim asks for, as forecasts or growth lead there, or why not."""
+    solid = guessed and task.points.shape[1] == 3 and own_walls(found.design)
+    if solid and aim.parameters is not None and not found.interrupted:
+        foreseen = chosen_match(task, found, aim.parameters)
+        if foreseen is not None:
+            return foreseen, ""
+    # what is too many for a tolerance is taken away at the end
+    kept = solid and aim.tolerance is not None
+    if base is not None and not found.interrupted and not kept and _roomy(found, aim):
+        found = _leaner(task, found, base)
+    return _enough(task, found, aim)
 
 
 def _misses(found: Found, most: float = np.inf) -> bool:
@@ -164,6 +182,15 @@ def _shaken(task: Task, found: Found) -> Found:
     other = searched(task, found.design, noise=SHAKEN)
     better = other.rms < found.rms or other.interrupted
     return replace(other if better else found, evaluations=found.evaluations + other.evaluations)
+
+
+def _refused(found: Found) -> bool:
+    """Whether a design that searches pass is refused when it is built: its noses must be held further off."""
+    try:
+        found.design.build()
+    except DesignError:
+        return True
+    return False
 
 
 def _in_rows(found: Found) -> bool:

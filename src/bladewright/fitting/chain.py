@@ -17,6 +17,7 @@ from bladewright.blade.meridional import Line, Meridional
 from bladewright.blade.native import interpolated_along_u, lower_edges
 from bladewright.blade.unified import UnifiedBlade
 from bladewright.derivatives.tangents import STEP, parted, skeleton_rates, source_of, stepped
+from bladewright.designs import Design
 from bladewright.fitting.feet import Feet
 from bladewright.numerics.elementary import Array
 from bladewright.nurbs.basis import Reals, basis, uniform_knots
@@ -77,9 +78,9 @@ def parts_of(design: UnifiedBlade, path: str, sites: Reals) -> Iterator[tuple[st
             yield (curve, point, axis), metre * np.ones(len(sites))
 
 
-def own_walls(design: UnifiedBlade) -> bool:
-    """Whether the blade stands on the channel's own hub and shroud, without a clearance."""
-    return design.tip_clearance is None and design.hub_clearance is None
+def own_walls(design: Design) -> bool:
+    """Whether a blade of the unified family stands on the channel's own hub and shroud, without a clearance."""
+    return isinstance(design, UnifiedBlade) and design.tip_clearance is None and design.hub_clearance is None
 
 
 def edge_basis(count: int, degree: int, v: Reals) -> Reals:
@@ -92,28 +93,30 @@ def chain_of(exact: ExactBlade, knots: Knots, on: Feet, ways: Reals, paths: Sequ
     """How places move along directions (n, 3) with what the parameters at `paths` are made of; knots are held."""
     design, sites = exact.design, knots.sites_v
     steps = list(dict.fromkeys(step for path in paths for step, _ in parts_of(design, path, sites)))
-    laws = [step for step in steps if isinstance(step, str)]
-    shifts = [step for step in steps if not isinstance(step, str)]
     across = basis(knots.v, DEGREE, on.v) @ np.linalg.inv(basis(knots.v, DEGREE, sites))
     moves: dict[str | Shift, Reals] = {}
-    for kind in (laws, shifts):
-        for first in range(0, len(kind), AT_ONCE):
-            some = kind[first : first + AT_ONCE]
-            lines = _along_u(exact, knots, some)
-            for place, each in zip(some, _motion(lines, knots, on, ways, across), strict=True):
-                moves[place] = each
+    for some, other in _stepped(exact, steps):
+        moves |= dict(zip(some, _motion(_along_u(other, knots, len(some)), knots, on, ways, across), strict=True))
     return Chain(design=design, sites=sites, moves=moves)
 
 
-def _along_u(exact: ExactBlade, knots: Knots, steps: Sequence[str] | Sequence[Shift]) -> tuple[Array, Array]:
-    """Derivatives (k, n_u, m, 3) of the sides' control points along u, in each section on its own."""
-    if isinstance(steps[0], str):
-        other = moved(exact, stepped(exact.design, steps))  # type: ignore[arg-type]
-    else:
-        channel = shifted(exact.channel, [[step] for step in steps])  # type: ignore[misc]
-        other = replace(exact, channel=channel, full_channel=channel, surveyed=None)
-    rates = skeleton_rates(other.stations(knots.sites_v), knots, len(steps))
-    skeleton = parted(rates, [edge is None for edge in exact.survey.lower_edges()])
+def _stepped(exact: ExactBlade, steps: Sequence[str | Shift]) -> Iterator[tuple[Sequence[str | Shift], ExactBlade]]:
+    """Some of the steps at a time, and the exact blade with them in a batch."""
+    laws = [step for step in steps if isinstance(step, str)]
+    shifts = [step for step in steps if not isinstance(step, str)]
+    for first in range(0, len(laws), AT_ONCE):
+        part = laws[first : first + AT_ONCE]
+        yield part, moved(exact, stepped(exact.design, part))
+    for first in range(0, len(shifts), AT_ONCE):
+        some = shifts[first : first + AT_ONCE]
+        channel = shifted(exact.channel, [[step] for step in some])
+        yield some, replace(exact, channel=channel, full_channel=channel, surveyed=None)
+
+
+def _along_u(other: ExactBlade, knots: Knots, count: int) -> tuple[Array, Array]:
+    """Derivatives (count, n_u, m, 3) of the sides' control points along u, in each section on its own."""
+    rates = skeleton_rates(other.stations(knots.sites_v), knots, count)
+    skeleton = parted(rates, (True, True))
     upper = skeleton.leading_edge, skeleton.trailing_edge
     sides = (skeleton.upper, upper), (skeleton.lower, lower_edges(upper, skeleton.lower_edges))
     first, second = (interpolated_along_u(np.swapaxes(points, -3, -2), *edges, knots.u) for points, edges in sides)
@@ -160,4 +163,3 @@ def shifts_of(design: UnifiedBlade, path: str) -> list[Shift]:
         if int(place) == end:
             found.append((wall, 0 if curve == EDGES[0] else len(getattr(design.channel, wall)) + 1, AXES[axis]))
     return found
-

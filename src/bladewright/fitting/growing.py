@@ -6,8 +6,10 @@ import numpy as np
 
 from bladewright.errors import FitError
 from bladewright.fitting.aim import Aim
+from bladewright.fitting.choosing import ranked
 from bladewright.fitting.edgewise import edge_steps
-from bladewright.fitting.growth import chosen_of, gains, joined
+from bladewright.fitting.forecast import forecast_of
+from bladewright.fitting.growth import chosen_of, gains, joined, roomier
 from bladewright.fitting.opening import opened
 from bladewright.fitting.reshaping import reshaped
 from bladewright.fitting.search import ROUGH, Found, Task, searched
@@ -30,22 +32,31 @@ def grown(task: Task, found: Found, aim: Aim) -> tuple[Found, bool]:
     emphasis = None
     if aim.tolerance is not None:
         emphasis = np.clip((found.state.feet.distances / aim.tolerance) ** 2, *EMPHASIS)
-    ranked = gains(found, emphasis)
+    forecast = forecast_of(found, roomier(structure_of(found.design))) if task.points.shape[1] == 3 else None
+    roots = None
+    if forecast is not None and emphasis is not None:
+        roots = np.ones(len(forecast.rows))
+        roots[: len(emphasis)] = np.sqrt(emphasis)
+    steps_ranked = gains(found, emphasis) if forecast is None else ranked(forecast, structure_of(found.design), roots)
     left = None if aim.parameters is None else aim.parameters - len(found.problem.paths)
     count = len(found.problem.paths)
     least = left // GROWN if left is not None else 0
     if left is None and count >= MANIFOLD:
         far = aim.tolerance is not None and found.rms * found.model.chord > FAR * aim.tolerance
         least = count // (MANY_MORE // 2 if far else MANY_MORE)
-    steps = chosen_of(ranked, left, least)
+    steps = chosen_of(steps_ranked, left, least)
     if aim.tolerance is not None:
         steps += edge_steps(found, aim.tolerance)
     if not steps:
         return found, False
     total = float(np.sum(found.problem.measures.residuals(found.state) ** 2))
-    if aim.parameters is None and emphasis is None and sum(gain for gain, _ in ranked[:3]) < WORTHWHILE * total:
+    if aim.parameters is None and emphasis is None and sum(gain for gain, _ in steps_ranked[:3]) < WORTHWHILE * total:
         return found, False
-    design = reshaped(found.design, joined(structure_of(found.design), steps))
+    structure = joined(structure_of(found.design), steps)
+    if forecast is None:
+        design = reshaped(found.design, structure)
+    else:
+        design = forecast.designed(structure, forecast.foreseen(structure, roots))
     if emphasis is not None:
         weights = task.weights * emphasis
         task = replace(task, weights=weights * (np.sum(task.weights) / np.sum(weights)))

@@ -36,13 +36,19 @@ class Step:
     parameters: int
     """that it adds"""
 
+    @property
+    def law(self) -> str:
+        """The name of the first law in a structure."""
+        name = self.fields[0].removeprefix("channel.")
+        return "place" if self.fields[0] in _fields("place") else name
+
 
 def steps_from(structure: Structure) -> list[Step]:
     """What may grow."""
     found = []
     for side, name in enumerate(THICKNESSES):
         count = structure.chordwise[side]
-        more = max(1, count // 4) if count >= FINER else 1
+        more = _further(count)
         counts = [*structure.chordwise]
         counts[side] = count + more
         samples = max(structure.samples, counts[side] + SPARE)
@@ -80,6 +86,24 @@ def steps_back(structure: Structure) -> list[Step]:
             narrower = replace(structure, channel={**structure.channel, name: count - 1})
             found.append(Step(fields=(f"channel.{name}",), structure=narrower, parameters=2))
     return found
+
+
+def roomier(structure: Structure) -> Structure:
+    """A structure that has all steps along the chord and the walls, where laws are stepped leaf by leaf."""
+    chordwise = [count + _further(count) for count in structure.chordwise]
+    samples = min(MOST_SAMPLES, max(structure.samples, max(chordwise) + SPARE))
+    walls = {wall: min(structure.channel[wall] + 1, MOST_CURVE) for wall in ("hub", "shroud")}
+    return replace(
+        structure,
+        chordwise=(min(chordwise[0], samples - SPARE), min(chordwise[1], samples - SPARE)),
+        samples=samples,
+        channel={**structure.channel, **walls},
+    )
+
+
+def _further(count: int) -> int:
+    """By how many control points a thickness grows at a time."""
+    return max(1, count // 4) if count >= FINER else 1
 
 
 def _fields(name: str) -> tuple[str, ...]:

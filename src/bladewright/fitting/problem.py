@@ -1,12 +1,13 @@
 """The least-squares problem of a fit: residuals in chords and their derivatives by the scaled parameters."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from bladewright.designs import Design
 from bladewright.errors import DesignError
+from bladewright.fitting.chain import Chain, chain_of
 from bladewright.fitting.descent import Constrained
 from bladewright.fitting.feet import Feet, feet, joined
 from bladewright.fitting.model import Model, Shape
@@ -69,6 +70,24 @@ class Measures:
                 moving = wall.rates(shape, t, paths)
                 blocks.append(-self._of_wall(wall) * np.einsum("nkd,nd->nk", moving, normal))
         return np.concatenate([*blocks, edges]) / chord
+
+    def motion(self, state: State, paths: Sequence[str]) -> Chain:
+        """How the residuals (m,) of a blade of the unified family move with what its parameters are made of."""
+        shape, chord = state.shape, self.model.chord
+        on, ways = self.places(state)
+        chain = chain_of(shape.exact, self.model.knots, on, ways / chord, paths)  # type: ignore[attr-defined]
+        count, before = len(chain.sites), len(on.u) - len(self.reach.u)
+        misses = {name: (wall, *wall.misses(shape.exact)) for name, wall in self.ends.walls.items()}
+        moves = {}
+        for step, rows in chain.moves.items():
+            parts = [rows[:before]]
+            for name, (wall, t, normal, _) in misses.items():
+                rate = np.zeros(len(t))
+                if step[0] == name and not isinstance(step, str):
+                    rate = -self._of_wall(wall) * wall.basis(shape.exact, t)[:, step[1]] * normal[:, step[2]] / chord
+                parts.append(np.tile(rate[:, None] / count, (1, count)))
+            moves[step] = np.concatenate([*parts, rows[before:]])
+        return replace(chain, moves=moves)
 
     def places(self, state: State) -> tuple[Feet, Reals]:
         """The places on the sides whose motion changes residuals, and the directions (n, d) that count.

@@ -29,7 +29,7 @@ def reshaped(design: Design, structure: Structure) -> Design:
     """A design of another structure whose laws and curves are nearest to those of `design`, by least squares."""
     if isinstance(design, UnifiedSection):
         thicknesses: dict[str, Any] = {
-            name: tuple(float(row[0]) for row in _grid(getattr(design, name), count, 1, structure))
+            name: tuple(float(row[0]) for row in grid_of(getattr(design, name), count, 1, structure))
             for name, count in zip(THICKNESSES, structure.chordwise, strict=True)
         }
         return replace(design, samples=structure.samples, clustering=structure.clustering, **thicknesses)
@@ -39,11 +39,11 @@ def reshaped(design: Design, structure: Structure) -> Design:
         )
     place = "leading_edge_theta" if design.arrangement == "annular" else "leading_edge_y"
     changes: dict[str, Any] = {
-        name: _law(getattr(design, name), structure.span[name], LIMITS[name]) for name in SPANWISE
+        name: law_of(getattr(design, name), structure.span[name], LIMITS[name]) for name in SPANWISE
     }
-    changes[place] = _law(getattr(design, place), structure.span["place"])
+    changes[place] = law_of(getattr(design, place), structure.span["place"])
     for name, count in zip(THICKNESSES, structure.chordwise, strict=True):
-        grid = _grid(getattr(design, name), count, structure.span[name], structure)
+        grid = grid_of(getattr(design, name), count, structure.span[name], structure)
         changes[name] = tuple(_plain(row) for row in grid)
     return replace(
         design,
@@ -59,7 +59,8 @@ def _values(law: Law) -> Reals:
     return np.asarray(law_basis(len(leaves), PLACES) @ np.array(leaves, dtype=float))
 
 
-def _law(law: Law, count: int, limits: tuple[float, float] = (-np.inf, np.inf)) -> Law:
+def law_of(law: Law, count: int, limits: tuple[float, float] = (-np.inf, np.inf)) -> Law:
+    """The nearest law of so many control points, within limits."""
     if count == (len(law) if isinstance(law, tuple) else 1):
         return law
     found, *_ = np.linalg.lstsq(law_basis(count, PLACES), _values(law), rcond=None)
@@ -70,17 +71,22 @@ def _plain(values: Reals) -> Law:
     return tuple(float(value) for value in values) if len(values) > 1 else float(values[0])
 
 
-def _grid(laws: tuple[Law, ...], count: int, span: int, structure: Structure) -> Reals:
+def grid_of(laws: tuple[Law, ...], count: int, span: int, structure: Structure) -> Reals:
     """Control points (count, span) of a thickness, positive."""
     if len(laws) == count and all((len(law) if isinstance(law, tuple) else 1) == span for law in laws):
         return np.array([law if isinstance(law, tuple) else (law,) for law in laws], dtype=float)
     rows = np.stack([np.linalg.lstsq(law_basis(span, PLACES), _values(law), rcond=None)[0] for law in laws])
     if len(laws) != count:
         # where the samples of the sides stand, the law matters most
-        u = np.sort(np.concatenate([sample_places(structure.samples, structure.clustering)[2:-2], PLACES]))
+        u = samples_of(structure)
         rows, *_ = np.linalg.lstsq(law_basis(count, u), law_basis(len(laws), u) @ rows, rcond=None)
     least = 0.02 * float(np.max(rows))
     return np.asarray(np.maximum(rows, least))
+
+
+def samples_of(structure: Structure) -> Reals:
+    """Places along the chord at which laws of the thickness are compared."""
+    return np.sort(np.concatenate([sample_places(structure.samples, structure.clustering)[2:-2], PLACES]))
 
 
 def _channel(channel: Channel, structure: Structure) -> Channel:
@@ -91,7 +97,7 @@ def _channel(channel: Channel, structure: Structure) -> Channel:
         "hub": (corners[0], *channel.hub, corners[2]),
         "shroud": (corners[1], *channel.shroud, corners[3]),
     }
-    found = {name: _curve(points, structure.channel[name], channel.degree) for name, points in curves.items()}
+    found = {name: curve_of(points, structure.channel[name], channel.degree) for name, points in curves.items()}
     return replace(
         channel,
         leading_edge=found["leading_edge"],
@@ -101,7 +107,8 @@ def _channel(channel: Channel, structure: Structure) -> Channel:
     )
 
 
-def _curve(points: Points, count: int, highest: int) -> Points:
+def curve_of(points: Points, count: int, highest: int) -> Points:
+    """The nearest curve of so many control points, and at most of a degree, between the same ends."""
     if count == len(points):
         return points
     old = np.array(points, dtype=float)

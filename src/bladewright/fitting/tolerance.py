@@ -13,6 +13,7 @@ from bladewright.fitting.growing import grown
 from bladewright.fitting.growth import Step, least, losses
 from bladewright.fitting.reshaping import reshaped
 from bladewright.fitting.search import ROUGH, Found, Task, searched
+from bladewright.fitting.sparing import spared_blade
 
 LATER = 4
 """times that more is added where points outside the quick searches stay beyond the tolerance"""
@@ -63,6 +64,10 @@ def _within(task: Task, found: Found, tolerance: float) -> Found:
 
 def spared(task: Task, found: Found, tolerance: float) -> Found:
     """A match within a tolerance without the control points that it does not need."""
+    if task.points.shape[1] == 3 and found.maximum <= tolerance:
+        fewer_still = spared_blade(task, found, tolerance)
+        if fewer_still is not None:
+            return fewer_still
     most, least_at_once = AT_ONCE[task.points.shape[1]]
     at_once = most
     while at_once >= least_at_once and found.maximum <= tolerance and not found.interrupted:

@@ -6,13 +6,15 @@ from typing import Any
 from bladewright.blade.unified import UnifiedBlade
 from bladewright.designs import Design
 from bladewright.errors import DesignError, FitError
-from bladewright.fitting.adaptation import MANY, adapted
+from bladewright.fitting.adaptation import FINE, MANY, adapted
 from bladewright.fitting.aim import Aim
+from bladewright.fitting.descent import SLIGHT
 from bladewright.fitting.first.blade import first_blade
 from bladewright.fitting.first.designed import AXES
 from bladewright.fitting.first.profile import first_section
 from bladewright.fitting.frame import Frame
 from bladewright.fitting.freedom import Freedom
+from bladewright.fitting.identification import EXACT
 from bladewright.fitting.lean import lean, rich
 from bladewright.fitting.opening import opened
 from bladewright.fitting.reshaping import reshaped
@@ -69,7 +71,8 @@ def _built(task: Task, found: Found) -> tuple[Found, Any]:
     refusal = ""
     for slack in (0.0, 1.0, 30.0, 1000.0):
         if slack:
-            found = searched(replace(task, slack=slack), found.design, rounds=2)
+            slight = FINE if found.rms > EXACT else SLIGHT
+            found = searched(replace(task, slack=slack), found.design, rounds=2, slight=slight)
         try:
             return found, found.design.build()
         except DesignError as error:

@@ -60,6 +60,11 @@ class Wall:
         _, normal, miss = self.misses(exact)
         return np.asarray(np.sum(normal * miss, axis=-1))
 
+    def basis(self, exact: ExactBlade, t: Reals) -> Reals:
+        """What the places at parameters (m,) are made of: basis functions (m, n) of the channel's curve."""
+        line = exact.channel.line(self.name)
+        return np.asarray(basis(line.knots, line.degree, t))
+
     def rates(self, shape: Shape, t: Reals, paths: Sequence[str]) -> Reals:
         """Derivatives (m, k, 2) of the places on the curve at held parameters."""
         found = np.zeros((len(t), len(paths), 2))
@@ -68,8 +73,7 @@ class Wall:
         if not moving or exact is None:
             return found
         if isinstance(exact, ExactBlade) and own_walls(shape.design):
-            line = exact.channel.line(self.name)
-            rows, metre = basis(line.knots, line.degree, t), UNITS[shape.design.length_unit]
+            rows, metre = self.basis(exact, t), UNITS[shape.design.length_unit]
             for i in moving:
                 for curve, place, axis in shifts_of(shape.design, paths[i]):
                     if curve == self.name:
