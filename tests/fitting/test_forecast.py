@@ -1,0 +1,140 @@
+"""What matches of other structures leave is foreseen from the motion of one design."""
+
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+import pytest
+
+from bladewright.files.examples import example_text
+from bladewright.files.reading import design_from, parsed
+from bladewright.fitting.choosing import best_of, chosen_match, ranked
+from bladewright.fitting.forecast import forecast_of
+from bladewright.fitting.freedom import corner_radii, freedom_of
+from bladewright.fitting.growth import roomier, steps_back
+from bladewright.fitting.model import Model
+from bladewright.fitting.reshaping import reshaped
+from bladewright.fitting.search import Task, searched
+from bladewright.fitting.sparing import spared_blade
+from bladewright.fitting.structure import structure_of
+
+NAMES = ("aachen-stator", "compressor-stator")
+
+
+@cache
+def design(name):
+    return design_from(parsed(example_text(name), name), name)
+
+
+@cache
+def task(name, count=120):
+    random = np.random.default_rng(2)
+    points = np.concatenate([side(*random.random((2, count))) for side in design(name).build().sides])
+    return Task(points=points, weights=np.ones(len(points)), free=freedom_of(None, None, started=True), bounds={})
+
+
+@cache
+def met(name):
+    """The match of a design's own points, before any search."""
+    return searched(task(name), design(name), rounds=0, noise=1e-3)
+
+
+@cache
+def forecast():
+    found = met("aachen-stator")
+    return found, forecast_of(found, roomier(structure_of(found.design)))
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_places_move_with_whole_laws_as_with_their_control_points(name):
+    found = met(name)
+    places, paths = found.problem.measures.places(found.state), found.problem.paths
+    whole = found.model.along(found.state.shape, *places, paths)
+    single = Model.along(found.model, found.state.shape, *places, paths)
+    # sums of as many terms as there are sections, in another order
+    np.testing.assert_allclose(whole, single, atol=1e-11 * np.max(np.abs(single)))
+
+
+def test_the_structure_that_is_there_is_foreseen_as_its_own_least_squares():
+    found, _ = forecast()
+    own = structure_of(found.design)
+    about = forecast_of(found, own)
+    slopes = found.problem.measures.slopes(found.state, found.problem.paths) * found.problem.scales.size
+    rows = found.problem.measures.residuals(found.state)
+    held = found.problem.noise * np.eye(slopes.shape[1])
+    system, aim = np.concatenate([slopes, held]), np.concatenate([rows, np.zeros(len(held))])
+    left = aim - system @ np.linalg.lstsq(system, aim, rcond=None)[0]
+    told = about.foreseen(own)
+    assert told.parameters == slopes.shape[1]
+    # products of rows lose half the digits
+    np.testing.assert_allclose(told.cost, left @ left, rtol=1e-6, atol=1e-6 * (rows @ rows) + 1e-20)
+
+
+def test_what_steps_back_leave_is_foreseen_alike_one_by_one_and_together():
+    found, about = forecast()
+    own = structure_of(found.design)
+    steps = [step for step in steps_back(own) if step.law in set(about.names())]
+    together = about.costs(own, [(step.law, step.structure) for step in steps], None)
+    alone = [about.foreseen(step.structure).cost for step in steps]
+    np.testing.assert_allclose(together, alone, rtol=1e-4, atol=1e-5 * max(alone))
+
+
+def test_the_law_along_the_span_that_is_short_of_a_control_point_is_foreseen_to_gain_most():
+    base = design("aachen-stator")
+    truth = replace(base, metal_angle_in=tuple(base.metal_angle_in + change for change in (-4.0, 4.0, -4.0, 4.0)))
+    random = np.random.default_rng(2)
+    points = np.concatenate([side(*random.random((2, 120))) for side in truth.build().sides])
+    short = reshaped(truth, replace(structure_of(truth), span={**structure_of(truth).span, "metal_angle_in": 3}))
+    found = searched(replace(task("aachen-stator"), points=points), short, rounds=0, noise=1e-3)
+    about = forecast_of(found, roomier(structure_of(short)))
+    assert ranked(about, structure_of(short))[0][1].law == "metal_angle_in"
+
+
+def test_a_structure_of_so_many_parameters_is_no_worse_foreseen_than_the_one_that_was_there():
+    found, about = forecast()
+    own = structure_of(found.design)
+    most = about.foreseen(own).parameters
+    best = best_of(about, roomier(own), most)
+    assert about.foreseen(best).parameters <= most
+    assert about.foreseen(best).cost <= 1.001 * about.foreseen(own).cost
+    fewer = best_of(about, own, most - 6)
+    assert about.foreseen(fewer).parameters <= most - 6
+
+
+def test_the_foreseen_design_has_the_structure_and_is_no_further_than_the_nearest_laws():
+    found, about = forecast()
+    structure = best_of(about, structure_of(found.design), 24)
+    told = about.designed(structure, about.foreseen(structure))
+    assert structure_of(told) == structure
+    assert about._misfit(told) <= about._misfit(reshaped(about.design, structure))
+
+
+def test_radii_of_corners_that_are_held_stay_where_they_are():
+    name = "aachen-stator"
+    corners = corner_radii(design(name))
+    held = replace(task(name), free=freedom_of(None, corners, started=True))
+    found = searched(held, design(name), rounds=0, noise=1e-3)
+    about = forecast_of(found, structure_of(found.design))
+    assert len(about.held) == len(corners)
+    own = structure_of(found.design)
+    assert about.foreseen(own).parameters == len(found.problem.paths)
+    told = about.designed(own, about.foreseen(own))
+    for path in corners:
+        assert told.parameters()[path] == pytest.approx(found.design.parameters()[path], rel=1e-12)
+
+
+def test_blades_with_a_clearance_have_no_forecast():
+    found = met("compressor-stator")
+    assert found.design.hub_clearance is not None
+    assert forecast_of(found, structure_of(found.design)) is None
+    assert chosen_match(task("compressor-stator"), found, 40) is None
+
+
+def test_a_blade_within_a_tolerance_loses_the_control_points_that_it_does_not_need():
+    name = "aachen-stator"
+    wide = reshaped(design(name), roomier(structure_of(design(name))))
+    found = searched(task(name), wide, rounds=1, noise=1e-4, slight=1e-2)
+    tolerance = max(1e-3 * found.model.chord, 1.2 * found.maximum)
+    fewer = spared_blade(task(name), found, tolerance)
+    assert len(fewer.problem.paths) < len(found.problem.paths) - 3
+    assert fewer.maximum <= tolerance
