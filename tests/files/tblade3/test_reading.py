@@ -324,7 +324,10 @@ def test_what_has_no_effect_is_said_and_what_has_is_not(tmp_path):
     ("changes", "said"),
     [
         ({"types_2": " 2  crcle 40.0 -15.0  0.40  0.018  0.009"}, "'crcle'"),
+        ({"types_1": " 1  2412 40.0 -15.0  0.40  0.018  0.009"}, "'2412', the four-digit profile NACA 2412"),
+        ({"types_3": " 3  mine 40.0 -15.0  0.40  0.018  0.009"}, "'mine', which T-Blade3 takes for the name of a file"),
         ({"hub": "0.0 0.02"}, "hub inflation 0.02"),
+        ({"hub": "0.0 0.02"}, "the blade is the one without it"),
         ({"tip": "0.0 -0.01"}, "tip inflation -0.01"),
         ({"sections_1": " 1  999.0  -10.0  0.61  0.50  0.10  1.5  2.5  0.0"}, "staggers"),
     ],

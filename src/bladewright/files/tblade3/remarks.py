@@ -4,6 +4,13 @@ from collections.abc import Iterator
 
 from bladewright.files.tblade3.records import STAGGER_GIVEN, SpanLaw, TBlade3Case
 
+_KINDS = {
+    "crcle": "a circle",
+    "s809m": "the wind turbine profile S809",
+    "clark": "the profile Clark Y",
+    "negclarkCR": "a kind of the profile Clark Y",
+}
+
 
 def unused_of(case: TBlade3Case, *, grid: bool) -> tuple[str, ...]:
     """What stands in the files without effect on the blade; `grid` where the sections have columns of a grid."""
@@ -79,15 +86,29 @@ def _unsupported(case: TBlade3Case) -> Iterator[str]:
     for kind, places in kinds.items():
         if kind != "sect1":
             which = ", ".join(map(str, places)) if len(places) <= 5 else f"{places[0]} to {places[-1]} ({len(places)})"
-            yield f"sections {which} are of the type '{kind}': only sect1, a meanline with a thickness, is translated"
+            yield (
+                f"sections {which} are of the type '{kind}', {_kind(kind)}: only sect1, a meanline with a thickness, is "
+                "translated; a design of the family profile takes such sections, stacked in a flow path"
+            )
     for end, inflation in (("hub", case.hub_inflation), ("tip", case.tip_inflation)):
         if inflation:
-            yield f"the {end} inflation {inflation:g} asks for one more section, wider than the blade: it is not made"
+            yield (
+                f"the {end} inflation {inflation:g} asks for one more section beside the blade, wider by so much on all "
+                "sides, in files of its own, to be joined with a fillet by another program: it is not made, and the "
+                "blade is the one without it"
+            )
     if case.staggers_given:
         yield (
             f"in_Beta of the first section is {STAGGER_GIVEN:g}, which gives staggers in the table in_beta* "
             "in place of inlet angles: a meanline with a thickness needs inlet angles"
         )
+
+
+def _kind(word: str) -> str:
+    """In words, what T-Blade3 makes of a type of section."""
+    if word.isdigit() and len(word) == 4:
+        return f"the four-digit profile NACA {word}"
+    return _KINDS.get(word, "which T-Blade3 takes for the name of a file with the points of a profile")
 
 
 def notes_of(case: TBlade3Case) -> tuple[str, ...]:
