@@ -87,14 +87,14 @@ def _unsupported(case: TBlade3Case) -> Iterator[str]:
         if kind != "sect1":
             which = ", ".join(map(str, places)) if len(places) <= 5 else f"{places[0]} to {places[-1]} ({len(places)})"
             yield (
-                f"sections {which} are of the type '{kind}', {_kind(kind)}: only sect1, a meanline with a thickness, is "
-                "translated; a design of the family profile takes such sections, stacked in a flow path"
+                f"sections {which} are of the type '{kind}', {_kind(kind)}: only sect1, a meanline with a thickness, "
+                "is translated; a design of the family profile takes such sections, stacked in a flow path"
             )
     for end, inflation in (("hub", case.hub_inflation), ("tip", case.tip_inflation)):
         if inflation:
             yield (
-                f"the {end} inflation {inflation:g} asks for one more section beside the blade, wider by so much on all "
-                "sides, in files of its own, to be joined with a fillet by another program: it is not made, and the "
+                f"the {end} inflation {inflation:g} asks for one more section beside the blade, wider by so much on "
+                "all sides, in files of its own, to be joined with a fillet by another program: it is not made, and the "
                 "blade is the one without it"
             )
     if case.staggers_given:
