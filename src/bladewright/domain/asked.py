@@ -53,7 +53,7 @@ class Asked:
     def camber(self, knots: PassageKnots, v: Reals) -> CamberLines:
         """Camber lines with stations at v (m,)."""
         joints = np.unique(self.full.breaks_along_v())
-        return camber_lines(self.full.stations(v), self.duct(knots), self.turned, joints, knots.crossing.quick)
+        return camber_lines(self.full.stations(v), self.duct(knots), self.turned, joints, knots.abreast)
 
     def plane(self, knots: PassageKnots, v: Reals) -> Planes:
         """Camber lines with stations at v (m,), hub first and shroud last, and walls' halves and strips."""

@@ -25,7 +25,7 @@ from bladewright.nurbs.surface import Surface
 from bladewright.nurbs.trimmed import TrimmedSurface
 from bladewright.section.checks import UNITS, number
 
-RESERVES = (0.25, 0.08, 0.025)
+RESERVES = (0.5, 0.2, 0.08, 0.025)
 """shares of the walls' tolerance that one direction may use while knots are sought: less where all miss it together"""
 
 

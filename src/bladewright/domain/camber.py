@@ -7,6 +7,7 @@ import numpy as np
 from bladewright.blade.laid import Laid
 from bladewright.blade.mapping import Taylor
 from bladewright.blade.streamlines import StreamLines
+from bladewright.domain.abreast import Abreast
 from bladewright.domain.duct import Duct
 from bladewright.numerics.elementary import Array, unit
 from bladewright.nurbs.basis import Reals
@@ -24,8 +25,8 @@ class CamberLines:
     """(..., m) d theta / dm' at the leading and the trailing edge"""
     turned: tuple[Array | None, Array | None]
     """() d theta / dm' at inlet and outlet where an angle is stated"""
-    quick: float
-    """how much faster than on average `points` pass the edges"""
+    abreast: Abreast
+    """how `points` follow the sides"""
     joints: Reals
     """where, along the span, laws of evolution and the channel's edges lose derivatives"""
 
@@ -36,7 +37,7 @@ class CamberLines:
         ends, which is another where the edge is blunt.
         """
         if piece == "blade":
-            return self.in_plane(self.stations.camber(abreast(t, self.quick)))
+            return self.in_plane(self.stations.camber(self.abreast(t)))
         past = 0 if piece == "inlet" else 1
         edge = self.start(past, sign)
         end = np.array([self.duct.high if past else self.duct.low])
@@ -80,17 +81,12 @@ class CamberLines:
         return np.stack([self.lines.abscissa(stations.on_course(u)), tangential], axis=-1)
 
 
-def abreast(t: Reals, quick: float) -> Reals:
-    """The camber's parameter abreast of t on the blade's sides, faster at the edges by `quick` than on average."""
-    return (1.0 + quick) * t - 3.0 * quick * t**2 + 2.0 * quick * t**3
-
-
 def camber_lines(
     stations: Laid,
     duct: Duct,
     turned: tuple[Array | None, Array | None] = (None, None),
     joints: Reals | None = None,
-    quick: float = 0.0,
+    abreast: Abreast | None = None,
 ) -> CamberLines:
     """Continued camber lines of stations; `turned` holds d theta / dm' at inlet and outlet, None to keep the edge's."""
     lines = duct.lines(stations.v)
@@ -101,7 +97,7 @@ def camber_lines(
         lines=lines,
         slopes=slopes,
         turned=turned,
-        quick=quick,
+        abreast=Abreast() if abreast is None else abreast,
         joints=np.empty(0) if joints is None else joints,
     )
 

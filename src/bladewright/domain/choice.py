@@ -6,6 +6,7 @@ from dataclasses import replace
 import numpy as np
 
 from bladewright.blade.knots import DEGREE, clamped
+from bladewright.domain.abreast import kept_abreast
 from bladewright.domain.asked import Asked
 from bladewright.domain.checks import check_duct, check_folds
 from bladewright.domain.crossing import CROSSINGS, GATHERED, Crossing
@@ -77,6 +78,7 @@ def _rough(asked: Asked, crossing: Crossing, reaches: tuple[float, float]) -> Pa
         end=course.end,
         opening=openings(ends, asked.real_half),
         crossing=crossing,
+        abreast=kept_abreast(ends, crossing.quick),
         parted=ends.parted,
         back=back,
         blade=clamped(own[own < whole] / whole),

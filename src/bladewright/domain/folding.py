@@ -10,7 +10,7 @@ from bladewright.domain.wall import WallHalf
 from bladewright.numerics.elementary import cross2
 from bladewright.nurbs.basis import Reals
 
-ROOMY = 0.05
+ROOMY = 0.06
 """least Jacobian, of its median, above which a patch is taken for far from folding"""
 _EVEN = np.linspace(0.0, 1.0, 31)
 _ALONG = np.unique(np.concatenate([np.linspace(0.0, 1.0, 61), 0.1 * _EVEN**2, 1.0 - 0.1 * _EVEN**2]))

@@ -6,6 +6,7 @@ from functools import cached_property
 import numpy as np
 
 from bladewright.blade.knots import DEGREE, clamped
+from bladewright.domain.abreast import Abreast
 from bladewright.domain.crossing import Crossing
 from bladewright.numerics.elementary import frozen
 from bladewright.nurbs.basis import Reals, greville
@@ -52,6 +53,8 @@ class PassageKnots:
     """the blade's own knots along u from there on"""
     crossing: Crossing
     """how cross-lines leave the edges and turn back"""
+    abreast: Abreast
+    """how periodic boundaries follow the blade's sides"""
     blade: Reals
     """the blade's own along u, up to a back face of its sides, and what the walls need besides"""
     inlet: Reals

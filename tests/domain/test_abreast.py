@@ -1,0 +1,43 @@
+"""Periodic boundaries keep abreast of the blade's sides, so that cross-lines run across the flow."""
+
+from importlib import resources
+
+import numpy as np
+import pytest
+
+from bladewright.blade.sectioned_exact import sectioned_exact
+from bladewright.domain.abreast import Abreast, kept_abreast
+from bladewright.domain.extents import end_cambers
+from bladewright.files.reading import read_design
+
+NAMES = ("core-rotor", "backswept-impeller", "wedge-diffuser", "booster-stator", "vaned-diffuser")
+T = np.linspace(0.0, 1.0, 201)
+
+
+@pytest.fixture(params=NAMES, scope="module")
+def ends(request):
+    design = read_design(resources.files("bladewright") / "examples" / f"{request.param}.toml")
+    return end_cambers(sectioned_exact(design))
+
+
+def lag(ends, way):
+    """Largest distance along the flow of the camber from amid both sides (), in lengths of the blade, of hub and
+    shroud the mean."""
+    sides = sum(ends.side(T, sign) for sign in (1, -1)) / 2.0
+    ahead = (ends.in_plane(ends.stations.camber(way(T))) - sides)[..., 0]
+    return np.max(np.abs(np.mean(ahead / np.ptp(sides[..., 0], axis=-1)[:, None], axis=0)))
+
+
+def test_the_camber_is_kept_amid_the_sides(ends):
+    way = kept_abreast(ends, -0.65)
+    # beside round edges the sides stand still, and the camber may not
+    assert lag(ends, way) < min(0.1, 0.85 * lag(ends, Abreast(slopes=way.slopes)))
+
+
+def test_it_goes_on_all_the_way_and_leaves_the_edges_as_stated(ends):
+    way = kept_abreast(ends, -0.65)
+    assert way(np.array([0.0, 1.0])) == pytest.approx([0.0, 1.0], abs=1e-14)
+    assert np.min(np.diff(way(T))) > 0.0
+    # round edges as slowly as asked, and others as the sides that meet there
+    for slope, kind in zip(way.slopes, ends.stations.kinds, strict=True):
+        assert (slope == pytest.approx(0.35)) == (kind == "round")
