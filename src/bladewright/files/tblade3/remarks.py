@@ -94,7 +94,7 @@ def _unsupported(case: TBlade3Case) -> Iterator[str]:
         if inflation:
             yield (
                 f"the {end} inflation {inflation:g} asks for one more section beside the blade, wider by so much on "
-                "all sides, in files of its own, to be joined with a fillet by another program: it is not made, and the "
+                "all sides, in files of its own, for a fillet that another program makes: it is not made, and the "
                 "blade is the one without it"
             )
     if case.staggers_given:
