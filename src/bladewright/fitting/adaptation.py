@@ -42,6 +42,8 @@ FURTHER = 30.0
 """by how much noses are held further from what is refused, where a design is"""
 QUIET = 0.1
 """part of the misfit that is noise up to which a cloud may be exact"""
+FURTHER_ROUNDS = 20
+"""rounds in which a given structure is sought in a cloud that may be exact"""
 NEARLY = (0.3, 0.02)
 """root mean square distance, of a tolerance, and part of the points beyond it with which no more is added at first"""
 GROWTHS = 40
@@ -90,7 +92,7 @@ def adapted(task: Task, first: Design, aim: Aim, *, base: Structure | None, gues
 
 def _structured(few: Task, many: Task, first: Design, base: Structure | None, *, guessed: bool) -> Found:
     """The match with the structure of a first design, or with that of `base`."""
-    found = searched(few, first, noise=FIRST if guessed else None, rounds=ROUNDS if base is None else 2 * QUICK)
+    found = searched(few, first, noise=FIRST if guessed else None, rounds=ROUNDS if base is None else QUICK)
     if guessed and isinstance(first, UnifiedSection) and found.rms > EXACT and _misses(found):
         other = tried(few, first, [structure_of(first)])
         if other is not None:
@@ -98,6 +100,9 @@ def _structured(few: Task, many: Task, first: Design, base: Structure | None, *,
             found = replace(nearer, interrupted=other.interrupted)
     if base is not None and not found.interrupted:
         found = _leaner(few, found, base)
+        if guessed and _misses(found, QUIET):
+            # an exact cloud has no outliers, and edges that are not yet found look like some
+            found = searched(replace(few, outlying=False), found.design, noise=FIRST, rounds=FURTHER_ROUNDS)
     return found if found.interrupted else _told_by_points(many, searched(many, found.design))
 
 

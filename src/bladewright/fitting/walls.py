@@ -24,6 +24,9 @@ this much nearer to the wall than to them"""
 NEAR = 0.05
 """how far from an end, in v, a point may come to lie past it while the design changes"""
 FEWEST = 5
+ROW, ALIGNED = 4.5, 1e-6
+"""a point belongs to the row at an end where it lies within so many deviations of its middle; of the extent of the
+places, as the sides are no nearer to the walls"""
 ENDS = {"hub": 0.0, "shroud": 1.0}
 
 
@@ -125,7 +128,10 @@ def ends_of(points: Reals, on: Feet, shape: Shape, rows: NDArray[np.bool_]) -> E
             continue
         wall = Wall(name=name, places=places[chosen], spread=0.0)
         off = wall.distances(exact)
-        spread = 1.4826 * float(np.median(np.abs(off - np.median(off))))
+        aside = np.abs(off - np.median(off))
+        spread = 1.4826 * float(np.median(aside))
+        # beside a row lie points that are on the sides alone: they would pull the end inwards
+        chosen = chosen[aside <= ROW * max(spread, ALIGNED * float(np.ptp(places)))]
         walls[name] = Wall(name=name, places=places[chosen], spread=spread)
     near = np.flatnonzero(((on.v < NEAR) | (on.v > 1.0 - NEAR)) & ~covered)
     return Ends(walls=walls, covered=covered, near=near)
