@@ -12,7 +12,7 @@ from bladewright.fitting.aim import Aim
 from bladewright.fitting.families.flow import Channelled
 from bladewright.fitting.families.kinds import Kind
 from bladewright.fitting.families.sampled import Sampled, reversed_flow, sampled
-from bladewright.fitting.families.sections import best_of, thinned
+from bladewright.fitting.families.sections import best_of, started_of, thinned
 from bladewright.fitting.families.spanwise import along_span, counts_of, nearest_law, plain
 from bladewright.fitting.families.standing import EDGES, standing
 from bladewright.fitting.first.blade import first_blade
@@ -98,7 +98,7 @@ def _first(closed: Blade, kind: Kind, like: Any, frame: Frame) -> Design:
     sections = [_samples(closed.section(float(v))) for v in SPANS]
     if found.backwards:
         sections = [reversed_flow(each) for each in sections[::-1]]
-    templates = kind.templates if like is None else [plain(like.section)]
+    templates = kind.templates(sections[CHOSEN], None) if like is None else [plain(like.section)]
     chosen = _matched(kind, sections[CHOSEN], templates)
     parts = [chosen if i == CHOSEN else _matched(kind, each, [chosen]) for i, each in enumerate(sections)]
     counts = dict.fromkeys(counts_of(chosen), LAW) if like is None else counts_of(like.section)
@@ -164,10 +164,11 @@ def _matched(kind: Kind, section: Sampled, templates: Any) -> Any:
     points = np.concatenate([section.upper[::EVERY], section.lower[EVERY // 2 :: EVERY]]) @ turn
     task = Task(points=points, weights=np.ones(len(points)), free=_of_section, bounds={})
 
-    def made(template: Any) -> Design:
-        return kind.section(name="section", length_unit="m", chord=1.0, section=kind.started(section, template))
+    def made(part: Any) -> Design:
+        return kind.section(name="section", length_unit="m", chord=1.0, section=part)
 
-    found: Any = best_of(task, task, made, templates, rounds=QUICK).design
+    starts = [start for template in templates for start in started_of(kind, section, template)]
+    found: Any = best_of(task, task, made, starts, rounds=QUICK).design
     return found.section
 
 

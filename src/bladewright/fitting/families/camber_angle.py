@@ -27,7 +27,17 @@ TEMPLATES = (
 """structures that are tried where none is given"""
 
 
-def started(section: Sampled, like: CamberAngle) -> CamberAngle:
+def templates(section: Sampled, parameters: int | None) -> Sequence[CamberAngle]:  # noqa: ARG001 - the contract's
+    """Structures that are tried where none is given."""
+    return TEMPLATES
+
+
+def started(section: Sampled, like: CamberAngle) -> Sequence[CamberAngle]:
+    """The part of a structure nearest to a section, alone."""
+    return [_started(section, like)]
+
+
+def _started(section: Sampled, like: CamberAngle) -> CamberAngle:
     """The part of a structure nearest to a section, by least squares of its angle and its half thickness."""
     fraction = _fractions(section, PLACES)
     slope = np.arctan(section.mean(PLACES, 1))

@@ -57,7 +57,17 @@ TEMPLATES = tuple(
 """structures that are tried where none is given"""
 
 
-def started(section: Sampled, like: CurvatureMeanline) -> CurvatureMeanline:
+def templates(section: Sampled, parameters: int | None) -> Sequence[CurvatureMeanline]:  # noqa: ARG001 - the contract's
+    """Structures that are tried where none is given."""
+    return TEMPLATES
+
+
+def started(section: Sampled, like: CurvatureMeanline) -> Sequence[CurvatureMeanline]:
+    """The part of a structure nearest to a section, alone."""
+    return [_started(section, like)]
+
+
+def _started(section: Sampled, like: CurvatureMeanline) -> CurvatureMeanline:
     """The part of a structure nearest to a section: angles and bends of its mean line, and its thickness."""
     angles = [float(np.degrees(np.clip(section.stagger + each, -1.5, 1.5))) for each in section.angles]
     found = replace(like, metal_angle_in=angles[0], metal_angle_out=angles[1], thickness=_thickness(section, like))

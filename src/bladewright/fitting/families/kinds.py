@@ -29,10 +29,10 @@ class Kind:
 
     name: str
     section: type[PlanarSection]
-    templates: Sequence[Any]
-    """parts whose structures are tried where none is given"""
-    started: Callable[[Sampled, Any], Any]
-    """the part of a structure nearest to a section; may raise DesignError"""
+    templates: Callable[[Sampled, int | None], Sequence[Any]]
+    """parts whose structures are tried for a section where none is given, or so many free parameters"""
+    started: Callable[[Sampled, Any], Sequence[Any]]
+    """parts of a structure near to a section, nearest first; may raise DesignError"""
     grown: Callable[[Any, Sampled], Sequence[Any]]
     """parts near to one, which stands for a section, each with a control point more; may raise DesignError"""
 
@@ -43,7 +43,7 @@ class Kind:
 
 
 def _kind(name: str, section: type[PlanarSection], module: Any) -> Kind:
-    return Kind(name=name, section=section, templates=module.TEMPLATES, started=module.started, grown=module.grown)
+    return Kind(name=name, section=section, templates=module.templates, started=module.started, grown=module.grown)
 
 
 KINDS = {

@@ -57,8 +57,8 @@ BY_ENDING: tuple[tuple[str, Rule], ...] = (
     ("ratio", lambda *_: Kind(0.5, 0.05, 99.0)),
     ("places", lambda *_: Kind(0.05, 1e-3, 1.0 - 1e-3)),
     ("weights", lambda value, _: Kind(0.5 * value, 1e-2 * value, 1e2 * value)),
-    ("tangent_in", lambda *_: Kind(0.05, 1e-3, 9.9)),
-    ("tangent_out", lambda *_: Kind(0.05, 1e-3, 9.9)),
+    ("tangent_in", lambda value, _: Kind(float(np.clip(0.5 * value, 2e-3, 0.05)), 1e-3, 9.9)),
+    ("tangent_out", lambda value, _: Kind(float(np.clip(0.5 * value, 2e-3, 0.05)), 1e-3, 9.9)),
     ("", lambda _, largest: Kind(max(0.3 * largest, 0.02))),
 )
 

@@ -10,6 +10,7 @@ from bladewright.blade.native import interpolated_along_u
 from bladewright.derivatives.tangents import STEP
 from bladewright.designs import Design
 from bladewright.fitting.families.faces import Blunt, closed_knots, closed_nets
+from bladewright.fitting.families.room import crowding
 from bladewright.fitting.model import Model, Shape
 from bladewright.numerics.elementary import Array
 from bladewright.nurbs.basis import Reals, greville
@@ -38,7 +39,8 @@ class PlanarModel(Model):
     def _shape(self, design: Any) -> Shape:
         upper, lower = (np.real(net) for net in self._nets(design))
         sides = [Curve(control_points=net, knots=self.closed, degree=DEGREE) for net in (upper, lower)]
-        return Shape(design=design, sides=(sides[0], sides[1]), noses=np.zeros((2, 0)))
+        folds = np.real(crowding(design.section, ALONE))
+        return Shape(design=design, sides=(sides[0], sides[1]), noses=np.zeros((2, 0)), folds=folds)
 
     def tangents(self, shape: Shape, paths: Sequence[str]) -> tuple[Reals, Reals]:
         """From one rebuild with a step on each parameter in a batch."""
@@ -49,6 +51,10 @@ class PlanarModel(Model):
     def nose_rates(self, shape: Shape, paths: Sequence[str]) -> Reals:  # noqa: ARG002 - the contract's
         """None: what may not be is refused by the parts themselves."""
         return np.zeros((len(paths), 2, 0))
+
+    def fold_rates(self, shape: Shape, paths: Sequence[str]) -> Reals:
+        """Of what the part comes near to."""
+        return crowding_rates(shape, paths, ALONE)
 
     def _nets(self, design: Any) -> tuple[Array, Array]:
         """Control points (..., n, 2) of both sides where the section stands [m]."""
@@ -80,6 +86,16 @@ def _net(points: Array, edges: tuple[Edge, Edge], name: str, knots: Reals) -> Ar
     rows = [EdgeRow(*(np.broadcast_to(each, (*batch, 1, 2)) for each in start)) for start in starts]
     lines = np.broadcast_to(points, (*batch, *points.shape[-3:]))
     return interpolated_along_u(np.swapaxes(lines, -3, -2), rows[0], rows[1], knots)[..., 0, :]
+
+
+def crowding_rates(shape: Shape, paths: Sequence[str], span: Span) -> Reals:
+    """Derivatives (k, c) of a section's `folds` by every parameter."""
+    found = np.zeros((len(paths), len(shape.folds)))
+    own = [i for i, path in enumerate(paths) if path.startswith("section.")]
+    if len(shape.folds) and own:
+        design = shape.design.changed(stepped(shape.design, [paths[i] for i in own]))
+        found[own] = np.imag(crowding(design.section, span)) / STEP
+    return found
 
 
 def stepped(design: Design, paths: Sequence[str]) -> Mapping[str, Any]:

@@ -36,7 +36,17 @@ TEMPLATES: tuple[Profile, ...] = (
 """kinds that are tried where none is given"""
 
 
-def started(section: Sampled, like: Profile) -> Profile:
+def templates(section: Sampled, parameters: int | None) -> Sequence[Profile]:  # noqa: ARG001 - the contract's
+    """Structures that are tried where none is given."""
+    return TEMPLATES
+
+
+def started(section: Sampled, like: Profile) -> Sequence[Profile]:
+    """The profile of a structure nearest to a section, alone."""
+    return [_started(section, like)]
+
+
+def _started(section: Sampled, like: Profile) -> Profile:
     """The profile of a kind nearest to a section, by its thickness, camber and stagger."""
     if isinstance(like, PointsProfile):
         return _through(section, like)

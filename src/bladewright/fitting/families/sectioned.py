@@ -16,8 +16,14 @@ from bladewright.blade.sectioned import SectionedBlade
 from bladewright.blade.sectioned_exact import sectioned_exact
 from bladewright.derivatives.tangents import side_tangents
 from bladewright.fitting.families.faces import Blunt, closed_nets, closed_with
+from bladewright.fitting.families.planar import crowding_rates
+from bladewright.fitting.families.room import crowding
 from bladewright.fitting.model import Model, Shape
 from bladewright.nurbs.basis import Reals
+from bladewright.section.laws import Span
+
+SPAN = Span(np.linspace(0.0, 1.0, 5))
+"""places along the span at which it is asked how near sections come to what is refused"""
 
 
 @final
@@ -38,7 +44,8 @@ class SectionedModel(Model):
         sides = [surface_of(net, self.knots, DEGREE) for net in native_sides(stations, self.knots)]
         faces = edge_faces(stations, sides[0], sides[1], self.knots) if any(self.blunt) else {}
         upper, lower = closed_with(sides[0], sides[1], faces)
-        return Shape(design=design, sides=(upper, lower), noses=np.zeros((2, 0)), exact=exact)
+        folds = np.real(crowding(design.section, SPAN))
+        return Shape(design=design, sides=(upper, lower), noses=np.zeros((2, 0)), exact=exact, folds=folds)
 
     def tangents(self, shape: Shape, paths: Sequence[str]) -> tuple[Reals, Reals]:
         """By every parameter in a batch; a face of a blunt edge moves as the straight one between its edges."""
@@ -55,3 +62,7 @@ class SectionedModel(Model):
     def nose_rates(self, shape: Shape, paths: Sequence[str]) -> Reals:  # noqa: ARG002 - the contract's
         """None: what may not be is refused by the parts themselves."""
         return np.zeros((len(paths), 2, 0))
+
+    def fold_rates(self, shape: Shape, paths: Sequence[str]) -> Reals:
+        """Of what the sections come near to."""
+        return crowding_rates(shape, paths, SPAN)

@@ -9,14 +9,15 @@ import numpy as np
 from bladewright.designs import Design
 from bladewright.errors import DesignError, FitError
 from bladewright.fitting.aim import Aim, short_of
+from bladewright.fitting.families.foreseen import promising
 from bladewright.fitting.families.kinds import Kind
 from bladewright.fitting.families.sampled import Sampled, sampled
-from bladewright.fitting.first.profile import first_section
 from bladewright.fitting.frame import Frame
 from bladewright.fitting.freedom import Freedom
 from bladewright.fitting.scales import check_bounds
 from bladewright.fitting.search import ROUNDS, Found, Task, searched
 from bladewright.fitting.thinning import drawn
+from bladewright.fitting.unified import matched_unified
 from bladewright.section.checks import UNITS
 from bladewright.section.section import Section
 
@@ -24,17 +25,25 @@ FEWEST = 400
 """points by which structures are told apart"""
 FEW, MANY = 1000, 12_000
 """points of a quick and of a thorough search"""
+CLOSED = 32
+"""parameters of the unified section that says where to begin"""
 ROUGH, QUICK = 2, 4
 """rounds of a search that tells structures apart, and of one between two steps of growth"""
 NEAR = 3.0
 """ratio of misfits within which a structure is searched on after the rough search"""
+MOST = 4
+"""structures that are searched on"""
 WORTH = 0.9
 """ratio of misfits from which one control point more is worth it where no aim is stated"""
 PATIENCE = 2
 """control points in a row that may bring nothing before growth ends"""
 EXACT = 1e-9
 """misfit at which a structure is known, of the chord"""
+TOLERANCES = (0.0, 1e-8, 1e-6)
+"""of the native sides, of the chord"""
 GROWTHS = 30
+TRIED = 2
+"""laws that are given a control point more by a search, of those that promise most"""
 
 
 def matched_section(task: Task, kind: Kind, start: Any, like: Any, frame: Frame, aim: Aim) -> tuple[Found, str]:
@@ -51,12 +60,13 @@ def matched_section(task: Task, kind: Kind, start: Any, like: Any, frame: Frame,
     else:
         section = _closed(few, frame) if start is None else section_samples(start.build())
         rough = thinned(task, FEWEST)
-        parts = kind.templates if like is None else [like.section]
-        found = best_of(rough, few, _maker(kind, section, frame, task), parts)
+        parts = kind.templates(section, aim.parameters) if like is None else [like.section]
+        starts = [start for part in parts for start in started_of(kind, section, part)]
+        found = best_of(rough, few, _maker(kind, section, frame, task), starts)
     reason = ""
     if not (aim.structured or found.interrupted):
         found, reason = _enough(few, kind, found, aim)
-    return (found if found.interrupted else _thorough(many, found)), reason
+    return _coarsened(found if found.interrupted else _thorough(many, found)), reason
 
 
 def section_samples(built: Section) -> Sampled:
@@ -66,19 +76,16 @@ def section_samples(built: Section) -> Sampled:
 
 
 def _closed(task: Task, frame: Frame) -> Sampled:
-    """The section that points alone show, closed around both edges."""
+    """The section that points alone show, closed around both edges: that of the unified family."""
     task = Task(points=task.points, weights=task.weights, free=Freedom(), bounds={}, told=task.told)
-    first = first_section(task.points, name=frame.name, length_unit=frame.length_unit)
-    for design in (searched(task, first, noise=3e-3, rounds=QUICK).design, first):
-        try:
-            return section_samples(design.build())
-        except DesignError:
-            continue
-    raise FitError("no closed section was found near the points: give a start design")
+    try:
+        return section_samples(matched_unified(task, None, None, frame, Aim(parameters=CLOSED))[1])
+    except FitError as error:
+        raise FitError(f"no closed section was found near the points ({error}); give a start design") from error
 
 
 def _maker(kind: Kind, section: Sampled, frame: Frame, task: Task) -> Callable[[Any], Design]:
-    """The design that a structure begins with."""
+    """The design that a part begins as."""
     metre = UNITS[frame.length_unit]
 
     def made(part: Any) -> Design:
@@ -89,13 +96,21 @@ def _maker(kind: Kind, section: Sampled, frame: Frame, task: Task) -> Callable[[
             pitch=None if frame.pitch is None else frame.pitch / metre,
             leading_edge_x=float(section.start[0]) / metre,
             leading_edge_y=float(section.start[1]) / metre,
-            section=kind.started(section, part),
+            section=part,
         )
         design = task.free.applied(design) if isinstance(task.free, Freedom) else design
         check_bounds(design, task.free(design), task.bounds)
         return design
 
     return made
+
+
+def started_of(kind: Kind, section: Sampled, part: Any) -> Sequence[Any]:
+    """The parts of a structure near a section; none where it has no such shape."""
+    try:
+        return kind.started(section, part)
+    except DesignError:
+        return ()
 
 
 def best_of(
@@ -116,10 +131,10 @@ def best_of(
         raise FitError(f"no section of the family was found near the points ({refusal}); give a start design")
     least = min(each.rms for each in tried)
     found: Found | None = None
-    for each in sorted(tried, key=lambda one: one.rms):
+    for number, each in enumerate(sorted(tried, key=lambda one: one.rms)):
         if each.interrupted:
             return each
-        if each.rms > NEAR * least and found is not None and _sound(found):
+        if found is not None and _sound(found) and (each.rms > NEAR * least or number >= MOST):
             break
         fresh = searched(few, each.design, rounds=rounds)
         if found is None or (fresh.rms < found.rms and _sound(fresh)) or not _sound(found):
@@ -130,11 +145,11 @@ def best_of(
     return found
 
 
-def _sound(found: Found) -> bool:
-    """Whether the design can be built: whether its section does not cross itself."""
+def _sound(found: Found, tolerance: float = TOLERANCES[-1]) -> bool:
+    """Whether the design can be built with a tolerance: whether its section does not cross itself."""
     design: Any = found.design
     try:
-        design.build()
+        replace(design, tolerance=max(design.tolerance, tolerance)).build()
     except DesignError:
         return False
     return True
@@ -166,7 +181,7 @@ def _allowed(found: Found, aim: Aim) -> bool:
 
 
 def _wider(task: Task, kind: Kind, found: Found) -> Iterator[Found]:
-    """Matches with a control point more, each of another law."""
+    """Matches with a control point more, of the laws that promise most."""
     design: Any = found.design
     try:
         # a section that crosses itself on the way has sides all the same
@@ -174,9 +189,9 @@ def _wider(task: Task, kind: Kind, found: Found) -> Iterator[Found]:
         parts = kind.grown(design.section, sampled(sides[0], sides[1], (0.0, 0.0)))
     except DesignError:
         return
-    for part in parts:
+    for wider in promising(task, found, [replace(design, section=part) for part in parts])[:TRIED]:
         try:
-            fresh = searched(task, replace(design, section=part), rounds=QUICK)
+            fresh = searched(task, wider, rounds=QUICK)
         except (DesignError, FitError):
             continue
         yield replace(fresh, evaluations=fresh.evaluations + found.evaluations)
@@ -186,6 +201,15 @@ def _thorough(task: Task, found: Found) -> Found:
     fresh = searched(task, found.design)
     better = fresh if np.isfinite(fresh.rms) else found
     return replace(better, evaluations=found.evaluations + fresh.evaluations)
+
+
+def _coarsened(found: Found) -> Found:
+    """The match with the finest tolerance of its native sides that it can be built with: edges may turn fast."""
+    for tolerance in TOLERANCES:
+        if _sound(found, tolerance):
+            design: Any = found.design
+            return replace(found, design=replace(design, tolerance=max(design.tolerance, tolerance)))
+    return found
 
 
 def thinned(task: Task, count: int) -> Task:

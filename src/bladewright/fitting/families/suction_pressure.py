@@ -2,73 +2,109 @@
 
 from collections.abc import Sequence
 from dataclasses import replace
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
+from scipy.optimize import lsq_linear
 
 from bladewright.errors import DesignError
 from bladewright.fitting.families.planar import ALONE
+from bladewright.fitting.families.polyline import nearest_on
+from bladewright.fitting.families.rounded_edge import edge_through
 from bladewright.fitting.families.sampled import Sampled
 from bladewright.nurbs.basis import Reals, basis
-from bladewright.section.suction_pressure.assembly import characteristic, sides, skeleton_of
+from bladewright.section.suction_pressure.assembly import characteristic, skeleton_of
 from bladewright.section.suction_pressure.part import SuctionPressure
 from bladewright.section.suction_pressure.side import DEGREE, side_knots, spread
 
 HEIGHTS = 2
 """free control points of each side to begin with"""
+WITHOUT_HEIGHTS = 18
+"""free parameters of a section besides those"""
 MOST = 12
 """of each side"""
 TURNING = np.radians(60.0)
 """turning from which the pseudo skeleton line is taken"""
 TANGENT = 0.08
-"""distance of the control points on the tangents to begin with, of the chord"""
-SAMPLES: Reals = np.linspace(0.0, 1.0, 101)[1:-1]
+"""distance of the control points on the tangents in a structure, of the chord"""
+LEAST, MOST_TANGENT = 0.25, 0.9
+"""smallest one to begin with, of that of evenly spread control points, and largest, of the chord"""
+WEDGES = tuple(np.radians([25.0, 50.0, 75.0]).tolist())
+"""of first leading edges besides the section's own"""
+NARROW = (np.radians(2.0), np.radians(40.0))
+"""between what the section's own are taken"""
+SAMPLES: Reals = (1.0 - np.cos(np.pi * np.linspace(0.0, 1.0, 121)[1:-1])) / 2.0
+STIFF = 1e-3
+"""by which a control point stays where it was, of what all samples weigh"""
 TURNS = 8
 """times that the places of a side's samples are found anew"""
-TEMPLATES = tuple(
-    SuctionPressure(
-        stagger_angle=0.0,
-        metal_angle_in=0.0,
-        metal_angle_out=0.0,
-        leading_edge_radius=0.01,
-        leading_edge_wedge=10.0,
-        trailing_edge_radius=0.01,
-        trailing_edge_wedge=6.0,
-        suction_tangent_in=TANGENT,
-        suction_tangent_out=TANGENT,
-        suction_heights=(0.1,) * HEIGHTS,
-        pressure_tangent_in=TANGENT,
-        pressure_tangent_out=TANGENT,
-        pressure_heights=(0.0,) * HEIGHTS,
-        skeleton=skeleton,
-    )
-    for skeleton in ("chord", "pseudo")
+_PLAIN = SuctionPressure(
+    stagger_angle=0.0,
+    metal_angle_in=0.0,
+    metal_angle_out=0.0,
+    leading_edge_radius=0.01,
+    leading_edge_wedge=10.0,
+    trailing_edge_radius=0.01,
+    trailing_edge_wedge=6.0,
+    suction_tangent_in=TANGENT,
+    suction_tangent_out=TANGENT,
+    suction_heights=(0.1,) * HEIGHTS,
+    pressure_tangent_in=TANGENT,
+    pressure_tangent_out=TANGENT,
+    pressure_heights=(0.0,) * HEIGHTS,
 )
-"""structures that are tried where none is given"""
 
 
-def started(section: Sampled, like: SuctionPressure) -> SuctionPressure:
-    """The part of a structure nearest to a section: edges by their radii and the sides' directions, sides by points."""
-    angles = [float(np.degrees(np.clip(section.stagger + each, -1.5, 1.5))) for each in section.angles]
-    radii = [float(np.clip(each, 8e-4, 0.15)) for each in section.radii]
-    wedges = [float(np.clip(np.degrees(section.wedge(end)), 2.0, 80.0)) for end in (0, 1)]
-    cambered = section.most_cambered[0] > 0.0
-    found = replace(
-        like,
-        stagger_angle=float(np.degrees(section.stagger)),
-        metal_angle_in=angles[0],
-        metal_angle_out=angles[1],
-        leading_edge_radius=radii[0],
-        leading_edge_wedge=wedges[0],
-        trailing_edge_radius=radii[1],
-        trailing_edge_wedge=wedges[1],
-        suction_side=("upper" if cambered else "lower") if like in TEMPLATES else like.suction_side,
-        suction_tangent_in=TANGENT,
-        suction_tangent_out=TANGENT,
-        pressure_tangent_in=None if like.pressure_tangent_in is None else TANGENT,
-        pressure_tangent_out=None if like.pressure_tangent_out is None else TANGENT,
-    )
-    return _through(found, section)
+def templates(section: Sampled, parameters: int | None) -> Sequence[SuctionPressure]:
+    """Structures that are tried where none is given, of nearly so many free parameters of a section."""
+    free = 0 if parameters is None else parameters - WITHOUT_HEIGHTS
+    counts = max(HEIGHTS, min(MOST, -(-free // 2))), max(HEIGHTS, min(MOST, free // 2))
+    side: Literal["upper", "lower"] = "upper" if section.most_cambered[0] > 0.0 else "lower"
+    sized = replace(_PLAIN, suction_side=side, suction_heights=(0.1,) * counts[0], pressure_heights=(0.0,) * counts[1])
+    return [replace(sized, skeleton="pseudo"), sized]
+
+
+def started(section: Sampled, like: SuctionPressure) -> Sequence[SuctionPressure]:
+    """Parts of a structure near to a section, nearest first: edges by their ends, sides by least squares.
+
+    How far a nose reaches is a matter of taste, as its sides may be taken for parts of it: there is one for each of
+    several wedges. Raises DesignError where none has a shape.
+    """
+    own, last = (float(np.clip(section.wedge(end), *NARROW)) for end in (0, 1))
+    tried, refusal = [], DesignError("no wedge of the leading edge was tried")
+    for first in (own, *WEDGES):
+        try:
+            part = _edged(section, like, (first, last))
+            tried.append((_misfit(part, section), part))
+        except DesignError as error:
+            refusal = error
+    if not tried:
+        raise refusal
+    return [part for _, part in sorted(tried, key=lambda pair: pair[0])]
+
+
+def _edged(section: Sampled, like: SuctionPressure, wedges: tuple[float, float]) -> SuctionPressure:
+    """The part of a structure with edges about so wide [rad], its sides through a section's."""
+    upward = 1.0 if like.suction_side == "upper" else -1.0
+    values: dict[str, Any] = {"stagger_angle": float(np.degrees(section.stagger))}
+    for end, (edge, angle) in enumerate((("leading_edge", "metal_angle_in"), ("trailing_edge", "metal_angle_out"))):
+        found = edge_through(section, end, wedges[end], like.edges)
+        values |= {
+            angle: float(np.degrees(np.clip(section.stagger + found.angle, -1.5, 1.5))),
+            f"{edge}_radius": found.radius,
+            f"{edge}_stretch": found.stretch,
+            f"{edge}_skew": upward * found.skew,
+            f"{edge}_wedge": float(np.degrees(found.wedge)),
+        }
+    return through(replace(like, **values), section)
+
+
+def _misfit(part: SuctionPressure, section: Sampled) -> float:
+    """Root mean square distance of the part's sides and edges from the section's, in chords."""
+    places = (1.0 - np.cos(np.pi * np.linspace(0.0, 1.0, 81))) / 2.0
+    upper, lower = (np.real(side[0]) for side in part.outline(ALONE).points(places))
+    around = np.concatenate([section.upper[:0:-1], section.lower])
+    return float(np.sqrt(np.mean(nearest_on(around, np.concatenate([upper, lower])).heights ** 2)))
 
 
 def grown(part: SuctionPressure, section: Sampled) -> Sequence[SuctionPressure]:
@@ -82,7 +118,7 @@ def grown(part: SuctionPressure, section: Sampled) -> Sequence[SuctionPressure]:
                 f"{name}_knots": (),
                 f"{name}_places": _wider(places),
             }
-            found.append(_through(replace(part, **wider), section))
+            found.append(through(replace(part, **wider), section))
     for name in ("suction", "pressure"):
         count = len(getattr(part, f"{name}_heights"))
         if count and not getattr(part, f"{name}_places"):
@@ -100,55 +136,74 @@ def _wider(places: list[float]) -> tuple[float, ...]:
     return (*places[:at], float(0.5 * (ends[at] + ends[at + 1])), *places[at:])
 
 
-def _through(part: SuctionPressure, section: Sampled) -> SuctionPressure:
+def through(part: SuctionPressure, section: Sampled) -> SuctionPressure:
     """The part with control points of its sides that lie nearest to the section's, its edges as they are."""
     on, off = ("upper", "lower") if part.suction_side == "upper" else ("lower", "upper")
-    suction, other = (getattr(section, name) for name in (on, off))
-    heights = _heights(part, suction, "suction")
-    found = replace(part, suction_heights=heights)
+    found = part.changed(_side_through(part, getattr(section, on), "suction"))
     if part.pressure_heights:
-        return replace(found, pressure_heights=_heights(found, other, "pressure"))
+        return found.changed(_side_through(found, getattr(section, off), "pressure"))
     count = len(part.pressure_thickness)
     places = _numbers(part.pressure_places) or spread(side_knots(count, part.pressure_knots)).tolist()
     return replace(found, pressure_thickness=tuple(max(2.0 * section.half_at(each), 1e-3) for each in places))
 
 
-def _heights(part: SuctionPressure, points: Reals, name: str) -> tuple[float, ...]:
-    """Heights of a side's free control points by least squares of the distances from points (n, 2) along them."""
-    inner = getattr(part, f"{name}_knots")
+def _side_through(part: SuctionPressure, line: Reals, name: str) -> dict[str, float]:
+    """Tangents and heights of a side by least squares of its distances from a line of points (n, 2)."""
     count = len(getattr(part, f"{name}_heights"))
-    knots = side_knots(count, inner)
+    knots = side_knots(count, getattr(part, f"{name}_knots"))
     places = np.array(_numbers(getattr(part, f"{name}_places")) or spread(knots).tolist())
-    plain = part.changed({f"{name}_heights": (0.0,) * count})
-    skeleton = skeleton_of(plain, ALONE)
-    low, high = (skeleton.placed(places[None], np.full((1, count), each))[0] for each in (0.0, 1.0))
-    try:
-        pair = sides(_harmless(plain), ALONE, *characteristic(plain, ALONE))
-    except DesignError:
-        pair = None
-    heights = np.interp(places, points[:, 0], points[:, 1]) - low[:, 1]
-    if pair is None:
-        return tuple(heights.tolist())
-    controls = np.real(pair[0 if name == "suction" else 1].controls[0]).copy()
-    controls[2:-2] = low
+    low, high = (skeleton_of(part, ALONE).placed(places[None], np.full((1, count), each))[0] for each in (0.0, 1.0))
+    on = "upper" if (name == "suction") == (part.suction_side == "upper") else "lower"
+    corners = [getattr(points, on) for points in characteristic(part, ALONE)]
+    points, directions = (np.real([getattr(each, of)[0] for each in corners]) for of in ("point", "direction"))
     rows = basis(knots, DEGREE, SAMPLES)
-    for _ in range(TURNS):
-        own = controls.copy()
-        own[2:-2] = low + heights[:, None] * (high - low)
-        at = rows @ own
-        wanted = np.interp(at[:, 0], points[:, 0], points[:, 1])
-        right = wanted - (rows @ controls)[:, 1]
-        heights = np.linalg.lstsq(rows[:, 2:-2] * (high - low)[:, 1], right, rcond=None)[0]
-    return tuple(heights.tolist())
-
-
-def _harmless(part: SuctionPressure) -> SuctionPressure:
-    """The part with sides of heights, which alone say where the corners and tangents are."""
-    return (
-        part
-        if part.pressure_heights
-        else replace(part, pressure_thickness=(), pressure_heights=(0.0,), pressure_places=(), pressure_knots=())
+    # by tangent in, heights and tangent out: control points are linear in them
+    moves = np.concatenate(
+        [
+            (rows[:, 1:2] * directions[0])[:, None],
+            rows[:, 2:-2, None] * (high - low),
+            (rows[:, -2:-1] * directions[1])[:, None],
+        ],
+        axis=1,
     )
+    fixed = rows[:, :2].sum(axis=1)[:, None] * points[0] + rows[:, -2:].sum(axis=1)[:, None] * points[1]
+    fixed = fixed + rows[:, 2:-2] @ low
+    own = [part.parameters().get(f"{name}_tangent_{way}") for way in ("in", "out")]
+    width = np.array([knots[DEGREE + 1], 1.0 - knots[-DEGREE - 2]]) / DEGREE
+    reach = width * np.sqrt(np.sum((points[1] - points[0]) ** 2))
+    ends = [reach[i] if each is None else each for i, each in enumerate(own)]
+    heights = _above(line, low, high)
+    unknowns = np.array([ends[0], *heights, ends[1]])
+    least = np.array([LEAST * reach[0], *np.full(count, -2.0), LEAST * reach[1]])
+    most = np.array([MOST_TANGENT, *np.full(count, 2.0), MOST_TANGENT])
+    for _ in range(TURNS):
+        foot = nearest_on(line, fixed + np.einsum("nkd,k->nd", moves, unknowns))
+        slopes = np.einsum("nkd,nd->nk", moves, foot.normals)
+        wanted = np.sum((foot.points - fixed) * foot.normals, axis=1)
+        held = STIFF * np.eye(len(unknowns))
+        unknowns = lsq_linear(
+            np.concatenate([slopes, held]), np.concatenate([wanted, held @ unknowns]), bounds=(least, most)
+        ).x
+    values = {f"{name}_heights[{i}]": float(each) for i, each in enumerate(unknowns[1:-1])}
+    for way, value, old in zip(("in", "out"), unknowns[[0, -1]], own, strict=True):
+        if old is not None:
+            values[f"{name}_tangent_{way}"] = float(value)
+    return values
+
+
+def _above(line: Reals, low: Reals, high: Reals) -> Reals:
+    """How far from places (k, 2) a line is in the directions to other places (k, 2)."""
+    across = high - low
+    along = np.stack([across[:, 1], -across[:, 0]], axis=-1)
+    found = []
+    for at, ahead, aside in zip(low, across, along, strict=True):
+        way, height = (line - at) @ aside, (line - at) @ ahead
+        crossing = np.flatnonzero(way[:-1] * way[1:] <= 0.0)
+        between = [
+            float(height[i] + (height[i + 1] - height[i]) * way[i] / (way[i] - way[i + 1] or 1.0)) for i in crossing
+        ]
+        found.append(min(between, key=lambda each: each**2) if between else float(height[np.argmin(way**2)]))
+    return np.array(found)
 
 
 def _numbers(laws: Sequence[float | tuple[float, ...]]) -> list[float]:

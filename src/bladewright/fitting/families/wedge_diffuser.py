@@ -15,7 +15,17 @@ TEMPLATES = (
 """structures that are tried where none is given"""
 
 
-def started(section: Sampled, like: WedgeDiffuser) -> WedgeDiffuser:
+def templates(section: Sampled, parameters: int | None) -> Sequence[WedgeDiffuser]:  # noqa: ARG001 - the contract's
+    """Structures that are tried where none is given."""
+    return TEMPLATES
+
+
+def started(section: Sampled, like: WedgeDiffuser) -> Sequence[WedgeDiffuser]:
+    """The vane of a structure nearest to a section, alone."""
+    return [_started(section, like)]
+
+
+def _started(section: Sampled, like: WedgeDiffuser) -> WedgeDiffuser:
     """The vane of a structure nearest to a section: its stagger, the angle between its sides, and its edges."""
     opening = (section.half_at(0.8) - section.half_at(0.2)) / 0.6
     first = float(np.clip(section.half_at(0.2) - 0.2 * opening, 1e-3, 0.2))

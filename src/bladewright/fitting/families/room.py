@@ -1,0 +1,45 @@
+"""How near sections come to what their family refuses: a search that sees it slides along it.
+
+Without it, the steps of a search are refused one after the other where a side leaves an edge on too short a tangent.
+"""
+
+from typing import Any
+
+import numpy as np
+
+from bladewright.numerics.elementary import Array, radians
+from bladewright.nurbs.basis import Reals
+from bladewright.section.laws import Span
+from bladewright.section.suction_pressure.assembly import characteristic, sides
+from bladewright.section.suction_pressure.part import SuctionPressure
+from bladewright.section.suction_pressure.points import OPENING, opening
+from bladewright.section.suction_pressure.side import pace
+
+PLACES: Reals = np.linspace(0.0, 1.0, 17)
+"""of a side's first and last part at which its pace is looked at"""
+SLOWEST = 0.003
+"""smallest pace of a side, of what it has further on"""
+ROOM = 0.003
+"""smallest distance from the largest opening of an edge"""
+
+
+def crowding(part: Any, span: Span) -> Array:
+    """By how much sections at places along the span are nearer to a refusal than they may be (..., c), where positive.
+
+    Raises DesignError where they are refused already.
+    """
+    if not isinstance(part, SuctionPressure):
+        return np.zeros(0)
+    edges = characteristic(part, span)
+    rows = [_opened(part, edge, span) for edge in ("leading_edge", "trailing_edge")]
+    for side in sides(part, span, *edges):
+        rows += [SLOWEST - pace(end, PLACES, 1) for end in (side.start, side.end)]
+    shape = np.broadcast_shapes(*[each.shape[:-2] for each in rows])
+    return np.concatenate([np.broadcast_to(each, (*shape, *each.shape[-2:])).reshape(*shape, -1) for each in rows], -1)
+
+
+def _opened(part: SuctionPressure, edge: str, span: Span) -> Array:
+    """The same of an edge's two ellipses (..., m, 2), by their opening."""
+    stretch, skew, wedge = (span.values(getattr(part, f"{edge}_{each}")) for each in ("stretch", "skew", "wedge"))
+    ratios = [opening(stretch * (1.0 + sign * skew), radians(wedge)) for sign in (1.0, -1.0)]
+    return np.stack(np.broadcast_arrays(*ratios), axis=-1) - (OPENING[part.edges] - ROOM)
