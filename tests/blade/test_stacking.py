@@ -7,6 +7,7 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from bladewright import cad
+from bladewright.blade.flank import twist_of
 from bladewright.blade.flow_path import FlowPath
 from bladewright.blade.sectioned_exact import sectioned_exact
 from bladewright.blade.sections import section_at
@@ -15,6 +16,7 @@ from bladewright.blade.stacking_reference import centroid, reference_points
 from bladewright.blade.stream_surfaces import stream_surfaces
 from bladewright.errors import DesignError
 from bladewright.numerics.elementary import length
+from bladewright.nurbs.surface import Surface
 from bladewright.section.laws import Span
 
 from . import stacked
@@ -172,13 +174,37 @@ def test_stacked_and_ruled_solids_come_back_from_step_files(design, tmp_path):
     assert trip.passed, trip.failures
     if design.skinning == "ruled":
         _check_rulings(blade, parallel=False)
+        assert 30.0 < blade.promises.twist < 90.0  # it is turned by 40 deg between hub and shroud
+        assert "twist" not in blade.promises.limits
 
 
 @pytest.mark.parametrize("design", [stacked.PRISM, stacked.MILLED], ids=lambda d: d.name)
 def test_a_flank_cutter_touches_developable_sides_along_whole_lines(design):
     blade = design.build()
     assert blade.promises.kept, blade.promises
+    assert blade.promises.twist < 1e-9  # rounding
+    assert blade.promises.flank_cut < 1e-15
     _check_rulings(blade, parallel=True)
+
+
+def test_the_twist_of_a_ruled_side_and_the_cut_of_a_cylinder_on_it_are_those_of_the_paraboloid():
+    # z = a x y, whose normal at (x, y) is along (-a y, -a x, 1): along x = 1 it turns by atan(a)
+    a, net = 0.3, np.zeros((2, 2, 3))
+    net[..., 0], net[..., 1] = np.meshgrid([0.0, 1.0], [0.0, 1.0], indexing="ij")
+    net[1, 1, 2] = a
+    ends = np.array([0.0, 0.0, 1.0, 1.0])
+    flat, side = (
+        Surface(control_points=points, knots_u=ends, knots_v=ends, degree_u=1, degree_v=1)
+        for points in (net * [1.0, 1.0, 0.0], net)
+    )
+    found = twist_of((flat, side))
+    assert (found.side, found.u) == ("lower", 0.0)
+    assert found.angle == pytest.approx(np.arctan(a), rel=1e-12)
+    # a cylinder along y, tilted by half the twist: the depth of its lowest point below the plane beside the line
+    turn = np.linspace(-1.0, 1.0, 20001) * found.angle
+    x, z = np.sin(turn), 1.0 - np.cos(turn)
+    deepest = np.max(x * np.sin(found.angle / 2.0) - z * np.cos(found.angle / 2.0))
+    assert found.cut == pytest.approx(deepest, rel=1e-6)
 
 
 def _check_rulings(blade, *, parallel):

@@ -9,6 +9,7 @@ import numpy as np
 from bladewright.blade.clearance import off_distance
 from bladewright.blade.exact import ExactBlade
 from bladewright.blade.fitness import sections_limit
+from bladewright.blade.flank import twist_of
 from bladewright.blade.laid import Laid
 from bladewright.blade.meridian_line import real_first
 from bladewright.blade.ruled import RuledStations
@@ -52,6 +53,12 @@ class Promises:
     sections: float | None = None
     """distance of the sides' curves of constant v from the sections that a design gives, at equal parameters, of the
     chord; limited where 200 poles along the sections suffice [-]"""
+    twist: float | None = None
+    """turn of the sides' normal along their straight lines, of ruled and developable blades [deg]"""
+    twist_at: float | None = None
+    """u where it is largest [-]"""
+    flank_cut: float | None = None
+    """depth to which the flank of a cylindrical cutter on that line cuts into the side, of the cutter's radius [-]"""
 
     @property
     def kept(self) -> bool:
@@ -75,6 +82,8 @@ FLAT = 100.0
 """radius in chords from which on an edge is taken for flat, as the back face of a wedge diffuser's vane is"""
 CLEARANCE = 1e-8
 """limit of the clearance's miss"""
+DEVELOPED = 1e-6
+"""limit of the twist of developable blades [deg]"""
 
 
 def promises_of(blade: "Blade") -> Promises:
@@ -126,6 +135,11 @@ def promises_of(blade: "Blade") -> Promises:
         limits["clearance"] = CLEARANCE
     if blade.knots.sections is not None:
         limits["sections"] = sections_limit(tolerance)
+    twist = None
+    skinning = getattr(blade.design, "skinning", "sections")
+    if skinning != "sections":
+        twist = twist_of(blade.sides)
+        limits |= {"twist": DEVELOPED} if skinning == "developable" else {}
     return Promises(
         **figures,
         stream_surfaces=None if ruled else off / blade.chord,
@@ -134,6 +148,9 @@ def promises_of(blade: "Blade") -> Promises:
         limits=limits,
         clearance=clearance,
         sections=_off_sections(blade),
+        **{}
+        if twist is None
+        else {"twist": float(np.degrees(twist.angle)), "twist_at": twist.u, "flank_cut": twist.cut},
     )
 
 

@@ -62,6 +62,9 @@ def text_of(data: dict[str, Any], more: Sequence[tuple[str, str]] = ()) -> str:
         value = promises[name]
         said = f"{'unknown' if value is None else f'{value:.2g}'}, promised within {limit:.2g}"
         rows.append((name.replace("_", " "), said + ("" if _kept(value, limit) else ": NOT KEPT")))
+    if promises.get("twist") is not None and "twist" not in promises["limits"]:
+        cut = f"a flank cutter cuts {promises['flank_cut']:.2g} of its radius into it"
+        rows.append(("twist", f"{promises['twist']:.3g} deg along the line at u = {promises['twist_at']:.3g}: {cut}"))
     width = max((len(name) for name, _ in rows), default=0)
     head = f"{data['name']}: {data['family']}, {data['parameters']} parameters"
     return "\n".join([head, *(f"  {name:<{width}}  {value}" for name, value in rows)])
