@@ -1,9 +1,12 @@
 """Whether a match may be trusted, and why not."""
 
+from collections.abc import Mapping
+
 import numpy as np
 from numpy.typing import NDArray
 
 from bladewright.fitting.aim import LEAST, Aim
+from bladewright.fitting.ending import loose_ends
 from bladewright.fitting.estimates import Certainty
 from bladewright.fitting.search import Found
 from bladewright.nurbs.basis import Reals
@@ -56,6 +59,9 @@ def failures_of(
             "the structure does not hold this blade, or a better design was not found; state a tolerance, or another "
             "structure"
         )
+    loose = loose_ends(found)
+    if loose and aim.structured and aim.tolerance is None and not found.interrupted and rms < EXACT * chord:
+        failures.append(f"the sides are met exactly, but {_loose(loose)}; state the tolerance that is enough")
     if missing(distances, inliers, found, aim) and not _fair(found):
         failures.append(_unmet(found))
     return tuple(failures)
@@ -80,6 +86,11 @@ def _unmet(found: Found) -> str:
     )
 
 
+def _loose(ends: Mapping[str, float]) -> str:
+    apart = ", ".join(f"{1e3 * gap:.2g} mm at the {name}" for name, gap in ends.items())
+    return f"no row of points shows where the blade ends: it is known to about {apart}"
+
+
 def notes_of(
     notes: tuple[str, ...], certainty: Certainty, distances: Reals, inliers: NDArray[np.bool_], found: Found, aim: Aim
 ) -> tuple[str, ...]:
@@ -87,6 +98,9 @@ def notes_of(
     said = list(notes)
     if missing(distances, inliers, found, aim) and _fair(found):
         said.append(f"near enough to make, but {_unmet(found)}")
+    loose = loose_ends(found)
+    if loose:
+        said.append(_loose(loose))
     unknown = [each.path for each in certainty.estimates if not each.identified]
     if unknown:
         more = f" and {len(unknown) - SHOWN} more" if len(unknown) > SHOWN else ""

@@ -1,0 +1,37 @@
+"""Where a blade ends is said to be known where a row of points shows it, and nowhere else."""
+
+import numpy as np
+import pytest
+
+from bladewright.files.examples import example_text
+from bladewright.files.reading import design_from, parsed
+from bladewright.fitting.ending import loose_ends
+from bladewright.fitting.freedom import freedom_of
+from bladewright.fitting.search import Task, searched
+
+STATOR = design_from(parsed(example_text("aachen-stator"), "stator"), "stator")
+SPAN = 0.11
+"""[m]"""
+
+
+def ends_of(*rows, free="channel.leading_edge[0].r"):
+    """The loose ends of a match of 400 points at random and of rows of 20 at some places along the span."""
+    draw, sides = np.random.default_rng(0), STATOR.build().sides
+    parts = [side(*draw.random((2, 200))) for side in sides]
+    parts += [side(draw.random(20), np.full(20, v)) for side in sides for v in rows]
+    points = np.concatenate(parts)
+    freedom = freedom_of(free, None, started=True)
+    task = Task(points=points, weights=np.ones(len(points)), free=freedom, bounds={})
+    return loose_ends(searched(task, STATOR, rounds=1))
+
+
+@pytest.mark.parametrize(("rows", "loose"), [((0.0, 1.0), set()), ((0.0,), {"shroud"}), ((), {"hub", "shroud"})])
+def test_an_end_without_a_row_of_points_is_loose_by_as_much_as_points_are_apart(rows, loose):
+    found = ends_of(*rows)
+    assert set(found) == loose
+    # 400 points at random are a four-hundredth of the span apart along it, within what so few say
+    assert all(SPAN / 2000.0 < gap < SPAN / 80.0 for gap in found.values())
+
+
+def test_ends_of_a_channel_that_is_given_are_known():
+    assert ends_of(free="stagger") == {}
