@@ -8,7 +8,7 @@ from bladewright.designs import Design
 from bladewright.errors import DesignError, FitError
 from bladewright.fitting.aim import NOISY, Aim, short_of
 from bladewright.fitting.chain import own_walls
-from bladewright.fitting.choosing import chosen_match
+from bladewright.fitting.choosing import chosen_match, compact_match
 from bladewright.fitting.descent import SLIGHT
 from bladewright.fitting.freedom import corner_radii
 from bladewright.fitting.growing import grown
@@ -44,6 +44,8 @@ QUIET = 0.1
 """part of the misfit that is noise up to which a cloud may be exact"""
 FURTHER_ROUNDS = 20
 """rounds in which a given structure is sought in a cloud that may be exact"""
+COMPACT = 0.5
+"""root mean square distance, of a tolerance, with which a blade begins to grow towards it"""
 NEARLY = (0.3, 0.02)
 """root mean square distance, of a tolerance, and part of the points beyond it with which no more is added at first"""
 GROWTHS = 40
@@ -79,14 +81,18 @@ def adapted(task: Task, first: Design, aim: Aim, *, base: Structure | None, gues
         found = found if found.interrupted else searched(everything, found.design, rounds=1, slight=ROUGH)
     if found.interrupted:
         return found, reason
-    rounds = QUICK if not aim.open and task.points.shape[1] == 3 else ROUNDS
+    rounds = ROUNDS
+    if task.points.shape[1] == 3 and not aim.open:
+        # growth to a tolerance has weighed points by their distances, and what follows does so too
+        rounds = QUICK if aim.tolerance is None else 0
     if task.points.shape[1] == 3 and not aim.open and _refused(found):
         many = replace(many, slack=FURTHER * many.slack)
     found = searched(many, found.design, rounds=rounds, slight=SLIGHT if aim.open else FINE)
     if guessed and task.points.shape[1] == 2:
         found = _shaken(many, found)
-    if aim.tolerance is not None and not reason:
+    if aim.tolerance is not None and (not reason or found.scatter.shared >= NOISY):
         found = kept(many, found, aim, aim.tolerance)
+        reason = reason if found.maximum > aim.tolerance else ""
     return found, reason
 
 
@@ -108,14 +114,17 @@ def _structured(few: Task, many: Task, first: Design, base: Structure | None, *,
 
 def _structured_for(task: Task, found: Found, aim: Aim, base: Structure | None, *, guessed: bool) -> tuple[Found, str]:
     """A match with as many control points as the aim asks for, as forecasts or growth lead there, or why not."""
-    solid = guessed and task.points.shape[1] == 3 and own_walls(found.design)
-    if solid and aim.parameters is not None and not found.interrupted:
+    solid = guessed and task.points.shape[1] == 3 and own_walls(found.design) and not found.interrupted
+    if solid and aim.parameters is not None:
         foreseen = chosen_match(task, found, aim.parameters)
         if foreseen is not None:
             return foreseen, ""
-    # what is too many for a tolerance is taken away at the end
-    kept = solid and aim.tolerance is not None
-    if base is not None and not found.interrupted and not kept and _roomy(found, aim):
+    if solid and aim.tolerance is not None:
+        if found.rms * found.model.chord > aim.tolerance:
+            found = chosen_match(task, found, len(found.problem.paths)) or found
+        if found.rms * found.model.chord < COMPACT * aim.tolerance:
+            found = compact_match(task, found, COMPACT * aim.tolerance) or found
+    elif base is not None and not found.interrupted and _roomy(found, aim):
         found = _leaner(task, found, base)
     return _enough(task, found, aim)
 

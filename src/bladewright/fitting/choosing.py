@@ -2,19 +2,23 @@
 
 from dataclasses import replace
 
+import numpy as np
+
 from bladewright.errors import FitError
 from bladewright.fitting.forecast import Forecast, forecast_of
-from bladewright.fitting.growth import Step, least, roomier, steps_back, steps_from
+from bladewright.fitting.growth import Step, chosen_of, joined, least, roomier, steps_back, steps_from
 from bladewright.fitting.search import ROUGH, Found, Task, searched
 from bladewright.fitting.structure import Structure, structure_of
 from bladewright.nurbs.basis import Reals
 
 SHARE = 4
 """part, one in so many, of the parameters that are too many which is taken away at a time"""
-EXCHANGES, TRIED = 12, 4
+EXCHANGES, TRIED = 6, 3
 """of control points, and laws that are tried each time"""
 BETTER = 0.995
 """foreseen cost, of that before, from which an exchange is worth it"""
+FEWEST, FEWER = 16, 0.85
+"""parameters below which none are taken away before a match, and part of them that is left each time"""
 STAGES = 4
 """searches, each with the structure that the last one's forecast gives"""
 
@@ -42,6 +46,23 @@ def chosen_match(task: Task, found: Found, most: int) -> Found | None:
         if found.interrupted:
             break
     return best
+
+
+def compact_match(task: Task, found: Found, rms: float) -> Found | None:
+    """The match with as few parameters as are foreseen to leave a root mean square [m]; None without forecasts."""
+    structure = structure_of(found.design)
+    forecast = forecast_of(found, structure)
+    if forecast is None:
+        return None
+    count = forecast.foreseen(structure).parameters
+    while count > FEWEST:
+        structure = _reduced(forecast, structure, int(FEWER * count), None)
+        told = forecast.foreseen(structure)
+        left = float(np.sqrt(np.mean(told.rows[: forecast.points] ** 2))) * found.model.chord
+        if left > rms or told.parameters == count:
+            break
+        count = told.parameters
+    return chosen_match(task, found, count + _others(found, forecast))
 
 
 def _others(found: Found, forecast: Forecast) -> int:
@@ -97,7 +118,7 @@ def _filled(forecast: Forecast, structure: Structure, most: int, roots: Reals | 
         fitting = [(gain, step) for gain, step in ranked(forecast, structure, roots) if step.parameters <= room]
         if not fitting or fitting[0][0] <= 0.0:
             return structure
-        structure = fitting[0][1].structure
+        structure = joined(structure, chosen_of(fitting, max(fitting[0][1].parameters, room // SHARE)))
 
 
 def ranked(forecast: Forecast, structure: Structure, roots: Reals | None = None) -> list[tuple[float, Step]]:

@@ -4,16 +4,19 @@ from dataclasses import replace
 
 import numpy as np
 
+from bladewright.designs import Design
 from bladewright.errors import FitError
 from bladewright.fitting.aim import Aim
-from bladewright.fitting.choosing import ranked
+from bladewright.fitting.chain import own_walls
+from bladewright.fitting.choosing import best_of
 from bladewright.fitting.edgewise import edge_steps
 from bladewright.fitting.forecast import forecast_of
-from bladewright.fitting.growth import chosen_of, gains, joined, roomier
+from bladewright.fitting.growth import Step, chosen_of, gains, joined, roomier
 from bladewright.fitting.opening import opened
 from bladewright.fitting.reshaping import reshaped
 from bladewright.fitting.search import ROUGH, Found, Task, searched
 from bladewright.fitting.structure import structure_of
+from bladewright.nurbs.basis import Reals
 
 WORTHWHILE = 0.02
 """part of the sum of squares that growth must be foreseen to gain"""
@@ -32,31 +35,11 @@ def grown(task: Task, found: Found, aim: Aim) -> tuple[Found, bool]:
     emphasis = None
     if aim.tolerance is not None:
         emphasis = np.clip((found.state.feet.distances / aim.tolerance) ** 2, *EMPHASIS)
-    forecast = forecast_of(found, roomier(structure_of(found.design))) if task.points.shape[1] == 3 else None
-    roots = None
-    if forecast is not None and emphasis is not None:
-        roots = np.ones(len(forecast.rows))
-        roots[: len(emphasis)] = np.sqrt(emphasis)
-    steps_ranked = gains(found, emphasis) if forecast is None else ranked(forecast, structure_of(found.design), roots)
-    left = None if aim.parameters is None else aim.parameters - len(found.problem.paths)
-    count = len(found.problem.paths)
-    least = left // GROWN if left is not None else 0
-    if left is None and count >= MANIFOLD:
-        far = aim.tolerance is not None and found.rms * found.model.chord > FAR * aim.tolerance
-        least = count // (MANY_MORE // 2 if far else MANY_MORE)
-    steps = chosen_of(steps_ranked, left, least)
-    if aim.tolerance is not None:
-        steps += edge_steps(found, aim.tolerance)
-    if not steps:
+    design = _foreseen(task, found, aim, emphasis) if task.points.shape[1] == 3 else None
+    if design is None:
+        design = _stepped(found, aim, emphasis)
+    if design is None:
         return found, False
-    total = float(np.sum(found.problem.measures.residuals(found.state) ** 2))
-    if aim.parameters is None and emphasis is None and sum(gain for gain, _ in steps_ranked[:3]) < WORTHWHILE * total:
-        return found, False
-    structure = joined(structure_of(found.design), steps)
-    if forecast is None:
-        design = reshaped(found.design, structure)
-    else:
-        design = forecast.designed(structure, forecast.foreseen(structure, roots))
     if emphasis is not None:
         weights = task.weights * emphasis
         task = replace(task, weights=weights * (np.sum(task.weights) / np.sum(weights)))
@@ -66,3 +49,45 @@ def grown(task: Task, found: Found, aim: Aim) -> tuple[Found, bool]:
     except FitError:
         return found, False
     return replace(fresh, evaluations=fresh.evaluations + found.evaluations), True
+
+
+def _more(found: Found, aim: Aim) -> int:
+    """Parameters that are added at least."""
+    count = len(found.problem.paths)
+    if aim.parameters is not None:
+        return (aim.parameters - count) // GROWN
+    far = aim.tolerance is not None and found.rms * found.model.chord > FAR * aim.tolerance
+    return count // (MANY_MORE // 2 if far else MANY_MORE) if count >= MANIFOLD else 0
+
+
+def _foreseen(task: Task, found: Found, aim: Aim, emphasis: Reals | None) -> Design | None:
+    """The design with more control points that a forecast prefers; None where none tells of any."""
+    now = structure_of(found.design) if own_walls(found.design) else None
+    forecast = forecast_of(found, roomier(now)) if now is not None else None
+    if now is None or forecast is None or aim.tolerance is None or emphasis is None:
+        return None
+    roots = np.ones(len(forecast.rows))
+    roots[: len(emphasis)] = np.sqrt(emphasis)
+    count = forecast.foreseen(now).parameters
+    task.told("structure")
+    structure = best_of(forecast, now, count + max(_more(found, aim), count // MANY_MORE), roots)
+    edges = edge_steps(found, aim.tolerance)
+    structure = joined(structure, [Step(fields=(), structure=structure, parameters=0), *edges]) if edges else structure
+    if structure == now:
+        return None
+    return forecast.designed(structure, forecast.foreseen(structure, roots))  # type: ignore[no-any-return]
+
+
+def _stepped(found: Found, aim: Aim, emphasis: Reals | None) -> Design | None:
+    """The design with the control points that promise most; None where there are none."""
+    ranked = gains(found, emphasis)
+    left = None if aim.parameters is None else aim.parameters - len(found.problem.paths)
+    steps = chosen_of(ranked, left, _more(found, aim))
+    if aim.tolerance is not None:
+        steps += edge_steps(found, aim.tolerance)
+    if not steps:
+        return None
+    total = float(np.sum(found.problem.measures.residuals(found.state) ** 2))
+    if aim.parameters is None and emphasis is None and sum(gain for gain, _ in ranked[:3]) < WORTHWHILE * total:
+        return None
+    return reshaped(found.design, joined(structure_of(found.design), steps))

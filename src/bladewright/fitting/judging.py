@@ -1,6 +1,7 @@
 """The final measure of a match: every point of the cloud against what the design builds."""
 
-from dataclasses import dataclass
+from collections.abc import Sequence
+from dataclasses import dataclass, fields
 from typing import Any
 
 import numpy as np
@@ -9,7 +10,7 @@ from numpy.typing import NDArray
 from bladewright.blade.blade import Blade
 from bladewright.fitting.deviation import REGIONS
 from bladewright.fitting.families.faces import edges_of, on_sides, sides_of
-from bladewright.fitting.feet import Feet, feet
+from bladewright.fitting.feet import Feet, Side, feet
 from bladewright.fitting.model import Shape
 from bladewright.fitting.scatter import Scatter, scatter_of
 from bladewright.fitting.walls import ENDS, Wall, ends_of
@@ -18,8 +19,11 @@ from bladewright.section.section import Section
 
 EDGE = 0.03
 """how far the edges reach, in u"""
-FINEST = 1e-12
-"""last step of the final descents, in the parameters of a patch"""
+FINE, FINEST = 1e-5, 1e-12
+"""last steps of the descents, in the parameters of a patch: of all points, and of those that lie on the blade, whose
+distances are exact to the step itself; others are so to its square"""
+EXACT = 1e-6
+"""distance up to which a point lies on the blade, of the cloud's extent"""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -40,7 +44,7 @@ def judged(points: Reals, built: Blade | Section, precision: Reals | None = None
     """
     sides = sides_of(built)
     exact = built.exact if isinstance(built, Blade) else None
-    on = feet(points, sides, converged=FINEST)
+    on = _nearest(points, sides)
     scatter = scatter_of(points, on, precision)
     shape = Shape(design=None, sides=sides, noses=np.zeros(0), exact=exact)
     ends = ends_of(points, on, shape, scatter.inliers)
@@ -57,6 +61,19 @@ def judged(points: Reals, built: Blade | Section, precision: Reals | None = None
     if exact is not None and np.any(ends.covered):
         _cover(points, ends.covered, built, deviations, places, regions, on)
     return Judgement(places=places, on=on, deviations=deviations, regions=regions, scatter=scatter)
+
+
+def _nearest(points: Reals, sides: Sequence[Side]) -> Feet:
+    """The nearest places of points (n, d)."""
+    on = feet(points, sides, converged=FINE)
+    exact = np.flatnonzero(on.distances < EXACT * float(np.ptp(points, axis=0).max()))
+    if len(exact) == 0:
+        return on
+    again = feet(points[exact], sides, on.part(exact), converged=FINEST)
+    parts = {each.name: np.array(getattr(on, each.name)) for each in fields(Feet)}
+    for name, values in parts.items():
+        values[exact] = getattr(again, name)
+    return Feet(**parts)
 
 
 def _cover(points: Reals, covered: Any, built: Any, deviations: Reals, places: Any, regions: Any, on: Feet) -> None:

@@ -39,8 +39,8 @@ HOLDING = SURVEY
 FOLDING = (21, 21)
 """places along and across the channel where it is asked whether it folds over"""
 COARSE, SLACK = 3.0, 100.0
-"""tolerance of a search, of the design's own, from which knots may miss what they promise of walls and edges, and by how
-many times as much"""
+"""tolerance of a search, of the design's own, from which knots may miss what they promise of walls and edges, and by
+how many times as much"""
 OPEN = 0.02
 """smallest Jacobian of the channel, of its median"""
 

@@ -134,7 +134,8 @@ def searched(
         except FitError:
             # at finer knots the design has no shape: it stays as it was found
             break
-        task.told(f"{len(found.problem.paths)} parameters, {1e3 * found.rms * found.model.chord:.3g} mm rms")
+        rms = f"{1e3 * found.rms * found.model.chord:.3g} mm rms, {1e3 * found.maximum:.3g} mm at most"
+        task.told(f"{len(found.problem.paths)} parameters, {rms}")
         ratio = found.misfit / before
         idle = idle + 1 if ratio**2 > min(SETTLED**2, 1.0 - slight) else 0
         if number and idle and (found.converged or idle > 1):

@@ -23,6 +23,8 @@ SWAY, HEAVIEST = (0.7, 1.5), (0.1, 30.0)
 """by how much the weight of a point changes at a time, and all in all"""
 FAILURES = 3
 """structures that are tried and do not keep the tolerance, each half as far away as the last"""
+HOPELESS = 1.4
+"""largest deviation, of the tolerance, that other weights do not mend"""
 POLISHED = 3
 """searches of one structure, each with other weights"""
 
@@ -79,6 +81,8 @@ def _tried(task: Task, found: Found, forecast: Forecast, plan: _Plan, weights: R
         evaluations += fresh.evaluations
         if fresh.maximum <= tolerance or fresh.interrupted:
             return replace(fresh, evaluations=evaluations)
+        if fresh.maximum > HOPELESS * tolerance:
+            return None
         start, weights = fresh.design, weights * _swayed(fresh.state.feet.distances, tolerance)
     return None
 

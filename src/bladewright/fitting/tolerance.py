@@ -57,7 +57,8 @@ def _within(task: Task, found: Found, tolerance: float) -> Found:
         distances = found.state.feet.distances
         weights = weights * np.clip((distances / tolerance) ** 2, 0.3, 4.0)
         weights = weights * (np.sum(task.weights) / np.sum(weights))
-        found = searched(replace(task, weights=weights), found.design, rounds=ROUNDS, slight=_slight(task))
+        rounds = ROUNDS if task.points.shape[1] == 2 else 1
+        found = searched(replace(task, weights=weights), found.design, rounds=rounds, slight=_slight(task))
         best = found if found.maximum < best.maximum else best
     return best
 
