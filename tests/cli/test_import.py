@@ -103,12 +103,15 @@ def windmill(tmp_path, monkeypatch):
     return inputs.written(tmp_path).relative_to(tmp_path)
 
 
-def test_a_case_of_tblade3_becomes_a_design_that_builds(run, windmill):
+def test_a_case_of_tblade3_becomes_a_design_and_that_a_verified_solid(run, windmill):
     found = run("import", windmill)
     assert found.status == 0, found.err
     for part in ("kept: all 3 sections", "changed: ", "note: ", "by its formulas", "wrote windmill-7.toml"):
         assert part in found.out
     assert bw.read_design("windmill-7.toml").plane == "counted-m'-theta"
+    built = run("build", "windmill-7.toml", "--as", "step", "--set", "tolerance=1e-3", "--json").json
+    assert built["passed"], built
+    assert Path("windmill-7.step").stat().st_size < 600e3
 
 
 def test_points_that_tblade3_has_written_beside_its_input_are_measured(run, windmill):
