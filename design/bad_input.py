@@ -37,7 +37,7 @@ LIMIT = 20.0
 """seconds of processor time; about twice what the slowest example takes"""
 LONGEST = 1500
 """letters of a paragraph"""
-VALUES: tuple[Any, ...] = (-1, 0, 1e9, float("nan"), "text", [], [1.0], {}, True)
+VALUES: tuple[Any, ...] = (-1, 0, 1e9, 10**9, float("nan"), "text", [], [1.0], {}, True)
 """what takes the place of a key's value"""
 WORDS = ("oops", "nan", "-1", "0", "1e9", "")
 """what takes the place of a number in a line"""

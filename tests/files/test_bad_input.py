@@ -1,6 +1,7 @@
 """Broken input is taken, or refused in one paragraph that names its file; `design/bad_input.py` breaks all there is."""
 
 import sys
+import tomllib
 import warnings
 from pathlib import Path
 
@@ -10,9 +11,10 @@ import pytest
 sys.path.insert(0, str(Path(__file__).parents[2] / "design"))
 import bad_input
 
-from bladewright.errors import FileError
+from bladewright.errors import DesignError, FileError
 from bladewright.files.examples import example_text
 from bladewright.files.parablade import import_parablade
+from bladewright.files.reading import design_from
 from bladewright.files.tblade3 import import_tblade3
 
 from .tblade3.inputs import SPANWISE, lines
@@ -110,3 +112,12 @@ def endless():
 )
 def test_what_becomes_of_broken_input_is_told_apart(tried, kind):
     assert bad_input.outcome_of(bad_input.Broken("a.dat", "", tried), limit=0.2).kind == kind
+
+
+def test_laws_that_ask_for_too_many_poles_are_refused_for_their_number(monkeypatch):
+    from bladewright.blade import build
+
+    monkeypatch.setattr(build, "MOST_POLES", (200, 5))
+    design = design_from(tomllib.loads(example_text("exhaust-strut")), "strut.toml")
+    with pytest.raises(DesignError, match="give the laws along the span fewer control points"):
+        design.build()

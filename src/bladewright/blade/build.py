@@ -59,6 +59,15 @@ def _check_reached(blade: Blade) -> None:
     error, off = blade.error, blade.wall_error
     if error <= tolerance and off <= wall and poles[0] <= MOST_POLES[0] and poles[1] <= MOST_POLES[1]:
         return
+    if error <= tolerance and off <= wall:
+        where = " and ".join(
+            name for name, own, most in zip(("chord", "span"), poles, MOST_POLES, strict=True) if own > most
+        )
+        raise DesignError(
+            f"tolerance is {tolerance:g} of the chord, which native surfaces hold with {poles[0]} x {poles[1]} poles a "
+            f"side, and at most {MOST_POLES[0]} x {MOST_POLES[1]} are allowed: give the laws along the {where} fewer "
+            "control points, and curves in (x, r) fewer points"
+        )
     raise DesignError(
         f"tolerance is {tolerance:g} of the chord: native surfaces reach {error:.2g} (ends {off:.2g} off the "
         f"walls, {wall:g} allowed) with {poles[0]} x {poles[1]} poles a side, at most {MOST_POLES[0]} x "
