@@ -135,6 +135,14 @@ def test_the_wake_of_a_back_face_starts_at_both_sides_from_there_on():
         assert np.array_equal(net(around, f"{wall}_wake")[0], np.concatenate([lower, upper[-2::-1]]))
 
 
+def test_a_ruled_vane_with_a_back_face_has_its_wake_too():
+    design = example("wedge-diffuser").changed({"skinning": "ruled", "tolerance": COARSE})
+    around = passage(design.build())
+    assert {"hub_wake", "shroud_wake"} <= set(around.surfaces)
+    assert abs(around.ring_error) < 1e-8
+    assert min(share for share, _, _ in around.folds.values()) > 0.01
+
+
 def test_split_faces_have_one_piece_more_where_a_strip_lies_between():
     asked = SECTIONED["plate with faces at both edges"][1]
     whole = made("plate with faces at both edges")
