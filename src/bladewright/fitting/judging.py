@@ -19,10 +19,10 @@ from bladewright.section.section import Section
 
 EDGE = 0.03
 """how far the edges reach, in u"""
-FINE, FINEST = 1e-5, 1e-12
+FINE, FINEST = 1e-6, 1e-12
 """last steps of the descents, in the parameters of a patch: of all points, and of those that lie on the blade, whose
 distances are exact to the step itself; others are so to its square"""
-EXACT = 1e-6
+EXACT = 3e-6
 """distance up to which a point lies on the blade, of the cloud's extent"""
 
 
