@@ -1,5 +1,6 @@
 """Native stream surfaces: lengths, edges, planes and the way back, against closed forms and against T-Blade3."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -14,6 +15,7 @@ from bladewright.blade.stream_surfaces import stream_surfaces
 from bladewright.blade.streamlines import stream_lines
 from bladewright.errors import DesignError
 from bladewright.files.tblade3 import read_tblade3
+from bladewright.numerics.elementary import cross2
 
 from .flow_paths import BEND, CONE, CYLINDER, DISC, DUCT, GIVEN, IMPELLER, MACHINES, through
 
@@ -369,3 +371,28 @@ def test_stream_surfaces_between_given_ones_keep_two_derivatives_across():
             # a step times the next derivative, of at most 1e4
             np.testing.assert_allclose(before, after, atol=5e-3 if order == 2 else 1e-4)
     np.testing.assert_allclose(surfaces.shares(surfaces.spans), np.eye(len(surfaces.spans)), atol=0.0)
+
+
+CROSSED = FlowPath(
+    hub=through((-60, 175), (-30, 120), (0, 95), (40, 103), (120, 110)),
+    shroud=through((-60, 170), (-30, 169), (0, 169), (40, 166), (120, 160)),
+    stream_surfaces=(through((-60, 130), (-30, 130), (0, 131), (40, 134), (120, 135)),),
+    matched="edges",
+)
+EDGES = through((0, 80), (2, 130), (6, 180)), through((38, 90), (34, 130), (28, 180))
+
+
+def test_surfaces_matched_at_the_edges_end_where_lines_far_from_the_blade_cross():
+    whole = stream_surfaces(replace(CROSSED, hub=through((-60, 90), (0, 95), (40, 103), (120, 110))), 1e-3, EDGES)
+    cut = stream_surfaces(CROSSED, 1e-3, EDGES)
+    assert whole.low < -1.2 < cut.low < -0.1
+    assert cut.high == pytest.approx(whole.high, rel=0.05)
+    t, v = np.linspace(cut.low, cut.high, 301), np.linspace(0.0, 1.0, 61)
+    _, along, across = cut.grid(t, v)
+    assert np.min(cross2(along, across)) > 0.0
+
+
+def test_lines_that_cross_at_the_blade_are_refused_still():
+    hub = through((-60, 90), (0, 95), (20, 150), (40, 103), (120, 110))
+    with pytest.raises(DesignError, match="the stream surfaces fold over"):
+        stream_surfaces(replace(CROSSED, hub=hub), 1e-3, EDGES)

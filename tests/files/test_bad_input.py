@@ -121,3 +121,17 @@ def test_laws_that_ask_for_too_many_poles_are_refused_for_their_number(monkeypat
     design = design_from(tomllib.loads(example_text("exhaust-strut")), "strut.toml")
     with pytest.raises(DesignError, match="give the laws along the span fewer control points"):
         design.build()
+
+
+@pytest.mark.parametrize(
+    ("put", "said"),
+    [
+        ({"stacking": {"sweep": 5.0}}, "stacking.sweep does not exist: there is no 'sweep'; known are reference,"),
+        ({"leading_edge": 7.0}, "leading_edge is 7.0: a table of points, spacing, ends or a table of"),
+        ({"section": 7.0}, "section is 7.0: a table of "),
+    ],
+)
+def test_what_stands_in_the_place_of_a_part_is_said_with_what_belongs_there(put, said):
+    with pytest.raises(DesignError) as caught:
+        design_from(tomllib.loads(example_text("core-rotor")) | put, "rotor.toml")
+    assert str(caught.value).startswith(f"rotor.toml: {said}")
