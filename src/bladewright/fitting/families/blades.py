@@ -1,6 +1,7 @@
 """From points in space to a blade from sections of a family."""
 
 from dataclasses import replace
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -10,11 +11,13 @@ from bladewright.designs import Design
 from bladewright.errors import DesignError, FitError
 from bladewright.fitting.aim import Aim
 from bladewright.fitting.families.flow import Channelled
+from bladewright.fitting.families.growing import enough
 from bladewright.fitting.families.kinds import Kind
 from bladewright.fitting.families.sampled import Sampled, reversed_flow, sampled
 from bladewright.fitting.families.sections import best_of, started_of, thinned
 from bladewright.fitting.families.spanwise import along_span, counts_of, nearest_law, plain
 from bladewright.fitting.families.standing import EDGES, standing
+from bladewright.fitting.families.widening import wider_blade
 from bladewright.fitting.first.blade import first_blade
 from bladewright.fitting.frame import Frame
 from bladewright.fitting.freedom import Freedom
@@ -27,6 +30,9 @@ from bladewright.section.section import Section
 
 FEW, MANY = 1000, 12_000
 """points of a quick and of a thorough search"""
+COARSE = 1e-3
+"""tolerance of the native sides of blades that are on the way, of the chord"""
+HELD = "hub and shroud are held as they were first found, or given"
 QUICK = 4
 """rounds of the search for the closed blade that says where to begin"""
 SPANS: Reals = np.linspace(0.0, 1.0, 7)
@@ -53,21 +59,13 @@ def matched_blade(task: Task, kind: Kind, start: Any, like: Any, frame: Frame, a
         first = _first(closed, kind, like, frame)
     first = task.free.applied(first) if isinstance(task.free, Freedom) else first
     check_bounds(first, task.free(first), task.bounds)
-    found = searched(few, first)
+    found, reason = searched(few, first), ""
+    if not (aim.structured or found.interrupted):
+        found, reason = enough(few, found, aim, partial(wider_blade, kind=kind), coarse=COARSE)
     if not found.interrupted:
         fresh = searched(many, found.design)
         found = replace(fresh, evaluations=found.evaluations + fresh.evaluations)
-    return found, _reason(found, aim)
-
-
-def _reason(found: Found, aim: Aim) -> str:
-    short = aim.tolerance is not None and found.maximum > aim.tolerance
-    more = aim.parameters is not None and len(found.problem.paths) < aim.parameters
-    if not (short or more):
-        return ""
-    return (
-        "control points are not added to blades from sections: give a start, or `like`, with more of them in its laws"
-    )
+    return found, "; ".join(filter(None, (reason, HELD)))
 
 
 def _closed(task: Task, frame: Frame, like: Any) -> Blade:
@@ -99,8 +97,9 @@ def _first(closed: Blade, kind: Kind, like: Any, frame: Frame) -> Design:
     if found.backwards:
         sections = [reversed_flow(each) for each in sections[::-1]]
     templates = kind.templates(sections[CHOSEN], None) if like is None else [plain(like.section)]
-    chosen = _matched(kind, sections[CHOSEN], templates)
-    parts = [chosen if i == CHOSEN else _matched(kind, each, [chosen]) for i, each in enumerate(sections)]
+    middle = sections[CHOSEN]
+    chosen = _matched(kind, middle, [start for each in templates for start in started_of(kind, middle, each)])
+    parts = _beside(kind, sections[CHOSEN::-1], chosen)[::-1] + _beside(kind, sections[CHOSEN:], chosen)[1:]
     counts = dict.fromkeys(counts_of(chosen), LAW) if like is None else counts_of(like.section)
     linear = design.arrangement == "linear"
     place = [float(each.start[1]) / metre if linear else float(np.degrees(each.start[1])) for each in sections]
@@ -157,8 +156,16 @@ def _samples(section: Section) -> Sampled:
     return sampled(upper, lower, (section.edge_radii[0] / scale[0], section.edge_radii[1] / scale[1]))
 
 
-def _matched(kind: Kind, section: Sampled, templates: Any) -> Any:
-    """The part of the best of several structures, matched to a section's samples."""
+def _beside(kind: Kind, sections: list[Sampled], first: Any) -> list[Any]:
+    """Parts of sections in a row, of which the first is known: each begins as the one before, or as its samples say."""
+    found = [first]
+    for section in sections[1:]:
+        found.append(_matched(kind, section, [found[-1], *started_of(kind, section, found[-1])[:1]]))
+    return found
+
+
+def _matched(kind: Kind, section: Sampled, starts: list[Any]) -> Any:
+    """The best part that is found from several, matched to a section's samples."""
     cosine, sine = np.cos(section.stagger), np.sin(section.stagger)
     turn = np.array([[cosine, sine], [-sine, cosine]])
     points = np.concatenate([section.upper[::EVERY], section.lower[EVERY // 2 :: EVERY]]) @ turn
@@ -167,7 +174,6 @@ def _matched(kind: Kind, section: Sampled, templates: Any) -> Any:
     def made(part: Any) -> Design:
         return kind.section(name="section", length_unit="m", chord=1.0, section=part)
 
-    starts = [start for template in templates for start in started_of(kind, section, template)]
     found: Any = best_of(task, task, made, starts, rounds=QUICK).design
     return found.section
 

@@ -17,6 +17,8 @@ WALL = 9
 """points on each wall beside the blade"""
 AHEAD = (0.25, 0.5, 0.8)
 """where points stand on its straight continuation, of its length"""
+KEPT = 0.6
+"""part of the radius at its end that the continuation may lose"""
 EDGE = 4
 """points on an edge curve"""
 PAST = 0.06
@@ -86,8 +88,16 @@ def _lengthened(line: Reals) -> Reals:
     """A line (n, 2) with points on its straight continuation at both ends."""
     size = float(np.sum(np.sqrt(np.sum(np.diff(line, axis=0) ** 2, axis=1))))
     first, last = _unit(line[0] - line[1]), _unit(line[-1] - line[-2])
-    steps = size * np.array(AHEAD)[:, None]
-    return np.concatenate([(line[0] + steps * first)[::-1], line, line[-1] + steps * last])
+    ahead, behind = (
+        size * _off_axis(end[1], size * way[1]) * np.array(AHEAD)[:, None]
+        for end, way in ((line[0], first), (line[-1], last))
+    )
+    return np.concatenate([(line[0] + ahead * first)[::-1], line, line[-1] + behind * last])
+
+
+def _off_axis(radius: float, slope: float) -> float:
+    """The part of a straight continuation that keeps off the axis."""
+    return 1.0 if slope >= 0.0 else min(1.0, KEPT * radius / (-slope * AHEAD[-1]))
 
 
 def _past(line: Reals, times: float = 1.0) -> Reals:

@@ -12,42 +12,55 @@ from bladewright.fitting.scales import scales_of
 from bladewright.fitting.search import Found, Task
 from bladewright.nurbs.basis import Reals
 
+Promise = tuple[float, int, Design]
+"""gain for each parameter, number of parameters more, and the design"""
 
-def promising(task: Task, found: Found, designs: Iterable[Design], roots: Reals | None = None) -> list[Design]:
+
+def promised(task: Task, found: Found, designs: Iterable[Design], roots: Reals | None = None) -> list[Promise]:
     """Designs that have more control points than a match's, best gain for each parameter first.
 
     `roots` (n,) are square roots of further weights of the points. Designs without a shape, or that gain nothing, are
     left out.
     """
-    count = len(found.problem.paths)
-    before = left(found, found.design, found.problem.paths, roots)
-    ranked: list[tuple[float, int, Design]] = []
+    measures, paths = found.problem.measures, found.problem.paths
+    values = found.design.parameters()
+    rows = measures.residuals(found.state)
+    slopes = measures.slopes(found.state, paths) * found.problem.scales.size
+    before = _left(slopes, rows, roots, found.problem.noise)
+    ranked: list[Promise] = []
     for design in designs:
         try:
-            paths = task.free(design)
-            gain = before - left(found, design, paths, roots)
+            free = task.free(design)
+            fresh = design.parameters()
+            own = tuple(path for path in free if values.get(path) != fresh[path])
+            kept = [i for i, path in enumerate(paths) if path in fresh and path not in own]
+            rows, columns = _at(found, design, own)
         except (DesignError, FitError):
             continue
-        if gain > 0.0 and len(paths) > count:
-            ranked.append((gain / (len(paths) - count), len(ranked), design))
-    return [design for _, _, design in sorted(ranked, key=lambda each: (-each[0], each[1]))]
+        gain = before - _left(np.concatenate([slopes[:, kept], columns], axis=1), rows, roots, found.problem.noise)
+        more = len(free) - len(paths)
+        if gain > 0.0 and more > 0:
+            ranked.append((gain / more, more, design))
+    return sorted(ranked, key=lambda each: -each[0])
 
 
-def left(found: Found, design: Design, paths: tuple[str, ...], roots: Reals | None = None) -> float:
-    """The sum of squares that a design near a match leaves after the linear step that makes it least.
-
-    Parameters are held by the prior's spread. Raises DesignError where the design has no shape.
-    """
+def _at(found: Found, design: Design, paths: tuple[str, ...]) -> tuple[Reals, Reals]:
+    """Residuals of a design where the cloud stands on a match's, and their derivatives by scaled parameters."""
     measures, on = found.problem.measures, found.state.feet
     shape = measures.model.shape(design)
     if not shape.finite:
         raise DesignError("a law with another number of control points left no shape: take another one")
     state = State(shape=shape, feet=placed(measures.points, shape.sides, on.side, on.u, on.v))
-    rows = measures.residuals(state)
     slopes = measures.slopes(state, paths) * scales_of(design, paths, found.model.chord).size
+    return measures.residuals(state), slopes
+
+
+def _left(slopes: Reals, rows: Reals, roots: Reals | None, noise: float) -> float:
+    """The sum of squares after the linear step that makes it least, parameters held by the prior's spread."""
     whole = np.column_stack([slopes, rows])
     if roots is not None:
         whole[: len(roots)] *= roots[:, None]
-    held = found.problem.noise * np.eye(len(paths), len(paths) + 1)
+    count = slopes.shape[1]
+    held = noise * np.eye(count, count + 1)
     # the last diagonal entry is what no step takes away
     return float(np.asarray(np.linalg.qr(np.concatenate([whole, held]), mode="r"))[-1, -1] ** 2)

@@ -8,15 +8,13 @@ from typing import Any
 import numpy as np
 
 from bladewright.numerics.elementary import Array, radians
-from bladewright.nurbs.basis import Reals
 from bladewright.section.laws import Span
 from bladewright.section.suction_pressure.assembly import characteristic, sides
+from bladewright.section.suction_pressure.fitting import PLACES
 from bladewright.section.suction_pressure.part import SuctionPressure
 from bladewright.section.suction_pressure.points import OPENING, opening
 from bladewright.section.suction_pressure.side import pace
 
-PLACES: Reals = np.linspace(0.0, 1.0, 17)
-"""of a side's first and last part at which its pace is looked at"""
 SLOWEST = 0.003
 """smallest pace of a side, of what it has further on"""
 ROOM = 0.003

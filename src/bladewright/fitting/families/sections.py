@@ -2,14 +2,16 @@
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
+from functools import partial
 from typing import Any
 
 import numpy as np
 
 from bladewright.designs import Design
 from bladewright.errors import DesignError, FitError
-from bladewright.fitting.aim import Aim, short_of
-from bladewright.fitting.families.foreseen import promising
+from bladewright.fitting.aim import Aim
+from bladewright.fitting.families.foreseen import promised
+from bladewright.fitting.families.growing import emphasis, enough, sound
 from bladewright.fitting.families.kinds import Kind
 from bladewright.fitting.families.sampled import Sampled, sampled
 from bladewright.fitting.frame import Frame
@@ -33,15 +35,10 @@ NEAR = 3.0
 """ratio of misfits within which a structure is searched on after the rough search"""
 MOST = 4
 """structures that are searched on"""
-WORTH = 0.9
-"""ratio of misfits from which one control point more is worth it where no aim is stated"""
-PATIENCE = 2
-"""control points in a row that may bring nothing before growth ends"""
 EXACT = 1e-9
 """misfit at which a structure is known, of the chord"""
 TOLERANCES = (0.0, 1e-8, 1e-6)
 """of the native sides, of the chord"""
-GROWTHS = 30
 TRIED = 2
 """laws that are given a control point more by a search, of those that promise most"""
 
@@ -65,7 +62,7 @@ def matched_section(task: Task, kind: Kind, start: Any, like: Any, frame: Frame,
         found = best_of(rough, few, _maker(kind, section, frame, task), starts)
     reason = ""
     if not (aim.structured or found.interrupted):
-        found, reason = _enough(few, kind, found, aim)
+        found, reason = enough(few, found, aim, partial(_wider, kind=kind), coarse=TOLERANCES[-1])
     return _coarsened(found if found.interrupted else _thorough(many, found)), reason
 
 
@@ -137,7 +134,11 @@ def best_of(
         if found is not None and _sound(found) and (each.rms > NEAR * least or number >= MOST):
             break
         fresh = searched(few, each.design, rounds=rounds)
-        if found is None or (fresh.rms < found.rms and _sound(fresh)) or not _sound(found):
+        if (
+            found is None
+            or (fresh.rms < found.rms and sound(fresh, TOLERANCES[-1]))
+            or not sound(found, TOLERANCES[-1])
+        ):
             found = fresh
         if found.rms < EXACT or found.interrupted:
             break
@@ -145,42 +146,11 @@ def best_of(
     return found
 
 
-def _sound(found: Found, tolerance: float = TOLERANCES[-1]) -> bool:
-    """Whether the design can be built with a tolerance: whether its section does not cross itself."""
-    design: Any = found.design
-    try:
-        replace(design, tolerance=max(design.tolerance, tolerance)).build()
-    except DesignError:
-        return False
-    return True
+def _sound(found: Found) -> bool:
+    return sound(found, TOLERANCES[-1])
 
 
-def _enough(task: Task, kind: Kind, found: Found, aim: Aim) -> tuple[Found, str]:
-    """A match with as many control points as the aim asks for, or why there are no more."""
-    best, idle = found, 0
-    for _ in range(GROWTHS):
-        short, reason = short_of(found, aim, task)
-        if not short or found.interrupted:
-            return found if found.rms <= best.rms or aim.parameters is not None else best, reason
-        tried = [each for each in _wider(task, kind, found) if _allowed(each, aim) and _sound(each)]
-        if not tried:
-            return (
-                best,
-                f"no control point can be added to the {kind.name} section that leaves it one that can be built",
-            )
-        found = min(tried, key=lambda each: each.rms)
-        idle = idle + 1 if found.rms > WORTH * best.rms else 0
-        best = found if found.rms < WORTH * best.rms or aim.parameters is not None else best
-        if aim.open and idle > PATIENCE:
-            return best, "further control points bring the section hardly nearer to the points"
-    return best, f"control points were added {GROWTHS} times, and no more are"
-
-
-def _allowed(found: Found, aim: Aim) -> bool:
-    return aim.parameters is None or len(found.problem.paths) <= aim.parameters
-
-
-def _wider(task: Task, kind: Kind, found: Found) -> Iterator[Found]:
+def _wider(task: Task, found: Found, aim: Aim, *, kind: Kind) -> Iterator[Found]:
     """Matches with a control point more, of the laws that promise most."""
     design: Any = found.design
     try:
@@ -189,7 +159,8 @@ def _wider(task: Task, kind: Kind, found: Found) -> Iterator[Found]:
         parts = kind.grown(design.section, sampled(sides[0], sides[1], (0.0, 0.0)))
     except DesignError:
         return
-    for wider in promising(task, found, [replace(design, section=part) for part in parts])[:TRIED]:
+    designs = [replace(design, section=part) for part in parts]
+    for _, _, wider in promised(task, found, designs, emphasis(found, aim))[:TRIED]:
         try:
             fresh = searched(task, wider, rounds=QUICK)
         except (DesignError, FitError):
@@ -206,7 +177,7 @@ def _thorough(task: Task, found: Found) -> Found:
 def _coarsened(found: Found) -> Found:
     """The match with the finest tolerance of its native sides that it can be built with: edges may turn fast."""
     for tolerance in TOLERANCES:
-        if _sound(found, tolerance):
+        if sound(found, tolerance):
             design: Any = found.design
             return replace(found, design=replace(design, tolerance=max(design.tolerance, tolerance)))
     return found

@@ -1,0 +1,65 @@
+"""Matches of the families that are one part with as many control points as are asked for, where they promise most."""
+
+from collections.abc import Callable, Iterator
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from bladewright.errors import DesignError
+from bladewright.fitting.aim import Aim, short_of
+from bladewright.fitting.search import Found, Task
+from bladewright.nurbs.basis import Reals
+
+WORTH = 0.9
+"""ratio of misfits from which control points more are worth it where no aim is stated"""
+PATIENCE = 2
+"""times in a row that they may bring nothing before growth ends"""
+GROWTHS = 30
+EMPHASIS = (0.1, 10.0)
+"""least and largest weight of a point by its distance, where a tolerance is to be met"""
+
+Wider = Callable[[Task, Found, Aim], Iterator[Found]]
+"""matches near to one with control points more"""
+
+
+def enough(task: Task, found: Found, aim: Aim, wider: Wider, *, coarse: float) -> tuple[Found, str]:
+    """A match with as many control points as the aim asks for, or why there are no more.
+
+    What is grown can be built, with native sides of the `coarse` tolerance.
+    """
+    best, idle = found, 0
+    for _ in range(GROWTHS):
+        short, reason = short_of(found, aim, task)
+        if not short or found.interrupted:
+            return found if found.rms <= best.rms or aim.parameters is not None else best, reason
+        tried = [each for each in wider(task, found, aim) if _allowed(each, aim) and sound(each, coarse)]
+        if not tried:
+            return best, "no control point can be added to the design that leaves it one that can be built"
+        found = min(tried, key=lambda each: each.rms)
+        idle = idle + 1 if found.rms > WORTH * best.rms else 0
+        best = found if found.rms < WORTH * best.rms or aim.parameters is not None else best
+        if aim.open and idle > PATIENCE:
+            return best, "further control points bring the design hardly nearer to the points"
+    return best, f"control points were added {GROWTHS} times, and no more are"
+
+
+def sound(found: Found, tolerance: float) -> bool:
+    """Whether the design can be built with a tolerance: whether its sections do not cross themselves."""
+    design: Any = found.design
+    try:
+        replace(design, tolerance=max(design.tolerance, tolerance)).build()
+    except DesignError:
+        return False
+    return True
+
+
+def emphasis(found: Found, aim: Aim) -> Reals | None:
+    """Square roots of weights (n,) by which points far off count more; none where no tolerance is asked for."""
+    if aim.tolerance is None:
+        return None
+    return np.sqrt(np.clip((found.state.feet.distances / aim.tolerance) ** 2, *EMPHASIS))
+
+
+def _allowed(found: Found, aim: Aim) -> bool:
+    return aim.parameters is None or len(found.problem.paths) <= aim.parameters

@@ -1,0 +1,86 @@
+"""Starts and growth of the families that are one part."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from bladewright.fitting.families.flow import KEPT, _off_axis
+from bladewright.fitting.families.kinds import KINDS, kind_of
+from bladewright.fitting.families.polyline import nearest_on
+from bladewright.fitting.families.room import crowding
+from bladewright.fitting.families.rounded_edge import edge_through
+from bladewright.fitting.families.sections import section_samples
+from bladewright.fitting.families.suction_pressure import templates
+from bladewright.fitting.families.widening import widenings
+from bladewright.fitting.freedom import Freedom
+from bladewright.section.laws import Span
+
+from ..blade.sectioned import COMPRESSOR, DESIGNS, DIFFUSER
+from ..section.suction_pressure_examples import STATOR, section
+
+PLACES = np.linspace(0.0, 1.0, 33)
+ALONE = Span(np.zeros(1))
+
+
+def outline(part, v):
+    """Both sides of the sections of a part at places along the span."""
+    return np.stack([np.real(side) for side in part.outline(Span(v)).points(PLACES)])
+
+
+@pytest.mark.parametrize("design", [COMPRESSOR, DIFFUSER, DESIGNS["inlet-vane"]], ids=lambda design: design.name)
+def test_a_blade_with_a_control_point_more_along_the_span_is_the_same_blade(design):
+    v = np.linspace(0.0, 1.0, 5)
+    grown = 0
+    for widening in widenings(design, kind_of(design)):
+        if not widening.law.startswith("section.") or "chord" in widening.law:
+            continue
+        wider = widening.applied(design)
+        assert len(Freedom()(wider)) > len(Freedom()(design)), widening.law
+        # constants and laws of up to three control points are held by one more; others come near
+        assert outline(wider.section, v) == pytest.approx(outline(design.section, v), abs=1e-3), widening.law
+        grown += 1
+    assert grown
+
+
+def test_every_law_along_the_chord_of_a_blade_may_grow():
+    chordwise = [each for each in widenings(COMPRESSOR, KINDS["curvature-meanline"]) if "along the chord" in each.law]
+    assert chordwise
+    for widening in chordwise:
+        assert len(Freedom()(widening.applied(COMPRESSOR))) > len(Freedom()(COMPRESSOR))
+
+
+def test_an_edges_corners_are_found_on_the_sides_of_a_section():
+    samples = section_samples(section(STATOR).build())
+    found = edge_through(samples, 1, np.radians(10.0), "C2")
+    assert found.radius == pytest.approx(STATOR.trailing_edge_radius, rel=0.05)
+    assert samples.stagger + found.angle == pytest.approx(np.radians(STATOR.metal_angle_out), abs=np.radians(2.0))
+
+
+def test_templates_have_nearly_as_many_parameters_as_are_asked_for():
+    samples = section_samples(section(STATOR).build())
+    for count in (22, 26, 30):
+        for part in templates(samples, count):
+            assert len(Freedom()(section(part))) == count
+
+
+def test_a_section_on_too_short_a_tangent_is_crowded_before_it_is_refused():
+    assert np.max(np.real(crowding(STATOR, ALONE))) < 0.0
+    reach = 0.1
+    while np.max(np.real(crowding(replace(STATOR, pressure_tangent_in=reach), ALONE))) <= 0.0:
+        reach *= 0.998
+    # crowding begins while the section can still be made
+    assert replace(STATOR, pressure_tangent_in=reach).outline(ALONE).points(PLACES)[0].shape == (1, 33, 2)
+
+
+def test_the_nearest_places_on_a_line_of_points_have_its_tangents_and_sides():
+    line = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0]])
+    found = nearest_on(line, np.array([[0.5, 0.2], [1.3, 0.5], [-1.0, -0.5]]))
+    assert found.points == pytest.approx(np.array([[0.5, 0.0], [1.0, 0.5], [-1.0, 0.0]]))
+    assert found.heights == pytest.approx([0.2, -0.3, -0.5])
+    assert found.normals[1] == pytest.approx([-1.0, 0.0])
+
+
+def test_a_wall_that_leads_towards_the_axis_is_lengthened_as_far_as_keeps_off_it():
+    assert _off_axis(1.0, 0.5) == 1.0
+    assert _off_axis(1.0, -10.0) * 10.0 * 0.8 == pytest.approx(KEPT)
