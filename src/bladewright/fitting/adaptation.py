@@ -67,8 +67,8 @@ def adapted(task: Task, first: Design, aim: Aim, *, base: Structure | None, gues
     if aim.structured and aim.tolerance is None:
         return _structured(few, many, first, base, guessed=guessed), ""
     found = searched(few, first, noise=noise, rounds=2 * QUICK if base is None else QUICK, slight=ROUGH)
-    exact = guessed and aim.open and isinstance(first, UnifiedSection) and not rounded(task.points)
-    if exact and _misses(found, QUIET):
+    exact = guessed and aim.open and not rounded(task.points)
+    if exact and isinstance(first, UnifiedSection) and _misses(found, QUIET):
         known = identified(few, first)
         if known is not None:
             return (known if known.interrupted else searched(many, known.design)), ""

@@ -75,7 +75,7 @@ def _foreseen(task: Task, found: Found, aim: Aim, emphasis: Reals | None) -> Des
     structure = joined(structure, [Step(fields=(), structure=structure, parameters=0), *edges]) if edges else structure
     if structure == now:
         return None
-    return forecast.designed(structure, forecast.foreseen(structure, roots))  # type: ignore[no-any-return]
+    return forecast.designed(structure, forecast.foreseen(structure, roots))
 
 
 def _stepped(found: Found, aim: Aim, emphasis: Reals | None) -> Design | None:
