@@ -41,7 +41,7 @@ HEAD = """\
 * periodic poles: one boundary's from the other's moved by a pitch, of their extent (limit 1e-12);
 * STEP: the round trip's deviation of untrimmed faces (limit 1e-6 mm) and of the volume (limit 1e-6);
 * cut: volume of the passage that OpenCASCADE cuts from its sector over the native one, less one (limit 1e-6); where
-  the passage winds a full turn, of one that reaches 0.15 past the blade;
+  the passage winds a full turn, of one that reaches 0.15 past the blade; empty with `--no-cut`;
 * MB of the STEP file, and seconds of the processor.
 
 """
