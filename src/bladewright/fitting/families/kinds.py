@@ -35,6 +35,8 @@ class Kind:
     """parts of a structure near to a section, nearest first; may raise DesignError"""
     grown: Callable[[Any, Sampled], Sequence[Any]]
     """parts near to one, which stands for a section, each with a control point more; may raise DesignError"""
+    outlined: Callable[[Sampled, int], Any] | None = None
+    """the part through so many points of a section, where the family has one that follows any outline"""
 
     @property
     def blade(self) -> type[SectionedBlade]:
@@ -43,7 +45,14 @@ class Kind:
 
 
 def _kind(name: str, section: type[PlanarSection], module: Any) -> Kind:
-    return Kind(name=name, section=section, templates=module.templates, started=module.started, grown=module.grown)
+    return Kind(
+        name=name,
+        section=section,
+        templates=module.templates,
+        started=module.started,
+        grown=module.grown,
+        outlined=getattr(module, "outlined", None),
+    )
 
 
 KINDS = {

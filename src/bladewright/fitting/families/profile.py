@@ -1,4 +1,4 @@
-"""Where standard profiles begin; they have no control points that could be more."""
+"""Where standard profiles begin; what none of them follows is followed by points."""
 
 from collections.abc import Sequence
 from dataclasses import fields, replace
@@ -19,6 +19,8 @@ from bladewright.section.profiles.profile import Profile
 
 LIFT = 4.0 * np.pi / np.log(2.0)
 """design lift of a mean line of uniform load, over its camber (Abbott and von Doenhoff 1959, eq. 4.26)"""
+TURNING = 0.6
+"""part of a contour's points that are spread by its turning"""
 TEMPLATES: tuple[Profile, ...] = (
     Naca4(thickness=0.1, camber=0.02, camber_position=0.4),
     Naca4(thickness=0.1, camber=0.02, camber_position=0.4, trailing_edge="round"),
@@ -73,12 +75,19 @@ def _started(section: Sampled, like: Profile) -> Profile:
 
 
 def _through(section: Sampled, like: PointsProfile) -> PointsProfile:
-    """As many points of the section as the profile has, from its trailing edge around the nose."""
+    """As many points of the section as the profile has, from its trailing edge around the nose.
+
+    They are as dense as the section turns and, by less, as it is long: where a contour turns fast it has a corner.
+    """
     count = len(like.abscissas)
     around = np.concatenate([section.upper[::-1], section.lower[1:-1]])
-    steps = np.sqrt(np.sum(np.diff(around, axis=0, append=around[:1]) ** 2, axis=-1))
-    way = np.concatenate([[0.0], np.cumsum(steps)[:-1]])
-    at = np.linspace(0.0, float(np.sum(steps)), count, endpoint=False)
+    along = np.diff(around, axis=0, append=around[:1])
+    steps = np.sqrt(np.sum(along**2, axis=-1))
+    heading = np.arctan2(along[:, 1], along[:, 0])
+    turns = np.abs((np.diff(heading, prepend=heading[-1:]) + np.pi) % (2.0 * np.pi) - np.pi)
+    pace = (1.0 - TURNING) * steps / np.sum(steps) + TURNING * turns / np.sum(turns)
+    way = np.concatenate([[0.0], np.cumsum(pace)[:-1]])
+    at = np.linspace(0.0, float(np.sum(pace)), count, endpoint=False)
     x, y = (np.interp(at, way, around[:, i]) for i in (0, 1))
     return replace(
         like,
@@ -86,6 +95,12 @@ def _through(section: Sampled, like: PointsProfile) -> PointsProfile:
         abscissas=tuple(x.tolist()),
         ordinates=tuple(y.tolist()),
     )
+
+
+def outlined(section: Sampled, count: int) -> PointsProfile:
+    """The contour through so many points of a section."""
+    places = (0.0,) * count
+    return _through(section, PointsProfile(abscissas=places, ordinates=places))
 
 
 def grown(part: Profile, section: Sampled) -> Sequence[Profile]:  # noqa: ARG001 - what every family answers

@@ -9,7 +9,7 @@ import numpy as np
 
 from bladewright.designs import Design
 from bladewright.errors import DesignError, FitError
-from bladewright.fitting.aim import Aim
+from bladewright.fitting.aim import Aim, short_of
 from bladewright.fitting.families.foreseen import promised
 from bladewright.fitting.families.growing import emphasis, enough, sound
 from bladewright.fitting.families.kinds import Kind
@@ -20,6 +20,7 @@ from bladewright.fitting.scales import check_bounds
 from bladewright.fitting.search import ROUNDS, Found, Task, searched
 from bladewright.fitting.thinning import drawn
 from bladewright.fitting.unified import matched_unified
+from bladewright.fitting.verdict import GROSS
 from bladewright.section.checks import UNITS
 from bladewright.section.section import Section
 
@@ -39,6 +40,8 @@ EXACT = 1e-9
 """misfit at which a structure is known, of the chord"""
 TOLERANCES = (0.0, 1e-8, 1e-6)
 """of the native sides, of the chord"""
+OUTLINES = (24, 32, 44, 60)
+"""points of outlines that are tried in turn"""
 TRIED = 2
 """laws that are given a control point more by a search, of those that promise most"""
 
@@ -51,6 +54,7 @@ def matched_section(task: Task, kind: Kind, start: Any, like: Any, frame: Frame,
     """
     many = thinned(task, MANY)
     few = thinned(task, FEW)
+    section = None
     if start is not None and like is None:
         check_bounds(start, task.free(start), task.bounds)
         found = searched(few, start)
@@ -63,7 +67,31 @@ def matched_section(task: Task, kind: Kind, start: Any, like: Any, frame: Frame,
     reason = ""
     if not (aim.structured or found.interrupted):
         found, reason = enough(few, found, aim, partial(_wider, kind=kind), coarse=TOLERANCES[-1])
+        if kind.outlined is not None and section is not None:
+            found, reason = _outlined(
+                few, found, aim, partial(kind.outlined, section), _maker(kind, section, frame, task)
+            )
     return _coarsened(found if found.interrupted else _thorough(many, found)), reason
+
+
+def _outlined(
+    task: Task, found: Found, aim: Aim, outlined: Callable[[int], Any], made: Callable[[Any], Design]
+) -> tuple[Found, str]:
+    """A match by points of the outline where no other has what is asked for, as few as have it."""
+    for count in OUTLINES:
+        short, reason = short_of(found, aim, task)
+        near = aim.open and found.maximum < GROSS[1] * found.model.chord
+        if not short or near or found.interrupted:
+            return found, reason
+        try:
+            fresh = searched(task, made(outlined(count)), rounds=QUICK)
+        except (DesignError, FitError):
+            continue
+        fresh = replace(fresh, evaluations=fresh.evaluations + found.evaluations)
+        within = aim.parameters is None or len(fresh.problem.paths) <= aim.parameters
+        if within and fresh.rms < found.rms and _sound(fresh):
+            found = fresh
+    return found, "" if not short_of(found, aim, task)[0] else "no outline of points comes nearer"
 
 
 def section_samples(built: Section) -> Sampled:

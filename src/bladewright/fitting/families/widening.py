@@ -140,13 +140,14 @@ def _along_chord(design: Any, kind: Kind, which: int) -> Any:
     # what is new has as many control points along the span as the law that it stands in
     counts = {path: known.get(path, most.get(path.partition("[")[0], 1)) for path in parts[0].parameters()}
     changed = along_span(parts, SPANS, counts)
-    kept = {path: law for path, law in named_laws(design.section) if _same(parts, path, design.section)}
+    laws = [(path, law) for path, law in named_laws(design.section) if path in counts]
+    kept = {path: law for path, law in laws if _same(parts, path, design.section)}
     return replace(design, section=changed.changed(kept))
 
 
 def _same(parts: list[Any], path: str, section: Any) -> bool:
     """Whether growth has left a law as it was."""
-    now = [part.parameters().get(path) for part in parts]
+    now = [part.parameters()[path] for part in parts]
     was = [_section_at(section, float(v)).parameters()[path] for v in SPANS[[0, -1]]]
     return now[0] == was[0] and now[-1] == was[-1]
 
