@@ -1,15 +1,20 @@
 """Where a blade ends is said to be known where a row of points shows it, and nowhere else."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
+from bladewright.files.clouds import read_cloud
 from bladewright.files.examples import example_text
 from bladewright.files.reading import design_from, parsed
 from bladewright.fitting.ending import loose_ends
+from bladewright.fitting.fit import fit
 from bladewright.fitting.freedom import freedom_of
 from bladewright.fitting.search import Task, searched
 
 STATOR = design_from(parsed(example_text("aachen-stator"), "stator"), "stator")
+LS89 = Path(__file__).parents[3] / "shared" / "data" / "clouds" / "LS89_2D.txt"
 SPAN = 0.11
 """[m]"""
 
@@ -35,3 +40,9 @@ def test_an_end_without_a_row_of_points_is_loose_by_as_much_as_points_are_apart(
 
 def test_ends_of_a_channel_that_is_given_are_known():
     assert ends_of(free="stagger") == {}
+
+
+@pytest.mark.skipif(not LS89.is_file(), reason="the shared clouds are not here")
+def test_one_side_of_a_turning_vane_alone_does_not_pass():
+    found = fit(read_cloud(LS89).points[:202])
+    assert any("one side of a blade alone" in failure for failure in found.failures)

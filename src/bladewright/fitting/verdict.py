@@ -23,6 +23,9 @@ dimension: below what a blade can be made to"""
 OFF = 0.1
 """part of the points that may be outliers"""
 SHOWN = 5
+SIDES = ("upper", "lower")
+BARE, BETWEEN = 0.1, 0.1
+"""part of the points between the edges, and where those end in u, below which a side is not seen"""
 
 
 def failures_of(
@@ -59,6 +62,9 @@ def failures_of(
             "the structure does not hold this blade, or a better design was not found; state a tolerance, or another "
             "structure"
         )
+    bare = _bare(found)
+    if bare:
+        failures.append(f"hardly a point lies on the {bare} side: is it one side of a blade alone? Give points of both")
     loose = loose_ends(found)
     if loose and aim.structured and aim.tolerance is None and not found.interrupted and rms < EXACT * chord:
         failures.append(f"the sides are met exactly, but {_loose(loose)}; state the tolerance that is enough")
@@ -72,6 +78,14 @@ def missing(distances: Reals, inliers: NDArray[np.bool_], found: Found, aim: Aim
     enough = LEAST[found.problem.measures.points.shape[1]] * found.model.chord
     largest = float(np.max(distances[inliers]))
     return aim.open and not found.interrupted and largest > 2.0 * enough and found.scatter.shared > SHARED
+
+
+def _bare(found: Found) -> str:
+    """The side of a blade that has hardly a point between its edges, if one has."""
+    on = found.state.feet
+    between = found.rows & (on.u > BETWEEN) & (on.u < 1.0 - BETWEEN)
+    shares = {name: np.mean(on.side[between] == side) if np.any(between) else 1.0 for side, name in enumerate(SIDES)}
+    return next((name for name, share in shares.items() if share < BARE), "")
 
 
 def _fair(found: Found) -> bool:
