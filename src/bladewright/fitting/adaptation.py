@@ -36,6 +36,8 @@ QUICK = 2
 """rounds of a search between two steps of growth"""
 FEW, MANY = {2: 2500, 3: 1000}, 12_000
 """points of a quick, by dimension, and of a thorough search"""
+SEVERAL = 2500
+"""points with which a blade grows towards a tolerance, which asks for every row of them"""
 WEAK = 0.1
 """strength of the prior where a match is only made better, of the usual"""
 FURTHER = 30.0
@@ -62,7 +64,7 @@ def adapted(task: Task, first: Design, aim: Aim, *, base: Structure | None, gues
     `first`.
     """
     few = task.part(drawn(len(task.points), FEW[task.points.shape[1]]))
-    many = task.part(drawn(len(task.points), MANY))
+    several, many = (task.part(drawn(len(task.points), most)) for most in (SEVERAL, MANY))
     noise = FIRST if guessed else None
     if aim.structured and aim.tolerance is None:
         return _structured(few, many, first, base, guessed=guessed), ""
@@ -75,7 +77,7 @@ def adapted(task: Task, first: Design, aim: Aim, *, base: Structure | None, gues
     standing, everything = aim.parameters is not None and _in_rows(found), few
     if standing:
         few, many = _on_walls(few), _on_walls(many)
-    found, reason = _structured_for(few, found, aim, base, guessed=guessed)
+    found, reason = _structured_for(few, several, found, aim, base, guessed=guessed)
     if standing:
         reason = STANDING
         found = found if found.interrupted else searched(everything, found.design, rounds=1, slight=ROUGH)
@@ -107,12 +109,16 @@ def _structured(few: Task, many: Task, first: Design, base: Structure | None, *,
     if base is not None and not found.interrupted:
         found = _leaner(few, found, base)
         if guessed and _misses(found, QUIET):
-            # an exact cloud has no outliers, and edges that are not yet found look like some
-            found = searched(replace(few, outlying=False), found.design, noise=FIRST, rounds=FURTHER_ROUNDS)
+            # an exact cloud has no outliers, and edges and ends that are not yet found look like some
+            exact = searched(replace(few, outlying=False), found.design, noise=FIRST, rounds=FURTHER_ROUNDS)
+            found = exact if exact.interrupted or exact.rms < found.rms else found
+            many = replace(many, outlying=found.rms > EXACT)
     return found if found.interrupted else _told_by_points(many, searched(many, found.design))
 
 
-def _structured_for(task: Task, found: Found, aim: Aim, base: Structure | None, *, guessed: bool) -> tuple[Found, str]:
+def _structured_for(
+    task: Task, several: Task, found: Found, aim: Aim, base: Structure | None, *, guessed: bool
+) -> tuple[Found, str]:
     """A match with as many control points as the aim asks for, as forecasts or growth lead there, or why not."""
     solid = guessed and task.points.shape[1] == 3 and own_walls(found.design) and not found.interrupted
     if solid and aim.parameters is not None:
@@ -124,6 +130,10 @@ def _structured_for(task: Task, found: Found, aim: Aim, base: Structure | None, 
             found = chosen_match(task, found, len(found.problem.paths)) or found
         if found.rms * found.model.chord < COMPACT * aim.tolerance:
             found = compact_match(task, found, COMPACT * aim.tolerance) or found
+        if not found.interrupted:
+            task = several
+            measured = searched(task, found.design, rounds=0)
+            found = replace(measured, evaluations=measured.evaluations + found.evaluations)
     elif base is not None and not found.interrupted and _roomy(found, aim):
         found = _leaner(task, found, base)
     return _enough(task, found, aim)
