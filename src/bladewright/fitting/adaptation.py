@@ -112,8 +112,14 @@ def _structured(few: Task, many: Task, first: Design, base: Structure | None, *,
             # an exact cloud has no outliers, and edges and ends that are not yet found look like some
             exact = searched(replace(few, outlying=False), found.design, noise=FIRST, rounds=FURTHER_ROUNDS)
             found = exact if exact.interrupted or exact.rms < found.rms else found
-            many = replace(many, outlying=found.rms > EXACT)
-    return found if found.interrupted else _told_by_points(many, searched(many, found.design))
+    if found.interrupted:
+        return found
+    found = searched(many, found.design)
+    if found.rms < EXACT and not np.all(found.scatter.inliers) and not found.interrupted:
+        # points past the ends of an exact match are none, if it can be widened to hold them too
+        whole = searched(replace(many, outlying=False), found.design)
+        found = whole if whole.rms < EXACT else found
+    return _told_by_points(many, found)
 
 
 def _structured_for(
