@@ -194,7 +194,7 @@ def test_progress_is_told():
         (np.ones(9), {}, "shape"),
         (np.ones((9, 4)), {}, "shape"),
         (np.where(np.arange(400)[:, None] == 7, np.nan, cloud(0, 400)), {}, "point 7"),
-        (cloud(0, 400)[:50], {}, "at least 100"),
+        (cloud(0, 400)[:20], {}, "at least 24"),
         (cloud(0, 400), {"tolerance": 1e-5, "parameters": 22}, "both given"),
         (cloud(0, 400), {"tolerance": -1.0}, "tolerance is -1.0"),
         (cloud(0, 400), {"tolerance": np.nan}, "tolerance is nan"),
