@@ -82,17 +82,28 @@ class Forecast:
         tried = [self._on_the_way(structure, foreseen, share) for share in SHARES]
         return min(tried, key=self._misfit)
 
+    def largest(self, design: Any) -> float:
+        """Largest distance of an inlier from a design [m]; infinite where it has no shape."""
+        state = self._state(design)
+        return np.inf if state is None else float(np.max(state.feet.distances[self.found.rows]))
+
     def _misfit(self, design: Any) -> float:
         """Sum of squares of a design where the cloud stands on it; infinite where it has no shape."""
+        state = self._state(design)
+        if state is None:
+            return np.inf
+        rows = self.found.problem.measures.residuals(state)
+        return float(rows @ rows)
+
+    def _state(self, design: Any) -> State | None:
         measures, on = self.found.problem.measures, self.found.state.feet
         try:
             shape = measures.model.shape(design)
         except DesignError:
-            return np.inf
+            return None
         if not shape.finite:
-            return np.inf
-        rows = measures.residuals(State(shape=shape, feet=feet(measures.points, shape.sides, on, converged=COARSE)))
-        return float(rows @ rows)
+            return None
+        return State(shape=shape, feet=feet(measures.points, shape.sides, on, converged=COARSE))
 
     def _on_the_way(self, structure: Structure, foreseen: Foreseen, share: float) -> Any:
         """The design that is foreseen for a structure, or part of the way there, within the bounds of the family."""

@@ -4,6 +4,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from bladewright.designs import Design
 from bladewright.errors import FitError
 from bladewright.fitting.forecast import Forecast, Foreseen, forecast_of
 from bladewright.fitting.growth import Step, least, steps_back
@@ -23,6 +24,8 @@ SWAY, HEAVIEST = (0.7, 1.5), (0.1, 30.0)
 """by how much the weight of a point changes at a time, and all in all"""
 FAILURES = 3
 """structures that are tried and do not keep the tolerance, each half as far away as the last"""
+ASTRAY = 2.5
+"""largest deviation of a foreseen design, of the tolerance, which shows that it is too far for a forecast"""
 HOPELESS = 1.4
 """largest deviation, of the tolerance, that other weights do not mend"""
 POLISHED = 3
@@ -50,8 +53,13 @@ def spared_blade(task: Task, found: Found, tolerance: float) -> Found | None:
         plans = _plans(forecast, found, tolerance)
         if not plans:
             break
-        plan = plans[int(np.ceil(further * len(plans))) - 1]
-        fresh = _tried(task, found, forecast, plan, weights, tolerance)
+        number = int(np.ceil(further * len(plans)))
+        start = forecast.designed(plans[number - 1].structure, plans[number - 1].foreseen)
+        while number > 1 and forecast.largest(start) > ASTRAY * tolerance:
+            number = number // 2
+            start = forecast.designed(plans[number - 1].structure, plans[number - 1].foreseen)
+        further = number / len(plans)
+        fresh = _tried(task, found, start, weights * plans[number - 1].weights, tolerance)
         if fresh is None:
             failed, further = failed + 1, 0.5 * further
             continue
@@ -66,10 +74,9 @@ def _relative(found: Found, task: Task) -> Reals:
     return np.where(own > 0.0, own, 1.0)
 
 
-def _tried(task: Task, found: Found, forecast: Forecast, plan: _Plan, weights: Reals, tolerance: float) -> Found | None:
-    """The match of a plan, where it keeps the tolerance."""
-    start = forecast.designed(plan.structure, plan.foreseen)
-    weights, evaluations = weights * plan.weights, found.evaluations
+def _tried(task: Task, found: Found, start: Design, weights: Reals, tolerance: float) -> Found | None:
+    """The match of a foreseen design, where it keeps the tolerance."""
+    evaluations = found.evaluations
     for _ in range(POLISHED):
         weights = weights * len(weights) / np.sum(weights)
         try:
