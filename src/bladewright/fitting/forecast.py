@@ -82,11 +82,6 @@ class Forecast:
         tried = [self._on_the_way(structure, foreseen, share) for share in SHARES]
         return min(tried, key=self._misfit)
 
-    def largest(self, design: Any) -> float:
-        """Largest distance of an inlier from a design [m]; infinite where it has no shape."""
-        state = self._state(design)
-        return np.inf if state is None else float(np.max(state.feet.distances[self.found.rows]))
-
     def _misfit(self, design: Any) -> float:
         """Sum of squares of a design where the cloud stands on it; infinite where it has no shape."""
         state = self._state(design)

@@ -24,8 +24,9 @@ SWAY, HEAVIEST = (0.7, 1.5), (0.1, 30.0)
 """by how much the weight of a point changes at a time, and all in all"""
 FAILURES = 3
 """structures that are tried and do not keep the tolerance, each half as far away as the last"""
-ASTRAY = 2.5
-"""largest deviation of a foreseen design, of the tolerance, which shows that it is too far for a forecast"""
+FIRST = 0.25
+"""part of the structures that are foreseen to keep a tolerance which the first one tried is away: forecasts that go too
+far lose their way where laws turn much"""
 HOPELESS = 1.4
 """largest deviation, of the tolerance, that other weights do not mend"""
 POLISHED = 3
@@ -44,7 +45,7 @@ class _Plan:
 
 def spared_blade(task: Task, found: Found, tolerance: float) -> Found | None:
     """A match of fewer parameters within a tolerance; None where there are no forecasts."""
-    failed, further = 0, 1.0
+    failed, further = 0, FIRST
     weights = np.ones(len(task.points))
     while failed < FAILURES and not found.interrupted:
         forecast = forecast_of(found, structure_of(found.design))
@@ -55,10 +56,6 @@ def spared_blade(task: Task, found: Found, tolerance: float) -> Found | None:
             break
         number = int(np.ceil(further * len(plans)))
         start = forecast.designed(plans[number - 1].structure, plans[number - 1].foreseen)
-        while number > 1 and forecast.largest(start) > ASTRAY * tolerance:
-            number = number // 2
-            start = forecast.designed(plans[number - 1].structure, plans[number - 1].foreseen)
-        further = number / len(plans)
         fresh = _tried(task, found, start, weights * plans[number - 1].weights, tolerance)
         if fresh is None:
             failed, further = failed + 1, 0.5 * further
