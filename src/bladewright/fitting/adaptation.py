@@ -140,6 +140,10 @@ def _structured_for(
             task = several
             measured = searched(task, found.design, rounds=0)
             found = replace(measured, evaluations=measured.evaluations + found.evaluations)
+    elif solid:
+        # forecasts are linear: they tell of more the nearer a match is
+        found = searched(task, found.design, noise=found.rms, slight=ROUGH)
+        found = chosen_match(task, found, len(found.problem.paths)) or found
     elif base is not None and not found.interrupted and _roomy(found, aim):
         found = _leaner(task, found, base)
     return _enough(task, found, aim)

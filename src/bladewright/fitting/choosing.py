@@ -25,14 +25,14 @@ STAGES = 4
 
 def chosen_match(task: Task, found: Found, most: int) -> Found | None:
     """The match with at most so many free parameters that forecasts lead to; None where there are no forecasts."""
-    best: Found | None = None
+    best = found if len(found.problem.paths) <= most else None
     for _ in range(STAGES):
         now = structure_of(found.design)
         forecast = forecast_of(found, roomier(now))
         if forecast is None:
-            break
+            return None
         structure = best_of(forecast, now, most - _others(found, forecast))
-        if best is not None and structure == structure_of(best.design):
+        if structure == now and best is not None:
             break
         try:
             start = forecast.designed(structure, forecast.foreseen(structure))

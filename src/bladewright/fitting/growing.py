@@ -1,5 +1,6 @@
 """A match with more control points, those that promise most."""
 
+from collections.abc import Iterator
 from dataclasses import replace
 
 import numpy as np
@@ -10,7 +11,7 @@ from bladewright.fitting.aim import Aim
 from bladewright.fitting.chain import own_walls
 from bladewright.fitting.choosing import best_of
 from bladewright.fitting.edgewise import edge_steps
-from bladewright.fitting.forecast import forecast_of
+from bladewright.fitting.forecast import Forecast, forecast_of
 from bladewright.fitting.growth import Step, chosen_of, gains, joined, roomier
 from bladewright.fitting.opening import opened
 from bladewright.fitting.reshaping import reshaped
@@ -20,6 +21,8 @@ from bladewright.nurbs.basis import Reals
 
 WORTHWHILE = 0.02
 """part of the sum of squares that growth must be foreseen to gain"""
+NEAR, WORTH_MORE = 1e-3, 0.2
+"""misfit, of the chord, below which a blade is near enough for a tenth more parameters to be worth that part instead"""
 EMPHASIS = (0.1, 10.0)
 """least and largest weight of a point by its distance, where a tolerance is to be met"""
 GROWN = 3
@@ -35,20 +38,35 @@ def grown(task: Task, found: Found, aim: Aim) -> tuple[Found, bool]:
     emphasis = None
     if aim.tolerance is not None:
         emphasis = np.clip((found.state.feet.distances / aim.tolerance) ** 2, *EMPHASIS)
-    design = _foreseen(task, found, aim, emphasis) if task.points.shape[1] == 3 else None
-    if design is None:
-        design = _stepped(found, aim, emphasis)
-    if design is None:
-        return found, False
+    sharpened = task
     if emphasis is not None:
         weights = task.weights * emphasis
-        task = replace(task, weights=weights * (np.sum(task.weights) / np.sum(weights)))
-    try:
-        start = design if task.points.shape[1] == 3 else opened(design)
-        fresh = searched(task, start, rounds=1, noise=found.rms, slight=ROUGH)
-    except FitError:
-        return found, False
-    return replace(fresh, evaluations=fresh.evaluations + found.evaluations), True
+        sharpened = replace(task, weights=weights * (np.sum(task.weights) / np.sum(weights)))
+    for design in _candidates(task, found, aim, emphasis):
+        try:
+            start = design if task.points.shape[1] == 3 else opened(design)
+            fresh = searched(sharpened, start, rounds=1, noise=found.rms, slight=ROUGH)
+        except FitError:
+            continue
+        return replace(fresh, evaluations=fresh.evaluations + found.evaluations), True
+    return found, False
+
+
+def _candidates(task: Task, found: Found, aim: Aim, emphasis: Reals | None) -> Iterator[Design]:
+    """Designs with more control points, the next one where the one before has no shape."""
+    forecast = None
+    if task.points.shape[1] == 3 and aim.parameters is None and own_walls(found.design):
+        forecast = forecast_of(found, roomier(structure_of(found.design)))
+    if forecast is not None:
+        task.told("structure")
+        design = _foreseen(forecast, found, aim, emphasis)
+        if design is not None:
+            yield design
+        elif aim.open:
+            return
+    stepped = _stepped(found, aim, emphasis)
+    if stepped is not None:
+        yield stepped
 
 
 def _more(found: Found, aim: Aim) -> int:
@@ -60,22 +78,23 @@ def _more(found: Found, aim: Aim) -> int:
     return count // (MANY_MORE // 2 if far else MANY_MORE) if count >= MANIFOLD else 0
 
 
-def _foreseen(task: Task, found: Found, aim: Aim, emphasis: Reals | None) -> Design | None:
-    """The design with more control points that a forecast prefers; None where none tells of any."""
-    now = structure_of(found.design) if own_walls(found.design) else None
-    forecast = forecast_of(found, roomier(now)) if now is not None else None
-    if now is None or forecast is None or aim.tolerance is None or emphasis is None:
-        return None
-    roots = np.ones(len(forecast.rows))
-    roots[: len(emphasis)] = np.sqrt(emphasis)
+def _foreseen(forecast: Forecast, found: Found, aim: Aim, emphasis: Reals | None) -> Design | None:
+    """The design with more control points that a forecast prefers; None where more are not worth it."""
+    now = structure_of(found.design)
+    roots = None
+    if emphasis is not None:
+        roots = np.ones(len(forecast.rows))
+        roots[: len(emphasis)] = np.sqrt(emphasis)
     count = forecast.foreseen(now).parameters
-    task.told("structure")
     structure = best_of(forecast, now, count + max(_more(found, aim), count // MANY_MORE), roots)
-    edges = edge_steps(found, aim.tolerance)
-    structure = joined(structure, [Step(fields=(), structure=structure, parameters=0), *edges]) if edges else structure
-    if structure == now:
+    if aim.tolerance is not None:
+        steps = [Step(fields=(), structure=structure, parameters=0), *edge_steps(found, aim.tolerance)]
+        structure = joined(structure, steps) if len(steps) > 1 else structure
+    told = forecast.foreseen(structure, roots)
+    worth = WORTHWHILE if found.rms > NEAR else WORTH_MORE
+    if structure == now or (aim.open and told.cost > (1.0 - worth) * forecast.foreseen(now).cost):
         return None
-    return forecast.designed(structure, forecast.foreseen(structure, roots))
+    return forecast.designed(structure, told)
 
 
 def _stepped(found: Found, aim: Aim, emphasis: Reals | None) -> Design | None:

@@ -1,4 +1,4 @@
-"""A section that more control points are not foreseen to bring nearer, though it is far: it is tried with more."""
+"""Growth whose gain is not foreseen: a section that is far is tried with more, a match that is near with no more."""
 
 from dataclasses import replace
 
@@ -17,8 +17,10 @@ TIMES = 3
 """times that both thicknesses grow before it is given up"""
 NEARER = 0.9
 """ratio of the distances from which a try is taken"""
-LITTLE = 0.75
-"""ratio of the distances above which a section that is near enough grows no more"""
+ENOUGH = {2: FAR, 3: 1e-3}
+"""root mean square distance, of the chord, below which a section, or a blade, is near enough"""
+LITTLE = {2: 0.75, 3: 0.9}
+"""ratio of the distances above which one that is near enough grows no more"""
 
 
 def pressed(task: Task, found: Found, aim: Aim) -> tuple[Found, bool]:
@@ -47,5 +49,6 @@ def pressed(task: Task, found: Found, aim: Aim) -> tuple[Found, bool]:
 
 
 def little(task: Task, found: Found, aim: Aim, before: float) -> bool:
-    """Whether a section is near enough, and growth from a distance `before`, of the chord, brought it little nearer."""
-    return task.points.shape[1] == 2 and aim.open and LITTLE * before < found.rms < FAR
+    """Whether a match is near enough, and growth from a distance `before`, of the chord, brought it little nearer."""
+    dimension = task.points.shape[1]
+    return aim.open and LITTLE[dimension] * before < found.rms < ENOUGH[dimension]
