@@ -48,11 +48,14 @@ if TYPE_CHECKING:
     from bladewright.errors import GeometryError as GeometryError
     from bladewright.errors import MeshError as MeshError
     from bladewright.files.clouds import read_cloud as read_cloud
+    from bladewright.files.imported import Imported as Imported
+    from bladewright.files.parablade import import_parablade as import_parablade
     from bladewright.files.parablade import read_parablade as read_parablade
     from bladewright.files.reading import read_design as read_design
     from bladewright.files.su2 import read_surface_points as read_surface_points
     from bladewright.files.su2 import read_surface_sensitivity as read_surface_sensitivity
     from bladewright.files.su2 import write_surface_points as write_surface_points
+    from bladewright.files.tblade3 import import_tblade3 as import_tblade3
     from bladewright.files.writing import write_design as write_design
     from bladewright.fitting.curves import CurveFit as CurveFit
     from bladewright.fitting.curves import fit_curve as fit_curve
@@ -114,6 +117,7 @@ _HOMES = {
     "FlatPlate": "section.profiles.flat_plate",
     "FlowPath": "blade.flow_path",
     "GeometryError": "errors",
+    "Imported": "files.imported",
     "MeshError": "errors",
     "ModifiedNaca": "section.thickness.modified_naca",
     "MultipleCircularArc": "section.profiles.circular_arc",
@@ -151,6 +155,8 @@ _HOMES = {
     "fit_curve": "fitting.curves",
     "fit_profile": "fitting.profile",
     "fit_surface": "fitting.surfaces",
+    "import_parablade": "files.parablade",
+    "import_tblade3": "files.tblade3",
     "net_jacobian": "derivatives.nets",
     "passage": "domain.build",
     "placed_points": "derivatives.places",

@@ -7,7 +7,6 @@ import pytest
 from matplotlib.figure import Figure
 
 from bladewright.blade.sectioned_exact import sectioned_exact
-from bladewright.blade.sections import smoothness_at
 from bladewright.section.profiles.points import PointsProfile
 from bladewright.section.smoothness import smoothness
 from bladewright.views.edges import draw_edge
@@ -201,7 +200,7 @@ def test_smoothness_is_drawn_in_pieces_with_the_jumps_in_a_table():
 
 
 def test_smoothness_of_a_blade_is_that_of_its_exact_sections(impeller):
-    found = smoothness_at(impeller.exact, 0.5)
+    found = impeller.smoothness(0.5)
     assert found.to_dict() == smoothness(impeller.section(0.5)).to_dict()
     assert found.camber.continuous == (True, True)
     assert [line.continuous[0] for line in found.lines] == [True] * 3

@@ -25,6 +25,7 @@ from bladewright.nurbs.trimmed import TrimmedSurface
 if TYPE_CHECKING:
     from bladewright.blade.promises import Promises
     from bladewright.section.section import Section
+    from bladewright.section.smoothness import Smoothness
 
 Faces = Mapping[str, Surface | TrimmedSurface]
 """faces of a body by name"""
@@ -127,6 +128,12 @@ class Blade:
         from bladewright.blade.sections import section_at
 
         return section_at(self.exact, v)
+
+    def smoothness(self, v: float) -> "Smoothness":
+        """Curvature, its slope and their jumps along the exact section at v in [0, 1], in chords of its plane."""
+        from bladewright.blade.sections import smoothness_at
+
+        return smoothness_at(self.exact, v)
 
     def extended(self, span: float) -> "Blade":
         """The blade continued past hub and shroud by `span` of its own span at each end, for a later cut.

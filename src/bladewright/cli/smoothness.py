@@ -13,14 +13,13 @@ QUANTITIES = {"curvature": "curvature", "slope": "its slope"}
 
 def smoothness_data(built: "Blade | Section") -> list[dict[str, Any]]:
     """Curvature and slope with their jumps, by line, of the sections at hub, mid-span and shroud, or of one section."""
-    from bladewright.blade.sections import smoothness_at
     from bladewright.blade.shown_spans import shown_spans
     from bladewright.section.section import Section
     from bladewright.section.smoothness import smoothness
 
     if isinstance(built, Section):
         return [{"span": built.span, **smoothness(built).to_dict()}]
-    return [{"span": v, **smoothness_at(built.exact, v).to_dict()} for v in shown_spans(built.exact, SPANS)]
+    return [{"span": v, **built.smoothness(v).to_dict()} for v in shown_spans(built.exact, SPANS)]
 
 
 def smoothness_rows(found: list[dict[str, Any]]) -> list[tuple[str, str]]:

@@ -9,7 +9,6 @@ from matplotlib.figure import Figure
 
 from bladewright.blade.blade import Blade
 from bladewright.blade.sectioned import SectionedBlade
-from bladewright.blade.sections import smoothness_at
 from bladewright.blade.shown_spans import MIDDLE, shown_spans
 from bladewright.blade.unified import UnifiedBlade
 from bladewright.domain.passage import Passage
@@ -135,7 +134,7 @@ def _blade_sheet(blade: Blade) -> Figure:
     draw_thickness(axes[2], sections, blade.design.ends)
     draw_edges(near, few, blade.design.ends)
     draw_smoothness(
-        smooth, {v: smoothness_at(blade.exact, v) for v in shown_spans(blade.exact, FEW)}, blade.design.ends
+        smooth, {v: blade.smoothness(v) for v in shown_spans(blade.exact, FEW)}, blade.design.ends
     )
     across = -(-len(charts) // strips)
     for index, strip in enumerate(bottom):
