@@ -139,9 +139,9 @@ def gains(found: Found, emphasis: Reals | None = None) -> list[tuple[float, Step
     roots = np.ones(len(rows))
     if emphasis is not None:
         roots[: len(emphasis)] = np.sqrt(emphasis)
-    before = _reduced(slopes, rows, roots, problem.noise)
+    before = left_after(slopes, rows, roots, problem.noise)
     result = [
-        (before - _reduced(wider, rows, roots, problem.noise), step)
+        (before - left_after(wider, rows, roots, problem.noise), step)
         for step, _, wider in _stepped(found, slopes, steps_from(structure_of(found.design)))
     ]
     return sorted(result, key=lambda pair: -pair[0] / pair[1].parameters)
@@ -153,7 +153,7 @@ def losses(found: Found) -> list[tuple[float, Step]]:
     slopes = problem.measures.slopes(found.state, problem.paths) * problem.scales.size
     roots = np.ones(len(slopes))
     result = [
-        (_reduced(narrower, rows, roots, problem.noise), step)
+        (left_after(narrower, rows, roots, problem.noise), step)
         for step, rows, narrower in _stepped(found, slopes, steps_back(structure_of(found.design)))
     ]
     return sorted(result, key=lambda pair: pair[0] / pair[1].parameters)
@@ -174,8 +174,11 @@ def _stepped(found: Found, slopes: Reals, steps: Sequence[Step]) -> Iterator[tup
         yield step, rows, np.concatenate([slopes[:, kept], columns], axis=1)
 
 
-def _reduced(slopes: Reals, rows: Reals, roots: Reals, noise: float) -> float:
-    """The sum of squares after the step that makes it least, parameters held by the prior's spread."""
+def left_after(slopes: Reals, rows: Reals, roots: Reals, noise: float) -> float:
+    """The sum of squares of rows (n,) weighed by roots (n,) after the linear step that makes it least.
+
+    `slopes` (n, k) are by scaled parameters, which are held by the spread `noise` of the prior.
+    """
     count = slopes.shape[1]
     triangle = np.linalg.qr(np.column_stack([slopes * roots[:, None], rows * roots]), mode="r")
     held = np.zeros((count, count + 1))

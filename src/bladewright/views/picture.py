@@ -133,9 +133,7 @@ def _blade_sheet(blade: Blade) -> Figure:
     draw_curvature(axes[1], few, blade.design.ends)
     draw_thickness(axes[2], sections, blade.design.ends)
     draw_edges(near, few, blade.design.ends)
-    draw_smoothness(
-        smooth, {v: blade.smoothness(v) for v in shown_spans(blade.exact, FEW)}, blade.design.ends
-    )
+    draw_smoothness(smooth, {v: blade.smoothness(v) for v in shown_spans(blade.exact, FEW)}, blade.design.ends)
     across = -(-len(charts) // strips)
     for index, strip in enumerate(bottom):
         own = charts[index * across : (index + 1) * across]

@@ -7,6 +7,7 @@ import numpy as np
 from bladewright.designs import Design
 from bladewright.errors import DesignError, FitError
 from bladewright.fitting.feet import placed
+from bladewright.fitting.growth import left_after
 from bladewright.fitting.problem import State
 from bladewright.fitting.scales import scales_of
 from bladewright.fitting.search import Found, Task
@@ -26,7 +27,10 @@ def promised(task: Task, found: Found, designs: Iterable[Design], roots: Reals |
     values = found.design.parameters()
     rows = measures.residuals(found.state)
     slopes = measures.slopes(found.state, paths) * found.problem.scales.size
-    before = _left(slopes, rows, roots, found.problem.noise)
+    weight = np.ones(len(rows))
+    if roots is not None:
+        weight[: len(roots)] = roots
+    before = left_after(slopes, rows, weight, found.problem.noise)
     ranked: list[Promise] = []
     for design in designs:
         try:
@@ -37,7 +41,8 @@ def promised(task: Task, found: Found, designs: Iterable[Design], roots: Reals |
             rows, columns = _at(found, design, own)
         except (DesignError, FitError):
             continue
-        gain = before - _left(np.concatenate([slopes[:, kept], columns], axis=1), rows, roots, found.problem.noise)
+        wider = np.concatenate([slopes[:, kept], columns], axis=1)
+        gain = before - left_after(wider, rows, weight, found.problem.noise)
         more = len(free) - len(paths)
         if gain > 0.0 and more > 0:
             ranked.append((gain / more, more, design))
@@ -53,14 +58,3 @@ def _at(found: Found, design: Design, paths: tuple[str, ...]) -> tuple[Reals, Re
     state = State(shape=shape, feet=placed(measures.points, shape.sides, on.side, on.u, on.v))
     slopes = measures.slopes(state, paths) * scales_of(design, paths, found.model.chord).size
     return measures.residuals(state), slopes
-
-
-def _left(slopes: Reals, rows: Reals, roots: Reals | None, noise: float) -> float:
-    """The sum of squares after the linear step that makes it least, parameters held by the prior's spread."""
-    whole = np.column_stack([slopes, rows])
-    if roots is not None:
-        whole[: len(roots)] *= roots[:, None]
-    count = slopes.shape[1]
-    held = noise * np.eye(count, count + 1)
-    # the last diagonal entry is what no step takes away
-    return float(np.asarray(np.linalg.qr(np.concatenate([whole, held]), mode="r"))[-1, -1] ** 2)
