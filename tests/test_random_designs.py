@@ -3,13 +3,9 @@
 The slow test does the same for 2,000 of them, and so does `python design/random_designs.py --count 2000`.
 """
 
-import sys
 from collections import Counter
-from pathlib import Path
 
 import pytest
-
-sys.path.insert(0, str(Path(__file__).parents[1] / "design"))
 import random_designs
 
 COUNT = {"unified": 18, "sections": 10}

@@ -1,15 +1,11 @@
 """Broken input is taken, or refused in one paragraph that names its file; `design/bad_input.py` breaks all there is."""
 
-import sys
 import tomllib
 import warnings
-from pathlib import Path
 
+import bad_input
 import numpy as np
 import pytest
-
-sys.path.insert(0, str(Path(__file__).parents[2] / "design"))
-import bad_input
 
 from bladewright.errors import DesignError, FileError
 from bladewright.files.examples import example_text
