@@ -8,7 +8,7 @@ from collections import Counter
 import pytest
 import random_designs
 
-COUNT = {"unified": 18, "sections": 10}
+COUNT = {"unified": 14, "sections": 8}
 
 
 @pytest.mark.parametrize("of", COUNT)

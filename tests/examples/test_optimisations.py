@@ -11,9 +11,12 @@ from bladewright.files.reading import read_design
 
 FOLDER = Path(__file__).parents[2] / "examples" / "optimisation"
 SCRIPTS = sorted(path.stem for path in FOLDER.glob("*.py") if path.stem != "_change")
+QUICK = ("stator-throat",)
 
 
-@pytest.mark.parametrize("name", SCRIPTS)
+@pytest.mark.parametrize(
+    "name", [pytest.param(name, marks=[] if name in QUICK else [pytest.mark.slow]) for name in SCRIPTS]
+)
 def test_an_optimisation_reaches_its_goal_and_writes_what_it_found(name, tmp_path, monkeypatch, capsys):
     monkeypatch.syspath_prepend(FOLDER)
     monkeypatch.setattr(sys, "argv", [f"{name}.py", str(tmp_path)])
