@@ -223,6 +223,12 @@ def test_a_cloud_in_the_wrong_unit_is_said():
     assert any("unit" in each for each in found.notes)
 
 
+@pytest.mark.parametrize(("order", "said"), [((0, 1, 2), False), ((2, 1, 0), True)])
+def test_other_axes_are_suspected_of_a_blade_that_is_met_nowhere_near(order, said):
+    found = fit(solid_cloud()[:, order], STATOR, free="stagger*")
+    assert any("machine axis" in each for each in found.notes) is said
+
+
 def measured(name):
     path = CLOUDS / f"{name}.txt"
     if not path.is_file():

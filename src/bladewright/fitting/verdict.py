@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from bladewright.fitting.aim import LEAST, Aim
 from bladewright.fitting.ending import loose_ends
 from bladewright.fitting.estimates import Certainty
+from bladewright.fitting.first.designed import AXES
 from bladewright.fitting.search import Found
 from bladewright.nurbs.basis import Reals
 
@@ -88,6 +89,10 @@ def _bare(found: Found) -> str:
     return next((name for name, share in shares.items() if share < BARE), "")
 
 
+def _gross(distances: Reals, inliers: NDArray[np.bool_], found: Found) -> bool:
+    return bool(np.mean(distances[inliers]) > GROSS[0] * found.model.chord)
+
+
 def _fair(found: Found) -> bool:
     return found.rms <= FAIR[found.problem.measures.points.shape[1]]
 
@@ -112,6 +117,8 @@ def notes_of(
     said = list(notes)
     if missing(distances, inliers, found, aim) and _fair(found):
         said.append(f"near enough to make, but {_unmet(found)}")
+    if found.problem.measures.points.shape[1] == 3 and _gross(distances, inliers, found):
+        said.append(f"a blade in other axes is met no nearer than this: {AXES}")
     loose = loose_ends(found)
     if loose:
         said.append(_loose(loose))
