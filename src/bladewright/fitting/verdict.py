@@ -9,6 +9,7 @@ from bladewright.fitting.aim import LEAST, Aim
 from bladewright.fitting.ending import loose_ends
 from bladewright.fitting.estimates import Certainty
 from bladewright.fitting.first.designed import AXES
+from bladewright.fitting.rounding import rounded
 from bladewright.fitting.search import Found
 from bladewright.nurbs.basis import Reals
 
@@ -16,6 +17,8 @@ GROSS = (1.5e-3, 5e-3)
 """mean and largest distance of a match to which no tolerance is stated, of the chord"""
 EXACT, SYSTEMATIC = 1e-9, 3.0
 """misfit of a given structure that is rounding, of the chord, and one that is not noise, of the cloud's noise"""
+FINEST = 1e-6
+"""misfit of a given structure, of the chord, below which it is no noise of a measured cloud"""
 SHARED = 0.5
 """part of the misfit that neighbours share from which it is the shape's, where nothing is asked for"""
 FAIR = {2: 5e-5, 3: 1e-4}
@@ -63,6 +66,11 @@ def failures_of(
             "the structure does not hold this blade, or a better design was not found; state a tolerance, or another "
             "structure"
         )
+    elif aim.structured and aim.tolerance is None and EXACT < found.rms < FINEST and not rounded(_points(found)):
+        failures.append(
+            f"the misfit of the given structure is {1e3 * rms:.3g} mm rms, too much for an exact cloud and too little "
+            "for the noise of another: the exact design was not found; state the tolerance that is enough"
+        )
     bare = _bare(found)
     if bare:
         failures.append(f"hardly a point lies on the {bare} side: is it one side of a blade alone? Give points of both")
@@ -76,7 +84,7 @@ def failures_of(
 
 def missing(distances: Reals, inliers: NDArray[np.bool_], found: Found, aim: Aim) -> bool:
     """Whether nothing was asked for, and the shape of the cloud is not met as far as its noise lets it be told."""
-    enough = LEAST[found.problem.measures.points.shape[1]] * found.model.chord
+    enough = LEAST[_points(found).shape[1]] * found.model.chord
     largest = float(np.max(distances[inliers]))
     return aim.open and not found.interrupted and largest > 2.0 * enough and found.scatter.shared > SHARED
 
@@ -89,12 +97,16 @@ def _bare(found: Found) -> str:
     return next((name for name, share in shares.items() if share < BARE), "")
 
 
+def _points(found: Found) -> Reals:
+    return np.asarray(found.problem.measures.points)
+
+
 def _gross(distances: Reals, inliers: NDArray[np.bool_], found: Found) -> bool:
     return bool(np.mean(distances[inliers]) > GROSS[0] * found.model.chord)
 
 
 def _fair(found: Found) -> bool:
-    return found.rms <= FAIR[found.problem.measures.points.shape[1]]
+    return found.rms <= FAIR[_points(found).shape[1]]
 
 
 def _unmet(found: Found) -> str:
@@ -117,7 +129,7 @@ def notes_of(
     said = list(notes)
     if missing(distances, inliers, found, aim) and _fair(found):
         said.append(f"near enough to make, but {_unmet(found)}")
-    if found.problem.measures.points.shape[1] == 3 and _gross(distances, inliers, found):
+    if _points(found).shape[1] == 3 and _gross(distances, inliers, found):
         said.append(f"a blade in other axes is met no nearer than this: {AXES}")
     loose = loose_ends(found)
     if loose:
