@@ -1,10 +1,12 @@
 """Starts and growth of the families that are one part."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
+from bladewright.errors import DesignError
 from bladewright.fitting.families.flow import KEPT, _off_axis
 from bladewright.fitting.families.kinds import KINDS, kind_of
 from bladewright.fitting.families.polyline import nearest_on
@@ -48,6 +50,14 @@ def test_every_law_along_the_chord_of_a_blade_may_grow():
     assert chordwise
     for widening in chordwise:
         assert len(Freedom()(widening.applied(COMPRESSOR))) > len(Freedom()(COMPRESSOR))
+
+
+def test_a_blade_whose_sections_do_not_grow_alike_is_left_as_it_is():
+    ways = iter([2, *[1] * 50])
+    kind = SimpleNamespace(grown=lambda part, _: [part] * next(ways))
+    last = [each for each in widenings(COMPRESSOR, kind) if "along the chord" in each.law][-1]
+    with pytest.raises(DesignError, match="do not grow alike"):
+        last.applied(COMPRESSOR)
 
 
 def test_an_edges_corners_are_found_on_the_sides_of_a_section():

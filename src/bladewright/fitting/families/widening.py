@@ -128,11 +128,15 @@ def _wider(law: Law) -> Law:
 
 
 def _along_chord(design: Any, kind: Kind, which: int) -> Any:
-    """The blade with a control point more along the chord, as its sections have it one by one."""
-    parts = []
-    for v in SPANS:
-        section = _section_at(design.section, float(v))
-        parts.append(kind.grown(section, _samples(section))[which])
+    """The blade with a control point more along the chord, as its sections have it one by one.
+
+    Raises DesignError where some of its sections cannot grow so.
+    """
+    sections = [_section_at(design.section, float(v)) for v in SPANS]
+    ways = [kind.grown(section, _samples(section)) for section in sections]
+    parts = [each[which] for each in ways if which < len(each)]
+    if len(parts) < len(ways) or len({tuple(part.parameters()) for part in parts}) > 1:
+        raise DesignError("sections along the span do not grow alike: the section stays as it is")
     known = counts_of(design.section)
     most: dict[str, int] = {}
     for path, count in known.items():
