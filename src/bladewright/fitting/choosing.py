@@ -26,11 +26,11 @@ STAGES = 4
 def chosen_match(task: Task, found: Found, most: int) -> Found | None:
     """The match with at most so many free parameters that forecasts lead to; None where there are no forecasts."""
     best = found if len(found.problem.paths) <= most else None
-    for _ in range(STAGES):
+    for stage in range(STAGES):
         now = structure_of(found.design)
         forecast = forecast_of(found, roomier(now))
         if forecast is None:
-            return None
+            return best if stage else None
         structure = best_of(forecast, now, most - _others(found, forecast))
         if structure == now and best is not None:
             break

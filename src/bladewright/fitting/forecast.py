@@ -25,6 +25,8 @@ from bladewright.section.laws import law_basis
 from bladewright.section.limits import THICKNESSES
 
 WALLS = ("hub", "shroud")
+LAWS = (*SPANWISE, "place", *THICKNESSES, *EDGES, *WALLS)
+"""what a structure has a say in"""
 SHARES = (1.0, 0.3, 0.0)
 """parts of a step that are tried: far from a match it is not the motion alone that tells"""
 COARSE = 1e-3
@@ -67,7 +69,7 @@ class Forecast:
 
     def names(self) -> Iterator[str]:
         """The laws that a structure has a say in and that are free."""
-        yield from (name for name in (*SPANWISE, "place", *THICKNESSES, *EDGES, *WALLS) if name not in self.still)
+        yield from (name for name in LAWS if name not in self.still)
 
     def foreseen(self, structure: Structure, roots: Reals | None = None) -> Foreseen:
         """What a structure, nowhere wider than the widest, leaves; rows are multiplied by `roots` (m,)."""
@@ -259,9 +261,7 @@ def forecast_of(found: Found, widest: Structure) -> Forecast | None:
     corners = {f"channel.{edge}[{end}].{label}" for edge, end in ends for label in AXES}
     was = {_same_corner(path, found.design, design) for path in free}
     held = frozenset(corners - was)
-    still = frozenset(
-        name for name in (*SPANWISE, "place", *THICKNESSES, *EDGES, *WALLS) if _still(found.design, name, free)
-    )
+    still = frozenset(name for name in LAWS if _still(found.design, name, free))
     paths = [path for path in design.parameters() if _law_of(path) and _law_of(path) not in still]
     scales = scales_of(design, paths, found.model.chord)
     sizes = {path.partition("[")[0]: float(size) for path, size in zip(paths, scales.size, strict=True)}

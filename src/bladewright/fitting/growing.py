@@ -12,7 +12,7 @@ from bladewright.fitting.chain import own_walls
 from bladewright.fitting.choosing import best_of
 from bladewright.fitting.edgewise import edge_steps
 from bladewright.fitting.forecast import Forecast, forecast_of
-from bladewright.fitting.growth import Step, chosen_of, gains, joined, roomier
+from bladewright.fitting.growth import Step, chosen_of, emphasis_of, gains, joined, roomier, roots_of
 from bladewright.fitting.opening import opened
 from bladewright.fitting.reshaping import reshaped
 from bladewright.fitting.search import ROUGH, Found, Task, searched
@@ -23,8 +23,6 @@ WORTHWHILE = 0.02
 """part of the sum of squares that growth must be foreseen to gain"""
 NEAR, WORTH_MORE = 1e-3, 0.2
 """misfit, of the chord, below which a blade is near enough for a tenth more parameters to be worth that part instead"""
-EMPHASIS = (0.1, 10.0)
-"""least and largest weight of a point by its distance, where a tolerance is to be met"""
 GROWN = 3
 """part, one in so many, of the parameters that are left which is added at a time"""
 MANIFOLD, MANY_MORE = 50, 10
@@ -35,9 +33,7 @@ FAR = 0.5
 
 def grown(task: Task, found: Found, aim: Aim) -> tuple[Found, bool]:
     """The match with the control points that promise most, and whether there were any."""
-    emphasis = None
-    if aim.tolerance is not None:
-        emphasis = np.clip((found.state.feet.distances / aim.tolerance) ** 2, *EMPHASIS)
+    emphasis = emphasis_of(found, aim)
     sharpened = task
     if emphasis is not None:
         weights = task.weights * emphasis
@@ -81,10 +77,7 @@ def _more(found: Found, aim: Aim) -> int:
 def _foreseen(forecast: Forecast, found: Found, aim: Aim, emphasis: Reals | None) -> Design | None:
     """The design with more control points that a forecast prefers; None where more are not worth it."""
     now = structure_of(found.design)
-    roots = None
-    if emphasis is not None:
-        roots = np.ones(len(forecast.rows))
-        roots[: len(emphasis)] = np.sqrt(emphasis)
+    roots = None if emphasis is None else roots_of(emphasis, len(forecast.rows))
     count = forecast.foreseen(now).parameters
     structure = best_of(forecast, now, count + max(_more(found, aim), count // MANY_MORE), roots)
     if aim.tolerance is not None:

@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from bladewright.errors import DesignError
+from bladewright.fitting.aim import Aim
 from bladewright.fitting.feet import placed
 from bladewright.fitting.problem import State
 from bladewright.fitting.reshaping import reshaped
@@ -15,6 +16,8 @@ from bladewright.fitting.structure import Structure, structure_of
 from bladewright.nurbs.basis import Reals
 from bladewright.section.limits import THICKNESSES
 
+EMPHASIS = (0.1, 10.0)
+"""least and largest weight of a point by its distance, where a tolerance is to be met"""
 WORTH = 0.4
 """gain for each parameter, of the best, from which a law grows too"""
 FINER = 8
@@ -128,6 +131,21 @@ def least(steps: Sequence[Step]) -> Structure:
     return replace(structures[0], chordwise=(chordwise[0], chordwise[1]), span=span, channel=channel)
 
 
+def emphasis_of(found: Found, aim: Aim) -> Reals | None:
+    """Further weights (n,) by which points far off count more; none where no tolerance is asked for."""
+    if aim.tolerance is None:
+        return None
+    return np.clip((found.state.feet.distances / aim.tolerance) ** 2, *EMPHASIS)
+
+
+def roots_of(emphasis: Reals | None, count: int) -> Reals:
+    """Factors (count,) of the rows of a least squares, of which those of the points, with their weights, come first."""
+    roots = np.ones(count)
+    if emphasis is not None:
+        roots[: len(emphasis)] = np.sqrt(emphasis)
+    return roots
+
+
 def gains(found: Found, emphasis: Reals | None = None) -> list[tuple[float, Step]]:
     """What each step would take off the sum of squares, foreseen linearly, best for each parameter first.
 
@@ -136,9 +154,7 @@ def gains(found: Found, emphasis: Reals | None = None) -> list[tuple[float, Step
     problem = found.problem
     rows = problem.measures.residuals(found.state)
     slopes = problem.measures.slopes(found.state, problem.paths) * problem.scales.size
-    roots = np.ones(len(rows))
-    if emphasis is not None:
-        roots[: len(emphasis)] = np.sqrt(emphasis)
+    roots = roots_of(emphasis, len(rows))
     before = left_after(slopes, rows, roots, problem.noise)
     result = [
         (before - left_after(wider, rows, roots, problem.noise), step)

@@ -7,7 +7,7 @@ import numpy as np
 from bladewright.designs import Design
 from bladewright.errors import FitError
 from bladewright.fitting.forecast import Forecast, Foreseen, forecast_of
-from bladewright.fitting.growth import Step, least, steps_back
+from bladewright.fitting.growth import Step, least, roots_of, steps_back
 from bladewright.fitting.search import ROUGH, Found, Task, searched
 from bladewright.fitting.structure import Structure, structure_of
 from bladewright.nurbs.basis import Reals
@@ -105,8 +105,7 @@ def _plans(forecast: Forecast, found: Found, tolerance: float) -> list[_Plan]:
     plans: list[_Plan] = []
     tried = forecast.foreseen(structure)
     while True:
-        roots_now = np.ones(len(forecast.rows))
-        roots_now[:count] = np.sqrt(weights)
+        roots_now = roots_of(weights, len(forecast.rows))
         base = forecast.foreseen(structure, roots_now).cost
         steps = [step for step in steps_back(structure) if step.law in names]
         if not steps:
@@ -116,8 +115,7 @@ def _plans(forecast: Forecast, found: Found, tolerance: float) -> list[_Plan]:
         ranked = [((costs[i] - base) / steps[i].parameters, steps[i]) for i in order]
         structure = least(_cheapest(ranked, AT_ONCE * tried.parameters))
         for attempt in range(2):
-            roots_now[:count] = np.sqrt(weights)
-            tried = forecast.foreseen(structure, roots_now)
+            tried = forecast.foreseen(structure, roots_of(weights, len(forecast.rows)))
             heights = np.zeros(count)
             heights[inside] = np.abs(tried.rows[:count][inside] / roots[inside]) * found.model.chord
             kept = float(np.max(heights)) <= TRUSTED * tolerance

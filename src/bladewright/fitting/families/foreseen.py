@@ -7,7 +7,7 @@ import numpy as np
 from bladewright.designs import Design
 from bladewright.errors import DesignError, FitError
 from bladewright.fitting.feet import placed
-from bladewright.fitting.growth import left_after
+from bladewright.fitting.growth import left_after, roots_of
 from bladewright.fitting.problem import State
 from bladewright.fitting.scales import scales_of
 from bladewright.fitting.search import Found, Task
@@ -17,20 +17,17 @@ Promise = tuple[float, int, Design]
 """gain for each parameter, number of parameters more, and the design"""
 
 
-def promised(task: Task, found: Found, designs: Iterable[Design], roots: Reals | None = None) -> list[Promise]:
+def promised(task: Task, found: Found, designs: Iterable[Design], emphasis: Reals | None = None) -> list[Promise]:
     """Designs that have more control points than a match's, best gain for each parameter first.
 
-    `roots` (n,) are square roots of further weights of the points. Designs without a shape, or that gain nothing, are
-    left out.
+    `emphasis` (n,) are further weights of the points. Designs without a shape, or that gain nothing, are left out.
     """
     measures, paths = found.problem.measures, found.problem.paths
     values = found.design.parameters()
     rows = measures.residuals(found.state)
     slopes = measures.slopes(found.state, paths) * found.problem.scales.size
-    weight = np.ones(len(rows))
-    if roots is not None:
-        weight[: len(roots)] = roots
-    before = left_after(slopes, rows, weight, found.problem.noise)
+    roots = roots_of(emphasis, len(rows))
+    before = left_after(slopes, rows, roots, found.problem.noise)
     ranked: list[Promise] = []
     for design in designs:
         try:
@@ -42,7 +39,7 @@ def promised(task: Task, found: Found, designs: Iterable[Design], roots: Reals |
         except (DesignError, FitError):
             continue
         wider = np.concatenate([slopes[:, kept], columns], axis=1)
-        gain = before - left_after(wider, rows, weight, found.problem.noise)
+        gain = before - left_after(wider, rows, roots, found.problem.noise)
         more = len(free) - len(paths)
         if gain > 0.0 and more > 0:
             ranked.append((gain / more, more, design))

@@ -4,20 +4,15 @@ from collections.abc import Callable, Iterator
 from dataclasses import replace
 from typing import Any
 
-import numpy as np
-
 from bladewright.errors import DesignError
 from bladewright.fitting.aim import Aim, short_of
 from bladewright.fitting.search import Found, Task
-from bladewright.nurbs.basis import Reals
 
 WORTH = 0.9
 """ratio of misfits from which control points more are worth it where no aim is stated"""
 PATIENCE = 2
 """times in a row that they may bring nothing before growth ends"""
 GROWTHS = 30
-EMPHASIS = (0.1, 10.0)
-"""least and largest weight of a point by its distance, where a tolerance is to be met"""
 
 Wider = Callable[[Task, Found, Aim], Iterator[Found]]
 """matches near to one with control points more"""
@@ -52,13 +47,6 @@ def sound(found: Found, tolerance: float) -> bool:
     except DesignError:
         return False
     return True
-
-
-def emphasis(found: Found, aim: Aim) -> Reals | None:
-    """Square roots of weights (n,) by which points far off count more; none where no tolerance is asked for."""
-    if aim.tolerance is None:
-        return None
-    return np.sqrt(np.clip((found.state.feet.distances / aim.tolerance) ** 2, *EMPHASIS))
 
 
 def _allowed(found: Found, aim: Aim) -> bool:

@@ -11,11 +11,12 @@ from bladewright.designs import Design
 from bladewright.errors import DesignError, FitError
 from bladewright.fitting.aim import Aim, short_of
 from bladewright.fitting.families.foreseen import promised
-from bladewright.fitting.families.growing import emphasis, enough, sound
+from bladewright.fitting.families.growing import enough, sound
 from bladewright.fitting.families.kinds import Kind
 from bladewright.fitting.families.sampled import Sampled, sampled
 from bladewright.fitting.frame import Frame
 from bladewright.fitting.freedom import Freedom
+from bladewright.fitting.growth import emphasis_of
 from bladewright.fitting.scales import check_bounds
 from bladewright.fitting.search import ROUNDS, Found, Task, searched
 from bladewright.fitting.thinning import drawn
@@ -188,7 +189,7 @@ def _wider(task: Task, found: Found, aim: Aim, *, kind: Kind) -> Iterator[Found]
     except DesignError:
         return
     designs = [replace(design, section=part) for part in parts]
-    for _, _, wider in promised(task, found, designs, emphasis(found, aim))[:TRIED]:
+    for _, _, wider in promised(task, found, designs, emphasis_of(found, aim))[:TRIED]:
         try:
             fresh = searched(task, wider, rounds=QUICK)
         except (DesignError, FitError):

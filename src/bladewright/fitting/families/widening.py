@@ -12,12 +12,12 @@ from bladewright.designs import Law, Point
 from bladewright.errors import DesignError, FitError
 from bladewright.fitting.aim import Aim
 from bladewright.fitting.families.foreseen import promised
-from bladewright.fitting.families.growing import emphasis
 from bladewright.fitting.families.kinds import Kind
 from bladewright.fitting.families.planar import ALONE
 from bladewright.fitting.families.sampled import Sampled
 from bladewright.fitting.families.spanwise import along_span, counts_of
 from bladewright.fitting.families.standing import EDGES
+from bladewright.fitting.growth import emphasis_of
 from bladewright.fitting.search import ROUGH, Found, Task, searched
 from bladewright.nurbs.basis import Reals
 from bladewright.section.laws import Span, law_basis, named_laws
@@ -74,7 +74,7 @@ def wider_blade(task: Task, found: Found, aim: Aim, *, kind: Kind) -> Iterator[F
             named[widening.law] = widening, widening.applied(found.design)
         except DesignError:
             continue
-    ranked = promised(task, found, [design for _, design in named.values()], emphasis(found, aim))
+    ranked = promised(task, found, [design for _, design in named.values()], emphasis_of(found, aim))
     of = {id(design): widening for widening, design in named.values()}
     design: Any = found.design
     taken = 0
