@@ -135,22 +135,21 @@ def promises_of(blade: "Blade") -> Promises:
         limits["clearance"] = CLEARANCE
     if blade.knots.sections is not None:
         limits["sections"] = sections_limit(tolerance)
-    twist = None
+    twisted: dict[str, float] = {}
     skinning = getattr(blade.design, "skinning", "sections")
     if skinning != "sections":
         twist = twist_of(blade.sides)
+        twisted = {"twist": float(np.degrees(twist.angle)), "twist_at": twist.u, "flank_cut": twist.cut}
         limits |= {"twist": DEVELOPED} if skinning == "developable" else {}
     return Promises(
         **figures,
+        **twisted,
         stream_surfaces=None if ruled else off / blade.chord,
         walls=max(ends / blade.chord, blade.wall_error),
         surface=blade.error,
         limits=limits,
         clearance=clearance,
         sections=_off_sections(blade),
-        **{}
-        if twist is None
-        else {"twist": float(np.degrees(twist.angle)), "twist_at": twist.u, "flank_cut": twist.cut},
     )
 
 
