@@ -1,7 +1,7 @@
 """Stream lines of the channel: position, meridional length and conformal length along u, and their inverse."""
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 from math import perm
 from typing import Protocol
@@ -98,9 +98,27 @@ class StreamLines:
             real = flat[0]
         lines = self.real()
         u = lines.u_at(real)
-        # the step's imaginary part alone: all of it that a batch need carry
-        carried = replace(lines, series=np.imag(self.series), starts=np.imag(self.starts))
-        return u - 1j * carried._newton_step(np.broadcast_to(u, abscissa.shape), np.imag(abscissa))  # noqa: SLF001
+        moved = -np.imag(abscissa)
+        if np.iscomplexobj(self.series):
+            moved = moved + lines.gathered(u, np.imag(self.series), np.imag(self.starts))
+        return u - 1j * moved / lines.rate(u)
+
+    def rate(self, u: Array) -> Array:
+        """da/du (..., m, k) at u (..., m, k), by its series."""
+        return self._by_panel(u, self._panel_rate)
+
+    def gathered(self, u: Reals, series: Reals, starts: Reals) -> Reals:
+        """The abscissa (..., m, k) at u (m, k) that a batch of series (..., m, p, n) and starts (..., m, p + 1) gives.
+
+        All of them stand at the same u, so each stream line is one product with Chebyshev polynomials.
+        """
+        index, count = self._panel_index(u), series.shape[-1]
+        own = chebyshev.chebvander(self._local(index, u), count - 1)
+        polynomials = np.zeros((*u.shape, len(self.panels) - 1, count))
+        np.put_along_axis(polynomials, index[..., None, None], own[..., None, :], axis=-2)
+        batch = np.moveaxis(series.reshape(-1, len(u), polynomials.shape[-2] * count), 0, -1)
+        found = np.moveaxis(polynomials.reshape(*u.shape, -1) @ batch, -1, 0)
+        return found.reshape(*series.shape[:-3], *u.shape) + _of(starts, index)
 
     def _inverse(self, abscissa: Reals) -> Reals:
         u = self._guess(abscissa)
@@ -153,9 +171,10 @@ class StreamLines:
         return _patched(index, np.stack([u, abscissa]), lambda panel, part: self._panel_step(panel, part[0], part[1]))
 
     def _panel_step(self, panel: Panel, u: Array, abscissa: Array) -> Array:
-        return (self._panel_abscissa(panel, u) - abscissa) / _clenshaw(
-            _rows_of(self.density, panel), self._local(panel, u)
-        )
+        return (self._panel_abscissa(panel, u) - abscissa) / self._panel_rate(panel, u)
+
+    def _panel_rate(self, panel: Panel, u: Array) -> Array:
+        return _clenshaw(_rows_of(self.density, panel), self._local(panel, u))
 
     def _panel_abscissa(self, panel: Panel, u: Array) -> Array:
         return _clenshaw(_rows_of(self.series, panel), self._local(panel, u)) + _of(self.starts, panel)

@@ -145,12 +145,12 @@ class Forecast:
             fresh, shift = self.block(name, self.counts(other, name))
             moved = (shift - parts[name][1]) * root
             fresh = fresh * root[:, None]
-            kept = np.r_[0 : own.start, own.stop : len(gram)]
-            rest = columns[:, kept]
-            cross = rest.T @ fresh
-            whole = np.block([[gram[np.ix_(kept, kept)], cross], [cross.T, fresh.T @ fresh]])
             now = rows + moved
-            aim = np.concatenate([right[kept] + rest.T @ moved, fresh.T @ now])
+            kept = np.r_[0 : own.start, own.stop : len(gram)]
+            mixed = (columns.T @ np.column_stack([fresh, moved]))[kept]
+            cross = mixed[:, :-1]
+            whole = np.block([[gram[np.ix_(kept, kept)], cross], [cross.T, fresh.T @ fresh]])
+            aim = np.concatenate([right[kept] + mixed[:, -1], fresh.T @ now])
             whole[np.diag_indices(len(whole))] += self.noise**2
             step = cho_solve(cho_factor(whole), aim)
             found.append(float(now @ now - aim @ step))

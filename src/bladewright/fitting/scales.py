@@ -34,7 +34,7 @@ def scales_of(
     design: Design, paths: Sequence[str], chord: float, bounds: Mapping[str, tuple[float, float]] | None = None
 ) -> Scales:
     """Scales of a design's parameters, `chord` in metres, `bounds` by pattern within those of the family."""
-    kinds = [_kind(design, path, chord) for path in paths]
+    kinds = _kinds(design, paths, chord)
     size, low, high = (np.array([getattr(kind, name) for kind in kinds]) for name in ("size", "low", "high"))
     for pattern, (least, most) in (bounds or {}).items():
         for i in _matched(pattern, paths):
@@ -51,8 +51,7 @@ def check_bounds(design: Design, paths: Sequence[str], bounds: Mapping[str, tupl
             matched = matching(pattern, paths)
         except DesignError as error:
             raise FitError(f"bounds: {error}") from error
-        for path in matched:
-            kind = _kind(design, path, 1.0)
+        for path, kind in zip(matched, _kinds(design, matched, 1.0), strict=True):
             if not max(kind.low, least) < min(kind.high, most):
                 raise FitError(
                     f"the bounds of {path} are {least:g} to {most:g}, and the family allows {kind.low:g} to "
@@ -69,14 +68,28 @@ def _matched(pattern: str, paths: Sequence[str]) -> list[int]:
     return [place for place, path in enumerate(paths) if path in found]
 
 
-def _kind(design: Design, path: str, chord: float) -> Kind:
-    values = design.parameters()
-    field = path.partition("[")[0]
-    value = float(values[path])
-    largest = max(float(each) for name, each in values.items() if name.partition("[")[0] == field)
-    if path.startswith("section."):
-        among = [float(each) ** 2 for name, each in values.items() if name.partition("[")[0] == field]
-        return part_kind(path, unit_at(design, path), value, float(np.sqrt(max(among))))
+def _kinds(design: Design, paths: Sequence[str], chord: float) -> list[Kind]:
+    """What parameters are like, a law's by the values of all of it."""
+    values = {path: float(value) for path, value in design.parameters().items()}
+    fields: dict[str, list[float]] = {}
+    for path, value in values.items():
+        fields.setdefault(_field(path), []).append(value)
+    size = {name: max(among) for name, among in fields.items()}
+    extent = {name: float(np.sqrt(max(value**2 for value in among))) for name, among in fields.items()}
+    return [
+        part_kind(path, unit_at(design, path), values[path], extent[_field(path)])
+        if path.startswith("section.")
+        else _kind(design, path, values[path], size[_field(path)], chord)
+        for path in paths
+    ]
+
+
+def _field(path: str) -> str:
+    return path.partition("[")[0]
+
+
+def _kind(design: Design, path: str, value: float, largest: float, chord: float) -> Kind:
+    field = _field(path)
     length = chord / UNITS[getattr(design, "length_unit")]  # noqa: B009 - a field of every family, not of the base
     kinds = {
         "stagger": Kind(5.0, -ANGLE, ANGLE),
