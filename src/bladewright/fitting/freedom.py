@@ -20,6 +20,8 @@ class Freedom:
     free: Patterns = None
     fixed: tuple[str, ...] = ()
     values: Mapping[str, float] | None = None
+    walls: bool = False
+    """whether hub and shroud of a blade from sections are found too"""
 
     def __call__(self, design: Design) -> tuple[str, ...]:
         """The free parameters of a design; raises FitError where there are none."""
@@ -29,7 +31,7 @@ class Freedom:
         except DesignError as error:
             raise FitError(str(error)) from error
         if self.free is None:
-            held |= standing(design) | {path for path in wanted if path.startswith(GIVEN)}
+            held |= standing(design, walls=self.walls) | {path for path in wanted if path.startswith(GIVEN)}
         found = tuple(path for path in wanted if path not in held)
         if not found:
             raise FitError("no parameter is left to fit: free at least one, or fix fewer")

@@ -40,6 +40,10 @@ GROUP, FEW = 0.05, 20
 """largest group of outliers, of the points, and however few there are"""
 BESIDE, WRONG = 0.02, 0.2
 """how near an end of the blade points are, in v, and the part of them which past it shows that the end is wrong"""
+ONWARDS = 3
+"""points past an end, level with the sides, that may be there by chance"""
+LEVEL = 0.05
+"""height, of the way past an end, up to which a point is level with the sides, which may bend there"""
 MOST = 0.15
 """part of the points from which it is the design that lies off, and not they"""
 AROUND, SITES = 64, 5000
@@ -105,24 +109,31 @@ def outliers_of(
     far = distances > least
     if not np.any(far):
         return far
-    beyond = (past > least) & ~_short_of_ends(far & (past > least), on)
+    wrong = _short_of_ends(far & (past > least), np.abs(heights) <= np.maximum(least, LEVEL * past), on)
+    beyond = (past > least) & ~wrong
     largest = min(max(FEW, int(GROUP * len(heights))), len(heights) // 5)
     # what differs by more than the noise is no noise
     noisy = misfit == 0.0 and noise > near
     slopes = np.zeros(len(heights)) if noisy else _slopes(heights, level, misfit, around)
     found = far & (beyond | _cut_off(heights, level, beyond, slopes, largest, around))
-    steady = ~found & (distances > np.hypot(OUTLYING * level, STEADY * misfit) + near)
+    # what is past an end that is wrong lies off the surface by its height alone
+    off_surface = np.where(wrong, np.abs(heights), distances)
+    steady = ~found & (off_surface > np.hypot(OUTLYING * level, STEADY * misfit) + near)
     label = _groups(steady, steady, index)
     # around an edge a few points are all that tells of a radius: it may be wrong alone
     found |= steady & (_sizes(label) <= largest) & ~np.isin(label, label[edge & steady])
     return found if np.mean(found) < MOST else np.zeros_like(found)
 
 
-def _short_of_ends(past: NDArray[np.bool_], on: Feet) -> NDArray[np.bool_]:
-    """Whether points (n,) are at an end of the blade that so many are past that it is the end which is wrong."""
+def _short_of_ends(past: NDArray[np.bool_], level: NDArray[np.bool_], on: Feet) -> NDArray[np.bool_]:
+    """Whether points (n,) are at an end of the blade that so many are past that it is the end which is wrong.
+
+    So it is, too, where most of those past it are `level` with the sides that go on there.
+    """
     wrong = np.zeros(len(past), dtype=bool)
     for beside in (on.v < BESIDE, on.v > 1.0 - BESIDE):
-        if np.count_nonzero(past & beside) > WRONG * np.count_nonzero(beside):
+        there, onwards = int(np.count_nonzero(past & beside)), int(np.count_nonzero(past & level & beside))
+        if there > WRONG * np.count_nonzero(beside) or onwards > max(ONWARDS, there // 2):
             wrong |= beside
     return wrong
 

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
-from bladewright.blade.exact import ExactBlade, moved
+from bladewright.blade.exact import ExactBlade
 from bladewright.derivatives.tangents import STEP
 from bladewright.fitting.chain import own_walls, shifts_of
 from bladewright.fitting.feet import Feet
@@ -72,7 +72,7 @@ class Wall:
         """Derivatives (m, k, 2) of the places on the curve at held parameters."""
         found = np.zeros((len(t), len(paths), 2))
         exact = shape.exact
-        moving = [i for i, path in enumerate(paths) if path.startswith(("channel.", "tip_", "hub_"))]
+        moving = [i for i, path in enumerate(paths) if path.startswith(("channel.", "flow_path.", "tip_", "hub_"))]
         if not moving or exact is None:
             return found
         if isinstance(exact, ExactBlade) and own_walls(shape.design):
@@ -87,7 +87,7 @@ class Wall:
         changed = shape.design.changed(
             {paths[i]: values[paths[i]] + kick for i, kick in zip(moving, kicks, strict=True)}
         )
-        rows = np.imag(moved(exact, changed).channel.line(self.name).values(t)) / STEP
+        rows = np.imag(_line(exact.moved_to(changed), self.name).values(t)) / STEP
         found[:, moving] = np.moveaxis(np.broadcast_to(rows, (len(moving), len(t), 2)), 0, 1)
         return found
 

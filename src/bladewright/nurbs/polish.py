@@ -9,7 +9,7 @@ from bladewright.nurbs.basis import Reals
 from bladewright.nurbs.bezier import Patches, bernsteins
 from bladewright.nurbs.rational import surface_quotients
 
-ROUNDS, STEPS = 12, 40
+ROUNDS, STEPS = 80, 40
 """patches a point may cross, and Newton steps in each"""
 CONVERGED = 1e-12
 """step in local parameters after which Newton's next one is below rounding"""

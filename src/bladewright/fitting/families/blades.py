@@ -32,7 +32,7 @@ FEW, MANY = 1000, 12_000
 """points of a quick and of a thorough search"""
 COARSE = 1e-3
 """tolerance of the native sides of blades that are on the way, of the chord"""
-HELD = "hub and shroud are held as they were first found, or given"
+HELD = "hub and shroud are held as they are given"
 QUICK = 4
 """rounds of the search for the closed blade that says where to begin"""
 SPANS: Reals = np.linspace(0.0, 1.0, 7)
@@ -52,7 +52,10 @@ def matched_blade(task: Task, kind: Kind, start: Any, like: Any, frame: Frame, a
     the points.
     """
     many, few = thinned(task, MANY), thinned(task, FEW)
-    first = start
+    first, own = start, start is None and like is None
+    if own and isinstance(task.free, Freedom):
+        many, few = (replace(each, free=replace(task.free, walls=True)) for each in (many, few))
+        task = many
     if start is None or like is not None:
         closed = _closed(few, frame, like) if start is None else start.build()
         task.told("first design of the family")
@@ -65,7 +68,7 @@ def matched_blade(task: Task, kind: Kind, start: Any, like: Any, frame: Frame, a
     if not found.interrupted:
         fresh = searched(many, found.design)
         found = replace(fresh, evaluations=found.evaluations + fresh.evaluations)
-    return found, "; ".join(filter(None, (reason, HELD)))
+    return found, "; ".join(filter(None, (reason, "" if own else HELD)))
 
 
 def _closed(task: Task, frame: Frame, like: Any) -> Blade:

@@ -11,12 +11,18 @@ from bladewright.blade.flow_path import FlowPath
 from bladewright.blade.meridian import ControlPolygon, Meridian, ThroughPoints
 from bladewright.designs import Point
 from bladewright.errors import FitError
+from bladewright.fitting.families.polyline import nearest_on
+from bladewright.fitting.families.standing import WALLS
 from bladewright.nurbs.basis import Reals, basis, uniform_knots
 
-WALL = 9
-"""points on each wall beside the blade"""
-AHEAD = (0.25, 0.5, 0.8)
-"""where points stand on its straight continuation, of its length"""
+WALL = (3, 4, 5, 7, 9)
+"""points on each wall beside the blade, the fewest that are near enough"""
+NEAR = 0.01
+"""distance of a wall from the one that is found that is near enough, of its length: it is found by points alone"""
+BESIDE = 0.1
+"""how far in front of the blade and behind it the first and the last of them stand, of its length"""
+AHEAD = 0.8
+"""where a point stands on its straight continuation, of its length"""
 KEPT = 0.6
 """part of the radius at its end that the continuation may lose"""
 EDGE = 4
@@ -46,9 +52,8 @@ class Channelled:
 
     def flow_path(self, metre: float) -> FlowPath:
         """Hub and shroud, lengthened straight on; fractions count from edge to edge."""
-        at = np.linspace(0.0, 1.0, WALL)
-        hub, shroud = (_points(_lengthened(self.values(name, at)), metre) for name in ("hub", "shroud"))
-        return FlowPath(hub=ThroughPoints(points=hub), shroud=ThroughPoints(points=shroud), matched="edges")
+        hub, shroud = (ThroughPoints(points=_points(_wall(self.values(name, FINE)), metre)) for name in WALLS)
+        return FlowPath(hub=hub, shroud=shroud, matched="edges")
 
     def edge(self, name: str, metre: float) -> ThroughPoints:
         """An edge as a curve through a few points that reaches past both walls."""
@@ -84,20 +89,34 @@ class Channelled:
         return replace(curve, **{field: _points(found, metre)})
 
 
-def _lengthened(line: Reals) -> Reals:
-    """A line (n, 2) with points on its straight continuation at both ends."""
-    size = float(np.sum(np.sqrt(np.sum(np.diff(line, axis=0) ** 2, axis=1))))
+def _wall(line: Reals) -> Reals:
+    """Points of a wall, a line (n, 2) lengthened straight on: as few as follow it within a part of its length."""
+    way = _lengths(line)
+    size = float(way[-1])
     first, last = _unit(line[0] - line[1]), _unit(line[-1] - line[-2])
-    ahead, behind = (
-        size * _off_axis(end[1], size * way[1]) * np.array(AHEAD)[:, None]
-        for end, way in ((line[0], first), (line[-1], last))
-    )
-    return np.concatenate([(line[0] + ahead * first)[::-1], line, line[-1] + behind * last])
+    ends = [size * _off_axis(end[1], size * out[1]) * out for end, out in ((line[0], first), (line[-1], last))]
+    longer = np.concatenate([[line[0] + ends[0] * AHEAD], line, [line[-1] + ends[1] * AHEAD]])
+    along = _lengths(longer)
+    low, high = along[1] - BESIDE * size, along[-2] + BESIDE * size
+    rows = longer
+    for count in WALL:
+        at = np.concatenate([along[:1], np.linspace(max(low, 0.5 * along[1]), high, count), along[-1:]])
+        at[-2] = min(at[-2], 0.5 * (along[-1] + along[-2]))
+        rows = np.stack([np.interp(at, along, longer[:, i]) for i in (0, 1)], axis=-1)
+        curve = np.real(ThroughPoints(points=_points(rows, 1.0)).line(1.0).values(np.linspace(0.0, 1.0, 801)))
+        if np.max(nearest_on(curve, line).heights ** 2) <= (NEAR * size) ** 2:
+            break
+    return rows
+
+
+def _lengths(line: Reals) -> Reals:
+    """Lengths (n,) along a line (n, 2)."""
+    return np.concatenate([[0.0], np.cumsum(np.sqrt(np.sum(np.diff(line, axis=0) ** 2, axis=1)))])
 
 
 def _off_axis(radius: float, slope: float) -> float:
     """The part of a straight continuation that keeps off the axis."""
-    return 1.0 if slope >= 0.0 else min(1.0, KEPT * radius / (-slope * AHEAD[-1]))
+    return 1.0 if slope >= 0.0 else min(1.0, KEPT * radius / (-slope * AHEAD))
 
 
 def _past(line: Reals, times: float = 1.0) -> Reals:

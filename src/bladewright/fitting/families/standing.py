@@ -4,17 +4,20 @@ import re
 
 import numpy as np
 
+from bladewright.blade.meridian import ThroughPoints
 from bladewright.blade.sectioned import SectionedBlade
 from bladewright.designs import Design
 
 EDGES = ("leading_edge", "trailing_edge")
+WALLS = ("hub", "shroud")
 
 
-def standing(design: Design) -> frozenset[str]:
+def standing(design: Design, *, walls: bool = False) -> frozenset[str]:
     """Paths of what is held.
 
     Of control points that count by their ratios alone it is the largest. Of a blade it is the flow path, which a blade
     shows by its ends only, and that coordinate of the points of its edge curves along which they slide on the curve.
+    Where the `walls` are free, the points of hub and shroud slide along these only.
     """
     section = getattr(design, "section", None)
     if section is None:
@@ -23,6 +26,7 @@ def standing(design: Design) -> frozenset[str]:
     if isinstance(design, SectionedBlade):
         values = design.parameters()
         found |= {path for path in values if path.startswith("flow_path.")}
+        found -= _across_walls(design) if walls else frozenset()
         for edge in EDGES:
             along = sliding(design, edge)
             found |= {path for path in values if path.startswith(f"{edge}.") and path.endswith(f".{along}")}
@@ -37,6 +41,19 @@ def sliding(design: SectionedBlade, edge: str) -> str:
     points = np.real(curve.line(1.0).net[[0, -1]])
     across = (points[1] - points[0]) ** 2
     return "x" if across[0] > across[1] else "r"
+
+
+def _across_walls(design: SectionedBlade) -> frozenset[str]:
+    """Of every point of hub and shroud the coordinate, x or r, across which the wall runs there."""
+    found = set()
+    for wall in WALLS:
+        curve = getattr(design.flow_path, wall)
+        if isinstance(curve, ThroughPoints):
+            points = np.array([[float(np.real(each.x)), float(np.real(each.r))] for each in curve.points])
+            way = np.gradient(points, axis=0) ** 2
+            across = np.where(way[:, 0] >= way[:, 1], "r", "x")
+            found |= {f"flow_path.{wall}.points[{i}].{name}" for i, name in enumerate(across)}
+    return frozenset(found)
 
 
 def _largest(values: dict[str, float]) -> list[str]:
