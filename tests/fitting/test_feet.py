@@ -53,6 +53,17 @@ def test_distances_are_those_of_the_certified_search(name):
     assert set(on.side[on.u < 0.01]) == {0, 1}
 
 
+def test_places_beside_thin_edges_are_their_own_feet():
+    name = "mixed-flow-pump"
+    random = np.random.default_rng(6)
+    u, v = random.random((2, 1500))
+    places = np.concatenate([side(1.0 - 0.1 * u, v) for side in sides(name)])
+    # the other side is nearer there than the next sample of the own one may be
+    found = feet(places, sides(name))
+    # descents end with steps of 1e-8 of a patch
+    assert np.max(found.distances) < 1e-8 * np.max(np.ptp(places, axis=0))
+
+
 @pytest.mark.parametrize("name", ["turbine-section", "compressor-stator"])
 def test_feet_from_a_hint_are_those_without_one(name):
     points, extent = cloud(name)

@@ -52,6 +52,37 @@ def test_rows_at_both_ends_lie_on_the_walls():
     assert not found.covered.any()
 
 
+def test_a_row_is_found_among_points_beside_it_where_its_wall_is_not_known_yet():
+    design, model, there = shape(BLADE)
+    random = np.random.default_rng(8)
+    u, v = random.random((2, 1500))
+    u = (1.0 - np.cos(np.pi * u)) / 2.0
+    # a third of the points at an end are of the sides alone, and not on the wall by as much as the wall is off
+    scattered = [side(u, end + (1.0 - 2.0 * end) * 0.05 * v) for side in there.sides for end in (0.0, 1.0)]
+    row = (1.0 - np.cos(np.pi * random.random(300))) / 2.0
+    points = np.concatenate([*scattered, *(side(row, np.full(300, e)) for side in there.sides for e in (0.0, 1.0))])
+    other = model.shape(
+        design.changed(
+            {f"channel.{name}[1].r": 1.02 * design.parameters()[f"channel.{name}[1].r"] for name in ("hub", "shroud")}
+        )
+    )
+    found = ends_of(points, feet(points, other.sides), other, np.ones(len(points), dtype=bool))
+    for name in ("hub", "shroud"):
+        off = found.walls[name].distances(there.exact)
+        assert np.mean(np.abs(off) < 3e-6 * model.chord) > 0.9
+        assert np.max(np.abs(found.walls[name].distances(other.exact))) > 1e-3 * model.chord
+
+
+def test_points_a_little_inside_beside_an_end_are_no_end_face():
+    design, model, _ = shape(BLADE)
+    blunt = model.shape(
+        design.changed({"trailing_edge_radius[1]": 2.0 * design.parameters()["trailing_edge_radius[1]"]})
+    )
+    points = sides_cloud(BLADE, 300, rows=60)
+    found = ends_of(points, feet(points, blunt.sides), blunt, np.ones(len(points), dtype=bool))
+    assert not found.covered.any()
+
+
 def test_without_points_at_the_ends_there_are_no_walls():
     found, _ = ends(BLADE, sides_cloud(BLADE, 200))
     assert not found.walls

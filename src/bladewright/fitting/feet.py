@@ -1,7 +1,7 @@
 """Nearest places of a cloud on the two sides of a blade or section."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from typing import Any
 
 import numpy as np
@@ -10,7 +10,7 @@ from scipy.spatial import cKDTree
 
 from bladewright.fitting.curve_feet import walked
 from bladewright.nurbs.basis import Reals
-from bladewright.nurbs.bezier import Patches, patches, sampled
+from bladewright.nurbs.bezier import Patches, Samples, patches, sampled
 from bladewright.nurbs.curve import Curve
 from bladewright.nurbs.polish import Places, polished
 from bladewright.nurbs.surface import Surface
@@ -20,10 +20,16 @@ NEAR = 2.0
 """the other side is tried too where its nearest sample is not this much further away"""
 EDGE = 0.02
 """how near to the trailing edge, in u, a known foot may change sides"""
+DEEP, SHALLOW = 0.25, 1e-5
+"""a point inside the blade is sought on its other side too where its foot is so much of the thickness there away, and
+more than so much of the cloud's extent"""
 CONVERGED = 1e-8
 """last step of a descent, in the parameters of a patch"""
 SAMPLES = (6, 5)
 """samples along and across a patch; a patch is small where the side bends"""
+BESIDE, BESIDE_EDGES = (0.05, 0.9), (4, 17)
+"""u before and after which a patch is beside an edge, and samples of those: along the span they must be as close to
+each other as the sides are there"""
 CURVE_SAMPLES = (24, 1)
 AT_ONCE = 20_000
 """points that are projected at a time, to bound the memory"""
@@ -88,7 +94,26 @@ def feet(points: Reals, sides: Sequence[Side], hint: Feet | None = None, *, conv
             where = where[nearer]
             best[where] = square[nearer]
             around[where], v[where] = place[0][nearer], place[1][nearer]
-    return placed(points, sides, (around < 0.0).astype(np.intp), np.abs(around), v)
+    found = placed(points, sides, (around < 0.0).astype(np.intp), np.abs(around), v)
+    rows = _deep(found, points, sides)
+    if hint is None:
+        rows = np.union1d(rows, np.flatnonzero(found.u > 1.0 - EDGE))
+    if len(rows) == 0:
+        return found
+    square, *place = _descended(on, points[rows], *on.at(-around[rows], v[rows]), converged)
+    nearer = square < best[rows]
+    around[rows[nearer]], v[rows[nearer]] = place[0][nearer], place[1][nearer]
+    return placed(points, sides, (around < 0.0).astype(np.intp), np.abs(around), v) if np.any(nearer) else found
+
+
+def _deep(on: Feet, points: Reals, sides: Sequence[Side]) -> NDArray[np.intp]:
+    """The points so deep inside a blade that their nearest place may lie on its other side."""
+    heights = on.heights
+    rows = np.flatnonzero(heights < -SHALLOW * float(np.max(np.ptp(points, axis=0))))
+    if len(rows) == 0:
+        return rows
+    across = placed(points[rows], sides, 1 - on.side[rows], on.u[rows], on.v[rows]).points - on.points[rows]
+    return rows[heights[rows] < -DEEP * np.sqrt(np.sum(across**2, axis=-1))]
 
 
 def _descended(
@@ -127,14 +152,23 @@ def _ring(sides: Sequence[Side]) -> Patches:
 def _starts(points: Reals, on: Patches) -> list[Start]:
     """From the nearest sample, and from that on the other half where it is not much further."""
     samples = sampled(on, *(SAMPLES if on.degrees[1] else CURVE_SAMPLES))
-    middle = int(np.searchsorted(on.low[samples.patch, 0], 0.0))
-    halves = slice(0, middle), slice(middle, None)
+    if on.degrees[1]:
+        around = 0.5 * np.abs(on.low[:, 0] + on.high[:, 0])
+        beside = np.flatnonzero((around < BESIDE[0]) | (around > BESIDE[1]))
+        more = sampled(replace(on, nets=on.nets[beside]), *BESIDE_EDGES)
+        samples = Samples(
+            points=np.concatenate([samples.points, more.points]),
+            patch=np.concatenate([samples.patch, beside[more.patch]]),
+            local=np.concatenate([samples.local, more.local]),
+        )
+    lower = on.low[samples.patch, 0] < 0.0
+    halves = np.flatnonzero(lower), np.flatnonzero(~lower)
     nearest = [cKDTree(samples.points[half]).query(points) for half in halves]
     found = []
     for k, half in enumerate(halves):
         rows = np.flatnonzero(nearest[k][0] <= NEAR * nearest[1 - k][0])
-        index = nearest[k][1][rows]
-        found.append((rows, samples.patch[half][index], samples.local[half][index]))
+        index = half[nearest[k][1][rows]]
+        found.append((rows, samples.patch[index], samples.local[index]))
     return found
 
 

@@ -21,6 +21,9 @@ OPEN = 1.4
 """ratio of the openings at which two opposite pieces are the walls"""
 CLEAR = 3e-3
 """of the chord: a mean distance that settles the outline where the other pairing lies three times as far off"""
+NEARER = 0.7
+"""ratio of the mean distances from which an outline without the points that lie off is taken: where it is not, they
+belong to the blade, and lie off as the channel does not follow it yet"""
 RADIAL = 0.05
 """axial share of the way from edge to edge below which the rounder edge leads"""
 
@@ -46,8 +49,9 @@ def ranked(machine: Reals, *, revolved: bool) -> tuple[Reals, list[Found]]:
     distances = nearest(best.shape, laid_in(machine, best.channel), best.match.laws)[2]
     kept = distances < 5.0 * np.median(distances) + 0.03 * best.laid.chord
     if np.mean(kept) < 0.995:
-        machine = machine[kept]
-        found = _likely(machine, revolved=revolved)
+        other = _likely(machine[kept], revolved=revolved)
+        if other[0].match.mean / other[0].laid.chord < NEARER * best.match.mean / best.laid.chord:
+            return machine[kept], other
     return machine, found
 
 
