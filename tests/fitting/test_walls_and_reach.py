@@ -55,7 +55,7 @@ def test_rows_at_both_ends_lie_on_the_walls():
 def test_a_row_is_found_among_points_beside_it_where_its_wall_is_not_known_yet():
     design, model, there = shape(BLADE)
     random = np.random.default_rng(8)
-    u, v = random.random((2, 1500))
+    u, v = random.random((2, 500))
     u = (1.0 - np.cos(np.pi * u)) / 2.0
     # a third of the points at an end are of the sides alone, and not on the wall by as much as the wall is off
     scattered = [side(u, end + (1.0 - 2.0 * end) * 0.05 * v) for side in there.sides for end in (0.0, 1.0)]
@@ -63,14 +63,15 @@ def test_a_row_is_found_among_points_beside_it_where_its_wall_is_not_known_yet()
     points = np.concatenate([*scattered, *(side(row, np.full(300, e)) for side in there.sides for e in (0.0, 1.0))])
     other = model.shape(
         design.changed(
-            {f"channel.{name}[1].r": 1.02 * design.parameters()[f"channel.{name}[1].r"] for name in ("hub", "shroud")}
+            {f"channel.{name}[1].r": 1.01 * design.parameters()[f"channel.{name}[1].r"] for name in ("hub", "shroud")}
         )
     )
     found = ends_of(points, feet(points, other.sides), other, np.ones(len(points), dtype=bool))
     for name in ("hub", "shroud"):
         off = found.walls[name].distances(there.exact)
-        assert np.mean(np.abs(off) < 3e-6 * model.chord) > 0.9
-        assert np.max(np.abs(found.walls[name].distances(other.exact))) > 1e-3 * model.chord
+        assert len(off) < 660
+        assert np.count_nonzero(np.abs(off) < 3e-6 * model.chord) >= 600
+        assert np.max(np.abs(found.walls[name].distances(other.exact))) > 3e-4 * model.chord
 
 
 def test_points_a_little_inside_beside_an_end_are_no_end_face():

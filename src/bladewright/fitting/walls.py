@@ -29,7 +29,7 @@ FEWEST = 5
 ROW, ALIGNED = 4.5, 1e-6
 """a point belongs to the row at an end where it lies within so many deviations of its middle; of the extent of the
 places, as the sides are no nearer to the walls"""
-BENDS, TURNS, SETTLING = 4, 30, 3
+BENDS, TURNS, SETTLING = 6, 30, 3
 """highest degree by which a row may be off the wall, and turns in which it is found and settles"""
 OUTER = 0.2
 """part of the places at an end beyond the law that is first sought: a row is the outermost, beside it lie points of
