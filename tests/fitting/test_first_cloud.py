@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
 
 from bladewright.errors import FitError
 from bladewright.fitting.cloud import checked_cloud
@@ -12,6 +13,7 @@ BLADE = np.array([[x, y, z] for z in np.linspace(0.3, 0.4, 12) for x, y in SECTI
 HOLED = np.array(SECTION)
 HOLED[7, 1] = np.nan
 NEXT_SECTION, NEXT_BLADE = SECTION + np.array([0.0, 0.06]), BLADE + np.array([0.0, 0.06, 0.0])
+TURNS = Rotation.from_rotvec(np.arange(20)[:, None] * [2.0 * np.pi / 20, 0.0, 0.0]).as_matrix()
 LINE = np.linspace(0.0, 1.0, 200)[:, None]
 
 
@@ -36,6 +38,7 @@ def test_a_whole_blade_is_taken_as_it_is(cloud: np.ndarray) -> None:
         (SECTION @ [[1.0, 0.0, 0.5], [0.0, 1.0, 0.2]], "one plane"),
         (np.concatenate([SECTION, NEXT_SECTION]), "two blades"),
         (np.concatenate([BLADE, NEXT_BLADE]), "two blades"),
+        (np.concatenate([BLADE @ turn.T for turn in TURNS]), "two blades or more"),
         (np.stack([LINE[:, 0], LINE[:, 0] * (1.0 - LINE[:, 0])], axis=-1), "one side"),
     ],
 )

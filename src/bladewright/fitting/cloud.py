@@ -1,9 +1,10 @@
 """Clouds as they come: what can be fitted at all, and what is suspicious."""
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from bladewright.errors import FitError
+from bladewright.fitting.repetition import repeated
 from bladewright.nurbs.basis import Reals
 
 FEWEST = {2: 24, 3: 100}
@@ -13,11 +14,9 @@ FLAT = 1e-5
 LARGEST, SMALLEST = 20.0, 5e-4
 """extents beyond which another unit is suspected [m]"""
 LOOKED_AT = 3000
-"""points among which neighbours are compared"""
+"""points by which one side alone is known"""
 THIN = 1.3e-3
 """of its width: a sheet this thin is one side, and no blade"""
-APART = 0.12
-"""of its extent: how far from itself a blade is found again"""
 
 
 def checked_cloud(cloud: ArrayLike) -> tuple[Reals, tuple[str, ...]]:
@@ -46,7 +45,7 @@ def checked_cloud(cloud: ArrayLike) -> tuple[Reals, tuple[str, ...]]:
             "sections at several places along the span"
         )
     some = different[np.random.default_rng(0).permutation(len(different))[:LOOKED_AT]]
-    found = repeated(some)
+    found = repeated(different)
     if found is not None:
         raise FitError(
             f"the cloud holds two blades or more: {found} along the pitch lies the same shape again; give the points "
@@ -83,61 +82,6 @@ def _numbers(cloud: ArrayLike) -> Reals:
             f"{int(np.argmax(bad))}: leave them out"
         )
     return points
-
-
-def repeated(points: Reals) -> str | None:
-    """How far along the pitch, in words, a part of the cloud is found again in another; None where it is not."""
-    parts = [points[rows] for rows in _parts(points)]
-    for i, part in enumerate(parts):
-        for other in parts[i + 1 :]:
-            found = _turned_onto(part, other)
-            if found is not None:
-                return found
-    return None
-
-
-def _parts(points: Reals) -> list[NDArray[np.intp]]:
-    """Indices of the large parts of the cloud that stand apart from each other."""
-    from scipy.sparse.csgraph import connected_components
-    from scipy.spatial import cKDTree
-
-    tree = cKDTree(points)
-    near = np.asarray(tree.query(points, k=2)[0])[:, 1]
-    extent = float(np.max(np.ptp(points, axis=0)))
-    gap = max((4.5 if points.shape[1] == 2 else 2.5) * float(np.percentile(near, 95.0)), 0.01 * extent)
-    _, labels = connected_components(tree.sparse_distance_matrix(tree, gap), directed=False)
-    counts = np.bincount(labels)
-    return [np.flatnonzero(labels == label) for label in np.argsort(-counts)[:6] if counts[label] > 0.08 * len(points)]
-
-
-def _turned_onto(part: Reals, other: Reals) -> str | None:
-    """How far the part must be moved along y, or turned about x, to lie on the other; None where neither is so."""
-    from scipy.spatial import cKDTree
-
-    if not 0.6 < len(part) / len(other) < 1.7:
-        return None
-    extent = float(np.sqrt(np.sum(np.ptp(part, axis=0) ** 2)))
-    tree = cKDTree(other)
-    step = np.zeros(part.shape[1])
-    step[1] = np.mean(other[:, 1]) - np.mean(part[:, 1])
-    moved = [(part + step, abs(float(step[1])), f"{abs(float(step[1])):.4g} m")]
-    if part.shape[1] == 3:
-        angles = [np.arctan2(np.mean(p[:, 1]), np.mean(p[:, 2])) for p in (part, other)]
-        turn = float((angles[1] - angles[0] + np.pi) % (2.0 * np.pi) - np.pi)
-        c, s = np.cos(turn), np.sin(turn)
-        y, z = part[:, 1], part[:, 2]
-        radius = float(np.mean(np.sqrt(y**2 + z**2)))
-        turned = np.stack([part[:, 0], c * y + s * z, -s * y + c * z], axis=-1)
-        moved.append((turned, abs(turn) * radius, f"{abs(np.degrees(turn)):.4g} deg"))
-    for there, distance, said in moved:
-        if distance < APART * extent:
-            continue
-        spacing = float(np.median(tree.query(other, k=2)[0][:, 1]))
-        onto = float(np.mean(tree.query(there)[0]))
-        back = float(np.mean(cKDTree(there).query(other)[0]))
-        if max(onto, back) < 0.005 * extent + 1.5 * spacing:
-            return said
-    return None
 
 
 def one_sided(points: Reals) -> bool:

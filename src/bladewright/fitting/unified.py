@@ -8,20 +8,28 @@ from bladewright.designs import Design
 from bladewright.errors import DesignError, FitError
 from bladewright.fitting.adaptation import FINE, MANY, adapted
 from bladewright.fitting.aim import Aim
+from bladewright.fitting.cambers import STRAIGHT
 from bladewright.fitting.descent import SLIGHT
 from bladewright.fitting.first.blade import first_blade
 from bladewright.fitting.first.designed import AXES
 from bladewright.fitting.first.profile import first_section
 from bladewright.fitting.frame import Frame
 from bladewright.fitting.freedom import Freedom
-from bladewright.fitting.identification import EXACT
+from bladewright.fitting.identification import EXACT, FEWEST
 from bladewright.fitting.lean import lean, rich
 from bladewright.fitting.opening import opened
 from bladewright.fitting.reshaping import reshaped
 from bladewright.fitting.scales import check_bounds
-from bladewright.fitting.search import Found, Task, searched
+from bladewright.fitting.search import ROUGH, Found, Task, searched
 from bladewright.fitting.structure import Structure, structure_of
 from bladewright.fitting.thinning import drawn
+
+
+LEANER = (1.0, 0.5)
+"""parts of the control points along the chord that are tried where a nearest design cannot be built"""
+NEARLY, SOME = 3e-3, 2500
+"""noise of the first round with those, of the chord, and points"""
+LESS = "the nearest design cannot be built: this one's camber bends less at the edges, with {} parameters for {}"
 
 
 def matched_unified(
@@ -46,12 +54,12 @@ def matched_unified(
         base = wanted or lean(task.points.shape[1], aim.parameters)
     try:
         found, reason = adapted(task, first, aim, base=base, guessed=start is None)
-        found, built = _built(task, found)
+        found, built, leaner = _built(task, found, fewer=start is None and like is None and aim.parameters is None)
     except FitError as error:
         if frame.blade_count is None and isinstance(guessed, UnifiedBlade) and guessed.blade_count == 1:
             raise FitError(f"{error}; the points go far around x: {AXES}") from error
         raise
-    return found, built, reason
+    return found, built, leaner or reason
 
 
 def _guess(task: Task, structure: Structure | None, like: Design | None, frame: Frame) -> Design:
@@ -66,17 +74,33 @@ def _guess(task: Task, structure: Structure | None, like: Design | None, frame: 
     return first_blade(some, structure=structure, name=frame.name, length_unit=frame.length_unit, **row)
 
 
-def _built(task: Task, found: Found) -> tuple[Found, Any]:
-    """What the found design builds; where it is refused, of a design that keeps further from what is refused."""
+def _built(task: Task, found: Found, *, fewer: bool) -> tuple[Found, Any, str]:
+    """What the found design builds, and in words where it is not the nearest one.
+
+    Where that is refused, of a design that keeps further from what is refused; with `fewer`, at last of one whose
+    camber has no hooks at the edges, or of one with fewer control points along the chord besides.
+    """
     refusal = ""
     for slack in (0.0, 1.0, 30.0, 1000.0):
         if slack:
             slight = FINE if found.rms > EXACT else SLIGHT
             found = searched(replace(task, slack=slack), found.design, rounds=2, slight=slight)
         try:
-            return found, found.design.build()
+            return found, found.design.build(), ""
         except DesignError as error:
             refusal = str(error)
+    structure = structure_of(found.design)
+    few = task.part(drawn(len(task.points), SOME))
+    straight = replace(few, bounds={**STRAIGHT, **task.bounds})
+    for share in LEANER if fewer and not found.interrupted else ():
+        upper, lower = (max(FEWEST, round(share * count)) for count in structure.chordwise)
+        design = opened(reshaped(found.design, replace(structure, chordwise=(upper, lower))))
+        try:
+            other = searched(straight, design, noise=NEARLY, slight=ROUGH)
+            built = other.design.build()
+        except (DesignError, FitError):
+            continue
+        return other, built, LESS.format(len(other.problem.paths), len(found.problem.paths))
     raise FitError(
         f"the nearest design cannot be built ({refusal}); give a start design, or other numbers of parameters"
     )
