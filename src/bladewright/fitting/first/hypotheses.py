@@ -21,7 +21,7 @@ OPEN = 1.4
 """ratio of the openings at which two opposite pieces are the walls"""
 CLEAR = 3e-3
 """of the chord: a mean distance that settles the outline where the other pairing lies three times as far off"""
-NEARER = 0.7
+NEARER = 0.9
 """ratio of the mean distances from which an outline without the points that lie off is taken: where it is not, they
 belong to the blade, and lie off as the channel does not follow it yet"""
 RADIAL = 0.05
