@@ -181,6 +181,17 @@ def test_an_interrupted_search_hands_back_the_best_design_so_far(monkeypatch):
     assert found.mean < 0.01 * float(found.built.chord)
 
 
+def test_the_best_design_is_kept_where_the_interruption_falls_between_two_searches(monkeypatch):
+    def interrupted(*given, **words):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("bladewright.fitting.adaptation.identified", interrupted)
+    found = fit(cloud(0, 400))
+    assert found.interrupted
+    assert not found.passed
+    assert found.mean < 0.01 * float(found.built.chord)
+
+
 def test_progress_is_told():
     told = []
     fit(cloud(0, 300), truth(0), free="stagger", progress=told.append)

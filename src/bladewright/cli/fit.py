@@ -169,6 +169,8 @@ def _fitted(
         try:
             options: Mapping[str, Any] = how | {"free": how["free"] or None, "bounds": how["bounds"] or None}
             return fitted(points.points, name=name, progress=say, **options), points
+        except KeyboardInterrupt as error:
+            raise click.Abort("before a design was measured, so nothing is written") from error
         except FitError as error:
             # a wrong unit or wrong columns may well be the reason
             more = f"; {'; '.join(points.notes)}" if points.notes else ""

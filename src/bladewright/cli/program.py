@@ -62,7 +62,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         outcome = program.main(words, prog_name="bladewright", standalone_mode=False, obj=call)
         return printed(outcome, call) if isinstance(outcome, Outcome) else int(outcome or 0)
     except (KeyboardInterrupt, click.Abort) as error:
-        return _refused(call, error, "Interrupted", "interrupted", INTERRUPTED)
+        return _refused(call, error, "Interrupted", f"interrupted {error}".strip(), INTERRUPTED)
     except click.ClickException as error:
         return _refused(call, error, "UsageError", f"{error.format_message()} {_help_of(error)}".strip())
     except (BladewrightError, MemoryError) as error:

@@ -1,6 +1,7 @@
 """From a cloud of points to a design."""
 
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from typing import Any, Literal
 
 import numpy as np
@@ -91,13 +92,19 @@ def fit(
     structured = parameters is None and (start is not None or like is not None)
     aim = Aim(tolerance=tolerance, parameters=parameters, structured=structured)
     frame = Frame(name=name, length_unit=length_unit, pitch=pitch, arrangement=arrangement, blade_count=blade_count)
-    if kind is None:
-        found, built, reason = matched_unified(task, start, like, frame, aim)
-    else:
-        first = None if start is None else freedom.applied(start)
-        matched = matched_section if points.shape[1] == 2 else matched_blade
-        found, reason = matched(task, kind, first, like, frame, aim)
-        built = _only(found)
+    try:
+        if kind is None:
+            found, built, reason = matched_unified(task, start, like, frame, aim)
+        else:
+            first = None if start is None else freedom.applied(start)
+            matched = matched_section if points.shape[1] == 2 else matched_blade
+            found, reason = matched(task, kind, first, like, frame, aim)
+            built = _only(found)
+    except KeyboardInterrupt:
+        nearest = task.standby.built()
+        if nearest is None:
+            raise
+        found, built, reason = replace(nearest[0], interrupted=True), nearest[1], ""
     return _reported(found, built, points, task, aim, (*notes, *([reason] if reason else [])), motion)
 
 

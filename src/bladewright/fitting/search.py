@@ -5,7 +5,7 @@ exact data ends free of it. Knots, outliers and what lies at the ends are found 
 """
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,6 +20,7 @@ from bladewright.fitting.problem import Measures, Problem, State
 from bladewright.fitting.reach import reach_of
 from bladewright.fitting.scales import scales_of
 from bladewright.fitting.scatter import Scatter, scatter_of
+from bladewright.fitting.standby import Standby
 from bladewright.fitting.walls import Ends, ends_of
 from bladewright.nurbs.basis import Reals
 
@@ -65,6 +66,8 @@ class Task:
     """(n,) inverse variances of the points, relative to each other; where None they are alike"""
     outlying: bool = True
     """whether points may be outliers"""
+    standby: Standby = field(default_factory=Standby)
+    """the nearest designs that searches have come to"""
 
     def part(self, rows: NDArray[np.intp]) -> "Task":
         """The same with some of the points (m,)."""
@@ -125,6 +128,7 @@ def searched(
     that a step must promise. Raises FitError where the start has no shape.
     """
     found, idle = _prepared(task, start, start, noise), 0
+    task.standby.note(found)
     for number in range(rounds):
         before = found.misfit
         if (number and before < EXACT) or found.interrupted:
@@ -134,6 +138,7 @@ def searched(
         except FitError:
             # at finer knots the design has no shape: it stays as it was found
             break
+        task.standby.note(found)
         rms = f"{1e3 * found.rms * found.model.chord:.3g} mm rms, {1e3 * found.maximum:.3g} mm at most"
         task.told(f"{len(found.problem.paths)} parameters, {rms}")
         ratio = found.misfit / before
