@@ -182,7 +182,7 @@ def test_an_interrupted_search_hands_back_the_best_design_so_far(monkeypatch):
 
 
 def test_the_best_design_is_kept_where_the_interruption_falls_between_two_searches(monkeypatch):
-    def interrupted(*given, **words):
+    def interrupted(*_, **__):
         raise KeyboardInterrupt
 
     monkeypatch.setattr("bladewright.fitting.adaptation.identified", interrupted)
