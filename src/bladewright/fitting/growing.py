@@ -24,11 +24,12 @@ WORTHWHILE = 0.02
 NEAR, WORTH_MORE = 1e-3, 0.2
 """misfit, of the chord, below which a blade is near enough for a tenth more parameters to be worth that part instead"""
 GROWN = 3
-"""part, one in so many, of the parameters that are left which is added at a time"""
+"""part, one in so many, of the parameters that are left, or far from a tolerance of those that are there, which is
+added at a time"""
 MANIFOLD, MANY_MORE = 50, 10
-"""parameters from which one in so many is added at a time"""
-FAR = 0.5
-"""of the tolerance: root mean square above which twice as many are"""
+"""parameters from which one in so many is added at a time near a tolerance"""
+FAR = 0.4
+"""of the tolerance: root mean square that is far"""
 
 
 def grown(task: Task, found: Found, aim: Aim) -> tuple[Found, bool]:
@@ -71,7 +72,7 @@ def _more(found: Found, aim: Aim) -> int:
     if aim.parameters is not None:
         return (aim.parameters - count) // GROWN
     far = aim.tolerance is not None and found.rms * found.model.chord > FAR * aim.tolerance
-    return count // (MANY_MORE // 2 if far else MANY_MORE) if count >= MANIFOLD else 0
+    return count // (GROWN if far else MANY_MORE) if count >= MANIFOLD else 0
 
 
 def _foreseen(forecast: Forecast, found: Found, aim: Aim, emphasis: Reals | None) -> Design | None:
