@@ -108,6 +108,11 @@ class Found:
         return float(np.sqrt(np.mean(self.state.feet.distances[self.rows] ** 2))) / self.model.chord
 
     @property
+    def off(self) -> float:
+        """Mean distance of all points but those that lie on end faces, outliers too [m]."""
+        return float(np.mean(self.state.feet.distances[~self.ends.covered]))
+
+    @property
     def misfit(self) -> float:
         """The same with what ends, walls and edges add to it."""
         residuals = self.problem.measures.residuals(self.state)
@@ -120,18 +125,25 @@ class Found:
 
 
 def searched(
-    task: Task, start: Design, *, rounds: int = ROUNDS, noise: float | None = None, slight: float = SLIGHT
+    task: Task,
+    start: Design,
+    *,
+    rounds: int = ROUNDS,
+    noise: float | None = None,
+    slight: float = SLIGHT,
+    enough: float = EXACT,
 ) -> Found:
     """The design nearest to the cloud that a search from `start` finds, with the structure of `start`.
 
     `noise` is the first round's, of the chord; where None the misfit of the start. `slight` is the part of the cost
-    that a step must promise. Raises FitError where the start has no shape.
+    that a step must promise, `enough` the misfit, of the chord, below which the search ends. Raises FitError where the
+    start has no shape.
     """
     found, idle = _prepared(task, start, start, noise), 0
     task.standby.note(found)
     for number in range(rounds):
         before = found.misfit
-        if (number and before < EXACT) or found.interrupted:
+        if (number and before < enough) or found.interrupted:
             break
         try:
             found = _round(found if number == 0 else _prepared(task, start, found.design, noise, found), slight)
@@ -147,6 +159,14 @@ def searched(
             break
         noise = found.rms * (max(ratio, 1e-3) if ratio < FAST else 1.0)
     return found
+
+
+def stood(task: Task, design: Design, *, noise: float) -> Found:
+    """A design as it stands before a search; `noise` is the first round's, of the chord.
+
+    Raises FitError where it has no shape.
+    """
+    return _prepared(task, design, design, noise)
 
 
 def _prepared(task: Task, start: Design, design: Design, noise: float | None, before: Found | None = None) -> Found:

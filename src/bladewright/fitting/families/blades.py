@@ -1,5 +1,6 @@
 """From points in space to a blade from sections of a family."""
 
+from collections.abc import Mapping
 from dataclasses import replace
 from functools import partial
 from typing import Any
@@ -11,8 +12,9 @@ from bladewright.designs import Design
 from bladewright.errors import DesignError, FitError
 from bladewright.fitting.aim import Aim
 from bladewright.fitting.families.flow import Channelled
-from bladewright.fitting.families.growing import enough
+from bladewright.fitting.families.growing import sufficient
 from bladewright.fitting.families.kinds import Kind
+from bladewright.fitting.families.room import crowding
 from bladewright.fitting.families.sampled import Sampled, reversed_flow, sampled
 from bladewright.fitting.families.sections import best_of, started_of, thinned
 from bladewright.fitting.families.spanwise import along_span, counts_of, nearest_law, plain
@@ -23,20 +25,27 @@ from bladewright.fitting.frame import Frame
 from bladewright.fitting.freedom import Freedom
 from bladewright.fitting.lean import rich
 from bladewright.fitting.scales import check_bounds
-from bladewright.fitting.search import Found, Task, searched
+from bladewright.fitting.search import EXACT, Found, Task, searched, stood
 from bladewright.nurbs.basis import Reals
 from bladewright.section.checks import UNITS
+from bladewright.section.laws import Span
 from bladewright.section.section import Section
 
 FEW, MANY = 1000, 12_000
 """points of a quick and of a thorough search"""
+ENOUGH = 2.0
+"""misfit below which a blade of a structure that is not given is found, of the tolerance of its native sides"""
 COARSE = 1e-3
 """tolerance of the native sides of blades that are on the way, of the chord"""
 HELD = "hub and shroud are held as they are given"
+NOSE, ROUNDER = 0.04, 1.3
+"""chord fraction from an edge at which it is seen how round it is, and ratio from which one is rounder"""
 QUICK = 4
 """rounds of the search for the closed blade that says where to begin"""
 SPANS: Reals = np.linspace(0.0, 1.0, 7)
 """places of the sections that a start is taken from"""
+ALONG = Span(np.linspace(0.0, 1.0, 13))
+"""places along the span at which laws must leave sections a shape"""
 LAW = 3
 """control points of each law along the span, where none is given"""
 CHOSEN = 3
@@ -57,24 +66,39 @@ def matched_blade(task: Task, kind: Kind, start: Any, like: Any, frame: Frame, a
         many, few = (replace(each, free=replace(task.free, walls=True)) for each in (many, few))
         task = many
     if start is None or like is not None:
-        closed = _closed(few, frame, like) if start is None else start.build()
+        closed = _closed(few, many.points, frame, like) if start is None else start.build()
         task.told("first design of the family")
         first = _first(closed, kind, like, frame)
     first = task.free.applied(first) if isinstance(task.free, Freedom) else first
     check_bounds(first, task.free(first), task.bounds)
-    found, reason = searched(few, first), ""
-    if not (aim.structured or found.interrupted):
-        found, reason = enough(few, found, aim, partial(wider_blade, kind=kind), coarse=COARSE)
-    if not found.interrupted:
-        fresh = searched(many, found.design)
-        found = replace(fresh, evaluations=found.evaluations + fresh.evaluations)
+    enough = _enough(first, aim)
+    grown = partial(wider_blade, kind=kind, enough=enough)
+    found, reason = searched(few, first, enough=enough), ""
+    for some in (few, many)[: 1 + (len(few.points) < len(many.points))]:
+        if some is not few:
+            found = _better(some, found, searched(some, found.design, noise=found.rms, enough=enough))
+        if aim.structured or found.interrupted:
+            continue
+        found, reason = sufficient(some, found, aim, grown, coarse=COARSE)
     return found, "; ".join(filter(None, (reason, "" if own else HELD)))
 
 
-def _closed(task: Task, frame: Frame, like: Any) -> Blade:
-    """The closed blade in a channel that points alone show."""
+def _enough(design: Any, aim: Aim) -> float:
+    """The misfit below which nothing is sought any more, of the chord: what native sides may miss themselves."""
+    return EXACT if aim.structured else ENOUGH * float(design.tolerance)
+
+
+def _better(task: Task, before: Found, after: Found) -> Found:
+    """The one of two matches that is nearer to all points, the first measured as the second is."""
+    same = stood(task, before.design, noise=after.rms)
+    nearest = after if after.off <= same.off else same
+    return replace(nearest, evaluations=before.evaluations + after.evaluations)
+
+
+def _closed(task: Task, points: Reals, frame: Frame, like: Any) -> Blade:
+    """The closed blade in a channel that points (n, 3) alone show, matched to those of a task."""
     row = frame.row(like)
-    first = first_blade(task.points, structure=rich(None), name=frame.name, length_unit=frame.length_unit, **row)
+    first = first_blade(points, structure=rich(None), name=frame.name, length_unit=frame.length_unit, **row)
     plain_task = Task(points=task.points, weights=task.weights, free=Freedom(), bounds={}, told=task.told)
     for design in (searched(plain_task, first, noise=3e-3, rounds=QUICK).design, first):
         built = _built(design)
@@ -95,8 +119,8 @@ def _first(closed: Blade, kind: Kind, like: Any, frame: Frame) -> Design:
     """The blade of the family whose sections are those of a closed blade."""
     design = closed.design
     metre = UNITS[frame.length_unit]
-    found = Channelled(blade=closed, backwards=_backwards(Channelled(blade=closed), kind, like))
     sections = [_samples(closed.section(float(v))) for v in SPANS]
+    found = Channelled(blade=closed, backwards=_backwards(Channelled(blade=closed), kind, like, sections[CHOSEN]))
     if found.backwards:
         sections = [reversed_flow(each) for each in sections[::-1]]
     templates = kind.templates(sections[CHOSEN], None) if like is None else [plain(like.section)]
@@ -125,10 +149,11 @@ def _first(closed: Blade, kind: Kind, like: Any, frame: Frame) -> Design:
     return changed
 
 
-def _backwards(found: Channelled, kind: Kind, like: Any) -> bool:
+def _backwards(found: Channelled, kind: Kind, like: Any, section: Sampled) -> bool:
     """Whether the flow comes from the other side than the one that the closed blade was found with.
 
-    Points do not tell it: `like` does, and that the passages of a diffuser of vanes lead outwards.
+    Points do not tell it: `like` does. Without it flow goes downstream along x; where blades stand radially it meets
+    the rounder edge first, and leads outwards through the passages of a diffuser of vanes.
     """
     middle = np.array([0.5])
     first, last = (found.values(edge, middle)[0] for edge in EDGES)
@@ -136,15 +161,24 @@ def _backwards(found: Channelled, kind: Kind, like: Any) -> bool:
         metre = UNITS[like.length_unit]
         own = [np.real(getattr(like, edge).line(metre).values(middle))[0] for edge in EDGES]
         return float((last - first) @ (own[1] - own[0])) < 0.0
-    return kind.name == "wedge-diffuser" and last[1] < first[1] and abs(last[1] - first[1]) > abs(last[0] - first[0])
+    if abs(last[1] - first[1]) <= abs(last[0] - first[0]):
+        return False
+    if kind.name == "wedge-diffuser":
+        return bool(last[1] < first[1])
+    return section.half_at(1.0 - NOSE) > ROUNDER * section.half_at(NOSE)
 
 
-def _laws(parts: list[Any], counts: Any) -> Any:
-    """One part of laws; of constants where laws are refused."""
-    try:
-        return along_span(parts, SPANS, counts)
-    except DesignError:
-        return along_span(parts, SPANS, dict.fromkeys(counts, 1))
+def _laws(parts: list[Any], counts: Mapping[str, int]) -> Any:
+    """One part of laws, with as many control points as leave its sections a shape: the middle one's where none do."""
+    for most in range(max(counts.values()), 0, -1):
+        try:
+            part = along_span(parts, SPANS, {path: min(count, most) for path, count in counts.items()})
+            part.outline(ALONG).points(SPANS)
+            crowding(part, ALONG)
+        except DesignError:
+            continue
+        return part
+    return along_span([parts[CHOSEN]], SPANS[CHOSEN : CHOSEN + 1], dict.fromkeys(counts, 1))
 
 
 def _count(law: Any) -> int:

@@ -18,7 +18,7 @@ Wider = Callable[[Task, Found, Aim], Iterator[Found]]
 """matches near to one with control points more"""
 
 
-def enough(task: Task, found: Found, aim: Aim, wider: Wider, *, coarse: float) -> tuple[Found, str]:
+def sufficient(task: Task, found: Found, aim: Aim, wider: Wider, *, coarse: float) -> tuple[Found, str]:
     """A match with as many control points as the aim asks for, or why there are no more.
 
     What is grown can be built, with native sides of the `coarse` tolerance.
@@ -27,7 +27,8 @@ def enough(task: Task, found: Found, aim: Aim, wider: Wider, *, coarse: float) -
     for _ in range(GROWTHS):
         short, reason = short_of(found, aim, task)
         if not short or found.interrupted:
-            return found if found.rms <= best.rms or aim.parameters is not None else best, reason
+            met = not short and not reason
+            return found if met or found.rms <= best.rms or aim.parameters is not None else best, reason
         tried = [each for each in wider(task, found, aim) if _allowed(each, aim) and sound(each, coarse)]
         if not tried:
             return best, "no control point can be added to the design that leaves it one that can be built"

@@ -11,7 +11,7 @@ from bladewright.designs import Design
 from bladewright.errors import DesignError, FitError
 from bladewright.fitting.aim import Aim, short_of
 from bladewright.fitting.families.foreseen import promised
-from bladewright.fitting.families.growing import enough, sound
+from bladewright.fitting.families.growing import sound, sufficient
 from bladewright.fitting.families.kinds import Kind
 from bladewright.fitting.families.sampled import Sampled, sampled
 from bladewright.fitting.frame import Frame
@@ -67,7 +67,7 @@ def matched_section(task: Task, kind: Kind, start: Any, like: Any, frame: Frame,
         found = best_of(rough, few, _maker(kind, section, frame, task), starts)
     reason = ""
     if not (aim.structured or found.interrupted):
-        found, reason = enough(few, found, aim, partial(_wider, kind=kind), coarse=TOLERANCES[-1])
+        found, reason = sufficient(few, found, aim, partial(_wider, kind=kind), coarse=TOLERANCES[-1])
         if kind.outlined is not None and section is not None:
             found, reason = _outlined(
                 few, found, aim, partial(kind.outlined, section), _maker(kind, section, frame, task)

@@ -18,7 +18,7 @@ from bladewright.fitting.families.sampled import Sampled
 from bladewright.fitting.families.spanwise import along_span, counts_of
 from bladewright.fitting.families.standing import EDGES
 from bladewright.fitting.growth import emphasis_of
-from bladewright.fitting.search import ROUGH, Found, Task, searched
+from bladewright.fitting.search import EXACT, ROUGH, Found, Task, searched
 from bladewright.nurbs.basis import Reals
 from bladewright.section.laws import Span, law_basis, named_laws
 
@@ -65,7 +65,7 @@ def widenings(design: Any, kind: Kind) -> list[Widening]:
     ]
 
 
-def wider_blade(task: Task, found: Found, aim: Aim, *, kind: Kind) -> Iterator[Found]:
+def wider_blade(task: Task, found: Found, aim: Aim, *, kind: Kind, enough: float = EXACT) -> Iterator[Found]:
     """The match with the laws widened that promise most, several at once where much is left to add."""
     room = None if aim.parameters is None else aim.parameters - len(found.problem.paths)
     named: dict[str, tuple[Widening, Any]] = {}
@@ -92,7 +92,7 @@ def wider_blade(task: Task, found: Found, aim: Aim, *, kind: Kind) -> Iterator[F
     if not taken:
         return
     try:
-        fresh = searched(task, design, rounds=ROUNDS, noise=found.rms, slight=ROUGH)
+        fresh = searched(task, design, rounds=ROUNDS, noise=found.rms, slight=ROUGH, enough=enough)
     except FitError:
         return
     yield replace(fresh, evaluations=fresh.evaluations + found.evaluations)

@@ -1,0 +1,141 @@
+"""Hub and shroud of blades from sections, found with the rest of them."""
+
+from dataclasses import replace
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from bladewright.blade.meridian import ThroughPoints
+from bladewright.designs import Point
+from bladewright.errors import DesignError
+from bladewright.fitting.families import blades
+from bladewright.fitting.families.flow import AHEAD, BESIDE, NEAR, WALL, _wall
+from bladewright.fitting.families.growing import sufficient
+from bladewright.fitting.families.polyline import nearest_on
+from bladewright.fitting.families.standing import standing
+from bladewright.fitting.feet import feet
+from bladewright.fitting.freedom import Freedom
+from bladewright.fitting.model import model_of
+from bladewright.fitting.scatter import scatter_of
+from bladewright.fitting.walls import Wall
+from bladewright.nurbs.surface import Surface
+
+from ..blade.sectioned import COMPRESSOR, DIFFUSER
+from ..section.suction_pressure_examples import STATOR
+
+VANE = replace(DIFFUSER, tolerance=1e-3)
+
+
+def test_walls_that_are_free_slide_along_themselves_only():
+    free = set(Freedom(walls=True)(VANE))
+    walls = {path for path in free if path.startswith("flow_path.")}
+    # its walls stand radially, at one x each
+    assert walls == {f"flow_path.{wall}.points[{i}].x" for wall in ("hub", "shroud") for i in (0, 1)}
+    assert free - walls == set(Freedom()(VANE))
+    assert "flow_path.hub.points[0].r" in standing(COMPRESSOR) - standing(COMPRESSOR, walls=True)
+
+
+def test_a_walls_places_move_with_its_points_as_a_difference_says():
+    model = model_of(VANE)
+    paths = tuple(path for path in Freedom(walls=True)(VANE) if path.startswith("flow_path.hub"))
+    shape, t = model.shape(VANE), np.linspace(0.1, 0.9, 5)
+    rates = Wall(name="hub", places=np.zeros((5, 2)), spread=0.0).rates(shape, t, paths)
+    values, step = VANE.parameters(), 1e-3
+    for i, path in enumerate(paths):
+        lines = [
+            model.shape(VANE.changed({path: values[path] + way * step})).exact.meridians.walls["hub"].values(t)
+            for way in (1.0, -1.0)
+        ]
+        # a point that moves across a straight wall moves its places by parts of itself: to second order in the step
+        assert rates[:, i] == pytest.approx((lines[0] - lines[1]) / (2.0 * step), abs=1e-9)
+
+
+@pytest.mark.parametrize("turn", [0.0, 0.3, 1.5])
+def test_a_wall_has_as_few_points_as_follow_it(turn):
+    t = np.linspace(0.0, 1.0, 201)
+    heading = turn * t
+    line = np.cumsum(np.stack([np.cos(heading), np.sin(heading)], axis=-1), axis=0) / 201 + [0.0, 0.5]
+    rows = _wall(line)
+    assert len(rows) - 2 in WALL
+    curve = ThroughPoints(points=tuple(Point(*row) for row in rows)).line(1.0).values(np.linspace(0.0, 1.0, 801))
+    assert np.max(np.abs(nearest_on(curve, line).heights)) < NEAR
+    assert (len(rows) - 2 == WALL[0]) == (turn < 1.0)
+    before = nearest_on(line, rows[:1])
+    assert np.sqrt(np.sum((rows[0] - line[0]) ** 2)) == pytest.approx(AHEAD, rel=0.02)
+    assert abs(before.heights[0]) < 1e-9
+    assert np.sqrt(np.sum((rows[1] - line[0]) ** 2)) == pytest.approx(BESIDE, rel=0.02)
+
+
+def test_feet_go_over_as_many_thin_patches_as_lie_on_their_way():
+    # strips a hundredth wide and three long, skewed: the nearest sample may be many strips away
+    count = 120
+    u = np.linspace(0.0, 1.0, count)
+    v = np.array([0.0, 1.0])
+    net = np.stack(np.broadcast_arrays(u[:, None] + 0.5 * v, 3.0 * v, 0.0 * u[:, None]), axis=-1)
+    knots = np.concatenate([[0.0], u, [1.0]])
+    flat = Surface(control_points=net, knots_u=knots, knots_v=np.array([0.0, 0.0, 1.0, 1.0]), degree_u=1, degree_v=1)
+    other = replace(flat, control_points=net - np.array([0.0, 0.0, 0.5]))
+    random = np.random.default_rng(6)
+    points = flat(*random.uniform(0.05, 0.95, (2, 300)))
+    assert np.max(feet(points, (flat, other)).distances) < 1e-9
+
+
+def test_points_past_an_end_and_level_with_the_sides_are_no_outliers():
+    random = np.random.default_rng(2)
+    t, z = random.random(600), random.uniform(-0.02, 1.0, 600)
+    side = random.random(600) < 0.5
+    bulge = 0.1 * np.sin(np.pi * t)
+    points = np.stack([t, np.where(side, bulge, -bulge), z], axis=-1)
+    points[:3, 1] += 0.05
+    upper = [[[0.0, 0.0, v], [0.5, 0.2, v], [1.0, 0.0, v]] for v in (0.0, 1.0)]
+    net = np.swapaxes(np.array(upper), 0, 1)
+    knots = np.array([0.0, 0.0, 0.0, 1.0, 1.0, 1.0])
+    ends = np.array([0.0, 0.0, 1.0, 1.0])
+    sides = [
+        Surface(control_points=net * [1.0, sign, 1.0], knots_u=knots, knots_v=ends, degree_u=2, degree_v=1)
+        for sign in (1.0, -1.0)
+    ]
+    points[:, 1] *= 2.0 * t * (1.0 - t) * 0.2 / np.where(bulge > 1e-9, bulge, 1.0)
+    points[:3, 1] += 0.05
+    found = scatter_of(points, feet(points, sides))
+    assert np.count_nonzero(z < 0.0) > 3
+    assert set(np.flatnonzero(~found.inliers)) == {0, 1, 2}
+
+
+def test_a_search_that_ends_further_off_leaves_the_match_before_it():
+    task = SimpleNamespace()
+    near, far = (SimpleNamespace(off=off, rms=off, evaluations=2) for off in (1.0, 2.0))
+    kept = []
+
+    def replaced(found, **_):
+        kept.append(found)
+        return found
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(blades, "replace", replaced)
+        for before, after in ((near, far), (far, near)):
+            patch.setattr(blades, "stood", lambda *_, standing=before, **__: standing)
+            blades._better(task, SimpleNamespace(design=None, evaluations=1), after)
+    assert kept == [near, near]
+
+
+def test_a_match_within_the_tolerance_is_taken_though_another_was_nearer_on_average(monkeypatch):
+    aim = SimpleNamespace(parameters=None, tolerance=1.0, open=False)
+    steps = iter([(True, ""), (False, "")])
+    monkeypatch.setattr("bladewright.fitting.families.growing.short_of", lambda *_: next(steps))
+    monkeypatch.setattr("bladewright.fitting.families.growing.sound", lambda *_: True)
+    first, second = (SimpleNamespace(rms=rms, interrupted=False, problem=None) for rms in (1.0, 1.1))
+    assert sufficient(None, first, aim, lambda *_: iter([second]), coarse=1e-3) == (second, "")
+
+
+def test_laws_that_leave_sections_no_shape_have_fewer_control_points():
+    parts = [STATOR] * len(blades.SPANS)
+    parts[1] = replace(STATOR, leading_edge_wedge=STATOR.leading_edge_wedge + 30.0)
+    part = blades._laws(parts, dict.fromkeys(STATOR.parameters(), 3))
+    try:
+        part.outline(blades.ALONG).points(blades.SPANS)
+    except DesignError as error:
+        pytest.fail(str(error))
+    even = blades._laws([STATOR] * len(blades.SPANS), dict.fromkeys(STATOR.parameters(), 3))
+    assert len(even.leading_edge_wedge) == 3
