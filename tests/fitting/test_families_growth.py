@@ -1,7 +1,6 @@
 """Starts and growth of the families that are one part."""
 
 from dataclasses import replace
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -54,7 +53,7 @@ def test_every_law_along_the_chord_of_a_blade_may_grow():
 
 def test_a_blade_whose_sections_do_not_grow_alike_is_left_as_it_is():
     ways = iter([2, *[1] * 50])
-    kind = SimpleNamespace(grown=lambda part, _: [part] * next(ways))
+    kind = replace(KINDS["curvature-meanline"], grown=lambda part, _: [part] * next(ways))
     last = [each for each in widenings(COMPRESSOR, kind) if "along the chord" in each.law][-1]
     with pytest.raises(DesignError, match="do not grow alike"):
         last.applied(COMPRESSOR)

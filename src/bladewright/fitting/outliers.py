@@ -40,7 +40,7 @@ GROUP, FEW = 0.05, 20
 """largest group of outliers, of the points, and however few there are"""
 BESIDE, WRONG = 0.02, 0.2
 """how near an end of the blade points are, in v, and the part of them which past it shows that the end is wrong"""
-ONWARDS = 3
+ONWARDS = 1
 """points past an end, level with the sides, that may be there by chance"""
 LEVEL = 0.05
 """height, of the way past an end, up to which a point is level with the sides, which may bend there"""

@@ -1,8 +1,8 @@
 """Blades from sections with a control point more in one of their laws, along the span or along the chord."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
-from functools import partial
+from functools import lru_cache, partial
 from typing import Any
 
 import numpy as np
@@ -26,6 +26,8 @@ MOST_SPAN = 10
 """control points of a law along the span, and of an edge curve"""
 SPANS: Reals = np.linspace(0.0, 1.0, 21)
 """places along the span at which laws are taken for others"""
+PLACED: Reals = np.linspace(0.0, 1.0, MOST_SPAN + 1)
+"""places along the span at which sections grow along the chord one by one"""
 PLACES: Reals = (1.0 - np.cos(np.pi * np.linspace(0.0, 1.0, 201))) / 2.0
 WORTH = 0.4
 """gain for each parameter, of the best, from which a law grows too"""
@@ -132,8 +134,7 @@ def _along_chord(design: Any, kind: Kind, which: int) -> Any:
 
     Raises DesignError where some of its sections cannot grow so.
     """
-    sections = [_section_at(design.section, float(v)) for v in SPANS]
-    ways = [kind.grown(section, _samples(section)) for section in sections]
+    ways = _ways(kind, design.section)
     parts = [each[which] for each in ways if which < len(each)]
     if len(parts) < len(ways) or len({tuple(part.parameters()) for part in parts}) > 1:
         raise DesignError("sections along the span do not grow alike: the section stays as it is")
@@ -143,16 +144,23 @@ def _along_chord(design: Any, kind: Kind, which: int) -> Any:
         most[path.partition("[")[0]] = max(count, most.get(path.partition("[")[0], 1))
     # what is new has as many control points along the span as the law that it stands in
     counts = {path: known.get(path, most.get(path.partition("[")[0], 1)) for path in parts[0].parameters()}
-    changed = along_span(parts, SPANS, counts)
+    changed = along_span(parts, PLACED, counts)
     laws = [(path, law) for path, law in named_laws(design.section) if path in counts]
     kept = {path: law for path, law in laws if _same(parts, path, design.section)}
     return replace(design, section=changed.changed(kept))
 
 
+@lru_cache(maxsize=4)
+def _ways(kind: Kind, part: Any) -> list[Sequence[Any]]:
+    """The ways in which the sections of a part at PLACED may grow along the chord."""
+    sections = [_section_at(part, float(v)) for v in PLACED]
+    return [kind.grown(section, _samples(section)) for section in sections]
+
+
 def _same(parts: list[Any], path: str, section: Any) -> bool:
     """Whether growth has left a law as it was."""
     now = [part.parameters()[path] for part in parts]
-    was = [_section_at(section, float(v)).parameters()[path] for v in SPANS[[0, -1]]]
+    was = [_section_at(section, float(v)).parameters()[path] for v in PLACED[[0, -1]]]
     return now[0] == was[0] and now[-1] == was[-1]
 
 
