@@ -29,8 +29,8 @@ FIRST = 0.25
 far lose their way where laws turn much"""
 HOPELESS = 1.4
 """largest deviation, of the tolerance, that other weights do not mend"""
-POLISHED = 3
-"""searches of one structure, each with other weights"""
+POLISHED, GAINING = 6, 0.75
+"""searches of one structure, each with other weights, and what each leaves at most of the excess over the tolerance"""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -73,7 +73,7 @@ def _relative(found: Found, task: Task) -> Reals:
 
 def _tried(task: Task, found: Found, start: Design, weights: Reals, tolerance: float) -> Found | None:
     """The match of a foreseen design, where it keeps the tolerance."""
-    evaluations = found.evaluations
+    evaluations, most = found.evaluations, HOPELESS * tolerance
     for _ in range(POLISHED):
         weights = weights * len(weights) / np.sum(weights)
         try:
@@ -85,8 +85,9 @@ def _tried(task: Task, found: Found, start: Design, weights: Reals, tolerance: f
         evaluations += fresh.evaluations
         if fresh.maximum <= tolerance or fresh.interrupted:
             return replace(fresh, evaluations=evaluations)
-        if fresh.maximum > HOPELESS * tolerance:
+        if fresh.maximum > most:
             return None
+        most = tolerance + GAINING * (fresh.maximum - tolerance)
         start, weights = fresh.design, weights * _swayed(fresh.state.feet.distances, tolerance)
     return None
 
