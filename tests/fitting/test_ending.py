@@ -19,12 +19,13 @@ SPAN = 0.11
 """[m]"""
 
 
-def ends_of(*rows, free="channel.leading_edge[0].r"):
+def ends_of(*rows, free="channel.leading_edge[0].r", noise=0.0):
     """The loose ends of a match of 400 points at random and of rows of 20 at some places along the span."""
     draw, sides = np.random.default_rng(0), STATOR.build().sides
     parts = [side(*draw.random((2, 200))) for side in sides]
     parts += [side(draw.random(20), np.full(20, v)) for side in sides for v in rows]
     points = np.concatenate(parts)
+    points += noise * draw.normal(size=points.shape)
     freedom = freedom_of(free, None, started=True)
     task = Task(points=points, weights=np.ones(len(points)), free=freedom, bounds={})
     return loose_ends(searched(task, STATOR, rounds=1))
@@ -36,6 +37,11 @@ def test_an_end_without_a_row_of_points_is_loose_by_as_much_as_points_are_apart(
     assert set(found) == loose
     # 400 points at random are a four-hundredth of the span apart along it, within what so few say
     assert all(SPAN / 2000.0 < gap < SPAN / 80.0 for gap in found.values())
+
+
+@pytest.mark.parametrize(("rows", "loose"), [((0.0, 1.0), set()), ((), {"hub", "shroud"})])
+def test_a_row_with_the_noise_of_the_cloud_is_a_row(rows, loose):
+    assert set(ends_of(*rows, noise=2e-5)) == loose
 
 
 def test_ends_of_a_channel_that_is_given_are_known():

@@ -76,3 +76,14 @@ def test_a_first_blade_has_the_structure_that_was_asked_for() -> None:
 @pytest.mark.parametrize(("name", "arrangement"), [("vki-ls89", "linear"), ("compressor-stator", "annular")])
 def test_a_cascade_is_told_from_a_ring_of_blades(name: str, arrangement: str) -> None:
     assert found_arrangement(_cloud(_truth(name), 600)) == arrangement
+
+
+@pytest.mark.parametrize(("name", "arrangement"), [("vki-ls89", "linear"), ("aachen-stator", "annular")])
+def test_rows_at_the_ends_tell_a_cascade_from_a_ring_whose_sections_are_met_alike(name: str, arrangement: str) -> None:
+    u = (1.0 - np.cos(np.pi * np.linspace(0.0, 1.0, 40))) / 2.0
+    u, v = (each.ravel() for each in np.meshgrid(u, np.linspace(0.0, 1.0, 9)))
+    points = np.concatenate([np.real(side(u, v)) for side in _truth(name).sides])
+    # far from the axis, with noise
+    points[:, 2] += 0.5 if arrangement == "linear" else 0.0
+    points = points + 2e-5 * np.random.default_rng(0).normal(size=points.shape)
+    assert found_arrangement(points) == arrangement

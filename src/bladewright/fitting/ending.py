@@ -5,6 +5,8 @@ from bladewright.fitting.walls import ENDS
 
 LOOSE = 1e-4
 """spread of the points at an end, of the chord, from which they stand in no row"""
+NOISY = 2.0
+"""the same, of the cloud's noise"""
 GAP = 2.7
 """distance of evenly scattered values over their deviation by the median, times their number"""
 
@@ -23,6 +25,6 @@ def loose_ends(found: Found) -> dict[str, float]:
         wall = walls.get(name)
         if wall is None:
             loose[name] = chord
-        elif wall.spread > LOOSE * chord:
+        elif wall.spread > max(LOOSE * chord, NOISY * found.scatter.noise):
             loose[name] = GAP * wall.spread / len(wall.places)
     return loose

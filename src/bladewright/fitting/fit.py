@@ -31,6 +31,11 @@ from bladewright.section.checks import choice
 from bladewright.section.unified import UnifiedSection
 
 FAMILIES = ("unified", "unified-section")
+CASCADE = (
+    "nothing said how the blade stands, and it is taken for one of a linear cascade, with its span along z: one that "
+    "stands around x needs the arrangement annular"
+)
+WHOLE = "is it one whole blade, with both sides and both edges? If so, give a start design or bounds"
 Told = Callable[[str], None]
 
 
@@ -105,6 +110,10 @@ def fit(
         if nearest is None:
             raise
         found, built, reason = replace(nearest[0], interrupted=True), nearest[1], ""
+    except DesignError as error:
+        raise FitError(f"no design of the family was found near the points ({error}): {WHOLE}") from error
+    if start is None and like is None and arrangement is None and getattr(found.design, "arrangement", "") == "linear":
+        notes = (*notes, CASCADE)
     return _reported(found, built, points, task, aim, (*notes, *([reason] if reason else [])), motion)
 
 

@@ -14,6 +14,12 @@ MOST = 600
 """points that decide"""
 NEAR = 3e-3
 """of the chord: a mean distance with which a blade around the axis is taken without asking for another"""
+BINS, ROW = 16, 0.03
+"""parts of x in which the lowest points are sought, and how far above them, of the span, others are of their row"""
+BENDS, TURNS, OUTSIDE = 5, 5, 6.7
+"""degree of its line, turns in which it is found, and medians beyond which a point is none of the row"""
+SHARPER, SHARP = 0.5, 1e-3
+"""scatter of rows of the one kind, of that of the other, and, on planes, of the span, below which they are such"""
 
 
 def found_arrangement(points: Reals) -> Arrangement:
@@ -30,6 +36,9 @@ def found_arrangement(points: Reals) -> Arrangement:
         return "linear"
     if np.ptp(z) < 0.05 * np.ptp(radius):
         return "annular"
+    rows = _rows(points)
+    if rows is not None:
+        return rows
     some = usual(np.unique(points, axis=0))
     some = some[spread(some, MOST)]
     away: list[float] = []
@@ -39,3 +48,31 @@ def found_arrangement(points: Reals) -> Arrangement:
         if away[0] < NEAR * found[0].laid.chord:
             return "annular"
     return "linear" if away[1] < 0.5 * away[0] else "annular"
+
+
+def _rows(points: Reals) -> Arrangement | None:
+    """How the rows of points (n, 3) at both ends stand: on surfaces about the axis or on planes; None without rows.
+
+    Sections of a blade far from the axis are met alike on both.
+    """
+    x, radius, z = points[:, 0], np.sqrt(points[:, 1] ** 2 + points[:, 2] ** 2), points[:, 2]
+    around, level = (np.sqrt(_scatter(x, span) * _scatter(x, -span)) for span in (radius, z))
+    if around < SHARPER * level:
+        return "annular"
+    # of a radial machine neither is a row over x
+    return "linear" if level < min(SHARPER * around, SHARP * float(np.ptp(z))) else None
+
+
+def _scatter(x: Reals, span: Reals) -> float:
+    """By how much the lowest points (n,) are off a smooth line over x."""
+    place = np.clip((x - np.min(x)) / np.ptp(x), 0.0, 1.0)
+    bins = np.minimum((BINS * place).astype(int), BINS - 1)
+    lowest = np.full(BINS, np.inf)
+    np.minimum.at(lowest, bins, span)
+    rows = span <= lowest[bins] + ROW * np.ptp(span)
+    terms, low = np.polynomial.chebyshev.chebvander(2.0 * place[rows] - 1.0, BENDS), span[rows]
+    kept, left = np.ones(len(low), dtype=bool), low
+    for _ in range(TURNS):
+        left = low - terms @ np.linalg.lstsq(terms[kept], low[kept], rcond=None)[0]
+        kept = np.abs(left) <= OUTSIDE * np.median(np.abs(left[kept]))
+    return float(np.median(np.abs(left[kept])))
