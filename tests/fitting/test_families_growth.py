@@ -1,21 +1,27 @@
 """Starts and growth of the families that are one part."""
 
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 import pytest
 
 from bladewright.errors import DesignError
+from bladewright.fitting.aim import Aim
 from bladewright.fitting.families.flow import KEPT, _off_axis
 from bladewright.fitting.families.kinds import KINDS, kind_of
 from bladewright.fitting.families.polyline import nearest_on
+from bladewright.fitting.families.profile import outlined, started
 from bladewright.fitting.families.room import crowding
 from bladewright.fitting.families.rounded_edge import edge_through
-from bladewright.fitting.families.sections import section_samples
+from bladewright.fitting.families.sections import _maker, _outlined, section_samples
 from bladewright.fitting.families.suction_pressure import templates
 from bladewright.fitting.families.widening import widenings
+from bladewright.fitting.frame import Frame
 from bladewright.fitting.freedom import Freedom
+from bladewright.fitting.search import Task, searched
 from bladewright.section.laws import Span
+from bladewright.section.profiles.flat_plate import FlatPlate
 
 from ..blade.sectioned import COMPRESSOR, DESIGNS, DIFFUSER
 from ..section.suction_pressure_examples import STATOR, section
@@ -71,6 +77,21 @@ def test_templates_have_nearly_as_many_parameters_as_are_asked_for():
     for count in (22, 26, 30):
         for part in templates(samples, count):
             assert len(Freedom()(section(part))) == count
+
+
+def test_an_outline_of_points_follows_what_no_profile_of_a_kind_does():
+    built = section(STATOR).build()
+    samples = section_samples(built)
+    points = np.concatenate([side(np.random.default_rng(4).random(150)) for side in built.curves.values()])
+    task = Task(points=points, weights=np.ones(len(points)), free=Freedom(), bounds={})
+    made = _maker(KINDS["profile"], samples, Frame(name="found", length_unit="mm"), task)
+    found = searched(task, made(started(samples, FlatPlate(thickness=0.06))[0]), rounds=1)
+    outline, reason = _outlined(task, found, Aim(parameters=26), partial(outlined, samples), made)
+    assert len(outline.problem.paths) == 26
+    assert (reason, outline.design.section.kind) == ("", "points")
+    # so many points come within a thousandth of the chord; the plate has no camber
+    assert outline.rms < 1e-3
+    assert found.rms > 10.0 * outline.rms
 
 
 def test_a_section_on_too_short_a_tangent_is_crowded_before_it_is_refused():

@@ -11,6 +11,7 @@ from bladewright.blade.blade import Blade
 from bladewright.designs import Design
 from bladewright.errors import DesignError, FitError
 from bladewright.fitting.aim import Aim
+from bladewright.fitting.descent import SLIGHT
 from bladewright.fitting.families.flow import Channelled
 from bladewright.fitting.families.growing import sufficient
 from bladewright.fitting.families.kinds import Kind
@@ -25,7 +26,7 @@ from bladewright.fitting.frame import Frame
 from bladewright.fitting.freedom import Freedom
 from bladewright.fitting.lean import rich
 from bladewright.fitting.scales import check_bounds
-from bladewright.fitting.search import EXACT, Found, Task, searched, stood
+from bladewright.fitting.search import EXACT, ROUGH, Found, Task, searched, stood
 from bladewright.nurbs.basis import Reals
 from bladewright.section.checks import UNITS
 from bladewright.section.laws import Span
@@ -73,7 +74,8 @@ def matched_blade(task: Task, kind: Kind, start: Any, like: Any, frame: Frame, a
     check_bounds(first, task.free(first), task.bounds)
     enough = _enough(first, aim)
     grown = partial(wider_blade, kind=kind, enough=enough)
-    found, reason = searched(few, first, enough=enough), ""
+    # what is only on the way need not come to its end
+    found, reason = searched(few, first, enough=enough, slight=SLIGHT if aim.structured else ROUGH), ""
     for some in (few, many)[: 1 + (len(few.points) < len(many.points))]:
         if some is not few:
             found = _better(some, found, searched(some, found.design, noise=found.rms, enough=enough))

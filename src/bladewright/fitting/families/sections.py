@@ -41,8 +41,11 @@ EXACT = 1e-9
 """misfit at which a structure is known, of the chord"""
 TOLERANCES = (0.0, 1e-8, 1e-6)
 """of the native sides, of the chord"""
-OUTLINES = (24, 32, 44, 60)
+OUTLINES = (24, 32, 44, 60, 80)
 """points of outlines that are tried in turn"""
+FEWEST_POINTS, HELD_POINTS = 12, 2
+"""fewest points of an outline of so many parameters as are asked for, and by how many it has more points than those:
+one number is free of each point but two, and four place the section"""
 TRIED = 2
 """laws that are given a control point more by a search, of those that promise most"""
 
@@ -79,7 +82,8 @@ def _outlined(
     task: Task, found: Found, aim: Aim, outlined: Callable[[int], Any], made: Callable[[Any], Design]
 ) -> tuple[Found, str]:
     """A match by points of the outline where no other has what is asked for, as few as have it."""
-    for count in OUTLINES:
+    asked = 0 if aim.parameters is None else aim.parameters - HELD_POINTS
+    for count in (asked,) if asked >= FEWEST_POINTS else OUTLINES:
         short, reason = short_of(found, aim, task)
         near = aim.open and found.maximum < GROSS[1] * found.model.chord
         if not short or near or found.interrupted:
@@ -92,7 +96,8 @@ def _outlined(
         within = aim.parameters is None or len(fresh.problem.paths) <= aim.parameters
         if within and fresh.rms < found.rms and _sound(fresh):
             found = fresh
-    return found, "" if not short_of(found, aim, task)[0] else "no outline of points comes nearer"
+    met = aim.parameters is not None or not short_of(found, aim, task)[0]
+    return found, "" if met else "no outline of points comes nearer"
 
 
 def section_samples(built: Section) -> Sampled:

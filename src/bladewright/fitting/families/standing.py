@@ -7,6 +7,7 @@ import numpy as np
 from bladewright.blade.meridian import ThroughPoints
 from bladewright.blade.sectioned import SectionedBlade
 from bladewright.designs import Design
+from bladewright.section.profiles.points import PointsProfile
 
 EDGES = ("leading_edge", "trailing_edge")
 WALLS = ("hub", "shroud")
@@ -15,7 +16,9 @@ WALLS = ("hub", "shroud")
 def standing(design: Design, *, walls: bool = False) -> frozenset[str]:
     """Paths of what is held.
 
-    Of control points that count by their ratios alone it is the largest. Of a blade it is the flow path, which a blade
+    Of control points that count by their ratios alone it is the largest. Of points of a contour it is the coordinate
+    along which they slide on it, and both of its first and last along the chord, as their size and direction count for
+    nothing. Of a blade it is the flow path, which a blade
     shows by its ends only, and that coordinate of the points of its edge curves along which they slide on the curve.
     Where the `walls` are free, the points of hub and shroud slide along these only.
     """
@@ -23,6 +26,8 @@ def standing(design: Design, *, walls: bool = False) -> frozenset[str]:
     if section is None:
         return frozenset()
     found = {f"section.{path}" for path in _largest(section.parameters())}
+    if isinstance(section, PointsProfile):
+        found |= _along_contour(section)
     if isinstance(design, SectionedBlade):
         values = design.parameters()
         found |= {path for path in values if path.startswith("flow_path.")}
@@ -54,6 +59,17 @@ def _across_walls(design: SectionedBlade) -> frozenset[str]:
             across = np.where(way[:, 0] >= way[:, 1], "r", "x")
             found |= {f"flow_path.{wall}.points[{i}].{name}" for i, name in enumerate(across)}
     return frozenset(found)
+
+
+def _along_contour(section: PointsProfile) -> set[str]:
+    """Paths of what does not change a contour through points, or hardly does."""
+    if any(isinstance(law, tuple) for law in (*section.abscissas, *section.ordinates)):
+        return set()
+    x, y = (np.array([float(np.real(each)) for each in law]) for law in (section.abscissas, section.ordinates))
+    along_x, along_y = ((np.roll(each, -1) - np.roll(each, 1)) ** 2 for each in (x, y))
+    found = {f"section.{'abscissas' if along_x[i] >= along_y[i] else 'ordinates'}[{i}]" for i in range(len(x))}
+    ends = int(np.argmin(x)), int(np.argmax(x))
+    return found | {f"section.{name}[{i}]" for name in ("abscissas", "ordinates") for i in ends}
 
 
 def _largest(values: dict[str, float]) -> list[str]:
