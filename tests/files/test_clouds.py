@@ -125,6 +125,10 @@ def test_airfoils_are_read_in_both_orders(title, file):
 def test_numpy_arrays_are_read(tmp_path):
     np.save(tmp_path / "cloud.npy", SOLID)
     assert np.array_equal(read_cloud(tmp_path / "cloud.npy").points, SOLID)
+    np.save(tmp_path / "columns.npy", np.tile(SOLID, (20, 1)).T)
+    turned = read_cloud(tmp_path / "columns.npy")
+    assert np.array_equal(turned.points, np.tile(SOLID, (20, 1)))
+    assert "a column for each point" in turned.notes[0]
     np.savez(tmp_path / "cloud.npz", points=FLAT, other=SOLID)
     assert np.array_equal(read_cloud(tmp_path / "cloud.npz").points, FLAT)
     np.savez(tmp_path / "parts.npz", y=SOLID[:, 1], z=SOLID[:, 2], x=SOLID[:, 0])

@@ -37,6 +37,7 @@ BAD = {
     "binary": (bytes(range(256)) * 40, ["binary file"]),
     "binary at the end": (GOOD.encode() + b"\0\0", ["binary file"]),
     "STEP": ("ISO-10303-21;\nHEADER;\n", ["STEP file"]),
+    "SU2 mesh": ("NDIME= 3\nNPOIN= 1\n0 0 0 0\n", ["SU2 mesh", "surface_flow.csv"]),
     "gzip": (b"\x1f\x8b\x08\x00", ["gzip", "unpack"]),
     "UTF-16": (GOOD.encode("utf-16"), ["UTF-16"]),
     "a ZIP archive": (b"PK\x03\x04rubbish", ["ZIP archive"]),

@@ -10,6 +10,8 @@ import numpy as np
 from bladewright.errors import FileError
 from bladewright.files.clouds.cloud import Numbers
 
+FEWEST = 12
+"""columns of two or three rows from which a column is a point"""
 _POINTS = ("points", "cloud", "xyz", "vertices", "coordinates")
 
 
@@ -38,8 +40,11 @@ def read_arrays(path: Path, data: bytes) -> Numbers:
             "a row for each point, is needed"
         )
     values = np.asarray(held, dtype=np.float64)
+    notes: tuple[str, ...] = ()
+    if len(values) in (2, 3) and values.shape[1] > FEWEST:
+        values, notes = values.T, (f"the array of shape {values.shape} is taken as a column for each point",)
     whole = bool(np.all(values[:, 0] == np.round(values[:, 0])))
-    return Numbers(values=values, format="a NumPy file", names=names, whole=whole)
+    return Numbers(values=values, format="a NumPy file", names=names, whole=whole, notes=notes)
 
 
 def _chosen(path: Path, held: dict[str, Any]) -> tuple[tuple[str, ...], Any]:

@@ -25,6 +25,7 @@ _OTHERS = {
     b"\xd0\xcf\x11\xe0": "an old Excel file: save it as CSV",
     b"\xff\xfe": "UTF-16 text: save it as UTF-8",
     b"\xfe\xff": "UTF-16 text: save it as UTF-8",
+    b"NDIME": "an SU2 mesh with all of its nodes: give the points of its surface, such as SU2's surface_flow.csv",
     b"CDF": "a NetCDF file",
     b"\x89HDF": "an HDF5 or CGNS file",
 }
