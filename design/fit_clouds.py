@@ -162,7 +162,7 @@ VARIATIONS = {
     ),
     "open": (
         ("aachen", "fan", "ls89"),
-        lambda of: Case(points=noisy(rows(of.sides, shown=(0, 0.97, 0, 1)), of.draw), shown=(0, 0.97, 0, 1)),
+        lambda of: Case(points=noisy(rows(of.sides, shown=(0, 0.9, 0, 1)), of.draw), shown=(0, 0.9, 0, 1)),
     ),
     "axis-y": (
         ("aachen", "turbine"),

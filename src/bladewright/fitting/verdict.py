@@ -11,6 +11,7 @@ from bladewright.fitting.estimates import Certainty
 from bladewright.fitting.first.designed import AXES
 from bladewright.fitting.rounding import rounded
 from bladewright.fitting.search import Found
+from bladewright.fitting.unseen import unseen_edges
 from bladewright.nurbs.basis import Reals
 
 GROSS = (1.5e-3, 5e-3)
@@ -28,6 +29,8 @@ OFF = 0.1
 """part of the points that may be outliers"""
 SHOWN = 5
 SIDES = ("upper", "lower")
+HALF = 0.5
+"""width of an open edge, of the blade's thickest, from which it is half a blade"""
 BARE, BETWEEN = 0.1, 0.1
 """part of the points between the edges, and where those end in u, below which a side is not seen"""
 
@@ -74,6 +77,12 @@ def failures_of(
     bare = _bare(found)
     if bare:
         failures.append(f"hardly a point lies on the {bare} side: is it one side of a blade alone? Give points of both")
+    failures += [
+        f"no point lies around the {name}, where the blade is still {1e3 * wide:.3g} mm wide, {share:.0%} of its "
+        "thickest: is it half a blade? Give the points of the whole"
+        for name, (wide, share) in unseen_edges(found).items()
+        if share > HALF
+    ]
     loose = loose_ends(found)
     if loose and aim.structured and aim.tolerance is None and not found.interrupted and rms < EXACT * chord:
         failures.append(f"the sides are met exactly, but {_loose(loose)}; state the tolerance that is enough")
@@ -131,6 +140,11 @@ def notes_of(
         said.append(f"near enough to make, but {_unmet(found)}")
     if _points(found).shape[1] == 3 and _gross(distances, inliers, found):
         said.append(f"a blade in other axes is met no nearer than this: {AXES}")
+    said += [
+        f"no point lies around the {name}: where it ends and how round it is are guessed"
+        for name, (_, share) in unseen_edges(found).items()
+        if share <= HALF
+    ]
     loose = loose_ends(found)
     if loose:
         said.append(_loose(loose))
