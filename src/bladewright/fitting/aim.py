@@ -23,6 +23,8 @@ class Aim:
     parameters: int | None = None
     structured: bool = False
     """whether the structure is given"""
+    moved: bool = False
+    """whether the axes were found first, by a start that need not be the blade"""
 
     @property
     def open(self) -> bool:

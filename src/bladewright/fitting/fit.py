@@ -95,7 +95,7 @@ def fit(
         precision=None if weights is None else _weights(weights, len(points)),
     )
     structured = parameters is None and (start is not None or like is not None)
-    aim = Aim(tolerance=tolerance, parameters=parameters, structured=structured)
+    aim = Aim(tolerance=tolerance, parameters=parameters, structured=structured, moved=align)
     frame = Frame(name=name, length_unit=length_unit, pitch=pitch, arrangement=arrangement, blade_count=blade_count)
     try:
         if kind is None:

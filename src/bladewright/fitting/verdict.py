@@ -63,13 +63,15 @@ def failures_of(
                     f"{100 * limit:.2g} % are allowed where no tolerance is stated: give more parameters"
                 )
     rms, noise = found.rms * chord, found.scatter.noise
-    if aim.structured and aim.tolerance is None and rms > EXACT * chord and rms > SYSTEMATIC * noise:
+    # in axes that a start shows no structure is met exactly
+    least = FAIR[_points(found).shape[1]] if aim.moved else EXACT
+    if aim.structured and aim.tolerance is None and found.rms > least and rms > SYSTEMATIC * noise:
         failures.append(
             f"the misfit of the given structure is {1e3 * rms:.3g} mm rms, and the cloud's noise {1e3 * noise:.3g} mm: "
             "the structure does not hold this blade, or a better design was not found; state a tolerance, or another "
             "structure"
         )
-    elif aim.structured and aim.tolerance is None and EXACT < found.rms < FINEST and not rounded(_points(found)):
+    elif aim.structured and aim.tolerance is None and least < found.rms < FINEST and not rounded(_points(found)):
         failures.append(
             f"the misfit of the given structure is {1e3 * rms:.3g} mm rms, too much for an exact cloud and too little "
             "for the noise of another: the exact design was not found; state the tolerance that is enough"
