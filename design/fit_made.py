@@ -112,14 +112,20 @@ def points_of(built, count, draw):
     return np.concatenate(parts)
 
 
+def cloud_of(built, seed, *, ends):
+    """The points that a fit sees, with rows at the ends of a blade where asked for, and those that measure it."""
+    draw = np.random.default_rng(1000 + seed)
+    cloud, others = points_of(built, POINTS, draw), points_of(built, OTHERS, draw)
+    if hasattr(built, "surfaces") and ends:
+        cloud = np.concatenate([draw.permutation(cloud)[: POINTS - 4 * ROW], rows_of(built, draw)])
+    return cloud, others
+
+
 def row(kind, seed, *, given, ends):
     """A line of the table."""
     design = section(seed) if kind == "sections" else blade(seed)
     built = design.build()
-    draw = np.random.default_rng(1000 + seed)
-    cloud, others = points_of(built, POINTS, draw), points_of(built, OTHERS, draw)
-    if kind == "blades" and ends:
-        cloud = np.concatenate([draw.permutation(cloud)[: POINTS - 4 * ROW], rows_of(built, draw)])
+    cloud, others = cloud_of(built, seed, ends=ends)
     start = time.process_time()
     try:
         found = fit(cloud, like=design if given else None)

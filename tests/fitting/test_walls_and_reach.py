@@ -2,6 +2,7 @@
 
 from functools import cache
 
+import fit_made
 import numpy as np
 import pytest
 
@@ -9,8 +10,10 @@ from bladewright.blade.exact import moved
 from bladewright.files.examples import example_text
 from bladewright.files.reading import design_from, parsed
 from bladewright.fitting.feet import feet, placed
+from bladewright.fitting.first.hypotheses import coordinates, ranked
 from bladewright.fitting.model import model_of
 from bladewright.fitting.reach import reach_of
+from bladewright.fitting.thinning import spread
 from bladewright.fitting.walls import ends_of
 
 BLADE = "centrifugal-impeller"
@@ -21,6 +24,13 @@ def shape(name):
     design = design_from(parsed(example_text(name), name), name)
     model = model_of(design)
     return design, model, model.shape(design)
+
+
+@cache
+def made(seed):
+    """A blade drawn at random, and 5,000 points of it."""
+    built = fit_made.blade(seed).build()
+    return built, fit_made.cloud_of(built, seed, ends=True)[0]
 
 
 def sides_cloud(name, count, rows=0):
@@ -167,3 +177,23 @@ def test_the_ends_of_an_edge_are_held_where_the_cloud_shows_them(shown, held):
     reach = reach_of(points, there.sides, np.ones(len(points), dtype=bool))
     assert np.all(np.isfinite(reach.allowed[reach.v == 1.0]) == held)
     assert np.all(np.isfinite(reach.allowed[reach.v < 1.0]))
+
+
+def test_a_true_edge_costs_nothing_in_an_exact_cloud_whose_points_happen_to_lie_far_from_it():
+    built, points = made(10)
+    every = np.ones(len(points), dtype=bool)
+    excess = []
+    for exact in (False, True):
+        reach = reach_of(points, built.sides, every, exact=exact)
+        excess.append(float(np.max(reach.excess(reach.edges(built.sides)))) / built.chord)
+    # beside the edge two points are much nearer to each other than to it
+    assert excess[0] > 1e-4
+    assert excess[1] < 0.0
+
+
+def test_points_of_a_blade_do_not_lie_off_it_where_its_first_channel_does_not_follow_them():
+    _, points = made(10)
+    points = np.unique(points, axis=0)
+    machine = coordinates(points[spread(points, 1200)], "annular")
+    kept, _ = ranked(machine, revolved=True)
+    assert len(kept) == len(machine)

@@ -5,15 +5,16 @@ from dataclasses import replace
 import numpy as np
 
 from bladewright.designs import Design
-from bladewright.errors import DesignError, FitError
+from bladewright.errors import DesignError
 from bladewright.fitting.aim import NOISY, Aim, short_of
 from bladewright.fitting.chain import own_walls
 from bladewright.fitting.choosing import chosen_match, compact_match
 from bladewright.fitting.descent import SLIGHT
 from bladewright.fitting.freedom import corner_radii
+from bladewright.fitting.given import FIRST, QUICK, QUIET, leaner, misses, structured
 from bladewright.fitting.growing import grown
 from bladewright.fitting.growth import FEWEST
-from bladewright.fitting.identification import EXACT, identified, tried
+from bladewright.fitting.identification import identified
 from bladewright.fitting.opening import opened
 from bladewright.fitting.pressing import little, pressed
 from bladewright.fitting.reshaping import reshaped
@@ -24,28 +25,18 @@ from bladewright.fitting.thinning import drawn
 from bladewright.fitting.tolerance import kept
 from bladewright.section.unified import UnifiedSection
 
-FIRST = 3e-3
-"""noise of the first round where the start is a guess, of the chord"""
 SHAKEN = 0.03
 """noise from which a match of a section is tried once more, of the chord"""
 FINEST = 1e-6
 """misfit at which it is not, of that"""
 FINE = 1e-3
 """part of the cost that a step of the last search must promise, where the cloud is not taken for exact"""
-QUICK = 2
-"""rounds of a search between two steps of growth"""
 FEW, MANY = {2: 2500, 3: 1000}, 12_000
 """points of a quick, by dimension, and of a thorough search"""
 SEVERAL = 2500
 """points with which a blade grows towards a tolerance, which asks for every row of them"""
-WEAK = 0.1
-"""strength of the prior where a match is only made better, of the usual"""
 FURTHER = 30.0
 """by how much noses are held further from what is refused, where a design is"""
-QUIET = 0.1
-"""part of the misfit that is noise up to which a cloud may be exact"""
-FURTHER_ROUNDS = 20
-"""rounds in which a given structure is sought in a cloud that may be exact"""
 COMPACT = 0.5
 """root mean square distance, of a tolerance, with which a blade begins to grow towards it"""
 NEARLY = (0.3, 0.02)
@@ -67,10 +58,10 @@ def adapted(task: Task, first: Design, aim: Aim, *, base: Structure | None, gues
     several, many = (task.part(drawn(len(task.points), most)) for most in (SEVERAL, MANY))
     noise = FIRST if guessed else None
     if aim.structured and aim.tolerance is None:
-        return _structured(few, many, first, base, guessed=guessed), ""
+        return structured(few, many, first, base, guessed=guessed), ""
     found = searched(few, first, noise=noise, rounds=2 * QUICK if base is None else QUICK, slight=ROUGH)
     exact = guessed and aim.open and not rounded(task.points)
-    if exact and isinstance(first, UnifiedSection) and _misses(found, QUIET):
+    if exact and isinstance(first, UnifiedSection) and misses(found, QUIET):
         known = identified(few, first)
         if known is not None:
             return (known if known.interrupted else searched(many, known.design)), ""
@@ -98,30 +89,6 @@ def adapted(task: Task, first: Design, aim: Aim, *, base: Structure | None, gues
     return found, reason
 
 
-def _structured(few: Task, many: Task, first: Design, base: Structure | None, *, guessed: bool) -> Found:
-    """The match with the structure of a first design, or with that of `base`."""
-    found = searched(few, first, noise=FIRST if guessed else None, rounds=ROUNDS if base is None else QUICK)
-    if guessed and isinstance(first, UnifiedSection) and found.rms > EXACT and _misses(found):
-        other = tried(few, first, [structure_of(first)])
-        if other is not None:
-            nearer = min((found, other), key=lambda each: each.rms)
-            found = replace(nearer, interrupted=other.interrupted)
-    if base is not None and not found.interrupted:
-        found = _leaner(few, found, base)
-        if guessed and _misses(found, QUIET):
-            # an exact cloud has no outliers, and edges and ends that are not yet found look like some
-            exact = searched(replace(few, outlying=False), found.design, noise=FIRST, rounds=FURTHER_ROUNDS)
-            found = exact if exact.interrupted or exact.rms < found.rms else found
-    if found.interrupted:
-        return found
-    found = searched(many, found.design)
-    if found.rms < EXACT and not np.all(found.scatter.inliers) and not found.interrupted:
-        # points past the ends of an exact match are none, if it can be widened to hold them too
-        whole = searched(replace(many, outlying=False), found.design)
-        found = whole if whole.rms < EXACT else found
-    return _told_by_points(many, found)
-
-
 def _structured_for(
     task: Task, several: Task, found: Found, aim: Aim, base: Structure | None, *, guessed: bool
 ) -> tuple[Found, str]:
@@ -145,22 +112,8 @@ def _structured_for(
         found = searched(task, found.design, noise=found.rms, slight=ROUGH)
         found = chosen_match(task, found, len(found.problem.paths)) or found
     elif base is not None and not found.interrupted and _roomy(found, aim):
-        found = _leaner(task, found, base)
+        found = leaner(task, found, base)
     return _enough(task, found, aim)
-
-
-def _misses(found: Found, most: float = np.inf) -> bool:
-    """Whether a search came to its end at a misfit that is no noise, and of which the noise is `most` at most."""
-    quiet = found.scatter.noise < most * found.rms * found.model.chord
-    return quiet and found.scatter.shared > NOISY and not found.interrupted
-
-
-def _told_by_points(task: Task, found: Found) -> Found:
-    """A match whose misfit is noise, with a prior so weak that it does not shift what the points determine."""
-    if found.interrupted or found.scatter.shared > NOISY:
-        return found
-    weak = searched(replace(task, smooth=WEAK), found.design, rounds=2)
-    return replace(weak, evaluations=found.evaluations + weak.evaluations)
 
 
 def _enough(task: Task, found: Found, aim: Aim) -> tuple[Found, str]:
@@ -243,11 +196,3 @@ def _roomy(found: Found, aim: Aim) -> bool:
     if aim.tolerance is not None and found.rms * found.model.chord > aim.tolerance:
         return False
     return aim.parameters is None or len(found.problem.paths) > aim.parameters
-
-
-def _leaner(task: Task, found: Found, base: Structure) -> Found:
-    """A match with the structure from which to grow, or the one before where its laws leave no shape so."""
-    try:
-        return searched(task, reshaped(found.design, base), noise=FIRST, rounds=2 * QUICK, slight=ROUGH)
-    except FitError:
-        return found

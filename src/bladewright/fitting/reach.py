@@ -22,8 +22,8 @@ BESIDE = 0.2
 """what a distance along the edge counts while the nearest point is sought: a cloud may have few rows"""
 AROUND = 6
 """points whose distances from each other are looked at"""
-APART = 1.5
-"""allowed distance, of that between neighbours"""
+APART, FAR = 1.5, 15.0
+"""allowed distance, of that between neighbours, and the same in a cloud that is exact"""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -48,8 +48,11 @@ class Reach:
         return np.asarray(-np.sum(edges.miss * edges.normals, axis=-1) - self.allowed)
 
 
-def reach_of(points: Reals, sides: Sequence[Side], rows: NDArray[np.bool_]) -> Reach:
-    """The points beside each edge, of those in `rows` (n,)."""
+def reach_of(points: Reals, sides: Sequence[Side], rows: NDArray[np.bool_], *, exact: bool = False) -> Reach:
+    """The points beside each edge, of those in `rows` (n,); of an `exact` cloud an edge is only kept from running off.
+
+    By chance a point may be further from an edge than others from each other, and the true edge must cost nothing.
+    """
     upper, cloud = sides[0], points[rows]
     stations: Reals = STATIONS if isinstance(upper, Surface) else np.zeros(1)
     u, v = np.repeat([0.0, 1.0], len(stations)), np.tile(stations, 2)
@@ -69,5 +72,6 @@ def reach_of(points: Reals, sides: Sequence[Side], rows: NDArray[np.bool_]) -> R
     tree = cKDTree(cloud)
     _, around = tree.query(beside, k=AROUND)
     apart = tree.query(cloud[around.ravel()], k=3)[0][:, -1]
-    allowed = np.where(shown, APART * np.median(apart.reshape(len(chosen), AROUND), axis=1), np.inf)
+    most = FAR if exact else APART
+    allowed = np.where(shown, most * np.median(apart.reshape(len(chosen), AROUND), axis=1), np.inf)
     return Reach(points=beside, u=u, v=v, allowed=allowed)

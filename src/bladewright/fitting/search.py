@@ -191,7 +191,7 @@ def _prepared(task: Task, start: Design, design: Design, noise: float | None, be
         roots=np.sqrt(task.weights * (scatter.inliers & ~ends.covered)),
         model=model,
         ends=ends,
-        reach=reach_of(points, shape.sides, scatter.inliers & ~ends.covered),
+        reach=reach_of(points, shape.sides, scatter.inliers & ~ends.covered, exact=not task.outlying),
         noise=misfit if noise is None else noise,
         precision=np.ones(len(points)) if task.precision is None else task.precision,
     )
