@@ -40,12 +40,18 @@ def matched_unified(
     Raises FitError where no design is found near the points, or the nearest one cannot be built.
     """
     solid, wanted = task.points.shape[1] == 3, None if like is None else structure_of(like)
-    told = solid and wanted is not None and start is None and aim.tolerance is None
+    told = solid and wanted is not None and start is None and aim.structured and aim.tolerance is None
     task.told("first design")
     if start is not None:
         guessed = start if wanted is None else reshaped(start, wanted)
     else:
-        guessed = _guess(task, wanted if told or not solid else rich(aim.parameters), like, frame)
+        free = rich(aim.parameters) if solid else wanted
+        try:
+            guessed = _guess(task, wanted if told else free, like, frame)
+        except FitError:
+            if not told:
+                raise
+            guessed = _guess(task, free, like, frame)
     first = _freed(task, guessed, started=start is not None)
     check_bounds(first, task.free(first), task.bounds)
     base = None
