@@ -8,7 +8,6 @@ import pytest
 
 from bladewright.blade.meridian import ThroughPoints
 from bladewright.designs import Point
-from bladewright.errors import DesignError
 from bladewright.fitting.families import blades
 from bladewright.fitting.families.flow import AHEAD, BESIDE, NEAR, WALL, _wall
 from bladewright.fitting.families.growing import sufficient
@@ -20,9 +19,10 @@ from bladewright.fitting.model import model_of
 from bladewright.fitting.scatter import scatter_of
 from bladewright.fitting.walls import Wall
 from bladewright.nurbs.surface import Surface
+from bladewright.section.curvature_meanline import CurvatureMeanline
+from bladewright.section.thickness.wennerstrom import Wennerstrom
 
 from ..blade.sectioned import COMPRESSOR, DIFFUSER
-from ..section.suction_pressure_examples import STATOR
 
 VANE = replace(DIFFUSER, tolerance=1e-3)
 
@@ -129,13 +129,18 @@ def test_a_match_within_the_tolerance_is_taken_though_another_was_nearer_on_aver
     assert sufficient(None, first, aim, lambda *_: iter([second]), coarse=1e-3) == (second, "")
 
 
-def test_laws_that_leave_sections_no_shape_have_fewer_control_points():
-    parts = [STATOR] * len(blades.SPANS)
-    parts[1] = replace(STATOR, leading_edge_wedge=STATOR.leading_edge_wedge + 30.0)
-    part = blades._laws(parts, dict.fromkeys(STATOR.parameters(), 3))
-    try:
-        part.outline(blades.ALONG).points(blades.SPANS)
-    except DesignError as error:
-        pytest.fail(str(error))
-    even = blades._laws([STATOR] * len(blades.SPANS), dict.fromkeys(STATOR.parameters(), 3))
-    assert len(even.leading_edge_wedge) == 3
+def test_a_law_that_leaves_sections_no_shape_is_a_constant_and_the_others_stay_laws():
+    thickness = Wennerstrom(
+        maximum_thickness=0.1,
+        maximum_thickness_at=0.5,
+        leading_edge_thickness=0.02,
+        trailing_edge_thickness=0.03,
+        trailing_edge="elliptic",
+    )
+    part = CurvatureMeanline(metal_angle_in=30.0, metal_angle_out=0.0, curvature=(1.0, 1.0), thickness=thickness)
+    # on both sides of the middle the shape would jump
+    places = 0.5 + 1e-3 * np.array([-2.0, 1.0, -1.0, 0.0, 1.0, -1.0, 2.0])
+    parts = [part.changed({"thickness.maximum_thickness_at": float(each)}) for each in places]
+    found = blades._laws(parts, dict.fromkeys(part.parameters(), 3))
+    assert np.ndim(found.thickness.maximum_thickness_at) == 0
+    assert len(found.metal_angle_in) == len(found.thickness.maximum_thickness) == 3

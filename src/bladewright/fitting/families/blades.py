@@ -171,16 +171,28 @@ def _backwards(found: Channelled, kind: Kind, like: Any, section: Sampled) -> bo
 
 
 def _laws(parts: list[Any], counts: Mapping[str, int]) -> Any:
-    """One part of laws, with as many control points as leave its sections a shape: the middle one's where none do."""
-    for most in range(max(counts.values()), 0, -1):
-        try:
-            part = along_span(parts, SPANS, {path: min(count, most) for path, count in counts.items()})
-            part.outline(ALONG).points(SPANS)
-            crowding(part, ALONG)
-        except DesignError:
-            continue
-        return part
-    return along_span([parts[CHOSEN]], SPANS[CHOSEN : CHOSEN + 1], dict.fromkeys(counts, 1))
+    """One part of laws: constants where a law, or that together with those before it, leaves sections no shape."""
+    whole = _shaped(parts, counts)
+    if whole is not None:
+        return whole
+    taken = dict.fromkeys(counts, 1)
+    found = _shaped(parts, taken) or _shaped([parts[CHOSEN]] * len(SPANS), taken)
+    for path, count in counts.items():
+        wider = _shaped(parts, taken | {path: count})
+        if wider is not None:
+            taken[path], found = count, wider
+    return found
+
+
+def _shaped(parts: list[Any], counts: Mapping[str, int]) -> Any:
+    """One part of laws of so many control points each, or None where it has sections without a shape."""
+    try:
+        part = along_span(parts, SPANS, counts)
+        part.outline(ALONG).points(SPANS)
+        crowding(part, ALONG)
+    except DesignError:
+        return None
+    return part
 
 
 def _count(law: Any) -> int:
