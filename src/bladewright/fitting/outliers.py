@@ -44,6 +44,8 @@ ONWARDS = 1
 """points past an end, level with the sides, that may be there by chance"""
 LEVEL = 0.05
 """height, of the way past an end, up to which a point is level with the sides, which may bend there"""
+SPIKE, FLAT = 2.0, 0.1
+"""slope to all neighbours that no surface has, and their height, of the point's own, from which they are on it"""
 MOST = 0.15
 """part of the points from which it is the design that lies off, and not they"""
 AROUND, SITES = 64, 5000
@@ -106,7 +108,8 @@ def outliers_of(
     edge = (on.u < EDGE) | (on.u > 1.0 - EDGE)
     near = NEAR * around.extent
     least = np.hypot(OUTLYING * level, np.where(edge, AT_EDGES, USUAL) * misfit) + near
-    far = distances > least
+    spikes = _spikes(heights, OUTLYING * level + near, around)
+    far = (distances > least) | spikes
     if not np.any(far):
         return far
     wrong = _short_of_ends(far & (past > least), np.abs(heights) <= np.maximum(least, LEVEL * past), on)
@@ -115,7 +118,7 @@ def outliers_of(
     # what differs by more than the noise is no noise
     noisy = misfit == 0.0 and noise > near
     slopes = np.zeros(len(heights)) if noisy else _slopes(heights, level, misfit, around)
-    found = far & (beyond | _cut_off(heights, level, beyond, slopes, largest, around))
+    found = spikes | (far & (beyond | _cut_off(heights, level, beyond, slopes, largest, around)))
     # what is past an end that is wrong lies off the surface by its height alone
     off_surface = np.where(wrong, np.abs(heights), distances)
     steady = ~found & (off_surface > np.hypot(OUTLYING * level, STEADY * misfit) + near)
@@ -123,6 +126,19 @@ def outliers_of(
     # around an edge a few points are all that tells of a radius: it may be wrong alone
     found |= steady & (_sizes(label) <= largest) & ~np.isin(label, label[edge & steady])
     return found if np.mean(found) < MOST else np.zeros_like(found)
+
+
+def _spikes(heights: Reals, least: Reals, around: Surroundings) -> NDArray[np.bool_]:
+    """Whether points (n,) stand higher off their neighbours, which are on the surface, than these are away.
+
+    No wrong radius of an edge does that.
+    """
+    index, feet = around.index, around.places[:, :-1]
+    way = np.sqrt(np.sum((feet[index] - feet[:, None]) ** 2, axis=-1))
+    step = np.abs(heights[index] - heights[:, None])
+    steep = (step > SPIKE * way) & (step > np.maximum(least[:, None], least[index]))
+    level = np.median(np.abs(heights[index]), axis=1) < FLAT * np.abs(heights)
+    return np.asarray(np.all(steep, axis=1) & level)
 
 
 def _short_of_ends(past: NDArray[np.bool_], level: NDArray[np.bool_], on: Feet) -> NDArray[np.bool_]:
