@@ -10,7 +10,7 @@ from bladewright.blade.meridian import ThroughPoints
 from bladewright.designs import Point
 from bladewright.fitting.families import blades
 from bladewright.fitting.families.flow import AHEAD, BESIDE, NEAR, WALL, _wall
-from bladewright.fitting.families.growing import sufficient
+from bladewright.fitting.families.growing import FUTILE, sufficient
 from bladewright.fitting.families.polyline import nearest_on
 from bladewright.fitting.families.standing import standing
 from bladewright.fitting.feet import feet
@@ -125,8 +125,24 @@ def test_a_match_within_the_tolerance_is_taken_though_another_was_nearer_on_aver
     steps = iter([(True, ""), (False, "")])
     monkeypatch.setattr("bladewright.fitting.families.growing.short_of", lambda *_: next(steps))
     monkeypatch.setattr("bladewright.fitting.families.growing.sound", lambda *_: True)
-    first, second = (SimpleNamespace(rms=rms, interrupted=False, problem=None) for rms in (1.0, 1.1))
+    first, second = (SimpleNamespace(rms=r, maximum=m, interrupted=False) for r, m in ((1.0, 3.0), (1.1, 0.9)))
     assert sufficient(None, first, aim, lambda *_: iter([second]), coarse=1e-3) == (second, "")
+
+
+def test_growth_that_brings_a_design_no_nearer_is_taken_back_and_another_is_tried(monkeypatch):
+    aim = SimpleNamespace(parameters=None, tolerance=None, open=True)
+    monkeypatch.setattr("bladewright.fitting.families.growing.short_of", lambda found, *_: (found.rms > 0.1, ""))
+    monkeypatch.setattr("bladewright.fitting.families.growing.sound", lambda *_: True)
+    first, worse, better = (SimpleNamespace(rms=r, maximum=r, interrupted=False) for r in (1.0, 1.5, 0.05))
+    asked = []
+
+    def wider(_task, found, _aim, back):
+        asked.append((found, back))
+        yield better if back == 2 else worse
+
+    assert sufficient(None, first, aim, wider, coarse=1e-3) == (better, "")
+    assert asked == [(first, 0), (first, 1), (first, 2)]
+    assert sufficient(None, first, aim, lambda *_: iter([worse]), coarse=1e-3) == (first, FUTILE)
 
 
 def test_a_law_that_leaves_sections_no_shape_is_a_constant_and_the_others_stay_laws():

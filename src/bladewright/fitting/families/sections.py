@@ -184,8 +184,8 @@ def _sound(found: Found) -> bool:
     return sound(found, TOLERANCES[-1])
 
 
-def _wider(task: Task, found: Found, aim: Aim, *, kind: Kind) -> Iterator[Found]:
-    """Matches with a control point more, of the laws that promise most."""
+def _wider(task: Task, found: Found, aim: Aim, back: int, *, kind: Kind) -> Iterator[Found]:
+    """Matches with a control point more, of the laws that promise most, or of the next where those were taken back."""
     design: Any = found.design
     try:
         # a section that crosses itself on the way has sides all the same
@@ -194,7 +194,7 @@ def _wider(task: Task, found: Found, aim: Aim, *, kind: Kind) -> Iterator[Found]
     except DesignError:
         return
     designs = [replace(design, section=part) for part in parts]
-    for _, _, wider in promised(task, found, designs, emphasis_of(found, aim))[:TRIED]:
+    for _, _, wider in promised(task, found, designs, emphasis_of(found, aim))[back * TRIED :][:TRIED]:
         try:
             fresh = searched(task, wider, rounds=QUICK)
         except (DesignError, FitError):
