@@ -15,6 +15,8 @@ COUNTS = range(4, 151)
 """numbers of blades around the axis that are tried"""
 BETWEEN = 0.25
 """part of the points that lie again a pitch to either side from which the cloud holds three blades or more"""
+CLEARER = 0.8
+"""a longer pitch must bring the points nearer by so much: it may be a multiple"""
 CLEAR = 4.0
 """a pitch is so many times longer than the distance at which a point is found again"""
 
@@ -42,15 +44,17 @@ def _around(points: Reals) -> str | None:
     extent = float(np.hypot(np.ptp(points[:, 0]), np.ptp(radius)))
     near = 1.5 * float(np.median(tree.query(points[:ASKED], k=2)[0][:, 1])) + 0.005 * extent
     x, y, z = points[:ASKED].T
+    nearest, pitch = np.inf, 0.0
     for count in reversed(COUNTS):
         turn = 2.0 * np.pi / count
         if turn * float(np.median(radius)) < max(APART * extent, CLEAR * near):
             continue
         c, s = np.cos(turn), np.sin(turn)
         sides = [np.stack([x, c * y + sign * s * z, c * z - sign * s * y], axis=-1) for sign in (1.0, -1.0)]
-        if np.mean(np.all([tree.query(there)[0] < near for there in sides], axis=0)) > BETWEEN:
-            return f"{np.degrees(turn):.4g} deg"
-    return None
+        away = np.max([tree.query(there)[0] for there in sides], axis=0)
+        if np.mean(away < near) > BETWEEN and np.mean(away[away < near]) < CLEARER * nearest:
+            nearest, pitch = float(np.mean(away[away < near])), turn
+    return f"{np.degrees(pitch):.4g} deg" if pitch else None
 
 
 def _parts(points: Reals) -> list[NDArray[np.intp]]:
