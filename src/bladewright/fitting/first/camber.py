@@ -7,7 +7,8 @@ import numpy as np
 from numpy.polynomial import chebyshev
 from numpy.typing import NDArray
 
-from bladewright.fitting.first.matching import LONGEST, SHORTEST, STEEPEST, Laid
+from bladewright.fitting.first.laid import Laid
+from bladewright.fitting.first.restraints import LONGEST, SHORTEST, STEEPEST
 from bladewright.fitting.first.shape import (
     ANGLE_IN,
     ANGLE_OUT,

@@ -11,7 +11,7 @@ from bladewright.errors import DesignError, FitError
 from bladewright.fitting.first.arrangement import Arrangement
 from bladewright.fitting.first.channel import SPAN, Rough
 from bladewright.fitting.first.found import Found
-from bladewright.fitting.first.matching import numbers_at
+from bladewright.fitting.first.laid import numbers_at
 from bladewright.fitting.first.shape import (
     ANGLE_IN,
     ANGLE_OUT,

@@ -7,7 +7,8 @@ import numpy as np
 
 from bladewright.fitting.first.camber import first_laws, parted
 from bladewright.fitting.first.channel import SPAN, Rough
-from bladewright.fitting.first.matching import Laid, Match, matched, numbers_at
+from bladewright.fitting.first.laid import Laid, numbers_at
+from bladewright.fitting.first.matching import Match, matched
 from bladewright.fitting.first.shape import (
     EXTENT,
     FIRST_THICKNESS,
@@ -93,7 +94,7 @@ def continued_in(
         turn, lean, _ = _direction(laid)
         known = parted(shape, laid, turn, lean)
         laid = replace(laid, upper=known.upper, sure=known.sure)
-    match = matched(shape, laid, laws, turns=10, stiff=0.3, ends=ends)
+    match = matched(shape, laid, laws, turns=10, stiff=0.3, ends=ends, fins=False)
     return Found(channel=channel, shape=shape, laid=laid, match=match)
 
 

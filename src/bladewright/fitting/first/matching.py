@@ -6,56 +6,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bladewright.errors import FitError
-from bladewright.fitting.first.shape import (
-    ANGLE_IN,
-    ANGLE_OUT,
-    EXTENT,
-    FIRST_THICKNESS,
-    PLACE,
-    ROOT_IN,
-    ROOT_OUT,
-    STAGGER,
-    START,
-    TANGENT_IN,
-    TANGENT_OUT,
-    Shape,
-)
+from bladewright.fitting.first.laid import Laid, numbers_at, stations
+from bladewright.fitting.first.restraints import THINNEST, drawn_in, limits, priors
+from bladewright.fitting.first.shape import EXTENT, ROOT_IN, ROOT_OUT, Shape
 from bladewright.nurbs.basis import Reals
 from bladewright.section.laws import law_basis
 
-STEEPEST = np.radians(87.0)
-SHORTEST, LONGEST = 0.03, 0.97
-"""of the extent: tangents of a first camber"""
-THINNEST = 5e-4
-"""of the chord: half thickness of a first section"""
 FLOOR = 1e-3
 """least weight of what keeps even that which the points leave open"""
-BEND = 0.7
-"""of it, for the bends of the laws along the span"""
 PLACES = np.linspace(0.0, 1.0, 65)
 """along a side, where the nearest place is sought"""
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
-class Laid:
-    """Points of a cloud in the planes of their sections."""
-
-    points: Reals
-    """(n, 2)"""
-    v: Reals
-    """(n,) along the span"""
-    size: Reals
-    """(n,) of one metre in the plane"""
-    chord: float
-    """typical, [m]"""
-    ratio: float
-    """typical chord of the meridional length"""
-    flat: bool = False
-    """whether all points belong to one section"""
-    upper: NDArray[np.bool_] | None = None
-    """(n,) which side a point belongs to"""
-    sure: NDArray[np.bool_] | None = None
-    """(n,) whether that is known"""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -70,16 +30,6 @@ class Match:
     """of the points that count [m]"""
     s: Reals
     upper: NDArray[np.bool_]
-
-
-def numbers_at(laws: Reals, v: Reals) -> Reals:
-    """Numbers (n, q) of the sections at v."""
-    return law_basis(len(laws), v) @ laws
-
-
-def stations(laid: Laid) -> Reals:
-    """Places along the span where sections are drawn."""
-    return np.zeros(1) if laid.flat else np.linspace(0.0, 1.0, 13)
 
 
 def nearest(shape: Shape, laid: Laid, laws: Reals) -> tuple[Reals, NDArray[np.bool_], Reals]:
@@ -124,10 +74,13 @@ def nearest(shape: Shape, laid: Laid, laws: Reals) -> tuple[Reals, NDArray[np.bo
     return s, upper, best / laid.size
 
 
-def matched(shape: Shape, laid: Laid, laws: Reals, *, turns: int = 25, stiff: float = 1.0, ends: bool = False) -> Match:
+def matched(
+    shape: Shape, laid: Laid, laws: Reals, *, turns: int = 25, stiff: float = 1.0, ends: bool = False, fins: bool = True
+) -> Match:
     """Laws near the given ones whose sections lie close to the points.
 
-    `ends` holds the ends of the camber lines at those of the stream lines.
+    `ends` holds the ends of the camber lines at those of the stream lines. Where no `fins` may be, what reaches past
+    the points is drawn in.
     """
     laws = held(shape, laid, laws)
     best: Match | None = None
@@ -146,7 +99,7 @@ def matched(shape: Shape, laid: Laid, laws: Reals, *, turns: int = 25, stiff: fl
         settled = len(history) > 6 and min(history[-3:]) > 0.97 * min(history[:-3])
         if turn == turns or (settled and smooth <= 1.01 * FLOOR):
             break
-        laws = held(shape, laid, laws + _step(shape, laid, laws, s, upper, weight, smooth, ends))
+        laws = held(shape, laid, laws + _step(shape, laid, laws, s, upper, weight, smooth, ends, fins))
         smooth = max(0.5 * smooth, FLOOR)
     if best is None:
         raise FitError("no section was found near the points")
@@ -155,7 +108,7 @@ def matched(shape: Shape, laid: Laid, laws: Reals, *, turns: int = 25, stiff: fl
 
 def held(shape: Shape, laid: Laid, laws: Reals) -> Reals:
     """The laws within the family's limits, and radii that the thickness beside them can hold."""
-    low, high, _ = _limits(shape, laid, ends=False)
+    low, high, _ = limits(shape, laid, ends=False)
     laws = np.clip(laws, low, high)
     laws = _inward(shape, laid, laws)
     least = np.sqrt(2e-4 * laid.ratio)
@@ -202,7 +155,15 @@ def _weights(laid: Laid, s: Reals, upper: NDArray[np.bool_], distances: Reals, p
 
 
 def _step(
-    shape: Shape, laid: Laid, laws: Reals, s: Reals, upper: NDArray[np.bool_], weight: Reals, smooth: float, ends: bool
+    shape: Shape,
+    laid: Laid,
+    laws: Reals,
+    s: Reals,
+    upper: NDArray[np.bool_],
+    weight: Reals,
+    smooth: float,
+    ends: bool,
+    fins: bool,
 ) -> Reals:
     numbers = numbers_at(laws, laid.v)
     foot = shape.feet(numbers, laid.v, s, upper)
@@ -211,10 +172,10 @@ def _step(
     rows = law_basis(len(laws), laid.v)
     slopes = (root[:, None] * foot.slopes)[:, :, None] * rows[:, None, :]
     matrix = slopes.reshape(len(s), -1)
-    prior, aim = _priors(shape, laid, laws, smooth)
-    matrix, away = np.concatenate([matrix, prior]), np.concatenate([away, aim])
+    for prior, aim in (priors(shape, laid, laws, smooth), *([] if fins else [drawn_in(shape, laid, laws)])):
+        matrix, away = np.concatenate([matrix, prior]), np.concatenate([away, aim])
     flat = laws.T.reshape(-1)
-    low, high, most = (np.repeat(a, len(laws)) for a in _limits(shape, laid, ends=ends))
+    low, high, most = (np.repeat(a, len(laws)) for a in limits(shape, laid, ends=ends))
     free = np.ones(len(flat), dtype=bool)
     step = np.zeros(len(flat))
     normal, right = matrix.T @ matrix, matrix.T @ away
@@ -229,56 +190,3 @@ def _step(
     step *= 1.0 / max(1.0, float(np.max(np.abs(step) / most)))
     new = np.clip(flat + step, low, high)
     return (new - flat).reshape(-1, len(laws)).T
-
-
-def _priors(shape: Shape, laid: Laid, laws: Reals, smooth: float) -> tuple[Reals, Reals]:
-    """Rows that keep what the points leave open: alike sides, even thickness, tangents of a third, even laws."""
-    count, k = shape.columns, len(laws)
-    rows: list[tuple[Reals, float]] = []
-
-    def add(parts: dict[int, float], aim: float, weight: float) -> None:
-        row = np.zeros(count)
-        for column, value in parts.items():
-            row[column] = weight * value
-        rows.append((row, weight * aim))
-
-    nu, nl = shape.chordwise
-    up, low, unit = shape.upper.start, shape.lower.start, 1.0 / laid.ratio
-    if nu == nl:
-        for i in range(nu):
-            add({up + i: unit, low + i: -unit}, 0.0, 0.3 * smooth)
-    for first, n in ((up, nu), (low, nl)):
-        for i in range(n - 2):
-            add({first + i: unit, first + i + 1: -2.0 * unit, first + i + 2: unit}, 0.0, smooth)
-    for column in (TANGENT_IN, TANGENT_OUT):
-        add({column: 1.0}, 0.35, 0.03 * smooth)
-    for column in (ROOT_IN, ROOT_OUT):
-        add({column: 1.0 / np.sqrt(laid.ratio)}, 0.05, 0.03 * smooth)
-    matrix = np.array([np.kron(row, np.eye(k)) for row, _ in rows]).reshape(-1, count * k)
-    aims = np.repeat([aim for _, aim in rows], k)
-    if k > 2:
-        units = _limits(shape, laid, ends=False)[2]
-        bend = np.diff(np.eye(k), n=2, axis=0)
-        extra = np.kron(np.diag(BEND * smooth / units), bend)
-        matrix, aims = np.concatenate([matrix, extra]), np.concatenate([aims, np.zeros(len(extra))])
-    flat = laws.T.reshape(-1)
-    return matrix, aims - matrix @ flat
-
-
-def _limits(shape: Shape, laid: Laid, *, ends: bool) -> tuple[Reals, Reals, Reals]:
-    """Lowest and highest values of the columns, and the most that one step may change them."""
-    low, high = np.full(shape.columns, -np.inf), np.full(shape.columns, np.inf)
-    most = np.full(shape.columns, 0.1 * laid.ratio)
-    for columns, least, largest, step in (
-        ([START], -2.0 if laid.flat else -0.4, 0.6, 0.1),
-        ([EXTENT], 0.03 if laid.flat else 0.2, 1.5, 0.15),
-        ([STAGGER, ANGLE_IN, ANGLE_OUT], -STEEPEST, STEEPEST, 0.35),
-        ([TANGENT_IN, TANGENT_OUT], SHORTEST, LONGEST, 0.3),
-        ([ROOT_IN, ROOT_OUT], np.sqrt(2e-4 * laid.ratio), 0.95, 0.15 * np.sqrt(laid.ratio)),
-    ):
-        low[columns], high[columns], most[columns] = least, largest, step
-    low[FIRST_THICKNESS:] = THINNEST * laid.ratio
-    most[PLACE] = 0.15 * laid.chord * float(np.median(laid.size))
-    if ends:
-        low[START], high[START], low[EXTENT], high[EXTENT] = 0.0, 0.0, 1.0, 1.0
-    return low, high, most

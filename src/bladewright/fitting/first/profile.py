@@ -8,7 +8,8 @@ import numpy as np
 from bladewright.errors import DesignError, FitError
 from bladewright.fitting.first.camber import first_laws
 from bladewright.fitting.first.inliers import usual
-from bladewright.fitting.first.matching import Laid, Match, matched
+from bladewright.fitting.first.laid import Laid
+from bladewright.fitting.first.matching import Match, matched
 from bladewright.fitting.first.shape import (
     ANGLE_IN,
     ANGLE_OUT,

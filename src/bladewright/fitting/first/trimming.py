@@ -6,7 +6,8 @@ import numpy as np
 
 from bladewright.fitting.first.channel import SPAN, Rough, rough_channel
 from bladewright.fitting.first.found import Found, laid_in
-from bladewright.fitting.first.matching import nearest, numbers_at
+from bladewright.fitting.first.laid import numbers_at
+from bladewright.fitting.first.matching import nearest
 from bladewright.fitting.first.shape import (
     EXTENT,
     START,
