@@ -21,8 +21,10 @@ QUICK = 2
 """rounds of a first search"""
 WEAK = 0.1
 """strength of the prior where a match is only made better, of the usual"""
-QUIET = 0.1
-"""part of the misfit that is noise up to which a cloud may be exact"""
+QUIET, CLEAR = 0.1, 0.5
+"""part of the misfit that is noise up to which a cloud may be exact, after a quick search and after a thorough one"""
+TURNS, NEARER = 3, 0.5
+"""turns in which an exact design is sought, and ratio of the misfits of the two searches from which there is another"""
 FURTHER_ROUNDS = 20
 """rounds in which a given structure is sought in a cloud that may be exact"""
 EDGES, ENDS = (0.03, 0.9), 0.02
@@ -41,17 +43,11 @@ def structured(few: Task, many: Task, first: Design, base: Structure | None, *, 
         if other is not None:
             nearer = min((found, other), key=lambda each: each.rms)
             found = replace(nearer, interrupted=other.interrupted)
-    if base is not None and not found.interrupted:
-        if structure_of(found.design) != base:
-            found = leaner(few, found, base)
-        if guessed and not found.interrupted:
-            found = _exact(many, found)
-    if found.interrupted or (base is not None and guessed and found.rms < EXACT):
+    if base is not None and structure_of(found.design) != base and not found.interrupted:
+        found = leaner(few, found, base)
+    if found.interrupted:
         return found
-    found = searched(many, found.design)
-    if base is not None and guessed and found.rms > EXACT and not found.interrupted:
-        # what few points do not tell from noise, more of them may
-        found = _exact(many, found)
+    found = searched(many, found.design) if base is None or not guessed else _sought(many, found)
     if found.rms < EXACT and not np.all(found.scatter.inliers) and not found.interrupted:
         # points past the ends of an exact match are none, if it can be widened to hold them too
         whole = searched(replace(many, outlying=False), found.design)
@@ -59,19 +55,41 @@ def structured(few: Task, many: Task, first: Design, base: Structure | None, *, 
     return _told_by_points(many, found)
 
 
-def _exact(task: Task, found: Found) -> Found:
-    """The exact design near one whose cloud may be exact; the same where it is not, or none is nearer.
+def _sought(task: Task, found: Found) -> Found:
+    """The match with all points, or the exact design, which is sought by turns with and without what seems to lie off.
 
-    Such a cloud has no outliers, and edges and ends that are not yet found look like some.
+    Where the one search stands still the other may go on: a wrong foot holds the first, a short edge the second.
+    """
+    most = QUIET
+    for _ in range(TURNS):
+        exact = _exact(task, found, most)
+        if exact is not None and (exact.rms < EXACT or exact.interrupted):
+            return exact
+        before = np.inf if exact is None else exact.rms
+        start = exact or found
+        found = searched(task, start.design)
+        found = replace(found, evaluations=start.evaluations + found.evaluations)
+        if found.interrupted or found.rms < EXACT or found.rms > NEARER * before or (exact is None and most > QUIET):
+            break
+        most = CLEAR
+    return found
+
+
+def _exact(task: Task, found: Found, most: float) -> Found | None:
+    """The exact design near one, or the same where none is nearer; None where the cloud is not exact.
+
+    Such a cloud has no outliers, and edges and ends that are not yet found look like some. The noise is `most` of its
+    misfit at most.
     """
     every = searched(task, found.design, rounds=0)
-    if not misses(every, QUIET):
-        return found
+    if not misses(every, most):
+        return None
     exact_task = replace(task, outlying=False)
     exact = searched(exact_task.part(_telling(every)), found.design, noise=FIRST, rounds=FURTHER_ROUNDS)
+    evaluations = found.evaluations + exact.evaluations
     if exact.rms < NEAR and not exact.interrupted:
         exact = searched(exact_task, exact.design)
-    evaluations = found.evaluations + exact.evaluations
+        evaluations += exact.evaluations
     return replace(exact if exact.interrupted or exact.rms < every.rms else found, evaluations=evaluations)
 
 

@@ -15,7 +15,7 @@ from bladewright.fitting.first.designed import AXES
 from bladewright.fitting.first.profile import first_section
 from bladewright.fitting.frame import Frame
 from bladewright.fitting.freedom import Freedom
-from bladewright.fitting.given import QUIET, misses
+from bladewright.fitting.given import CLEAR, misses
 from bladewright.fitting.identification import EXACT, FEWEST
 from bladewright.fitting.lean import lean, rich
 from bladewright.fitting.opening import opened
@@ -59,7 +59,7 @@ def matched_unified(
         base = wanted or lean(task.points.shape[1], aim.parameters)
     try:
         found, reason = adapted(task, first, aim, base=base, guessed=start is None)
-        if told and found.rms > EXACT and misses(found, QUIET):
+        if told and found.rms > EXACT and misses(found, CLEAR):
             # from a first design with freer laws the same structure is met elsewhere
             freer = _freed(task, _guess(task, rich(None), like, frame), started=False)
             other, _ = adapted(task, freer, aim, base=base, guessed=True)
