@@ -41,6 +41,8 @@ COMPACT = 0.5
 """root mean square distance, of a tolerance, with which a blade begins to grow towards it"""
 NEARLY = (0.3, 0.02)
 """root mean square distance, of a tolerance, and part of the points beyond it with which no more is added at first"""
+WORTH_GROWING = 0.7
+"""misfit, of that before, with which a match that had settled goes on growing"""
 GROWTHS = 40
 """times that more is added at most"""
 IN_ROWS = 1e-3
@@ -83,6 +85,8 @@ def adapted(task: Task, first: Design, aim: Aim, *, base: Structure | None, gues
     found = searched(many, found.design, rounds=rounds, slight=SLIGHT if aim.open else FINE)
     if guessed and task.points.shape[1] == 2:
         found = _shaken(many, found)
+    elif guessed and aim.open:
+        found = _grown_on(several, many, found, aim)
     if aim.tolerance is not None and (not reason or found.scatter.shared >= NOISY):
         found = kept(many, found, aim, aim.tolerance)
         reason = reason if found.maximum > aim.tolerance else ""
@@ -134,6 +138,19 @@ def _enough(task: Task, found: Found, aim: Aim) -> tuple[Found, str]:
     if aim.parameters is not None and task.points.shape[1] == 2:
         found = _exchanged(task, found)
     return found, reason
+
+
+def _grown_on(several: Task, many: Task, found: Found, aim: Aim) -> Found:
+    """A match that grows on where it has settled at a misfit that is no noise: forecasts are truer the nearer it is."""
+    while misses(found):
+        more, grew = grown(several, found, aim)
+        if not grew or more.interrupted:
+            break
+        fresh = searched(many, more.design)
+        if fresh.interrupted or fresh.misfit > WORTH_GROWING * found.misfit:
+            break
+        found = fresh
+    return found
 
 
 def _nearly(found: Found, aim: Aim) -> bool:
