@@ -196,8 +196,8 @@ VARIATIONS = {
 
 def shared(name, draw):
     """A measured cloud, a third of it at random, shuffled, with noise, and its own points [m]."""
-    points = read_cloud(SHARED / f"{name}.txt").points
-    points = points * (0.1 if np.ptp(points) > 0.5 and points.shape[1] == 2 else 1.0)
+    columns = ("skip", "x", "y") if name.endswith("_2D") else ("skip", "z", "y", "x")
+    points = read_cloud(SHARED / f"{name}.txt", columns=columns).points * (100.0 if name == "t106eiz_2D" else 1.0)
     some = draw.permutation(len(points))[: max(len(points) // 3, 100)]
     return noisy(points[some], draw, 0.01e-3), points
 
