@@ -144,11 +144,11 @@ def _grown_on(several: Task, many: Task, found: Found, aim: Aim) -> Found:
     """A match that grows on where it has settled at a misfit that is no noise: forecasts are truer the nearer it is."""
     while misses(found):
         more, grew = grown(several, found, aim)
-        if not grew or more.interrupted:
+        if not grew:
             break
-        fresh = searched(many, more.design)
-        if fresh.interrupted or fresh.misfit > WORTH_GROWING * found.misfit:
-            break
+        fresh = more if more.interrupted else searched(many, more.design)
+        if fresh.misfit > WORTH_GROWING * found.misfit:
+            return replace(found, interrupted=fresh.interrupted)
         found = fresh
     return found
 
