@@ -70,7 +70,7 @@ def widenings(design: Any, kind: Kind) -> list[Widening]:
 def wider_blade(task: Task, found: Found, aim: Aim, back: int, *, kind: Kind, enough: float = EXACT) -> Iterator[Found]:
     """The match with the laws widened that promise most, several at once; where that was taken back, one after another.
 
-    Taken back `back` times, it is the one of that place alone.
+    Taken back `back` times, it is the one that comes after so many better ones, alone.
     """
     room = None if aim.parameters is None else aim.parameters - len(found.problem.paths)
     named: dict[str, tuple[Widening, Any]] = {}
@@ -83,7 +83,7 @@ def wider_blade(task: Task, found: Found, aim: Aim, back: int, *, kind: Kind, en
     of = {id(design): widening for widening, design in named.values()}
     design: Any = found.design
     taken = 0
-    for gain, more, each in ranked[max(back - 1, 0) :]:
+    for gain, more, each in ranked[back:]:
         if taken and (back or gain < WORTH * ranked[0][0] or taken >= AT_ONCE):
             break
         if room is not None and more > room:
