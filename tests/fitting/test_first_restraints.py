@@ -23,7 +23,7 @@ def sections(start, extent):
         chordwise=(4, 4),
         samples=8,
         clustering=1.0,
-        scale=lambda abscissa, v: np.ones_like(abscissa),
+        scale=lambda abscissa, _: np.ones_like(abscissa),
         extent=lambda v: np.full(np.shape(v), 2.0),
     )
     laws = np.zeros((3, shape.columns))
