@@ -25,7 +25,7 @@ from bladewright.files.clouds import read_cloud
 from bladewright.files.examples import example_text
 from bladewright.files.reading import design_from, parsed, read_design
 from bladewright.files.writing import write_design
-from bladewright.fitting.feet import feet
+from bladewright.fitting.matching.feet import feet
 
 EXAMPLES = {
     "aachen": "aachen-stator",

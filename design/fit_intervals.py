@@ -21,9 +21,9 @@ from scipy.stats import norm
 from bladewright.designs import Design
 from bladewright.files.examples import example_text
 from bladewright.files.reading import design_from, parsed
-from bladewright.fitting.feet import feet
 from bladewright.fitting.fit import fit
-from bladewright.fitting.model import model_of
+from bladewright.fitting.matching.feet import feet
+from bladewright.fitting.matching.model import model_of
 from bladewright.nurbs.basis import Reals
 
 NOISE = 2e-5

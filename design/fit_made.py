@@ -24,8 +24,8 @@ from bladewright.blade.unified import UnifiedBlade
 from bladewright.errors import BladewrightError, DesignError
 from bladewright.files.examples import example_text, examples
 from bladewright.files.reading import design_from, parsed
-from bladewright.fitting.feet import feet
 from bladewright.fitting.fit import fit
+from bladewright.fitting.matching.feet import feet
 from bladewright.section.unified import UnifiedSection
 
 POINTS, OTHERS, ROW = 5_000, 20_000, 100

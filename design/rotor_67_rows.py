@@ -14,7 +14,7 @@ import numpy as np
 from bladewright.files.clouds import read_cloud
 from bladewright.files.examples import example_text
 from bladewright.files.reading import design_from, parsed
-from bladewright.fitting.feet import feet
+from bladewright.fitting.matching.feet import feet
 
 CLOUD = Path(__file__).resolve().parents[2] / "shared" / "data" / "clouds" / "NASA_R67.txt"
 NAME = "nasa-rotor-67"

@@ -57,14 +57,14 @@ if TYPE_CHECKING:
     from bladewright.files.su2 import write_surface_points as write_surface_points
     from bladewright.files.tblade3 import import_tblade3 as import_tblade3
     from bladewright.files.writing import write_design as write_design
-    from bladewright.fitting.curves import CurveFit as CurveFit
-    from bladewright.fitting.curves import fit_curve as fit_curve
     from bladewright.fitting.fit import fit as fit
-    from bladewright.fitting.profile import ProfileFit as ProfileFit
-    from bladewright.fitting.profile import fit_profile as fit_profile
-    from bladewright.fitting.result import Fit as Fit
-    from bladewright.fitting.surfaces import SurfaceFit as SurfaceFit
-    from bladewright.fitting.surfaces import fit_surface as fit_surface
+    from bladewright.fitting.freeform.curves import CurveFit as CurveFit
+    from bladewright.fitting.freeform.curves import fit_curve as fit_curve
+    from bladewright.fitting.freeform.profile import ProfileFit as ProfileFit
+    from bladewright.fitting.freeform.profile import fit_profile as fit_profile
+    from bladewright.fitting.freeform.surfaces import SurfaceFit as SurfaceFit
+    from bladewright.fitting.freeform.surfaces import fit_surface as fit_surface
+    from bladewright.fitting.judgement.result import Fit as Fit
     from bladewright.nurbs.curve import Curve as Curve
     from bladewright.nurbs.surface import Surface as Surface
     from bladewright.nurbs.trimmed import TrimmedSurface as TrimmedSurface
@@ -107,12 +107,12 @@ _HOMES = {
     "CurvatureMeanlineBlade": "blade.families",
     "CurvatureMeanlineSection": "section.curvature_meanline",
     "Curve": "nurbs.curve",
-    "CurveFit": "fitting.curves",
+    "CurveFit": "fitting.freeform.curves",
     "DerivativeError": "errors",
     "DesignError": "errors",
     "DoubleCircularArc": "section.profiles.circular_arc",
     "FileError": "errors",
-    "Fit": "fitting.result",
+    "Fit": "fitting.judgement.result",
     "FitError": "errors",
     "FlatPlate": "section.profiles.flat_plate",
     "FlowPath": "blade.flow_path",
@@ -129,7 +129,7 @@ _HOMES = {
     "Passage": "domain.passage",
     "PointsProfile": "section.profiles.points",
     "ProfileBlade": "blade.families",
-    "ProfileFit": "fitting.profile",
+    "ProfileFit": "fitting.freeform.profile",
     "ProfileSection": "section.profiles.kinds",
     "QuarticSpline": "section.thickness.quartic",
     "SectionPassage": "domain.section",
@@ -139,7 +139,7 @@ _HOMES = {
     "SuctionPressureBlade": "blade.families",
     "SuctionPressureSection": "section.suction_pressure.part",
     "Surface": "nurbs.surface",
-    "SurfaceFit": "fitting.surfaces",
+    "SurfaceFit": "fitting.freeform.surfaces",
     "SurfacePoints": "derivatives.places",
     "Throat": "blade.throat",
     "ThroughPoints": "blade.meridian",
@@ -152,9 +152,9 @@ _HOMES = {
     "WedgeDiffuserSection": "section.wedge_diffuser",
     "Wennerstrom": "section.thickness.wennerstrom",
     "fit": "fitting.fit",
-    "fit_curve": "fitting.curves",
-    "fit_profile": "fitting.profile",
-    "fit_surface": "fitting.surfaces",
+    "fit_curve": "fitting.freeform.curves",
+    "fit_profile": "fitting.freeform.profile",
+    "fit_surface": "fitting.freeform.surfaces",
     "import_parablade": "files.parablade",
     "import_tblade3": "files.tblade3",
     "net_jacobian": "derivatives.nets",

@@ -19,7 +19,7 @@ from bladewright.fitting.alignment import (
     registered,
 )
 from bladewright.fitting.alignment.target import target_of
-from bladewright.fitting.result import Motion
+from bladewright.fitting.judgement.result import Motion
 
 
 @cache

@@ -8,7 +8,7 @@ from bladewright.files.examples import example_text
 from bladewright.files.reading import design_from, parsed
 from bladewright.fitting import unified
 from bladewright.fitting.freedom import freedom_of
-from bladewright.fitting.search import Task, searched
+from bladewright.fitting.matching.search import Task, searched
 from bladewright.section.unified import UnifiedSection
 
 VANE: UnifiedSection = design_from(parsed(example_text("turbine-section"), "vane"), "vane")  # type: ignore[assignment]

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.optimize import lsq_linear, minimize
 
-from bladewright.fitting.descent import SLIGHT, Constrained, descended
+from bladewright.fitting.matching.descent import SLIGHT, Constrained, descended
 
 
 class Linear(Constrained):

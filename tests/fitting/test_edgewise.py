@@ -7,9 +7,9 @@ import pytest
 
 from bladewright.files.examples import example_text
 from bladewright.files.reading import design_from, parsed
-from bladewright.fitting.edgewise import LAWS, edge_steps
-from bladewright.fitting.growth import MOST_CURVE, MOST_SPAN
-from bladewright.fitting.structure import structure_of
+from bladewright.fitting.structures.edgewise import LAWS, edge_steps
+from bladewright.fitting.structures.growth import MOST_CURVE, MOST_SPAN
+from bladewright.fitting.structures.structure import structure_of
 
 STATOR = design_from(parsed(example_text("compressor-stator"), "stator"), "stator")
 U = np.linspace(0.0, 1.0, 101)

@@ -8,10 +8,10 @@ import pytest
 from bladewright.files.clouds import read_cloud
 from bladewright.files.examples import example_text
 from bladewright.files.reading import design_from, parsed
-from bladewright.fitting.ending import loose_ends
 from bladewright.fitting.fit import fit
 from bladewright.fitting.freedom import freedom_of
-from bladewright.fitting.search import Task, searched
+from bladewright.fitting.judgement.ending import loose_ends
+from bladewright.fitting.matching.search import Task, searched
 
 STATOR = design_from(parsed(example_text("aachen-stator"), "stator"), "stator")
 LS89 = Path(__file__).parents[3] / "shared" / "data" / "clouds" / "LS89_2D.txt"

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.stats import t as student
 
-from bladewright.fitting.estimates import certainty_of
+from bladewright.fitting.judgement.estimates import certainty_of
 
 POINTS, COUNT = 400, 5
 SIZE = np.array([5.0, 0.2, 1.0, 0.01, 3.0])

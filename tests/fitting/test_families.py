@@ -13,8 +13,8 @@ from bladewright.fitting.families.kinds import KINDS, kind_of
 from bladewright.fitting.families.sections import section_samples
 from bladewright.fitting.fit import fit
 from bladewright.fitting.freedom import Freedom
-from bladewright.fitting.model import model_of
-from bladewright.fitting.scales import scales_of
+from bladewright.fitting.matching.model import model_of
+from bladewright.fitting.matching.scales import scales_of
 
 from ..section.families import EXAMPLES
 from ..section.meanline_examples import BLUNT, on_meanline

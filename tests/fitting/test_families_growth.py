@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 
 from bladewright.errors import DesignError
-from bladewright.fitting.aim import Aim
 from bladewright.fitting.families.flow import KEPT, _off_axis
 from bladewright.fitting.families.kinds import KINDS, kind_of
 from bladewright.fitting.families.polyline import nearest_on
@@ -19,7 +18,8 @@ from bladewright.fitting.families.suction_pressure import templates
 from bladewright.fitting.families.widening import widenings
 from bladewright.fitting.frame import Frame
 from bladewright.fitting.freedom import Freedom
-from bladewright.fitting.search import Task, searched
+from bladewright.fitting.matching.search import Task, searched
+from bladewright.fitting.structures.aim import Aim
 from bladewright.section.laws import Span
 from bladewright.section.profiles.flat_plate import FlatPlate
 

@@ -14,8 +14,8 @@ from bladewright.fitting.families.spanwise import along_span, counts_of, plain
 from bladewright.fitting.families.standing import sliding, standing
 from bladewright.fitting.fit import fit
 from bladewright.fitting.freedom import Freedom
-from bladewright.fitting.model import model_of
-from bladewright.fitting.scales import scales_of
+from bladewright.fitting.matching.model import model_of
+from bladewright.fitting.matching.scales import scales_of
 from bladewright.section.laws import Span
 
 from ..blade.sectioned import BLUNT, COMPRESSOR, DESIGNS, DIFFUSER

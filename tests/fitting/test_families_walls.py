@@ -13,11 +13,11 @@ from bladewright.fitting.families.flow import AHEAD, BESIDE, NEAR, WALL, _wall
 from bladewright.fitting.families.growing import FUTILE, sufficient
 from bladewright.fitting.families.polyline import nearest_on
 from bladewright.fitting.families.standing import standing
-from bladewright.fitting.feet import feet
 from bladewright.fitting.freedom import Freedom
-from bladewright.fitting.model import model_of
-from bladewright.fitting.scatter import scatter_of
-from bladewright.fitting.walls import Wall
+from bladewright.fitting.matching.feet import feet
+from bladewright.fitting.matching.model import model_of
+from bladewright.fitting.matching.scatter import scatter_of
+from bladewright.fitting.matching.walls import Wall
 from bladewright.nurbs.surface import Surface
 from bladewright.section.curvature_meanline import CurvatureMeanline
 from bladewright.section.thickness.wennerstrom import Wennerstrom

@@ -7,7 +7,7 @@ import pytest
 
 from bladewright.files.examples import example_text
 from bladewright.files.reading import design_from, parsed
-from bladewright.fitting.feet import feet, placed
+from bladewright.fitting.matching.feet import feet, placed
 from bladewright.nurbs.closest import closest_on_curve, closest_on_surface
 
 

@@ -9,7 +9,7 @@ from bladewright.blade.blade import Blade
 from bladewright.blade.unified import UnifiedBlade
 from bladewright.files.reading import read_design
 from bladewright.fitting.first import first_blade, found_arrangement
-from bladewright.fitting.structure import structure_of
+from bladewright.fitting.structures.structure import structure_of
 from bladewright.nurbs.closest import closest_on_surface
 
 

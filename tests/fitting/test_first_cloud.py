@@ -5,7 +5,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from bladewright.errors import FitError
-from bladewright.fitting.cloud import checked_cloud
+from bladewright.fitting.clouds.cloud import checked_cloud
 
 ANGLES = np.linspace(0.0, 2.0 * np.pi, 400, endpoint=False)
 SECTION = 0.05 * np.stack([np.cos(ANGLES), 0.2 * np.sin(ANGLES) + 0.3 * np.cos(ANGLES) ** 2], axis=-1)

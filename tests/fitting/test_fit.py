@@ -13,11 +13,11 @@ from bladewright.errors import FitError
 from bladewright.files.clouds import read_cloud
 from bladewright.files.examples import example_text
 from bladewright.files.reading import design_from, parsed
-from bladewright.fitting import search
-from bladewright.fitting.feet import feet
 from bladewright.fitting.fit import fit
-from bladewright.fitting.reshaping import reshaped
-from bladewright.fitting.structure import Structure
+from bladewright.fitting.matching import search
+from bladewright.fitting.matching.feet import feet
+from bladewright.fitting.structures.reshaping import reshaped
+from bladewright.fitting.structures.structure import Structure
 
 CLOUDS = Path(__file__).parents[3] / "shared" / "data" / "clouds"
 NOISE = 2e-5
@@ -171,7 +171,7 @@ def test_an_interrupted_search_hands_back_the_best_design_so_far(monkeypatch):
             raise KeyboardInterrupt
         return plain(*given)
 
-    monkeypatch.setattr("bladewright.fitting.problem.feet", interrupting)
+    monkeypatch.setattr("bladewright.fitting.matching.problem.feet", interrupting)
     found = fit(cloud(0, 400), like=BASE)
     assert len(calls) >= 9
     assert found.interrupted
@@ -185,7 +185,7 @@ def test_the_best_design_is_kept_where_the_interruption_falls_between_two_search
     def interrupted(*_, **__):
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("bladewright.fitting.adaptation.identified", interrupted)
+    monkeypatch.setattr("bladewright.fitting.structures.adaptation.identified", interrupted)
     found = fit(cloud(0, 400))
     assert found.interrupted
     assert not found.passed

@@ -8,15 +8,15 @@ import pytest
 
 from bladewright.files.examples import example_text
 from bladewright.files.reading import design_from, parsed
-from bladewright.fitting.choosing import best_of, chosen_match, ranked
-from bladewright.fitting.forecast import forecast_of
 from bladewright.fitting.freedom import corner_radii, freedom_of
-from bladewright.fitting.growth import roomier, steps_back
-from bladewright.fitting.model import Model
-from bladewright.fitting.reshaping import reshaped
-from bladewright.fitting.search import Task, searched
-from bladewright.fitting.sparing import spared_blade
-from bladewright.fitting.structure import structure_of
+from bladewright.fitting.matching.model import Model
+from bladewright.fitting.matching.search import Task, searched
+from bladewright.fitting.structures.choosing import best_of, chosen_match, ranked
+from bladewright.fitting.structures.forecast import forecast_of
+from bladewright.fitting.structures.growth import roomier, steps_back
+from bladewright.fitting.structures.reshaping import reshaped
+from bladewright.fitting.structures.sparing import spared_blade
+from bladewright.fitting.structures.structure import structure_of
 
 NAMES = ("aachen-stator", "compressor-stator")
 

@@ -9,10 +9,10 @@ import pytest
 from bladewright.files.examples import example_text
 from bladewright.files.reading import design_from, parsed
 from bladewright.fitting.freedom import freedom_of
-from bladewright.fitting.growth import chosen_of, gains, joined, steps_from
-from bladewright.fitting.lean import size_of
-from bladewright.fitting.search import Task, searched
-from bladewright.fitting.structure import structure_of
+from bladewright.fitting.matching.search import Task, searched
+from bladewright.fitting.structures.growth import chosen_of, gains, joined, steps_from
+from bladewright.fitting.structures.lean import size_of
+from bladewright.fitting.structures.structure import structure_of
 from bladewright.section.laws import law_basis
 
 

@@ -7,10 +7,10 @@ import pytest
 
 from bladewright.files.examples import example_text
 from bladewright.files.reading import design_from, parsed
-from bladewright.fitting.cloud import checked_cloud
-from bladewright.fitting.feet import feet, placed
-from bladewright.fitting.model import _folds, model_of
-from bladewright.fitting.search import Task, searched
+from bladewright.fitting.clouds.cloud import checked_cloud
+from bladewright.fitting.matching.feet import feet, placed
+from bladewright.fitting.matching.model import _folds, model_of
+from bladewright.fitting.matching.search import Task, searched
 
 NAMES = ("turbine-section", "compressor-stator")
 

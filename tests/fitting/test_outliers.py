@@ -7,8 +7,8 @@ import pytest
 
 from bladewright.files.examples import example_text
 from bladewright.files.reading import design_from, parsed
-from bladewright.fitting.feet import feet
-from bladewright.fitting.scatter import scatter_of
+from bladewright.fitting.matching.feet import feet
+from bladewright.fitting.matching.scatter import scatter_of
 
 NOISE = 2e-5
 """[m]"""

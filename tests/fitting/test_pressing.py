@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from bladewright.files.clouds import read_cloud
+from bladewright.fitting.clouds.rounding import rounded
 from bladewright.fitting.fit import fit
-from bladewright.fitting.rounding import rounded
 from bladewright.section.profiles.c4 import C4
 from bladewright.section.profiles.kinds import ProfileSection
 

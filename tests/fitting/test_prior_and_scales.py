@@ -8,8 +8,8 @@ import pytest
 import bladewright as bw
 from bladewright.files.examples import example_text
 from bladewright.files.reading import design_from, parsed
-from bladewright.fitting.prior import CENTRED, NEAR, SMOOTH, prior_of
-from bladewright.fitting.scales import check_bounds, scales_of
+from bladewright.fitting.matching.prior import CENTRED, NEAR, SMOOTH, prior_of
+from bladewright.fitting.matching.scales import check_bounds, scales_of
 from bladewright.section.checks import UNITS
 
 

@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 
 import bladewright as bw
-from bladewright.fitting.camber_thickness import CamberThickness, abscissae_of
-from bladewright.fitting.least_squares import Penalty
-from bladewright.fitting.profile import _Search
-from bladewright.fitting.profile_growing import within
+from bladewright.fitting.freeform.camber_thickness import CamberThickness, abscissae_of
+from bladewright.fitting.freeform.least_squares import Penalty
+from bladewright.fitting.freeform.profile import _Search
+from bladewright.fitting.freeform.profile_growing import within
 from bladewright.nurbs.basis import uniform_knots
 
 KNOTS = uniform_knots(6, 3)

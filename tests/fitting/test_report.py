@@ -9,8 +9,8 @@ import pytest
 
 from bladewright.files.examples import example_text
 from bladewright.files.reading import design_from, parsed
-from bladewright.fitting.report import LISTED, report, text
-from bladewright.fitting.result import Estimate, Fit, Motion
+from bladewright.fitting.judgement.report import LISTED, report, text
+from bladewright.fitting.judgement.result import Estimate, Fit, Motion
 
 DESIGN = design_from(parsed(example_text("turbine-section"), "vane"), "vane")
 BUILT = DESIGN.build()

@@ -8,9 +8,9 @@ import pytest
 import bladewright as bw
 from bladewright.files.examples import example_text
 from bladewright.files.reading import design_from, parsed
-from bladewright.fitting.lean import BLADES, lean, rich, size_of
-from bladewright.fitting.reshaping import reshaped
-from bladewright.fitting.structure import structure_of
+from bladewright.fitting.structures.lean import BLADES, lean, rich, size_of
+from bladewright.fitting.structures.reshaping import reshaped
+from bladewright.fitting.structures.structure import structure_of
 from bladewright.section.laws import law_basis
 
 NAMES = ("turbine-section", "compressor-stator", "radial-turbine", "vki-ls89")

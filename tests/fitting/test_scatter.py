@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from bladewright.fitting.feet import Feet
-from bladewright.fitting.scatter import scatter_of
+from bladewright.fitting.matching.feet import Feet
+from bladewright.fitting.matching.scatter import scatter_of
 
 NOISE = 1e-5
 

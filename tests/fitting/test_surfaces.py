@@ -4,9 +4,9 @@ import numpy as np
 import pytest
 
 import bladewright as bw
-from bladewright.fitting.least_squares import Penalty
-from bladewright.fitting.net import Net, Target, _Search
-from bladewright.fitting.projection import sampled_parameters
+from bladewright.fitting.freeform.least_squares import Penalty
+from bladewright.fitting.freeform.net import Net, Target, _Search
+from bladewright.fitting.freeform.projection import sampled_parameters
 from bladewright.nurbs.basis import uniform_knots
 from bladewright.nurbs.closest import closest_on_surface
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.spatial import cKDTree
 
-from bladewright.fitting.thinning import drawn, spread
+from bladewright.fitting.clouds.thinning import drawn, spread
 
 
 def uneven(seed, count=4000, dimension=3):

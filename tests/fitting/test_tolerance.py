@@ -7,16 +7,16 @@ import numpy as np
 
 from bladewright.files.examples import example_text
 from bladewright.files.reading import design_from, parsed
-from bladewright.fitting import tolerance as keeping
-from bladewright.fitting.cambers import cambers
 from bladewright.fitting.freedom import corner_radii, freedom_of
-from bladewright.fitting.growth import least, losses, steps_back
-from bladewright.fitting.identification import identified, plainest, tried
-from bladewright.fitting.opening import opened
-from bladewright.fitting.reshaping import reshaped
-from bladewright.fitting.search import Task, searched
-from bladewright.fitting.structure import structure_of
-from bladewright.fitting.tolerance import calmed, spared
+from bladewright.fitting.matching.search import Task, searched
+from bladewright.fitting.structures import tolerance as keeping
+from bladewright.fitting.structures.cambers import cambers
+from bladewright.fitting.structures.growth import least, losses, steps_back
+from bladewright.fitting.structures.identification import identified, plainest, tried
+from bladewright.fitting.structures.opening import opened
+from bladewright.fitting.structures.reshaping import reshaped
+from bladewright.fitting.structures.structure import structure_of
+from bladewright.fitting.structures.tolerance import calmed, spared
 
 BASE = design_from(parsed(example_text("turbine-section"), "vane"), "vane")
 MADE = replace(

@@ -7,8 +7,8 @@ from bladewright.files.examples import example_text
 from bladewright.files.reading import design_from, parsed
 from bladewright.fitting.fit import fit
 from bladewright.fitting.freedom import freedom_of
-from bladewright.fitting.search import Task, searched
-from bladewright.fitting.unseen import unseen_edges
+from bladewright.fitting.judgement.unseen import unseen_edges
+from bladewright.fitting.matching.search import Task, searched
 
 DESIGNS = {name: design_from(parsed(example_text(name), name), name) for name in ("turbine-section", "aachen-stator")}
 

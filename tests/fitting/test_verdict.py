@@ -5,11 +5,11 @@ import pytest
 
 from bladewright.files.examples import example_text
 from bladewright.files.reading import design_from, parsed
-from bladewright.fitting.aim import Aim
 from bladewright.fitting.freedom import freedom_of
-from bladewright.fitting.judging import judged
-from bladewright.fitting.search import Task, searched
-from bladewright.fitting.verdict import failures_of
+from bladewright.fitting.judgement.judging import judged
+from bladewright.fitting.judgement.verdict import failures_of
+from bladewright.fitting.matching.search import Task, searched
+from bladewright.fitting.structures.aim import Aim
 
 STATOR = design_from(parsed(example_text("aachen-stator"), "stator"), "stator")
 

@@ -9,12 +9,12 @@ import pytest
 from bladewright.blade.exact import moved
 from bladewright.files.examples import example_text
 from bladewright.files.reading import design_from, parsed
-from bladewright.fitting.feet import feet, placed
+from bladewright.fitting.clouds.thinning import spread
 from bladewright.fitting.first.hypotheses import coordinates, ranked
-from bladewright.fitting.model import model_of
-from bladewright.fitting.reach import reach_of
-from bladewright.fitting.thinning import spread
-from bladewright.fitting.walls import ends_of
+from bladewright.fitting.matching.feet import feet, placed
+from bladewright.fitting.matching.model import model_of
+from bladewright.fitting.matching.reach import reach_of
+from bladewright.fitting.matching.walls import ends_of
 
 BLADE = "centrifugal-impeller"
 

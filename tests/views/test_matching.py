@@ -14,7 +14,7 @@ from bladewright.blade.extrema import extrema_of
 from bladewright.errors import FileError
 from bladewright.files.examples import example_text
 from bladewright.files.reading import design_from, parsed
-from bladewright.fitting.result import Estimate, Fit
+from bladewright.fitting.judgement.result import Estimate, Fit
 from bladewright.numerics.elementary import angle
 from bladewright.views.matching import fit_picture, fit_sheet
 from bladewright.views.matching_figures import draw_histogram, draw_table

@@ -16,7 +16,7 @@ from bladewright.cli.progress import told
 
 if TYPE_CHECKING:
     from bladewright.files.clouds import Cloud
-    from bladewright.fitting.result import Fit
+    from bladewright.fitting.judgement.result import Fit
 
 UNITS = ("m", "cm", "mm", "um", "in", "ft")
 

@@ -9,7 +9,7 @@ from bladewright.cli.outcome import jsonable
 from bladewright.designs import Design
 
 if TYPE_CHECKING:
-    from bladewright.fitting.result import Fit
+    from bladewright.fitting.judgement.result import Fit
 
 LABELS = ("description", "author", "organisation")
 """what a file that is there keeps, as no fit knows it"""

@@ -3,7 +3,7 @@
 from typing import Any
 
 from bladewright.designs import Design
-from bladewright.fitting.result import Motion
+from bladewright.fitting.judgement.result import Motion
 from bladewright.nurbs.basis import Reals
 
 

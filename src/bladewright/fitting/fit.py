@@ -12,20 +12,20 @@ from bladewright.blade.unified import UnifiedBlade
 from bladewright.derivatives.patterns import Patterns
 from bladewright.designs import Design
 from bladewright.errors import DesignError, FitError
-from bladewright.fitting.aim import Aim
 from bladewright.fitting.aligning import aligned
-from bladewright.fitting.cloud import checked_cloud
-from bladewright.fitting.estimates import certainty_of
+from bladewright.fitting.clouds.cloud import checked_cloud
 from bladewright.fitting.families.blades import matched_blade
 from bladewright.fitting.families.kinds import KINDS, Kind, kind_of
 from bladewright.fitting.families.sections import matched_section
 from bladewright.fitting.frame import Frame, Unit
 from bladewright.fitting.freedom import freedom_of
-from bladewright.fitting.judging import judged
-from bladewright.fitting.result import Fit
-from bladewright.fitting.search import Found, Task
+from bladewright.fitting.judgement.estimates import certainty_of
+from bladewright.fitting.judgement.judging import judged
+from bladewright.fitting.judgement.result import Fit
+from bladewright.fitting.judgement.verdict import failures_of, notes_of
+from bladewright.fitting.matching.search import Found, Task
+from bladewright.fitting.structures.aim import Aim
 from bladewright.fitting.unified import matched_unified
-from bladewright.fitting.verdict import failures_of, notes_of
 from bladewright.nurbs.basis import Reals
 from bladewright.section.checks import choice
 from bladewright.section.unified import UnifiedSection

@@ -6,24 +6,24 @@ from typing import Any
 from bladewright.blade.unified import UnifiedBlade
 from bladewright.designs import Design
 from bladewright.errors import DesignError, FitError
-from bladewright.fitting.adaptation import FINE, MANY, adapted
-from bladewright.fitting.aim import Aim
-from bladewright.fitting.cambers import STRAIGHT
-from bladewright.fitting.descent import SLIGHT
+from bladewright.fitting.clouds.thinning import drawn
 from bladewright.fitting.first.blade import first_blade
 from bladewright.fitting.first.designed import AXES
 from bladewright.fitting.first.profile import first_section
 from bladewright.fitting.frame import Frame
 from bladewright.fitting.freedom import Freedom
-from bladewright.fitting.given import CLEAR, misses
-from bladewright.fitting.identification import EXACT, FEWEST
-from bladewright.fitting.lean import lean, rich
-from bladewright.fitting.opening import opened
-from bladewright.fitting.reshaping import reshaped
-from bladewright.fitting.scales import check_bounds
-from bladewright.fitting.search import ROUGH, Found, Task, searched
-from bladewright.fitting.structure import Structure, structure_of
-from bladewright.fitting.thinning import drawn
+from bladewright.fitting.matching.descent import SLIGHT
+from bladewright.fitting.matching.scales import check_bounds
+from bladewright.fitting.matching.search import ROUGH, Found, Task, searched
+from bladewright.fitting.structures.adaptation import FINE, MANY, adapted
+from bladewright.fitting.structures.aim import Aim
+from bladewright.fitting.structures.cambers import STRAIGHT
+from bladewright.fitting.structures.given import CLEAR, misses
+from bladewright.fitting.structures.identification import EXACT, FEWEST
+from bladewright.fitting.structures.lean import lean, rich
+from bladewright.fitting.structures.opening import opened
+from bladewright.fitting.structures.reshaping import reshaped
+from bladewright.fitting.structures.structure import Structure, structure_of
 
 LEANER = (1.0, 0.5)
 """parts of the control points along the chord that are tried where a nearest design cannot be built"""

@@ -13,8 +13,8 @@ from bladewright.fitting.alignment.revolution import Axis, End, axis_of
 from bladewright.fitting.alignment.rigid import composed
 from bladewright.fitting.alignment.sheet import Sheet, unrolled
 from bladewright.fitting.alignment.spinning import first_axes
-from bladewright.fitting.result import Motion
-from bladewright.fitting.thinning import drawn
+from bladewright.fitting.clouds.thinning import drawn
+from bladewright.fitting.judgement.result import Motion
 from bladewright.nurbs.basis import Reals
 
 Arrangement = Literal["annular", "linear"]

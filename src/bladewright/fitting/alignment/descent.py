@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from bladewright.fitting.alignment.rigid import GENERATORS, composed, free_columns, turned
 from bladewright.fitting.alignment.target import Contact, Target
-from bladewright.fitting.result import Motion
+from bladewright.fitting.judgement.result import Motion
 from bladewright.nurbs.basis import Reals
 
 WIDTH = 0.04

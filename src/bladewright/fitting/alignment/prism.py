@@ -6,7 +6,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from bladewright.fitting.alignment.descent import tukey
-from bladewright.fitting.thinning import drawn
+from bladewright.fitting.clouds.thinning import drawn
 from bladewright.nurbs.basis import Reals
 
 POINTS = 1_200

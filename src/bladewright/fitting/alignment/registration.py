@@ -11,8 +11,8 @@ from bladewright.fitting.alignment.descent import Descent, descended
 from bladewright.fitting.alignment.rigid import FREEDOMS, PLANE_FREEDOMS, free_columns
 from bladewright.fitting.alignment.search import SAMPLES, found_motions
 from bladewright.fitting.alignment.target import Target, target_of
-from bladewright.fitting.result import Motion
-from bladewright.fitting.thinning import drawn
+from bladewright.fitting.clouds.thinning import drawn
+from bladewright.fitting.judgement.result import Motion
 from bladewright.nurbs.basis import Reals
 
 if TYPE_CHECKING:

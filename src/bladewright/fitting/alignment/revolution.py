@@ -11,7 +11,7 @@ from numpy.polynomial import chebyshev
 
 from bladewright.fitting.alignment.descent import tukey
 from bladewright.fitting.alignment.rigid import GENERATORS, composed, turned
-from bladewright.fitting.result import Motion
+from bladewright.fitting.judgement.result import Motion
 from bladewright.nurbs.basis import Reals
 
 DEGREES = (1, 2, 3, 4, 5, 6, 7, 8)

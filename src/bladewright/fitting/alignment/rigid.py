@@ -4,7 +4,7 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from bladewright.errors import FitError
-from bladewright.fitting.result import Motion
+from bladewright.fitting.judgement.result import Motion
 from bladewright.nurbs.basis import Reals
 
 FREEDOMS = ("turn_x", "turn_y", "turn_z", "shift_x", "shift_y", "shift_z")

@@ -12,8 +12,8 @@ from scipy.spatial.transform import Rotation
 
 from bladewright.fitting.alignment.company import accompanied
 from bladewright.fitting.alignment.rigid import GENERATORS, turned
-from bladewright.fitting.result import Motion
-from bladewright.fitting.thinning import drawn, spread
+from bladewright.fitting.clouds.thinning import drawn, spread
+from bladewright.fitting.judgement.result import Motion
 from bladewright.nurbs.basis import Reals
 
 SAMPLES = {2: 800, 3: 4000}

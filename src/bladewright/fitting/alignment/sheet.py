@@ -13,7 +13,7 @@ from scipy.sparse import csr_array
 from scipy.sparse.csgraph import connected_components, dijkstra
 from scipy.spatial import ConvexHull, cKDTree
 
-from bladewright.fitting.thinning import spread
+from bladewright.fitting.clouds.thinning import spread
 from bladewright.nurbs.basis import Reals
 
 NEIGHBOURS = 12

@@ -8,7 +8,7 @@ import numpy as np
 
 from bladewright.fitting.alignment.pieces import Piece
 from bladewright.fitting.alignment.rigid import GENERATORS
-from bladewright.fitting.result import Motion
+from bladewright.fitting.judgement.result import Motion
 from bladewright.nurbs.basis import Reals
 
 SHARE = 0.6

@@ -8,8 +8,8 @@ from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
 from bladewright.blade.blade import Blade
-from bladewright.fitting.feet import CURVE_SAMPLES, SAMPLES, Side, placed
-from bladewright.fitting.thinning import spread
+from bladewright.fitting.clouds.thinning import spread
+from bladewright.fitting.matching.feet import CURVE_SAMPLES, SAMPLES, Side, placed
 from bladewright.nurbs.basis import Reals
 from bladewright.nurbs.bezier import Patches, Samples, patches, sampled
 from bladewright.nurbs.polish import polished

@@ -10,8 +10,6 @@ import numpy as np
 from bladewright.blade.blade import Blade
 from bladewright.designs import Design
 from bladewright.errors import DesignError, FitError
-from bladewright.fitting.aim import Aim
-from bladewright.fitting.descent import SLIGHT
 from bladewright.fitting.families.flow import Channelled
 from bladewright.fitting.families.growing import sufficient
 from bladewright.fitting.families.kinds import Kind
@@ -24,9 +22,11 @@ from bladewright.fitting.families.widening import wider_blade
 from bladewright.fitting.first.blade import first_blade
 from bladewright.fitting.frame import Frame
 from bladewright.fitting.freedom import Freedom
-from bladewright.fitting.lean import rich
-from bladewright.fitting.scales import check_bounds
-from bladewright.fitting.search import EXACT, ROUGH, Found, Task, searched, stood
+from bladewright.fitting.matching.descent import SLIGHT
+from bladewright.fitting.matching.scales import check_bounds
+from bladewright.fitting.matching.search import EXACT, ROUGH, Found, Task, searched, stood
+from bladewright.fitting.structures.aim import Aim
+from bladewright.fitting.structures.lean import rich
 from bladewright.nurbs.basis import Reals
 from bladewright.section.checks import UNITS
 from bladewright.section.laws import Span

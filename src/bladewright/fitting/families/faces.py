@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bladewright.blade.blade import Blade
-from bladewright.fitting.feet import Feet
+from bladewright.fitting.matching.feet import Feet
 from bladewright.numerics.elementary import Array
 from bladewright.nurbs.basis import Reals
 from bladewright.nurbs.curve import Curve

@@ -6,11 +6,11 @@ import numpy as np
 
 from bladewright.designs import Design
 from bladewright.errors import DesignError, FitError
-from bladewright.fitting.feet import placed
-from bladewright.fitting.growth import left_after, roots_of
-from bladewright.fitting.problem import State
-from bladewright.fitting.scales import scales_of
-from bladewright.fitting.search import Found, Task
+from bladewright.fitting.matching.feet import placed
+from bladewright.fitting.matching.problem import State
+from bladewright.fitting.matching.scales import scales_of
+from bladewright.fitting.matching.search import Found, Task
+from bladewright.fitting.structures.growth import left_after, roots_of
 from bladewright.nurbs.basis import Reals
 
 Promise = tuple[float, int, Design]

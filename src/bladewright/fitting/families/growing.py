@@ -5,8 +5,8 @@ from dataclasses import replace
 from typing import Any
 
 from bladewright.errors import DesignError
-from bladewright.fitting.aim import Aim, short_of
-from bladewright.fitting.search import Found, Task
+from bladewright.fitting.matching.search import Found, Task
+from bladewright.fitting.structures.aim import Aim, short_of
 
 WORTH = 0.9
 """ratio of misfits from which control points more are worth it where no aim is stated"""

@@ -11,7 +11,7 @@ from bladewright.derivatives.tangents import STEP
 from bladewright.designs import Design
 from bladewright.fitting.families.faces import Blunt, closed_knots, closed_nets
 from bladewright.fitting.families.room import crowding
-from bladewright.fitting.model import Model, Shape
+from bladewright.fitting.matching.model import Model, Shape
 from bladewright.numerics.elementary import Array
 from bladewright.nurbs.basis import Reals, greville
 from bladewright.nurbs.curve import Curve

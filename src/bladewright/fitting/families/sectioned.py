@@ -18,7 +18,7 @@ from bladewright.derivatives.tangents import side_tangents
 from bladewright.fitting.families.faces import Blunt, closed_nets, closed_with
 from bladewright.fitting.families.planar import crowding_rates
 from bladewright.fitting.families.room import crowding
-from bladewright.fitting.model import Model, Shape
+from bladewright.fitting.matching.model import Model, Shape
 from bladewright.nurbs.basis import Reals
 from bladewright.section.laws import Span
 

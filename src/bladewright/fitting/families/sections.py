@@ -9,19 +9,19 @@ import numpy as np
 
 from bladewright.designs import Design
 from bladewright.errors import DesignError, FitError
-from bladewright.fitting.aim import Aim, short_of
+from bladewright.fitting.clouds.thinning import drawn
 from bladewright.fitting.families.foreseen import promised
 from bladewright.fitting.families.growing import sound, sufficient
 from bladewright.fitting.families.kinds import Kind
 from bladewright.fitting.families.sampled import Sampled, sampled
 from bladewright.fitting.frame import Frame
 from bladewright.fitting.freedom import Freedom
-from bladewright.fitting.growth import emphasis_of
-from bladewright.fitting.scales import check_bounds
-from bladewright.fitting.search import ROUNDS, Found, Task, searched
-from bladewright.fitting.thinning import drawn
+from bladewright.fitting.judgement.verdict import GROSS
+from bladewright.fitting.matching.scales import check_bounds
+from bladewright.fitting.matching.search import ROUNDS, Found, Task, searched
+from bladewright.fitting.structures.aim import Aim, short_of
+from bladewright.fitting.structures.growth import emphasis_of
 from bladewright.fitting.unified import matched_unified
-from bladewright.fitting.verdict import GROSS
 from bladewright.section.checks import UNITS
 from bladewright.section.section import Section
 

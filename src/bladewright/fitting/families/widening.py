@@ -10,15 +10,15 @@ import numpy as np
 from bladewright.blade.meridian import ThroughPoints
 from bladewright.designs import Law, Point
 from bladewright.errors import DesignError, FitError
-from bladewright.fitting.aim import Aim
 from bladewright.fitting.families.foreseen import promised
 from bladewright.fitting.families.kinds import Kind
 from bladewright.fitting.families.planar import ALONE
 from bladewright.fitting.families.sampled import Sampled
 from bladewright.fitting.families.spanwise import along_span, counts_of
 from bladewright.fitting.families.standing import EDGES
-from bladewright.fitting.growth import emphasis_of
-from bladewright.fitting.search import EXACT, ROUGH, Found, Task, searched
+from bladewright.fitting.matching.search import EXACT, ROUGH, Found, Task, searched
+from bladewright.fitting.structures.aim import Aim
+from bladewright.fitting.structures.growth import emphasis_of
 from bladewright.nurbs.basis import Reals
 from bladewright.section.laws import Span, law_basis, named_laws
 

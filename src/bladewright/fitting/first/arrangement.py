@@ -4,9 +4,9 @@ from typing import Literal
 
 import numpy as np
 
+from bladewright.fitting.clouds.thinning import spread
 from bladewright.fitting.first.hypotheses import coordinates, ranked
 from bladewright.fitting.first.inliers import usual
-from bladewright.fitting.thinning import spread
 from bladewright.nurbs.basis import Reals
 
 Arrangement = Literal["annular", "linear"]

@@ -6,6 +6,7 @@ import numpy as np
 
 from bladewright.blade.unified import UnifiedBlade
 from bladewright.errors import FitError
+from bladewright.fitting.clouds.thinning import spread
 from bladewright.fitting.first.arrangement import Arrangement, found_arrangement
 from bladewright.fitting.first.channel import EDGES, curve_counts
 from bladewright.fitting.first.designed import Unit, built_blade
@@ -13,8 +14,7 @@ from bladewright.fitting.first.found import Found, apart, continued_in, shape_in
 from bladewright.fitting.first.hypotheses import coordinates, ranked
 from bladewright.fitting.first.inliers import usual
 from bladewright.fitting.first.trimming import trimmed
-from bladewright.fitting.structure import Structure
-from bladewright.fitting.thinning import spread
+from bladewright.fitting.structures.structure import Structure
 from bladewright.nurbs.basis import Reals
 
 MOST = 1200

@@ -24,7 +24,7 @@ from bladewright.fitting.first.shape import (
     TANGENT_OUT,
 )
 from bladewright.fitting.first.taming import SHARPENINGS, sharpened, tamed
-from bladewright.fitting.structure import Structure
+from bladewright.fitting.structures.structure import Structure
 from bladewright.nurbs.basis import Reals
 from bladewright.section.checks import UNITS
 from bladewright.section.laws import law_basis

@@ -6,6 +6,7 @@ from typing import Literal
 import numpy as np
 
 from bladewright.errors import DesignError, FitError
+from bladewright.fitting.clouds.thinning import spread
 from bladewright.fitting.first.camber import first_laws
 from bladewright.fitting.first.inliers import usual
 from bladewright.fitting.first.laid import Laid
@@ -24,7 +25,6 @@ from bladewright.fitting.first.shape import (
     Shape,
 )
 from bladewright.fitting.first.taming import SHARPENINGS, sharpened, tamed
-from bladewright.fitting.thinning import spread
 from bladewright.nurbs.basis import Reals
 from bladewright.section.checks import UNITS
 from bladewright.section.unified import UnifiedSection

@@ -1,0 +1,1 @@
+"""Clouds as they come: what can be fitted, repeated blades, fewer points, rounded coordinates."""

@@ -1,0 +1,108 @@
+"""Clouds as they come: what can be fitted at all, and what is suspicious."""
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from bladewright.errors import FitError
+from bladewright.fitting.clouds.repetition import repeated
+from bladewright.nurbs.basis import Reals
+
+FEWEST = {2: 24, 3: 100}
+"""points that a fit of a section and of a blade needs"""
+FLAT = 1e-5
+"""of its extent: a cloud that is thinner lies on a line or a plane"""
+LARGEST, SMALLEST = 20.0, 5e-4
+"""extents beyond which another unit is suspected [m]"""
+LOOKED_AT = 3000
+"""points by which one side alone is known"""
+THIN = 1.3e-3
+"""of its width: a sheet this thin is one side, and no blade"""
+
+
+def checked_cloud(cloud: ArrayLike) -> tuple[Reals, tuple[str, ...]]:
+    """The points (n, 2) or (n, 3) [m] as given, and notes on what is suspicious about them.
+
+    Raises FitError for anything but finite numbers in two or three columns, fewer than 24 different points (100 in
+    space), points on one line or one plane, two blades, and one side of a blade alone.
+    """
+    points = _numbers(cloud)
+    different = np.unique(points, axis=0)
+    dimension = points.shape[1]
+    if len(different) < FEWEST[dimension]:
+        raise FitError(
+            f"the cloud has {len(different)} different points: at least {FEWEST[dimension]} are needed; give more "
+            "points of the blade's surface"
+        )
+    middle = np.mean(different, axis=0)
+    spread = np.linalg.svd(different - middle, compute_uv=False)
+    if spread[1] < FLAT * spread[0]:
+        raise FitError(
+            f"all {len(points)} points lie on one line: a blade has two sides; give points of its whole surface"
+        )
+    if dimension == 3 and spread[2] < FLAT * spread[0]:
+        raise FitError(
+            f"all {len(points)} points lie on one plane: give two columns, x and y, for a section, or points of "
+            "sections at several places along the span"
+        )
+    some = different[np.random.default_rng(0).permutation(len(different))[:LOOKED_AT]]
+    found = repeated(different)
+    if found is not None:
+        raise FitError(
+            f"the cloud holds two blades or more: {found} along the pitch lies the same shape again; give the points "
+            "of one blade"
+        )
+    if one_sided(some):
+        raise FitError(
+            "the cloud holds one side of a blade alone, a sheet without thickness: give the points of both sides"
+        )
+    extent = float(np.max(np.ptp(points, axis=0)))
+    notes: tuple[str, ...] = ()
+    if not SMALLEST <= extent <= LARGEST:
+        said = (
+            f"the cloud extends over {extent:.4g} m, which is unusual for a blade: the unit of its coordinates may be "
+            "another one (--unit on the command line)"
+        )
+        notes = (said,)
+    return points, notes
+
+
+def _numbers(cloud: ArrayLike) -> Reals:
+    try:
+        points = np.asarray(cloud, dtype=np.float64)
+    except (TypeError, ValueError) as error:
+        raise FitError(f"the cloud is not an array of numbers ({error}): give (n, 2) or (n, 3) in metres") from error
+    if points.ndim != 2 or points.shape[1] not in (2, 3):
+        raise FitError(
+            f"the cloud has the shape {points.shape}: give (n, 2) with x and y, or (n, 3) with x, y and z, in metres"
+        )
+    bad = ~np.all(np.isfinite(points), axis=1)
+    if np.any(bad):
+        raise FitError(
+            f"{np.count_nonzero(bad)} of {len(points)} points are not finite numbers, the first of them point "
+            f"{int(np.argmax(bad))}: leave them out"
+        )
+    return points
+
+
+def one_sided(points: Reals) -> bool:
+    """Whether the points are a single sheet: a smooth one passes through the neighbours of most of them."""
+    from scipy.spatial import cKDTree
+
+    centred = points - np.mean(points, axis=0)
+    axes = np.linalg.svd(centred, full_matrices=False)[2]
+    own = centred @ axes.T
+    along, height = own[:, :-1], own[:, -1]
+    width = float(np.ptp(along[:, -1])) if along.shape[1] > 1 else float(np.ptp(along))
+    count = 14 if along.shape[1] == 1 else 24
+    some = np.linspace(0, len(points) - 1, 200).astype(int)
+    neighbours = cKDTree(along).query(along[some], k=count)[1]
+    residuals = []
+    for rows in neighbours:
+        t = along[rows] - np.mean(along[rows], axis=0)
+        t = t / max(float(np.max(np.abs(t))), 1e-300)
+        powers = [np.ones(count), *t.T, *(t.T**2), *([t[:, 0] * t[:, 1]] if t.shape[1] > 1 else [])]
+        matrix = np.stack(powers, axis=-1)
+        found = np.linalg.lstsq(matrix, height[rows], rcond=0.03)[0]
+        residuals.append(float(np.sqrt(np.mean((height[rows] - matrix @ found) ** 2))))
+    # where sections are dense at the edges most neighbourhoods are of an edge, which is thin
+    return float(np.percentile(residuals, 90.0)) < THIN * width

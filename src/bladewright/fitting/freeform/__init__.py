@@ -1,0 +1,1 @@
+"""Plain curves, surfaces and profiles fitted to points."""

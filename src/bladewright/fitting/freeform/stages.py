@@ -1,0 +1,191 @@
+"""The way to a good match: from stiff to soft, from given to unknown weights, from all points to the inliers."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from bladewright.fitting.freeform.least_squares import Penalty, rank_of, singular_values
+from bladewright.fitting.freeform.net import Match, Net, Target, matched
+from bladewright.fitting.freeform.projection import projected
+from bladewright.nurbs.basis import Reals
+
+STIFFNESSES = (1e-4, 1e-6, 1e-8, 1e-10, 1e-13)
+"""weights of the bending, in extents of the points squared"""
+NOISE_ALLOWS = 1.002
+"""rise of the root mean square that a stiffness may cost where points leave control points undetermined"""
+WELL = 1e-4
+"""smallest singular value, of the largest, from which every direction is determined well"""
+LAST = (200, 80)
+"""evaluations of the last descent of a curve and of a surface"""
+ROUGH = 1e-3
+"""relative fall of the value at which a match on the way ends"""
+ROUNDS = 25
+"""of further knots"""
+OUTLYING = 4.5
+"""deviations of the noise from which a point is an outlier"""
+MEDIAN = 0.6745
+"""of the magnitudes of a normal distribution, in deviations"""
+EXACT = 1e-10
+"""of the extent: distance that is never an outlier"""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Way:
+    """What is asked of a match."""
+
+    power: float = 2.0
+    weights_free: bool = False
+    robust: bool = False
+    always_stiff: bool = False
+    """whether the bending stays as far as the noise allows it, also where every direction is determined"""
+    limit: float | None = None
+    """largest distance, in extents"""
+    extent: float = 1.0
+    """of the points in their own unit, for messages"""
+    progress: Callable[[str], None] | None = None
+
+    def say(self, text: str) -> None:
+        """Hands a short text on."""
+        if self.progress is not None:
+            self.progress(text)
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Arrived:
+    """A match of the inliers, and the figures of the problem."""
+
+    match: Match
+    inliers: NDArray[np.bool_]
+    evaluations: int
+
+    @property
+    def singular_values(self) -> Reals:
+        """Of the distances by the unknowns, each scaled to length one."""
+        return singular_values(self.match.data.curvature)
+
+    @property
+    def rank(self) -> int:
+        """Directions of the unknowns that the points determine."""
+        return rank_of(self.singular_values)
+
+
+Further = Callable[[Arrived, Target, Way, float], tuple[Net | None, str]]
+
+
+def within(net: Net, target: Target, way: Way, further: Further, *, warm: bool) -> tuple[Arrived, tuple[str, ...]]:
+    """The match within a largest distance, where there is one, and why it is not reached where it is not.
+
+    `further` gives a net with further knots, or None and the reason; a `warm` net is near already.
+    """
+    found = arrived(net, target, way, warm=warm)
+    evaluations, reason = found.evaluations, ""
+    for _ in range(ROUNDS):
+        if way.limit is None or found.match.feet.distances.max() <= way.limit:
+            return replace(found, evaluations=evaluations), ()
+        more, reason = further(found, target, way, way.limit)
+        if more is None:
+            return replace(found, evaluations=evaluations), (reason,)
+        way.say(f"{len(more.points)} control points")
+        found = arrived(more, target, way, warm=True)
+        evaluations += found.evaluations
+    return replace(found, evaluations=evaluations), (f"the tolerance is not reached after {ROUNDS} rounds of knots",)
+
+
+def arrived(net: Net, target: Target, way: Way, *, warm: bool = False) -> Arrived:
+    """The match of a net to points, stage by stage; a `warm` one is near already, and only the last stages are left."""
+    inliers = np.ones(len(target.points), dtype=bool)
+    total = 0
+    if way.robust:
+        net, inliers, total = _without_outliers(net, target, way, warm=warm)
+        target = chosen(target, inliers)
+    match = _softened(net, target, way, None, last=2 if warm else None)
+    total += match.evaluations
+    if way.weights_free and not net.weighted:
+        way.say("free weights")
+        freed = replace(match.net, weighted=True, logs=match.net.logs)
+        match = _softened(freed, target, way, match.feet.parameters, last=2)
+        total += match.evaluations
+    if way.power != 2.0:
+        way.say(f"power {way.power:g}")
+        scale = max(float(match.feet.distances.max()), EXACT)
+        penalty = Penalty(power=way.power, scale=scale)
+        match = matched(match.net, target, penalty=penalty, near=match.feet.parameters, stiffness=_least(match))
+        total += match.evaluations
+    return Arrived(match=match, inliers=inliers, evaluations=total)
+
+
+def chosen(target: Target, rows: NDArray[np.bool_]) -> Target:
+    """The points of some rows; held ones stay held where they are among them."""
+    held = target.held
+    if held is not None:
+        kept = rows[held[0]]
+        new = np.cumsum(rows) - 1
+        held = (new[held[0][kept]], held[1][kept])
+    return Target(points=target.points[rows], weights=target.weights[rows], held=held)
+
+
+def _softened(net: Net, target: Target, way: Way, near: Reals | None, *, last: int | None = None) -> Match:
+    tried: list[Match] = []
+    total = 0
+    levels = list(STIFFNESSES[0 if last is None else -last :])
+    for stiffness in levels:
+        way.say(f"{len(net.points)} control points, stiffness {stiffness:g}")
+        match = matched(net, target, penalty=Penalty(), stiffness=stiffness, near=near, evaluations=20, tolerance=ROUGH)
+        net, near = match.net, match.feet.parameters
+        total += match.evaluations
+        tried.append(match)
+        if stiffness == levels[-1] and stiffness > 0.0 and _least(match, well=way.always_stiff) == 0.0:
+            levels.append(0.0)
+    best = len(tried) - 1
+    if way.always_stiff:
+        enough = NOISE_ALLOWS * max(_rms(tried[-1]), EXACT)
+        best = next(i for i, each in enumerate(tried) if _rms(each) <= enough)
+    net, near = tried[best].net, tried[best].feet.parameters
+    match = matched(
+        net,
+        target,
+        penalty=Penalty(),
+        stiffness=levels[best],
+        near=near,
+        certain=True,
+        evaluations=LAST[len(net.knots) - 1],
+    )
+    return replace(match, evaluations=total + match.evaluations)
+
+
+def _least(match: Match, *, well: bool = False) -> float:
+    """No stiffness where the points determine all unknowns, or determine them `well`; else the least one."""
+    values = singular_values(match.data.curvature)
+    determined = values[-1] > WELL * values[0] if well and len(values) else rank_of(values) == len(values)
+    return 0.0 if determined else STIFFNESSES[-1]
+
+
+def _rms(match: Match) -> float:
+    return float(np.sqrt(np.mean(match.feet.distances**2)))
+
+
+def _without_outliers(net: Net, target: Target, way: Way, *, warm: bool) -> tuple[Net, NDArray[np.bool_], int]:
+    """The net matched softly, and which points are not further from it than noise explains."""
+    feet = projected(net.shape, target.points, closed=net.closed)
+    near, total = feet.parameters, 0
+    deviation = float(np.median(feet.distances)) / MEDIAN
+    reach = max(deviation, EXACT) if warm else 0.05
+    for stiffness in (1e-8, 1e-8) if warm else (1e-4, 1e-6, 1e-8, 1e-8):
+        way.say(f"without outliers, stiffness {stiffness:g}")
+        match = matched(
+            net,
+            target,
+            penalty=Penalty(reach=reach),
+            stiffness=stiffness,
+            near=near,
+            evaluations=40,
+            tolerance=ROUGH,
+        )
+        net, near = match.net, match.feet.parameters
+        total += match.evaluations
+        deviation = float(np.median(match.feet.distances)) / MEDIAN
+        reach = min(reach, max(deviation, EXACT))
+    inliers = match.feet.distances <= max(OUTLYING * deviation, EXACT)
+    return net, inliers, total

@@ -1,0 +1,1 @@
+"""How good a match is: deviations, intervals, what the cloud does not show, and whether it passes."""

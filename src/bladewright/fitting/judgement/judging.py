@@ -1,0 +1,92 @@
+"""The final measure of a match: every point of the cloud against what the design builds."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, fields
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from bladewright.blade.blade import Blade
+from bladewright.fitting.families.faces import edges_of, on_sides, sides_of
+from bladewright.fitting.judgement.deviation import REGIONS
+from bladewright.fitting.matching.feet import Feet, Side, feet
+from bladewright.fitting.matching.model import Shape
+from bladewright.fitting.matching.scatter import Scatter, scatter_of
+from bladewright.fitting.matching.walls import ENDS, Wall, ends_of
+from bladewright.nurbs.basis import Reals
+from bladewright.section.section import Section
+
+EDGE = 0.03
+"""how far the edges reach, in u"""
+FINE, FINEST = 1e-6, 1e-12
+"""last steps of the descents, in the parameters of a patch: of all points, and of those that lie on the blade, whose
+distances are exact to the step itself; others are so to its square"""
+EXACT = 3e-6
+"""distance up to which a point lies on the blade, of the cloud's extent"""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Judgement:
+    """Where the n points of a cloud stand."""
+
+    places: NDArray[np.str_]
+    on: Feet
+    deviations: Reals
+    regions: NDArray[np.str_]
+    scatter: Scatter
+
+
+def judged(points: Reals, built: Blade | Section, precision: Reals | None = None) -> Judgement:
+    """Every point's nearest place and signed distance on a blade or section.
+
+    `precision` (n,) are inverse variances of the points, relative to each other.
+    """
+    sides = sides_of(built)
+    exact = built.exact if isinstance(built, Blade) else None
+    on = _nearest(points, sides)
+    scatter = scatter_of(points, on, precision)
+    shape = Shape(design=None, sides=sides, noses=np.zeros(0), exact=exact)
+    ends = ends_of(points, on, shape, scatter.inliers)
+    deviations = np.where(on.heights < 0.0, -1.0, 1.0) * on.distances
+    places = np.array(["upper", "lower"], dtype="<U13")[on.side]
+    edge = np.where(on.u < EDGE, "leading edge", np.where(on.u > 1.0 - EDGE, "trailing edge", "sides"))
+    edges = edges_of(built)
+    if "blunt" in edges:
+        on, faces = on_sides(on, edges)
+        for side, name in ((-1, "leading_edge"), (1, "trailing_edge")):
+            places = np.where(faces == side, name, places)
+    past = np.any(on.beyond != 0.0, axis=1) & (np.abs(np.sum(on.miss * on.beyond, axis=1)) > np.abs(on.heights))
+    regions = np.where(past, "ends", edge).astype(f"<U{max(map(len, REGIONS))}")
+    if exact is not None and np.any(ends.covered):
+        _cover(points, ends.covered, built, deviations, places, regions, on)
+    return Judgement(places=places, on=on, deviations=deviations, regions=regions, scatter=scatter)
+
+
+def _nearest(points: Reals, sides: Sequence[Side]) -> Feet:
+    """The nearest places of points (n, d)."""
+    on = feet(points, sides, converged=FINE)
+    exact = np.flatnonzero(on.distances < EXACT * float(np.ptp(points, axis=0).max()))
+    if len(exact) == 0:
+        return on
+    again = feet(points[exact], sides, on.part(exact), converged=FINEST)
+    parts = {each.name: np.array(getattr(on, each.name)) for each in fields(Feet)}
+    for name, values in parts.items():
+        values[exact] = getattr(again, name)
+    return Feet(**parts)
+
+
+def _cover(points: Reals, covered: Any, built: Any, deviations: Reals, places: Any, regions: Any, on: Feet) -> None:
+    """Puts the points that lie on end faces there."""
+    exact = built.exact
+    radius = np.sqrt(points[:, 1] ** 2 + points[:, 2] ** 2) if exact.mapping.revolved else points[:, 2]
+    for (name, end), face in zip(ENDS.items(), built.design.ends, strict=True):
+        rows = np.flatnonzero(covered & (np.abs(on.v - end) < 0.5))
+        if len(rows) == 0:
+            continue
+        wall = Wall(name=name, places=np.stack([points[rows, 0], radius[rows]], axis=-1), spread=0.0)
+        outward = wall.distances(exact) * (1.0 if end else -1.0)
+        nearer = np.abs(outward) < np.abs(deviations[rows])
+        deviations[rows[nearer]] = outward[nearer]
+        places[rows[nearer]] = face
+        regions[rows[nearer]] = "ends"

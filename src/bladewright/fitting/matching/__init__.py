@@ -1,0 +1,1 @@
+"""One structure matched to a cloud: distances, their derivatives, and least squares under inequalities."""

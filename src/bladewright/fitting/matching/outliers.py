@@ -1,0 +1,222 @@
+"""Which points of a cloud lie off the surface that the others show.
+
+Along a surface the heights of points change steadily, by noise and by what a design misses: outliers are small groups,
+of one point or of many, that no step within the noise leads to. Where the rest is matched well, distances alone tell.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse import csr_array
+from scipy.sparse.csgraph import connected_components
+from scipy.spatial import cKDTree
+
+from bladewright.fitting.clouds.thinning import spread
+from bladewright.fitting.matching.feet import Feet
+from bladewright.nurbs.basis import Reals
+
+NEIGHBOURS = {2: 4, 3: 8}
+"""neighbours asked, by dimension"""
+OUTLYING = 8.0
+"""deviations of the noise that an outlier exceeds"""
+STEP = 5.0
+"""deviations of the noise by which neighbours on one surface differ at most"""
+USUAL, AT_EDGES = 6.0, 60.0
+"""usual misfits that an outlier exceeds, and near an edge, where a misfit is large and neighbours are few"""
+STEEP = 40.0
+"""usual misfits by which the misfit may change along the extent"""
+STEEPER = 4.0
+"""by how much steeper than around a point the misfit may become"""
+EDGE = 0.03
+"""how near, in u"""
+APART = 0.05
+"""how far apart the two sides of a thin blade are taken to be, of the extent"""
+STEADY = 100.0
+"""usual misfits from which a small group away from the edges is no misfit, though heights rise to it steadily"""
+CHANCE = 3.0
+"""by how much more than the noise distances may usually be by chance, of the root of the number of points"""
+GROUP, FEW = 0.05, 20
+"""largest group of outliers, of the points, and however few there are"""
+BESIDE, WRONG = 0.02, 0.2
+"""how near an end of the blade points are, in v, and the part of them which past it shows that the end is wrong"""
+ONWARDS = 1
+"""points past an end, level with the sides, that may be there by chance"""
+LEVEL = 0.05
+"""height, of the way past an end, up to which a point is level with the sides, which may bend there"""
+SPIKE, FLAT = 2.0, 0.1
+"""slope to all neighbours that no surface has, and their height, of the point's own, from which they are on it"""
+MOST = 0.15
+"""part of the points from which it is the design that lies off, and not they"""
+AROUND, SITES = 64, 5000
+"""points around each of so many sites whose noise is taken to be alike"""
+QUARTILE = 3.1384
+"""standard deviation of normal noise over the lower quartile of its magnitude, which a group of outliers spoils less"""
+CORE = 3
+"""points of the large groups beside a small one to which a step may lead"""
+NEAR = 1e-6
+"""distance up to which no point is an outlier, of the cloud's extent"""
+STANDARD = 1.4826
+"""standard deviation of normal noise over its median magnitude"""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Surroundings:
+    """Which of n points are beside each other on the sides of a design."""
+
+    places: Reals
+    """(n, d + 1) the feet, and how far from both edges, so that the sides are apart but at the edges"""
+    index: NDArray[np.intp]
+    """(n, k) the nearest others; a point itself where there are no others"""
+    extent: float
+    """[m]"""
+
+
+def surroundings_of(points: Reals, on: Feet) -> Surroundings:
+    """The neighbours of points (n, d) with known feet."""
+    extent = float(np.ptp(points, axis=0).max())
+    inward = np.minimum(np.minimum(on.u, 1.0 - on.u) / EDGE, 1.0)
+    lifted = np.where(on.side == 0, 1.0, -1.0) * APART * extent * inward
+    places = np.column_stack([on.points, lifted])
+    count = NEIGHBOURS[points.shape[1]]
+    asked = min(count + 1, len(points))
+    index = np.reshape(cKDTree(places).query(places, k=asked)[1], (len(points), asked))
+    # among points in one place a point is not always the first that is found
+    own = index == np.arange(len(points))[:, None]
+    index = np.where(own, index[:, :1], index)[:, 1:]
+    return Surroundings(
+        places=places, index=np.pad(index, ((0, 0), (0, count - asked + 1)), mode="edge"), extent=extent
+    )
+
+
+def outliers_of(
+    heights: Reals, past: Reals, distances: Reals, weights: Reals, on: Feet, around: Surroundings
+) -> NDArray[np.bool_]:
+    """Which of n points are outliers, by their heights above the surface, their way past its ends and distances [m].
+
+    Weights are positive, and inverse variances relative to each other.
+    """
+    index, roots = around.index, np.sqrt(weights)
+    # a median of k neighbours has about 1 / k of the variance
+    spread_out = np.sqrt(1.0 / weights + np.mean(1.0 / weights[index], axis=1) / index.shape[1])
+    off = np.abs(heights - np.median(heights[index], axis=1)) / spread_out * np.sqrt(1.0 + 1.0 / index.shape[1])
+    noise = STANDARD * float(np.median(off))
+    usual = STANDARD * float(np.median(roots * distances))
+    chance = 1.0 + CHANCE / np.sqrt(len(heights))
+    misfit = float(np.sqrt(max(usual**2 - (chance * noise) ** 2, 0.0)))
+    level = np.maximum(noise, _local(off, around)) / roots
+    edge = (on.u < EDGE) | (on.u > 1.0 - EDGE)
+    near = NEAR * around.extent
+    least = np.hypot(OUTLYING * level, np.where(edge, AT_EDGES, USUAL) * misfit) + near
+    spikes = _spikes(heights, OUTLYING * level + near, around)
+    far = (distances > least) | spikes
+    if not np.any(far):
+        return far
+    wrong = _short_of_ends(far & (past > least), np.abs(heights) <= np.maximum(least, LEVEL * past), on)
+    beyond = (past > least) & ~wrong
+    largest = min(max(FEW, int(GROUP * len(heights))), len(heights) // 5)
+    # what differs by more than the noise is no noise
+    noisy = misfit == 0.0 and noise > near
+    slopes = np.zeros(len(heights)) if noisy else _slopes(heights, level, misfit, around)
+    found = spikes | (far & (beyond | _cut_off(heights, level, beyond, slopes, largest, around)))
+    # what is past an end that is wrong lies off the surface by its height alone
+    off_surface = np.where(wrong, np.abs(heights), distances)
+    steady = ~found & (off_surface > np.hypot(OUTLYING * level, STEADY * misfit) + near)
+    label = _groups(steady, steady, index)
+    # around an edge a few points are all that tells of a radius: it may be wrong alone
+    found |= steady & (_sizes(label) <= largest) & ~np.isin(label, label[edge & steady])
+    return found if np.mean(found) < MOST else np.zeros_like(found)
+
+
+def _spikes(heights: Reals, least: Reals, around: Surroundings) -> NDArray[np.bool_]:
+    """Whether points (n,) stand higher off their neighbours, which are on the surface, than these are away.
+
+    No wrong radius of an edge does that.
+    """
+    index, feet = around.index, around.places[:, :-1]
+    way = np.sqrt(np.sum((feet[index] - feet[:, None]) ** 2, axis=-1))
+    step = np.abs(heights[index] - heights[:, None])
+    steep = (step > SPIKE * way) & (step > np.maximum(least[:, None], least[index]))
+    level = np.median(np.abs(heights[index]), axis=1) < FLAT * np.abs(heights)
+    return np.asarray(np.all(steep, axis=1) & level)
+
+
+def _short_of_ends(past: NDArray[np.bool_], level: NDArray[np.bool_], on: Feet) -> NDArray[np.bool_]:
+    """Whether points (n,) are at an end of the blade that so many are past that it is the end which is wrong.
+
+    So it is, too, where most of those past it are `level` with the sides that go on there.
+    """
+    wrong = np.zeros(len(past), dtype=bool)
+    for beside in (on.v < BESIDE, on.v > 1.0 - BESIDE):
+        there, onwards = int(np.count_nonzero(past & beside)), int(np.count_nonzero(past & level & beside))
+        if there > WRONG * np.count_nonzero(beside) or onwards > max(ONWARDS, there // 2):
+            wrong |= beside
+    return wrong
+
+
+def _local(off: Reals, around: Surroundings) -> Reals:
+    """The noise (n,) around each point."""
+    sites = spread(around.places, SITES)
+    _, near = cKDTree(around.places).query(around.places[sites], k=min(AROUND, len(off)))
+    noise = QUARTILE * np.quantile(off[near.reshape(len(sites), -1)], 0.25, axis=1)
+    return np.asarray(noise[cKDTree(around.places[sites]).query(around.places)[1]])
+
+
+def _slopes(heights: Reals, level: Reals, misfit: float, around: Surroundings) -> Reals:
+    """How much heights may change along the surface (n,) by a misfit that varies steadily."""
+    index = around.index
+    way = np.sqrt(np.sum((around.places[index] - around.places[:, None]) ** 2, axis=-1)) + NEAR * around.extent
+    change = np.maximum(np.abs(heights[index] - heights[:, None]) - STEP * level[:, None], 0.0) / way
+    return STEEPER * _lower(_lower(change)[index]) + STEEP * misfit / around.extent
+
+
+def _lower(values: Reals) -> Reals:
+    """The lower median (n,) of values (n, k)."""
+    middle = (values.shape[1] - 1) // 2
+    return np.asarray(np.partition(values, middle, axis=1)[:, middle])
+
+
+def _cut_off(
+    heights: Reals, level: Reals, beyond: NDArray[np.bool_], slopes: Reals, largest: int, around: Surroundings
+) -> NDArray[np.bool_]:
+    """Whether points (n,) are in a group of at most `largest` that no step leads to."""
+
+    def steps(start: NDArray[np.intp], end: NDArray[np.intp]) -> NDArray[np.bool_]:
+        way = np.sqrt(np.sum((around.places[end] - around.places[start]) ** 2, axis=-1))
+        allowed = STEP * np.maximum(level[start], level[end]) + NEAR * around.extent
+        allowed += np.minimum(slopes[start], slopes[end]) * way
+        return (np.abs(heights[end] - heights[start]) <= allowed) & ~beyond[start] & ~beyond[end]
+
+    index = around.index
+    own = np.broadcast_to(np.arange(len(heights))[:, None], index.shape)
+    linked = steps(own, index)
+    label = _groups(np.ones(len(heights), dtype=bool), linked, index)
+    size = _sizes(label)
+    core = np.flatnonzero(size > largest if np.any(size > largest) else size == size.max())
+    apart = np.flatnonzero(~np.isin(np.arange(len(heights)), core))
+    if len(apart) == 0:
+        return np.zeros(len(heights), dtype=bool)
+    _, near = cKDTree(around.places[core]).query(around.places[apart], k=min(CORE, len(core)))
+    near = core[near.reshape(len(apart), -1)]
+    reached = np.any(steps(np.broadcast_to(apart[:, None], near.shape), near), axis=1)
+    joined = np.zeros(len(heights), dtype=bool)
+    joined[label[core]] = True
+    joined[label[apart[reached]]] = True
+    return ~joined[label]
+
+
+def _groups(rows: NDArray[np.bool_], linked: NDArray[np.bool_], index: NDArray[np.intp]) -> NDArray[np.intp]:
+    """Labels (n,) of the groups that neighbours (n, k) make with each other where they are `linked`.
+
+    Only points in `rows` are in groups with others; `linked` is (n, k), or (n,) for all ways from a point.
+    """
+    count = len(index)
+    taken = rows[:, None] & rows[index] & (linked if linked.ndim == 2 else linked[:, None])
+    start, way = np.nonzero(taken)
+    graph = csr_array((np.ones(len(start), dtype=np.int8), (start, index[start, way])), shape=(count, count))
+    return np.asarray(connected_components(graph, directed=False)[1], dtype=np.intp)
+
+
+def _sizes(label: NDArray[np.intp]) -> NDArray[np.intp]:
+    """Number of points (n,) in the group of each."""
+    return np.bincount(label)[label]

@@ -1,0 +1,238 @@
+"""The search for a design of one structure: rounds of least squares, each with the noise that the last one left.
+
+A round's prior is as strong as the noise is large, so that a search from afar is held together by it, and a search in
+exact data ends free of it. Knots, outliers and what lies at the ends are found anew for every round.
+"""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from bladewright.designs import Design
+from bladewright.errors import DesignError, FitError
+from bladewright.fitting.matching.descent import DAMPING, SLIGHT, descended
+from bladewright.fitting.matching.feet import feet
+from bladewright.fitting.matching.model import Model, model_of
+from bladewright.fitting.matching.prior import prior_of
+from bladewright.fitting.matching.problem import Measures, Problem, State
+from bladewright.fitting.matching.reach import reach_of
+from bladewright.fitting.matching.scales import scales_of
+from bladewright.fitting.matching.scatter import Scatter, scatter_of
+from bladewright.fitting.matching.standby import Standby
+from bladewright.fitting.matching.walls import Ends, ends_of
+from bladewright.nurbs.basis import Reals
+
+STEPS = 10
+"""evaluations of the surface in a round"""
+ROUNDS = 12
+SETTLED = 0.995
+"""ratio of a round's misfit to that of the last at which a search ends"""
+ROUGH = 0.01
+"""part of the cost that a step must promise while a search is only one on the way"""
+FAST = 0.5
+"""ratio below which the next round's misfit is foreseen to fall as much again"""
+EXACT = 3e-14
+"""misfit below which nothing is left to find, of the chord"""
+FINE = 0.1
+"""tolerance of the native surfaces in a round, of the noise"""
+COARSEST = 1e-4
+"""tolerance of the native surfaces, of the chord"""
+SLACK = {2: 2e-6, 3: 2e-5}
+"""by how much a nose is at first held below the thickness beside it, of the section's extent, by dimension: a blade is
+    asked between its stations too"""
+
+Told = Callable[[str], None]
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Task:
+    """What is sought."""
+
+    points: Reals
+    """(n, d) [m]"""
+    weights: Reals
+    """(n,)"""
+    free: Callable[[Design], tuple[str, ...]]
+    """the free parameters of a design, whatever its structure"""
+    bounds: Mapping[str, tuple[float, float]]
+    told: Told = lambda _: None
+    smooth: float = 1.0
+    """by how much the prior is stronger"""
+    slack: float = 1.0
+    """by how much noses are held further from what is refused"""
+    precision: Reals | None = None
+    """(n,) inverse variances of the points, relative to each other; where None they are alike"""
+    outlying: bool = True
+    """whether points may be outliers"""
+    standby: Standby = field(default_factory=Standby)
+    """the nearest designs that searches have come to"""
+
+    def part(self, rows: NDArray[np.intp]) -> "Task":
+        """The same with some of the points (m,)."""
+        if len(rows) == len(self.points):
+            return self
+        precision = None if self.precision is None else self.precision[rows]
+        return replace(self, points=self.points[rows], weights=self.weights[rows], precision=precision)
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Found:
+    """Where a search ended."""
+
+    design: Design
+    problem: Problem
+    state: State
+    scatter: Scatter
+    ends: Ends
+    damping: float
+    evaluations: int
+    converged: bool = False
+    """whether the last descent came to its end"""
+    interrupted: bool = False
+
+    @property
+    def model(self) -> Model:
+        """The model of the last round."""
+        return self.problem.model
+
+    @property
+    def rows(self) -> NDArray[np.bool_]:
+        """(n,) the points that take part as points of the sides."""
+        return self.scatter.inliers & ~self.ends.covered
+
+    @property
+    def rms(self) -> float:
+        """Root mean square of the distances of those, of the chord."""
+        return float(np.sqrt(np.mean(self.state.feet.distances[self.rows] ** 2))) / self.model.chord
+
+    @property
+    def off(self) -> float:
+        """Mean distance of all points but those that lie on end faces, outliers too [m]."""
+        return float(np.mean(self.state.feet.distances[~self.ends.covered]))
+
+    @property
+    def misfit(self) -> float:
+        """The same with what ends, walls and edges add to it."""
+        residuals = self.problem.measures.residuals(self.state)
+        return float(np.sqrt(np.sum(residuals**2) / max(1.0, float(np.count_nonzero(self.rows)))))
+
+    @property
+    def maximum(self) -> float:
+        """Largest distance of those [m]."""
+        return float(np.max(self.state.feet.distances[self.rows]))
+
+
+def searched(
+    task: Task,
+    start: Design,
+    *,
+    rounds: int = ROUNDS,
+    noise: float | None = None,
+    slight: float = SLIGHT,
+    enough: float = EXACT,
+) -> Found:
+    """The design nearest to the cloud that a search from `start` finds, with the structure of `start`.
+
+    `noise` is the first round's, of the chord; where None the misfit of the start. `slight` is the part of the cost
+    that a step must promise, `enough` the misfit, of the chord, below which the search ends. Raises FitError where the
+    start has no shape.
+    """
+    found, idle = _prepared(task, start, start, noise), 0
+    task.standby.note(found)
+    for number in range(rounds):
+        before = found.misfit
+        if (number and before < enough) or found.interrupted:
+            break
+        try:
+            found = _round(found if number == 0 else _prepared(task, start, found.design, noise, found), slight)
+        except FitError:
+            # at finer knots the design has no shape: it stays as it was found
+            break
+        task.standby.note(found)
+        rms = f"{1e3 * found.rms * found.model.chord:.3g} mm rms, {1e3 * found.maximum:.3g} mm at most"
+        task.told(f"{len(found.problem.paths)} parameters, {rms}")
+        ratio = found.misfit / before
+        idle = idle + 1 if ratio**2 > min(SETTLED**2, 1.0 - slight) else 0
+        if number and idle and (found.converged or idle > 1):
+            break
+        noise = found.rms * (max(ratio, 1e-3) if ratio < FAST else 1.0)
+    return found
+
+
+def stood(task: Task, design: Design, *, noise: float) -> Found:
+    """A design as it stands before a search; `noise` is the first round's, of the chord.
+
+    Raises FitError where it has no shape.
+    """
+    return _prepared(task, design, design, noise)
+
+
+def _prepared(task: Task, start: Design, design: Design, noise: float | None, before: Found | None = None) -> Found:
+    """A design with the problem of the next round."""
+    points, paths = task.points, task.free(start)
+    tolerance = float(np.clip(FINE * (noise or 1.0), getattr(design, "tolerance", 1e-6), COARSEST))
+    try:
+        model = model_of(design, tolerance)
+        shape = model.shape(design)
+    except DesignError as error:
+        raise FitError(f"the start design has no shape ({error}); give another start, or none") from error
+    if not shape.finite:
+        raise FitError("the start design has no shape near its edges: give another start, or none")
+    on = feet(points, shape.sides)
+    scatter = scatter_of(points, on, task.precision, outlying=task.outlying)
+    ends = ends_of(points, on, shape, scatter.inliers)
+    misfit = float(np.sqrt(np.mean(on.distances[scatter.inliers & ~ends.covered] ** 2))) / model.chord
+    scales = scales_of(start, paths, model.chord, task.bounds)
+    prior = prior_of(start, paths, scales.size)
+    measures = Measures(
+        points=points,
+        roots=np.sqrt(task.weights * (scatter.inliers & ~ends.covered)),
+        model=model,
+        ends=ends,
+        reach=reach_of(points, shape.sides, scatter.inliers & ~ends.covered, exact=not task.outlying),
+        noise=misfit if noise is None else noise,
+        precision=np.ones(len(points)) if task.precision is None else task.precision,
+    )
+    problem = Problem(
+        measures=measures,
+        start=start,
+        paths=paths,
+        scales=scales,
+        prior=replace(prior, matrix=task.smooth * prior.matrix, aim=task.smooth * prior.aim),
+        alone=scatter.alone(len(paths)) / task.smooth**2,
+        hint=on,
+        margin=SLACK[points.shape[1]] * task.slack,
+    )
+    return Found(
+        design=design,
+        problem=problem,
+        state=State(shape=shape, feet=on),
+        scatter=scatter,
+        ends=ends,
+        damping=DAMPING if before is None else before.damping,
+        evaluations=1 if before is None else before.evaluations + 1,
+    )
+
+
+def _round(found: Found, slight: float) -> Found:
+    """What a descent from a prepared design finds."""
+    problem, interrupted, converged = found.problem, False, False
+    first = problem.vector(found.design)
+    z, damping = first, found.damping
+    try:
+        descent = descended(problem, first, steps=STEPS, damping=damping, slight=slight)
+        z, damping, converged = descent.z, descent.damping, descent.converged
+    except KeyboardInterrupt:
+        z, interrupted = problem.best, True
+    state = problem.state(z) or found.state
+    return replace(
+        found,
+        design=state.shape.design,
+        state=state,
+        damping=damping,
+        evaluations=found.evaluations + problem.evaluations,
+        converged=converged,
+        interrupted=interrupted,
+    )
