@@ -12,7 +12,7 @@ from bladewright.fitting.freedom import corner_radii, freedom_of
 from bladewright.fitting.matching.model import Model
 from bladewright.fitting.matching.search import Task, searched
 from bladewright.fitting.structures.choosing import best_of, chosen_match, ranked
-from bladewright.fitting.structures.forecast import forecast_of
+from bladewright.fitting.structures.forecast import forecast_of, held_step
 from bladewright.fitting.structures.growth import roomier, steps_back
 from bladewright.fitting.structures.reshaping import reshaped
 from bladewright.fitting.structures.sparing import spared_blade
@@ -77,6 +77,16 @@ def test_what_steps_back_leave_is_foreseen_alike_one_by_one_and_together():
     together = about.costs(own, [(step.law, step.structure) for step in steps], None)
     alone = [about.foreseen(step.structure).cost for step in steps]
     np.testing.assert_allclose(together, alone, rtol=1e-4, atol=1e-5 * max(alone))
+
+
+def test_laws_that_do_alike_are_foreseen_of_an_exact_cloud_too():
+    random = np.random.default_rng(3)
+    columns, rows = random.normal(size=(40, 5)), random.normal(size=40)
+    alike = np.column_stack([columns, columns[:, 0], np.zeros(40)])
+    step = held_step(alike.T @ alike, alike.T @ rows, 0.0)
+    left = rows - columns @ np.linalg.lstsq(columns, rows, rcond=None)[0]
+    # what is held leaves more by the rounding of the products alone
+    assert np.sum((rows - alike @ step) ** 2) == pytest.approx(left @ left, rel=1e-9)
 
 
 def test_the_law_along_the_span_that_is_short_of_a_control_point_is_foreseen_to_gain_most():

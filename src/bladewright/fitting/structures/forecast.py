@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
-from scipy.linalg import cho_factor, cho_solve
+from scipy.linalg import LinAlgError, cho_factor, cho_solve
 
 from bladewright.errors import DesignError
 from bladewright.fitting.matching.chain import AXES, EDGES, Chain, edge_basis, own_walls
@@ -151,8 +151,7 @@ class Forecast:
             cross = mixed[:, :-1]
             whole = np.block([[gram[np.ix_(kept, kept)], cross], [cross.T, fresh.T @ fresh]])
             aim = np.concatenate([right[kept] + mixed[:, -1], fresh.T @ now])
-            whole[np.diag_indices(len(whole))] += self.noise**2
-            step = cho_solve(cho_factor(whole), aim)
+            step = held_step(whole, aim, self.noise)
             found.append(float(now @ now - aim @ step))
         return found
 
@@ -324,6 +323,16 @@ def _least(columns: Reals, rows: Reals, roots: Reals | None, noise: float) -> tu
     own = columns if roots is None else columns * roots[:, None]
     aim = rows if roots is None else rows * roots
     gram, right = own.T @ own, own.T @ aim
-    gram[np.diag_indices(len(gram))] += noise**2
-    step = cho_solve(cho_factor(gram), right)
+    step = held_step(gram, right, noise)
     return float(aim @ aim - right @ step), -step
+
+
+def held_step(gram: Reals, right: Reals, noise: float) -> Reals:
+    """The solution (k,) of normal equations that is held by the prior's spread, and by rounding where that is less."""
+    hold, rounding = noise**2, len(gram) * float(np.finfo(float).eps) * float(np.max(np.diag(gram), initial=1e-300))
+    while True:
+        try:
+            return np.asarray(cho_solve(cho_factor(gram + hold * np.eye(len(gram))), right))
+        except LinAlgError:
+            # of an exact cloud the spread is nothing, and laws that do alike leave products of rows indefinite
+            hold = max(10.0 * hold, rounding)
