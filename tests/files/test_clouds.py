@@ -102,6 +102,15 @@ def test_a_unit_that_no_blade_has_is_suspected(file):
     assert read_cloud(file(rows(SOLID * 1e3, " ")), unit="mm").notes == ()
 
 
+@pytest.mark.parametrize("taken", ["m", "mm"])
+@pytest.mark.parametrize(("unit", "metre"), [("mm", 1e-3), ("m", 1.0), ("in", 0.0254)])
+def test_the_likeliest_unit_of_a_blade_of_a_decimetre_is_named(unit, metre, taken, file):
+    notes = read_cloud(file(rows(SOLID / metre, " ")), unit=taken).notes
+    # some inches are as many metres, a blade of a fan
+    right = unit == taken or (unit, taken) == ("in", "m")
+    assert [f"Then give the unit {unit}" in note for note in notes] == ([] if right else [True])
+
+
 def profile():
     """A closed profile around the leading edge, 41 points, and its two sides from there."""
     x = (1 + np.cos(np.linspace(0.0, 2 * np.pi, 41))) / 2

@@ -11,8 +11,11 @@ from bladewright.section.checks import UNITS
 
 LARGE = 20.0
 """extent of a blade [m] above which its unit is suspected"""
-SMALL = 0.5e-3
-"""extent of a blade [m] below which its unit is suspected"""
+SMALL = 5e-3
+"""extent of a blade [m] below which its unit is suspected: one of a decimetre in inches, read as millimetres, is below"""
+USUAL = 0.1
+"""extent of a blade [m] to which that in the likeliest unit is nearest"""
+NAMES = {"m": "metres", "cm": "centimetres", "mm": "millimetres", "um": "micrometres", "in": "inches"}
 _UNIT = re.compile(r"[\[(]\s*(m|cm|mm|um|µm|in|ft)\s*[\])]|_(cm|mm|um|in|ft)$", re.IGNORECASE)
 
 
@@ -29,12 +32,13 @@ def unit_in(where: str, names: Sequence[str], roles: Sequence[str]) -> str | Non
 
 
 def suspicion(points: Reals, unit: str, *, given: bool) -> list[str]:
-    """A sentence where no blade has the extent of points [m] that were taken to be in a unit."""
+    """A sentence where hardly a blade has the extent of points [m] that were taken to be in a unit."""
     extent = float(np.max(np.ptp(points, axis=0)))
     if SMALL <= extent <= LARGE or extent == 0.0:
         return []
     own = extent / UNITS[unit]
-    likely = [name for name in ("mm", "m", "in", "cm", "um") if SMALL <= own * UNITS[name] <= LARGE and name != unit]
+    likely = min(NAMES, key=lambda name: abs(np.log(own * UNITS[name] / USUAL)))
     taken = f"given as {unit}" if given else f"taken to be in {unit}"
-    cure = f": is it in {likely[0]}? Then give the unit {likely[0]}" if likely else ": is the unit right?"
-    return [f"the cloud, {taken}, is {extent:.4g} m long, which no blade is{cure}"]
+    sure = SMALL <= own * UNITS[likely] <= LARGE and likely != unit
+    cure = f": is it in {NAMES[likely]}? Then give the unit {likely}" if sure else ": is the unit right?"
+    return [f"the cloud, {taken}, is {extent:.4g} m long, which hardly a blade is{cure}"]

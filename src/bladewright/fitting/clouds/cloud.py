@@ -11,7 +11,7 @@ FEWEST = {2: 24, 3: 100}
 """points that a fit of a section and of a blade needs"""
 FLAT = 1e-5
 """of its extent: a cloud that is thinner lies on a line or a plane"""
-LARGEST, SMALLEST = 20.0, 5e-4
+LARGEST, SMALLEST = 20.0, 5e-3
 """extents beyond which another unit is suspected [m]"""
 LOOKED_AT = 3000
 """points by which one side alone is known"""
