@@ -12,7 +12,7 @@ from bladewright.section.checks import UNITS
 LARGE = 20.0
 """extent of a blade [m] above which its unit is suspected"""
 SMALL = 5e-3
-"""extent of a blade [m] below which its unit is suspected: one of a decimetre in inches, read as millimetres, is below"""
+"""extent of a blade [m] below which its unit is suspected, as that of 4 inches read as millimetres"""
 USUAL = 0.1
 """extent of a blade [m] to which that in the likeliest unit is nearest"""
 NAMES = {"m": "metres", "cm": "centimetres", "mm": "millimetres", "um": "micrometres", "in": "inches"}
