@@ -48,6 +48,12 @@ def test_what_is_no_blade_is_refused_in_one_paragraph(cloud: object, said: str) 
     assert "\n" not in str(refusal.value)
 
 
+def test_sections_of_one_blade_in_other_columns_are_not_only_called_blades() -> None:
+    sections = [np.column_stack([SECTION[:, 0], np.full(len(SECTION), span), SECTION[:, 1]]) for span in (0.0, 0.02)]
+    with pytest.raises(FitError, match="where it is one, say which column is which"):
+        checked_cloud(np.concatenate(sections))
+
+
 @pytest.mark.parametrize("factor", [1000.0, 1e-3])
 def test_an_extent_beyond_all_blades_makes_the_unit_suspicious(factor: float) -> None:
     _, notes = checked_cloud(SECTION * factor)

@@ -47,9 +47,11 @@ def checked_cloud(cloud: ArrayLike) -> tuple[Reals, tuple[str, ...]]:
     some = different[np.random.default_rng(0).permutation(len(different))[:LOOKED_AT]]
     found = repeated(different)
     if found is not None:
+        # the sections of one blade lie again along y where that is its span
+        columns = ", or, where it is one, say which column is which (--columns): x must be the machine axis"
         raise FitError(
             f"the cloud holds two blades or more: {found} along the pitch lies the same shape again; give the points "
-            "of one blade"
+            f"of one blade{columns if dimension == 3 else ''}"
         )
     if one_sided(some):
         raise FitError(
