@@ -30,3 +30,30 @@ def test_a_given_structure_is_met_exactly_but_in_axes_that_a_start_shows(moved, 
     said = failures_of(np.abs(at.deviations), at.scatter.inliers, at.regions, found, Aim(structured=True, moved=moved))
     assert len(said) == failures
     assert all("misfit of the given structure" in each for each in said)
+
+
+def test_points_of_a_solid_on_its_end_faces_are_said_to_be_there():
+    built = STATOR.build()
+    random = np.random.default_rng(4)
+    u, v, across = random.random((3, 1200))
+    sides = np.concatenate([np.real(side(u, v)) for side in built.sides])
+    upper, lower = (np.real(side(0.1 + 0.8 * u[:400], np.round(v[:400]))) for side in built.sides)
+    face = upper + across[:400, None] * (lower - upper)
+    stray = np.mean(sides, axis=0) + 0.5 * np.ptp(sides, axis=0)
+    points = np.concatenate([sides, face, stray[None]])
+    at = judged(points, built)
+    outlying = ~at.scatter.inliers[len(sides) : -1]
+    # those beside the outline are as near to the sides, on which an exact cloud has them
+    assert np.mean(at.faced[len(sides) : -1][outlying]) > 0.95
+    assert not np.any(at.faced[: len(sides)])
+    assert not at.faced[-1]
+    assert set(at.regions[at.faced]) == {"ends"}
+    assert set(at.places[at.faced]) == set(STATOR.ends)
+    task = Task(points=points, weights=np.ones(len(points)), free=freedom_of("stagger", None, started=True), bounds={})
+    found, distances = searched(task, STATOR, rounds=0), np.abs(at.deviations)
+    said = [
+        " ".join(failures_of(distances, at.scatter.inliers, at.regions, found, Aim(structured=True), faced=faced))
+        for faced in (0, int(np.count_nonzero(at.faced)))
+    ]
+    assert "lie off the blade" in said[0]
+    assert "lie off the blade" not in said[1]

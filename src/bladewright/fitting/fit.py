@@ -190,7 +190,7 @@ def _reported(
     judgement = judged(points, built, task.precision)
     certainty = certainty_of(found)
     inliers = judgement.scatter.inliers
-    distances = np.abs(judgement.deviations)
+    distances, faced = np.abs(judgement.deviations), int(np.count_nonzero(judgement.faced))
     return Fit(
         design=found.design,
         built=built,
@@ -208,8 +208,8 @@ def _reported(
         noise=judgement.scatter.noise,
         extrema=extrema_of(built),
         tolerance=aim.tolerance,
-        failures=failures_of(distances, inliers, judgement.regions, found, aim),
-        notes=notes_of(notes, certainty, distances, inliers, found, aim),
+        failures=failures_of(distances, inliers, judgement.regions, found, aim, faced=faced),
+        notes=notes_of(notes, certainty, distances, inliers, found, aim, faced=faced),
         evaluations=found.evaluations,
         motion=motion,
         interrupted=found.interrupted,

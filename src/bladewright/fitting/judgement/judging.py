@@ -35,6 +35,8 @@ class Judgement:
     deviations: Reals
     regions: NDArray[np.str_]
     scatter: Scatter
+    faced: NDArray[np.bool_]
+    """(n,) whether an outlier lies on an end face, as those of a solid do"""
 
 
 def judged(points: Reals, built: Blade | Section, precision: Reals | None = None) -> Judgement:
@@ -48,6 +50,10 @@ def judged(points: Reals, built: Blade | Section, precision: Reals | None = None
     scatter = scatter_of(points, on, precision)
     shape = Shape(design=None, sides=sides, noses=np.zeros(0), exact=exact)
     ends = ends_of(points, on, shape, scatter.inliers)
+    # few against the sides and far inside them, points of end faces are outliers to these
+    faced = ~scatter.inliers
+    if np.any(faced):
+        faced &= ends_of(points, on, shape, np.ones(len(points), dtype=bool)).covered
     deviations = np.where(on.heights < 0.0, -1.0, 1.0) * on.distances
     places = np.array(["upper", "lower"], dtype="<U13")[on.side]
     edge = np.where(on.u < EDGE, "leading edge", np.where(on.u > 1.0 - EDGE, "trailing edge", "sides"))
@@ -58,9 +64,9 @@ def judged(points: Reals, built: Blade | Section, precision: Reals | None = None
             places = np.where(faces == side, name, places)
     past = np.any(on.beyond != 0.0, axis=1) & (np.abs(np.sum(on.miss * on.beyond, axis=1)) > np.abs(on.heights))
     regions = np.where(past, "ends", edge).astype(f"<U{max(map(len, REGIONS))}")
-    if exact is not None and np.any(ends.covered):
-        _cover(points, ends.covered, built, deviations, places, regions, on)
-    return Judgement(places=places, on=on, deviations=deviations, regions=regions, scatter=scatter)
+    if exact is not None and np.any(ends.covered | faced):
+        _cover(points, ends.covered | faced, built, deviations, places, regions, on)
+    return Judgement(places=places, on=on, deviations=deviations, regions=regions, scatter=scatter, faced=faced)
 
 
 def _nearest(points: Reals, sides: Sequence[Side]) -> Feet:

@@ -36,19 +36,17 @@ BARE, BETWEEN = 0.1, 0.1
 
 
 def failures_of(
-    distances: Reals, inliers: NDArray[np.bool_], regions: NDArray[np.str_], found: Found, aim: Aim
+    distances: Reals, inliers: NDArray[np.bool_], regions: NDArray[np.str_], found: Found, aim: Aim, *, faced: int = 0
 ) -> tuple[str, ...]:
-    """Why a match does not pass, each a sentence."""
+    """Why a match does not pass, each a sentence; `faced` is the number of outliers that lie on end faces."""
     failures = []
     chord = found.model.chord
     kept = distances[inliers]
     if found.interrupted:
         failures.append("the search was interrupted: this is the best design so far")
-    if len(kept) < (1.0 - OFF) * len(distances):
-        failures.append(
-            f"{len(distances) - len(kept)} of {len(distances)} points lie off the blade: is it one blade, and of this "
-            "family?"
-        )
+    off = len(distances) - len(kept) - faced
+    if off > OFF * len(distances):
+        failures.append(f"{off} of {len(distances)} points lie off the blade: is it one blade, and of this family?")
     worst = int(np.flatnonzero(inliers)[np.argmax(kept)])
     if aim.tolerance is not None and kept.max() > aim.tolerance:
         failures.append(
@@ -134,10 +132,21 @@ def _loose(ends: Mapping[str, float]) -> str:
 
 
 def notes_of(
-    notes: tuple[str, ...], certainty: Certainty, distances: Reals, inliers: NDArray[np.bool_], found: Found, aim: Aim
+    notes: tuple[str, ...],
+    certainty: Certainty,
+    distances: Reals,
+    inliers: NDArray[np.bool_],
+    found: Found,
+    aim: Aim,
+    *,
+    faced: int = 0,
 ) -> tuple[str, ...]:
-    """What else there is to know, each a sentence."""
+    """What else there is to know, each a sentence; `faced` is the number of outliers that lie on end faces."""
     said = list(notes)
+    if faced:
+        said.append(
+            f"{faced} of {np.count_nonzero(~inliers)} outliers lie on the end faces: the sides are met without them"
+        )
     if missing(distances, inliers, found, aim) and _fair(found):
         said.append(f"near enough to make, but {_unmet(found)}")
     if _points(found).shape[1] == 3 and _gross(distances, inliers, found):
