@@ -106,19 +106,32 @@ def test_points_past_an_end_are_near_it():
     assert np.all((on.v[found.near] < 0.05) | (on.v[found.near] > 0.95))
 
 
-def test_points_of_an_end_face_are_told_from_those_of_the_sides():
+def between(v):
+    """Points inside the blade (25, 3), midway between its sides."""
     _, _, there = shape(BLADE)
     u = np.linspace(0.2, 0.8, 25)
-    upper, lower = (side(u, np.ones(25)) for side in there.sides)
+    upper, lower = (side(u, np.broadcast_to(v, 25)) for side in there.sides)
     theta = [np.arctan2(each[:, 1], each[:, 2]) for each in (upper, lower)]
     radius = [np.hypot(each[:, 1], each[:, 2]) for each in (upper, lower)]
     middle, r = (theta[0] + theta[1]) / 2.0, (radius[0] + radius[1]) / 2.0
-    face = np.stack([(upper[:, 0] + lower[:, 0]) / 2.0, r * np.sin(middle), r * np.cos(middle)], axis=-1)
-    points = np.concatenate([sides_cloud(BLADE, 300), face])
+    return np.stack([(upper[:, 0] + lower[:, 0]) / 2.0, r * np.sin(middle), r * np.cos(middle)], axis=-1)
+
+
+def test_points_of_an_end_face_are_told_from_those_of_the_sides():
+    points = np.concatenate([sides_cloud(BLADE, 300), between(1.0)])
     found, _ = ends(BLADE, points)
     assert found.covered[600:].all()
     assert not found.covered[:600].any()
     assert len(found.walls["shroud"].places) == 25
+
+
+@pytest.mark.parametrize(("v", "belong"), [(1.0, True), (np.random.default_rng(6).uniform(0.95, 1.0, 25), False)])
+def test_outliers_belong_to_an_end_face_where_they_stand_in_its_row(v, belong):
+    points = np.concatenate([sides_cloud(BLADE, 300), between(v)])
+    _, _, there = shape(BLADE)
+    found = ends_of(points, feet(points, there.sides), there, np.arange(len(points)) < 600)
+    assert np.all(found.covered == (belong & (np.arange(len(points)) >= 600)))
+    assert set(found.walls) == ({"shroud"} if belong else set())
 
 
 @pytest.mark.parametrize("end", ["hub", "shroud"])

@@ -21,6 +21,8 @@ BAND = 0.015
 FACE, INSIDE, SHARE = 0.1, 5.0, 0.3
 """a point of an end face has its foot this near the end, in v, lies this many usual distances inside the sides, and is
 this much nearer to the wall than to them"""
+DENSE, CLOSE = 20, 0.1
+"""outliers on an end face that belong to it: so many, half of which are so much nearer to the wall than to the sides"""
 DEEP = 0.2
 """of the half thickness of the blade: how deep inside it the deepest point of an end face lies at least"""
 NEAR = 0.05
@@ -132,9 +134,13 @@ def ends_of(points: Reals, on: Feet, shape: Shape, rows: NDArray[np.bool_]) -> E
     usual = STANDARD * float(np.median(on.distances[rows]))
     walls = {}
     for name, end in ENDS.items():
-        inside = np.flatnonzero(rows & (np.abs(on.v - end) < FACE) & (on.heights < -INSIDE * usual))
+        inside = np.flatnonzero((np.abs(on.v - end) < FACE) & (on.heights < -INSIDE * usual))
         off = Wall(name=name, places=places[inside], spread=0.0).distances(exact)
-        face = inside[np.abs(off) < -SHARE * on.heights[inside]]
+        share = np.abs(off) / -on.heights[inside]
+        # points of a solid's faces are outliers to its sides, and so are strays, which stand in no row
+        apart = ~rows[inside] & (share < SHARE)
+        dense = np.count_nonzero(apart) >= DENSE and float(np.median(share[apart])) < CLOSE
+        face = inside[(share < SHARE) & (rows[inside] | dense)]
         # beside an edge that is not yet found points lie a little inside, too
         if np.max(-on.heights[face], initial=0.0) > DEEP * _half_thickness(shape, end):
             covered[face] = True
