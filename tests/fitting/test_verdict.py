@@ -57,3 +57,17 @@ def test_points_of_a_solid_on_its_end_faces_are_said_to_be_there():
     ]
     assert "lie off the blade" in said[0]
     assert "lie off the blade" not in said[1]
+
+
+@pytest.mark.parametrize(("share", "sheet"), [(1.0, False), (0.012, True)])
+def test_a_blade_that_is_laid_through_one_side_is_called_a_sheet(share, sheet):
+    powers = {"thickness_upper": 1, "thickness_lower": 1, "leading_edge_radius": 2, "trailing_edge_radius": 2}
+    values = {path: (value, powers.get(path.partition("[")[0], 0)) for path, value in STATOR.parameters().items()}
+    blade = STATOR.changed({path: value * share**power for path, (value, power) in values.items() if power})
+    built = blade.build()
+    u, v = np.random.default_rng(5).random((2, 300))
+    points = np.concatenate([np.real(side(u, v)) for side in built.sides])
+    task = Task(points=points, weights=np.ones(len(points)), free=freedom_of("stagger", None, started=True), bounds={})
+    found, at = searched(task, blade, rounds=0), judged(points, built)
+    said = failures_of(np.abs(at.deviations), at.scatter.inliers, at.regions, found, Aim(structured=True))
+    assert any("the blade is a sheet" in each for each in said) == sheet

@@ -42,6 +42,13 @@ def unseen_edges(found: Found) -> dict[str, tuple[float, float]]:
     return unseen
 
 
+def thinnest(found: Found) -> float:
+    """The least thickness along the span, where sections are thickest [m]; infinite of other families."""
+    if not isinstance(found.design, UnifiedSection | UnifiedBlade):
+        return np.inf
+    return min(_thickness(found.state.shape.sides, v) for v in (0.1, 0.3, 0.5, 0.7, 0.9))
+
+
 def _nearest(on: Feet, rows: NDArray[np.bool_], end: float) -> NDArray[np.intp]:
     """Of each side and part of the span the point that is nearest to an edge."""
     away = np.where(rows, np.abs(on.u - end), np.inf)

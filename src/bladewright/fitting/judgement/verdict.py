@@ -9,7 +9,7 @@ from bladewright.fitting.clouds.rounding import rounded
 from bladewright.fitting.first.designed import AXES
 from bladewright.fitting.judgement.ending import loose_ends
 from bladewright.fitting.judgement.estimates import Certainty
-from bladewright.fitting.judgement.unseen import unseen_edges
+from bladewright.fitting.judgement.unseen import thinnest, unseen_edges
 from bladewright.fitting.matching.search import Found
 from bladewright.fitting.structures.aim import LEAST, Aim
 from bladewright.nurbs.basis import Reals
@@ -31,6 +31,8 @@ SHOWN = 5
 SIDES = ("upper", "lower")
 HALF = 0.5
 """width of an open edge, of the blade's thickest, from which it is half a blade"""
+SHEET = 3e-3
+"""of the chord: no blade is so thin, and two sides are that are both laid through the points of one"""
 BARE, BETWEEN = 0.1, 0.1
 """part of the points between the edges, and where those end in u, below which a side is not seen"""
 
@@ -74,9 +76,9 @@ def failures_of(
             f"the misfit of the given structure is {1e3 * rms:.3g} mm rms, too much for an exact cloud and too little "
             "for the noise of another: the exact design was not found; state the tolerance that is enough"
         )
-    bare = _bare(found)
-    if bare:
-        failures.append(f"hardly a point lies on the {bare} side: is it one side of a blade alone? Give points of both")
+    one_sided = _one_sided(found)
+    if one_sided:
+        failures.append(f"{one_sided}: is it one side of a blade alone? Give points of both")
     failures += [
         f"no point lies around the {name}, where the blade is still {1e3 * wide:.3g} mm wide, {share:.0%} of its "
         "thickest: is it half a blade? Give the points of the whole"
@@ -96,6 +98,17 @@ def missing(distances: Reals, inliers: NDArray[np.bool_], found: Found, aim: Aim
     enough = LEAST[_points(found).shape[1]] * found.model.chord
     largest = float(np.max(distances[inliers]))
     return aim.open and not found.interrupted and largest > 2.0 * enough and found.scatter.shared > SHARED
+
+
+def _one_sided(found: Found) -> str:
+    """What tells that the points are those of one side alone, if anything does."""
+    bare = _bare(found)
+    if bare:
+        return f"hardly a point lies on the {bare} side"
+    thin = thinnest(found)
+    if thin < SHEET * found.model.chord:
+        return f"the blade is a sheet, no more than {1e3 * thin:.3g} mm thick at a place of its span"
+    return ""
 
 
 def _bare(found: Found) -> str:
