@@ -10,6 +10,7 @@ from bladewright.files.examples import example_text
 from bladewright.files.reading import design_from, parsed
 from bladewright.fitting.freedom import freedom_of
 from bladewright.fitting.matching.search import Task, searched
+from bladewright.fitting.structures import adaptation
 from bladewright.fitting.structures.growth import chosen_of, gains, joined, steps_from
 from bladewright.fitting.structures.lean import size_of
 from bladewright.fitting.structures.structure import structure_of
@@ -94,3 +95,16 @@ def test_laws_that_are_held_do_not_grow():
     free = freedom_of(None, ("thickness_upper[*]",), started=True)
     match = searched(Task(points=points, weights=np.ones(198), free=free, bounds={}), base, rounds=0, noise=1e-3)
     assert [step.fields for _, step in gains(match)] == [("thickness_lower",)]
+
+
+def test_a_search_that_leaves_points_out_comes_no_nearer(monkeypatch):
+    base = design("turbine-section")
+    match = found(base, replace(base, stagger=base.stagger + 0.5), rounds=0)
+    inliers = match.scatter.inliers.copy()
+    inliers[np.argsort(match.state.feet.distances)[-5:]] = False
+    fewer = replace(match, scatter=replace(match.scatter, inliers=inliers))
+    assert fewer.rms < match.rms
+    monkeypatch.setattr(adaptation, "searched", lambda *_, **__: fewer)
+    kept = adaptation._shaken(None, match)
+    assert np.all(kept.scatter.inliers == match.scatter.inliers)
+    assert kept.evaluations == 2 * match.evaluations

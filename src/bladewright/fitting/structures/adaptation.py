@@ -184,8 +184,10 @@ def _shaken(task: Task, found: Found) -> Found:
     if found.interrupted or found.rms < SHAKEN * FINEST:
         return found
     other = searched(task, found.design, noise=SHAKEN)
-    better = other.rms < found.rms or other.interrupted
-    return replace(other if better else found, evaluations=found.evaluations + other.evaluations)
+    # of all points: a match that takes more of them for outliers is no nearer
+    nearer = other if other.off < found.off and other.rms < found.rms else found
+    evaluations = found.evaluations + other.evaluations
+    return replace(nearer, evaluations=evaluations, interrupted=other.interrupted)
 
 
 def _refused(found: Found) -> bool:
