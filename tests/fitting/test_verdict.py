@@ -71,3 +71,18 @@ def test_a_blade_that_is_laid_through_one_side_is_called_a_sheet(share, sheet):
     found, at = searched(task, blade, rounds=0), judged(points, built)
     said = failures_of(np.abs(at.deviations), at.scatter.inliers, at.regions, found, Aim(structured=True))
     assert any("the blade is a sheet" in each for each in said) == sheet
+
+
+@pytest.mark.parametrize(("count", "few"), [(20, True), (60, False)])
+def test_a_blade_needs_more_points_than_it_has_parameters(count, few):
+    built, random = STATOR.build(), np.random.default_rng(6)
+    points = np.concatenate([np.real(side(*random.random((2, count)))) for side in built.sides])
+    task = Task(points=points, weights=np.ones(len(points)), free=freedom_of(None, None, started=True), bounds={})
+    found, at = searched(task, STATOR, rounds=0), judged(points, built)
+    distances, open_aim = np.abs(at.deviations), Aim()
+    said = [
+        " ".join(failures_of(distances, at.scatter.inliers, at.regions, found, aim))
+        for aim in (open_aim, Aim(parameters=30))
+    ]
+    assert ("points are too few" in said[0]) == few
+    assert "points are too few" not in said[1]

@@ -33,6 +33,8 @@ HALF = 0.5
 """width of an open edge, of the blade's thickest, from which it is half a blade"""
 SHEET = 3e-3
 """of the chord: no blade is so thin, and two sides are that are both laid through the points of one"""
+TELLING = 1.5
+"""points for each parameter of a blade without which they tell of no shape, where nothing is asked for"""
 BARE, BETWEEN = 0.1, 0.1
 """part of the points between the edges, and where those end in u, below which a side is not seen"""
 
@@ -62,20 +64,7 @@ def failures_of(
                     f"the {word} deviation is {1e3 * value:.4g} mm, {100 * value / chord:.2g} % of the chord, and "
                     f"{100 * limit:.2g} % are allowed where no tolerance is stated: give more parameters"
                 )
-    rms, noise = found.rms * chord, found.scatter.noise
-    # in axes that a start shows no structure is met exactly
-    least = FAIR[_points(found).shape[1]] if aim.moved else EXACT
-    if aim.structured and aim.tolerance is None and found.rms > least and rms > SYSTEMATIC * noise:
-        failures.append(
-            f"the misfit of the given structure is {1e3 * rms:.3g} mm rms, and the cloud's noise {1e3 * noise:.3g} mm: "
-            "the structure does not hold this blade, or a better design was not found; state a tolerance, or another "
-            "structure"
-        )
-    elif aim.structured and aim.tolerance is None and least < found.rms < FINEST and not rounded(_points(found)):
-        failures.append(
-            f"the misfit of the given structure is {1e3 * rms:.3g} mm rms, too much for an exact cloud and too little "
-            "for the noise of another: the exact design was not found; state the tolerance that is enough"
-        )
+    failures += [*_missed(found, aim), *_scarce(found, aim)]
     one_sided = _one_sided(found)
     if one_sided:
         failures.append(f"{one_sided}: is it one side of a blade alone? Give points of both")
@@ -86,11 +75,43 @@ def failures_of(
         if share > HALF
     ]
     loose = loose_ends(found)
-    if loose and aim.structured and aim.tolerance is None and not found.interrupted and rms < EXACT * chord:
+    if loose and aim.structured and aim.tolerance is None and not found.interrupted and found.rms < EXACT:
         failures.append(f"the sides are met exactly, but {_loose(loose)}; state the tolerance that is enough")
     if missing(distances, inliers, found, aim) and not _fair(found):
         failures.append(_unmet(found))
     return tuple(failures)
+
+
+def _missed(found: Found, aim: Aim) -> list[str]:
+    """Why a given structure is not met."""
+    if not aim.structured or aim.tolerance is not None:
+        return []
+    rms, noise = found.rms * found.model.chord, found.scatter.noise
+    # in axes that a start shows no structure is met exactly
+    least = FAIR[_points(found).shape[1]] if aim.moved else EXACT
+    if found.rms > least and rms > SYSTEMATIC * noise:
+        return [
+            f"the misfit of the given structure is {1e3 * rms:.3g} mm rms, and the cloud's noise {1e3 * noise:.3g} mm: "
+            "the structure does not hold this blade, or a better design was not found; state a tolerance, or another "
+            "structure"
+        ]
+    if least < found.rms < FINEST and not rounded(_points(found)):
+        return [
+            f"the misfit of the given structure is {1e3 * rms:.3g} mm rms, too much for an exact cloud and too little "
+            "for the noise of another: the exact design was not found; state the tolerance that is enough"
+        ]
+    return []
+
+
+def _scarce(found: Found, aim: Aim) -> list[str]:
+    """Why points are too few to tell of a blade, where nothing is asked for."""
+    shown, count = int(np.count_nonzero(found.rows)), len(found.problem.paths)
+    if not aim.open or _points(found).shape[1] == 2 or shown >= TELLING * count:
+        return []
+    return [
+        f"{shown} points are too few for the {count} parameters of this blade: give more points, or a number of "
+        "parameters"
+    ]
 
 
 def missing(distances: Reals, inliers: NDArray[np.bool_], found: Found, aim: Aim) -> bool:
