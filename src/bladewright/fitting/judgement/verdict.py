@@ -64,7 +64,7 @@ def failures_of(
                     f"the {word} deviation is {1e3 * value:.4g} mm, {100 * value / chord:.2g} % of the chord, and "
                     f"{100 * limit:.2g} % are allowed where no tolerance is stated: give more parameters"
                 )
-    failures += [*_missed(found, aim), *_scarce(found, aim)]
+    failures += filter(None, (_missed(found, aim), _scarce(found, aim)))
     one_sided = _one_sided(found)
     if one_sided:
         failures.append(f"{one_sided}: is it one side of a blade alone? Give points of both")
@@ -82,36 +82,36 @@ def failures_of(
     return tuple(failures)
 
 
-def _missed(found: Found, aim: Aim) -> list[str]:
-    """Why a given structure is not met."""
+def _missed(found: Found, aim: Aim) -> str:
+    """Why a given structure is not met, if it is not."""
     if not aim.structured or aim.tolerance is not None:
-        return []
+        return ""
     rms, noise = found.rms * found.model.chord, found.scatter.noise
     # in axes that a start shows no structure is met exactly
     least = FAIR[_points(found).shape[1]] if aim.moved else EXACT
     if found.rms > least and rms > SYSTEMATIC * noise:
-        return [
+        return (
             f"the misfit of the given structure is {1e3 * rms:.3g} mm rms, and the cloud's noise {1e3 * noise:.3g} mm: "
             "the structure does not hold this blade, or a better design was not found; state a tolerance, or another "
             "structure"
-        ]
+        )
     if least < found.rms < FINEST and not rounded(_points(found)):
-        return [
+        return (
             f"the misfit of the given structure is {1e3 * rms:.3g} mm rms, too much for an exact cloud and too little "
             "for the noise of another: the exact design was not found; state the tolerance that is enough"
-        ]
-    return []
+        )
+    return ""
 
 
-def _scarce(found: Found, aim: Aim) -> list[str]:
-    """Why points are too few to tell of a blade, where nothing is asked for."""
+def _scarce(found: Found, aim: Aim) -> str:
+    """Why points are too few to tell of a blade where nothing is asked for, if they are."""
     shown, count = int(np.count_nonzero(found.rows)), len(found.problem.paths)
     if not aim.open or _points(found).shape[1] == 2 or shown >= TELLING * count:
-        return []
-    return [
+        return ""
+    return (
         f"{shown} points are too few for the {count} parameters of this blade: give more points, or a number of "
         "parameters"
-    ]
+    )
 
 
 def missing(distances: Reals, inliers: NDArray[np.bool_], found: Found, aim: Aim) -> bool:
