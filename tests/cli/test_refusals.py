@@ -207,7 +207,7 @@ def test_an_unwritable_output_is_refused(run, design_file):
         (["--chordal-deviation", "0.01"], ["0.01", "0.01mm"]),
         (["--chordal-deviation", "-1mm"], ["-1mm", "positive"]),
         (["--chordal-deviation", "1e999mm"], ["1e999mm", "positive"]),
-        (["--extend", "7"], ["7", "0.0<=x<=1.0"]),
+        (["--extend", "7"], ["7", "0.0<=x<=0.5"]),
         (["--output"], ["--output"]),
         (["--asformat", "step"], ["--asformat"]),
     ],

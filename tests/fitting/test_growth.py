@@ -97,6 +97,37 @@ def test_laws_that_are_held_do_not_grow():
     assert [step.fields for _, step in gains(match)] == [("thickness_lower",)]
 
 
+@pytest.mark.parametrize(
+    ("ratios", "taken", "interrupted"),
+    [((0.5, 0.5, 0.9), 2, False), ((0.9,), 0, False), ((0.5, 0.9), 1, True), ((), 0, False)],
+)
+def test_a_match_grows_on_as_long_as_it_comes_much_nearer(monkeypatch, ratios, taken, interrupted):
+    """Each growth leaves so much of the misfit; the last is interrupted, or there is no further one."""
+    base = design("turbine-section")
+    off = found(base, replace(base, stagger=base.stagger + 0.5), rounds=0)
+    steps, later = iter(ratios), []
+
+    def nearer(match, ratio):
+        feet = match.state.feet
+        shrunk = replace(feet, points=feet.points + (1.0 - ratio) * feet.miss, miss=ratio * feet.miss)
+        return replace(match, state=replace(match.state, feet=shrunk))
+
+    def grown(_, match, __):
+        ratio = next(steps, None)
+        if ratio is None:
+            return match, False
+        later.append(replace(nearer(match, ratio), interrupted=interrupted and ratio == ratios[-1]))
+        return later[-1], True
+
+    monkeypatch.setattr(adaptation, "grown", grown)
+    monkeypatch.setattr(adaptation, "searched", lambda *_, **__: later[-1])
+    monkeypatch.setattr(adaptation, "misses", lambda match: not match.interrupted)
+    kept = adaptation._grown_on(None, None, off, None)
+    assert kept.state is [off, *later][taken].state
+    assert kept.interrupted == interrupted
+    assert next(steps, None) is None
+
+
 def test_a_search_that_leaves_points_out_comes_no_nearer(monkeypatch):
     base = design("turbine-section")
     match = found(base, replace(base, stagger=base.stagger + 0.5), rounds=0)

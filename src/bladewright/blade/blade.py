@@ -124,13 +124,19 @@ class Blade:
         return tuple(self.section(v) for v in self.exact.section_spans)
 
     def section(self, v: float) -> "Section":
-        """The exact section at v in [0, 1], in its plane, with the properties it has on its stream surface."""
+        """The exact section at v in [0, 1], in its plane, with the properties it has on its stream surface.
+
+        Raises DesignError where v is outside.
+        """
         from bladewright.blade.sections import section_at
 
         return section_at(self.exact, v)
 
     def smoothness(self, v: float) -> "Smoothness":
-        """Curvature, its slope and their jumps along the exact section at v in [0, 1], in chords of its plane."""
+        """Curvature, its slope and their jumps along the exact section at v in [0, 1], in chords of its plane.
+
+        Raises DesignError where v is outside.
+        """
         from bladewright.blade.sections import smoothness_at
 
         return smoothness_at(self.exact, v)

@@ -31,7 +31,7 @@ set_option = click.option(
 )
 extend_option = click.option(
     "--extend",
-    type=click.FloatRange(0.0, 1.0),
+    type=click.FloatRange(0.0, 0.5),
     default=0.0,
     metavar="SPAN",
     help="Extend the blade past hub and shroud by this part of its span, for a later cut in your CAD; a tip stays.",

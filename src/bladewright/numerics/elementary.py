@@ -15,6 +15,12 @@ def length(vectors: Array) -> Array:
     return np.sqrt(dot(vectors, vectors))
 
 
+def travelled(line: Array) -> Array:
+    """Lengths (n,) along a polyline (n, d) from its first point."""
+    steps = length(np.diff(line, axis=0))
+    return np.concatenate([np.zeros(1, dtype=steps.dtype), np.cumsum(steps)])
+
+
 def unit(vectors: Array) -> Array:
     """Vectors (..., d) divided by their `length`."""
     return vectors / length(vectors)[..., None]

@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import gaussian_filter
 
+from bladewright.numerics.elementary import travelled
 from bladewright.nurbs.basis import Reals
 
 Pixels = NDArray[np.float32]
@@ -194,7 +195,7 @@ def _shaded(depth: Pixels, normal: Pixels, colour: Pixels, fineness: int) -> Pix
 def _drawn(picture: Pixels, depth: Pixels, trace: Trace, camera: Camera, unit: float) -> None:
     seen = camera.seen(trace.points)
     seen[:, :2] = (seen[:, :2] - camera.corner) * unit
-    along = np.concatenate([[0.0], np.cumsum(np.sqrt(np.sum(np.diff(seen[:, :2], axis=0) ** 2, axis=-1)))])
+    along = travelled(seen[:, :2])
     at = np.linspace(0.0, along[-1], int(2.0 * along[-1]) + 2)
     right, up, towards = (np.interp(at, along, seen[:, i]) for i in range(3))
     bias = 3.0 * trace.width / unit

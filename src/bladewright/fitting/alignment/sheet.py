@@ -14,6 +14,7 @@ from scipy.sparse.csgraph import connected_components, dijkstra
 from scipy.spatial import ConvexHull, cKDTree
 
 from bladewright.fitting.clouds.thinning import spread
+from bladewright.numerics.elementary import travelled
 from bladewright.nurbs.basis import Reals
 
 NEIGHBOURS = 12
@@ -46,7 +47,7 @@ class Sheet:
     def along(self, side: int) -> tuple[Reals, Reals]:
         """Places (n,) in [0, 1] of all points along a side, and how far inside of it they are (n,) [m]."""
         line = self.sides[side]
-        way = np.concatenate([[0.0], np.cumsum(np.sqrt(np.sum(np.diff(line, axis=0) ** 2, axis=1)))])
+        way = travelled(line)
         at = np.linspace(0.0, way[-1], 400)
         fine = np.stack([np.interp(at, way, line[:, k]) for k in (0, 1)], axis=-1)
         index = cKDTree(fine).query(self.flat)[1]

@@ -13,6 +13,7 @@ from bladewright.designs import Point
 from bladewright.errors import FitError
 from bladewright.fitting.families.polyline import nearest_on
 from bladewright.fitting.families.standing import WALLS
+from bladewright.numerics.elementary import travelled
 from bladewright.nurbs.basis import Reals, basis, uniform_knots
 
 WALL = (3, 4, 5, 7, 9)
@@ -91,12 +92,12 @@ class Channelled:
 
 def _wall(line: Reals) -> Reals:
     """Points of a wall, a line (n, 2) lengthened straight on: as few as follow it within a part of its length."""
-    way = _lengths(line)
+    way = travelled(line)
     size = float(way[-1])
     first, last = _unit(line[0] - line[1]), _unit(line[-1] - line[-2])
     ends = [size * _off_axis(end[1], size * out[1]) * out for end, out in ((line[0], first), (line[-1], last))]
     longer = np.concatenate([[line[0] + ends[0] * AHEAD], line, [line[-1] + ends[1] * AHEAD]])
-    along = _lengths(longer)
+    along = travelled(longer)
     low, high = along[1] - BESIDE * size, along[-2] + BESIDE * size
     rows = longer
     for count in WALL:
@@ -107,11 +108,6 @@ def _wall(line: Reals) -> Reals:
         if np.max(nearest_on(curve, line).heights ** 2) <= (NEAR * size) ** 2:
             break
     return rows
-
-
-def _lengths(line: Reals) -> Reals:
-    """Lengths (n,) along a line (n, 2)."""
-    return np.concatenate([[0.0], np.cumsum(np.sqrt(np.sum(np.diff(line, axis=0) ** 2, axis=1)))])
 
 
 def _off_axis(radius: float, slope: float) -> float:

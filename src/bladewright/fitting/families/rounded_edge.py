@@ -7,6 +7,7 @@ from scipy.optimize import least_squares
 
 from bladewright.fitting.families.polyline import nearest_on
 from bladewright.fitting.families.sampled import Sampled
+from bladewright.numerics.elementary import travelled
 from bladewright.nurbs.basis import Reals
 from bladewright.section.suction_pressure.points import OPENING, Continuity, Points, characteristic_points, opening
 
@@ -98,5 +99,5 @@ def _across(sides: list[Reals], beside: float) -> float:
 
 def _at(side: Reals, way: float) -> Reals:
     """The point of a side (n, 2) so far along it."""
-    steps = np.concatenate([[0.0], np.cumsum(np.sqrt(np.sum(np.diff(side, axis=0) ** 2, axis=1)))])
+    steps = travelled(side)
     return np.array([np.interp(way, steps, side[:, i]) for i in (0, 1)])

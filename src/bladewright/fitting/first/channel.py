@@ -8,6 +8,7 @@ from scipy.ndimage import map_coordinates
 from scipy.spatial import cKDTree
 
 from bladewright.errors import FitError
+from bladewright.numerics.elementary import travelled
 from bladewright.nurbs.basis import Reals, basis, uniform_knots
 
 EDGES = ("hub", "shroud", "leading_edge", "trailing_edge")
@@ -190,7 +191,7 @@ def _off(line: Reals, count: int) -> float:
 
 def _left_by(line: Reals, count: int) -> float:
     """Root mean square distance that a curve of so many control points leaves to a polyline, at equal lengths."""
-    way = np.concatenate([[0.0], np.cumsum(np.sqrt(np.sum(np.diff(line, axis=0) ** 2, axis=-1)))])
+    way = travelled(line)
     t = np.linspace(0.0, 1.0, 61)
     places = np.stack([np.interp(t * way[-1], way, line[:, i]) for i in (0, 1)], axis=-1)
     return float(np.sqrt(np.mean(np.sum((_curve(_through(line, count, line[0], line[-1]), t) - places) ** 2, axis=-1))))
@@ -212,7 +213,7 @@ def _through(line: Reals, count: int, first: Reals, last: Reals) -> Reals:
     if count == 2:
         return np.stack([first, last])
     line = np.concatenate([first[None], line[1:-1], last[None]])
-    way = np.concatenate([[0.0], np.cumsum(np.sqrt(np.sum(np.diff(line, axis=0) ** 2, axis=-1)))])
+    way = travelled(line)
     t = np.linspace(0.0, 1.0, 61)
     places = np.stack([np.interp(t * way[-1], way, line[:, i]) for i in (0, 1)], axis=-1)
     degree = min(count - 1, 5)

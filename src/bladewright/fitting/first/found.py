@@ -94,7 +94,7 @@ def continued_in(
         turn, lean, _ = _direction(laid)
         known = parted(shape, laid, turn, lean)
         laid = replace(laid, upper=known.upper, sure=known.sure)
-    match = matched(shape, laid, laws, turns=10, stiff=0.3, ends=ends, fins=False)
+    match = matched(shape, laid, laws, turns=10, stiff=0.3, ends=ends, among=True)
     return Found(channel=channel, shape=shape, laid=laid, match=match)
 
 

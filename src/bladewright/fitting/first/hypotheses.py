@@ -8,6 +8,7 @@ from bladewright.fitting.first.found import Found, apart, laid_in, matched_in
 from bladewright.fitting.first.matching import nearest
 from bladewright.fitting.first.outline import boundary, corner_sets
 from bladewright.fitting.first.shape import ROOT_IN, ROOT_OUT
+from bladewright.numerics.elementary import travelled
 from bladewright.nurbs.basis import Reals
 
 FEW = 450
@@ -88,7 +89,7 @@ def _opening(machine: Reals, piece: Reals, *, revolved: bool) -> float | None:
 
     None where too few points are beside it.
     """
-    way = np.concatenate([[0.0], np.cumsum(np.sqrt(np.sum(np.diff(piece, axis=0) ** 2, axis=-1)))])
+    way = travelled(piece)
     t = np.linspace(0.0, 1.0, 400)
     line = np.stack([np.interp(t * way[-1], way, piece[:, i]) for i in (0, 1)], axis=-1)
     away, index = cKDTree(line).query(machine[:, :2])

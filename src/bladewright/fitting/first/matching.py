@@ -75,12 +75,18 @@ def nearest(shape: Shape, laid: Laid, laws: Reals) -> tuple[Reals, NDArray[np.bo
 
 
 def matched(
-    shape: Shape, laid: Laid, laws: Reals, *, turns: int = 25, stiff: float = 1.0, ends: bool = False, fins: bool = True
+    shape: Shape,
+    laid: Laid,
+    laws: Reals,
+    *,
+    turns: int = 25,
+    stiff: float = 1.0,
+    ends: bool = False,
+    among: bool = False,
 ) -> Match:
     """Laws near the given ones whose sections lie close to the points.
 
-    `ends` holds the ends of the camber lines at those of the stream lines. Where no `fins` may be, what reaches past
-    the points is drawn in.
+    `ends` holds the ends of the camber lines at those of the stream lines; `among` draws in what reaches past the points.
     """
     laws = held(shape, laid, laws)
     best: Match | None = None
@@ -99,7 +105,7 @@ def matched(
         settled = len(history) > 6 and min(history[-3:]) > 0.97 * min(history[:-3])
         if turn == turns or (settled and smooth <= 1.01 * FLOOR):
             break
-        laws = held(shape, laid, laws + _step(shape, laid, laws, s, upper, weight, smooth, ends, fins))
+        laws = held(shape, laid, laws + _step(shape, laid, laws, s, upper, weight, smooth, ends, among))
         smooth = max(0.5 * smooth, FLOOR)
     if best is None:
         raise FitError("no section was found near the points")
@@ -163,7 +169,7 @@ def _step(
     weight: Reals,
     smooth: float,
     ends: bool,
-    fins: bool,
+    among: bool,
 ) -> Reals:
     numbers = numbers_at(laws, laid.v)
     foot = shape.feet(numbers, laid.v, s, upper)
@@ -172,7 +178,7 @@ def _step(
     rows = law_basis(len(laws), laid.v)
     slopes = (root[:, None] * foot.slopes)[:, :, None] * rows[:, None, :]
     matrix = slopes.reshape(len(s), -1)
-    for prior, aim in (priors(shape, laid, laws, smooth), *([] if fins else [drawn_in(shape, laid, laws)])):
+    for prior, aim in (priors(shape, laid, laws, smooth), *([drawn_in(shape, laid, laws)] if among else [])):
         matrix, away = np.concatenate([matrix, prior]), np.concatenate([away, aim])
     flat = laws.T.reshape(-1)
     low, high, most = (np.repeat(a, len(laws)) for a in limits(shape, laid, ends=ends))

@@ -19,9 +19,8 @@ class Standby:
 
     def note(self, found: Any) -> None:
         """Keep where a round of a search ended, if few are nearer."""
-        off = float(np.mean(found.state.feet.distances))
-        if np.isfinite(off):
-            self.found.append((off, found))
+        if np.isfinite(found.off):
+            self.found.append((found.off, found))
             self.found.sort(key=lambda each: each[0])
             del self.found[MOST:]
 

@@ -13,6 +13,7 @@ from bladewright.derivatives.tangents import STEP
 from bladewright.fitting.matching.chain import own_walls, shifts_of
 from bladewright.fitting.matching.feet import Feet, placed
 from bladewright.fitting.matching.model import Shape
+from bladewright.fitting.matching.outliers import STANDARD
 from bladewright.nurbs.basis import Reals, basis
 from bladewright.section.checks import UNITS
 
@@ -36,8 +37,6 @@ BENDS, TURNS, SETTLING = 6, 30, 3
 OUTER = 0.2
 """part of the places at an end beyond the law that is first sought: a row is the outermost, beside it lie points of
 the sides"""
-STANDARD = 1.4826
-"""deviation of a normal distribution, of the median of its magnitudes"""
 ENDS = {"hub": 0.0, "shroud": 1.0}
 
 
