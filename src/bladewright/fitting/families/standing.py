@@ -18,9 +18,9 @@ def standing(design: Design, *, walls: bool = False) -> frozenset[str]:
 
     Of control points that count by their ratios alone it is the largest. Of points of a contour it is the coordinate
     along which they slide on it, and both of its first and last along the chord, as their size and direction count for
-    nothing. Of a blade it is the flow path, which a blade shows by its ends only, and that coordinate of the points of its
-    edge curves along which they slide on the curve. Where the `walls` are free, of the points of hub and shroud only
-    that coordinate is held along which they slide on these.
+    nothing. Of a blade it is the flow path, which a blade shows by its ends only, and that coordinate of the points of
+    its edge curves along which they slide on the curve. Where the `walls` are free, of the points of hub and shroud
+    only that coordinate is held along which they slide on these.
     """
     section = getattr(design, "section", None)
     if section is None:

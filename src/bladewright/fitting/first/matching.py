@@ -86,7 +86,8 @@ def matched(
 ) -> Match:
     """Laws near the given ones whose sections lie close to the points.
 
-    `ends` holds the ends of the camber lines at those of the stream lines; `among` draws in what reaches past the points.
+    `ends` holds the ends of the camber lines at those of the stream lines; `among` draws in what reaches past the
+    points.
     """
     laws = held(shape, laid, laws)
     best: Match | None = None
