@@ -2,9 +2,9 @@
 
 import numpy as np
 
-from bladewright.blade.families import CurvatureMeanlineBlade
-from bladewright.blade.flow_path import FlowPath
-from bladewright.blade.meridian import ThroughPoints
+from bladewright.blade.design.families import CurvatureMeanlineBlade
+from bladewright.blade.design.flow_path import FlowPath
+from bladewright.blade.design.meridional_curve import ThroughPoints
 from bladewright.section.curvature_meanline import CurvatureMeanline
 from bladewright.section.thickness.modified_naca import ModifiedNaca
 

@@ -37,9 +37,9 @@ from OCP.TopAbs import TopAbs_EDGE, TopAbs_FACE, TopAbs_VERTEX
 import bladewright as bw
 from bladewright import cad
 from bladewright.cad.closure import closure
-from bladewright.cad.quiet import quiet
-from bladewright.cad.reopen import each
-from bladewright.cad.solids import body
+from bladewright.cad.kernel import quiet
+from bladewright.cad.reading import subshapes
+from bladewright.cad.solids import occ_solid
 
 EXAMPLES = Path(str(files("bladewright"))) / "examples"
 SETTINGS = {"read.surfacecurve.mode": (0, 1, 2, 3, -3), "read.iges.bspline.continuity": (1, 0, 2)}
@@ -49,13 +49,13 @@ def main():
     for name in ("nasa-rotor-67", "aachen-stator"):
         passage = bw.passage(bw.read_design(EXAMPLES / f"{name}.toml").build())
         native = float(passage.properties.volume) * 1e9
-        whole = body(passage).solid
+        whole = occ_solid(passage).solid
         fixed = ShapeFix_Shape(whole)
         fixed.Perform()
         print(name, "after ShapeFix_Shape", counts(fixed.Shape()))
         for shape in (whole, divided(whole)):
             off = " ".join(f"{volume(shape, *bound) / native - 1.0:+.1e}" for bound in ((), (1e-3,)))
-            print(f"{name}    {len(each(shape, TopAbs_FACE))} faces    {off}")
+            print(f"{name}    {len(subshapes(shape, TopAbs_FACE))} faces    {off}")
         with tempfile.TemporaryDirectory() as folder, quiet():
             read_back(passage, Path(folder))
 
@@ -77,7 +77,7 @@ def read_back(passage, folder):
 
 
 def counts(shape):
-    return tuple(len(each(shape, kind)) for kind in (TopAbs_FACE, TopAbs_EDGE, TopAbs_VERTEX))
+    return tuple(len(subshapes(shape, kind)) for kind in (TopAbs_FACE, TopAbs_EDGE, TopAbs_VERTEX))
 
 
 def divided(shape):

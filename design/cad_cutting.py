@@ -31,10 +31,10 @@ from OCP.TopoDS import TopoDS
 from OCP.TopTools import TopTools_ListOfShape
 
 import bladewright as bw
-from bladewright.cad.cutting import PAST
-from bladewright.cad.quiet import quiet
-from bladewright.cad.reopen import each
-from bladewright.cad.solids import body
+from bladewright.cad.cutting import SPAN_EXTENSION
+from bladewright.cad.kernel import quiet
+from bladewright.cad.reading import subshapes
+from bladewright.cad.solids import occ_solid
 
 EXAMPLES = Path(str(files("bladewright"))) / "examples"
 
@@ -46,7 +46,7 @@ def main():
         off = []
         for way in (subtracted, divided, made):
             # fresh solids: the operations raise tolerances of what they are given
-            sector, blade = body(passage.sector), body(passage.blade.extended(PAST))
+            sector, blade = occ_solid(passage.sector), occ_solid(passage.blade.extended(SPAN_EXTENSION))
             with quiet():
                 off.append(f"{volume(way(sector, blade), sector) / native - 1.0:+.1e}")
         print(f"{name:<22}", *off, sep="  ")
@@ -69,7 +69,7 @@ def divided(sector, blade):
 
 def made(sector, blade):
     operation = BOPAlgo_MakerVolume()
-    operation.SetArguments(listed(each(divided(sector, blade), TopAbs_FACE)))
+    operation.SetArguments(listed(subshapes(divided(sector, blade), TopAbs_FACE)))
     operation.SetIntersect(False)  # noqa: FBT003  the kernel takes its flags by position
     operation.Perform()
     return operation.Shape()
@@ -85,8 +85,8 @@ def listed(shapes):
 def volume(shape, sector):
     """Volume [mm^3] of the parts that have the sector's inlet."""
     inlet, total = BRep_Tool.Surface_s(sector.faces["inlet"]), 0.0
-    for part in each(shape, TopAbs_SOLID):
-        if any(BRep_Tool.Surface_s(TopoDS.Face_s(face)) == inlet for face in each(part, TopAbs_FACE)):
+    for part in subshapes(shape, TopAbs_SOLID):
+        if any(BRep_Tool.Surface_s(TopoDS.Face_s(face)) == inlet for face in subshapes(part, TopAbs_FACE)):
             properties = GProp_GProps()
             BRepGProp.VolumeProperties_s(part, properties, 1e-9)
             total += properties.Mass()

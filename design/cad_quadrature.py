@@ -30,14 +30,14 @@ from OCP.BRepGProp import BRepGProp
 from OCP.GProp import GProp_GProps
 
 import bladewright as bw
-from bladewright.cad.deviation import Meant
-from bladewright.cad.solids import body
+from bladewright.cad.deviation import NativeFace
+from bladewright.cad.solids import occ_solid
 
 
 def main():
     blade = bw.read_design(Path(str(files("bladewright"))) / "examples" / "fan-rotor.toml").build()
-    made = body(blade)
-    volume, area = float(blade.properties.volume) * 1e9, Meant(blade.surfaces["upper"]).area * 1e6
+    made = occ_solid(blade)
+    volume, area = float(blade.properties.volume) * 1e9, NativeFace(blade.surfaces["upper"]).area * 1e6
     for bound in ((), (1e-6,), (1e-9,), (1e-10,), (1e-11,)):
         results = []
         for function, shape, exact in (

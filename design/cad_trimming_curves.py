@@ -24,7 +24,7 @@ from pathlib import Path
 import bladewright as bw
 from bladewright import cad
 from bladewright.cad.closure import closure
-from bladewright.cad.reopen import reopened
+from bladewright.cad.reading import read_cad_file
 
 
 def main():
@@ -40,7 +40,7 @@ def main():
                 ),
                 "ascii",
             )
-            opened = reopened(path)
+            opened = read_cad_file(path)
             joints = closure(opened.shape).joints
             sides = {k for k, name in opened.names.items() if name in {"upper", "lower"}}
             print(

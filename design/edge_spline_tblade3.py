@@ -33,8 +33,7 @@ import numpy as np
 from bladewright.section.chord_spline import ChordSpline
 from bladewright.section.laws import Span
 from bladewright.section.meanline import CurvatureIntegral
-from bladewright.section.thickness.quartic import QuarticSpline
-from bladewright.section.thickness.uniform import segments
+from bladewright.section.thickness.quartic import QuarticSpline, segments
 
 OUTPUT = Path(__file__).parents[2] / "shared" / "data" / "tblade3" / "LE_spline_turb4_v1.2.2" / "output"
 ELONGATION, VERTEX_DISTANCE = -0.10, 0.35

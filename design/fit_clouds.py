@@ -25,7 +25,7 @@ from bladewright.files.clouds import read_cloud
 from bladewright.files.examples import example_text
 from bladewright.files.reading import design_from, parsed, read_design
 from bladewright.files.writing import write_design
-from bladewright.fitting.matching.feet import feet
+from bladewright.fitting.matching.footpoints import nearest_footpoints
 
 EXAMPLES = {
     "aachen": "aachen-stator",
@@ -227,7 +227,7 @@ def apart(case, sides, path, said):
         there = elsewhere(there) @ rotation.T + translation
         back = (((back - translation) @ rotation) - PLACED[1]) @ PLACED[0].as_matrix()
     return [
-        each(feet(points, onto, converged=1e-10).distances) / said["chord_m"]
+        each(nearest_footpoints(points, onto, converged=1e-10).distances) / said["chord_m"]
         for points, onto in ((there, found), (back, sides))
         for each in (np.mean, np.max)
     ]
@@ -262,7 +262,9 @@ def shared_row(name, directory):
     start = f"| {name} third | {len(some)} | {status} |"
     if not said:
         return f"{start} | | | | {spent:.0f} | {error} |"
-    away = feet(points, sides_of(read_design(path.with_suffix(".toml")).build())).distances / said["chord_m"]
+    away = (
+        nearest_footpoints(points, sides_of(read_design(path.with_suffix(".toml")).build())).distances / said["chord_m"]
+    )
     own = said["deviation"]["all"]["of_chord"]["mean"]
     return (
         f"{start} {said['parameters']} | {own:.1e} | {np.mean(away):.1e} / {np.max(away):.1e} | | {spent:.0f} | "

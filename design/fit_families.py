@@ -23,9 +23,9 @@ import numpy as np
 from bladewright.errors import BladewrightError
 from bladewright.files.clouds import read_cloud
 from bladewright.files.reading import read_design
-from bladewright.fitting.families.faces import sides_of
-from bladewright.fitting.families.kinds import kind_of
+from bladewright.fitting.families.kinds import family_of
 from bladewright.fitting.fit import fit
+from bladewright.fitting.models.blunt_edges import sides_of
 
 CLOUDS = Path(__file__).resolve().parents[2] / "shared" / "data" / "clouds"
 ENLARGED = {"t106eiz_2D": 100.0}
@@ -47,7 +47,7 @@ def of_example(name: str) -> tuple[Any, dict[str, Any]]:
     design: Any = read_design(Path(str(files("bladewright") / "examples" / f"{name}.toml")))
     random = np.random.default_rng(4)
     points = np.concatenate([side(*random.random((2, DRAWN))) for side in sides_of(design.build())])
-    kind = kind_of(design)
+    kind = family_of(design)
     return points, {"family": kind.name if kind else "", "blade_count": design.blade_count}
 
 

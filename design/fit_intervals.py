@@ -22,8 +22,8 @@ from bladewright.designs import Design
 from bladewright.files.examples import example_text
 from bladewright.files.reading import design_from, parsed
 from bladewright.fitting.fit import fit
-from bladewright.fitting.matching.feet import feet
-from bladewright.fitting.matching.model import model_of
+from bladewright.fitting.matching.footpoints import nearest_footpoints
+from bladewright.fitting.models.model import model_of
 from bladewright.nurbs.basis import Reals
 
 NOISE = 2e-5
@@ -58,7 +58,7 @@ def linear(truth: Design, points: Reals, paths: tuple[str, ...]) -> tuple[Reals,
     """Errors (k,) over their standard deviations by the linear theory at the truth, and the sum of squares there."""
     model = model_of(truth)
     shape = model.shape(truth)
-    on = feet(points, shape.sides)
+    on = nearest_footpoints(points, shape.sides)
     slopes = -np.einsum("nkd,nd->nk", model.rates(shape, on, model.tangents(shape, paths)), on.normals)
     size = np.sqrt(np.sum(slopes**2, axis=0))
     step = -np.linalg.lstsq(slopes / size, on.heights, rcond=None)[0]

@@ -20,12 +20,12 @@ from dataclasses import replace
 
 import numpy as np
 
-from bladewright.blade.unified import UnifiedBlade
+from bladewright.blade.design.unified import UnifiedBlade
 from bladewright.errors import BladewrightError, DesignError
 from bladewright.files.examples import example_text, examples
 from bladewright.files.reading import design_from, parsed
 from bladewright.fitting.fit import fit
-from bladewright.fitting.matching.feet import feet
+from bladewright.fitting.matching.footpoints import nearest_footpoints
 from bladewright.section.unified import UnifiedSection
 
 POINTS, OTHERS, ROW = 5_000, 20_000, 100
@@ -134,7 +134,7 @@ def row(kind, seed, *, given, ends):
     spent = time.process_time() - start
     sides = found.built.sides if hasattr(found.built, "surfaces") else tuple(found.built.curves.values())
     chord = float(np.real(built.chord))
-    away = feet(others, sides, converged=1e-12).distances / chord
+    away = nearest_footpoints(others, sides, converged=1e-12).distances / chord
     return (
         f"| {design.name} {seed} | {len(found.estimates)} | {np.mean(away):.1e} | {np.max(away):.1e} | "
         f"{'yes' if found.passed else 'no'} | {spent:.0f} |"

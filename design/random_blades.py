@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from bladewright.blade.channel import Channel
-from bladewright.blade.unified import UnifiedBlade
+from bladewright.blade.design.flow_path import Channel
+from bladewright.blade.design.unified import UnifiedBlade
 from bladewright.section.checks import UNITS
 
 

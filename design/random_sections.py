@@ -3,16 +3,16 @@
 import numpy as np
 from random_blades import law, pairs
 
-from bladewright.blade.families import (
+from bladewright.blade.design.families import (
     CamberAngleBlade,
     CurvatureMeanlineBlade,
     ProfileBlade,
     SuctionPressureBlade,
     WedgeDiffuserBlade,
 )
-from bladewright.blade.flow_path import FlowPath
-from bladewright.blade.meridian import ControlPolygon, ThroughPoints
-from bladewright.blade.stacking import Stacking
+from bladewright.blade.design.flow_path import FlowPath
+from bladewright.blade.design.meridional_curve import ControlPolygon, ThroughPoints
+from bladewright.blade.design.stacking import Stacking
 from bladewright.section.camber_angle import CamberAngle
 from bladewright.section.checks import UNITS
 from bladewright.section.curvature_meanline import CurvatureMeanline

@@ -14,7 +14,7 @@ import numpy as np
 from bladewright.files.clouds import read_cloud
 from bladewright.files.examples import example_text
 from bladewright.files.reading import design_from, parsed
-from bladewright.fitting.matching.feet import feet
+from bladewright.fitting.matching.footpoints import nearest_footpoints
 
 CLOUD = Path(__file__).resolve().parents[2] / "shared" / "data" / "clouds" / "NASA_R67.txt"
 NAME = "nasa-rotor-67"
@@ -45,7 +45,7 @@ def moved(side, on, chosen, v, *, leading):
 if __name__ == "__main__":
     points = read_cloud(CLOUD, columns=("skip", "z", "y", "x")).points
     built = design_from(parsed(example_text(NAME), NAME), NAME).build()
-    on = feet(points, built.sides)
+    on = nearest_footpoints(points, built.sides)
     for name, beside in (("leading", on.u < BESIDE), ("trailing", on.u > 1.0 - BESIDE)):
         # at the ends of the span the wall, and not the row, says where the blade ends
         rows = rows_of(on.v)[1:-1]

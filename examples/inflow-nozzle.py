@@ -3,7 +3,7 @@
 import numpy as np
 from _common import example, export
 
-from bladewright.blade.throat import throat
+from bladewright.blade.native.throat import throat
 
 blade = example("inflow-nozzle").build()
 export(blade.design, blade)

@@ -10,29 +10,29 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from bladewright import cad as cad
     from bladewright import meshing as meshing
-    from bladewright.blade.blade import Blade as Blade
-    from bladewright.blade.channel import Channel as Channel
-    from bladewright.blade.families import CamberAngleBlade as CamberAngleBlade
-    from bladewright.blade.families import CurvatureMeanlineBlade as CurvatureMeanlineBlade
-    from bladewright.blade.families import ProfileBlade as ProfileBlade
-    from bladewright.blade.families import SuctionPressureBlade as SuctionPressureBlade
-    from bladewright.blade.families import WedgeDiffuserBlade as WedgeDiffuserBlade
-    from bladewright.blade.flow_path import FlowPath as FlowPath
-    from bladewright.blade.meridian import ControlPolygon as ControlPolygon
-    from bladewright.blade.meridian import StraightsAndArcs as StraightsAndArcs
-    from bladewright.blade.meridian import ThroughPoints as ThroughPoints
-    from bladewright.blade.prismatic import prismatic as prismatic
-    from bladewright.blade.stacking import Stacking as Stacking
-    from bladewright.blade.throat import Throat as Throat
-    from bladewright.blade.throat import throat as throat
-    from bladewright.blade.unified import UnifiedBlade as UnifiedBlade
-    from bladewright.derivatives.jacobian import NetJacobian as NetJacobian
-    from bladewright.derivatives.nets import net_jacobian as net_jacobian
-    from bladewright.derivatives.nets import pullback as pullback
-    from bladewright.derivatives.places import SurfacePoints as SurfacePoints
-    from bladewright.derivatives.places import placed_points as placed_points
-    from bladewright.derivatives.places import surface_points as surface_points
+    from bladewright.blade.design.families import CamberAngleBlade as CamberAngleBlade
+    from bladewright.blade.design.families import CurvatureMeanlineBlade as CurvatureMeanlineBlade
+    from bladewright.blade.design.families import ProfileBlade as ProfileBlade
+    from bladewright.blade.design.families import SuctionPressureBlade as SuctionPressureBlade
+    from bladewright.blade.design.families import WedgeDiffuserBlade as WedgeDiffuserBlade
+    from bladewright.blade.design.families import prismatic as prismatic
+    from bladewright.blade.design.flow_path import Channel as Channel
+    from bladewright.blade.design.flow_path import FlowPath as FlowPath
+    from bladewright.blade.design.meridional_curve import ControlPolygon as ControlPolygon
+    from bladewright.blade.design.meridional_curve import StraightsAndArcs as StraightsAndArcs
+    from bladewright.blade.design.meridional_curve import ThroughPoints as ThroughPoints
+    from bladewright.blade.design.stacking import Stacking as Stacking
+    from bladewright.blade.design.unified import UnifiedBlade as UnifiedBlade
+    from bladewright.blade.native.blade import Blade as Blade
+    from bladewright.blade.native.throat import Throat as Throat
+    from bladewright.blade.native.throat import throat as throat
+    from bladewright.derivatives.net_jacobian import NetJacobian as NetJacobian
+    from bladewright.derivatives.net_jacobian import net_jacobian as net_jacobian
+    from bladewright.derivatives.net_jacobian import pullback as pullback
     from bladewright.derivatives.sensitivity import sensitivity as sensitivity
+    from bladewright.derivatives.surface_points import SurfacePoints as SurfacePoints
+    from bladewright.derivatives.surface_points import placed_points as placed_points
+    from bladewright.derivatives.surface_points import surface_points as surface_points
     from bladewright.derivatives.variables import Variables as Variables
     from bladewright.derivatives.variables import variables as variables
     from bladewright.domain.build import passage as passage
@@ -57,6 +57,7 @@ if TYPE_CHECKING:
     from bladewright.files.su2 import write_surface_points as write_surface_points
     from bladewright.files.tblade3 import import_tblade3 as import_tblade3
     from bladewright.files.writing import write_design as write_design
+    from bladewright.fitting.assessment.result import Fit as Fit
     from bladewright.fitting.fit import fit as fit
     from bladewright.fitting.freeform.curves import CurveFit as CurveFit
     from bladewright.fitting.freeform.curves import fit_curve as fit_curve
@@ -64,7 +65,6 @@ if TYPE_CHECKING:
     from bladewright.fitting.freeform.profile import fit_profile as fit_profile
     from bladewright.fitting.freeform.surfaces import SurfaceFit as SurfaceFit
     from bladewright.fitting.freeform.surfaces import fit_surface as fit_surface
-    from bladewright.fitting.judgement.result import Fit as Fit
     from bladewright.nurbs.curve import Curve as Curve
     from bladewright.nurbs.surface import Surface as Surface
     from bladewright.nurbs.trimmed import TrimmedSurface as TrimmedSurface
@@ -94,17 +94,17 @@ if TYPE_CHECKING:
 __version__ = "0.1.0"
 
 _HOMES = {
-    "Blade": "blade.blade",
+    "Blade": "blade.native.blade",
     "BladewrightError": "errors",
     "C4": "section.profiles.c4",
     "CadError": "errors",
     "CamberAngle": "section.camber_angle",
-    "CamberAngleBlade": "blade.families",
+    "CamberAngleBlade": "blade.design.families",
     "CamberAngleSection": "section.camber_angle",
-    "Channel": "blade.channel",
-    "ControlPolygon": "blade.meridian",
+    "Channel": "blade.design.flow_path",
+    "ControlPolygon": "blade.design.meridional_curve",
     "CurvatureMeanline": "section.curvature_meanline",
-    "CurvatureMeanlineBlade": "blade.families",
+    "CurvatureMeanlineBlade": "blade.design.families",
     "CurvatureMeanlineSection": "section.curvature_meanline",
     "Curve": "nurbs.curve",
     "CurveFit": "fitting.freeform.curves",
@@ -112,10 +112,10 @@ _HOMES = {
     "DesignError": "errors",
     "DoubleCircularArc": "section.profiles.circular_arc",
     "FileError": "errors",
-    "Fit": "fitting.judgement.result",
+    "Fit": "fitting.assessment.result",
     "FitError": "errors",
     "FlatPlate": "section.profiles.flat_plate",
-    "FlowPath": "blade.flow_path",
+    "FlowPath": "blade.design.flow_path",
     "GeometryError": "errors",
     "Imported": "files.imported",
     "MeshError": "errors",
@@ -125,30 +125,30 @@ _HOMES = {
     "Naca5": "section.profiles.naca5",
     "Naca6": "section.profiles.naca6",
     "Naca65": "section.profiles.naca65",
-    "NetJacobian": "derivatives.jacobian",
+    "NetJacobian": "derivatives.net_jacobian",
     "Passage": "domain.passage",
     "PointsProfile": "section.profiles.points",
-    "ProfileBlade": "blade.families",
+    "ProfileBlade": "blade.design.families",
     "ProfileFit": "fitting.freeform.profile",
     "ProfileSection": "section.profiles.kinds",
     "QuarticSpline": "section.thickness.quartic",
     "SectionPassage": "domain.section",
-    "Stacking": "blade.stacking",
-    "StraightsAndArcs": "blade.meridian",
+    "Stacking": "blade.design.stacking",
+    "StraightsAndArcs": "blade.design.meridional_curve",
     "SuctionPressure": "section.suction_pressure.part",
-    "SuctionPressureBlade": "blade.families",
+    "SuctionPressureBlade": "blade.design.families",
     "SuctionPressureSection": "section.suction_pressure.part",
     "Surface": "nurbs.surface",
     "SurfaceFit": "fitting.freeform.surfaces",
-    "SurfacePoints": "derivatives.places",
-    "Throat": "blade.throat",
-    "ThroughPoints": "blade.meridian",
+    "SurfacePoints": "derivatives.surface_points",
+    "Throat": "blade.native.throat",
+    "ThroughPoints": "blade.design.meridional_curve",
     "TrimmedSurface": "nurbs.trimmed",
-    "UnifiedBlade": "blade.unified",
+    "UnifiedBlade": "blade.design.unified",
     "UnifiedSection": "section.unified",
     "Variables": "derivatives.variables",
     "WedgeDiffuser": "section.wedge_diffuser",
-    "WedgeDiffuserBlade": "blade.families",
+    "WedgeDiffuserBlade": "blade.design.families",
     "WedgeDiffuserSection": "section.wedge_diffuser",
     "Wennerstrom": "section.thickness.wennerstrom",
     "fit": "fitting.fit",
@@ -157,11 +157,11 @@ _HOMES = {
     "fit_surface": "fitting.freeform.surfaces",
     "import_parablade": "files.parablade",
     "import_tblade3": "files.tblade3",
-    "net_jacobian": "derivatives.nets",
+    "net_jacobian": "derivatives.net_jacobian",
     "passage": "domain.build",
-    "placed_points": "derivatives.places",
-    "prismatic": "blade.prismatic",
-    "pullback": "derivatives.nets",
+    "placed_points": "derivatives.surface_points",
+    "prismatic": "blade.design.families",
+    "pullback": "derivatives.net_jacobian",
     "read_cloud": "files.clouds",
     "read_design": "files.reading",
     "read_parablade": "files.parablade",
@@ -169,8 +169,8 @@ _HOMES = {
     "read_surface_sensitivity": "files.su2",
     "section_passage": "domain.section",
     "sensitivity": "derivatives.sensitivity",
-    "surface_points": "derivatives.places",
-    "throat": "blade.throat",
+    "surface_points": "derivatives.surface_points",
+    "throat": "blade.native.throat",
     "variables": "derivatives.variables",
     "write_design": "files.writing",
     "write_surface_points": "files.su2",

@@ -4,10 +4,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from bladewright.blade.bladed_lines import between
-from bladewright.blade.flow_path import FlowPath
-from bladewright.blade.meridian import ControlPolygon, StraightsAndArcs, ThroughPoints
-from bladewright.blade.stream_surfaces import stream_surfaces
+from bladewright.blade.design.flow_path import FlowPath
+from bladewright.blade.design.meridional_curve import ControlPolygon, StraightsAndArcs, ThroughPoints
+from bladewright.blade.flow_path.blade_streamlines import prescribed_edges
+from bladewright.blade.flow_path.stream_surfaces import stream_surfaces
 from bladewright.designs import Part
 
 
@@ -24,7 +24,7 @@ class Machine(Part):
 
     def bladed(self, **options):
         edges = self.leading_edge.line(1.0), self.trailing_edge.line(1.0)
-        return between(self.surfaces(**options), *edges)
+        return prescribed_edges(self.surfaces(**options), *edges)
 
 
 def through(*points, **options):

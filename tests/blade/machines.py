@@ -1,7 +1,7 @@
 """Blades to test on: axial, radial in both directions, mixed, and a cascade."""
 
-from bladewright.blade.channel import Channel
-from bladewright.blade.unified import UnifiedBlade
+from bladewright.blade.design.flow_path import Channel
+from bladewright.blade.design.unified import UnifiedBlade
 
 COMMON = {
     "length_unit": "mm",

@@ -2,15 +2,15 @@
 
 from dataclasses import replace
 
-from bladewright.blade.families import (
+from bladewright.blade.design.families import (
     CamberAngleBlade,
     CurvatureMeanlineBlade,
     ProfileBlade,
     SuctionPressureBlade,
     WedgeDiffuserBlade,
 )
-from bladewright.blade.flow_path import FlowPath
-from bladewright.blade.meridian import ControlPolygon, ThroughPoints
+from bladewright.blade.design.flow_path import FlowPath
+from bladewright.blade.design.meridional_curve import ControlPolygon, ThroughPoints
 from bladewright.section.camber_angle import CamberAngle
 from bladewright.section.curvature_meanline import CurvatureMeanline
 from bladewright.section.profiles.naca65 import Naca65

@@ -2,7 +2,7 @@
 
 from dataclasses import replace
 
-from bladewright.blade.stacking import Stacking
+from bladewright.blade.design.stacking import Stacking
 
 from .sectioned import COMPRESSOR, DIFFUSER, IMPELLER, VANE, through
 

@@ -7,10 +7,10 @@ import pytest
 from scipy.interpolate import BSpline
 
 from bladewright import cad
-from bladewright.blade.channel import Channel
-from bladewright.blade.exact import exact_blade
+from bladewright.blade.design.flow_path import Channel
+from bladewright.blade.exact.unified import exact_unified_blade
 from bladewright.errors import DesignError
-from bladewright.nurbs.flux import mass_properties
+from bladewright.nurbs.mass_properties import mass_properties
 
 from .machines import CASCADE, FAN, IMPELLER, INFLOW
 
@@ -161,7 +161,7 @@ def test_a_blade_of_the_same_section_at_every_radius_is_cut_off_where_its_stream
     laws = {"stagger": 30.0, "metal_angle_in": 40.0, "metal_angle_out": 15.0, "leading_edge_theta": 0.0}
     cylinders = Channel(leading_edge=((0, 100), (0, 140)), trailing_edge=((50, 100), (50, 140)))
     design = FAN.changed({**laws, "leading_edge_radius": 0.003, "trailing_edge_radius": 0.003, "channel": cylinders})
-    whole, cut = exact_blade(design), exact_blade(design.changed("tip_clearance", 3.0))
+    whole, cut = exact_unified_blade(design), exact_unified_blade(design.changed("tip_clearance", 3.0))
     v, s = np.linspace(0.0, 1.0, 5), np.linspace(0.0, 1.0, 33)
     for short, long in zip(cut.stations(v).points(s), whole.stations(37.0 / 40.0 * v).points(s), strict=True):
         assert short == pytest.approx(long, abs=1e-14)
@@ -181,7 +181,7 @@ def test_a_wall_with_joints_is_followed_as_well(degree, name):
 
 
 def test_without_a_clearance_the_blades_channel_is_the_whole_one():
-    exact = exact_blade(FAN)
+    exact = exact_unified_blade(FAN)
     assert exact.channel is exact.full_channel
     assert exact.clearance is None
     assert exact.tip_knots is None
@@ -247,9 +247,9 @@ def test_a_batch_of_imaginary_steps_is_the_single_steps_one_by_one():
         steps[i] += STEP * 1j
         changes[path] = steps
     v, s = np.linspace(0.0, 1.0, 3), np.linspace(0.0, 1.0, 17)
-    batch = np.stack(exact_blade(design.changed(changes)).stations(v).points(s))
+    batch = np.stack(exact_unified_blade(design.changed(changes)).stations(v).points(s))
     for i, path in enumerate(paths):
-        single = np.stack(exact_blade(design.changed(path, values[path] + STEP * 1j)).stations(v).points(s))
+        single = np.stack(exact_unified_blade(design.changed(path, values[path] + STEP * 1j)).stations(v).points(s))
         scale = np.max(np.abs(np.imag(single)))
         assert scale > 0.0
         assert np.imag(batch[:, i]) == pytest.approx(np.imag(single), abs=1e-13 * scale)

@@ -3,12 +3,11 @@
 import numpy as np
 import pytest
 
-from bladewright.blade.bladed_lines import between
-from bladewright.blade.flow_path import FlowPath
-from bladewright.blade.location import located
-from bladewright.blade.mapping import Conformal
-from bladewright.blade.planes import Counted
-from bladewright.blade.stream_surfaces import stream_surfaces
+from bladewright.blade.design.flow_path import FlowPath
+from bladewright.blade.flow_path.blade_streamlines import prescribed_edges
+from bladewright.blade.flow_path.location import located
+from bladewright.blade.flow_path.stream_surface_map import Conformal, DiscreteConformal
+from bladewright.blade.flow_path.stream_surfaces import stream_surfaces
 from bladewright.errors import DesignError
 
 from .flow_paths import CYLINDER, UNEVEN, on, through
@@ -72,9 +71,9 @@ REFUSED = {
     ),
     "v outside": (lambda: CYLINDER.bladed().lines(np.array([1.1]), Conformal()), "asked at v = 1.1"),
     "not counted": (
-        lambda: between(
+        lambda: prescribed_edges(
             CYLINDER.surfaces(), *(e.line(1.0) for e in (CYLINDER.leading_edge, CYLINDER.trailing_edge)), counted=True
-        ).lines(V, Counted()),
+        ).lines(V, DiscreteConformal()),
         "needs all of them given by points with spacing 'conformal'",
     ),
     "uneven": (

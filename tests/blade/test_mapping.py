@@ -3,16 +3,16 @@
 import numpy as np
 import pytest
 
-from bladewright.blade.channel import Channel
-from bladewright.blade.mapping import Cascade, Conformal, Paper
-from bladewright.blade.meridional import meridional
-from bladewright.blade.streamlines import stream_lines
+from bladewright.blade.design.flow_path import Channel
+from bladewright.blade.flow_path.channel import transfinite_channel
+from bladewright.blade.flow_path.stream_surface_map import Cascade, Conformal, Paper
+from bladewright.blade.flow_path.streamlines import stream_lines
 
 V = np.array([0.0, 0.3, 1.0])
 
 
 def lines(leading, trailing, mapping, hub=(), shroud=(), before=0.1, after=0.1):
-    channel = meridional(Channel(leading_edge=leading, trailing_edge=trailing, hub=hub, shroud=shroud), 1.0)
+    channel = transfinite_channel(Channel(leading_edge=leading, trailing_edge=trailing, hub=hub, shroud=shroud), 1.0)
     return stream_lines(channel, mapping, V, before, after)
 
 
@@ -73,7 +73,7 @@ def test_the_slope_of_the_density_is_its_derivative(mapping):
 
 
 def test_stream_lines_are_the_transfinite_interpolation_of_the_four_curves():
-    channel = meridional(
+    channel = transfinite_channel(
         Channel(leading_edge=((0.0, 1.0), (0.1, 1.6), (-0.1, 2.0)), trailing_edge=((1.0, 2.0), (0.7, 2.9)), **CURVED),
         1.0,
     )
@@ -91,7 +91,7 @@ def test_stream_lines_are_the_transfinite_interpolation_of_the_four_curves():
 
 def test_past_the_edges_a_wall_continues_its_own_polynomial():
     hub = ((0.2, 1.3), (0.5, 0.9), (0.8, 1.4))
-    channel = meridional(
+    channel = transfinite_channel(
         Channel(leading_edge=((0.0, 1.0), (0.0, 2.0)), trailing_edge=((1.0, 1.0), (1.0, 2.0)), hub=hub), 1.0
     )
     found = stream_lines(channel, Cascade(), np.array([0.0]), 0.2, 0.2)
@@ -102,7 +102,7 @@ def test_past_the_edges_a_wall_continues_its_own_polynomial():
 
 
 def test_slopes_of_the_channel_are_its_derivatives():
-    channel = meridional(
+    channel = transfinite_channel(
         Channel(leading_edge=((0.0, 1.0), (0.1, 1.6), (-0.1, 2.0)), trailing_edge=((1.0, 2.0), (0.7, 2.9)), **CURVED),
         1.0,
     )

@@ -3,12 +3,12 @@
 import numpy as np
 import pytest
 
-from bladewright.blade.exact import exact_blade
-from bladewright.blade.fitness import misfit
-from bladewright.blade.knots import DEGREE, Knots, breaks_along_u, breaks_along_v, clamped
-from bladewright.blade.native import native_sides
+from bladewright.blade.exact.unified import exact_unified_blade
+from bladewright.blade.native.interpolation import native_sides
+from bladewright.blade.native.knots import DEGREE, Knots, breaks_along_u, breaks_along_v, clamped
+from bladewright.blade.native.refinement import approximation_error
 from bladewright.errors import DesignError
-from bladewright.nurbs.flux import mass_properties
+from bladewright.nurbs.mass_properties import mass_properties
 from bladewright.nurbs.surface import Surface
 
 from .machines import CASCADE, FAN, IMPELLER, INFLOW
@@ -54,12 +54,12 @@ def test_a_tighter_tolerance_is_reached_with_more_poles():
 
 
 def test_the_native_sides_converge_to_the_exact_blade_with_order_six():
-    exact = exact_blade(INFLOW)
+    exact = exact_unified_blade(INFLOW)
     u, v = clamped(breaks_along_u(exact)), clamped(breaks_along_v(exact))
     u, v = halved(halved(u)), halved(halved(v))
     errors = []
     for _ in range(3):
-        errors.append(misfit(exact, *sides(exact, Knots(u=u, v=v))).distance)
+        errors.append(approximation_error(exact, *sides(exact, Knots(u=u, v=v))).distance)
         u, v = halved(u), halved(v)
     orders = np.log2(np.array(errors[:-1]) / errors[1:])
     assert orders[-1] == pytest.approx(6.0, abs=0.8)
@@ -106,7 +106,7 @@ def test_walls_are_the_channels_own_surfaces(blade):
 
 
 def test_volume_and_area_agree_with_closed_forms_of_a_prismatic_vane():
-    from bladewright.blade.prismatic import prismatic
+    from bladewright.blade.design.families import prismatic
     from bladewright.section.unified import UnifiedSection
 
     section = UnifiedSection(
@@ -216,8 +216,8 @@ def test_rational_sides_keep_every_promise():
 
 
 def test_weights_of_one_change_nothing():
-    weighted = exact_blade(INFLOW.changed({"weights_upper": (1.0,), "weights_lower": (1.0, 1.0)}))
-    plain = exact_blade(INFLOW)
+    weighted = exact_unified_blade(INFLOW.changed({"weights_upper": (1.0,), "weights_lower": (1.0, 1.0)}))
+    plain = exact_unified_blade(INFLOW)
     v, s = np.linspace(0.0, 1.0, 3), np.linspace(0.0, 1.0, 21)
     for with_weights, without in zip(weighted.stations(v).points(s), plain.stations(v).points(s), strict=True):
         assert with_weights == pytest.approx(without, abs=1e-15)

@@ -5,9 +5,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from bladewright.blade.channel import Channel
-from bladewright.blade.exact import exact_blade
-from bladewright.blade.unified import UnifiedBlade
+from bladewright.blade.design.flow_path import Channel
+from bladewright.blade.design.unified import UnifiedBlade
+from bladewright.blade.exact.unified import exact_unified_blade
 from bladewright.section.camber import camber_points
 
 PUBLISHED = Path(__file__).parents[3] / "shared" / "data" / "clouds" / "NASA_R67.matched.cfg"
@@ -69,7 +69,7 @@ def angles(stations, window):
 
 
 def test_the_papers_mapping_reproduces_the_angles_measured_on_its_rotor_67(published):
-    stations = exact_blade(published).stations(np.array(list(MEASURED)))
+    stations = exact_unified_blade(published).stations(np.array(list(MEASURED)))
     found = np.stack([angles(stations, (0.015, 0.03)), angles(stations, (0.97, 0.985))], axis=-1)
     # measured to a tenth of a degree
     assert found == pytest.approx(np.array(list(MEASURED.values())), abs=0.1)
@@ -78,6 +78,6 @@ def test_the_papers_mapping_reproduces_the_angles_measured_on_its_rotor_67(publi
 def test_the_conformal_mapping_turns_the_same_numbers_into_the_angles_they_name(published):
     design = published.changed("mapping", "conformal")
     v = np.array(list(MEASURED))
-    stations = exact_blade(design).stations(v)
+    stations = exact_unified_blade(design).stations(v)
     found = angles(stations, (0.0, 1e-5))
     assert found == pytest.approx(np.degrees(stations.angle_in), abs=1e-2)

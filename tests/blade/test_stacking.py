@@ -7,13 +7,13 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from bladewright import cad
-from bladewright.blade.flank import twist_of
-from bladewright.blade.flow_path import FlowPath
-from bladewright.blade.sectioned_exact import sectioned_exact
-from bladewright.blade.sections import section_at
-from bladewright.blade.stacking_nearest import trajectory
-from bladewright.blade.stacking_reference import centroid, reference_points
-from bladewright.blade.stream_surfaces import stream_surfaces
+from bladewright.blade.design.flow_path import FlowPath
+from bladewright.blade.exact.orthogonal_trajectory import orthogonal_trajectory
+from bladewright.blade.exact.plane_sections import section_at
+from bladewright.blade.exact.sectioned import exact_sectioned_blade
+from bladewright.blade.exact.stacking_axis import centroid, reference_points
+from bladewright.blade.flow_path.stream_surfaces import stream_surfaces
+from bladewright.blade.native.conformance import twist_of
 from bladewright.errors import DesignError
 from bladewright.numerics.elementary import length
 from bladewright.nurbs.surface import Surface
@@ -34,7 +34,7 @@ def unshifted(design):
 
 def reference(design, v=V):
     """Reference points: (x, r), and theta or y, (m, ...) each, with the sections."""
-    sections = sectioned_exact(design, checked=False).sections(v)
+    sections = exact_sectioned_blade(design, checked=False).sections(v)
     points = reference_points(design.stacking, sections.plane.outline, Span(v))
     _, position, tangential = sections.on_lines(sections.plane.placed(points[:, None, :]))
     return position[:, 0], tangential[:, 0], sections
@@ -42,7 +42,7 @@ def reference(design, v=V):
 
 def test_the_centre_of_area_is_that_of_the_native_section():
     # its plane is metric; its curves lie within 1e-10 of the exact section
-    exact = sectioned_exact(VANE)
+    exact = exact_sectioned_blade(VANE)
     section, plane = section_at(exact, 0.5), exact.sections(np.array([0.5])).plane
     assert plane.placed(centroid(plane.outline)[:, None])[0, 0] == pytest.approx(section.centroid, abs=1e-9 * 0.04)
 
@@ -85,7 +85,7 @@ def test_the_chord_is_what_it_is_said_to_be(design):
 def test_the_line_of_least_distance_through_a_pencil_of_stream_lines_is_a_circle():
     # the stream lines r = 1 + v (1 + x) all come from (-1, 1)
     fan = stream_surfaces(FlowPath(hub=through((0, 1), (2, 1)), shroud=through((0, 2), (2, 4))), 1.0)
-    t = trajectory(fan, np.asarray(0.75)).t(V)
+    t = orthogonal_trajectory(fan, np.asarray(0.75)).t(V)
     x, r = fan.position(V, t[:, None])[:, 0].T
     assert (x + 1.0) ** 2 + (r - 1.0) ** 2 == pytest.approx(2.5**2, rel=1e-13)
 
@@ -98,7 +98,7 @@ def test_the_line_of_least_distance_is_that_of_another_solver():
         _, along, across = surfaces.at(np.asarray(t), np.array([min(v, 1.0)]))
         return -np.sum(along * across, axis=-1) / np.sum(along**2, axis=-1)
 
-    found = trajectory(surfaces, np.asarray(start))
+    found = orthogonal_trajectory(surfaces, np.asarray(start))
     assert len(found.joints) > 0
     other = solve_ivp(rate, (0.0, 1.0), [start], "DOP853", V, rtol=1e-13, atol=1e-14, max_step=0.02)
     assert found.t(V) == pytest.approx(other.y[0], abs=1e-12)
@@ -146,7 +146,7 @@ def test_every_new_parameter_has_an_effect_and_the_derivative_of_differences(des
     shares = np.random.default_rng(5).uniform(0.5, 1.0, len(paths))
 
     def points(changes):
-        stations = sectioned_exact(design.changed(changes), checked=False).stations(V[1:4])
+        stations = exact_sectioned_blade(design.changed(changes), checked=False).stations(V[1:4])
         edge = stations.trailing_edge()
         return np.concatenate([*stations.points(np.array([0.0, 0.3, 1.0])), np.stack(edge, axis=-2)], axis=-2)
 
@@ -234,7 +234,7 @@ def _check_rulings(blade, *, parallel):
 
 
 def test_a_developable_blade_lies_on_its_stream_surfaces_and_keeps_the_hubs_section():
-    exact = sectioned_exact(stacked.MILLED)
+    exact = exact_sectioned_blade(stacked.MILLED)
     hub, all_of_them = exact.sections(np.zeros(1)), exact.stations(V)
     for own, side in zip(hub.points(V), all_of_them.points(V), strict=True):
         assert side[0] == pytest.approx(own[0], abs=1e-15)
@@ -244,7 +244,7 @@ def test_a_developable_blade_lies_on_its_stream_surfaces_and_keeps_the_hubs_sect
 
 
 def test_ruled_blades_have_sections_where_the_design_has_them():
-    ruled = sectioned_exact(stacked.RULED)
+    ruled = exact_sectioned_blade(stacked.RULED)
     assert ruled.section_spans == (0.0, 1.0)
     assert section_at(ruled, 1.0).edges == ("round", "blunt")
     with pytest.raises(DesignError, match=r"a section was asked at v = 0\.5 of a blade whose skinning is 'ruled'"):

@@ -6,13 +6,19 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from bladewright.blade.bladed_lines import between
-from bladewright.blade.flow_path import FlowPath
-from bladewright.blade.location import in_plane, located
-from bladewright.blade.mapping import Cascade, Conformal
-from bladewright.blade.planes import Counted, Level, Unrolled, plane_of
-from bladewright.blade.stream_surfaces import stream_surfaces
-from bladewright.blade.streamlines import stream_lines
+from bladewright.blade.design.flow_path import FlowPath
+from bladewright.blade.flow_path.blade_streamlines import prescribed_edges
+from bladewright.blade.flow_path.location import in_plane, located
+from bladewright.blade.flow_path.stream_surface_map import (
+    Cascade,
+    Conformal,
+    DiscreteConformal,
+    Projected,
+    Unrolled,
+    plane_of,
+)
+from bladewright.blade.flow_path.stream_surfaces import stream_surfaces
+from bladewright.blade.flow_path.streamlines import stream_lines
 from bladewright.errors import DesignError
 from bladewright.files.tblade3 import read_tblade3
 from bladewright.numerics.elementary import cross2
@@ -133,7 +139,7 @@ def test_plane_points_go_to_space_and_back(machine, mapping):
     np.testing.assert_allclose(found.ordinate.reshape(plane.shape[:2]), plane[..., 1], atol=1e-12)
 
 
-@pytest.mark.parametrize("mapping", [Cascade(), Level()], ids=["m-y", "x-y"])
+@pytest.mark.parametrize("mapping", [Cascade(), Projected()], ids=["m-y", "x-y"])
 def test_planes_of_a_cascade_go_to_space_and_back(mapping):
     machine = GIVEN
     lines = machine.bladed(revolved=False).lines(V, mapping)
@@ -163,7 +169,7 @@ def test_a_plane_is_known_by_its_name():
 
 def test_sections_cannot_be_laid_out_by_x_where_x_stands_still():
     with pytest.raises(DesignError, match="does not go forwards in x"):
-        DISC.bladed(revolved=False).lines(V, Level())
+        DISC.bladed(revolved=False).lines(V, Projected())
 
 
 @each_machine
@@ -302,7 +308,7 @@ def test_edges_and_their_m_are_those_of_tblade3(name):
     path, edges, counted, meetings = of_tblade3(name)
     surfaces = stream_surfaces(path, 1.0, tuple(edges))
     v = surfaces.spans
-    t = np.stack(between(surfaces, *(edge.line(1.0) for edge in edges)).edges(v), axis=-1)
+    t = np.stack(prescribed_edges(surfaces, *(edge.line(1.0) for edge in edges)).edges(v), axis=-1)
     first, rate = surfaces.counted(v)
     np.testing.assert_allclose(first[:, None] + rate[:, None] * t, counted, rtol=0.0, atol=ROOTS)
     np.testing.assert_allclose(surfaces.position(v, t), meetings, rtol=0.0, atol=ROOTS)
@@ -313,7 +319,7 @@ def test_edges_and_their_m_are_those_of_tblade3(name):
 
 def test_the_plane_of_a_counted_m_is_linear_between_the_edges():
     edges = [edge.line(1.0) for edge in (GIVEN.leading_edge, GIVEN.trailing_edge)]
-    lines = between(GIVEN.surfaces(), *edges, counted=True).lines(V, Counted())
+    lines = prescribed_edges(GIVEN.surfaces(), *edges, counted=True).lines(V, DiscreteConformal())
     u = np.linspace(-0.1, 1.1, 13)
     np.testing.assert_allclose(lines.abscissa(u), lines.extents()[:, None] * u, atol=1e-15)
     np.testing.assert_allclose(lines.u_at(lines.abscissa(u)), np.broadcast_to(u, (len(V), 13)), atol=1e-14)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import bladewright as bw
-from bladewright.blade.throat import throat
+from bladewright.blade.native.throat import throat
 from bladewright.designs import unit_at
 from bladewright.errors import DesignError
 

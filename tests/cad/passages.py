@@ -4,7 +4,7 @@ import numpy as np
 
 from bladewright.nurbs.curve import Curve
 from bladewright.nurbs.domain import reparametrised, split
-from bladewright.nurbs.flux import mass_properties
+from bladewright.nurbs.mass_properties import mass_properties
 from bladewright.nurbs.surface import Surface
 from bladewright.nurbs.trimmed import TrimmedSurface
 

@@ -6,7 +6,7 @@ import numpy as np
 
 from bladewright.nurbs.curve import Curve
 from bladewright.nurbs.domain import extended
-from bladewright.nurbs.flux import mass_properties
+from bladewright.nurbs.mass_properties import mass_properties
 from bladewright.nurbs.revolution import Revolution
 from bladewright.nurbs.surface import Surface
 from bladewright.nurbs.trimmed import TrimmedSurface

@@ -6,9 +6,9 @@ from pathlib import Path
 
 import pytest
 
-from bladewright import appearing as module
+from bladewright import atomic_write as module
 from bladewright import cad
-from bladewright.appearing import appearing
+from bladewright.atomic_write import atomic_write
 from bladewright.cad import writing
 from bladewright.errors import FileError
 
@@ -29,7 +29,7 @@ def killed(built, path):
     """How a process ends that kills itself when it has written all but the last of a file."""
     child = os.fork()
     if child == 0:
-        put = writing._put
+        put = writing._write_format
 
         def dying(made, body, unfinished, *arguments, **named):
             put(made, body, unfinished, *arguments, **named)
@@ -37,7 +37,7 @@ def killed(built, path):
                 os.kill(os.getpid(), signal.SIGKILL)
             os._exit(1)
 
-        writing._put = dying
+        writing._write_format = dying
         cad.write(built, path)
         os._exit(2)
     return os.waitstatus_to_exitcode(os.waitpid(child, 0)[1])
@@ -62,7 +62,7 @@ def test_an_error_while_writing_leaves_the_old_file(tmp_path):
     path.write_text("old")
 
     def fail():
-        with appearing(path) as unfinished:
+        with atomic_write(path) as unfinished:
             Path(unfinished).write_text("half of the n")
             raise KeyboardInterrupt
 
@@ -75,7 +75,7 @@ def test_an_error_while_writing_leaves_the_old_file(tmp_path):
 @pytest.mark.usefixtures("way")
 def test_a_file_appears_with_all_its_contents_and_the_usual_permissions(tmp_path):
     for text in ("first", "second"):
-        with appearing(tmp_path / "a.txt") as unfinished:
+        with atomic_write(tmp_path / "a.txt") as unfinished:
             Path(unfinished).write_text(text)
         assert (tmp_path / "a.txt").read_text() == text
     (tmp_path / "b.txt").write_text("")
@@ -90,7 +90,7 @@ def test_what_a_link_points_to_is_replaced_and_the_link_stays(tmp_path):
     target.write_text("old")
     link = tmp_path / "link.txt"
     link.symlink_to(target)
-    with appearing(link) as unfinished:
+    with atomic_write(link) as unfinished:
         Path(unfinished).write_text("new")
     assert link.is_symlink()
     assert target.read_text() == "new"

@@ -13,10 +13,10 @@ from OCP.TopAbs import TopAbs_FORWARD, TopAbs_WIRE
 from OCP.TopoDS import TopoDS, TopoDS_Compound, TopoDS_Face, TopoDS_Shell, TopoDS_Solid
 
 from bladewright import cad
-from bladewright.cad.quiet import quiet
-from bladewright.cad.reopen import each, format_of
-from bladewright.cad.solids import body
-from bladewright.cad.writing import _put
+from bladewright.cad.kernel import quiet
+from bladewright.cad.reading import format_of, subshapes
+from bladewright.cad.solids import occ_solid
+from bladewright.cad.writing import _write_format
 
 from .blades import annular, moved, replaced
 
@@ -45,7 +45,7 @@ def put(shape, path):
 def written(built, path):
     """Write a file without measuring it."""
     with quiet():
-        _put(built, body(built), str(path), format_of(path), schema="AP242", solid=True)
+        _write_format(built, occ_solid(built), str(path), format_of(path), schema="AP242", solid=True)
 
 
 def failing(path, built, samples=2500):
@@ -95,7 +95,7 @@ def test_a_pole_moved_by_a_few_millionths_of_a_millimetre_is_measured(rotor, tmp
 @pytest.mark.parametrize("ending", ["step", "brep"])
 @pytest.mark.parametrize("name", ["upper", "hub"])
 def test_a_missing_face(rotor, tmp_path, name, ending):
-    faces = [face for label, face in body(rotor).faces.items() if label != name]
+    faces = [face for label, face in occ_solid(rotor).faces.items() if label != name]
     path = tmp_path / f"open.{ending}"
     put(solid_of(faces), path)
     trip = failing(path, rotor)
@@ -135,7 +135,7 @@ def test_a_swapped_unit(bodies, tmp_path, ending, told, swapped, unit):
 
 
 def test_an_open_edge(rotor, tmp_path):
-    made = body(rotor)
+    made = occ_solid(rotor)
     # one face stands on its own copies of the edges
     faces = [TopoDS.Face_s(BRepBuilderAPI_Copy(face).Shape()) if k == 0 else face
              for k, face in enumerate(made.faces.values())]  # fmt: skip
@@ -152,7 +152,7 @@ def test_an_open_edge(rotor, tmp_path):
 def test_faces_that_the_kernel_calls_valid_but_that_are_not_closed(rotor, tmp_path, ending):
     builder, loose = BRep_Builder(), TopoDS_Compound()
     builder.MakeCompound(loose)
-    for face in body(rotor).faces.values():
+    for face in occ_solid(rotor).faces.values():
         builder.Add(loose, BRepBuilderAPI_Copy(face).Shape())
     assert BRepCheck_Analyzer(loose).IsValid()
     path = tmp_path / f"loose.{ending}"
@@ -166,7 +166,7 @@ def test_faces_that_the_kernel_calls_valid_but_that_are_not_closed(rotor, tmp_pa
 def test_a_shell_with_a_hole_that_the_kernel_calls_valid(rotor, tmp_path):
     builder, shell = BRep_Builder(), TopoDS_Shell()
     builder.MakeShell(shell)
-    for name, face in body(rotor).faces.items():
+    for name, face in occ_solid(rotor).faces.items():
         if name != "shroud":
             builder.Add(shell, face)
     assert BRepCheck_Analyzer(shell).IsValid()
@@ -182,7 +182,7 @@ def test_a_solid_that_the_kernel_calls_valid_because_its_tolerances_hide_a_gap(r
     low = dataclasses.replace(
         hub.revolution, meridian=dataclasses.replace(line, control_points=line.control_points - [0.0, 2e-5])
     )
-    monkeypatch.setattr("bladewright.cad.topology.ALONG", 1e-2)
+    monkeypatch.setattr("bladewright.cad.topology.ON_BOUNDARY", 1e-2)
     apart = replaced(rotor, hub=dataclasses.replace(hub, surface=low.surface(), revolution=low))
     written(apart, tmp_path / "apart.step")
     trip = failing(tmp_path / "apart.step", rotor)
@@ -201,14 +201,14 @@ def wrong_side(face):
     builder = BRep_Builder()
     turned = TopoDS_Face()
     builder.MakeFace(turned, BRep_Tool.Surface_s(forward), BRep_Tool.Tolerance_s(forward))
-    for wire in each(forward, TopAbs_WIRE):
+    for wire in subshapes(forward, TopAbs_WIRE):
         builder.Add(turned, wire.Reversed())
     return TopoDS.Face_s(turned.Oriented(face.Orientation()))
 
 
 @pytest.mark.parametrize("name", ["hub", "shroud", "upper"])
 def test_a_face_on_the_wrong_side_of_its_trim(rotor, tmp_path, name):
-    faces = [wrong_side(face) if label == name else face for label, face in body(rotor).faces.items()]
+    faces = [wrong_side(face) if label == name else face for label, face in occ_solid(rotor).faces.items()]
     put(solid_of(faces), tmp_path / "wrong.brep")
     trip = failing(tmp_path / "wrong.brep", rotor)
     assert about(trip, f"face {name} keeps the wrong side of its boundary")
@@ -216,7 +216,7 @@ def test_a_face_on_the_wrong_side_of_its_trim(rotor, tmp_path, name):
 
 @pytest.mark.parametrize("name", ["hub", "shroud"])
 def test_a_wall_that_keeps_the_wrong_side_is_far_off_too(rotor, tmp_path, name):
-    faces = [wrong_side(face) if label == name else face for label, face in body(rotor).faces.items()]
+    faces = [wrong_side(face) if label == name else face for label, face in occ_solid(rotor).faces.items()]
     put(solid_of(faces), tmp_path / "wrong.brep")
     trip = failing(tmp_path / "wrong.brep", rotor)
     assert next(face for face in trip.faces if face.name == name).max_deviation > 10.0
@@ -260,7 +260,7 @@ def test_a_second_body_in_the_file(rotor, tmp_path):
     builder = BRep_Builder()
     both = TopoDS_Compound()
     builder.MakeCompound(both)
-    solid = body(rotor).solid
+    solid = occ_solid(rotor).solid
     builder.Add(both, solid)
     builder.Add(both, BRepBuilderAPI_Copy(solid).Shape())
     put(both, tmp_path / "two.brep")
@@ -269,6 +269,6 @@ def test_a_second_body_in_the_file(rotor, tmp_path):
 
 
 def test_a_body_turned_inside_out(rotor, tmp_path):
-    put(body(rotor).solid.Reversed(), tmp_path / "inside.brep")
+    put(occ_solid(rotor).solid.Reversed(), tmp_path / "inside.brep")
     trip = failing(tmp_path / "inside.brep", rotor)
     assert trip.volume.cad == pytest.approx(-trip.volume.native, rel=1e-6)

@@ -5,14 +5,14 @@ import pytest
 
 import bladewright as bw
 from bladewright import cad
-from bladewright.blade.families import ProfileBlade
-from bladewright.blade.flow_path import FlowPath
-from bladewright.blade.meridian import ThroughPoints
+from bladewright.blade.design.families import ProfileBlade
+from bladewright.blade.design.flow_path import FlowPath
+from bladewright.blade.design.meridional_curve import ThroughPoints
 from bladewright.cad.closure import closure
-from bladewright.cad.reopen import reopened
+from bladewright.cad.reading import read_cad_file
 from bladewright.errors import CadError
 from bladewright.files.examples import example_text
-from bladewright.nurbs.revolve import arc
+from bladewright.nurbs.revolution import arc
 from bladewright.section.profiles.flat_plate import FlatPlate
 
 from .sectors import Cuttable, sector, standing
@@ -65,7 +65,7 @@ def test_its_centroid_is_the_sectors_without_the_blades(passage, cut):
 def test_its_step_file_keeps_solid_volume_and_names(cut, tmp_path):
     path = tmp_path / "passage.step"
     cad.write_cut(cut, path)
-    opened = reopened(path)
+    opened = read_cad_file(path)
     assert sorted(opened.names.values()) == sorted(cut.body.faces)
     assert [each.name for each in tmp_path.iterdir()] == ["passage.step"]
 

@@ -6,7 +6,7 @@ import pytest
 
 import bladewright
 from bladewright import cad
-from bladewright.cad.reopen import reopened
+from bladewright.cad.reading import read_cad_file
 
 
 def entities(path):
@@ -64,4 +64,4 @@ def test_the_global_section_says_what_it_is_who_made_it_and_in_millimetres(rotor
 @pytest.mark.parametrize("kind", ["iges", "surfaces"])
 def test_faces_are_named_by_their_labels(rotor, kind, request):
     path, _ = request.getfixturevalue(kind)
-    assert sorted(reopened(path).names.values()) == sorted(rotor.surfaces)
+    assert sorted(read_cad_file(path).names.values()) == sorted(rotor.surfaces)

@@ -7,9 +7,8 @@ import numpy as np
 import pytest
 
 from bladewright import cad
-from bladewright.cad.mesh import Mesh, Nearest, merged
-from bladewright.cad.stl import RECORD, read_stl
-from bladewright.cad.threemf import read_3mf
+from bladewright.cad.mesh import ClosestTriangle, TriangleMesh, mesh_of_triangles
+from bladewright.cad.mesh_files import RECORD, read_3mf, read_stl
 from bladewright.errors import CadError
 
 COARSE = 2e-4
@@ -148,7 +147,7 @@ def test_a_3mf_file_in_metres_is_read_in_millimetres(bodies, tmp_path):
 
 def test_volume_and_centroid_of_a_tetrahedron_are_right():
     vertices = np.array([[1.0, 2.0, 3.0], [2.0, 2.0, 3.0], [1.0, 3.0, 3.0], [1.0, 2.0, 4.0]])
-    mesh = Mesh(vertices=vertices, triangles=np.array([[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]]))
+    mesh = TriangleMesh(vertices=vertices, triangles=np.array([[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]]))
     assert mesh.volume == pytest.approx(1.0 / 6.0)
     np.testing.assert_allclose(mesh.centroid, vertices.mean(axis=0))
     assert (mesh.open_edges, mesh.shells) == (0, 1)
@@ -156,7 +155,7 @@ def test_volume_and_centroid_of_a_tetrahedron_are_right():
 
 def test_the_nearest_triangle_is_the_one_that_brute_force_finds():
     random = np.random.default_rng(5)
-    mesh = merged(random.random((60, 3, 3)))
+    mesh = mesh_of_triangles(random.random((60, 3, 3)))
     points = 2.0 * random.random((100, 3)) - 0.5
     share = np.linspace(0.0, 1.0, 41)
     a, b = (grid.ravel() for grid in np.meshgrid(share, share))
@@ -164,7 +163,7 @@ def test_the_nearest_triangle_is_the_one_that_brute_force_finds():
     weights = np.stack([a, b, 1.0 - a - b], axis=-1)
     dense = np.einsum("pk,mkd->mpd", weights, mesh.corners).reshape(-1, 3)
     brute = np.array([np.sqrt(np.min(np.sum((dense - point) ** 2, axis=-1))) for point in points])
-    found = Nearest(mesh).distance(points, 0.0)
+    found = ClosestTriangle(mesh).distance(points, 0.0)
     # the dense points of a triangle are a fortieth of a side apart
     assert np.all(found <= brute + 1e-12)
     np.testing.assert_allclose(found, brute, atol=0.03)
@@ -176,5 +175,7 @@ def test_a_large_triangle_is_found_behind_hundreds_of_small_ones():
     rim = 0.001 * np.stack([np.cos(angles), np.sin(angles), 0.0 * angles], axis=-1)
     fan = np.stack([np.zeros_like(rim[1:]), rim[:-1], rim[1:]], axis=1)
     large = np.array([[[0.0, 0.0, 0.0], [-1.0, 0.0, 0.0], [0.0, -1.0, 0.0]]])
-    found = Nearest(merged(np.concatenate([fan, large]))).distance(np.array([[-1e-4, -1e-4, 0.0]]), 1e-6)
+    found = ClosestTriangle(mesh_of_triangles(np.concatenate([fan, large]))).distance(
+        np.array([[-1e-4, -1e-4, 0.0]]), 1e-6
+    )
     np.testing.assert_allclose(found, 0.0, atol=1e-12)

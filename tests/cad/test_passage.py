@@ -9,10 +9,10 @@ from OCP.BRep import BRep_Tool
 
 from bladewright import cad
 from bladewright.cad.closure import closure
-from bladewright.cad.geometry import native_surface
-from bladewright.cad.reopen import reopened
-from bladewright.cad.solids import body
-from bladewright.cad.topology import pieces, side_curve, topology
+from bladewright.cad.conversion import native_surface
+from bladewright.cad.reading import read_cad_file
+from bladewright.cad.solids import occ_solid
+from bladewright.cad.topology import side_curve, smooth_pieces, topology
 from bladewright.errors import CadError
 from bladewright.nurbs.domain import reparametrised
 from bladewright.nurbs.surface import Surface
@@ -48,7 +48,7 @@ def test_a_passage_has_the_edges_and_vertices_that_it_should(passages, kind):
 
 @pytest.mark.parametrize("kind", COUNTS)
 def test_a_passage_becomes_one_closed_valid_solid_whose_faces_meet_exactly(passages, kind):
-    made = body(passages[kind])
+    made = occ_solid(passages[kind])
     closed = closure(made.solid)
     assert (closed.solids, closed.shells, closed.free, closed.crowded, closed.valid) == (1, 1, 0, 0, True)
     assert len(closed.joints) == COUNTS[kind][1]
@@ -58,7 +58,7 @@ def test_a_passage_becomes_one_closed_valid_solid_whose_faces_meet_exactly(passa
 
 
 def test_creased_faces_are_the_native_ones_pole_for_pole(vane):
-    for name, shape in body(vane).faces.items():
+    for name, shape in occ_solid(vane).faces.items():
         returned, face = native_surface(BRep_Tool.Surface_s(shape)), vane.surfaces[name]
         np.testing.assert_array_equal(returned.control_points, face.control_points * 1000.0)
         np.testing.assert_array_equal(returned.knots_u, face.knots_u)
@@ -66,7 +66,7 @@ def test_creased_faces_are_the_native_ones_pole_for_pole(vane):
 
 def test_a_side_falls_into_its_pieces_control_point_for_control_point(vane):
     whole, _ = side_curve(vane.surfaces["hub_upper"], 0)
-    parts = pieces(whole)
+    parts = smooth_pieces(whole)
     assert [part.domain for part in parts] == [(0.0, 0.3), (0.3, 0.7), (0.7, 1.0)]
     np.testing.assert_array_equal(
         np.concatenate([parts[0].control_points, *[part.control_points[1:] for part in parts[1:]]]),
@@ -79,12 +79,12 @@ def test_a_side_falls_into_its_pieces_control_point_for_control_point(vane):
 
 def test_a_side_without_creases_is_one_piece(vane):
     whole, _ = side_curve(vane.surfaces["blade_upper"], 0)
-    assert [part.control_points.shape for part in pieces(whole)] == [whole.control_points.shape]
+    assert [part.control_points.shape for part in smooth_pieces(whole)] == [whole.control_points.shape]
 
 
 def test_the_parameter_of_a_neighbour_may_have_any_scale(vane):
     scaled = replaced(vane, blade_upper=reparametrised(vane.surfaces["blade_upper"], -3.0, 5.0))
-    closed = closure(body(scaled).solid)
+    closed = closure(occ_solid(scaled).solid)
     assert closed.valid
     assert max(joint.gap for joint in closed.joints) < 1e-11
 
@@ -116,7 +116,7 @@ def test_a_passage_returns_from_a_file_with_one_face_a_name(passages, kind, endi
     assert trip.edges.max_gap < 1e-8
     assert trip.volume.relative_error < 1e-9
     if ending != "brep":
-        opened = reopened(tmp_path / f"passage.{ending}")
+        opened = read_cad_file(tmp_path / f"passage.{ending}")
         assert len(opened.faces) == len(built.surfaces)
         assert sorted(opened.names.values()) == sorted(built.surfaces)
 
@@ -167,7 +167,7 @@ def test_walls_with_each_others_names_are_found(vane, tmp_path):
 
 
 def test_a_missing_wall_is_found(vane, tmp_path):
-    put(solid_of([face for name, face in body(vane).faces.items() if name != "hub_upper"]), tmp_path / "open.brep")
+    put(solid_of([face for name, face in occ_solid(vane).faces.items() if name != "hub_upper"]), tmp_path / "open.brep")
     trip = failing(tmp_path / "open.brep", vane)
     assert about(trip, "no face of the file is hub_upper")
     # three edges to vane and extensions, three to the periodic boundary, one each to inlet and outlet
@@ -176,7 +176,7 @@ def test_a_missing_wall_is_found(vane, tmp_path):
 
 def test_a_wall_split_by_another_program_is_one_face_still(passages, tmp_path):
     # without names each piece is found to lie on the wall that it is a part of
-    put(body(passages["split"]).solid, tmp_path / "split.brep")
+    put(occ_solid(passages["split"]).solid, tmp_path / "split.brep")
     trip = cad.verify(tmp_path / "split.brep", passages["whole"], samples=900)
     assert trip.passed, str(trip)
     assert len(trip.faces) == 10
@@ -186,4 +186,4 @@ def test_split_faces_are_plain(passages):
     for face in passages["split"].surfaces.values():
         assert isinstance(face, Surface)
         for side in range(4):
-            assert len(pieces(side_curve(face, side)[0])) == 1
+            assert len(smooth_pieces(side_curve(face, side)[0])) == 1

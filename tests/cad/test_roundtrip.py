@@ -13,7 +13,7 @@ from OCP.ShapeUpgrade import ShapeUpgrade_ShapeDivideContinuity
 from OCP.STEPControl import STEPControl_AsIs, STEPControl_Writer
 
 from bladewright import cad
-from bladewright.cad.solids import body
+from bladewright.cad.solids import occ_solid
 from bladewright.cad.verification import limits_of
 from bladewright.nurbs.surface import Surface
 
@@ -94,7 +94,7 @@ def test_a_file_in_another_unit_that_says_so_passes(bodies, tmp_path, unit):
     STEPControl_Writer()
     Interface_Static.SetCVal_s("write.step.unit", unit)
     try:
-        foreign_step(body(bodies["linear"]).solid, path)
+        foreign_step(occ_solid(bodies["linear"]).solid, path)
     finally:
         Interface_Static.SetCVal_s("write.step.unit", "MM")
     trip = cad.verify(path, bodies["linear"])
@@ -104,7 +104,7 @@ def test_a_file_in_another_unit_that_says_so_passes(bodies, tmp_path, unit):
 
 @pytest.mark.parametrize("name", ["annular", "linear", "ruled ends"])
 def test_a_foreign_file_without_names_passes(bodies, tmp_path, name):
-    foreign_step(body(bodies[name]).solid, tmp_path / "part.step")
+    foreign_step(occ_solid(bodies[name]).solid, tmp_path / "part.step")
     trip = cad.verify(tmp_path / "part.step", bodies[name])
     assert trip.passed, str(trip)
     assert {face.name for face in trip.faces} == set(bodies[name].surfaces)
@@ -112,14 +112,14 @@ def test_a_foreign_file_without_names_passes(bodies, tmp_path, name):
 
 def test_a_foreign_file_with_other_surfaces_of_the_same_shape_passes(rotor, tmp_path):
     # walls become rational splines
-    converted = BRepBuilderAPI_NurbsConvert(body(rotor).solid).Shape()
+    converted = BRepBuilderAPI_NurbsConvert(occ_solid(rotor).solid).Shape()
     foreign_step(converted, tmp_path / "part.step")
     trip = cad.verify(tmp_path / "part.step", rotor)
     assert trip.passed, str(trip)
 
 
 def test_a_foreign_file_with_split_faces_passes(rotor, tmp_path):
-    divided = ShapeUpgrade_ShapeDivideContinuity(body(rotor).solid)
+    divided = ShapeUpgrade_ShapeDivideContinuity(occ_solid(rotor).solid)
     divided.SetSurfaceCriterion(GeomAbs_C3)
     divided.SetTolerance(1e-9)
     divided.Perform()
@@ -136,7 +136,7 @@ def test_a_foreign_file_with_split_faces_passes(rotor, tmp_path):
 
 def test_a_foreign_iges_file_of_loose_faces_passes(rotor, tmp_path):
     writer = IGESControl_Writer("MM", 0)
-    assert writer.AddShape(body(rotor).solid)
+    assert writer.AddShape(occ_solid(rotor).solid)
     writer.ComputeModel()
     assert writer.Write(str(tmp_path / "part.igs"))
     trip = cad.verify(tmp_path / "part.igs", rotor)

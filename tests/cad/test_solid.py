@@ -11,8 +11,8 @@ from OCP.Geom import Geom_Plane, Geom_SurfaceOfRevolution
 
 from bladewright import cad
 from bladewright.cad.closure import closure
-from bladewright.cad.geometry import native_surface
-from bladewright.cad.solids import body
+from bladewright.cad.conversion import native_surface
+from bladewright.cad.solids import occ_solid
 from bladewright.cad.verification import limits_of
 from bladewright.errors import CadError
 from bladewright.nurbs.surface import Surface
@@ -36,7 +36,7 @@ def test_the_solid_encloses_the_native_volume_with_its_faces_outwards(built):
 
 
 def test_untrimmed_faces_are_the_native_surfaces_pole_for_pole(built):
-    for name, shape in body(built).faces.items():
+    for name, shape in occ_solid(built).faces.items():
         face = built.surfaces[name]
         if isinstance(face, Surface):
             returned = native_surface(BRep_Tool.Surface_s(shape))
@@ -48,7 +48,7 @@ def test_untrimmed_faces_are_the_native_surfaces_pole_for_pole(built):
 
 def test_gaps_and_tolerances_keep_what_was_promised(built):
     limits = limits_of(built)
-    for joint in closure(body(built).solid).joints:
+    for joint in closure(occ_solid(built).solid).joints:
         sides = all(isinstance(list(built.surfaces.values())[k], Surface) for k in joint.faces)
         limit = limits["edge_mm" if sides else "end_mm"]
         assert joint.gap <= limit
@@ -60,7 +60,7 @@ def test_gaps_and_tolerances_keep_what_was_promised(built):
 
 def test_annular_ends_are_surfaces_of_revolution_about_the_machine_axis(rotor):
     for name in ("hub", "shroud"):
-        surface = BRep_Tool.Surface_s(body(rotor).faces[name])
+        surface = BRep_Tool.Surface_s(occ_solid(rotor).faces[name])
         assert isinstance(surface, Geom_SurfaceOfRevolution)
         axis = surface.Axis()
         assert axis.Location().Distance(type(axis.Location())(0.0, 0.0, 0.0)) == 0.0
@@ -69,17 +69,17 @@ def test_annular_ends_are_surfaces_of_revolution_about_the_machine_axis(rotor):
 
 def test_linear_ends_are_planes(bodies):
     for name in ("hub", "shroud"):
-        assert isinstance(BRep_Tool.Surface_s(body(bodies["linear"]).faces[name]), Geom_Plane)
+        assert isinstance(BRep_Tool.Surface_s(occ_solid(bodies["linear"]).faces[name]), Geom_Plane)
 
 
 @pytest.mark.parametrize("turn", [1.5, 3.1, -2.0])
 def test_a_blade_may_stand_at_any_angle_around_the_axis(turn, rotor):
     turned = annular(turn=turn)
-    closed = closure(body(turned).solid)
+    closed = closure(occ_solid(turned).solid)
     assert closed.valid
     assert closed.free == 0
     # turning changes lengths by rounding only; the ends lie off the wall by 4e-7 mm
-    gap = max(joint.gap for joint in closure(body(rotor).solid).joints)
+    gap = max(joint.gap for joint in closure(occ_solid(rotor).solid).joints)
     assert max(joint.gap for joint in closed.joints) == pytest.approx(gap, rel=1e-3)
 
 

@@ -14,7 +14,7 @@ from OCP.XCAFDoc import XCAFDoc_DocumentTool
 
 import bladewright
 from bladewright import cad
-from bladewright.cad.reopen import reopened
+from bladewright.cad.reading import read_cad_file
 from bladewright.errors import CadError
 
 SCHEMAS = {
@@ -113,4 +113,4 @@ def test_nothing_but_the_file_is_left_behind(step):
 
 
 def test_the_file_names_its_faces_in_any_order(rotor, step):
-    assert sorted(reopened(step[0]).names.values()) == sorted(rotor.surfaces)
+    assert sorted(read_cad_file(step[0]).names.values()) == sorted(rotor.surfaces)

@@ -10,7 +10,7 @@ import pytest
 import bladewright as bw
 from bladewright.errors import FitError
 from bladewright.files.examples import example_text
-from bladewright.fitting.judgement.result import Estimate, Fit
+from bladewright.fitting.assessment.result import Estimate, Fit
 from bladewright.nurbs.closest import closest_on_curve
 
 

@@ -116,7 +116,7 @@ def test_a_case_of_tblade3_becomes_a_design_and_that_a_verified_solid(run, windm
 
 def test_points_that_tblade3_has_written_beside_its_input_are_measured(run, windmill):
     from bladewright.files.tblade3 import read_tblade3
-    from bladewright.files.tblade3.computed import section_points
+    from bladewright.files.tblade3.importing import section_points
     from bladewright.files.tblade3.translation import case_sections
 
     sections = case_sections(read_tblade3(windmill))

@@ -47,7 +47,7 @@ def test_a_design_becomes_a_mesh_with_its_figures(run, section_file, tmp_path):
 
 @pytest.mark.usefixtures("loaded_gmsh")
 def test_a_mesh_that_fails_a_check_stays_and_ends_with_1(run, section_file, tmp_path, monkeypatch):
-    monkeypatch.setattr("bladewright.meshing.measures.LIMIT", (0.0, 0.0))
+    monkeypatch.setattr("bladewright.meshing.verification.DEVIATION_LIMIT", (0.0, 0.0))
     monkeypatch.chdir(tmp_path)
     found = run("mesh", section_file, "--size", "0.4", "--quiet")
     assert found.status == 1
@@ -111,7 +111,7 @@ def test_an_interruption_ends_with_130_and_leaves_nothing(run, section_file, mon
     def interrupted(*_, **__):
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("bladewright.meshing.making.answered", interrupted)
+    monkeypatch.setattr("bladewright.meshing.passage_mesh.answered", interrupted)
     found = run("mesh", section_file, "-o", section_file.parent / "passage.msh", "--size", "0.4")
     assert found.status == 130
     assert left(section_file.parent) == [section_file.name]

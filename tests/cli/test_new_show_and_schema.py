@@ -80,9 +80,9 @@ def test_set_changes_what_is_shown_as_it_changes_the_file(run, vane_file):
 
 
 def test_a_promise_that_is_not_kept_gives_status_one(run, vane_file, monkeypatch):
-    from bladewright.blade import promises
+    from bladewright.blade.native import conformance
 
-    monkeypatch.setitem(promises.LIMITS, "edge_radius", 1e-12)
+    monkeypatch.setitem(conformance.LIMITS, "edge_radius", 1e-12)
     found = run("show", vane_file)
     assert found.status == 1
     assert "edge_radius" in found.err

@@ -56,7 +56,7 @@ def test_an_interruption_ends_with_130_and_leaves_nothing(run, design_file, monk
     def interrupted(*_):
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("bladewright.cli.making.bodies_from", interrupted)
+    monkeypatch.setattr("bladewright.cli.build_files.bodies_from", interrupted)
     found = run("build", design_file, "-o", design_file.parent / "out")
     assert (found.status, found.err.strip()) == (130, "bladewright: interrupted")
     assert list(design_file.parent.iterdir()) == [design_file]

@@ -89,15 +89,15 @@ def test_a_check_passes_is_drawn_and_lists_every_parameter(run, vane_file, tmp_p
 
 
 def test_a_derivative_that_is_wrong_fails_the_check(run, vane_file, monkeypatch):
-    from bladewright.derivatives import check
+    from bladewright.derivatives import step_study
 
-    exact = check.stepped
+    exact = step_study.stepped
 
     def off(design, base, paths):
         for path, built in zip(paths, exact(design, base, paths), strict=True):
             yield built if path != "stagger" else next(exact(design, base, ["metal_angle_out"]))
 
-    monkeypatch.setattr(check, "stepped", off)
+    monkeypatch.setattr(step_study, "stepped", off)
     found = run("sensitivity", vane_file, "--check", "--free", "stagger*", "--free", "tangent_in")
     assert found.status == 1
     assert "FAILED" in found.out

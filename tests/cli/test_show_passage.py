@@ -43,9 +43,9 @@ def test_show_gives_the_figures_of_a_passage_and_what_it_is_held_to(run, cascade
 
 
 def test_walls_that_miss_their_limit_give_status_one(run, cascade_file, monkeypatch):
-    from bladewright.cli import passage
+    from bladewright.cli import summary
 
-    monkeypatch.setitem(passage.LIMITS, "walls", 1e-18)
+    monkeypatch.setitem(summary.PASSAGE_LIMITS, "walls", 1e-18)
     found = run("show", cascade_file, "--body", "passage")
     assert found.status == 1
     assert "'walls' is not kept" in found.err

@@ -2,8 +2,8 @@
 
 from dataclasses import replace
 
-from bladewright.blade.channel import Channel
-from bladewright.blade.unified import UnifiedBlade
+from bladewright.blade.design.flow_path import Channel
+from bladewright.blade.design.unified import UnifiedBlade
 from bladewright.section.unified import UnifiedSection
 
 COMMON = {

@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 
 import bladewright as bw
-from bladewright.derivatives import check
-from bladewright.derivatives.check import IMAGINARY, LIMIT, STEPS, sweeps
-from bladewright.derivatives.quantities import named
-from bladewright.derivatives.steps import varied_nets
+from bladewright.derivatives import step_study
+from bladewright.derivatives.complex_step import varied_nets
+from bladewright.derivatives.quantities import named_quantity
+from bladewright.derivatives.step_study import IMAGINARY, LIMIT, STEPS, step_studies
 from bladewright.errors import DerivativeError
 from bladewright.files.examples import example_text, examples
 from bladewright.files.reading import design_from
@@ -44,7 +44,7 @@ def machine_design(name):
 def swept(name, quantity, **options):
     design, base = machine(name)
     space = bw.variables(design, knots=getattr(base, "knots", None))
-    return list(sweeps(design, base, named(base, quantity), space, **options))
+    return list(step_studies(design, base, named_quantity(base, quantity), space, **options))
 
 
 def misses(design, base, space, paths):
@@ -82,7 +82,9 @@ def test_every_parameter_of_every_blade_has_the_derivative_that_differences_give
                 assert effect > 1e-6 * base.chord, path
     if at_limit:
         space = bw.variables(design, free=at_limit, knots=base.knots)
-        found = sweeps(design, base, named(base, "surface"), space, steps=np.array([1e-4]), imaginary=IMAGINARY[:1])
+        found = step_studies(
+            design, base, named_quantity(base, "surface"), space, steps=np.array([1e-4]), imaginary=IMAGINARY[:1]
+        )
         assert [each.failure for each in found] == [""] * len(at_limit)
 
 
@@ -129,14 +131,14 @@ def test_a_parameter_beside_a_limit_is_checked_on_smaller_steps():
     design = CASCADE.changed("tangent_in", 1.0 - 2e-4)
     base = design.build()
     space = bw.variables(design, free="tangent_in", knots=base.knots)
-    (found,) = sweeps(design, base, named(base, "surface"), space)
+    (found,) = step_studies(design, base, named_quantity(base, "surface"), space)
     assert not found.failure
     assert found.steps.max() < STEPS.max()
 
 
 def test_an_idle_parameter_and_one_that_is_not_finite_are_named(monkeypatch):
     design, base = CLEARED, CLEARED.build()
-    quantity = named(base, "surface")
+    quantity = named_quantity(base, "surface")
     space = bw.variables(design, free=["stagger[0]", "stagger[1]", "stagger[2]"], knots=base.knots)
 
     def carried(design, base, paths):
@@ -148,10 +150,12 @@ def test_an_idle_parameter_and_one_that_is_not_finite_are_named(monkeypatch):
         next(true)
         yield next(true)
 
-    check_stepped = check.stepped
-    monkeypatch.setattr(check, "stepped", carried)
+    check_stepped = step_study.stepped
+    monkeypatch.setattr(step_study, "stepped", carried)
     with np.errstate(invalid="ignore"):
-        idle, broken, right = sweeps(design, base, quantity, space, steps=np.array([1e-4]), imaginary=IMAGINARY[:1])
+        idle, broken, right = step_studies(
+            design, base, quantity, space, steps=np.array([1e-4]), imaginary=IMAGINARY[:1]
+        )
     assert idle.failure == "stagger[0] has no effect on the surface"
     assert broken.failure == "stagger[1]: the derivative of the surface is not finite"
     assert not right.failure
@@ -166,4 +170,4 @@ class _Net:
 def test_an_unknown_quantity_is_refused_with_the_nearest():
     _, base = machine("vki-ls89")
     with pytest.raises(DerivativeError, match="did you mean 'throat'"):
-        named(base, "throt")
+        named_quantity(base, "throt")

@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 
 import bladewright as bw
-from bladewright.blade.exact import exact_blade
-from bladewright.blade.native import native_sides
-from bladewright.derivatives import jacobian
-from bladewright.derivatives.steps import stepped
+from bladewright.blade.exact.unified import exact_unified_blade
+from bladewright.blade.native.interpolation import native_sides
+from bladewright.derivatives import net_jacobian
+from bladewright.derivatives.complex_step import stepped
 from bladewright.numerics.quadrature import panels
 
 from .machines import CASCADE, CLEARED, RADIAL, ROTOR, SECTION
@@ -25,7 +25,7 @@ def found(design, blade):
 def test_every_parameter_s_derivative_is_that_of_a_build_with_its_step_alone(design, blade, found):
     assert found.paths == tuple(design.parameters())
     for place, (path, value) in enumerate(design.parameters().items()):
-        exact = exact_blade(design.changed(path, value + STEP * 1j), blade.knots.tip)
+        exact = exact_unified_blade(design.changed(path, value + STEP * 1j), blade.knots.tip)
         alone = np.imag(native_sides(exact.stations(blade.knots.sites_v), blade.knots)) / STEP
         together = np.stack([found.nets["upper"][place], found.nets["lower"][place]])
         assert together == pytest.approx(alone, abs=ROUNDING * np.abs(alone).max()), path
@@ -44,7 +44,7 @@ def test_points_are_linear_in_the_nets_and_grow_in_any_shape(design, blade, foun
 
 @pytest.mark.parametrize("at_once", [7, 50_000])
 def test_forward_and_reverse_agree_in_the_sum_of_products(found, at_once, monkeypatch):
-    monkeypatch.setattr(jacobian, "POINTS_AT_ONCE", at_once)
+    monkeypatch.setattr(net_jacobian, "POINTS_AT_ONCE", at_once)
     random = np.random.default_rng(4)
     u, v = random.random((2, 5, 6))
     bars = {name: (u, v, random.standard_normal((5, 6, 3))) for name in ("upper", "lower")}

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 import bladewright as bw
-from bladewright.blade.properties import middle_of
-from bladewright.derivatives.enclosed import enclosed_volume_rates
+from bladewright.blade.native.properties import middle_of
+from bladewright.derivatives.enclosed_volume import enclosed_volume_rates
 from bladewright.errors import DerivativeError
 from bladewright.files.examples import example_text
 from bladewright.files.reading import design_from

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 import bladewright as bw
-from bladewright.blade.properties import blade_moments
-from bladewright.derivatives.steps import stepped, varied
+from bladewright.blade.native.properties import blade_moments
+from bladewright.derivatives.complex_step import stepped, varied
 from bladewright.designs import unit_at
 from bladewright.errors import DerivativeError, DesignError
 from bladewright.nurbs.curvature import surface_curvature

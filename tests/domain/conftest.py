@@ -6,7 +6,7 @@ from importlib import resources
 
 import pytest
 
-from bladewright.blade.blade import Blade
+from bladewright.blade.native.blade import Blade
 from bladewright.domain.build import passage
 from bladewright.domain.passage import Passage
 from bladewright.files.reading import read_design

@@ -5,8 +5,8 @@ from importlib import resources
 import numpy as np
 import pytest
 
-from bladewright.blade.sectioned_exact import sectioned_exact
-from bladewright.domain.abreast import Abreast, kept_abreast
+from bladewright.blade.exact.sectioned import exact_sectioned_blade
+from bladewright.domain.camber_correspondence import CamberCorrespondence, camber_correspondence
 from bladewright.domain.extents import end_cambers
 from bladewright.files.reading import read_design
 
@@ -17,7 +17,7 @@ T = np.linspace(0.0, 1.0, 201)
 @pytest.fixture(params=NAMES, scope="module")
 def ends(request):
     design = read_design(resources.files("bladewright") / "examples" / f"{request.param}.toml")
-    return end_cambers(sectioned_exact(design))
+    return end_cambers(exact_sectioned_blade(design))
 
 
 def lag(ends, way):
@@ -29,13 +29,13 @@ def lag(ends, way):
 
 
 def test_the_camber_is_kept_amid_the_sides(ends):
-    way = kept_abreast(ends, -0.65)
+    way = camber_correspondence(ends, -0.65)
     # beside round edges the sides stand still, and the camber may not
-    assert lag(ends, way) < min(0.1, 0.85 * lag(ends, Abreast(slopes=way.slopes)))
+    assert lag(ends, way) < min(0.1, 0.85 * lag(ends, CamberCorrespondence(slopes=way.slopes)))
 
 
 def test_it_goes_on_all_the_way_and_leaves_the_edges_as_stated(ends):
-    way = kept_abreast(ends, -0.65)
+    way = camber_correspondence(ends, -0.65)
     assert way(np.array([0.0, 1.0])) == pytest.approx([0.0, 1.0], abs=1e-14)
     assert np.min(np.diff(way(T))) > 0.0
     # round edges as slowly as asked, and others as the sides that meet there

@@ -6,11 +6,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from bladewright.blade.channel import Channel
-from bladewright.blade.unified import UnifiedBlade
+from bladewright.blade.design.flow_path import Channel
+from bladewright.blade.design.unified import UnifiedBlade
 from bladewright.domain.build import passage
 from bladewright.domain.checks import check_duct
-from bladewright.domain.crossing import CROSSINGS
+from bladewright.domain.walls import CROSS_LINES
 from bladewright.errors import DesignError
 
 
@@ -51,7 +51,7 @@ def test_a_duct_whose_walls_cross_is_refused_with_the_extent_that_is_possible(fa
         passage(fan.blade, upstream=12.0)
     most = float(re.search(r"at most ([\d.]+) is possible", str(refused.value))[1])
     assert 0.5 < most < 12.0
-    check_duct(replace(fan.passage.duct, low=-0.95 * most), fan.blade.exact.course)
+    check_duct(replace(fan.passage.duct, low=-0.95 * most), fan.blade.exact.meridional_extent)
 
 
 def test_a_blade_outside_its_passage_is_refused_with_span_and_distance(cascade):
@@ -83,5 +83,5 @@ def test_where_cross_lines_that_turn_back_early_fold_others_are_taken():
         channel=Channel(leading_edge=((0.0, 0.0), (0.0, 50.0)), trailing_edge=((40.0, 0.0), (40.0, 50.0))),
     )
     made = passage(vane.build())
-    assert made.knots.crossing in CROSSINGS[1:]
+    assert made.knots.crossing in CROSS_LINES[1:]
     assert min(share for share, _, _ in made.folds.values()) > 0.0

@@ -6,12 +6,12 @@ from importlib import resources
 import numpy as np
 import pytest
 
-from bladewright.blade.families import ProfileBlade
-from bladewright.blade.flow_path import FlowPath
-from bladewright.blade.meridian import ThroughPoints
+from bladewright.blade.design.families import ProfileBlade
+from bladewright.blade.design.flow_path import FlowPath
+from bladewright.blade.design.meridional_curve import ThroughPoints
 from bladewright.domain.build import passage
 from bladewright.domain.knots import BLADE_AT
-from bladewright.domain.strip import STRIPS
+from bladewright.domain.walls import STRIPS
 from bladewright.files.reading import read_design
 from bladewright.nurbs.closest import closest_on_curve
 from bladewright.section.profiles.flat_plate import FlatPlate

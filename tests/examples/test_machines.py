@@ -6,7 +6,7 @@ from functools import cache
 import numpy as np
 import pytest
 
-from bladewright.blade.prismatic import prismatic
+from bladewright.blade.design.families import prismatic
 from bladewright.files.examples import example_text, examples
 from bladewright.files.reading import design_from
 from bladewright.section.unified import UnifiedSection

@@ -111,7 +111,7 @@ def test_what_becomes_of_broken_input_is_told_apart(tried, kind):
 
 
 def test_laws_that_ask_for_too_many_poles_are_refused_for_their_number(monkeypatch):
-    from bladewright.blade import build
+    from bladewright.blade.native import build
 
     monkeypatch.setattr(build, "MOST_POLES", (200, 5))
     design = design_from(tomllib.loads(example_text("exhaust-strut")), "strut.toml")

@@ -12,7 +12,7 @@ import bladewright as bw
 from bladewright.errors import DesignError, FileError
 from bladewright.files.parablade import import_parablade, read_parablade
 from bladewright.files.parablade.config import parsed
-from bladewright.files.parablade.shape import shape_at, side_basis
+from bladewright.files.parablade.sections import sections_at, side_basis
 from bladewright.nurbs.closest import closest_on_curve, closest_on_surface
 
 _SPEC = spec_from_file_location("parablade_witness", Path(__file__).with_name("parablade.py"))
@@ -121,7 +121,7 @@ def places(count):
 def test_the_blade_that_is_matched_is_the_one_of_the_recipe(name):
     config, witness = parsed(text_of(name), name), Witness(text_of(name))
     v = np.array([0.0, 0.37, 1.0])
-    shape = shape_at(config, v)
+    shape = sections_at(config, v)
     s, around = places(5)
     for side, controls in zip(("upper", "lower"), shape.sides, strict=True):
         # both do the same arithmetic in another order

@@ -9,9 +9,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from bladewright.blade.channel import Channel
-from bladewright.blade.sectioned import SectionedBlade
-from bladewright.blade.unified import UnifiedBlade
+from bladewright.blade.design.flow_path import Channel
+from bladewright.blade.design.sectioned import SectionedBlade
+from bladewright.blade.design.unified import UnifiedBlade
 from bladewright.errors import DesignError, FileError
 from bladewright.files.examples import example_text, examples
 from bladewright.files.families import FAMILIES, family_of

@@ -9,17 +9,11 @@ from scipy.spatial.transform import Rotation
 from bladewright.errors import FitError
 from bladewright.files.examples import example_text
 from bladewright.files.reading import design_from, parsed
-from bladewright.fitting.alignment import (
-    SEPARABLE,
-    aligned_section,
-    composed,
-    found_axes,
-    improved,
-    inverted,
-    registered,
-)
-from bladewright.fitting.alignment.target import target_of
-from bladewright.fitting.judgement.result import Motion
+from bladewright.fitting.assessment.result import Motion
+from bladewright.fitting.registration.axes import found_axes
+from bladewright.fitting.registration.registration import aligned_section, improved, registered
+from bladewright.fitting.registration.rigid_motion import SEPARABLE, composed, inverted
+from bladewright.fitting.registration.target import target_of
 
 
 @cache

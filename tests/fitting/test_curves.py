@@ -6,7 +6,7 @@ from scipy.optimize import minimize
 
 import bladewright as bw
 from bladewright.fitting.freeform.least_squares import Penalty
-from bladewright.fitting.freeform.net import Net, Target, _Search, matched
+from bladewright.fitting.freeform.net import Net, NetObjective, NetTarget, matched_net
 from bladewright.fitting.freeform.projection import sampled_parameters
 from bladewright.nurbs.basis import uniform_knots
 from bladewright.nurbs.closest import closest_on_curve
@@ -157,9 +157,9 @@ def test_the_gradient_is_that_of_central_differences(weighted, closed, power):
         closed=closed,
     )
     points = net.curve(rng.random(40)) + 0.02 * rng.normal(size=(40, 3))
-    search = _Search(
+    search = NetObjective(
         net=net,
-        target=Target(points=points, weights=np.ones(40)),
+        target=NetTarget(points=points, weights=np.ones(40)),
         penalty=Penalty(power=power, scale=0.05),
         stiffness=1e-3,
         near=sampled_parameters(net.shape, points),
@@ -181,8 +181,8 @@ def test_without_unknowns_a_match_is_a_projection():
         knots=(uniform_knots(4, 3),), degrees=(3,), points=np.zeros((4, 2)) + np.arange(4)[:, None], held="boundary"
     )
     assert not net.free[[0, -1]].any()
-    target = Target(points=np.array([[0.5, 0.6], [1.0, 1.5], [2.0, 2.2]]), weights=np.ones(3))
-    assert matched(net, target, penalty=Penalty()).feet.distances.max() < 0.5
+    target = NetTarget(points=np.array([[0.5, 0.6], [1.0, 1.5], [2.0, 2.2]]), weights=np.ones(3))
+    assert matched_net(net, target, penalty=Penalty()).feet.distances.max() < 0.5
 
 
 NAN = np.where(np.arange(81)[:, None] == 7, np.nan, BENT)

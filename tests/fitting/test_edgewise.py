@@ -7,9 +7,9 @@ import pytest
 
 from bladewright.files.examples import example_text
 from bladewright.files.reading import design_from, parsed
-from bladewright.fitting.structures.edgewise import LAWS, edge_steps
-from bladewright.fitting.structures.growth import MOST_CURVE, MOST_SPAN
-from bladewright.fitting.structures.structure import structure_of
+from bladewright.fitting.model_selection.growth import EDGE_LAWS, edge_steps
+from bladewright.fitting.model_selection.steps import MOST_CURVE, MOST_SPAN
+from bladewright.fitting.model_selection.structure import structure_of
 
 STATOR = design_from(parsed(example_text("compressor-stator"), "stator"), "stator")
 U = np.linspace(0.0, 1.0, 101)
@@ -26,9 +26,9 @@ def test_an_edge_beside_which_deviations_gather_has_all_its_laws_grow(edge, near
     (step,) = edge_steps(found(np.where(near, 2.0, 0.1)), 1.0)
     before, after = structure_of(STATOR), step.structure
     grown = {name for name in before.span if after.span[name] > before.span[name]}
-    assert grown == set(LAWS[edge])
+    assert grown == set(EDGE_LAWS[edge])
     assert [name for name in before.channel if after.channel[name] > before.channel[name]] == [edge]
-    laws = sum(after.span[name] - before.span[name] for name in LAWS[edge])
+    laws = sum(after.span[name] - before.span[name] for name in EDGE_LAWS[edge])
     assert step.parameters == laws + 2 * (after.channel[edge] - before.channel[edge])
 
 

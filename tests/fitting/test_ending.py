@@ -8,9 +8,9 @@ import pytest
 from bladewright.files.clouds import read_cloud
 from bladewright.files.examples import example_text
 from bladewright.files.reading import design_from, parsed
+from bladewright.fitting.assessment.coverage import loose_ends
 from bladewright.fitting.fit import fit
-from bladewright.fitting.freedom import freedom_of
-from bladewright.fitting.judgement.ending import loose_ends
+from bladewright.fitting.free_parameters import free_parameters_of
 from bladewright.fitting.matching.search import Task, searched
 
 STATOR = design_from(parsed(example_text("aachen-stator"), "stator"), "stator")
@@ -26,7 +26,7 @@ def ends_of(*rows, free="channel.leading_edge[0].r", noise=0.0):
     parts += [side(draw.random(20), np.full(20, v)) for side in sides for v in rows]
     points = np.concatenate(parts)
     points += noise * draw.normal(size=points.shape)
-    freedom = freedom_of(free, None, started=True)
+    freedom = free_parameters_of(free, None, started=True)
     task = Task(points=points, weights=np.ones(len(points)), free=freedom, bounds={})
     return loose_ends(searched(task, STATOR, rounds=1))
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.stats import t as student
 
-from bladewright.fitting.judgement.estimates import certainty_of
+from bladewright.fitting.assessment.estimates import parameter_estimates
 
 POINTS, COUNT = 400, 5
 SIZE = np.array([5.0, 0.2, 1.0, 0.01, 3.0])
@@ -39,7 +39,7 @@ def slopes_of(seed):
 def test_the_covariance_is_that_of_linear_least_squares(seed):
     slopes = slopes_of(seed)
     match, rows = found(slopes)
-    certainty = certainty_of(match)
+    certainty = parameter_estimates(match)
     variance = np.sum(rows**2) / (POINTS - COUNT)
     np.testing.assert_allclose(certainty.covariance, variance * np.linalg.inv(slopes.T @ slopes), rtol=1e-9)
     deviations = np.sqrt(np.diag(certainty.covariance))
@@ -62,7 +62,7 @@ def test_intervals_hold_the_truth_as_often_as_they_say():
         left = rows + slopes @ step
         match.problem.measures.residuals = lambda _, left=left: left
         match.problem.values_of = lambda _, step=step: step
-        held += [each.low <= 0.0 <= each.high for each in certainty_of(match).estimates]
+        held += [each.low <= 0.0 <= each.high for each in parameter_estimates(match).estimates]
     # three standard errors of a share of 0.95 of 1,500
     assert np.mean(held) == pytest.approx(0.95, abs=3.0 * np.sqrt(0.95 * 0.05 / 1500))
 
@@ -70,7 +70,7 @@ def test_intervals_hold_the_truth_as_often_as_they_say():
 def test_what_no_residual_depends_on_is_not_identified():
     slopes = slopes_of(0)
     slopes[:, 2] = 0.0
-    certainty = certainty_of(found(slopes)[0])
+    certainty = parameter_estimates(found(slopes)[0])
     assert [each.path for each in certainty.estimates if not each.identified] == ["c"]
     assert certainty.estimates[2].deviation == np.inf
     assert certainty.rank == COUNT - 1
@@ -81,20 +81,20 @@ def test_what_no_residual_depends_on_is_not_identified():
 def test_parameters_that_do_the_same_are_not_identified():
     slopes = slopes_of(0)
     slopes[:, 3] = slopes[:, 1] * SIZE[1] / SIZE[3]
-    certainty = certainty_of(found(slopes)[0])
+    certainty = parameter_estimates(found(slopes)[0])
     assert [each.path for each in certainty.estimates if not each.identified] == ["b", "d"]
     assert certainty.rank == COUNT - 1
 
 
 def test_points_that_share_their_misfit_count_as_fewer():
-    plain, shared = (certainty_of(found(slopes_of(0), shared=part, alone=0.01)[0]) for part in (0.0, 0.9))
+    plain, shared = (parameter_estimates(found(slopes_of(0), shared=part, alone=0.01)[0]) for part in (0.0, 0.9))
     # a hundredth of the points: ten times the deviation
     np.testing.assert_allclose(shared.covariance, 100.0 * plain.covariance, rtol=1e-9)
 
 
 def test_parameters_on_a_bound_are_said():
-    assert not any(each.at_bound for each in certainty_of(found(slopes_of(0))[0]).estimates)
-    on = certainty_of(found(slopes_of(0), low=2.0, high=5.0 + 1e-4)[0]).estimates
+    assert not any(each.at_bound for each in parameter_estimates(found(slopes_of(0))[0]).estimates)
+    on = parameter_estimates(found(slopes_of(0), low=2.0, high=5.0 + 1e-4)[0]).estimates
     assert [each.path for each in on if each.at_bound] == ["a", "b", "e"]
 
 
@@ -110,8 +110,8 @@ def test_weights_of_a_search_that_are_no_inverse_variances_take_no_error_away():
     inverse = np.linalg.inv(slopes.T @ (roots[:, None] ** 2 * slopes))
     variance = np.sum(rows**2) / (POINTS - COUNT)
     expected = variance * inverse @ (slopes.T @ (roots[:, None] ** 4 * slopes)) @ inverse
-    np.testing.assert_allclose(certainty_of(match).covariance, expected, rtol=1e-9)
+    np.testing.assert_allclose(parameter_estimates(match).covariance, expected, rtol=1e-9)
     # as inverse variances the same weights give the plain formula
     measures.precision = roots**2
     variance = np.sum((roots * rows) ** 2) / (POINTS - COUNT)
-    np.testing.assert_allclose(certainty_of(match).covariance, variance * inverse, rtol=1e-9)
+    np.testing.assert_allclose(parameter_estimates(match).covariance, variance * inverse, rtol=1e-9)

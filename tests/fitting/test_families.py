@@ -7,14 +7,14 @@ import numpy as np
 import pytest
 
 from bladewright.errors import FitError
-from bladewright.fitting.families.edges import split
-from bladewright.fitting.families.faces import closed_sides
-from bladewright.fitting.families.kinds import KINDS, kind_of
+from bladewright.fitting.families.kinds import FAMILIES, family_of
+from bladewright.fitting.families.section_samples import sides_between_edges
 from bladewright.fitting.families.sections import section_samples
 from bladewright.fitting.fit import fit
-from bladewright.fitting.freedom import Freedom
-from bladewright.fitting.matching.model import model_of
+from bladewright.fitting.free_parameters import FreeParameters
 from bladewright.fitting.matching.scales import scales_of
+from bladewright.fitting.models.blunt_edges import closed_sides
+from bladewright.fitting.models.model import model_of
 
 from ..section.families import EXAMPLES
 from ..section.meanline_examples import BLUNT, on_meanline
@@ -47,7 +47,7 @@ def cloud(name, count=150, noise=0.0):
 
 def shaken(design, part=0.1):
     """The design with every parameter that a fit finds moved by a part of what matters."""
-    paths, values = Freedom()(design), design.parameters()
+    paths, values = FreeParameters()(design), design.parameters()
     size = scales_of(design, paths, float(built_chord(design))).size
     random = np.random.default_rng(3)
     steps = part * size * random.uniform(-1.0, 1.0, len(paths))
@@ -61,7 +61,7 @@ def built_chord(design):
 @pytest.mark.parametrize("name", MEMBERS)
 def test_the_derivatives_of_a_sections_sides_are_those_of_the_sides_built_with_a_difference(name):
     design = MEMBERS[name]
-    model, paths = model_of(design, 1e-6), Freedom()(design)
+    model, paths = model_of(design, 1e-6), FreeParameters()(design)
     shape = model.shape(design)
     rates = model.tangents(shape, paths)
     values = design.parameters()
@@ -82,7 +82,7 @@ def test_the_derivatives_of_a_sections_sides_are_those_of_the_sides_built_with_a
 def test_a_sections_samples_are_those_of_the_part_it_is_made_of(name):
     section, design = section_samples(built(name)), MEMBERS[name]
     assert section.chord == pytest.approx(design.chord * 1e-3, rel=1e-9)
-    started = kind_of(design).started(section, design.section)[0]
+    started = family_of(design).started(section, design.section)[0]
     assert type(started) is type(design.section)
     assert started.parameters().keys() == design.section.parameters().keys()
 
@@ -99,7 +99,7 @@ def test_a_section_is_found_again_from_a_start_that_is_off(name):
 @pytest.mark.parametrize("name", LIKE)
 def test_a_section_is_found_again_when_its_structure_is_given(name):
     design = MEMBERS[name]
-    found = fit(cloud(name), family=kind_of(design).name, like=design)
+    found = fit(cloud(name), family=family_of(design).name, like=design)
     assert found.maximum < 1e-9 * found.built.chord
     assert found.passed
     truth = design.parameters()
@@ -140,7 +140,7 @@ def test_what_is_wrong_is_said_in_one_paragraph(options, said):
 
 def test_a_sections_family_has_no_points_in_space():
     points = np.random.default_rng(0).random((200, 3))
-    for name in KINDS:
+    for name in FAMILIES:
         with pytest.raises(FitError, match="give x and y alone"):
             fit(points, family=f"{name}-section")
 
@@ -153,7 +153,7 @@ def test_the_edge_of_a_thick_nose_is_in_the_middle_of_its_turn_wherever_its_side
     cut = int(np.searchsorted(turn, np.pi - np.radians(60.0)))
     upper = np.concatenate([nose[cut::-1], tail])
     lower = np.concatenate([nose[cut:], tail * [1.0, -1.0]])
-    above, below, radii = split(upper, lower)
+    above, below, radii = sides_between_edges(upper, lower)
     # within a step of the samples
     assert above[0] == pytest.approx([0.0, 0.0], abs=0.01)
     assert above[-1] == pytest.approx([1.0, 0.0], abs=0.01)

@@ -7,19 +7,19 @@ import numpy as np
 import pytest
 
 from bladewright.errors import DesignError
-from bladewright.fitting.families.flow import KEPT, _off_axis
-from bladewright.fitting.families.kinds import KINDS, kind_of
+from bladewright.fitting.design_header import DesignHeader
+from bladewright.fitting.families.flow_path import LEAST_RADIUS, _share_off_axis
+from bladewright.fitting.families.kinds import FAMILIES, family_of
+from bladewright.fitting.families.law_extension import law_extensions
 from bladewright.fitting.families.polyline import nearest_on
 from bladewright.fitting.families.profile import outlined, started
-from bladewright.fitting.families.room import crowding
 from bladewright.fitting.families.rounded_edge import edge_through
-from bladewright.fitting.families.sections import _maker, _outlined, section_samples
+from bladewright.fitting.families.sections import _maker, _through_points, section_samples
 from bladewright.fitting.families.suction_pressure import templates
-from bladewright.fitting.families.widening import widenings
-from bladewright.fitting.frame import Frame
-from bladewright.fitting.freedom import Freedom
+from bladewright.fitting.free_parameters import FreeParameters
 from bladewright.fitting.matching.search import Task, searched
-from bladewright.fitting.structures.aim import Aim
+from bladewright.fitting.model_selection.stopping import MatchTarget
+from bladewright.fitting.models.feasibility import infeasibility
 from bladewright.section.laws import Span
 from bladewright.section.profiles.flat_plate import FlatPlate
 
@@ -39,11 +39,11 @@ def outline(part, v):
 def test_a_blade_with_a_control_point_more_along_the_span_is_the_same_blade(design):
     v = np.linspace(0.0, 1.0, 5)
     grown = 0
-    for widening in widenings(design, kind_of(design)):
+    for widening in law_extensions(design, family_of(design)):
         if not widening.law.startswith("section.") or "chord" in widening.law:
             continue
         wider = widening.applied(design)
-        assert len(Freedom()(wider)) > len(Freedom()(design)), widening.law
+        assert len(FreeParameters()(wider)) > len(FreeParameters()(design)), widening.law
         # constants and laws of up to three control points are held by one more; others come near
         assert outline(wider.section, v) == pytest.approx(outline(design.section, v), abs=1e-3), widening.law
         grown += 1
@@ -51,16 +51,18 @@ def test_a_blade_with_a_control_point_more_along_the_span_is_the_same_blade(desi
 
 
 def test_every_law_along_the_chord_of_a_blade_may_grow():
-    chordwise = [each for each in widenings(COMPRESSOR, KINDS["curvature-meanline"]) if "along the chord" in each.law]
+    chordwise = [
+        each for each in law_extensions(COMPRESSOR, FAMILIES["curvature-meanline"]) if "along the chord" in each.law
+    ]
     assert chordwise
     for widening in chordwise:
-        assert len(Freedom()(widening.applied(COMPRESSOR))) > len(Freedom()(COMPRESSOR))
+        assert len(FreeParameters()(widening.applied(COMPRESSOR))) > len(FreeParameters()(COMPRESSOR))
 
 
 def test_a_blade_whose_sections_do_not_grow_alike_is_left_as_it_is():
     ways = iter([2, *[1] * 50])
-    kind = replace(KINDS["curvature-meanline"], grown=lambda part, _: [part] * next(ways))
-    last = [each for each in widenings(COMPRESSOR, kind) if "along the chord" in each.law][-1]
+    kind = replace(FAMILIES["curvature-meanline"], grown=lambda part, _: [part] * next(ways))
+    last = [each for each in law_extensions(COMPRESSOR, kind) if "along the chord" in each.law][-1]
     with pytest.raises(DesignError, match="do not grow alike"):
         last.applied(COMPRESSOR)
 
@@ -76,17 +78,17 @@ def test_templates_have_nearly_as_many_parameters_as_are_asked_for():
     samples = section_samples(section(STATOR).build())
     for count in (22, 26, 30):
         for part in templates(samples, count):
-            assert len(Freedom()(section(part))) == count
+            assert len(FreeParameters()(section(part))) == count
 
 
 def test_an_outline_of_points_follows_what_no_profile_of_a_kind_does():
     built = section(STATOR).build()
     samples = section_samples(built)
     points = np.concatenate([side(np.random.default_rng(4).random(150)) for side in built.curves.values()])
-    task = Task(points=points, weights=np.ones(len(points)), free=Freedom(), bounds={})
-    made = _maker(KINDS["profile"], samples, Frame(name="found", length_unit="mm"), task)
+    task = Task(points=points, weights=np.ones(len(points)), free=FreeParameters(), bounds={})
+    made = _maker(FAMILIES["profile"], samples, DesignHeader(name="found", length_unit="mm"), task)
     found = searched(task, made(started(samples, FlatPlate(thickness=0.06))[0]), rounds=1)
-    outline, reason = _outlined(task, found, Aim(parameters=26), partial(outlined, samples), made)
+    outline, reason = _through_points(task, found, MatchTarget(parameters=26), partial(outlined, samples), made)
     assert len(outline.problem.paths) == 26
     assert (reason, outline.design.section.kind) == ("", "points")
     # so many points come within a thousandth of the chord; the plate has no camber
@@ -95,9 +97,9 @@ def test_an_outline_of_points_follows_what_no_profile_of_a_kind_does():
 
 
 def test_a_section_on_too_short_a_tangent_is_crowded_before_it_is_refused():
-    assert np.max(np.real(crowding(STATOR, ALONE))) < 0.0
+    assert np.max(np.real(infeasibility(STATOR, ALONE))) < 0.0
     reach = 0.1
-    while np.max(np.real(crowding(replace(STATOR, pressure_tangent_in=reach), ALONE))) <= 0.0:
+    while np.max(np.real(infeasibility(replace(STATOR, pressure_tangent_in=reach), ALONE))) <= 0.0:
         reach *= 0.998
     # crowding begins while the section can still be made
     assert replace(STATOR, pressure_tangent_in=reach).outline(ALONE).points(PLACES)[0].shape == (1, 33, 2)
@@ -112,5 +114,5 @@ def test_the_nearest_places_on_a_line_of_points_have_its_tangents_and_sides():
 
 
 def test_a_wall_that_leads_towards_the_axis_is_lengthened_as_far_as_keeps_off_it():
-    assert _off_axis(1.0, 0.5) == 1.0
-    assert _off_axis(1.0, -10.0) * 10.0 * 0.8 == pytest.approx(KEPT)
+    assert _share_off_axis(1.0, 0.5) == 1.0
+    assert _share_off_axis(1.0, -10.0) * 10.0 * 0.8 == pytest.approx(LEAST_RADIUS)

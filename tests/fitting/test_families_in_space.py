@@ -7,15 +7,14 @@ import numpy as np
 import pytest
 
 from bladewright.errors import FitError
-from bladewright.fitting.families.faces import sides_of
-from bladewright.fitting.families.flow import Channelled
-from bladewright.fitting.families.sampled import reversed_flow, sampled
-from bladewright.fitting.families.spanwise import along_span, counts_of, plain
-from bladewright.fitting.families.standing import sliding, standing
+from bladewright.fitting.families.flow_path import ChannelCurves
+from bladewright.fitting.families.laws import counts_of, part_along_span, with_mean_laws
+from bladewright.fitting.families.section_samples import reversed_flow, sampled_section
 from bladewright.fitting.fit import fit
-from bladewright.fitting.freedom import Freedom
-from bladewright.fitting.matching.model import model_of
+from bladewright.fitting.free_parameters import FreeParameters, gauge_parameters, sliding_coordinate
 from bladewright.fitting.matching.scales import scales_of
+from bladewright.fitting.models.blunt_edges import sides_of
+from bladewright.fitting.models.model import model_of
 from bladewright.section.laws import Span
 
 from ..blade.sectioned import BLUNT, COMPRESSOR, DESIGNS, DIFFUSER
@@ -34,7 +33,7 @@ def cloud(count=120):
 
 def shaken(design, part=0.05):
     """The design with every parameter that a fit finds moved by a part of what matters."""
-    paths, values = Freedom()(design), design.parameters()
+    paths, values = FreeParameters()(design), design.parameters()
     size = scales_of(design, paths, 0.1).size
     random = np.random.default_rng(3)
     return design.changed(
@@ -45,7 +44,7 @@ def shaken(design, part=0.05):
 @pytest.mark.parametrize("name", MODELS)
 def test_the_derivatives_of_a_blades_sides_are_those_of_the_sides_built_with_a_difference(name):
     design = MODELS[name]
-    model, paths = model_of(design), Freedom()(design)
+    model, paths = model_of(design), FreeParameters()(design)
     values, sizes = design.parameters(), scales_of(design, paths, model.chord).size
     direction = sizes * np.random.default_rng(5).uniform(0.5, 1.0, len(paths))
     sides = []
@@ -68,11 +67,11 @@ def test_a_vane_is_found_again_from_a_start_that_is_off():
 
 
 def test_flow_path_and_the_way_along_edge_curves_stand():
-    held = standing(COMPRESSOR)
+    held = gauge_parameters(COMPRESSOR)
     assert {"flow_path.hub.points[0].x", "leading_edge.points[1].r", "section.curvature[1]"} <= held
     assert "leading_edge.points[1].x" not in held
-    assert sliding(COMPRESSOR, "trailing_edge") == "r"
-    assert sliding(DIFFUSER, "trailing_edge") == "x"
+    assert sliding_coordinate(COMPRESSOR, "trailing_edge") == "r"
+    assert sliding_coordinate(DIFFUSER, "trailing_edge") == "x"
 
 
 def test_a_part_of_laws_is_made_again_from_its_sections_and_its_numbers_of_control_points():
@@ -80,17 +79,17 @@ def test_a_part_of_laws_is_made_again_from_its_sections_and_its_numbers_of_contr
     at = Span(v)
     parts = []
     for i in range(len(v)):
-        numbers = plain(part).parameters()
+        numbers = with_mean_laws(part).parameters()
         angles = {name: float(at.values(getattr(part, name))[i]) for name in ("metal_angle_in", "metal_angle_out")}
-        parts.append(plain(part).changed({path: angles.get(path, value) for path, value in numbers.items()}))
-    again = along_span(parts, v, counts_of(part))
+        parts.append(with_mean_laws(part).changed({path: angles.get(path, value) for path, value in numbers.items()}))
+    again = part_along_span(parts, v, counts_of(part))
     assert again.metal_angle_in == pytest.approx(part.metal_angle_in, abs=1e-9)
     assert counts_of(again) == counts_of(part)
 
 
 def test_a_section_for_the_flow_from_the_other_side_has_its_edges_exchanged_and_its_sides_kept():
     built = COMPRESSOR.build().section(0.5)
-    section = sampled(built.curves["upper"], built.curves["lower"], (1e-3, 2e-3))
+    section = sampled_section(built.curves["upper"], built.curves["lower"], (1e-3, 2e-3))
     other = reversed_flow(section)
     assert np.all(np.interp(0.5, *other.upper.T) > np.interp(0.5, *other.lower.T))
     assert other.radii == section.radii[::-1]
@@ -102,4 +101,4 @@ def test_a_section_for_the_flow_from_the_other_side_has_its_edges_exchanged_and_
 
 def test_edges_of_another_kind_than_points_are_refused():
     with pytest.raises(FitError, match="give the design as start"):
-        Channelled(blade=None).edge_like("leading_edge", None, 1e-3)
+        ChannelCurves(blade=None).edge_like("leading_edge", None, 1e-3)

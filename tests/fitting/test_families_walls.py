@@ -6,18 +6,17 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from bladewright.blade.meridian import ThroughPoints
+from bladewright.blade.design.meridional_curve import ThroughPoints
 from bladewright.designs import Point
 from bladewright.fitting.families import blades
-from bladewright.fitting.families.flow import AHEAD, BESIDE, NEAR, WALL, _wall
-from bladewright.fitting.families.growing import FUTILE, sufficient
+from bladewright.fitting.families.flow_path import CONTINUATION, WALL_COUNTS, WALL_DISTANCE, WALL_MARGIN, _wall
+from bladewright.fitting.families.growth import FUTILE_REASON, grown_to_target
 from bladewright.fitting.families.polyline import nearest_on
-from bladewright.fitting.families.standing import standing
-from bladewright.fitting.freedom import Freedom
-from bladewright.fitting.matching.feet import feet
-from bladewright.fitting.matching.model import model_of
-from bladewright.fitting.matching.scatter import scatter_of
-from bladewright.fitting.matching.walls import Wall
+from bladewright.fitting.free_parameters import FreeParameters, gauge_parameters
+from bladewright.fitting.matching.blade_ends import WallPoints
+from bladewright.fitting.matching.footpoints import nearest_footpoints
+from bladewright.fitting.matching.noise import noise_of
+from bladewright.fitting.models.model import model_of
 from bladewright.nurbs.surface import Surface
 from bladewright.section.curvature_meanline import CurvatureMeanline
 from bladewright.section.thickness.wennerstrom import Wennerstrom
@@ -28,19 +27,19 @@ VANE = replace(DIFFUSER, tolerance=1e-3)
 
 
 def test_walls_that_are_free_slide_along_themselves_only():
-    free = set(Freedom(walls=True)(VANE))
+    free = set(FreeParameters(walls=True)(VANE))
     walls = {path for path in free if path.startswith("flow_path.")}
     # its walls stand radially, at one x each
     assert walls == {f"flow_path.{wall}.points[{i}].x" for wall in ("hub", "shroud") for i in (0, 1)}
-    assert free - walls == set(Freedom()(VANE))
-    assert "flow_path.hub.points[0].r" in standing(COMPRESSOR) - standing(COMPRESSOR, walls=True)
+    assert free - walls == set(FreeParameters()(VANE))
+    assert "flow_path.hub.points[0].r" in gauge_parameters(COMPRESSOR) - gauge_parameters(COMPRESSOR, walls=True)
 
 
 def test_a_walls_places_move_with_its_points_as_a_difference_says():
     model = model_of(VANE)
-    paths = tuple(path for path in Freedom(walls=True)(VANE) if path.startswith("flow_path.hub"))
+    paths = tuple(path for path in FreeParameters(walls=True)(VANE) if path.startswith("flow_path.hub"))
     shape, t = model.shape(VANE), np.linspace(0.1, 0.9, 5)
-    rates = Wall(name="hub", places=np.zeros((5, 2)), spread=0.0).rates(shape, t, paths)
+    rates = WallPoints(name="hub", places=np.zeros((5, 2)), spread=0.0).rates(shape, t, paths)
     values, step = VANE.parameters(), 1e-3
     for i, path in enumerate(paths):
         lines = [
@@ -57,14 +56,14 @@ def test_a_wall_has_as_few_points_as_follow_it(turn):
     heading = turn * t
     line = np.cumsum(np.stack([np.cos(heading), np.sin(heading)], axis=-1), axis=0) / 201 + [0.0, 0.5]
     rows = _wall(line)
-    assert len(rows) - 2 in WALL
+    assert len(rows) - 2 in WALL_COUNTS
     curve = ThroughPoints(points=tuple(Point(*row) for row in rows)).line(1.0).values(np.linspace(0.0, 1.0, 801))
-    assert np.max(np.abs(nearest_on(curve, line).heights)) < NEAR
-    assert (len(rows) - 2 == WALL[0]) == (turn < 1.0)
+    assert np.max(np.abs(nearest_on(curve, line).heights)) < WALL_DISTANCE
+    assert (len(rows) - 2 == WALL_COUNTS[0]) == (turn < 1.0)
     before = nearest_on(line, rows[:1])
-    assert np.sqrt(np.sum((rows[0] - line[0]) ** 2)) == pytest.approx(AHEAD, rel=0.02)
+    assert np.sqrt(np.sum((rows[0] - line[0]) ** 2)) == pytest.approx(CONTINUATION, rel=0.02)
     assert abs(before.heights[0]) < 1e-9
-    assert np.sqrt(np.sum((rows[1] - line[0]) ** 2)) == pytest.approx(BESIDE, rel=0.02)
+    assert np.sqrt(np.sum((rows[1] - line[0]) ** 2)) == pytest.approx(WALL_MARGIN, rel=0.02)
 
 
 def test_feet_go_over_as_many_thin_patches_as_lie_on_their_way():
@@ -78,7 +77,7 @@ def test_feet_go_over_as_many_thin_patches_as_lie_on_their_way():
     other = replace(flat, control_points=net - np.array([0.0, 0.0, 0.5]))
     random = np.random.default_rng(6)
     points = flat(*random.uniform(0.05, 0.95, (2, 300)))
-    assert np.max(feet(points, (flat, other)).distances) < 1e-9
+    assert np.max(nearest_footpoints(points, (flat, other)).distances) < 1e-9
 
 
 def test_points_past_an_end_and_level_with_the_sides_are_no_outliers():
@@ -98,7 +97,7 @@ def test_points_past_an_end_and_level_with_the_sides_are_no_outliers():
     ]
     points[:, 1] *= 2.0 * t * (1.0 - t) * 0.2 / np.where(bulge > 1e-9, bulge, 1.0)
     points[:3, 1] += 0.05
-    found = scatter_of(points, feet(points, sides))
+    found = noise_of(points, nearest_footpoints(points, sides))
     assert np.count_nonzero(z < 0.0) > 3
     assert set(np.flatnonzero(~found.inliers)) == {0, 1, 2}
 
@@ -115,7 +114,7 @@ def test_a_search_that_ends_further_off_leaves_the_match_before_it():
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(blades, "replace", replaced)
         for before, after in ((near, far), (far, near)):
-            patch.setattr(blades, "stood", lambda *_, standing=before, **__: standing)
+            patch.setattr(blades, "evaluated", lambda *_, standing=before, **__: standing)
             blades._better(task, SimpleNamespace(design=None, evaluations=1), after)
     assert kept == [near, near]
 
@@ -123,16 +122,16 @@ def test_a_search_that_ends_further_off_leaves_the_match_before_it():
 def test_a_match_within_the_tolerance_is_taken_though_another_was_nearer_on_average(monkeypatch):
     aim = SimpleNamespace(parameters=None, tolerance=1.0, open=False)
     steps = iter([(True, ""), (False, "")])
-    monkeypatch.setattr("bladewright.fitting.families.growing.short_of", lambda *_: next(steps))
-    monkeypatch.setattr("bladewright.fitting.families.growing.sound", lambda *_: True)
+    monkeypatch.setattr("bladewright.fitting.families.growth.short_of", lambda *_: next(steps))
+    monkeypatch.setattr("bladewright.fitting.families.growth.can_be_built", lambda *_: True)
     first, second = (SimpleNamespace(rms=r, maximum=m, interrupted=False) for r, m in ((1.0, 3.0), (1.1, 0.9)))
-    assert sufficient(None, first, aim, lambda *_: iter([second]), coarse=1e-3) == (second, "")
+    assert grown_to_target(None, first, aim, lambda *_: iter([second]), coarse=1e-3) == (second, "")
 
 
 def test_growth_that_brings_a_design_no_nearer_is_taken_back_and_another_is_tried(monkeypatch):
     aim = SimpleNamespace(parameters=None, tolerance=None, open=True)
-    monkeypatch.setattr("bladewright.fitting.families.growing.short_of", lambda found, *_: (found.rms > 0.1, ""))
-    monkeypatch.setattr("bladewright.fitting.families.growing.sound", lambda *_: True)
+    monkeypatch.setattr("bladewright.fitting.families.growth.short_of", lambda found, *_: (found.rms > 0.1, ""))
+    monkeypatch.setattr("bladewright.fitting.families.growth.can_be_built", lambda *_: True)
     first, worse, better = (SimpleNamespace(rms=r, maximum=r, interrupted=False) for r in (1.0, 1.5, 0.05))
     asked = []
 
@@ -140,9 +139,9 @@ def test_growth_that_brings_a_design_no_nearer_is_taken_back_and_another_is_trie
         asked.append((found, back))
         yield better if back == 2 else worse
 
-    assert sufficient(None, first, aim, wider, coarse=1e-3) == (better, "")
+    assert grown_to_target(None, first, aim, wider, coarse=1e-3) == (better, "")
     assert asked == [(first, 0), (first, 1), (first, 2)]
-    assert sufficient(None, first, aim, lambda *_: iter([worse]), coarse=1e-3) == (first, FUTILE)
+    assert grown_to_target(None, first, aim, lambda *_: iter([worse]), coarse=1e-3) == (first, FUTILE_REASON)
 
 
 def test_a_law_that_leaves_sections_no_shape_is_a_constant_and_the_others_stay_laws():

@@ -7,7 +7,7 @@ import pytest
 
 from bladewright.files.examples import example_text
 from bladewright.files.reading import design_from, parsed
-from bladewright.fitting.matching.feet import feet, placed
+from bladewright.fitting.matching.footpoints import footpoints_at, nearest_footpoints
 from bladewright.nurbs.closest import closest_on_curve, closest_on_surface
 
 
@@ -46,7 +46,7 @@ def certified(name):
 @pytest.mark.parametrize("name", ["turbine-section", "compressor-stator"])
 def test_distances_are_those_of_the_certified_search(name):
     points, extent = cloud(name)
-    on = feet(points, sides(name))
+    on = nearest_footpoints(points, sides(name))
     # what the certified search may pass over, of the extent of the control points
     np.testing.assert_allclose(on.distances, certified(name), atol=2e-8 * extent)
     # both sides are nearest to some, also at the leading edge
@@ -59,7 +59,7 @@ def test_places_beside_thin_edges_are_their_own_feet():
     u, v = random.random((2, 1500))
     places = np.concatenate([side(1.0 - 0.1 * u, v) for side in sides(name)])
     # the other side is nearer there than the next sample of the own one may be
-    found = feet(places, sides(name))
+    found = nearest_footpoints(places, sides(name))
     # descents end with steps of 1e-8 of a patch
     assert np.max(found.distances) < 1e-8 * np.max(np.ptp(places, axis=0))
 
@@ -68,12 +68,12 @@ def test_places_beside_thin_edges_are_their_own_feet():
 def test_feet_from_a_hint_are_those_without_one(name):
     points, extent = cloud(name)
     random = np.random.default_rng(2)
-    known = feet(points, sides(name))
+    known = nearest_footpoints(points, sides(name))
     # as if the sides had moved a little; beside the edges a foot may have been on the other side
     u = np.clip(known.u + 0.005 * random.uniform(-1.0, 1.0, len(points)), 0.0, 1.0)
     v = np.clip(known.v + 0.005 * random.uniform(-1.0, 1.0, len(points)), 0.0, 1.0)
     side = np.where(known.u > 0.995, 1 - known.side, known.side)
-    again = feet(points, sides(name), placed(points, sides(name), side, u, v))
+    again = nearest_footpoints(points, sides(name), footpoints_at(points, sides(name), side, u, v))
     near = known.distances < 0.01 * extent
     assert np.count_nonzero(near) > 50
     np.testing.assert_allclose(again.distances[near], known.distances[near], atol=1e-9 * extent)
@@ -84,7 +84,7 @@ def test_points_of_the_sides_are_their_own_feet(name):
     u, v = np.linspace(0.0, 1.0, 25), np.linspace(0.0, 1.0, 25)
     for number, side in enumerate(sides(name)):
         points = side(u) if name == "turbine-section" else side(u, v)
-        on = feet(points, sides(name))
+        on = nearest_footpoints(points, sides(name))
         np.testing.assert_allclose(on.points, points, atol=1e-10 * cloud(name)[1])
         assert set(on.side[1:-1]) == {number}
 
@@ -95,9 +95,9 @@ def test_heights_are_positive_outside_on_both_sides(name):
         u = np.linspace(0.1, 0.9, 9)
         v = np.full(9, 0.5)
         at = side(u) if name == "turbine-section" else side(u, v)
-        on = placed(at, sides(name), np.full(9, number), u, v)
+        on = footpoints_at(at, sides(name), np.full(9, number), u, v)
         step = 1e-3 * cloud(name)[1]
-        outside = feet(on.points + step * on.normals, sides(name))
+        outside = nearest_footpoints(on.points + step * on.normals, sides(name))
         np.testing.assert_allclose(outside.heights, step, rtol=1e-6)
         other = sides(name)[1 - number]
         middle = other(u) if name == "turbine-section" else other(u, v)
@@ -110,10 +110,10 @@ def test_past_an_end_the_miss_points_away_from_the_blade():
     u = np.linspace(0.2, 0.8, 5)
     for end, sign in ((0.0, -1.0), (1.0, 1.0)):
         v = np.full(5, end)
-        on = feet(side(u, v) + 0.05 * sign * side.derivative(u, v, 0, 1), sides("compressor-stator"))
+        on = nearest_footpoints(side(u, v) + 0.05 * sign * side.derivative(u, v, 0, 1), sides("compressor-stator"))
         assert np.all(on.v == end)
         np.testing.assert_allclose(np.sum(on.beyond**2, axis=-1), 1.0, rtol=1e-12)
         np.testing.assert_allclose(np.sum(on.beyond * on.normals, axis=-1), 0.0, atol=1e-12)
         assert np.all(np.sum(on.miss * on.beyond, axis=-1) > 0.0)
-    within = feet(side(u, np.full(5, 0.5)), sides("compressor-stator"))
+    within = nearest_footpoints(side(u, np.full(5, 0.5)), sides("compressor-stator"))
     assert not np.any(within.beyond)

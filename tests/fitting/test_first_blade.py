@@ -5,11 +5,11 @@ from importlib import resources
 import numpy as np
 import pytest
 
-from bladewright.blade.blade import Blade
-from bladewright.blade.unified import UnifiedBlade
+from bladewright.blade.design.unified import UnifiedBlade
+from bladewright.blade.native.blade import Blade
 from bladewright.files.reading import read_design
 from bladewright.fitting.first import first_blade, found_arrangement
-from bladewright.fitting.structures.structure import structure_of
+from bladewright.fitting.model_selection.structure import structure_of
 from bladewright.nurbs.closest import closest_on_surface
 
 

@@ -15,9 +15,9 @@ from bladewright.files.examples import example_text
 from bladewright.files.reading import design_from, parsed
 from bladewright.fitting.fit import fit
 from bladewright.fitting.matching import search
-from bladewright.fitting.matching.feet import feet
-from bladewright.fitting.structures.reshaping import reshaped
-from bladewright.fitting.structures.structure import Structure
+from bladewright.fitting.matching.footpoints import nearest_footpoints
+from bladewright.fitting.model_selection.reshaping import reshaped
+from bladewright.fitting.model_selection.structure import Structure
 
 CLOUDS = Path(__file__).parents[3] / "shared" / "data" / "clouds"
 NOISE = 2e-5
@@ -103,7 +103,7 @@ def test_outliers_are_listed_and_do_not_spoil():
 
 def distances(design, points):
     curves = design.build().curves
-    return feet(points, (curves["upper"], curves["lower"])).distances
+    return nearest_footpoints(points, (curves["upper"], curves["lower"])).distances
 
 
 def test_a_wider_tolerance_is_reached_with_fewer_parameters():
@@ -163,7 +163,7 @@ def test_weights_decide_which_points_count(kept):
 
 
 def test_an_interrupted_search_hands_back_the_best_design_so_far(monkeypatch):
-    plain, calls = search.feet, []
+    plain, calls = search.nearest_footpoints, []
 
     def interrupting(*given):
         calls.append(1)
@@ -171,7 +171,7 @@ def test_an_interrupted_search_hands_back_the_best_design_so_far(monkeypatch):
             raise KeyboardInterrupt
         return plain(*given)
 
-    monkeypatch.setattr("bladewright.fitting.matching.problem.feet", interrupting)
+    monkeypatch.setattr("bladewright.fitting.matching.residuals.feet", interrupting)
     found = fit(cloud(0, 400), like=BASE)
     assert len(calls) >= 9
     assert found.interrupted
@@ -185,7 +185,7 @@ def test_the_best_design_is_kept_where_the_interruption_falls_between_two_search
     def interrupted(*_, **__):
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("bladewright.fitting.structures.adaptation.identified", interrupted)
+    monkeypatch.setattr("bladewright.fitting.model_selection.adaptation.identified", interrupted)
     found = fit(cloud(0, 400))
     assert found.interrupted
     assert not found.passed

@@ -8,15 +8,15 @@ import pytest
 
 from bladewright.files.examples import example_text
 from bladewright.files.reading import design_from, parsed
-from bladewright.fitting.freedom import corner_radii, freedom_of
-from bladewright.fitting.matching.model import Model
+from bladewright.fitting.free_parameters import corner_radii, free_parameters_of
 from bladewright.fitting.matching.search import Task, searched
-from bladewright.fitting.structures.choosing import best_of, chosen_match, ranked
-from bladewright.fitting.structures.forecast import forecast_of, held_step
-from bladewright.fitting.structures.growth import roomier, steps_back
-from bladewright.fitting.structures.reshaping import reshaped
-from bladewright.fitting.structures.sparing import spared_blade
-from bladewright.fitting.structures.structure import structure_of
+from bladewright.fitting.model_selection.best_structure import best_match_of_size, best_structure, ranked_steps
+from bladewright.fitting.model_selection.forecast import forecast_of, regularised_step
+from bladewright.fitting.model_selection.reshaping import reshaped
+from bladewright.fitting.model_selection.steps import steps_down, widest_reach
+from bladewright.fitting.model_selection.structure import structure_of
+from bladewright.fitting.model_selection.tolerance import reduced_blade
+from bladewright.fitting.models.model import Model
 
 NAMES = ("aachen-stator", "compressor-stator")
 
@@ -30,7 +30,9 @@ def design(name):
 def task(name, count=120):
     random = np.random.default_rng(2)
     points = np.concatenate([side(*random.random((2, count))) for side in design(name).build().sides])
-    return Task(points=points, weights=np.ones(len(points)), free=freedom_of(None, None, started=True), bounds={})
+    return Task(
+        points=points, weights=np.ones(len(points)), free=free_parameters_of(None, None, started=True), bounds={}
+    )
 
 
 @cache
@@ -42,7 +44,7 @@ def met(name):
 @cache
 def forecast():
     found = met("aachen-stator")
-    return found, forecast_of(found, roomier(structure_of(found.design)))
+    return found, forecast_of(found, widest_reach(structure_of(found.design)))
 
 
 @pytest.mark.parametrize("name", NAMES)
@@ -73,7 +75,7 @@ def test_the_structure_that_is_there_is_foreseen_as_its_own_least_squares():
 def test_what_steps_back_leave_is_foreseen_alike_one_by_one_and_together():
     found, about = forecast()
     own = structure_of(found.design)
-    steps = [step for step in steps_back(own) if step.law in set(about.names())]
+    steps = [step for step in steps_down(own) if step.law in set(about.names())]
     together = about.costs(own, [(step.law, step.structure) for step in steps], None)
     alone = [about.foreseen(step.structure).cost for step in steps]
     np.testing.assert_allclose(together, alone, rtol=1e-4, atol=1e-5 * max(alone))
@@ -83,7 +85,7 @@ def test_laws_that_do_alike_are_foreseen_of_an_exact_cloud_too():
     random = np.random.default_rng(3)
     columns, rows = random.normal(size=(40, 5)), random.normal(size=40)
     alike = np.column_stack([columns, columns[:, 0], np.zeros(40)])
-    step = held_step(alike.T @ alike, alike.T @ rows, 0.0)
+    step = regularised_step(alike.T @ alike, alike.T @ rows, 0.0)
     left = rows - columns @ np.linalg.lstsq(columns, rows, rcond=None)[0]
     # what is held leaves more by the rounding of the products alone
     assert np.sum((rows - alike @ step) ** 2) == pytest.approx(left @ left, rel=1e-9)
@@ -96,24 +98,24 @@ def test_the_law_along_the_span_that_is_short_of_a_control_point_is_foreseen_to_
     points = np.concatenate([side(*random.random((2, 120))) for side in truth.build().sides])
     short = reshaped(truth, replace(structure_of(truth), span={**structure_of(truth).span, "metal_angle_in": 3}))
     found = searched(replace(task("aachen-stator"), points=points), short, rounds=0, noise=1e-3)
-    about = forecast_of(found, roomier(structure_of(short)))
-    assert ranked(about, structure_of(short))[0][1].law == "metal_angle_in"
+    about = forecast_of(found, widest_reach(structure_of(short)))
+    assert ranked_steps(about, structure_of(short))[0][1].law == "metal_angle_in"
 
 
 def test_a_structure_of_so_many_parameters_is_no_worse_foreseen_than_the_one_that_was_there():
     found, about = forecast()
     own = structure_of(found.design)
     most = about.foreseen(own).parameters
-    best = best_of(about, roomier(own), most)
+    best = best_structure(about, widest_reach(own), most)
     assert about.foreseen(best).parameters <= most
     assert about.foreseen(best).cost <= 1.001 * about.foreseen(own).cost
-    fewer = best_of(about, own, most - 6)
+    fewer = best_structure(about, own, most - 6)
     assert about.foreseen(fewer).parameters <= most - 6
 
 
 def test_the_foreseen_design_has_the_structure_and_is_no_further_than_the_nearest_laws():
     found, about = forecast()
-    structure = best_of(about, structure_of(found.design), 24)
+    structure = best_structure(about, structure_of(found.design), 24)
     told = about.designed(structure, about.foreseen(structure))
     assert structure_of(told) == structure
     assert about._misfit(told) <= about._misfit(reshaped(about.design, structure))
@@ -122,7 +124,7 @@ def test_the_foreseen_design_has_the_structure_and_is_no_further_than_the_neares
 def test_radii_of_corners_that_are_held_stay_where_they_are():
     name = "aachen-stator"
     corners = corner_radii(design(name))
-    held = replace(task(name), free=freedom_of(None, corners, started=True))
+    held = replace(task(name), free=free_parameters_of(None, corners, started=True))
     found = searched(held, design(name), rounds=0, noise=1e-3)
     about = forecast_of(found, structure_of(found.design))
     assert len(about.held) == len(corners)
@@ -137,14 +139,14 @@ def test_blades_with_a_clearance_have_no_forecast():
     found = met("compressor-stator")
     assert found.design.hub_clearance is not None
     assert forecast_of(found, structure_of(found.design)) is None
-    assert chosen_match(task("compressor-stator"), found, 40) is None
+    assert best_match_of_size(task("compressor-stator"), found, 40) is None
 
 
 def test_a_blade_within_a_tolerance_loses_the_control_points_that_it_does_not_need():
     name = "aachen-stator"
-    wide = reshaped(design(name), roomier(structure_of(design(name))))
+    wide = reshaped(design(name), widest_reach(structure_of(design(name))))
     found = searched(task(name), wide, rounds=1, noise=1e-4, slight=1e-2)
     tolerance = max(1e-3 * found.model.chord, 1.2 * found.maximum)
-    fewer = spared_blade(task(name), found, tolerance)
+    fewer = reduced_blade(task(name), found, tolerance)
     assert len(fewer.problem.paths) < len(found.problem.paths) - 3
     assert fewer.maximum <= tolerance

@@ -5,30 +5,30 @@ import pytest
 import bladewright as bw
 from bladewright.files.examples import example_text
 from bladewright.files.reading import design_from, parsed
-from bladewright.fitting.freedom import freedom_of
+from bladewright.fitting.free_parameters import free_parameters_of
 
 DESIGN = design_from(parsed(example_text("turbine-section"), "vane"), "vane")
 
 
 def test_all_is_free_but_what_a_cloud_of_one_blade_says_nothing_of():
-    found = freedom_of(None, None, started=False)(DESIGN)
+    found = free_parameters_of(None, None, started=False)(DESIGN)
     assert set(DESIGN.parameters()) - set(found) == {"pitch", "span"} & set(DESIGN.parameters())
     assert "pitch" not in found
 
 
 def test_patterns_choose_what_is_free_and_what_is_held():
-    assert freedom_of("thickness_upper[*]", "*[0]", started=True)(DESIGN) == tuple(
+    assert free_parameters_of("thickness_upper[*]", "*[0]", started=True)(DESIGN) == tuple(
         f"thickness_upper[{i}]" for i in range(1, len(DESIGN.thickness_upper))
     )
-    assert freedom_of(["stagger", "pitch"], None, started=True)(DESIGN) == ("pitch", "stagger")
+    assert free_parameters_of(["stagger", "pitch"], None, started=True)(DESIGN) == ("pitch", "stagger")
 
 
 def test_values_are_given_to_what_is_held():
-    freedom = freedom_of(None, {"metal_angle_*": 12.0, "stagger": -3}, started=False)
+    freedom = free_parameters_of(None, {"metal_angle_*": 12.0, "stagger": -3}, started=False)
     design = freedom.applied(DESIGN)
     assert (design.metal_angle_in, design.metal_angle_out, design.stagger) == (12.0, 12.0, -3.0)
     assert not {"metal_angle_in", "metal_angle_out", "stagger"} & set(freedom(DESIGN))
-    assert freedom_of(None, None, started=True).applied(DESIGN) is DESIGN
+    assert free_parameters_of(None, None, started=True).applied(DESIGN) is DESIGN
 
 
 @pytest.mark.parametrize(
@@ -44,11 +44,11 @@ def test_values_are_given_to_what_is_held():
 )
 def test_freedoms_that_make_no_sense_are_refused(free, fixed, started, words):
     with pytest.raises(bw.FitError, match=words.replace("*", r"\*")):
-        freedom_of(free, fixed, started=started)(DESIGN)
+        free_parameters_of(free, fixed, started=started)(DESIGN)
 
 
 def test_a_value_that_no_design_can_have_is_refused():
     with pytest.raises(bw.FitError, match="stagger"):
-        freedom_of(None, {"stagger": 120.0}, started=False).applied(DESIGN)
+        free_parameters_of(None, {"stagger": 120.0}, started=False).applied(DESIGN)
     with pytest.raises(bw.FitError, match="colour"):
-        freedom_of(None, {"colour": 1.0}, started=False).applied(DESIGN)
+        free_parameters_of(None, {"colour": 1.0}, started=False).applied(DESIGN)

@@ -8,12 +8,11 @@ import pytest
 
 from bladewright.files.examples import example_text
 from bladewright.files.reading import design_from, parsed
-from bladewright.fitting.freedom import freedom_of
+from bladewright.fitting.free_parameters import free_parameters_of
 from bladewright.fitting.matching.search import Task, searched
-from bladewright.fitting.structures import adaptation
-from bladewright.fitting.structures.growth import chosen_of, gains, joined, steps_from
-from bladewright.fitting.structures.lean import size_of
-from bladewright.fitting.structures.structure import structure_of
+from bladewright.fitting.model_selection import adaptation
+from bladewright.fitting.model_selection.steps import gains, steps_taken_together, steps_up, union_of
+from bladewright.fitting.model_selection.structure import parameter_count, structure_of
 from bladewright.section.laws import law_basis
 
 
@@ -29,7 +28,9 @@ def found(truth, start, *, rounds, count=150):
         points = np.concatenate([side(*random.random((2, count))) for side in built.sides])
     else:
         points = np.concatenate([built.curves[side](random.random(count)) for side in ("upper", "lower")])
-    task = Task(points=points, weights=np.ones(len(points)), free=freedom_of(None, None, started=True), bounds={})
+    task = Task(
+        points=points, weights=np.ones(len(points)), free=free_parameters_of(None, None, started=True), bounds={}
+    )
     return searched(task, start, rounds=rounds, noise=1e-3)
 
 
@@ -66,33 +67,33 @@ def test_the_law_along_the_span_that_is_short_of_a_control_point_is_ranked_first
 def test_steps_add_the_parameters_that_they_state():
     for name in ("turbine-section", "compressor-stator"):
         base = structure_of(design(name))
-        steps = steps_from(base)
+        steps = steps_up(base)
         assert len(steps) == (2 if name == "turbine-section" else len(base.span) + len(base.channel) + 2)
         for step in steps:
-            assert size_of(step.structure) - size_of(base) == step.parameters
+            assert parameter_count(step.structure) - parameter_count(base) == step.parameters
 
 
 def test_joined_steps_are_all_taken():
     base = structure_of(design("compressor-stator"))
-    steps = [step for step in steps_from(base) if not step.fields[0].startswith("thickness")]
-    assert size_of(joined(base, steps)) - size_of(base) == sum(step.parameters for step in steps)
+    steps = [step for step in steps_up(base) if not step.fields[0].startswith("thickness")]
+    assert parameter_count(union_of(base, steps)) - parameter_count(base) == sum(step.parameters for step in steps)
 
 
 def test_what_is_taken_is_worth_it_and_not_more_than_is_left():
-    steps = steps_from(structure_of(design("compressor-stator")))
+    steps = steps_up(structure_of(design("compressor-stator")))
     ranked = sorted(zip([1.0, 8.0, 0.1, 7.0], steps, strict=False), key=lambda pair: -pair[0] / pair[1].parameters)
-    taken = chosen_of(ranked)
+    taken = steps_taken_together(ranked)
     assert taken[0] is ranked[0][1]
     assert ranked[-1][1] not in taken
     for left in (1, 2, 5):
-        assert sum(step.parameters for step in chosen_of(ranked, left)) <= left
-    assert chosen_of([]) == []
+        assert sum(step.parameters for step in steps_taken_together(ranked, left)) <= left
+    assert steps_taken_together([]) == []
 
 
 def test_laws_that_are_held_do_not_grow():
     base = design("turbine-section")
     points = np.concatenate([base.build().curves[side](np.linspace(0.0, 1.0, 99)) for side in ("upper", "lower")])
-    free = freedom_of(None, ("thickness_upper[*]",), started=True)
+    free = free_parameters_of(None, ("thickness_upper[*]",), started=True)
     match = searched(Task(points=points, weights=np.ones(198), free=free, bounds={}), base, rounds=0, noise=1e-3)
     assert [step.fields for _, step in gains(match)] == [("thickness_lower",)]
 
@@ -119,10 +120,10 @@ def test_a_match_grows_on_as_long_as_it_comes_much_nearer(monkeypatch, ratios, t
         later.append(replace(nearer(match, ratio), interrupted=interrupted and ratio == ratios[-1]))
         return later[-1], True
 
-    monkeypatch.setattr(adaptation, "grown", grown)
+    monkeypatch.setattr(adaptation, "grown_match", grown)
     monkeypatch.setattr(adaptation, "searched", lambda *_, **__: later[-1])
-    monkeypatch.setattr(adaptation, "misses", lambda match: not match.interrupted)
-    kept = adaptation._grown_on(None, None, off, None)
+    monkeypatch.setattr(adaptation, "has_systematic_misfit", lambda match: not match.interrupted)
+    kept = adaptation._grown_further(None, None, off, None)
     assert kept.state is [off, *later][taken].state
     assert kept.interrupted == interrupted
     assert next(steps, None) is None
@@ -136,6 +137,6 @@ def test_a_search_that_leaves_points_out_comes_no_nearer(monkeypatch):
     fewer = replace(match, scatter=replace(match.scatter, inliers=inliers))
     assert fewer.rms < match.rms
     monkeypatch.setattr(adaptation, "searched", lambda *_, **__: fewer)
-    kept = adaptation._shaken(None, match)
+    kept = adaptation._restarted(None, match)
     assert np.all(kept.scatter.inliers == match.scatter.inliers)
     assert kept.evaluations == 2 * match.evaluations

@@ -7,15 +7,15 @@ import pytest
 
 from bladewright.files.examples import example_text
 from bladewright.files.reading import design_from, parsed
-from bladewright.fitting.first.channel import needed_counts
-from bladewright.fitting.first.hypotheses import coordinates, pairings
-from bladewright.fitting.first.outline import boundary, corner_sets
+from bladewright.fitting.initial_guess.channel import needed_counts
+from bladewright.fitting.initial_guess.hypotheses import machine_coordinates, pairings
+from bladewright.fitting.initial_guess.meridional_outline import alpha_boundary, corner_sets
 
 
 def cloud(name, count=1000):
     """Points on the sides of an example in x, r and theta."""
     blade, random = design_from(parsed(example_text(name), name), name).build(), np.random.default_rng(3)
-    return coordinates(
+    return machine_coordinates(
         np.concatenate([side(*random.random((2, count // 2))) for side in blade.sides]), "annular"
     ), blade
 
@@ -23,7 +23,7 @@ def cloud(name, count=1000):
 @pytest.mark.parametrize("name", ["propeller", "centrifugal-impeller", "compressor-stator", "radial-turbine"])
 def test_the_walls_of_long_short_and_radial_blades_are_told_from_their_edges(name):
     machine, blade = cloud(name)
-    pieces = corner_sets(boundary(machine[:, :2]))[0]
+    pieces = corner_sets(alpha_boundary(machine[:, :2]))[0]
     tried = pairings(machine, pieces, revolved=True)
     assert len(tried) == 1
     middles = [np.mean(piece, axis=0) for piece in pieces]

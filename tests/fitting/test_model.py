@@ -8,9 +8,9 @@ import pytest
 from bladewright.files.examples import example_text
 from bladewright.files.reading import design_from, parsed
 from bladewright.fitting.clouds.cloud import checked_cloud
-from bladewright.fitting.matching.feet import feet, placed
-from bladewright.fitting.matching.model import _folds, model_of
+from bladewright.fitting.matching.footpoints import footpoints_at, nearest_footpoints
 from bladewright.fitting.matching.search import Task, searched
+from bladewright.fitting.models.model import _fold_margins, model_of
 
 NAMES = ("turbine-section", "compressor-stator")
 
@@ -60,9 +60,9 @@ def scaled(rates):
 def test_places_move_as_central_differences_say(name):
     design, model = made(name)
     shape = model.shape(design)
-    on = feet(cloud(name), shape.sides)
+    on = nearest_footpoints(cloud(name), shape.sides)
     exact = np.moveaxis(model.rates(shape, on, model.tangents(shape, paths(name))), 1, 0)
-    found = differences(name, lambda other: placed(on.points, other.sides, on.side, on.u, on.v).points)
+    found = differences(name, lambda other: footpoints_at(on.points, other.sides, on.side, on.u, on.v).points)
     # rounding over the step, and the third derivative times its square
     np.testing.assert_allclose(found / scaled(exact), exact / scaled(exact), atol=3e-6)
 
@@ -85,7 +85,7 @@ def test_folds_of_a_channel_change_as_central_differences_say():
     held = model.shape(design).exact
 
     def folds(other):
-        return np.real(_folds(held, other.exact.channel))
+        return np.real(_fold_margins(held, other.exact.channel))
 
     found = differences("compressor-stator", folds)
     np.testing.assert_allclose(found / scaled(exact), exact / scaled(exact), atol=3e-6)

@@ -7,8 +7,8 @@ import pytest
 
 from bladewright.files.examples import example_text
 from bladewright.files.reading import design_from, parsed
-from bladewright.fitting.matching.feet import feet
-from bladewright.fitting.matching.scatter import scatter_of
+from bladewright.fitting.matching.footpoints import nearest_footpoints
+from bladewright.fitting.matching.noise import noise_of
 
 NOISE = 2e-5
 """[m]"""
@@ -97,8 +97,8 @@ PLANTED = {
 
 
 def told(points, shapes, weights=None):
-    on = feet(points, shapes)
-    return scatter_of(points, on, weights), on
+    on = nearest_footpoints(points, shapes)
+    return noise_of(points, on, weights), on
 
 
 @pytest.mark.parametrize(
@@ -109,7 +109,7 @@ def told(points, shapes, weights=None):
 )
 def test_planted_outliers_of_a_section_are_found_and_nothing_else(name, count, noise):
     points = cloud(3, count, noise)
-    points, wrong = PLANTED[name](points, feet(points, sides()), np.random.default_rng(1))
+    points, wrong = PLANTED[name](points, nearest_footpoints(points, sides()), np.random.default_rng(1))
     found, on = told(points, sides())
     clear = wrong[on.distances[wrong] > CLEAR]
     missed = np.count_nonzero(found.inliers[clear])
@@ -126,7 +126,7 @@ def test_planted_outliers_of_a_section_are_found_and_nothing_else(name, count, n
 @pytest.mark.parametrize("name", ["strewn", "patch between", "patch at the leading edge", "added"])
 def test_planted_outliers_of_a_blade_are_found_and_nothing_else(name):
     points = cloud(0, 4000, blade=True)
-    points, wrong = PLANTED[name](points, feet(points, sides(blade=True)), np.random.default_rng(1))
+    points, wrong = PLANTED[name](points, nearest_footpoints(points, sides(blade=True)), np.random.default_rng(1))
     found, on = told(points, sides(blade=True))
     clear = wrong[on.distances[wrong] > CLEAR]
     assert np.count_nonzero(found.inliers[clear]) <= len(wrong) // 50
@@ -143,7 +143,7 @@ def test_no_point_is_an_outlier_for_what_a_design_misses_nor_for_its_noise(stagg
 
 def test_points_that_are_noisier_at_an_edge_are_no_outliers():
     points, random = cloud(0, 1000, 0.0), np.random.default_rng(0)
-    noisier = np.where(feet(points, sides()).u > 0.95, 4.0, 1.0)
+    noisier = np.where(nearest_footpoints(points, sides()).u > 0.95, 4.0, 1.0)
     found, _ = told(points + NOISE * noisier[:, None] * random.normal(size=points.shape), sides())
     # one in a thousand
     assert np.count_nonzero(~found.inliers) <= 1
@@ -185,10 +185,10 @@ def test_points_of_no_weight_tell_nothing_of_the_noise():
 def test_a_point_alone_beside_an_edge_is_one_but_not_those_that_tell_of_its_radius(radius):
     """A misfit of 0.02 mm hides what is a millimetre off an edge, were it not alone."""
     points = cloud(3, 600)
-    on = feet(points, sides())
+    on = nearest_footpoints(points, sides())
     row = int(np.flatnonzero((on.u > 0.97) & (on.u < 0.985))[0])
     points[row] += 1e-3 * on.normals[row]
     waved = points + 3e-5 * np.sin(40.0 * on.u)[:, None] * on.normals
     met = sides(radius=radius)
-    found = ~scatter_of(waved, feet(waved, met)).inliers
+    found = ~noise_of(waved, nearest_footpoints(waved, met)).inliers
     assert list(np.flatnonzero(found)) == [row]

@@ -8,7 +8,12 @@ import pytest
 import bladewright as bw
 from bladewright.files.examples import example_text
 from bladewright.files.reading import design_from, parsed
-from bladewright.fitting.matching.prior import CENTRED, NEAR, SMOOTH, prior_of
+from bladewright.fitting.matching.regularisation import (
+    BEND_SPREAD,
+    CAMBER_SPREAD,
+    SPREAD_ABOUT_START,
+    regularisation_of,
+)
 from bladewright.fitting.matching.scales import check_bounds, scales_of
 from bladewright.section.checks import UNITS
 
@@ -24,7 +29,7 @@ SIZE = scales_of(SECTION, PATHS, 0.035).size
 
 def rows(changes, start=SECTION):
     """The prior's rows for changed parameters, in the unit of the fields."""
-    prior = prior_of(start, PATHS, SIZE)
+    prior = regularisation_of(start, PATHS, SIZE)
     z = np.array([changes.get(path, 0.0) / size for path, size in zip(PATHS, SIZE, strict=True)])
     return prior.matrix @ z - prior.aim
 
@@ -45,14 +50,14 @@ def test_a_smooth_design_with_sides_alike_satisfies_its_own_prior():
 
 def test_a_parameter_that_goes_as_far_as_it_is_near_counts_one():
     at = PATHS.index("stagger")
-    found = rows({"stagger": NEAR * SIZE[at]}, STRAIGHT)
+    found = rows({"stagger": SPREAD_ABOUT_START * SIZE[at]}, STRAIGHT)
     assert np.sum(found**2) == pytest.approx(1.0)
 
 
 def test_another_straight_law_of_both_sides_costs_its_distance_alone():
     change = {f"{name}[{i}]": 0.01 * (1 + i) for name in ("thickness_upper", "thickness_lower") for i in range(5)}
     found = rows(change, STRAIGHT)
-    alone = sum((value / SIZE[PATHS.index(path)] / NEAR) ** 2 for path, value in change.items())
+    alone = sum((value / SIZE[PATHS.index(path)] / SPREAD_ABOUT_START) ** 2 for path, value in change.items())
     assert np.sum(found**2) == pytest.approx(alone, rel=1e-9)
     bent = rows(change | {"thickness_upper[2]": 0.0}, STRAIGHT)
     assert np.sum(bent**2) > np.sum(found**2)
@@ -67,12 +72,14 @@ def test_the_rows_of_a_changed_design_are_those_of_a_start_there_but_for_nearnes
 
 def test_held_parameters_take_part_with_their_values():
     size = np.array([0.02])
-    prior = prior_of(SECTION, ("thickness_upper[1]",), size)
+    prior = regularisation_of(SECTION, ("thickness_upper[1]",), size)
     above, below = SECTION.thickness_upper, SECTION.thickness_lower
     bends = [above[i] - 2.0 * above[i + 1] + above[i + 2] for i in (0, 1)]
-    expected = [*(np.array(bends) / SMOOTH / size), (above[1] - below[1]) / CENTRED / size[0]]
+    expected = [*(np.array(bends) / BEND_SPREAD / size), (above[1] - below[1]) / CAMBER_SPREAD / size[0]]
     np.testing.assert_allclose(-prior.aim[1:], expected, rtol=1e-12)
-    np.testing.assert_allclose(prior.matrix[1:, 0], [-2.0 / SMOOTH, 1.0 / SMOOTH, 1.0 / CENTRED], rtol=1e-12)
+    np.testing.assert_allclose(
+        prior.matrix[1:, 0], [-2.0 / BEND_SPREAD, 1.0 / BEND_SPREAD, 1.0 / CAMBER_SPREAD], rtol=1e-12
+    )
 
 
 @pytest.mark.parametrize("name", ["turbine-section", "compressor-stator", "radial-turbine", "vki-ls89"])

@@ -9,8 +9,7 @@ import pytest
 import bladewright as bw
 from bladewright.fitting.freeform.camber_thickness import CamberThickness, abscissae_of
 from bladewright.fitting.freeform.least_squares import Penalty
-from bladewright.fitting.freeform.profile import _Search
-from bladewright.fitting.freeform.profile_growing import within
+from bladewright.fitting.freeform.profile import ProfileObjective, _within_tolerance
 from bladewright.nurbs.basis import uniform_knots
 
 KNOTS = uniform_knots(6, 3)
@@ -70,7 +69,7 @@ def test_the_gradient_is_that_of_central_differences(fixed, round_end):
     of = profile(round_end=round_end)
     points, upper = contour(of, 30)
     points = points + 0.003 * np.random.default_rng(0).normal(size=points.shape)
-    search = _Search(points=points, upper=upper, fixed=fixed, penalty=Penalty(), stiffness=1e-3, profile=of)
+    search = ProfileObjective(points=points, upper=upper, fixed=fixed, penalty=Penalty(), stiffness=1e-3, profile=of)
     at, step = search.unknowns, 1e-6
     exact = search.objective(at).gradient
     for k, e in enumerate(np.eye(len(at))):
@@ -128,7 +127,7 @@ def test_a_tolerance_that_is_kept_adds_nothing():
 
 def test_control_points_are_added_where_they_help_most_until_the_tolerance_is_kept():
     fitted, asked = missing_by({(6, 6): 0.9, (6, 7): 0.3, (7, 6): 0.8, (6, 8): 0.05, (7, 7): 0.5}, noise=0.0)
-    found = within(fitted, 6, 6, 0.1)
+    found = _within_tolerance(fitted, 6, 6, 0.1)
     assert found.passed
     assert found.maximum == 0.05
     assert (6, 8) in asked
@@ -139,7 +138,7 @@ def test_control_points_are_added_where_they_help_most_until_the_tolerance_is_ke
 @pytest.mark.parametrize(("noise", "words"), [(0.4, "noise"), (0.0, "no nearer")])
 def test_growth_ends_at_the_noise_and_where_it_brings_nothing(noise, words):
     fitted, asked = missing_by({}, noise=noise)
-    found = within(fitted, 6, 6, 0.1)
+    found = _within_tolerance(fitted, 6, 6, 0.1)
     assert not found.passed
     assert words in found.notes[-1]
     assert len(asked) == (1 if noise else 4)

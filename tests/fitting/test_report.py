@@ -9,8 +9,7 @@ import pytest
 
 from bladewright.files.examples import example_text
 from bladewright.files.reading import design_from, parsed
-from bladewright.fitting.judgement.report import LISTED, report, text
-from bladewright.fitting.judgement.result import Estimate, Fit, Motion
+from bladewright.fitting.assessment.result import LISTED_OUTLIERS, Estimate, Fit, Motion, report, text
 
 DESIGN = design_from(parsed(example_text("turbine-section"), "vane"), "vane")
 BUILT = DESIGN.build()
@@ -98,10 +97,10 @@ def test_outliers_are_listed_with_their_distances_and_the_worst_inlier_with_its_
 
 
 def test_only_the_first_thousand_outliers_are_listed_and_all_are_counted():
-    count = LISTED + 7
+    count = LISTED_OUTLIERS + 7
     data = report(made(np.full(count, 1e-3), np.full(count, "sides"), np.zeros(count, dtype=bool)))
     assert data["outliers"]["count"] == count
-    assert [each["index"] for each in data["outliers"]["listed"]] == list(range(LISTED))
+    assert [each["index"] for each in data["outliers"]["listed"]] == list(range(LISTED_OUTLIERS))
     assert data["worst"] is None
 
 

@@ -8,9 +8,14 @@ import pytest
 import bladewright as bw
 from bladewright.files.examples import example_text
 from bladewright.files.reading import design_from, parsed
-from bladewright.fitting.structures.lean import BLADES, lean, rich, size_of
-from bladewright.fitting.structures.reshaping import reshaped
-from bladewright.fitting.structures.structure import structure_of
+from bladewright.fitting.model_selection.reshaping import reshaped
+from bladewright.fitting.model_selection.structure import (
+    INITIAL_BLADES,
+    first_blade_structure,
+    initial_structure,
+    parameter_count,
+    structure_of,
+)
 from bladewright.section.laws import law_basis
 
 NAMES = ("turbine-section", "compressor-stator", "radial-turbine", "vki-ls89")
@@ -91,16 +96,16 @@ def test_another_family_is_refused():
 @pytest.mark.parametrize("name", NAMES)
 def test_the_size_of_a_structure_is_the_number_of_its_parameters(name):
     base = design(name)
-    structures = [structure_of(base)] if name == "turbine-section" else [structure_of(base), *BLADES]
+    structures = [structure_of(base)] if name == "turbine-section" else [structure_of(base), *INITIAL_BLADES]
     for structure in structures:
         paths = [path for path in reshaped(base, structure).parameters() if not path.startswith(UNSEEN)]
-        assert size_of(structure) == len(paths)
+        assert parameter_count(structure) == len(paths)
 
 
 def test_a_lean_structure_has_no_more_parameters_than_are_asked_for():
-    assert [size_of(lean(2, count)) for count in (14, 16, 22, 60)] == [14, 16, 18, 18]
-    sizes = [size_of(each) for each in BLADES]
+    assert [parameter_count(initial_structure(2, count)) for count in (14, 16, 22, 60)] == [14, 16, 18, 18]
+    sizes = [parameter_count(each) for each in INITIAL_BLADES]
     assert sizes == sorted(sizes)
     for count in range(sizes[0], 140, 7):
-        assert size_of(lean(3, count)) <= count
-    assert size_of(rich(None)) >= size_of(lean(3, None))
+        assert parameter_count(initial_structure(3, count)) <= count
+    assert parameter_count(first_blade_structure(None)) >= parameter_count(initial_structure(3, None))

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from bladewright.fitting.matching.feet import Feet
-from bladewright.fitting.matching.scatter import scatter_of
+from bladewright.fitting.matching.footpoints import Footpoints
+from bladewright.fitting.matching.noise import noise_of
 
 NOISE = 1e-5
 
@@ -22,7 +22,7 @@ def made(seed, count=2000, *, misfit=0.0, dimension=2):
 
 
 def placed_feet(side, u, v, points, normals, heights):
-    return Feet(
+    return Footpoints(
         side=side, u=u, v=v, points=points, normals=normals, beyond=np.zeros_like(points),
         miss=heights[:, None] * normals,
     )  # fmt: skip
@@ -30,7 +30,7 @@ def placed_feet(side, u, v, points, normals, heights):
 
 def scattered(*parts):
     on = placed_feet(*parts)
-    return scatter_of(on.points + on.miss, on)
+    return noise_of(on.points + on.miss, on)
 
 
 @pytest.mark.parametrize("dimension", [2, 3])
@@ -73,8 +73,8 @@ def test_points_past_an_end_are_outliers_though_they_have_no_height():
     at = int(np.argmin((u - 0.5) ** 2))
     on = placed_feet(side, u, v, points, normals, heights)
     on.miss[at, 2] += 0.01
-    assert not scatter_of(on.points + on.miss, on).inliers[at]
-    assert scatter_of(on.points + on.miss, on, outlying=False).inliers.all()
+    assert not noise_of(on.points + on.miss, on).inliers[at]
+    assert noise_of(on.points + on.miss, on, outlying=False).inliers.all()
 
 
 def test_points_repeat_each_other_where_neighbours_share_the_misfit():

@@ -7,16 +7,19 @@ import numpy as np
 
 from bladewright.files.examples import example_text
 from bladewright.files.reading import design_from, parsed
-from bladewright.fitting.freedom import corner_radii, freedom_of
+from bladewright.fitting.free_parameters import corner_radii, free_parameters_of
 from bladewright.fitting.matching.search import Task, searched
-from bladewright.fitting.structures import tolerance as keeping
-from bladewright.fitting.structures.cambers import cambers
-from bladewright.fitting.structures.growth import least, losses, steps_back
-from bladewright.fitting.structures.identification import identified, plainest, tried
-from bladewright.fitting.structures.opening import opened
-from bladewright.fitting.structures.reshaping import reshaped
-from bladewright.fitting.structures.structure import structure_of
-from bladewright.fitting.structures.tolerance import calmed, spared
+from bladewright.fitting.model_selection import tolerance as keeping
+from bladewright.fitting.model_selection.identification import (
+    identified_section,
+    nearest_trial,
+    plainest,
+    trial_cambers,
+)
+from bladewright.fitting.model_selection.reshaping import reshaped, with_feasible_edges
+from bladewright.fitting.model_selection.steps import intersection_of, losses, steps_down
+from bladewright.fitting.model_selection.structure import structure_of
+from bladewright.fitting.model_selection.tolerance import reduced, smoothed
 
 BASE = design_from(parsed(example_text("turbine-section"), "vane"), "vane")
 MADE = replace(
@@ -29,7 +32,7 @@ def match(chordwise):
     """Points of the made section, and the match that starts from it with other numbers of control points."""
     curves, random = MADE.build().curves, np.random.default_rng(4)
     points = np.concatenate([curves[side](random.random(90)) for side in ("upper", "lower")])
-    task = Task(points=points, weights=np.ones(180), free=freedom_of(None, None, started=True), bounds={})
+    task = Task(points=points, weights=np.ones(180), free=free_parameters_of(None, None, started=True), bounds={})
     start = reshaped(MADE, replace(structure_of(MADE), chordwise=chordwise))
     return task, searched(task, start, rounds=2)
 
@@ -37,7 +40,7 @@ def match(chordwise):
 def test_control_points_that_a_tolerance_does_not_need_are_taken_away():
     task, found = match((8, 7))
     tolerance = 2e-3 * found.model.chord
-    fewer = spared(task, found, tolerance)
+    fewer = reduced(task, found, tolerance)
     assert len(fewer.problem.paths) < len(found.problem.paths) - 2
     assert fewer.maximum <= tolerance
     assert fewer.evaluations > found.evaluations
@@ -49,7 +52,7 @@ def test_a_wall_may_lose_its_last_control_point_between_the_corners():
     short = reshaped(stator, replace(structure, channel={**structure.channel, "hub": 3}))
     random = np.random.default_rng(4)
     points = np.concatenate([side(*random.random((2, 60))) for side in short.build().sides])
-    task = Task(points=points, weights=np.ones(120), free=freedom_of(None, None, started=True), bounds={})
+    task = Task(points=points, weights=np.ones(120), free=free_parameters_of(None, None, started=True), bounds={})
     found = searched(task, short, rounds=0)
     (loss,) = (loss for loss, step in losses(found) if step.fields == ("channel.hub",))
     assert loss >= 0.0
@@ -57,8 +60,8 @@ def test_a_wall_may_lose_its_last_control_point_between_the_corners():
 
 def test_nothing_is_taken_away_where_the_tolerance_is_not_kept_even_now():
     task, found = match((8, 7))
-    assert spared(task, found, 0.5 * found.maximum) is found
-    assert calmed(task, found, 0.5 * found.maximum) is found
+    assert reduced(task, found, 0.5 * found.maximum) is found
+    assert smoothed(task, found, 0.5 * found.maximum) is found
 
 
 def test_the_step_back_that_costs_least_is_foreseen_first():
@@ -66,12 +69,12 @@ def test_the_step_back_that_costs_least_is_foreseen_first():
     ranked = losses(found)
     assert {step.fields for _, step in ranked} == {("thickness_upper",), ("thickness_lower",)}
     assert [loss for loss, _ in ranked] == sorted(loss for loss, _ in ranked)
-    assert least([step for _, step in ranked]).chordwise == (7, 6)
+    assert intersection_of([step for _, step in ranked]).chordwise == (7, 6)
 
 
 def test_steps_back_leave_three_control_points_of_a_thickness():
     structure = replace(structure_of(MADE), chordwise=(3, 4))
-    assert [step.structure.chordwise for step in steps_back(structure)] == [(3, 3)]
+    assert [step.structure.chordwise for step in steps_down(structure)] == [(3, 3)]
 
 
 def test_a_wavy_match_is_smoothed_as_far_as_the_tolerance_allows(monkeypatch):
@@ -83,9 +86,9 @@ def test_a_wavy_match_is_smoothed_as_far_as_the_tolerance_allows(monkeypatch):
         seen.append(of)
         return waves.get(id(of), 12 - len(seen))
 
-    monkeypatch.setattr(keeping, "_waves", counted)
+    monkeypatch.setattr(keeping, "_curvature_extrema", counted)
     tolerance = 1e-3 * found.model.chord
-    calm = calmed(task, found, tolerance)
+    calm = smoothed(task, found, tolerance)
     assert len(seen) > 1
     assert calm is not found
     assert calm.maximum <= tolerance
@@ -93,21 +96,21 @@ def test_a_wavy_match_is_smoothed_as_far_as_the_tolerance_allows(monkeypatch):
 
 def test_the_numbers_of_control_points_that_a_section_was_made_with_are_found():
     task, found = match((6, 5))
-    known = identified(task, found.design)
+    known = identified_section(task, found.design)
     assert structure_of(known.design).chordwise == (7, 5)
     assert known.rms < 1e-9
 
 
 def test_a_section_is_found_from_a_camber_that_leaves_its_edge_the_wrong_way():
     task, _ = match((6, 5))
-    hooked = opened(MADE.changed({"metal_angle_out": MADE.stagger + 40.0, "tangent_out": 0.1}))
+    hooked = with_feasible_edges(MADE.changed({"metal_angle_out": MADE.stagger + 40.0, "tangent_out": 0.1}))
     direct = searched(task, hooked, noise=3e-3, rounds=6)
-    found = tried(task, hooked, [structure_of(MADE)])
+    found = nearest_trial(task, hooked, [structure_of(MADE)])
     assert found.rms < 1e-9 < direct.rms
 
 
 def test_cambers_hold_what_is_not_free():
-    others = cambers(MADE, lambda _: ("tangent_in", "tangent_out", "metal_angle_in"))
+    others = trial_cambers(MADE, lambda _: ("tangent_in", "tangent_out", "metal_angle_in"))
     assert {each.metal_angle_out for each in others} == {MADE.metal_angle_out}
     assert MADE in others
     assert len({each.metal_angle_in for each in others}) > 1

@@ -5,9 +5,9 @@ import pytest
 
 from bladewright.files.examples import example_text
 from bladewright.files.reading import design_from, parsed
+from bladewright.fitting.assessment.coverage import uncovered_edges
 from bladewright.fitting.fit import fit
-from bladewright.fitting.freedom import freedom_of
-from bladewright.fitting.judgement.unseen import unseen_edges
+from bladewright.fitting.free_parameters import free_parameters_of
 from bladewright.fitting.matching.search import Task, searched
 
 DESIGNS = {name: design_from(parsed(example_text(name), name), name) for name in ("turbine-section", "aachen-stator")}
@@ -34,8 +34,10 @@ def cloud(name, low, high):
 )
 def test_an_edge_without_points_is_known_by_how_wide_the_blade_is_there(name, low, high, edge, least, most):
     points = cloud(name, low, high)
-    task = Task(points=points, weights=np.ones(len(points)), free=freedom_of(None, None, started=True), bounds={})
-    found = unseen_edges(searched(task, DESIGNS[name], rounds=0))
+    task = Task(
+        points=points, weights=np.ones(len(points)), free=free_parameters_of(None, None, started=True), bounds={}
+    )
+    found = uncovered_edges(searched(task, DESIGNS[name], rounds=0))
     assert set(found) == ({edge} if edge else set())
     assert all(wide > 0.0 and least < share < most for wide, share in found.values())
 

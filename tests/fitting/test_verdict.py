@@ -5,11 +5,11 @@ import pytest
 
 from bladewright.files.examples import example_text
 from bladewright.files.reading import design_from, parsed
-from bladewright.fitting.freedom import freedom_of
-from bladewright.fitting.judgement.judging import judged
-from bladewright.fitting.judgement.verdict import failures_of
+from bladewright.fitting.assessment.acceptance import failures_of
+from bladewright.fitting.assessment.measurement import measured
+from bladewright.fitting.free_parameters import free_parameters_of
 from bladewright.fitting.matching.search import Task, searched
-from bladewright.fitting.structures.aim import Aim
+from bladewright.fitting.model_selection.stopping import MatchTarget
 
 STATOR = design_from(parsed(example_text("aachen-stator"), "stator"), "stator")
 
@@ -24,10 +24,14 @@ def test_a_given_structure_is_met_exactly_but_in_axes_that_a_start_shows(moved, 
     points = np.concatenate([np.real(side(u, v)) for side in built.sides])
     tilt = 1e-5 * (points[:, 0] - points[0, 0])
     points[:, 1] += tilt
-    task = Task(points=points, weights=np.ones(len(points)), free=freedom_of("stagger", None, started=True), bounds={})
+    task = Task(
+        points=points, weights=np.ones(len(points)), free=free_parameters_of("stagger", None, started=True), bounds={}
+    )
     found = searched(task, STATOR, rounds=0)
-    at = judged(points, built)
-    said = failures_of(np.abs(at.deviations), at.scatter.inliers, at.regions, found, Aim(structured=True, moved=moved))
+    at = measured(points, built)
+    said = failures_of(
+        np.abs(at.deviations), at.scatter.inliers, at.regions, found, MatchTarget(structured=True, moved=moved)
+    )
     assert len(said) == failures
     assert all("misfit of the given structure" in each for each in said)
 
@@ -41,7 +45,7 @@ def test_points_of_a_solid_on_its_end_faces_are_said_to_be_there():
     face = upper + across[:400, None] * (lower - upper)
     stray = np.mean(sides, axis=0) + 0.5 * np.ptp(sides, axis=0)
     points = np.concatenate([sides, face, stray[None]])
-    at = judged(points, built)
+    at = measured(points, built)
     outlying = ~at.scatter.inliers[len(sides) : -1]
     # those beside the outline are as near to the sides, on which an exact cloud has them
     assert np.mean(at.faced[len(sides) : -1][outlying]) > 0.95
@@ -49,10 +53,14 @@ def test_points_of_a_solid_on_its_end_faces_are_said_to_be_there():
     assert not at.faced[-1]
     assert set(at.regions[at.faced]) == {"ends"}
     assert set(at.places[at.faced]) == set(STATOR.ends)
-    task = Task(points=points, weights=np.ones(len(points)), free=freedom_of("stagger", None, started=True), bounds={})
+    task = Task(
+        points=points, weights=np.ones(len(points)), free=free_parameters_of("stagger", None, started=True), bounds={}
+    )
     found, distances = searched(task, STATOR, rounds=0), np.abs(at.deviations)
     said = [
-        " ".join(failures_of(distances, at.scatter.inliers, at.regions, found, Aim(structured=True), faced=faced))
+        " ".join(
+            failures_of(distances, at.scatter.inliers, at.regions, found, MatchTarget(structured=True), faced=faced)
+        )
         for faced in (0, int(np.count_nonzero(at.faced)))
     ]
     assert "lie off the blade" in said[0]
@@ -67,9 +75,11 @@ def test_a_blade_that_is_laid_through_one_side_is_called_a_sheet(share, sheet):
     built = blade.build()
     u, v = np.random.default_rng(5).random((2, 300))
     points = np.concatenate([np.real(side(u, v)) for side in built.sides])
-    task = Task(points=points, weights=np.ones(len(points)), free=freedom_of("stagger", None, started=True), bounds={})
-    found, at = searched(task, blade, rounds=0), judged(points, built)
-    said = failures_of(np.abs(at.deviations), at.scatter.inliers, at.regions, found, Aim(structured=True))
+    task = Task(
+        points=points, weights=np.ones(len(points)), free=free_parameters_of("stagger", None, started=True), bounds={}
+    )
+    found, at = searched(task, blade, rounds=0), measured(points, built)
+    said = failures_of(np.abs(at.deviations), at.scatter.inliers, at.regions, found, MatchTarget(structured=True))
     assert any("the blade is a sheet" in each for each in said) == sheet
 
 
@@ -77,12 +87,14 @@ def test_a_blade_that_is_laid_through_one_side_is_called_a_sheet(share, sheet):
 def test_a_blade_needs_more_points_than_it_has_parameters(count, few):
     built, random = STATOR.build(), np.random.default_rng(6)
     points = np.concatenate([np.real(side(*random.random((2, count)))) for side in built.sides])
-    task = Task(points=points, weights=np.ones(len(points)), free=freedom_of(None, None, started=True), bounds={})
-    found, at = searched(task, STATOR, rounds=0), judged(points, built)
-    distances, open_aim = np.abs(at.deviations), Aim()
+    task = Task(
+        points=points, weights=np.ones(len(points)), free=free_parameters_of(None, None, started=True), bounds={}
+    )
+    found, at = searched(task, STATOR, rounds=0), measured(points, built)
+    distances, open_aim = np.abs(at.deviations), MatchTarget()
     said = [
         " ".join(failures_of(distances, at.scatter.inliers, at.regions, found, aim))
-        for aim in (open_aim, Aim(parameters=30))
+        for aim in (open_aim, MatchTarget(parameters=30))
     ]
     assert ("points are too few" in said[0]) == few
     assert "points are too few" not in said[1]

@@ -6,15 +6,15 @@ import fit_made
 import numpy as np
 import pytest
 
-from bladewright.blade.exact import moved
+from bladewright.blade.exact.unified import moved_exact_blade
 from bladewright.files.examples import example_text
 from bladewright.files.reading import design_from, parsed
 from bladewright.fitting.clouds.thinning import spread
-from bladewright.fitting.first.hypotheses import coordinates, ranked
-from bladewright.fitting.matching.feet import feet, placed
-from bladewright.fitting.matching.model import model_of
-from bladewright.fitting.matching.reach import reach_of
-from bladewright.fitting.matching.walls import ends_of
+from bladewright.fitting.initial_guess.hypotheses import machine_coordinates, ranked_outlines
+from bladewright.fitting.matching.blade_ends import blade_ends_of
+from bladewright.fitting.matching.edge_overhang import edge_overhang_of
+from bladewright.fitting.matching.footpoints import footpoints_at, nearest_footpoints
+from bladewright.fitting.models.model import model_of
 
 BLADE = "centrifugal-impeller"
 
@@ -45,8 +45,8 @@ def sides_cloud(name, count, rows=0):
 
 def ends(name, points):
     _, _, found = shape(name)
-    on = feet(points, found.sides)
-    return ends_of(points, on, found, np.ones(len(points), dtype=bool)), on
+    on = nearest_footpoints(points, found.sides)
+    return blade_ends_of(points, on, found, np.ones(len(points), dtype=bool)), on
 
 
 def test_rows_at_both_ends_lie_on_the_walls():
@@ -76,7 +76,7 @@ def test_a_row_is_found_among_points_beside_it_where_its_wall_is_not_known_yet()
             {f"channel.{name}[1].r": 1.01 * design.parameters()[f"channel.{name}[1].r"] for name in ("hub", "shroud")}
         )
     )
-    found = ends_of(points, feet(points, other.sides), other, np.ones(len(points), dtype=bool))
+    found = blade_ends_of(points, nearest_footpoints(points, other.sides), other, np.ones(len(points), dtype=bool))
     for name in ("hub", "shroud"):
         off = found.walls[name].distances(there.exact)
         assert len(off) < 660
@@ -90,7 +90,7 @@ def test_points_a_little_inside_beside_an_end_are_no_end_face():
         design.changed({"trailing_edge_radius[1]": 2.0 * design.parameters()["trailing_edge_radius[1]"]})
     )
     points = sides_cloud(BLADE, 300, rows=60)
-    found = ends_of(points, feet(points, blunt.sides), blunt, np.ones(len(points), dtype=bool))
+    found = blade_ends_of(points, nearest_footpoints(points, blunt.sides), blunt, np.ones(len(points), dtype=bool))
     assert not found.covered.any()
 
 
@@ -129,7 +129,7 @@ def test_points_of_an_end_face_are_told_from_those_of_the_sides():
 def test_outliers_belong_to_an_end_face_where_they_stand_in_its_row(v, belong):
     points = np.concatenate([sides_cloud(BLADE, 300), between(v)])
     _, _, there = shape(BLADE)
-    found = ends_of(points, feet(points, there.sides), there, np.arange(len(points)) < 600)
+    found = blade_ends_of(points, nearest_footpoints(points, there.sides), there, np.arange(len(points)) < 600)
     assert np.all(found.covered == (belong & (np.arange(len(points)) >= 600)))
     assert set(found.walls) == ({"shroud"} if belong else set())
 
@@ -145,7 +145,7 @@ def test_places_on_a_wall_move_as_central_differences_say(end):
     for i, path in enumerate(paths):
         step = 1e-4
         ahead, behind = (
-            moved(there.exact, design.changed(path, values[path] + sign * step)).channel.line(end).values(t)
+            moved_exact_blade(there.exact, design.changed(path, values[path] + sign * step)).channel.line(end).values(t)
             for sign in (1.0, -1.0)
         )
         # metres a millimetre: rounding of metres over a step
@@ -160,7 +160,7 @@ def test_edges_within_their_cloud_stand_out_no_further_than_allowed():
         u = (1.0 - np.cos(np.pi * np.linspace(0.0, 1.0, 60))) / 2.0
         grid = [np.repeat(u, 40), np.tile(np.linspace(0.0, 1.0, 40), 60)]
         points = np.concatenate([side(u) if name == "turbine-section" else side(*grid) for side in there.sides])
-        reach = reach_of(points, there.sides, np.ones(len(points), dtype=bool))
+        reach = edge_overhang_of(points, there.sides, np.ones(len(points), dtype=bool))
         assert np.all(reach.excess(reach.edges(there.sides)) <= 0.0)
         assert np.all(reach.allowed < 0.1 * model.chord)
         assert set(reach.u) == {0.0, 1.0}
@@ -172,12 +172,12 @@ def test_an_edge_that_sticks_out_of_its_cloud_stands_out_by_that_much(edge, path
     u = (1.0 - np.cos(np.pi * np.linspace(0.0, 1.0, 100))) / 2.0
     points = np.concatenate([side(u) for side in there.sides])
     longer = model.shape(design.changed(path, getattr(design, path) + sign)).sides
-    reach = reach_of(points, longer, np.ones(len(points), dtype=bool))
+    reach = edge_overhang_of(points, longer, np.ones(len(points), dtype=bool))
     excess = reach.excess(reach.edges(longer))
     away = longer[0](np.array([float(edge)])) - there.sides[0](np.array([float(edge)]))
     away = np.sqrt(np.sum(away**2))
     assert 0.3 * away < excess[edge] <= away
-    again = placed(reach.points, longer, np.zeros(2, dtype=int), reach.u, reach.v)
+    again = footpoints_at(reach.points, longer, np.zeros(2, dtype=int), reach.u, reach.v)
     assert np.sum(again.miss[edge] * again.normals[edge]) < 0.0
 
 
@@ -187,7 +187,7 @@ def test_the_ends_of_an_edge_are_held_where_the_cloud_shows_them(shown, held):
     u = (1.0 - np.cos(np.pi * np.linspace(0.0, 1.0, 60))) / 2.0
     grid = [np.repeat(u, 40), np.tile(np.linspace(0.0, shown, 40), 60)]
     points = np.concatenate([side(*grid) for side in there.sides])
-    reach = reach_of(points, there.sides, np.ones(len(points), dtype=bool))
+    reach = edge_overhang_of(points, there.sides, np.ones(len(points), dtype=bool))
     assert np.all(np.isfinite(reach.allowed[reach.v == 1.0]) == held)
     assert np.all(np.isfinite(reach.allowed[reach.v < 1.0]))
 
@@ -197,7 +197,7 @@ def test_a_true_edge_costs_nothing_in_an_exact_cloud_whose_points_happen_to_lie_
     every = np.ones(len(points), dtype=bool)
     excess = []
     for exact in (False, True):
-        reach = reach_of(points, built.sides, every, exact=exact)
+        reach = edge_overhang_of(points, built.sides, every, exact=exact)
         excess.append(float(np.max(reach.excess(reach.edges(built.sides)))) / built.chord)
     # beside the edge two points are much nearer to each other than to it
     assert excess[0] > 1e-4
@@ -207,6 +207,6 @@ def test_a_true_edge_costs_nothing_in_an_exact_cloud_whose_points_happen_to_lie_
 def test_points_of_a_blade_do_not_lie_off_it_where_its_first_channel_does_not_follow_them():
     _, points = made(10)
     points = np.unique(points, axis=0)
-    machine = coordinates(points[spread(points, 1200)], "annular")
-    kept, _ = ranked(machine, revolved=True)
+    machine = machine_coordinates(points[spread(points, 1200)], "annular")
+    kept, _ = ranked_outlines(machine, revolved=True)
     assert len(kept) == len(machine)

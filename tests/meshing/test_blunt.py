@@ -5,9 +5,9 @@ import pytest
 
 import bladewright as bw
 from bladewright import cad, meshing
-from bladewright.blade.families import ProfileBlade
-from bladewright.blade.flow_path import FlowPath
-from bladewright.blade.meridian import ThroughPoints
+from bladewright.blade.design.families import ProfileBlade
+from bladewright.blade.design.flow_path import FlowPath
+from bladewright.blade.design.meridional_curve import ThroughPoints
 from bladewright.meshing.sizes import sizes
 from bladewright.section.profiles.flat_plate import FlatPlate
 

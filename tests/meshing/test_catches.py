@@ -6,18 +6,17 @@ import numpy as np
 import pytest
 
 from bladewright.errors import MeshError
-from bladewright.meshing.job import Answer
-from bladewright.meshing.measures import deviations, limit, loose_facets
-from bladewright.meshing.periodicity import match, periodicity
+from bladewright.meshing.gmsh_process import Answer
+from bladewright.meshing.mesh_file import GROUP, read_mesh
+from bladewright.meshing.periodicity import match_periodic, periodicity
 from bladewright.meshing.quality import condition_numbers
-from bladewright.meshing.reopening import GROUP, content
-from bladewright.meshing.verification import check_complete
+from bladewright.meshing.verification import check_complete, deviation_limit, deviations, unmatched_facets
 
 
 @pytest.fixture(scope="module")
 def held(rotor_mesh):
     """What the rotor's mesh file holds."""
-    return content(rotor_mesh[0])
+    return read_mesh(rotor_mesh[0])
 
 
 def triangles(held):
@@ -39,7 +38,7 @@ def test_one_inverted_tetrahedron_is_seen(held):
 
 @pytest.mark.parametrize("group", ["blade_upper", "hub_lower", "tip", "inlet"])
 def test_a_node_off_its_surface_is_seen(group, held, rotor):
-    allowed = limit(rotor.passage.blade.chord)
+    allowed = deviation_limit(rotor.passage.blade.chord)
     points = held["nodes"][held[GROUP + group][:3]].reshape(-1, 3)
     off = deviations(rotor.passage.surfaces, group, points, allowed)
     assert off.max() <= allowed
@@ -55,17 +54,17 @@ def test_a_native_surface_that_the_mesh_does_not_follow_is_seen(held, rotor):
     net[len(net) // 2] += [0.0, 1e-5, 1e-5]
     other = {"blade_lower": dataclasses.replace(side, control_points=net)}
     points = held["nodes"][np.unique(held[GROUP + "blade_lower"])]
-    allowed = limit(rotor.passage.blade.chord)
+    allowed = deviation_limit(rotor.passage.blade.chord)
     assert deviations(other, "blade_lower", points, allowed).max() > 5.0 * allowed
 
 
 def test_a_periodic_node_off_its_partner_is_seen(held, rotor):
     motion = periodicity(rotor.passage.surfaces)
     rows = held[GROUP + "periodic_lower"], held[GROUP + "periodic_upper"]
-    assert match(motion, held["nodes"], *rows).mismatch < 1e-12
+    assert match_periodic(motion, held["nodes"], *rows).mismatch < 1e-12
     nodes = np.array(held["nodes"])
     nodes[inner(held, "periodic_upper"), 0] += 3e-9 * motion.pitch
-    found = match(motion, nodes, *rows)
+    found = match_periodic(motion, nodes, *rows)
     assert found.mismatch == pytest.approx(3e-9, rel=1e-3)
     assert found.triangles
 
@@ -74,14 +73,14 @@ def test_periodic_boundaries_with_other_nodes_or_triangles_are_seen(held, rotor)
     motion = periodicity(rotor.passage.surfaces)
     lower, upper = held[GROUP + "periodic_lower"], held[GROUP + "periodic_upper"]
     fewer = upper[(upper != inner(held, "periodic_upper")).all(axis=1)]
-    assert match(motion, held["nodes"], lower, fewer).mismatch == np.inf
-    assert not match(motion, held["nodes"], lower, upper[1:]).triangles
+    assert match_periodic(motion, held["nodes"], lower, fewer).mismatch == np.inf
+    assert not match_periodic(motion, held["nodes"], lower, upper[1:]).triangles
 
 
 def test_a_hole_in_the_boundary_is_seen(held):
     groups = triangles(held)
-    assert loose_facets(held["tetrahedra"], groups) == 0
-    assert loose_facets(held["tetrahedra"], {**groups, "outlet": groups["outlet"][1:]}) == 1
+    assert unmatched_facets(held["tetrahedra"], groups) == 0
+    assert unmatched_facets(held["tetrahedra"], {**groups, "outlet": groups["outlet"][1:]}) == 1
 
 
 def test_a_mesh_that_passes_has_no_failures(rotor_mesh):

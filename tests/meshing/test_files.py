@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 
 from bladewright.errors import FileError
-from bladewright.meshing.native import motionless, rescaled
-from bladewright.meshing.reopening import content
+from bladewright.meshing.mesh_file import motionless, read_mesh, rescaled
 
 pytestmark = pytest.mark.usefixtures("gmsh")
 FACES = {
@@ -54,7 +53,7 @@ def test_a_mesh_is_in_metres_and_closes_to_the_volume_of_the_passage(cascade, ca
     assert report.unit == "m"
     if path.suffix == ".su2":
         corners = np.concatenate([each.control_points.reshape(-1, 3) for each in cascade.passage.surfaces.values()])
-        nodes = content(path)["nodes"]
+        nodes = read_mesh(path)["nodes"]
         assert (nodes.min(axis=0) > corners.min(axis=0) - 1e-4).all()
         assert (nodes.max(axis=0) < corners.max(axis=0) + 1e-4).all()
 
@@ -107,7 +106,7 @@ def test_the_same_passage_gives_the_same_mesh_a_thousand_times_as_large_in_milli
     report = cascade.mesh(millimetres, unit="mm")
     assert report.passed, report
     assert report.translation[1] == pytest.approx(27.0, rel=1e-12)
-    assert np.allclose(content(millimetres)["nodes"], 1e3 * content(metres)["nodes"], rtol=1e-12, atol=1e-9)
+    assert np.allclose(read_mesh(millimetres)["nodes"], 1e3 * read_mesh(metres)["nodes"], rtol=1e-12, atol=1e-9)
 
 
 @pytest.mark.slow

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from bladewright.meshing.measures import loose_facets
 from bladewright.meshing.quality import condition_numbers, radius_ratios, volumes
+from bladewright.meshing.verification import unmatched_facets
 
 REGULAR = np.array([[1, 1, 1], [-1, 1, -1], [1, -1, -1], [-1, -1, 1.0]])
 RIGHT = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1.0]])
@@ -61,7 +61,7 @@ SHELL = np.array([[0, 1, 2], [0, 1, 3], [0, 2, 3], [1, 2, 4], [1, 3, 4], [2, 3, 
 
 
 def test_a_boundary_that_is_covered_once_leaves_no_facet_loose():
-    assert loose_facets(TWO, {"one": SHELL[:2], "other": SHELL[2:, ::-1]}) == 0
+    assert unmatched_facets(TWO, {"one": SHELL[:2], "other": SHELL[2:, ::-1]}) == 0
 
 
 @pytest.mark.parametrize(
@@ -76,4 +76,4 @@ def test_a_boundary_that_is_covered_once_leaves_no_facet_loose():
     ids=["a hole", "a face twice", "a face inside", "a face of no tetrahedron", "no face"],
 )
 def test_what_does_not_close_is_counted(groups, loose):
-    assert loose_facets(TWO, groups) == loose
+    assert unmatched_facets(TWO, groups) == loose

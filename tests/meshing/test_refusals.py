@@ -6,7 +6,7 @@ import sys
 import pytest
 
 from bladewright.errors import MeshError
-from bladewright.meshing import running
+from bladewright.meshing import gmsh_process
 from bladewright.meshing.names import face_names, group_of
 from bladewright.meshing.periodicity import periodicity
 
@@ -42,12 +42,12 @@ def test_sizes_that_no_mesh_has_are_refused(options, words, cascade, tmp_path):
 
 
 def test_the_size_that_a_refusal_names_is_taken(cascade):
-    from bladewright.meshing.sizes import MOST, sizes
+    from bladewright.meshing.sizes import MAX_TETRAHEDRA, sizes
 
     with pytest.raises(MeshError) as caught:
         sizes(cascade.passage, size=1e-3)
     named = float(str(caught.value).rpartition("raise size to ")[2])
-    assert 0.8 * MOST < sizes(cascade.passage, size=named).expected <= MOST
+    assert 0.8 * MAX_TETRAHEDRA < sizes(cascade.passage, size=named).expected <= MAX_TETRAHEDRA
 
 
 @pytest.mark.parametrize("name", ["mesh.vtk", "mesh", "mesh.step"])
@@ -74,7 +74,7 @@ def test_a_missing_library_of_the_system_is_named(cascade, tmp_path, monkeypatch
 def test_a_gmsh_that_falls_is_an_error_with_its_last_words(cascade, tmp_path, monkeypatch):
     (tmp_path / "falling.py").write_text(KILLED)
     monkeypatch.syspath_prepend(tmp_path)
-    monkeypatch.setattr(running, "WORKER", "falling")
+    monkeypatch.setattr(gmsh_process, "WORKER", "falling")
     heard = []
     with pytest.raises(MeshError, match=r"ended by signal 9.*about to fall") as caught:
         cascade.mesh(tmp_path / "mesh.msh", log=heard.append)
@@ -92,7 +92,7 @@ def test_the_process_ends_with_an_interruption(cascade, tmp_path, monkeypatch):
             super().__init__(*words, **options)
             started.append(self)
 
-    monkeypatch.setattr(running.subprocess, "Popen", Seen)
+    monkeypatch.setattr(gmsh_process.subprocess, "Popen", Seen)
 
     def interrupted(_):
         raise KeyboardInterrupt

@@ -5,12 +5,12 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from bladewright.meshing.sizes import EXPECTED, sizes
+from bladewright.meshing.sizes import DEFAULT_TETRAHEDRA, sizes
 
 
 def test_without_a_size_the_expected_number_is_made(cascade, rotor):
     for case in (cascade, rotor):
-        assert sizes(case.passage).expected == pytest.approx(EXPECTED, rel=1e-3)
+        assert sizes(case.passage).expected == pytest.approx(DEFAULT_TETRAHEDRA, rel=1e-3)
 
 
 def test_a_mesh_has_about_the_number_of_tetrahedra_that_was_expected(cascade_mesh, rotor_mesh):

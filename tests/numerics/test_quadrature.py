@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from bladewright.numerics.quadrature import LAST_ORDER, adaptive, gauss, orders, panels, settled
+from bladewright.numerics.quadrature import LAST_ORDER, adaptive, converged_quadrature, gauss, panels, quadrature_orders
 
 
 @pytest.mark.parametrize("order", [1, 2, 5, 12])
@@ -40,6 +40,6 @@ def test_orders_rise_until_the_value_settles():
         nodes, weights = gauss(order)
         return weights @ np.cos(30.0 * nodes)
 
-    assert np.isclose(settled(value, 4), np.sin(30.0) / 30.0, rtol=1e-12)
-    assert asked == orders(4)[: len(asked)]
+    assert np.isclose(converged_quadrature(value, 4), np.sin(30.0) / 30.0, rtol=1e-12)
+    assert asked == quadrature_orders(4)[: len(asked)]
     assert asked[-1] < LAST_ORDER

@@ -7,7 +7,7 @@ import pytest
 
 from bladewright.nurbs.basis import uniform_knots
 from bladewright.nurbs.curve import Curve
-from bladewright.nurbs.revolve import arc, circle, revolved
+from bladewright.nurbs.revolution import arc, circle, revolved
 from bladewright.nurbs.surface import Surface
 
 

@@ -11,8 +11,8 @@ from bladewright.nurbs.curve import Curve
 from bladewright.nurbs.domain import extended
 from bladewright.nurbs.fit import interpolated
 from bladewright.nurbs.refine import inserted
-from bladewright.nurbs.revolve import arc, circle, revolved, segment
-from bladewright.nurbs.span import ruled
+from bladewright.nurbs.revolution import arc, circle, revolved, segment
+from bladewright.nurbs.skinning import ruled
 from bladewright.nurbs.surface import Surface
 
 SPHERE = revolved(arc((0.0, 0.0, 0.0), 2.0, 0.0, np.pi, axes=((-1, 0, 0), (0, 1, 0))))

@@ -4,8 +4,8 @@ import pytest
 from bladewright.errors import GeometryError
 from bladewright.nurbs.compatible import compatible, joined
 from bladewright.nurbs.domain import reversed, split  # noqa: A004
-from bladewright.nurbs.revolve import arc, circle, revolved, segment
-from bladewright.nurbs.span import coons, ruled, skinned
+from bladewright.nurbs.revolution import arc, circle, revolved, segment
+from bladewright.nurbs.skinning import coons, ruled, skinned
 from bladewright.nurbs.transform import mirrored, rotated, scaled, translated
 
 SAME = {"rtol": 0.0, "atol": 1e-13}

@@ -6,7 +6,7 @@ from bladewright.nurbs.curvature import curvature, curvature_vector, surface_cur
 from bladewright.nurbs.curve import Curve
 from bladewright.nurbs.domain import reversed  # noqa: A004
 from bladewright.nurbs.measure import surface_integral
-from bladewright.nurbs.revolve import arc, circle, revolved, segment
+from bladewright.nurbs.revolution import arc, circle, revolved, segment
 from bladewright.nurbs.surface import Surface
 from bladewright.nurbs.transform import scaled
 

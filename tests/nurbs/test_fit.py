@@ -3,10 +3,9 @@ import pytest
 from scipy.interpolate import make_interp_spline
 
 from bladewright.errors import GeometryError
-from bladewright.nurbs.approximate import approximated
 from bladewright.nurbs.basis import basis, uniform_knots
 from bladewright.nurbs.curve import Curve
-from bladewright.nurbs.fit import averaged_knots, chord_sites, interpolated, interpolated_surface
+from bladewright.nurbs.fit import approximated, averaged_knots, chord_sites, interpolated, interpolated_surface
 
 CONDITIONS = [(0, 0), (1, 0), (0, 1), (1, 1), (2, 1), (2, 2)]
 

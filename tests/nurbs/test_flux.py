@@ -3,9 +3,9 @@ import pytest
 
 from bladewright.errors import GeometryError
 from bladewright.nurbs.domain import swapped
-from bladewright.nurbs.flux import mass_properties
-from bladewright.nurbs.revolve import arc, circle, revolved, segment
-from bladewright.nurbs.span import ruled
+from bladewright.nurbs.mass_properties import mass_properties
+from bladewright.nurbs.revolution import arc, circle, revolved, segment
+from bladewright.nurbs.skinning import ruled
 from bladewright.nurbs.transform import rotated, scaled, translated
 from bladewright.nurbs.trimmed import TrimmedSurface
 

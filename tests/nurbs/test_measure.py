@@ -5,8 +5,8 @@ from bladewright.errors import GeometryError
 from bladewright.nurbs.curve import Curve
 from bladewright.nurbs.domain import split
 from bladewright.nurbs.measure import arc_length, area, parameters_at_length, surface_integral
-from bladewright.nurbs.revolve import arc, circle, revolved, segment
-from bladewright.nurbs.span import ruled
+from bladewright.nurbs.revolution import arc, circle, revolved, segment
+from bladewright.nurbs.skinning import ruled
 from bladewright.nurbs.transform import scaled
 
 PARABOLA = Curve(control_points=[[0.0, 0.0], [0.5, 0.0], [1.0, 1.0]], knots=[0, 0, 0, 1, 1, 1], degree=2)

@@ -4,7 +4,7 @@ from scipy.interpolate import NdBSpline
 
 from bladewright.errors import GeometryError
 from bladewright.nurbs.curve import Curve
-from bladewright.nurbs.revolve import revolved
+from bladewright.nurbs.revolution import revolved
 from bladewright.nurbs.surface import Surface
 from bladewright.nurbs.transform import transformed
 

@@ -6,8 +6,8 @@ from bladewright.nurbs.basis import uniform_knots
 from bladewright.nurbs.curve import Curve
 from bladewright.nurbs.domain import reversed  # noqa: A004
 from bladewright.nurbs.fit import interpolated
-from bladewright.nurbs.revolve import arc, circle, revolved, segment
-from bladewright.nurbs.span import ruled
+from bladewright.nurbs.revolution import arc, circle, revolved, segment
+from bladewright.nurbs.skinning import ruled
 from bladewright.nurbs.surface import Surface
 from bladewright.nurbs.transform import scaled, transformed
 from bladewright.nurbs.trimmed import TrimmedSurface

@@ -6,14 +6,14 @@ import numpy as np
 import pytest
 from scipy.interpolate import make_interp_spline
 
-from bladewright.blade.extrema import extrema_of
+from bladewright.blade.native.extrema import extrema_of
 from bladewright.files.examples import example_text
 from bladewright.files.reading import design_from, parsed
 from bladewright.nurbs.curve import Curve
 from bladewright.nurbs.transform import translated
-from bladewright.section.curves import camber_curve
-from bladewright.section.extrema import curvature_extrema, turning_places, turning_points
+from bladewright.section.curvature_extrema import curvature_extrema, turning_places, turning_points
 from bladewright.section.section import Section
+from bladewright.section.unified_sides import camber_curve
 
 ARC = np.linspace(0.0, 1.0, 801)
 WIDTH = 0.03

@@ -10,7 +10,7 @@ from bladewright.section.chord_spline import ChordSpline
 from bladewright.section.crossing import check_outline
 from bladewright.section.laws import Span
 from bladewright.section.meanline import CurvatureIntegral, CurvedMeanline, MixedMeanline, backward, camber_scale
-from bladewright.section.offset import merged
+from bladewright.section.offset import merged_joints
 from bladewright.section.outline import Joint
 
 from .meanline_examples import ELLIPTIC, MEANLINES, NACA, SHARP, on_meanline
@@ -249,7 +249,7 @@ def test_joints_of_splines_are_listed_where_they_stand_still_along_the_span():
 
 def test_joints_at_one_place_are_one_with_the_fewer_derivatives():
     joints = [Joint(0.5, 3), Joint(0.2, 2), Joint(0.5 + 1e-12, 1), Joint(1e-12, 1), Joint(1.0, 2)]
-    assert merged(joints) == (Joint(0.2, 2), Joint(0.5, 1))
+    assert merged_joints(joints) == (Joint(0.2, 2), Joint(0.5, 1))
 
 
 def test_a_side_that_folds_back_is_refused_where_it_does():

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from bladewright.errors import DesignError
-from bladewright.section.arc import ArcLength
+from bladewright.section.arc_length import ArcLength
 from bladewright.section.native import knots_for, native_curves
 from bladewright.section.outline import Edge, Joint, Outline, Start
 

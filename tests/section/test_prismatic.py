@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from bladewright.blade.prismatic import prismatic
+from bladewright.blade.design.families import prismatic
 
 from .families import EXAMPLES
 

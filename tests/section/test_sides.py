@@ -6,12 +6,16 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from bladewright.section.camber import camber_line, camber_tangents
-from bladewright.section.curves import side_curve
-from bladewright.section.edges import reparametrised
 from bladewright.section.laws import Span
-from bladewright.section.plane import matched, plane_sections, taylor
-from bladewright.section.sampling import sample_places
-from bladewright.section.sides import side
+from bladewright.section.unified_sides import (
+    matched,
+    plane_sections,
+    reparametrised,
+    sample_places,
+    side,
+    side_curve,
+    taylor,
+)
 
 ANGLES = st.floats(-1.0, 1.0)
 RADII = st.floats(1e-3, 0.05)

@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from bladewright.section.analytic_pieces import Pieces, inverse
+from bladewright.section.chebyshev_pieces import ChebyshevPieces, inverse
 from bladewright.section.curvature_meanline import CurvatureMeanline
 from bladewright.section.laws import Span
 from bladewright.section.outline import Outline
@@ -171,7 +171,9 @@ def test_a_section_of_a_family_is_measured_on_its_exact_outline():
 
 def test_pieces_differentiate_across_steep_functions():
     t = np.linspace(-0.9, 0.9, 7)
-    found = Pieces(lambda x: np.stack([np.exp(3.0 * x), 1.0 / (0.02 + x * x)], axis=-1), [-1.0, 1.0]).derivatives(t, 1)
+    found = ChebyshevPieces(
+        lambda x: np.stack([np.exp(3.0 * x), 1.0 / (0.02 + x * x)], axis=-1), [-1.0, 1.0]
+    ).derivatives(t, 1)
     assert found[:, 0, 1] == pytest.approx(3.0 * np.exp(3.0 * t), rel=1e-10)
     assert found[:, 1, 1] == pytest.approx(-2.0 * t / (0.02 + t * t) ** 2, rel=1e-9, abs=1e-7)
 

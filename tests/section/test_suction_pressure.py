@@ -9,9 +9,8 @@ from bladewright.nurbs.closest import closest_on_curve
 from bladewright.nurbs.curvature import curvature
 from bladewright.nurbs.curve import Curve
 from bladewright.section.laws import Span
-from bladewright.section.suction_pressure.assembly import characteristic
-from bladewright.section.suction_pressure.merging import merged
-from bladewright.section.suction_pressure.outline import EDGE
+from bladewright.section.suction_pressure.outline import EDGE, closed_curve
+from bladewright.section.suction_pressure.part import characteristic
 
 from .one_sided import one_sided
 from .suction_pressure_examples import FAN_TIP, STATOR, TURBINE, section
@@ -187,7 +186,7 @@ def test_a_refinement_that_would_not_be_exact_is_refused(part, call, message):
 
 
 def test_a_section_merges_into_one_closed_curve_of_four_pieces(part):
-    curve = merged(part)
+    curve = closed_curve(part)
     start, end = curve.domain
     outline = part.outline(SPAN)
     degree = 4 if part.edges == "C1" else 6

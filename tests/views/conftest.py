@@ -2,9 +2,9 @@
 
 import pytest
 
-from bladewright.blade.channel import Channel
-from bladewright.blade.prismatic import prismatic
-from bladewright.blade.unified import UnifiedBlade
+from bladewright.blade.design.families import prismatic
+from bladewright.blade.design.flow_path import Channel
+from bladewright.blade.design.unified import UnifiedBlade
 from bladewright.files.examples import example_text
 from bladewright.files.reading import design_from, parsed
 from bladewright.section.unified import UnifiedSection

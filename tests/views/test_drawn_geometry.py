@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 from matplotlib.path import Path as Outline
 
-from bladewright.blade.prismatic import prismatic
+from bladewright.blade.design.families import prismatic
 from bladewright.views.laws import panels_of
 from bladewright.views.meridional import blade_outline
-from bladewright.views.picture import FEW, SPANS, sheet
-from bladewright.views.sections import along_curve, narrowest, outline, pitch_of, size_of
+from bladewright.views.picture import FEW_SPANS, SPANS, sheet
+from bladewright.views.sections import cosine_spacing, millimetres_per_unit, narrowest_gap, outline, pitch_of
 
 EXACT = 1e-12
 """rounding of a scaling"""
@@ -26,13 +26,13 @@ def with_name(panel, name):
 
 
 def test_sections_are_the_native_curves_in_millimetres(blade_drawn):
-    panel, u = blade_drawn.panel("Sections"), along_curve()
+    panel, u = blade_drawn.panel("Sections"), cosine_spacing()
     shapes = [line for line in lines(panel) if len(line) == 2 * len(u)]
     assert len(shapes) == len(SPANS)
     for v, shape in zip(SPANS, shapes, strict=True):
         section = blade_drawn.built.section(v)
         for name, part in (("upper", shape[: len(u)]), ("lower", shape[: len(u) - 1 : -1])):
-            assert np.allclose(part, section.curves[name](u) * size_of(section), **SAME)
+            assert np.allclose(part, section.curves[name](u) * millimetres_per_unit(section), **SAME)
 
 
 def test_a_drawn_section_has_the_chord_of_the_built_one(drawn):
@@ -57,23 +57,23 @@ def test_as_many_pitches_as_blades_go_around(blade_drawn):
     if blade_drawn.name == "cascade":
         assert pitch == pytest.approx(57.5)
     else:
-        assert pitch * blade_drawn.design.blade_count == pytest.approx(2.0 * np.pi * size_of(section))
+        assert pitch * blade_drawn.design.blade_count == pytest.approx(2.0 * np.pi * millimetres_per_unit(section))
 
 
 def test_the_narrowest_gap_of_two_circles_lies_between_their_centres():
     turn = np.linspace(0.0, 2.0 * np.pi, 361)
     circle = np.column_stack([np.cos(turn), np.sin(turn)])
-    gap = narrowest(circle, circle + np.array([0.0, 5.0]))
+    gap = narrowest_gap(circle, circle + np.array([0.0, 5.0]))
     assert np.allclose(gap, [[0.0, 1.0], [0.0, 4.0]], atol=1e-12)  # rounding: the points are among those given
 
 
 def test_curvature_is_that_of_the_section_convex_positive_per_millimetre(drawn):
-    sections = [drawn.built] if drawn.name == "section" else [drawn.built.section(v) for v in FEW]
+    sections = [drawn.built] if drawn.name == "section" else [drawn.built.section(v) for v in FEW_SPANS]
     curves = [line for line in lines(drawn.panel("Curvature")) if len(line) == 601]
     assert len(curves) == 2 * len(sections)
     for index, section in enumerate(sections):
         for name, sign, curve in zip(("upper", "lower"), (-1.0, 1.0), curves[2 * index :], strict=False):
-            assert np.allclose(curve[:, 1], sign * section.curvature(name, along_curve(601)) / 1e3, **SAME)
+            assert np.allclose(curve[:, 1], sign * section.curvature(name, cosine_spacing(601)) / 1e3, **SAME)
             assert np.allclose(curve[[0, -1], 1], 1e-3 / np.array(section.edge_radii), rtol=1e-6)  # of the promise
             assert curve[0, 0] == 0.0
             assert curve[-1, 0] == 1.0
@@ -100,7 +100,7 @@ def test_the_channel_is_that_of_the_blade_with_the_control_points_of_the_design(
 def test_the_meridional_outline_holds_the_native_sides(blade_drawn):
     shape = blade_outline(blade_drawn.built)
     within, sides = Outline(shape), []
-    u, v = np.meshgrid(along_curve(101), np.linspace(0.01, 0.99, 23))
+    u, v = np.meshgrid(cosine_spacing(101), np.linspace(0.01, 0.99, 23))
     for name in ("upper", "lower"):
         x, y, z = np.moveaxis(blade_drawn.built.surfaces[name](u, v), -1, 0)
         radius = z if blade_drawn.name == "cascade" else np.hypot(y, z)

@@ -11,8 +11,8 @@ from matplotlib.image import imread
 
 from bladewright import views
 from bladewright.errors import DesignError, FileError
-from bladewright.views.style import manner
-from bladewright.views.writing import write
+from bladewright.views.pages import write_figure
+from bladewright.views.style import drawing_style
 
 STARTS = {".png": b"\x89PNG", ".svg": b"<?xml", ".pdf": b"%PDF"}
 
@@ -30,10 +30,10 @@ def test_a_section_is_drawn_in_every_format_and_the_callers_settings_stay(sectio
 def test_the_same_figure_gives_the_same_bytes(tmp_path, suffix):
     files = [tmp_path / f"{index}{suffix}" for index in range(2)]
     for file in files:
-        with manner():
+        with drawing_style():
             figure = Figure(figsize=(2.0, 2.0))
             figure.add_subplot().plot([0.0, 1.0], [0.0, 2.0], marker="o")
-            write(figure, file, 50)
+            write_figure(figure, file, 50)
     assert files[0].read_bytes() == files[1].read_bytes()
 
 
@@ -77,7 +77,7 @@ def test_a_path_that_will_not_do_is_refused_before_anything_is_built(draw, name,
 
 def test_a_place_that_takes_no_files_is_refused_with_the_reason():
     with pytest.raises(FileError, match=r"'/proc/vane.png' cannot be written: .*; name another file"):
-        write(Figure(), "/proc/vane.png", 50)
+        write_figure(Figure(), "/proc/vane.png", 50)
 
 
 def test_a_file_is_replaced_whole_or_kept(tmp_path, monkeypatch):
@@ -87,10 +87,10 @@ def test_a_file_is_replaced_whole_or_kept(tmp_path, monkeypatch):
     with monkeypatch.context() as broken:
         broken.setattr("os.fsync", lambda *_: (_ for _ in ()).throw(OSError(28, "No space left on device")))
         with pytest.raises(FileError, match="no space left on device"):
-            write(figure, file, 50)
+            write_figure(figure, file, 50)
     assert file.read_bytes() == b"old"
     assert list(tmp_path.iterdir()) == [file]
-    write(figure, file, 50)
+    write_figure(figure, file, 50)
     assert np.allclose(imread(file)[..., :3], 1.0)
     assert list(tmp_path.iterdir()) == [file]
 

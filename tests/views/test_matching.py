@@ -10,20 +10,33 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.collections import PathCollection, QuadMesh
 from matplotlib.figure import Figure
 
-from bladewright.blade.extrema import extrema_of
+from bladewright.blade.native.extrema import extrema_of
 from bladewright.errors import FileError
 from bladewright.files.examples import example_text
 from bladewright.files.reading import design_from, parsed
-from bladewright.fitting.judgement.result import Estimate, Fit
+from bladewright.fitting.assessment.result import Estimate, Fit
 from bladewright.numerics.elementary import angle
-from bladewright.views.matching import fit_picture, fit_sheet
-from bladewright.views.matching_figures import draw_histogram, draw_table
-from bladewright.views.matching_map import MOST, abscissae, draw_map, draw_outline_deviation
-from bladewright.views.matching_outline import outline_at, span_of, worst_span
-from bladewright.views.matching_points import WORST, drawn, rounded_up, scale_of
-from bladewright.views.matching_sections import HEIGHT, draw_magnified, magnification
-from bladewright.views.sections import size_of
-from bladewright.views.style import manner
+from bladewright.views.fit_data import (
+    WORST_POINTS,
+    colour_scale,
+    outline_at,
+    points_to_draw,
+    rounded_up,
+    span_at_share,
+    worst_span,
+)
+from bladewright.views.fit_deviations import (
+    DRAWN_HEIGHT,
+    MAP_POINTS,
+    abscissae,
+    draw_magnified,
+    draw_map,
+    draw_outline_deviation,
+    magnification,
+)
+from bladewright.views.fit_sheet import draw_histogram, draw_table, fit_picture, fit_sheet
+from bladewright.views.sections import millimetres_per_unit
+from bladewright.views.style import drawing_style
 
 from ..section.families import EXAMPLES
 
@@ -100,7 +113,7 @@ def panel(figure, title):
 
 
 def axes_of(draw, fit):
-    with manner():
+    with drawing_style():
         figure = Figure(figsize=(8.0, 4.0))
         FigureCanvasAgg(figure)
         axes = figure.add_subplot()
@@ -181,7 +194,7 @@ def test_the_outline_of_a_blade_has_the_parameters_of_its_surfaces(kind):
     outline = outline_at(fit, 0.3)
     for name in ("upper", "lower"):
         points = fit.built.surfaces[name](outline.u, 0.3)
-        ordinate = angle(points[:, 1], points[:, 2]) * size_of(outline.section)
+        ordinate = angle(points[:, 1], points[:, 2]) * millimetres_per_unit(outline.section)
         if kind == "linear":
             ordinate = points[:, 1] * 1e3
         # the design's own tolerance is 1e-6 of the chord
@@ -195,15 +208,15 @@ def test_the_outline_of_a_blade_has_the_parameters_of_its_surfaces(kind):
 @pytest.mark.parametrize("count", [100, 60_000])
 def test_the_worst_points_are_always_drawn_and_the_rest_is_thinned(count):
     fit = made("annular", count)
-    index = drawn(fit, fit.inliers, 5000)
+    index = points_to_draw(fit, fit.inliers, 5000)
     assert len(index) == min(np.count_nonzero(fit.inliers), 5000)
     assert len(np.unique(index)) == len(index)
     assert fit.inliers[index].all()
     off = np.abs(fit.deviations)
-    worst = np.flatnonzero(fit.inliers)[np.argsort(off[fit.inliers])[-min(count // 2, WORST) :]]
+    worst = np.flatnonzero(fit.inliers)[np.argsort(off[fit.inliers])[-min(count // 2, WORST_POINTS) :]]
     assert set(worst) <= set(index)
     assert (np.diff(off[index]) >= 0.0).all()
-    assert (drawn(fit, fit.inliers, 5000) == index).all()
+    assert (points_to_draw(fit, fit.inliers, 5000) == index).all()
 
 
 @pytest.mark.parametrize("count", [300, 60_000])
@@ -219,7 +232,7 @@ def test_a_small_cloud_is_mapped_point_by_point_and_a_large_one_by_the_means_of_
     small = axes_of(draw_map, made("annular", 300))
     dots = next(each for each in small.collections if isinstance(each, PathCollection))
     assert len(dots.get_offsets()) == 294
-    large = made("annular", 3 * MOST, outliers=0.0)
+    large = made("annular", 3 * MAP_POINTS, outliers=0.0)
     halves = replace(large, deviations=np.where(large.places == "upper", 1e-5, -2e-5))
     axes = axes_of(draw_map, halves)
     mesh = next(each for each in axes.collections if isinstance(each, QuadMesh))
@@ -227,12 +240,12 @@ def test_a_small_cloud_is_mapped_point_by_point_and_a_large_one_by_the_means_of_
     half = values.shape[1] // 2
     assert values[:, :half].compressed() == pytest.approx(-0.02)
     assert values[:, half:].compressed() == pytest.approx(0.01)
-    assert f"mean in each cell of {3 * MOST:,} points" in axes.get_xlabel()
+    assert f"mean in each cell of {3 * MAP_POINTS:,} points" in axes.get_xlabel()
 
 
 def test_colours_are_symmetric_and_hold_all_but_one_in_a_hundred_points():
     fit = made("annular")
-    scale = scale_of(fit)
+    scale = colour_scale(fit)
     assert scale.vmin == -scale.vmax
     assert scale.vmax == rounded_up(1e3 * fit.deviation.percentile_99)
     assert rounded_up(0.0121) == pytest.approx(0.015)
@@ -246,7 +259,7 @@ def test_deviations_are_magnified_by_a_round_factor_to_a_part_of_the_chord(noise
     assert f"{factor:.0e}"[0] in "125"
     if factor > 1.0:
         seen = factor * fit.deviation.percentile_99 / fit.built.chord
-        assert HEIGHT / 2.5 * (1.0 - 1e-9) <= seen <= HEIGHT * (1.0 + 1e-9)
+        assert DRAWN_HEIGHT / 2.5 * (1.0 - 1e-9) <= seen <= DRAWN_HEIGHT * (1.0 + 1e-9)
 
 
 def test_the_histogram_holds_all_inliers_and_marks_the_tolerance():
@@ -270,12 +283,12 @@ def test_a_fit_that_fails_says_so_and_why():
 def test_sections_are_taken_where_the_cloud_is_and_edges_where_they_are_worst():
     fit = made("annular")
     half = replace(fit, v=0.5 * fit.v)
-    assert span_of(half, 0.0) == pytest.approx(half.v[half.inliers].min())
-    assert 0.48 < span_of(half, 1.0) <= 0.5
+    assert span_at_share(half, 0.0) == pytest.approx(half.v[half.inliers].min())
+    assert 0.48 < span_at_share(half, 1.0) <= 0.5
     edge = np.flatnonzero(half.inliers & (half.regions == "leading edge"))
     worst = edge[np.argmax(half.distances[edge])]
     assert worst_span(half, "leading edge") == half.v[worst]
-    assert worst_span(replace(half, regions=np.full(len(half.u), "sides")), "leading edge") == span_of(half, 0.5)
+    assert worst_span(replace(half, regions=np.full(len(half.u), "sides")), "leading edge") == span_at_share(half, 0.5)
 
 
 def test_points_on_the_ends_are_not_mapped_and_are_counted():
@@ -296,7 +309,7 @@ def test_a_cloud_of_outliers_alone_is_drawn(draw):
 
 def test_the_sheet_is_written_whole(tmp_path, monkeypatch):
     fit, figure = sheet_of("section")
-    monkeypatch.setattr("bladewright.views.matching.fit_sheet", lambda _: figure)
+    monkeypatch.setattr("bladewright.views.fit_sheet.fit_sheet", lambda _: figure)
     fit_picture(fit, tmp_path / "fit.svg")
     assert [each.name for each in tmp_path.iterdir()] == ["fit.svg"]
     assert (tmp_path / "fit.svg").read_bytes().startswith(b"<?xml")

@@ -18,14 +18,11 @@ from bladewright.domain.section import section_passage
 from bladewright.errors import DesignError
 from bladewright.files.examples import example_text
 from bladewright.files.reading import design_from, parsed
-from bladewright.views.passage import boundary
-from bladewright.views.passage_figures import figures, poles
-from bladewright.views.passage_solid import draw_passage_solid, outer_faces
+from bladewright.views.passage import boundary, figures, poles
 from bladewright.views.picture import sheet
-from bladewright.views.raster import Camera, Mesh, rendered
-from bladewright.views.solid import viewpoint
-from bladewright.views.unwrapped import size_on, unwrapped, unwrapped_face
-from bladewright.views.walls import close_lines, patch_lines
+from bladewright.views.raster import Camera, ShadedGrid, rendered
+from bladewright.views.solid import draw_passage_solid, outer_faces, viewpoint
+from bladewright.views.walls import patch_lines, patch_lines_near, unwrapped, unwrapped_face, wall_scale
 
 from .conftest import IMPELLER
 
@@ -101,7 +98,7 @@ def test_the_duct_is_where_the_native_walls_and_openings_are(drawn):
 def test_a_wall_in_its_plane_goes_back_to_the_native_points(made):
     u, v = np.linspace(0.0, 1.0, 23), np.linspace(0.0, 1.0, 5)
     for name, half in made.walls.items():
-        plane = unwrapped_face(made, name, u, v) / size_on(made, name.split("_")[0])
+        plane = unwrapped_face(made, name, u, v) / wall_scale(made, name.split("_")[0])
         position = np.real(half.line.position(half.line.u_at(plane[..., 0].reshape(1, -1))))[0].reshape(23, 5, 2)
         (x, radius), across = np.moveaxis(position, -1, 0), plane[..., 1]
         points = [x, radius * np.sin(across), radius * np.cos(across)] if made.duct.revolved else [x, across, radius]
@@ -115,7 +112,7 @@ def test_periodic_boundaries_are_one_pitch_apart_in_the_plane(made):
         upper, lower = (
             unwrapped_face(made, f"{wall}_{half}", np.linspace(0, 1, 31), ends) for half in ("upper", "lower")
         )
-        pitch = 2.0 * np.pi / count * size_on(made, wall) if count else 57.5
+        pitch = 2.0 * np.pi / count * wall_scale(made, wall) if count else 57.5
         assert np.allclose(upper - lower, [0.0, pitch], atol=1e-6)  # walls are within 1e-7 of the chord, not exact
 
 
@@ -133,7 +130,7 @@ def test_theta_is_followed_where_a_wall_wraps_around_the_axis(wrapped):
         x, y, z = np.moveaxis(points, -1, 0)
         turned = np.stack([x, y * np.cos(turn) + z * np.sin(turn), z * np.cos(turn) - y * np.sin(turn)], axis=-1)
         moved = unwrapped(shifted, "hub", turned)
-        assert np.allclose(moved - plane, [0.0, turn * size_on(wrapped, "hub")], atol=EXACT)
+        assert np.allclose(moved - plane, [0.0, turn * wall_scale(wrapped, "hub")], atol=EXACT)
 
 
 def test_the_lines_of_both_patches_are_drawn_with_their_least_jacobians(drawn):
@@ -156,7 +153,7 @@ def test_lines_close_by_are_on_the_patch_and_pass_the_place(made):
     name, (_, u, v) = min(made.folds.items(), key=lambda fold: fold[1][0])
     place = unwrapped_face(made, name, np.array([u]), np.array([v]))[0, 0]
     reach = 0.03e3 * made.blade.chord
-    lines = close_lines(made, name, place, u, reach)
+    lines = patch_lines_near(made, name, place, u, reach)
     nearest = np.sort([np.min(np.linalg.norm(each - place, axis=1)) for each in lines])
     assert nearest[0] < 0.01 * reach
     assert np.sum(nearest < reach) > 20
@@ -240,7 +237,9 @@ FRONT = Camera(axes=np.eye(3), corner=np.array([-1.0, -1.0]), extent=np.array([2
 def square(half, z, colour, side=0, towards=1.0):
     a = np.linspace(-half, half, 3)
     points = np.stack(np.broadcast_arrays(a[:, None], a, z), axis=-1)
-    return Mesh(points=points, normals=np.broadcast_to([0.0, 0.0, towards], points.shape), colour=colour, side=side)
+    return ShadedGrid(
+        points=points, normals=np.broadcast_to([0.0, 0.0, towards], points.shape), colour=colour, side=side
+    )
 
 
 @pytest.mark.parametrize(("towards", "side", "seen"), [(1.0, 1, True), (-1.0, 1, False), (-1.0, -1, True)])

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from bladewright.views.raster import Camera, Mesh, Trace, axes_towards, framed, rendered
+from bladewright.views.raster import Camera, Polyline, ShadedGrid, axes_towards, framing_camera, rendered
 
 RED, BLUE = (0.9, 0.1, 0.1), (0.1, 0.1, 0.9)
 FRONT = Camera(axes=np.eye(3), corner=np.array([-1.0, -1.0]), extent=np.array([2.0, 2.0]))
@@ -12,7 +12,7 @@ FRONT = Camera(axes=np.eye(3), corner=np.array([-1.0, -1.0]), extent=np.array([2
 def square(half, z, colour):
     a = np.linspace(-half, half, 3)
     points = np.stack(np.broadcast_arrays(a[:, None], a, z), axis=-1)
-    return Mesh(points=points, normals=np.broadcast_to([0.0, 0.0, 1.0], points.shape), colour=colour)
+    return ShadedGrid(points=points, normals=np.broadcast_to([0.0, 0.0, 1.0], points.shape), colour=colour)
 
 
 def sphere(radius, colour):
@@ -20,7 +20,7 @@ def sphere(radius, colour):
     directions = np.stack(
         np.broadcast_arrays(np.sin(polar) * np.cos(around), np.sin(polar) * np.sin(around), np.cos(polar)), axis=-1
     )
-    return Mesh(points=radius * directions, normals=directions, colour=colour)
+    return ShadedGrid(points=radius * directions, normals=directions, colour=colour)
 
 
 @pytest.mark.parametrize("order", [1, -1])
@@ -50,14 +50,14 @@ def test_a_sphere_covers_a_disc_without_holes_from_everywhere(eye):
 
 def test_the_sense_of_normals_does_not_matter():
     ball = sphere(0.8, BLUE)
-    turned = Mesh(points=ball.points, normals=-ball.normals, colour=BLUE)
+    turned = ShadedGrid(points=ball.points, normals=-ball.normals, colour=BLUE)
     assert np.array_equal(rendered([ball], [], FRONT, 60), rendered([turned], [], FRONT, 60))
 
 
 def test_a_trace_is_seen_before_a_mesh_and_hidden_behind_it():
     across = np.array([[-0.9, 0.0, 0.0], [0.9, 0.0, 0.0]])
     for z, seen in ((0.5, True), (-0.5, False)):
-        line = Trace(points=across + np.array([0.0, 0.0, z]), colour=(0.0, 0.0, 0.0), width=4)
+        line = Polyline(points=across + np.array([0.0, 0.0, z]), colour=(0.0, 0.0, 0.0), width=4)
         picture = rendered([square(0.4, 0.0, RED)], [line], FRONT, 100)
         assert (picture[49:51, 50, 0].min() < 0.1) == seen
         assert picture[49:51, 10, 3].max() > 0.9
@@ -65,7 +65,7 @@ def test_a_trace_is_seen_before_a_mesh_and_hidden_behind_it():
 
 def test_a_framed_camera_holds_every_point():
     points = np.random.default_rng(3).normal(size=(200, 3)) * [1.0, 5.0, 0.2]
-    camera = framed(axes_towards((-0.7, 0.4, 0.5), (0.0, 0.0, 1.0)), points)
+    camera = framing_camera(axes_towards((-0.7, 0.4, 0.5), (0.0, 0.0, 1.0)), points)
     flat = camera.seen(points)[:, :2]
     assert (flat > camera.corner).all()
     assert (flat < camera.corner + camera.extent).all()

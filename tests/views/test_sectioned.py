@@ -6,15 +6,14 @@ import numpy as np
 import pytest
 from matplotlib.figure import Figure
 
-from bladewright.blade.sectioned_exact import sectioned_exact
+from bladewright.blade.exact.sectioned import exact_sectioned_blade
 from bladewright.section.profiles.points import PointsProfile
 from bladewright.section.smoothness import smoothness
-from bladewright.views.edges import draw_edge
+from bladewright.views.distributions import draw_smoothness, percent
 from bladewright.views.laws import panels_of
 from bladewright.views.meridional import built_edges
 from bladewright.views.picture import sheet
-from bladewright.views.sections import neighbours, outline, size_of
-from bladewright.views.smoothness import draw_smoothness, said
+from bladewright.views.sections import draw_edge, millimetres_per_unit, neighbour_outline, outline
 from bladewright.views.solid import blade_meshes, draw_solid
 
 from ..blade.sectioned import BLUNT, COMPRESSOR, DESIGNS, IMPELLER, STATOR, VANE
@@ -80,7 +79,7 @@ def test_quasi_orthogonals_divide_the_walls_as_they_were_given(impeller):
 
 
 def test_given_stream_surfaces_are_part_of_the_plan():
-    surface = sectioned_exact(STATOR).plan.stream_surfaces[0]
+    surface = exact_sectioned_blade(STATOR).plan.stream_surfaces[0]
     assert not surface.polygon
     assert surface.given * 1e3 == pytest.approx(np.array([(-60, 125), (0, 128), (40, 131), (120, 132)]))
     assert surface.points[[0, -1]] == pytest.approx(surface.given[[0, -1]])
@@ -88,7 +87,7 @@ def test_given_stream_surfaces_are_part_of_the_plan():
 
 @pytest.mark.parametrize("name", ["diffuser", "inlet-vane"])
 def test_a_wall_is_continued_past_the_edges_and_no_farther_than_it_reaches(name):
-    exact = sectioned_exact(DESIGNS[name])
+    exact = exact_sectioned_blade(DESIGNS[name])
     wall, inside = exact.wall_line("hub", np.linspace(-50.0, 51.0, 41)), exact.wall_line("hub", np.array([0.0, 1.0]))
     given = exact.plan.lines["hub"].points
     assert wall[[0, -1]] == pytest.approx(given[[0, -1]], abs=1e-9)
@@ -143,9 +142,9 @@ def test_neighbours_in_a_plane_of_lengths_stand_as_far_apart_as_their_radius_say
     blade = design.build()
     section = blade.section(0.5)
     shape = outline(section)
-    aside = neighbours(blade, section, shape)[:, 1] - shape[:, 1]
+    aside = neighbour_outline(blade, section, shape)[:, 1] - shape[:, 1]
     lines = blade.exact.stations(np.array([0.5])).lines
-    radius = np.real(lines.position(lines.u_at(shape[None, :, 0] / size_of(section))))[0, :, 1]
+    radius = np.real(lines.position(lines.u_at(shape[None, :, 0] / millimetres_per_unit(section))))[0, :, 1]
     assert aside == pytest.approx(1e3 * radius * 2.0 * np.pi / 22, rel=1e-9)
     assert np.ptp(aside) > 0.1
 
@@ -195,8 +194,8 @@ def test_smoothness_is_drawn_in_pieces_with_the_jumps_in_a_table():
     dots = next(line for line in camber if line.get_marker() == "o").get_ydata()
     assert dots == pytest.approx(found.camber.jumps[0].curvature, rel=1e-6)  # the places beside the joint
     texts = [text.get_text() for text in figure.axes[3].texts]
-    assert said(found.camber.curvature_jump) in texts
-    assert [said(share) for share in (2.0, 0.0712, 4e-5, 1e-7)] == ["200 %", "7.1 %", "0.004 %", "1e-05 %"]
+    assert percent(found.camber.curvature_jump) in texts
+    assert [percent(share) for share in (2.0, 0.0712, 4e-5, 1e-7)] == ["200 %", "7.1 %", "0.004 %", "1e-05 %"]
 
 
 def test_smoothness_of_a_blade_is_that_of_its_exact_sections(impeller):

@@ -20,15 +20,15 @@ from OCP.TopExp import TopExp, TopExp_Explorer
 from OCP.TopoDS import TopoDS, TopoDS_Edge, TopoDS_Face, TopoDS_Shape
 from OCP.TopTools import TopTools_IndexedDataMapOfShapeListOfShape
 
-from bladewright.cad.reopen import each
+from bladewright.cad.reading import subshapes
 from bladewright.numerics.elementary import Array
 
-PLACES = 401
+POINTS_PER_EDGE = 401
 """points along an edge at which its gap is measured"""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Joint:
+class MeasuredEdge:
     """An edge of the file with what was measured along it."""
 
     faces: tuple[int, ...]
@@ -57,12 +57,12 @@ class Closure:
     """edges that belong to more than two faces, or to two that run the same way"""
     valid: bool
     """the kernel's own opinion"""
-    joints: tuple[Joint, ...]
+    joints: tuple[MeasuredEdge, ...]
 
 
 def closure(shape: TopoDS_Shape) -> Closure:
     """How the faces of a shape [mm] close it."""
-    faces = each(shape, TopAbs_FACE)
+    faces = subshapes(shape, TopAbs_FACE)
     owners = TopTools_IndexedDataMapOfShapeListOfShape()
     TopExp.MapShapesAndAncestors_s(shape, TopAbs_EDGE, TopAbs_FACE, owners)
     uses = _uses(shape)
@@ -79,7 +79,7 @@ def closure(shape: TopoDS_Shape) -> Closure:
         BRepGProp.LinearProperties_s(edge, properties)
         apart = _distances(edge, beside)
         joints.append(
-            Joint(
+            MeasuredEdge(
                 faces=tuple(k for k, face in enumerate(faces) if any(face.IsSame(own) for own in beside)),
                 length=properties.Mass(),
                 gap=float(apart.max()),
@@ -89,8 +89,8 @@ def closure(shape: TopoDS_Shape) -> Closure:
             )
         )
     return Closure(
-        solids=len(each(shape, TopAbs_SOLID)),
-        shells=len(each(shape, TopAbs_SHELL)),
+        solids=len(subshapes(shape, TopAbs_SOLID)),
+        shells=len(subshapes(shape, TopAbs_SHELL)),
         free=free,
         crowded=crowded,
         valid=BRepCheck_Analyzer(shape).IsValid(),
@@ -124,9 +124,9 @@ def _distances(edge: TopoDS_Edge, beside: list[TopoDS_Face]) -> Array:
     """(PLACES,) [mm] Largest distance of the faces' and the edge's own curves at equal parameters."""
     own = BRepAdaptor_Curve(edge)
     curves = [own, *(BRepAdaptor_Curve(edge, face) for face in beside)]
-    parameters = np.linspace(own.FirstParameter(), own.LastParameter(), PLACES).tolist()
+    parameters = np.linspace(own.FirstParameter(), own.LastParameter(), POINTS_PER_EDGE).tolist()
     traces = [np.array([curve.Value(place).Coord() for place in parameters]) for curve in curves]
-    squares = [np.zeros(PLACES)]
+    squares = [np.zeros(POINTS_PER_EDGE)]
     squares += [np.sum((one - other) ** 2, axis=-1) for index, one in enumerate(traces) for other in traces[:index]]
     return np.sqrt(np.max(squares, axis=0))
 

@@ -17,12 +17,12 @@ from OCP.TopAbs import TopAbs_FACE, TopAbs_SOLID
 from OCP.TopoDS import TopoDS, TopoDS_Face, TopoDS_Shape, TopoDS_Solid
 from OCP.TopTools import TopTools_ListOfShape
 
-from bladewright.appearing import appearing
-from bladewright.cad.built import MM, Built, Closed
+from bladewright.atomic_write import atomic_write
 from bladewright.cad.closure import Closure, closure
-from bladewright.cad.quiet import quiet
-from bladewright.cad.reopen import each, format_of, reopened
-from bladewright.cad.solids import Body, body
+from bladewright.cad.kernel import quiet
+from bladewright.cad.native_body import MM, ClosedBody, NativeBody
+from bladewright.cad.reading import format_of, read_cad_file, subshapes
+from bladewright.cad.solids import OccSolid, occ_solid
 from bladewright.cad.step import Schema, write_step
 from bladewright.errors import CadError, GeometryError
 from bladewright.numerics.elementary import Array
@@ -30,11 +30,11 @@ from bladewright.numerics.elementary import Array
 if TYPE_CHECKING:
     import cadquery
 
-PAST = 0.05
+SPAN_EXTENSION = 0.05
 """Part of its span by which the blade stands out of the walls that cut it."""
 QUADRATURE = (1e-7, 1e-9)
 """relative errors that the kernel's quadrature aims at in turn"""
-RETURNED = 1e-9
+VOLUME_TOLERANCE = 1e-9
 """Relative difference of the volume that a file may make."""
 
 
@@ -46,7 +46,7 @@ class Cuttable(Protocol):
         """Name of the product in a CAD file."""
 
     @property
-    def sector(self) -> Closed:
+    def sector(self) -> ClosedBody:
         """What lies between inlet, outlet, periodic boundaries and exact walls, without a blade."""
 
     @property
@@ -57,12 +57,12 @@ class Cuttable(Protocol):
 class Extensible(Protocol):
     """A blade that can stand out of the walls."""
 
-    def extended(self, span: float) -> Built:
+    def extended(self, span: float) -> NativeBody:
         """The blade continued past its walls by a part of its span."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Measured:
+class OccMassProperties:
     """Volume, area and centroid of a solid by the kernel's quadrature."""
 
     volume: float
@@ -83,9 +83,9 @@ class CutPassage:
     description: str
     author: str
     organisation: str
-    body: Body
+    body: OccSolid
     """the solid [mm], its faces named after those of the sector, and `blade_` those of the blade"""
-    properties: Measured
+    properties: OccMassProperties
     gap: float
     """[m] largest distance of two faces at an edge"""
 
@@ -97,7 +97,7 @@ class CutPassage:
         return cadquery.Solid(self.body.solid)
 
 
-def cut_passage(passage: Cuttable, *, span: float = PAST) -> CutPassage:
+def cut_passage(passage: Cuttable, *, span: float = SPAN_EXTENSION) -> CutPassage:
     """The passage cut by OpenCASCADE: `passage.sector` without `passage.blade`, extended by `span` of its span.
 
     Its walls are exact, so that its volume tells how well the untrimmed patches follow them. Raises CadError where the
@@ -106,7 +106,7 @@ def cut_passage(passage: Cuttable, *, span: float = PAST) -> CutPassage:
     with quiet():
         # fresh solids: the operation raises tolerances of what it is given
         try:
-            sector, blade = body(passage.sector), body(passage.blade.extended(span))
+            sector, blade = occ_solid(passage.sector), occ_solid(passage.blade.extended(span))
         except GeometryError as error:
             raise CadError(
                 f"the sector of {passage.name!r} cannot be made: {error}. Each of its walls must be one face within a "
@@ -126,7 +126,7 @@ def cut_passage(passage: Cuttable, *, span: float = PAST) -> CutPassage:
             description=str(getattr(passage, "description", "")),
             author=str(getattr(passage, "author", "")),
             organisation=str(getattr(passage, "organisation", "")),
-            body=Body(solid=whole, faces=faces, gap=max(joint.tolerance for joint in closed.joints)),
+            body=OccSolid(solid=whole, faces=faces, gap=max(joint.tolerance for joint in closed.joints)),
             properties=_measured(whole, closed),
             gap=max(joint.gap for joint in closed.joints) / MM,
         )
@@ -141,20 +141,26 @@ def write_cut(cut: CutPassage, path: str | os.PathLike[str], *, schema: Schema =
     if format_of(path) != "STEP":
         raise CadError(f"{path} was asked for: a cut passage is written to STEP only; let the name end in .step")
     with quiet():
-        with appearing(path) as unfinished:
+        with atomic_write(path) as unfinished:
             write_step(cut, cut.body, unfinished, schema=schema)
-        opened = reopened(path)
+        opened = read_cad_file(path)
         closed = closure(opened.shape)
         volume = _volume(opened.shape, QUADRATURE[-1])[0]
         off = abs(volume / MM**3 / cut.properties.volume - 1.0)
-    if sorted(opened.names.values()) != sorted(cut.body.faces) or not closed.valid or closed.free or off > RETURNED:
+    if (
+        sorted(opened.names.values()) != sorted(cut.body.faces)
+        or not closed.valid
+        or closed.free
+        or off > VOLUME_TOLERANCE
+    ):
         raise CadError(
             f"{path} came back with {len(opened.names)} of {len(cut.body.faces)} names, {closed.free} free edges and a "
-            f"volume off by {off:.2g}: at most {RETURNED:g} is allowed; write the passage of untrimmed patches instead"
+            f"volume off by {off:.2g}: at most {VOLUME_TOLERANCE:g} is allowed; "
+            "write the passage of untrimmed patches instead"
         )
 
 
-def _rest(sector: Body, blade: Body, name: str) -> TopoDS_Solid:
+def _rest(sector: OccSolid, blade: OccSolid, name: str) -> TopoDS_Solid:
     """What is left of the sector.
 
     The kernel divides the faces of sector and blade by each other, and makes all volumes that those close up; one of
@@ -170,7 +176,7 @@ def _rest(sector: Body, blade: Body, name: str) -> TopoDS_Solid:
     division.Build()
     if not division.IsDone() or division.Shape().IsNull():
         raise CadError(f"OpenCASCADE cannot divide the sector of {name!r} by its blade; try a longer extension")
-    for face in each(division.Shape(), TopAbs_FACE):
+    for face in subshapes(division.Shape(), TopAbs_FACE):
         divided.Append(face)
     volumes = BOPAlgo_MakerVolume()
     volumes.SetArguments(divided)
@@ -179,8 +185,8 @@ def _rest(sector: Body, blade: Body, name: str) -> TopoDS_Solid:
     outer = [BRep_Tool.Surface_s(face) for label, face in sector.faces.items() if label not in {"hub", "shroud"}]
     parts = [
         TopoDS.Solid_s(part)
-        for part in each(volumes.Shape(), TopAbs_SOLID)
-        if any(BRep_Tool.Surface_s(TopoDS.Face_s(face)) in outer for face in each(part, TopAbs_FACE))
+        for part in subshapes(volumes.Shape(), TopAbs_SOLID)
+        if any(BRep_Tool.Surface_s(TopoDS.Face_s(face)) in outer for face in subshapes(part, TopAbs_FACE))
     ]
     if len(parts) != 1:
         raise CadError(
@@ -190,13 +196,13 @@ def _rest(sector: Body, blade: Body, name: str) -> TopoDS_Solid:
     return parts[0]
 
 
-def _named(whole: TopoDS_Solid, sector: Body, blade: Body) -> dict[str, TopoDS_Face]:
+def _named(whole: TopoDS_Solid, sector: OccSolid, blade: OccSolid) -> dict[str, TopoDS_Face]:
     """Faces by name: a face that was cut still lies on the surface that it had."""
     origins = {**sector.faces, **{f"blade_{name}": face for name, face in blade.faces.items() if name != "tip"}}
     origins |= {name: face for name, face in blade.faces.items() if name == "tip"}
     surfaces = {name: BRep_Tool.Surface_s(face) for name, face in origins.items()}
     faces: dict[str, TopoDS_Face] = {}
-    for shape in each(whole, TopAbs_FACE):
+    for shape in subshapes(whole, TopAbs_FACE):
         face = TopoDS.Face_s(shape)
         own = BRep_Tool.Surface_s(face)
         found = [name for name, surface in surfaces.items() if surface == own]
@@ -209,7 +215,7 @@ def _named(whole: TopoDS_Solid, sector: Body, blade: Body) -> dict[str, TopoDS_F
     return faces
 
 
-def _measured(whole: TopoDS_Solid, closed: Closure) -> Measured:
+def _measured(whole: TopoDS_Solid, closed: Closure) -> OccMassProperties:
     (coarse, _), (volume, middle) = (_volume(whole, bound) for bound in QUADRATURE)
     area, box = GProp_GProps(), Bnd_Box()
     BRepGProp.SurfaceProperties_s(whole, area, QUADRATURE[0])
@@ -217,7 +223,7 @@ def _measured(whole: TopoDS_Solid, closed: Closure) -> Measured:
     size = float(np.sqrt(box.SquareExtent()))
     # the volume is a flux of a third of the way from the middle
     leak = sum(joint.opening * joint.length for joint in closed.joints) * size / 6.0
-    return Measured(
+    return OccMassProperties(
         volume=volume / MM**3,
         area=area.Mass() / MM**2,
         centroid=middle / MM,

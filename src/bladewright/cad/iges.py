@@ -7,14 +7,13 @@ from OCP.IGESControl import IGESControl_Controller
 from OCP.Interface import Interface_Static
 from OCP.TCollection import TCollection_HAsciiString
 
-from bladewright.cad.built import Built
-from bladewright.cad.document import document
-from bladewright.cad.solids import CONFUSION, Body
-from bladewright.cad.step import SYSTEM
+from bladewright.cad.native_body import NativeBody
+from bladewright.cad.solids import CONFUSION, OccSolid
+from bladewright.cad.step import SYSTEM, document
 from bladewright.errors import CadError
 
 
-def write_iges(built: Built, body: Body, path: str, *, solid: bool) -> None:
+def write_iges(built: NativeBody, body: OccSolid, path: str, *, solid: bool) -> None:
     """Write an IGES 5.3 file in millimetres. Raises CadError where the kernel refuses."""
     IGESControl_Controller.Init_s()
     Interface_Static.SetCVal_s("write.iges.unit", "MM")

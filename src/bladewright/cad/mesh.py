@@ -14,18 +14,18 @@ from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
-from bladewright.cad.solids import Body
+from bladewright.cad.solids import OccSolid
 from bladewright.errors import CadError
 from bladewright.numerics.elementary import Array
 
-TURN = 0.35
+ANGULAR_DEFLECTION = 0.35
 """[rad] largest angle between neighbouring triangles' normals that the kernel aims at"""
 NEIGHBOURS = 12
 """triangles near a point that are tried for the nearest"""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Mesh:
+class TriangleMesh:
     """Triangles in millimetres that share their vertices."""
 
     vertices: Array
@@ -79,7 +79,7 @@ class Mesh:
         return len(np.unique(labels[self.triangles[:, 0]]))
 
 
-def merged(corners: Array, tolerance: float = 0.0) -> Mesh:
+def mesh_of_triangles(corners: Array, tolerance: float = 0.0) -> TriangleMesh:
     """The mesh of loose triangles (m, 3, 3): equal vertices become one; triangles that collapse are left out."""
     points = corners.reshape(-1, 3)
     if tolerance:
@@ -87,13 +87,13 @@ def merged(corners: Array, tolerance: float = 0.0) -> Mesh:
     vertices, index = np.unique(points, axis=0, return_inverse=True)
     triangles = index.reshape(-1, 3)
     a, b, c = triangles.T
-    return Mesh(vertices=vertices, triangles=triangles[(a != b) & (b != c) & (c != a)])
+    return TriangleMesh(vertices=vertices, triangles=triangles[(a != b) & (b != c) & (c != a)])
 
 
-def triangulated(body: Body, deflection: float) -> Mesh:
+def triangulated(body: OccSolid, deflection: float) -> TriangleMesh:
     """The kernel's triangles of a solid, aimed at a deflection [mm]."""
     BRepTools.Clean_s(body.solid)
-    BRepMesh_IncrementalMesh(body.solid, deflection, False, TURN, False)
+    BRepMesh_IncrementalMesh(body.solid, deflection, False, ANGULAR_DEFLECTION, False)
     found = []
     for name, face in body.faces.items():
         triangulation = BRep_Tool.Triangulation_s(face, TopLoc_Location())
@@ -107,13 +107,13 @@ def triangulated(body: Body, deflection: float) -> Mesh:
         found.append(points[triangles])
     BRepTools.Clean_s(body.solid)
     # nodes on a shared edge come from its one curve; the last bits of their sums may differ
-    return merged(np.concatenate(found), tolerance=1e-6)
+    return mesh_of_triangles(np.concatenate(found), tolerance=1e-6)
 
 
-class Nearest:
+class ClosestTriangle:
     """The triangles of a mesh as something that points are brought to."""
 
-    def __init__(self, mesh: Mesh) -> None:
+    def __init__(self, mesh: TriangleMesh) -> None:
         self.mesh = mesh
         size = float(np.ptp(mesh.vertices, axis=0).max()) / 100.0
         self.pieces, self.owner = _split(mesh.corners, size)

@@ -6,12 +6,12 @@ from functools import cached_property
 import numpy as np
 from scipy.spatial import cKDTree
 
-from bladewright.cad.patch import Carrier
+from bladewright.cad.surface_evaluation import SurfaceEvaluator
 from bladewright.numerics.elementary import Array
 from bladewright.nurbs.basis import greville
 from bladewright.nurbs.curve import Curve
 
-RIM = 400
+POINTS_PER_CURVE = 400
 """points on each boundary curve"""
 
 
@@ -19,7 +19,7 @@ RIM = 400
 class Region:
     """A face: a carrier and the chains of curves (n, 2) in its parameters that bound it, the face to their left."""
 
-    carrier: Carrier
+    carrier: SurfaceEvaluator
     chains: tuple[tuple[Curve, ...], ...]
     """none where the face is the whole rectangle"""
     low: Array
@@ -28,9 +28,9 @@ class Region:
     """(2,) largest parameters"""
 
     @cached_property
-    def rim(self) -> "Rim":
+    def rim(self) -> "BoundaryPolygon":
         """The boundary, sampled."""
-        return Rim.of(self)
+        return BoundaryPolygon.of(self)
 
     def points(self, uv: Array) -> Array:
         """Points (n, 3) [mm]."""
@@ -63,7 +63,7 @@ class Region:
             return self._rectangle(count)
         every = np.arange(0, len(self.rim.uv), max(1, len(self.rim.uv) * 10 // count))
         # with the corners, where a face may collapse
-        border = self.rim.uv[np.union1d(every, np.arange(0, len(self.rim.uv), RIM))]
+        border = self.rim.uv[np.union1d(every, np.arange(0, len(self.rim.uv), POINTS_PER_CURVE))]
         lines = int(np.sqrt(count))
         inner = self._between(count - len(border), lines)
         # the polygon cuts corners: what it lets in by mistake goes to the true boundary
@@ -77,8 +77,8 @@ class Region:
         surface = getattr(self.carrier, "surface", None)
         if surface is not None:
             # as dense as the control points, so that no pole moves unseen
-            u = spread(surface.knots_u, surface.degree_u, lines)
-            v = spread(surface.knots_v, surface.degree_v, lines)
+            u = greville_spaced(surface.knots_u, surface.degree_u, lines)
+            v = greville_spaced(surface.knots_v, surface.degree_v, lines)
         return np.stack(np.meshgrid(u, v, indexing="ij"), axis=-1).reshape(-1, 2)
 
     def _between(self, count: int, lines: int) -> Array:
@@ -105,7 +105,7 @@ class Region:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Rim:
+class BoundaryPolygon:
     """The boundary of a face as a dense polygon that knows its curves."""
 
     region: Region
@@ -122,25 +122,25 @@ class Rim:
     """(n,) index of the point before"""
 
     @staticmethod
-    def of(region: Region) -> "Rim":
+    def of(region: Region) -> "BoundaryPolygon":
         """The boundary of a region."""
         uv, which, parameters, ahead = [], [], [], []
         total, index = 0, 0
         for chain in region.chains:
             first = total
             for curve in chain:
-                s = spread(curve.knots, curve.degree, RIM + 1)[:-1]
+                s = greville_spaced(curve.knots, curve.degree, POINTS_PER_CURVE + 1)[:-1]
                 uv.append(np.real(curve(s)))
-                which.append(np.full(RIM, index))
+                which.append(np.full(POINTS_PER_CURVE, index))
                 parameters.append(s)
-                total, index = total + RIM, index + 1
+                total, index = total + POINTS_PER_CURVE, index + 1
             following = np.arange(first + 1, total + 1)
             following[-1] = first
             ahead.append(following)
         following = np.concatenate(ahead)
         behind = np.empty_like(following)
         behind[following] = np.arange(total)
-        return Rim(
+        return BoundaryPolygon(
             region=region,
             curves=tuple(curve for chain in region.chains for curve in chain),
             uv=np.concatenate(uv),
@@ -240,7 +240,7 @@ class Rim:
         return uv, distance
 
 
-def spread(knots: Array, degree: int, count: int) -> Array:
+def greville_spaced(knots: Array, degree: int, count: int) -> Array:
     """Parameters (count,) over the whole domain, as dense as the Greville abscissae."""
     sites = np.unique(greville(knots, degree))
     return np.interp(np.linspace(0.0, len(sites) - 1.0, count), np.arange(len(sites)), sites)

@@ -6,14 +6,13 @@ from pathlib import Path
 import numpy as np
 from numpy.random import Generator, default_rng
 
-from bladewright.cad.built import MM
-from bladewright.cad.mesh import Mesh
-from bladewright.cad.quiet import quiet
+from bladewright.cad.file_face import file_face
+from bladewright.cad.kernel import quiet
+from bladewright.cad.mesh import TriangleMesh
+from bladewright.cad.mesh_files import read_3mf, read_stl
+from bladewright.cad.native_body import MM
+from bladewright.cad.reading import format_of, read_cad_file
 from bladewright.cad.region import Region
-from bladewright.cad.reopen import format_of, reopened
-from bladewright.cad.returned import returned
-from bladewright.cad.stl import read_stl
-from bladewright.cad.threemf import read_3mf
 from bladewright.errors import CadError
 from bladewright.numerics.elementary import Array
 
@@ -32,7 +31,7 @@ def sample(path: str | os.PathLike[str], count: int = 10_000, *, seed: int = 0) 
         mesh = read_stl(path) if kind == "STL" else read_3mf(path)[0]
         return _of_mesh(mesh, count, random) / MM
     with quiet():
-        faces = [returned(face) for face in reopened(path).faces]
+        faces = [file_face(face) for face in read_cad_file(path).faces]
     shares = np.cumsum([face.area for face in faces]) / sum(face.area for face in faces)
     counts = np.diff(np.concatenate([[0], np.round(shares * count).astype(int)]))
     drawn = [_of_region(face.region, int(number), random) for face, number in zip(faces, counts, strict=True)]
@@ -58,7 +57,7 @@ def _of_region(region: Region, count: int, random: Generator) -> Array:
     return np.concatenate(found)[:count]
 
 
-def _of_mesh(mesh: Mesh, count: int, random: Generator) -> Array:
+def _of_mesh(mesh: TriangleMesh, count: int, random: Generator) -> Array:
     vectors = mesh.vectors
     areas = np.sqrt(np.sum(vectors * vectors, axis=-1))
     corners = mesh.corners[random.choice(len(areas), size=count, p=areas / areas.sum())]

@@ -23,10 +23,10 @@ from OCP.TopoDS import (
     TopoDS_Wire,
 )
 
-from bladewright.cad.built import MM, Built, Closed
-from bladewright.cad.geometry import millimetres, occ_knots, plane_curve, space_curve, space_surface
-from bladewright.cad.topology import Collapsed, Edge, Topology, Use, topology
-from bladewright.cad.walls import wall
+from bladewright.cad.conversion import millimetres, occ_knots, plane_curve, space_curve, space_surface
+from bladewright.cad.native_body import MM, ClosedBody, NativeBody
+from bladewright.cad.topology import Coedge, DegenerateEdge, Edge, Topology, topology
+from bladewright.cad.trimmed_faces import trimmed_face
 from bladewright.errors import CadError
 from bladewright.nurbs.curve import Curve
 from bladewright.nurbs.surface import Surface
@@ -40,7 +40,7 @@ CONFUSION = 1e-7
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Body:
+class OccSolid:
     """A solid of the kernel [mm] and its faces by name."""
 
     solid: TopoDS_Solid
@@ -49,45 +49,45 @@ class Body:
     """[mm] largest tolerance that its edges need"""
 
 
-def solid(built: Built) -> "cadquery.Solid":
+def solid(built: NativeBody) -> "cadquery.Solid":
     """The closed solid of a built object, in millimetres: its untrimmed faces pole for pole, its walls exact.
 
     Raises CadError where the surfaces do not close up, or where OpenCASCADE finds the solid invalid.
     """
     import cadquery  # its own import takes as long as the kernel's, and files need the kernel alone
 
-    return cadquery.Solid(body(built).solid)
+    return cadquery.Solid(occ_solid(built).solid)
 
 
-class _Same:
+class _ByIdentity:
     """A built object, equal to itself only."""
 
-    def __init__(self, built: Built) -> None:
+    def __init__(self, built: NativeBody) -> None:
         self.built = built
 
     def __hash__(self) -> int:
         return id(self.built)
 
     def __eq__(self, other: object) -> bool:
-        return isinstance(other, _Same) and other.built is self.built
+        return isinstance(other, _ByIdentity) and other.built is self.built
 
 
-def body_of(built: Built) -> Body:
+def cached_occ_solid(built: NativeBody) -> OccSolid:
     """The `body` of a built object, kept while the files of the same object are written one after another."""
-    return _kept(_Same(built))
+    return _cached(_ByIdentity(built))
 
 
 @lru_cache(maxsize=1)
-def _kept(same: _Same) -> Body:
-    return body(same.built)
+def _cached(same: _ByIdentity) -> OccSolid:
+    return occ_solid(same.built)
 
 
-def body(built: Closed) -> Body:
+def occ_solid(built: ClosedBody) -> OccSolid:
     """The same solid in the kernel's own type, with its faces by name."""
     for face in built.surfaces.values():
         millimetres(face.control_points if isinstance(face, Surface) else face.surface.control_points)
     made = topology(built)
-    workshop = _Workshop(built.surfaces, made)
+    workshop = _SolidBuilder(built.surfaces, made)
     faces = {}
     for name, face in built.surfaces.items():
         outwards = built.orientations[name] > 0
@@ -109,10 +109,10 @@ def body(built: Closed) -> Body:
             f"OpenCASCADE finds the solid of {built.name!r} invalid, though its faces share their edges: one crosses "
             "itself or another; look at the blade with `bladewright show`"
         )
-    return Body(solid=whole, faces=faces, gap=max(workshop.gaps))
+    return OccSolid(solid=whole, faces=faces, gap=max(workshop.gaps))
 
 
-class _Workshop:
+class _SolidBuilder:
     """Edges and vertices of the kernel, made once and handed to every face that meets there."""
 
     def __init__(self, surfaces: Mapping[str, Surface | TrimmedSurface], made: Topology) -> None:
@@ -158,7 +158,7 @@ class _Workshop:
             for side in range(len(face.boundary))
             for index, use in self._along(name, side)
         ]
-        shape = wall(face, [(edge, use) for _, edge, use in chain])
+        shape = trimmed_face(face, [(edge, use) for _, edge, use in chain])
         made = TopoDS_Face()
         self.builder.MakeFace(made, shape.geometry, CONFUSION)
         counter_clockwise = _turns_left(face) != shape.swapped
@@ -182,7 +182,7 @@ class _Workshop:
         for vertex, tolerance in zip(self.vertices, self.tolerances.tolist(), strict=True):
             self.builder.UpdateVertex(vertex, tolerance)
 
-    def _along(self, name: str, side: int) -> list[tuple[int, Use]]:
+    def _along(self, name: str, side: int) -> list[tuple[int, Coedge]]:
         """The edges on a side of a face, by their place, in the order of the face's run along that side."""
         found = [
             (index, use)
@@ -206,7 +206,7 @@ class _Workshop:
         self.builder.Add(face, wire)
         return TopoDS.Face_s(face.Oriented(TopAbs_FORWARD if forward else TopAbs_REVERSED))
 
-    def _degenerate(self, surface: Surface, point: Collapsed, face: TopoDS_Face) -> TopoDS_Edge:
+    def _degenerate(self, surface: Surface, point: DegenerateEdge, face: TopoDS_Face) -> TopoDS_Edge:
         edge = TopoDS_Edge()
         self.builder.MakeEdge(edge)
         self.builder.UpdateEdge(edge, _side_trace(surface, point.use, None), face, CONFUSION)
@@ -216,7 +216,7 @@ class _Workshop:
         return edge
 
 
-def _side_trace(surface: Surface, use: Use, curve: Curve | None) -> Geom2d_Curve:
+def _side_trace(surface: Surface, use: Coedge, curve: Curve | None) -> Geom2d_Curve:
     """The piece of a side of the parameter rectangle at the parameter of an edge's curve, or at its own."""
     along_u = use.side in {0, 2}
     across = surface.knots_v if along_u else surface.knots_u

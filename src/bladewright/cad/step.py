@@ -11,14 +11,28 @@ from OCP.StepBasic import StepBasic_Product
 from OCP.STEPCAFControl import STEPCAFControl_Writer
 from OCP.STEPControl import STEPControl_AsIs
 from OCP.StepShape import StepShape_ClosedShell, StepShape_ManifoldSolidBrep
-from OCP.TCollection import TCollection_HAsciiString
-from OCP.XCAFDoc import XCAFDoc_Area, XCAFDoc_Centroid, XCAFDoc_Volume
+from OCP.TCollection import TCollection_ExtendedString, TCollection_HAsciiString
+from OCP.TDataStd import TDataStd_Name
+from OCP.TDF import TDF_Label
+from OCP.TDocStd import TDocStd_Document
+from OCP.XCAFDoc import XCAFDoc_Area, XCAFDoc_Centroid, XCAFDoc_DocumentTool, XCAFDoc_Volume
 
 from bladewright import __version__
-from bladewright.cad.built import MM, Product
-from bladewright.cad.document import document
-from bladewright.cad.solids import CONFUSION, Body
+from bladewright.cad.native_body import MM, CadProduct
+from bladewright.cad.solids import CONFUSION, OccSolid
 from bladewright.errors import CadError
+
+
+def document(name: str, body: OccSolid, names: dict[str, str]) -> tuple[TDocStd_Document, TDF_Label]:
+    """A document with the body's solid, and the solid's label; `names` are the texts by which the faces go."""
+    made = TDocStd_Document(TCollection_ExtendedString("XmlXCAF"))
+    shapes = XCAFDoc_DocumentTool.ShapeTool_s(made.Main())
+    label = shapes.AddShape(body.solid, False)
+    TDataStd_Name.Set_s(label, TCollection_ExtendedString(name))
+    for face, shape in body.faces.items():
+        TDataStd_Name.Set_s(shapes.AddSubShape(label, shape), TCollection_ExtendedString(names[face]))
+    return made, label
+
 
 Schema = Literal["AP242", "AP214", "AP203"]
 
@@ -29,7 +43,7 @@ SYSTEM = f"bladewright {__version__}"
 """Originating system in the headers of CAD files."""
 
 
-def write_step(built: Product, body: Body, path: str, *, schema: str) -> None:
+def write_step(built: CadProduct, body: OccSolid, path: str, *, schema: str) -> None:
     """Write a STEP file in millimetres. Raises CadError where the kernel refuses."""
     if schema not in SCHEMAS:
         raise CadError(f"schema {schema!r} is not a STEP schema that can be written: choose AP242, AP214 or AP203")
@@ -63,7 +77,7 @@ def _settings(schema: str) -> None:
     Interface_Static.SetIVal_s("write.surfacecurve.mode", 1)
 
 
-def _name_solid(model: object, built: Product) -> None:
+def _name_solid(model: object, built: CadProduct) -> None:
     name = TCollection_HAsciiString(step_text(built.name))
     left: set[type] = {StepShape_ManifoldSolidBrep, StepShape_ClosedShell, StepBasic_Product}
     for number in range(1, model.NbEntities() + 1):  # type: ignore[attr-defined]
@@ -78,7 +92,7 @@ def _name_solid(model: object, built: Product) -> None:
             break
 
 
-def _head(header: APIHeaderSection_MakeHeader, built: Product) -> None:
+def _head(header: APIHeaderSection_MakeHeader, built: CadProduct) -> None:
     def one(value: str) -> Interface_HArray1OfHAsciiString:
         array = Interface_HArray1OfHAsciiString(1, 1)
         array.SetValue(1, TCollection_HAsciiString(step_text(value)))
@@ -92,7 +106,7 @@ def _head(header: APIHeaderSection_MakeHeader, built: Product) -> None:
     header.SetAuthorisation(TCollection_HAsciiString(""))
 
 
-def _text(built: Product, field: str) -> str:
+def _text(built: CadProduct, field: str) -> str:
     return str(getattr(built, field, "") or "")
 
 

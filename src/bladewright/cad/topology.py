@@ -5,7 +5,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from bladewright.cad.built import Closed, extent
+from bladewright.cad.native_body import ClosedBody, extent
 from bladewright.errors import CadError
 from bladewright.numerics.elementary import Array
 from bladewright.nurbs.curve import Curve
@@ -14,7 +14,7 @@ from bladewright.nurbs.trimmed import TrimmedSurface
 
 COINCIDENT = 1e-12
 """Distance, as a fraction of the body's extent, up to which two control points are the same point."""
-ALONG = 1e-6
+ON_BOUNDARY = 1e-6
 """The same up to which a trimmed face's boundary runs along an edge; what is left is measured as the edge's gap."""
 
 SAME_KNOT = 1e-12
@@ -25,7 +25,7 @@ SIDES = ("v = 0", "u = 1", "v = 1", "u = 0")
 
 
 @dataclass(frozen=True, kw_only=True)
-class Use:
+class Coedge:
     """One side of a face that lies on an edge."""
 
     face: str
@@ -43,17 +43,17 @@ class Edge:
     """An edge of the body: its space curve [m], and the faces that meet there."""
 
     curve: Curve
-    uses: tuple[Use, ...]
+    uses: tuple[Coedge, ...]
     start: int
     """index of the vertex at the curve's first parameter"""
     end: int
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Collapsed:
+class DegenerateEdge:
     """A side of a face, or a piece of it, that is a single point."""
 
-    use: Use
+    use: Coedge
     vertex: int
 
 
@@ -62,12 +62,12 @@ class Topology:
     """Edges and vertices of a closed body."""
 
     edges: tuple[Edge, ...]
-    collapsed: tuple[Collapsed, ...]
+    collapsed: tuple[DegenerateEdge, ...]
     vertices: Array
     """(n, 3) [m]"""
 
 
-def topology(built: Closed) -> Topology:
+def topology(built: ClosedBody) -> Topology:
     """The edges that the faces of a body share, and the vertices where those meet.
 
     A side of an untrimmed face that is no more than continuous at an inner knot is split there, and each piece is an
@@ -76,24 +76,24 @@ def topology(built: Closed) -> Topology:
     boundary follows. Raises CadError where an edge does not belong to exactly two faces.
     """
     size = extent(built)
-    runs: list[tuple[Curve, list[Use]]] = []
-    points: list[tuple[Array, Use]] = []
+    runs: list[tuple[Curve, list[Coedge]]] = []
+    points: list[tuple[Array, Coedge]] = []
     for name, face in built.surfaces.items():
         if isinstance(face, Surface):
             for side in range(4):
                 whole, along = side_curve(face, side)
                 flat = np.ptp(whole.control_points, axis=0).max() <= COINCIDENT * size
-                for curve in (whole,) if flat else pieces(whole):
-                    use = Use(face=name, side=side, along=along, span=curve.domain)
+                for curve in (whole,) if flat else smooth_pieces(whole):
+                    use = Coedge(face=name, side=side, along=along, span=curve.domain)
                     net = curve.control_points
                     if np.ptp(net, axis=0).max() <= COINCIDENT * size:
                         points.append((net[0], use))
                     else:
-                        _join(runs, curve, use, COINCIDENT * size)
+                        _add_coedge(runs, curve, use, COINCIDENT * size)
     for name, face in built.surfaces.items():
         if isinstance(face, TrimmedSurface):
             for side, boundary in enumerate(face.boundary):
-                _follow(runs, face, boundary, name, side, ALONG * size)
+                _add_trimmed_boundary(runs, face, boundary, name, side, ON_BOUNDARY * size)
     _require_pairs(runs)
     vertices: list[Array] = []
     edges = tuple(
@@ -105,7 +105,9 @@ def topology(built: Closed) -> Topology:
         )
         for curve, uses in runs
     )
-    collapsed = tuple(Collapsed(use=use, vertex=_vertex(vertices, point, COINCIDENT * size)) for point, use in points)
+    collapsed = tuple(
+        DegenerateEdge(use=use, vertex=_vertex(vertices, point, COINCIDENT * size)) for point, use in points
+    )
     return Topology(edges=edges, collapsed=collapsed, vertices=np.array(vertices))
 
 
@@ -122,7 +124,7 @@ def side_curve(face: Surface, side: int) -> tuple[Curve, bool]:
     return curve, side in {0, 1}
 
 
-def pieces(curve: Curve) -> tuple[Curve, ...]:
+def smooth_pieces(curve: Curve) -> tuple[Curve, ...]:
     """The parts of a curve between inner knots of full multiplicity, control point for control point."""
     degree = curve.degree
     inner, counts = np.unique(curve.knots[degree + 1 : -degree - 1], return_counts=True)
@@ -140,7 +142,7 @@ def pieces(curve: Curve) -> tuple[Curve, ...]:
     )
 
 
-def _join(runs: list[tuple[Curve, list[Use]]], curve: Curve, use: Use, tolerance: float) -> None:
+def _add_coedge(runs: list[tuple[Curve, list[Coedge]]], curve: Curve, use: Coedge, tolerance: float) -> None:
     for known, uses in runs:
         for backwards in (False, True):
             if _same(known, curve, tolerance, backwards=backwards):
@@ -166,8 +168,13 @@ def _shares(knots: Array) -> Array:
     return (knots - knots[0]) / (knots[-1] - knots[0])
 
 
-def _follow(
-    runs: list[tuple[Curve, list[Use]]], face: TrimmedSurface, boundary: Curve, name: str, side: int, tolerance: float
+def _add_trimmed_boundary(
+    runs: list[tuple[Curve, list[Coedge]]],
+    face: TrimmedSurface,
+    boundary: Curve,
+    name: str,
+    side: int,
+    tolerance: float,
 ) -> None:
     """Give the boundary of a trimmed face to the edge that runs along it, or to several one behind another."""
     s = np.linspace(boundary.knots[0], boundary.knots[-1], 2001)
@@ -188,7 +195,7 @@ def _follow(
         if _distance(place, start) > tolerance:
             break
         past = s[0] + (s[-1] - s[0]) * _to_polyline(end, trace, after=at)[1] / (len(s) - 1)
-        uses.append(Use(face=name, side=side, along=along, span=(float(reached), float(past))))
+        uses.append(Coedge(face=name, side=side, along=along, span=(float(reached), float(past))))
         place, reached = end, past
     if not found or _distance(place, trace[-1]) > tolerance:
         raise CadError(
@@ -219,7 +226,7 @@ def _vertex(vertices: list[Array], point: Array, tolerance: float) -> int:
     return len(vertices) - 1
 
 
-def _require_pairs(runs: list[tuple[Curve, list[Use]]]) -> None:
+def _require_pairs(runs: list[tuple[Curve, list[Coedge]]]) -> None:
     for curve, uses in runs:
         where = " and ".join(f"{use.face!r} ({use.side})" for use in uses)
         if len(uses) != 2:

@@ -8,28 +8,28 @@ import numpy as np
 from OCP.BRepGProp import BRepGProp
 from OCP.GProp import GProp_GProps
 
-from bladewright.cad.built import MM, Built, extent
 from bladewright.cad.closure import Closure, closure
-from bladewright.cad.deviation import deviation, meant_by
-from bladewright.cad.quiet import quiet
-from bladewright.cad.reopen import Reopened, format_of, reopened
-from bladewright.cad.returned import Returned, returned
-from bladewright.cad.roundtrip import Compared, EdgeTrip, FaceTrip, RoundTrip
+from bladewright.cad.deviation import deviation, native_face
+from bladewright.cad.file_face import FileFace, file_face
+from bladewright.cad.kernel import quiet
+from bladewright.cad.native_body import MM, NativeBody, extent
+from bladewright.cad.reading import CadFile, format_of, read_cad_file
+from bladewright.cad.round_trip import Comparison, EdgeReport, FaceReport, RoundTrip
 from bladewright.numerics.elementary import Array
 from bladewright.nurbs.surface import Surface
 from bladewright.nurbs.trimmed import TrimmedSurface
 
 SAMPLES = 10_000
 """points on each face, each way"""
-NEAR = 0.01
+SAME_FACE = 0.01
 """Distance of control points, of the body's extent, below which a face without a name is taken for a native one."""
 QUADRATURE = (1e-3, 1e-7, 1e-9, 1e-12)
 """relative errors that the kernel's quadrature of volumes aims at in turn: design/cad_quadrature.py"""
-SURE = 0.2
+SAFE_SHARE = 0.2
 """share of a limit within which the first quadrature will do"""
 
 
-def verify(path: str | os.PathLike[str], built: Built, *, samples: int = SAMPLES) -> RoundTrip:
+def verify(path: str | os.PathLike[str], built: NativeBody, *, samples: int = SAMPLES) -> RoundTrip:
     """The round trip of a CAD file: what it holds, and how far that is from a built object.
 
     STEP, IGES and BREP files are measured face by face, whoever wrote them and however their surfaces are parametrised;
@@ -37,15 +37,15 @@ def verify(path: str | os.PathLike[str], built: Built, *, samples: int = SAMPLES
     """
     path = Path(path)
     if format_of(path) in {"STL", "3MF"}:
-        from bladewright.cad.mesh_trip import verify_mesh
+        from bladewright.cad.mesh_verification import verify_mesh
 
         return verify_mesh(path, built, samples=samples)
-    opened = reopened(path)
+    opened = read_cad_file(path)
     with quiet():
         return _Measurement(opened, built, samples).report()
 
 
-def limits_of(built: Built) -> dict[str, float]:
+def limits_of(built: NativeBody) -> dict[str, float]:
     """Limits of the figures: millimetres for distances, fractions for areas and volume."""
     chords = [_chord(face) for face in built.surfaces.values() if isinstance(face, TrimmedSurface)]
     end = max([1e-5, *(1e-7 * chord * MM for chord in chords)])
@@ -62,11 +62,11 @@ def _chord(face: TrimmedSurface) -> float:
 class _Measurement:
     """One file against one built object."""
 
-    def __init__(self, opened: Reopened, built: Built, samples: int) -> None:
+    def __init__(self, opened: CadFile, built: NativeBody, samples: int) -> None:
         self.opened, self.built, self.samples = opened, built, samples
         self.limits = limits_of(built)
-        self.meant = {name: meant_by(face) for name, face in built.surfaces.items()}
-        self.returned = [returned(face) for face in opened.faces]
+        self.meant = {name: native_face(face) for name, face in built.surfaces.items()}
+        self.returned = [file_face(face) for face in opened.faces]
         self.named = {k: name for k, name in opened.names.items() if name in self.meant}
         self.names = self._names()
         self.failures: list[str] = []
@@ -84,7 +84,7 @@ class _Measurement:
         edges = self._edges(closed)
         properties = self.built.properties
         volume, centroid = self._whole()
-        total = Compared(cad=sum(face.area for face in self.returned), native=float(properties.area) * MM**2)
+        total = Comparison(cad=sum(face.area for face in self.returned), native=float(properties.area) * MM**2)
         self._check_whole(volume, total, centroid)
         promises: Any = getattr(self.built, "promises", None)
         return RoundTrip(
@@ -106,7 +106,7 @@ class _Measurement:
             promises=None if promises is None else promises.to_dict(),
         )
 
-    def _whole(self) -> tuple[Compared, tuple[Array, Array]]:
+    def _whole(self) -> tuple[Comparison, tuple[Array, Array]]:
         """Volume and centroid, of the file and native; a kernel that disagrees is asked for more digits."""
         native = float(self.built.properties.volume) * MM**3, np.asarray(self.built.properties.centroid) * MM
         for bound in QUADRATURE:
@@ -114,16 +114,16 @@ class _Measurement:
             BRepGProp.VolumeProperties_s(self.opened.shape, whole, bound)
             middle = whole.CentreOfMass()
             centroid = np.array([middle.X(), middle.Y(), middle.Z()])
-            volume = Compared(cad=whole.Mass(), native=native[0])
+            volume = Comparison(cad=whole.Mass(), native=native[0])
             off = float(np.linalg.norm(centroid - native[1])) / (extent(self.built) * MM)
-            if max(volume.relative_error, off) < SURE * self.limits["volume"]:
+            if max(volume.relative_error, off) < SAFE_SHARE * self.limits["volume"]:
                 break
         return volume, (centroid, native[1])
 
     def _names(self) -> dict[int, str]:
         """Names of all faces of the file: those it has, else those of the native faces they lie on."""
         names = dict(self.named)
-        near = NEAR * extent(self.built) * MM
+        near = SAME_FACE * extent(self.built) * MM
         for k, face in enumerate(self.returned):
             if k in names:
                 continue
@@ -148,13 +148,13 @@ class _Measurement:
             unnamed = [self.names[k] for k in range(len(self.returned)) if k not in self.named]
             self.failures += [f"face {name} has no name in the file" for name in unnamed]
 
-    def _face(self, name: str, faces: list[Returned]) -> FaceTrip:
+    def _face(self, name: str, faces: list[FileFace]) -> FaceReport:
         native = self.built.surfaces[name]
         untrimmed = isinstance(native, Surface)
         limit = self.limits["side_mm" if untrimmed else "end_mm"]
         found = deviation(self.meant[name], [face.region for face in faces], self.samples, limit)
-        compared = Compared(cad=sum(face.area for face in faces), native=self._area(name) * MM**2)
-        trip = FaceTrip(
+        compared = Comparison(cad=sum(face.area for face in faces), native=self._area(name) * MM**2)
+        trip = FaceReport(
             name=name,
             samples=self.samples,
             max_deviation=found.largest,
@@ -195,7 +195,7 @@ class _Measurement:
         if not closed.valid:
             self.failures.append("OpenCASCADE finds the shape invalid")
 
-    def _edges(self, closed: Closure) -> EdgeTrip:
+    def _edges(self, closed: Closure) -> EdgeReport:
         for joint in closed.joints:
             names = sorted({self.names[k] for k in joint.faces})
             sides = all(isinstance(self.built.surfaces[name], Surface) for name in names)
@@ -210,14 +210,14 @@ class _Measurement:
                 for tolerance, allowed, what in tolerances
                 if not tolerance <= allowed
             ]
-        return EdgeTrip(
+        return EdgeReport(
             count=len(closed.joints),
             shortest=min((joint.length for joint in closed.joints), default=0.0),
             max_gap=max((joint.gap for joint in closed.joints), default=0.0),
             max_tolerance=max((max(joint.tolerance, joint.vertex_tolerance) for joint in closed.joints), default=0.0),
         )
 
-    def _check_whole(self, volume: Compared, total: Compared, centroid: tuple[Array, Array]) -> None:
+    def _check_whole(self, volume: Comparison, total: Comparison, centroid: tuple[Array, Array]) -> None:
         allowed = self.limits["volume"]
         for what, unit, compared in (("volume", "mm3", volume), ("area", "mm2", total)):
             if not compared.relative_error <= allowed:

@@ -5,20 +5,20 @@ from pathlib import Path
 
 from OCP.BRepTools import BRepTools
 
-from bladewright.appearing import appearing
-from bladewright.cad.built import Built
+from bladewright.atomic_write import atomic_write
 from bladewright.cad.iges import write_iges
-from bladewright.cad.quiet import quiet
-from bladewright.cad.reopen import format_of
-from bladewright.cad.roundtrip import RoundTrip
-from bladewright.cad.solids import Body, body_of
+from bladewright.cad.kernel import quiet
+from bladewright.cad.native_body import NativeBody
+from bladewright.cad.reading import format_of
+from bladewright.cad.round_trip import RoundTrip
+from bladewright.cad.solids import OccSolid, cached_occ_solid
 from bladewright.cad.step import Schema, write_step
 from bladewright.cad.verification import SAMPLES, verify
 from bladewright.errors import CadError
 
 
 def write(
-    built: Built,
+    built: NativeBody,
     path: str | os.PathLike[str],
     *,
     schema: Schema = "AP242",
@@ -37,17 +37,17 @@ def write(
     path = Path(path)
     kind = format_of(path)
     if kind in {"STL", "3MF"}:
-        from bladewright.cad.mesh_trip import write_mesh
+        from bladewright.cad.mesh_verification import write_mesh
 
         return write_mesh(built, path, chordal_deviation=chordal_deviation, samples=samples)
     with quiet():
-        made = body_of(built)
-        with appearing(path) as unfinished:
-            _put(built, made, unfinished, kind, schema=schema, solid=solid)
+        made = cached_occ_solid(built)
+        with atomic_write(path) as unfinished:
+            _write_format(built, made, unfinished, kind, schema=schema, solid=solid)
     return verify(path, built, samples=samples)
 
 
-def _put(built: Built, made: Body, unfinished: str, kind: str, *, schema: str, solid: bool) -> None:
+def _write_format(built: NativeBody, made: OccSolid, unfinished: str, kind: str, *, schema: str, solid: bool) -> None:
     if kind == "STEP":
         write_step(built, made, unfinished, schema=schema)
     elif kind == "IGES":

@@ -5,10 +5,9 @@ from typing import Any
 
 import click
 
-from bladewright.cli.call import Call, common
-from bladewright.cli.domain import BODIES, check_options, passage_options
-from bladewright.cli.making import SUFFIXES, Making, made
-from bladewright.cli.options import extend_option, length, listed, set_option
+from bladewright.cli.build_files import SUFFIXES, BuildOptions, build_files
+from bladewright.cli.load_design import BODIES, check_options, passage_options
+from bladewright.cli.options import Call, comma_separated, common, extend_option, parse_length, set_option
 from bladewright.cli.outcome import Outcome
 from bladewright.cli.progress import progress
 
@@ -23,7 +22,7 @@ from bladewright.cli.progress import progress
     "formats",
     default="step,iges",
     show_default=True,
-    callback=listed(tuple(SUFFIXES)),
+    callback=comma_separated(tuple(SUFFIXES)),
     help="Formats, with commas between: step, iges, brep, stl, 3mf.",
 )
 @click.option(
@@ -31,7 +30,7 @@ from bladewright.cli.progress import progress
     "bodies",
     default="blade",
     show_default=True,
-    callback=listed(BODIES),
+    callback=comma_separated(BODIES),
     help="What to make solid, with commas between: blade, passage.",
 )
 @click.option(
@@ -43,7 +42,7 @@ from bladewright.cli.progress import progress
 )
 @click.option("--iges-surfaces", is_flag=True, help="Trimmed surfaces in the IGES file, in the place of a solid.")
 @click.option(
-    "--chordal-deviation", callback=length, metavar="LENGTH", help="Largest gap of STL and 3MF, such as 0.01mm."
+    "--chordal-deviation", callback=parse_length, metavar="LENGTH", help="Largest gap of STL and 3MF, such as 0.01mm."
 )
 @click.option(
     "--jobs", type=click.IntRange(1, 256), metavar="N", help="Designs made at a time.  [as many as processors]"
@@ -71,14 +70,14 @@ def build(
     """
     own = {name: asked.pop(name) for name in _OWN}
     check_options(bodies, extend, asked)
-    making = Making(bodies=bodies, extend=extend, reach=asked, **own)
+    making = BuildOptions(bodies=bodies, extend=extend, reach=asked, **own)
     if len(designs) == 1:
         with progress(making.steps, call) as bar:
-            return made(designs[0], making, bar)
-    from bladewright.cli.several import several
+            return build_files(designs[0], making, bar)
+    from bladewright.cli.batch import build_batch
 
     with progress(len(designs), call) as bar:
-        return several(designs, making, jobs, bar)
+        return build_batch(designs, making, jobs, bar)
 
 
 _OWN = ("directory", "formats", "schema", "iges_surfaces", "chordal_deviation", "changes")

@@ -6,23 +6,23 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from bladewright.cli.call import Call
+from bladewright.cli.options import Call
 from bladewright.cli.outcome import Outcome
 from bladewright.cli.progress import progress
 from bladewright.designs import Design, unit_at
 
 if TYPE_CHECKING:
-    from bladewright.derivatives.check import Sweep
-    from bladewright.derivatives.quantities import Named
+    from bladewright.derivatives.quantities import NamedQuantity
+    from bladewright.derivatives.step_study import StepStudy
 
 PASSAGE = "passage-volume"
 
 
 def derivatives_of(call: Call, design: Design, built: Any, of: str | None, free: Sequence[str]) -> Outcome:
     """The derivatives of a named quantity: a table."""
-    from bladewright.derivatives.check import size_of
     from bladewright.derivatives.patterns import chosen
     from bladewright.derivatives.sensitivity import sensitivity
+    from bladewright.derivatives.step_study import size_of
 
     quantity = _quantity(built, of or ("volume" if hasattr(built, "surfaces") else "area"))
     paths = chosen(design, list(free) or None)
@@ -54,18 +54,18 @@ def derivatives_of(call: Call, design: Design, built: Any, of: str | None, free:
 
 def checked(call: Call, design: Design, built: Any, of: str, free: Sequence[str], output: Path | None) -> Outcome:
     """The check of each derivative against central differences: a table, a picture where one is named."""
-    from bladewright.derivatives.check import LIMIT, sweeps
+    from bladewright.derivatives.step_study import LIMIT, step_studies
     from bladewright.derivatives.variables import variables
 
     if output is not None:
-        from bladewright.views.writing import checked as checked_path
+        from bladewright.views.pages import checked_path
 
         checked_path(output)
     quantity = _quantity(built, of)
     space = variables(design, free=list(free) or None, knots=getattr(built, "knots", None))
-    found: list[Sweep] = []
+    found: list[StepStudy] = []
     with progress(len(space.paths), call) as bar:
-        for sweep in sweeps(design, built, quantity, space):
+        for sweep in step_studies(design, built, quantity, space):
             bar.set_description_str(sweep.path)
             found.append(sweep)
             bar.update(1)
@@ -83,9 +83,9 @@ def checked(call: Call, design: Design, built: Any, of: str, free: Sequence[str]
     text = _table(head, rows)
     text += f"\n{len(failures)} of {len(found)} FAILED" if failures else f"\nall within {LIMIT:g}"
     if output is not None:
-        from bladewright.views.sweeps import draw_sweeps
+        from bladewright.views.step_study import draw_step_studies
 
-        draw_sweeps(found, output, title=f"{name}: the {quantity.name} by {len(found)} parameters", limit=LIMIT)
+        draw_step_studies(found, output, title=f"{name}: the {quantity.name} by {len(found)} parameters", limit=LIMIT)
         data["picture"] = str(output)
         text += f"\nwrote {output}"
     return Outcome(data=data, text=text, failures=failures)
@@ -93,7 +93,7 @@ def checked(call: Call, design: Design, built: Any, of: str, free: Sequence[str]
 
 def written_points(built: Any, path: Path, points: tuple[int, int]) -> Outcome:
     """Points of both sides in files."""
-    from bladewright.derivatives.places import surface_points
+    from bladewright.derivatives.surface_points import surface_points
     from bladewright.files.su2 import write_surface_points
 
     found = surface_points(built, along=points[0], across=points[1])
@@ -104,7 +104,7 @@ def written_points(built: Any, path: Path, points: tuple[int, int]) -> Outcome:
 
 def pulled_back(design: Design, built: Any, free: Sequence[str], sensitivity: Path, points_file: Path) -> Outcome:
     """The gradient of a solver's objective, from its sensitivity at the points of a file."""
-    from bladewright.derivatives.nets import pullback
+    from bladewright.derivatives.net_jacobian import pullback
     from bladewright.files.su2 import check_of, read_surface_points, read_surface_sensitivity
 
     points = read_surface_points(points_file)
@@ -118,13 +118,13 @@ def pulled_back(design: Design, built: Any, free: Sequence[str], sensitivity: Pa
     return Outcome(data=data, text=_table(f"{name}: objective of {sensitivity} at {len(points.ids)} points", rows))
 
 
-def _quantity(built: Any, name: str) -> "Named":
-    from bladewright.derivatives.quantities import Named, named
+def _quantity(built: Any, name: str) -> "NamedQuantity":
+    from bladewright.derivatives.quantities import NamedQuantity, named_quantity
 
-    more: dict[str, Named] = {}
+    more: dict[str, NamedQuantity] = {}
     if hasattr(built, "surfaces"):
-        more[PASSAGE] = Named(name=PASSAGE, of=_PassageVolume(), power=3)
-    return named(built, name, more)
+        more[PASSAGE] = NamedQuantity(name=PASSAGE, of=_PassageVolume(), power=3)
+    return named_quantity(built, name, more)
 
 
 class _PassageVolume:
@@ -141,13 +141,13 @@ class _PassageVolume:
         return found.properties.volume
 
 
-def _rates(design: Any, built: Any, quantity: "Named", paths: Sequence[str]) -> dict[str, Any] | None:
+def _rates(design: Any, built: Any, quantity: "NamedQuantity", paths: Sequence[str]) -> dict[str, Any] | None:
     """The derivatives of a passage's volume from its nets, where they can be had so, which is many times faster."""
     if quantity.name != PASSAGE:
         return None
-    from bladewright.blade.properties import middle_of
-    from bladewright.derivatives.enclosed import enclosed_volume_rates
-    from bladewright.derivatives.nets import net_jacobian
+    from bladewright.blade.native.properties import middle_of
+    from bladewright.derivatives.enclosed_volume import enclosed_volume_rates
+    from bladewright.derivatives.net_jacobian import net_jacobian
     from bladewright.domain.build import passage
     from bladewright.errors import DerivativeError
 
@@ -161,7 +161,7 @@ def _rates(design: Any, built: Any, quantity: "Named", paths: Sequence[str]) -> 
     return dict(rates)
 
 
-def _record(sweep: "Sweep") -> dict[str, Any]:
+def _record(sweep: "StepStudy") -> dict[str, Any]:
     return {
         "path": sweep.path,
         "passed": not sweep.failure,
@@ -176,7 +176,7 @@ def _record(sweep: "Sweep") -> dict[str, Any]:
     }
 
 
-def _verdict(sweep: "Sweep") -> tuple[str, str]:
+def _verdict(sweep: "StepStudy") -> tuple[str, str]:
     if not len(sweep.errors):
         return sweep.failure or sweep.note, ""
     return f"{sweep.best:.1e}  {np.min(sweep.floor):.1e}", "FAILED" if sweep.failure else ""

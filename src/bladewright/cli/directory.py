@@ -9,7 +9,7 @@ from bladewright.errors import FileError
 
 
 @contextmanager
-def tidy(directory: Path, names: Sequence[str]) -> Iterator[None]:
+def removing_partial_files(directory: Path, names: Sequence[str]) -> Iterator[None]:
     """A block that writes files of these names into a directory; an error leaves nothing that was not there before.
 
     The directory is made where it is not there. Raises FileError where it cannot be made or written into.

@@ -8,15 +8,14 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from bladewright.cli import fit_options
-from bladewright.cli.call import Call, common
-from bladewright.cli.directory import tidy
-from bladewright.cli.options import length
+from bladewright.cli.directory import removing_partial_files
+from bladewright.cli.options import Call, common, parse_length
 from bladewright.cli.outcome import Outcome
-from bladewright.cli.progress import told
+from bladewright.cli.progress import status_line
 
 if TYPE_CHECKING:
     from bladewright.files.clouds import Cloud
-    from bladewright.fitting.judgement.result import Fit
+    from bladewright.fitting.assessment.result import Fit
 
 UNITS = ("m", "cm", "mm", "um", "in", "ft")
 
@@ -56,7 +55,7 @@ UNITS = ("m", "cm", "mm", "um", "in", "ft")
 )
 @click.option(
     "--tolerance",
-    callback=length,
+    callback=parse_length,
     metavar="LENGTH",
     help="Largest deviation wanted, such as 0.05mm: control points are added until it is reached.",
 )
@@ -83,7 +82,9 @@ UNITS = ("m", "cm", "mm", "um", "in", "ft")
 @click.option("--align", is_flag=True, help="Find the rigid motion to the machine's axes, too.")
 @click.option("--arrangement", type=click.Choice(["annular", "linear"]), help="Around the axis, or in a cascade.")
 @click.option("--blade-count", type=click.IntRange(1, 10_000), metavar="N", help="Number of blades of an annular row.")
-@click.option("--pitch", callback=length, metavar="LENGTH", help="Distance of neighbours in a cascade, such as 57.5mm.")
+@click.option(
+    "--pitch", callback=parse_length, metavar="LENGTH", help="Distance of neighbours in a cascade, such as 57.5mm."
+)
 @click.option("--name", callback=fit_options.name, help="The design's name; that of the cloud's file where not given.")
 @click.option("--length-unit", type=click.Choice(UNITS), default="mm", show_default=True, help="The design's unit.")
 @click.option("--picture", type=click.Path(path_type=Path), help="Picture to write; NAME.fit.png where not given.")
@@ -114,7 +115,7 @@ def fit(
     give --align. NAME.fit.json and NAME.fit.png are written beside the design. The exit status is 1 where the fit does
     not pass; interrupted, it writes the best design so far.
     """
-    from bladewright.cli.fitted import check_design_file, picture_beside, report_beside
+    from bladewright.cli.fit_files import check_design_file, picture_beside, report_beside
 
     if no_picture and picture is not None:
         raise click.UsageError("--picture names a picture, and --no-picture wants none: leave one out")
@@ -125,16 +126,16 @@ def fit(
     check_design_file(design)
     if picture is not None:
         _check_picture(picture, beside=design)
-    with tidy(design.parent, [design.name, report.name]):
+    with removing_partial_files(design.parent, [design.name, report.name]):
         found, points = _fitted(call, cloud, columns, unit, samples, name, how)
         data = _written(found, points, cloud, design, report)
     if deviations is not None:
-        from bladewright.cli.fitted import write_deviations
+        from bladewright.cli.fit_files import write_deviations
 
         write_deviations(found, deviations)
         data["files"]["deviations"] = str(deviations)
     if picture is not None and not found.interrupted:
-        from bladewright.views.matching import fit_picture
+        from bladewright.views.fit_sheet import fit_picture
 
         fit_picture(found, picture)
         data["files"]["picture"] = str(picture)
@@ -156,12 +157,12 @@ def _fitted(
     how: dict[str, Any],
 ) -> "tuple[Fit, Cloud]":
     """The fit, and the cloud as it was read."""
-    from bladewright.cli.starting import cloud_at, start_at
+    from bladewright.cli.fit_files import cloud_at, start_at
     from bladewright.errors import FitError
 
     start, like = (None if how[key] is None else start_at(how[key]) for key in ("start", "like"))
     how = {**how, "start": start, "like": like, "fixed": fit_options.fixed_of(how["fixed"], start)}
-    with told(call) as say:
+    with status_line(call) as say:
         say("reading points")
         points = cloud_at(path, columns, unit, samples)
         from bladewright.fitting.fit import fit as fitted
@@ -179,7 +180,7 @@ def _fitted(
 
 def _written(found: "Fit", points: "Cloud", cloud: Path, design: Path, report: Path) -> dict[str, Any]:
     """What was found, for programs, when the design and the report are written."""
-    from bladewright.cli.fitted import labelled, write_report
+    from bladewright.cli.fit_files import labelled, write_report
     from bladewright.files.writing import write_design
 
     read = {"file": str(cloud), "format": points.format, "unit": points.unit, "columns": points.columns}
@@ -190,11 +191,11 @@ def _written(found: "Fit", points: "Cloud", cloud: Path, design: Path, report: P
 
 
 def _check_picture(picture: Path, beside: Path) -> None:
-    from bladewright.views.writing import checked
+    from bladewright.views.pages import checked_path
 
     # the design's own directory is made where it is not there
     if picture.parent != beside.parent or picture.parent.is_dir():
-        checked(picture)
+        checked_path(picture)
 
 
 def _name_from(cloud: Path) -> str:

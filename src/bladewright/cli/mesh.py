@@ -6,11 +6,9 @@ from typing import Any, Literal
 
 import click
 
-from bladewright.cli.blueprint import design_at
-from bladewright.cli.call import Call, common
-from bladewright.cli.directory import tidy
-from bladewright.cli.domain import passage_from, passage_options
-from bladewright.cli.options import design_argument, set_option
+from bladewright.cli.directory import removing_partial_files
+from bladewright.cli.load_design import load_design, passage_from, passage_options
+from bladewright.cli.options import Call, common, design_argument, set_option
 from bladewright.cli.outcome import Outcome
 from bladewright.cli.progress import progress
 
@@ -74,11 +72,11 @@ def mesh(
     """
     from bladewright import meshing
 
-    blueprint: Any = design_at(design, changes)
+    blueprint: Any = load_design(design, changes)
     file = output or Path(f"{blueprint.name}-passage.msh")
     meshing.check(file, size=size, smallest=smallest, curvature=curvature)
     with (
-        tidy(file.parent, [file.name]),
+        removing_partial_files(file.parent, [file.name]),
         tempfile.TemporaryDirectory(prefix="bladewright-") as folder,
         progress(STEPS, call) as bar,
     ):
@@ -103,12 +101,12 @@ def mesh(
             curvature=curvature,
             unit=unit,
             progress=step,
-            log=_told if call.debug else None,
+            log=_echo if call.debug else None,
         )
     failures = (*(f"the STEP file: {text}" for text in trip.failures), *(f"{file}: {text}" for text in report.failures))
     data = {**report.to_dict(), "passed": not failures, "failures": list(failures), "name": passage.name}
     return Outcome(data=data, text=str(report), failures=failures)
 
 
-def _told(line: str) -> None:
+def _echo(line: str) -> None:
     click.echo(line, err=True)

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import click
 
-from bladewright.cli.call import common
+from bladewright.cli.options import common
 from bladewright.cli.outcome import Outcome
 from bladewright.errors import FileError
 

@@ -9,7 +9,7 @@ from typing import Any
 
 import click
 
-from bladewright.cli.call import Call
+from bladewright.cli.options import Call
 
 INTERRUPTED = 130
 """exit status of work that was broken off"""
@@ -31,7 +31,7 @@ class Outcome:
     """whether the work was broken off, and what is here is the best until then"""
 
 
-def printed(outcome: Outcome, call: Call) -> int:
+def print_outcome(outcome: Outcome, call: Call) -> int:
     """Print an outcome as the call wants it, and return the exit status."""
     text = json.dumps(jsonable(outcome.data), indent=2, allow_nan=False) if call.as_json else outcome.text
     if text and (call.as_json or not call.quiet):

@@ -7,12 +7,12 @@ from collections.abc import Sequence
 import click
 
 from bladewright.cli.build import build
-from bladewright.cli.call import Call, common
 from bladewright.cli.fit import fit
-from bladewright.cli.importing import importing
+from bladewright.cli.import_design import import_design
 from bladewright.cli.mesh import mesh
 from bladewright.cli.new import new
-from bladewright.cli.outcome import INTERRUPTED, Outcome, one_paragraph, printed
+from bladewright.cli.options import Call, common
+from bladewright.cli.outcome import INTERRUPTED, Outcome, one_paragraph, print_outcome
 from bladewright.cli.schema import schema
 from bladewright.cli.sensitivity import sensitivity
 from bladewright.cli.show import show
@@ -50,7 +50,7 @@ def program(context: click.Context) -> None:
         click.echo(context.get_help())
 
 
-for each in (build, verify, fit, importing, mesh, show, sensitivity, new, schema):
+for each in (build, verify, fit, import_design, mesh, show, sensitivity, new, schema):
     program.add_command(each)
 
 
@@ -60,7 +60,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     call = Call.from_words(words)
     try:
         outcome = program.main(words, prog_name="bladewright", standalone_mode=False, obj=call)
-        return printed(outcome, call) if isinstance(outcome, Outcome) else int(outcome or 0)
+        return print_outcome(outcome, call) if isinstance(outcome, Outcome) else int(outcome or 0)
     except (KeyboardInterrupt, click.Abort) as error:
         return _refused(call, error, "Interrupted", f"interrupted {error}".strip(), INTERRUPTED)
     except click.ClickException as error:
@@ -85,6 +85,6 @@ def _refused(call: Call, error: BaseException, kind: str, message: str, status: 
         traceback.print_exception(error, file=sys.stderr)
     message = one_paragraph(message)
     if call.as_json:
-        printed(Outcome(data={"error": {"kind": kind, "message": message}}), call)
+        print_outcome(Outcome(data={"error": {"kind": kind, "message": message}}), call)
     click.echo(f"bladewright: {message}", err=True)
     return status

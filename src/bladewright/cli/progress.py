@@ -5,7 +5,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import Protocol
 
-from bladewright.cli.call import Call
+from bladewright.cli.options import Call
 
 
 class Bar(Protocol):
@@ -41,7 +41,7 @@ def progress(steps: int, call: Call) -> Iterator[Bar]:
 
 
 @contextmanager
-def told(call: Call) -> Iterator[Callable[[str], None]]:
+def status_line(call: Call) -> Iterator[Callable[[str], None]]:
     """What says in a line how far work has come whose steps are not known before, gone when the work is done."""
     if call.quiet or not sys.stderr.isatty():
         yield lambda _: None

@@ -5,9 +5,8 @@ from typing import Any
 
 import click
 
-from bladewright.cli.blueprint import built_from, design_at
-from bladewright.cli.call import Call, common
-from bladewright.cli.options import design_argument, set_option
+from bladewright.cli.load_design import built_from, load_design
+from bladewright.cli.options import Call, common, design_argument, set_option
 from bladewright.cli.outcome import Outcome
 
 
@@ -70,7 +69,7 @@ def sensitivity(
     from bladewright.cli.derivatives import checked, derivatives_of, pulled_back, written_points
 
     _one_task(check=check, output=output, write_points=write_points, of=of, given=(sensitivity_file, points_file))
-    blueprint = design_at(design, changes)
+    blueprint = load_design(design, changes)
     built = built_from(blueprint, design)
     if write_points is not None:
         return written_points(built, write_points, points)

@@ -5,15 +5,20 @@ from typing import Any
 
 import click
 
-from bladewright.cli.blueprint import built_from, design_at
-from bladewright.cli.call import Call, common
-from bladewright.cli.domain import BODIES, check_options, passage_options
-from bladewright.cli.options import design_argument, set_option
+from bladewright.cli.load_design import BODIES, built_from, check_options, load_design, passage_options
+from bladewright.cli.options import Call, common, design_argument, set_option
 from bladewright.cli.outcome import Outcome
-from bladewright.cli.passage import flow_domain, passage_data, passage_rows
 from bladewright.cli.progress import progress
-from bladewright.cli.smoothness import smoothness_data, smoothness_rows
-from bladewright.cli.summary import broken_promises, data_of, text_of
+from bladewright.cli.summary import (
+    broken_promises,
+    flow_domain,
+    passage_data,
+    passage_rows,
+    smoothness_data,
+    smoothness_rows,
+    summary_data,
+    summary_text,
+)
 
 
 @click.command(short_help="Figures and a picture of what a design builds.")
@@ -35,7 +40,7 @@ def show(call: Call, /, design: Path, output: Path | None, body: str, changes: d
     reaches are in axial chords. The exit status is 1 where a promise is not kept.
     """
     check_options((body,), 0.0, reach)
-    blueprint: Any = design_at(design, changes)
+    blueprint: Any = load_design(design, changes)
     with progress(2 if output else 1, call) as bar:
         bar.set_description_str(body)
         if body == "passage":
@@ -43,7 +48,7 @@ def show(call: Call, /, design: Path, output: Path | None, body: str, changes: d
             data = passage_data(blueprint, built)
         else:
             built = built_from(blueprint, design)
-            data = data_of(blueprint, built)
+            data = summary_data(blueprint, built)
             data["smoothness"] = smoothness_data(built)
         bar.update(1)
         if output is not None:
@@ -54,5 +59,5 @@ def show(call: Call, /, design: Path, output: Path | None, body: str, changes: d
             data["picture"] = str(output)
             bar.update(1)
     rows = [*passage_rows(data), *smoothness_rows(data.get("smoothness", []))]
-    text = text_of(data, rows) + (f"\nwrote {output}" if output else "")
+    text = summary_text(data, rows) + (f"\nwrote {output}" if output else "")
     return Outcome(data=data, text=text, failures=broken_promises(data))

@@ -5,10 +5,8 @@ from typing import Any
 
 import click
 
-from bladewright.cli.blueprint import design_at
-from bladewright.cli.call import common
-from bladewright.cli.domain import BODIES, bodies_from, check_options, passage_options
-from bladewright.cli.options import design_argument, extend_option, set_option
+from bladewright.cli.load_design import BODIES, bodies_from, check_options, load_design, passage_options
+from bladewright.cli.options import common, design_argument, extend_option, set_option
 from bladewright.cli.outcome import Outcome
 
 
@@ -23,7 +21,7 @@ from bladewright.cli.outcome import Outcome
 def verify(file: Path, design: Path, body: str, extend: float, changes: dict[str, Any], **reach: Any) -> Outcome:
     """Measure the CAD file FILE against the blade of DESIGN, or against its passage, both ways."""
     check_options([body], extend, reach)
-    [built] = bodies_from([body], design_at(design, changes), design, extend, reach)
+    [built] = bodies_from([body], load_design(design, changes), design, extend, reach)
     from bladewright import cad
 
     trip = cad.verify(file, built)

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from bladewright.blade.throat import throat
+from bladewright.blade.native.throat import throat
 from bladewright.designs import unknown
 from bladewright.errors import DerivativeError
 from bladewright.numerics.elementary import Array, length
@@ -16,7 +16,7 @@ from bladewright.nurbs.basis import breaks
 
 
 @dataclass(frozen=True, kw_only=True)
-class Named:
+class NamedQuantity:
     """A quantity of what a design builds."""
 
     name: str
@@ -42,39 +42,39 @@ def _chord(blade: Any) -> Array:
     return np.asarray(np.sum(weight * length(side(1.0, v) - side(0.0, v))))
 
 
-BLADE: Mapping[str, Named] = MappingProxyType(
+BLADE: Mapping[str, NamedQuantity] = MappingProxyType(
     {
         each.name: each
         for each in (
-            Named(name="surface", of=_net, power=1, points=True),
-            Named(name="volume", of=lambda blade: blade.properties.volume, power=3),
-            Named(name="area", of=lambda blade: blade.properties.area, power=2),
-            Named(name="centroid", of=lambda blade: blade.properties.centroid, power=1),
-            Named(name="inertia", of=lambda blade: blade.properties.inertia, power=5),
-            Named(name="chord", of=_chord, power=1),
-            Named(name="throat", of=lambda blade: throat(blade).area, power=2),
+            NamedQuantity(name="surface", of=_net, power=1, points=True),
+            NamedQuantity(name="volume", of=lambda blade: blade.properties.volume, power=3),
+            NamedQuantity(name="area", of=lambda blade: blade.properties.area, power=2),
+            NamedQuantity(name="centroid", of=lambda blade: blade.properties.centroid, power=1),
+            NamedQuantity(name="inertia", of=lambda blade: blade.properties.inertia, power=5),
+            NamedQuantity(name="chord", of=_chord, power=1),
+            NamedQuantity(name="throat", of=lambda blade: throat(blade).area, power=2),
         )
     }
 )
 """of a blade: its sides' control points; volume, area, centroid and inertia; the mean straight distance from leading to
 trailing edge; the throat's area"""
-SECTION: Mapping[str, Named] = MappingProxyType(
+SECTION: Mapping[str, NamedQuantity] = MappingProxyType(
     {
         each.name: each
         for each in (
-            Named(name="surface", of=_curves, power=1, points=True),
-            Named(name="area", of=lambda section: section.area, power=2),
-            Named(name="centroid", of=lambda section: section.centroid, power=1),
-            Named(name="chord", of=lambda section: section.chord, power=1),
-            Named(name="perimeter", of=lambda section: section.perimeter, power=1),
-            Named(name="camber-length", of=lambda section: section.camber_length, power=1),
+            NamedQuantity(name="surface", of=_curves, power=1, points=True),
+            NamedQuantity(name="area", of=lambda section: section.area, power=2),
+            NamedQuantity(name="centroid", of=lambda section: section.centroid, power=1),
+            NamedQuantity(name="chord", of=lambda section: section.chord, power=1),
+            NamedQuantity(name="perimeter", of=lambda section: section.perimeter, power=1),
+            NamedQuantity(name="camber-length", of=lambda section: section.camber_length, power=1),
         )
     }
 )
 """of a section: its sides' control points; area, centroid, chord, length of both sides, and of the camber line"""
 
 
-def named(base: Any, name: str, more: Mapping[str, Named] | None = None) -> Named:
+def named_quantity(base: Any, name: str, more: Mapping[str, NamedQuantity] | None = None) -> NamedQuantity:
     """The quantity of that name for what a design builds, `more` among the known ones.
 
     Raises DerivativeError with the nearest name.

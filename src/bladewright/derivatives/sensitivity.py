@@ -6,9 +6,8 @@ from typing import Any
 
 import numpy as np
 
+from bladewright.derivatives.complex_step import STEP, built, stepped, varied
 from bladewright.derivatives.patterns import Patterns, chosen
-from bladewright.derivatives.steps import built, stepped, varied
-from bladewright.derivatives.tangents import STEP
 from bladewright.designs import Design
 from bladewright.errors import BladewrightError, DerivativeError
 from bladewright.numerics.elementary import Array

@@ -5,18 +5,17 @@ from typing import cast
 
 import numpy as np
 
-from bladewright.blade.blade import Blade
-from bladewright.blade.knots import DEGREE
-from bladewright.domain.asked import Asked
-from bladewright.domain.camber import camber_lines
+from bladewright.blade.native.blade import Blade
+from bladewright.blade.native.knots import DEGREE
+from bladewright.domain.camber_lines import camber_lines
 from bladewright.domain.checks import check_folds, check_pitch
-from bladewright.domain.choice import crossed, knots_for, spanned
 from bladewright.domain.extents import shortest_duct
-from bladewright.domain.fitness import TOLERANCE
+from bladewright.domain.knot_selection import WALL_TOLERANCE, knots_at_tolerance, unfolded_walls, with_span_knots
 from bladewright.domain.knots import PassageKnots
 from bladewright.domain.nets import BladeNets, native_nets
 from bladewright.domain.passage import Passage
-from bladewright.domain.strip import EDGE_FACES, STRIPS
+from bladewright.domain.passage_spec import PassageSpec
+from bladewright.domain.walls import EDGE_FACES, STRIPS
 from bladewright.errors import DesignError
 from bladewright.numerics.elementary import Array, radians
 from bladewright.nurbs.basis import Reals
@@ -56,7 +55,7 @@ def passage(
         )
     full = blade.exact.whole()
     turned = _slope("inlet_angle", inlet_angle), _slope("outlet_angle", outlet_angle)
-    asked = Asked(blade=blade, full=full, half=_half_pitch(blade), turned=turned)
+    asked = PassageSpec(blade=blade, full=full, half=_half_pitch(blade), turned=turned)
     if knots is not None:
         for name, given in (("upstream", upstream), ("downstream", downstream)):
             if given is not None and given != getattr(knots, name):
@@ -65,18 +64,18 @@ def passage(
                 )
         return _passage(asked, knots, split)
     _check_within(asked)
-    start, walls = crossed(asked, upstream, downstream)
-    start = spanned(asked, start, RESERVES[0] * TOLERANCE * blade.chord)
+    start, walls = unfolded_walls(asked, upstream, downstream)
+    start = with_span_knots(asked, start, RESERVES[0] * WALL_TOLERANCE * blade.chord)
     for reserve in RESERVES:
-        made = _passage(asked, knots_for(start, walls, reserve * TOLERANCE * blade.chord), split)
-        if made.wall_error <= TOLERANCE:
+        made = _passage(asked, knots_at_tolerance(start, walls, reserve * WALL_TOLERANCE * blade.chord), split)
+        if made.wall_error <= WALL_TOLERANCE:
             break
     check_folds(made.folds)
     _check_reached(made)
     return made
 
 
-def _passage(asked: Asked, knots: PassageKnots, split: bool) -> Passage:
+def _passage(asked: PassageSpec, knots: PassageKnots, split: bool) -> Passage:
     """The passage at given knots."""
     blade = asked.blade
     camber, walls, between = asked.plane(knots, knots.sites("span"))
@@ -118,7 +117,7 @@ def _half_pitch(blade: Blade) -> Array:
     return np.asarray(0.5 * UNITS[design.length_unit] * np.asarray(design.pitch))
 
 
-def _check_within(asked: Asked) -> None:
+def _check_within(asked: PassageSpec) -> None:
     exact = asked.blade.exact
     check_pitch(camber_lines(exact.survey, shortest_duct(exact)), asked.blade, asked.real_half)
 
@@ -148,10 +147,11 @@ def _surface(net: Array, name: str, knots: PassageKnots) -> Surface:
 
 
 def _check_reached(made: Passage) -> None:
-    if made.wall_error <= TOLERANCE:
+    if made.wall_error <= WALL_TOLERANCE:
         return
     raise DesignError(
         f"passage: hub and shroud lie {made.wall_error:.2g} of the chord off their surfaces of revolution, at most "
-        f"{TOLERANCE:g} is allowed: shorten upstream or downstream, let the flow turn to a lower angle there, or lower "
+        f"{WALL_TOLERANCE:g} is allowed: shorten upstream or downstream, "
+        "let the flow turn to a lower angle there, or lower "
         "the blade's tolerance, so that it has more knots along the chord"
     )

@@ -1,13 +1,18 @@
-"""Passages that cannot be: a duct that folds or meets the axis, a blade outside its pitch, patches that fold."""
+"""Passages that are refused: a duct that folds or meets the axis, a blade outside its pitch, patches that fold."""
+
+from collections.abc import Mapping
+from typing import NamedTuple
 
 import numpy as np
 
-from bladewright.blade.blade import Blade
-from bladewright.blade.course import Course
-from bladewright.domain.camber import CamberLines
+from bladewright.blade.exact.meridional_extent import MeridionalExtent
+from bladewright.blade.native.blade import Blade
+from bladewright.domain.camber_lines import CamberLines
 from bladewright.domain.duct import Duct
-from bladewright.domain.knots import PIECES
+from bladewright.domain.knots import BLADE_AT, PIECES
+from bladewright.domain.walls import WallHalf
 from bladewright.errors import DesignError
+from bladewright.numerics.elementary import cross2
 from bladewright.nurbs.basis import Reals
 from bladewright.section.checks import UNITS
 
@@ -15,7 +20,7 @@ SIDES = np.concatenate([np.linspace(0.0, 0.05, 25)[:-1], np.linspace(0.05, 0.95,
 """places along a side where its distance from the periodic boundaries is taken"""
 
 
-def check_duct(duct: Duct, course: Course) -> None:
+def check_duct(duct: Duct, meridional_extent: MeridionalExtent) -> None:
     """Refuse extents over which the continued channel folds over or meets the axis."""
     for past, name in enumerate(("upstream", "downstream")):
         found = duct.limit(name)
@@ -23,8 +28,10 @@ def check_duct(duct: Duct, course: Course) -> None:
             continue
         what = "meets the machine axis" if found.sunk else "folds back on itself, as hub and shroud cross"
         raise DesignError(
-            f"{name} is {course.extent(past, (duct.low, duct.high)[past]):g} meridional lengths of the blade: the "
-            f"continued channel {what} at u = {found.u:.3f}; at most {course.extent(past, found.last):.3g} is "
+            f"{name} is {meridional_extent.extent(past, (duct.low, duct.high)[past]):g} "
+            "meridional lengths of the blade: the "
+            f"continued channel {what} at u = {found.u:.3f}; "
+            f"at most {meridional_extent.extent(past, found.last):.3g} is "
             "possible, or let hub and shroud leave the blade more parallel"
         )
 
@@ -75,3 +82,40 @@ def _real(points: np.ndarray) -> Reals:
     while points.ndim > 3:
         points = points[0]
     return points
+
+
+AMPLE_JACOBIAN = 0.06
+"""least Jacobian, of its median, above which a patch is taken for far from folding"""
+_EVEN = np.linspace(0.0, 1.0, 31)
+_JACOBIAN_ALONG = np.unique(np.concatenate([np.linspace(0.0, 1.0, 61), 0.1 * _EVEN**2, 1.0 - 0.1 * _EVEN**2]))
+_JACOBIAN_ACROSS = np.concatenate([np.linspace(0.0, 0.1, 8)[:-1], np.linspace(0.1, 1.0, 22)])
+
+
+class LeastJacobian(NamedTuple):
+    """Where a wall's half is the nearest to folding."""
+
+    share: float
+    """its Jacobian there in (m', theta), of the piece's median"""
+    name: str
+    u: float
+    v: float
+
+
+def least_jacobian(walls: Mapping[str, WallHalf]) -> LeastJacobian:
+    """The least Jacobian of the halves, by differences between samples."""
+    return min(_least(name, wall, place) for name, wall in walls.items() for place in range(len(PIECES)))
+
+
+def _least(name: str, wall: WallHalf, place: int) -> LeastJacobian:
+    piece = PIECES[place]
+    t: Reals = _JACOBIAN_ALONG if piece == "blade" else _EVEN
+    points = np.real(wall.plane(piece, t, _JACOBIAN_ACROSS))
+    while points.ndim > 3:
+        points = points[0]
+    along = np.gradient(points, t, axis=0, edge_order=2)
+    across = np.gradient(points, _JACOBIAN_ACROSS, axis=1, edge_order=2)
+    jacobian = wall.sign * cross2(along, across)
+    i, j = np.unravel_index(int(np.argmin(jacobian)), jacobian.shape)
+    low, high = (0.0, *BLADE_AT, 1.0)[place : place + 2]
+    u = float(low + (high - low) * t[i])
+    return LeastJacobian(float(jacobian[i, j] / np.median(jacobian)), name, u, float(_JACOBIAN_ACROSS[j]))

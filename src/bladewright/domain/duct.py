@@ -1,18 +1,21 @@
-"""The duct: the blade's channel continued up- and downstream, where hub and shroud straighten."""
+"""The duct: the blade's channel continued up- and downstream, where hub and shroud straighten; and its volume."""
 
 from dataclasses import dataclass
+from itertools import pairwise
 from math import comb, factorial
 from typing import NamedTuple
 
 import numpy as np
+from numpy.polynomial import legendre
 
-from bladewright.blade.mapping import Cascade, Conformal, Mapping
-from bladewright.blade.streamlines import Channelled, StreamLines, stream_lines
+from bladewright.blade.flow_path.stream_surface_map import Cascade, Conformal, StreamSurfaceMap
+from bladewright.blade.flow_path.streamlines import MeridionalChannel, StreamLines, stream_lines
 from bladewright.numerics.elementary import Array, cross2
+from bladewright.numerics.quadrature import gauss, panels
 from bladewright.nurbs.basis import Reals, basis, greville
 from bladewright.nurbs.curve import Curve
 
-WALL = 7
+WALL_DEGREE = 7
 """degree of a wall's meridian"""
 BEND = 0.08
 """extent, in mean meridional lengths, over which a continued stream line loses its curvature"""
@@ -26,7 +29,7 @@ class Duct:
     Its curvature, and what distinguishes its direction from the walls', fade to zero over BEND as 1 - 3 t^2 + 2 t^3.
     """
 
-    channel: Channelled
+    channel: MeridionalChannel
     start: float
     """u, at most 0, down to which stream lines keep to the channel's own polynomials"""
     end: float
@@ -75,7 +78,7 @@ class Duct:
                 total[..., i, : found.shape[-2], :] = found
         return total
 
-    def limit(self, name: str) -> "Limit | None":
+    def limit(self, name: str) -> "DuctLimit | None":
         """Where `upstream` or `downstream`, in steps of a fortieth, the duct folds over or meets the axis."""
         v = np.linspace(0.0, 1.0, 33)
         u = np.linspace(*((self.edges[0], self.low) if name == "upstream" else (self.edges[1], self.high)), 41)
@@ -91,7 +94,7 @@ class Duct:
         if not np.any(folded | sunk):
             return None
         first = int(np.argmax(folded | sunk))
-        return Limit(u=float(u[first]), sunk=bool(sunk[first]), last=float(u[max(first - 1, 0)]))
+        return DuctLimit(u=float(u[first]), sunk=bool(sunk[first]), last=float(u[max(first - 1, 0)]))
 
     def lines(self, v: Reals) -> StreamLines:
         """Stream lines at v (m,) from inlet to outlet, with the conformal length m' - m in a cascade - as abscissa."""
@@ -110,23 +113,23 @@ class Duct:
         for spans in (24, 48, 96, 192, 384):
             inner = np.linspace(0.0, 1.0, spans + 1)[1:-1]
             inner = inner[np.all(np.abs(inner[:, None] - joints) > 0.1 / spans, axis=1)]  # real: knots
-            inner = np.sort(np.concatenate([inner, np.repeat(joints, WALL - 2)]))
-            knots = np.concatenate([np.zeros(WALL + 1), inner, np.ones(WALL + 1)])
-            sites = greville(knots, WALL)
+            inner = np.sort(np.concatenate([inner, np.repeat(joints, WALL_DEGREE - 2)]))
+            knots = np.concatenate([np.zeros(WALL_DEGREE + 1), inner, np.ones(WALL_DEGREE + 1)])
+            sites = greville(knots, WALL_DEGREE)
             both = np.concatenate([sites, (sites[1:] + sites[:-1]) / 2.0])
             points = along.position(along.u_at((first + (last - first) * both)[None, :]))[0]
-            net = np.linalg.solve(basis(knots, WALL, sites), points[: len(sites)])
-            miss = np.real(basis(knots, WALL, both[len(sites) :]) @ net - points[len(sites) :])
+            net = np.linalg.solve(basis(knots, WALL_DEGREE, sites), points[: len(sites)])
+            miss = np.real(basis(knots, WALL_DEGREE, both[len(sites) :]) @ net - points[len(sites) :])
             if np.max(np.sum(miss**2, axis=-1)) < (1e-12 * float(np.real(last - first))) ** 2:
                 break
-        return Curve(control_points=net, knots=knots, degree=WALL)
+        return Curve(control_points=net, knots=knots, degree=WALL_DEGREE)
 
-    def _lines(self, mapping: Mapping, v: Reals) -> StreamLines:
+    def _lines(self, mapping: StreamSurfaceMap, v: Reals) -> StreamLines:
         """Stream lines at v (m,) over inlet, outlet, 0 and 1."""
         return stream_lines(self, mapping, v, max(-self.low, 0.0), max(self.high - 1.0, 0.0))
 
 
-class Limit(NamedTuple):
+class DuctLimit(NamedTuple):
     """Where a duct ends."""
 
     u: float
@@ -221,3 +224,42 @@ def _tangent(powers: Array, bend: float) -> Array:
     at = bend ** np.arange(powers.shape[-2])
     value, slope = at @ powers, at[:-1] @ _derived(powers)
     return np.stack([value - bend * slope, slope], axis=-2)
+
+
+OUTLINE_POINTS = 16
+"""Gauss points on a polynomial piece of an outline"""
+
+
+def annulus_volume(duct: Duct, span_joints: Reals) -> Array:
+    """Volume () [m^3] of the ring between hub, shroud, inlet and outlet; of a strip one metre wide in a cascade.
+
+    Pappus and Green: the integral of pi r^2 dx around the meridional outline. `span_joints` are the places along v
+    where inlet and outlet lose derivatives.
+    """
+    ends = np.array([duct.low, duct.high])
+    u, along = panels(np.unique([*ends, *duct.edges, *duct.joints_within()]), OUTLINE_POINTS)
+    walls = duct.lines(np.array([0.0, 1.0]))
+    point, slope = walls.position(u), walls.position(u, 1)
+    flux = np.sum(along * _height(duct, point[..., 1]) * slope[..., 0], axis=-1)
+    total: Array = flux[..., 0] - flux[..., 1]
+    pieces = np.unique([0.0, *span_joints, 1.0])
+    for low, high in pairwise(pieces):
+        lines = duct.lines(np.concatenate([[0.0], low + (high - low) * _NODES, [1.0]])).position(ends)[..., 1:-1, :, :]
+        passed = np.sum(_WEIGHTS[:, None] * _height(duct, lines[..., 1]) * (_DERIVATIVE @ lines[..., 0]), axis=-2)
+        total = total + passed[..., 1] - passed[..., 0]
+    return -total
+
+
+def _by_values(nodes: Reals) -> Reals:
+    """The matrix that takes a polynomial's values at nodes to its derivative's there."""
+    powers = legendre.legvander(2.0 * nodes - 1.0, len(nodes) - 1)
+    slopes = [2.0 * legendre.legval(2.0 * nodes - 1.0, legendre.legder(row)) for row in np.eye(len(nodes))]
+    return np.asarray(np.stack(slopes, axis=-1) @ np.linalg.inv(powers))
+
+
+def _height(duct: Duct, radius: Array) -> Array:
+    return np.pi * radius**2 if duct.revolved else radius
+
+
+_NODES, _WEIGHTS = gauss(OUTLINE_POINTS)
+_DERIVATIVE = _by_values(_NODES)

@@ -4,12 +4,11 @@ from dataclasses import replace
 
 import numpy as np
 
-from bladewright.blade.course import Course
-from bladewright.blade.meant import Meant
-from bladewright.domain.camber import CamberLines, camber_lines
-from bladewright.domain.crossing import Crossing
+from bladewright.blade.exact.exact_blade import ExactBlade
+from bladewright.blade.exact.meridional_extent import MeridionalExtent
+from bladewright.domain.camber_lines import CamberLines, camber_lines
 from bladewright.domain.duct import Duct
-from bladewright.domain.wall import lean, opening
+from bladewright.domain.walls import CrossLines, departure, edge_skew
 from bladewright.errors import DesignError
 from bladewright.numerics.elementary import Array
 from bladewright.nurbs.basis import Reals
@@ -28,7 +27,7 @@ NOSE = 0.05
 
 
 def extents(
-    full: Meant, half_pitch: Array, crossing: Crossing, upstream: float | None, downstream: float | None
+    full: ExactBlade, half_pitch: Array, crossing: CrossLines, upstream: float | None, downstream: float | None
 ) -> tuple[float, float]:
     """Extents up- and downstream in mean meridional lengths: those given where they suffice, else usual or needed ones.
 
@@ -37,7 +36,7 @@ def extents(
     """
     found, ends = [], end_cambers(full)
     for past, (name, given) in enumerate((("upstream", upstream), ("downstream", downstream))):
-        needed = _needed(full.course, ends, half_pitch, crossing, past)
+        needed = _needed(full.meridional_extent, ends, half_pitch, crossing, past)
         if given is None:
             found.append(_usual(full, past, needed))
             continue
@@ -51,9 +50,9 @@ def extents(
     return found[0], found[1]
 
 
-def shortest_duct(full: Meant) -> Duct:
+def shortest_duct(full: ExactBlade) -> Duct:
     """The duct that reaches just past the noses."""
-    course = full.course
+    course = full.meridional_extent
     return Duct(
         channel=course.channel,
         start=course.start,
@@ -71,7 +70,7 @@ def openings(ends: CamberLines, half_pitch: float) -> tuple[float, float]:
     """The share of the width at which cross-lines leave the blade, on hub and shroud."""
     edges = [_at_edge(ends, past) for past in (0, 1)]
     hub, shroud = edges[1][:, 0] - edges[0][:, 0]
-    return opening(half_pitch, hub), opening(half_pitch, shroud)
+    return departure(half_pitch, hub), departure(half_pitch, shroud)
 
 
 def _at_edge(camber: CamberLines, past: int) -> Reals:
@@ -80,9 +79,9 @@ def _at_edge(camber: CamberLines, past: int) -> Reals:
     return np.asarray(points.reshape(-1, *points.shape[-2:])[0])
 
 
-def _usual(full: Meant, past: int, needed: float) -> float:
+def _usual(full: ExactBlade, past: int, needed: float) -> float:
     """The usual extent; more where it is needed, less where the duct ends before that."""
-    course = full.course
+    course = full.meridional_extent
     wanted = max(USUAL, STEP * float(np.ceil(needed / STEP)))
     duct, end = shortest_duct(full), course.place(past, wanted)
     longer = replace(duct, high=end) if past else replace(duct, low=end)
@@ -90,21 +89,23 @@ def _usual(full: Meant, past: int, needed: float) -> float:
     return wanted if limit is None else max(needed, 0.8 * course.extent(past, limit.last))
 
 
-def _needed(course: Course, ends: CamberLines, half_pitch: Array, crossing: Crossing, past: int) -> float:
+def _needed(
+    meridional_extent: MeridionalExtent, ends: CamberLines, half_pitch: Array, crossing: CrossLines, past: int
+) -> float:
     """The extension must outlast the bulge of the cross-lines, and reach past the nose."""
     sign = 1.0 if past else -1.0
-    nose = course.noses[past] + sign * NOSE * course.unit
+    nose = meridional_extent.noses[past] + sign * NOSE * meridional_extent.unit
     places = _bulges(ends, half_pitch, crossing, past)
-    return course.extent(past, float(np.max([nose, *places]) if past else np.min([nose, *places])))
+    return meridional_extent.extent(past, float(np.max([nose, *places]) if past else np.min([nose, *places])))
 
 
-def _bulges(camber: CamberLines, half_pitch: Array, crossing: Crossing, past: int) -> Reals:
+def _bulges(camber: CamberLines, half_pitch: Array, crossing: CrossLines, past: int) -> Reals:
     """u (2,) on hub and shroud up to which a duct must reach past cross-lines from an edge."""
     direction = np.real(camber.direction(past)).reshape(-1, 2, 2)[0]
-    u = np.broadcast_to(np.real(camber.stations.on_course(np.array([float(past)]))), (2, 1))
+    u = np.broadcast_to(np.real(camber.stations.channel_parameter(np.array([float(past)]))), (2, 1))
     density = np.real(camber.lines.densities(u)[0])
     half = float(np.real(half_pitch).flat[0])
-    size = np.max([lean(direction[:, 1], half, each, past, crossing.lean) for each in (1, -1)], axis=0)
+    size = np.max([edge_skew(direction[:, 1], half, each, past, crossing.lean) for each in (1, -1)], axis=0)
     if camber.stations.kinds[past] != "round":
         size = 0.0 * size
     bulge = crossing.bulge * np.array(openings(camber, half)) * size * direction[:, 0]
@@ -112,6 +113,6 @@ def _bulges(camber: CamberLines, half_pitch: Array, crossing: Crossing, past: in
     return np.asarray(u[:, 0] + (reach if past else -reach))
 
 
-def end_cambers(full: Meant) -> CamberLines:
+def end_cambers(full: ExactBlade) -> CamberLines:
     """Camber lines on hub and shroud, barely continued."""
     return camber_lines(full.stations(np.array([0.0, 1.0])), shortest_duct(full))

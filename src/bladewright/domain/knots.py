@@ -5,9 +5,9 @@ from functools import cached_property
 
 import numpy as np
 
-from bladewright.blade.knots import DEGREE, clamped
-from bladewright.domain.abreast import Abreast
-from bladewright.domain.crossing import Crossing
+from bladewright.blade.native.knots import DEGREE, clamped
+from bladewright.domain.camber_correspondence import CamberCorrespondence
+from bladewright.domain.walls import CrossLines
 from bladewright.numerics.elementary import frozen
 from bladewright.nurbs.basis import Reals, greville
 
@@ -51,9 +51,9 @@ class PassageKnots:
     """u from which both sides are that face themselves, where they are"""
     tail: Reals
     """the blade's own knots along u from there on"""
-    crossing: Crossing
+    crossing: CrossLines
     """how cross-lines leave the edges and turn back"""
-    abreast: Abreast
+    correspondence: CamberCorrespondence
     """how periodic boundaries follow the blade's sides"""
     blade: Reals
     """the blade's own along u, up to a back face of its sides, and what the walls need besides"""

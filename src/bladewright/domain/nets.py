@@ -5,12 +5,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bladewright.blade.knots import DEGREE
-from bladewright.domain.camber import CamberLines
+from bladewright.blade.native.knots import DEGREE
+from bladewright.domain.camber_lines import CamberLines
 from bladewright.domain.knots import PIECES, PassageKnots
-from bladewright.domain.strip import STRIPS, WallStrip
-from bladewright.domain.wall import WallHalf, widening
-from bladewright.numerics.elementary import Array, joined
+from bladewright.domain.walls import STRIPS, WallHalf, WallStrip, width_share
+from bladewright.numerics.elementary import Array, concatenated
 from bladewright.nurbs.basis import Reals, basis, greville
 
 
@@ -93,7 +92,7 @@ def _beside(wall: WallHalf, blade: BladeNets, knots: PassageKnots) -> Array:
         for piece in ("inlet", "outlet")
     )
     side = (blade.upper if wall.sign > 0 else blade.lower)[..., : _poles(knots.blade), wall.row, :]
-    return joined([ahead[..., :-1, :], side, behind[..., 1:, :]], -2)
+    return concatenated([ahead[..., :-1, :], side, behind[..., 1:, :]], -2)
 
 
 def _line_in_space(camber: CamberLines, wall: WallHalf, piece: str, t: Reals) -> Array:
@@ -117,7 +116,7 @@ def _strip(strip: WallStrip, blade: BladeNets, lines: Sequence[Array], knots: Pa
     face = blade.edges[strip.past]
     if face is None:
         lower, upper = (side[..., _poles(knots.blade) - 1 :, strip.row, :] for side in (blade.lower, blade.upper))
-        own = joined([lower, upper[..., -2::-1, :]], -2)
+        own = concatenated([lower, upper[..., -2::-1, :]], -2)
     else:
         own = face[..., ::-1, strip.row, :]
     far = net[..., -1 if strip.past else 0, :, :]
@@ -133,7 +132,7 @@ def _opening(
     plane = camber.points(piece, np.array([t]))
     position = camber.lines.position(camber.lines.u_at(plane[..., 0]))
     v, across = knots.sites("span")[:, None], knots.sites("across")
-    share = (1.0 - v) * widening(knots.opening[0], across) + v * widening(knots.opening[1], across)
+    share = (1.0 - v) * width_share(knots.opening[0], across) + v * width_share(knots.opening[1], across)
     half = walls["hub_upper"].half_pitch[..., None, None]
     edges = {sign: camber.points(piece, np.array([t]), sign)[..., 1] for sign in (-1, 1)}
 
@@ -151,9 +150,9 @@ def _opening(
         strip = part(edges[-1] + (edges[1] - edges[-1]) * greville(width, DEGREE), width)
         parts[1:1] = [strip[..., 1:, :]]
         between = [STRIPS[end]]
-    net = joined(parts, -2)
+    net = concatenated(parts, -2)
     hub, shroud = (
-        joined(
+        concatenated(
             [
                 nets[f"{name}_lower"][..., end, ::-1, :],
                 *(nets[f"{name}_{strip}"][..., end, 1:, :] for strip in between),
@@ -170,7 +169,7 @@ def _opening(
 def _edged(net: Array, first: Array, last: Array, axis: int) -> Array:
     """The net with other control points at both ends of an axis."""
     inner = np.take(net, np.arange(1, net.shape[axis] - 1), axis=axis)
-    return joined([np.expand_dims(first, axis), inner, np.expand_dims(last, axis)], axis)
+    return concatenated([np.expand_dims(first, axis), inner, np.expand_dims(last, axis)], axis)
 
 
 def _shifted(camber: CamberLines, net: Array, by: Array) -> Array:

@@ -8,18 +8,16 @@ from typing import cast
 
 import numpy as np
 
-from bladewright.blade.blade import Blade, Faces
-from bladewright.domain.annulus import annulus_volume
-from bladewright.domain.camber import CamberLines
-from bladewright.domain.duct import Duct
+from bladewright.blade.native.blade import Blade, Faces
+from bladewright.domain.camber_lines import CamberLines
+from bladewright.domain.duct import Duct, annulus_volume
 from bladewright.domain.knots import BLADE_AT, PIECES, PassageKnots
-from bladewright.domain.pieces import pieces_of
-from bladewright.domain.sector import Sector, sector
-from bladewright.domain.strip import WallStrip
-from bladewright.domain.wall import WallHalf
+from bladewright.domain.periodic_sector import PeriodicSector, periodic_sector
+from bladewright.domain.walls import STRIPS, WallHalf, WallStrip
 from bladewright.numerics.elementary import Array, dot
 from bladewright.nurbs.basis import Reals, breaks
-from bladewright.nurbs.flux import MassProperties, mass_properties
+from bladewright.nurbs.domain import reparametrised, split
+from bladewright.nurbs.mass_properties import MassProperties, mass_properties
 from bladewright.nurbs.surface import Surface
 from bladewright.nurbs.trimmed import TrimmedSurface
 
@@ -135,11 +133,11 @@ class Passage:
         return float(np.real(share / self.ring - 1.0))
 
     @cached_property
-    def sector(self) -> Sector:
+    def sector(self) -> PeriodicSector:
         """Passage and blade together, between exact surfaces of revolution."""
         faces = {name: cast(Surface, face) for name, face in self.whole.items() if name != "tip"}
         cuts = self.knots.cuts(0), self.knots.cuts(1)
-        return sector(f"{self.blade.name}-sector", faces, self.duct, self.blade.chord, cuts)
+        return periodic_sector(f"{self.blade.name}-sector", faces, self.duct, self.blade.chord, cuts)
 
     @cached_property
     def folds(self) -> dict[str, tuple[float, float, float]]:
@@ -196,3 +194,17 @@ def _between(knots: Reals, shares: tuple[float, ...]) -> Reals:
     spans = breaks(knots)
     places = np.concatenate([spans[:-1] + share * np.diff(spans) for share in shares])
     return np.sort(np.append(places, spans[-1]) if 0.0 in shares else places)
+
+
+def pieces_of(name: str, face: Surface, knots: PassageKnots) -> dict[str, Surface]:
+    """The smooth pieces of a face, each over [0, 1], by names that begin with the face's."""
+    if name.startswith("blade") or name.endswith(STRIPS):
+        return {name: face}
+    cuts: tuple[float, ...] = BLADE_AT
+    ends: tuple[str, ...] = PIECES
+    if name in {"inlet", "outlet"}:
+        past = int(name == "outlet")
+        cuts = knots.cuts(past)
+        ends = ("lower", STRIPS[past], "upper") if knots.parted[past] else ("lower", "upper")
+    parts = split(face, np.array(cuts), "u")
+    return {f"{name}_{end}": reparametrised(part) for end, part in zip(ends, parts, strict=True)}

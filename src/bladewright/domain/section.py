@@ -14,7 +14,7 @@ from bladewright.numerics.quadrature import panels
 from bladewright.nurbs.basis import breaks
 from bladewright.nurbs.compatible import joined
 from bladewright.nurbs.curve import Curve
-from bladewright.nurbs.revolve import segment
+from bladewright.nurbs.revolution import segment
 from bladewright.nurbs.transform import translated
 from bladewright.section.checks import between, number
 from bladewright.section.section import Section

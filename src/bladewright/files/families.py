@@ -1,13 +1,13 @@
 """The families of designs that a file can hold: one entry each."""
 
-from bladewright.blade.families import (
+from bladewright.blade.design.families import (
     CamberAngleBlade,
     CurvatureMeanlineBlade,
     ProfileBlade,
     SuctionPressureBlade,
     WedgeDiffuserBlade,
 )
-from bladewright.blade.unified import UnifiedBlade
+from bladewright.blade.design.unified import UnifiedBlade
 from bladewright.designs import Design
 from bladewright.errors import FileError
 from bladewright.section.camber_angle import CamberAngleSection

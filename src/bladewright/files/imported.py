@@ -1,17 +1,18 @@
-"""A design from another program's file, with what was changed and points to measure it with."""
+"""A design imported from another program's file, with what was changed and points to measure it with."""
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any, Generic, TypeVar
 
 import numpy as np
 
 from bladewright.designs import Design
+from bladewright.errors import DesignError
 from bladewright.nurbs.basis import Reals
 
 AnyDesign = TypeVar("AnyDesign", bound=Design)
 """the family that a program's designs belong to"""
-NEAR = 1e-5
+DISTANCE_TOLERANCE = 1e-5
 """of the blade's extent: how much nearer a place may be that is passed over while distances are measured"""
 
 
@@ -42,5 +43,29 @@ class Imported(Generic[AnyDesign]):
             if points.shape[1] == 2:
                 found.append(closest_on_curve(built.curves[name], points).distances)
             else:
-                found.append(closest_on_surface(built.surfaces[name], points, tolerance=NEAR).distances)
+                found.append(closest_on_surface(built.surfaces[name], points, tolerance=DISTANCE_TOLERANCE).distances)
         return np.concatenate(found)
+
+
+def most_blades_apart(most: int, check: Callable[[int], None]) -> int:
+    """The largest number of blades, at most `most`, at which `check` does not refuse the design's blade_count.
+
+    Raises DesignError where it refuses something else.
+    """
+
+    def apart(count: int) -> bool:
+        try:
+            check(count)
+        except DesignError as error:
+            if "blade_count" in str(error):
+                return False
+            raise
+        return True
+
+    if apart(most):
+        return most
+    low, high = 1, most
+    while high - low > 1:
+        middle = (low + high) // 2
+        low, high = (middle, high) if apart(middle) else (low, middle)
+    return low

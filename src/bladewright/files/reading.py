@@ -13,8 +13,8 @@ from pydantic import TypeAdapter, ValidationError
 from bladewright.designs import Design, unknown
 from bladewright.errors import DesignError, FileError
 from bladewright.files.families import FAMILIES
-from bladewright.files.refusals import paragraph
 from bladewright.files.text import read_text
+from bladewright.files.validation_messages import validation_message
 
 
 def read_design(path: str | PathLike[str]) -> Design:
@@ -45,7 +45,7 @@ def design_from(document: Mapping[str, Any], where: str) -> Design:
         kind = _class_of(document.pop("family", None), document)
         return adapter(kind).validate_json(json.dumps(document, default=str), strict=True)
     except ValidationError as error:
-        raise DesignError(f"{where}: {paragraph(error, document, kind)}") from error
+        raise DesignError(f"{where}: {validation_message(error, document, kind)}") from error
     except DesignError as error:
         raise DesignError(f"{where}: {error}") from error
     except RecursionError:

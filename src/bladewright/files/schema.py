@@ -10,7 +10,7 @@ from pydantic import TypeAdapter
 from bladewright.designs import Part
 from bladewright.files.families import FAMILIES
 from bladewright.files.reading import adapter
-from bladewright.section.alternatives import tags
+from bladewright.section.tagged_unions import tags
 
 _DIALECT = "https://json-schema.org/draft/2020-12/schema"
 

@@ -1,20 +1,113 @@
-"""Points of a design for the flow solver SU2, and the sensitivities to them that it gives back.
+"""Surface points for the flow solver SU2, and the sensitivities to them that it returns as CSV or VTU."""
 
-`DV_KIND= SURFACE_FILE` moves a mesh to the points of `DV_FILENAME`: a line `number x y z` for each, in metres, without
-a header. SU2_DOT_AD writes `SURFACE_SENS_FILENAME` as a table with names above its columns, or for ParaView as VTU.
-"""
-
+import csv
+from collections.abc import Sequence
 from contextlib import ExitStack
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from bladewright.appearing import appearing
-from bladewright.derivatives.places import SurfacePoints
+from bladewright.atomic_write import atomic_write
+from bladewright.derivatives.surface_points import SurfacePoints
+from bladewright.designs import unknown
 from bladewright.errors import FileError
-from bladewright.files.tables import columns, numbers, read_table
 from bladewright.nurbs.basis import Reals
+
+Rows = list[list[str]]
+
+
+def read_csv(path: Path) -> tuple[list[str], Rows]:
+    """The names of the columns, and the rows below; raises FileError where there is none, or rows differ in length."""
+    try:
+        with path.open(newline="", encoding="utf-8-sig") as stream:
+            lines = csv.reader(stream, skipinitialspace=True)
+            rows = [row for row in lines if row and not (len(row) == 1 and not row[0].strip())]
+    except FileNotFoundError:
+        raise FileError(f"there is no file '{path}'") from None
+    except UnicodeDecodeError:
+        raise FileError(f"'{path}' is no text: a table with commas between its numbers is needed") from None
+    except (OSError, ValueError, csv.Error) as error:
+        raise FileError(f"'{path}' cannot be read: {getattr(error, 'strerror', None) or error}") from error
+    if len(rows) < 2:
+        raise FileError(f"'{path}' holds no rows: names of columns, and a row for each point below, are needed")
+    header = [name.strip().strip('"') for name in rows[0]]
+    for place, row in enumerate(rows[1:], 2):
+        if len(row) != len(header):
+            raise FileError(
+                f"'{path}' has {len(row)} entries in row {place}, and {len(header)} columns: is it cut off?"
+            )
+    return header, rows[1:]
+
+
+def column_indices(path: Path, header: Sequence[str], wanted: Sequence[str]) -> list[int]:
+    """Places of wanted columns, whatever their case; raises FileError with the nearest name where one is not there."""
+    known = {name.lower(): place for place, name in enumerate(header)}
+    for name in wanted:
+        if name.lower() not in known:
+            raise FileError(unknown(f"'{path}': the column '{name}'", name, list(header)))
+    return [known[name.lower()] for name in wanted]
+
+
+def column_values(path: Path, rows: Rows, column: int) -> Reals:
+    """A column (n,) as numbers; raises FileError with the row where one is none."""
+    try:
+        return np.array([float(row[column]) for row in rows])
+    except ValueError:
+        place = next(i for i, row in enumerate(rows) if not _is_number(row[column]))
+        raise FileError(f"'{path}' has '{rows[place][column]}' in row {place + 2}: a number is needed") from None
+
+
+def _is_number(text: str) -> bool:
+    try:
+        float(text)
+    except ValueError:
+        return False
+    return True
+
+
+NAME = "Sensitivity"
+
+
+def read_vtu(path: Path, dimension: int) -> tuple[Reals, Reals]:
+    """Points and sensitivities (n, dimension) of an unstructured grid.
+
+    The sensitivity is the vector `Sensitivity`, or the numbers `Sensitivity_x`, `Sensitivity_y`... at the points.
+    Raises FileError where VTK cannot read the file or there is no such field.
+    """
+    try:
+        from vtkmodules.util.numpy_support import vtk_to_numpy
+        from vtkmodules.vtkCommonCore import vtkObject
+        from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridReader
+    except ImportError:
+        raise FileError(f"'{path}' needs VTK to be read: install the package vtk, or give the CSV file") from None
+    if not path.is_file():
+        raise FileError(f"there is no file '{path}'")
+    reader = vtkXMLUnstructuredGridReader()
+    reader.SetFileName(str(path))
+    shown = vtkObject.GetGlobalWarningDisplay()
+    vtkObject.GlobalWarningDisplayOff()
+    try:
+        reader.Update()
+    finally:
+        vtkObject.SetGlobalWarningDisplay(shown)
+    grid: Any = reader.GetOutput()
+    if reader.GetErrorCode() or grid.GetNumberOfPoints() == 0:
+        raise FileError(f"'{path}' is no VTU file with points in it: has the solver finished writing?")
+    data = grid.GetPointData()
+    fields = {data.GetArrayName(i): data.GetArray(i) for i in range(data.GetNumberOfArrays())}
+    parts = [f"{NAME}_{axis}" for axis in "xyz"[:dimension]]
+    if NAME in fields and fields[NAME].GetNumberOfComponents() >= dimension:
+        rates = np.asarray(vtk_to_numpy(fields[NAME]), dtype=np.float64)[:, :dimension]
+    elif all(part in fields for part in parts):
+        rates = np.stack([np.asarray(vtk_to_numpy(fields[part]), dtype=np.float64) for part in parts], axis=-1)
+    else:
+        known = ", ".join(sorted(fields)) or "none"
+        raise FileError(f"'{path}' has no field {NAME} at its points: its fields are {known}")
+    points = np.asarray(vtk_to_numpy(grid.GetPoints().GetData()), dtype=np.float64)
+    return points[:, :dimension], rates
+
 
 NUMBER = ("PointID", "Point", "GlobalIndex", "Global_Index")
 """what versions of SU2 call the column of the points' numbers"""
@@ -44,7 +137,7 @@ def write_surface_points(points: SurfacePoints, path: str | Path) -> Path:
     try:
         with ExitStack() as stack:
             for file, lines in ((path, moved), (beside, places)):
-                unfinished = stack.enter_context(appearing(file))
+                unfinished = stack.enter_context(atomic_write(file))
                 Path(unfinished).write_text("\n".join([*lines, ""]), encoding="utf-8")
     except FileError:
         if fresh:
@@ -64,17 +157,17 @@ def read_surface_points(path: str | Path) -> SurfacePoints:
     Raises FileError where the file beside is not there, or is not what was written.
     """
     beside = places_beside(Path(path))
-    header, rows = read_table(beside)
+    header, rows = read_csv(beside)
     axes = AXES[: len(header) - 4]
-    number, name, u, v, *places = columns(beside, header, ("PointID", "surface", "u", "v", *axes))
-    ids = _whole(beside, numbers(beside, rows, number))
+    number, name, u, v, *places = column_indices(beside, header, ("PointID", "surface", "u", "v", *axes))
+    ids = _whole(beside, column_values(beside, rows, number))
     _check_once(beside, ids)
     return SurfacePoints(
         ids=ids,
         names=tuple(row[name].strip() for row in rows),
-        u=numbers(beside, rows, u),
-        v=numbers(beside, rows, v),
-        points=np.stack([numbers(beside, rows, place) for place in places], axis=-1),
+        u=column_values(beside, rows, u),
+        v=column_values(beside, rows, v),
+        points=np.stack([column_values(beside, rows, place) for place in places], axis=-1),
     )
 
 
@@ -87,8 +180,6 @@ def read_surface_sensitivity(path: str | Path, points: SurfacePoints) -> Reals:
     """
     path = Path(path)
     if path.suffix.lower() == ".vtu":
-        from bladewright.files.vtu import read_vtu
-
         found, rates = read_vtu(path, points.points.shape[1])
         order = _matched_by_place(path, found, points)
     else:
@@ -113,7 +204,7 @@ def check_of(path: str | Path, points: SurfacePoints, now: SurfacePoints) -> Non
 
 def _from_table(path: Path, dimension: int) -> tuple[NDArray[np.int64], Reals, Reals]:
     """Numbers (n,), points and sensitivities (n, d) of a table."""
-    header, rows = read_table(path)
+    header, rows = read_csv(path)
     known = {name.lower(): place for place, name in enumerate(header)}
     number = next((known[name.lower()] for name in NUMBER if name.lower() in known), None)
     if number is None:
@@ -124,10 +215,10 @@ def _from_table(path: Path, dimension: int) -> tuple[NDArray[np.int64], Reals, R
             "discrete adjoint are needed; run SU2_DOT_AD, and let SURFACE_CSV be among OUTPUT_FILES"
         )
     axes = AXES[:dimension]
-    places = columns(path, header, tuple(axes))
-    rates = columns(path, header, tuple(f"Sensitivity_{axis}" for axis in axes))
-    found = [np.stack([numbers(path, rows, each) for each in which], axis=-1) for which in (places, rates)]
-    return _whole(path, numbers(path, rows, number)), found[0], found[1]
+    places = column_indices(path, header, tuple(axes))
+    rates = column_indices(path, header, tuple(f"Sensitivity_{axis}" for axis in axes))
+    found = [np.stack([column_values(path, rows, each) for each in which], axis=-1) for which in (places, rates)]
+    return _whole(path, column_values(path, rows, number)), found[0], found[1]
 
 
 def _matched_by_number(path: Path, ids: NDArray[np.int64], points: SurfacePoints) -> NDArray[np.intp]:

@@ -3,7 +3,7 @@
 import os
 from pathlib import Path
 
-from bladewright.appearing import appearing
+from bladewright.atomic_write import atomic_write
 from bladewright.errors import FileError
 
 LARGEST = 1_000_000
@@ -45,7 +45,7 @@ def write_text(path: Path, text: str) -> None:
 
     Raises FileError where it cannot be written, and leaves nothing behind.
     """
-    with appearing(path) as unfinished:
+    with atomic_write(path) as unfinished:
         Path(unfinished).write_bytes(text.encode())
 
 

@@ -1,4 +1,4 @@
-"""From a cloud of points to a design."""
+"""From a cloud of points to a design: `fit` and what it accepts."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import replace
@@ -7,36 +7,48 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bladewright.blade.extrema import extrema_of
-from bladewright.blade.unified import UnifiedBlade
+from bladewright.blade.design.unified import UnifiedBlade
+from bladewright.blade.native.extrema import extrema_of
 from bladewright.derivatives.patterns import Patterns
 from bladewright.designs import Design
 from bladewright.errors import DesignError, FitError
-from bladewright.fitting.aligning import aligned
+from bladewright.fitting.assessment.acceptance import failures_of, notes_of
+from bladewright.fitting.assessment.estimates import parameter_estimates
+from bladewright.fitting.assessment.measurement import measured
+from bladewright.fitting.assessment.result import Fit, Motion
 from bladewright.fitting.clouds.cloud import checked_cloud
+from bladewright.fitting.design_header import DesignHeader, Unit
 from bladewright.fitting.families.blades import matched_blade
-from bladewright.fitting.families.kinds import KINDS, Kind, kind_of
+from bladewright.fitting.families.kinds import FAMILIES, FitFamily, family_of
 from bladewright.fitting.families.sections import matched_section
-from bladewright.fitting.frame import Frame, Unit
-from bladewright.fitting.freedom import freedom_of
-from bladewright.fitting.judgement.estimates import certainty_of
-from bladewright.fitting.judgement.judging import judged
-from bladewright.fitting.judgement.result import Fit
-from bladewright.fitting.judgement.verdict import failures_of, notes_of
-from bladewright.fitting.matching.search import Found, Task
-from bladewright.fitting.structures.aim import Aim
-from bladewright.fitting.unified import matched_unified
+from bladewright.fitting.families.unified import matched_unified
+from bladewright.fitting.free_parameters import free_parameters_of
+from bladewright.fitting.matching.search import Match, Task
+from bladewright.fitting.model_selection.stopping import MatchTarget
 from bladewright.nurbs.basis import Reals
 from bladewright.section.checks import choice
 from bladewright.section.unified import UnifiedSection
 
-FAMILIES = ("unified", "unified-section")
-CASCADE = (
+
+def _aligned(points: Reals, start: Design | None, arrangement: Any) -> tuple[Motion, Reals, Any, tuple[str, ...]]:
+    """The motion, the points (n, d) after it, the arrangement where it was found, and what is to be said of them."""
+    from bladewright.fitting.registration.axes import found_axes
+    from bladewright.fitting.registration.registration import registration
+
+    if start is not None:
+        registered = registration(points, start)  # type: ignore[arg-type]
+        return registered.motion, registered.motion(points), arrangement, registered.notes
+    found = found_axes(points, arrangement=arrangement)
+    return found.motion, found.motion(points), found.arrangement, found.notes
+
+
+UNIFIED_NAMES = ("unified", "unified-section")
+CASCADE_NOTE = (
     "nothing said how the blade stands, and it is taken for one of a linear cascade, with its span along z: one that "
     "stands around x needs the arrangement annular"
 )
-WHOLE = "is it one whole blade, with both sides and both edges? If so, give a start design or bounds"
-Told = Callable[[str], None]
+WHOLE_BLADE_HINT = "is it one whole blade, with both sides and both edges? If so, give a start design or bounds"
+Progress = Callable[[str], None]
 
 
 def fit(
@@ -57,7 +69,7 @@ def fit(
     pitch: float | None = None,
     name: str = "blade",
     length_unit: Unit = "mm",
-    progress: Told | None = None,
+    progress: Progress | None = None,
 ) -> Fit:
     """The design of a family that matches a cloud of points (n, 2) or (n, 3) [m], and how well it does.
 
@@ -76,16 +88,16 @@ def fit(
     The distances are true ones; those of points off the rest are not weighed (`outliers`). Raises FitError where the
     cloud or the call is wrong, and where no design is found. Reference: Agromayor et al. 2021, section 6.
     """
-    tell: Told = progress or (lambda _: None)
+    tell: Progress = progress or (lambda _: None)
     points, notes = checked_cloud(cloud)
-    kind = family_of(family, points.shape[1], start if start is not None else like)
-    _check(points, kind, start, like, tolerance, parameters)
+    kind = named_family(family, points.shape[1], start if start is not None else like)
+    _check_call(points, kind, start, like, tolerance, parameters)
     motion = None
     if align:
         tell("axes")
-        motion, points, arrangement, more = aligned(points, start, arrangement)
+        motion, points, arrangement, more = _aligned(points, start, arrangement)
         notes = (*notes, *more)
-    freedom = freedom_of(free, fixed, started=start is not None)
+    freedom = free_parameters_of(free, fixed, started=start is not None)
     task = Task(
         points=points,
         weights=_weights(weights, len(points)),
@@ -95,8 +107,10 @@ def fit(
         precision=None if weights is None else _weights(weights, len(points)),
     )
     structured = parameters is None and (start is not None or like is not None)
-    aim = Aim(tolerance=tolerance, parameters=parameters, structured=structured, moved=align)
-    frame = Frame(name=name, length_unit=length_unit, pitch=pitch, arrangement=arrangement, blade_count=blade_count)
+    aim = MatchTarget(tolerance=tolerance, parameters=parameters, structured=structured, moved=align)
+    frame = DesignHeader(
+        name=name, length_unit=length_unit, pitch=pitch, arrangement=arrangement, blade_count=blade_count
+    )
     try:
         if kind is None:
             found, built, reason = matched_unified(task, start, like, frame, aim)
@@ -104,39 +118,39 @@ def fit(
             first = None if start is None else freedom.applied(start)
             matched = matched_section if points.shape[1] == 2 else matched_blade
             found, reason = matched(task, kind, first, like, frame, aim)
-            built = _only(found)
+            built = _built(found)
     except KeyboardInterrupt:
         nearest = task.standby.built()
         if nearest is None:
             raise
         found, built, reason = replace(nearest[0], interrupted=True), nearest[1], ""
     except DesignError as error:
-        raise FitError(f"no design of the family was found near the points ({error}): {WHOLE}") from error
+        raise FitError(f"no design of the family was found near the points ({error}): {WHOLE_BLADE_HINT}") from error
     if start is None and like is None and arrangement is None and getattr(found.design, "arrangement", "") == "linear":
-        notes = (*notes, CASCADE)
+        notes = (*notes, CASCADE_NOTE)
     return _reported(found, built, points, task, aim, (*notes, *([reason] if reason else [])), motion)
 
 
-def family_of(family: str, dimension: int, given: Design | None = None) -> Kind | None:
+def named_family(family: str, dimension: int, given: Design | None = None) -> FitFamily | None:
     """The family that is meant, that of a given design where none is named; None is the unified one.
 
     Raises FitError where it is unknown or of the other dimension.
     """
-    known = [*FAMILIES, *KINDS, *(f"{name}-section" for name in KINDS)]
+    known = [*UNIFIED_NAMES, *FAMILIES, *(f"{name}-section" for name in FAMILIES)]
     try:
         choice("family", family, known)
     except DesignError as error:
         raise FitError(str(error)) from error
     if family.endswith("-section") and dimension == 3:
         raise FitError(f"family is '{family}', and the points have three coordinates: give x and y alone")
-    named = KINDS.get(family.removesuffix("-section"))
-    own = None if given is None else kind_of(given)
+    named = FAMILIES.get(family.removesuffix("-section"))
+    own = None if given is None else family_of(given)
     return own if named is None and own is not None else named
 
 
-def _check(
+def _check_call(
     points: Reals,
-    family: Kind | None,
+    family: FitFamily | None,
     start: Design | None,
     like: Design | None,
     tolerance: float | None,
@@ -162,7 +176,7 @@ def _check(
         raise FitError(f"parameters is {count!r}: a whole number from {least} to 2000 is needed")
 
 
-def _only(found: Found) -> Any:
+def _built(found: Match) -> Any:
     """What a design of a family that is one part builds."""
     try:
         return found.design.build()
@@ -184,11 +198,11 @@ def _weights(weights: ArrayLike | None, count: int) -> Reals:
 
 
 def _reported(
-    found: Found, built: Any, points: Reals, task: Task, aim: Aim, notes: tuple[str, ...], motion: Any
+    found: Match, built: Any, points: Reals, task: Task, aim: MatchTarget, notes: tuple[str, ...], motion: Any
 ) -> Fit:
     task.told("measuring")
-    judgement = judged(points, built, task.precision)
-    certainty = certainty_of(found)
+    judgement = measured(points, built, task.precision)
+    certainty = parameter_estimates(found)
     inliers = judgement.scatter.inliers
     distances, faced = np.abs(judgement.deviations), int(np.count_nonzero(judgement.faced))
     return Fit(

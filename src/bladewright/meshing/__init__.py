@@ -1,5 +1,5 @@
 """Volume meshes of passages: the only room that loads gmsh, in a process of its own."""
 
-from bladewright.meshing.making import check as check
-from bladewright.meshing.making import mesh as mesh
+from bladewright.meshing.passage_mesh import check as check
+from bladewright.meshing.passage_mesh import mesh as mesh
 from bladewright.meshing.report import MeshReport as MeshReport

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.spatial import cKDTree
 
-from bladewright.blade.blade import Faces
+from bladewright.blade.native.blade import Faces
 from bladewright.errors import MeshError
 from bladewright.meshing.names import group_of
 from bladewright.numerics.elementary import length
@@ -79,7 +79,7 @@ def _poles(faces: Faces, group: str) -> Reals:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Match:
+class PeriodicMatch:
     """How the nodes of the periodic boundaries of a mesh are each other's partners."""
 
     nodes: int
@@ -90,17 +90,17 @@ class Match:
     """whether the triangles are partners too"""
 
 
-def match(motion: Periodicity, nodes: Reals, lower: np.ndarray, upper: np.ndarray) -> Match:
+def match_periodic(motion: Periodicity, nodes: Reals, lower: np.ndarray, upper: np.ndarray) -> PeriodicMatch:
     """How triangles (k, 3) of the lower boundary meet those of the upper one; nodes (n, 3) [m] in common."""
     below, above = np.unique(lower), np.unique(upper)
     distances, place = cKDTree(nodes[above]).query(motion.moved(nodes[below]))
     paired = len(below) == len(above) == len(np.unique(place))
     if not paired:
-        return Match(nodes=0, mismatch=float("inf"), triangles=False)
+        return PeriodicMatch(nodes=0, mismatch=float("inf"), triangles=False)
     partner = np.zeros(len(nodes), dtype=np.intp)
     partner[below] = above[place]
     images, others = (np.unique(np.sort(each, axis=1), axis=0) for each in (partner[lower], upper))
-    return Match(
+    return PeriodicMatch(
         nodes=len(below),
         mismatch=float(distances.max()) / motion.pitch,
         triangles=images.shape == others.shape and bool((images == others).all()),

@@ -1,4 +1,4 @@
-"""What a mesh file holds, measured against the native passage."""
+"""A mesh file measured against the native passage: nodes on their surfaces, a closed boundary, quality."""
 
 from collections.abc import Mapping
 from pathlib import Path
@@ -6,17 +6,62 @@ from typing import Any
 
 import numpy as np
 
+from bladewright.blade.native.blade import Faces
 from bladewright.domain.passage import Passage
 from bladewright.errors import MeshError
-from bladewright.meshing.job import Answer
-from bladewright.meshing.measures import deviations, limit, loose_facets
+from bladewright.meshing.gmsh_process import Answer
+from bladewright.meshing.mesh_file import GROUP
 from bladewright.meshing.names import GROUPS, group_of
-from bladewright.meshing.periodicity import Periodicity, match
-from bladewright.meshing.quality import Indices, condition_numbers, radius_ratios, volumes
-from bladewright.meshing.reopening import GROUP
+from bladewright.meshing.periodicity import Periodicity, match_periodic
+from bladewright.meshing.quality import FACETS, Indices, condition_numbers, radius_ratios, volumes
 from bladewright.meshing.report import FLAT, FaceMesh, MeshReport, Quality
 from bladewright.meshing.sizes import Sizes
 from bladewright.nurbs.basis import Reals
+from bladewright.nurbs.closest import closest_on_surface
+from bladewright.nurbs.trimmed import TrimmedSurface
+
+DEVIATION_LIMIT = 1e-8, 1e-7
+"""[m], and of the chord: how far a node may lie off its native surface, what the round trip allows a trimmed end"""
+REFINED_SEARCHES = 200
+"""nodes that are searched for more closely where the first places found are further away than allowed"""
+
+
+def deviation_limit(chord: float) -> float:
+    """How far a node may lie off its native surface [m]."""
+    return max(DEVIATION_LIMIT[0], DEVIATION_LIMIT[1] * chord)
+
+
+def deviations(faces: Faces, group: str, points: Reals, allowed: float) -> Reals:
+    """Distances (n,) of points (n, 3) from the native surfaces of a group [m], infinite where there are none.
+
+    Each is that of the place which a descent from the nearest sample reaches; the worst of those above `allowed` are
+    searched for again, globally.
+    """
+    best = np.full(len(points), np.inf)
+    for name, face in faces.items():
+        if group_of(name) != group:
+            continue
+        surface = face.surface if isinstance(face, TrimmedSurface) else face
+        found = closest_on_surface(surface, points, tolerance=1.0).distances.real
+        off = np.argsort(found)[::-1][:REFINED_SEARCHES]
+        off = off[found[off] > allowed]
+        if len(off):
+            found = np.array(found)
+            found[off] = closest_on_surface(surface, points[off], tolerance=1e-7).distances.real
+        best = np.minimum(best, found)
+    return best
+
+
+def unmatched_facets(tetrahedra: Indices, groups: Mapping[str, Indices]) -> int:
+    """How many sides belong to one tetrahedron and no triangle, or more than twice, and how many triangles to none.
+
+    0 says that the groups together are the whole boundary, each piece of it once.
+    """
+    sides = np.sort(tetrahedra[:, FACETS].reshape(-1, 3), axis=1)
+    triangles = np.sort(np.concatenate([*groups.values(), np.zeros((0, 3), dtype=np.intp)]), axis=1)
+    _, uses = np.unique(np.concatenate([sides, triangles]), axis=0, return_counts=True)
+    return int(np.count_nonzero(uses != 2))
+
 
 UNITS = {"m": 1.0, "mm": 1e-3}
 """[m]"""
@@ -24,7 +69,7 @@ MM = 1e-3
 """[m] the unit of deviations and of STEP files"""
 
 
-def verified(
+def mesh_report(
     content: Mapping[str, Any],
     passage: Passage,
     motion: Periodicity,
@@ -47,7 +92,7 @@ def verified(
     check_complete(groups, passage, len(nodes), len(tetrahedra), answer)
     native = float(np.real(passage.properties.volume))
     condition = condition_numbers(nodes, tetrahedra)
-    pairs = match(motion, nodes, groups["periodic_lower"], groups["periodic_upper"])
+    pairs = match_periodic(motion, nodes, groups["periodic_lower"], groups["periodic_upper"])
     x, y, z = (motion.translation / UNITS[unit]).tolist()
     return MeshReport(
         file=str(path),
@@ -59,8 +104,8 @@ def verified(
         min_sicn=_quality(condition),
         gamma=_quality(radius_ratios(nodes, tetrahedra)),
         faces=tuple(_face(name, groups[name], nodes, passage) for name in GROUPS if name in groups),
-        deviation_limit_mm=limit(plan.chord) / MM,
-        loose=loose_facets(tetrahedra, groups),
+        deviation_limit_mm=deviation_limit(plan.chord) / MM,
+        loose=unmatched_facets(tetrahedra, groups),
         periodic_nodes=pairs.nodes,
         periodic_mismatch=pairs.mismatch,
         periodic_triangles=pairs.triangles,
@@ -99,7 +144,7 @@ def _quality(values: Reals) -> Quality:
 
 def _face(name: str, triangles: Indices, nodes: Reals, passage: Passage) -> FaceMesh:
     points = nodes[np.unique(triangles)]
-    off = deviations(passage.surfaces, name, points, limit(float(np.real(passage.blade.chord))))
+    off = deviations(passage.surfaces, name, points, deviation_limit(float(np.real(passage.blade.chord))))
     return FaceMesh(
         name=name,
         triangles=len(triangles),

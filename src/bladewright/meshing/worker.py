@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from bladewright.errors import MeshError
-from bladewright.meshing.job import ARRAYS, Answer, Job
+from bladewright.meshing.gmsh_process import CONTENT_FILE, Answer, Job
 
 
 def main(directory: Path) -> None:
@@ -36,20 +36,19 @@ def main(directory: Path) -> None:
 def _made(job: Job, directory: Path) -> Answer:
     import gmsh
 
-    from bladewright.meshing import generation, images, model
-    from bladewright.meshing.reopening import content
-    from bladewright.meshing.writing import written
+    from bladewright.meshing import generation, gmsh_model
+    from bladewright.meshing.mesh_file import read_mesh, write_mesh
 
-    model.options(model.QUIET)
-    generation.say("geometry")
-    faces = model.opened(job)
-    followers = model.made_periodic(job, faces)
-    model.named(faces)
-    model.sized(job, faces)
-    generation.curves_meshed()
-    surface = generation.faces_meshed(followers)
-    volume = generation.volume_meshed()
-    images.placed(followers, job.motion)
+    gmsh_model.set_options(gmsh_model.QUIET)
+    generation.report_step("geometry")
+    faces = gmsh_model.open_step(job)
+    followers = gmsh_model.set_periodic(job, faces)
+    gmsh_model.name_groups(faces)
+    gmsh_model.set_sizes(job, faces)
+    generation.mesh_curves()
+    surface = generation.mesh_faces(followers)
+    volume = generation.mesh_volume()
+    generation.place_periodic_nodes(followers, job.motion)
     made = Answer(
         gmsh=gmsh.__version__,
         surface=surface,
@@ -57,10 +56,10 @@ def _made(job: Job, directory: Path) -> Answer:
         nodes=len(gmsh.model.mesh.getNodes()[0]),
         tetrahedra=len(gmsh.model.mesh.getElements(3)[1][0]),
     )
-    generation.say("writing")
-    written(Path(job.mesh), job.scale)
-    generation.say("reopening")
-    np.savez(directory / ARRAYS, **content(Path(job.mesh)))
+    generation.report_step("writing")
+    write_mesh(Path(job.mesh), job.scale)
+    generation.report_step("reopening")
+    np.savez(directory / CONTENT_FILE, **read_mesh(Path(job.mesh)))
     return made
 
 

@@ -15,7 +15,7 @@ def length(vectors: Array) -> Array:
     return np.sqrt(dot(vectors, vectors))
 
 
-def travelled(line: Array) -> Array:
+def cumulative_length(line: Array) -> Array:
     """Lengths (n,) along a polyline (n, d) from its first point."""
     steps = length(np.diff(line, axis=0))
     return np.concatenate([np.zeros(1, dtype=steps.dtype), np.cumsum(steps)])
@@ -61,7 +61,7 @@ def angle(y: Array, x: Array) -> Array:
     return real + 1j * (np.real(x) * np.imag(y) - np.real(y) * np.imag(x)) / square
 
 
-def joined(parts: Sequence[Array], axis: int) -> Array:
+def concatenated(parts: Sequence[Array], axis: int) -> Array:
     """Arrays put together along a negative axis, the other axes broadcast: some may carry a batch, others not."""
     own = [part.shape[axis] for part in parts]
     rest = np.broadcast_shapes(*[(*part.shape[:axis], 1, *part.shape[axis:][1:]) for part in parts])

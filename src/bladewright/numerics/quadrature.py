@@ -66,7 +66,7 @@ def adaptive(function: Callable[[Reals], Array], breaks: ArrayLike) -> Array:
     return done + coarse.sum()
 
 
-def orders(first: int = FIRST_ORDER) -> list[int]:
+def quadrature_orders(first: int = FIRST_ORDER) -> list[int]:
     """Points a panel for successive tries of an integral, growing up to `LAST_ORDER`."""
     found = [first]
     while found[-1] < LAST_ORDER:
@@ -74,13 +74,13 @@ def orders(first: int = FIRST_ORDER) -> list[int]:
     return found
 
 
-def settled(value: Callable[[int], Array], first: int = FIRST_ORDER) -> Array:
+def converged_quadrature(value: Callable[[int], Array], first: int = FIRST_ORDER) -> Array:
     """value(order) (...) at the first order that changes it by less than 1e-13 of its largest entry.
 
     Where no order settles, the value at the last, 72 points a panel.
     """
     before = value(first)
-    for order in orders(first)[1:]:
+    for order in quadrature_orders(first)[1:]:
         now = value(order)
         change = np.max(np.square(np.real(now - before)), initial=0.0)
         if change <= TOLERANCE**2 * np.max(np.square(np.real(now)), initial=0.0):

@@ -41,7 +41,9 @@ def bracketed_root(function: Callable[[Array], tuple[Array, Array]], low: ArrayL
     return root
 
 
-def crossings(function: Callable[[Array], Array], places: ArrayLike, values: ArrayLike, levels: ArrayLike) -> Array:
+def level_crossings(
+    function: Callable[[Array], Array], places: ArrayLike, values: ArrayLike, levels: ArrayLike
+) -> Array:
     """Places (k,), rising, where a continuous real function passes a level, or any of several, to rounding.
 
     `values` (m,) are the function's at `places` (m,), rising; what crosses twice between two of them is not seen.

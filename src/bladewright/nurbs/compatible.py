@@ -6,12 +6,11 @@ import numpy as np
 
 from bladewright.errors import GeometryError
 from bladewright.numerics.elementary import Array, length
-from bladewright.nurbs.along import changed_along
 from bladewright.nurbs.basis import Reals
 from bladewright.nurbs.blossom import knot_change
 from bladewright.nurbs.curve import Curve
 from bladewright.nurbs.domain import reparametrised
-from bladewright.nurbs.refine import elevated
+from bladewright.nurbs.refine import changed_along, elevated
 
 SAME_KNOT = 1e-12
 """knots nearer to each other than this, in units of the domain, are one knot: they differ by rounding"""

@@ -6,9 +6,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bladewright.errors import GeometryError
-from bladewright.nurbs.along import Direction, Shape, changed_along, direction_of, with_coordinates
 from bladewright.nurbs.basis import Reals
 from bladewright.nurbs.blossom import knot_change
+from bladewright.nurbs.refine import Direction, Shape, changed_along, direction_of, with_coordinates
 from bladewright.nurbs.surface import Surface
 
 

@@ -8,7 +8,7 @@ from numpy.typing import ArrayLike
 
 from bladewright.errors import GeometryError
 from bladewright.numerics.elementary import Array, cross, length
-from bladewright.numerics.quadrature import adaptive, gauss, panels, settled
+from bladewright.numerics.quadrature import adaptive, converged_quadrature, gauss, panels
 from bladewright.numerics.roots import bracketed_root
 from bladewright.nurbs.basis import Reals, breaks
 from bladewright.nurbs.curve import Curve
@@ -135,4 +135,4 @@ def surface_integral(surface: Surface, density: Density, order: int | None = Non
         values = density(surface.grid(u, v), surface.grid(u, v, 1, 0), surface.grid(u, v, 0, 1))
         return np.asarray(np.tensordot(across, np.tensordot(along, values, axes=(0, 0)), axes=(0, 0)))
 
-    return settled(total) if order is None else total(order)
+    return converged_quadrature(total) if order is None else total(order)

@@ -1,10 +1,4 @@
-"""Globally nearest points on Bezier patches: branch and bound on the Bernstein coefficients of the squared distance.
-
-With N / D the squared distance on a patch (D = 1 without weights) and f the best squared distance so far, a box of
-parameters is dropped when all Bernstein coefficients of N - f D are positive, or when N - f D is convex there and its
-tangent plane at the best point found is not negative on the box; otherwise it is halved. Values at corners of boxes
-that undercut f start a descent to a new best point. What is left out is further away than the answer less a tolerance.
-"""
+"""Globally nearest points on Bezier patches: branch and bound, and Newton's descent."""
 
 from dataclasses import dataclass
 
@@ -14,8 +8,117 @@ from scipy.spatial import cKDTree
 
 from bladewright.numerics.elementary import length
 from bladewright.nurbs.basis import Reals
-from bladewright.nurbs.bezier import Patches, bernstein, halving, products, sampled
-from bladewright.nurbs.polish import Places, polished
+from bladewright.nurbs.bezier import Patches, bernstein, bernsteins, halving, products, sampled
+from bladewright.nurbs.rational import surface_quotients
+
+ROUNDS, STEPS = 80, 40
+"""patches a point may cross, and Newton steps in each"""
+CONVERGED = 1e-12
+"""step in local parameters after which Newton's next one is below rounding"""
+NOISE = 1e-13
+"""relative rise of a squared distance that is rounding"""
+
+
+@dataclass(frozen=True, kw_only=True)
+class PatchPoints:
+    """Points on patches: one for each of m queries."""
+
+    patch: NDArray[np.intp]
+    """(m,) index"""
+    local: Reals
+    """(m, 2) parameters in [0, 1] of the patch"""
+    square: Reals
+    """(m,) squared distance to the query"""
+
+
+def polished(
+    on: Patches, queries: Reals, patch: NDArray[np.intp], local: Reals, *, converged: float = CONVERGED
+) -> PatchPoints:
+    """Where descent from a start on a patch (m,), (m, 2) ends: a local minimum of the distance to queries (m, d).
+
+    `converged` is a last step in local parameters; the distance is exact to its square.
+    """
+    patch, local = patch.copy(), local.copy()
+    nets = on.nets if on.rational else on.nets[..., :-1]
+    square = np.full(len(patch), np.inf)
+    moving = np.arange(len(patch))
+    for _ in range(ROUNDS):
+        local[moving], square[moving], out = _descended(nets[patch[moving]], queries[moving], local[moving], converged)
+        onward, exists = on.neighbours(patch[moving], out)
+        cross = exists & (out != 0)
+        moved = cross.any(axis=1)
+        moving, onward, cross, out = moving[moved], onward[moved], cross[moved], out[moved]
+        if len(moving) == 0:
+            break
+        patch[moving] = onward
+        local[moving] = np.where(cross, np.where(out > 0, 0.0, 1.0), local[moving])
+    return PatchPoints(patch=patch, local=local, square=square)
+
+
+def _descended(nets: Reals, queries: Reals, local: Reals, converged: float) -> tuple[Reals, Reals, NDArray[np.intp]]:
+    """Local parameters (m, 2) and squared distance after descent in each patch, and which way it would leave it."""
+    local = local.copy()
+    square, gradient, hessian, metric = _distance_model(nets, queries, local)
+    damping = np.zeros(len(local))
+    active = np.arange(len(local))
+    for _ in range(STEPS):
+        step = _step(gradient[active], hessian[active], metric[active], damping[active], local[active])
+        trial = np.clip(local[active] + step, 0.0, 1.0)
+        far = np.max((trial - local[active]) ** 2, axis=1) > converged**2
+        active, trial = active[far], trial[far]
+        if len(active) == 0:
+            break
+        new = _distance_model(nets[active], queries[active], trial)
+        better = new[0] <= square[active] * (1.0 + NOISE)
+        damping[active] = np.where(
+            better, np.where(damping[active] < 1e-3, 0.0, 0.1 * damping[active]), 0.0
+        ) + np.where(better, 0.0, np.maximum(10.0 * damping[active], 1e-2))
+        taken = active[better]
+        local[taken], square[taken] = trial[better], new[0][better]
+        gradient[taken], hessian[taken], metric[taken] = new[1][better], new[2][better], new[3][better]
+    outward = np.where((local >= 1.0) & (gradient < 0.0), 1, np.where((local <= 0.0) & (gradient > 0.0), -1, 0))
+    return local, square, outward
+
+
+def _distance_model(nets: Reals, queries: Reals, local: Reals) -> tuple[Reals, Reals, Reals, Reals]:
+    """Squared distance (m,), half its gradient (m, 2) and Hessian (m, 2, 2), and the metric tensor (m, 2, 2)."""
+    along, across = (bernsteins(count - 1, local[:, i]) for i, count in enumerate(nets.shape[1:3]))
+    # stacked products: sums over the products of small arrays take ten times as long
+    rows = np.matmul(along, nets.reshape(*nets.shape[:2], -1)).reshape(len(nets), 3, *nets.shape[2:])
+    orders = [(0, 0), (1, 0), (0, 1), (2, 0), (1, 1), (0, 2)]
+    both = np.matmul(across[:, None], rows)
+    of = {(k, l): both[:, k, l] for k, l in orders}  # noqa: E741
+    if nets.shape[3] > queries.shape[1]:
+        of = surface_quotients(of)
+    miss = of[0, 0] - queries
+    tangents = np.stack([of[1, 0], of[0, 1]], axis=1)
+    second = np.stack([of[2, 0], of[1, 1], of[1, 1], of[0, 2]], axis=1).reshape(len(miss), 2, 2, -1)
+    metric = np.einsum("mad,mbd->mab", tangents, tangents)
+    hessian = metric + np.einsum("mabd,md->mab", second, miss)
+    return np.sum(miss * miss, axis=1), np.einsum("mad,md->ma", tangents, miss), hessian, metric
+
+
+def _step(gradient: Reals, hessian: Reals, metric: Reals, damping: Reals, local: Reals) -> Reals:
+    """Newton's step, or Gauss and Newton's where that does not descend, in the directions that are free to move."""
+    held = ((local <= 0.0) & (gradient >= 0.0)) | ((local >= 1.0) & (gradient <= 0.0))
+    held |= np.einsum("maa->ma", metric) <= 1e-300
+    free = ~held
+    both = free[:, :, None] & free[:, None, :]
+    floor = 1e-14 * np.einsum("maa->m", metric)[:, None]
+    eye = np.eye(2, dtype=bool)
+    tensor = np.where(both, metric, 0.0) + np.where(eye, np.where(free, floor, 1.0)[:, :, None], 0.0)
+    exact = np.where(both, hessian, 0.0) + np.where(eye, np.where(free, 0.0, 1.0)[:, :, None], 0.0)
+    convex = (exact[:, 0, 0] > 0.0) & (exact[:, 1, 1] > 0.0)
+    determinant = exact[:, 0, 0] * exact[:, 1, 1] - exact[:, 0, 1] ** 2
+    convex &= determinant > 1e-12 * exact[:, 0, 0] * exact[:, 1, 1]
+    matrix = np.where(convex[:, None, None], exact, tensor)
+    matrix = matrix + np.where(eye, damping[:, None, None] * tensor, 0.0)
+    a, b, c = matrix[:, 0, 0], matrix[:, 0, 1], matrix[:, 1, 1]
+    right = np.where(free, -gradient, 0.0)
+    size = a * c - b * b
+    size = np.where(size > 0.0, size, 1.0)
+    return np.stack([c * right[:, 0] - b * right[:, 1], a * right[:, 1] - b * right[:, 0]], axis=1) / size[:, None]
+
 
 BLOCK = 2_000_000
 """coefficients that are worked on at a time: it bounds the memory"""
@@ -23,12 +126,12 @@ DEPTH = 48
 """halvings after which a box is below the spacing of doubles"""
 
 
-def nearest(on: Patches, queries: Reals, tolerance: float) -> Places:
+def nearest(on: Patches, queries: Reals, tolerance: float) -> PatchPoints:
     """The places (m,) nearest to queries (m, d): no other is nearer by more than `tolerance` [length]."""
     search = _Search.of(on)
     chunk = max(1, BLOCK // len(on.nets))
     found = [search.nearest(queries[i : i + chunk], tolerance) for i in range(0, len(queries), chunk)]
-    return Places(
+    return PatchPoints(
         patch=np.concatenate([part.patch for part in found]),
         local=np.concatenate([part.local for part in found]),
         square=np.concatenate([part.square for part in found]),
@@ -111,10 +214,10 @@ class _Search:
             sample_local=starts.local,
         )
 
-    def nearest(self, queries: Reals, tolerance: float) -> Places:
+    def nearest(self, queries: Reals, tolerance: float) -> PatchPoints:
         _, sample = self.samples.query(queries)
         best = polished(self.on, queries, self.sample_patch[sample], self.sample_local[sample])
-        best = Places(patch=best.patch, local=best.local, square=best.square.copy())
+        best = PatchPoints(patch=best.patch, local=best.local, square=best.square.copy())
         reach = np.sqrt(best.square)
         distance = np.sqrt(np.maximum(0.0, _square_distances(queries, self.centres)))
         # the margin is the rounding of a difference of squares
@@ -149,7 +252,7 @@ class _Search:
             depth=0,
         )
 
-    def _improve(self, best: Places, queries: Reals, boxes: _Boxes) -> None:
+    def _improve(self, best: PatchPoints, queries: Reals, boxes: _Boxes) -> None:
         """Descends from the lowest box corner of each query where that is below the best place."""
         values = np.stack(
             [boxes.numerator[:, i, j] / boxes.denominator[:, i, j] for i in (0, -1) for j in (0, -1)], axis=-1
@@ -172,7 +275,7 @@ class _Search:
         best.local[query[better]] = new.local[better]
         best.square[query[better]] = new.square[better]
 
-    def _open(self, best: Places, boxes: _Boxes, tolerance: float) -> NDArray[np.intp]:
+    def _open(self, best: PatchPoints, boxes: _Boxes, tolerance: float) -> NDArray[np.intp]:
         """The rows of boxes that may hold a place nearer than the best one by more than the tolerance."""
         square = best.square[boxes.query]
         root = np.sqrt(square)
@@ -186,7 +289,7 @@ class _Search:
         kept[holds] = ~_certified(room[rows[holds]], (at[holds] - boxes.low[rows[holds]]) / boxes.width)
         return rows[kept]
 
-    def _local(self, best: Places, query: NDArray[np.intp], patch: NDArray[np.intp]) -> Reals:
+    def _local(self, best: PatchPoints, query: NDArray[np.intp], patch: NDArray[np.intp]) -> Reals:
         """The best places in the local parameters of other patches; outside [0, 1] when they are not on them."""
         low, high = self.on.low, self.on.high
         home = best.patch[query]

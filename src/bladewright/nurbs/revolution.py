@@ -1,16 +1,115 @@
-"""Surfaces of revolution about the x axis, with the angle theta turning z towards y."""
+"""Segments, exact arcs and circles, and surfaces of revolution, also about the machine axis."""
 
 from dataclasses import dataclass
 from functools import cached_property
+from math import ceil, pi
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from bladewright.numerics.elementary import Array
+from bladewright.errors import GeometryError
+from bladewright.numerics.elementary import Array, unit
 from bladewright.nurbs.basis import Reals
 from bladewright.nurbs.curve import Curve
-from bladewright.nurbs.revolve import FULL_TURN, arc_count, revolved
 from bladewright.nurbs.surface import Surface
+
+FULL_TURN = 2.0 * pi
+ROUNDING = 1e-9
+"""a turn may pass a full one by this fraction before it is refused; so much is rounding"""
+
+
+def segment(start: ArrayLike, end: ArrayLike) -> Curve:
+    """The straight line from a point (d,) to another, of degree 1 over [0, 1]."""
+    return Curve(
+        control_points=np.stack([np.asarray(start), np.asarray(end)]), knots=np.array([0.0, 0, 1, 1]), degree=1
+    )
+
+
+def arc(
+    centre: ArrayLike,
+    radius: complex,
+    start: complex,
+    end: complex,
+    *,
+    axes: tuple[ArrayLike, ArrayLike] = ((1.0, 0.0), (0.0, 1.0)),
+) -> Curve:
+    """The exact circular arc centre + radius (cos(a) axes[0] + sin(a) axes[1]), a from start to end [rad].
+
+    Quadratic and rational over [0, 1], in as few equal pieces of at most 90 degrees as will do. The axes (d,) are
+    orthonormal. Centre, radius, angles and axes may be complex. Raises GeometryError where start = end, the sweep
+    passes a full turn or the radius is not positive. Piegl and Tiller 1997, algorithm A7.1.
+    """
+    if not np.real(radius) > 0.0:
+        raise GeometryError(f"an arc of radius {np.real(radius):g} was asked for: the radius must be positive")
+    ring, weights, knots = _turn(start, end)
+    points = np.asarray(centre) + radius * (ring @ np.stack([np.asarray(axis) for axis in axes]))
+    return Curve(control_points=points, knots=knots, degree=2, weights=weights)
+
+
+def circle(
+    centre: ArrayLike, radius: complex, *, axes: tuple[ArrayLike, ArrayLike] = ((1.0, 0.0), (0.0, 1.0))
+) -> Curve:
+    """The exact full circle in the plane of two orthonormal axes (d,), from the first towards the second."""
+    return arc(centre, radius, 0.0, 2.0 * pi, axes=axes)
+
+
+def revolved(
+    curve: Curve,
+    start: complex = 0.0,
+    end: complex = 2.0 * pi,
+    *,
+    origin: ArrayLike = (0.0, 0.0, 0.0),
+    axis: ArrayLike = (1.0, 0.0, 0.0),
+) -> Surface:
+    """The exact surface of a curve (n, 3) turned right-handed about an axis (3,) through `origin`, start to end [rad].
+
+    u runs along the curve, v in [0, 1] with the turn, though not in proportion to the angle. Raises GeometryError where
+    the curve is not in space or the turn is none or more than a full one. Piegl and Tiller 1997, algorithm A8.1.
+    """
+    if curve.control_points.shape[1:] != (3,):
+        raise GeometryError(f"a curve of shape {curve.control_points.shape} was to be revolved: it must be (n, 3)")
+    ring, weights, knots = _turn(start, end)
+    direction = unit(np.asarray(axis, dtype=np.result_type(np.asarray(axis), np.float64)))
+    offset = curve.control_points - np.asarray(origin)
+    along = (offset @ direction)[:, None] * direction
+    outward = offset - along
+    sideways = np.cross(direction, outward)
+    points = np.asarray(origin) + along[:, None] + ring[:, :1] * outward[:, None] + ring[:, 1:] * sideways[:, None]
+    own = np.ones(len(points)) if curve.weights is None else curve.weights
+    return Surface(
+        control_points=points,
+        weights=own[:, None] * weights,
+        knots_u=curve.knots,
+        knots_v=knots,
+        degree_u=curve.degree,
+        degree_v=2,
+    )
+
+
+def arc_count(turns: float) -> int:
+    """Number of equal rational arcs, each of at most a right angle, in a part of a full turn."""
+    return max(1, ceil(4.0 * turns - ROUNDING))
+
+
+def _turn(start: complex, end: complex) -> tuple[Array, Array, Reals]:
+    """Control points (n, 2), weights (n,) and knots of the unit arc from start to end [rad]."""
+    sweep = end - start
+    turns = np.real(sweep) / FULL_TURN
+    if not 0.0 < turns * np.copysign(1.0, turns) <= 1.0 + ROUNDING:
+        raise GeometryError(
+            f"a turn from {np.real(start):g} to {np.real(end):g} rad was asked for: it must be more than none "
+            "and at most 2 pi; split a longer one"
+        )
+    pieces = arc_count(turns * np.copysign(1.0, turns))
+    half = sweep / (2 * pieces)
+    angles = start + half * np.arange(2 * pieces + 1)
+    weights = np.where(np.arange(2 * pieces + 1) % 2 == 1, np.cos(half), 1.0)
+    ring = np.stack([np.cos(angles), np.sin(angles)], axis=-1) / weights[:, None]
+    if turns * turns > (1.0 - ROUNDING) ** 2:
+        ring[-1] = ring[0]
+    inner = np.repeat(np.arange(1, pieces) / pieces, 2)
+    return ring, weights, np.concatenate([np.zeros(3), inner, np.ones(3)])
+
 
 LEFT_HANDED = (-1.0, 0.0, 0.0)
 """the axis about which theta, from z towards y, turns right-handed"""

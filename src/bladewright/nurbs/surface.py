@@ -9,10 +9,9 @@ from numpy.typing import ArrayLike
 from scipy.interpolate import NdBSpline
 
 from bladewright.errors import GeometryError
-from bladewright.numerics.elementary import Array, frozen
+from bladewright.numerics.elementary import Array, frozen, length, unit
 from bladewright.nurbs.basis import basis, checked_knots
 from bladewright.nurbs.curve import checked_weights
-from bladewright.nurbs.normals import unit_normals
 from bladewright.nurbs.rational import homogeneous, surface_quotients
 
 
@@ -143,3 +142,31 @@ def _product(last: Array, first: Array, net: Array) -> Array:
     rows = first @ np.swapaxes(net, 0, 1).reshape(net.shape[1], -1)
     columns = np.swapaxes(rows.reshape(len(first), net.shape[0], -1), 0, 1).reshape(net.shape[0], -1)
     return np.asarray((last @ columns).reshape(len(last), len(first), *net.shape[2:]))
+
+
+COLLAPSED = 1e-10
+"""a derivative or a sine between two shorter than this fraction counts as none: the limit is taken instead"""
+
+
+def unit_normals(surface: "Surface", u: Array, v: Array) -> Array:
+    """Unit normals (..., 3) at real u, v of one shape: the direction of dS/du x dS/dv.
+
+    Where that product vanishes at an end of the surface (the pole of a sphere, the tip of a cone) it is the limit from
+    inside along the other parameter: with dS/du = 0 at v = v0, dS/du ~ (v - v0) d2S/dudv.
+    """
+    along_u, along_v = surface.derivative(u, v, 1, 0), surface.derivative(u, v, 0, 1)
+    direction = np.cross(along_u, along_v)
+    size_u, size_v = length(along_u.real), length(along_v.real)
+    extent = np.ptp(surface.control_points.real, axis=(0, 1)).max()
+    bound = np.maximum(size_u, COLLAPSED * extent) * np.maximum(size_v, COLLAPSED * extent)
+    flat = length(direction.real) <= COLLAPSED * bound
+    flat |= (size_u <= COLLAPSED * extent) | (size_v <= COLLAPSED * extent)
+    if flat.any():
+        twist = surface.derivative(u[flat], v[flat], 1, 1)
+        inward_u = np.where(u[flat] < np.mean(surface.domain_u), 1.0, -1.0)[..., None]
+        inward_v = np.where(v[flat] < np.mean(surface.domain_v), 1.0, -1.0)[..., None]
+        no_u = (size_u[flat] <= size_v[flat])[..., None]
+        limit = np.where(no_u, np.cross(inward_v * twist, along_v[flat]), np.cross(along_u[flat], inward_u * twist))
+        direction = np.array(direction, dtype=np.result_type(direction, limit))
+        direction[flat] = limit
+    return unit(direction)

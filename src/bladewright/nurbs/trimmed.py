@@ -11,12 +11,12 @@ from numpy.typing import ArrayLike, NDArray
 
 from bladewright.errors import GeometryError
 from bladewright.numerics.elementary import Array, length
-from bladewright.numerics.quadrature import gauss, panels, settled
+from bladewright.numerics.quadrature import converged_quadrature, gauss, panels
 from bladewright.nurbs.basis import Reals, breaks
-from bladewright.nurbs.crossings import Chain, chain, contained, meeting_parameters
 from bladewright.nurbs.curve import Curve
 from bladewright.nurbs.revolution import Revolution
 from bladewright.nurbs.surface import Surface
+from bladewright.nurbs.trim_loop import TrimLoop, contained, meeting_parameters, trim_loop
 
 CLOSED = 1e-9
 """largest gap between consecutive boundary curves, in units of their extent"""
@@ -75,7 +75,7 @@ class TrimmedSurface:
     @cached_property
     def parametric_area(self) -> Array:
         """Area () enclosed by the boundary in the (u, v) plane."""
-        return settled(self._enclosed)
+        return converged_quadrature(self._enclosed)
 
     def _enclosed(self, order: int) -> Array:
         enclosed: Array = np.zeros(())
@@ -101,7 +101,11 @@ class TrimmedSurface:
         `order` Gauss points a panel, or, where None, as many as the result needs to settle within 1e-13 of itself.
         The parameters are complex where the boundary is; `Surface` carries their imaginary parts to first order.
         """
-        return settled(lambda points: self._green(density, points)) if order is None else self._green(density, order)
+        return (
+            converged_quadrature(lambda points: self._green(density, points))
+            if order is None
+            else self._green(density, order)
+        )
 
     def contains(self, u: ArrayLike, v: ArrayLike) -> NDArray[np.bool_]:
         """Whether points (...) of the parameter plane lie inside the boundary; on the boundary itself, either."""
@@ -132,8 +136,8 @@ class TrimmedSurface:
         return sites[:, 0], sites[:, 1]
 
     @cached_property
-    def _chain(self) -> Chain:
-        return chain(self.boundary)
+    def _chain(self) -> TrimLoop:
+        return trim_loop(self.boundary)
 
     def _green(self, density: Callable[[Array, Array], Array], order: int) -> Array:
         """Green's theorem: lines across the region, along the direction with fewer knots, summed over its boundary."""

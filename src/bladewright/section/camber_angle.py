@@ -11,13 +11,17 @@ import numpy as np
 
 from bladewright.designs import ChordwiseLaw, Part, parameter
 from bladewright.errors import DesignError
-from bladewright.numerics.elementary import Array, joined, radians
+from bladewright.numerics.elementary import Array, concatenated, radians
 from bladewright.section import checks
-from bladewright.section.camber_angle_line import AngleLine, Fraction, Meridional
-from bladewright.section.camber_angle_outline import AngleOutline
+from bladewright.section.camber_angle_outline import (
+    CamberAngleOutline,
+    CamberByAngle,
+    LengthFraction,
+    MeridionalFraction,
+    SplinePieces,
+)
 from bladewright.section.laws import Span
 from bladewright.section.planar import PlanarSection
-from bladewright.section.spline_pieces import SplinePieces
 
 NEAR = 0.0625
 """default place of the control point next to an edge: of the m' of the section"""
@@ -77,7 +81,7 @@ class CamberAngle(Part):
         """How many values of the half thickness do not stand at an edge."""
         return len(self.half_thickness) - (1 if self.trailing_edge == "sharp" else 2)
 
-    def outline(self, span: Span, meridional: Meridional | None = None) -> AngleOutline:
+    def outline(self, span: Span, meridional: MeridionalFraction | None = None) -> CamberAngleOutline:
         """The exact sections (..., m) at the places of the span, in chords, unstaggered.
 
         `meridional` gives the fraction of the meridional length at a fraction of m' of their stream surfaces; None: the
@@ -93,7 +97,7 @@ class CamberAngle(Part):
         weights = [zero + 1.0, *weights, *([zero + 1.0] if closed else [])]
         heights = [zero, *heights, *([zero] if closed else [])]
         rows = [_stacked(row) for row in (places, heights, weights)]
-        return AngleOutline(
+        return CamberAngleOutline(
             line=self._line(span, meridional),
             places=SplinePieces(controls=rows[0] * rows[2]),
             heights=SplinePieces(controls=rows[1] * rows[2]),
@@ -101,14 +105,14 @@ class CamberAngle(Part):
             end=self.trailing_edge,
         )
 
-    def stagger(self, span: Span, meridional: Meridional | None = None) -> Array:
+    def stagger(self, span: Span, meridional: MeridionalFraction | None = None) -> Array:
         """Angles (..., m) of the chord lines [rad], which follow from the camber angle."""
         return self._line(span, meridional).stagger
 
-    def _line(self, span: Span, meridional: Meridional | None) -> AngleLine:
+    def _line(self, span: Span, meridional: MeridionalFraction | None) -> CamberByAngle:
         angles = _stacked([radians(span.values(law)) for law in self.camber_angle])
-        return AngleLine(
-            angle=SplinePieces(controls=angles), fraction=None if meridional is None else Fraction(meridional)
+        return CamberByAngle(
+            angle=SplinePieces(controls=angles), fraction=None if meridional is None else LengthFraction(meridional)
         )
 
     def _places(self, span: Span) -> list[Array]:
@@ -130,7 +134,7 @@ class CamberAngle(Part):
 
 def _stacked(rows: list[Array]) -> Array:
     """Arrays (..., m) as (..., m, n)."""
-    return joined([row[..., None] for row in rows], axis=-1)
+    return concatenated([row[..., None] for row in rows], axis=-1)
 
 
 @dataclass(frozen=True, kw_only=True)

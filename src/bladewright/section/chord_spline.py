@@ -1,15 +1,101 @@
-"""A number along the chord as a quartic B-spline of freely placed control points."""
+"""Uniform B-splines of freely placed control points, evaluated by the chord fraction."""
 
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 
-from bladewright.numerics.elementary import Array, joined
-from bladewright.section.piecewise import by_first
-from bladewright.section.thickness.series import Series
-from bladewright.section.thickness.series import polynomial as composed
-from bladewright.section.thickness.uniform import segments
+from bladewright.numerics.elementary import Array, concatenated
+from bladewright.numerics.roots import bracketed_root
+from bladewright.nurbs.basis import Reals
+from bladewright.section.power_series import Series
+from bladewright.section.power_series import polynomial as composed
+from bladewright.section.thickness.quartic import segments
+
+NEWTON = 12
+"""Newton's steps that the parameter of a point may take"""
+
+
+def by_abscissa(powers: Array, values: Array) -> tuple[Array, Array, Array]:
+    """Coordinates (..., m, k, d) where the first one has given values, and their two derivatives by the parameter t.
+
+    `powers` (..., m, n, p, d) are coefficients of t^0, t^1 ... on n segments, 0 <= t <= 1 on each; the first coordinate
+    rises throughout. `values` (..., m, k) or (k,) lie in its range. Batches that share their real parts, as those of a
+    complex step do, are solved once.
+    """
+    real = _unbatched(np.real(powers[..., 0]), 3)
+    asked = _unbatched(np.real(values), 2)
+    segment = np.sum(asked[..., None] >= real[..., None, 1:, 0], axis=-1)
+    shape = np.broadcast_shapes(real.shape[:-2], segment.shape[:-1])
+    segment = np.broadcast_to(segment, (*shape, segment.shape[-1]))
+    own = np.broadcast_to(real, (*shape, *real.shape[-2:]))
+    t = _parameter(np.take_along_axis(own, segment[..., None], axis=-2), asked)
+    found = [_summed(_monomials(t, segment, powers.shape[-3:-1], order), powers) for order in range(3)]
+    if not (np.iscomplexobj(powers) or np.iscomplexobj(values)):
+        return found[0], found[1], found[2]
+    # the parameter's imaginary part, and by it those of all coordinates, to first order
+    off = np.imag(found[0][..., :1] - np.asarray(values)[..., None])
+    step = -1j * off / np.real(found[1][..., :1])
+    third = _summed(_monomials(t, segment, powers.shape[-3:-1], 3), np.real(powers))
+    rates = [*(np.real(each) for each in found[1:]), third]
+    carried = [each + step * rate for each, rate in zip(found, rates, strict=True)]
+    return carried[0], carried[1], carried[2]
+
+
+def derived(powers: Array) -> Array:
+    """Coefficients (..., p - 1) of the derivative of polynomials (..., p)."""
+    return powers[..., 1:] * np.arange(1.0, powers.shape[-1])
+
+
+def polynomial(powers: Array, t: Array) -> Array:
+    """Values (...) of polynomials (..., p) at t (...)."""
+    value = powers[..., -1]
+    for k in range(powers.shape[-1] - 2, -1, -1):
+        value = value * t + powers[..., k]
+    return value
+
+
+def _parameter(powers: Reals, values: Reals) -> Reals:
+    """t (...) in [0, 1] at which rising polynomials (..., p) have the values (...)."""
+    slopes = derived(powers)
+    t = np.clip((values - powers[..., 0]) / np.sum(powers[..., 1:], axis=-1), 0.0, 1.0)
+    for _ in range(NEWTON):
+        after = np.clip(t - (polynomial(powers, t) - values) / polynomial(slopes, t), 0.0, 1.0)
+        change, t = after - t, after
+        if np.all(change**2 < 1e-28):
+            return t
+    rest = np.zeros_like(t)
+    return bracketed_root(lambda t: (polynomial(powers, t) - values, polynomial(slopes, t)), rest, rest + 1.0)
+
+
+def _monomials(t: Reals, segment: Array, shape: tuple[int, int], order: int) -> Reals:
+    """Derivatives (..., m, k, n p) of the powers of t on the segments, zero on all but a point's own."""
+    count, terms = shape
+    rows = np.zeros((*t.shape, terms))
+    factor, power = np.ones(terms), np.ones_like(t)
+    for k in range(order):
+        factor *= np.arange(terms) - k
+    for k in range(order, terms):
+        rows[..., k] = factor[k] * power
+        power = power * t
+    own = segment[..., None] == np.arange(count)
+    return (own[..., None] * rows[..., None, :]).reshape(*t.shape, count * terms)
+
+
+def _summed(matrix: Reals, powers: Array) -> Array:
+    """The real matrix (..., k, n p) times coefficients (..., n, p, d)."""
+    flat = np.ascontiguousarray(powers.reshape(*powers.shape[:-3], -1, powers.shape[-1]))
+    if not np.iscomplexobj(flat):
+        return np.asarray(matrix @ flat)
+    found: Array = matrix @ flat.view(np.float64)
+    return found.view(np.complex128)
+
+
+def _unbatched(values: Reals, rank: int) -> Reals:
+    """One of the values along leading axes beyond `rank` where they are all the same there."""
+    while values.ndim > rank and np.array_equal(values, np.broadcast_to(values[:1], values.shape)):
+        values = values[0]
+    return values
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -38,7 +124,7 @@ class ChordSpline:
 
     def derivatives(self, u: Array) -> tuple[Array, Array, Array]:
         """f and its first two derivatives (..., m, k) at u (..., m, k) or (k,) in [0, 1]."""
-        point, first, second = by_first(self._powers, u)
+        point, first, second = by_abscissa(self._powers, u)
         run, rise = first[..., 0], first[..., 1]
         return point[..., 1], rise / run, (second[..., 1] - rise / run * second[..., 0]) / run**2
 
@@ -52,4 +138,4 @@ def _segments(points: Array) -> Array:
     """Powers (..., n, 5) of a curve with control points (..., n) on its segments."""
     before = 2.0 * points[..., :1] - points[..., 2:0:-1]
     after = 2.0 * points[..., -1:] - points[..., -2:-4:-1]
-    return segments(joined([before, points, after], axis=-1))
+    return segments(concatenated([before, points, after], axis=-1))

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bladewright.errors import DesignError
-from bladewright.numerics.elementary import joined
+from bladewright.numerics.elementary import concatenated
 from bladewright.nurbs.basis import Reals
 from bladewright.section.outline import Outline
 
@@ -18,7 +18,7 @@ FINE = (1.0 - np.cos(np.pi * np.linspace(0.0, 1.0, 201))) / 2.0
 
 def outlines_of(upper: Reals, lower: Reals) -> Reals:
     """Closed outlines (..., n, 2) of two sides (..., m, 2) each."""
-    return joined([upper, lower[..., -2:0:-1, :]], axis=-2)
+    return concatenated([upper, lower[..., -2:0:-1, :]], axis=-2)
 
 
 def check_outlines(outlines: Reals, where: Sequence[str]) -> None:
@@ -44,7 +44,7 @@ def closed_outlines(outline: Outline) -> Reals:
     back = lower[:, ::-1]
     back = back[:, 1:] if outline.trailing_edge.kind != "blunt" else back
     back = back[:, :-1] if outline.leading_edge.kind != "blunt" else back
-    return joined([upper, back], axis=-2)
+    return concatenated([upper, back], axis=-2)
 
 
 def check_outline(outline: Outline, where: Sequence[str]) -> None:

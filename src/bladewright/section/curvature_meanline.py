@@ -14,7 +14,6 @@ from bladewright.designs import ChordwiseLaw, Law, Part, parameter
 from bladewright.errors import DesignError
 from bladewright.numerics.elementary import Array, degrees, radians
 from bladewright.section import checks
-from bladewright.section.alternatives import ByField
 from bladewright.section.chord_spline import ChordSpline
 from bladewright.section.edge_spline import EdgeSpline
 from bladewright.section.laws import Span
@@ -30,11 +29,11 @@ from bladewright.section.meanline import (
 from bladewright.section.offset import OffsetOutline, fixed_joints
 from bladewright.section.outline import Joint, Outline
 from bladewright.section.planar import PlanarSection
+from bladewright.section.tagged_unions import ByField
 from bladewright.section.thickness.law import Thickness
 from bladewright.section.thickness.modified_naca import ModifiedNaca
-from bladewright.section.thickness.pieces import PiecewiseThickness
+from bladewright.section.thickness.piecewise import Breakpoint, PiecewiseThickness
 from bladewright.section.thickness.quartic import QuarticSpline
-from bladewright.section.thickness.stations import Break
 from bladewright.section.thickness.wennerstrom import Wennerstrom
 
 GRID = np.linspace(0.0, 1.0, 9)
@@ -193,8 +192,8 @@ def _parted(thickness: Thickness, meanline: MixedMeanline) -> tuple[Thickness, t
             "pieces; set camber to curvature, or take another thickness law"
         )
     joints = meanline.joints
-    low = Break(joints[..., 0], 1.0 - joints[..., 0], 1, STRAIGHT_AT[0])
-    high = Break(joints[..., 1], STRAIGHT[1] * np.cos(meanline.angle_out), 1, STRAIGHT_AT[1])
+    low = Breakpoint(joints[..., 0], 1.0 - joints[..., 0], 1, STRAIGHT_AT[0])
+    high = Breakpoint(joints[..., 1], STRAIGHT[1] * np.cos(meanline.angle_out), 1, STRAIGHT_AT[1])
     try:
         found = thickness.parted([low, high])
     except ValueError as error:

@@ -17,14 +17,14 @@ import numpy as np
 
 from bladewright.designs import Law, Part, parameter
 from bladewright.errors import DesignError
-from bladewright.numerics.elementary import Array, angle, joined, unit
+from bladewright.numerics.elementary import Array, angle, concatenated, unit
 from bladewright.numerics.solving import solved
 from bladewright.nurbs.basis import Reals
 from bladewright.section import checks
 from bladewright.section.laws import Span
 from bladewright.section.offset import OffsetOutline
 from bladewright.section.outline import Edge, Joint, Outline, Start
-from bladewright.section.thickness.uniform import QUARTIC, segments
+from bladewright.section.thickness.quartic import QUARTIC, segments
 
 SEGMENTS = 5
 SAME = 1e-9
@@ -97,7 +97,7 @@ class SplinedOutline(Outline):
         step = 2.0 * self.contact / SEGMENTS
         scale = step ** np.arange(4)[:, None]
         sign = (-1.0) ** np.arange(4)[:, None]
-        right = joined([lower * scale * sign, self.tip[..., None, :], upper * scale], axis=-2)
+        right = concatenated([lower * scale * sign, self.tip[..., None, :], upper * scale], axis=-2)
         return solved(_conditions(), right)
 
     @cached_property

@@ -7,9 +7,9 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from bladewright.numerics.elementary import Array, joined
+from bladewright.numerics.elementary import Array, concatenated
 from bladewright.nurbs.basis import Reals
-from bladewright.section.piecewise import by_first
+from bladewright.section.chord_spline import by_abscissa
 
 UNIFORM_CUBIC = (
     np.array([[1.0, 4.0, 1.0, 0.0], [-3.0, 0.0, 3.0, 0.0], [3.0, -6.0, 3.0, 0.0], [-1.0, 3.0, -3.0, 1.0]]) / 6
@@ -98,12 +98,12 @@ class CurvatureIntegral:
 
     def at(self, u: Array) -> tuple[Array, Array, Array, Array]:
         """J, I, S and dS/du (..., m, k) at u (..., m, k) or (k,)."""
-        value, rate, _ = by_first(self._powers, u)
+        value, rate, _ = by_abscissa(self._powers, u)
         return value[..., 3], value[..., 2], value[..., 1], rate[..., 1] / rate[..., 0]
 
     def bend(self, u: Array) -> Array:
         """The second derivative of S (..., m, k) at u (..., m, k) or (k,)."""
-        _, rate, bend = by_first(self._powers, u)
+        _, rate, bend = by_abscissa(self._powers, u)
         return (bend[..., 1] - rate[..., 1] / rate[..., 0] * bend[..., 0]) / rate[..., 0] ** 2
 
 
@@ -239,7 +239,7 @@ def _segments(points: Array) -> Array:
     """Powers (..., n - 1, 4) on its segments of a curve from the first to the last control point (..., n)."""
     before = 2.0 * points[..., :1] - points[..., 1:2]
     after = 2.0 * points[..., -1:] - points[..., -2:-1]
-    extended = joined([before, points, after], axis=-1)
+    extended = concatenated([before, points, after], axis=-1)
     count = points.shape[-1] - 1
     windows = np.stack([extended[..., k : k + count] for k in range(4)], axis=-1)
     return windows @ UNIFORM_CUBIC.T
@@ -257,5 +257,5 @@ def _accumulated(powers: Array) -> Array:
     """Coefficients (..., segments, p + 1) of the integral from the first segment's start on."""
     terms = powers / np.arange(1.0, powers.shape[-1] + 1.0)
     total = np.cumsum(np.sum(terms, axis=-1), axis=-1)
-    start = joined([np.zeros_like(total[..., :1]), total[..., :-1]], axis=-1)
-    return joined([start[..., None], terms], axis=-1)
+    start = concatenated([np.zeros_like(total[..., :1]), total[..., :-1]], axis=-1)
+    return concatenated([start[..., None], terms], axis=-1)

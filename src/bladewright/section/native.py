@@ -2,17 +2,22 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from types import MappingProxyType
+from typing import Any, Protocol
 
 import numpy as np
 
 from bladewright.errors import DesignError
-from bladewright.numerics.elementary import Array, dot, frozen, joined
+from bladewright.numerics.elementary import Array, angle, concatenated, dot, frozen
 from bladewright.numerics.solving import solved
-from bladewright.nurbs.basis import Reals, basis, breaks, greville
+from bladewright.nurbs.basis import Reals, basis, breaks, greville, knots_with_joints
 from bladewright.nurbs.curve import Curve
-from bladewright.nurbs.joints import jointed
-from bladewright.section.arc import ArcLength
+from bladewright.nurbs.transform import transformed
+from bladewright.section.arc_length import ArcLength
+from bladewright.section.laws import Span
+from bladewright.section.meanline import Meanline
 from bladewright.section.outline import Outline, Start
+from bladewright.section.section import Section
 
 DEGREE = 5
 """degree of the native curves"""
@@ -104,7 +109,7 @@ def _interpolated(points: Array, sites: Reals, knots: Reals, start: Start, end: 
     matrix = basis(knots, DEGREE, sites)
     known = np.stack([*first, *last])
     right = points - np.concatenate([matrix[:, :3], matrix[:, -3:]], axis=1) @ known
-    return joined([known[:3], solved(matrix[:, 3:-3], right), known[3:]], axis=-2)
+    return concatenated([known[:3], solved(matrix[:, 3:-3], right), known[3:]], axis=-2)
 
 
 def _end_rows(edge: Start, sign: float, near: float, far: float) -> list[Array]:
@@ -127,7 +132,7 @@ def _first(joints: list[tuple[float, int]]) -> Reals:
     counts = np.maximum(1 if len(ends) > 2 else 2, np.rint(8.0 * np.diff(ends)).astype(int))
     inner = [np.linspace(a, b, n + 1)[1:-1] for a, b, n in zip(ends[:-1], ends[1:], counts, strict=True)]
     knots = np.concatenate([np.zeros(DEGREE + 1), *inner, np.ones(DEGREE + 1)])
-    return jointed(knots, DEGREE, joints)
+    return knots_with_joints(knots, DEGREE, joints)
 
 
 def _refined(knots: Reals, miss: Callable[[Reals, Reals], Reals], tolerance: float) -> Reals:
@@ -163,3 +168,78 @@ def _single(points: Array) -> Array:
 def _distance(a: Array, b: Array) -> Reals:
     off: Reals = np.real(a) - np.real(b)
     return np.sqrt(dot(off, off))
+
+
+class Family(Protocol):
+    """A family's part: its sections along a span, each number of it a law."""
+
+    def outline(self, span: Span) -> Outline:
+        """The exact sections (..., m) at the places of the span, in chords, unstaggered."""
+        ...
+
+    def stagger(self, span: Span) -> Array:
+        """Angles (..., m) of the chord lines [rad]."""
+        ...
+
+
+def native_section(
+    outline: Outline,
+    knots: SectionKnots,
+    *,
+    turn: Array,
+    chord: Array,
+    shift: Array,
+    span: float,
+    plane: str,
+    scale: Callable[[Array], Array],
+    meanline: Callable[[Array], tuple[Array, Array, Array]] | None,
+) -> Section:
+    """The section of an outline of shape () or (1,), staggered by `turn` (), `chord` () long, its edge at `shift` (2,).
+
+    `plane`, `scale` and `meanline` are the section's own.
+    """
+    matrix = chord * np.array([[np.cos(turn), -np.sin(turn)], [np.sin(turn), np.cos(turn)]])
+    upper, lower, camber = native_curves(outline, knots=knots)
+    sides = {"upper": upper, "lower": lower, **_faces(outline, upper, lower)}
+    line = transformed(camber, matrix, shift)
+    slope = line.derivative(np.array([0.0, 1.0]))
+    metal = np.real(angle(slope[:, 1], slope[:, 0]))
+    return Section(
+        span=span,
+        plane=plane,
+        curves=MappingProxyType({name: transformed(curve, matrix, shift) for name, curve in sides.items()}),
+        camber=line,
+        stagger=float(np.real(turn)),
+        metal_angle_in=float(metal[0]),
+        metal_angle_out=float(metal[1]),
+        scale=scale,
+        edges=(outline.leading_edge.kind, outline.trailing_edge.kind),
+        knots=knots,
+        meanline=meanline,
+        outline=outline,
+    )
+
+
+def meanline_of(part: Any, span: Span) -> Callable[[Array], tuple[Array, Array, Array]] | None:
+    """v and its first two derivatives (k,) by u (k,) of the first of a part's meanlines; None where it has none."""
+    found = getattr(part, "meanline", None)
+    if found is None:
+        return None
+    line: Meanline = found(span)
+
+    def derivatives(u: Array) -> tuple[Array, Array, Array]:
+        value, slope, bend, _ = line.derivatives(u)
+        return value[..., 0, :], slope[..., 0, :], bend[..., 0, :]
+
+    return derivatives
+
+
+def _faces(outline: Outline, upper: Curve, lower: Curve) -> dict[str, Curve]:
+    """The straight faces of blunt edges, each from the upper to the lower side."""
+    faces = {}
+    for i, edge in enumerate((outline.leading_edge, outline.trailing_edge)):
+        if edge.kind == "blunt":
+            ends = frozen(np.stack([upper.control_points[-i], lower.control_points[-i]]))
+            knots = np.array([0.0, 0.0, 1.0, 1.0])
+            faces[("leading_edge", "trailing_edge")[i]] = Curve(control_points=ends, knots=knots, degree=1)
+    return faces

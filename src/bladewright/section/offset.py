@@ -12,8 +12,8 @@ from bladewright.nurbs.basis import Reals
 from bladewright.section.chord_spline import ChordSpline
 from bladewright.section.meanline import Meanline
 from bladewright.section.outline import Edge, Joint, Outline, Start
+from bladewright.section.power_series import Series, polynomial, variable
 from bladewright.section.thickness.law import Thickness
-from bladewright.section.thickness.series import Series, polynomial, variable
 
 APART = 1e-9
 """distance by s below which two joints are one"""
@@ -43,7 +43,7 @@ class OffsetOutline(Outline):
 
     @cached_property
     def joints(self) -> tuple[Joint, ...]:
-        return merged([*self.thickness.joints, *self.further()])
+        return merged_joints([*self.thickness.joints, *self.further()])
 
     def points(self, s: Reals) -> tuple[Array, Array]:
         order = np.argsort(s, kind="stable")
@@ -78,7 +78,7 @@ class OffsetOutline(Outline):
         found = [*self.thickness.joints, *fixed_joints(self.thickness, self.meanline.joints, self.meanline.smooth - 1)]
         if self.multiplier is not None:
             found += fixed_joints(self.thickness, self.multiplier.joints, 3)
-        return np.array([joint.s for joint in merged(found)])
+        return np.array([joint.s for joint in merged_joints(found)])
 
     def derivatives(self, s: Reals, order: int) -> tuple[Array, Array]:
         """Points and derivatives by s (..., m, k, 2, order + 1) of both sides, exact; s rises, and order is 3 at most.
@@ -122,7 +122,7 @@ class OffsetOutline(Outline):
         return (u - along, v + across), (u + along, v - across)
 
 
-def merged(joints: Sequence[Joint]) -> tuple[Joint, ...]:
+def merged_joints(joints: Sequence[Joint]) -> tuple[Joint, ...]:
     """Joints in order; of several at one place the least smooth, those at an edge left out."""
     found: list[Joint] = []
     for each in sorted(joints):

@@ -85,12 +85,12 @@ class Outline(ABC):
 
         Unless a family knows them in closed form, those of Chebyshev series on the pieces.
         """
-        from bladewright.section.analytic_pieces import Pieces
+        from bladewright.section.chebyshev_pieces import ChebyshevPieces
 
         def sides(s: Reals) -> Reals:
             return np.concatenate([_single(side) for side in self.points(s)], axis=-1)
 
-        found = Pieces(sides, np.array([0.0, *self.breaks, 1.0])).derivatives(s, order)
+        found = ChebyshevPieces(sides, np.array([0.0, *self.breaks, 1.0])).derivatives(s, order)
         return found[:, :2], found[:, 2:]
 
     @property
@@ -104,17 +104,17 @@ class Outline(ABC):
         t is a parameter in which the line has a speed everywhere: s, or where it has none by s at an edge the abscissa,
         where a family says nothing else.
         """
-        from bladewright.section.analytic_pieces import Pieces, inverse
+        from bladewright.section.chebyshev_pieces import ChebyshevPieces, inverse
 
         ends = np.array([0.0, *self.breaks, 1.0])
         if not self._stands_still:
-            return Pieces(lambda s: _single(self.camber(s)), ends).derivatives(t, order)
+            return ChebyshevPieces(lambda s: _single(self.camber(s)), ends).derivatives(t, order)
         place = inverse(self._abscissae, ends)
 
         def line(x: Reals) -> Reals:
             return np.stack([x, _single(self.camber(place(x)))[:, 1]], axis=-1)
 
-        return Pieces(line, np.array([0.0, *self.camber_breaks, 1.0])).derivatives(t, order)
+        return ChebyshevPieces(line, np.array([0.0, *self.camber_breaks, 1.0])).derivatives(t, order)
 
     def _abscissae(self, s: Reals) -> Reals:
         return _single(self.camber(s))[:, 0] if len(s) else s

@@ -11,10 +11,9 @@ from bladewright.nurbs.basis import Reals
 from bladewright.section import checks
 from bladewright.section.crossing import check_outline, closed_outlines, touching
 from bladewright.section.laws import Span
-from bladewright.section.limits import check_labels
-from bladewright.section.native import SectionKnots, knots_for
-from bladewright.section.native_section import Family, meanline_of, native_section
+from bladewright.section.native import Family, SectionKnots, knots_for, meanline_of, native_section
 from bladewright.section.section import Section
+from bladewright.section.unified_limits import check_labels
 
 
 @dataclass(frozen=True, kw_only=True)

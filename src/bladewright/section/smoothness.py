@@ -9,7 +9,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from bladewright.numerics.elementary import Array, cross2, dot, length, travelled
+from bladewright.numerics.elementary import Array, cross2, cumulative_length, dot, length
 from bladewright.nurbs.basis import Reals, breaks
 from bladewright.nurbs.curve import Curve
 from bladewright.section.outline import Outline
@@ -183,7 +183,7 @@ def _line(name: str, derivatives: Array, joints: int) -> SmoothLine:
     turning = cross2(speed, bend)
     curvature = turning / size**3
     slope = (cross2(speed, twist) / size**3 - 3.0 * turning * dot(speed, bend) / size**5) / size
-    arc = travelled(point)
+    arc = cumulative_length(point)
     arc = arc / arc[-1]
 
     def beside(values: Reals, behind: int) -> tuple[float, float]:

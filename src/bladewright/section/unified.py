@@ -13,14 +13,18 @@ from bladewright.nurbs.transform import translated
 from bladewright.section import checks
 from bladewright.section.camber import camber_line
 from bladewright.section.crossing import PLACES, check_outlines, outlines_of, touching
-from bladewright.section.curves import camber_curve, side_curve
-from bladewright.section.holding import check_edges
 from bladewright.section.laws import Span
-from bladewright.section.limits import ANGLES, RADII, TANGENTS, check_labels, check_laws, check_sampling
-from bladewright.section.plane import matched, plane_sections
-from bladewright.section.sampling import sample_places
 from bladewright.section.section import Section
-from bladewright.section.sides import side
+from bladewright.section.unified_limits import (
+    ANGLES,
+    RADII,
+    TANGENTS,
+    check_edges,
+    check_labels,
+    check_laws,
+    check_sampling,
+)
+from bladewright.section.unified_sides import camber_curve, matched, plane_sections, sample_places, side, side_curve
 
 Numbers = tuple[float, ...]
 

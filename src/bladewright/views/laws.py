@@ -1,18 +1,85 @@
-"""Laws of evolution along the span, with their control points."""
+"""Laws of evolution along the span and thickness laws along the chord, with their control points."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import fields
-from typing import Any, NamedTuple, get_args, get_type_hints
+from typing import TYPE_CHECKING, Any, NamedTuple, get_args, get_type_hints
 
 import numpy as np
 from matplotlib.axes import Axes
 
 from bladewright.designs import ChordwiseLaw, Law, Part
-from bladewright.section.laws import Span
-from bladewright.views.style import LOWER, SERIES, UPPER, legend_below, titled
-from bladewright.views.thickness import control_places
+from bladewright.nurbs.basis import Reals, greville, uniform_knots
+from bladewright.section.laws import DEGREE, Span
+from bladewright.views.distributions import sides_legend
+from bladewright.views.style import (
+    LOWER,
+    MILLIMETRES,
+    SERIES,
+    UPPER,
+    WALLS,
+    label_axes,
+    legend_below,
+    span_colour,
+    span_name,
+)
 
-MOST = 16
+if TYPE_CHECKING:
+    from bladewright.section.section import Section
+
+
+CHORD = "along the camber, leading to trailing edge [-]"
+
+
+def control_places(count: int) -> Reals:
+    """Where a law's control points stand between 0 and 1 (count,); a constant stands in the middle."""
+    return np.array([0.5]) if count == 1 else greville(uniform_knots(count, degree := min(count - 1, DEGREE)), degree)
+
+
+def draw_thickness(axes: Axes, sections: Sequence["Section"], ends: tuple[str, str] = WALLS) -> None:
+    """Draws the built thickness across the camber line [mm], its largest value marked."""
+    for section in sections:
+        colour = span_colour(section.span)
+        u, thickness = section.thickness
+        largest, place = section.maximum_thickness
+        share = 100.0 * largest / section.chord
+        label = f"{largest * MILLIMETRES:.3g} mm, {share:.3g} % of the chord"
+        if len(sections) > 1:
+            label = f"{span_name(section.span, ends)} {share:.3g} %"
+        axes.plot(u, thickness * MILLIMETRES, color=colour, label=label)
+        axes.plot(place, largest * MILLIMETRES, marker="o", markersize=4.0, color=colour, linestyle="none")
+    axes.set_ylim(bottom=0.0)
+    axes.set_xlim(-0.01, 1.01)
+    label_axes(axes, "Thickness as built, largest in % of chord", CHORD, "thickness across the camber [mm]")
+    legend_below(axes, 3, handlelength=1.2)
+
+
+def draw_thickness_laws(axes: Axes, design: Any, sections: Sequence["Section"], length_name: str) -> None:
+    """Draws the laws of half thickness along the chord [% of a length], with their control points."""
+    u = np.linspace(0.0, 1.0, 101)
+    for section in sections:
+        span = Span(np.array([section.span]))
+        colour = span_colour(section.span)
+        for name, style, marker in (("upper", UPPER, "o"), ("lower", LOWER, "s")):
+            laws = getattr(design, f"thickness_{name}")
+            points = np.array([np.real(span.values(law))[0] for law in laws])
+            axes.plot(u, 100.0 * np.real(span.chordwise(laws, u))[0], color=colour, linestyle=style)
+            axes.plot(
+                control_places(len(laws)),
+                100.0 * points,
+                color=colour,
+                linestyle=":",
+                linewidth=0.7,
+                marker=marker,
+                markersize=4.5,
+                markerfacecolor="white",
+            )
+    axes.set_ylim(bottom=0.0)
+    axes.set_xlim(-0.03, 1.03)
+    label_axes(axes, "Half thickness along the chord", CHORD, f"half thickness [% of {length_name}]")
+    sides_legend(axes, [section.span for section in sections], getattr(design, "ends", WALLS))
+
+
+MAX_CONTROL_POINTS = 16
 """control points along the chord above which a row of laws has no panel: the points of a given profile"""
 
 
@@ -74,7 +141,7 @@ def panels_of(design: Any) -> list[Panel]:
         kind = next(each for each in (*_KINDS, _REST) if each.holds(name, unit))
         put(kind, kind.title, name, law)
     for row in rows:
-        if len(row.laws) > MOST:
+        if len(row.laws) > MAX_CONTROL_POINTS:
             continue
         stem, _, side = row.name.rpartition("_")
         if side in ("upper", "lower") and stem in ("thickness", "weights"):
@@ -133,7 +200,7 @@ def draw_laws(axes: Axes, panel: Panel) -> None:
     if high - low < 1e-3 * max(abs(low), abs(high), 1e-9):
         axes.set_xlim(low - 1.0, high + 1.0)
     axes.set_ylim(-0.03, 1.03)
-    titled(axes, panel.title, panel.abscissa, "span v [-]")
+    label_axes(axes, panel.title, panel.abscissa, "span v [-]")
     many = len(panel.laws) > 8
     # at most four rows: more would push the legend of a low panel over its axis
     legend_below(axes, -(-len(panel.laws) // 4), handlelength=0.9 if many else 2.0, columnspacing=0.6 if many else 1.2)

@@ -1,17 +1,20 @@
-"""The meridional channel: walls and edges with the points that give them, stream lines and the blade's outline."""
+"""Meridional views: the channel of a blade with the points that define it, and the duct of a passage."""
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 from matplotlib.axes import Axes
 
 from bladewright.nurbs.basis import Reals
-from bladewright.views.sections import along_curve
-from bladewright.views.style import BLUE, GREEN, INK, MILLIMETRES, ORANGE, RED, SOFT, legend_below, titled
+from bladewright.nurbs.surface import Surface
+from bladewright.views.sections import cosine_spacing
+from bladewright.views.style import BLUE, GREEN, INK, MILLIMETRES, ORANGE, RED, SOFT, label_axes, legend_below
 
 if TYPE_CHECKING:
-    from bladewright.blade.blade import Blade
-    from bladewright.blade.plan import Plan, PlanLine
+    from bladewright.blade.exact.meridional_view import MeridionalView, ViewLine
+    from bladewright.blade.native.blade import Blade
+    from bladewright.domain.passage import Passage
+
 
 GIVEN = "#7a5ea8"
 CURVES = {"hub": BLUE, "shroud": ORANGE, "leading_edge": GREEN, "trailing_edge": RED}
@@ -36,12 +39,12 @@ def draw_meridional(axes: Axes, blade: "Blade") -> None:
         label = None if index else "edges as built"
         axes.plot(*(line * MILLIMETRES).T, color=INK, linestyle=(0, (1, 1.2)), linewidth=1.6, label=label)
     draw_clearance(axes, plan)
-    titled(axes, "Meridional channel, given points", "x [mm]", "r [mm]" if exact.mapping.revolved else "z [mm]")
+    label_axes(axes, "Meridional channel, given points", "x [mm]", "r [mm]" if exact.mapping.revolved else "z [mm]")
     axes.set_aspect("equal", adjustable="datalim")
     legend_below(axes, 3)
 
 
-def draw_clearance(axes: Axes, plan: "Plan") -> None:
+def draw_clearance(axes: Axes, plan: "MeridionalView") -> None:
     """Draws the clearance surface, where there is one."""
     if plan.tip is None:
         return
@@ -60,7 +63,7 @@ def built_edges(blade: "Blade") -> list[Reals]:
     return found
 
 
-def _draw(axes: Axes, line: "PlanLine", colour: str, label: str | None) -> None:
+def _draw(axes: Axes, line: "ViewLine", colour: str, label: str | None) -> None:
     axes.plot(*(line.points * MILLIMETRES).T, color=colour, label=label)
     for part in line.beyond:
         axes.plot(*(part * MILLIMETRES).T, color=colour, linewidth=0.8)
@@ -72,8 +75,42 @@ def _draw(axes: Axes, line: "PlanLine", colour: str, label: str | None) -> None:
 def blade_outline(blade: "Blade") -> Reals:
     """What the blade covers of the meridional plane: its closed outline (n, 2) of (x, r) [m], noses included."""
     stations = blade.exact.stations(np.linspace(0.0, 1.0, 41))
-    u, position, _ = stations.on_lines(np.concatenate(stations.plane.points(along_curve(101)), axis=-2))
+    u, position, _ = stations.on_lines(np.concatenate(stations.plane.points(cosine_spacing(101)), axis=-2))
     order = np.argsort(np.real(u), axis=-1)
     ends = np.take_along_axis(np.real(position), order[:, [0, -1], None], axis=1)
     hub, shroud = (np.real(position)[row, order[row]] for row in (0, -1))
     return np.concatenate([ends[:, 0], shroud, ends[::-1, 1], hub[::-1]])
+
+
+INLET, OUTLET = "#7a5ea8", "#4d4d4d"
+
+
+def draw_duct(axes: Axes, passage: "Passage") -> None:
+    """Draws the native duct in the (x, r) plane, or (x, z) of a cascade, equal lengths equal on both axes."""
+    blade = passage.blade
+    noses = blade_outline(blade) * MILLIMETRES
+    axes.fill(*noses.T, color=INK, alpha=0.08, linewidth=0.0, label="blade")
+    periodic, across = cast(Surface, passage.whole["periodic_upper"]), np.linspace(0.0, 1.0, 101)
+    u = np.unique(np.concatenate([np.linspace(0.0, 1.0, 401), 0.25 + 0.5 * cosine_spacing(201)]))
+    for index, line in enumerate(np.swapaxes(_meridional(passage, periodic, u, np.linspace(0.1, 0.9, 9)), 0, 1)):
+        axes.plot(*line.T, color=SOFT, linewidth=0.6, label=None if index else "stream lines")
+    for wall, v in (("hub", 0.0), ("shroud", 1.0)):
+        line = _meridional(passage, periodic, u, np.array([v]))[:, 0]
+        axes.plot(*line.T, color=CURVES[wall], linewidth=1.8, label=wall)
+    for name, end, colour in (("inlet", 0.0, INLET), ("outlet", 1.0, OUTLET)):
+        line = _meridional(passage, periodic, np.array([end]), across)[0]
+        axes.plot(*line.T, color=colour, linewidth=1.8, label=name)
+        side = cast(Surface, passage.whole["blade_upper"])
+        edge = "leading_edge" if name == "inlet" else "trailing_edge"
+        line = _meridional(passage, side, np.array([end]), across)[0]
+        axes.plot(*line.T, color=CURVES[edge], label=edge.replace("_", " "))
+    draw_clearance(axes, blade.exact.plan)
+    label_axes(axes, "Meridional duct", "x [mm]", "r [mm]" if passage.duct.revolved else "z [mm]")
+    axes.set_aspect("equal", adjustable="datalim")
+    legend_below(axes, 3)
+
+
+def _meridional(passage: "Passage", face: Surface, u: Reals, v: Reals) -> Reals:
+    """(x, r) or (x, z) (k, l, 2) [mm] of a native face at u (k,) and v (l,)."""
+    x, y, z = np.moveaxis(np.real(face.grid(u, v)), -1, 0)
+    return np.stack([x, np.sqrt(y * y + z * z) if passage.duct.revolved else z], axis=-1) * MILLIMETRES

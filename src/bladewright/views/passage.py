@@ -7,26 +7,19 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from bladewright.nurbs.basis import Reals
-from bladewright.views.duct import INLET, OUTLET, draw_duct
-from bladewright.views.pages import columns, headed, rows
-from bladewright.views.passage_figures import draw_figures, figures, head, section_figures, section_head
-from bladewright.views.passage_solid import draw_passage_solid
+from bladewright.nurbs.trimmed import TrimmedSurface
+from bladewright.views.meridional import INLET, OUTLET, draw_duct
+from bladewright.views.pages import columns, draw_header, rows
 from bladewright.views.sections import COORDINATES, developed, outline
-from bladewright.views.style import (
-    CAMBER,
-    INK,
-    LOWER,
-    SOFT,
-    UPPER,
-    span_colour,
-    titled,
-)
-from bladewright.views.walls import draw_tightest, draw_wall
+from bladewright.views.solid import draw_passage_solid
+from bladewright.views.style import CAMBER, INK, LOWER, MILLIMETRES, SOFT, UPPER, label_axes, span_colour
+from bladewright.views.walls import draw_least_jacobian, draw_wall
 
 if TYPE_CHECKING:
     from bladewright.domain.passage import Passage
     from bladewright.domain.section import SectionPassage
     from bladewright.section.unified import UnifiedSection
+
 
 VIEW = (900, 760)
 """of the view in space, at most [pixels]"""
@@ -35,7 +28,7 @@ VIEW = (900, 760)
 def passage_sheet(passage: "Passage") -> Figure:
     """The figure of a 3D passage, not yet laid out."""
     figure = Figure(figsize=(16.0, 13.0))
-    headed(figure, passage.name, passage.description, head(passage))
+    draw_header(figure, passage.name, passage.description, passage_header(passage))
     top, bottom = rows(figure, 6.0, 6.0)
     # panels of their own: the legend of the duct would make the view lower
     body, duct, numbers = columns(top, 1.35, 1.0, 0.65)
@@ -48,7 +41,7 @@ def passage_sheet(passage: "Passage") -> Figure:
     panels = bottom.subplots(1, 3)
     for panel, wall in zip(panels, ("hub", "shroud"), strict=False):
         draw_wall(panel, passage, wall)
-    draw_tightest(panels[2], passage)
+    draw_least_jacobian(panels[2], passage)
     return figure
 
 
@@ -56,7 +49,7 @@ def section_passage_sheet(design: "UnifiedSection | None", passage: "SectionPass
     """The figure of a 2D section's passage, not yet laid out; the section's design gives it its name."""
     figure = Figure(figsize=(14.0, 10.5))
     name, description = (design.name, design.description) if design is not None else ("section", "")
-    headed(figure, f"{name}-passage", description, section_head(passage))
+    draw_header(figure, f"{name}-passage", description, section_header(passage))
     (strip,) = rows(figure, 1.0)
     axes = strip.subplots(1, 2, width_ratios=[2.6, 1.0])
     draw_section_passage(axes[0], passage)
@@ -68,7 +61,7 @@ def draw_section_passage(axes: Axes, passage: "SectionPassage") -> None:
     """Draws the curves around a section [mm], its continued camber line and its neighbours."""
     section = passage.section
     colour = span_colour(section.span)
-    shape, pitch = outline(section), pitch_of(passage)
+    shape, pitch = outline(section), section_pitch(passage)
     axes.fill(*shape.T, color=colour, alpha=0.14, linewidth=0.0)
     axes.plot(*shape.T, color=colour, label="section")
     for turn in (-1.0, 1.0):
@@ -84,12 +77,12 @@ def draw_section_passage(axes: Axes, passage: "SectionPassage") -> None:
         ("outlet", OUTLET, UPPER),
     ):
         axes.plot(*lines[name].T, color=ink, linestyle=style, linewidth=1.8, label=name.replace("_", " "))
-    titled(axes, f"Flow domain, pitch {pitch:.4g} mm", *COORDINATES[section.plane])
+    label_axes(axes, f"Flow domain, pitch {pitch:.4g} mm", *COORDINATES[section.plane])
     axes.set_aspect("equal", adjustable="datalim")
     axes.legend(loc="upper left", bbox_to_anchor=(0.0, -0.08), ncols=4)
 
 
-def pitch_of(passage: "SectionPassage") -> float:
+def section_pitch(passage: "SectionPassage") -> float:
     """Distance of neighbours [mm]."""
     return float(np.ptp(boundary(passage, "inlet")[:, 1]))
 
@@ -99,3 +92,94 @@ def boundary(passage: "SectionPassage", name: str) -> Reals:
     curve = passage.curves[name]
     low, high = curve.domain
     return developed(passage.section, curve(low + (high - low) * np.linspace(0.0, 1.0, 601)))
+
+
+Rows = list[tuple[str, str]]
+"""names and values; a heading has no value"""
+ROWS = 24
+"""rows that a panel holds at least"""
+
+
+def passage_header(passage: "Passage") -> list[str]:
+    """The key figures under a passage's name."""
+    count = passage.blade.design.blade_count
+    filled = "passages and blades fill the ring" if count else "passage and blade fill a pitch"
+    return [
+        "linear cascade" if count is None else f"one passage of {count}",
+        f"volume {_cubic(passage.properties.volume)}",
+        f"{filled} within {abs(passage.ring_error):.1e}",
+        f"walls within {passage.wall_error:.1e} of the chord",
+        f"least Jacobian {_least(passage):.2g} of its median",
+    ]
+
+
+def figures(passage: "Passage") -> Rows:
+    """Sizes, what is promised, extents, and the poles of every face."""
+    count, size = passage.blade.design.blade_count, passage.knots.length * MILLIMETRES
+    found = [
+        ("Volume", ""),
+        ("passage", _cubic(passage.properties.volume)),
+        ("blade", _cubic(passage.blade.properties.volume)),
+        (f"ring of N = {count}" if count else "one pitch of the duct", _cubic(passage.ring)),
+        (f"{'N ' if count else ''}(passage + blade) / {'ring' if count else 'duct'} - 1", f"{passage.ring_error:.1e}"),
+        ("Walls", ""),
+        ("off their surfaces / chord", f"{passage.wall_error:.1e}"),
+        ("least Jacobian / median", f"{_least(passage):.2g}"),
+        ("Extents", ""),
+        ("upstream", f"{passage.knots.upstream:.3g} x {size:.4g} mm"),
+        ("downstream", f"{passage.knots.downstream:.3g} x {size:.4g} mm"),
+    ]
+    for name, turn in zip(("inlet angle", "outlet angle"), passage.camber.turned, strict=True):
+        if turn is not None:
+            found.append((name, f"{np.degrees(np.arctan(float(np.real(turn)))):.3g}°"))
+    return [*found, ("Poles", ""), *((_spaced(name), poles(passage, name)) for name in passage.whole)]
+
+
+def poles(passage: "Passage", name: str) -> str:
+    """Poles of a face along u and v; of one that is split, those of its pieces."""
+    pieces = [face for piece, face in passage.surfaces.items() if piece == name or piece.startswith(f"{name}_")]
+    shapes = [(face.surface if isinstance(face, TrimmedSurface) else face).control_points.shape for face in pieces]
+    along = " + ".join(str(shape[-3]) for shape in shapes)
+    return f"{f'({along})' if len(shapes) > 1 else along} x {shapes[0][-2]}"
+
+
+def section_header(passage: "SectionPassage") -> list[str]:
+    """The key figures under the name of a section's passage."""
+    ends = [float(np.real(passage.curves[name].control_points[0, 0])) for name in ("inlet", "outlet")]
+    return [f"area {_square(passage.area)}", f"from x = {ends[0] * MILLIMETRES:.4g} to {ends[1] * MILLIMETRES:.4g} mm"]
+
+
+def section_figures(passage: "SectionPassage") -> Rows:
+    """Areas of a section's passage, and the poles of every curve."""
+    areas = [("Area", ""), ("passage", _square(passage.area)), ("section", _square(passage.section.area))]
+    poles = [(_spaced(name), str(len(curve.control_points))) for name, curve in passage.curves.items()]
+    return [*areas, ("Poles", ""), *poles]
+
+
+def draw_figures(axes: Axes, rows: Rows) -> None:
+    """Writes names and values under one another."""
+    axes.set_axis_off()
+    axes.set_ylim(max(len(rows), ROWS) - 0.5, -0.5)
+    for line, (name, value) in enumerate(rows):
+        axes.text(0.0, line, name, va="center", fontweight="normal" if value else "bold")
+        axes.text(1.0, line, value, va="center", ha="right")
+    axes.set_title("Figures")
+
+
+def _least(passage: "Passage") -> float:
+    return min(share for share, _, _ in passage.folds.values())
+
+
+def _spaced(name: str) -> str:
+    return name.replace("_", " ")
+
+
+def _cubic(volume: np.ndarray) -> str:
+    """A volume [m^3] in words."""
+    cubic = float(np.real(volume)) * MILLIMETRES**3
+    return f"{cubic:.5g} mm³" if cubic < 1e4 else f"{cubic / 1e3:.5g} cm³" if cubic < 1e8 else f"{cubic / 1e6:.5g} dm³"
+
+
+def _square(area: np.ndarray) -> str:
+    """An area [m^2] in words."""
+    return f"{float(np.real(area)) * MILLIMETRES**2:.5g} mm²"

@@ -7,10 +7,10 @@ from typing import Any
 import numpy as np
 from matplotlib.figure import Figure
 
-from bladewright.blade.blade import Blade
-from bladewright.blade.sectioned import SectionedBlade
-from bladewright.blade.shown_spans import MIDDLE, shown_spans
-from bladewright.blade.unified import UnifiedBlade
+from bladewright.blade.design.sectioned import SectionedBlade
+from bladewright.blade.design.unified import UnifiedBlade
+from bladewright.blade.exact.exact_blade import MIDDLE, shown_spans
+from bladewright.blade.native.blade import Blade
 from bladewright.domain.passage import Passage
 from bladewright.domain.section import SectionPassage
 from bladewright.errors import DesignError
@@ -18,27 +18,22 @@ from bladewright.section.planar import PlanarSection
 from bladewright.section.section import Section
 from bladewright.section.smoothness import smoothness
 from bladewright.section.unified import UnifiedSection
-from bladewright.views.curvature import draw_curvature
-from bladewright.views.edges import draw_edge, draw_edges
-from bladewright.views.laws import draw_laws, panels_of
+from bladewright.views.distributions import draw_curvature, draw_smoothness
+from bladewright.views.laws import draw_laws, draw_thickness, draw_thickness_laws, panels_of
 from bladewright.views.meridional import draw_meridional
-from bladewright.views.pages import headed, laid_out, rows
+from bladewright.views.pages import checked_path, draw_header, rows, with_fixed_layout, write_figure
 from bladewright.views.passage import passage_sheet, section_passage_sheet
-from bladewright.views.passage_solid import draw_passage_solid
-from bladewright.views.sections import draw_passage, draw_sections, pitch_of
-from bladewright.views.smoothness import draw_smoothness
-from bladewright.views.solid import draw_solid
-from bladewright.views.style import MILLIMETRES, manner, span_name
-from bladewright.views.thickness import draw_thickness, draw_thickness_laws
-from bladewright.views.writing import checked, write
+from bladewright.views.sections import draw_edge, draw_edges, draw_neighbour, draw_sections, pitch_of
+from bladewright.views.solid import draw_passage_solid, draw_solid
+from bladewright.views.style import MILLIMETRES, drawing_style, span_name
 
 DOTS = 150
 """to an inch of a PNG"""
 SPANS = (0.0, 0.25, 0.5, 0.75, 1.0)
-FEW = (0.0, 0.5, 1.0)
-ACROSS = 6
+FEW_SPANS = (0.0, 0.5, 1.0)
+PANELS_ACROSS = 6
 """panels of laws beside each other"""
-VIEW = (1250, 1000)
+PASSAGE_VIEW = (1250, 1000)
 """of a passage that is drawn alone, at most [pixels]"""
 Built = Blade | Section | Passage | SectionPassage
 BladeDesign = UnifiedBlade | SectionedBlade
@@ -54,10 +49,10 @@ def picture(design: Drawable, path: str | Path, *, blade: Built | None = None) -
     figures and a 3D view are drawn. The file appears whole or not at all. Raises FileError where the suffix is another
     or the path cannot be written, DesignError where the design cannot be built.
     """
-    checked(path)
+    checked_path(path)
     figure = sheet(design, blade)
-    with manner():
-        write(figure, path, DOTS)
+    with drawing_style():
+        write_figure(figure, path, DOTS)
 
 
 def blade_view(blade: Blade | BladeDesign, path: str | Path) -> None:
@@ -65,17 +60,17 @@ def blade_view(blade: Blade | BladeDesign, path: str | Path) -> None:
 
     Raises FileError where the suffix is another or the path cannot be written.
     """
-    checked(path)
+    checked_path(path)
     if not isinstance(blade, Blade | BladeDesign):
         raise DesignError(
             f"a {type(blade).__name__} was given: only a blade has a 3D view; draw the one that "
             "prismatic(section, span) makes"
         )
     built = blade if isinstance(blade, Blade) else blade.build()
-    with manner():
+    with drawing_style():
         figure = Figure(figsize=(10.0, 8.0), layout="constrained")
         draw_solid(figure.add_subplot(), built, neighbours=None, width=1250)
-        write(figure, path, 160)
+        write_figure(figure, path, 160)
 
 
 def passage_view(passage: Passage, path: str | Path) -> None:
@@ -83,57 +78,57 @@ def passage_view(passage: Passage, path: str | Path) -> None:
 
     Raises FileError where the suffix is another or the path cannot be written.
     """
-    checked(path)
+    checked_path(path)
     if not isinstance(passage, Passage):
         raise DesignError(
             f"a {type(passage).__name__} was given: only a passage has this view; draw the one that "
             "passage(blade) makes"
         )
-    with manner():
+    with drawing_style():
         figure = Figure(figsize=(10.0, 8.0), layout="constrained")
-        draw_passage_solid(figure.add_subplot(), passage, size=VIEW)
-        write(figure, path, 160)
+        draw_passage_solid(figure.add_subplot(), passage, size=PASSAGE_VIEW)
+        write_figure(figure, path, 160)
 
 
 def sheet(design: Drawable, blade: Built | None = None) -> Figure:
     """The figure that `picture` writes."""
     built: Any = design if isinstance(design, Built) else (blade or design.build())
     asked: Any = None if isinstance(design, Section | SectionPassage) else design
-    with manner():
+    with drawing_style():
         if isinstance(built, Passage):
             figure = passage_sheet(built)
         elif isinstance(built, SectionPassage):
             figure = section_passage_sheet(asked, built)
         else:
             figure = _blade_sheet(built) if isinstance(built, Blade) else _section_sheet(asked, built)
-        return laid_out(figure)
+        return with_fixed_layout(figure)
 
 
 def _blade_sheet(blade: Blade) -> Figure:
     sections = [blade.section(v) for v in shown_spans(blade.exact, SPANS)]
-    few = [section for section in sections if section.span in FEW]
+    few = [section for section in sections if section.span in FEW_SPANS]
     middle = sections[len(sections) // 2]
     pitch = pitch_of(blade, middle)
     panels = panels_of(blade.design)
     charts = [partial(draw_laws, panel=panel) for panel in panels]
     if hasattr(blade.design, "thickness_upper"):
         charts.append(partial(draw_thickness_laws, design=blade.design, sections=few, length_name="length"))
-    strips = -(-len(charts) // ACROSS)
+    strips = -(-len(charts) // PANELS_ACROSS)
     heights = [5.4, 4.6, 3.6, 4.4, *[4.4] * strips]
     figure = Figure(figsize=(16.0, sum(heights) + 0.9))
-    headed(figure, blade.name, blade.description, _blade_figures(blade, middle, pitch))
+    draw_header(figure, blade.name, blade.description, _blade_figures(blade, middle, pitch))
     top, centre, near, smooth, *bottom = rows(figure, *heights)
     axes = top.subplots(1, 3, width_ratios=[1.25, 1.0, 1.0])
     draw_solid(axes[0], blade, neighbours=2, width=760)
     axes[0].set_title("Blade with neighbours")
     draw_sections(axes[1], sections, blade.design.ends)
-    draw_passage(axes[2], middle, pitch, _place(middle, blade.design.ends), blade)
+    draw_neighbour(axes[2], middle, pitch, _span_title(middle, blade.design.ends), blade)
     axes = centre.subplots(1, 3)
     draw_meridional(axes[0], blade)
     draw_curvature(axes[1], few, blade.design.ends)
     draw_thickness(axes[2], sections, blade.design.ends)
     draw_edges(near, few, blade.design.ends)
-    draw_smoothness(smooth, {v: blade.smoothness(v) for v in shown_spans(blade.exact, FEW)}, blade.design.ends)
+    draw_smoothness(smooth, {v: blade.smoothness(v) for v in shown_spans(blade.exact, FEW_SPANS)}, blade.design.ends)
     across = -(-len(charts) // strips)
     for index, strip in enumerate(bottom):
         own = charts[index * across : (index + 1) * across]
@@ -154,10 +149,10 @@ def _section_sheet(design: SectionDesign | None, section: Section) -> Figure:
         pitch = design.pitch * UNITS[design.length_unit] * MILLIMETRES
     figure = Figure(figsize=(16.0, 15.4))
     name, description = (design.name, design.description) if design is not None else ("section", "")
-    headed(figure, name, description, _section_figures(section, pitch))
+    draw_header(figure, name, description, _section_figures(section, pitch))
     top, bottom, smooth = rows(figure, 6.0, 4.6, 4.4)
     axes = top.subplots(1, 3, width_ratios=[1.6, 1.0, 1.0])
-    draw_passage(axes[0], section, pitch, "Section")
+    draw_neighbour(axes[0], section, pitch, "Section")
     draw_edge(axes[1], section, trailing=False)
     draw_edge(axes[2], section, trailing=True)
     lawful = design is not None and hasattr(design, "thickness_upper")
@@ -176,14 +171,14 @@ def _blade_figures(blade: Blade, middle: Section, pitch: float) -> list[str]:
     return [
         "linear cascade" if count is None else f"{count} blade{'s' if count > 1 else ''}",
         f"mean chord {blade.chord * MILLIMETRES:.4g} mm",
-        f"chord / pitch at {_place(middle, blade.design.ends).lower()} {middle.chord * MILLIMETRES / pitch:.3g}",
+        f"chord / pitch at {_span_title(middle, blade.design.ends).lower()} {middle.chord * MILLIMETRES / pitch:.3g}",
         f"{columns} x {rows} poles a side",
         f"error {blade.error:.1e} of the chord",
         "every promise kept" if blade.promises.kept else "a promise is not kept",
     ]
 
 
-def _place(section: Section, ends: tuple[str, str]) -> str:
+def _span_title(section: Section, ends: tuple[str, str]) -> str:
     """What the title of a section in the passage says of its place."""
     return "Mid span" if section.span == MIDDLE else span_name(section.span, ends).capitalize()
 

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import gaussian_filter
 
-from bladewright.numerics.elementary import travelled
+from bladewright.numerics.elementary import cumulative_length
 from bladewright.nurbs.basis import Reals
 
 Pixels = NDArray[np.float32]
@@ -28,7 +28,7 @@ PANE = 0.14
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Mesh:
+class ShadedGrid:
     """A grid of points (m, n, 3) with normals (m, n, 3) of either sense, in one colour (red, green, blue)."""
 
     points: Reals
@@ -39,7 +39,7 @@ class Mesh:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Trace:
+class Polyline:
     """A line through points (n, 3) in one colour, hidden where a mesh stands before it."""
 
     points: Reals
@@ -72,7 +72,7 @@ def axes_towards(eye: tuple[float, float, float], up: tuple[float, float, float]
     return np.stack([right, np.cross(towards, right), towards])
 
 
-def framed(axes: Reals, points: Reals, margin: float = 0.03) -> Camera:
+def framing_camera(axes: Reals, points: Reals, margin: float = 0.03) -> Camera:
     """A camera whose picture just holds points (n, 3)."""
     flat = points @ axes[:2].T
     low, high = flat.min(axis=0), flat.max(axis=0)
@@ -81,12 +81,12 @@ def framed(axes: Reals, points: Reals, margin: float = 0.03) -> Camera:
 
 
 def rendered(
-    meshes: list[Mesh],
-    traces: list[Trace],
+    meshes: list[ShadedGrid],
+    traces: list[Polyline],
     camera: Camera,
     width: int,
     fineness: int = 2,
-    glass: Sequence[Mesh] = (),
+    glass: Sequence[ShadedGrid] = (),
 ) -> Reals:
     """The picture (height, width, 4) in red, green, blue and opacity, its first row on top.
 
@@ -96,13 +96,13 @@ def rendered(
     across = width * fineness
     unit = across / camera.extent[0]
     height = int(np.ceil(camera.extent[1] * unit / fineness)) * fineness
-    depth, normal, colour = _filled(meshes, camera, (height, across), unit)
+    depth, normal, colour = _depth_buffer(meshes, camera, (height, across), unit)
     shaded = _shaded(depth, normal, colour, fineness)
     if glass:
-        pane = _filled(glass, camera, (height, across), unit)
-        _glaze(shaded, _shaded(*pane, fineness), pane[0] > depth)
+        pane = _depth_buffer(glass, camera, (height, across), unit)
+        _overlay_glass(shaded, _shaded(*pane, fineness), pane[0] > depth)
     for trace in traces:
-        _drawn(shaded, depth, trace, camera, unit)
+        _draw_polyline(shaded, depth, trace, camera, unit)
     blocks = shaded[::-1].reshape(height // fineness, fineness, width, fineness, 4)
     blocks[..., :3] *= blocks[..., 3:]
     picture = blocks.mean(axis=(1, 3), dtype=np.float64)
@@ -111,8 +111,8 @@ def rendered(
     return np.clip(picture, 0.0, 1.0)
 
 
-def _filled(
-    meshes: Sequence[Mesh], camera: Camera, size: tuple[int, int], unit: float
+def _depth_buffer(
+    meshes: Sequence[ShadedGrid], camera: Camera, size: tuple[int, int], unit: float
 ) -> tuple[Pixels, Pixels, Pixels]:
     """Depth (height, width) of what is nearest, and its normals and colours (height width, 3)."""
     height, across = size
@@ -122,7 +122,7 @@ def _filled(
     for mesh in meshes:
         seen = camera.seen(mesh.points)
         seen[..., :2] = (seen[..., :2] - camera.corner) * unit
-        for points in _dense(np.concatenate([seen, camera.seen(mesh.normals)], axis=-1).astype(np.float32)):
+        for points in _dense_tiles(np.concatenate([seen, camera.seen(mesh.normals)], axis=-1).astype(np.float32)):
             column, row = points[:, 0].astype(np.int32), points[:, 1].astype(np.int32)
             held = (points[:, 0] >= 0.0) & (points[:, 1] >= 0.0) & (column < across) & (row < height)
             if mesh.side:
@@ -136,7 +136,7 @@ def _filled(
     return depth.reshape(height, across), normal, colour
 
 
-def _glaze(picture: Pixels, pane: Pixels, before: NDArray[np.bool_]) -> None:
+def _overlay_glass(picture: Pixels, pane: Pixels, before: NDArray[np.bool_]) -> None:
     """Lay a shaded pane over the picture where it stands before it."""
     cover = PANE * (pane[..., 3] * before)[..., None]
     behind = (1.0 - cover) * picture[..., 3:]
@@ -146,7 +146,7 @@ def _glaze(picture: Pixels, pane: Pixels, before: NDArray[np.bool_]) -> None:
     picture[..., 3:] = total
 
 
-def _dense(grid: Pixels) -> Iterator[Pixels]:
+def _dense_tiles(grid: Pixels) -> Iterator[Pixels]:
     """Points with normals (k, 6) of a grid (m, n, 6), tile by tile, filled in until no pixel is left out."""
     for row in range(0, grid.shape[0] - 1, TILE):
         for column in range(0, grid.shape[1] - 1, TILE):
@@ -192,10 +192,10 @@ def _shaded(depth: Pixels, normal: Pixels, colour: Pixels, fineness: int) -> Pix
     return picture
 
 
-def _drawn(picture: Pixels, depth: Pixels, trace: Trace, camera: Camera, unit: float) -> None:
+def _draw_polyline(picture: Pixels, depth: Pixels, trace: Polyline, camera: Camera, unit: float) -> None:
     seen = camera.seen(trace.points)
     seen[:, :2] = (seen[:, :2] - camera.corner) * unit
-    along = travelled(seen[:, :2])
+    along = cumulative_length(seen[:, :2])
     at = np.linspace(0.0, along[-1], int(2.0 * along[-1]) + 2)
     right, up, towards = (np.interp(at, along, seen[:, i]) for i in range(3))
     bias = 3.0 * trace.width / unit

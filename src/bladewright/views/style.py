@@ -24,7 +24,7 @@ WALLS = ("hub", "shroud")
 """the ends of a blade that stands on both walls"""
 _SPAN = np.array([[0.07, 0.25, 0.42], [0.12, 0.56, 0.55], [0.88, 0.44, 0.22]])
 
-_MANNER: dict[str, Any] = {
+_STYLE: dict[str, Any] = {
     "font.family": "DejaVu Sans",
     "font.size": 9.5,
     "mathtext.fontset": "dejavusans",
@@ -60,9 +60,9 @@ _MANNER: dict[str, Any] = {
 
 
 @contextmanager
-def manner() -> Iterator[None]:
+def drawing_style() -> Iterator[None]:
     """The pictures' fonts and lines inside a `with` block; the caller's own settings afterwards."""
-    with rc_context(cast(Any, _MANNER)):
+    with rc_context(cast(Any, _STYLE)):
         yield
 
 
@@ -77,7 +77,7 @@ def span_name(v: float, ends: tuple[str, str] = WALLS) -> str:
     return {0.0: ends[0], 1.0: ends[1]}.get(v, f"{100.0 * v:.3g} % span")
 
 
-def titled(axes: Axes, title: str, abscissa: str, ordinate: str) -> None:
+def label_axes(axes: Axes, title: str, abscissa: str, ordinate: str) -> None:
     """Names a panel and its axes."""
     axes.set_title(title)
     axes.set_xlabel(abscissa)

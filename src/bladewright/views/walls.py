@@ -1,34 +1,111 @@
-"""Hub and shroud of a passage unwrapped: the lines of their patches, and where these are nearest to folding."""
+"""Hub and shroud of a passage unwrapped: the grid of their patches, and where it is nearest to folding."""
 
 from itertools import pairwise
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
+from scipy.spatial import cKDTree
 
-from bladewright.domain.knots import BLADE_AT
-from bladewright.numerics.elementary import length
+from bladewright.domain.knots import BLADE_AT, PIECES
+from bladewright.numerics.elementary import angle, dot, length
 from bladewright.nurbs.basis import Reals
-from bladewright.views.sections import ALONE, along_curve
-from bladewright.views.style import BLUE, INK, LOWER, ORANGE, RED, SOFT, UPPER, legend_below, span_colour, titled
-from bladewright.views.unwrapped import HALVES, blade_foot, coordinates, pitch_on, unwrapped_face
+from bladewright.nurbs.surface import Surface
+from bladewright.views.sections import COORDINATES, ISOLATED_PITCH, cosine_spacing
+from bladewright.views.style import (
+    BLUE,
+    INK,
+    LOWER,
+    MILLIMETRES,
+    ORANGE,
+    RED,
+    SOFT,
+    UPPER,
+    label_axes,
+    legend_below,
+    span_colour,
+)
 
 if TYPE_CHECKING:
     from bladewright.domain.passage import Passage
 
+
+HALVES = ("upper", "lower")
+
+
+def unwrapped_face(passage: "Passage", name: str, u: Reals, v: Reals) -> Reals:
+    """Points (k, l, 2) at u (k,) and v (l,) of a wall's native half in its plane [mm]."""
+    face, half = cast(Surface, passage.whole[name]), passage.walls[name]
+    aside = half.sign * float(np.real(half.half_pitch)) * np.broadcast_to(v, (len(u), len(v)))
+    return unwrapped(passage, name.partition("_")[0], np.real(face.grid(u, v)), aside)
+
+
+def blade_end_outline(passage: "Passage", wall: str) -> Reals:
+    """The closed outline (n, 2) in the wall's plane [mm] of the blade's end on or nearest to it."""
+    end = np.array([0.0 if wall == "hub" else 1.0])
+    sides = [cast(Surface, passage.whole[f"blade_{half}"]).grid(cosine_spacing(), end)[:, 0] for half in HALVES]
+    return unwrapped(passage, wall, np.real(np.concatenate([sides[0], sides[1][::-1]])))
+
+
+def wall_pitch(passage: "Passage", wall: str) -> float:
+    """Distance of neighbours in the wall's plane [mm]."""
+    return 2.0 * float(np.real(passage.walls[f"{wall}_upper"].half_pitch)) * wall_scale(passage, wall)
+
+
+def wall_scale(passage: "Passage", wall: str) -> float:
+    """Millimetres in a unit of the wall's plane: the mean radius beside the blade, or a metre's in a cascade."""
+    if not passage.duct.revolved:
+        return MILLIMETRES
+    line = passage.walls[f"{wall}_upper"].line
+    return float(np.mean(np.real(line.position(np.linspace(0.0, 1.0, 65))[..., 1]))) * MILLIMETRES
+
+
+def wall_coordinates(passage: "Passage") -> tuple[str, str]:
+    """Names of the plane's axes."""
+    return COORDINATES["m'-theta" if passage.duct.revolved else "m-y"]
+
+
+def unwrapped(passage: "Passage", wall: str, points: Reals, aside: Reals | float = 0.0) -> Reals:
+    """Points (..., 3) [m] on or near a wall in its plane (..., 2) [mm], by the nearest place of its meridian.
+
+    `aside` (...) is how far, within half a turn, theta is from that of the continued camber line.
+    """
+    x, y, z = np.moveaxis(points, -1, 0)
+    revolved, line = passage.duct.revolved, passage.walls[f"{wall}_upper"].line
+    target = np.stack([x, np.sqrt(y * y + z * z) if revolved else z], axis=-1).reshape(-1, 2)
+    places = np.linspace(passage.duct.low, passage.duct.high, 2001)
+    u = places[cKDTree(np.real(line.position(places))[0]).query(target)[1]]
+    for _ in range(3):
+        slope = np.real(line.position(u, 1))[0]
+        u = u + dot(target - np.real(line.position(u))[0], slope) / dot(slope, slope)
+    abscissa = np.real(line.abscissa(u))[0].reshape(points.shape[:-1])
+    ordinate = y
+    if revolved:
+        about = _camber_theta(passage, wall, abscissa) + aside
+        ordinate = about + np.mod(angle(y, z) - about + np.pi, 2.0 * np.pi) - np.pi
+    return np.asarray(np.stack([abscissa, ordinate], axis=-1) * wall_scale(passage, wall))
+
+
+def _camber_theta(passage: "Passage", wall: str, abscissa: Reals) -> Reals:
+    """theta (...) of the wall's continued camber line at abscissae (...)."""
+    row, t = passage.walls[f"{wall}_upper"].row, np.linspace(0.0, 1.0, 101)
+    line = np.concatenate([np.real(passage.camber.points(piece, t))[row] for piece in PIECES])
+    return np.asarray(np.interp(abscissa, line[:, 0], line[:, 1]))
+
+
 COLOURS = {"hub": BLUE, "shroud": ORANGE}
 ALONG, ACROSS = (9, 17, 9), 9
 """lines of constant u on the three pieces of a patch, and of constant v"""
-FINE = 65
+LINE_POINTS = 65
 """places along a line"""
-SLENDER = 6.0
+MAX_ASPECT = 6.0
 """height of a wall in its plane, in widths, above which lengths are not equal on both axes"""
-REACH = 0.03
+CLOSE_UP = 0.03
 """half width of the surroundings of the least Jacobian, of the chord"""
-BESIDE = 0.2
+CLOSE_UP_U = 0.2
 """half width in u of what may be drawn there"""
-CLOSELY = 25
+CLOSE_UP_LINES = 25
 """lines of constant u, and of constant v, to each side of the place"""
 MARK: dict[str, Any] = {"markersize": 6.0, "color": RED, "fillstyle": "none", "linestyle": "none"}
 
@@ -39,76 +116,76 @@ def draw_wall(axes: Axes, passage: "Passage", wall: str) -> None:
         name = f"{wall}_{half}"
         lines = LineCollection(patch_lines(passage, name), colors=COLOURS[wall], linewidths=0.5, alpha=0.55)
         axes.add_collection(lines, autolim=False)
-        edge = unwrapped_face(passage, name, _along(), np.array([1.0]))[:, 0]
+        edge = unwrapped_face(passage, name, _stations_along(), np.array([1.0]))[:, 0]
         label = "periodic boundaries, the lower dashed" if half == "upper" else None
         axes.plot(*edge.T, color=INK, linewidth=1.6, linestyle=style, label=label)
-        for end in unwrapped_face(passage, name, np.array([0.0, 1.0]), np.linspace(0.0, 1.0, FINE)):
+        for end in unwrapped_face(passage, name, np.array([0.0, 1.0]), np.linspace(0.0, 1.0, LINE_POINTS)):
             axes.plot(*end.T, color=INK, linewidth=0.9)
-    shape, pitch = blade_foot(passage, wall), pitch_on(passage, wall)
-    _draw_foot(axes, passage, wall, shape)
-    for turn in (-1.0, 1.0) if pitch < ALONE * _chord(shape) else ():
+    shape, pitch = blade_end_outline(passage, wall), wall_pitch(passage, wall)
+    _draw_blade_end(axes, passage, wall, shape)
+    for turn in (-1.0, 1.0) if pitch < ISOLATED_PITCH * _chord(shape) else ():
         axes.plot(*(shape + np.array([0.0, turn * pitch])).T, color=SOFT, linewidth=0.8, alpha=0.8)
     for half, marker in zip(HALVES, ("o", "s"), strict=True):
         share, u, v = passage.folds[f"{wall}_{half}"]
         place = unwrapped_face(passage, f"{wall}_{half}", np.array([u]), np.array([v]))[0, 0]
-        axes.plot(*place, marker=marker, label=f"{half}: least Jacobian {_said(share, u, v)}", **MARK)
-    slender = axes.dataLim.height > SLENDER * axes.dataLim.width
+        axes.plot(*place, marker=marker, label=f"{half}: least Jacobian {_jacobian_text(share, u, v)}", **MARK)
+    slender = axes.dataLim.height > MAX_ASPECT * axes.dataLim.width
     title = f"{wall.capitalize()} unwrapped{', compressed upright' if slender else ''}"
-    titled(axes, title, *coordinates(passage))
+    label_axes(axes, title, *wall_coordinates(passage))
     axes.set_aspect("auto" if slender else "equal", adjustable="datalim")
     legend_below(axes, 1)
 
 
-def draw_tightest(axes: Axes, passage: "Passage") -> None:
+def draw_least_jacobian(axes: Axes, passage: "Passage") -> None:
     """Draws the surroundings of the place where a wall's Jacobian is least of all."""
     name, (share, u, v) = min(passage.folds.items(), key=lambda fold: fold[1][0])
     wall = name.partition("_")[0]
     place = unwrapped_face(passage, name, np.array([u]), np.array([v]))[0, 0]
-    shape = blade_foot(passage, wall)
-    reach = REACH * _chord(shape)
+    shape = blade_end_outline(passage, wall)
+    reach = CLOSE_UP * _chord(shape)
     for half in HALVES:
-        lines = close_lines(passage, f"{wall}_{half}", place, u, reach)
+        lines = patch_lines_near(passage, f"{wall}_{half}", place, u, reach)
         axes.add_collection(LineCollection(lines, colors=COLOURS[wall], linewidths=0.5, alpha=0.7), autolim=False)
-    _draw_foot(axes, passage, wall, shape)
-    axes.plot(*place, marker="o", label=f"{name.replace('_', ' ')}: {_said(share, u, v)}", **MARK)
+    _draw_blade_end(axes, passage, wall, shape)
+    axes.plot(*place, marker="o", label=f"{name.replace('_', ' ')}: {_jacobian_text(share, u, v)}", **MARK)
     axes.set_xlim(place[0] - reach, place[0] + reach)
     axes.set_ylim(place[1] - reach, place[1] + reach)
     axes.set_aspect("equal", adjustable="box", anchor="N")
-    titled(axes, "Where the Jacobian is least", *coordinates(passage))
+    label_axes(axes, "Where the Jacobian is least", *wall_coordinates(passage))
     legend_below(axes, 1)
 
 
 def patch_lines(passage: "Passage", name: str) -> list[Reals]:
     """Lines of constant u, then of constant v, of a wall's native half: each (n, 2) in its plane [mm]."""
     pieces = [np.linspace(*ends, count) for ends, count in zip(_pieces(), ALONG, strict=True)]
-    across = unwrapped_face(passage, name, np.unique(np.concatenate(pieces)), np.linspace(0.0, 1.0, FINE))
-    along = unwrapped_face(passage, name, _along(), np.linspace(0.0, 1.0, ACROSS))
+    across = unwrapped_face(passage, name, np.unique(np.concatenate(pieces)), np.linspace(0.0, 1.0, LINE_POINTS))
+    along = unwrapped_face(passage, name, _stations_along(), np.linspace(0.0, 1.0, ACROSS))
     return [*across, *np.swapaxes(along, 0, 1)]
 
 
-def close_lines(passage: "Passage", name: str, place: Reals, u: float, reach: float) -> list[Reals]:
+def patch_lines_near(passage: "Passage", name: str, place: Reals, u: float, reach: float) -> list[Reals]:
     """Lines as `patch_lines`, but within about `reach` of a place (2,) in the plane, which is near u.
 
     They are so chosen that they pass the place at equal distances.
     """
-    along = np.linspace(max(0.0, u - BESIDE), min(1.0, u + BESIDE), 4 * FINE)
-    across = np.linspace(0.0, 1.0, 2 * FINE) ** 2
+    along = np.linspace(max(0.0, u - CLOSE_UP_U), min(1.0, u + CLOSE_UP_U), 4 * LINE_POINTS)
+    across = np.linspace(0.0, 1.0, 2 * LINE_POINTS) ** 2
     apart = length(unwrapped_face(passage, name, along, across) - place)
     along, across = (_at_distances(each, apart.min(axis=axis), reach) for each, axis in ((along, 1), (across, 0)))
     edges = [edge for edge in BLADE_AT if along[0] < edge < along[-1]]
-    fine = np.union1d(np.linspace(along[0], along[-1], 4 * FINE), edges)
-    lines = [*unwrapped_face(passage, name, along, np.linspace(across[0], across[-1], 2 * FINE))]
+    fine = np.union1d(np.linspace(along[0], along[-1], 4 * LINE_POINTS), edges)
+    lines = [*unwrapped_face(passage, name, along, np.linspace(across[0], across[-1], 2 * LINE_POINTS))]
     return [*lines, *np.swapaxes(unwrapped_face(passage, name, fine, across), 0, 1)]
 
 
 def _at_distances(parameter: Reals, distance: Reals, reach: float) -> Reals:
     """Parameters, to both sides of the nearest, at equal steps of the distance."""
-    nearest, steps = int(np.argmin(distance)), 1.6 * reach * np.linspace(0.0, 1.0, CLOSELY)
+    nearest, steps = int(np.argmin(distance)), 1.6 * reach * np.linspace(0.0, 1.0, CLOSE_UP_LINES)
     sides = (slice(nearest, None, -1), slice(nearest, None))
     return np.unique([np.interp(steps, np.maximum.accumulate(distance[side]), parameter[side]) for side in sides])
 
 
-def _draw_foot(axes: Axes, passage: "Passage", wall: str, shape: Reals) -> None:
+def _draw_blade_end(axes: Axes, passage: "Passage", wall: str, shape: Reals) -> None:
     """The blade's foot; where it stands off the wall, the outline of its tip."""
     colour = span_colour(0.0 if wall == "hub" else 1.0)
     if passage.walls[f"{wall}_upper"].touched:
@@ -122,9 +199,9 @@ def _pieces() -> tuple[tuple[float, float], ...]:
     return tuple(pairwise((0.0, *BLADE_AT, 1.0)))
 
 
-def _along() -> Reals:
+def _stations_along() -> Reals:
     """Places along the flow, dense towards the blade's edges."""
-    return np.unique(np.concatenate([low + (high - low) * along_curve(2 * FINE) for low, high in _pieces()]))
+    return np.unique(np.concatenate([low + (high - low) * cosine_spacing(2 * LINE_POINTS) for low, high in _pieces()]))
 
 
 def _chord(shape: Reals) -> float:
@@ -132,5 +209,5 @@ def _chord(shape: Reals) -> float:
     return float(np.max(length(shape - shape[0])))
 
 
-def _said(share: float, u: float, v: float) -> str:
+def _jacobian_text(share: float, u: float, v: float) -> str:
     return f"{share:.2g} of its median, at u = {round(u, 3):g}, v = {round(v, 3):g}"

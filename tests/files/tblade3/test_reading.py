@@ -6,8 +6,8 @@ from dataclasses import replace
 import pytest
 
 from bladewright.files.tblade3 import is_tblade3, read_tblade3
-from bladewright.files.tblade3.lines import items, number
-from bladewright.files.tblade3.records import LEADING_EDGE
+from bladewright.files.tblade3.case import LEADING_EDGE
+from bladewright.files.tblade3.fortran_input import fortran_number, list_directed_items
 
 from .inputs import EDGE, LAWS, OLDER, SECTIONWISE, SPANWISE, STREAMLINES, lines, place_of, written
 
@@ -362,7 +362,7 @@ def test_a_main_input_file_is_told_from_others():
     ],
 )
 def test_a_line_falls_into_values_as_in_fortran(line, expected):
-    assert items(line) == expected
+    assert list_directed_items(line) == expected
 
 
 @pytest.mark.parametrize(
@@ -379,12 +379,12 @@ def test_a_line_falls_into_values_as_in_fortran(line, expected):
     ],
 )
 def test_a_word_is_the_number_that_fortran_reads(word, value):
-    assert math.isclose(number(word), value, rel_tol=1e-15)
+    assert math.isclose(fortran_number(word), value, rel_tol=1e-15)
 
 
 @pytest.mark.parametrize("word", ["", "one", "1.2.3", "1e", "nan", "inf", "1e999", "--1", "0x10", "1_000", None])
 def test_a_word_that_is_no_number_is_none(word):
-    assert number(word) is None
+    assert fortran_number(word) is None
 
 
 def test_a_table_of_multipliers_that_is_not_asked_for_may_hold_anything(tmp_path):

@@ -7,13 +7,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from bladewright.blade.families import CurvatureMeanlineBlade
-from bladewright.blade.sectioned_exact import sectioned_exact
+from bladewright.blade.design.families import CurvatureMeanlineBlade
+from bladewright.blade.exact.sectioned import exact_sectioned_blade
 from bladewright.errors import FileError
 from bladewright.files.reading import read_design
 from bladewright.files.tblade3 import import_tblade3, read_tblade3
-from bladewright.files.tblade3.computed import placed, section_points
-from bladewright.files.tblade3.laws import law_through, section_places
+from bladewright.files.tblade3.importing import point_in_space, section_points
+from bladewright.files.tblade3.section_parts import law_through, section_places
 from bladewright.files.tblade3.stacking import chord_stations
 from bladewright.files.tblade3.translation import blade_of, case_sections
 from bladewright.files.writing import write_design
@@ -59,7 +59,7 @@ def test_sections_are_those_of_the_program_at_its_own_stations(name):
     for i, expected in enumerate(points):
         outline = sections.numbers.of(i).unsplined(ONE)
         u = stations(name, i + 1)
-        upper, lower = (placed(sections, i, side[0]) / MM for side in outline.at(u, outline.half_at(u)))
+        upper, lower = (point_in_space(sections, i, side[0]) / MM for side in outline.at(u, outline.half_at(u)))
         worst = max(worst, np.max(np.abs(np.concatenate([upper[::-1], lower[1:]]) - expected)))
     # what is asked for; 16 digits are in the file. Found is 1e-9, or 6e-7 where T-Blade3 inverts its quartic spline
     assert worst < 1e-6
@@ -70,7 +70,7 @@ def test_sections_are_those_of_the_program_at_its_own_stations(name):
 def test_the_design_goes_through_all_sections_of_the_program(name, tmp_path):
     sections = reference(name)
     write_design(blade_of(sections), tmp_path / "blade.toml")
-    exact = sectioned_exact(read_design(tmp_path / "blade.toml"), checked=False)
+    exact = exact_sectioned_blade(read_design(tmp_path / "blade.toml"), checked=False)
     found = np.stack(exact.stations(sections.places).points(PLACES), axis=1)
     expected = np.array([section_points(sections, i, PLACES) for i in range(len(sections.places))])
     np.testing.assert_allclose(found, expected, rtol=0.0, atol=1e-9 * MM)
@@ -125,7 +125,7 @@ def test_sections_of_the_design_are_those_of_t_blade3s_formulas(changes, tmp_pat
     assert sections.flow.spans == pytest.approx(witness.span, abs=1e-13)
     for found, places in zip(sections.flow.slopes, (witness.leading, witness.trailing), strict=True):
         assert found == pytest.approx(witness.slopes(places), abs=1e-12)
-    exact = sectioned_exact(blade_of(sections), checked=False)
+    exact = exact_sectioned_blade(blade_of(sections), checked=False)
     found = np.stack(exact.stations(sections.places).points(PLACES), axis=1) / case.unit_length
     expected = np.array([witness.points(i, PLACES) for i in range(len(sections.places))])
     # a stacking point on a side or of the area is taken off polygons by the witness
@@ -153,7 +153,7 @@ def test_derivatives_go_through_a_counted_m(path, tmp_path):
     value, step = design.parameters()[path], 1e-5
 
     def points(changed):
-        stations = sectioned_exact(design.changed(path, changed), checked=False).stations(
+        stations = exact_sectioned_blade(design.changed(path, changed), checked=False).stations(
             np.array([0.0, 0.3, 0.7, 1.0])
         )
         return np.stack(stations.points(PLACES))
@@ -278,7 +278,7 @@ def test_leading_edges_that_are_splines_become_the_familys_where_asked(tmp_path)
     sections = case_sections(read_tblade3(main))
     design = blade_of(sections)
     assert 0.02 < design.section.leading_edge_spline.contact < 0.3
-    exact = sectioned_exact(design, checked=False)
+    exact = exact_sectioned_blade(design, checked=False)
     points = np.stack(exact.stations(sections.places).points(PLACES), axis=1)
     expected = np.array([section_points(sections, i, PLACES) for i in range(3)])
     np.testing.assert_allclose(points, expected, rtol=0.0, atol=1e-9 * MM)

@@ -5,8 +5,7 @@ import pytest
 
 from bladewright.errors import DesignError
 from bladewright.section.laws import Span
-from bladewright.section.profiles.arcs import EDGE
-from bladewright.section.profiles.circular_arc import DoubleCircularArc, MultipleCircularArc
+from bladewright.section.profiles.circular_arc import EDGE, DoubleCircularArc, MultipleCircularArc
 from bladewright.section.profiles.flat_plate import FlatPlate
 
 SPAN = Span(np.zeros(1))

@@ -5,12 +5,12 @@ import pytest
 from scipy.optimize import brentq
 
 from bladewright.section.laws import Span
+from bladewright.section.power_series import Series
 from bladewright.section.profiles.c4 import C4
 from bladewright.section.profiles.naca4 import Naca4
 from bladewright.section.profiles.naca5 import FiveDigitLine, Naca5
 from bladewright.section.profiles.naca6 import LoadedLine, Naca6
 from bladewright.section.profiles.naca65 import Naca65
-from bladewright.section.thickness.series import Series
 
 from .published import (
     C4_ORDINATES,

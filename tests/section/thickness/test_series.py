@@ -5,7 +5,7 @@ from math import factorial
 import numpy as np
 import pytest
 
-from bladewright.section.thickness.series import Series, joined_series, polynomial, sine, variable
+from bladewright.section.power_series import Series, joined_series, polynomial, sine, variable
 
 ORDER = 5
 AT = np.array([0.3, 0.7])

@@ -5,16 +5,16 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from bladewright.section.thickness.stations import Break, Stations
+from bladewright.section.thickness.piecewise import Breakpoint, ChordMap
 
 S = np.linspace(0.0, 1.0, 401)
 
 
-def stations(u, *, leading=True, trailing=True, bend=None) -> Stations:
+def stations(u, *, leading=True, trailing=True, bend=None) -> ChordMap:
     """Joints of an ellipse, the maximum, and an ellipse, at u."""
     places = zip(u, (0.02, 0.4, 0.99), (1, 2, 1), strict=True)
-    breaks = [Break(np.array([at]), np.array([1.0 - at]), derivatives, sigma) for at, sigma, derivatives in places]
-    return Stations(breaks, leading_round=leading, trailing_round=trailing, bend=bend)
+    breaks = [Breakpoint(np.array([at]), np.array([1.0 - at]), derivatives, sigma) for at, sigma, derivatives in places]
+    return ChordMap(breaks, leading_round=leading, trailing_round=trailing, bend=bend)
 
 
 @given(

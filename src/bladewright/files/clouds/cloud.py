@@ -22,7 +22,7 @@ class Cloud:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Numbers:
+class Columns:
     """The columns of a file, as its format gives them."""
 
     values: Reals

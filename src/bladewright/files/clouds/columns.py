@@ -1,4 +1,4 @@
-"""What the columns of a cloud's file are, and the points that they make."""
+"""What the columns of a point cloud's file are, the unit of its lengths, and the points they make."""
 
 import re
 from collections.abc import Sequence
@@ -6,8 +6,9 @@ from collections.abc import Sequence
 import numpy as np
 
 from bladewright.errors import FileError
-from bladewright.files.clouds.cloud import Numbers
+from bladewright.files.clouds.cloud import Columns
 from bladewright.nurbs.basis import Reals
+from bladewright.section.checks import UNITS
 
 ROLES = ("x", "y", "z", "r", "theta", "skip")
 SETS = ({"x", "y"}, {"x", "y", "z"}, {"x", "r", "theta"})
@@ -22,11 +23,11 @@ _NAMES = {
     "θ": "theta",
 }
 """roles by the names of columns, without signs and units; ParaView numbers its components"""
-RATIO = 20.0
+ID_EXTENT_RATIO = 20.0
 """extent of a column of whole numbers over that of the others from which they can only be ids"""
 
 
-def roles_of(where: str, numbers: Numbers, columns: Sequence[str] | None) -> tuple[str, ...]:
+def roles_of(where: str, numbers: Columns, columns: Sequence[str] | None) -> tuple[str, ...]:
     """What each column is, one of ROLES; raises FileError where that is not clear, or not enough for points."""
     count = numbers.values.shape[1]
     if columns is not None:
@@ -54,7 +55,7 @@ def roles_of(where: str, numbers: Numbers, columns: Sequence[str] | None) -> tup
     raise FileError(f"{where} has {what}: {_cure(numbers)}")
 
 
-def placed(numbers: Numbers, roles: Sequence[str], metre: float) -> Reals:
+def points_of_columns(numbers: Columns, roles: Sequence[str], metre: float) -> Reals:
     """Points (n, 2) or (n, 3) [m] of columns in a unit of `metre` metres."""
     column = {role: numbers.values[:, place] for place, role in enumerate(roles) if role != "skip"}
     if "theta" not in column:
@@ -71,7 +72,7 @@ def role_named(name: str) -> str:
     return _NAMES.get(re.sub(r"[\s_.:\-]", "", bare), "skip")
 
 
-def _given(where: str, numbers: Numbers, words: tuple[str, ...]) -> tuple[str, ...]:
+def _given(where: str, numbers: Columns, words: tuple[str, ...]) -> tuple[str, ...]:
     count = numbers.values.shape[1]
     for word in words:
         if word not in ROLES:
@@ -92,7 +93,7 @@ def _makes_points(roles: Sequence[str]) -> bool:
     return set(used) in SETS and len(used) == len(set(used))
 
 
-def _could_be_ids(numbers: Numbers) -> bool:
+def _could_be_ids(numbers: Columns) -> bool:
     values = numbers.values
     first = values[:, 0]
     # a coordinate on a grid comes back, an id hardly does
@@ -103,15 +104,15 @@ def _are_ids(values: Reals) -> bool:
     """Whether whole numbers in the first column cannot be coordinates beside the others."""
     others = float(np.max(np.ptp(values[:, 1:], axis=0)))
     first = values[:, 0]
-    return bool(np.min(first) >= 0.0 and len(values) > 3 and np.ptp(first) > RATIO * others)
+    return bool(np.min(first) >= 0.0 and len(values) > 3 and np.ptp(first) > ID_EXTENT_RATIO * others)
 
 
-def _cure(numbers: Numbers) -> str:
+def _cure(numbers: Columns) -> str:
     example = {2: "x,y", 3: "skip,x,y", 4: "skip,x,y,z"}.get(numbers.values.shape[1], "x,y,z,skip,skip")
     return f"{_first_row(numbers)}; say what its columns are, such as --columns {example}"
 
 
-def _first_row(numbers: Numbers) -> str:
+def _first_row(numbers: Columns) -> str:
     row = [f"{value:.6g}" for value in numbers.values[0][:8]]
     at = f" (line {int(numbers.lines[0])})" if numbers.lines is not None else ""
     return f"its first row{at} is {' '.join(row)}{' ...' if numbers.values.shape[1] > 8 else ''}"
@@ -119,3 +120,38 @@ def _first_row(numbers: Numbers) -> str:
 
 def _listed(roles: Sequence[str]) -> str:
     return ", ".join(role for role in roles if role != "skip") or "none"
+
+
+LARGE = 20.0
+"""extent of a blade [m] above which its unit is suspected"""
+SMALL = 5e-3
+"""extent of a blade [m] below which its unit is suspected, as that of 4 inches read as millimetres"""
+USUAL = 0.1
+"""extent of a blade [m] to which that in the likeliest unit is nearest"""
+NAMES = {"m": "metres", "cm": "centimetres", "mm": "millimetres", "um": "micrometres", "in": "inches"}
+_UNIT = re.compile(r"[\[(]\s*(m|cm|mm|um|µm|in|ft)\s*[\])]|_(cm|mm|um|in|ft)$", re.IGNORECASE)
+
+
+def unit_in(where: str, names: Sequence[str], roles: Sequence[str]) -> str | None:
+    """The unit that the names of the columns of lengths state, such as `x [mm]`; None where they state none."""
+    found = set()
+    for name, role in zip(names, roles, strict=False):
+        match = _UNIT.search(name.strip())
+        if role in {"x", "y", "z", "r"} and match:
+            found.add((match[1] or match[2]).lower().replace("µ", "u"))
+    if len(found) > 1:
+        raise FileError(f"{where} has columns in {' and '.join(sorted(found))}: bring them to one unit")
+    return found.pop() if found else None
+
+
+def unit_warning(points: Reals, unit: str, *, given: bool) -> list[str]:
+    """A sentence where hardly a blade has the extent of points [m] that were taken to be in a unit."""
+    extent = float(np.max(np.ptp(points, axis=0)))
+    if SMALL <= extent <= LARGE or extent == 0.0:
+        return []
+    own = extent / UNITS[unit]
+    likely = min(NAMES, key=lambda name: abs(np.log(own * UNITS[name] / USUAL)))
+    taken = f"given as {unit}" if given else f"taken to be in {unit}"
+    sure = SMALL <= own * UNITS[likely] <= LARGE and likely != unit
+    cure = f": is it in {NAMES[likely]}? Then give the unit {likely}" if sure else ": is the unit right?"
+    return [f"the cloud, {taken}, is {extent:.4g} m long, which hardly a blade is{cure}"]

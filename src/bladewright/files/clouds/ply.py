@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 
 from bladewright.errors import FileError
-from bladewright.files.clouds.cloud import Numbers
+from bladewright.files.clouds.cloud import Columns
 from bladewright.nurbs.basis import Reals
 
 _TYPES = {
@@ -24,7 +24,7 @@ class _Element(NamedTuple):
     """name and type"""
 
 
-def read_ply(path: Path, data: bytes) -> Numbers:
+def read_ply(path: Path, data: bytes) -> Columns:
     """The vertices; raises FileError where the header is none, or the file is cut off."""
     order, elements, start = _header(path, data)
     before: list[_Element] = []
@@ -55,7 +55,7 @@ def read_ply(path: Path, data: bytes) -> Numbers:
         values = _ascii(path, body, element, [names.index(axis) for axis in "xyz"])
     if not len(values):
         raise FileError(f"'{path}' is a PLY file without vertices")
-    return Numbers(values=values, format="a PLY file", columns=("x", "y", "z"))
+    return Columns(values=values, format="a PLY file", columns=("x", "y", "z"))
 
 
 def _ascii(path: Path, body: list[bytes], element: _Element, places: list[int]) -> Reals:

@@ -7,10 +7,9 @@ from pathlib import Path
 import numpy as np
 
 from bladewright.errors import FileError
-from bladewright.files.clouds import arrays, ply, stl, tables, vtk
-from bladewright.files.clouds.cloud import Cloud, Numbers
-from bladewright.files.clouds.columns import placed, roles_of
-from bladewright.files.clouds.units import suspicion, unit_in
+from bladewright.files.clouds import numpy_arrays, ply, stl, tables, vtk
+from bladewright.files.clouds.cloud import Cloud, Columns
+from bladewright.files.clouds.columns import points_of_columns, roles_of, unit_in, unit_warning
 from bladewright.nurbs.basis import Reals
 from bladewright.section.checks import UNITS
 
@@ -53,12 +52,12 @@ def read_cloud(path: str | os.PathLike[str], *, columns: Sequence[str] | None = 
     _check_finite(where, numbers, roles)
     said = unit_in(where, numbers.names, roles)
     taken = unit or said or "m"
-    points = placed(numbers, roles, UNITS[taken])
-    notes = [*numbers.notes, *suspicion(points, taken, given=unit is not None)]
+    points = points_of_columns(numbers, roles, UNITS[taken])
+    notes = [*numbers.notes, *unit_warning(points, taken, given=unit is not None)]
     return Cloud(points=points, format=numbers.format, unit=taken, columns=roles, notes=tuple(notes))
 
 
-def _reader(path: Path, data: bytes) -> Callable[[Path, bytes], Numbers]:
+def _reader(path: Path, data: bytes) -> Callable[[Path, bytes], Columns]:
     head = data[:4096].removeprefix(b"\xef\xbb\xbf").lstrip()
     for start, what in _OTHERS.items():
         if data.startswith(start) or head.startswith(start):
@@ -66,7 +65,7 @@ def _reader(path: Path, data: bytes) -> Callable[[Path, bytes], Numbers]:
     if head.startswith((b"ply\n", b"ply\r")):
         return ply.read_ply
     if data.startswith((b"\x93NUMPY", b"PK\x03\x04")):
-        return arrays.read_arrays
+        return numpy_arrays.read_arrays
     if head.lower().startswith(b"# vtk datafile") or b"<VTKFile" in head:
         return vtk.read_vtk
     if stl.is_stl(data):
@@ -91,7 +90,7 @@ def _contents(path: Path) -> bytes:
     return data
 
 
-def _check_finite(where: str, numbers: Numbers, roles: Sequence[str]) -> None:
+def _check_finite(where: str, numbers: Columns, roles: Sequence[str]) -> None:
     used = [place for place, role in enumerate(roles) if role != "skip"]
     values: Reals = numbers.values[:, used]
     bad = np.argwhere(~np.isfinite(values))

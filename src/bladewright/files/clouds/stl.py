@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 
 from bladewright.errors import FileError
-from bladewright.files.clouds.cloud import Numbers
+from bladewright.files.clouds.cloud import Columns
 
 _RECORD = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
 _VERTEX = re.compile(rb"vertex\s+(\S+)\s+(\S+)\s+(\S+)")
@@ -20,7 +20,7 @@ def is_stl(data: bytes) -> bool:
     return ascii_file or (binary_file and _announced(data) > 0 and _plausible(data))
 
 
-def read_stl(path: Path, data: bytes) -> Numbers:
+def read_stl(path: Path, data: bytes) -> Columns:
     """The vertices, each once; raises FileError where the file is cut off."""
     if len(data) == 84 + _RECORD.itemsize * _announced(data):
         corners = np.frombuffer(data, dtype=_RECORD, offset=84)["corners"].astype(np.float64)
@@ -35,7 +35,7 @@ def read_stl(path: Path, data: bytes) -> Numbers:
         held = (len(data) - 84) // _RECORD.itemsize
         raise FileError(f"'{path}' is an STL file that breaks off after {held} of {_announced(data)} triangles")
     points = np.unique(corners.reshape(-1, 3), axis=0)
-    return Numbers(values=points, format="an STL file", columns=("x", "y", "z"))
+    return Columns(values=points, format="an STL file", columns=("x", "y", "z"))
 
 
 def _announced(data: bytes) -> int:

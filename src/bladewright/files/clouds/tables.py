@@ -1,4 +1,4 @@
-"""Tables of numbers in text, whatever stands between them, above them and beside them."""
+"""Tables of numbers in text files, airfoil files among them."""
 
 import io
 import re
@@ -10,10 +10,23 @@ from typing import NamedTuple
 import numpy as np
 
 from bladewright.errors import FileError
-from bladewright.files.clouds.airfoils import parted
-from bladewright.files.clouds.cloud import Numbers
+from bladewright.files.clouds.cloud import Columns
 from bladewright.files.clouds.columns import role_named
 from bladewright.nurbs.basis import Reals
+
+
+def airfoil_layout(values: Reals, title: str) -> tuple[str, int]:
+    """What two columns (n, 2) below a title are, in words, and the row in which their points begin.
+
+    A Lednicer file has the numbers of points of its two sides above them.
+    """
+    first = values[0]
+    counted = bool(np.all(first == np.round(first)) and np.min(first) > 1.0 and first.sum() == len(values) - 1)
+    if counted:
+        return "a Lednicer airfoil", 1
+    around = np.argmin(values[:, 0]) not in (0, len(values) - 1) and np.max(np.abs(values)) <= 2.0
+    return ("a Selig airfoil" if title and around else "a table"), 0
+
 
 COMMENTS = "#%!"
 MOST_NAMES = 30
@@ -32,7 +45,7 @@ class _Head(NamedTuple):
     """number and text of the last line of words"""
 
 
-def read_table(path: Path, data: bytes) -> Numbers:
+def read_table(path: Path, data: bytes) -> Columns:
     """The numbers of a text file; raises FileError with line and column where it is no table of them."""
     text = _decoded(path, data)
     head = _head_of(path, text)
@@ -48,9 +61,9 @@ def read_table(path: Path, data: bytes) -> Numbers:
     names = head.names if len(head.names) == values.shape[1] else ()
     whole = _whole(values[:, 0], head.row)
     if values.shape[1] != 2 or any(role_named(name) != "skip" for name in names):
-        return Numbers(values=values, format="a table", names=names, lines=lines, whole=whole)
-    kind, start = parted(values, head.title)
-    return Numbers(values=values[start:], format=kind, lines=lines[start:], columns=("x", "y"))
+        return Columns(values=values, format="a table", names=names, lines=lines, whole=whole)
+    kind, start = airfoil_layout(values, head.title)
+    return Columns(values=values[start:], format=kind, lines=lines[start:], columns=("x", "y"))
 
 
 def _decoded(path: Path, data: bytes) -> str:

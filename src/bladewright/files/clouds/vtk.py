@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from bladewright.errors import FileError
-from bladewright.files.clouds.cloud import Numbers
+from bladewright.files.clouds.cloud import Columns
 
 _XML = {
     b"PolyData": "vtkXMLPolyDataReader",
@@ -15,7 +15,7 @@ _XML = {
 }
 
 
-def read_vtk(path: Path, data: bytes) -> Numbers:
+def read_vtk(path: Path, data: bytes) -> Columns:
     """The points; raises FileError where VTK cannot read them."""
     try:
         from vtkmodules import vtkIOLegacy, vtkIOXML
@@ -43,4 +43,4 @@ def read_vtk(path: Path, data: bytes) -> Numbers:
     if reader.GetErrorCode() or points is None or points.GetNumberOfPoints() == 0:
         raise FileError(f"'{path}' is a VTK file without points, or not whole: has its writer finished?")
     values = np.array(vtk_to_numpy(points.GetData()), dtype=np.float64)
-    return Numbers(values=values, format="a VTK file", columns=("x", "y", "z"))
+    return Columns(values=values, format="a VTK file", columns=("x", "y", "z"))

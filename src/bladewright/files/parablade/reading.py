@@ -6,14 +6,13 @@ from pathlib import Path
 
 import numpy as np
 
-from bladewright.blade.checks import check_sections
-from bladewright.blade.exact import exact_blade
-from bladewright.blade.unified import UnifiedBlade
+from bladewright.blade.design.unified import UnifiedBlade
+from bladewright.blade.exact.checks import check_sections
+from bladewright.blade.exact.unified import exact_unified_blade
 from bladewright.errors import DesignError, FileError
-from bladewright.files.blade_count import standing_apart
-from bladewright.files.imported import Imported
+from bladewright.files.imported import Imported, most_blades_apart
 from bladewright.files.parablade.config import CHANNEL, COMMON, WORDS, Config, parsed
-from bladewright.files.parablade.shape import shape_at, side_basis
+from bladewright.files.parablade.sections import sections_at, side_basis
 from bladewright.files.parablade.translation import blade_of, section_of
 from bladewright.files.text import read_text
 from bladewright.nurbs.basis import Reals
@@ -79,8 +78,9 @@ def _design_of(config: Config, name: str, chordwise: int | None) -> tuple[Unifie
             f"no pitch is in the file: {blade.pitch:.4g} mm is taken, one meridional length; set the true one"
         )
         return blade, changed
-    standing = standing_apart(
-        int(blade.blade_count or 1), lambda count: check_sections(exact_blade(blade.changed("blade_count", count)))
+    standing = most_blades_apart(
+        int(blade.blade_count or 1),
+        lambda count: check_sections(exact_unified_blade(blade.changed("blade_count", count))),
     )
     said = f"N_BLADES = {config.blades} has no effect in ParaBlade, and may be any number there"
     if standing != blade.blade_count:
@@ -100,7 +100,7 @@ def _kept(config: Config) -> tuple[str, ...]:
 
 
 def _points(config: Config) -> dict[str, Reals]:
-    shape = shape_at(config, _ACROSS)
+    shape = sections_at(config, _ACROSS)
     rows = side_basis(_ALONG)
     width = 2 if config.dimensions == 2 else 3
     sides = zip(("upper", "lower"), shape.sides, strict=True)

@@ -3,25 +3,64 @@
 import os
 from collections.abc import Iterator
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 
-from bladewright.blade.checks import check_pitch
-from bladewright.blade.families import CurvatureMeanlineBlade
-from bladewright.blade.sectioned_exact import sectioned_exact
+from bladewright.blade.design.families import CurvatureMeanlineBlade
+from bladewright.blade.exact.checks import check_pitch
+from bladewright.blade.exact.sectioned import exact_sectioned_blade
 from bladewright.errors import DesignError, FileError
-from bladewright.files.blade_count import standing_apart
-from bladewright.files.imported import Imported
-from bladewright.files.tblade3.computed import section_points, written_points
+from bladewright.files.imported import Imported, most_blades_apart
+from bladewright.files.tblade3.case import SpanLaw, TBlade3Case
 from bladewright.files.tblade3.reading import read_tblade3
-from bladewright.files.tblade3.records import SpanLaw, TBlade3Case
-from bladewright.files.tblade3.stacking import SIDE, chord_stations
+from bladewright.files.tblade3.stacking import POINTS_PER_SIDE, chord_stations
 from bladewright.files.tblade3.translation import CaseSections, blade_of, case_sections
 from bladewright.nurbs.basis import Reals
+from bladewright.section.laws import Span
 
-MOST = 1500
+
+def section_points(sections: CaseSections, index: int, places: Reals) -> tuple[Reals, Reals]:
+    """Points (k, 3) [m] of a section's upper and lower side at the outline's s (k,).
+
+    They are laid on the case's own stream line at its own m' and theta; neither laws nor stream surfaces have a part.
+    """
+    outline = sections.numbers.of(index).outline(Span(np.zeros(1)))
+    upper, lower = (point_in_space(sections, index, np.real(side)[0]) for side in outline.points(places))
+    return upper, lower
+
+
+def point_in_space(sections: CaseSections, index: int, chords: Reals) -> Reals:
+    """Points (k, 3) [m] in space of points (k, 2) of a section in chords."""
+    turn, chord = sections.stagger[index], sections.chords[index]
+    along = chord * (chords[:, 0] * np.cos(turn) - chords[:, 1] * np.sin(turn))
+    across = chord * (chords[:, 0] * np.sin(turn) + chords[:, 1] * np.cos(turn))
+    line, total = sections.flow.lines[index], sections.flow.totals[index]
+    x, r = np.real(line.values((sections.leading[index] + along) / total)).T
+    theta = sections.theta[index] + across
+    return np.stack([x, r * np.sin(theta), r * np.cos(theta)], axis=-1)
+
+
+def written_points(case: TBlade3Case) -> Reals | None:
+    """Points (m, n, 3) [m] of the sections as T-Blade3 wrote them beside the case's file, or None where it did not.
+
+    Each section runs from the trailing edge along the upper side, and back along the lower.
+    """
+    path = Path(case.file).with_name(f"blade3d.{case.name}.dat")
+    try:
+        rows = [line.split() for line in path.read_text().splitlines() if line.strip()]
+        count, sections = (int(word) for word in rows[0][:2])
+        found = np.array(rows[1:], dtype=np.float64).reshape(sections, count, 3)
+    except (OSError, ValueError, IndexError):
+        return None
+    if len(found) != len(case.sections) or count != 2 * POINTS_PER_SIDE - 1 or not np.all(np.isfinite(found)):
+        return None
+    return found * case.unit_length / case.scale
+
+
+MOST_POINTS = 1500
 """points that the built sides are measured with, about"""
-_ALONG = (1.0 - np.cos(np.pi * np.linspace(0.0, 1.0, SIDE))) / 2.0
+_ALONG = (1.0 - np.cos(np.pi * np.linspace(0.0, 1.0, POINTS_PER_SIDE))) / 2.0
 
 
 def import_tblade3(
@@ -74,12 +113,12 @@ def _translated(case: TBlade3Case, *, edge_spline: bool, true_stagger: bool) -> 
 def _standing(design: CurvatureMeanlineBlade, file: str) -> int:
     """How many of the case's blades do not intersect; raises FileError where its sections make no blade."""
     try:
-        exact = sectioned_exact(design)
+        exact = exact_sectioned_blade(design)
 
         def check(count: int) -> None:
             check_pitch(replace(exact, design=design.changed("blade_count", count)))
 
-        return standing_apart(int(design.blade_count or 1), check)
+        return most_blades_apart(int(design.blade_count or 1), check)
     except DesignError as error:
         raise FileError(f"'{file}': its sections make no blade: {error}") from error
 
@@ -87,13 +126,13 @@ def _standing(design: CurvatureMeanlineBlade, file: str) -> int:
 def _points(sections: CaseSections) -> tuple[dict[str, Reals], str]:
     written = written_points(sections.case)
     if written is not None and not sections.true_stagger:
-        sides = {"upper": written[:, :SIDE], "lower": written[:, SIDE - 1 :]}
+        sides = {"upper": written[:, :POINTS_PER_SIDE], "lower": written[:, POINTS_PER_SIDE - 1 :]}
         source = f"blade3d.{sections.case.name}.dat"
     else:
         both = [section_points(sections, i, _ALONG) for i in range(len(sections.places))]
         sides = {name: np.stack([pair[k] for pair in both]) for k, name in enumerate(("upper", "lower"))}
         source = "its formulas" if sections.numbers.edges is None else "its formulas with these leading edges"
-    every = max(1, 2 * SIDE * len(sections.places) // MOST)
+    every = max(1, 2 * POINTS_PER_SIDE * len(sections.places) // MOST_POINTS)
     return {name: points[:, ::every].reshape(-1, 3) for name, points in sides.items()}, source
 
 

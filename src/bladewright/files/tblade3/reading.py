@@ -6,13 +6,11 @@ from pathlib import Path
 from typing import Any
 
 from bladewright.errors import FileError
-from bladewright.files.tblade3.lines import Lines
-from bladewright.files.tblade3.records import TBlade3Case
+from bladewright.files.tblade3.case import TBlade3Case
+from bladewright.files.tblade3.control_inputs import read_sectionwise, read_spanwise
+from bladewright.files.tblade3.fortran_input import Lines
+from bladewright.files.tblade3.main_input import read_head, read_tables
 from bladewright.files.tblade3.remarks import notes_of, unsupported_of, unused_of
-from bladewright.files.tblade3.sectionwise import read_sectionwise
-from bladewright.files.tblade3.spanwise import read_spanwise
-from bladewright.files.tblade3.switches import read_head
-from bladewright.files.tblade3.tables import read_tables
 from bladewright.files.text import read_text
 
 MAIN = "3dbgbinput"

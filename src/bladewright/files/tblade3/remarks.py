@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator
 
-from bladewright.files.tblade3.records import STAGGER_GIVEN, SpanLaw, TBlade3Case
+from bladewright.files.tblade3.case import STAGGER_GIVEN, SpanLaw, TBlade3Case
 
 _KINDS = {
     "crcle": "a circle",

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from bladewright.files.tblade3.records import Stacking, TBlade3Case
+from bladewright.files.tblade3.case import Stacking, TBlade3Case
 from bladewright.numerics.elementary import cross2
 from bladewright.nurbs.basis import Reals
 from bladewright.section.curvature_meanline import CurvatureMeanline
@@ -10,11 +10,11 @@ from bladewright.section.edge_spline import SplinedOutline
 from bladewright.section.laws import Span
 from bladewright.section.outline import Outline
 
-SIDE = 121
+POINTS_PER_SIDE = 121
 """points that T-Blade3 gives a side, both ends among them"""
-ALONG = (1.0 - np.cos(np.pi * np.linspace(0.0, 1.0, 2001))) / 2.0
+POLYGON_STATIONS = (1.0 - np.cos(np.pi * np.linspace(0.0, 1.0, 2001))) / 2.0
 """places along the sides between which the centre of area is that of polygons: exact to 1e-7 chords"""
-STEPS = 8
+REFINEMENTS = 8
 """times that a place is sought among 64 parts of where it was found before: to rounding"""
 
 
@@ -26,9 +26,9 @@ def chord_stations(case: TBlade3Case) -> Reals | None:
     if case.leading_edge == "spline":
         return None
     if case.clustering == "uniform":
-        return np.linspace(0.0, 1.0, SIDE)
+        return np.linspace(0.0, 1.0, POINTS_PER_SIDE)
     if case.clustering == "sine" and case.clustering_parameter is not None:
-        steps = np.sin(np.pi * np.arange(1, SIDE) / SIDE) ** case.clustering_parameter
+        steps = np.sin(np.pi * np.arange(1, POINTS_PER_SIDE) / POINTS_PER_SIDE) ** case.clustering_parameter
         return np.append(0.0, np.minimum(np.cumsum(steps) / np.sum(steps), 1.0))
     return None
 
@@ -48,7 +48,7 @@ def stacking_point(part: CurvatureMeanline, stacking: Stacking, stations: Reals 
         outline = part.unsplined(Span(np.zeros(1)))
         polygons = tuple(np.real(side)[0] for side in outline.at(stations, outline.half_at(stations)))
     if stacking.centroid:
-        return _centre(*sides(ALONG)) if polygons is None else _middle(*polygons)
+        return _centre(*sides(POLYGON_STATIONS)) if polygons is None else _middle(*polygons)
     along = float(sides(np.ones(1))[0][0, 0]) * stacking.along
     if stacking.above == 0.0:
         return np.array([along, 0.0])
@@ -91,7 +91,7 @@ def _ordinate(sides: "_Sides", along: float, side: int) -> float:
         at = 0.0 if along <= x[0] else 1.0
         return float(sides(np.array([at]))[side][0, 1])
     low, high = s[past[0]], s[past[0] + 1]
-    for _ in range(STEPS):
+    for _ in range(REFINEMENTS):
         between = np.linspace(low, high, 65)
         first = int(np.argmax(sides(between)[side][:, 0] > along))
         low, high = (between[first - 1], between[first]) if first else (between[-2], between[-1])

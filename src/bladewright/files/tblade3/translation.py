@@ -6,18 +6,16 @@ from functools import cached_property
 
 import numpy as np
 
-from bladewright.blade.families import CurvatureMeanlineBlade
-from bladewright.blade.flow_path import FlowPath
-from bladewright.blade.meridian import ThroughPoints
+from bladewright.blade.design.families import CurvatureMeanlineBlade
+from bladewright.blade.design.flow_path import FlowPath
+from bladewright.blade.design.meridional_curve import ThroughPoints
 from bladewright.designs import Point
 from bladewright.errors import DesignError, FileError
-from bladewright.files.tblade3.angles import metal_angles
-from bladewright.files.tblade3.flow import CaseFlow, case_flow
-from bladewright.files.tblade3.laws import law_through, section_places
-from bladewright.files.tblade3.parts import Parameters, parameters
-from bladewright.files.tblade3.records import TBlade3Case
-from bladewright.files.tblade3.sections import SectionValues, section_values
+from bladewright.files.tblade3.case import TBlade3Case
+from bladewright.files.tblade3.section_parts import SectionParameters, law_through, section_parameters, section_places
+from bladewright.files.tblade3.section_values import SectionValues, metal_angles, section_values
 from bladewright.files.tblade3.stacking import chord_stations, stacking_point
+from bladewright.files.tblade3.stream_lines import CaseStreamLines, case_stream_lines
 from bladewright.nurbs.basis import Reals
 from bladewright.section.edge_spline import SplinedOutline
 from bladewright.section.laws import Span
@@ -33,9 +31,9 @@ class CaseSections:
     """The m sections of a case, as T-Blade3 places them."""
 
     case: TBlade3Case
-    flow: CaseFlow
+    flow: CaseStreamLines
     values: SectionValues
-    numbers: Parameters
+    numbers: SectionParameters
     true_stagger: bool = False
     """whether true sweep and lean take the section's stagger, instead of what T-Blade3 takes for it"""
 
@@ -142,13 +140,13 @@ def case_sections(case: TBlade3Case, *, true_stagger: bool = False) -> CaseSecti
     refused = [text for text in case.unsupported if "inflation" not in text]
     if refused:
         raise FileError(f"'{case.file}': {refused[0]}")
-    flow = case_flow(case)
+    flow = case_stream_lines(case)
     values = section_values(case, flow.spans)
     sections = CaseSections(
         case=case,
         flow=flow,
         values=values,
-        numbers=parameters(case, values, metal_angles(case, values, *flow.slopes)),
+        numbers=section_parameters(case, values, metal_angles(case, values, *flow.slopes)),
         true_stagger=true_stagger,
     )
     _check_directions(sections)

@@ -1,1 +1,1 @@
-"""Clouds as they come: what can be fitted, repeated blades, fewer points, rounded coordinates."""
+"""Clouds as they come: what can be fitted, repeated blades, fewer points, isolated points."""

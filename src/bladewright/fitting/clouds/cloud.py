@@ -4,18 +4,33 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bladewright.errors import FitError
-from bladewright.fitting.clouds.repetition import repeated
+from bladewright.fitting.clouds.repetition import repetition
 from bladewright.nurbs.basis import Reals
 
-FEWEST = {2: 24, 3: 100}
+ROUNDED_DIGITS = 1e-8
+"""of the extent: digits beyond this tell of an exact cloud"""
+ROUNDED_SAMPLE = 200
+"""points that are looked at"""
+
+
+def is_rounded(points: Reals) -> bool:
+    """Whether all coordinates of points (n, d) are multiples of a power of ten that their extent makes coarse."""
+    extent = float(np.max(np.ptp(points, axis=0)))
+    finest = int(np.floor(-np.log10(ROUNDED_DIGITS * extent)))
+    some = points[:: max(1, len(points) // ROUNDED_SAMPLE)]
+    # a unit that scales by a power of ten leaves the last digits as they are, but for rounding
+    return bool(np.all(np.abs(np.round(some, finest) - some) < 1e-4 * ROUNDED_DIGITS * extent))
+
+
+FEWEST_POINTS = {2: 24, 3: 100}
 """points that a fit of a section and of a blade needs"""
-FLAT = 1e-5
+FLATTEST = 1e-5
 """of its extent: a cloud that is thinner lies on a line or a plane"""
 LARGEST, SMALLEST = 20.0, 5e-3
 """extents beyond which another unit is suspected [m]"""
-LOOKED_AT = 3000
+SHEET_SAMPLE = 3000
 """points by which one side alone is known"""
-THIN = 1.3e-3
+THINNEST_BLADE = 1.3e-3
 """of its width: a sheet this thin is one side, and no blade"""
 
 
@@ -28,24 +43,25 @@ def checked_cloud(cloud: ArrayLike) -> tuple[Reals, tuple[str, ...]]:
     points = _numbers(cloud)
     different = np.unique(points, axis=0)
     dimension = points.shape[1]
-    if len(different) < FEWEST[dimension]:
+    if len(different) < FEWEST_POINTS[dimension]:
         raise FitError(
-            f"the cloud has {len(different)} different points: at least {FEWEST[dimension]} are needed; give more "
+            f"the cloud has {len(different)} different points: at least {FEWEST_POINTS[dimension]} are needed; "
+            "give more "
             "points of the blade's surface"
         )
     middle = np.mean(different, axis=0)
     spread = np.linalg.svd(different - middle, compute_uv=False)
-    if spread[1] < FLAT * spread[0]:
+    if spread[1] < FLATTEST * spread[0]:
         raise FitError(
             f"all {len(points)} points lie on one line: a blade has two sides; give points of its whole surface"
         )
-    if dimension == 3 and spread[2] < FLAT * spread[0]:
+    if dimension == 3 and spread[2] < FLATTEST * spread[0]:
         raise FitError(
             f"all {len(points)} points lie on one plane: give two columns, x and y, for a section, or points of "
             "sections at several places along the span"
         )
-    some = different[np.random.default_rng(0).permutation(len(different))[:LOOKED_AT]]
-    found = repeated(different)
+    some = different[np.random.default_rng(0).permutation(len(different))[:SHEET_SAMPLE]]
+    found = repetition(different)
     if found is not None:
         # the sections of one blade lie again along y where that is its span
         columns = ", or, where it is one, say which column is which (--columns): x must be the machine axis"
@@ -53,7 +69,7 @@ def checked_cloud(cloud: ArrayLike) -> tuple[Reals, tuple[str, ...]]:
             f"the cloud holds two blades or more: {found} along the pitch lies the same shape again; give the points "
             f"of one blade{columns if dimension == 3 else ''}"
         )
-    if one_sided(some):
+    if is_one_sided(some):
         raise FitError(
             "the cloud holds one side of a blade alone, a sheet without thickness: give the points of both sides"
         )
@@ -86,7 +102,7 @@ def _numbers(cloud: ArrayLike) -> Reals:
     return points
 
 
-def one_sided(points: Reals) -> bool:
+def is_one_sided(points: Reals) -> bool:
     """Whether the points are a single sheet: a smooth one passes through the neighbours of most of them."""
     from scipy.spatial import cKDTree
 
@@ -107,4 +123,4 @@ def one_sided(points: Reals) -> bool:
         found = np.linalg.lstsq(matrix, height[rows], rcond=0.03)[0]
         residuals.append(float(np.sqrt(np.mean((height[rows] - matrix @ found) ** 2))))
     # where sections are dense at the edges most neighbourhoods are of an edge, which is thin
-    return float(np.percentile(residuals, 90.0)) < THIN * width
+    return float(np.percentile(residuals, 90.0)) < THINNEST_BLADE * width

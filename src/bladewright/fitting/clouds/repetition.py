@@ -5,26 +5,26 @@ from numpy.typing import NDArray
 
 from bladewright.nurbs.basis import Reals
 
-APART = 0.12
+SMALLEST_PITCH = 0.12
 """of its extent: how far from itself a blade is found again"""
-LOOKED_AT = 3000, 6000
+COMPARED_POINTS = 3000, 6000
 """points among which neighbours are compared: fewer join the rows of a blade, more part blades that stand close"""
-ASKED = 300
+TURNED_POINTS = 300
 """points that are turned by the pitches of rows"""
-COUNTS = range(4, 151)
+BLADE_COUNTS = range(4, 151)
 """numbers of blades around the axis that are tried"""
-BETWEEN = 0.25
+REPEATED_SHARE = 0.25
 """part of the points that lie again a pitch to either side from which the cloud holds three blades or more"""
-CLEARER = 0.8
+MULTIPLE_PITCH_GAIN = 0.8
 """a longer pitch must bring the points nearer by so much: it may be a multiple"""
-CLEAR = 4.0
+PITCH_OVER_SPACING = 4.0
 """a pitch is so many times longer than the distance at which a point is found again"""
 
 
-def repeated(points: Reals) -> str | None:
+def repetition(points: Reals) -> str | None:
     """How far along the pitch, in words, a part of the cloud is found again in another; None where it is not."""
     points = points[np.random.default_rng(0).permutation(len(points))]
-    for count in LOOKED_AT[: 2 if len(points) > LOOKED_AT[0] else 1]:
+    for count in COMPARED_POINTS[: 2 if len(points) > COMPARED_POINTS[0] else 1]:
         some = points[:count]
         parts = [some[rows] for rows in _parts(some)]
         for i, part in enumerate(parts):
@@ -32,7 +32,7 @@ def repeated(points: Reals) -> str | None:
                 found = _turned_onto(part, other)
                 if found is not None:
                     return found
-    points = points[: LOOKED_AT[-1]]
+    points = points[: COMPARED_POINTS[-1]]
     return _around(points) if points.shape[1] == 3 else None
 
 
@@ -42,17 +42,17 @@ def _around(points: Reals) -> str | None:
 
     tree, radius = cKDTree(points), np.sqrt(points[:, 1] ** 2 + points[:, 2] ** 2)
     extent = float(np.hypot(np.ptp(points[:, 0]), np.ptp(radius)))
-    near = 1.5 * float(np.median(tree.query(points[:ASKED], k=2)[0][:, 1])) + 0.005 * extent
-    x, y, z = points[:ASKED].T
+    near = 1.5 * float(np.median(tree.query(points[:TURNED_POINTS], k=2)[0][:, 1])) + 0.005 * extent
+    x, y, z = points[:TURNED_POINTS].T
     nearest, pitch = np.inf, 0.0
-    for count in reversed(COUNTS):
+    for count in reversed(BLADE_COUNTS):
         turn = 2.0 * np.pi / count
-        if turn * float(np.median(radius)) < max(APART * extent, CLEAR * near):
+        if turn * float(np.median(radius)) < max(SMALLEST_PITCH * extent, PITCH_OVER_SPACING * near):
             continue
         c, s = np.cos(turn), np.sin(turn)
         sides = [np.stack([x, c * y + sign * s * z, c * z - sign * s * y], axis=-1) for sign in (1.0, -1.0)]
         away = np.max([tree.query(there)[0] for there in sides], axis=0)
-        if np.mean(away < near) > BETWEEN and np.mean(away[away < near]) < CLEARER * nearest:
+        if np.mean(away < near) > REPEATED_SHARE and np.mean(away[away < near]) < MULTIPLE_PITCH_GAIN * nearest:
             nearest, pitch = float(np.mean(away[away < near])), turn
     return f"{np.degrees(pitch):.4g} deg" if pitch else None
 
@@ -91,7 +91,7 @@ def _turned_onto(part: Reals, other: Reals) -> str | None:
         turned = np.stack([part[:, 0], c * y + s * z, -s * y + c * z], axis=-1)
         moved.append((turned, abs(turn) * radius, f"{abs(np.degrees(turn)):.4g} deg"))
     for there, distance, said in moved:
-        if distance < APART * extent:
+        if distance < SMALLEST_PITCH * extent:
             continue
         spacing = float(np.median(tree.query(other, k=2)[0][:, 1]))
         onto = float(np.mean(tree.query(there)[0]))

@@ -1,1 +1,1 @@
-"""Fits of the families that are one part: where each begins from sampled sections, and what may grow in it."""
+"""Fits of each family: where it begins, and what may grow in it."""

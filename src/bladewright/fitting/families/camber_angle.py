@@ -6,17 +6,17 @@ from dataclasses import replace
 import numpy as np
 from scipy.optimize import lsq_linear
 
-from bladewright.fitting.families.planar import ALONE
-from bladewright.fitting.families.sampled import PLACES, Sampled
+from bladewright.fitting.families.section_samples import PLACES, SampledSection
+from bladewright.fitting.models.planar import SINGLE_SECTION
 from bladewright.nurbs.basis import Reals
 from bladewright.section.camber_angle import CamberAngle
 from bladewright.section.laws import law_basis
 
 ANGLES, THICKNESSES = 4, 4
 """control points to begin with"""
-LEAST = 0.1
+LEAST_HALF_THICKNESS = 0.1
 """smallest half thickness to begin with, of the largest: beside a round edge it may rise so much only"""
-MOST = 14
+MOST_CONTROL_POINTS = 14
 """control points of either"""
 _FEW, _ANGLES = (0.02,) * THICKNESSES, (0.0,) * ANGLES
 TEMPLATES = (
@@ -27,17 +27,17 @@ TEMPLATES = (
 """structures that are tried where none is given"""
 
 
-def templates(section: Sampled, parameters: int | None) -> Sequence[CamberAngle]:  # noqa: ARG001 - the contract's
+def templates(section: SampledSection, parameters: int | None) -> Sequence[CamberAngle]:  # noqa: ARG001 - the contract's
     """Structures that are tried where none is given."""
     return TEMPLATES
 
 
-def started(section: Sampled, like: CamberAngle) -> Sequence[CamberAngle]:
+def started(section: SampledSection, like: CamberAngle) -> Sequence[CamberAngle]:
     """The part of a structure nearest to a section, alone."""
     return [_started(section, like)]
 
 
-def _started(section: Sampled, like: CamberAngle) -> CamberAngle:
+def _started(section: SampledSection, like: CamberAngle) -> CamberAngle:
     """The part of a structure nearest to a section, by least squares of its angle and its half thickness."""
     fraction = _fractions(section, PLACES)
     slope = np.arctan(section.mean(PLACES, 1))
@@ -51,7 +51,7 @@ def _started(section: Sampled, like: CamberAngle) -> CamberAngle:
     )
 
 
-def _fractions(section: Sampled, u: Reals) -> Reals:
+def _fractions(section: SampledSection, u: Reals) -> Reals:
     """Fractions of the meridional extent at chord fractions."""
     cosine, sine = np.cos(section.stagger), np.sin(section.stagger)
     return np.asarray((u * cosine - section.mean(u) * sine) / cosine)
@@ -60,7 +60,7 @@ def _fractions(section: Sampled, u: Reals) -> Reals:
 def _heights(like: CamberAngle, fraction: Reals, half: Reals) -> Reals:
     """Control points of the half thickness, their places and weights held."""
     plain = replace(like, half_thickness=tuple(0.01 for _ in like.half_thickness))
-    outline = plain.outline(ALONE)
+    outline = plain.outline(SINGLE_SECTION)
     weights, places = (np.real(each.controls)[0] for each in (outline.weights, outline.places))
     t = np.linspace(0.0, 1.0, 201)
     rows = law_basis(len(weights), t)
@@ -68,21 +68,21 @@ def _heights(like: CamberAngle, fraction: Reals, half: Reals) -> Reals:
     at = (rows @ places) / total
     count = len(like.half_thickness)
     matrix = (rows * weights)[:, 1 : 1 + count] / total[:, None]
-    least = max(1e-3, LEAST * float(np.max(half)))
+    least = max(1e-3, LEAST_HALF_THICKNESS * float(np.max(half)))
     wanted = np.interp(at, fraction, half, left=0.0)
     return np.asarray(lsq_linear(matrix, wanted, bounds=(least, 0.39)).x)
 
 
-def grown(part: CamberAngle, section: Sampled) -> Sequence[CamberAngle]:  # noqa: ARG001 - what every family answers
+def grown(part: CamberAngle, section: SampledSection) -> Sequence[CamberAngle]:  # noqa: ARG001 - what every family answers
     """The same with one control point more of the angle, or of the half thickness."""
     found = []
-    if len(part.camber_angle) < MOST:
+    if len(part.camber_angle) < MOST_CONTROL_POINTS:
         at = np.linspace(0.0, 1.0, 101)
         angles = law_basis(len(part.camber_angle), at) @ np.array(part.camber_angle)
         wider = np.linalg.lstsq(law_basis(len(part.camber_angle) + 1, at), angles, rcond=None)[0]
         found.append(replace(part, camber_angle=tuple(wider.tolist())))
-    if len(part.half_thickness) < MOST and not part.thickness_places and not part.thickness_weights:
-        outline = part.outline(ALONE)
+    if len(part.half_thickness) < MOST_CONTROL_POINTS and not part.thickness_places and not part.thickness_weights:
+        outline = part.outline(SINGLE_SECTION)
         t = np.linspace(0.0, 1.0, 401)
         places, heights = (
             law_basis(each.controls.shape[-1], t) @ np.real(each.controls)[0]
@@ -100,6 +100,6 @@ def grown(part: CamberAngle, section: Sampled) -> Sequence[CamberAngle]:  # noqa
 
 def _inner_places(part: CamberAngle) -> tuple[float, ...]:
     """The places of the control points of the half thickness that do not stand at an edge."""
-    outline = part.outline(ALONE)
+    outline = part.outline(SINGLE_SECTION)
     at = np.real(outline.places.controls / outline.weights.controls)[0]
     return tuple(at[2 : -2 if part.trailing_edge == "round" else -1].tolist())

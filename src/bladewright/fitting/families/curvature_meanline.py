@@ -6,7 +6,7 @@ from dataclasses import replace
 import numpy as np
 
 from bladewright.designs import ChordwiseLaw
-from bladewright.fitting.families.sampled import Sampled
+from bladewright.fitting.families.section_samples import SampledSection
 from bladewright.nurbs.basis import Reals
 from bladewright.section.curvature_meanline import CurvatureMeanline
 from bladewright.section.thickness.modified_naca import ModifiedNaca
@@ -15,15 +15,15 @@ from bladewright.section.thickness.wennerstrom import Wennerstrom
 
 CURVATURES, MULTIPLIERS = 4, 5
 """control points to begin with"""
-MOST = 14
+MOST_CONTROL_POINTS = 14
 """control points of either"""
-STRAIGHT = np.radians(0.5)
+STRAIGHT_CAMBER = np.radians(0.5)
 """camber below which the second derivative is as good as even"""
-LEAST = 0.1
+LEAST_CURVATURE = 0.1
 """smallest control point of the second derivative to begin with, of the largest"""
-LEAST_INNER = 2
+FREE_PLACES_FROM = 2
 """control points of the second derivative that have no places of their own"""
-BACK = 0.7
+BENT_BACK = 0.7
 """part of its bending that a meanline which bends back turns at most"""
 _EVEN = (1.0,) * CURVATURES
 _LAWS = (
@@ -57,17 +57,17 @@ TEMPLATES = tuple(
 """structures that are tried where none is given"""
 
 
-def templates(section: Sampled, parameters: int | None) -> Sequence[CurvatureMeanline]:  # noqa: ARG001 - the contract's
+def templates(section: SampledSection, parameters: int | None) -> Sequence[CurvatureMeanline]:  # noqa: ARG001 - the contract's
     """Structures that are tried where none is given."""
     return TEMPLATES
 
 
-def started(section: Sampled, like: CurvatureMeanline) -> Sequence[CurvatureMeanline]:
+def started(section: SampledSection, like: CurvatureMeanline) -> Sequence[CurvatureMeanline]:
     """The part of a structure nearest to a section, alone."""
     return [_started(section, like)]
 
 
-def _started(section: Sampled, like: CurvatureMeanline) -> CurvatureMeanline:
+def _started(section: SampledSection, like: CurvatureMeanline) -> CurvatureMeanline:
     """The part of a structure nearest to a section: angles and bends of its mean line, and its thickness."""
     angles = [float(np.degrees(np.clip(section.stagger + each, -1.5, 1.5))) for each in section.angles]
     found = replace(like, metal_angle_in=angles[0], metal_angle_out=angles[1], thickness=_thickness(section, like))
@@ -81,22 +81,22 @@ def _started(section: Sampled, like: CurvatureMeanline) -> CurvatureMeanline:
     return replace(found, thickness_multiplier=zeros)
 
 
-def _curvatures(section: Sampled, places: Reals) -> Reals:
+def _curvatures(section: SampledSection, places: Reals) -> Reals:
     """Control points of the second derivative; of one sign, but where the meanline clearly bends back."""
     turning = np.tan(section.angles[1]) - np.tan(section.angles[0])
-    if turning**2 < STRAIGHT**2:
+    if turning**2 < STRAIGHT_CAMBER**2:
         return np.ones(len(places))
     # higher powers bend back at the edges, where the mean line is seen badly
     u = np.linspace(0.03, 0.97, 60)
     bends = np.polynomial.Polynomial.fit(u, section.mean(u), 4).deriv(2)(places) / turning
-    even = np.maximum(bends, LEAST * np.max(bends))
+    even = np.maximum(bends, LEAST_CURVATURE * np.max(bends))
     total = np.trapezoid(bends, places)
     # a line that bends back turns less than it bends
-    back = 0.0 < total < BACK * np.trapezoid(np.abs(bends), places)
+    back = 0.0 < total < BENT_BACK * np.trapezoid(np.abs(bends), places)
     return np.asarray(bends / np.max(np.abs(bends)) if back else even / np.max(even))
 
 
-def _thickness(section: Sampled, like: CurvatureMeanline) -> Wennerstrom | ModifiedNaca | QuarticSpline:
+def _thickness(section: SampledSection, like: CurvatureMeanline) -> Wennerstrom | ModifiedNaca | QuarticSpline:
     law = like.thickness
     maximum, at = section.thickest
     # a thick nose may show the largest half thickness at the edge
@@ -145,16 +145,16 @@ def _number(law: float | tuple[float, ...]) -> float:
     return float(np.mean(law))
 
 
-def grown(part: CurvatureMeanline, section: Sampled) -> Sequence[CurvatureMeanline]:  # noqa: ARG001 - the contract's
+def grown(part: CurvatureMeanline, section: SampledSection) -> Sequence[CurvatureMeanline]:  # noqa: ARG001 - the contract's
     """The same with one control point more of the second derivative, or of what multiplies the thickness."""
     found = []
-    if part.curvature and not part.curvature_places and len(part.curvature) < MOST:
+    if part.curvature and not part.curvature_places and len(part.curvature) < MOST_CONTROL_POINTS:
         found.append(replace(part, curvature=_wider(part.curvature)))
-    if len(part.curvature) > LEAST_INNER and not part.curvature_places:
+    if len(part.curvature) > FREE_PLACES_FROM and not part.curvature_places:
         places = np.linspace(0.0, 1.0, len(part.curvature))[1:-1]
         found.append(replace(part, curvature_places=tuple(places.tolist())))
     count = len(part.thickness_multiplier)
-    if not part.thickness_multiplier_places and count < MOST:
+    if not part.thickness_multiplier_places and count < MOST_CONTROL_POINTS:
         wider = _wider(part.thickness_multiplier) if count else (0.0,) * MULTIPLIERS
         found.append(replace(part, thickness_multiplier=wider))
     return found

@@ -4,8 +4,8 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from bladewright.blade.families import BLADE_OF
-from bladewright.blade.sectioned import SectionedBlade
+from bladewright.blade.design.families import BLADE_OF
+from bladewright.blade.design.sectioned import SectionedBlade
 from bladewright.designs import Design
 from bladewright.fitting.families import (
     camber_angle,
@@ -14,7 +14,7 @@ from bladewright.fitting.families import (
     suction_pressure,
     wedge_diffuser,
 )
-from bladewright.fitting.families.sampled import Sampled
+from bladewright.fitting.families.section_samples import SampledSection
 from bladewright.section.camber_angle import CamberAngleSection
 from bladewright.section.curvature_meanline import CurvatureMeanlineSection
 from bladewright.section.planar import PlanarSection
@@ -24,18 +24,18 @@ from bladewright.section.wedge_diffuser import WedgeDiffuserSection
 
 
 @dataclass(frozen=True, kw_only=True)
-class Kind:
+class FitFamily:
     """A family as fits know it."""
 
     name: str
     section: type[PlanarSection]
-    templates: Callable[[Sampled, int | None], Sequence[Any]]
+    templates: Callable[[SampledSection, int | None], Sequence[Any]]
     """parts whose structures are tried for a section where none is given, or so many free parameters"""
-    started: Callable[[Sampled, Any], Sequence[Any]]
+    started: Callable[[SampledSection, Any], Sequence[Any]]
     """parts of a structure near to a section, nearest first; may raise DesignError"""
-    grown: Callable[[Any, Sampled], Sequence[Any]]
+    grown: Callable[[Any, SampledSection], Sequence[Any]]
     """parts near to one, which stands for a section, each with a control point more; may raise DesignError"""
-    outlined: Callable[[Sampled, int], Any] | None = None
+    outlined: Callable[[SampledSection, int], Any] | None = None
     """the part through so many points of a section, where the family has one that follows any outline"""
 
     @property
@@ -44,8 +44,8 @@ class Kind:
         return BLADE_OF[self.section]
 
 
-def _kind(name: str, section: type[PlanarSection], module: Any) -> Kind:
-    return Kind(
+def _family(name: str, section: type[PlanarSection], module: Any) -> FitFamily:
+    return FitFamily(
         name=name,
         section=section,
         templates=module.templates,
@@ -55,18 +55,18 @@ def _kind(name: str, section: type[PlanarSection], module: Any) -> Kind:
     )
 
 
-KINDS = {
+FAMILIES = {
     kind.name: kind
     for kind in (
-        _kind("curvature-meanline", CurvatureMeanlineSection, curvature_meanline),
-        _kind("suction-pressure", SuctionPressureSection, suction_pressure),
-        _kind("wedge-diffuser", WedgeDiffuserSection, wedge_diffuser),
-        _kind("camber-angle", CamberAngleSection, camber_angle),
-        _kind("profile", ProfileSection, profile),
+        _family("curvature-meanline", CurvatureMeanlineSection, curvature_meanline),
+        _family("suction-pressure", SuctionPressureSection, suction_pressure),
+        _family("wedge-diffuser", WedgeDiffuserSection, wedge_diffuser),
+        _family("camber-angle", CamberAngleSection, camber_angle),
+        _family("profile", ProfileSection, profile),
     )
 }
 
 
-def kind_of(design: Design) -> Kind | None:
+def family_of(design: Design) -> FitFamily | None:
     """The family of a design; None where it is no such one."""
-    return next((kind for kind in KINDS.values() if isinstance(design, (kind.section, kind.blade))), None)
+    return next((kind for kind in FAMILIES.values() if isinstance(design, (kind.section, kind.blade))), None)

@@ -1,10 +1,14 @@
-"""The laws of a family's part as lines of control points: along the chord, and along the span."""
+"""The laws of a family's part: as lines of control points, and along the span from sections at several places."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import fields
 from typing import Any
 
-from bladewright.designs import Part
+import numpy as np
+
+from bladewright.designs import Law, Part
+from bladewright.nurbs.basis import Reals
+from bladewright.section.laws import law_basis, named_laws
 
 
 def lines_of(part: Part, stem: str) -> Iterator[list[str]]:
@@ -28,3 +32,40 @@ def _lines(value: tuple[Any, ...], path: str) -> Iterator[list[str]]:
     yield from rows
     if len({len(row) for row in rows}) == 1:
         yield from (list(column) for column in zip(*rows, strict=True))
+
+
+def with_mean_laws(part: Any) -> Any:
+    """The part with a number in place of each law: its mean."""
+    return part.changed({path: float(np.mean(law)) for path, law in named_laws(part)})
+
+
+def counts_of(part: Part) -> Mapping[str, int]:
+    """The number of control points of each law of a part by its path."""
+    return {path: len(law) if isinstance(law, tuple) else 1 for path, law in named_laws(part)}
+
+
+def part_along_span(parts: Sequence[Any], v: Reals, counts: Mapping[str, int]) -> Any:
+    """One part of laws from parts of numbers at places v (m,) along the span, by least squares of each number."""
+    values = [_with_unit_curvature(part).parameters() for part in parts]
+    middle = parts[len(parts) // 2]
+    return middle.changed({path: nearest_law([each[path] for each in values], v, counts[path]) for path in values[0]})
+
+
+def nearest_law(values: Sequence[float], v: Reals, count: int) -> Law:
+    """The law of so many control points nearest to values (m,) at places v (m,), inside their range."""
+    at = np.asarray(values)
+    if count == 1:
+        return float(np.median(at))
+    found = np.linalg.lstsq(law_basis(count, v), at, rcond=None)[0]
+    room = 0.5 * float(np.ptp(at))
+    low, high = float(np.min(at)), float(np.max(at))
+    # a law that runs past its values by much may leave the range in which there is a shape
+    low, high = (low - room, high + room) if low < 0.0 else (max(low - room, 0.5 * low), high + room)
+    return tuple(np.clip(found, low, high).tolist())
+
+
+def _with_unit_curvature(part: Any) -> Any:
+    """The part with control points of a second derivative whose sum of magnitudes is one: they count by ratios."""
+    values = {path: value for path, value in part.parameters().items() if path.startswith("curvature[")}
+    total = float(np.sum(np.abs(list(values.values()))))
+    return part.changed({path: value / total for path, value in values.items()}) if total > 0.0 else part

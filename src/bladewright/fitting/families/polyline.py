@@ -9,7 +9,7 @@ from bladewright.nurbs.basis import Reals
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Nearest:
+class PolylineFootpoints:
     """The nearest places of m points on a line."""
 
     points: Reals
@@ -25,7 +25,7 @@ class Nearest:
         return np.stack([-self.tangents[:, 1], self.tangents[:, 0]], axis=-1)
 
 
-def nearest_on(line: Reals, points: Reals) -> Nearest:
+def nearest_on(line: Reals, points: Reals) -> PolylineFootpoints:
     """The nearest places of points (m, 2) on a line through points (n, 2), which goes on straight past its ends."""
     start, along = line[:-1], np.diff(line, axis=0)
     size = np.sqrt(np.sum(along**2, axis=1))
@@ -46,4 +46,4 @@ def nearest_on(line: Reals, points: Reals) -> Nearest:
         best[nearer], place[nearer], tangent[nearer] = square[nearer], at[nearer], along[piece][nearer]
     miss = points - place
     side = np.sign(tangent[:, 0] * miss[:, 1] - tangent[:, 1] * miss[:, 0])
-    return Nearest(points=place, tangents=tangent, heights=side * np.sqrt(best))
+    return PolylineFootpoints(points=place, tangents=tangent, heights=side * np.sqrt(best))

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from bladewright.fitting.families.sampled import Sampled
+from bladewright.fitting.families.section_samples import SampledSection
 from bladewright.section.profiles.c4 import C4
 from bladewright.section.profiles.circular_arc import DoubleCircularArc
 from bladewright.section.profiles.flat_plate import FlatPlate
@@ -38,17 +38,17 @@ TEMPLATES: tuple[Profile, ...] = (
 """kinds that are tried where none is given"""
 
 
-def templates(section: Sampled, parameters: int | None) -> Sequence[Profile]:  # noqa: ARG001 - the contract's
+def templates(section: SampledSection, parameters: int | None) -> Sequence[Profile]:  # noqa: ARG001 - the contract's
     """Structures that are tried where none is given."""
     return TEMPLATES
 
 
-def started(section: Sampled, like: Profile) -> Sequence[Profile]:
+def started(section: SampledSection, like: Profile) -> Sequence[Profile]:
     """The profile of a structure nearest to a section, alone."""
     return [_started(section, like)]
 
 
-def _started(section: Sampled, like: Profile) -> Profile:
+def _started(section: SampledSection, like: Profile) -> Profile:
     """The profile of a kind nearest to a section, by its thickness, camber and stagger."""
     if isinstance(like, PointsProfile):
         return _through(section, like)
@@ -74,7 +74,7 @@ def _started(section: Sampled, like: Profile) -> Profile:
     return replace(like, **{name: value for name, value in values.items() if name in known})
 
 
-def _through(section: Sampled, like: PointsProfile) -> PointsProfile:
+def _through(section: SampledSection, like: PointsProfile) -> PointsProfile:
     """As many points of the section as the profile has, from its trailing edge around the nose.
 
     They are as dense as the section turns and, by less, as it is long: where a contour turns fast it has a corner.
@@ -97,12 +97,12 @@ def _through(section: Sampled, like: PointsProfile) -> PointsProfile:
     )
 
 
-def outlined(section: Sampled, count: int) -> PointsProfile:
+def outlined(section: SampledSection, count: int) -> PointsProfile:
     """The contour through so many points of a section."""
     places = (0.0,) * count
     return _through(section, PointsProfile(abscissas=places, ordinates=places))
 
 
-def grown(part: Profile, section: Sampled) -> Sequence[Profile]:  # noqa: ARG001 - what every family answers
+def grown(part: Profile, section: SampledSection) -> Sequence[Profile]:  # noqa: ARG001 - what every family answers
     """Nothing: a kind has its parameters."""
     return ()

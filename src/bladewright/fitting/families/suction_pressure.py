@@ -8,35 +8,34 @@ import numpy as np
 from scipy.optimize import lsq_linear
 
 from bladewright.errors import DesignError
-from bladewright.fitting.families.planar import ALONE
 from bladewright.fitting.families.polyline import nearest_on
 from bladewright.fitting.families.rounded_edge import edge_through
-from bladewright.fitting.families.sampled import Sampled
+from bladewright.fitting.families.section_samples import SampledSection
+from bladewright.fitting.models.planar import SINGLE_SECTION
 from bladewright.nurbs.basis import Reals, basis
-from bladewright.section.suction_pressure.assembly import characteristic, skeleton_of
-from bladewright.section.suction_pressure.part import SuctionPressure
+from bladewright.section.suction_pressure.part import SuctionPressure, characteristic, skeleton_of
 from bladewright.section.suction_pressure.side import DEGREE, side_knots, spread
 
 HEIGHTS = 2
 """free control points of each side to begin with"""
 WITHOUT_HEIGHTS = 18
 """free parameters of a section besides those"""
-MOST = 12
+MOST_CONTROL_POINTS = 12
 """of each side"""
-TURNING = np.radians(60.0)
+PSEUDO_SKELETON_TURNING = np.radians(60.0)
 """turning from which the pseudo skeleton line is taken"""
-TANGENT = 0.08
+TEMPLATE_TANGENT = 0.08
 """distance of the control points on the tangents in a structure, of the chord"""
-LEAST, MOST_TANGENT = 0.25, 0.9
+LEAST_TANGENT, MOST_TANGENT = 0.25, 0.9
 """smallest one to begin with, of that of evenly spread control points, and largest, of the chord"""
-WEDGES = tuple(np.radians([25.0, 50.0, 75.0]).tolist())
+TRIAL_WEDGES = tuple(np.radians([25.0, 50.0, 75.0]).tolist())
 """of first leading edges besides the section's own"""
-NARROW = (np.radians(2.0), np.radians(40.0))
+WEDGE_RANGE = (np.radians(2.0), np.radians(40.0))
 """between what the section's own are taken"""
 SAMPLES: Reals = (1.0 - np.cos(np.pi * np.linspace(0.0, 1.0, 121)[1:-1])) / 2.0
-STIFF = 1e-3
+STIFFNESS = 1e-3
 """by which a control point stays where it was, of what all samples weigh"""
-TURNS = 8
+PROJECTIONS = 8
 """times that the places of a side's samples are found anew"""
 _PLAIN = SuctionPressure(
     stagger_angle=0.0,
@@ -46,35 +45,35 @@ _PLAIN = SuctionPressure(
     leading_edge_wedge=10.0,
     trailing_edge_radius=0.01,
     trailing_edge_wedge=6.0,
-    suction_tangent_in=TANGENT,
-    suction_tangent_out=TANGENT,
+    suction_tangent_in=TEMPLATE_TANGENT,
+    suction_tangent_out=TEMPLATE_TANGENT,
     suction_heights=(0.1,) * HEIGHTS,
-    pressure_tangent_in=TANGENT,
-    pressure_tangent_out=TANGENT,
+    pressure_tangent_in=TEMPLATE_TANGENT,
+    pressure_tangent_out=TEMPLATE_TANGENT,
     pressure_heights=(0.0,) * HEIGHTS,
 )
 
 
-def templates(section: Sampled, parameters: int | None) -> Sequence[SuctionPressure]:
+def templates(section: SampledSection, parameters: int | None) -> Sequence[SuctionPressure]:
     """Structures that are tried where none is given, of nearly so many free parameters of a section."""
     free = 0 if parameters is None else parameters - WITHOUT_HEIGHTS
-    counts = max(HEIGHTS, min(MOST, -(-free // 2))), max(HEIGHTS, min(MOST, free // 2))
+    counts = max(HEIGHTS, min(MOST_CONTROL_POINTS, -(-free // 2))), max(HEIGHTS, min(MOST_CONTROL_POINTS, free // 2))
     side: Literal["upper", "lower"] = "upper" if section.most_cambered[0] > 0.0 else "lower"
     sized = replace(_PLAIN, suction_side=side, suction_heights=(0.1,) * counts[0], pressure_heights=(0.0,) * counts[1])
     return [replace(sized, skeleton="pseudo"), sized]
 
 
-def started(section: Sampled, like: SuctionPressure) -> Sequence[SuctionPressure]:
+def started(section: SampledSection, like: SuctionPressure) -> Sequence[SuctionPressure]:
     """Parts of a structure near to a section, nearest first: edges by their ends, sides by least squares.
 
     How far a nose reaches is a matter of taste, as its sides may be taken for parts of it: there is one for each of
     several wedges. Raises DesignError where none has a shape.
     """
-    own, last = (float(np.clip(section.wedge(end), *NARROW)) for end in (0, 1))
+    own, last = (float(np.clip(section.wedge(end), *WEDGE_RANGE)) for end in (0, 1))
     tried, refusal = [], DesignError("no wedge of the leading edge was tried")
-    for first in (own, *WEDGES):
+    for first in (own, *TRIAL_WEDGES):
         try:
-            part = _edged(section, like, (first, last))
+            part = _with_edges(section, like, (first, last))
             tried.append((_misfit(part, section), part))
         except DesignError as error:
             refusal = error
@@ -83,7 +82,7 @@ def started(section: Sampled, like: SuctionPressure) -> Sequence[SuctionPressure
     return [part for _, part in sorted(tried, key=lambda pair: pair[0])]
 
 
-def _edged(section: Sampled, like: SuctionPressure, wedges: tuple[float, float]) -> SuctionPressure:
+def _with_edges(section: SampledSection, like: SuctionPressure, wedges: tuple[float, float]) -> SuctionPressure:
     """The part of a structure with edges about so wide [rad], its sides through a section's."""
     upward = 1.0 if like.suction_side == "upper" else -1.0
     values: dict[str, Any] = {"stagger_angle": float(np.degrees(section.stagger))}
@@ -99,20 +98,20 @@ def _edged(section: Sampled, like: SuctionPressure, wedges: tuple[float, float])
     return through(replace(like, **values), section)
 
 
-def _misfit(part: SuctionPressure, section: Sampled) -> float:
+def _misfit(part: SuctionPressure, section: SampledSection) -> float:
     """Root mean square distance of the part's sides and edges from the section's, in chords."""
     places = (1.0 - np.cos(np.pi * np.linspace(0.0, 1.0, 81))) / 2.0
-    upper, lower = (np.real(side[0]) for side in part.outline(ALONE).points(places))
+    upper, lower = (np.real(side[0]) for side in part.outline(SINGLE_SECTION).points(places))
     around = np.concatenate([section.upper[:0:-1], section.lower])
     return float(np.sqrt(np.mean(nearest_on(around, np.concatenate([upper, lower])).heights ** 2)))
 
 
-def grown(part: SuctionPressure, section: Sampled) -> Sequence[SuctionPressure]:
+def grown(part: SuctionPressure, section: SampledSection) -> Sequence[SuctionPressure]:
     """The same with one free control point more on the suction or the pressure side, or with free places on one."""
     found = []
     for name in ("suction", "pressure"):
         heights, places = getattr(part, f"{name}_heights"), _numbers(getattr(part, f"{name}_places"))
-        if 0 < len(heights) < MOST:
+        if 0 < len(heights) < MOST_CONTROL_POINTS:
             wider: dict[str, Any] = {
                 f"{name}_heights": (*heights, 0.0),
                 f"{name}_knots": (),
@@ -136,7 +135,7 @@ def _wider(places: list[float]) -> tuple[float, ...]:
     return (*places[:at], float(0.5 * (ends[at] + ends[at + 1])), *places[at:])
 
 
-def through(part: SuctionPressure, section: Sampled) -> SuctionPressure:
+def through(part: SuctionPressure, section: SampledSection) -> SuctionPressure:
     """The part with control points of its sides that lie nearest to the section's, its edges as they are."""
     on, off = ("upper", "lower") if part.suction_side == "upper" else ("lower", "upper")
     found = part.changed(_side_through(part, getattr(section, on), "suction"))
@@ -152,9 +151,11 @@ def _side_through(part: SuctionPressure, line: Reals, name: str) -> dict[str, fl
     count = len(getattr(part, f"{name}_heights"))
     knots = side_knots(count, getattr(part, f"{name}_knots"))
     places = np.array(_numbers(getattr(part, f"{name}_places")) or spread(knots).tolist())
-    low, high = (skeleton_of(part, ALONE).placed(places[None], np.full((1, count), each))[0] for each in (0.0, 1.0))
+    low, high = (
+        skeleton_of(part, SINGLE_SECTION).placed(places[None], np.full((1, count), each))[0] for each in (0.0, 1.0)
+    )
     on = "upper" if (name == "suction") == (part.suction_side == "upper") else "lower"
-    corners = [getattr(points, on) for points in characteristic(part, ALONE)]
+    corners = [getattr(points, on) for points in characteristic(part, SINGLE_SECTION)]
     points, directions = (np.real([getattr(each, of)[0] for each in corners]) for of in ("point", "direction"))
     rows = basis(knots, DEGREE, SAMPLES)
     # by tangent in, heights and tangent out: control points are linear in them
@@ -172,15 +173,15 @@ def _side_through(part: SuctionPressure, line: Reals, name: str) -> dict[str, fl
     width = np.array([knots[DEGREE + 1], 1.0 - knots[-DEGREE - 2]]) / DEGREE
     reach = width * np.sqrt(np.sum((points[1] - points[0]) ** 2))
     ends = [reach[i] if each is None else each for i, each in enumerate(own)]
-    heights = _above(line, low, high)
+    heights = _heights_above(line, low, high)
     unknowns = np.array([ends[0], *heights, ends[1]])
-    least = np.array([LEAST * reach[0], *np.full(count, -2.0), LEAST * reach[1]])
+    least = np.array([LEAST_TANGENT * reach[0], *np.full(count, -2.0), LEAST_TANGENT * reach[1]])
     most = np.array([MOST_TANGENT, *np.full(count, 2.0), MOST_TANGENT])
-    for _ in range(TURNS):
+    for _ in range(PROJECTIONS):
         foot = nearest_on(line, fixed + np.einsum("nkd,k->nd", moves, unknowns))
         slopes = np.einsum("nkd,nd->nk", moves, foot.normals)
         wanted = np.sum((foot.points - fixed) * foot.normals, axis=1)
-        held = STIFF * np.eye(len(unknowns))
+        held = STIFFNESS * np.eye(len(unknowns))
         unknowns = lsq_linear(
             np.concatenate([slopes, held]), np.concatenate([wanted, held @ unknowns]), bounds=(least, most)
         ).x
@@ -191,7 +192,7 @@ def _side_through(part: SuctionPressure, line: Reals, name: str) -> dict[str, fl
     return values
 
 
-def _above(line: Reals, low: Reals, high: Reals) -> Reals:
+def _heights_above(line: Reals, low: Reals, high: Reals) -> Reals:
     """How far from places (k, 2) a line is in the directions to other places (k, 2)."""
     across = high - low
     along = np.stack([across[:, 1], -across[:, 0]], axis=-1)

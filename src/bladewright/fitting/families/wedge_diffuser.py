@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from bladewright.fitting.families.sampled import Sampled
+from bladewright.fitting.families.section_samples import SampledSection
 from bladewright.section.wedge_diffuser import WedgeDiffuser
 
 TEMPLATES = (
@@ -15,17 +15,17 @@ TEMPLATES = (
 """structures that are tried where none is given"""
 
 
-def templates(section: Sampled, parameters: int | None) -> Sequence[WedgeDiffuser]:  # noqa: ARG001 - the contract's
+def templates(section: SampledSection, parameters: int | None) -> Sequence[WedgeDiffuser]:  # noqa: ARG001 - the contract's
     """Structures that are tried where none is given."""
     return TEMPLATES
 
 
-def started(section: Sampled, like: WedgeDiffuser) -> Sequence[WedgeDiffuser]:
+def started(section: SampledSection, like: WedgeDiffuser) -> Sequence[WedgeDiffuser]:
     """The vane of a structure nearest to a section, alone."""
     return [_started(section, like)]
 
 
-def _started(section: Sampled, like: WedgeDiffuser) -> WedgeDiffuser:
+def _started(section: SampledSection, like: WedgeDiffuser) -> WedgeDiffuser:
     """The vane of a structure nearest to a section: its stagger, the angle between its sides, and its edges."""
     opening = (section.half_at(0.8) - section.half_at(0.2)) / 0.6
     first = float(np.clip(section.half_at(0.2) - 0.2 * opening, 1e-3, 0.2))
@@ -41,6 +41,6 @@ def _started(section: Sampled, like: WedgeDiffuser) -> WedgeDiffuser:
     )
 
 
-def grown(part: WedgeDiffuser, section: Sampled) -> Sequence[WedgeDiffuser]:  # noqa: ARG001 - what every family answers
+def grown(part: WedgeDiffuser, section: SampledSection) -> Sequence[WedgeDiffuser]:  # noqa: ARG001 - what every family answers
     """Nothing: the vane has three parameters."""
     return ()

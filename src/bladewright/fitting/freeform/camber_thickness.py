@@ -10,16 +10,16 @@ from bladewright.nurbs.basis import Reals
 from bladewright.nurbs.curve import Curve
 from bladewright.section.camber import turned_left
 
-THIRD = 0.0625
+THIRD_ABSCISSA = 0.0625
 """abscissa of the third control point of the thickness, of the chord (the source's section 4.2)"""
-SAMPLES = 400
+CAMBER_SAMPLES = 400
 """places of the camber between which an abscissa is sought"""
 
 
 def abscissae_of(count: int, low: float, high: float, *, round_end: bool) -> Reals:
     """Abscissae (count,) of the thickness's control points."""
     last = count - 2 if round_end else count - 1
-    inner = np.linspace(THIRD, 1.0, last - 1)
+    inner = np.linspace(THIRD_ABSCISSA, 1.0, last - 1)
     share = np.concatenate([[0.0, 0.0], inner, [1.0] if round_end else []])
     return np.asarray(low + share * (high - low))
 
@@ -53,7 +53,7 @@ class CamberThickness:
 
     def sites(self, abscissae: Reals) -> Reals:
         """Camber parameters (n,) at abscissae (n,), by a table and Newton's method."""
-        s = np.linspace(0.0, 1.0, SAMPLES)
+        s = np.linspace(0.0, 1.0, CAMBER_SAMPLES)
         x = np.maximum.accumulate(self.camber(s)[:, 0])
         found = np.interp(abscissae, x, s)
         for _ in range(8):

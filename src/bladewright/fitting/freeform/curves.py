@@ -9,25 +9,25 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bladewright.errors import FitError, GeometryError
-from bladewright.fitting.freeform.fitted import Fitted, asked, checked_logs, checked_points
-from bladewright.fitting.freeform.net import Net, Target, periodic
+from bladewright.fitting.freeform.net import Net, NetTarget, periodic
+from bladewright.fitting.freeform.options import FreeformFit, checked_logs, checked_options, checked_points
 from bladewright.fitting.freeform.ordering import sites_along
-from bladewright.fitting.freeform.projection import certified, nearer_of, projected
-from bladewright.fitting.freeform.stages import Arrived, Way, within
+from bladewright.fitting.freeform.projection import certified_parameters, nearer_projections, projected
+from bladewright.fitting.freeform.stages import FitOptions, StagedMatch, match_within_tolerance
 from bladewright.nurbs.basis import Reals, breaks, checked_knots, uniform_knots
 from bladewright.nurbs.curve import Curve
 
 FIRST_STIFFNESS = 1e-8
 """weight of the bending of the first curve"""
-SYSTEMATIC = 3.0
+SYSTEMATIC_RATIO = 3.0
 """root mean square of the distances, of the noise, from which a second way is tried"""
-NOISY = 1.25
+NOISE_RATIO = 1.25
 """root mean square of a knot span's distances, of the noise, up to which it is noise"""
 
 
 @final
 @dataclass(frozen=True, kw_only=True, eq=False)
-class CurveFit(Fitted):
+class CurveFit(FreeformFit):
     """A curve fitted to n points."""
 
     curve: Curve
@@ -73,12 +73,14 @@ def fit_curve(
     _check_ends(ends)
     centre, extent = np.mean(given, axis=0), float(np.ptp(given, axis=0).max())
     scaled = (given - centre) / extent
-    way = asked(weights=weights, power=power, robust=robust, tolerance=tolerance, extent=extent, progress=progress)
+    way = checked_options(
+        weights=weights, power=power, robust=robust, tolerance=tolerance, extent=extent, progress=progress
+    )
     if start is None:
         sites = sites_along(scaled, closed=closed)
         net = _through(scaled, sites, _empty(degree, control_points, knots, weights, scaled.shape[1], closed=closed))
     else:
-        net = _of_curve(replace(start, control_points=(start.control_points - centre) / extent), closed=closed)
+        net = _net_of_curve(replace(start, control_points=(start.control_points - centre) / extent), closed=closed)
         sites = projected(net.shape, scaled, closed=closed).parameters[:, 0]
     held = None
     if not closed:
@@ -89,19 +91,19 @@ def fit_curve(
             pair = scaled[outermost] if isinstance(ends, str) else _ends(ends, centre, extent)
             inner = net.points[1:-1]
             net = replace(net, held="corners", points=np.concatenate([pair[:1], inner, pair[1:]]))
-    target = Target(points=scaled, weights=np.ones(len(scaled)), held=held)
+    target = NetTarget(points=scaled, weights=np.ones(len(scaled)), held=held)
     _check_numbers(net, scaled, weights_free=way.weights_free)
-    found, notes = within(net, target, way, _further_knots, warm=start is not None)
+    found, notes = match_within_tolerance(net, target, way, _further_knots, warm=start is not None)
     if start is None and _systematic(found, target):
         # stiff first curves cut corners that a bent one has; a soft one from the same start ends elsewhere
-        other = within(net, target, way, _further_knots, warm=True)
+        other = match_within_tolerance(net, target, way, _further_knots, warm=True)
         found, notes = min((found, notes), other, key=lambda each: _cost(each[0], power, notes=each[1]))
     net = found.match.net
     shape = net.curve
     feet = projected(shape, scaled, closed=closed)
-    feet = projected(shape, scaled, certified(shape, scaled, feet), closed=closed)
+    feet = projected(shape, scaled, certified_parameters(shape, scaled, feet), closed=closed)
     if held is None:
-        feet = nearer_of(feet, found.match.feet, found.inliers)
+        feet = nearer_projections(feet, found.match.feet, found.inliers)
     if found.rank < len(found.singular_values):
         notes += (
             (
@@ -141,7 +143,7 @@ def noise_along(u: Reals, misses: Reals) -> float:
     return float(np.sqrt(np.mean(square) / (misses.shape[1] - 1)))
 
 
-def _further_knots(found: Arrived, target: Target, way: Way, limit: float) -> tuple[Net | None, str]:
+def _further_knots(found: StagedMatch, target: NetTarget, way: FitOptions, limit: float) -> tuple[Net | None, str]:
     """A knot in each span that is too far off for other reasons than noise, or why there is none."""
     extent = way.extent
     net, feet = found.match.net, found.match.feet
@@ -156,7 +158,7 @@ def _further_knots(found: Arrived, target: Target, way: Way, limit: float) -> tu
         here = (u >= low) & (u <= high)
         if not here.any() or distances[here].max() <= limit:
             continue
-        if np.sqrt(np.mean(distances[here] ** 2) / codimension) <= NOISY * noise:
+        if np.sqrt(np.mean(distances[here] ** 2) / codimension) <= NOISE_RATIO * noise:
             noisy += 1
             continue
         order = np.argsort(u[here])
@@ -177,14 +179,14 @@ def _further_knots(found: Arrived, target: Target, way: Way, limit: float) -> tu
     return None, f"{worst}: noise of a standard deviation of about {noise * extent:.3g} stops further knots"
 
 
-def _systematic(found: Arrived, target: Target) -> bool:
+def _systematic(found: StagedMatch, target: NetTarget) -> bool:
     """Whether the distances are more than noise."""
     feet = found.match.feet
     noise = noise_along(feet.parameters[:, 0], feet.points - target.points[found.inliers])
-    return float(np.sqrt(np.mean(feet.distances**2))) > SYSTEMATIC * noise
+    return float(np.sqrt(np.mean(feet.distances**2))) > SYSTEMATIC_RATIO * noise
 
 
-def _cost(found: Arrived, power: float, notes: tuple[str, ...]) -> tuple[bool, int, float]:
+def _cost(found: StagedMatch, power: float, notes: tuple[str, ...]) -> tuple[bool, int, float]:
     """What is less for a better match: within its tolerance, of fewer control points, at lower distances."""
     distances = found.match.feet.distances
     return bool(notes), len(found.match.net.points), float(np.mean((distances / 1e-3) ** power))
@@ -229,7 +231,7 @@ def _through(points: Reals, sites: Reals, net: Net) -> Net:
     return net.through(points, (low + (high - low) * sites)[:, None], FIRST_STIFFNESS)
 
 
-def _of_curve(curve: Curve, *, closed: bool) -> Net:
+def _net_of_curve(curve: Curve, *, closed: bool) -> Net:
     net = Net(
         knots=(curve.knots,),
         degrees=(curve.degree,),

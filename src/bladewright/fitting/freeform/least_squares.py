@@ -16,18 +16,18 @@ from scipy.sparse import csr_array
 
 from bladewright.nurbs.basis import Reals
 
-DENSE = 400
+DENSE_UNKNOWNS = 400
 """unknowns up to which full products of rows are faster than sparse ones"""
-ROWS = 8192
+BLOCK_ROWS = 8192
 """rows in a full product"""
-LOST = 1e-14
+LOST_EIGENVALUE = 1e-14
 """eigenvalue of the scaled curvature, of the largest, below which its direction is rounding"""
-SETTLED = 0.02
+SETTLED_SHARE = 0.02
 """share of the value that the quadratic at the end would take away, up to which a descent has converged
 
 Where control points slide along the shape the value falls for hundreds of steps by little.
 """
-DETERMINED = 1e-12
+DETERMINED_EIGENVALUE = 1e-12
 """eigenvalue of the scaled curvature, of the largest, above which the points determine its direction"""
 
 
@@ -70,7 +70,7 @@ class Penalty:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Solution:
+class Minimum:
     """Where the descent ended."""
 
     x: Reals
@@ -79,7 +79,7 @@ class Solution:
     converged: bool
 
 
-def summed(
+def quadratic_of_distances(
     along: csr_array,
     distances: Reals,
     across: csr_array,
@@ -106,7 +106,7 @@ def minimised(
     accepted: Callable[[], None] | None = None,
     evaluations: int = 200,
     tolerance: float = 1e-13,
-) -> Solution:
+) -> Minimum:
     """The unknowns (n,) at which the objective is least near the start.
 
     `accepted` is called when the unknowns asked for last become the current ones. `tolerance` bounds the relative step
@@ -129,7 +129,7 @@ def minimised(
         return found
 
     if len(start) == 0:
-        return Solution(x=start, quadratic=objective(start), evaluations=1, converged=True)
+        return Minimum(x=start, quadratic=objective(start), evaluations=1, converged=True)
     found = least_squares(
         lambda x: compressed(x)[1],
         start,
@@ -144,11 +144,11 @@ def minimised(
     quadratic, residuals, _ = compressed(found.x)
     # the last residual is the value's part that no step of the quadratic takes away
     left = quadratic.value - float(residuals[-1]) ** 2
-    return Solution(
+    return Minimum(
         x=found.x,
         quadratic=quadratic,
         evaluations=int(found.nfev),
-        converged=bool(found.status > 0) or left <= SETTLED * quadratic.value,
+        converged=bool(found.status > 0) or left <= SETTLED_SHARE * quadratic.value,
     )
 
 
@@ -161,7 +161,7 @@ def singular_values(curvature: Reals) -> Reals:
 
 def rank_of(values: Reals) -> int:
     """How many singular values are above what rounding leaves of a zero."""
-    return int(np.sum(values > np.sqrt(DETERMINED) * values.max(initial=0.0)))
+    return int(np.sum(values > np.sqrt(DETERMINED_EIGENVALUE) * values.max(initial=0.0)))
 
 
 def _compressed(of: Quadratic) -> tuple[Reals, Reals]:
@@ -169,7 +169,7 @@ def _compressed(of: Quadratic) -> tuple[Reals, Reals]:
     size = np.sqrt(np.diagonal(of.curvature))
     size = np.where(size > 0.0, size, 1.0)
     eigenvalues, vectors = np.linalg.eigh(of.curvature / size / size[:, None])
-    kept = eigenvalues > LOST * len(size) * max(float(eigenvalues[-1]), 1e-300)
+    kept = eigenvalues > LOST_EIGENVALUE * len(size) * max(float(eigenvalues[-1]), 1e-300)
     root = np.sqrt(np.where(kept, eigenvalues, 1.0))
     residuals = np.where(kept, vectors.T @ (of.gradient / size) / root, 0.0)
     rest = np.sqrt(max(0.0, of.value - float(residuals @ residuals)))
@@ -180,11 +180,11 @@ def _compressed(of: Quadratic) -> tuple[Reals, Reals]:
 def _gram(rows: csr_array, weights: Reals) -> Reals:
     """`rows^T diag(weights) rows` (n, n), full."""
     count = rows.shape[1]
-    if count > DENSE:
+    if count > DENSE_UNKNOWNS:
         return np.asarray((rows.T @ rows.multiply(weights[:, None])).toarray())
     total = np.zeros((count, count))
     root = np.sqrt(weights)
-    for i in range(0, rows.shape[0], ROWS):
-        block = rows[i : i + ROWS].toarray() * root[i : i + ROWS, None]
+    for i in range(0, rows.shape[0], BLOCK_ROWS):
+        block = rows[i : i + BLOCK_ROWS].toarray() * root[i : i + BLOCK_ROWS, None]
         total += block.T @ block
     return total

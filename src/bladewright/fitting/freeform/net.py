@@ -10,27 +10,26 @@ from numpy.typing import NDArray
 from scipy.linalg import null_space
 from scipy.sparse import csr_array, hstack
 
-from bladewright.fitting.freeform.least_squares import Penalty, Quadratic, Solution, minimised, summed
-from bladewright.fitting.freeform.projection import Feet, certified, projected, sampled_parameters
+from bladewright.fitting.freeform.least_squares import Minimum, Penalty, Quadratic, minimised, quadratic_of_distances
+from bladewright.fitting.freeform.projection import Projections, certified_parameters, projected, sampled_parameters
 from bladewright.numerics.quadrature import panels
-from bladewright.nurbs.along import Direction
 from bladewright.nurbs.basis import Reals, basis, breaks
 from bladewright.nurbs.blossom import knot_change
 from bladewright.nurbs.collocation import collocation
 from bladewright.nurbs.curve import Curve
-from bladewright.nurbs.refine import inserted
+from bladewright.nurbs.refine import Direction, inserted
 from bladewright.nurbs.surface import Surface
 
-LIMIT = 30.0
+LARGEST_LOG_WEIGHT = 30.0
 """logarithm of a weight beyond which it changes nothing more"""
 TENSION = 0.01
 """weight of squared first derivatives, of that of squared second ones"""
-PRIOR = 1e-10
+WEIGHT_REGULARISATION = 1e-10
 """cost of a unit of a logarithm of a weight, in extents of the points: it holds weights that do nothing"""
 DIRECTIONS: tuple[Direction, Direction] = ("u", "v")
 AT_ONCE = 100_000
 """points whose rows are built at a time"""
-GLOBAL = 8
+GLOBAL_SEARCHES = 8
 """searches for places that are nearer than the ones descended to"""
 
 
@@ -166,7 +165,7 @@ class Net:
         logs = self.logs
         if self.weighted:
             logs = (0.0 if logs is None else logs) + self.gauge @ unknowns[moved:]
-            logs = np.clip(logs, -LIMIT, LIMIT)
+            logs = np.clip(logs, -LARGEST_LOG_WEIGHT, LARGEST_LOG_WEIGHT)
         return replace(self, points=points, logs=logs)
 
     def through(self, points: Reals, parameters: Reals, stiffness: float) -> "Net":
@@ -228,11 +227,11 @@ def periodic(net: Net, curve: Curve) -> Net:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Match:
+class NetMatch:
     """A net matched to points."""
 
     net: Net
-    feet: Feet
+    feet: Projections
     data: Quadratic
     """of the distances alone"""
     evaluations: int
@@ -240,7 +239,7 @@ class Match:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Target:
+class NetTarget:
     """Points (m, d) of unit extent, how much each counts (m,), and those whose parameters are held."""
 
     points: Reals
@@ -248,9 +247,9 @@ class Target:
     held: tuple[NDArray[np.intp], Reals] | None = None
 
 
-def matched(
+def matched_net(
     net: Net,
-    target: Target,
+    target: NetTarget,
     *,
     penalty: Penalty,
     stiffness: float = 0.0,
@@ -258,7 +257,7 @@ def matched(
     evaluations: int = 80,
     tolerance: float = 1e-8,
     certain: bool = False,
-) -> Match:
+) -> NetMatch:
     """The net at which the penalties of true distances, and `stiffness` times its bending, are least.
 
     Places follow the shape by descent while it moves; after that they are searched for from samples everywhere, on
@@ -267,9 +266,9 @@ def matched(
     """
     places = sampled_parameters(net.shape, target.points) if near is None else near
     total, converged = 0, False
-    for _ in range(GLOBAL):
-        search = _Search(net=net, target=target, penalty=penalty, stiffness=stiffness, near=places)
-        found: Solution = minimised(
+    for _ in range(GLOBAL_SEARCHES):
+        search = NetObjective(net=net, target=target, penalty=penalty, stiffness=stiffness, near=places)
+        found: Minimum = minimised(
             search.objective, net.unknowns, accepted=search.accept, evaluations=evaluations, tolerance=tolerance
         )
         total += found.evaluations
@@ -279,16 +278,16 @@ def matched(
         nearer = everywhere.distances < feet.distances - 1e-8
         places = np.where(nearer[:, None], everywhere.parameters, feet.parameters)
         if certain and not nearer.any() and isinstance(net.shape, Curve):
-            places = certified(net.shape, target.points, feet)
+            places = certified_parameters(net.shape, target.points, feet)
         if np.array_equal(places, feet.parameters):
             break
     feet = search.feet(net, feet.parameters)
-    return Match(
+    return NetMatch(
         net=net, feet=feet, data=quadratic_of(net, target, feet, penalty), evaluations=total, converged=converged
     )
 
 
-def quadratic_of(net: Net, target: Target, feet: Feet, penalty: Penalty) -> Quadratic:
+def quadratic_of(net: Net, target: NetTarget, feet: Projections, penalty: Penalty) -> Quadratic:
     """The objective of distances alone near the present unknowns."""
     total: Quadratic | None = None
     for first in range(0, len(feet.points), AT_ONCE):
@@ -297,7 +296,7 @@ def quadratic_of(net: Net, target: Target, feet: Feet, penalty: Penalty) -> Quad
         across_of = feet.across_of[here] - first
         matrix = net.basis(feet.parameters[rows])
         places = feet.points[rows]
-        part = summed(
+        part = quadratic_of_distances(
             net.rows(matrix, places, feet.along[rows]),
             feet.distances[rows],
             net.rows(csr_array(matrix[across_of]), places[across_of], feet.across[here]),
@@ -310,17 +309,17 @@ def quadratic_of(net: Net, target: Target, feet: Feet, penalty: Penalty) -> Quad
     return total
 
 
-class _Search:
+class NetObjective:
     """The objective of one descent, which keeps the places of the current unknowns."""
 
-    def __init__(self, *, net: Net, target: Target, penalty: Penalty, stiffness: float, near: Reals) -> None:
+    def __init__(self, *, net: Net, target: NetTarget, penalty: Penalty, stiffness: float, near: Reals) -> None:
         self.net, self.target, self.penalty, self.stiffness = net, target, penalty, stiffness
         self.near = self.tried = near
 
     def accept(self) -> None:
         self.near = self.tried
 
-    def feet(self, net: Net, near: Reals) -> Feet:
+    def feet(self, net: Net, near: Reals) -> Projections:
         return projected(net.shape, self.target.points, near, closed=net.closed, held=self.target.held)
 
     def objective(self, unknowns: Reals) -> Quadratic:
@@ -343,9 +342,9 @@ class _Search:
             curvature[:moved, :moved] = np.kron(block, np.eye(dimension))
         if net.weighted and net.logs is not None:
             own = net.gauge.T @ net.logs
-            value += PRIOR**2 * scale * float(own @ own)
-            gradient[moved:] += PRIOR**2 * scale * own
-            curvature[moved:, moved:] += PRIOR**2 * scale * np.eye(len(own))
+            value += WEIGHT_REGULARISATION**2 * scale * float(own @ own)
+            gradient[moved:] += WEIGHT_REGULARISATION**2 * scale * own
+            curvature[moved:, moved:] += WEIGHT_REGULARISATION**2 * scale * np.eye(len(own))
         return Quadratic(value=value, gradient=gradient, curvature=curvature)
 
 

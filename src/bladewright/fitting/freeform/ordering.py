@@ -7,15 +7,15 @@ from scipy.spatial.distance import cdist
 
 from bladewright.nurbs.basis import Reals
 
-CELLS = 150
+GRID_CELLS = 150
 """cells along the extent of the points in which neighbours become one, so that noise does not fold the path"""
-MOST = 1500
+MOST_CELLS = 1500
 """cells of which all distances are compared"""
-IN_ORDER = 0.9
+IN_ORDER_SHARE = 0.9
 """share of points whose nearest point stands next to them in the list, from which the list is an order"""
-DETOUR = 3.0
+LONGEST_DETOUR = 3.0
 """length of the way through the list, of the length through the tree, from which it is none"""
-FINE = 8
+PLACES_PER_PIECE = 8
 """places on a piece of the path among which the nearest is sought"""
 
 
@@ -28,7 +28,7 @@ def sites_along(points: Reals, *, closed: bool) -> Reals:
     """
     path = _tree_path(points)
     own = np.sqrt(np.sum(np.diff(points, axis=0) ** 2, axis=-1))
-    if _listed_in_order(points, own) and own.sum() <= DETOUR * _length(path):
+    if _listed_in_order(points, own) and own.sum() <= LONGEST_DETOUR * _length(path):
         path, sites = points, np.concatenate([[0.0], np.cumsum(own)])
         whole = sites[-1] + (np.sqrt(np.sum((points[0] - points[-1]) ** 2)) if closed else 0.0)
         return np.asarray(sites / whole)
@@ -36,7 +36,7 @@ def sites_along(points: Reals, *, closed: bool) -> Reals:
         path = np.concatenate([path, path[:1]])
     steps = np.sqrt(np.sum(np.diff(path, axis=0) ** 2, axis=-1))
     ends = np.concatenate([[0.0], np.cumsum(steps)])
-    share = np.linspace(0.0, 1.0, FINE, endpoint=False)
+    share = np.linspace(0.0, 1.0, PLACES_PER_PIECE, endpoint=False)
     fine = np.concatenate(
         [(path[:-1, None] + share[:, None] * np.diff(path, axis=0)[:, None]).reshape(-1, path.shape[1]), path[-1:]]
     )
@@ -58,14 +58,14 @@ def sites_along(points: Reals, *, closed: bool) -> Reals:
 def _listed_in_order(points: Reals, steps: Reals) -> bool:
     distance, _ = cKDTree(points).query(points, k=2)
     beside = np.minimum(np.append(steps, np.inf), np.append(np.inf, steps))
-    return bool(np.mean(beside <= distance[:, 1] * (1.0 + 1e-9)) >= IN_ORDER)
+    return bool(np.mean(beside <= distance[:, 1] * (1.0 + 1e-9)) >= IN_ORDER_SHARE)
 
 
 def _tree_path(points: Reals) -> Reals:
-    cells = CELLS
+    cells = GRID_CELLS
     while True:
         centres = _thinned(points, cells)
-        if len(centres) <= MOST:
+        if len(centres) <= MOST_CELLS:
             break
         cells = cells * 2 // 3
     if len(centres) < 3:

@@ -13,30 +13,36 @@ from scipy.spatial import ConvexHull, QhullError, cKDTree
 from bladewright.errors import FitError
 from bladewright.fitting.freeform.camber_thickness import CamberThickness, abscissae_of
 from bladewright.fitting.freeform.curves import noise_along
-from bladewright.fitting.freeform.fitted import Fitted, asked, checked_points
-from bladewright.fitting.freeform.least_squares import Penalty, Quadratic, minimised, rank_of, singular_values, summed
-from bladewright.fitting.freeform.net import PRIOR, Net
-from bladewright.fitting.freeform.profile_growing import within
-from bladewright.fitting.freeform.projection import Feet, descended, framed
-from bladewright.fitting.freeform.stages import Way
+from bladewright.fitting.freeform.least_squares import (
+    Penalty,
+    Quadratic,
+    minimised,
+    quadratic_of_distances,
+    rank_of,
+    singular_values,
+)
+from bladewright.fitting.freeform.net import WEIGHT_REGULARISATION, Net
+from bladewright.fitting.freeform.options import FreeformFit, checked_options, checked_points
+from bladewright.fitting.freeform.projection import Projections, newton_descent, with_frames
+from bladewright.fitting.freeform.stages import FitOptions
 from bladewright.numerics.elementary import length
 from bladewright.nurbs.basis import Reals, basis, uniform_knots
 from bladewright.nurbs.curve import Curve
 from bladewright.section.camber import turned_left
 
 DEGREE = 3
-SAMPLES = 400
+SIDE_SAMPLES = 400
 """places of a side at which a search for the nearest one starts"""
 STIFFNESSES = (1e-3, 1e-5, 1e-7, 1e-9)
 """weights of the bending of camber and thickness, in extents of the points squared"""
-TURNS = 6
+SIDE_TURNS = 6
 """of telling the sides apart"""
-BINS = 40
+CHORD_BINS = 40
 
 
 @final
 @dataclass(frozen=True, kw_only=True, eq=False)
-class ProfileFit(Fitted):
+class ProfileFit(FreeformFit):
     """A profile fitted to n points: a camber line, and a half thickness along its normals over the abscissa."""
 
     camber: Curve
@@ -85,10 +91,12 @@ def fit_profile(
     def fitted(camber: int, thickness: int) -> ProfileFit:
         _check(given, camber, thickness, ends, trailing_edge)
         extent = float(np.ptp(given, axis=0).max())
-        way = asked(weights="free", power=power, robust=False, tolerance=tolerance, extent=extent, progress=progress)
+        way = checked_options(
+            weights="free", power=power, robust=False, tolerance=tolerance, extent=extent, progress=progress
+        )
         return _fitted(given, camber, thickness, ends, way, round_end=trailing_edge == "round", tolerance=tolerance)
 
-    return fitted(camber, thickness) if tolerance is None else within(fitted, camber, thickness, tolerance)
+    return fitted(camber, thickness) if tolerance is None else _within_tolerance(fitted, camber, thickness, tolerance)
 
 
 def _fitted(
@@ -96,7 +104,7 @@ def _fitted(
     camber: int,
     thickness: int,
     ends: str | tuple[ArrayLike, ArrayLike],
-    way: Way,
+    way: FitOptions,
     *,
     round_end: bool,
     tolerance: float | None,
@@ -110,14 +118,14 @@ def _fitted(
         start = start.between(pair)
     fixed = not (isinstance(ends, str) and ends == "free")
     profile, evaluations, converged = start, 0, False
-    search = _Search(points=scaled, upper=upper, fixed=fixed, penalty=Penalty(), stiffness=0.0, profile=start)
+    search = ProfileObjective(points=scaled, upper=upper, fixed=fixed, penalty=Penalty(), stiffness=0.0, profile=start)
     for stiffness in (*STIFFNESSES, STIFFNESSES[-1]):
         way.say(f"stiffness {stiffness:g}")
         search = replace(search, stiffness=stiffness, profile=profile, upper=_upper(profile, scaled))
         found = minimised(search.objective, search.unknowns, evaluations=60, tolerance=1e-6)
         profile, converged = search.changed(found.x), found.converged
         evaluations += found.evaluations
-    for _ in range(TURNS):
+    for _ in range(SIDE_TURNS):
         upper = _upper(profile, scaled)
         scale = float(search.feet(profile).distances.max())
         penalty = Penalty(power=power, scale=scale) if power != 2.0 else Penalty()
@@ -151,7 +159,7 @@ def _fitted(
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class _Search:
+class ProfileObjective:
     """The objective of a profile: unknowns are its camber's control points, its heights, and logarithms of weights."""
 
     points: Reals
@@ -205,29 +213,29 @@ class _Search:
         )
         return found if self.fixed else found.between(camber[[0, -1]])
 
-    def feet(self, profile: CamberThickness) -> Feet:
+    def feet(self, profile: CamberThickness) -> Projections:
         """The nearest places of the points on their sides."""
         t = np.zeros(len(self.points))
-        grid = np.linspace(0.0, 1.0, SAMPLES) ** 1.5
+        grid = np.linspace(0.0, 1.0, SIDE_SAMPLES) ** 1.5
         for side in (True, False):
             rows = np.flatnonzero(self.upper == side)
             if len(rows):
                 samples = profile.derivatives(grid, upper=side)[0]
                 first = grid[cKDTree(samples).query(self.points[rows])[1]]
-                t[rows] = descended(partial(profile.derivatives, upper=side), self.points[rows], first, (0.0, 1.0))
+                t[rows] = newton_descent(partial(profile.derivatives, upper=side), self.points[rows], first, (0.0, 1.0))
         place, tangent, _ = profile.derivatives(t, upper=self.upper)
         # a side goes on as the other one past the leading edge
         free = (t > 0.0) & (t < 1.0)
-        return framed(t[:, None], place, self.points, [tangent], free[:, None])
+        return with_frames(t[:, None], place, self.points, [tangent], free[:, None])
 
     def objective(self, unknowns: Reals) -> Quadratic:
         profile = self.changed(unknowns)
         return self.of_distances(profile, self.feet(profile)) + self._of_shape(profile, unknowns)
 
-    def of_distances(self, profile: CamberThickness, feet: Feet) -> Quadratic:
+    def of_distances(self, profile: CamberThickness, feet: Projections) -> Quadratic:
         counts = np.where(self.upper, self.upper.sum(), (~self.upper).sum())
         t, of = feet.parameters[:, 0], feet.across_of
-        return summed(
+        return quadratic_of_distances(
             self.rows(profile, t, self.upper, feet.along),
             feet.distances,
             self.rows(profile, t[of], self.upper[of], feet.across),
@@ -284,7 +292,7 @@ class _Search:
         value += float(pull @ thickness.control_points[:, 1])
         gradient[rows] = pull[self.heights]
         curvature[rows, rows] = self.stiffness * net.bending[np.ix_(self.heights, self.heights)]
-        own, cost = net.gauge.T @ np.log(profile.weights), PRIOR**2 + 1e-2 * self.stiffness
+        own, cost = net.gauge.T @ np.log(profile.weights), WEIGHT_REGULARISATION**2 + 1e-2 * self.stiffness
         value += cost * float(own @ own)
         gradient[moved + free :] = cost * own
         curvature[moved + free :, moved + free :] = cost * np.eye(len(own))
@@ -304,8 +312,8 @@ def _start(points: Reals, camber: int, thickness: int, *, round_end: bool) -> tu
     size = float(length(chord))
     along, across = chord / size, turned_left(chord / size)
     xi, eta = (points - low) @ along / size, (points - low) @ across / size
-    bins = np.clip((xi * BINS).astype(int), 0, BINS - 1)
-    rows = [np.flatnonzero(bins == k) for k in range(BINS)]
+    bins = np.clip((xi * CHORD_BINS).astype(int), 0, CHORD_BINS - 1)
+    rows = [np.flatnonzero(bins == k) for k in range(CHORD_BINS)]
     known = [(np.mean(xi[r]), eta[r].min(), eta[r].max()) for r in rows if len(r) >= 2]
     at, bottom, top = np.array(known).T
     # the ends' bins hold only the edges
@@ -343,14 +351,14 @@ def _upper(profile: CamberThickness, points: Reals) -> NDArray[np.bool_]:
     def derivatives(s: Reals) -> list[Reals]:
         return list(curve.derivatives(s, 2))
 
-    grid = np.linspace(0.0, 1.0, SAMPLES)
+    grid = np.linspace(0.0, 1.0, SIDE_SAMPLES)
     first = grid[cKDTree(curve(grid)).query(points)[1]]
-    s = descended(derivatives, points, first, (0.0, 1.0))
+    s = newton_descent(derivatives, points, first, (0.0, 1.0))
     place, tangent = curve.derivatives(s, 1)
     return np.asarray(np.sum((points - place) * turned_left(tangent), axis=-1) > 0.0)
 
 
-def _noise(feet: Feet, points: Reals, upper: NDArray[np.bool_]) -> float:
+def _noise(feet: Projections, points: Reals, upper: NDArray[np.bool_]) -> float:
     squares = []
     for side in (True, False):
         rows = upper == side
@@ -374,3 +382,41 @@ def _check(points: Reals, camber: int, thickness: int, ends: object, trailing_ed
         raise FitError(
             f"{len(points)} points were to determine about {unknowns} unknowns of a profile: give more points"
         )
+
+
+ADDED_COUNTS = ((1, 0), (0, 1), (1, 1))
+"""control points of camber and thickness that are added at a time"""
+MOST_GROWTHS = 8
+NOISE_MAXIMUM = 3.0
+"""deviations of the points' noise that the largest of many distances has by chance"""
+WORTHWHILE_RATIO = 0.97
+"""ratio of largest distances below which further control points are worth it"""
+
+
+def _within_tolerance(
+    fitted: "Callable[[int, int], ProfileFit]", camber: int, thickness: int, tolerance: float
+) -> "ProfileFit":
+    """The fit that keeps a tolerance with few control points, from so many on, or the nearest, which says why."""
+    found = fitted(camber, thickness)
+    evaluations = found.iterations
+    reason = f"the tolerance is not reached after {MOST_GROWTHS} rounds of control points"
+    for _ in range(MOST_GROWTHS):
+        if found.maximum <= tolerance:
+            break
+        if found.maximum <= NOISE_MAXIMUM * found.noise:
+            reason = "what is left is the noise of the points: more control points would follow it"
+            break
+        tried = []
+        for more in ADDED_COUNTS:
+            try:
+                tried.append((more, fitted(camber + more[0], thickness + more[1])))
+            except FitError as refusal:
+                reason = str(refusal)
+        evaluations += sum(each.iterations for _, each in tried)
+        more, nearest = min(tried, key=lambda each: each[1].maximum, default=((0, 0), found))
+        if nearest.maximum > WORTHWHILE_RATIO * found.maximum:
+            reason = reason if not tried else "further control points bring the profile no nearer"
+            break
+        camber, thickness, found = camber + more[0], thickness + more[1], nearest
+    notes = found.notes if found.maximum <= tolerance else (*found.notes, reason)
+    return replace(found, iterations=evaluations, notes=notes)

@@ -11,24 +11,23 @@ from bladewright.nurbs.basis import Reals, breaks
 from bladewright.nurbs.bezier import Patches, patches, sampled
 from bladewright.nurbs.closest import TOLERANCE
 from bladewright.nurbs.curve import Curve
-from bladewright.nurbs.polish import Places, polished
-from bladewright.nurbs.proximity import nearest
+from bladewright.nurbs.proximity import PatchPoints, nearest, polished
 from bladewright.nurbs.surface import Surface
 
-STEPS = 60
+NEWTON_STEPS = 60
 """of Newton's iteration, halvings among them"""
-NEAR = 1e-9
+LAST_NEWTON_STEP = 1e-9
 """of the domain: step after which Newton's next one is rounding"""
 SAMPLES = ((6, 6), (24, 1))
 """places along and across a patch of a surface and of a curve at which a search starts"""
-CERTAIN = 0.01
+CERTIFIED_SHARE = 0.01
 """share of the largest distance that a search for nearer places leaves open"""
 AT_ONCE = 20_000
 """points that are projected onto a surface at a time, to bound the memory"""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Feet:
+class Projections:
     """The nearest places of n points, and an orthonormal frame of each that spans the misses that count.
 
     A miss along a tangent is no distance: the place moves. Where a place is held at an end, it counts as well.
@@ -55,7 +54,7 @@ def projected(
     *,
     closed: bool = False,
     held: tuple[NDArray[np.intp], Reals] | None = None,
-) -> Feet:
+) -> Projections:
     """The nearest places of points (n, d): of all, or where the descent from parameters `near` (n, k) ends.
 
     A closed curve has no ends to be held at. The places of points `held[0]` (j,) stay at parameters `held[1]` (j, k).
@@ -77,10 +76,10 @@ def projected(
     else:
         of = shape.derivatives(parameters[:, 0], parameters[:, 1], 1)
         place, tangents = of[0, 0], [of[1, 0], of[0, 1]]
-    return framed(parameters, np.asarray(place), points, tangents, free)
+    return with_frames(parameters, np.asarray(place), points, tangents, free)
 
 
-def nearer_of(feet: Feet, others: Feet, rows: NDArray[np.bool_]) -> Feet:
+def nearer_projections(feet: Projections, others: Projections, rows: NDArray[np.bool_]) -> Projections:
     """Feet, or at some rows (n,) the others, one each, where these are nearer; without their directions across."""
     better = np.zeros(len(rows), dtype=bool)
     better[rows] = others.distances < feet.distances[rows]
@@ -100,20 +99,22 @@ def sampled_parameters(shape: Curve | Surface, points: Reals) -> Reals:
     return (low + samples.local[index] * (high - low))[:, : 1 if isinstance(shape, Curve) else 2]
 
 
-def certified(shape: Curve | Surface, points: Reals, feet: Feet) -> Reals:
+def certified_parameters(shape: Curve | Surface, points: Reals, feet: Projections) -> Reals:
     """Parameters (n, k) of places at most a `CERTAIN` of the largest distance further away than the nearest of all.
 
     Those of `feet` stay where the search has nothing nearer.
     """
     on = patches(shape)
     extent = float(np.ptp(shape.control_points.reshape(-1, points.shape[1]), axis=0).max())
-    found = nearest(on, points, max(TOLERANCE * extent, CERTAIN * float(feet.distances.max())))
-    nearer = np.sqrt(found.square) < feet.distances * (1.0 - CERTAIN) - TOLERANCE * extent
+    found = nearest(on, points, max(TOLERANCE * extent, CERTIFIED_SHARE * float(feet.distances.max())))
+    nearer = np.sqrt(found.square) < feet.distances * (1.0 - CERTIFIED_SHARE) - TOLERANCE * extent
     parameters = _parameters(on, found)[:, : feet.parameters.shape[1]]
     return np.where(nearer[:, None], parameters, feet.parameters)
 
 
-def framed(parameters: Reals, places: Reals, points: Reals, tangents: Sequence[Reals], free: NDArray[np.bool_]) -> Feet:
+def with_frames(
+    parameters: Reals, places: Reals, points: Reals, tangents: Sequence[Reals], free: NDArray[np.bool_]
+) -> Projections:
     """Feet at known parameters (n, k); along the k `tangents` (n, d) the places are `free` (n, k) to move."""
     miss = places - points
     distances = np.sqrt(np.sum(miss**2, axis=-1))
@@ -136,7 +137,7 @@ def framed(parameters: Reals, places: Reals, points: Reals, tangents: Sequence[R
         for k in range(count + 1, dimension):
             rest.append(frame[:, :, k])
             rest_of.append(rows)
-    return Feet(
+    return Projections(
         parameters=parameters,
         points=places,
         distances=distances,
@@ -146,7 +147,7 @@ def framed(parameters: Reals, places: Reals, points: Reals, tangents: Sequence[R
     )
 
 
-def descended(
+def newton_descent(
     derivatives: Callable[[Reals], Sequence[Reals]], points: Reals, start: Reals, domain: tuple[float, float]
 ) -> Reals:
     """Parameters (n,) of a curve where Newton's descent of the distance from `start` (n,) ends, clipped to the domain.
@@ -157,7 +158,7 @@ def descended(
     u = np.clip(start, *domain)
     active, factor = np.arange(len(u)), np.ones(len(u))
     step, square = _step(derivatives(u), points)
-    for _ in range(STEPS):
+    for _ in range(NEWTON_STEPS):
         trial = np.clip(u[active] + factor[active] * step[active], *domain)
         moving = trial != u[active]
         active, trial = active[moving], trial[moving]
@@ -165,7 +166,7 @@ def descended(
             break
         new_step, new_square = _step(derivatives(trial), points[active])
         # so close to the end, whether the distance falls is rounding, and Newton's step is exact
-        done = (trial - u[active]) ** 2 <= (NEAR * (domain[1] - domain[0])) ** 2
+        done = (trial - u[active]) ** 2 <= (LAST_NEWTON_STEP * (domain[1] - domain[0])) ** 2
         lower = done | (new_square <= square[active])
         taken = active[lower]
         u[taken], step[taken], square[taken], factor[taken] = trial[lower], new_step[lower], new_square[lower], 1.0
@@ -188,11 +189,11 @@ def _descended_on_curve(curve: Curve, points: Reals, start: Reals, *, closed: bo
     def derivatives(u: Reals) -> Sequence[Reals]:
         return curve.derivatives(u, 2)
 
-    u = descended(derivatives, points, start, curve.domain)
+    u = newton_descent(derivatives, points, start, curve.domain)
     low, high = curve.domain
     if closed:
         seam = np.flatnonzero((u <= low) | (u >= high))
-        other = descended(derivatives, points[seam], np.where(u[seam] <= low, high, low), curve.domain)
+        other = newton_descent(derivatives, points[seam], np.where(u[seam] <= low, high, low), curve.domain)
         better = np.sum((curve(other) - points[seam]) ** 2, axis=-1) < np.sum(
             (curve(u[seam]) - points[seam]) ** 2, axis=-1
         )
@@ -212,7 +213,7 @@ def _descended_on_surface(surface: Surface, points: Reals, near: Reals) -> Reals
     return np.concatenate([_parameters(on, polished(on, points[part], patch[part], local[part])) for part in parts])
 
 
-def _parameters(on: Patches, found: Places) -> Reals:
+def _parameters(on: Patches, found: PatchPoints) -> Reals:
     low, high = on.low[found.patch], on.high[found.patch]
     return np.where(found.local >= 1.0, high, low + found.local * (high - low))
 

@@ -7,32 +7,32 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bladewright.fitting.freeform.least_squares import Penalty, rank_of, singular_values
-from bladewright.fitting.freeform.net import Match, Net, Target, matched
+from bladewright.fitting.freeform.net import Net, NetMatch, NetTarget, matched_net
 from bladewright.fitting.freeform.projection import projected
 from bladewright.nurbs.basis import Reals
 
 STIFFNESSES = (1e-4, 1e-6, 1e-8, 1e-10, 1e-13)
 """weights of the bending, in extents of the points squared"""
-NOISE_ALLOWS = 1.002
+STIFFNESS_COST = 1.002
 """rise of the root mean square that a stiffness may cost where points leave control points undetermined"""
-WELL = 1e-4
+WELL_DETERMINED = 1e-4
 """smallest singular value, of the largest, from which every direction is determined well"""
-LAST = (200, 80)
+LAST_EVALUATIONS = (200, 80)
 """evaluations of the last descent of a curve and of a surface"""
-ROUGH = 1e-3
+ROUGH_FALL = 1e-3
 """relative fall of the value at which a match on the way ends"""
-ROUNDS = 25
+KNOT_ROUNDS = 25
 """of further knots"""
-OUTLYING = 4.5
+OUTLYING_NOISE = 4.5
 """deviations of the noise from which a point is an outlier"""
-MEDIAN = 0.6745
+MEDIAN_OVER_DEVIATION = 0.6745
 """of the magnitudes of a normal distribution, in deviations"""
-EXACT = 1e-10
+NEVER_OUTLIER = 1e-10
 """of the extent: distance that is never an outlier"""
 
 
 @dataclass(frozen=True, kw_only=True)
-class Way:
+class FitOptions:
     """What is asked of a match."""
 
     power: float = 2.0
@@ -53,10 +53,10 @@ class Way:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Arrived:
+class StagedMatch:
     """A match of the inliers, and the figures of the problem."""
 
-    match: Match
+    match: NetMatch
     inliers: NDArray[np.bool_]
     evaluations: int
 
@@ -71,35 +71,39 @@ class Arrived:
         return rank_of(self.singular_values)
 
 
-Further = Callable[[Arrived, Target, Way, float], tuple[Net | None, str]]
+KnotSource = Callable[[StagedMatch, NetTarget, FitOptions, float], tuple[Net | None, str]]
 
 
-def within(net: Net, target: Target, way: Way, further: Further, *, warm: bool) -> tuple[Arrived, tuple[str, ...]]:
+def match_within_tolerance(
+    net: Net, target: NetTarget, way: FitOptions, further: KnotSource, *, warm: bool
+) -> tuple[StagedMatch, tuple[str, ...]]:
     """The match within a largest distance, where there is one, and why it is not reached where it is not.
 
     `further` gives a net with further knots, or None and the reason; a `warm` net is near already.
     """
-    found = arrived(net, target, way, warm=warm)
+    found = staged_match(net, target, way, warm=warm)
     evaluations, reason = found.evaluations, ""
-    for _ in range(ROUNDS):
+    for _ in range(KNOT_ROUNDS):
         if way.limit is None or found.match.feet.distances.max() <= way.limit:
             return replace(found, evaluations=evaluations), ()
         more, reason = further(found, target, way, way.limit)
         if more is None:
             return replace(found, evaluations=evaluations), (reason,)
         way.say(f"{len(more.points)} control points")
-        found = arrived(more, target, way, warm=True)
+        found = staged_match(more, target, way, warm=True)
         evaluations += found.evaluations
-    return replace(found, evaluations=evaluations), (f"the tolerance is not reached after {ROUNDS} rounds of knots",)
+    return replace(found, evaluations=evaluations), (
+        f"the tolerance is not reached after {KNOT_ROUNDS} rounds of knots",
+    )
 
 
-def arrived(net: Net, target: Target, way: Way, *, warm: bool = False) -> Arrived:
+def staged_match(net: Net, target: NetTarget, way: FitOptions, *, warm: bool = False) -> StagedMatch:
     """The match of a net to points, stage by stage; a `warm` one is near already, and only the last stages are left."""
     inliers = np.ones(len(target.points), dtype=bool)
     total = 0
     if way.robust:
         net, inliers, total = _without_outliers(net, target, way, warm=warm)
-        target = chosen(target, inliers)
+        target = target_rows(target, inliers)
     match = _softened(net, target, way, None, last=2 if warm else None)
     total += match.evaluations
     if way.weights_free and not net.weighted:
@@ -109,83 +113,89 @@ def arrived(net: Net, target: Target, way: Way, *, warm: bool = False) -> Arrive
         total += match.evaluations
     if way.power != 2.0:
         way.say(f"power {way.power:g}")
-        scale = max(float(match.feet.distances.max()), EXACT)
+        scale = max(float(match.feet.distances.max()), NEVER_OUTLIER)
         penalty = Penalty(power=way.power, scale=scale)
-        match = matched(match.net, target, penalty=penalty, near=match.feet.parameters, stiffness=_least(match))
+        match = matched_net(
+            match.net, target, penalty=penalty, near=match.feet.parameters, stiffness=_least_stiffness(match)
+        )
         total += match.evaluations
-    return Arrived(match=match, inliers=inliers, evaluations=total)
+    return StagedMatch(match=match, inliers=inliers, evaluations=total)
 
 
-def chosen(target: Target, rows: NDArray[np.bool_]) -> Target:
+def target_rows(target: NetTarget, rows: NDArray[np.bool_]) -> NetTarget:
     """The points of some rows; held ones stay held where they are among them."""
     held = target.held
     if held is not None:
         kept = rows[held[0]]
         new = np.cumsum(rows) - 1
         held = (new[held[0][kept]], held[1][kept])
-    return Target(points=target.points[rows], weights=target.weights[rows], held=held)
+    return NetTarget(points=target.points[rows], weights=target.weights[rows], held=held)
 
 
-def _softened(net: Net, target: Target, way: Way, near: Reals | None, *, last: int | None = None) -> Match:
-    tried: list[Match] = []
+def _softened(net: Net, target: NetTarget, way: FitOptions, near: Reals | None, *, last: int | None = None) -> NetMatch:
+    tried: list[NetMatch] = []
     total = 0
     levels = list(STIFFNESSES[0 if last is None else -last :])
     for stiffness in levels:
         way.say(f"{len(net.points)} control points, stiffness {stiffness:g}")
-        match = matched(net, target, penalty=Penalty(), stiffness=stiffness, near=near, evaluations=20, tolerance=ROUGH)
+        match = matched_net(
+            net, target, penalty=Penalty(), stiffness=stiffness, near=near, evaluations=20, tolerance=ROUGH_FALL
+        )
         net, near = match.net, match.feet.parameters
         total += match.evaluations
         tried.append(match)
-        if stiffness == levels[-1] and stiffness > 0.0 and _least(match, well=way.always_stiff) == 0.0:
+        if stiffness == levels[-1] and stiffness > 0.0 and _least_stiffness(match, well=way.always_stiff) == 0.0:
             levels.append(0.0)
     best = len(tried) - 1
     if way.always_stiff:
-        enough = NOISE_ALLOWS * max(_rms(tried[-1]), EXACT)
+        enough = STIFFNESS_COST * max(_rms(tried[-1]), NEVER_OUTLIER)
         best = next(i for i, each in enumerate(tried) if _rms(each) <= enough)
     net, near = tried[best].net, tried[best].feet.parameters
-    match = matched(
+    match = matched_net(
         net,
         target,
         penalty=Penalty(),
         stiffness=levels[best],
         near=near,
         certain=True,
-        evaluations=LAST[len(net.knots) - 1],
+        evaluations=LAST_EVALUATIONS[len(net.knots) - 1],
     )
     return replace(match, evaluations=total + match.evaluations)
 
 
-def _least(match: Match, *, well: bool = False) -> float:
+def _least_stiffness(match: NetMatch, *, well: bool = False) -> float:
     """No stiffness where the points determine all unknowns, or determine them `well`; else the least one."""
     values = singular_values(match.data.curvature)
-    determined = values[-1] > WELL * values[0] if well and len(values) else rank_of(values) == len(values)
+    determined = values[-1] > WELL_DETERMINED * values[0] if well and len(values) else rank_of(values) == len(values)
     return 0.0 if determined else STIFFNESSES[-1]
 
 
-def _rms(match: Match) -> float:
+def _rms(match: NetMatch) -> float:
     return float(np.sqrt(np.mean(match.feet.distances**2)))
 
 
-def _without_outliers(net: Net, target: Target, way: Way, *, warm: bool) -> tuple[Net, NDArray[np.bool_], int]:
+def _without_outliers(
+    net: Net, target: NetTarget, way: FitOptions, *, warm: bool
+) -> tuple[Net, NDArray[np.bool_], int]:
     """The net matched softly, and which points are not further from it than noise explains."""
     feet = projected(net.shape, target.points, closed=net.closed)
     near, total = feet.parameters, 0
-    deviation = float(np.median(feet.distances)) / MEDIAN
-    reach = max(deviation, EXACT) if warm else 0.05
+    deviation = float(np.median(feet.distances)) / MEDIAN_OVER_DEVIATION
+    reach = max(deviation, NEVER_OUTLIER) if warm else 0.05
     for stiffness in (1e-8, 1e-8) if warm else (1e-4, 1e-6, 1e-8, 1e-8):
         way.say(f"without outliers, stiffness {stiffness:g}")
-        match = matched(
+        match = matched_net(
             net,
             target,
             penalty=Penalty(reach=reach),
             stiffness=stiffness,
             near=near,
             evaluations=40,
-            tolerance=ROUGH,
+            tolerance=ROUGH_FALL,
         )
         net, near = match.net, match.feet.parameters
         total += match.evaluations
-        deviation = float(np.median(match.feet.distances)) / MEDIAN
-        reach = min(reach, max(deviation, EXACT))
-    inliers = match.feet.distances <= max(OUTLYING * deviation, EXACT)
+        deviation = float(np.median(match.feet.distances)) / MEDIAN_OVER_DEVIATION
+        reach = min(reach, max(deviation, NEVER_OUTLIER))
+    inliers = match.feet.distances <= max(OUTLYING_NOISE * deviation, NEVER_OUTLIER)
     return net, inliers, total

@@ -10,11 +10,11 @@ from numpy.typing import ArrayLike
 from scipy.spatial import ConvexHull, QhullError, cKDTree
 
 from bladewright.errors import FitError, GeometryError
-from bladewright.fitting.freeform.fitted import Fitted, asked, checked_logs, checked_points
 from bladewright.fitting.freeform.least_squares import Penalty
-from bladewright.fitting.freeform.net import DIRECTIONS, Net, Target, quadratic_of
-from bladewright.fitting.freeform.projection import nearer_of, projected
-from bladewright.fitting.freeform.stages import Arrived, Way, within
+from bladewright.fitting.freeform.net import DIRECTIONS, Net, NetTarget, quadratic_of
+from bladewright.fitting.freeform.options import FreeformFit, checked_logs, checked_options, checked_points
+from bladewright.fitting.freeform.projection import nearer_projections, projected
+from bladewright.fitting.freeform.stages import FitOptions, StagedMatch, match_within_tolerance
 from bladewright.numerics.elementary import cross2
 from bladewright.nurbs.basis import Reals, breaks, checked_knots, uniform_knots
 from bladewright.nurbs.domain import extended, reparametrised
@@ -22,23 +22,27 @@ from bladewright.nurbs.surface import Surface
 
 FIRST_STIFFNESS = 1e-6
 """weight of the bending of the first surface"""
-MARGIN = 0.05
+CONTINUED_SHARE = 0.05
 """of the domain: how far the surface is continued past its edges while it moves"""
-ALIKE = 1e-10
+SAME_END = 1e-10
 """of the domain: difference of two of its ends that is rounding"""
 NEIGHBOURS = 6
 """points with which one is compared to see noise"""
-NOISY = 1.25
+NOISE_RATIO = 1.25
 """root mean square of a strip's distances, of the noise, up to which it is noise"""
-HELD: dict[str, Literal["none", "corners", "boundary"]] = {"free": "none", "corners": "corners", "fixed": "boundary"}
+HELD_BY_BOUNDARY: dict[str, Literal["none", "corners", "boundary"]] = {
+    "free": "none",
+    "corners": "corners",
+    "fixed": "boundary",
+}
 """control points that a boundary holds"""
-FLAT = 1e-9
+ON_A_LINE = 1e-9
 """second extent of the points, of the first, below which they lie on a line"""
 
 
 @final
 @dataclass(frozen=True, kw_only=True, eq=False)
-class SurfaceFit(Fitted):
+class SurfaceFit(FreeformFit):
     """A surface fitted to n points."""
 
     surface: Surface
@@ -86,7 +90,9 @@ def fit_surface(
         raise FitError("a fixed boundary was asked for without `start`: give the surface whose boundary is to stay")
     centre, extent = np.mean(given, axis=0), float(np.ptp(given, axis=0).max())
     scaled = (given - centre) / extent
-    way = asked(weights=weights, power=power, robust=robust, tolerance=tolerance, extent=extent, progress=progress)
+    way = checked_options(
+        weights=weights, power=power, robust=robust, tolerance=tolerance, extent=extent, progress=progress
+    )
     way = replace(way, always_stiff=True)
     plane = _principal(scaled)
     if start is None:
@@ -101,16 +107,16 @@ def fit_surface(
     domain = net.surface.domain_u, net.surface.domain_v
     if boundary == "free":
         net = _of_surface(_widened(net.surface))
-    net = replace(net, held=HELD[boundary])
+    net = replace(net, held=HELD_BY_BOUNDARY[boundary])
     _check_numbers(net, scaled, weights_free=way.weights_free)
-    found, notes = within(
-        net, Target(points=scaled, weights=np.ones(len(scaled))), way, _further_knots, warm=start is not None
+    found, notes = match_within_tolerance(
+        net, NetTarget(points=scaled, weights=np.ones(len(scaled))), way, _further_knots, warm=start is not None
     )
     shape, near = found.match.net.surface, found.match.feet.parameters
     if boundary == "free":
         shape, near = _cut(shape, near, domain)
     last = projected(shape, scaled[found.inliers], near)
-    feet = nearer_of(projected(shape, scaled), last, found.inliers)
+    feet = nearer_projections(projected(shape, scaled), last, found.inliers)
     signed = np.sum((feet.points - scaled) * shape.normal(*feet.parameters.T), axis=-1)
     inliers = found.inliers
     if found.rank < len(found.singular_values):
@@ -153,7 +159,7 @@ def _widened(surface: Surface) -> Surface:
     try:
         for direction in DIRECTIONS:
             low, high = surface.domain_u if direction == "u" else surface.domain_v
-            margin = MARGIN * (high - low)
+            margin = CONTINUED_SHARE * (high - low)
             surface = extended(surface, low - margin, high + margin, direction)
     except GeometryError:
         # weights that fall towards an edge would not stay positive
@@ -168,8 +174,8 @@ def _cut(surface: Surface, parameters: Reals, domain: tuple[tuple[float, float],
         low, high = domain[k]
         size = high - low
         start, end = float(parameters[:, k].min()), float(parameters[:, k].max())
-        start = low if (start - low) ** 2 <= (ALIKE * size) ** 2 else start
-        end = high if (end - high) ** 2 <= (ALIKE * size) ** 2 else end
+        start = low if (start - low) ** 2 <= (SAME_END * size) ** 2 else start
+        end = high if (end - high) ** 2 <= (SAME_END * size) ** 2 else end
         if (start, end) != (surface.domain_u, surface.domain_v)[k]:
             surface = reparametrised(extended(surface, start, end, direction), low, high, direction)
         mapped[:, k] = np.clip(low + (parameters[:, k] - start) / (end - start) * size, low, high)
@@ -179,7 +185,7 @@ def _cut(surface: Surface, parameters: Reals, domain: tuple[tuple[float, float],
 def _principal(points: Reals) -> Reals:
     """Coordinates (n, 2) in the principal plane of points (n, 3)."""
     _, size, axes = np.linalg.svd(points - points.mean(axis=0), full_matrices=False)
-    if size[1] <= FLAT * size[0]:
+    if size[1] <= ON_A_LINE * size[0]:
         raise FitError(f"the {len(points)} points lie on a line: a surface needs points beside it")
     return np.asarray(points @ axes[:2].T)
 
@@ -280,7 +286,7 @@ def _noise(parameters: Reals, signed: Reals) -> float:
     return float(np.sqrt(np.mean(off**2) / (1.0 + 1.0 / count)))
 
 
-def _further_knots(found: Arrived, target: Target, way: Way, limit: float) -> tuple[Net | None, str]:
+def _further_knots(found: StagedMatch, target: NetTarget, way: FitOptions, limit: float) -> tuple[Net | None, str]:
     """Further knots in strips too far off for other reasons than noise, along the direction that gains more."""
     net, feet = found.match.net, found.match.feet
     points = target.points[found.inliers]
@@ -296,7 +302,7 @@ def _further_knots(found: Arrived, target: Target, way: Way, limit: float) -> tu
             here = (at >= low) & (at <= high)
             worst = feet.distances[here].max(initial=0.0)
             if worst <= limit or (
-                worst <= 4.0 * noise and np.sqrt(np.mean(feet.distances[here] ** 2)) <= NOISY * noise
+                worst <= 4.0 * noise and np.sqrt(np.mean(feet.distances[here] ** 2)) <= NOISE_RATIO * noise
             ):
                 continue
             order = np.argsort(at[here])
@@ -309,7 +315,7 @@ def _further_knots(found: Arrived, target: Target, way: Way, limit: float) -> tu
         if len(more.points) > len(points) // 2:
             sparse = True
             continue
-        chosen = Target(points=points, weights=target.weights[found.inliers])
+        chosen = NetTarget(points=points, weights=target.weights[found.inliers])
         quadratic = quadratic_of(more, chosen, feet, Penalty())
         damping = 1e-9 * np.trace(quadratic.curvature) / len(quadratic.gradient) * np.eye(len(quadratic.gradient))
         gain = float(quadratic.gradient @ np.linalg.solve(quadratic.curvature + damping, quadratic.gradient))

@@ -13,55 +13,55 @@ from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
 from bladewright.fitting.clouds.thinning import spread
-from bladewright.fitting.matching.feet import Feet
+from bladewright.fitting.matching.footpoints import Footpoints
 from bladewright.nurbs.basis import Reals
 
 NEIGHBOURS = {2: 4, 3: 8}
 """neighbours asked, by dimension"""
-OUTLYING = 8.0
+OUTLYING_NOISE = 8.0
 """deviations of the noise that an outlier exceeds"""
-STEP = 5.0
+NEIGHBOUR_STEP = 5.0
 """deviations of the noise by which neighbours on one surface differ at most"""
-USUAL, AT_EDGES = 6.0, 60.0
+OUTLYING_MISFIT, OUTLYING_MISFIT_AT_EDGES = 6.0, 60.0
 """usual misfits that an outlier exceeds, and near an edge, where a misfit is large and neighbours are few"""
-STEEP = 40.0
+STEEPEST_MISFIT = 40.0
 """usual misfits by which the misfit may change along the extent"""
-STEEPER = 4.0
+STEEPER_THAN_AROUND = 4.0
 """by how much steeper than around a point the misfit may become"""
-EDGE = 0.03
+EDGE_BAND = 0.03
 """how near, in u"""
-APART = 0.05
+SIDES_APART = 0.05
 """how far apart the two sides of a thin blade are taken to be, of the extent"""
-STEADY = 100.0
+STEADY_MISFIT = 100.0
 """usual misfits from which a small group away from the edges is no misfit, though heights rise to it steadily"""
-CHANCE = 3.0
+CHANCE_EXCESS = 3.0
 """by how much more than the noise distances may usually be by chance, of the root of the number of points"""
-GROUP, FEW = 0.05, 20
+LARGEST_GROUP, SMALL_GROUP = 0.05, 20
 """largest group of outliers, of the points, and however few there are"""
-BESIDE, WRONG = 0.02, 0.2
+END_BAND, WRONG_END_SHARE = 0.02, 0.2
 """how near an end of the blade points are, in v, and the part of them which past it shows that the end is wrong"""
-ONWARDS = 1
+PAST_END_BY_CHANCE = 1
 """points past an end, level with the sides, that may be there by chance"""
-LEVEL = 0.05
+LEVEL_SLOPE = 0.05
 """height, of the way past an end, up to which a point is level with the sides, which may bend there"""
-SPIKE, FLAT = 2.0, 0.1
+SPIKE_SLOPE, SPIKE_NEIGHBOURS = 2.0, 0.1
 """slope to all neighbours that no surface has, and their height, of the point's own, from which they are on it"""
-MOST = 0.15
+LARGEST_OUTLIER_SHARE = 0.15
 """part of the points from which it is the design that lies off, and not they"""
-AROUND, SITES = 64, 5000
+LOCAL_POINTS, LOCAL_SITES = 64, 5000
 """points around each of so many sites whose noise is taken to be alike"""
-QUARTILE = 3.1384
+DEVIATION_OVER_QUARTILE = 3.1384
 """standard deviation of normal noise over the lower quartile of its magnitude, which a group of outliers spoils less"""
-CORE = 3
+CORE_NEIGHBOURS = 3
 """points of the large groups beside a small one to which a step may lead"""
-NEAR = 1e-6
+ALWAYS_INLIER = 1e-6
 """distance up to which no point is an outlier, of the cloud's extent"""
-STANDARD = 1.4826
+DEVIATION_OVER_MEDIAN = 1.4826
 """standard deviation of normal noise over its median magnitude"""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Surroundings:
+class Neighbourhood:
     """Which of n points are beside each other on the sides of a design."""
 
     places: Reals
@@ -72,11 +72,11 @@ class Surroundings:
     """[m]"""
 
 
-def surroundings_of(points: Reals, on: Feet) -> Surroundings:
+def neighbourhood_of(points: Reals, on: Footpoints) -> Neighbourhood:
     """The neighbours of points (n, d) with known feet."""
     extent = float(np.ptp(points, axis=0).max())
-    inward = np.minimum(np.minimum(on.u, 1.0 - on.u) / EDGE, 1.0)
-    lifted = np.where(on.side == 0, 1.0, -1.0) * APART * extent * inward
+    inward = np.minimum(np.minimum(on.u, 1.0 - on.u) / EDGE_BAND, 1.0)
+    lifted = np.where(on.side == 0, 1.0, -1.0) * SIDES_APART * extent * inward
     places = np.column_stack([on.points, lifted])
     count = NEIGHBOURS[points.shape[1]]
     asked = min(count + 1, len(points))
@@ -84,13 +84,13 @@ def surroundings_of(points: Reals, on: Feet) -> Surroundings:
     # among points in one place a point is not always the first that is found
     own = index == np.arange(len(points))[:, None]
     index = np.where(own, index[:, :1], index)[:, 1:]
-    return Surroundings(
+    return Neighbourhood(
         places=places, index=np.pad(index, ((0, 0), (0, count - asked + 1)), mode="edge"), extent=extent
     )
 
 
 def outliers_of(
-    heights: Reals, past: Reals, distances: Reals, weights: Reals, on: Feet, around: Surroundings
+    heights: Reals, past: Reals, distances: Reals, weights: Reals, on: Footpoints, around: Neighbourhood
 ) -> NDArray[np.bool_]:
     """Which of n points are outliers, by their heights above the surface, their way past its ends and distances [m].
 
@@ -100,35 +100,35 @@ def outliers_of(
     # a median of k neighbours has about 1 / k of the variance
     spread_out = np.sqrt(1.0 / weights + np.mean(1.0 / weights[index], axis=1) / index.shape[1])
     off = np.abs(heights - np.median(heights[index], axis=1)) / spread_out * np.sqrt(1.0 + 1.0 / index.shape[1])
-    noise = STANDARD * float(np.median(off))
-    usual = STANDARD * float(np.median(roots * distances))
-    chance = 1.0 + CHANCE / np.sqrt(len(heights))
+    noise = DEVIATION_OVER_MEDIAN * float(np.median(off))
+    usual = DEVIATION_OVER_MEDIAN * float(np.median(roots * distances))
+    chance = 1.0 + CHANCE_EXCESS / np.sqrt(len(heights))
     misfit = float(np.sqrt(max(usual**2 - (chance * noise) ** 2, 0.0)))
-    level = np.maximum(noise, _local(off, around)) / roots
-    edge = (on.u < EDGE) | (on.u > 1.0 - EDGE)
-    near = NEAR * around.extent
-    least = np.hypot(OUTLYING * level, np.where(edge, AT_EDGES, USUAL) * misfit) + near
-    spikes = _spikes(heights, OUTLYING * level + near, around)
+    level = np.maximum(noise, _local_noise(off, around)) / roots
+    edge = (on.u < EDGE_BAND) | (on.u > 1.0 - EDGE_BAND)
+    near = ALWAYS_INLIER * around.extent
+    least = np.hypot(OUTLYING_NOISE * level, np.where(edge, OUTLYING_MISFIT_AT_EDGES, OUTLYING_MISFIT) * misfit) + near
+    spikes = _spikes(heights, OUTLYING_NOISE * level + near, around)
     far = (distances > least) | spikes
     if not np.any(far):
         return far
-    wrong = _short_of_ends(far & (past > least), np.abs(heights) <= np.maximum(least, LEVEL * past), on)
+    wrong = _short_of_ends(far & (past > least), np.abs(heights) <= np.maximum(least, LEVEL_SLOPE * past), on)
     beyond = (past > least) & ~wrong
-    largest = min(max(FEW, int(GROUP * len(heights))), len(heights) // 5)
+    largest = min(max(SMALL_GROUP, int(LARGEST_GROUP * len(heights))), len(heights) // 5)
     # what differs by more than the noise is no noise
     noisy = misfit == 0.0 and noise > near
     slopes = np.zeros(len(heights)) if noisy else _slopes(heights, level, misfit, around)
     found = spikes | (far & (beyond | _cut_off(heights, level, beyond, slopes, largest, around)))
     # what is past an end that is wrong lies off the surface by its height alone
     off_surface = np.where(wrong, np.abs(heights), distances)
-    steady = ~found & (off_surface > np.hypot(OUTLYING * level, STEADY * misfit) + near)
+    steady = ~found & (off_surface > np.hypot(OUTLYING_NOISE * level, STEADY_MISFIT * misfit) + near)
     label = _groups(steady, steady, index)
     # around an edge a few points are all that tells of a radius: it may be wrong alone
     found |= steady & (_sizes(label) <= largest) & ~np.isin(label, label[edge & steady])
-    return found if np.mean(found) < MOST else np.zeros_like(found)
+    return found if np.mean(found) < LARGEST_OUTLIER_SHARE else np.zeros_like(found)
 
 
-def _spikes(heights: Reals, least: Reals, around: Surroundings) -> NDArray[np.bool_]:
+def _spikes(heights: Reals, least: Reals, around: Neighbourhood) -> NDArray[np.bool_]:
     """Whether points (n,) stand higher off their neighbours, which are on the surface, than these are away.
 
     No wrong radius of an edge does that.
@@ -136,38 +136,38 @@ def _spikes(heights: Reals, least: Reals, around: Surroundings) -> NDArray[np.bo
     index, feet = around.index, around.places[:, :-1]
     way = np.sqrt(np.sum((feet[index] - feet[:, None]) ** 2, axis=-1))
     step = np.abs(heights[index] - heights[:, None])
-    steep = (step > SPIKE * way) & (step > np.maximum(least[:, None], least[index]))
-    level = np.median(np.abs(heights[index]), axis=1) < FLAT * np.abs(heights)
+    steep = (step > SPIKE_SLOPE * way) & (step > np.maximum(least[:, None], least[index]))
+    level = np.median(np.abs(heights[index]), axis=1) < SPIKE_NEIGHBOURS * np.abs(heights)
     return np.asarray(np.all(steep, axis=1) & level)
 
 
-def _short_of_ends(past: NDArray[np.bool_], level: NDArray[np.bool_], on: Feet) -> NDArray[np.bool_]:
+def _short_of_ends(past: NDArray[np.bool_], level: NDArray[np.bool_], on: Footpoints) -> NDArray[np.bool_]:
     """Whether points (n,) are at an end of the blade that so many are past that it is the end which is wrong.
 
     So it is, too, where most of those past it are `level` with the sides that go on there.
     """
     wrong = np.zeros(len(past), dtype=bool)
-    for beside in (on.v < BESIDE, on.v > 1.0 - BESIDE):
+    for beside in (on.v < END_BAND, on.v > 1.0 - END_BAND):
         there, onwards = int(np.count_nonzero(past & beside)), int(np.count_nonzero(past & level & beside))
-        if there > WRONG * np.count_nonzero(beside) or onwards > max(ONWARDS, there // 2):
+        if there > WRONG_END_SHARE * np.count_nonzero(beside) or onwards > max(PAST_END_BY_CHANCE, there // 2):
             wrong |= beside
     return wrong
 
 
-def _local(off: Reals, around: Surroundings) -> Reals:
+def _local_noise(off: Reals, around: Neighbourhood) -> Reals:
     """The noise (n,) around each point."""
-    sites = spread(around.places, SITES)
-    _, near = cKDTree(around.places).query(around.places[sites], k=min(AROUND, len(off)))
-    noise = QUARTILE * np.quantile(off[near.reshape(len(sites), -1)], 0.25, axis=1)
+    sites = spread(around.places, LOCAL_SITES)
+    _, near = cKDTree(around.places).query(around.places[sites], k=min(LOCAL_POINTS, len(off)))
+    noise = DEVIATION_OVER_QUARTILE * np.quantile(off[near.reshape(len(sites), -1)], 0.25, axis=1)
     return np.asarray(noise[cKDTree(around.places[sites]).query(around.places)[1]])
 
 
-def _slopes(heights: Reals, level: Reals, misfit: float, around: Surroundings) -> Reals:
+def _slopes(heights: Reals, level: Reals, misfit: float, around: Neighbourhood) -> Reals:
     """How much heights may change along the surface (n,) by a misfit that varies steadily."""
     index = around.index
-    way = np.sqrt(np.sum((around.places[index] - around.places[:, None]) ** 2, axis=-1)) + NEAR * around.extent
-    change = np.maximum(np.abs(heights[index] - heights[:, None]) - STEP * level[:, None], 0.0) / way
-    return STEEPER * _lower(_lower(change)[index]) + STEEP * misfit / around.extent
+    way = np.sqrt(np.sum((around.places[index] - around.places[:, None]) ** 2, axis=-1)) + ALWAYS_INLIER * around.extent
+    change = np.maximum(np.abs(heights[index] - heights[:, None]) - NEIGHBOUR_STEP * level[:, None], 0.0) / way
+    return STEEPER_THAN_AROUND * _lower(_lower(change)[index]) + STEEPEST_MISFIT * misfit / around.extent
 
 
 def _lower(values: Reals) -> Reals:
@@ -177,13 +177,13 @@ def _lower(values: Reals) -> Reals:
 
 
 def _cut_off(
-    heights: Reals, level: Reals, beyond: NDArray[np.bool_], slopes: Reals, largest: int, around: Surroundings
+    heights: Reals, level: Reals, beyond: NDArray[np.bool_], slopes: Reals, largest: int, around: Neighbourhood
 ) -> NDArray[np.bool_]:
     """Whether points (n,) are in a group of at most `largest` that no step leads to."""
 
     def steps(start: NDArray[np.intp], end: NDArray[np.intp]) -> NDArray[np.bool_]:
         way = np.sqrt(np.sum((around.places[end] - around.places[start]) ** 2, axis=-1))
-        allowed = STEP * np.maximum(level[start], level[end]) + NEAR * around.extent
+        allowed = NEIGHBOUR_STEP * np.maximum(level[start], level[end]) + ALWAYS_INLIER * around.extent
         allowed += np.minimum(slopes[start], slopes[end]) * way
         return (np.abs(heights[end] - heights[start]) <= allowed) & ~beyond[start] & ~beyond[end]
 
@@ -196,7 +196,7 @@ def _cut_off(
     apart = np.flatnonzero(~np.isin(np.arange(len(heights)), core))
     if len(apart) == 0:
         return np.zeros(len(heights), dtype=bool)
-    _, near = cKDTree(around.places[core]).query(around.places[apart], k=min(CORE, len(core)))
+    _, near = cKDTree(around.places[core]).query(around.places[apart], k=min(CORE_NEIGHBOURS, len(core)))
     near = core[near.reshape(len(apart), -1)]
     reached = np.any(steps(np.broadcast_to(apart[:, None], near.shape), near), axis=1)
     joined = np.zeros(len(heights), dtype=bool)

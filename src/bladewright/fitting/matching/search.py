@@ -1,49 +1,76 @@
 """The search for a design of one structure: rounds of least squares, each with the noise that the last one left.
 
-A round's prior is as strong as the noise is large, so that a search from afar is held together by it, and a search in
-exact data ends free of it. Knots, outliers and what lies at the ends are found anew for every round.
+A round's regularisation is as strong as the noise is large, so that a search from afar is held together by it, and a
+search in exact data ends free of it. Knots, outliers and what lies at the ends are found anew for every round.
 """
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from bladewright.designs import Design
 from bladewright.errors import DesignError, FitError
-from bladewright.fitting.matching.descent import DAMPING, SLIGHT, descended
-from bladewright.fitting.matching.feet import feet
-from bladewright.fitting.matching.model import Model, model_of
-from bladewright.fitting.matching.prior import prior_of
-from bladewright.fitting.matching.problem import Measures, Problem, State
-from bladewright.fitting.matching.reach import reach_of
+from bladewright.fitting.matching.blade_ends import BladeEnds, blade_ends_of
+from bladewright.fitting.matching.constrained_least_squares import FIRST_DAMPING, MIN_REDUCTION, constrained_minimum
+from bladewright.fitting.matching.edge_overhang import edge_overhang_of
+from bladewright.fitting.matching.footpoints import nearest_footpoints
+from bladewright.fitting.matching.noise import NoiseEstimate, noise_of
+from bladewright.fitting.matching.regularisation import regularisation_of
+from bladewright.fitting.matching.residuals import MatchProblem, PlacedCloud, Residuals
 from bladewright.fitting.matching.scales import scales_of
-from bladewright.fitting.matching.scatter import Scatter, scatter_of
-from bladewright.fitting.matching.standby import Standby
-from bladewright.fitting.matching.walls import Ends, ends_of
+from bladewright.fitting.models.model import Model, model_of
 from bladewright.nurbs.basis import Reals
 
-STEPS = 10
+KEPT_DESIGNS = 3
+"""designs that are kept: the nearest may be one that cannot be built"""
+
+
+@dataclass(frozen=True, eq=False)
+class BestSoFar:
+    """The nearest designs so far, nearest first."""
+
+    found: list[tuple[float, Any]] = field(default_factory=list)
+
+    def note(self, found: Any) -> None:
+        """Keep where a round of a search ended, if few are nearer."""
+        if np.isfinite(found.off):
+            self.found.append((found.off, found))
+            self.found.sort(key=lambda each: each[0])
+            del self.found[KEPT_DESIGNS:]
+
+    def built(self) -> tuple[Any, Any] | None:
+        """The nearest that can be built, and what it builds; None where there is none."""
+        for _, found in self.found:
+            try:
+                return found, found.design.build()
+            except DesignError:
+                continue
+        return None
+
+
+EVALUATIONS_PER_ROUND = 10
 """evaluations of the surface in a round"""
-ROUNDS = 12
-SETTLED = 0.995
+MOST_ROUNDS = 12
+SETTLED_RATIO = 0.995
 """ratio of a round's misfit to that of the last at which a search ends"""
-ROUGH = 0.01
+ROUGH_REDUCTION = 0.01
 """part of the cost that a step must promise while a search is only one on the way"""
-FAST = 0.5
+FAST_RATIO = 0.5
 """ratio below which the next round's misfit is foreseen to fall as much again"""
-EXACT = 3e-14
+EXACT_MISFIT = 3e-14
 """misfit below which nothing is left to find, of the chord"""
-FINE = 0.1
+NATIVE_TOLERANCE_OF_NOISE = 0.1
 """tolerance of the native surfaces in a round, of the noise"""
-COARSEST = 1e-4
+COARSEST_TOLERANCE = 1e-4
 """tolerance of the native surfaces, of the chord"""
-SLACK = {2: 2e-6, 3: 2e-5}
+EDGE_RADIUS_MARGIN = {2: 2e-6, 3: 2e-5}
 """by how much a nose is at first held below the thickness beside it, of the section's extent, by dimension: a blade is
     asked between its stations too"""
 
-Told = Callable[[str], None]
+Progress = Callable[[str], None]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -57,7 +84,7 @@ class Task:
     free: Callable[[Design], tuple[str, ...]]
     """the free parameters of a design, whatever its structure"""
     bounds: Mapping[str, tuple[float, float]]
-    told: Told = lambda _: None
+    told: Progress = lambda _: None
     smooth: float = 1.0
     """by how much the prior is stronger"""
     slack: float = 1.0
@@ -66,7 +93,7 @@ class Task:
     """(n,) inverse variances of the points, relative to each other; where None they are alike"""
     outlying: bool = True
     """whether points may be outliers"""
-    standby: Standby = field(default_factory=Standby)
+    standby: BestSoFar = field(default_factory=BestSoFar)
     """the nearest designs that searches have come to"""
 
     def part(self, rows: NDArray[np.intp]) -> "Task":
@@ -78,14 +105,14 @@ class Task:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Found:
+class Match:
     """Where a search ended."""
 
     design: Design
-    problem: Problem
-    state: State
-    scatter: Scatter
-    ends: Ends
+    problem: MatchProblem
+    state: PlacedCloud
+    scatter: NoiseEstimate
+    ends: BladeEnds
     damping: float
     evaluations: int
     converged: bool = False
@@ -128,25 +155,27 @@ def searched(
     task: Task,
     start: Design,
     *,
-    rounds: int = ROUNDS,
+    rounds: int = MOST_ROUNDS,
     noise: float | None = None,
-    slight: float = SLIGHT,
-    enough: float = EXACT,
-) -> Found:
+    slight: float = MIN_REDUCTION,
+    enough: float = EXACT_MISFIT,
+) -> Match:
     """The design nearest to the cloud that a search from `start` finds, with the structure of `start`.
 
     `noise` is the first round's, of the chord; where None the misfit of the start. `slight` is the part of the cost
     that a step must promise, `enough` the misfit, of the chord, below which the search ends. Raises FitError where the
     start has no shape.
     """
-    found, idle = _prepared(task, start, start, noise), 0
+    found, idle = _prepared_round(task, start, start, noise), 0
     task.standby.note(found)
     for number in range(rounds):
         before = found.misfit
         if (number and before < enough) or found.interrupted:
             break
         try:
-            found = _round(found if number == 0 else _prepared(task, start, found.design, noise, found), slight)
+            found = _descended_round(
+                found if number == 0 else _prepared_round(task, start, found.design, noise, found), slight
+            )
         except FitError:
             # at finer knots the design has no shape: it stays as it was found
             break
@@ -154,25 +183,29 @@ def searched(
         rms = f"{1e3 * found.rms * found.model.chord:.3g} mm rms, {1e3 * found.maximum:.3g} mm at most"
         task.told(f"{len(found.problem.paths)} parameters, {rms}")
         ratio = found.misfit / before
-        idle = idle + 1 if ratio**2 > min(SETTLED**2, 1.0 - slight) else 0
+        idle = idle + 1 if ratio**2 > min(SETTLED_RATIO**2, 1.0 - slight) else 0
         if number and idle and (found.converged or idle > 1):
             break
-        noise = found.rms * (max(ratio, 1e-3) if ratio < FAST else 1.0)
+        noise = found.rms * (max(ratio, 1e-3) if ratio < FAST_RATIO else 1.0)
     return found
 
 
-def stood(task: Task, design: Design, *, noise: float) -> Found:
+def evaluated(task: Task, design: Design, *, noise: float) -> Match:
     """A design as it stands before a search; `noise` is the first round's, of the chord.
 
     Raises FitError where it has no shape.
     """
-    return _prepared(task, design, design, noise)
+    return _prepared_round(task, design, design, noise)
 
 
-def _prepared(task: Task, start: Design, design: Design, noise: float | None, before: Found | None = None) -> Found:
+def _prepared_round(
+    task: Task, start: Design, design: Design, noise: float | None, before: Match | None = None
+) -> Match:
     """A design with the problem of the next round."""
     points, paths = task.points, task.free(start)
-    tolerance = float(np.clip(FINE * (noise or 1.0), getattr(design, "tolerance", 1e-6), COARSEST))
+    tolerance = float(
+        np.clip(NATIVE_TOLERANCE_OF_NOISE * (noise or 1.0), getattr(design, "tolerance", 1e-6), COARSEST_TOLERANCE)
+    )
     try:
         model = model_of(design, tolerance)
         shape = model.shape(design)
@@ -180,22 +213,22 @@ def _prepared(task: Task, start: Design, design: Design, noise: float | None, be
         raise FitError(f"the start design has no shape ({error}); give another start, or none") from error
     if not shape.finite:
         raise FitError("the start design has no shape near its edges: give another start, or none")
-    on = feet(points, shape.sides)
-    scatter = scatter_of(points, on, task.precision, outlying=task.outlying)
-    ends = ends_of(points, on, shape, scatter.inliers)
+    on = nearest_footpoints(points, shape.sides)
+    scatter = noise_of(points, on, task.precision, outlying=task.outlying)
+    ends = blade_ends_of(points, on, shape, scatter.inliers)
     misfit = float(np.sqrt(np.mean(on.distances[scatter.inliers & ~ends.covered] ** 2))) / model.chord
     scales = scales_of(start, paths, model.chord, task.bounds)
-    prior = prior_of(start, paths, scales.size)
-    measures = Measures(
+    prior = regularisation_of(start, paths, scales.size)
+    measures = Residuals(
         points=points,
         roots=np.sqrt(task.weights * (scatter.inliers & ~ends.covered)),
         model=model,
         ends=ends,
-        reach=reach_of(points, shape.sides, scatter.inliers & ~ends.covered, exact=not task.outlying),
+        reach=edge_overhang_of(points, shape.sides, scatter.inliers & ~ends.covered, exact=not task.outlying),
         noise=misfit if noise is None else noise,
         precision=np.ones(len(points)) if task.precision is None else task.precision,
     )
-    problem = Problem(
+    problem = MatchProblem(
         measures=measures,
         start=start,
         paths=paths,
@@ -203,26 +236,26 @@ def _prepared(task: Task, start: Design, design: Design, noise: float | None, be
         prior=replace(prior, matrix=task.smooth * prior.matrix, aim=task.smooth * prior.aim),
         alone=scatter.alone(len(paths)) / task.smooth**2,
         hint=on,
-        margin=SLACK[points.shape[1]] * task.slack,
+        margin=EDGE_RADIUS_MARGIN[points.shape[1]] * task.slack,
     )
-    return Found(
+    return Match(
         design=design,
         problem=problem,
-        state=State(shape=shape, feet=on),
+        state=PlacedCloud(shape=shape, feet=on),
         scatter=scatter,
         ends=ends,
-        damping=DAMPING if before is None else before.damping,
+        damping=FIRST_DAMPING if before is None else before.damping,
         evaluations=1 if before is None else before.evaluations + 1,
     )
 
 
-def _round(found: Found, slight: float) -> Found:
+def _descended_round(found: Match, slight: float) -> Match:
     """What a descent from a prepared design finds."""
     problem, interrupted, converged = found.problem, False, False
     first = problem.vector(found.design)
     z, damping = first, found.damping
     try:
-        descent = descended(problem, first, steps=STEPS, damping=damping, slight=slight)
+        descent = constrained_minimum(problem, first, steps=EVALUATIONS_PER_ROUND, damping=damping, slight=slight)
         z, damping, converged = descent.z, descent.damping, descent.converged
     except KeyboardInterrupt:
         z, interrupted = problem.best, True

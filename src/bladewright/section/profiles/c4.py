@@ -10,10 +10,9 @@ from bladewright.designs import Law, parameter
 from bladewright.numerics.elementary import Array, radians
 from bladewright.section.laws import Span
 from bladewright.section.outline import Outline
-from bladewright.section.profiles.around import Around, MeanLine
-from bladewright.section.profiles.closing import Thickened
-from bladewright.section.profiles.forms import Powers
-from bladewright.section.thickness.series import Series
+from bladewright.section.power_series import Series
+from bladewright.section.profiles.mean_line import MeanLine, MeanLineOutline, PowerForm
+from bladewright.section.profiles.profile import PublishedProfile
 
 POLYNOMIAL = {1: 0.3048, 2: -0.0914, 4: -0.8614, 6: 2.1236, 8: -2.9163, 10: 1.9744, 12: -0.5231}
 """half thickness of a profile of nominally 0.2 chords: coefficients of the powers of sqrt(x)"""
@@ -26,7 +25,7 @@ BEND = 0.0914 / 0.3048
 
 
 @dataclass(frozen=True, kw_only=True)
-class C4(Thickened):
+class C4(PublishedProfile):
     """A C4 profile: 10C4/30C50 has thickness 0.1, camber angle 30 deg, its largest thickness at 0.3.
 
     The half thickness is the usual polynomial in sqrt(x) for the published ordinates, scaled to the thickness asked
@@ -42,9 +41,9 @@ class C4(Thickened):
 
     def outline(self, span: Span) -> Outline:
         """The exact sections (..., m) at the places of the span, in chords, unstaggered."""
-        return Around(
+        return MeanLineOutline(
             mean_line=ArcLine(angle=radians(span.values(self.camber_angle))[..., None]),
-            thickness=Powers(coefficients=self.closed(span, FORM, OWN_END), bend=BEND),
+            thickness=PowerForm(coefficients=self.closed(span, FORM, OWN_END), bend=BEND),
             end=self.trailing_edge,
         )
 

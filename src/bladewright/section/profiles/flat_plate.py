@@ -12,8 +12,7 @@ from bladewright.nurbs.basis import Reals
 from bladewright.section import checks
 from bladewright.section.laws import Span
 from bladewright.section.outline import Edge, Joint, Outline, Start
-from bladewright.section.profiles.closing import THICKNESS
-from bladewright.section.profiles.profile import Profile
+from bladewright.section.profiles.profile import THICKNESS, Profile
 
 EDGE = 0.15
 """s at which a side leaves the ellipse of its edge, from that edge"""

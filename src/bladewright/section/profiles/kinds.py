@@ -3,7 +3,6 @@
 from dataclasses import dataclass
 from typing import Annotated
 
-from bladewright.section.alternatives import ByField
 from bladewright.section.planar import PlanarSection
 from bladewright.section.profiles.c4 import C4
 from bladewright.section.profiles.circular_arc import DoubleCircularArc, MultipleCircularArc
@@ -13,6 +12,7 @@ from bladewright.section.profiles.naca5 import Naca5
 from bladewright.section.profiles.naca6 import Naca6
 from bladewright.section.profiles.naca65 import Naca65
 from bladewright.section.profiles.points import PointsProfile
+from bladewright.section.tagged_unions import ByField
 
 AnyProfile = Annotated[
     Naca4 | Naca5 | Naca6 | Naca65 | C4 | DoubleCircularArc | MultipleCircularArc | FlatPlate | PointsProfile,

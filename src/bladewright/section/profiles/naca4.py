@@ -12,10 +12,9 @@ from bladewright.numerics.elementary import Array
 from bladewright.section import checks
 from bladewright.section.laws import Span
 from bladewright.section.outline import Outline
-from bladewright.section.profiles.around import Around, MeanLine
-from bladewright.section.profiles.closing import Thickened
-from bladewright.section.profiles.forms import Powers
-from bladewright.section.thickness.series import Series
+from bladewright.section.power_series import Series
+from bladewright.section.profiles.mean_line import MeanLine, MeanLineOutline, PowerForm
+from bladewright.section.profiles.profile import PublishedProfile
 
 FORM = {1: 1.4845, 2: -0.6300, 4: -1.7580, 6: 1.4215, 8: -0.5075}
 """half thickness over the thickness: coefficients of the powers of sqrt(x), shared with the five-digit profiles"""
@@ -25,7 +24,7 @@ BEND = 0.6300 / 1.4845
 
 
 @dataclass(frozen=True, kw_only=True)
-class Naca4(Thickened):
+class Naca4(PublishedProfile):
     """A NACA four-digit profile: 2412 has camber 0.02 at 0.4 and thickness 0.12.
 
     Half thickness 5 t (0.2969 sqrt(x) - 0.1260 x - 0.3516 x^2 + 0.2843 x^3 - a x^4), a = 0.1015 at the published
@@ -59,9 +58,9 @@ class Naca4(Thickened):
         if self.camber is not None and self.camber_position is not None:
             camber, position = (span.values(law)[..., None] for law in (self.camber, self.camber_position))
             line = FourDigitLine(camber=camber, joint=position)
-        return Around(
+        return MeanLineOutline(
             mean_line=line,
-            thickness=Powers(coefficients=self.closed(span, FORM, OWN_END), bend=BEND),
+            thickness=PowerForm(coefficients=self.closed(span, FORM, OWN_END), bend=BEND),
             end=self.trailing_edge,
         )
 

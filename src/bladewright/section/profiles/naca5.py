@@ -12,11 +12,10 @@ from bladewright.numerics.elementary import Array, angle
 from bladewright.numerics.quadrature import gauss
 from bladewright.section.laws import Span
 from bladewright.section.outline import Outline
-from bladewright.section.profiles.around import Around, MeanLine
-from bladewright.section.profiles.closing import Thickened
-from bladewright.section.profiles.forms import Powers
+from bladewright.section.power_series import Series
+from bladewright.section.profiles.mean_line import MeanLine, MeanLineOutline, PowerForm
 from bladewright.section.profiles.naca4 import BEND, FORM, OWN_END
-from bladewright.section.thickness.series import Series
+from bladewright.section.profiles.profile import PublishedProfile
 
 ORDER = 24
 """Gauss points on each piece of a mean line"""
@@ -25,7 +24,7 @@ STEP = 1e-30
 
 
 @dataclass(frozen=True, kw_only=True)
-class Naca5(Thickened):
+class Naca5(PublishedProfile):
     """A NACA five-digit profile: 23012 has a lift coefficient of 0.3, its largest camber at 0.15, and thickness 0.12.
 
     The mean line is a cubic up to the joint r and straight behind it, or a second cubic where it is reflexed, scaled so
@@ -54,9 +53,9 @@ class Naca5(Thickened):
         lift, position = (span.values(law)[..., None] for law in (self.design_lift, self.camber_position))
         joint = _reflexed_joint(position) if self.reflexed else _joint(position)
         ratio = _ratio(joint, position) if self.reflexed else 0.0 * joint
-        return Around(
+        return MeanLineOutline(
             mean_line=FiveDigitLine(factor=lift / _integral(joint, ratio, _lift), joint=joint, ratio=ratio),
-            thickness=Powers(coefficients=self.closed(span, FORM, OWN_END), bend=BEND),
+            thickness=PowerForm(coefficients=self.closed(span, FORM, OWN_END), bend=BEND),
             end=self.trailing_edge,
         )
 

@@ -11,11 +11,9 @@ from bladewright.numerics.elementary import Array
 from bladewright.section import checks
 from bladewright.section.laws import Span
 from bladewright.section.outline import Outline
-from bladewright.section.profiles.analytic import logarithm, relative_log_series
-from bladewright.section.profiles.around import Around, MeanLine, TrailingEdge
-from bladewright.section.profiles.closing import Thickened
-from bladewright.section.profiles.forms import Chebyshev
-from bladewright.section.thickness.series import Series
+from bladewright.section.power_series import Series, logarithm, relative_log_series
+from bladewright.section.profiles.mean_line import ChebyshevForm, MeanLine, MeanLineOutline, TrailingEdge
+from bladewright.section.profiles.profile import PublishedProfile
 
 ROUNDING = 0.005
 """distance e over which ln|u| is rounded to ln(u^2 + e^2) / 2: the mean line begins with its slope at 0.005 chords"""
@@ -62,7 +60,7 @@ FORMS: dict[str, tuple[tuple[float, ...], ...]] = {
 
 
 @dataclass(frozen=True, kw_only=True)
-class Naca6(Thickened):
+class Naca6(PublishedProfile):
     """A NACA 6-series profile: 64-212 has series 64, design lift 0.2 and thickness 0.12.
 
     The published profiles are conformal maps without a formula. Here the half thickness is an approximation, a
@@ -95,9 +93,9 @@ class Naca6(Thickened):
         thickness = span.values(self.thickness)[..., None]
         rows = [a + thickness * (b + thickness * c) for a, b, c in zip(*FORMS[self.series], strict=True)]
         lift, load = (span.values(law)[..., None] for law in (self.design_lift, self.uniform_load))
-        return Around(
+        return MeanLineOutline(
             mean_line=LoadedLine(lift=lift, load=load),
-            thickness=Chebyshev(
+            thickness=ChebyshevForm(
                 coefficients=[thickness * row for row in rows],
                 end=0.5 * thickness * self.end_share(span, OWN_END),
             ),

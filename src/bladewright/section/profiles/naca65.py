@@ -8,10 +8,9 @@ import numpy as np
 from bladewright.designs import Law, parameter
 from bladewright.section.laws import Span
 from bladewright.section.outline import Outline
-from bladewright.section.profiles.around import Around
-from bladewright.section.profiles.closing import Thickened
-from bladewright.section.profiles.forms import Chebyshev
+from bladewright.section.profiles.mean_line import ChebyshevForm, MeanLineOutline
 from bladewright.section.profiles.naca6 import CROWDED, LoadedLine, gathered
+from bladewright.section.profiles.profile import PublishedProfile
 
 FORM = (
     1.051996, -0.194128, -0.293876, -0.098881, 0.018331, -0.007324, 0.021048, 0.003168, 0.024784, 0.004531, 0.012099,
@@ -23,7 +22,7 @@ OWN_END = 0.03
 
 
 @dataclass(frozen=True, kw_only=True)
-class Naca65(Thickened):
+class Naca65(PublishedProfile):
     """A NACA 65-series compressor profile: 65-(12)10 has lift coefficient 1.2 and thickness 0.10.
 
     On the mean line of uniform load (a = 1), rounded over 0.005 chords at the edges where its slope is infinite, stands
@@ -42,9 +41,9 @@ class Naca65(Thickened):
         """The exact sections (..., m) at the places of the span, in chords, unstaggered."""
         thickness = span.values(self.thickness)[..., None]
         lift = span.values(self.lift_coefficient)[..., None]
-        return Around(
+        return MeanLineOutline(
             mean_line=LoadedLine(lift=lift, load=np.ones((1, 1))),
-            thickness=Chebyshev(
+            thickness=ChebyshevForm(
                 coefficients=[thickness * each for each in FORM],
                 end=0.5 * thickness * self.end_share(span, OWN_END),
             ),

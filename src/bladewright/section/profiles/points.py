@@ -7,14 +7,14 @@ import numpy as np
 
 from bladewright.designs import ChordwiseLaw, parameter
 from bladewright.errors import DesignError
-from bladewright.numerics.elementary import dot, joined
+from bladewright.numerics.elementary import concatenated, dot
 from bladewright.section import checks
 from bladewright.section.laws import Span
 from bladewright.section.outline import Outline
 from bladewright.section.profiles.contour import contour
-from bladewright.section.profiles.interpolation import DEGREE
 from bladewright.section.profiles.points_outline import PointsOutline
 from bladewright.section.profiles.profile import Profile
+from bladewright.section.profiles.quintic_spline import DEGREE
 
 LEAST = 8
 """points of a contour, at least"""
@@ -52,7 +52,9 @@ class PointsProfile(Profile):
 
     def outline(self, span: Span) -> Outline:
         """The exact sections (..., m) at the places of the span, in chords, unstaggered."""
-        axes = [joined([span.values(law)[..., None] for law in laws], -1) for laws in (self.abscissas, self.ordinates)]
+        axes = [
+            concatenated([span.values(law)[..., None] for law in laws], -1) for laws in (self.abscissas, self.ordinates)
+        ]
         points = np.stack(np.broadcast_arrays(*axes), axis=-1)
         first = np.real(points).reshape(-1, *points.shape[-2:])[0]
         if np.all(first[0] == first[-1]):

@@ -8,11 +8,11 @@ import numpy as np
 from bladewright.numerics.elementary import Array, dot, magnitude
 from bladewright.numerics.roots import bracketed_root
 from bladewright.nurbs.basis import Reals
-from bladewright.section.offset import merged
+from bladewright.section.offset import merged_joints
 from bladewright.section.outline import Edge, Joint, Outline, Start
+from bladewright.section.power_series import Series, polynomial, variable
 from bladewright.section.profiles.contour import Contour
-from bladewright.section.profiles.interpolation import QuinticSpline
-from bladewright.section.thickness.series import Series, polynomial, variable
+from bladewright.section.profiles.quintic_spline import QuinticSpline
 
 PACE = 0.5
 """pace of s at the edges, of the mean of both sides"""
@@ -25,7 +25,7 @@ APART = 1e-9
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Side:
+class SplineSide:
     """A piece of a spline, from leading to trailing edge."""
 
     spline: QuinticSpline
@@ -75,7 +75,7 @@ class PointsOutline(Outline):
                 inside = np.all((places > low) & (places < high), axis=tuple(range(places.ndim - 1)))
                 if np.any(inside):
                     found += self._joints_of(side, places[..., inside], pace)
-        return merged(found)
+        return merged_joints(found)
 
     def points(self, s: Reals) -> tuple[Array, Array]:
         """Points (..., len(s), 2) of the upper and the lower side."""
@@ -119,7 +119,7 @@ class PointsOutline(Outline):
         return np.linalg.solve(turned @ matrix, turned @ middle[..., 1:])[..., 0]
 
     @cached_property
-    def _sides(self) -> tuple[Side, Side]:
+    def _sides(self) -> tuple[SplineSide, SplineSide]:
         """The upper and the lower side."""
         given, shape = self.given, self.contour
         closing = np.concatenate([given, given[..., :1, :]], axis=-2)
@@ -129,8 +129,8 @@ class PointsOutline(Outline):
             whole = spline.sites[..., -1]
             leading, trailing = self._ends(spline, spline.sites[..., shape.leading[0]], zero)
             return (
-                Side(spline=spline, start=leading, end=trailing),
-                Side(spline=spline, start=leading, end=trailing + whole),
+                SplineSide(spline=spline, start=leading, end=trailing),
+                SplineSide(spline=spline, start=leading, end=trailing + whole),
             )
         broken = 0 if shape.kinds[1] == "round" else 1
         around = closing if shape.kinds[broken] == "sharp" else given
@@ -141,13 +141,13 @@ class PointsOutline(Outline):
             tip = 0.5 * (around[..., 0, :] + around[..., -1, :])
             edge = self._farthest(spline, spline.sites[..., own[0]], tip)
             if broken:
-                return Side(spline=spline, start=edge, end=zero), Side(spline=spline, start=edge, end=last)
-            return Side(spline=spline, start=last, end=edge), Side(spline=spline, start=zero, end=edge)
+                return SplineSide(spline=spline, start=edge, end=zero), SplineSide(spline=spline, start=edge, end=last)
+            return SplineSide(spline=spline, start=last, end=edge), SplineSide(spline=spline, start=zero, end=edge)
         upper = QuinticSpline(points=given[..., : shape.leading[0] + 1, :], closed=False)
         lower = QuinticSpline(points=around[..., shape.leading[-1] :, :], closed=False)
         return (
-            Side(spline=upper, start=upper.sites[..., -1], end=zero),
-            Side(spline=lower, start=zero, end=lower.sites[..., -1]),
+            SplineSide(spline=upper, start=upper.sites[..., -1], end=zero),
+            SplineSide(spline=lower, start=zero, end=lower.sites[..., -1]),
         )
 
     @staticmethod
@@ -209,7 +209,7 @@ class PointsOutline(Outline):
             tips.append(0.5 * (found[0] + found[1]))
         return tips[0], tips[1] - tips[0]
 
-    def _laid(self, side: Side, s: Reals, order: int) -> tuple[Series, Series]:
+    def _laid(self, side: SplineSide, s: Reals, order: int) -> tuple[Series, Series]:
         x, y = side.spline.at(side.parameter(variable(s, order), self._pace))
         start, way = self._chord
         square = dot(way, way)[..., None]
@@ -217,7 +217,7 @@ class PointsOutline(Outline):
         cosine, sine = way[..., 0, None] / square, way[..., 1, None] / square
         return off[0] * cosine + off[1] * sine, off[1] * cosine - off[0] * sine
 
-    def _joints_of(self, side: Side, places: Reals, pace: Reals) -> list[Joint]:
+    def _joints_of(self, side: SplineSide, places: Reals, pace: Reals) -> list[Joint]:
         def off(s: Array) -> tuple[Array, Array]:
             found = side.parameter(variable(s, 1), pace)
             return np.real(found.value) - places, np.real(found.coefficients[1])

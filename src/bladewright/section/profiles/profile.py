@@ -1,14 +1,19 @@
-"""What all standard profiles have: a stagger, and sections that a kind's own parameters decide."""
+"""What all standard profiles have: a stagger, and for published forms a thickness and a trailing edge of choice."""
 
 from abc import ABC, abstractmethod
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import ClassVar
 
+import numpy as np
+
 from bladewright.designs import Law, Part, parameter
+from bladewright.errors import DesignError
 from bladewright.numerics.elementary import Array, radians
 from bladewright.section import checks
 from bladewright.section.laws import Span
 from bladewright.section.outline import Outline
+from bladewright.section.profiles.mean_line import TrailingEdge
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -34,3 +39,55 @@ class Profile(Part, ABC):
     def stagger(self, span: Span) -> Array:
         """Angles (..., m) of the chord lines [rad]."""
         return radians(span.values(self.stagger_angle))
+
+
+POWER = 8
+"""the power of sqrt(x) whose coefficient closes or opens the trailing edge"""
+THICKNESS = (0.0, 0.4, "thickness must be above 0 and below 0.4 chords")
+
+
+@dataclass(frozen=True, kw_only=True)
+class PublishedProfile(Profile):
+    """Base of the profiles whose thickness is a published form with a trailing edge of choice."""
+
+    thickness: Law = parameter("-")
+    """maximum thickness, of the chord [-]"""
+    trailing_edge: TrailingEdge = "sharp"
+    """how the trailing edge ends: sharp, blunt (cut off) or round (a cap within the same chord)"""
+    trailing_edge_thickness: Law | None = parameter("-", default=None)
+    """thickness at a blunt or round trailing edge, of the maximum thickness; none: the published one [-]"""
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        object.__setattr__(self, "thickness", checks.law("thickness", self.thickness))
+        checks.between("thickness", self.thickness, *THICKNESS)
+        checks.choice("trailing_edge", self.trailing_edge, ("sharp", "blunt", "round"))
+        given = self.trailing_edge_thickness
+        if given is None:
+            return
+        if self.trailing_edge == "sharp":
+            raise DesignError(
+                "trailing_edge_thickness is given and trailing_edge is 'sharp', which has none: leave it out, or make "
+                "the trailing edge 'blunt' or 'round'"
+            )
+        object.__setattr__(self, "trailing_edge_thickness", checks.law("trailing_edge_thickness", given))
+        what = "the trailing edge must be thicker than 0.002 and thinner than 0.5 of the maximum thickness"
+        checks.between("trailing_edge_thickness", self.trailing_edge_thickness, 0.002, 0.5, what)
+
+    def closed(self, span: Span, form: Mapping[int, float | Array], own: float) -> list[Array]:
+        """Coefficients (..., m, 1) of the powers of sqrt(x), from the first on, of the half thickness.
+
+        `form` holds those over the thickness. To that of x^4 is added what makes the thickness at x = 1 the one asked
+        for; `own` is the published one, of the maximum thickness.
+        """
+        held = dict(form)
+        held[POWER] = held.get(POWER, 0.0) + 0.5 * self.end_share(span, own) - sum(form.values())
+        thickness = span.values(self.thickness)[..., None]
+        return [thickness * held.get(k, 0.0) for k in range(1, max(held) + 1)]
+
+    def end_share(self, span: Span, own: float) -> Array:
+        """Thickness at the trailing edge (..., m, 1), of the maximum thickness."""
+        if self.trailing_edge == "sharp":
+            return np.zeros((len(span.v), 1))
+        given = self.trailing_edge_thickness
+        return np.full((len(span.v), 1), own) if given is None else span.values(given)[..., None]

@@ -1,17 +1,37 @@
-"""The parameters of a section by its suction and its pressure side (Voss et al. 2025, sections 3 and 3.1)."""
+"""Sections by their suction and their pressure side (Voss et al. 2025, sections 3 and 3.1): parameters and assembly."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Literal
+from typing import TYPE_CHECKING, Any, Literal
+
+import numpy as np
 
 from bladewright.designs import ChordwiseLaw, Law, Part, parameter
-from bladewright.numerics.elementary import Array, radians
+from bladewright.errors import DesignError
+from bladewright.numerics.elementary import Array, length, radians
+from bladewright.nurbs.basis import Reals
+from bladewright.nurbs.curve import Curve
+from bladewright.nurbs.refine import inserted
+from bladewright.section.camber import turned_left
 from bladewright.section.laws import Span
 from bladewright.section.planar import PlanarSection
-from bladewright.section.suction_pressure.assembly import assembled
-from bladewright.section.suction_pressure.limits import checked
-from bladewright.section.suction_pressure.outline import SuctionPressureOutline
-from bladewright.section.suction_pressure.refining import freed, refined
+from bladewright.section.suction_pressure.edges import Corner, EdgePoints, characteristic_points, edge_curve
+from bladewright.section.suction_pressure.limits import check_crossing, check_opening, check_pace, check_room, checked
+from bladewright.section.suction_pressure.outline import SHARE, SuctionPressureOutline
+from bladewright.section.suction_pressure.side import (
+    DEGREE,
+    Side,
+    controls_of,
+    interpolated_free,
+    parametrised,
+    side_knots,
+    spread,
+    values_at,
+)
+from bladewright.section.suction_pressure.skeleton import Skeleton, chord_line, pseudo_line
+
+if TYPE_CHECKING:
+    from bladewright.designs import ChordwiseLaw
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -107,3 +127,185 @@ class SuctionPressureSection(PlanarSection):
 
     section: SuctionPressure
     """the section's parameters"""
+
+
+def assembled(part: "SuctionPressure", span: Span) -> SuctionPressureOutline:
+    """The outline of sections (..., m); raises DesignError where edges or sides do not fit."""
+    leading, trailing = characteristic(part, span)
+    check_room(leading, trailing, span)
+    suction, pressure = sides(part, span, leading, trailing)
+    upper, lower = (suction, pressure) if part.suction_side == "upper" else (pressure, suction)
+    names = ("suction", "pressure") if part.suction_side == "upper" else ("pressure", "suction")
+    for name, side in zip(names, (upper, lower), strict=True):
+        check_pace(name, side, span)
+    curves = [
+        edge_curve(points, one.bend, other.bend, part.edges)
+        for points, one, other in ((leading, upper.start, lower.start), (trailing, upper.end, lower.end))
+    ]
+    check_crossing(part, upper, lower, span)
+    return SuctionPressureOutline(edges=(curves[0], curves[1]), upper=upper, lower=lower, continuity=part.edges)
+
+
+def camber_angles(part: "SuctionPressure", span: Span) -> tuple[Array, Array]:
+    """Angles (..., m) of both edges' directions from the chord line [rad]."""
+    turn = span.values(part.stagger_angle)
+    return radians(span.values(part.metal_angle_in) - turn), radians(span.values(part.metal_angle_out) - turn)
+
+
+def characteristic(part: "SuctionPressure", span: Span) -> tuple[EdgePoints, EdgePoints]:
+    """The characteristic points of the leading and the trailing edge."""
+    found = []
+    suction = 1.0 if part.suction_side == "upper" else -1.0
+    for edge, nose, inward, angle in zip(
+        ("leading_edge", "trailing_edge"), ((0.0, 0.0), (1.0, 0.0)), (1.0, -1.0), camber_angles(part, span), strict=True
+    ):
+        radius, stretch, skew, wedge = (
+            span.values(getattr(part, f"{edge}_{each}")) for each in ("radius", "stretch", "skew", "wedge")
+        )
+        check_opening(edge, part.edges, stretch, skew, wedge, span)
+        found.append(
+            characteristic_points(
+                np.array(nose),
+                angle,
+                inward=inward,
+                radius=radius,
+                stretch=stretch,
+                skew=suction * skew,
+                wedge=radians(wedge),
+                continuity=part.edges,
+            )
+        )
+    return found[0], found[1]
+
+
+def skeleton_of(part: "SuctionPressure", span: Span) -> Skeleton:
+    """The line of places and heights."""
+    return pseudo_line(*camber_angles(part, span)) if part.skeleton == "pseudo" else chord_line((len(span.v),))
+
+
+def sides(part: "SuctionPressure", span: Span, leading: EdgePoints, trailing: EdgePoints) -> tuple[Side, Side]:
+    """The suction and the pressure side."""
+    skeleton = skeleton_of(part, span)
+    on, off = ("upper", "lower") if part.suction_side == "upper" else ("lower", "upper")
+    ends: tuple[Corner, Corner] = getattr(leading, on), getattr(trailing, on)
+    other: tuple[Corner, Corner] = getattr(leading, off), getattr(trailing, off)
+    knots = side_knots(len(part.suction_heights), part.suction_knots)
+    free = skeleton.placed(*_numbers(span, part.suction_places, part.suction_heights, knots))
+    tangents = span.values(part.suction_tangent_in), span.values(part.suction_tangent_out)
+    controls = controls_of(*ends, *tangents, free)
+    suction = parametrised(controls, knots, *ends, SHARE)
+
+    offsets = part.pressure_thickness or part.pressure_heights
+    knots = side_knots(len(offsets), part.pressure_knots)
+    places, numbers = _numbers(span, part.pressure_places, offsets, knots)
+    given = part.pressure_tangent_in, part.pressure_tangent_out
+    speeds = (
+        length(suction.start.taylor[..., 1, :]) / suction.start.span,
+        length(suction.end.taylor[..., 1, :]) / suction.end.span,
+    )
+    widths = knots[DEGREE + 1], 1.0 - knots[-DEGREE - 2]
+    tangents_of = [
+        speed * (width / DEGREE) if law is None else span.values(law)
+        for law, speed, width in zip(given, speeds, widths, strict=True)
+    ]
+    tangents = tangents_of[0], tangents_of[1]
+    if part.pressure_thickness:
+        inside = -1.0 if on == "upper" else 1.0
+        through = _thickened(suction, places, inside * numbers)
+        free = interpolated_free(*other, tangents, through, knots)
+    else:
+        free = skeleton.placed(places, numbers)
+    return suction, parametrised(controls_of(*other, *tangents, free), knots, *other, SHARE)
+
+
+def _numbers(span: Span, places: "ChordwiseLaw", offsets: "ChordwiseLaw", knots: "Reals") -> tuple[Array, Array]:
+    """Places and offsets (..., m, k)."""
+    values = _stacked(span, offsets)
+    at = _stacked(span, places) if places else np.broadcast_to(spread(knots), (len(span.v), len(offsets)))
+    return at, values
+
+
+def _stacked(span: Span, laws: "ChordwiseLaw") -> Array:
+    return np.stack(np.broadcast_arrays(*[span.values(law) for law in laws]), axis=-1)
+
+
+def _thickened(side: Side, places: Array, offsets: Array) -> Array:
+    """Points (..., m, k, 2) at offsets from the side to its left, at its own parameters (..., m, k)."""
+    tangent = values_at(side.controls, side.knots, places, 1)
+    return values_at(side.controls, side.knots, places) + offsets[..., None] * turned_left(
+        tangent / length(tangent)[..., None]
+    )
+
+
+def refined(part: "SuctionPressure", knots: int | Sequence[float], side: str) -> dict[str, Any]:
+    """The fields that change when a side, or `both`, gets further knots and keeps its shape."""
+    if side not in ("suction", "pressure", "both"):
+        raise DesignError(f"side is {side!r}: it must be one of suction, pressure, both")
+    if part.pressure_thickness and side != "suction":
+        raise DesignError(
+            "pressure_thickness is given: a pressure side by a thickness keeps its shape under no refinement of its "
+            "own; refine side = 'suction', or take `independent()` first"
+        )
+    suction, pressure = _sides(part)
+    found: dict[str, Any] = {}
+    for name, curve in (("suction", suction), ("pressure", pressure)):
+        if side in (name, "both"):
+            found |= _fields(part, name, inserted(_curve(curve), _new(curve.knots, knots)))
+    return found
+
+
+def freed(part: "SuctionPressure") -> dict[str, Any]:
+    """The fields that change when the pressure side gets heights of its own and keeps its shape."""
+    if part.pressure_heights:
+        return {}
+    return {"pressure_thickness": (), **_fields(part, "pressure", _curve(_sides(part)[1]))}
+
+
+def _sides(part: "SuctionPressure") -> tuple[Side, Side]:
+    for path, value in part.parameters().items():
+        name = path.partition("[")[0]
+        if np.size(value) > 1 or (isinstance(getattr(part, name), tuple) and path.count("[") != _depth(name)):
+            raise DesignError(
+                f"{path} belongs to a law along the span or to a batch: between the places of a law the refined "
+                "control points follow no law of the same kind; refine the sections one by one, with plain numbers"
+            )
+        if np.iscomplexobj(value):
+            raise DesignError(f"{path} is {value}: only a real section is refined")
+    span = Span(np.zeros(1))
+    return sides(part, span, *characteristic(part, span))
+
+
+def _depth(name: str) -> int:
+    return 1 if name.endswith(("heights", "places", "thickness")) else 0
+
+
+def _curve(side: Side) -> Curve:
+    return Curve(control_points=side.controls[0], knots=side.knots, degree=DEGREE)
+
+
+def _new(knots: Reals, asked: int | Sequence[float]) -> list[float]:
+    """The knots asked for, or so many, each in the middle of the then longest knot span."""
+    if not isinstance(asked, int):
+        return [float(each) for each in asked]
+    if asked < 1:
+        raise DesignError(f"{asked} further knots were asked for: at least 1 is needed")
+    found: list[float] = []
+    for _ in range(asked):
+        ends = np.unique([*knots, *found])
+        widest = int(np.argmax(np.diff(ends) > np.max(np.diff(ends)) * (1.0 - 1e-9)))
+        found.append(float(0.5 * (ends[widest] + ends[widest + 1])))
+    return found
+
+
+def _fields(part: "SuctionPressure", name: str, curve: Curve) -> dict[str, Any]:
+    controls = curve.control_points
+    inner = curve.knots[DEGREE + 1 : -DEGREE - 1]
+    places, heights = skeleton_of(part, Span(np.zeros(1))).at(0).places(controls[2:-2], spread(curve.knots))
+    ends = length(controls[1] - controls[0]), length(controls[-2] - controls[-1])
+    return {
+        f"{name}_heights": tuple(float(each) for each in heights),
+        f"{name}_places": tuple(float(each) for each in places),
+        f"{name}_knots": tuple(float(each) for each in inner),
+        f"{name}_tangent_in": float(ends[0]),
+        f"{name}_tangent_out": float(ends[1]),
+    }

@@ -5,10 +5,9 @@ from math import factorial
 
 import numpy as np
 
-from bladewright.numerics.elementary import Array, dot, joined, length
+from bladewright.numerics.elementary import Array, concatenated, dot, length
 from bladewright.nurbs.basis import Reals, basis, greville, uniform_knots
-from bladewright.section.suction_pressure.edge import powers_at
-from bladewright.section.suction_pressure.points import Corner
+from bladewright.section.suction_pressure.edges import Corner, powers_at
 
 DEGREE = 3
 
@@ -81,7 +80,7 @@ def controls_of(start: Corner, end: Corner, tangent_in: Array, tangent_out: Arra
         end.point,
     ]
     rows = [each[..., None, :] for each in ends]
-    return joined([rows[0], rows[1], free, rows[2], rows[3]], axis=-2)
+    return concatenated([rows[0], rows[1], free, rows[2], rows[3]], axis=-2)
 
 
 def interpolated_free(start: Corner, end: Corner, tangents: tuple[Array, Array], points: Array, knots: Reals) -> Array:

@@ -5,10 +5,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from bladewright.errors import DesignError
-from bladewright.numerics.elementary import Array, cross2, dot, joined, unit
+from bladewright.numerics.elementary import Array, concatenated, cross2, dot, unit
 from bladewright.nurbs.basis import Reals
 from bladewright.section.camber import turned_left
-from bladewright.section.suction_pressure.edge import powers_at
+from bladewright.section.suction_pressure.edges import powers_at
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -67,7 +67,7 @@ def pseudo_line(angle_in: Array, angle_out: Array) -> Skeleton:
     end = np.array([1.0, 0.0])
     second = end - arm[..., None] * np.stack([np.cos(angle_out), np.sin(angle_out)], axis=-1)
     rows = [np.zeros_like(first), 3.0 * first, 3.0 * (second - 2.0 * first), end + 3.0 * (first - second)]
-    return Skeleton(coefficients=joined([row[..., None, :] for row in rows], axis=-2))
+    return Skeleton(coefficients=concatenated([row[..., None, :] for row in rows], axis=-2))
 
 
 def _derived(coefficients: Array) -> Array:

@@ -3,7 +3,7 @@
 A law is a part of a design; `at(span)` takes it at places along the span and gives a `Thickness`, which many sections
 share: arrays (..., m, k), leading batch axes before the m places along the span, k places along the chord. Those are
 given by the parameter s of the outline; how u(s) is chosen so that each law's joints stand at fixed s says
-`bladewright.section.thickness.stations`.
+`bladewright.section.thickness.piecewise`.
 """
 
 from abc import ABC, abstractmethod
@@ -19,7 +19,7 @@ from bladewright.nurbs.basis import Reals
 from bladewright.section import checks
 from bladewright.section.laws import Span
 from bladewright.section.outline import Joint
-from bladewright.section.thickness.series import Series
+from bladewright.section.power_series import Series
 
 EdgeKind = Literal["round", "sharp", "blunt"]
 
@@ -100,7 +100,7 @@ class ThicknessLaw(Part, ABC):
         raise DesignError(f"{self.path}.{name} is {value[tuple(worst)]:.6g} at span fraction {place:.4g}: {cure}")
 
 
-def same(first: Law | None, second: Law | None) -> bool:
+def same_law(first: Law | None, second: Law | None) -> bool:
     """Whether two laws hold the same real numbers."""
     one, other = leaves_of(first), leaves_of(second)
     pairs = zip(one, other, strict=False)

@@ -15,10 +15,17 @@ from bladewright.errors import DesignError
 from bladewright.numerics.elementary import Array
 from bladewright.section import checks
 from bladewright.section.laws import Span
+from bladewright.section.power_series import Series, polynomial
 from bladewright.section.thickness.law import EdgeKind, Thickness, ThicknessLaw
-from bladewright.section.thickness.pieces import Piece, PiecewiseThickness, check_positive, ellipse
-from bladewright.section.thickness.series import Series, polynomial
-from bladewright.section.thickness.stations import Break, Place, Stations
+from bladewright.section.thickness.piecewise import (
+    Breakpoint,
+    ChordMap,
+    ChordPlace,
+    Formula,
+    PiecewiseThickness,
+    check_positive,
+    ellipse,
+)
 
 RADIUS = 2.2038
 """leading edge radius of index 6, in chords for a maximum thickness of one chord"""
@@ -92,40 +99,40 @@ class ModifiedNaca(ThicknessLaw):
             end = 0.5 * span.values(self.trailing_edge_thickness)
             cure = "it must be below the maximum thickness; lower it or raise maximum_thickness"
             self._demand(np.real(end) < np.real(maximum), span, "trailing_edge_thickness", 2.0 * end, cure)
-        breaks = [Break(at, 1.0 - at, 2, AT_MAXIMUM)]
-        pieces: list[Piece] = []
+        breaks = [Breakpoint(at, 1.0 - at, 2, AT_MAXIMUM)]
+        pieces: list[Formula] = []
         if self.trailing_edge == "circular":
             steepness = np.sqrt(1.0 + slope**2)
             edge, radius = end / (steepness - slope), end * steepness
             cure = "the maximum must stand before the trailing edge's circle; move it forward or thin the trailing edge"
             self._demand(np.real(at + edge) < 1.0, span, "maximum_thickness_at", at, cure)
-            breaks.append(Break(1.0 - edge, edge, 1, AT_TRAILING_EDGE))
+            breaks.append(Breakpoint(1.0 - edge, edge, 1, AT_TRAILING_EDGE))
             pieces.append(ellipse(radius, radius, leading=False))
         rear, curvature = _rear(maximum, at, end, edge, slope)
         cure = "the rear would bulge instead; move it forward, thin the trailing edge or give it a flatter slope"
         self._demand(np.real(curvature) < 0.0, span, "maximum_thickness_at", at, cure)
         front, bend = _front(maximum, at, curvature, span.values(self.leading_edge_index))
         kind: EdgeKind = "round" if self.trailing_edge == "circular" else self.trailing_edge
-        stations = Stations(breaks, leading_round=True, trailing_round=kind == "round", bend=bend)
+        stations = ChordMap(breaks, leading_round=True, trailing_round=kind == "round", bend=bend)
         thickness = PiecewiseThickness(stations, [front, rear, *pieces], leading="round", trailing=kind)
         check_positive(thickness, self.path, span)
         return thickness
 
 
-def _rear(maximum: Array, at: Array, end: Array, edge: Array, slope: Array) -> tuple[Piece, Array]:
+def _rear(maximum: Array, at: Array, end: Array, edge: Array, slope: Array) -> tuple[Formula, Array]:
     """The cubic from the maximum to the trailing edge, level at first, and its second derivative at the maximum."""
     length = 1.0 - at - edge
     secant = (end - maximum) / length
     second, third = (3.0 * secant - slope) / length, (slope - 2.0 * secant) / length**2
     coefficients = [each[..., None] for each in (maximum, np.zeros(1), second, third)]
 
-    def half(place: Place) -> Series:
+    def half(place: ChordPlace) -> Series:
         return polynomial(coefficients, place.u - at[..., None])
 
     return half, 2.0 * second
 
 
-def _front(maximum: Array, at: Array, curvature: Array, index: Array) -> tuple[Piece, Array]:
+def _front(maximum: Array, at: Array, curvature: Array, index: Array) -> tuple[Formula, Array]:
     """The radius and the cubic up to the maximum, with value, slope 0 and second derivative there; and a1 / a0."""
     root = np.sqrt(RADIUS) * 2.0 * maximum * index / 6.0
     # what the polynomial must be at the maximum: value / at, slope and at * second derivative
@@ -139,7 +146,7 @@ def _front(maximum: Array, at: Array, curvature: Array, index: Array) -> tuple[P
     )
     coefficients = [each[..., None] for each in (first, second / at, third / at**2)]
 
-    def half(place: Place) -> Series:
+    def half(place: ChordPlace) -> Series:
         if place.root is None:
             raise ValueError("the front needs a round edge")  # a law that forgot to say so
         return root[..., None] * place.root + place.u * polynomial(coefficients, place.u)

@@ -16,10 +16,17 @@ from bladewright.errors import DesignError
 from bladewright.numerics.elementary import Array
 from bladewright.section import checks
 from bladewright.section.laws import Span
-from bladewright.section.thickness.law import EdgeKind, Thickness, ThicknessLaw, leaves_of, same
-from bladewright.section.thickness.pieces import Piece, PiecewiseThickness, check_positive, ellipse
-from bladewright.section.thickness.series import Series, polynomial
-from bladewright.section.thickness.stations import Break, Place, Stations
+from bladewright.section.power_series import Series, polynomial
+from bladewright.section.thickness.law import EdgeKind, Thickness, ThicknessLaw, leaves_of, same_law
+from bladewright.section.thickness.piecewise import (
+    Breakpoint,
+    ChordMap,
+    ChordPlace,
+    Formula,
+    PiecewiseThickness,
+    check_positive,
+    ellipse,
+)
 
 AT_LEADING_EDGE, AT_MAXIMUM, AT_TRAILING_EDGE = 0.02, 0.4, 0.99
 """fixed coordinates of the joints: their places in a usual blade"""
@@ -73,7 +80,7 @@ class Wennerstrom(ThicknessLaw):
         self._kept("maximum_thickness_at", 0.05, 0.95, "the maximum must stand between 0.05 and 0.95 of the chord")
         for name in ("leading_edge", "trailing_edge"):
             self._keep_edge(name)
-        if self.straight_end == "farther" and not same(self.leading_edge_thickness, self.trailing_edge_thickness):
+        if self.straight_end == "farther" and not same_law(self.leading_edge_thickness, self.trailing_edge_thickness):
             before = [bool(np.any(np.real(leaf) < 0.5)) for leaf in leaves_of(self.maximum_thickness_at)]
             behind = [bool(np.any(np.real(leaf) >= 0.5)) for leaf in leaves_of(self.maximum_thickness_at)]
             if any(before) and any(behind):
@@ -117,7 +124,7 @@ class Wennerstrom(ThicknessLaw):
         front, rear = (self._end(name, span, e, slope) for name, e, slope in zip(names, ends, slopes, strict=True))
         chord = 1.0 + front.length + rear.length
         middle = (front.length + at) / chord
-        breaks = [Break(middle, (1.0 - at + rear.length) / chord, 2, AT_MAXIMUM)]
+        breaks = [Breakpoint(middle, (1.0 - at + rear.length) / chord, 2, AT_MAXIMUM)]
         pieces = [
             _cubic(maximum, curvature, thirds[0], middle, chord),
             _cubic(maximum, curvature, -thirds[1], middle, chord),
@@ -125,18 +132,18 @@ class Wennerstrom(ThicknessLaw):
         return self._with_edges(span, breaks, pieces, front, rear, chord)
 
     def _with_edges(
-        self, span: Span, breaks: list[Break], pieces: list[Piece], front: _End, rear: _End, chord: Array
+        self, span: Span, breaks: list[Breakpoint], pieces: list[Formula], front: _End, rear: _End, chord: Array
     ) -> Thickness:
         if self.leading_edge == "elliptic":
             first = front.length / chord
-            breaks = [Break(first, 1.0 - first, 1, AT_LEADING_EDGE), *breaks]
+            breaks = [Breakpoint(first, 1.0 - first, 1, AT_LEADING_EDGE), *breaks]
             pieces = [ellipse(front.semi_axis / chord, front.height, leading=True), *pieces]
         if self.trailing_edge == "elliptic":
             last = rear.length / chord
-            breaks = [*breaks, Break(1.0 - last, last, 1, AT_TRAILING_EDGE)]
+            breaks = [*breaks, Breakpoint(1.0 - last, last, 1, AT_TRAILING_EDGE)]
             pieces = [*pieces, ellipse(rear.semi_axis / chord, rear.height, leading=False)]
         leading, trailing = (_kind(shape) for shape in (self.leading_edge, self.trailing_edge))
-        stations = Stations(breaks, leading_round=leading == "round", trailing_round=trailing == "round")
+        stations = ChordMap(breaks, leading_round=leading == "round", trailing_round=trailing == "round")
         thickness = PiecewiseThickness(stations, pieces, leading=leading, trailing=trailing)
         check_positive(thickness, self.path, span)
         return thickness
@@ -160,12 +167,12 @@ def _kind(shape: EdgeShape) -> EdgeKind:
     return "round" if shape == "elliptic" else shape
 
 
-def _cubic(maximum: Array, curvature: Array, third: Array, middle: Array, chord: Array) -> Piece:
+def _cubic(maximum: Array, curvature: Array, third: Array, middle: Array, chord: Array) -> Formula:
     """A cubic of the distance from the maximum, in chords of the body."""
     scaled = (maximum, np.zeros(1), 0.5 * curvature * chord**2, third * chord**3)
     coefficients = [each[..., None] for each in scaled]
 
-    def half(place: Place) -> Series:
+    def half(place: ChordPlace) -> Series:
         return polynomial(coefficients, place.u - middle[..., None])
 
     return half

@@ -1,0 +1,167 @@
+"""Blades from sections as designs: a family's section between edge curves in a flow path."""
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Literal
+
+from bladewright.blade.design.flow_path import FlowPath, increasing_spans
+from bladewright.blade.design.meridional_curve import Meridian, meridian_at
+from bladewright.blade.design.row_design import check_arrangement
+from bladewright.blade.design.stacking import Stacking
+from bladewright.designs import Design, Law, Part, parameter
+from bladewright.errors import DesignError
+from bladewright.section import checks
+from bladewright.section.laws import named_laws
+from bladewright.section.unified_limits import check_labels, check_range
+
+if TYPE_CHECKING:
+    from bladewright.blade.native.blade import Blade
+    from bladewright.blade.native.knots import Knots
+
+
+@dataclass(frozen=True, kw_only=True)
+class SectionedBlade(Design):
+    """Base of the blades from sections; each has a final subclass that says of which family.
+
+    At every v the family's section is laid on the stream surface of that span fraction, its chord line at the section's
+    stagger. Either the leading- and the trailing-edge curve say from where to where it reaches, or `stacking` says how
+    long it is and where its reference point stands. Every number of the section is a law: a constant, or the control
+    points of a clamped uniform B-spline of degree min(n - 1, 3) along the span.
+
+    `sweep` and `lean` then shift each section as it is, in its plane: its reference point, the leading edge where there
+    is no `stacking`, moves along its stream line and around the axis.
+    """
+
+    name: str
+    """the part's name, used in files"""
+    length_unit: Literal["m", "cm", "mm", "um", "in", "ft"]
+    """unit of every length in the design"""
+    arrangement: Literal["annular", "linear"] = "annular"
+    """blades around the machine axis, or side by side in a cascade"""
+    blade_count: int | None = None
+    """number of blades of an annular row [-]"""
+    pitch: float | None = parameter("length", default=None)
+    """tangential distance of neighbours in a linear cascade [length]"""
+    leading_edge_theta: Law | None = parameter("deg", default=None)
+    """circumferential position of the leading edge, annular; 0 where neither it nor `stacking` is given [deg]"""
+    leading_edge_y: Law | None = parameter("length", default=None)
+    """tangential position of the leading edge, linear; 0 where neither it nor `stacking` is given [length]"""
+    plane: Literal["m'-theta", "m-r*theta", "x-y", "counted-m'-theta"] = "m'-theta"
+    """the plane of each stream surface that sections are laid out in; in a cascade the first two are (m, y). The last
+    takes m' as the points of hub, shroud and stream surfaces count it, whose spacing is "conformal", as in T-Blade3"""
+    flow_path: FlowPath
+    """hub, shroud and stream surfaces"""
+    leading_edge: Meridian | None = None
+    """the leading edge in (x, r), from hub to shroud or past them"""
+    trailing_edge: Meridian | None = None
+    """the trailing edge in (x, r), from hub to shroud or past them"""
+    stacking: Stacking | None = None
+    """the sections' reference point, and where it stands; without edge curves the chord as well"""
+    sweep: Law | None = parameter("length", default=None)
+    """shift of each section after stacking, downstream, in one of `shift_directions` [length]"""
+    lean: Law | None = parameter("length", default=None)
+    """shift of each section after stacking, towards larger theta, or y; an arc at the reference point's radius after
+    the shift; a bow is a lean of three control points or more [length]"""
+    conformal_sweep: Law | None = parameter("-", default=None)
+    """further shift downstream as an increase of the plane's m', annular [-]"""
+    shift_directions: Literal["meridional-tangential", "chordwise-normal"] = "meridional-tangential"
+    """directions of sweep and lean: along the stream line and around the axis; or true sweep and true lean, along the
+    chord line and normal to it"""
+    skinning: Literal["sections", "ruled", "developable"] = "sections"
+    """what lies between hub and shroud: the section at every v; straight lines between the points of equal s of the
+    sections at hub and shroud; or the hub's section moved along parallel straight lines, as a flank cutter makes it"""
+    section_spans: tuple[float, ...] = ()
+    """further span fractions, increasing inside 0 and 1, at which the built surface's curve of constant v is the
+    section to 1e-9 of the chord, as at hub, shroud and the flow path's stream surfaces it is [-]"""
+    section: Any
+    """the family's parameters, each a law along the span"""
+    tolerance: float = 1e-6
+    """largest distance of the native surfaces from the exact blade, of the chord [-]"""
+    description: str = ""
+    """one line for the header of CAD files"""
+    author: str = ""
+    """for the header of CAD files"""
+    organisation: str = ""
+    """for the header of CAD files"""
+
+    def __post_init__(self) -> None:
+        check_labels(self)
+        checks.choice("arrangement", self.arrangement, ["annular", "linear"])
+        own = ["counted-m'-theta"] if self.arrangement == "annular" else ["x-y"]
+        checks.choice("plane", self.plane, ["m'-theta", "m-r*theta", *own])
+        check_arrangement(self)
+        check_range(self, "tolerance", 1e-9, 1e-2)
+        if not isinstance(self.flow_path, FlowPath):
+            raise DesignError(f"flow_path is {self.flow_path!r}: a FlowPath with hub and shroud is needed")
+        self._check_placing()
+        if not isinstance(self.section, Part):
+            raise DesignError(f"section is {self.section!r}: the family's parameters are needed")
+        self._check_skinning()
+        object.__setattr__(self, "section_spans", increasing_spans("section_spans", self.section_spans))
+
+    def _check_skinning(self) -> None:
+        """Laws that have no part in the blade: those between hub and shroud, or of the shroud."""
+        checks.choice("skinning", self.skinning, ["sections", "ruled", "developable"])
+        if self.skinning == "sections":
+            return
+        of_sections = 2 if self.skinning == "ruled" else 1
+        what = "at hub and shroud" if self.skinning == "ruled" else "at the hub"
+        of_stacking = {"stacking.chord": "chord", "stacking.chord_fraction": "chord_fraction"}
+        places = ["sweep", "lean", "conformal_sweep", "leading_edge_theta", "leading_edge_y"]
+        laws = [(f"section.{path}", law, of_sections) for path, law in named_laws(self.section)]
+        laws += [(name, getattr(self, name), 2) for name in places]
+        if self.stacking is not None:
+            laws += [(path, getattr(self.stacking, name), of_sections) for path, name in of_stacking.items()]
+            laws += [(f"stacking.{name}", getattr(self.stacking, name), 2) for name in ("theta", "y")]
+        for path, law, most in laws:
+            if isinstance(law, tuple) and len(law) > most:
+                kept = what if most == of_sections else "at hub and shroud"
+                raise DesignError(
+                    f"{path} has {len(law)} control points, but skinning is '{self.skinning}', for which it counts "
+                    f"{kept} alone: give {most if most > 1 else 'one number'}"
+                    f"{' control points at most' if most > 1 else ''}, or take skinning = 'sections'"
+                )
+
+    def _check_placing(self) -> None:
+        """What says where the sections stand: edge curves, stacking, and shifts."""
+        edges = [name for name in ("leading_edge", "trailing_edge") if getattr(self, name) is not None]
+        for name in edges:
+            meridian_at(name, getattr(self, name))
+        if len(edges) == 1:
+            other = "trailing_edge" if edges[0] == "leading_edge" else "leading_edge"
+            raise DesignError(f"{other} is missing beside {edges[0]}: edge curves are given both, or none and stacking")
+        if self.stacking is None and not edges:
+            raise DesignError(
+                "neither edge curves nor stacking are given: give leading_edge and trailing_edge, curves in (x, r), or "
+                "stacking with chord and a place of the reference points"
+            )
+        if self.stacking is not None:
+            if not isinstance(self.stacking, Stacking):
+                raise DesignError(f"stacking is {self.stacking!r}: a Stacking with reference and place is needed")
+            self.stacking.check_beside(edges=bool(edges))
+            if self.flow_path.matched == "edges" and not edges:
+                raise DesignError(
+                    "flow_path.matched is 'edges', but stacking stands in place of edge curves: take matched = 'ends'"
+                )
+        checks.choice("shift_directions", self.shift_directions, ["meridional-tangential", "chordwise-normal"])
+        for name in ("sweep", "lean", "conformal_sweep"):
+            if getattr(self, name) is not None:
+                object.__setattr__(self, name, checks.law(name, getattr(self, name)))
+        if self.conformal_sweep is not None and (self.arrangement == "linear" or not self.plane.endswith("m'-theta")):
+            raise DesignError(
+                "conformal_sweep is given, but sections are laid out by lengths: it counts in m', of the planes "
+                "(m', theta) of an annular row; give sweep"
+            )
+
+    @property
+    def ends(self) -> tuple[str, str]:
+        """Names of the blade's ends at v = 0 and v = 1."""
+        return "hub", "shroud"
+
+    def build(self, knots: "Knots | None" = None) -> "Blade":
+        """The native blade in metres; `knots=blade.knots` holds another build's knots and interpolation sites.
+
+        Raises DesignError where the shape is impossible or the tolerance cannot be reached within 200 x 100 poles.
+        """
+        from bladewright.blade.native.build import built_of_sections
+
+        return built_of_sections(self, knots)

@@ -1,0 +1,227 @@
+"""The clearance surface that a blade ends on, off a wall, and the blade's own channel between it and the other wall.
+
+Its meridian is the curve of the channel's points at the stated distance from the wall: for every u the place w(u) on
+the line u = const and the foot f(u) on the wall solve
+
+    X(u, w) = S(f) + d(u) n(f),
+
+X the channel, S the wall's meridian continued by its own polynomials, n its unit normal into the channel, and d linear
+in u. So the meridian starts on the leading- and ends on the trailing-edge curve.
+"""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from bladewright.blade.design.unified import UnifiedBlade
+from bladewright.blade.exact.checks import check_folds
+from bladewright.blade.flow_path.channel import ChannelCurve, TransfiniteChannel
+from bladewright.blade.native.knots import DEGREE, clamped, refined
+from bladewright.errors import DesignError
+from bladewright.numerics.elementary import Array, cross2, dot, length
+from bladewright.numerics.roots import level_crossings
+from bladewright.nurbs.basis import Reals, basis, greville, knots_with_joints
+from bladewright.nurbs.fit import interpolated
+from bladewright.section.checks import UNITS
+
+REACHED = 1e-9
+"""difference between stated and built distance from the wall, of the mean meridional chord, that is sought"""
+ALLOWED = 1e-8
+"""the same above which a design is refused"""
+MOST = 60
+"""control points of the meridian up to which it is refined"""
+_SHARES = np.array([0.03, 0.09, 0.2, 0.35, 0.5, 0.65, 0.8, 0.91, 0.97])
+"""places in a span: beside much shorter spans the miss is largest next to an end"""
+STEPS = 30
+"""Newton's steps after which no meeting point is expected any more; mostly four do"""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Clearance:
+    """How far the end of a blade stands off a wall."""
+
+    name: str
+    """the design's field"""
+    wall: str
+    """`hub` or `shroud`"""
+    leading: Array
+    """(...) distance at the leading edge [m]"""
+    trailing: Array
+    """(...) distance at the trailing edge [m]"""
+    unit: str
+    """the design's unit of length"""
+
+    @property
+    def inward(self) -> float:
+        """+1 where the channel lies to the left of the wall, -1 where to the right."""
+        return 1.0 if self.wall == "hub" else -1.0
+
+    def distance(self, u: Reals) -> Array:
+        """Stated distance (..., m) [m] at u (m,)."""
+        return self.leading[..., None] * (1.0 - u) + self.trailing[..., None] * u
+
+    def real(self) -> "Clearance":
+        """The same without imaginary parts and batch."""
+        leading, trailing = (np.asarray(np.real(np.ravel(value)[0])) for value in (self.leading, self.trailing))
+        return replace(self, leading=leading, trailing=trailing)
+
+    def said(self, distance: float) -> str:
+        """A distance [m] in the design's unit."""
+        return f"{distance / UNITS[self.unit]:.4g} {self.unit}"
+
+
+def clearance_of(design: UnifiedBlade) -> Clearance | None:
+    """The clearance of a design, or None where its blade reaches from wall to wall."""
+    for name, wall in (("tip_clearance", "shroud"), ("hub_clearance", "hub")):
+        value = getattr(design, name)
+        if value is not None:
+            pair = value if isinstance(value, tuple) else (value, value)
+            leading, trailing = (UNITS[design.length_unit] * np.asarray(each) for each in pair)
+            return Clearance(name=name, wall=wall, leading=leading, trailing=trailing, unit=design.length_unit)
+    return None
+
+
+def cleared(full: TransfiniteChannel, clearance: Clearance, knots: Reals | None = None) -> TransfiniteChannel:
+    """The channel between the other wall and the clearance surface, whose meridian takes the place of the wall's.
+
+    Its edges are the full channel's, up to the meridian. `knots` hold those of the meridian; without, they are refined
+    until it keeps its distance. Raises DesignError where the channel has no such surface.
+    """
+    real, asked = full.real(), clearance.real()
+    if knots is None:
+        check_folds(real)
+        _check_span(real, asked)
+        knots = _knots(real, asked)
+    sites = greville(knots, DEGREE)
+    places, feet = _met(real, asked, sites)
+    miss, across, along = _miss(full, clearance, sites, places, feet)
+    # one more of Newton's steps, in complex numbers, is the derivative of the meeting point
+    step = cross2(miss, along) / cross2(across, along)
+    points = full.at(sites, places)[0] - step[..., None] * across
+    ends = (places - step)[..., [0, -1]]
+    meridian = ChannelCurve(points=np.linalg.solve(basis(knots, DEGREE, sites), points), knots=knots)
+    cut = "end" if clearance.wall == "shroud" else "start"
+    return replace(
+        full,
+        **{
+            "leading_edge": replace(full.leading_edge, **{cut: ends[..., 0]}),
+            "trailing_edge": replace(full.trailing_edge, **{cut: ends[..., 1]}),
+            clearance.wall: meridian,
+        },
+    )
+
+
+def off_distance(full: TransfiniteChannel, clearance: Clearance, u: Reals, points: Reals) -> Reals:
+    """Differences (m,) [m] between the distances of points (x, r) (m, 2) from the wall and those stated at u (m,)."""
+    wall, feet = full.real().curve(clearance.wall), u
+    for _ in range(8):
+        foot, slope, bend = wall.derivatives(feet, 2)
+        gap = points - foot
+        feet = feet + dot(gap, slope) / (dot(slope, slope) - dot(gap, bend))
+    return np.abs(length(points - wall(feet)) - clearance.real().distance(u))  # real: a measured distance
+
+
+def _knots(full: TransfiniteChannel, clearance: Clearance) -> Reals:
+    """Knots of the meridian: where hub and shroud lose derivatives, and wherever else the distance asks for them."""
+    joints = [(float(joint), wall.degree - 1) for wall in (full.hub, full.shroud) for joint in wall.joints()]
+    start = knots_with_joints(clamped(np.empty(0)), DEGREE, [*joints, *_passed(full, clearance)])
+    chord = float(np.mean([length(each.points[-1] - each.points[0]) for each in (full.hub, full.shroud)]))
+
+    def worst(knots: Reals) -> Reals:
+        """Largest miss in each of the spans, of the chord."""
+        sites, spans = greville(knots, DEGREE), np.unique(knots)
+        points = full.at(sites, _met(full, clearance, sites)[0])[0]
+        u = (spans[:-1, None] + np.diff(spans)[:, None] * _SHARES).ravel()
+        found = interpolated(points, sites, degree=DEGREE, knots=knots)(u)
+        return np.max(off_distance(full, clearance, u, found).reshape(-1, len(_SHARES)), axis=1) / chord
+
+    def miss(knots: Reals, places: Reals) -> Reals:
+        return worst(knots)[np.searchsorted(np.unique(knots), places) - 1] / REACHED
+
+    knots = refined(start, miss, MOST)
+    off = float(np.max(worst(knots)))
+    if off > ALLOWED:
+        raise DesignError(
+            f"{clearance.name}: the surface at that distance from the {clearance.wall} is met within {off:.2g} of the "
+            f"meridional chord with {len(knots) - DEGREE - 1} control points, {ALLOWED:g} is allowed: lower "
+            f"{clearance.name}, or smooth channel.{clearance.wall}"
+        )
+    return knots
+
+
+def _passed(full: TransfiniteChannel, clearance: Clearance) -> list[tuple[float, int]]:
+    """Where the foot passes inner knots of its wall, each with the derivatives that are continuous there."""
+    wall = full.line(clearance.wall)
+    levels = np.unique(wall.joints())
+    if not len(levels):
+        return []
+    u = np.linspace(0.0, 1.0, 101)
+    feet = level_crossings(lambda at: _met(full, clearance, at)[1], u, _met(full, clearance, u)[1], levels)
+    return [(float(place), wall.degree - 1) for place in feet]
+
+
+def _met(full: TransfiniteChannel, clearance: Clearance, u: Reals) -> tuple[Reals, Reals]:
+    """Places w and feet f (m,) of the points at the stated distance from the wall, by Newton's method."""
+    hub, shroud = full.hub.values(u), full.shroud.values(u)
+    share = clearance.distance(u) / length(shroud - hub)
+    places, feet = share if clearance.wall == "hub" else 1.0 - share, u
+    for _ in range(STEPS):
+        miss, across, along = _miss(full, clearance, u, places, feet)
+        area = cross2(across, along)
+        with np.errstate(all="ignore"):
+            steps = cross2(miss, along) / area, cross2(across, miss) / area
+        places, feet = places - steps[0], feet - steps[1]
+        size = float(np.max(np.square(steps)))
+        if not size < 1.0:
+            break
+        # a step this small leaves an error of its square
+        if size < 1e-16:
+            if np.all((places > 0.0) & (places < 1.0) & (_bend(full, clearance, feet) * clearance.distance(u) < 1.0)):
+                return places, feet
+            break
+    raise DesignError(_cusp(full, clearance))
+
+
+def _miss(full: TransfiniteChannel, clearance: Clearance, u: Reals, w: Reals, f: Reals) -> tuple[Array, Array, Array]:
+    """X(u, w) - S(f) - d(u) n(f) and its derivatives by w and by f, (..., m, 2) each."""
+    point, across = full.at(u, w)
+    foot, slope, bend = (full.line(clearance.wall).values(f, order) for order in range(3))
+    speed = length(slope)[..., None]
+    normal = clearance.inward * np.stack([-slope[..., 1], slope[..., 0]], axis=-1) / speed
+    away = clearance.distance(u)[..., None]
+    curvature = clearance.inward * cross2(slope, bend)[..., None] / speed**3
+    return point - foot - away * normal, across, slope * (away * curvature - 1.0)
+
+
+def _bend(full: TransfiniteChannel, clearance: Clearance, feet: Reals) -> Reals:
+    """Curvature (m,) of the wall towards the channel [1/m]."""
+    slope, bend = (full.line(clearance.wall).values(feet, order) for order in (1, 2))
+    return clearance.inward * cross2(slope, bend) / length(slope) ** 3
+
+
+def _check_span(full: TransfiniteChannel, clearance: Clearance) -> None:
+    """Refuse a clearance that leaves no blade somewhere."""
+    u = np.linspace(0.0, 1.0, 101)
+    other = "hub" if clearance.wall == "shroud" else "shroud"
+    wall = full.line(clearance.wall).values(np.linspace(-0.1, 1.1, 601))
+    span = np.min(length(full.line(other).values(u)[:, None] - wall), axis=1)
+    share = clearance.distance(u) / span
+    worst = int(np.argmax(share))
+    if share[worst] >= 1.0:
+        raise DesignError(
+            f"{clearance.name} is {clearance.said(clearance.distance(u)[worst])} at u = {u[worst]:.3f}, where the "
+            f"{other} is {clearance.said(span[worst])} from the {clearance.wall}: a clearance must be smaller than the "
+            f"span everywhere; lower {clearance.name}"
+        )
+
+
+def _cusp(full: TransfiniteChannel, clearance: Clearance) -> str:
+    u = np.linspace(-0.05, 1.05, 111)
+    bend = _bend(full, clearance, u)
+    worst = int(np.argmax(bend * clearance.distance(u)))
+    radius = clearance.said(1.0 / float(bend[worst])) if bend[worst] > 0.0 else "without limit"
+    return (
+        f"{clearance.name} is {clearance.said(clearance.distance(u)[worst])} at u = {u[worst]:.3f}, where the "
+        f"{clearance.wall}'s radius of curvature towards the blade is {radius}: the surface at that distance folds "
+        f"over near there; lower {clearance.name}, or smooth channel.{clearance.wall}"
+    )

@@ -1,0 +1,128 @@
+"""Sections of a family at places along the span: staggered in their planes, and mapped on their stream surfaces."""
+
+from abc import ABC, abstractmethod
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from bladewright.blade.exact.section_stack import EdgeDerivatives, SectionStack
+from bladewright.blade.flow_path.blade_streamlines import BladeStreamlines
+from bladewright.blade.flow_path.meridional_curve import real_first
+from bladewright.numerics.elementary import Array
+from bladewright.nurbs.basis import Reals
+from bladewright.section.crossing import closed_outlines
+from bladewright.section.outline import Outline, Start
+from bladewright.section.smooth_camber import SmoothCamber, smooth_camber
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class FlowPathSections(SectionStack, ABC):
+    """Sections at places v (m,) along the span of a flow path."""
+
+    lines: BladeStreamlines
+
+    @abstractmethod
+    def outlines(self) -> Reals:
+        """Closed outlines (m, n, 2) in the sections' planes, of the real design, on which neighbours are judged."""
+
+    @property
+    def gathered(self) -> bool:
+        return True
+
+    def channel_parameter(self, u: Array) -> Array:
+        return self.lines.t(u)
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class StaggeredSections:
+    """Sections (..., m) in their planes, the leading edge's end of the chord line at the abscissa 0."""
+
+    outline: Outline
+    """the sections in chords, unstaggered"""
+    stagger: Array
+    """(..., m) [rad]"""
+    chord: Array
+    """(..., m) length of the chord line in the plane"""
+    start: Array
+    """(..., m) ordinate of the leading edge"""
+
+    def points(self, s: Reals) -> tuple[Array, Array]:
+        """Points (..., m, len(s), 2) of the upper and the lower side."""
+        upper, lower = self.outline.points(s)
+        return self.placed(upper), self.placed(lower)
+
+    def placed(self, points: Array) -> Array:
+        """Points (..., m, k, 2) of the plane from points in chords."""
+        turned = self.turned(points)
+        return np.stack(np.broadcast_arrays(turned[..., 0], turned[..., 1] + self.start[..., None]), axis=-1)
+
+    def turned(self, vectors: Array) -> Array:
+        """Vectors (..., m, k, 2) of the plane from vectors in chords."""
+        along, across = ((self.chord * part)[..., None] for part in (np.cos(self.stagger), np.sin(self.stagger)))
+        a, b = vectors[..., 0], vectors[..., 1]
+        return np.stack([a * along - b * across, a * across + b * along], axis=-1)
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class FamilySections(FlowPathSections):
+    """The exact sections of a family at places v (m,) along the span."""
+
+    v: Reals
+    lines: BladeStreamlines
+    plane: StaggeredSections
+
+    @cached_property
+    def kinds(self) -> tuple[str, str]:
+        """How the sides meet at the leading and at the trailing edge: "round", "sharp" or "blunt"."""
+        return self.plane.outline.leading_edge.kind, self.plane.outline.trailing_edge.kind
+
+    @property
+    def back(self) -> float | None:
+        return self.plane.outline.back
+
+    def camber(self, share: Reals) -> Array:
+        return self.plane.placed(self._camber_line.points(share))
+
+    def camber_ends(self) -> tuple[Array, Array]:
+        line = self._camber_line
+        first, last = (self.plane.turned(each[..., None, :])[..., 0, :] for each in (line.first, line.last))
+        return first, last
+
+    @cached_property
+    def _camber_line(self) -> SmoothCamber:
+        return smooth_camber(self.plane.outline)
+
+    def outlines(self) -> Reals:
+        return real_first(self.plane.placed(closed_outlines(self.plane.outline)), 3)
+
+    def leading_edge(self) -> EdgeDerivatives:
+        return self._row(0, self.plane.outline.leading_edge.upper)
+
+    def trailing_edge(self) -> EdgeDerivatives:
+        return self._row(1, self.plane.outline.trailing_edge.upper)
+
+    def lower_edges(self) -> tuple[EdgeDerivatives | None, EdgeDerivatives | None]:
+        outline = self.plane.outline
+        first, last = (
+            None if edge.kind == "round" else self._row(end, edge.lower)
+            for end, edge in enumerate((outline.leading_edge, outline.trailing_edge))
+        )
+        return first, last
+
+    def faces(self, w: Reals) -> dict[str, Array]:
+        """The faces of blunt edges; they are straight in the plane."""
+        outline, found = self.plane.outline, {}
+        for name, edge in (("leading_edge", outline.leading_edge), ("trailing_edge", outline.trailing_edge)):
+            if edge.kind == "blunt":
+                upper, lower = (side.point[..., None, :] for side in (edge.upper, edge.lower))
+                found[name] = self.in_space(self.plane.placed(upper + w[:, None] * (lower - upper)))
+        return found
+
+    def _row(self, end: int, start: Start) -> EdgeDerivatives:
+        point = self.plane.placed(start.point[..., None, :])
+        first, second = (self.plane.turned(each[..., None, :])[..., 0, :] for each in (start.first, start.second))
+        u: Array = np.array([float(end)])
+        if self.kinds[end] == "blunt":
+            u = self.lines.u_at(point[..., 0])
+        return self.row(u, point[..., 0, :], first, second)

@@ -1,0 +1,120 @@
+"""How far upstream and downstream of a blade's edges a place of its channel or flow path lies."""
+
+from abc import ABC, abstractmethod
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from bladewright.blade.exact.family_sections import FlowPathSections
+from bladewright.blade.flow_path.meridional_curve import real_first
+from bladewright.blade.flow_path.stream_surface_map import Cascade
+from bladewright.blade.flow_path.stream_surfaces import StreamSurfaces
+from bladewright.blade.flow_path.streamlines import MeridionalChannel, StreamLines, stream_lines
+from bladewright.numerics.roots import bracketed_root
+from bladewright.nurbs.basis import Reals
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class MeridionalExtent(ABC):
+    """A channel by its parameter u, which the leading and the trailing edge need not meet at 0 and 1."""
+
+    channel: MeridionalChannel
+    start: float
+    """u down to which stream lines keep to the channel; straight beyond"""
+    end: float
+    """u up to which they do"""
+    noses: tuple[float, float]
+    """least and greatest u of the blade"""
+    edges: tuple[float, float]
+    """mean u of the leading and of the trailing edge"""
+    length: float
+    """mean meridional length of the blade [m]"""
+    unit: float
+    """how much of u one such length takes; on hub and shroud exactly, where the channel has ended"""
+
+    @abstractmethod
+    def extent(self, past: int, u: float) -> float:
+        """How far u lies upstream of the leading (0), or downstream of the trailing edge (1), in mean lengths."""
+
+    @abstractmethod
+    def place(self, past: int, extent: float) -> float:
+        """The u that lies so far past an edge, as `extent` counts it."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class ChannelExtent(MeridionalExtent):
+    """The channel of the unified family: u is 0 on the leading and 1 on the trailing edge, and counts extents."""
+
+    def extent(self, past: int, u: float) -> float:
+        return u - 1.0 if past else -u
+
+    def place(self, past: int, extent: float) -> float:
+        return 1.0 + extent if past else -extent
+
+
+SIDES = np.sin(0.5 * np.pi * np.linspace(0.0, 1.0, 65)) ** 2
+"""places along the sides between which a blade's least and greatest t are looked for"""
+
+SAME = 1e-9
+"""extent, in mean lengths, by which a place and an end of the flow path may differ by rounding"""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class FlowPathExtent(MeridionalExtent):
+    """A flow path, by t; extents are the mean of the meridional lengths along its stream lines."""
+
+    channel: StreamSurfaces
+    v: Reals
+    """(m,) span fractions of the stream lines that the mean is taken of"""
+    edges_at: tuple[Reals, Reals]
+    """t (m,) on them at the leading and at the trailing edge"""
+
+    def extent(self, past: int, u: float) -> float:
+        own = min(max(u, self.start), self.end)
+        lengths = np.mean(self._lines.abscissa(np.array([own]))[:, 0] - self._edge_lengths[past])
+        return float((lengths / self.length + (u - own) / self.unit) * (1.0 if past else -1.0))
+
+    def place(self, past: int, extent: float) -> float:
+        sign, end, edge = (1.0, self.end, self.edges[1]) if past else (-1.0, self.start, self.edges[0])
+        short = extent - self.extent(past, end)
+        if short**2 < SAME**2:
+            return end
+        if short >= 0.0:
+            return end + sign * short * self.unit
+
+        def over(u: Reals) -> tuple[Reals, Reals]:
+            away = self.extent(past, float(u)) - extent
+            return np.asarray(away), np.asarray(sign / self.unit)
+
+        return float(bracketed_root(over, edge - sign * 0.5 * self.unit, end))
+
+    @cached_property
+    def _lines(self) -> StreamLines:
+        surfaces = self.channel.along(self.v).real()
+        return stream_lines(surfaces, Cascade(), self.v, max(-self.start, 0.0), max(self.end - 1.0, 0.0))
+
+    @cached_property
+    def _edge_lengths(self) -> list[Reals]:
+        return [self._lines.abscissa(at[:, None])[:, 0] for at in self.edges_at]
+
+
+def flow_path_extent(surfaces: StreamSurfaces, survey: FlowPathSections) -> FlowPathExtent:
+    """The course of a blade in a flow path, from its sections from end to end."""
+    lines = survey.lines
+    leading, trailing = (real_first(each, 1) for each in (lines.leading, lines.trailing))
+    abscissae = np.stack([real_first(side[..., 0], 2) for side in survey.plane.points(SIDES)])
+    u = np.stack([np.min(abscissae, axis=(0, 2)), np.max(abscissae, axis=(0, 2))], axis=-1)
+    noses = real_first(lines.t(lines.u_at(u)), 2)
+    edges = float(np.mean(leading)), float(np.mean(trailing))
+    return FlowPathExtent(
+        channel=surfaces,
+        start=surfaces.low,
+        end=surfaces.high,
+        noses=(min(float(np.min(noses)), edges[0]), max(float(np.max(noses)), edges[1])),
+        edges=edges,
+        length=float(np.mean(real_first(lines.lengths, 1))),
+        unit=edges[1] - edges[0],
+        v=survey.v,
+        edges_at=(leading, trailing),
+    )

@@ -1,0 +1,111 @@
+"""Ruled blades: straight lines in space between the hub's and the shroud's section, point by point."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from bladewright.blade.exact.family_sections import FamilySections, FlowPathSections
+from bladewright.blade.exact.section_stack import EdgeDerivatives, Plane
+from bladewright.blade.flow_path.meridional_curve import real_first
+from bladewright.errors import DesignError
+from bladewright.numerics.elementary import Array, cross, dot
+from bladewright.nurbs.basis import Reals
+
+ENDS = np.array([0.0, 1.0])
+JUDGED = np.linspace(0.0, 1.0, 41)
+"""places along the sides at which they must keep to their sides of each other"""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class RuledSections(FlowPathSections):
+    """Curves of constant v (m,) of a ruled blade: the design's sections at hub and shroud, mixed as 1 - v to v.
+
+    A line joins points of equal s of the same side, and native sides are linear along v, so that their lines are
+    straight to rounding. What is given up: between the ends the curves are not the design's sections, and lie on no
+    stream surface; there `lines`, `plane` and camber are those of the sections that the design has at v, which stand
+    nearby. Voss et al. 2025, section 5; the ruled impeller of the freeform method, its section 3.3.
+    """
+
+    plane: Plane
+    rails: FamilySections
+    """the sections at hub and shroud"""
+    beside: FamilySections
+    """the sections at v"""
+
+    @property
+    def kinds(self) -> tuple[str, str]:
+        return self.rails.kinds
+
+    @property
+    def back(self) -> float | None:
+        return self.rails.back
+
+    def camber(self, share: Reals) -> Array:
+        return self.beside.camber(share)
+
+    def camber_ends(self) -> tuple[Array, Array]:
+        return self.beside.camber_ends()
+
+    def outlines(self) -> Reals:
+        return self.beside.outlines()
+
+    def leading_edge(self) -> EdgeDerivatives:
+        return self._mixed_row(self.rails.leading_edge())
+
+    def trailing_edge(self) -> EdgeDerivatives:
+        return self._mixed_row(self.rails.trailing_edge())
+
+    def lower_edges(self) -> tuple[EdgeDerivatives | None, EdgeDerivatives | None]:
+        first, last = (None if row is None else self._mixed_row(row) for row in self.rails.lower_edges())
+        return first, last
+
+    def faces(self, w: Reals) -> dict[str, Array]:
+        return {name: self._mixed(points) for name, points in self.rails.faces(w).items()}
+
+    def points(self, s: Reals) -> tuple[Array, Array]:
+        upper, lower = (self._mixed(side) for side in self.rails.points(s))
+        return upper, lower
+
+    def points_and_normals(self, s: Reals) -> tuple[tuple[Array, Array], tuple[Array, Array]]:
+        """Points, and the unit normals of hub and shroud at the ends; zero between, where there is no such surface."""
+        at_ends = ((self.v == 0.0) | (self.v == 1.0)).astype(float)[:, None, None]
+        _, normals = self.rails.points_and_normals(s)
+        upper, lower = (self._mixed(each) * at_ends for each in normals)
+        return self.points(s), (upper, lower)
+
+    def _mixed_row(self, row: EdgeDerivatives) -> EdgeDerivatives:
+        shares = self._shares
+        return EdgeDerivatives(*(np.asarray(np.einsum("mj,...jd->...md", shares, part)) for part in row))
+
+    def _mixed(self, points: Array) -> Array:
+        return np.asarray(np.einsum("mj,...jkd->...mkd", self._shares, points))
+
+    @property
+    def _shares(self) -> Reals:
+        return np.stack([1.0 - self.v, self.v], axis=-1)
+
+
+def ruled_sections(rails: FamilySections, beside: FamilySections) -> RuledSections:
+    """The ruled blade between the sections at hub and shroud, at the places v of the sections beside."""
+    return RuledSections(v=beside.v, lines=beside.lines, plane=beside.plane, rails=rails, beside=beside)
+
+
+def check_ruled(stations: RuledSections) -> None:
+    """Refuse a ruled blade that is turned inside out: whose sides change places between hub and shroud.
+
+    By the sign of their distance across the surface midway between them.
+    """
+    upper, lower = (real_first(side, 3) for side in stations.points(JUDGED))
+    middle = (upper + lower) / 2.0
+    along = np.gradient(middle, JUDGED, axis=1)
+    across = middle[-1] - middle[0]
+    sizes = dot(upper - lower, cross(along, np.broadcast_to(across, along.shape)))[:, 1:-1]
+    wrong = np.argwhere(sizes * sizes[:1] <= 0.0)
+    if len(wrong):
+        row, at = wrong[0]
+        raise DesignError(
+            f"skinning is 'ruled', and the straight lines between hub and shroud turn the blade inside out: its sides "
+            f"change places at v = {stations.v[row]:.3f}, s = {JUDGED[at + 1]:.3f} (0 is the leading, 1 the trailing "
+            "edge), for the sections at hub and shroud are turned too far against each other; bring their stagger and "
+            "camber nearer to each other, make them thicker, or take skinning = 'sections'"
+        )

@@ -1,0 +1,331 @@
+"""The exact blade of sections: for every v the family's section, on its stream surface, where the design places it."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from bladewright.blade.design.sectioned import SectionedBlade
+from bladewright.blade.exact.chord_placement import chord_placement
+from bladewright.blade.exact.developable import developable_sections
+from bladewright.blade.exact.exact_blade import ExactBlade, WallMeridian
+from bladewright.blade.exact.family_sections import FamilySections, FlowPathSections, StaggeredSections
+from bladewright.blade.exact.meridional_extent import FlowPathExtent, flow_path_extent
+from bladewright.blade.exact.meridional_view import MeridionalView, flow_path_view
+from bladewright.blade.exact.ruled import RuledSections, check_ruled, ruled_sections
+from bladewright.blade.exact.stacking_axis import StackingAxis, reference_points
+from bladewright.blade.exact.sweep_lean import shift_of, shifted_lines
+from bladewright.blade.exact.unified import SURVEY
+from bladewright.blade.flow_path.blade_streamlines import BladeStreamlines, PrescribedEdges, prescribed_edges
+from bladewright.blade.flow_path.location import curve_joints
+from bladewright.blade.flow_path.meridional_curve import real_first
+from bladewright.blade.flow_path.stream_surface_map import DiscreteConformal, StreamSurfaceMap, plane_of
+from bladewright.blade.flow_path.stream_surfaces import StreamSurfaces, stream_surfaces
+from bladewright.blade.native.knots import DEGREE
+from bladewright.errors import DesignError
+from bladewright.numerics.elementary import Array, radians
+from bladewright.nurbs.basis import Reals
+from bladewright.section.camber_angle import CamberAngle
+from bladewright.section.checks import UNITS
+from bladewright.section.crossing import check_outline
+from bladewright.section.laws import DEGREE as LAW_DEGREE
+from bladewright.section.laws import Span, inner_knots, laws_of
+from bladewright.section.outline import Outline
+
+STEEP = np.radians(89.0)
+"""largest angle of a chord line: beyond it its extent along the flow says nothing of the chord"""
+ROUNDS = 60
+"""tries in which a chord line's angle and its place, where each depends on the other, settle; mostly five do"""
+
+Place = PrescribedEdges | StackingAxis
+"""what puts sections on their stream lines: edge curves, or reference points"""
+Found = tuple[BladeStreamlines, Outline, Array, Array]
+"""stream lines between the sections' edges, sections, their stagger and reference points"""
+
+
+def placed_sections(design: SectionedBlade, place: Place, mapping: StreamSurfaceMap, v: Reals) -> FamilySections:
+    """Sections at v (m,); raises DesignError where there are none, or they do not fit in the flow path."""
+    span = Span(v)
+    if isinstance(place, PrescribedEdges):
+        lines = place.lines(v, mapping)
+        outline, stagger = family_sections(design, span, lines)
+        _check_stagger(stagger, v)
+        reference = reference_points(design.stacking, outline, span)
+    else:
+        lines, outline, stagger, reference = _stacked(design, place, mapping, span)
+    chord = lines.extents() / np.cos(stagger)
+    turned = np.cos(stagger), np.sin(stagger)
+    along = chord * (reference[..., 0] * turned[0] - reference[..., 1] * turned[1])
+    across = chord * (reference[..., 0] * turned[1] + reference[..., 1] * turned[0])
+    shift = shift_of(design, span, stagger)
+    lines = shifted_lines(place.surfaces, lines, along, shift)
+    radius = lines.position(lines.u_at(along[..., None]))[..., 0, 1]
+    around = shift.tangential / radius if mapping.revolved else shift.tangential
+    start = mapping.start(_tangential(design, span) + around, radius, lines.lengths) - across
+    plane = StaggeredSections(outline=outline, stagger=stagger, chord=chord, start=start)
+    return FamilySections(v=v, lines=lines, plane=plane)
+
+
+def family_sections(design: SectionedBlade, span: Span, lines: BladeStreamlines) -> tuple[Outline, Array]:
+    """The family's sections in chords and their stagger (..., m) [rad] on stream lines."""
+    part = design.section
+    if not (isinstance(part, CamberAngle) and lines.mapping.plane == "m'-theta"):
+        return part.outline(span), part.stagger(span)
+
+    def meridional(fractions: Reals) -> Array:
+        u = lines.u_at(lines.extents()[..., None] * fractions)
+        return lines.meridional(u) / lines.lengths[..., None]
+
+    return part.outline(span, meridional), part.stagger(span, meridional)
+
+
+def _stacked(design: SectionedBlade, place: StackingAxis, mapping: StreamSurfaceMap, span: Span) -> Found:
+    stacking, v = place.stacking, span.v
+    chord = place.metre * span.values(0.0 if stacking.chord is None else stacking.chord)
+    ruler = chord_placement(place.surfaces, v, mapping, place.t(v), chord)
+
+    def laid(outline: Outline, stagger: Array) -> Found:
+        _check_stagger(stagger, v)
+        reference = reference_points(stacking, outline, span)
+        share = reference[..., 0] - reference[..., 1] * np.tan(stagger)
+        lines = ruler.between(share, chord * np.cos(stagger))
+        return lines, outline, stagger, reference
+
+    part = design.section
+    outline, stagger = part.outline(span), part.stagger(span)
+    if not (isinstance(part, CamberAngle) and mapping.plane == "m'-theta"):
+        return laid(outline, stagger)
+
+    def again(lines: BladeStreamlines) -> tuple[Outline, Array]:
+        return family_sections(design, span, lines)
+
+    return _settled(laid, again, outline, stagger)
+
+
+def _settled(
+    laid: Callable[[Outline, Array], Found],
+    again: Callable[[BladeStreamlines], tuple[Outline, Array]],
+    outline: Outline,
+    stagger: Array,
+) -> Found:
+    """Sections whose stagger follows from the stream lines that they are laid on, by the secant method."""
+    weight: Any = -1.0
+    before: tuple[Reals, Reals] | None = None
+    for _ in range(ROUNDS):
+        outline, found = again(laid(outline, stagger)[0])
+        off = found - stagger
+        real, carried = np.real(off), np.max(np.square(np.imag(found)), initial=0.0)
+        if np.max(np.square(real)) < 1e-26 and np.max(np.square(np.imag(off)), initial=0.0) <= 1e-24 * carried:
+            return laid(outline, found)
+        if before is not None:
+            moved, turned = np.real(stagger) - before[0], real - before[1]
+            with np.errstate(all="ignore"):
+                weight = np.where(np.square(turned) > 1e-16, moved / turned, weight)
+        before = np.real(stagger), real
+        stagger = stagger - weight * off
+    raise DesignError(
+        "stacking: the sections' chord lines turn with the place that their chord gives them, and do not settle: "
+        "give leading_edge and trailing_edge, which say where the sections begin and end"
+    )
+
+
+def _tangential(design: SectionedBlade, span: Span) -> Array:
+    """theta [rad], or y [m] in a cascade, (..., m) of the reference points."""
+    stacking, annular = design.stacking, design.arrangement == "annular"
+    if stacking is None:
+        law = design.leading_edge_theta if annular else design.leading_edge_y
+    else:
+        law = stacking.theta if annular else stacking.y
+    values = span.values(0.0 if law is None else law)
+    return radians(values) if annular else UNITS[design.length_unit] * values
+
+
+def _check_stagger(stagger: Array, v: Reals) -> None:
+    real = np.real(stagger).reshape(-1, len(v))
+    steep = np.argwhere(real**2 >= STEEP**2)
+    if len(steep):
+        row, at = steep[0]
+        raise DesignError(
+            f"section: its chord line stands at {np.degrees(real[row, at]):.4g} deg at v = {v[at]:.3f}: it must keep "
+            "below 89 deg to both sides, for beyond it the extent along the flow says nothing of the chord; lower the "
+            "stagger angle there"
+        )
+
+
+ENDS = np.array([0.0, 1.0])
+"""hub and shroud"""
+SPANS = 8
+"""knot spans along a side to begin with"""
+
+
+@dataclass(frozen=True, kw_only=True)
+class ExactSectionedBlade(ExactBlade):
+    """The blade of sections that is meant, in metres and radians."""
+
+    design: SectionedBlade
+    surfaces: StreamSurfaces
+    place: Place
+    """what puts the sections on their stream lines: edge curves, or reference points"""
+
+    @cached_property
+    def survey(self) -> FlowPathSections:
+        """Stations from end to end on which the shape is judged."""
+        return self.stations(SURVEY)
+
+    def stations(self, v: Reals) -> FlowPathSections:
+        """What the blade is at v (m,), as its skinning has it."""
+        if self.design.skinning == "ruled":
+            return ruled_sections(self.rails, self.sections(v))
+        if self.design.skinning == "developable":
+            return developable_sections(self.surfaces, self.sections(ENDS[:1]), self.references, v)
+        return self.sections(v)
+
+    def sections(self, v: Reals) -> FamilySections:
+        """The design's sections at v (m,); raises DesignError where there are none, or they leave the flow path."""
+        return placed_sections(self.design, self.place, self.mapping, v)
+
+    @cached_property
+    def rails(self) -> FamilySections:
+        """The design's sections at hub and shroud."""
+        return self.sections(ENDS)
+
+    @property
+    def references(self) -> Array:
+        """The reference points (..., 2, 3) of hub and shroud in space [m]."""
+        plane = self.rails.plane
+        points = reference_points(self.design.stacking, plane.outline, Span(ENDS))
+        return self.rails.in_space(plane.placed(points[..., None, :]))[..., 0, :]
+
+    @property
+    def given_spans(self) -> Reals:
+        if self.design.skinning == "ruled":
+            return ENDS
+        return np.unique([*self.design.flow_path.spans, *self.design.section_spans])
+
+    @property
+    def section_spans(self) -> tuple[float, ...]:
+        if self.design.skinning == "developable":
+            return (0.0,)
+        spans = np.union1d(self.given_spans, [] if self.design.skinning == "ruled" else [0.5])
+        return tuple(float(v) for v in spans)
+
+    def moved_to(self, design: SectionedBlade) -> "ExactSectionedBlade":
+        return exact_sectioned_blade(design, checked=False)
+
+    def breaks_along_u(self) -> Reals:
+        joints = self.rails.plane.outline.joints
+        ends = np.array([0.0, *(joint.s for joint in joints), 1.0])
+        counts = np.maximum(1 if len(ends) > 2 else 2, np.rint(SPANS * np.diff(ends)).astype(int))
+        parts = [np.linspace(a, b, n + 1)[1:-1] for a, b, n in zip(ends[:-1], ends[1:], counts, strict=True)]
+        parts += [np.full(min(max(DEGREE - joint.derivatives, 1), DEGREE), joint.s) for joint in joints]
+        return np.sort(np.concatenate(parts))
+
+    def breaks_along_v(self) -> Reals:
+        if self.design.skinning == "ruled":
+            return np.empty(0)
+        times: dict[float, int] = {}
+
+        def needed(place: float, smooth: int) -> None:
+            key = round(place, 12)
+            if 0.0 < key < 1.0:
+                times[key] = max(times.get(key, 0), DEGREE - smooth)
+
+        design = self.design
+        laws = [design.leading_edge_theta, design.leading_edge_y, design.sweep, design.lean, design.conformal_sweep]
+        if design.stacking is not None:
+            laws += [getattr(design.stacking, name) for name in ("chord_fraction", "chord", "theta", "y")]
+        for law in (*laws, *laws_of(design.section)):
+            for knot in inner_knots(len(law)) if isinstance(law, tuple) else ():
+                needed(float(knot), LAW_DEGREE - 1)
+        for place in self.surfaces.span_joints():
+            needed(float(place), 2)
+        for place, smooth in self._joints_across():
+            needed(place, smooth)
+        return np.array([knot for knot in sorted(times) for _ in range(times[knot])])
+
+    def _joints_across(self) -> list[tuple[float, int]]:
+        """v at which the lines that sections stand on lose derivatives, and how many they keep there."""
+        design, place, v = self.design, self.place, np.linspace(0.0, 1.0, 17)
+        if isinstance(place, PrescribedEdges):
+            edges = (design.leading_edge, place.leading_edge), (design.trailing_edge, place.trailing_edge)
+            return [
+                joint
+                for (edge, line), meeting in zip(edges, place.meetings(v), strict=True)
+                if edge is not None
+                for joint in curve_joints(self.surfaces, edge, line, v, meeting)
+            ]
+        if place.stacking.onwards == "least-distance":
+            # stream lines keep one derivative at least, and the line across them one more
+            return [(float(joint), 2) for joint in place.path.joints]
+        meridian = place.stacking.line
+        return [] if meridian is None else curve_joints(self.surfaces, meridian, place.line, v, place.meeting(v))
+
+    @property
+    def meridians(self) -> StreamSurfaces:
+        return self.surfaces
+
+    @cached_property
+    def meridional_extent(self) -> FlowPathExtent:
+        return flow_path_extent(self.surfaces, self.survey)
+
+    def whole(self) -> "ExactSectionedBlade":
+        return self
+
+    def end_wall(self, row: int) -> WallMeridian:
+        curve = self.surfaces.walls[("hub", "shroud")[row]].curve()
+        inner = curve.knots[(curve.knots > curve.knots[0]) & (curve.knots < curve.knots[-1])]
+        return WallMeridian(curve, inner)
+
+    def wall_places(self, u: Reals) -> Reals:
+        t = real_first(self.survey.lines.rows([0, -1]).t(u), 2)
+        return np.stack([self.surfaces.wall_parameter(name, t[i]) for i, name in enumerate(("hub", "shroud"))])
+
+    @cached_property
+    def plan(self) -> MeridionalView:
+        """Walls, edges, stream lines and stream surfaces in the meridional plane."""
+        return flow_path_view(self)
+
+    def wall_line(self, name: str, u: Reals) -> Reals:
+        v = np.array([("hub", "shroud").index(name)], dtype=np.float64)
+        lines = self.survey.lines.rows([0 if name == "hub" else -1])
+        start, end = (float(real_first(t, 1)[0]) for t in (lines.leading, lines.trailing))
+        t = np.unique(np.clip(start + (end - start) * u, self.surfaces.low, self.surfaces.high))
+        return np.asarray(np.real(self.surfaces.real().position(v, t[None])[0]))
+
+
+def exact_sectioned_blade(design: SectionedBlade, *, checked: bool = True) -> ExactSectionedBlade:
+    """The exact blade of a design of sections.
+
+    Raises DesignError where its flow path folds, or edges and flow path do not meet, and where it is to be `checked`,
+    for sections that cross themselves.
+    """
+    metre, revolved = UNITS[design.length_unit], design.arrangement == "annular"
+    mapping: StreamSurfaceMap = plane_of(design.plane, design.arrangement)
+    edges = None
+    if design.leading_edge is not None and design.trailing_edge is not None:
+        edges = design.leading_edge, design.trailing_edge
+    try:
+        surfaces = stream_surfaces(design.flow_path, metre, edges, revolved=revolved)
+    except DesignError as error:
+        raise DesignError(f"flow_path: {error}") from error
+    exact = ExactSectionedBlade(
+        design=design, mapping=mapping, surfaces=surfaces, place=_place(design, surfaces, mapping)
+    )
+    if checked:
+        v = {"sections": SURVEY, "ruled": ENDS, "developable": ENDS[:1]}[design.skinning]
+        check_outline(exact.sections(v).plane.outline, [f" at v = {each:.3f}" for each in v])
+        if isinstance(exact.survey, RuledSections):
+            check_ruled(exact.survey)
+    return exact
+
+
+def _place(design: SectionedBlade, surfaces: StreamSurfaces, mapping: StreamSurfaceMap) -> Place:
+    metre, stacking = UNITS[design.length_unit], design.stacking
+    if design.leading_edge is not None and design.trailing_edge is not None:
+        leading, trailing = (edge.line(metre) for edge in (design.leading_edge, design.trailing_edge))
+        return prescribed_edges(surfaces, leading, trailing, counted=isinstance(mapping, DiscreteConformal))
+    if stacking is None:
+        raise DesignError("leading_edge, trailing_edge and stacking are missing: nothing says where the sections stand")
+    return StackingAxis(surfaces=surfaces, stacking=stacking, metre=metre)

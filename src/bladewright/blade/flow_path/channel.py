@@ -1,0 +1,210 @@
+"""The meridional channel as native geometry: four curves in transfinite interpolation, and past its ends."""
+
+from dataclasses import dataclass
+from functools import lru_cache
+from math import comb, factorial
+
+import numpy as np
+
+from bladewright.blade.design.flow_path import Channel
+from bladewright.designs import Points
+from bladewright.numerics.elementary import Array
+from bladewright.nurbs.basis import Reals, basis, uniform_knots
+from bladewright.nurbs.curve import Curve
+from bladewright.section.laws import stacked
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class ChannelCurve:
+    """One of the four curves of a channel: a B-spline in (x, r), taken from `start` to `end` of its own parameter."""
+
+    points: Array
+    """(..., n, 2) control points in metres"""
+    knots: Reals
+    """(n + degree + 1,) clamped over [0, 1]"""
+    start: Array | None = None
+    """(...) own parameter where an edge of the channel starts, as the blade's end stands off the wall; none: 0"""
+    end: Array | None = None
+    """(...) own parameter where it ends; none: 1"""
+
+    @property
+    def degree(self) -> int:
+        """Degree of the B-spline."""
+        return len(self.knots) - self.points.shape[-2] - 1
+
+    def values(self, at: Reals, order: int = 0) -> Array:
+        """Points, or derivatives (..., m, 2), at real places (m,) of the piece, which runs over [0, 1]."""
+        if self.start is None and self.end is None:
+            return basis(self.knots, self.degree, at, order) @ self.points
+        low, high = self._ends()
+        own = low[..., None] + (high - low)[..., None] * at
+        real = np.real(own[(0,) * (own.ndim - 1)])
+        found = basis(self.knots, self.degree, real, order) @ self.points
+        slope = basis(self.knots, self.degree, real, order + 1) @ self.points
+        return (found + (own - real)[..., None] * slope) * ((high - low) ** order)[..., None, None]
+
+    def joints(self) -> Reals:
+        """Inner knots of the piece, as often as they occur; their real parts, where the ends are complex."""
+        inner = self.knots
+        if self.start is not None or self.end is not None:
+            low, high = (float(np.real(np.ravel(end)[0])) for end in self._ends())
+            inner = (inner - low) / (high - low)
+        return inner[(inner > 0.0) & (inner < 1.0)]
+
+    def powers(self, centres: Reals, count: int) -> Array:
+        """Coefficients (..., len(centres), count, 2) of the whole curve's powers of u - centre.
+
+        Each row holds on the knot span that its centre lies in.
+        """
+        rows = _power_rows(self.knots.tobytes(), self.degree, tuple(centres), count)
+        return rows @ self.points[..., None, :, :]
+
+    def real(self) -> "ChannelCurve":
+        """The same without imaginary parts and batch."""
+
+        def first(values: Array | None, axes: int) -> Array | None:
+            return None if values is None else np.asarray(np.real(values[(0,) * (np.ndim(values) - axes)]))
+
+        points = np.real(self.points[(0,) * (self.points.ndim - 2)])
+        return ChannelCurve(points=points, knots=self.knots, start=first(self.start, 0), end=first(self.end, 0))
+
+    def curve(self) -> Curve:
+        """The whole B-spline as a native curve over its own parameter."""
+        return Curve(control_points=self.points, knots=self.knots, degree=self.degree)
+
+    def _ends(self) -> tuple[Array, Array]:
+        return np.asarray(0.0 if self.start is None else self.start), np.asarray(1.0 if self.end is None else self.end)
+
+
+@dataclass(frozen=True, kw_only=True)
+class TransfiniteChannel:
+    """The channel's map (u, v) -> (x, r) in metres; outside 0 <= u <= 1 hub and shroud continue their own polynomials.
+
+    Control points are (..., n, 2): a leading batch axis is carried through. Hub and shroud end on the edges.
+    Reference: Agromayor et al. 2021, eq. 16 (Gordon and Hall 1973).
+    """
+
+    leading_edge: ChannelCurve
+    trailing_edge: ChannelCurve
+    hub: ChannelCurve
+    shroud: ChannelCurve
+
+    def real(self) -> "TransfiniteChannel":
+        """The same without imaginary parts and batch."""
+        return TransfiniteChannel(
+            leading_edge=self.leading_edge.real(),
+            trailing_edge=self.trailing_edge.real(),
+            hub=self.hub.real(),
+            shroud=self.shroud.real(),
+        )
+
+    def line(self, name: str) -> ChannelCurve:
+        """One of the four curves by its name."""
+        found: ChannelCurve = getattr(self, name)
+        return found
+
+    def knots(self, name: str) -> Reals:
+        """Knots of one of the four curves over its own parameter."""
+        return self.line(name).knots
+
+    def degree_of(self, name: str) -> int:
+        """Degree of one of the four curves."""
+        return self.line(name).degree
+
+    def curve(self, name: str) -> Curve:
+        """One of the four curves as a native curve in (x, r), an edge whole where the channel has a piece of it."""
+        return self.line(name).curve()
+
+    def joints(self) -> Reals:
+        """Inner knots of hub and shroud along u."""
+        return np.unique(np.concatenate([self.hub.joints(), self.shroud.joints()]).round(14))
+
+    def slopes(self, u: Reals, v: Reals) -> tuple[Array, Array]:
+        """Derivatives (..., len(v), len(u), 2) of (x, r) by u and by v."""
+
+        def walls(order: int) -> list[Array]:
+            return [wall.values(u, order)[..., None, :, :] for wall in (self.hub, self.shroud)]
+
+        def edges(order: int) -> list[Array]:
+            return [edge.values(v, order)[..., :, None, :] for edge in (self.leading_edge, self.trailing_edge)]
+
+        a, b = u[:, None], v[:, None, None]
+        ends = [wall.points[..., end, :][..., None, None, :] for end in (0, -1) for wall in (self.hub, self.shroud)]
+        (hub, shroud), (start, end) = walls(0), edges(0)
+        (hub_slope, shroud_slope), (start_slope, end_slope) = walls(1), edges(1)
+        by_u = end - start + (1.0 - b) * hub_slope + b * shroud_slope
+        by_u = by_u - ((1.0 - b) * (ends[2] - ends[0]) + b * (ends[3] - ends[1]))
+        by_v = (1.0 - a) * start_slope + a * end_slope + shroud - hub
+        by_v = by_v - ((1.0 - a) * (ends[1] - ends[0]) + a * (ends[3] - ends[2]))
+        return by_u, by_v
+
+    def at(self, u: Reals, v: Reals) -> tuple[Array, Array]:
+        """(x, r) at pairs of u and v (m,), and its derivative by v, (..., m, 2) each."""
+        a, b = u[:, None], v[:, None]
+        hub, shroud = self.hub.values(u), self.shroud.values(u)
+        corners = [wall.points[..., end, :][..., None, :] for end in (0, -1) for wall in (self.hub, self.shroud)]
+        ruled = [(1.0 - a) * corners[k] + a * corners[k + 2] for k in (0, 1)]
+        start, end = self.leading_edge, self.trailing_edge
+        point = (1.0 - a) * start.values(v) + a * end.values(v)
+        point = point + (1.0 - b) * (hub - ruled[0]) + b * (shroud - ruled[1])
+        across = (1.0 - a) * start.values(v, 1) + a * end.values(v, 1) + (shroud - ruled[1]) - (hub - ruled[0])
+        return point, across
+
+    def stream_polynomials(self, v: Reals, centres: Reals) -> Array:
+        """Coefficients (..., len(v), len(centres), k, 2) of the stream lines' powers of u - centre.
+
+        Each row holds on the knot span that its centre lies in.
+        """
+        powers = max(self.hub.degree, self.shroud.degree, 1) + 1
+        hub, shroud = (wall.powers(centres, powers)[..., None, :, :, :] for wall in (self.hub, self.shroud))
+        w = v[:, None, None, None]
+        total = (1.0 - w) * hub + w * shroud
+        edges = []
+        for edge, place in ((self.leading_edge, slice(None, 1)), (self.trailing_edge, slice(-1, None))):
+            low, high = self.hub.points[..., place, :], self.shroud.points[..., place, :]
+            ruled = (1.0 - v)[:, None] * low + v[:, None] * high
+            edges.append((edge.values(v) - ruled)[..., None, :])
+        start, end = edges
+        total = np.array(np.broadcast_to(total, np.broadcast_shapes(total.shape, (*start.shape[:-2], 1, powers, 2))))
+        total[..., 0, :] += start + centres[:, None] * (end - start)
+        total[..., 1, :] += end - start
+        return total
+
+
+@lru_cache(maxsize=64)
+def _power_rows(knots: bytes, degree: int, centres: tuple[float, ...], powers: int) -> Reals:
+    """Rows (len(centres), powers, n) that take control points to powers of u - centre on the centre's span."""
+    on = np.frombuffer(knots)
+    rows = np.zeros((len(centres), powers, len(on) - degree - 1))
+    inner = np.unique(on)
+    for i, centre in enumerate(centres):
+        span = int(np.clip(np.searchsorted(inner, centre, side="right") - 1, 0, len(inner) - 2))
+        middle = float(inner[span] + inner[span + 1]) / 2.0
+        series = [basis(on, degree, [middle], k)[0] / factorial(k) for k in range(degree + 1)]
+        for k in range(degree + 1):
+            terms = [comb(j, k) * (centre - middle) ** (j - k) * series[j] for j in range(k, degree + 1)]
+            rows[i, k] = np.sum(terms, axis=0)
+    return rows
+
+
+def transfinite_channel(channel: Channel, metre: float) -> TransfiniteChannel:
+    """The native channel of a design whose length unit is `metre` metres."""
+    edges = {name: _array(getattr(channel, name), metre) for name in ("leading_edge", "trailing_edge")}
+    lines = dict(edges)
+    for name, end in (("hub", 0), ("shroud", -1)):
+        corners = [edges[edge][..., end : end + 1 or None, :] for edge in ("leading_edge", "trailing_edge")]
+        inner = [_array(getattr(channel, name), metre)] if getattr(channel, name) else []
+        rows = [corners[0], *inner, corners[1]]
+        batch = np.broadcast_shapes(*[row.shape[:-2] for row in rows])
+        lines[name] = np.concatenate([np.broadcast_to(row, (*batch, *row.shape[-2:])) for row in rows], axis=-2)
+    return TransfiniteChannel(**{name: _uniform(points, channel.degree) for name, points in lines.items()})
+
+
+def _uniform(points: Array, degree: int) -> ChannelCurve:
+    count = points.shape[-2]
+    return ChannelCurve(points=points, knots=uniform_knots(count, min(count - 1, degree)))
+
+
+def _array(points: Points, metre: float) -> Array:
+    flat = stacked([coordinate for point in points for coordinate in point])
+    return metre * flat.reshape(*flat.shape[:-1], len(points), 2)

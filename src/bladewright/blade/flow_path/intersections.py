@@ -1,0 +1,184 @@
+"""Where stream lines meet an edge curve, and where they come nearest to a point."""
+
+from collections.abc import Callable
+from typing import NamedTuple
+
+import numpy as np
+
+from bladewright.blade.flow_path.meridional_curve import MeridionalCurve, real_first
+from bladewright.errors import DesignError
+from bladewright.numerics.elementary import Array, cross2, dot, length
+from bladewright.nurbs.basis import Reals
+
+REACH = 0.05
+"""share of an edge curve by which it is continued past its ends to meet a wall that it was drawn short of"""
+SAMPLES = 65
+"""places on a stream line, and on an edge curve, between which meetings are looked for"""
+STEPS = 40
+"""Newton's steps after which no meeting is expected any more; mostly four do"""
+SAME = 1e-7
+"""meetings nearer than this, in the edge curve's parameter, are one"""
+
+Position = Callable[[Reals, int], Array]
+"""points (..., m, k, 2) of m stream lines at t (m, k), or their derivatives of an order"""
+
+
+class Intersection(NamedTuple):
+    """Where stream lines meet an edge curve."""
+
+    t: Array
+    """(..., m) on the stream lines"""
+    q: Array
+    """(..., m) own parameter on the edge curve"""
+
+
+def intersections(
+    position: Position, extent: tuple[float, float], edge: MeridionalCurve, name: str, labels: list[str]
+) -> Intersection:
+    """The meetings of m stream lines, t from extent[0] to extent[1], with an edge curve, to rounding.
+
+    `name` is the edge curve's in what is refused, and `labels` (m,) the stream lines'. Raises DesignError where they do
+    not meet, the edge curve continued by REACH of itself at both ends, or meet more than once.
+    """
+    t, q = np.linspace(*extent, SAMPLES), np.linspace(-REACH, 1.0 + REACH, SAMPLES)
+    rows = real_first(position(np.broadcast_to(t, (len(labels), SAMPLES)), 0), 3)
+    curve = real_first(edge.values(q), 2)
+    at, own, met = _refined(position, edge, *_starts(rows, curve, t, q), extent)
+    chosen = []
+    for i, label in enumerate(labels):
+        places = _apart(at[i][met[i]], own[i][met[i]])
+        if not places:
+            raise DesignError(_missed(name, label, rows[i], curve))
+        if len(places) > 1:
+            both = " and ".join(_shown(edge, each[1]) for each in places[:2])
+            raise DesignError(
+                f"{name} meets the stream line {label} {len(places)} times, at (x, r) = {both} m: an edge curve must "
+                "cross every stream line once; move its points so that it runs from hub to shroud without turning back"
+            )
+        chosen.append(places[0])
+    at, own = (np.array([place[k] for place in chosen]) for k in (0, 1))
+    point, slope = position(at[:, None], 0)[..., 0, :], position(at[:, None], 1)[..., 0, :]
+    miss, along = point - edge.values(own), edge.values(own, 1)
+    # one more of Newton's steps, in complex numbers, is the derivative of the meeting
+    turn = cross2(slope, along)
+    return Intersection(at - cross2(miss, along) / turn, own - cross2(miss, slope) / turn)
+
+
+def nearest_parameters(position: Position, extent: tuple[float, float], targets: Array, labels: list[str]) -> Array:
+    """t (..., m) of the points at least distance from targets (..., m, 2), one on each of m stream lines.
+
+    t is sought from extent[0] to extent[1]. Raises DesignError where the nearest point is an end of the stream line.
+    """
+    low, high = extent
+    t = np.linspace(low, high, SAMPLES)
+    aims = real_first(targets, 2)
+    rows = real_first(position(np.broadcast_to(t, (len(labels), SAMPLES)), 0), 3)
+    at = t[np.argmin(length(rows - aims[:, None, :]), axis=1)]
+    step = t[1] - t[0]
+    left, right = np.maximum(at - step, low), np.minimum(at + step, high)
+    for _ in range(STEPS):
+        miss, slope, bend = _around(position, at, aims)
+        value, rate = dot(miss, slope), dot(slope, slope) + dot(miss, bend)
+        left, right = np.where(value < 0.0, at, left), np.where(value < 0.0, right, at)
+        with np.errstate(all="ignore"):
+            newton = at - value / rate
+        inside = (rate > 0.0) & (newton >= left) & (newton <= right)
+        after = np.where(inside, newton, 0.5 * (left + right))
+        settled = np.max(np.square(after - at)) < 1e-30 * (high - low) ** 2
+        at = after
+        if settled:
+            break
+    miss, slope, _ = _around(position, at, aims)
+    tilted = np.square(dot(miss, slope)) > 1e-16 * dot(slope, slope) * (dot(miss, miss) + 1e-12 * dot(slope, slope))
+    if np.any(tilted):
+        i = int(np.argmax(tilted))
+        end = "upstream" if at[i] < 0.5 * (low + high) else "downstream"
+        raise DesignError(
+            f"the point (x, r) = ({aims[i, 0]:.6g}, {aims[i, 1]:.6g}) m has no nearest point on the stream line "
+            f"{labels[i]}: it stands past the {end} end of the flow path; lengthen hub and shroud there, or move the "
+            "point"
+        )
+    point, slope, bend = (position(at[:, None], order)[..., 0, :] for order in range(3))
+    miss = point - targets
+    return at - dot(miss, slope) / (dot(slope, slope) + dot(miss, bend))
+
+
+def _around(position: Position, at: Reals, aims: Reals) -> tuple[Reals, Reals, Reals]:
+    point, slope, bend = (real_first(position(at[:, None], order), 3)[:, 0, :] for order in range(3))
+    return point - aims, slope, bend
+
+
+def _starts(rows: Reals, curve: Reals, t: Reals, q: Reals) -> tuple[Reals, Reals]:
+    """t and q (m, c) where the lines' polygons meet the curve's, the nearest of their points among them."""
+    found: list[list[tuple[float, float]]] = []
+    c = np.diff(curve, axis=0)[None, :, :]
+    for row in rows:
+        a, gap = np.diff(row, axis=0)[:, None, :], curve[None, :-1, :] - row[:-1, None, :]
+        turn = cross2(a, c)
+        with np.errstate(all="ignore"):
+            first, second = cross2(gap, c) / turn, cross2(gap, a) / turn
+        # curves bend away from their polygons
+        near = np.argwhere((first >= -0.1) & (first <= 1.1) & (second >= -0.1) & (second <= 1.1))
+        distance = np.sum(np.square(row[:, None, :] - curve[None, :, :]), axis=-1)
+        j, k = np.unravel_index(int(np.argmin(distance)), distance.shape)
+        met = [(t[j] + first[j, k] * (t[1] - t[0]), q[k] + second[j, k] * (q[1] - q[0])) for j, k in near]
+        found.append([(t[j], q[k]), *met])
+    most = max(len(each) for each in found)
+    padded = np.array([each + [each[0]] * (most - len(each)) for each in found])
+    return padded[..., 0], padded[..., 1]
+
+
+def _refined(
+    position: Position, edge: MeridionalCurve, at: Reals, own: Reals, extent: tuple[float, float]
+) -> tuple[Reals, Reals, Reals]:
+    """Meetings t and q (m, c) by Newton's method, and whether each is one."""
+    low, high = extent
+    for _ in range(STEPS):
+        point, slope = (real_first(position(at, order), 3) for order in (0, 1))
+        flat = own.ravel()
+        miss = point - real_first(edge.values(flat), 2).reshape(point.shape)
+        along = real_first(edge.values(flat, 1), 2).reshape(point.shape)
+        turn = cross2(slope, along)
+        with np.errstate(all="ignore"):
+            steps = cross2(miss, along) / turn, cross2(miss, slope) / turn
+        # what runs far past the ends meets nothing: it is held there
+        at_next = np.clip(np.where(turn == 0.0, at, at - steps[0]), low - 0.1 * (high - low), high + 0.1 * (high - low))
+        own_next = np.clip(np.where(turn == 0.0, own, own - steps[1]), -0.5, 1.5)
+        moved = np.square((at_next - at) / (high - low)) + np.square(own_next - own)
+        at, own = at_next, own_next
+        if np.max(moved) < 1e-26:
+            break
+    met = (moved < 1e-18) & (turn != 0.0) & (own >= -REACH - SAME) & (own <= 1.0 + REACH + SAME)
+    room = 1e-9 * (high - low)
+    return at, own, met & (at >= low - room) & (at <= high + room) & (np.square(steps[0]) < 1e-16 * (high - low) ** 2)
+
+
+def _apart(at: Reals, own: Reals) -> list[tuple[float, float]]:
+    """Different meetings, those on the edge curve itself where there are any, before those past its ends."""
+    found: list[tuple[float, float]] = []
+    for place in zip(at.tolist(), own.tolist(), strict=True):
+        if all((place[1] - other[1]) ** 2 > SAME**2 for other in found):
+            found.append(place)
+    return sorted([each for each in found if -SAME <= each[1] <= 1.0 + SAME] or found)
+
+
+def _missed(name: str, label: str, row: Reals, curve: Reals) -> str:
+    distance = length(row[:, None, :] - curve[None, :, :])
+    j, k = np.unravel_index(int(np.argmin(distance)), distance.shape)
+    end = {0: "starts", len(row) - 1: "ends"}.get(int(j))
+    where, cure = f"the stream line {end} at (x, r) = {_pair(row[j])} m", "lengthen hub and shroud there"
+    if end is None:
+        where = f"the curve, continued by {100.0 * REACH:g}% of itself, ends at {_pair(curve[k])} m"
+        cure = "lengthen the curve to hub and shroud"
+    return (
+        f"{name} does not meet the stream line {label}: they pass {distance[j, k]:.4g} m apart, where {where}; {cure}, "
+        f"or move {name} into the flow path"
+    )
+
+
+def _shown(edge: MeridionalCurve, q: float) -> str:
+    return _pair(real_first(edge.values(np.array([q])), 2)[0])
+
+
+def _pair(point: Reals) -> str:
+    return f"({point[0]:.6g}, {point[1]:.6g})"

@@ -1,0 +1,1 @@
+"""Native blades: NURBS surfaces that interpolate an exact blade, and what is measured on them."""

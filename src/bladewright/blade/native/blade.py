@@ -1,0 +1,177 @@
+"""The native blade: named surfaces in metres, with what was asked of them and what they reach."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from types import MappingProxyType
+from typing import TYPE_CHECKING, cast
+
+import numpy as np
+
+from bladewright.blade.design.sectioned import SectionedBlade
+from bladewright.blade.design.unified import UnifiedBlade
+from bladewright.blade.exact.exact_blade import ExactBlade
+from bladewright.blade.native.end_faces import EDGES, cap, parted
+from bladewright.blade.native.knots import Knots
+from bladewright.blade.native.properties import blade_properties
+from bladewright.blade.native.refinement import ApproximationError, approximation_error
+from bladewright.errors import DesignError
+from bladewright.numerics.elementary import Array
+from bladewright.nurbs.domain import extended, reparametrised
+from bladewright.nurbs.mass_properties import MassProperties, mass_properties
+from bladewright.nurbs.surface import Surface
+from bladewright.nurbs.trimmed import TrimmedSurface
+
+if TYPE_CHECKING:
+    from bladewright.blade.native.conformance import Conformance
+    from bladewright.section.section import Section
+    from bladewright.section.smoothness import Smoothness
+
+Faces = Mapping[str, Surface | TrimmedSurface]
+"""faces of a body by name"""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Blade:
+    """A closed blade of native surfaces."""
+
+    design: UnifiedBlade | SectionedBlade
+    surfaces: Faces
+    """`upper` and `lower` (u from leading to trailing edge, v from end to end), `leading_edge` and `trailing_edge`
+    where they are blunt (u from the upper to the lower side), and the two `design.ends`; metres"""
+    knots: Knots
+    """of both sides; give them to `design.build(knots=...)` to hold them"""
+    chord: float
+    """mean straight distance from leading to trailing edge [m]"""
+    exact: ExactBlade
+    """the blade that is meant"""
+    moments: Callable[[], Array] | None = None
+    """gives the moments of the volume, as `blade_moments` does, where they are known without quadrature"""
+
+    @property
+    def name(self) -> str:
+        """The design's name."""
+        return self.design.name
+
+    @property
+    def description(self) -> str:
+        """One line for the header of CAD files."""
+        return self.design.description
+
+    @property
+    def author(self) -> str:
+        """For the header of CAD files."""
+        return self.design.author
+
+    @property
+    def organisation(self) -> str:
+        """For the header of CAD files."""
+        return self.design.organisation
+
+    @property
+    def orientations(self) -> Mapping[str, int]:
+        """+1 for the faces whose dS/du x dS/dv points out of the blade, -1 for the others."""
+        low, high = self.design.ends
+        blunt = {name: sign for name, sign in zip(EDGES, (1, -1), strict=True) if name in self.surfaces}
+        return MappingProxyType({"upper": -1, "lower": 1, **blunt, low: -1, high: 1})
+
+    @property
+    def tolerance(self) -> float:
+        """The distance from the exact blade that was allowed, of the chord."""
+        return self.design.tolerance
+
+    @property
+    def sides(self) -> tuple[Surface, Surface]:
+        """The upper and the lower side."""
+        return cast(Surface, self.surfaces["upper"]), cast(Surface, self.surfaces["lower"])
+
+    @cached_property
+    def misfit(self) -> ApproximationError:
+        """Where and how far the sides are from the exact blade between the sites."""
+        return approximation_error(self.exact, *self.sides)
+
+    @property
+    def error(self) -> float:
+        """Largest distance of the sides from the exact blade, of the chord."""
+        return self.misfit.distance / self.chord
+
+    @property
+    def wall_error(self) -> float:
+        """Largest distance of the blade's ends from hub, shroud or clearance surface, of the chord."""
+        return self.misfit.off_walls / self.chord
+
+    @cached_property
+    def properties(self) -> MassProperties:
+        """Volume [m^3], area [m^2], centroid [m] and inertia [m^5], by quadrature on the native surfaces."""
+        moments, revolved = self.moments, self.exact.mapping.revolved
+        if moments or any(isinstance(self.surfaces[name], TrimmedSurface) for name in self.design.ends):
+            return blade_properties(self.surfaces, self.orientations, revolved=revolved, moments=moments)
+        return mass_properties([(self.surfaces[name], sign) for name, sign in self.orientations.items()])
+
+    @cached_property
+    def promises(self) -> "Conformance":
+        """What the built surfaces keep of what was asked: angles, radii, smooth edges, ends on the walls."""
+        from bladewright.blade.native.conformance import conformance_of
+
+        return conformance_of(self)
+
+    @cached_property
+    def sections(self) -> tuple["Section", ...]:
+        """Sections at hub, mid-span and shroud, and where a design gives more, from hub to shroud.
+
+        Ruled blades have those at hub and shroud, developable ones that at the hub.
+        """
+        return tuple(self.section(v) for v in self.exact.section_spans)
+
+    def section(self, v: float) -> "Section":
+        """The exact section at v in [0, 1], in its plane, with the properties it has on its stream surface.
+
+        Raises DesignError where v is outside.
+        """
+        from bladewright.blade.exact.plane_sections import section_at
+
+        return section_at(self.exact, v)
+
+    def smoothness(self, v: float) -> "Smoothness":
+        """Curvature, its slope and their jumps along the exact section at v in [0, 1], in chords of its plane.
+
+        Raises DesignError where v is outside.
+        """
+        from bladewright.blade.exact.plane_sections import smoothness_at
+
+        return smoothness_at(self.exact, v)
+
+    def extended(self, span: float) -> "Blade":
+        """The blade continued past hub and shroud by `span` of its own span at each end, for a later cut.
+
+        Sides and the faces of blunt edges continue their own polynomials, and the part between is unchanged; caps close
+        the ends. An end that stands off its wall stays as it is. Raises DesignError where span is not above 0 and at
+        most 0.5.
+        """
+        if not 0.0 < span <= 0.5:
+            raise DesignError(f"an extension by {span:g} of the span was asked: it must be above 0 and at most 0.5")
+        low, high = (0.0 if name == "tip" else span for name in self.design.ends)
+        back = self.exact.survey.back
+        sides = {name: parted(side, back) for name, side in zip(("upper", "lower"), self.sides, strict=True)}
+        edges = {name: cast(Surface, self.surfaces[name]) for name in EDGES if name in self.surfaces}
+        around = {
+            name: reparametrised(extended(face, -low, 1.0 + high, "v"), 0.0, 1.0, "v")
+            for name, face in {**sides, **edges}.items()
+        }
+        faces = {name: around[name] for name in edges}
+        ends = {
+            name: self.surfaces[name] if name == "tip" else cap(around["upper"], around["lower"], faces, back, row)
+            for name, row in zip(self.design.ends, (0, -1), strict=True)
+        }
+        return Blade(
+            design=self.design.changed("name", f"{self.name}-extended"),
+            surfaces=MappingProxyType({**around, **ends}),
+            knots=self.knots,
+            chord=self.chord,
+            exact=self.exact,
+        )
+
+
+def side_surface(net: np.ndarray, knots: Knots, degree: int) -> Surface:
+    """A side from its control net."""
+    return Surface(control_points=net, knots_u=knots.u, knots_v=knots.v, degree_u=degree, degree_v=degree)

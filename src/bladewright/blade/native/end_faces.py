@@ -1,0 +1,323 @@
+"""The ends of a blade: trimmed pieces of hub, shroud or clearance surface, and caps past them."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from bladewright.blade.exact.exact_blade import ExactBlade
+from bladewright.errors import DesignError
+from bladewright.numerics.elementary import Array, angle, concatenated, dot, length
+from bladewright.numerics.roots import level_crossings
+from bladewright.nurbs.basis import Reals, greville, knots_with_joints
+from bladewright.nurbs.curve import Curve
+from bladewright.nurbs.domain import piece, reparametrised
+from bladewright.nurbs.domain import reversed as reversed_
+from bladewright.nurbs.domain import reversed as run_back
+from bladewright.nurbs.fit import interpolated
+from bladewright.nurbs.refine import inserted
+from bladewright.nurbs.revolution import Revolution
+from bladewright.nurbs.surface import Surface
+from bladewright.nurbs.trimmed import TrimmedSurface
+
+FOLLOWED = 1e-9
+"""distance of an outline's image from the curve it follows, of the chord, besides what that lies off the wall"""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class WallSurface:
+    """A meridian turned about the x axis over theta from `low` to `high`, or drawn along y in a cascade."""
+
+    meridian: Curve
+    """(x, r), or (x, z) in a cascade"""
+    inner: Reals
+    """the meridian's inner knots where it loses derivatives, each as often as it occurs"""
+    revolved: bool
+    low: float
+    high: float
+
+    @cached_property
+    def revolution(self) -> Revolution | None:
+        """How the wall is revolved."""
+        return Revolution(meridian=self.meridian, start=self.low, end=self.high) if self.revolved else None
+
+    @cached_property
+    def surface(self) -> Surface:
+        """The whole wall: u along the meridian, v across."""
+        return _drawn(self.meridian, self.low, self.high) if self.revolution is None else self.revolution.surface()
+
+    def parameters(self, u: Array, across: Array) -> Array:
+        """(u, v) on the surface at the meridian's u and theta or y."""
+        v = (across - self.low) / (self.high - self.low) if self.revolution is None else self.revolution.v(across)
+        return np.stack([u, v], axis=-1)
+
+    def stretch(self, uv: Reals) -> Reals:
+        """Lengths (k, 2) of the surface's derivatives by u and v."""
+        line = _real(self.meridian)
+        around = np.full(len(uv), self.high - self.low)
+        if self.revolution is not None:
+            around = line(uv[:, 0])[:, 1] * self.revolution.slope(uv[:, 1])
+        return np.stack([length(line.derivative(uv[:, 0])), around], axis=-1)
+
+    @property
+    def seams(self) -> Reals:
+        """theta between the rational arcs, where the surface has one continuous derivative."""
+        return (
+            np.empty(0) if self.revolution is None else np.linspace(self.low, self.high, self.revolution.arcs + 1)[1:-1]
+        )
+
+
+class WallCurve:
+    """A curve in space on its wall: the meridian's u and theta, or y in a cascade, by the curve's parameter."""
+
+    def __init__(self, end: Curve, meridian: Curve, revolved: bool, places: Reals, u: Reals, across: Reals) -> None:
+        """`u` and `across` (k,) are near the curve's own at increasing `places` (k,), linear between."""
+        self.end, self.meridian, self.revolved = end, meridian, revolved
+        self.across, self._places, self._u = across, places, u
+
+    def __call__(self, s: Reals) -> tuple[Array, Array]:
+        """u and theta or y (len(s),) of the feet of the end's points on the wall's meridian."""
+        points = self.end(s)
+        if self.revolved:
+            radius = length(points[..., 1:])
+            across = angle(points[..., 1], points[..., 2])
+            near = np.interp(s, self._places, self.across)
+            across = across + 2.0 * np.pi * np.round((near - np.real(across)) / (2.0 * np.pi))
+        else:
+            radius, across = points[..., 2], points[..., 1]
+        target = np.stack([points[..., 0], radius], axis=-1)
+        u = np.interp(s, self._places, self._u)
+        # the second brings rounding, without which the derivative would be as far off as the first left the place
+        for _ in range(2):
+            u = u + _foot_step(self.meridian, u, np.real(target))
+        return u + _foot_step(self.meridian, u, target), across
+
+    def joints(self, wall: WallSurface) -> list[tuple[float, int]]:
+        """Where the curve passes inner places of the wall, each with the derivatives that the wall's parameters keep.
+
+        Between rational arcs, which are symmetric, that is one.
+        """
+
+        def passed(which: int, values: Reals, levels: Reals) -> list[float]:
+            return list(map(float, level_crossings(lambda s: np.real(self(s)[which]), self._places, values, levels)))
+
+        levels, counts = np.unique(wall.inner, return_counts=True)
+        own = [
+            (place, self.meridian.degree - int(times))
+            for times in np.unique(counts)
+            for place in passed(0, self._u, levels[counts == times])
+        ]
+        return [*own, *((place, 1) for place in passed(1, self.across, wall.seams))]
+
+
+def _foot_step(meridian: Curve, u: Reals, target: Array) -> Array:
+    """Newton's step towards the nearest point of the meridian."""
+    miss, slope, bend = target - meridian(u), meridian.derivative(u), meridian.derivative(u, 2)
+    return dot(miss, slope) / (dot(slope, slope) - dot(miss, bend))
+
+
+def followed(wall: WallSurface, trace: WallCurve, chord: float, knots: Reals | None = None) -> Curve:
+    """A plane B-spline that the wall maps on the traced curve, as smooth as that, its knots cut until it follows.
+
+    Or on given knots, as they are. Raises DesignError where it does not come within FOLLOWED of the chord.
+    """
+    end = trace.end
+    if knots is not None:
+        sites = greville(knots, end.degree)
+        return interpolated(wall.parameters(*trace(sites)), sites, degree=end.degree, knots=knots)
+    own = knots_with_joints(end.knots, end.degree, trace.joints(wall))
+    spans = np.unique(own)
+    for pieces in (2, 3, 4, 6, 8):
+        added = [spans[:-1] + np.diff(spans) * k / pieces for k in range(1, pieces)]
+        knots = np.sort(np.concatenate([own, *added]))
+        sites = greville(knots, end.degree)
+        curve = interpolated(wall.parameters(*trace(sites)), sites, degree=end.degree, knots=knots)
+        between = (sites[1:] + sites[:-1]) / 2.0
+        exact, found = np.real(wall.parameters(*trace(between))), np.real(curve(between))
+        miss = length((found - exact) * wall.stretch(exact))
+        if np.max(miss) < FOLLOWED * chord:
+            return curve
+    raise DesignError(
+        f"channel: an end of the blade cannot be followed on its wall within {FOLLOWED:g} of the chord, "
+        f"{np.max(miss) / chord:.2g} is reached: smooth the wall by a higher channel.degree or fewer inner control "
+        "points, or lower the tolerance"
+    )
+
+
+def _real(curve: Curve) -> Curve:
+    if not np.iscomplexobj(curve.control_points):
+        return curve
+    return Curve(control_points=np.real(curve.control_points), knots=curve.knots, degree=curve.degree)
+
+
+def _drawn(meridian: Curve, low: float, high: float) -> Surface:
+    """The meridian (x, z) drawn along y from low to high."""
+    x, z = meridian.control_points[:, 0], meridian.control_points[:, 1]
+    rows = [np.stack([x, np.full_like(x, y), z], axis=-1) for y in (low, high)]
+    return Surface(
+        control_points=np.stack(rows, axis=1),
+        knots_u=meridian.knots,
+        knots_v=np.array([0.0, 0.0, 1.0, 1.0]),
+        degree_u=meridian.degree,
+        degree_v=1,
+    )
+
+
+def trimmed_ends(
+    exact: ExactBlade,
+    upper: Surface,
+    lower: Surface,
+    chord: float,
+    like: Mapping[str, TrimmedSurface] | None = None,
+    faces: Mapping[str, Surface] | None = None,
+) -> dict[str, TrimmedSurface]:
+    """The pieces of the hub and shroud walls, or of a clearance surface, inside the ends of the sides.
+
+    The walls are the channel's or the flow path's, revolved about the axis or drawn along y in a cascade, exact; their
+    u is the wall's own. `like` are the ends of a blade a small step away: their stretches of the walls and their knots
+    are taken. `faces` are those of blunt edges, of a blade that has no `like`. Raises DesignError where the blade winds
+    a full turn around the axis.
+    """
+    places = np.unique(upper.knots_u)
+    stations = exact.survey
+    plane = concatenated(stations.plane.points(places), axis=-2)[..., [0, -1], :, :]
+    lines = stations.lines.rows([0, -1])
+    u = lines.u_at(plane[..., 0])
+    across = lines.mapping.tangential(plane[..., 1], lines.position(u)[..., 1], lines.lengths[..., None])
+    first = (0,) * (u.ndim - 2)
+    u, across = np.real(u)[first], np.real(across)[first]
+    own = exact.wall_places(u)
+    ends = {}
+    for wall, row in (("hub", 0), ("shroud", -1)):
+        name, (meridian, inner) = exact.design.ends[row], exact.end_wall(row)
+        traces = [
+            WallCurve(_end(side, row), meridian, exact.mapping.revolved, places, own[row, part], across[row, part])
+            for side, part in ((upper, slice(None, len(places))), (lower, slice(len(places), None)))
+        ]
+        blunt = {}
+        for edge, face in ({} if faces is None else faces).items():
+            at = 0 if edge == "leading_edge" else len(places) - 1
+            both, two = [at, len(places) + at], np.array([0.0, 1.0])
+            blunt[edge] = WallCurve(
+                _end(face, row), meridian, exact.mapping.revolved, two, own[row, both], across[row, both]
+            )
+        ends[name] = _trimmed(traces, blunt, inner, wall, chord, None if like is None else like[name])
+    return ends
+
+
+def _trimmed(
+    traces: list[WallCurve],
+    blunt: Mapping[str, WallCurve],
+    inner: Reals,
+    name: str,
+    chord: float,
+    like: TrimmedSurface | None,
+) -> TrimmedSurface:
+    first = traces[0]
+    low, high = _stretch(traces, name) if like is None else _stretch_of(like)
+    wall = WallSurface(meridian=first.meridian, inner=inner, revolved=first.revolved, low=low, high=high)
+    held = [None, None] if like is None else [reversed_(like.boundary[1]).knots, like.boundary[0].knots]
+    upper, lower = (followed(wall, trace, chord, knots) for trace, knots in zip(traces, held, strict=True))
+    faces = {edge: followed(wall, trace, chord) for edge, trace in blunt.items()}
+    chain = [lower]
+    chain += [reversed_(faces["trailing_edge"])] if "trailing_edge" in faces else []
+    chain += [reversed_(upper)]
+    chain += [faces["leading_edge"]] if "leading_edge" in faces else []
+    return TrimmedSurface(surface=wall.surface, boundary=tuple(chain), revolution=wall.revolution)
+
+
+def _stretch(traces: list[WallCurve], name: str) -> tuple[float, float]:
+    """Where the wall starts and ends in theta, or y in a cascade: with some room about the blade's end."""
+    low, high = min(float(trace.across.min()) for trace in traces), max(float(trace.across.max()) for trace in traces)
+    room = 0.05 * (high - low)
+    if traces[0].revolved and high - low + 2.0 * room >= 2.0 * np.pi:
+        raise DesignError(
+            f"stagger: the blade winds {np.degrees(high - low):.0f} deg around the axis at the {name}: its end "
+            "must be one trimmed face of less than 327 deg; lower the stagger there"
+        )
+    return low - room, high + room
+
+
+def _stretch_of(end: TrimmedSurface) -> tuple[float, float]:
+    """The same of an end that is there."""
+    if end.revolution is not None:
+        return end.revolution.start, end.revolution.end
+    y = np.real(end.surface.control_points[0, :, 1])
+    return float(y[0]), float(y[-1])
+
+
+def _end(side: Surface, row: int) -> Curve:
+    return Curve(control_points=side.control_points[:, row], knots=side.knots_u, degree=side.degree_u)
+
+
+EDGES = ("leading_edge", "trailing_edge")
+
+
+def cap(upper: Surface, lower: Surface, faces: Mapping[str, Surface], back: float | None, row: int) -> Surface:
+    """The cap of the end at v = 0 (row 0) or v = 1 (row -1): v runs from the lower to the upper side's end.
+
+    It has the control points of its neighbours' ends: ruled where the sides meet at both edges, and else Coons's
+    bilinear patch. `faces` are those of blunt edges; `back` is the u from which both sides are one straight back face,
+    across which the cap ends. Coons 1967; Farin 2002, Curves and Surfaces for CAGD, section 22.2.
+    """
+    low, high = (_row_curve(side, row) for side in (lower, upper))
+    across = {name: run_back(_row_curve(face, row)) for name, face in faces.items()}
+    if back is not None:
+        across["trailing_edge"] = _end_to_end(piece(low, back, 1.0), run_back(piece(high, back, 1.0)))
+        low, high = (reparametrised(piece(end, 0.0, back)) for end in (low, high))
+    net = np.stack([low.control_points, high.control_points], axis=-2)
+    if not across:
+        return Surface(
+            control_points=net,
+            knots_u=low.knots,
+            knots_v=np.array([0.0, 0.0, 1.0, 1.0]),
+            degree_u=low.degree,
+            degree_v=1,
+        )
+    pattern = across["trailing_edge"] if "trailing_edge" in across else across["leading_edge"]
+    return Surface(
+        control_points=_coons(net, across, _shares(low), _shares(pattern)),
+        knots_u=low.knots,
+        knots_v=pattern.knots,
+        degree_u=low.degree,
+        degree_v=pattern.degree,
+    )
+
+
+def parted(side: Surface, back: float | None) -> Surface:
+    """The side with full knots where a back face begins, its shape unchanged, so that it has two ends at each wall."""
+    if back is None:
+        return side
+    missing = side.degree_u - int(np.sum(side.knots_u == back))
+    return inserted(side, np.full(missing, back), "u") if missing else side
+
+
+def _coons(net: Array, across: Mapping[str, Curve], u: Reals, v: Reals) -> Array:
+    """The net within the ends of both sides (n, 2, 3) and the curves `across`, straight where there is none.
+
+    A linear function has its values at the Greville abscissae u (n,) and v (m,) for control points.
+    """
+    ruled = net[:, :1] + v[:, None] * (net[:, 1:] - net[:, :1])
+    for edge, at, share in zip(EDGES, (0, -1), (1.0 - u, u), strict=True):
+        if edge in across:
+            ruled = ruled + share[:, None, None] * (across[edge].control_points - ruled[at])
+    return concatenated([net[:, :1], ruled[:, 1:-1], net[:, 1:]], axis=1)
+
+
+def _end_to_end(first: Curve, second: Curve) -> Curve:
+    """Two curves over [0, 1], the first up to 1/2, where the second begins."""
+    parts = reparametrised(first, 0.0, 0.5), reparametrised(second, 0.5, 1.0)
+    return Curve(
+        control_points=concatenated([parts[0].control_points, parts[1].control_points[1:]], axis=0),
+        knots=np.concatenate([parts[0].knots[:-1], parts[1].knots[first.degree + 1 :]]),
+        degree=first.degree,
+    )
+
+
+def _row_curve(face: Surface, row: int) -> Curve:
+    return Curve(control_points=face.control_points[:, row], knots=face.knots_u, degree=face.degree_u)
+
+
+def _shares(curve: Curve) -> Reals:
+    return greville(curve.knots, curve.degree)

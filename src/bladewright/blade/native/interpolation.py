@@ -1,0 +1,118 @@
+"""Native sides and faces of blunt edges that interpolate the exact blade.
+
+The edges' two derivatives are built into the sides' control points.
+"""
+
+from collections.abc import Sequence
+from itertools import islice
+from typing import NamedTuple
+
+import numpy as np
+
+from bladewright.blade.exact.section_stack import EdgeDerivatives, SectionStack
+from bladewright.blade.native.knots import DEGREE, Knots
+from bladewright.numerics.elementary import Array, concatenated
+from bladewright.numerics.solving import solved
+from bladewright.nurbs.basis import Reals, basis, greville
+from bladewright.nurbs.surface import Surface
+
+
+def native_sides(stations: SectionStack, knots: Knots) -> tuple[Array, Array]:
+    """Control nets (..., n_u, n_v, 3) of the upper and the lower side from stations at `knots.sites_v`.
+
+    Across each edge the sides share the row P0, the rows P0 + D and P0 - D and the row of second derivatives E, so
+    that curvature is continuous there for every v.
+    """
+    return sides_through(skeleton_of(stations, knots), knots)
+
+
+class Skeleton(NamedTuple):
+    """What the native sides interpolate at their sites along the span (m,): the nets are linear in it."""
+
+    leading_edge: EdgeDerivatives
+    trailing_edge: EdgeDerivatives
+    upper: Array
+    """points (..., m, n_u - 6, 3)"""
+    lower: Array
+    """points (..., m, n_u - 6, 3)"""
+    lower_edges: tuple[EdgeDerivatives | None, EdgeDerivatives | None] = (None, None)
+    """the lower side at both edges where it does not mirror the upper one"""
+
+
+def skeleton_of(stations: SectionStack, knots: Knots) -> Skeleton:
+    """The skeleton of stations at `knots.sites_v`."""
+    edges = stations.leading_edge(), stations.trailing_edge()
+    return Skeleton(*edges, *stations.points(knots.sites_u), stations.lower_edges())
+
+
+def sides_through(skeleton: Skeleton, knots: Knots) -> tuple[Array, Array]:
+    """Control nets (..., n_u, n_v, 3) of the upper and the lower side that interpolate a skeleton."""
+    matrix = basis(knots.v, DEGREE, knots.sites_v)
+    own = [skeleton.leading_edge, skeleton.trailing_edge, *(row for row in skeleton.lower_edges if row is not None)]
+    ends = solved(matrix, concatenated([part for row in own for part in row], axis=-1))
+    parts = iter(np.split(ends, 3 * len(own), axis=-1))
+    upper = EdgeDerivatives(*islice(parts, 3)), EdgeDerivatives(*islice(parts, 3))
+    lower = [None if row is None else EdgeDerivatives(*islice(parts, 3)) for row in skeleton.lower_edges]
+    sides = []
+    for points, edges in ((skeleton.upper, upper), (skeleton.lower, lower_edges(upper, lower))):
+        rows = solved(matrix, points.reshape(*points.shape[:-2], -1)).reshape(points.shape)
+        sides.append(interpolated_along_u(np.swapaxes(rows, -3, -2), *edges, knots.u))
+    return sides[0], sides[1]
+
+
+def lower_edges(
+    upper: Sequence[EdgeDerivatives], lower: Sequence[EdgeDerivatives | None]
+) -> tuple[EdgeDerivatives, EdgeDerivatives]:
+    """The lower side at both edges: its own, or the upper side's mirrored."""
+    first, last = (edge.mirrored() if own is None else own for edge, own in zip(upper, lower, strict=True))
+    return first, last
+
+
+def interpolated_along_u(lines: Array, start: EdgeDerivatives, end: EdgeDerivatives, knots_u: Reals) -> Array:
+    """Control points (..., n_u, m, 3) of a side through points (..., n_u - 6, m, 3), with its edges built in."""
+    sites = greville(knots_u, DEGREE)[3:-3]
+    first = _end_rows(start, 1.0, knots_u[DEGREE + 1], knots_u[DEGREE + 2])
+    last = _end_rows(end, -1.0, 1.0 - knots_u[-DEGREE - 2], 1.0 - knots_u[-DEGREE - 3])[::-1]
+    known = np.stack([*first, *last], axis=-3)
+    matrix = basis(knots_u, DEGREE, sites)
+    outer = np.concatenate([matrix[:, :3], matrix[:, -3:]], axis=1)
+    right = lines - (outer @ known.reshape(*known.shape[:-2], -1)).reshape(*known.shape[:-3], *lines.shape[-3:])
+    shape = right.shape
+    inner = solved(matrix[:, 3:-3], right.reshape(*shape[:-2], -1)).reshape(shape)
+    return concatenated([known[..., :3, :, :], inner, known[..., 3:, :, :]], axis=-3)
+
+
+def _end_rows(row: EdgeDerivatives, sign: float, near: float, far: float) -> list[Array]:
+    """The three control points at a clamped end, whose first two inner knots stand near and far from it."""
+    step = sign * row.first * (near / DEGREE)
+    second = row.point + step
+    third = second + far * (row.second * (near / (DEGREE * (DEGREE - 1))) + step / near)
+    return [row.point, second, third]
+
+
+def edge_faces(stations: SectionStack, upper: Surface, lower: Surface, knots: Knots) -> dict[str, Surface]:
+    """The faces by name, from stations at `knots.sites_v`; u from the upper to the lower side, v along the span.
+
+    They have the control points of both sides' edges. A face is one polynomial of degree 5 along u: it is as short as
+    the edge is thick, so its arc about the axis is below rounding from that.
+    """
+    matrix = basis(knots.v, DEGREE, knots.sites_v)
+    clamped = np.repeat([0.0, 1.0], DEGREE + 1)
+    w = np.arange(1, DEGREE) / DEGREE
+    along = basis(clamped, DEGREE, w)
+    found = {}
+    for name, points in stations.faces(w).items():
+        at = 0 if name == "leading_edge" else -1
+        rows = solved(matrix, points.reshape(*points.shape[:-2], -1)).reshape(points.shape)
+        ends = np.stack([side.control_points[at] for side in (upper, lower)])
+        outer = np.tensordot(along[:, [0, -1]], ends, axes=1)
+        right = np.swapaxes(rows, -3, -2) - outer
+        inner = solved(along[:, 1:-1], right.reshape(len(w), -1)).reshape(right.shape)
+        found[name] = Surface(
+            control_points=concatenated([ends[:1], inner, ends[1:]], axis=0),
+            knots_u=clamped,
+            knots_v=knots.v,
+            degree_u=DEGREE,
+            degree_v=DEGREE,
+        )
+    return found

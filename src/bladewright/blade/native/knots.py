@@ -1,0 +1,132 @@
+"""Knots of the native sides: where the exact blade loses derivatives, and wherever else the tolerance asks for them."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from bladewright.numerics.elementary import frozen
+from bladewright.nurbs.basis import Reals, greville
+from bladewright.section.laws import DEGREE as LAW_DEGREE
+from bladewright.section.laws import inner_knots
+from bladewright.section.unified_sides import DEGREE as SIDE_DEGREE
+
+if TYPE_CHECKING:
+    from bladewright.blade.exact.unified import ExactUnifiedBlade
+
+DEGREE = 5
+"""degree of the native sides along u and v"""
+MOST_POLES = (200, 100)
+"""poles a side along u and v above which a design is refused"""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Knots:
+    """Knots of both sides of a blade, over [0, 1]; they fix the interpolation sites."""
+
+    u: Reals
+    v: Reals
+    tip: Reals | None = None
+    """of the meridian of its clearance surface, where it has one"""
+    sections: Reals | None = None
+    """places along v that are interpolated besides, as far as there are sites near them"""
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "u", frozen(self.u))
+        object.__setattr__(self, "v", frozen(self.v))
+        if self.tip is not None:
+            object.__setattr__(self, "tip", frozen(self.tip))
+        if self.sections is not None:
+            object.__setattr__(self, "sections", frozen(self.sections))
+
+    @property
+    def sites_u(self) -> Reals:
+        """Places along u where the sides are interpolated, besides two derivatives at each edge."""
+        return greville(self.u, DEGREE)[3:-3]
+
+    @property
+    def sites_v(self) -> Reals:
+        """Places along v where the sides are interpolated."""
+        return sites_through(self.v, self.sections)
+
+    @property
+    def poles(self) -> tuple[int, int]:
+        """Control points along u and v."""
+        return len(self.u) - DEGREE - 1, len(self.v) - DEGREE - 1
+
+
+def sites_through(knots: Reals, places: Reals | None) -> Reals:
+    """Places where a spline is interpolated: Greville's abscissae, of which the nearest are moved to given places.
+
+    One is not moved where it would leave the stretch on which its basis function is not zero, without which there is no
+    spline, or where another place has moved it already.
+    """
+    sites = np.array(greville(knots, DEGREE))
+    moved = {0, len(sites) - 1}
+    for place in () if places is None else np.sort(places):
+        if place in sites:
+            continue
+        i = int(np.argmin(np.square(sites - place)))
+        if i not in moved and knots[i] < place < knots[i + DEGREE + 1] and sites[i - 1] < place < sites[i + 1]:
+            sites[i] = place
+            moved.add(i)
+    return sites
+
+
+def breaks_along_u(exact: "ExactUnifiedBlade") -> Reals:
+    """Inner knots of the sections' sides, twice each: the sides keep three derivatives there."""
+    spans = len(exact.places) - SIDE_DEGREE
+    return np.repeat(np.linspace(0.0, 1.0, spans + 1)[1:-1], DEGREE - SIDE_DEGREE + 1)
+
+
+def breaks_along_v(exact: "ExactUnifiedBlade") -> Reals:
+    """Inner knots of the laws of evolution and of the channel's edges, as often as they lose derivatives."""
+    design = exact.design
+    laws = [design.leading_edge_theta, design.leading_edge_y, design.stagger, design.metal_angle_in]
+    laws += [design.metal_angle_out, design.tangent_in, design.tangent_out]
+    laws += [design.leading_edge_radius, design.trailing_edge_radius]
+    laws += [*design.thickness_upper, *design.thickness_lower, *design.weights_upper, *design.weights_lower]
+    times: dict[float, int] = {}
+    for law in laws:
+        for knot in inner_knots(len(law)) if isinstance(law, tuple) else ():
+            times[round(float(knot), 12)] = DEGREE - LAW_DEGREE + 1
+    for edge in (exact.channel.leading_edge, exact.channel.trailing_edge):
+        for knot in edge.joints():
+            key = round(float(knot), 12)
+            if 0.0 < key < 1.0:
+                times[key] = max(times.get(key, 0), DEGREE - edge.degree + 1)
+    return np.array([knot for knot in sorted(times) for _ in range(times[knot])])
+
+
+def clamped(inner: Reals) -> Reals:
+    """A clamped knot vector over [0, 1] with the given inner knots."""
+    return np.concatenate([np.zeros(DEGREE + 1), np.sort(inner), np.ones(DEGREE + 1)])
+
+
+def refined(knots: Reals, miss: Callable[[Reals, Reals], Reals], most: int) -> Reals:
+    """Knots whose spans are divided until `miss`, asked at places inside each, is below 1 everywhere.
+
+    `miss(knots, places)` gives the error over the tolerance at places (k,). A span is cut in as many pieces as
+    the order of convergence, DEGREE + 1, predicts. Stops at `most` poles, or where cutting does not help.
+    """
+    for _ in range(8):
+        spans = np.unique(knots)
+        places = np.concatenate([spans[:-1] + share * np.diff(spans) for share in _SHARES])
+        order = np.argsort(places)
+        errors = np.empty_like(places)
+        errors[order] = miss(knots, places[order])
+        worst = np.max(errors.reshape(len(_SHARES), -1), axis=0)
+        if np.all(worst < 1.0) or len(knots) - DEGREE - 1 > most:
+            return knots
+        pieces = np.where(worst < 1.0, 1, np.ceil((worst / 0.5) ** (1.0 / (DEGREE + 1)))).astype(int)
+        pieces = np.clip(pieces, 1, 4)
+        added = [
+            start + (end - start) * np.arange(1, count) / count
+            for start, end, count in zip(spans[:-1], spans[1:], pieces, strict=True)
+        ]
+        knots = np.sort(np.concatenate([knots, *added]))
+    return knots
+
+
+_SHARES = (0.2, 0.5, 0.8)

@@ -1,0 +1,190 @@
+"""The throat: where neighbouring blades come closest, at each place along the span, and the area that it leaves.
+
+The outline of a blade at v is one closed curve, twice differentiable across both edges, run through by s in [0, 2): the
+lower side from leading to trailing edge, then the upper side back. The throat's ends P on the outline and Q on the
+neighbour's make |w|, w = Q - P, the shortest distance. The flow through the strip dv sees the area t . (w x S_v) dv of
+it, t the unit direction of the outlines there and S_v the mean of both outlines' derivatives by v: how P and Q wander
+along the outlines with v adds nothing, as that is along t.
+"""
+
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+
+from bladewright.blade.native.blade import Blade
+from bladewright.blade.native.knots import DEGREE
+from bladewright.errors import DesignError
+from bladewright.numerics.elementary import Array, dot, length, magnitude, unit
+from bladewright.numerics.quadrature import panels
+from bladewright.nurbs.basis import Reals, breaks
+from bladewright.nurbs.surface import Surface
+from bladewright.section.checks import UNITS
+
+PER_SPAN = 4
+"""places of the throat in a knot span along v"""
+SAMPLES = (1.0 - np.cos(np.pi * np.linspace(0.0, 1.0, 97))) / 2.0
+"""places along a side from which the closest pair is sought"""
+NEARBY = np.linspace(-1.0, 1.0, 9)
+"""places about the closest pair so far, in units of a window that shrinks"""
+WINDOW, SHRINKING, WINDOWS = 0.05, 0.4, 14
+"""first half width of the window in s, the factor from one to the next, and how many there are"""
+ROUNDING = 1e-12
+"""relative rounding of a distance"""
+STEPS = 8
+"""Newton's steps after that"""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Throat:
+    """The narrowest gap between a blade and its neighbour; complex where the blade is."""
+
+    v: Reals
+    """(m,) places along the span, of a Gauss quadrature"""
+    width: Array
+    """(m,) shortest distance to the neighbour [m]"""
+    ends: tuple[Array, Array]
+    """its ends (m, 3) on the blade and on the neighbour [m]"""
+    places: tuple[Array, Array]
+    """where these lie on the outlines (m,): on the lower side at u = s up to s = 1, then on the upper at u = 2 - s"""
+    area: Array
+    """() of the gap, as the flow along the blades sees it, from one end of the blade to the other [m^2]"""
+
+
+def throat(blade: Blade) -> Throat:
+    """The throat between a blade and the next one, one pitch on in theta or y.
+
+    The closest pair is found in real numbers; where the control points or the pitch are complex, one more of Newton's
+    steps carries the derivative. Raises DesignError where there is one blade only or neighbours touch.
+    """
+    row = _row(blade)
+    v, weight = panels(breaks(blade.knots.v), PER_SPAN)
+    own, other = _closest(*_key(row), v.tobytes())
+    if np.iscomplexobj(row.upper.control_points) or np.iscomplexobj(row.pitch):
+        steps = row.newton_step(own, other, v)
+        own, other = own - steps[0], other - steps[1]
+    ends = row.own(own, v), row.neighbour(other, v)
+    across = ends[1] - ends[0]
+    width = length(across)
+    if np.min(width.real) <= 1e-9 * blade.chord:
+        raise DesignError("neighbouring blades touch: they leave no throat; take fewer blades or thinner sections")
+    directions = unit(row.own(own, v, 1)), unit(row.neighbour(other, v, 1))
+    same = np.where(np.real(dot(*directions)) < 0.0, -1.0, 1.0)[:, None]
+    flow = unit(directions[0] + same * directions[1])
+    height = (row.own(own, v, 0, 1) + row.neighbour(other, v, 0, 1)) / 2.0
+    area = np.sum(weight * magnitude(dot(flow, np.cross(across, height))))
+    return Throat(v=v, width=width, ends=ends, places=(own, other), area=np.asarray(area))
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class _Row:
+    """A blade's outline and that of the next blade."""
+
+    upper: Surface
+    lower: Surface
+    pitch: Array
+    """() angle [rad], or distance [m] in a cascade"""
+    revolved: bool
+
+    def own(self, s: Array, v: Reals, ds: int = 0, dv: int = 0) -> Array:
+        """Points, or derivatives by s and v (m, 3), of the outline at s, v (m,)."""
+        around = np.where(np.real(s) % 2.0 <= 1.0, 0.0, 1.0)
+        s = s - 2.0 * np.floor(np.real(s) / 2.0)
+        lower = self.lower.derivative(np.where(around == 0.0, s, 0.5), v, ds, dv)
+        upper = self.upper.derivative(np.where(around == 1.0, 2.0 - s, 0.5), v, ds, dv)
+        return np.where(around[:, None] == 0.0, lower, (-1.0) ** ds * upper)
+
+    def neighbour(self, s: Array, v: Reals, ds: int = 0, dv: int = 0) -> Array:
+        """The same of the next blade's outline."""
+        return self._moved(self.own(s, v, ds, dv), point=ds + dv == 0)
+
+    def newton_step(self, own: Array, other: Array, v: Reals) -> tuple[Array, Array]:
+        """What to take from s (m,) on both outlines, in Newton's way to the least |Q - P|^2."""
+        across = self.neighbour(other, v) - self.own(own, v)
+        first, second = self.own(own, v, 1), self.neighbour(other, v, 1)
+        slope = -dot(across, first), dot(across, second)
+        bend_own = dot(first, first) - dot(across, self.own(own, v, 2))
+        bend_other = dot(second, second) + dot(across, self.neighbour(other, v, 2))
+        mixed = -dot(first, second)
+        whole = bend_own * bend_other - mixed * mixed
+        return (bend_other * slope[0] - mixed * slope[1]) / whole, (bend_own * slope[1] - mixed * slope[0]) / whole
+
+    def _moved(self, vectors: Array, *, point: bool) -> Array:
+        x, y, z = np.moveaxis(vectors, -1, 0)
+        if not self.revolved:
+            return vectors + np.array([0.0, 1.0, 0.0]) * self.pitch if point else vectors
+        sine, cosine = np.sin(self.pitch), np.cos(self.pitch)
+        return np.stack([x, y * cosine + z * sine, z * cosine - y * sine], axis=-1)
+
+
+def _row(blade: Blade) -> _Row:
+    design = blade.design
+    if design.blade_count == 1:
+        raise DesignError("blade_count is 1: a throat lies between two blades; take 2 at least")
+    angle = 2.0 * np.pi / design.blade_count if design.blade_count else None
+    pitch = UNITS[design.length_unit] * np.asarray(design.pitch) if angle is None else np.asarray(angle)
+    upper, lower = blade.sides
+    return _Row(upper=upper, lower=lower, pitch=pitch, revolved=angle is not None)
+
+
+def _key(row: _Row) -> tuple[bytes, bytes, bytes, bytes, float, bool]:
+    """The real row, so that builds that carry steps on one design share its search."""
+    nets = [np.ascontiguousarray(side.control_points.real).tobytes() for side in (row.upper, row.lower)]
+    knots = row.upper.knots_u.tobytes(), row.upper.knots_v.tobytes()
+    return nets[0], nets[1], *knots, float(np.real(row.pitch)), row.revolved
+
+
+@lru_cache(maxsize=8)
+def _closest(
+    upper: bytes, lower: bytes, knots_u: bytes, knots_v: bytes, pitch: float, revolved: bool, places: bytes
+) -> tuple[Reals, Reals]:
+    """s (m,) on a real blade's outline and on the next one's, of their closest pair at each v."""
+    knots = np.frombuffer(knots_u), np.frombuffer(knots_v)
+    shape = (*(len(each) - DEGREE - 1 for each in knots), 3)
+    sides = [
+        Surface(
+            control_points=np.frombuffer(net).reshape(shape),
+            knots_u=knots[0],
+            knots_v=knots[1],
+            degree_u=DEGREE,
+            degree_v=DEGREE,
+        )
+        for net in (upper, lower)
+    ]
+    row, v = _Row(upper=sides[0], lower=sides[1], pitch=np.asarray(pitch), revolved=revolved), np.frombuffer(places)
+    own, other = _rough(row, v)
+    for window in WINDOW * SHRINKING ** np.arange(WINDOWS):
+        own, other = _closest_of(row, v, own + window * NEARBY[:, None], other + window * NEARBY[:, None])
+    least = length(row.neighbour(other, v) - row.own(own, v))
+    for _ in range(STEPS):
+        steps = row.newton_step(own, other, v)
+        own, other = own - steps[0], other - steps[1]
+    found = length(row.neighbour(other, v) - row.own(own, v))
+    lost = ~(found <= (1.0 + ROUNDING) * least)
+    if lost.any():
+        raise DesignError(
+            f"the throat cannot be located at v = {v[lost][0]:.3f}: neighbouring blades run side by side there, so "
+            "that no pair of points is the closest; change the turning or the thickness there a little"
+        )
+    own.setflags(write=False)
+    other.setflags(write=False)
+    return own, other
+
+
+def _rough(row: _Row, v: Reals) -> tuple[Reals, Reals]:
+    """The closest pair's s (m,) among samples of the outlines."""
+    s = np.concatenate([SAMPLES, 2.0 - SAMPLES[-2:0:-1]])
+    along = np.broadcast_to(s[:, None], (len(s), len(v)))
+    return _closest_of(row, v, along, along)
+
+
+def _closest_of(row: _Row, v: Reals, own: Reals, other: Reals) -> tuple[Reals, Reals]:
+    """The closest pair's s (m,) among candidates (k, m) on both outlines at v (m,)."""
+    at = np.broadcast_to(v, own.shape).ravel()
+    starts, stops = (which(s.ravel(), at).reshape(*s.shape, 3) for which, s in ((row.own, own), (row.neighbour, other)))
+    found = np.empty((2, len(v)))
+    for place in range(len(v)):
+        apart = stops[None, :, place] - starts[:, None, place]
+        i, j = np.unravel_index(int(np.argmin(dot(apart, apart))), apart.shape[:2])
+        found[:, place] = own[i, place], other[j, place]
+    return found[0], found[1]

@@ -1,0 +1,187 @@
+"""Writing STL and 3MF files, and measuring them against the native surfaces when they are read again."""
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from scipy.spatial import cKDTree
+
+from bladewright.atomic_write import atomic_write
+from bladewright.cad.deviation import NativeFace, native_face
+from bladewright.cad.kernel import quiet
+from bladewright.cad.mesh import ClosestTriangle, TriangleMesh, mesh_of_triangles, triangulated
+from bladewright.cad.mesh_files import read_3mf, read_stl, write_3mf, write_stl
+from bladewright.cad.native_body import MM, NativeBody, extent
+from bladewright.cad.reading import format_of
+from bladewright.cad.round_trip import Comparison, EdgeReport, FaceReport, RoundTrip
+from bladewright.cad.solids import cached_occ_solid
+from bladewright.errors import CadError
+from bladewright.numerics.elementary import Array
+
+DEFAULT_DEVIATION = 1e-4
+"""Chordal deviation, as a fraction of the body's extent, where none is asked for."""
+DEFLECTIONS = (0.8, 0.4, 0.2, 0.1, 0.05)
+"""Fractions of the chordal deviation that the kernel is told in turn, since it only aims at what it is told."""
+BARYCENTRIC_POINTS = np.array(
+    [[1, 1, 1], [4, 1, 1], [1, 4, 1], [1, 1, 4], [1, 1, 0], [0, 1, 1], [1, 0, 1]], dtype=float
+)
+"""Barycentric places in a triangle, the middle and the middles of the sides among them."""
+
+
+def write_mesh(built: NativeBody, path: Path, *, chordal_deviation: float | None, samples: int) -> RoundTrip:
+    """Write an STL or 3MF file with triangles within `chordal_deviation` [m], and measure it."""
+    allowed = DEFAULT_DEVIATION * extent(built) if chordal_deviation is None else chordal_deviation
+    if not (np.isfinite(allowed) and allowed > 0.0):
+        raise CadError(f"a chordal deviation of {allowed} m was asked for: it must be positive, such as 1e-5")
+    with quiet():
+        made = cached_occ_solid(built)
+        meant = {name: native_face(face) for name, face in built.surfaces.items()}
+        for share in DEFLECTIONS:
+            mesh = triangulated(made, share * allowed * MM)
+            # STL keeps seven digits
+            kept = mesh_of_triangles(mesh.corners.astype(np.float32).astype(np.float64))
+            if _AssignedPoints(kept, meant, allowed * MM, samples).largest <= allowed * MM:
+                break
+    with atomic_write(path) as unfinished:
+        if format_of(path) == "STL":
+            write_stl(mesh, unfinished, name=built.name)
+        else:
+            write_3mf(mesh, unfinished, built=built)
+    return verify_mesh(path, built, samples=samples, chordal_deviation=allowed)
+
+
+def verify_mesh(path: Path, built: NativeBody, *, samples: int, chordal_deviation: float | None = None) -> RoundTrip:
+    """The round trip of an STL or 3MF file against a built object; the chordal deviation [m] is its limit."""
+    kind = format_of(path)
+    mesh, unit = (read_stl(path), "mm") if kind == "STL" else read_3mf(path)
+    if not len(mesh.triangles):
+        raise CadError(f"{path} holds no triangle: write it again")
+    limit = MM * (DEFAULT_DEVIATION * extent(built) if chordal_deviation is None else chordal_deviation)
+    properties = built.properties
+    # all of the surface moved by the limit changes the volume by so much, and areas by no more than twice of it
+    share = limit * float(properties.area) * MM**2 / (float(properties.volume) * MM**3)
+    limits = {"side_mm": limit, "end_mm": limit, "edge_mm": limit, "face_area": 2.0 * share, "volume": share}
+    meant = {name: native_face(face) for name, face in built.surfaces.items()}
+    labelled = _AssignedPoints(mesh, meant, limit, samples)
+    nearest = ClosestTriangle(mesh)
+    failures: list[str] = []
+    faces = tuple(_face(name, labelled, nearest, samples, limits, failures) for name in meant)
+    open_edges, shells = mesh.open_edges, mesh.shells
+    if open_edges:
+        failures.append(f"{open_edges} edges of triangles are not run once each way: the mesh is not watertight")
+    if shells != 1:
+        failures.append(f"the file holds {shells} separate shells: one closed body is one shell")
+    volume = Comparison(cad=mesh.volume, native=float(properties.volume) * MM**3)
+    total = Comparison(cad=float(np.sum(np.linalg.norm(mesh.vectors, axis=-1))), native=float(properties.area) * MM**2)
+    for what, compared, allowed in (("volume", volume, share), ("area", total, 2.0 * share)):
+        if not compared.relative_error <= allowed:
+            failures.append(f"the {what} is off by {compared.relative_error:.3g}: at most {allowed:.3g} is allowed")
+    centroid = mesh.centroid, np.asarray(properties.centroid) * MM
+    distance = float(np.sqrt(np.sum((centroid[0] - centroid[1]) ** 2)))
+    if not distance <= limit:
+        failures.append(f"the centroid is {distance:.3g} mm off: at most {limit:.3g} mm is allowed")
+    sides = np.linalg.norm(mesh.vertices[mesh.edges[:, 0]] - mesh.vertices[mesh.edges[:, 1]], axis=-1)
+    promises: Any = getattr(built, "promises", None)
+    return RoundTrip(
+        file=path.name,
+        format=kind,
+        schema="",
+        unit=unit,
+        failures=tuple(failures),
+        limits=limits,
+        solids=int(open_edges == 0),
+        shells=shells,
+        free_edges=open_edges,
+        valid=open_edges == 0,
+        faces=faces,
+        edges=EdgeReport(count=len(sides) // 2, shortest=float(sides.min()), max_gap=0.0, max_tolerance=0.0),
+        volume=volume,
+        area=total,
+        centroid=centroid,
+        promises=None if promises is None else promises.to_dict(),
+    )
+
+
+def _face(
+    name: str,
+    labelled: "_AssignedPoints",
+    nearest: ClosestTriangle,
+    samples: int,
+    limits: dict[str, float],
+    failures: list[str],
+) -> FaceReport:
+    meant, limit = labelled.meant[name], limits["side_mm"]
+    uv = meant.region.sampled(samples)
+    away = nearest.distance(meant.region.points(uv), limit)
+    worst = int(np.argmax(away))
+    largest, place = float(away[worst]), uv[worst]
+    mine = labelled.label == name
+    back = labelled.distance[mine]
+    if len(back) and float(back.max()) > largest:
+        worst = int(np.argmax(back))
+        largest, place = float(back[worst]), labelled.feet[mine][worst]
+    vectors = labelled.mesh.vectors[labelled.triangle_label == name]
+    compared = Comparison(cad=float(np.sum(np.linalg.norm(vectors, axis=-1))), native=meant.area * MM**2)
+    if not len(back):
+        failures.append(f"no triangle of the file lies on {name}")
+    if not largest <= limit:
+        failures.append(
+            f"face {name} is {largest:.3g} mm off at u = {place[0]:.4g}, v = {place[1]:.4g}: at most {limit:.3g} mm is "
+            "allowed"
+        )
+    if not compared.relative_error <= limits["face_area"]:
+        failures.append(
+            f"face {name} has an area that is off by {compared.relative_error:.3g}: at most {limits['face_area']:.3g} "
+            "is allowed"
+        )
+    return FaceReport(
+        name=name,
+        samples=samples,
+        max_deviation=largest,
+        mean_deviation=float(np.mean(np.concatenate([away, back]))),
+        worst=(float(place[0]), float(place[1])),
+        area=compared,
+    )
+
+
+class _AssignedPoints:
+    """The middles of all triangles, and more places on the largest, each brought to the nearest native face."""
+
+    def __init__(self, mesh: TriangleMesh, meant: dict[str, NativeFace], limit: float, samples: int) -> None:
+        self.mesh, self.meant = mesh, meant
+        corners = mesh.corners
+        longest = np.max(np.sum((np.roll(corners, -1, axis=1) - corners) ** 2, axis=-1), axis=1)
+        largest = np.argsort(-longest)[: max(1, samples * len(meant) // (len(BARYCENTRIC_POINTS) - 1))]
+        weights = BARYCENTRIC_POINTS / BARYCENTRIC_POINTS.sum(axis=1, keepdims=True)
+        more = np.einsum("pk,mkd->mpd", weights[1:], corners[largest]).reshape(-1, 3)
+        points = np.concatenate([corners.mean(axis=1), more])
+        names = np.array(list(meant))
+        # the seeds say which face is near; what comes out far away from it is tried on the others
+        owners = np.concatenate([np.full(len(m.target.uv), k) for k, m in enumerate(meant.values())])
+        seeds = np.concatenate([m.region.points(m.target.uv) for m in meant.values()])
+        guess = owners[cKDTree(seeds).query(points)[1]]
+        self.distance = np.full(len(points), np.inf)
+        self.feet = np.zeros((len(points), 2))
+        label = guess.copy()
+        for k, face in enumerate(meant.values()):
+            mine = np.flatnonzero(guess == k)
+            self._bring(face, k, points, mine, limit, label)
+        doubtful = np.flatnonzero(self.distance > 0.5 * limit)
+        for k, face in enumerate(meant.values()):
+            self._bring(face, k, points, doubtful[guess[doubtful] != k], np.inf, label)
+        self.label: Any = names[label]
+        # a triangle is where its middle is
+        self.triangle_label: Any = self.label[: len(corners)]
+
+    def _bring(self, face: NativeFace, k: int, points: Array, mine: Array, limit: float, label: Array) -> None:
+        if len(mine) == 0:
+            return
+        feet, away = face.target.closest(points[mine], limit)
+        better = away < self.distance[mine]
+        self.distance[mine[better]], self.feet[mine[better]] = away[better], feet[better]
+        label[mine[better]] = k
+
+    @property
+    def largest(self) -> float:
+        """[mm] largest distance of the triangles from the native faces."""
+        return float(self.distance.max())

@@ -1,0 +1,157 @@
+"""The report of a round trip: a CAD file measured against the surfaces it came from."""
+
+from dataclasses import dataclass
+from typing import Any
+
+from bladewright.numerics.elementary import Array
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Comparison:
+    """A quantity in the file and on the native surfaces."""
+
+    cad: float
+    native: float
+
+    @property
+    def relative_error(self) -> float:
+        """|cad - native| / |native|."""
+        return abs(self.cad - self.native) / max(abs(self.native), 1e-300)
+
+    def to_dict(self) -> dict[str, float]:
+        """As in the round-trip report."""
+        return {"cad": self.cad, "native": self.native, "relative_error": self.relative_error}
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class FaceReport:
+    """One face, measured both ways."""
+
+    name: str
+    samples: int
+    max_deviation: float
+    """[mm]"""
+    mean_deviation: float
+    """[mm]"""
+    worst: tuple[float, float]
+    """native u and v of the largest deviation"""
+    area: Comparison
+    """[mm^2]"""
+
+    def to_dict(self) -> dict[str, Any]:
+        """As in the round-trip report."""
+        return {
+            "name": self.name,
+            "samples": self.samples,
+            "max_deviation_mm": self.max_deviation,
+            "mean_deviation_mm": self.mean_deviation,
+            "worst": {"u": self.worst[0], "v": self.worst[1]},
+            "area_mm2": self.area.to_dict(),
+        }
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class EdgeReport:
+    """All edges."""
+
+    count: int
+    shortest: float
+    """[mm]"""
+    max_gap: float
+    """[mm] between faces, or a face and the edge's curve, at equal parameters"""
+    max_tolerance: float
+    """[mm] of edges and vertices"""
+
+    def to_dict(self) -> dict[str, Any]:
+        """As in the round-trip report."""
+        return {
+            "count": self.count,
+            "shortest_mm": self.shortest,
+            "max_gap_mm": self.max_gap,
+            "max_tolerance_mm": self.max_tolerance,
+        }
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class RoundTrip:
+    """The report of a file against a built object; `failures` says what is wrong, where and by how much."""
+
+    file: str
+    format: str
+    schema: str
+    unit: str
+    failures: tuple[str, ...]
+    limits: dict[str, float]
+    solids: int
+    shells: int
+    free_edges: int
+    valid: bool
+    faces: tuple[FaceReport, ...]
+    edges: EdgeReport
+    volume: Comparison
+    """[mm^3]"""
+    area: Comparison
+    """[mm^2]"""
+    centroid: tuple[Array, Array]
+    """(3,) [mm] in the file, and native"""
+    promises: dict[str, float] | None = None
+    """what the built object reaches, where it says so"""
+
+    @property
+    def passed(self) -> bool:
+        """Whether every figure is within its limit, and one closed valid solid has every face."""
+        return not self.failures
+
+    @property
+    def centroid_distance(self) -> float:
+        """Distance of the centroids [mm]."""
+        return float(sum((a - b) ** 2 for a, b in zip(*self.centroid, strict=True)) ** 0.5)
+
+    def to_dict(self) -> dict[str, Any]:
+        """The report as plain numbers, strings, lists and dictionaries, ready for JSON."""
+        report: dict[str, Any] = {
+            "file": self.file,
+            "format": self.format,
+            "schema": self.schema,
+            "unit": self.unit,
+            "passed": self.passed,
+            "failures": list(self.failures),
+            "limits": dict(self.limits),
+            "solids": self.solids,
+            "shells": self.shells,
+            "free_edges": self.free_edges,
+            "valid": self.valid,
+            "faces": [face.to_dict() for face in self.faces],
+            "edges": self.edges.to_dict(),
+            "volume_mm3": self.volume.to_dict(),
+            "area_mm2": self.area.to_dict(),
+            "centroid_mm": {
+                "cad": [float(x) for x in self.centroid[0]],
+                "native": [float(x) for x in self.centroid[1]],
+                "distance": self.centroid_distance,
+            },
+        }
+        if self.promises is not None:
+            report["promises"] = self.promises
+        return report
+
+    def __str__(self) -> str:
+        kind = " ".join(word for word in (self.format, self.schema) if word)
+        valid = "valid" if self.valid else "invalid"
+        width = max((len(face.name) for face in self.faces), default=0)
+        volume, area, edges = self.volume, self.area, self.edges
+        lines = [f"{self.file} ({kind}, {self.unit}): {'passed' if self.passed else 'FAILED'}"]
+        lines += [f"  - {failure}" for failure in self.failures]
+        lines.append(f"  {self.solids} solid, {self.shells} shell, {self.free_edges} free edges, {valid}")
+        for face in self.faces:
+            away = f"deviation {face.max_deviation:.1e} mm (mean {face.mean_deviation:.1e})"
+            size = f"area {face.area.cad:.6g} mm2 ({face.area.relative_error:.1e})"
+            lines.append(f"  {face.name:<{width}}  {away}, {size}")
+        lines.append(
+            f"  edges: {edges.count}, gap {edges.max_gap:.1e} mm, tolerance {edges.max_tolerance:.1e} mm",
+        )
+        lines.append(
+            f"  volume {volume.cad:.8g} mm3 ({volume.relative_error:.1e}), area {area.cad:.8g} mm2 "
+            f"({area.relative_error:.1e}), centroid off by {self.centroid_distance:.1e} mm"
+        )
+        return "\n".join(lines)

@@ -1,0 +1,147 @@
+"""Points and first derivatives of the surface under a face, native or from a CAD file, at many parameters at once."""
+
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+from OCP.Geom import (
+    Geom_BSplineSurface,
+    Geom_Plane,
+    Geom_RectangularTrimmedSurface,
+    Geom_Surface,
+    Geom_SurfaceOfRevolution,
+    Geom_TrimmedCurve,
+)
+from OCP.GeomConvert import GeomConvert
+from OCP.gp import gp_Pnt, gp_Vec
+
+from bladewright.cad.conversion import native_curve, native_surface
+from bladewright.cad.native_body import MM
+from bladewright.numerics.elementary import Array
+from bladewright.nurbs.curve import Curve
+from bladewright.nurbs.surface import Surface
+
+Frame = tuple[Array, Array, Array]
+"""points (n, 3) [mm] and their derivatives by the two parameters"""
+
+
+class SurfaceEvaluator(Protocol):
+    """An untrimmed surface in millimetres."""
+
+    @property
+    def period(self) -> float:
+        """Of the first parameter, or zero."""
+
+    def frame(self, uv: Array) -> Frame:
+        """Points and first derivatives at parameters (n, 2)."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class NurbsEvaluator:
+    """A NURBS surface; `scale` turns its unit into millimetres."""
+
+    surface: Surface
+    scale: float = 1.0
+    period: float = 0.0
+
+    def frame(self, uv: Array) -> Frame:
+        """Points and first derivatives at parameters (n, 2)."""
+        found = self.surface.derivatives(uv[:, 0], uv[:, 1], 1)
+        return self.scale * found[0, 0], self.scale * found[1, 0], self.scale * found[0, 1]
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class RevolutionEvaluator:
+    """A curve turned about an axis: the parameters are the angle and the curve's own."""
+
+    curve: Curve
+    origin: Array
+    axis: Array
+    period: float = 2.0 * np.pi
+
+    def frame(self, uv: Array) -> Frame:
+        """Points and first derivatives at parameters (n, 2)."""
+        cosine, sine = np.cos(uv[:, :1]), np.sin(uv[:, :1])
+
+        def turned(vectors: Array) -> Array:
+            # Rodrigues' formula
+            along = (vectors @ self.axis)[:, None] * self.axis
+            return cosine * vectors + sine * np.cross(self.axis, vectors) + (1.0 - cosine) * along
+
+        arms = turned(self.curve(uv[:, 1]) - self.origin)
+        return self.origin + arms, np.cross(self.axis, arms), turned(self.curve.derivative(uv[:, 1]))
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class PlaneEvaluator:
+    """A plane with two unit vectors in it."""
+
+    origin: Array
+    along: Array
+    across: Array
+    period: float = 0.0
+
+    def frame(self, uv: Array) -> Frame:
+        """Points and first derivatives at parameters (n, 2)."""
+        points = self.origin + uv[:, :1] * self.along + uv[:, 1:] * self.across
+        return points, np.broadcast_to(self.along, points.shape), np.broadcast_to(self.across, points.shape)
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class OccEvaluator:
+    """Any other surface, evaluated by the kernel point by point, which takes ten times as long."""
+
+    geometry: Geom_Surface
+    period: float = 0.0
+
+    def frame(self, uv: Array) -> Frame:
+        """Points and first derivatives at parameters (n, 2)."""
+        rows = []
+        point, along, across = gp_Pnt(), gp_Vec(), gp_Vec()
+        for u, v in uv.tolist():
+            self.geometry.D1(u, v, point, along, across)
+            rows.append([[t.X(), t.Y(), t.Z()] for t in (point, along, across)])
+        found = np.array(rows).reshape(-1, 3, 3)
+        return found[:, 0], found[:, 1], found[:, 2]
+
+
+def occ_evaluator(geometry: Geom_Surface, low: Array, high: Array) -> SurfaceEvaluator:
+    """The surface of a CAD face as something that evaluates fast; its parameters are needed from low (2,) to high."""
+    while isinstance(geometry, Geom_RectangularTrimmedSurface):
+        geometry = geometry.BasisSurface()
+    if isinstance(geometry, Geom_BSplineSurface):
+        if geometry.IsUPeriodic() or geometry.IsVPeriodic():
+            return OccEvaluator(geometry=geometry)
+        return NurbsEvaluator(surface=native_surface(geometry))
+    if isinstance(geometry, Geom_SurfaceOfRevolution):
+        line = Geom_TrimmedCurve(geometry.BasisCurve(), *_within(geometry.BasisCurve(), low[1], high[1]))
+        axis = geometry.Axis()
+        return RevolutionEvaluator(
+            curve=native_curve(GeomConvert.CurveToBSplineCurve_s(line)),
+            origin=_triple(axis.Location()),
+            axis=_triple(axis.Direction()),
+        )
+    if isinstance(geometry, Geom_Plane):
+        frame = geometry.Position()
+        return PlaneEvaluator(
+            origin=_triple(frame.Location()),
+            along=_triple(frame.XDirection()),
+            across=_triple(frame.YDirection()),
+        )
+    return OccEvaluator(geometry=geometry, period=2.0 * np.pi if geometry.IsUPeriodic() else 0.0)
+
+
+def native_evaluator(surface: Surface) -> NurbsEvaluator:
+    """A native surface [m] in millimetres."""
+    return NurbsEvaluator(surface=surface, scale=MM)
+
+
+def _within(curve: object, low: float, high: float) -> tuple[float, float]:
+    # a little more than the trimming asks for, so that Newton steps near the border stay on the curve
+    margin = 0.05 * (high - low)
+    first, last = curve.FirstParameter(), curve.LastParameter()  # type: ignore[attr-defined]
+    return max(low - margin, first), min(high + margin, last)
+
+
+def _triple(value: object) -> Array:
+    return np.array([value.X(), value.Y(), value.Z()])  # type: ignore[attr-defined]

@@ -1,0 +1,247 @@
+"""What a design builds while its parameters carry a complex step: control nets, blades, whole builds."""
+
+import re
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import replace
+from functools import cached_property, partial
+from itertools import islice
+from typing import Any, NamedTuple, TypeGuard
+
+import numpy as np
+
+from bladewright.blade.design.sectioned import SectionedBlade
+from bladewright.blade.design.unified import UnifiedBlade
+from bladewright.blade.exact.section_stack import EdgeDerivatives
+from bladewright.blade.native.blade import Blade
+from bladewright.blade.native.end_faces import trimmed_ends
+from bladewright.blade.native.interpolation import Skeleton, native_sides, sides_through, skeleton_of
+from bladewright.blade.native.knots import Knots
+from bladewright.blade.native.properties import blade_moments, middle_of, moment_gradient
+from bladewright.blade.native.refinement import mean_chord
+from bladewright.designs import Design
+from bladewright.numerics.elementary import Array, concatenated
+from bladewright.nurbs.basis import Reals
+from bladewright.nurbs.surface import Surface
+from bladewright.nurbs.trimmed import TrimmedSurface
+from bladewright.section.laws import law_basis
+from bladewright.section.unified_limits import ANGLES, RADII, TANGENTS, THICKNESSES, WEIGHTS
+
+STEP = 1e-30
+"""imaginary step: its square vanishes beside 1, so that the derivative is exact to rounding"""
+AT_ONCE = 16
+"""parameters in one rebuild"""
+LAWS = ("leading_edge_theta", "leading_edge_y", *ANGLES, *TANGENTS, *RADII)
+CHORDWISE = (*THICKNESSES, *WEIGHTS)
+Nets = tuple[Array, Array]
+
+
+class Source(NamedTuple):
+    """Where a parameter's derivative comes from."""
+
+    step: str
+    """the law, or the leaf, that is stepped"""
+    place: int = 0
+    """number of the control point in its law"""
+    points: int = 0
+    """control points of the law; 0 for a leaf that is no law"""
+
+
+def side_tangents(blade: Blade, paths: Sequence[str]) -> Iterator[Nets]:
+    """Derivatives (k, n_u, n_v, 3) of the upper and lower net by parameters, in chunks of at most `AT_ONCE` in order.
+
+    Metres per unit of the parameter's field, at the blade's knots.
+    """
+    sources = [source_of(blade.design, path) for path in paths]
+    steps = list(dict.fromkeys(source.step for source in sources))
+    rates = np.concatenate([_skeleton_rates_by(blade, steps[i : i + AT_ONCE]) for i in range(0, len(steps), AT_ONCE)])
+    mirrored = [edge is None for edge in blade.exact.survey.lower_edges()]
+    for first in range(0, len(paths), AT_ONCE):
+        chunk = sources[first : first + AT_ONCE]
+        shares = np.stack([_law_share(source, blade.knots.sites_v) for source in chunk])
+        rows = rates[[steps.index(source.step) for source in chunk]] * shares[..., None]
+        yield sides_through(parted(rows, mirrored), blade.knots)
+
+
+def source_of(design: UnifiedBlade | SectionedBlade, path: str) -> Source:
+    """Where the derivative of a design by one of its parameters comes from."""
+    name, *places = re.findall(r"\w+", path)
+    if not isinstance(design, UnifiedBlade) or name not in (*LAWS, *CHORDWISE):
+        return Source(path)
+    depth = 1 if name in CHORDWISE else 0
+    if len(places) == depth:
+        return Source(path, 0, 1)
+    law = getattr(design, name)[int(places[0])] if depth else getattr(design, name)
+    return Source(path.rpartition("[")[0], int(places[-1]), len(law))
+
+
+def _law_share(source: Source, v: Reals) -> Reals:
+    return law_basis(source.points, v)[:, source.place] if source.points else np.ones(len(v))
+
+
+def _skeleton_rates_by(blade: Blade, steps: Sequence[str]) -> Array:
+    """Derivatives (len(steps), m, k) of the skeleton, in a row for each section, by laws as a whole and by leaves."""
+    moved = blade.exact.moved_to(stepped_design(blade.design, steps))
+    return skeleton_rates(moved.stations(blade.knots.sites_v), blade.knots, len(steps))
+
+
+def stepped_design(design: UnifiedBlade | SectionedBlade, steps: Sequence[str]) -> Any:
+    """A design with a batch (len(steps),) of imaginary steps, each of a law as a whole or of a leaf."""
+    values = design.parameters()
+    changes: dict[str, Any] = {}
+    for place, step in enumerate(steps):
+        kick = np.zeros(len(steps), dtype=np.complex128)
+        kick[place] = STEP * 1j
+        changes |= {path: value + kick for path, value in values.items() if path == step or path.startswith(f"{step}[")}
+    return design.changed(changes)
+
+
+def skeleton_rates(stations: Any, knots: Knots, count: int) -> Array:
+    """Derivatives (count, m, k) of the skeleton of stations with as many imaginary steps, in a row for each section."""
+    skeleton = skeleton_of(stations, knots)
+    sides = [side.reshape(*side.shape[:-2], -1) for side in (skeleton.upper, skeleton.lower)]
+    edges = [skeleton.leading_edge, skeleton.trailing_edge, *skeleton.lower_edges]
+    rows = concatenated([part for edge in edges if edge is not None for part in edge] + sides, axis=-1)
+    return np.broadcast_to(np.imag(rows) / STEP, (count, *rows.shape[-2:]))
+
+
+def parted(rows: Array, mirrored: Sequence[bool]) -> Skeleton:
+    """The skeleton in rows; `mirrored` says of which edges the lower side has no derivatives of its own."""
+    count = 2 + sum(not each for each in mirrored)
+    edges, upper, lower = np.split(rows, [9 * count, (9 * count + rows.shape[-1]) // 2], axis=-1)
+    parts = iter(np.split(edges, 3 * count, axis=-1))
+    found = [EdgeDerivatives(*islice(parts, 3)) for _ in range(count)]
+    own = iter(found[2:])
+    first, last = (None if each else next(own) for each in mirrored)
+    sides = [side.reshape(*side.shape[:-1], -1, 3) for side in (upper, lower)]
+    return Skeleton(found[0], found[1], sides[0], sides[1], (first, last))
+
+
+Face = Surface | TrimmedSurface
+
+
+def built(design: Design, knots: Any = None) -> Any:
+    """What the design builds, at given knots where there are some."""
+    return design.build() if knots is None else design.build(knots=knots)  # type: ignore[call-arg]
+
+
+def stepped(design: Design, base: Any, paths: Sequence[str]) -> Iterator[Any]:
+    """What the design builds with an imaginary step on each parameter in turn, at the knots of `base`, its build.
+
+    A blade of two sides is made from its nets and their derivatives, its ends when they are asked for.
+    """
+    values = design.parameters()
+    if not two_sided(base):
+        for path in paths:
+            yield built(design.changed(path, values[path] + STEP * 1j), getattr(base, "knots", None))
+        return
+    rows, moments = iter(paths), _Moments(base)
+    for tangents in side_tangents(base, paths):
+        for pair in zip(*tangents, strict=True):
+            path = next(rows)
+            nets = [side.control_points + STEP * 1j * rate for side, rate in zip(base.sides, pair, strict=True)]
+            blade = _blade(base, design.changed(path, values[path] + STEP * 1j), nets[0], nets[1])
+            yield replace(blade, moments=partial(moments, pair))
+
+
+def varied(design: Design, base: Any, changes: Sequence[Mapping[str, complex]]) -> Iterator[Any]:
+    """What the design builds with each of several changes of its parameters, at the knots of `base`, its build.
+
+    For small changes: also what a build chooses besides knots is that of `base`.
+    """
+    if not two_sided(base):
+        for each in changes:
+            yield built(design.changed(each), getattr(base, "knots", None))
+        return
+    for first in range(0, len(changes), AT_ONCE):
+        chunk = changes[first : first + AT_ONCE]
+        upper, lower = varied_nets(base, chunk)
+        for place, each in enumerate(chunk):
+            blade = _blade(base, design.changed(each), upper[place], lower[place])
+            yield replace(blade, chord=mean_chord(blade.exact))
+
+
+def two_sided(built: Any) -> TypeGuard[Blade]:
+    """Whether it is a blade whose faces are two sides and two ends: one without blunt edges."""
+    return isinstance(built, Blade) and set(built.surfaces) == {"upper", "lower", *built.design.ends}
+
+
+def varied_nets(blade: Blade, changes: Sequence[Mapping[str, complex]]) -> Nets:
+    """Nets (k, n_u, n_v, 3) of the upper and lower side with each of k changes of parameters, at the blade's knots."""
+    if len(changes) > 1 and any(_is_sought(blade, each) for each in changes):
+        # where a clearance surface lies, or edges meet stream lines, is found for one real channel at a time
+        alone = [varied_nets(blade, [each]) for each in changes]
+        return np.concatenate([nets[0] for nets in alone]), np.concatenate([nets[1] for nets in alone])
+    values = blade.design.parameters()
+    paths = dict.fromkeys(path for each in changes for path in each)
+    batch = {path: np.array([each.get(path, values[path]) for each in changes]) for path in paths}
+    exact = blade.exact.moved_to(blade.design.changed(batch))
+    upper, lower = native_sides(exact.stations(blade.knots.sites_v), blade.knots)
+    shape = (len(changes), *upper.shape[-3:])
+    return np.broadcast_to(upper, shape), np.broadcast_to(lower, shape)
+
+
+def _is_sought(blade: Blade, change: Mapping[str, complex]) -> bool:
+    """Whether the blade is found by a search that a real change leads to another place."""
+    real = [path for path, value in change.items() if not np.iscomplexobj(value)]
+    if isinstance(blade.design, UnifiedBlade):
+        walls = any(path.startswith("channel.") or "clearance" in path for path in real)
+        return walls and blade.exact.tip_knots is not None
+    if blade.design.leading_edge is None or blade.design.skinning == "developable":
+        # the edges follow from the sections
+        return len(real) > 0
+    return not all(path.startswith(("section.", "leading_edge_theta", "leading_edge_y", "pitch")) for path in real)
+
+
+class _Moments:
+    """The moments of blades that carry a step, from their nets' derivatives and the gradients of the sides' moments."""
+
+    def __init__(self, base: Blade) -> None:
+        self.base = base
+
+    @cached_property
+    def _value_and_gradients(self) -> tuple[Array, list[Array]]:
+        outward, revolved = self.base.orientations, self.base.exact.mapping.revolved
+        middle = middle_of(self.base.surfaces)
+        gradients = [
+            outward[name] * moment_gradient(side, middle, revolved=revolved)
+            for name, side in zip(("upper", "lower"), self.base.sides, strict=True)
+        ]
+        return blade_moments(self.base.surfaces, outward, revolved=revolved), gradients
+
+    def __call__(self, tangents: Nets) -> Array:
+        value, gradients = self._value_and_gradients
+        rates = [np.tensordot(gradient, rate, axes=3) for gradient, rate in zip(gradients, tangents, strict=True)]
+        return value + STEP * 1j * (rates[0] + rates[1])
+
+
+class _Faces(Mapping[str, Face]):
+    """A blade's sides, and its ends, which are made when one is asked for."""
+
+    def __init__(
+        self, sides: Mapping[str, Surface], names: Sequence[str], ends: Callable[[], Mapping[str, Face]]
+    ) -> None:
+        self._found: dict[str, Face] = dict(sides)
+        self._names, self._ends = tuple(names), ends
+
+    def __getitem__(self, name: str) -> Face:
+        if name not in self._found and name in self._names:
+            self._found |= self._ends()
+        return self._found[name]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._names)
+
+    def __len__(self) -> int:
+        return len(self._names)
+
+
+def _blade(base: Blade, design: Any, upper: Array, lower: Array) -> Blade:
+    exact = base.exact.moved_to(design)
+    sides = [replace(side, control_points=net) for side, net in zip(base.sides, (upper, lower), strict=True)]
+
+    def ends() -> Mapping[str, Face]:
+        like = {name: face for name, face in base.surfaces.items() if isinstance(face, TrimmedSurface)}
+        return trimmed_ends(exact, sides[0], sides[1], base.chord, like)
+
+    surfaces = _Faces({"upper": sides[0], "lower": sides[1]}, tuple(base.surfaces), ends)
+    return replace(base, design=design, surfaces=surfaces, exact=exact)

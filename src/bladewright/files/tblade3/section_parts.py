@@ -1,0 +1,294 @@
+"""The sections of a T-Blade3 case as curvature-meanline sections, one by one or as laws along the span."""
+
+from dataclasses import dataclass, replace
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from bladewright.designs import ChordwiseLaw, Law
+from bladewright.errors import DesignError, FileError
+from bladewright.files.tblade3.case import TBlade3Case
+from bladewright.files.tblade3.section_values import MetalAngles, SectionValues
+from bladewright.nurbs.basis import Reals
+from bladewright.section.curvature_meanline import CurvatureMeanline
+from bladewright.section.edge_spline import NARROW, EdgeSpline
+from bladewright.section.laws import DEGREE, Span, law_basis
+from bladewright.section.meanline import CurvatureIntegral, CurvedMeanline, camber_scale
+from bladewright.section.thickness.law import ThicknessLaw
+from bladewright.section.thickness.modified_naca import ModifiedNaca
+from bladewright.section.thickness.quartic import QuarticSpline
+from bladewright.section.thickness.wennerstrom import Wennerstrom
+
+LAW_TOLERANCE = 1e-13
+"""deviation of a law from its values, of the largest, that is rounding"""
+
+ROUNDING = 1e-15
+"""control points smaller than this, of the largest value, are 0"""
+
+
+def section_places(spans: Reals, *further: Reals) -> Reals:
+    """Span fractions (m,) of a design at which the sections with given spans (m,) stand, from 0 to 1.
+
+    `further` are other measures (m,) of the same sections, such as their distances at another edge. The second and the
+    last section but one stand as near to the ends as any measure has them: a cubic spline through sections that stand
+    nearer to each other than their places say would swing, and their stream surfaces fold over.
+    """
+    count = len(spans)
+    rising = bool(np.all(np.diff(spans) > 0.0))
+    if count <= DEGREE + 1:
+        return spans if rising else np.linspace(0.0, 1.0, count)
+    knots = np.linspace(0.0, 1.0, count - DEGREE + 1)
+    measures = [each for each in (spans, *further) if np.all(np.diff(each) > 0.0)]
+    first = min([(each[1] - each[0]) / (each[2] - each[0]) for each in measures], default=0.5)
+    last = min([(each[-1] - each[-2]) / (each[-1] - each[-3]) for each in measures], default=0.5)
+    beside = first * knots[1], 1.0 - last * (1.0 - knots[-2])
+    return np.concatenate([[0.0, beside[0]], knots[1:-1], [beside[1], 1.0]])
+
+
+def law_through(values: Reals, places: Reals) -> Law:
+    """The law with the fewest control points that has values (m,) at places (m,) to rounding: m at most."""
+    scale = max(float(np.max(np.abs(values))), 1e-300)
+    if np.ptp(values) <= LAW_TOLERANCE * scale:
+        return float(values[len(values) // 2])
+    for count in range(2, len(values)):
+        rows = law_basis(count, places)
+        controls: Reals = np.asarray(np.linalg.lstsq(rows, values, rcond=None)[0], dtype=np.float64)
+        if np.max(np.abs(rows @ controls - values)) <= LAW_TOLERANCE * scale:
+            return _plain(controls, scale)
+    return _plain(np.asarray(np.linalg.solve(law_basis(len(values), places), values), dtype=np.float64), scale)
+
+
+def _plain(controls: Reals, scale: float) -> Law:
+    """Control points, rounding about 0 left out: it may have the sign that a number must not have."""
+    return tuple(0.0 if abs(each) < ROUNDING * scale else float(each) for each in controls)
+
+
+def laws_through(values: Reals, places: Reals) -> ChordwiseLaw:
+    """The same of values (m, k): k laws, one a control point along the chord."""
+    return tuple(law_through(column, places) for column in values.T)
+
+
+NEAREST_CONTACT, FARTHEST_CONTACT = 0.021, 0.49
+"""nearest and farthest contact that the family has"""
+BISECTIONS = 60
+"""bisections of a contact's place"""
+
+
+class TranslatedEdges(NamedTuple):
+    """Edges (m,) of the sections as the family has them."""
+
+    contact: float
+    elongation: Reals
+    droop: Reals
+
+
+def translated_edges(parts: list[CurvatureMeanline], table: Reals) -> TranslatedEdges:
+    """The edges of sections that have none yet, from T-Blade3's 13 numbers (m, 13) of each.
+
+    The contact stands where the thickness, without its multiplier, reaches the edge's; all sections share the mean of
+    their places s. Ahead of the contact by (1 + ee) half thicknesses is T-Blade3's tip, s (1 + ee) of them to the side.
+    """
+    contact = float(np.mean([_contact(part, 0.5 * row[0]) for part, row in zip(parts, table, strict=True)]))
+    # joints close behind it would hide what the sides do there
+    for joint in sorted({each.s for part in parts for each in part.unsplined(Span(np.zeros(1))).joints}):
+        contact = joint if contact < joint < contact + NARROW else contact
+    elongation = []
+    for part, row in zip(parts, table, strict=True):
+        edge = EdgeSpline(contact=contact).applied(part.unsplined(Span(np.zeros(1))), Span(np.zeros(1)))
+        upper, lower = (np.real(side)[0, 0] for side in edge.outline.points(np.array([contact])))
+        half = 0.5 * float(np.sqrt(np.sum((upper - lower) ** 2)))
+        reach = float(np.sqrt(np.sum((0.5 * (upper + lower)) ** 2)))
+        elongation.append(1.0 + row[3] - reach / half)
+    # droop is counted towards the lower side, T-Blade3's deflection towards the upper
+    return TranslatedEdges(contact, np.array(elongation), -table[:, 2] * (1.0 + table[:, 3]))
+
+
+def _contact(part: CurvatureMeanline, half: float) -> float:
+    """The s at which the half thickness without multiplier first reaches a value."""
+    thickness = part.thickness.at(Span(np.zeros(1)))
+    s = np.linspace(0.0, FARTHEST_CONTACT, 257)
+    reached = np.flatnonzero(np.real(thickness.half(s))[0] >= half)
+    if len(reached) == 0 or reached[0] == 0:
+        return FARTHEST_CONTACT if len(reached) == 0 else NEAREST_CONTACT
+    low, high = s[reached[0] - 1], s[reached[0]]
+    for _ in range(BISECTIONS):
+        middle = 0.5 * (low + high)
+        below = np.real(thickness.half(np.array([middle])))[0, 0] < half
+        low, high = (middle, high) if below else (low, middle)
+    return float(np.clip(high, NEAREST_CONTACT, FARTHEST_CONTACT))
+
+
+CAMBERED = np.radians(1.0)
+"""camber below which a meanline's own scale of its second derivative says little"""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class SectionParameters:
+    """Numbers of the m sections of a case by their fields in the family, each array (m,) or, chordwise, (m, k)."""
+
+    section: dict[str, Any]
+    """fields of the section; an array is one number a section"""
+    thickness: dict[str, Any]
+    """fields of the thickness"""
+    law: type[ThicknessLaw]
+    edges: TranslatedEdges | None = None
+    """leading edges that are splines"""
+
+    def of(self, index: int) -> CurvatureMeanline:
+        """The part of one section, holding numbers; raises DesignError, naming the section, where it has none."""
+
+        def one(value: Any) -> Any:
+            if not isinstance(value, np.ndarray):
+                return value
+            return float(value[index]) if value.ndim == 1 else tuple(float(each) for each in value[index])
+
+        try:
+            return self._made(one)
+        except DesignError as error:
+            raise DesignError(f"section {index + 1}: {error}") from error
+
+    def along(self, places: Reals) -> CurvatureMeanline:
+        """The part of all sections, its laws along the span going through their numbers at places (m,)."""
+
+        def law(value: Any) -> Any:
+            if not isinstance(value, np.ndarray):
+                return value
+            return law_through(value, places) if value.ndim == 1 else laws_through(value, places)
+
+        return self._made(law)
+
+    def _made(self, kind: Any) -> CurvatureMeanline:
+        thickness = self.law(**{name: kind(value) for name, value in self.thickness.items()})
+        edge = None
+        if self.edges is not None:
+            contact, elongation, droop = self.edges
+            edge = EdgeSpline(contact=contact, elongation=kind(elongation), droop=kind(droop))
+        return CurvatureMeanline(
+            thickness=thickness,  # type: ignore[arg-type]
+            leading_edge_spline=edge,
+            **{name: kind(value) for name, value in self.section.items()},
+        )
+
+
+def section_parameters(case: TBlade3Case, values: SectionValues, angles: MetalAngles) -> SectionParameters:
+    """The numbers of a case's sections. Raises FileError for what the family does not have."""
+    section: dict[str, Any] = {}
+    if values.meanlines is None:
+        section["camber"] = "mixed"
+        inlet, end = _angles(angles)
+    else:
+        curves = _same(case, values.meanlines, "the curvature")
+        places, curvature = curves[..., 0], curves[..., 1]
+        inlet, end, scale = _turned(case, angles, places, curvature)
+        if case.meanlines is not None and case.meanlines.span is None:
+            curvature = _scaled(curvature, scale, end - inlet)
+        section["curvature"] = curvature
+        section["curvature_places"] = places[:, 1:-1]
+    if values.multipliers is not None:
+        multiplied = _same(case, values.multipliers, "the thickness multiplier")
+        section["thickness_multiplier"] = multiplied[..., 1]
+        section["thickness_multiplier_places"] = multiplied[:, 1:-1, 0]
+    law, thickness = _thickness(case, values)
+    angles_of = {"metal_angle_in": np.degrees(inlet), "metal_angle_out": np.degrees(end)}
+    found = SectionParameters(section={**angles_of, **section}, thickness=thickness, law=law)
+    if values.leading_edges is None:
+        return found
+    alone = [found.of(i) for i in range(len(values.span))]
+    return replace(found, edges=translated_edges(alone, values.leading_edges))
+
+
+def _angles(angles: MetalAngles) -> tuple[Reals, Reals]:
+    """Metal angles (m,) [rad] of mixed camber lines: a wing's, or as they are given."""
+    if angles.inlet is not None and angles.exit is not None:
+        return angles.inlet, angles.exit
+    # half of the turning lies on each side of the chord line
+    twist, camber = np.asarray(angles.stagger), np.asarray(angles.camber)
+    return twist - 0.5 * camber, twist + 0.5 * camber
+
+
+def _turned(case: TBlade3Case, angles: MetalAngles, places: Reals, curvature: Reals) -> tuple[Reals, Reals, Reals]:
+    """Metal angles (m,) [rad] at inlet and exit, and the scale (m,) of the second derivative."""
+    camber = np.asarray(angles.camber)
+    integral = CurvatureIntegral(places=places, values=curvature)
+    scale, largest = (np.real(each) for each in camber_scale(integral.totals, camber))
+    missed = np.flatnonzero(np.isnan(scale))
+    if len(missed):
+        which = int(missed[0])
+        most = float(np.degrees(np.broadcast_to(largest, scale.shape)[which]))
+        raise FileError(
+            f"'{case.file}': section {which + 1} has a camber of {np.degrees(camber[which]):.4g} deg, but a meanline "
+            f"with its control points of the curvature turns by {most:.4g} deg at most: correct these, or its angles"
+        )
+    if angles.inlet is not None and angles.exit is not None:
+        return angles.inlet, angles.exit, scale
+    line = CurvedMeanline(curvature=integral, scale=scale)
+    twist = np.asarray(angles.stagger)
+    return twist + np.real(line.angle_in), twist + np.real(line.angle_out), scale
+
+
+def _scaled(curvature: Reals, scale: Reals, camber: Reals) -> Reals:
+    """Second derivatives as they are instead of as they stand in the file, where that says how they vary with span.
+
+    Values that were given section by section need not have one scale, and what lies between would turn on that.
+    """
+    if np.ptp(curvature, axis=0).max() == 0.0:
+        return curvature
+    cambered = np.all(np.square(camber) > CAMBERED**2) and np.ptp(np.sign(camber)) == 0.0
+    return curvature * scale[:, None] if cambered else curvature
+
+
+def _same(case: TBlade3Case, curves: tuple[Reals, ...], what: str) -> Reals:
+    """Control points (m, k, 2) of sections with equal numbers of them."""
+    counts = [len(curve) for curve in curves]
+    if len(set(counts)) > 1:
+        odd = next(i for i, count in enumerate(counts) if count != counts[0])
+        raise FileError(
+            f"'{case.companion}': section {odd + 1} has {counts[odd]} control points of {what}, section 1 has "
+            f"{counts[0]}: sections of one design need equal numbers, so that each varies along the span; give them so"
+        )
+    return np.stack(curves)
+
+
+def _thickness(case: TBlade3Case, values: SectionValues) -> tuple[type[ThicknessLaw], dict[str, Any]]:
+    shared: dict[str, Any] = {
+        "maximum_thickness": values.thickness,
+        "maximum_thickness_at": values.thickest,
+    }
+    if case.thickness == "naca":
+        sharp = _none(values.trailing_thickness)
+        found = {"leading_edge_index": np.asarray(values.leading_index), **shared}
+        if not sharp:
+            found["trailing_edge_thickness"] = values.trailing_thickness
+        if values.trailing_slope is not None:
+            found["trailing_edge_slope"] = values.trailing_slope
+        return ModifiedNaca, {**found, "trailing_edge": "sharp" if sharp else "circular"}
+    edges = {"leading_edge_thickness": np.asarray(values.leading_thickness)}
+    edges["trailing_edge_thickness"] = values.trailing_thickness
+    if case.thickness == "wennerstrom":
+        for name in ("leading_edge", "trailing_edge"):
+            if _none(edges[f"{name}_thickness"]):
+                del edges[f"{name}_thickness"]
+                shared[name] = "sharp"
+        return Wennerstrom, {**shared, **edges, "straight_end": _straight_end(case, values)}
+    shared["trailing_edge"] = "sharp" if case.thickness == "quartic-sharp" else "closed"
+    return QuarticSpline, {**shared, **edges}
+
+
+def _none(thickness: Reals) -> bool:
+    return bool(np.all(thickness == 0.0))
+
+
+def _straight_end(case: TBlade3Case, values: SectionValues) -> str:
+    """The end of Wennerstrom's body without curvature: that farther from the maximum, in all sections the same one."""
+    before = values.thickest < 0.5
+    if np.all(before) or not np.any(before):
+        return "trailing" if before[0] else "leading"
+    if np.array_equal(np.asarray(values.leading_thickness), values.trailing_thickness):
+        return "farther"
+    odd = int(np.flatnonzero(before != before[0])[0])
+    raise FileError(
+        f"'{case.file}': the maximum thickness stands before mid-chord in some sections and behind it in others (from "
+        f"section {odd + 1} on), with edges of different thickness: T-Blade3 changes the cubics' end conditions there, "
+        "so that between two sections the shape would jump; keep the maxima on one side of 0.5, or give both edges one "
+        "thickness"
+    )

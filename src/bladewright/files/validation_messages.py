@@ -1,0 +1,171 @@
+"""Validation errors of pydantic, each turned into one paragraph: path, value, and what is needed."""
+
+import json
+import math
+from collections.abc import Mapping
+from dataclasses import fields, is_dataclass
+from types import NoneType, UnionType
+from typing import Any, Literal, Union, get_args, get_origin, get_type_hints
+
+from pydantic import ValidationError
+from pydantic_core import ErrorDetails
+
+from bladewright.designs import Design, Point, unknown
+from bladewright.section.tagged_unions import tags
+
+_WORDS = {
+    float: "a number",
+    bool: "true or false",
+    int: "a whole number",
+    str: "a text in quotes",
+    Point: "a pair of numbers",
+}
+_RANKS = {"unexpected_keyword_argument": 0, "missing": 2}
+
+
+def validation_message(error: ValidationError, document: Mapping[str, Any], kind: type[Design]) -> str:
+    """The first thing that is wrong, unknown keys before wrong values before missing keys, and how many more."""
+    found: dict[str, tuple[int, int, str]] = {}
+    for each in error.errors(include_url=False):
+        place = _Place(each["loc"], document, kind)
+        rank = _RANKS.get(each["type"], 1) if place.depth_in_list == 0 else 1
+        # Of the arms of a union, the one that reached deepest into the value is the one that was meant.
+        candidate = (rank, -len(place.path), _said(each, place))
+        found[place.field] = min(found.get(place.field, candidate), candidate)
+    first = min(found.values(), key=lambda item: item[0])
+    more = len(found) - 1
+    return first[2] + (f" ({more} more to correct after that)" if more else "")
+
+
+def shown(value: Any) -> str:
+    """A value as a file would have it, shortened."""
+    if isinstance(value, float) and not math.isfinite(value):
+        return str(value)
+    text = json.dumps(value, default=str, ensure_ascii=False)
+    return text if len(text) <= 60 else f"{text[:57]}..."
+
+
+def needed(annotation: Any) -> str:
+    """In words, what a field of this type takes."""
+    origin, inner = get_origin(annotation), get_args(annotation)
+    if origin in (Union, UnionType):
+        parts = [own for _, own in _told(annotation)]
+        if parts:
+            return f"a table whose {next(iter(parts[0]))} is one of " + ", ".join(shown(*own.values()) for own in parts)
+        return " or ".join(needed(each) for each in inner if each is not NoneType)
+    if origin is Literal:
+        return "one of " + ", ".join(shown(each) for each in inner)
+    if origin is tuple:
+        return _needed_list(inner)
+    if is_dataclass(annotation):
+        return "a table of " + ", ".join(each.name for each in fields(annotation))
+    return _WORDS[annotation]
+
+
+def _needed_list(entries: tuple[Any, ...]) -> str:
+    if Ellipsis not in entries:
+        return "a pair of numbers"
+    entry = needed(entries[0])
+    return f"a list of {entry[2:]}s" if entry == "a number" else f"a list with, for each entry, {entry}"
+
+
+def _told(annotation: Any) -> list[tuple[type[Any], dict[str, Any]]]:
+    """The parts of a union of parts, and by which fields and values they are told."""
+    if get_origin(annotation) not in (Union, UnionType):
+        return []
+    parts: list[Any] = [each for each in get_args(annotation) if is_dataclass(each)]
+    return [(each, own) for each in parts if (own := tags(each))]
+
+
+def _arm(annotation: Any, step: int | str) -> type[Any] | None:
+    """The part of a union that a step names: by the value that tells it, or by its class where its keys tell it."""
+    arms = get_args(annotation) if get_origin(annotation) in (Union, UnionType) else ()
+    parts: list[Any] = [each for each in arms if is_dataclass(each)]
+    named = (each for each in parts if step in tags(each).values() or (not tags(each) and step == each.__name__))
+    return next(named, None)
+
+
+def _given(annotation: Any) -> Any:
+    """The type of a part that may be left out, without what stands for its absence."""
+    arms = [each for each in get_args(annotation) if each is not NoneType]
+    alone = get_origin(annotation) in (Union, UnionType) and len(arms) == 1 and is_dataclass(arms[0])
+    return arms[0] if alone else annotation
+
+
+class _Place:
+    """Where in a file pydantic stopped: the dotted path, the field's type there, the table that holds it."""
+
+    def __init__(self, loc: tuple[int | str, ...], document: Mapping[str, Any], kind: type[Design]) -> None:
+        self.path = self.field = self.unit = ""
+        self.annotation: Any = kind
+        self.names: list[str] = [each.name for each in fields(kind)]
+        self.depth_in_list = 0
+        node: Any = document
+        for step in loc:
+            part = _arm(self.annotation, step)
+            if part is not None:
+                self.annotation, self.depth_in_list = part, 0
+            elif isinstance(step, str) and self.depth_in_list == 0 and isinstance(node, Mapping):
+                self._enter(step)
+                node = node.get(step)
+            elif isinstance(step, int) and isinstance(node, list):
+                self._index(step)
+                node = node[step] if step < len(node) else None
+
+    def _enter(self, name: str) -> None:
+        if not is_dataclass(self.annotation):
+            return
+        self.names = [each.name for each in fields(self.annotation)]
+        self.unit = next((each.metadata.get("unit", "") for each in fields(self.annotation) if each.name == name), "")
+        self.annotation = _given(get_type_hints(self.annotation).get(name))
+        self.path = self.field = f"{self.path}.{name}" if self.path else name
+
+    def _index(self, index: int) -> None:
+        self.depth_in_list += 1
+        if self.annotation is Point:
+            self.path += f".{Point._fields[index]}" if index < 2 else f"[{index}]"
+            self.annotation = float
+            return
+        self.path += f"[{index}]"
+        arms = get_args(self.annotation) if get_origin(self.annotation) in (Union, UnionType) else (self.annotation,)
+        self.annotation = next((get_args(arm)[0] for arm in arms if get_origin(arm) is tuple), float)
+
+
+def _said(error: ErrorDetails, place: _Place) -> str:
+    unit = f" [{place.unit}]" if place.unit else ""
+    if error["type"] == "unexpected_keyword_argument":
+        return unknown(place.path, place.path.rpartition(".")[2], place.names)
+    if error["type"] == "missing" and place.depth_in_list == 0:
+        return f"{place.path} is missing: {needed(place.annotation)}{unit} must be given"
+    if error["type"] == "missing":
+        return f"{place.path} is missing: a pair of numbers{unit} is needed"
+    if error["type"].startswith("union_tag"):
+        return _wrong_tag(error, place)
+    value = shown(error["input"])
+    return f"{place.path or 'the file'} is {value}: {needed(place.annotation)}{unit} is needed{_nearest(error, place)}"
+
+
+def _wrong_tag(error: ErrorDetails, place: _Place) -> str:
+    parts, value = [own for _, own in _told(place.annotation)], error["input"]
+    if not parts or not isinstance(value, dict):
+        # what its keys tell apart, or what is no table at all
+        return f"{place.path} is {shown(value)}: {needed(place.annotation)} is needed"
+    name, known = next(iter(parts[0])), [str(value) for own in parts for value in own.values()]
+    given = value.get(name)
+    choice = "one of " + ", ".join(shown(each) for each in known)
+    if given is None:
+        return f"{place.path}.{name} is missing: {choice} must be given"
+    return f"{place.path}.{name} is {shown(given)}: {choice} is needed{_meant(given, known)}"
+
+
+def _nearest(error: ErrorDetails, place: _Place) -> str:
+    if error["type"] != "literal_error" or not isinstance(error["input"], str):
+        return ""
+    return _meant(error["input"], [str(each) for each in get_args(place.annotation)])
+
+
+def _meant(given: object, known: list[str]) -> str:
+    from difflib import get_close_matches
+
+    near = get_close_matches(str(given), known, n=1, cutoff=0.4)
+    return f"; did you mean '{near[0]}'?" if near else ""

@@ -1,0 +1,213 @@
+"""Whether a match may be trusted, and why not."""
+
+from collections.abc import Mapping
+
+import numpy as np
+from numpy.typing import NDArray
+
+from bladewright.fitting.assessment.coverage import least_thickness, loose_ends, uncovered_edges
+from bladewright.fitting.assessment.estimates import ParameterEstimates
+from bladewright.fitting.clouds.cloud import is_rounded
+from bladewright.fitting.initial_guess.blade import AXES_HINT
+from bladewright.fitting.matching.search import Match
+from bladewright.fitting.model_selection.stopping import ENOUGH_DEVIATION, MatchTarget
+from bladewright.nurbs.basis import Reals
+
+GROSS_DEVIATION = (1.5e-3, 5e-3)
+"""mean and largest distance of a match to which no tolerance is stated, of the chord"""
+EXACT_MISFIT, SYSTEMATIC_OVER_NOISE = 1e-9, 3.0
+"""misfit of a given structure that is rounding, of the chord, and one that is not noise, of the cloud's noise"""
+FINEST_NOISE = 1e-6
+"""misfit of a given structure, of the chord, below which it is no noise of a measured cloud"""
+SHAPE_CORRELATION = 0.5
+"""part of the misfit that neighbours share from which it is the shape's, where nothing is asked for"""
+NEAR_ENOUGH = {2: 5e-5, 3: 1e-4}
+"""root mean square misfit of the shape, of the chord, below which it is near enough where nothing is asked for, by
+dimension: below what a blade can be made to"""
+LARGEST_OUTLIER_SHARE = 0.1
+"""part of the points that may be outliers"""
+LISTED_NAMES = 5
+SIDES = ("upper", "lower")
+HALF_BLADE_WIDTH = 0.5
+"""width of an open edge, of the blade's thickest, from which it is half a blade"""
+SHEET_THICKNESS = 3e-3
+"""of the chord: no blade is so thin, and two sides are that are both laid through the points of one"""
+FEWEST_POINTS_PER_PARAMETER = 1.5
+"""points for each parameter of a blade without which they tell of no shape, where nothing is asked for"""
+BARE_SIDE_SHARE, BETWEEN_EDGES = 0.1, 0.1
+"""part of the points between the edges, and where those end in u, below which a side is not seen"""
+
+
+def failures_of(
+    distances: Reals,
+    inliers: NDArray[np.bool_],
+    regions: NDArray[np.str_],
+    found: Match,
+    aim: MatchTarget,
+    *,
+    faced: int = 0,
+) -> tuple[str, ...]:
+    """Why a match does not pass, each a sentence; `faced` is the number of outliers that lie on end faces."""
+    failures = []
+    chord = found.model.chord
+    kept = distances[inliers]
+    if found.interrupted:
+        failures.append("the search was interrupted: this is the best design so far")
+    off = len(distances) - len(kept) - faced
+    if off > LARGEST_OUTLIER_SHARE * len(distances):
+        failures.append(f"{off} of {len(distances)} points lie off the blade: is it one blade, and of this family?")
+    worst = int(np.flatnonzero(inliers)[np.argmax(kept)])
+    if aim.tolerance is not None and kept.max() > aim.tolerance:
+        failures.append(
+            f"the largest deviation is {1e3 * kept.max():.4g} mm ({regions[worst]}, point {worst}), and "
+            f"{1e3 * aim.tolerance:.4g} mm were asked for"
+        )
+    elif aim.tolerance is None:
+        for word, value, limit in (
+            ("mean", np.mean(kept), GROSS_DEVIATION[0]),
+            ("largest", kept.max(), GROSS_DEVIATION[1]),
+        ):
+            if value > limit * chord:
+                failures.append(
+                    f"the {word} deviation is {1e3 * value:.4g} mm, {100 * value / chord:.2g} % of the chord, and "
+                    f"{100 * limit:.2g} % are allowed where no tolerance is stated: give more parameters"
+                )
+    failures += filter(None, (_structure_not_met(found, aim), _too_few_points(found, aim)))
+    one_sided = _one_sided(found)
+    if one_sided:
+        failures.append(f"{one_sided}: is it one side of a blade alone? Give points of both")
+    failures += [
+        f"no point lies around the {name}, where the blade is still {1e3 * wide:.3g} mm wide, {share:.0%} of its "
+        "thickest: is it half a blade? Give the points of the whole"
+        for name, (wide, share) in uncovered_edges(found).items()
+        if share > HALF_BLADE_WIDTH
+    ]
+    loose = loose_ends(found)
+    if loose and aim.structured and aim.tolerance is None and not found.interrupted and found.rms < EXACT_MISFIT:
+        failures.append(
+            f"the sides are met exactly, but {_loose_ends_message(loose)}; state the tolerance that is enough"
+        )
+    if shape_not_found(distances, inliers, found, aim) and not _near_enough(found):
+        failures.append(_shape_not_found_message(found))
+    return tuple(failures)
+
+
+def _structure_not_met(found: Match, aim: MatchTarget) -> str:
+    """Why a given structure is not met, if it is not."""
+    if not aim.structured or aim.tolerance is not None:
+        return ""
+    rms, noise = found.rms * found.model.chord, found.scatter.noise
+    # in axes that a start shows no structure is met exactly
+    least = NEAR_ENOUGH[_points(found).shape[1]] if aim.moved else EXACT_MISFIT
+    if found.rms > least and rms > SYSTEMATIC_OVER_NOISE * noise:
+        return (
+            f"the misfit of the given structure is {1e3 * rms:.3g} mm rms, and the cloud's noise {1e3 * noise:.3g} mm: "
+            "the structure does not hold this blade, or a better design was not found; state a tolerance, or another "
+            "structure"
+        )
+    if least < found.rms < FINEST_NOISE and not is_rounded(_points(found)):
+        return (
+            f"the misfit of the given structure is {1e3 * rms:.3g} mm rms, too much for an exact cloud and too little "
+            "for the noise of another: the exact design was not found; state the tolerance that is enough"
+        )
+    return ""
+
+
+def _too_few_points(found: Match, aim: MatchTarget) -> str:
+    """Why points are too few to tell of a blade where nothing is asked for, if they are."""
+    shown, count = int(np.count_nonzero(found.rows)), len(found.problem.paths)
+    if not aim.open or _points(found).shape[1] == 2 or shown >= FEWEST_POINTS_PER_PARAMETER * count:
+        return ""
+    return (
+        f"{shown} points are too few for the {count} parameters of this blade: give more points, or a number of "
+        "parameters"
+    )
+
+
+def shape_not_found(distances: Reals, inliers: NDArray[np.bool_], found: Match, aim: MatchTarget) -> bool:
+    """Whether nothing was asked for, and the shape of the cloud is not met as far as its noise lets it be told."""
+    enough = ENOUGH_DEVIATION[_points(found).shape[1]] * found.model.chord
+    largest = float(np.max(distances[inliers]))
+    return aim.open and not found.interrupted and largest > 2.0 * enough and found.scatter.shared > SHAPE_CORRELATION
+
+
+def _one_sided(found: Match) -> str:
+    """What tells that the points are those of one side alone, if anything does."""
+    bare = _bare_side(found)
+    if bare:
+        return f"hardly a point lies on the {bare} side"
+    thin = least_thickness(found)
+    if thin < SHEET_THICKNESS * found.model.chord:
+        return f"the blade is a sheet, no more than {1e3 * thin:.3g} mm thick at a place of its span"
+    return ""
+
+
+def _bare_side(found: Match) -> str:
+    """The side of a blade that has hardly a point between its edges, if one has."""
+    on = found.state.feet
+    between = found.rows & (on.u > BETWEEN_EDGES) & (on.u < 1.0 - BETWEEN_EDGES)
+    shares = {name: np.mean(on.side[between] == side) if np.any(between) else 1.0 for side, name in enumerate(SIDES)}
+    return next((name for name, share in shares.items() if share < BARE_SIDE_SHARE), "")
+
+
+def _points(found: Match) -> Reals:
+    return np.asarray(found.problem.measures.points)
+
+
+def _gross(distances: Reals, inliers: NDArray[np.bool_], found: Match) -> bool:
+    return bool(np.mean(distances[inliers]) > GROSS_DEVIATION[0] * found.model.chord)
+
+
+def _near_enough(found: Match) -> bool:
+    return found.rms <= NEAR_ENOUGH[_points(found).shape[1]]
+
+
+def _shape_not_found_message(found: Match) -> str:
+    rms, noise = 1e3 * found.rms * found.model.chord, 1e3 * found.scatter.noise
+    return (
+        f"the shape is not found: deviations go on from point to point, {rms:.3g} mm rms where the cloud's own noise "
+        f"is {noise:.3g} mm; state the tolerance that is enough, a number of parameters, or a start"
+    )
+
+
+def _loose_ends_message(ends: Mapping[str, float]) -> str:
+    apart = ", ".join(f"{1e3 * gap:.2g} mm at the {name}" for name, gap in ends.items())
+    return f"no row of points shows where the blade ends: it is known to about {apart}"
+
+
+def notes_of(
+    notes: tuple[str, ...],
+    certainty: ParameterEstimates,
+    distances: Reals,
+    inliers: NDArray[np.bool_],
+    found: Match,
+    aim: MatchTarget,
+    *,
+    faced: int = 0,
+) -> tuple[str, ...]:
+    """What else there is to know, each a sentence; `faced` is the number of outliers that lie on end faces."""
+    said = list(notes)
+    if faced:
+        said.append(
+            f"{faced} of {np.count_nonzero(~inliers)} outliers lie on the end faces: the sides are met without them"
+        )
+    if shape_not_found(distances, inliers, found, aim) and _near_enough(found):
+        said.append(f"near enough to make, but {_shape_not_found_message(found)}")
+    if _points(found).shape[1] == 3 and _gross(distances, inliers, found):
+        said.append(f"a blade in other axes is met no nearer than this: {AXES_HINT}")
+    said += [
+        f"no point lies around the {name}: where it ends and how round it is are guessed"
+        for name, (_, share) in uncovered_edges(found).items()
+        if share <= HALF_BLADE_WIDTH
+    ]
+    loose = loose_ends(found)
+    if loose:
+        said.append(_loose_ends_message(loose))
+    unknown = [each.path for each in certainty.estimates if not each.identified]
+    if unknown:
+        more = f" and {len(unknown) - LISTED_NAMES} more" if len(unknown) > LISTED_NAMES else ""
+        said.append(f"the cloud does not determine {', '.join(unknown[:LISTED_NAMES])}{more}")
+    bound = [each.path for each in certainty.estimates if each.at_bound]
+    if bound:
+        said.append(f"on a bound: {', '.join(bound[:LISTED_NAMES])}{'...' if len(bound) > LISTED_NAMES else ''}")
+    return tuple(said)

@@ -1,0 +1,98 @@
+"""What a cloud does not show of a blade: where it ends, and edges around which no point lies."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from bladewright.blade.design.unified import UnifiedBlade
+from bladewright.fitting.matching.blade_ends import END_PARAMETERS
+from bladewright.fitting.matching.footpoints import Footpoints, Side, footpoints_at
+from bladewright.fitting.matching.search import Match
+from bladewright.nurbs.basis import Reals
+from bladewright.section.unified import UnifiedSection
+
+ROW_SPREAD = 1e-4
+"""spread of the points at an end, of the chord, from which they stand in no row"""
+ROW_SPREAD_OF_NOISE = 2.0
+"""the same, of the cloud's noise"""
+GAP_OVER_SPREAD = 2.7
+"""distance of evenly scattered values over their deviation by the median, times their number"""
+
+
+def loose_ends(found: Match) -> dict[str, float]:
+    """The ends of a blade that no row of points shows, and how far apart the points are there [m].
+
+    Empty for sections, and where the channel is not sought: the sides of a blade that goes on a little further are the
+    same, so that only its outermost points tell where it ends.
+    """
+    if found.state.shape.exact is None or not any(path.startswith("channel.") for path in found.problem.paths):
+        return {}
+    chord, walls = found.model.chord, found.ends.walls
+    loose = {}
+    for name in END_PARAMETERS:
+        wall = walls.get(name)
+        if wall is None:
+            loose[name] = chord
+        elif wall.spread > max(ROW_SPREAD * chord, ROW_SPREAD_OF_NOISE * found.scatter.noise):
+            loose[name] = GAP_OVER_SPREAD * wall.spread / len(wall.places)
+    return loose
+
+
+EDGE_PARAMETERS = {"leading edge": 0.0, "trailing edge": 1.0}
+SPAN_PARTS = 5
+"""of the span, in each of which both sides are looked at"""
+COVERED_SHARE = 0.5
+"""part of these that must have a point on the edge's arc"""
+THICKNESS_SAMPLES = 25
+"""places along a section among which the blade is thickest"""
+
+
+def uncovered_edges(found: Match) -> dict[str, tuple[float, float]]:
+    """The rounded edges on whose arc no point lies: width of the blade where its points end [m], and of its thickest.
+
+    A point on the arc is nearer to its middle than the other side is, which no point before it is.
+    """
+    if not isinstance(found.design, UnifiedSection | UnifiedBlade):
+        return {}
+    on, sides = found.state.feet, found.state.shape.sides
+    unseen = {}
+    for name, end in EDGE_PARAMETERS.items():
+        nearest = _nearest(on, found.rows, end)
+        if len(nearest) == 0:
+            continue
+        side, u, v = on.side[nearest], on.u[nearest], on.v[nearest]
+        here, tip, across = (
+            _places(sides, *at) for at in ((side, u, v), (side, np.full(len(u), end), v), (1 - side, u, v))
+        )
+        width = np.sqrt(np.sum((here - across) ** 2, axis=-1))
+        if np.mean(np.sqrt(np.sum((here - tip) ** 2, axis=-1)) <= width) < COVERED_SHARE:
+            wide = float(np.median(width))
+            unseen[name] = wide, wide / _thickness(sides, float(np.median(v)))
+    return unseen
+
+
+def least_thickness(found: Match) -> float:
+    """The least thickness along the span, where sections are thickest [m]; infinite of other families."""
+    if not isinstance(found.design, UnifiedSection | UnifiedBlade):
+        return np.inf
+    return min(_thickness(found.state.shape.sides, v) for v in (0.1, 0.3, 0.5, 0.7, 0.9))
+
+
+def _nearest(on: Footpoints, rows: NDArray[np.bool_], end: float) -> NDArray[np.intp]:
+    """Of each side and part of the span the point that is nearest to an edge."""
+    away = np.where(rows, np.abs(on.u - end), np.inf)
+    part = np.minimum((SPAN_PARTS * on.v).astype(int), SPAN_PARTS - 1) + SPAN_PARTS * on.side
+    found = [np.flatnonzero(part == each)[np.argmin(away[part == each])] for each in np.unique(part)]
+    return np.array([each for each in found if np.isfinite(away[each])], dtype=np.intp)
+
+
+def _thickness(sides: tuple[Side, ...], v: float) -> float:
+    u = np.linspace(0.0, 1.0, THICKNESS_SAMPLES)
+    upper, lower = (
+        _places(sides, np.full(THICKNESS_SAMPLES, side), u, np.full(THICKNESS_SAMPLES, v)) for side in (0, 1)
+    )
+    return float(np.sqrt(np.max(np.sum((upper - lower) ** 2, axis=-1))))
+
+
+def _places(sides: tuple[Side, ...], side: NDArray[np.intp], u: Reals, v: Reals) -> Reals:
+    none = np.zeros((len(u), np.real(sides[0].control_points).shape[-1]))
+    return footpoints_at(none, sides, side, u, v).points

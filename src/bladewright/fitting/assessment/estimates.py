@@ -1,0 +1,103 @@
+"""What a cloud says of each parameter: covariance, intervals, and what it does not determine."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.stats import t as student
+
+from bladewright.fitting.assessment.result import Estimate
+from bladewright.fitting.matching.residuals import Residuals
+from bladewright.fitting.matching.search import Match
+from bladewright.nurbs.basis import Reals
+
+CONFIDENCE = 0.95
+IDENTIFIED_SPREAD = 0.3
+"""standard deviation below which a parameter is determined, of its own scale"""
+INDEPENDENT_CORRELATION = 0.2
+"""part of the misfit that neighbours share above which points do not count as independent"""
+NULL_DIRECTION_SHARE = 1e-8
+"""part of a parameter in a direction that nothing depends on below which it is rounding"""
+AT_BOUND = 1e-3
+"""how near a parameter is to a bound that it lies on, of its scale"""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class ParameterEstimates:
+    """How well the parameters of a match are known."""
+
+    estimates: tuple[Estimate, ...]
+    covariance: Reals
+    """(k, k) in the units of the fields"""
+    rank: int
+    condition: float
+
+
+def parameter_estimates(found: Match) -> ParameterEstimates:
+    """From the derivatives of the residuals where a search ended, without the prior.
+
+    The points' distances are taken as independent normal errors, their variances as the inverse of the given weights;
+    where the misfit is one that neighbours share, as many as share it count as one. A search may weigh points further,
+    by their distances: that takes no error away. Reference: Bates and Watts 1988, section 2.3 (linear approximation);
+    Seber and Wild 1989, section 2.1.4 (weights that are not the inverse variances).
+    """
+    problem = found.problem
+    size = problem.scales.size
+    rows = problem.measures.residuals(found.state)
+    slopes = problem.measures.slopes(found.state, problem.paths) * size
+    excess = _excess_weights(problem.measures, len(rows))
+    points = len(problem.measures.points)
+    count = int(np.count_nonzero(problem.measures.roots))
+    left = max(count - len(problem.paths), 1)
+    variance = float(np.sum(rows[:points] ** 2 / excess[:points])) / left
+    if found.scatter.shared > INDEPENDENT_CORRELATION:
+        variance /= found.scatter.alone(len(problem.paths))
+    across, values, turns = np.linalg.svd(slopes, full_matrices=False)
+    largest = float(values[0])
+    known = values > 1e-13 * largest
+    # the covariance of the turned parameters, of variance one: the identity where no point is weighed further
+    middle = across[:, known].T @ (excess[:, None] * across[:, known]) / np.outer(values[known], values[known])
+    rank = int(np.count_nonzero(np.sqrt(variance * np.diag(middle)) < 1.0))
+    kept = turns[known]
+    scaled = variance * kept.T @ middle @ kept
+    deviations = np.sqrt(np.diag(scaled))
+    deviations[np.any(np.abs(turns[~known]) > NULL_DIRECTION_SHARE, axis=0)] = np.inf
+    covariance = scaled * np.outer(size, size)
+    factor = float(student.ppf(0.5 + CONFIDENCE / 2.0, left))
+    values_now = problem.values_of(found.design)
+    low, high = problem.scales.low, problem.scales.high
+    estimates = []
+    for i, path in enumerate(problem.paths):
+        determined = bool(deviations[i] < IDENTIFIED_SPREAD)
+        deviation = float(deviations[i] * size[i])
+        value = float(values_now[i])
+        near = AT_BOUND * size[i]
+        estimates.append(
+            Estimate(
+                path=path,
+                value=value,
+                deviation=deviation,
+                low=value - factor * deviation,
+                high=value + factor * deviation,
+                identified=determined,
+                at_bound=bool(value - low[i] < min(near, 0.1 * abs(value)) or high[i] - value < near),
+            )
+        )
+    smallest = float(values[-1])
+    return ParameterEstimates(
+        estimates=tuple(estimates),
+        covariance=covariance,
+        rank=rank,
+        condition=largest / smallest if smallest > 0.0 else np.inf,
+    )
+
+
+def _excess_weights(measures: Residuals, count: int) -> Reals:
+    """By how much more the points count in a search than as the inverse of their variance (count,); 1 elsewhere."""
+    found = np.ones(count)
+    if measures.precision is None:
+        return found
+    points = len(measures.points)
+    found[:points] = measures.roots**2 / np.where(measures.precision > 0.0, measures.precision, 1.0)
+    found[:points][found[:points] == 0.0] = 1.0
+    found[points : points + len(measures.ends.near)] = found[measures.ends.near]
+    return found

@@ -1,0 +1,100 @@
+"""The final measure of a match: every point of the cloud against what the design builds."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, fields
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from bladewright.blade.native.blade import Blade
+from bladewright.fitting.assessment.deviation import REGIONS
+from bladewright.fitting.matching.blade_ends import END_PARAMETERS, WallPoints, blade_ends_of
+from bladewright.fitting.matching.footpoints import Footpoints, Side, nearest_footpoints
+from bladewright.fitting.matching.noise import NoiseEstimate, noise_of
+from bladewright.fitting.models.blunt_edges import edges_of, on_sides, sides_of
+from bladewright.fitting.models.model import ModelShape
+from bladewright.nurbs.basis import Reals
+from bladewright.section.section import Section
+
+EDGE_REGION = 0.03
+"""how far the edges reach, in u"""
+LAST_STEP, LAST_STEP_EXACT = 1e-6, 1e-12
+"""last steps of the descents, in the parameters of a patch: of all points, and of those that lie on the blade, whose
+distances are exact to the step itself; others are so to its square"""
+ON_BLADE = 3e-6
+"""distance up to which a point lies on the blade, of the cloud's extent"""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Measurement:
+    """Where the n points of a cloud stand."""
+
+    places: NDArray[np.str_]
+    on: Footpoints
+    deviations: Reals
+    regions: NDArray[np.str_]
+    scatter: NoiseEstimate
+    faced: NDArray[np.bool_]
+    """(n,) whether an outlier lies on an end face, as those of a solid do"""
+
+
+def measured(points: Reals, built: Blade | Section, precision: Reals | None = None) -> Measurement:
+    """Every point's nearest place and signed distance on a blade or section.
+
+    `precision` (n,) are inverse variances of the points, relative to each other.
+    """
+    sides = sides_of(built)
+    exact = built.exact if isinstance(built, Blade) else None
+    on = _nearest(points, sides)
+    scatter = noise_of(points, on, precision)
+    shape = ModelShape(design=None, sides=sides, noses=np.zeros(0), exact=exact)
+    ends = blade_ends_of(points, on, shape, scatter.inliers)
+    # few against the sides and far inside them, points of end faces are outliers to these
+    faced = ~scatter.inliers
+    if np.any(faced):
+        faced &= blade_ends_of(points, on, shape, np.ones(len(points), dtype=bool)).covered
+    deviations = np.where(on.heights < 0.0, -1.0, 1.0) * on.distances
+    places = np.array(["upper", "lower"], dtype="<U13")[on.side]
+    edge = np.where(on.u < EDGE_REGION, "leading edge", np.where(on.u > 1.0 - EDGE_REGION, "trailing edge", "sides"))
+    edges = edges_of(built)
+    if "blunt" in edges:
+        on, faces = on_sides(on, edges)
+        for side, name in ((-1, "leading_edge"), (1, "trailing_edge")):
+            places = np.where(faces == side, name, places)
+    past = np.any(on.beyond != 0.0, axis=1) & (np.abs(np.sum(on.miss * on.beyond, axis=1)) > np.abs(on.heights))
+    regions = np.where(past, "ends", edge).astype(f"<U{max(map(len, REGIONS))}")
+    if exact is not None and np.any(ends.covered | faced):
+        _place_on_end_faces(points, ends.covered | faced, built, deviations, places, regions, on)
+    return Measurement(places=places, on=on, deviations=deviations, regions=regions, scatter=scatter, faced=faced)
+
+
+def _nearest(points: Reals, sides: Sequence[Side]) -> Footpoints:
+    """The nearest places of points (n, d)."""
+    on = nearest_footpoints(points, sides, converged=LAST_STEP)
+    exact = np.flatnonzero(on.distances < ON_BLADE * float(np.ptp(points, axis=0).max()))
+    if len(exact) == 0:
+        return on
+    again = nearest_footpoints(points[exact], sides, on.part(exact), converged=LAST_STEP_EXACT)
+    parts = {each.name: np.array(getattr(on, each.name)) for each in fields(Footpoints)}
+    for name, values in parts.items():
+        values[exact] = getattr(again, name)
+    return Footpoints(**parts)
+
+
+def _place_on_end_faces(
+    points: Reals, covered: Any, built: Any, deviations: Reals, places: Any, regions: Any, on: Footpoints
+) -> None:
+    """Puts the points that lie on end faces there."""
+    exact = built.exact
+    radius = np.sqrt(points[:, 1] ** 2 + points[:, 2] ** 2) if exact.mapping.revolved else points[:, 2]
+    for (name, end), face in zip(END_PARAMETERS.items(), built.design.ends, strict=True):
+        rows = np.flatnonzero(covered & (np.abs(on.v - end) < 0.5))
+        if len(rows) == 0:
+            continue
+        wall = WallPoints(name=name, places=np.stack([points[rows, 0], radius[rows]], axis=-1), spread=0.0)
+        outward = wall.distances(exact) * (1.0 if end else -1.0)
+        nearer = np.abs(outward) < np.abs(deviations[rows])
+        deviations[rows[nearer]] = outward[nearer]
+        places[rows[nearer]] = face
+        regions[rows[nearer]] = "ends"

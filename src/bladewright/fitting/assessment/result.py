@@ -1,0 +1,377 @@
+"""What a fit hands back: the design, how well it matches the cloud, and its report."""
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from bladewright.designs import Design, unit_at
+from bladewright.fitting.assessment.deviation import REGIONS, Deviation, by_region, deviation_of
+from bladewright.nurbs.basis import Reals
+
+
+@dataclass(frozen=True, kw_only=True)
+class Motion:
+    """A rigid motion: `points @ rotation.T + translation`."""
+
+    rotation: Reals
+    """(3, 3)"""
+    translation: Reals
+    """(3,) [m]"""
+
+    def __call__(self, points: Reals) -> Reals:
+        """Moved points (..., 3)."""
+        return points @ self.rotation.T + self.translation
+
+
+@dataclass(frozen=True, kw_only=True)
+class Estimate:
+    """A fitted parameter, in the unit of its field."""
+
+    path: str
+    value: float
+    deviation: float
+    """standard deviation that the cloud's noise gives it; infinite where the cloud does not determine it"""
+    low: float
+    """lower end of the 95 % interval"""
+    high: float
+    """upper end of the 95 % interval"""
+    identified: bool
+    """whether the cloud determines it"""
+    at_bound: bool
+    """whether it lies on one of its bounds"""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Fit:
+    """A design fitted to a cloud of n points, and what it reaches; points are in the order of the cloud."""
+
+    design: Design
+    """a `UnifiedBlade`, or a `UnifiedSection` for a cloud in the plane"""
+    built: Any
+    """what the design builds: a `Blade` or a `Section`"""
+    cloud: Reals
+    """(n, 2) or (n, 3) the points in the machine's axes, after `motion` where there is one [m]"""
+    places: NDArray[np.str_]
+    """(n,) name of the nearest curve or surface: `upper`, `lower`, or one of the blade's ends"""
+    u: Reals
+    """(n,) parameter of the nearest place along the chord"""
+    v: Reals
+    """(n,) parameter of the nearest place along the span; 0 for a section"""
+    deviations: Reals
+    """(n,) distance from the nearest place, positive outside the blade [m]"""
+    regions: NDArray[np.str_]
+    """(n,) region of each point: `sides`, `leading edge`, `trailing edge` or `ends`"""
+    inliers: NDArray[np.bool_]
+    """(n,) whether a point took part; the others are outliers"""
+    estimates: tuple[Estimate, ...]
+    """the free parameters"""
+    covariance: Reals
+    """(k, k) of the free parameters, in their order and the units of their fields"""
+    rank: int
+    """number of directions in the space of the parameters that the cloud determines"""
+    condition: float
+    """ratio of the largest to the smallest singular value of the scaled problem"""
+    noise: float
+    """standard deviation of the cloud's own noise, as neighbouring points show it [m]"""
+    extrema: Mapping[str, int]
+    """number of extrema of the curvature of each side, the most of any section"""
+    tolerance: float | None
+    """largest distance of an inlier that was asked for [m]"""
+    failures: tuple[str, ...]
+    """why the fit does not pass, each a sentence"""
+    notes: tuple[str, ...]
+    """what else there is to know, each a sentence"""
+    evaluations: int
+    """of the surface while fitting"""
+    motion: Motion | None = None
+    """the rigid motion from the points as given to the machine's axes"""
+    interrupted: bool = False
+
+    @property
+    def passed(self) -> bool:
+        """Whether nothing failed."""
+        return not self.failures
+
+    @property
+    def distances(self) -> Reals:
+        """(n,) true distances from the surface [m]."""
+        return np.sqrt(self.deviations**2)
+
+    @cached_property
+    def deviation(self) -> Deviation:
+        """Of all inliers."""
+        return deviation_of(self.distances[self.inliers])
+
+    @cached_property
+    def by_region(self) -> dict[str, Deviation]:
+        """Of the inliers of each region."""
+        return by_region(self.distances[self.inliers], self.regions[self.inliers])
+
+    @property
+    def mean(self) -> float:
+        """Mean distance of the inliers [m]."""
+        return self.deviation.mean
+
+    @property
+    def maximum(self) -> float:
+        """Largest distance of an inlier [m]."""
+        return self.deviation.maximum
+
+    @property
+    def outliers(self) -> NDArray[np.intp]:
+        """Indices of the points that are outliers."""
+        return np.flatnonzero(~self.inliers)
+
+    @property
+    def unidentified(self) -> tuple[str, ...]:
+        """Parameters that the cloud does not determine."""
+        return tuple(each.path for each in self.estimates if not each.identified)
+
+    @property
+    def at_bounds(self) -> tuple[str, ...]:
+        """Parameters that lie on one of their bounds."""
+        return tuple(each.path for each in self.estimates if each.at_bound)
+
+    def to_dict(self) -> dict[str, Any]:
+        """The report, for JSON; lengths in metres."""
+        return report(self)
+
+    def __str__(self) -> str:
+
+        return text(self)
+
+
+LISTED_OUTLIERS = 1000
+"""outliers that are listed; the count is that of all"""
+FEW_PARAMETERS = 30
+"""parameters up to which all of them stand in the text"""
+FIGURES = ("mean", "rms", "percentile_99", "maximum")
+MILLIMETRES = 1e3
+
+
+def report(fit: "Fit") -> dict[str, Any]:
+    """A fit as plain numbers, strings, lists and dictionaries, ready for JSON; what is not finite is None.
+
+    Deviations are those of the inliers, each in metres, in millimetres and of the chord; a region without points has
+    None. `outliers` lists the first 1000, by their index in the cloud. Estimates are in the units of their fields, and
+    so are rows and columns of the covariance, in the same order.
+    """
+    chord = _chord_of(fit)
+    regions = fit.by_region
+    return {
+        "name": fit.design.name,  # type: ignore[attr-defined]
+        "passed": fit.passed,
+        "failures": list(fit.failures),
+        "notes": list(fit.notes),
+        "interrupted": fit.interrupted,
+        "points": len(fit.cloud),
+        "inliers": int(np.count_nonzero(fit.inliers)),
+        "outliers": _outliers(fit),
+        "chord_m": plain(chord),
+        "tolerance_m": plain(fit.tolerance),
+        "tolerance_mm": plain(None if fit.tolerance is None else fit.tolerance * MILLIMETRES),
+        "noise_m": plain(fit.noise),
+        "noise_mm": plain(fit.noise * MILLIMETRES),
+        "deviation": {
+            "all": _figures(fit.deviation, chord),
+            **{name: _figures(regions.get(name), chord) for name in REGIONS},
+        },
+        "worst": _worst(fit),
+        "curvature_extrema": {name: int(count) for name, count in fit.extrema.items()},
+        "parameters": len(fit.estimates),
+        "rank": int(fit.rank),
+        "condition": plain(fit.condition),
+        "unidentified": list(fit.unidentified),
+        "at_bounds": list(fit.at_bounds),
+        "estimates": [_estimate(fit, each) for each in fit.estimates],
+        "covariance": plain(fit.covariance),
+        "motion": None if fit.motion is None else _motion(fit),
+        "evaluations": int(fit.evaluations),
+    }
+
+
+def text(fit: "Fit") -> str:
+    """A fit for people: whether it passes and why not, deviations by region in millimetres, then the parameters."""
+    verdict = "passed" if fit.passed else "FAILED"
+    state = ", interrupted" if fit.interrupted else ""
+    lines = [f"{fit.design.name}: {verdict}{state}"]  # type: ignore[attr-defined]
+    lines += [f"  - {failure}" for failure in fit.failures]
+    lines += _table(fit)
+    limits = [f"noise of the cloud {_mm(fit.noise)} mm"]
+    if fit.tolerance is not None:
+        limits.insert(0, f"tolerance {_mm(fit.tolerance)} mm")
+    lines.append(f"  {', '.join(limits)}, chord {_mm(_chord_of(fit), 6)} mm")
+    lines += [f"  {line}" for line in (_said_of_outliers(fit), _said_of_motion(fit)) if line]
+    waves = ", ".join(f"{count} on the {name} side" for name, count in fit.extrema.items())
+    lines.append(f"  extrema of curvature: {waves}")
+    lines.append(
+        f"  {_counted(len(fit.estimates), 'free parameter')}, rank {fit.rank}, condition {fit.condition:.2g}, "
+        f"{_counted(fit.evaluations, 'evaluation')}"
+    )
+    lines += _parameters(fit)
+    lines += [f"  note: {note}" for note in fit.notes]
+    return "\n".join(lines)
+
+
+def _chord_of(fit: "Fit") -> float:
+    """The chord of what was built, the mean over the span [m]."""
+    return float(np.real(fit.built.chord))
+
+
+def plain(value: Any) -> Any:
+    """Numbers, arrays and sequences as JSON has them; None for what is not finite."""
+    if isinstance(value, np.ndarray):
+        return plain(value.tolist())
+    if isinstance(value, list | tuple):
+        return [plain(item) for item in value]
+    if value is None or isinstance(value, bool | int | str):
+        return value
+    number = float(value)
+    return number if math.isfinite(number) else None
+
+
+def unit_of_path(fit: "Fit", path: str) -> str:
+    """Unit of a parameter: that of its field, the design's unit of length where it is one."""
+    unit = unit_at(fit.design, path) or "-"
+    return str(getattr(fit.design, "length_unit", unit)) if unit == "length" else unit
+
+
+def _figures(deviation: Deviation | None, chord: float) -> dict[str, Any]:
+    units = {"m": 1.0, "mm": MILLIMETRES, "of_chord": 1.0 / chord}
+    known = deviation is not None and deviation.count > 0
+    return {"count": deviation.count if deviation else 0} | {
+        unit: {name: plain(getattr(deviation, name) * scale) if known else None for name in FIGURES}
+        for unit, scale in units.items()
+    }
+
+
+def _outliers(fit: "Fit") -> dict[str, Any]:
+    index = fit.outliers
+    far = fit.distances[index]
+    return {
+        "count": len(index),
+        "farthest_m": plain(np.max(far)) if len(index) else None,
+        "listed": [
+            {"index": int(i), "distance_m": plain(d), "distance_mm": plain(d * MILLIMETRES)}
+            for i, d in zip(index[:LISTED_OUTLIERS], far[:LISTED_OUTLIERS], strict=True)
+        ],
+    }
+
+
+def _worst(fit: "Fit") -> dict[str, Any] | None:
+    """The inlier that is farthest off."""
+    index = np.flatnonzero(fit.inliers)
+    if len(index) == 0:
+        return None
+    i = int(index[np.argmax(fit.distances[index])])
+    return {
+        "index": i,
+        "point_m": plain(fit.cloud[i]),
+        "region": str(fit.regions[i]),
+        "place": str(fit.places[i]),
+        "u": plain(fit.u[i]),
+        "v": plain(fit.v[i]),
+        "deviation_m": plain(fit.deviations[i]),
+        "deviation_mm": plain(fit.deviations[i] * MILLIMETRES),
+    }
+
+
+def _estimate(fit: "Fit", each: "Estimate") -> dict[str, Any]:
+    return {
+        "path": each.path,
+        "unit": unit_of_path(fit, each.path),
+        "value": plain(each.value),
+        "standard_deviation": plain(each.deviation),
+        "interval_95": [plain(each.low), plain(each.high)],
+        "identified": bool(each.identified),
+        "at_bound": bool(each.at_bound),
+    }
+
+
+def _motion(fit: "Fit") -> dict[str, Any]:
+    assert fit.motion is not None  # noqa: S101 - the caller asks only where there is one
+    return {
+        "rotation": plain(fit.motion.rotation),
+        "translation_m": plain(fit.motion.translation),
+        "translation_mm": plain(fit.motion.translation * MILLIMETRES),
+    }
+
+
+def _table(fit: "Fit") -> list[str]:
+    """Deviations of the inliers in millimetres, a row for each region."""
+    chord = _chord_of(fit)
+    rows = [["deviation [mm]", "points", "mean", "rms", "99 %", "max", "max of chord"]]
+    for name, of in {"all inliers": fit.deviation, **{name: fit.by_region.get(name) for name in REGIONS}}.items():
+        if of is None or of.count == 0:
+            # sections have no ends, but a cloud without points on an edge says nothing about it
+            rows += [] if name == "ends" else [[name, "none", *"-----"]]
+            continue
+        figures = [_mm(getattr(of, figure)) for figure in FIGURES]
+        rows.append([name, str(of.count), *figures, f"{of.maximum / chord:.1e}"])
+    widths = [max(len(row[i]) for row in rows) for i in range(len(rows[0]))]
+    return [
+        "  " + f"{row[0]:<{widths[0]}}" + "".join(f"  {cell:>{widths[i]}}" for i, cell in enumerate(row) if i)
+        for row in rows
+    ]
+
+
+def _said_of_outliers(fit: "Fit") -> str:
+    count, total = len(fit.outliers), len(fit.cloud)
+    if count == 0:
+        return f"{_counted(total, 'point')}, no outliers"
+    share = f"{100.0 * count / total:.2g} %"
+    shown = ", ".join(str(i) for i in fit.outliers[:8])
+    return (
+        f"{_counted(total, 'point')}, {_counted(count, 'outlier')} ({share}) up to "
+        f"{_mm(float(np.max(fit.distances[fit.outliers])))} mm away: number {shown}{', ...' if count > 8 else ''}"
+    )
+
+
+def _said_of_motion(fit: "Fit") -> str:
+    if fit.motion is None:
+        return ""
+    turn, shift = np.asarray(fit.motion.rotation), np.asarray(fit.motion.translation)
+    cosine = (np.trace(turn) - (1.0 if len(turn) == 3 else 0.0)) / 2.0
+    angle = np.degrees(np.arccos(np.clip(cosine, -1.0, 1.0)))
+    moved = ", ".join(f"{value * MILLIMETRES:.6g}" for value in shift)
+    return f"moved to the machine's axes: turned by {angle:.6g} deg, then shifted by ({moved}) mm"
+
+
+def _parameters(fit: "Fit") -> list[str]:
+    """A line for each parameter, or for each that the reader must look at where there are many."""
+    doubtful = [each for each in fit.estimates if not each.identified or each.at_bound]
+    shown = list(fit.estimates) if len(fit.estimates) <= FEW_PARAMETERS else doubtful
+    width = max((len(each.path) for each in shown), default=0)
+    lines = []
+    for each in shown:
+        asked = {"NOT IDENTIFIED": not each.identified, "AT BOUND": each.at_bound}
+        marks = [word for word, holds in asked.items() if holds]
+        value, spread = _with_spread(each)
+        unit = unit_of_path(fit, each.path)
+        lines.append(f"    {each.path:<{width}}  {value:>12}  {spread:<12}  {unit:<4} {', '.join(marks)}".rstrip())
+    if len(shown) < len(fit.estimates):
+        rest = len(fit.estimates) - len(shown)
+        lines.append(f"    {'the others' if shown else 'all'} ({rest}) are identified and inside their bounds")
+    return lines
+
+
+def _with_spread(each: "Estimate") -> tuple[str, str]:
+    """The value to the digits that are known, and half of its 95 % interval."""
+    half = (each.high - each.low) / 2.0
+    if not (each.identified and math.isfinite(half) and half > 0.0):
+        return f"{each.value:.6g}", ""
+    decimals = min(max(1 - math.floor(math.log10(half)), 0), 12)
+    return f"{each.value:.{decimals}f}", f"+- {half:.2g}"
+
+
+def _mm(metres: float, digits: int = 3) -> str:
+    return f"{metres * MILLIMETRES:.{digits}g}"
+
+
+def _counted(count: int, what: str) -> str:
+    return f"{count} {what}{'' if count == 1 else 's'}"

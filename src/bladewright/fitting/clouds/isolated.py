@@ -1,0 +1,32 @@
+"""Isolated points: strewn outliers that have no neighbours at the usual distance."""
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.spatial import cKDTree
+
+from bladewright.nurbs.basis import Reals
+
+
+def without_isolated_points(points: Reals, neighbours: int = 5) -> Reals:
+    """The points that have neighbours about as near as their neighbours have."""
+    tree = cKDTree(points)
+    distances, index = tree.query(points, k=neighbours + 1)
+    own = np.mean(distances[:, 1:], axis=1)
+    around = np.median(own[index[:, 1:]], axis=1)
+    lonely = (own > 4.0 * around) & (own > 2.0 * np.median(own))
+    lonely |= own > 6.0 * np.percentile(own, 75.0)
+    if np.mean(lonely) > 0.12:
+        lonely &= own >= np.percentile(own, 90.0)
+    return np.asarray(points[~lonely])
+
+
+NEIGHBOURS, ISOLATED = 5, 6.0
+"""a point stands alone whose fifth neighbour is so many times further away than is usual"""
+
+
+def has_neighbours(points: Reals) -> NDArray[np.bool_]:
+    """Whether points (n, d) have neighbours: strewn outliers have none."""
+    if len(points) <= 2 * NEIGHBOURS:
+        return np.ones(len(points), dtype=bool)
+    reach = cKDTree(points).query(points, k=NEIGHBOURS + 1)[0][:, -1]
+    return np.asarray(reach <= ISOLATED * np.median(reach))

@@ -1,0 +1,136 @@
+"""The flow path and the edge curves of a blade from sections, as a closed blade in a channel shows them."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from bladewright.blade.design.flow_path import FlowPath
+from bladewright.blade.design.meridional_curve import ControlPolygon, Meridian, ThroughPoints
+from bladewright.blade.native.blade import Blade
+from bladewright.designs import Point
+from bladewright.errors import FitError
+from bladewright.fitting.families.polyline import nearest_on
+from bladewright.fitting.free_parameters import WALLS
+from bladewright.numerics.elementary import cumulative_length
+from bladewright.nurbs.basis import Reals, basis, uniform_knots
+
+WALL_COUNTS = (3, 4, 5, 7, 9)
+"""points on each wall beside the blade, the fewest that are near enough"""
+WALL_DISTANCE = 0.01
+"""distance of a wall from the one that is found that is near enough, of its length: it is found by points alone"""
+WALL_MARGIN = 0.1
+"""how far in front of the blade and behind it the first and the last of them stand, of its length"""
+CONTINUATION = 0.8
+"""where a point stands on its straight continuation, of its length"""
+LEAST_RADIUS = 0.6
+"""part of the radius at its end that the continuation may lose"""
+EDGE_POINTS = 4
+"""points on an edge curve"""
+EDGE_OVERREACH = 0.06
+"""how far an edge curve reaches past the walls, of its length"""
+EDGE_OVERREACH_LIKE = 4.0
+"""how often that far, where the points of another curve say how far it reaches"""
+OPPOSITE_CURVE = {"leading_edge": "trailing_edge", "trailing_edge": "leading_edge", "hub": "shroud", "shroud": "hub"}
+"""the curve that is in its place where the flow comes from the other side"""
+CURVE_PLACES: Reals = np.linspace(0.0, 1.0, 201)
+
+
+@dataclass(frozen=True, kw_only=True)
+class ChannelCurves:
+    """A closed blade's channel, for the flow that it was found with, or for the one from the other side."""
+
+    blade: Blade
+    backwards: bool = False
+
+    def values(self, name: str, at: Reals) -> Reals:
+        """Points (m, 2) of one of the four curves in (x, r) [m]: walls downstream, edges from hub to shroud."""
+        channel: Any = self.blade.exact.channel  # type: ignore[attr-defined]
+        if self.backwards:
+            name, at = OPPOSITE_CURVE[name], 1.0 - at
+        return np.asarray(np.real(channel.line(name).values(at)))
+
+    def flow_path(self, metre: float) -> FlowPath:
+        """Hub and shroud, lengthened straight on; fractions count from edge to edge."""
+        hub, shroud = (ThroughPoints(points=_points(_wall(self.values(name, CURVE_PLACES)), metre)) for name in WALLS)
+        return FlowPath(hub=hub, shroud=shroud, matched="edges")
+
+    def edge(self, name: str, metre: float) -> ThroughPoints:
+        """An edge as a curve through a few points that reaches past both walls."""
+        line = _extended(self.values(name, CURVE_PLACES))
+        at = np.linspace(0.0, len(line) - 1.0, EDGE_POINTS)
+        return ThroughPoints(points=_points(_along(line, at), metre))
+
+    def edge_like(self, name: str, curve: Any, metre: float) -> Meridian:
+        """The edge with the points of another curve: where these stand along the edge, they stay."""
+        if isinstance(curve, ThroughPoints):
+            own, field = curve.points, "points"
+        elif isinstance(curve, ControlPolygon):
+            own, field = curve.control_points, "control_points"
+        else:
+            raise FitError(
+                f"the {name} of `like` is given by corners or by a stacking: only points or control points are "
+                "fitted; give the design as start"
+            )
+        given = metre * np.array([[float(np.real(each.x)), float(np.real(each.r))] for each in own])
+        line = _extended(self.values(name, CURVE_PLACES), EDGE_OVERREACH_LIKE)
+        # the coordinate in which the edge has its extent is held, the other is the edge's there
+        held = 1 if np.ptp(given[:, 1]) >= np.ptp(given[:, 0]) else 0
+        order = np.argsort(line[:, held])
+        if isinstance(curve, ThroughPoints):
+            free = np.interp(given[:, held], line[order, held], line[order, 1 - held])
+        else:
+            degree = min(len(given) - 1, curve.degree)
+            rows = basis(uniform_knots(len(given), degree), degree, CURVE_PLACES)
+            wanted = np.interp(rows @ given[:, held], line[order, held], line[order, 1 - held])
+            free = np.linalg.lstsq(rows, wanted, rcond=None)[0]
+        found = given.copy()
+        found[:, 1 - held] = free
+        return replace(curve, **{field: _points(found, metre)})
+
+
+def _wall(line: Reals) -> Reals:
+    """Points of a wall, a line (n, 2) lengthened straight on: as few as follow it within a part of its length."""
+    way = cumulative_length(line)
+    size = float(way[-1])
+    first, last = _unit(line[0] - line[1]), _unit(line[-1] - line[-2])
+    ends = [size * _share_off_axis(end[1], size * out[1]) * out for end, out in ((line[0], first), (line[-1], last))]
+    longer = np.concatenate([[line[0] + ends[0] * CONTINUATION], line, [line[-1] + ends[1] * CONTINUATION]])
+    along = cumulative_length(longer)
+    low, high = along[1] - WALL_MARGIN * size, along[-2] + WALL_MARGIN * size
+    rows = longer
+    for count in WALL_COUNTS:
+        at = np.concatenate([along[:1], np.linspace(max(low, 0.5 * along[1]), high, count), along[-1:]])
+        at[-2] = min(at[-2], 0.5 * (along[-1] + along[-2]))
+        rows = np.stack([np.interp(at, along, longer[:, i]) for i in (0, 1)], axis=-1)
+        curve = np.real(ThroughPoints(points=_points(rows, 1.0)).line(1.0).values(np.linspace(0.0, 1.0, 801)))
+        if np.max(nearest_on(curve, line).heights ** 2) <= (WALL_DISTANCE * size) ** 2:
+            break
+    return rows
+
+
+def _share_off_axis(radius: float, slope: float) -> float:
+    """The part of a straight continuation that keeps off the axis."""
+    return 1.0 if slope >= 0.0 else min(1.0, LEAST_RADIUS * radius / (-slope * CONTINUATION))
+
+
+def _extended(line: Reals, times: float = 1.0) -> Reals:
+    """A line (n, 2) that goes on straight past both ends."""
+    size = float(np.sum(np.sqrt(np.sum(np.diff(line, axis=0) ** 2, axis=1))))
+    steps = times * EDGE_OVERREACH * size * np.linspace(0.0, 1.0, 13)[1:, None]
+    first, last = _unit(line[0] - line[1]), _unit(line[-1] - line[-2])
+    return np.concatenate([(line[0] + steps * first)[::-1], line, line[-1] + steps * last])
+
+
+def _unit(vector: Reals) -> Reals:
+    return np.asarray(vector / np.sqrt(np.sum(vector**2)))
+
+
+def _along(line: Reals, at: Reals) -> Reals:
+    index = np.arange(len(line), dtype=np.float64)
+    return np.stack([np.interp(at, index, line[:, i]) for i in (0, 1)], axis=-1)
+
+
+def _points(rows: Reals | Sequence[Reals], metre: float) -> tuple[Point, ...]:
+    return tuple(Point(float(x) / metre, float(r) / metre) for x, r in rows)

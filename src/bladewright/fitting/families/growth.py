@@ -1,0 +1,119 @@
+"""Growth of the families that are one part: control points are added where they are predicted to gain most."""
+
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from bladewright.designs import Design
+from bladewright.errors import DesignError, FitError
+from bladewright.fitting.matching.footpoints import footpoints_at
+from bladewright.fitting.matching.residuals import PlacedCloud
+from bladewright.fitting.matching.scales import scales_of
+from bladewright.fitting.matching.search import Match, Task
+from bladewright.fitting.model_selection.steps import predicted_rest, row_factors
+from bladewright.fitting.model_selection.stopping import MatchTarget, needs_more
+from bladewright.nurbs.basis import Reals
+
+PredictedGain = tuple[float, int, Design]
+"""gain for each parameter, number of parameters more, and the design"""
+
+
+def predicted_gains(
+    task: Task, found: Match, designs: Iterable[Design], emphasis: Reals | None = None
+) -> list[PredictedGain]:
+    """Designs that have more control points than a match's, best gain for each parameter first.
+
+    `emphasis` (n,) are further weights of the points. Designs without a shape, or that gain nothing, are left out.
+    """
+    measures, paths = found.problem.measures, found.problem.paths
+    values = found.design.parameters()
+    rows = measures.residuals(found.state)
+    slopes = measures.slopes(found.state, paths) * found.problem.scales.size
+    roots = row_factors(emphasis, len(rows))
+    before = predicted_rest(slopes, rows, roots, found.problem.noise)
+    ranked: list[PredictedGain] = []
+    for design in designs:
+        try:
+            free = task.free(design)
+            fresh = design.parameters()
+            own = tuple(path for path in free if values.get(path) != fresh[path])
+            kept = [i for i, path in enumerate(paths) if path in fresh and path not in own]
+            rows, columns = _residuals_of(found, design, own)
+        except (DesignError, FitError):
+            continue
+        wider = np.concatenate([slopes[:, kept], columns], axis=1)
+        gain = before - predicted_rest(wider, rows, roots, found.problem.noise)
+        more = len(free) - len(paths)
+        if gain > 0.0 and more > 0:
+            ranked.append((gain / more, more, design))
+    return sorted(ranked, key=lambda each: -each[0])
+
+
+def _residuals_of(found: Match, design: Design, paths: tuple[str, ...]) -> tuple[Reals, Reals]:
+    """Residuals of a design where the cloud stands on a match's, and their derivatives by scaled parameters."""
+    measures, on = found.problem.measures, found.state.feet
+    shape = measures.model.shape(design)
+    if not shape.finite:
+        raise DesignError("a law with another number of control points left no shape: take another one")
+    state = PlacedCloud(shape=shape, feet=footpoints_at(measures.points, shape.sides, on.side, on.u, on.v))
+    slopes = measures.slopes(state, paths) * scales_of(design, paths, found.model.chord).size
+    return measures.residuals(state), slopes
+
+
+WORTHWHILE_RATIO = 0.9
+"""ratio of misfits from which control points more are worth it where no aim is stated"""
+PATIENCE = 2
+"""times in a row that they may bring nothing before growth ends"""
+MOST_GROWTHS = 30
+FUTILE_REASON = "further control points bring the design hardly nearer to the points"
+
+GrowthStep = Callable[[Task, Match, MatchTarget, int], Iterator[Match]]
+"""matches near to one with control points more, in another way each time that so many have been taken back"""
+
+
+def grown_to_target(
+    task: Task, found: Match, aim: MatchTarget, wider: GrowthStep, *, coarse: float
+) -> tuple[Match, str]:
+    """A match with as many control points as the aim asks for, or why there are no more.
+
+    A step that brings the design no nearer is taken back, and another is tried. What is grown can be built, with native
+    sides of the `coarse` tolerance.
+    """
+    best, idle, back = found, 0, 0
+    for _ in range(MOST_GROWTHS):
+        short, reason = needs_more(found, aim, task)
+        if not short or found.interrupted:
+            met = not short and not reason
+            return found if met or found.rms <= best.rms or aim.parameters is not None else best, reason
+        tried = [each for each in wider(task, found, aim, back) if _allowed(each, aim) and can_be_built(each, coarse)]
+        if not tried and not back:
+            return best, "no control point can be added to the design that leaves it one that can be built"
+        fresh = min(tried, key=lambda each: each.rms, default=None)
+        if fresh is None or (fresh.rms > found.rms and fresh.maximum > found.maximum):
+            if back < PATIENCE and not (fresh is not None and fresh.interrupted):
+                back += 1
+                continue
+            if fresh is None or aim.parameters is None:
+                return best, FUTILE_REASON
+        found, back = fresh, 0
+        idle = idle + 1 if found.rms > WORTHWHILE_RATIO * best.rms else 0
+        best = found if found.rms < WORTHWHILE_RATIO * best.rms or aim.parameters is not None else best
+        if aim.open and idle > PATIENCE:
+            return best, FUTILE_REASON
+    return best, f"control points were added {MOST_GROWTHS} times, and no more are"
+
+
+def can_be_built(found: Match, tolerance: float) -> bool:
+    """Whether the design can be built with a tolerance: whether its sections do not cross themselves."""
+    design: Any = found.design
+    try:
+        replace(design, tolerance=max(design.tolerance, tolerance)).build()
+    except DesignError:
+        return False
+    return True
+
+
+def _allowed(found: Match, aim: MatchTarget) -> bool:
+    return aim.parameters is None or len(found.problem.paths) <= aim.parameters

@@ -1,0 +1,128 @@
+"""From points to a design of the unified family."""
+
+from dataclasses import replace
+from typing import Any
+
+from bladewright.blade.design.unified import UnifiedBlade
+from bladewright.designs import Design
+from bladewright.errors import DesignError, FitError
+from bladewright.fitting.clouds.thinning import drawn
+from bladewright.fitting.design_header import DesignHeader
+from bladewright.fitting.free_parameters import FreeParameters
+from bladewright.fitting.initial_guess.blade import AXES_HINT, first_blade
+from bladewright.fitting.initial_guess.section import first_section
+from bladewright.fitting.matching.constrained_least_squares import MIN_REDUCTION
+from bladewright.fitting.matching.scales import check_bounds
+from bladewright.fitting.matching.search import ROUGH_REDUCTION, Match, Task, searched
+from bladewright.fitting.model_selection.adaptation import FINAL_REDUCTION, THOROUGH_POINTS, selected_match
+from bladewright.fitting.model_selection.given_structure import CLEAR_SHARE, has_systematic_misfit
+from bladewright.fitting.model_selection.identification import FEWEST_THICKNESSES, KNOWN_MISFIT, STRAIGHT_CAMBER
+from bladewright.fitting.model_selection.reshaping import reshaped, with_feasible_edges
+from bladewright.fitting.model_selection.stopping import MatchTarget
+from bladewright.fitting.model_selection.structure import (
+    Structure,
+    first_blade_structure,
+    initial_structure,
+    structure_of,
+)
+
+FEWER_SHARES = (1.0, 0.5)
+"""parts of the control points along the chord that are tried where a nearest design cannot be built"""
+REDUCED_NOISE, REDUCED_POINTS = 3e-3, 2500
+"""noise of the first round with those, of the chord, and points"""
+REDUCED_NOTE = (
+    "the nearest design cannot be built: this one's camber bends less at the edges, with {} parameters for {}"
+)
+
+
+def matched_unified(
+    task: Task, start: Design | None, like: Design | None, frame: DesignHeader, aim: MatchTarget
+) -> tuple[Match, Any, str]:
+    """The match of points (n, 2) or (n, 3), what it builds, and why it ends where no aim is met.
+
+    Raises FitError where no design is found near the points, or the nearest one cannot be built.
+    """
+    solid, wanted = task.points.shape[1] == 3, None if like is None else structure_of(like)
+    told = solid and wanted is not None and start is None and aim.structured and aim.tolerance is None
+    task.told("first design")
+    if start is not None:
+        guessed = start if wanted is None else reshaped(start, wanted)
+    else:
+        free = first_blade_structure(aim.parameters) if solid else wanted
+        try:
+            guessed = _first_design(task, wanted if told else free, like, frame)
+        except FitError:
+            if not told:
+                raise
+            guessed = _first_design(task, free, like, frame)
+    first = _with_held_values(task, guessed, started=start is not None)
+    check_bounds(first, task.free(first), task.bounds)
+    base = None
+    if start is None and (solid or wanted is None):
+        base = wanted or initial_structure(task.points.shape[1], aim.parameters)
+    try:
+        found, reason = selected_match(task, first, aim, base=base, guessed=start is None)
+        if told and found.rms > KNOWN_MISFIT and has_systematic_misfit(found, CLEAR_SHARE):
+            # from a first design with freer laws the same structure is met elsewhere
+            freer = _with_held_values(
+                task, _first_design(task, first_blade_structure(None), like, frame), started=False
+            )
+            other, _ = selected_match(task, freer, aim, base=base, guessed=True)
+            evaluations = found.evaluations + other.evaluations
+            found = replace(min((found, other), key=lambda each: each.rms), evaluations=evaluations)
+        found, built, leaner = _buildable(task, found, fewer=start is None and like is None and aim.parameters is None)
+    except FitError as error:
+        if frame.blade_count is None and isinstance(guessed, UnifiedBlade) and guessed.blade_count == 1:
+            raise FitError(f"{error}; the points go far around x: {AXES_HINT}") from error
+        raise
+    return found, built, leaner or reason
+
+
+def _with_held_values(task: Task, guessed: Design, *, started: bool) -> Design:
+    """A first design with the values that are held, opened where it is a guess that they leave no shape."""
+    first = task.free.applied(guessed) if isinstance(task.free, FreeParameters) else guessed
+    return first if started or first is guessed else with_feasible_edges(first)
+
+
+def _first_design(task: Task, structure: Structure | None, like: Design | None, frame: DesignHeader) -> Design:
+    """The first design, from the points alone; what `like` says of the row where nothing else does."""
+    some = task.points[drawn(len(task.points), THOROUGH_POINTS)]
+    if task.points.shape[1] == 2:
+        lengths: dict[str, Any] = {}
+        if structure is not None:
+            lengths = {name: getattr(structure, name) for name in ("chordwise", "samples", "clustering")}
+        return first_section(some, name=frame.name, length_unit=frame.length_unit, **lengths)
+    row = frame.row(like)
+    return first_blade(some, structure=structure, name=frame.name, length_unit=frame.length_unit, **row)
+
+
+def _buildable(task: Task, found: Match, *, fewer: bool) -> tuple[Match, Any, str]:
+    """What the found design builds, and in words where it is not the nearest one.
+
+    Where that is refused, of a design that keeps further from what is refused; with `fewer`, at last of one whose
+    camber has no hooks at the edges, or of one with fewer control points along the chord besides.
+    """
+    refusal = ""
+    for slack in (0.0, 1.0, 30.0, 1000.0):
+        if slack:
+            slight = FINAL_REDUCTION if found.rms > KNOWN_MISFIT else MIN_REDUCTION
+            found = searched(replace(task, slack=slack), found.design, rounds=2, slight=slight)
+        try:
+            return found, found.design.build(), ""
+        except DesignError as error:
+            refusal = str(error)
+    structure = structure_of(found.design)
+    few = task.part(drawn(len(task.points), REDUCED_POINTS))
+    straight = replace(few, bounds={**STRAIGHT_CAMBER, **task.bounds})
+    for share in FEWER_SHARES if fewer and not found.interrupted else ():
+        upper, lower = (max(FEWEST_THICKNESSES, round(share * count)) for count in structure.chordwise)
+        design = with_feasible_edges(reshaped(found.design, replace(structure, chordwise=(upper, lower))))
+        try:
+            other = searched(straight, design, noise=REDUCED_NOISE, slight=ROUGH_REDUCTION)
+            built = other.design.build()
+        except (DesignError, FitError):
+            continue
+        return other, built, REDUCED_NOTE.format(len(other.problem.paths), len(found.problem.paths))
+    raise FitError(
+        f"the nearest design cannot be built ({refusal}); give a start design, or other numbers of parameters"
+    )

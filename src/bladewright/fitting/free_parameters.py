@@ -1,0 +1,148 @@
+"""Which parameters of a design a fit may change, whatever its structure."""
+
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from bladewright.blade.design.meridional_curve import ThroughPoints
+from bladewright.blade.design.sectioned import SectionedBlade
+from bladewright.blade.design.unified import UnifiedBlade
+from bladewright.derivatives.patterns import Patterns, chosen, matching
+from bladewright.designs import Design
+from bladewright.errors import DesignError, FitError
+from bladewright.section.profiles.points import PointsProfile
+
+EDGES = ("leading_edge", "trailing_edge")
+WALLS = ("hub", "shroud")
+
+
+def gauge_parameters(design: Design, *, walls: bool = False) -> frozenset[str]:
+    """Paths of what is held.
+
+    Of control points that count by their ratios alone it is the largest. Of points of a contour it is the coordinate
+    along which they slide on it, and both of its first and last along the chord, as their size and direction count for
+    nothing. Of a blade it is the flow path, which a blade shows by its ends only, and that coordinate of the points of
+    its edge curves along which they slide on the curve. Where the `walls` are free, of the points of hub and shroud
+    only that coordinate is held along which they slide on these.
+    """
+    section = getattr(design, "section", None)
+    if section is None:
+        return frozenset()
+    found = {f"section.{path}" for path in _largest_curvature(section.parameters())}
+    if isinstance(section, PointsProfile):
+        found |= _along_contour(section)
+    if isinstance(design, SectionedBlade):
+        values = design.parameters()
+        found |= {path for path in values if path.startswith("flow_path.")}
+        found -= _across_walls(design) if walls else frozenset()
+        for edge in EDGES:
+            along = sliding_coordinate(design, edge)
+            found |= {path for path in values if path.startswith(f"{edge}.") and path.endswith(f".{along}")}
+    return frozenset(found)
+
+
+def sliding_coordinate(design: SectionedBlade, edge: str) -> str:
+    """The coordinate, x or r, in which an edge curve has its extent."""
+    curve = getattr(design, edge)
+    if curve is None:
+        return "r"
+    points = np.real(curve.line(1.0).net[[0, -1]])
+    across = (points[1] - points[0]) ** 2
+    return "x" if across[0] > across[1] else "r"
+
+
+def _across_walls(design: SectionedBlade) -> frozenset[str]:
+    """Of every point of hub and shroud the coordinate, x or r, across which the wall runs there."""
+    found = set()
+    for wall in WALLS:
+        curve = getattr(design.flow_path, wall)
+        if isinstance(curve, ThroughPoints):
+            points = np.array([[float(np.real(each.x)), float(np.real(each.r))] for each in curve.points])
+            way = np.gradient(points, axis=0) ** 2
+            across = np.where(way[:, 0] >= way[:, 1], "r", "x")
+            found |= {f"flow_path.{wall}.points[{i}].{name}" for i, name in enumerate(across)}
+    return frozenset(found)
+
+
+def _along_contour(section: PointsProfile) -> set[str]:
+    """Paths of what does not change a contour through points, or hardly does."""
+    if any(isinstance(law, tuple) for law in (*section.abscissas, *section.ordinates)):
+        return set()
+    x, y = (np.array([float(np.real(each)) for each in law]) for law in (section.abscissas, section.ordinates))
+    along_x, along_y = ((np.roll(each, -1) - np.roll(each, 1)) ** 2 for each in (x, y))
+    found = {f"section.{'abscissas' if along_x[i] >= along_y[i] else 'ordinates'}[{i}]" for i in range(len(x))}
+    ends = int(np.argmin(x)), int(np.argmax(x))
+    return found | {f"section.{name}[{i}]" for name in ("abscissas", "ordinates") for i in ends}
+
+
+def _largest_curvature(values: dict[str, float]) -> list[str]:
+    """The whole law of the control point of the second derivative that is largest."""
+    found = {path: value for path, value in values.items() if re.match(r"curvature\[", path)}
+    if not found:
+        return []
+    of = max(found, key=lambda path: found[path] ** 2)
+    stem = re.match(r"curvature\[\d+\]", of)
+    return [path for path in found if stem is not None and path.startswith(stem[0])]
+
+
+NOT_IN_CLOUD = ("pitch", "span", "tip_clearance", "hub_clearance")
+"""fields that a cloud of one blade's points says nothing of"""
+
+
+@dataclass(frozen=True, kw_only=True)
+class FreeParameters:
+    """Patterns of what is free, and of what is held at which values."""
+
+    free: Patterns = None
+    fixed: tuple[str, ...] = ()
+    values: Mapping[str, float] | None = None
+    walls: bool = False
+    """whether hub and shroud of a blade from sections are found too"""
+
+    def __call__(self, design: Design) -> tuple[str, ...]:
+        """The free parameters of a design; raises FitError where there are none."""
+        try:
+            wanted = chosen(design, self.free)
+            held = {path for pattern in self.fixed for path in matching(pattern, design.parameters())}
+        except DesignError as error:
+            raise FitError(str(error)) from error
+        if self.free is None:
+            held |= gauge_parameters(design, walls=self.walls) | {
+                path for path in wanted if path.startswith(NOT_IN_CLOUD)
+            }
+        found = tuple(path for path in wanted if path not in held)
+        if not found:
+            raise FitError("no parameter is left to fit: free at least one, or fix fewer")
+        return found
+
+    def applied(self, design: Design) -> Design:
+        """The design with the values that are given."""
+        if not self.values:
+            return design
+        try:
+            known = list(design.parameters())
+            changes = {path: value for pattern, value in self.values.items() for path in matching(pattern, known)}
+            return design.changed(changes)
+        except DesignError as error:
+            raise FitError(str(error)) from error
+
+
+def free_parameters_of(free: Patterns, fixed: "Patterns | Mapping[str, float]", *, started: bool) -> FreeParameters:
+    """The freedom that was asked for; raises FitError where what is held has no value."""
+    if isinstance(fixed, Mapping):
+        return FreeParameters(free=free, fixed=tuple(fixed), values=dict(fixed))
+    names = () if fixed is None else (fixed,) if isinstance(fixed, str) else tuple(fixed)
+    if (names or free is not None) and not started:
+        held = names[0] if names else "what is not free"
+        raise FitError(f"{held} is to be held, but has no value: give a start design, or the value itself")
+    return FreeParameters(free=free, fixed=names)
+
+
+def corner_radii(design: Design) -> tuple[str, ...]:
+    """Paths of the radii at which the edges of a blade stand on hub and shroud."""
+    if not isinstance(design, UnifiedBlade):
+        return ()
+    last = {edge: len(getattr(design.channel, edge)) - 1 for edge in ("leading_edge", "trailing_edge")}
+    return tuple(f"channel.{edge}[{place}].r" for edge, end in last.items() for place in (0, end))

@@ -1,0 +1,129 @@
+"""What fits of plain shapes have in common: what they are asked, and the figures that they hand back."""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from bladewright.errors import FitError
+from bladewright.fitting.freeform.stages import FitOptions
+from bladewright.nurbs.basis import Reals
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class FreeformFit:
+    """Figures of a fit to n points, in their order and unit; the base of the fits of curves, surfaces and profiles."""
+
+    distances: Reals
+    """(n,) true distances"""
+    inliers: NDArray[np.bool_]
+    """(n,) whether a point took part; the others are outliers, which are only told apart with `robust`"""
+    iterations: int
+    """evaluations of all distances while fitting"""
+    converged: bool
+    """whether the last descent ended by itself"""
+    singular_values: Reals
+    """of the distances by the unknowns, each scaled to length one; largest first"""
+    rank: int
+    """directions of the unknowns that the points determine"""
+    noise: float
+    """standard deviation across the shape by which neighbouring points differ"""
+    tolerance: float | None
+    """largest distance of an inlier that was asked for"""
+    notes: tuple[str, ...]
+    """what else there is to know, each a sentence"""
+
+    @property
+    def unknowns(self) -> int:
+        """Number of coordinates and weights that were free."""
+        return len(self.singular_values)
+
+    @property
+    def condition(self) -> float:
+        """Ratio of the largest to the smallest singular value; infinite where the points leave a direction open."""
+        if self.unknowns == 0:
+            return 1.0
+        if self.rank < self.unknowns:
+            return float("inf")
+        return float(self.singular_values[0] / self.singular_values[-1])
+
+    @property
+    def mean(self) -> float:
+        """Mean distance of the inliers."""
+        return float(np.mean(self.distances[self.inliers]))
+
+    @property
+    def rms(self) -> float:
+        """Root mean square of the inliers' distances."""
+        return float(np.sqrt(np.mean(self.distances[self.inliers] ** 2)))
+
+    @property
+    def maximum(self) -> float:
+        """Largest distance of an inlier."""
+        return float(np.max(self.distances[self.inliers]))
+
+    @property
+    def passed(self) -> bool:
+        """Whether the fit converged, within its tolerance where there is one."""
+        return self.converged and (self.tolerance is None or self.maximum <= self.tolerance)
+
+
+def checked_options(
+    *,
+    weights: object,
+    power: float,
+    robust: bool,
+    tolerance: float | None,
+    extent: float,
+    progress: Callable[[str], None] | None,
+) -> FitOptions:
+    """What is asked of a fit to points of an extent; FitError where it is unknown or out of its limits."""
+    if isinstance(weights, str) and weights not in ("fixed", "free"):
+        raise FitError(f"weights {weights!r} are unknown: `fixed` (all one), `free`, or positive numbers")
+    if not 2.0 <= power <= 16.0:
+        raise FitError(
+            f"power {power} was asked for: 2 is least squares, higher ones up to 16 weigh large distances more"
+        )
+    if tolerance is not None and not tolerance > 0.0:
+        raise FitError(f"a tolerance of {tolerance} was asked for: it must be positive")
+    return FitOptions(
+        power=power,
+        weights_free=isinstance(weights, str) and weights == "free",
+        robust=robust,
+        limit=None if tolerance is None else tolerance / extent,
+        extent=extent,
+        progress=progress,
+    )
+
+
+def checked_logs(weights: str | ArrayLike, counts: tuple[int, ...]) -> Reals | None:
+    """Logarithms of given weights of a shape (n,) or (n_u, n_v), flattened; None for a word."""
+    if isinstance(weights, str):
+        return None
+    given = np.array(weights, dtype=np.float64)
+    if given.shape != counts or not (given > 0.0).all():
+        raise FitError(f"weights of shape {given.shape} were given: positive ones of shape {counts} are needed")
+    return np.log(given).ravel()
+
+
+def checked_points(points: ArrayLike, what: str, dimensions: tuple[int, ...] = ()) -> Reals:
+    """Points (n, d) that are finite and not all the same; FitError otherwise."""
+    try:
+        given = np.array(points, dtype=np.float64)
+    except (TypeError, ValueError) as error:
+        raise FitError(f"the points of {what} are not numbers ({error}); give an array (n, d)") from error
+    wanted = " or ".join(str(count) for count in dimensions) or "2, 3 or more"
+    if given.ndim != 2 or given.shape[1] < 2 or (dimensions and given.shape[1] not in dimensions):
+        raise FitError(
+            f"points of shape {given.shape} were given for {what}: give (n, d) with d = {wanted} coordinates"
+        )
+    wrong = np.flatnonzero(~np.isfinite(given).all(axis=1))
+    if len(wrong):
+        raise FitError(
+            f"{len(wrong)} of {len(given)} points of {what} are not finite, the first in row {wrong[0]} "
+            f"({given[wrong[0]].tolist()}); leave these rows out"
+        )
+    if len(given) < 2 or not (np.ptp(given, axis=0) > 0.0).any():
+        raise FitError(f"{len(given)} points at one place were given for {what}: it needs different ones")
+    return given

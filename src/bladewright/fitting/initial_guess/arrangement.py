@@ -1,0 +1,78 @@
+"""Whether a cloud is a blade around the machine axis or one of a linear cascade."""
+
+from typing import Literal
+
+import numpy as np
+
+from bladewright.fitting.clouds.isolated import without_isolated_points
+from bladewright.fitting.clouds.thinning import spread
+from bladewright.fitting.initial_guess.hypotheses import machine_coordinates, ranked_outlines
+from bladewright.nurbs.basis import Reals
+
+Arrangement = Literal["annular", "linear"]
+DECIDING_POINTS = 600
+"""points that decide"""
+ANNULAR_AT_ONCE = 3e-3
+"""of the chord: a mean distance with which a blade around the axis is taken without asking for another"""
+ROW_BINS, ROW_HEIGHT = 16, 0.03
+"""parts of x in which the lowest points are sought, and how far above them, of the span, others are of their row"""
+ROW_DEGREE, ROW_TURNS, ROW_OUTLIER = 5, 5, 6.7
+"""degree of its line, turns in which it is found, and medians beyond which a point is none of the row"""
+CLEARER_ROW, CLEAR_ROW = 0.5, 1e-3
+"""scatter of rows of the one kind, of that of the other, and, on planes, of the span, below which they are such"""
+
+
+def found_arrangement(points: Reals) -> Arrangement:
+    """How the blade of points (n, 3) [m] stands: as sections lie closer, on surfaces of revolution or on planes.
+
+    A blade that reaches the machine axis, or goes around it, is one of a cascade.
+    """
+    points = np.asarray(points, dtype=np.float64)
+    y, z = points[:, 1], points[:, 2]
+    radius = np.sqrt(y**2 + z**2)
+    around = np.sort(np.arctan2(y, z))
+    gaps = np.diff(np.concatenate([around, around[:1] + 2.0 * np.pi]))
+    if np.min(radius) < 0.02 * np.max(radius) or np.max(gaps) < np.pi:
+        return "linear"
+    if np.ptp(z) < 0.05 * np.ptp(radius):
+        return "annular"
+    rows = _arrangement_by_rows(points)
+    if rows is not None:
+        return rows
+    some = without_isolated_points(np.unique(points, axis=0))
+    some = some[spread(some, DECIDING_POINTS)]
+    away: list[float] = []
+    for name in ("annular", "linear"):
+        _, found = ranked_outlines(machine_coordinates(some, name), revolved=name == "annular")
+        away.append(found[0].match.mean)
+        if away[0] < ANNULAR_AT_ONCE * found[0].laid.chord:
+            return "annular"
+    return "linear" if away[1] < 0.5 * away[0] else "annular"
+
+
+def _arrangement_by_rows(points: Reals) -> Arrangement | None:
+    """How the rows of points (n, 3) at both ends stand: on surfaces about the axis or on planes; None without rows.
+
+    Sections of a blade far from the axis are met alike on both.
+    """
+    x, radius, z = points[:, 0], np.sqrt(points[:, 1] ** 2 + points[:, 2] ** 2), points[:, 2]
+    around, level = (np.sqrt(_row_scatter(x, span) * _row_scatter(x, -span)) for span in (radius, z))
+    if around < CLEARER_ROW * level:
+        return "annular"
+    # of a radial machine neither is a row over x
+    return "linear" if level < min(CLEARER_ROW * around, CLEAR_ROW * float(np.ptp(z))) else None
+
+
+def _row_scatter(x: Reals, span: Reals) -> float:
+    """By how much the lowest points (n,) are off a smooth line over x."""
+    place = np.clip((x - np.min(x)) / np.ptp(x), 0.0, 1.0)
+    bins = np.minimum((ROW_BINS * place).astype(int), ROW_BINS - 1)
+    lowest = np.full(ROW_BINS, np.inf)
+    np.minimum.at(lowest, bins, span)
+    rows = span <= lowest[bins] + ROW_HEIGHT * np.ptp(span)
+    terms, low = np.polynomial.chebyshev.chebvander(2.0 * place[rows] - 1.0, ROW_DEGREE), span[rows]
+    kept, left = np.ones(len(low), dtype=bool), low
+    for _ in range(ROW_TURNS):
+        left = low - terms @ np.linalg.lstsq(terms[kept], low[kept], rcond=None)[0]
+        kept = np.abs(left) <= ROW_OUTLIER * np.median(np.abs(left[kept]))
+    return float(np.median(np.abs(left[kept])))

@@ -1,0 +1,188 @@
+"""The ends of a blade as its cloud shows them: points that lie at hub and shroud, or where the blade ends."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.spatial import cKDTree
+
+from bladewright.blade.exact.unified import ExactUnifiedBlade
+from bladewright.derivatives.complex_step import STEP
+from bladewright.fitting.matching.footpoints import Footpoints, footpoints_at
+from bladewright.fitting.matching.outliers import DEVIATION_OVER_MEDIAN
+from bladewright.fitting.models.law_jacobian import channel_shifts, stands_on_channel
+from bladewright.fitting.models.model import ModelShape
+from bladewright.nurbs.basis import Reals, basis
+from bladewright.section.checks import UNITS
+
+ROW_BAND = 0.015
+"""how far from an end, in v, a point may tell of it"""
+FACE_BAND, FACE_DEPTH, FACE_NEARER_WALL = 0.1, 5.0, 0.3
+"""a point of an end face has its foot this near the end, in v, lies this many usual distances inside the sides, and is
+this much nearer to the wall than to them"""
+FACE_OUTLIERS, FACE_OUTLIERS_NEARER_WALL = 20, 0.1
+"""outliers on an end face that belong to it: so many, half of which are so much nearer to the wall than to the sides"""
+DEEPEST_FACE_POINT = 0.2
+"""of the half thickness of the blade: how deep inside it the deepest point of an end face lies at least"""
+PAST_END_BAND = 0.05
+"""how far from an end, in v, a point may come to lie past it while the design changes"""
+FEWEST_ROW_POINTS = 5
+ROW_WIDTH, ROW_LEAST_WIDTH = 4.5, 1e-6
+"""a point belongs to the row at an end where it lies within so many deviations of its middle; of the extent of the
+places, as the sides are no nearer to the walls"""
+ROW_DEGREE, ROW_TURNS, ROW_SETTLING_TURNS = 6, 30, 3
+"""highest degree by which a row may be off the wall, and turns in which it is found and settles"""
+OUTER_QUANTILE = 0.2
+"""part of the places at an end beyond the law that is first sought: a row is the outermost, beside it lie points of
+the sides"""
+END_PARAMETERS = {"hub": 0.0, "shroud": 1.0}
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class WallPoints:
+    """Places of the cloud at one end of the blade."""
+
+    name: str
+    """of the channel's curve"""
+    places: Reals
+    """(m, 2) in (x, r) [m]"""
+    spread: float
+    """of their distances from one curve: small where the cloud has a row there [m]"""
+
+    def misses(self, exact: Any) -> tuple[Reals, Reals, Reals]:
+        """Nearest parameters, unit normals and misses (m,), (m, 2), (m, 2) on the channel's curve, continued."""
+        line = _line(exact, self.name)
+        if len(self.places) == 0:
+            return np.empty(0), self.places, self.places
+        t = np.linspace(-0.05, 1.05, 400)
+        _, index = cKDTree(np.real(line.values(t))).query(self.places)
+        t = t[index]
+        for _ in range(6):
+            value, first, second = (np.real(line.values(t, order)) for order in range(3))
+            miss = value - self.places
+            rise = np.sum(first**2, axis=-1) + np.sum(miss * second, axis=-1)
+            t = np.clip(t - np.sum(miss * first, axis=-1) / np.where(rise > 0.0, rise, np.inf), -0.1, 1.1)
+        value, first = (np.real(line.values(t, order)) for order in range(2))
+        normal = np.stack([-first[:, 1], first[:, 0]], axis=-1) / np.sqrt(np.sum(first**2, axis=-1))[:, None]
+        return t, normal, self.places - value
+
+    def distances(self, exact: Any) -> Reals:
+        """Signed distances (m,) from the curve [m]."""
+        return self.off(exact)[1]
+
+    def off(self, exact: Any) -> tuple[Reals, Reals]:
+        """Nearest parameters and signed distances (m,) from the curve [m]."""
+        t, normal, miss = self.misses(exact)
+        return t, np.asarray(np.sum(normal * miss, axis=-1))
+
+    def basis(self, exact: ExactUnifiedBlade, t: Reals) -> Reals:
+        """What the places at parameters (m,) are made of: basis functions (m, n) of the channel's curve."""
+        line = exact.channel.line(self.name)
+        return np.asarray(basis(line.knots, line.degree, t))
+
+    def rates(self, shape: ModelShape, t: Reals, paths: Sequence[str]) -> Reals:
+        """Derivatives (m, k, 2) of the places on the curve at held parameters."""
+        found = np.zeros((len(t), len(paths), 2))
+        exact = shape.exact
+        moving = [i for i, path in enumerate(paths) if path.startswith(("channel.", "flow_path.", "tip_", "hub_"))]
+        if not moving or exact is None:
+            return found
+        if isinstance(exact, ExactUnifiedBlade) and stands_on_channel(shape.design):
+            rows, metre = self.basis(exact, t), UNITS[shape.design.length_unit]
+            for i in moving:
+                for curve, place, axis in channel_shifts(shape.design, paths[i]):
+                    if curve == self.name:
+                        found[:, i, axis] = metre * rows[:, place]
+            return found
+        values = shape.design.parameters()
+        kicks = 1j * STEP * np.eye(len(moving))
+        changed = shape.design.changed(
+            {paths[i]: values[paths[i]] + kick for i, kick in zip(moving, kicks, strict=True)}
+        )
+        rows = np.imag(_line(exact.moved_to(changed), self.name).values(t)) / STEP
+        found[:, moving] = np.moveaxis(np.broadcast_to(rows, (len(moving), len(t), 2)), 0, 1)
+        return found
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class BladeEnds:
+    """What a cloud says of the blade's ends."""
+
+    walls: Mapping[str, WallPoints]
+    covered: NDArray[np.bool_]
+    """(n,) whether a point lies on an end face, inside the blade's outline"""
+    near: NDArray[np.intp]
+    """points that may lie past an end of the sides"""
+
+
+def _line(exact: Any, name: str) -> Any:
+    """Hub or shroud of a channel, or of a flow path: points and derivatives by its own parameter."""
+    return exact.channel.line(name) if hasattr(exact, "channel") else exact.meridians.walls[name]
+
+
+def blade_ends_of(points: Reals, on: Footpoints, shape: ModelShape, rows: NDArray[np.bool_]) -> BladeEnds:
+    """The ends as points (n, d) show them, of those in `rows` (n,)."""
+    covered = np.zeros(len(points), dtype=bool)
+    exact = shape.exact
+    if exact is None:
+        return BladeEnds(walls={}, covered=covered, near=np.empty(0, dtype=np.intp))
+    radius = np.sqrt(points[:, 1] ** 2 + points[:, 2] ** 2) if exact.mapping.revolved else points[:, 2]
+    places = np.stack([points[:, 0], radius], axis=-1)
+    usual = DEVIATION_OVER_MEDIAN * float(np.median(on.distances[rows]))
+    walls = {}
+    for name, end in END_PARAMETERS.items():
+        inside = np.flatnonzero((np.abs(on.v - end) < FACE_BAND) & (on.heights < -FACE_DEPTH * usual))
+        off = WallPoints(name=name, places=places[inside], spread=0.0).distances(exact)
+        share = np.abs(off) / -on.heights[inside]
+        # points of a solid's faces are outliers to its sides, and so are strays, which stand in no row
+        apart = ~rows[inside] & (share < FACE_NEARER_WALL)
+        dense = np.count_nonzero(apart) >= FACE_OUTLIERS and float(np.median(share[apart])) < FACE_OUTLIERS_NEARER_WALL
+        face = inside[(share < FACE_NEARER_WALL) & (rows[inside] | dense)]
+        # beside an edge that is not yet found points lie a little inside, too
+        if np.max(-on.heights[face], initial=0.0) > DEEPEST_FACE_POINT * _half_thickness(shape, end):
+            covered[face] = True
+        row = rows & (np.abs(on.v - end) < ROW_BAND) & ~covered
+        chosen = np.flatnonzero(row | (covered & (np.abs(on.v - end) < FACE_BAND)))
+        if len(chosen) < FEWEST_ROW_POINTS:
+            continue
+        wall = WallPoints(name=name, places=places[chosen], spread=0.0)
+        aside = _off_row(*wall.off(exact), inward=1.0 if end == 0.0 else -1.0)
+        spread = DEVIATION_OVER_MEDIAN * float(np.median(aside))
+        # beside a row lie points that are on the sides alone: they would pull the end inwards
+        chosen = chosen[aside <= ROW_WIDTH * max(spread, ROW_LEAST_WIDTH * float(np.ptp(places)))]
+        walls[name] = WallPoints(name=name, places=places[chosen], spread=spread)
+    near = np.flatnonzero(((on.v < PAST_END_BAND) | (on.v > 1.0 - PAST_END_BAND)) & ~covered)
+    return BladeEnds(walls=walls, covered=covered, near=near)
+
+
+def _off_row(t: Reals, off: Reals, *, inward: float) -> Reals:
+    """Distances (m,) [m] from the row that most places stand in, which may be off the wall (`off`) by a smooth law.
+
+    The law is a polynomial of `t`, first that of a quantile, as places beside the row lie inwards of it alone, where
+    `off` has the sign `inward`. Reference: Koenker and Bassett 1978 (quantiles), by weights from turn to turn.
+    """
+    if len(t) == 0:
+        return off
+    terms = np.polynomial.chebyshev.chebvander(2.0 * t - 1.0, min(ROW_DEGREE, len(t) // FEWEST_ROW_POINTS - 1))
+    roots, left = np.ones(len(t)), off
+    for _ in range(ROW_TURNS):
+        left = off - terms @ np.linalg.lstsq(roots[:, None] * terms, roots * off, rcond=None)[0]
+        size = np.maximum(np.abs(left), 1e-3 * float(np.median(np.abs(left))))
+        roots = np.sqrt(
+            np.where(inward * left > 0.0, OUTER_QUANTILE, 1.0 - OUTER_QUANTILE) / np.where(size > 0.0, size, 1.0)
+        )
+        roots /= np.max(roots)
+    for _ in range(ROW_SETTLING_TURNS):
+        row = np.abs(left) <= ROW_WIDTH * DEVIATION_OVER_MEDIAN * float(np.median(np.abs(left)))
+        left = off - terms @ np.linalg.lstsq(terms[row], off[row], rcond=None)[0]
+    return np.abs(left)
+
+
+def _half_thickness(shape: ModelShape, end: float) -> float:
+    """Largest half distance [m] of the sides beside an end."""
+    u = np.linspace(0.1, 0.9, 9)
+    none, v = np.zeros((len(u), 3)), np.full(len(u), end)
+    upper, lower = (footpoints_at(none, shape.sides, np.full(len(u), side), u, v).points for side in (0, 1))
+    return 0.5 * float(np.sqrt(np.max(np.sum((upper - lower) ** 2, axis=-1))))

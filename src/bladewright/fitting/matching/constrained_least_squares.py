@@ -1,0 +1,193 @@
+"""Least squares under inequalities: Levenberg's damped steps, each the solution of the linearised problem.
+
+A penalty alone would stop a search at the kink where an inequality begins to hold; a step that sees the inequality
+slides along it. Reference: Lawson and Hanson 1974, chapter 23 (least distance programming by non-negative least
+squares); Nielsen 1999 (damping).
+"""
+
+from abc import ABC, abstractmethod
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.linalg import solve_triangular
+from scipy.optimize import nnls
+
+from bladewright.nurbs.basis import Reals
+
+FIRST_DAMPING = 1e-6
+"""first damping, of the largest squared column"""
+LARGEST_CHANGE = 1.0
+"""largest change of a variable in one step"""
+PENALTY = 4.0
+"""merit of a violated inequality, in multiples of the largest multiplier seen"""
+CORRECTED_SHARES = (1.0, 0.5, 0.2, 0.05, 0.0)
+"""part of a violation that a step mends: the largest that bounds and other inequalities allow"""
+PROBE_SHARE = 0.1
+"""part of a step at which the bend of the residuals is taken"""
+GOOD_GAIN = 0.8
+"""gain of the last step, of what was promised, from which the next one goes straight"""
+EXPECTED_REST = 0.05
+"""part of what an even step promised that the next one is taken to promise, where the step kept all of it"""
+LARGEST_BEND = 0.4
+"""largest change of a step by that bend, of the step"""
+ACTIVE_SET_CHANGES = 20
+"""of the inequalities that hold a step"""
+MIN_REDUCTION = 1e-6
+"""predicted part of the cost below which a step is not worth its evaluation"""
+
+
+class ConstrainedProblem(ABC):
+    """A vector of residuals to be made small and one of values that may not be positive, both of variables (k,)."""
+
+    @property
+    @abstractmethod
+    def bounds(self) -> tuple[Reals, Reals]:
+        """Lowest and highest values (k,)."""
+
+    @abstractmethod
+    def values(self, z: Reals) -> tuple[Reals, Reals] | None:
+        """Residuals (m,) and constrained values (c,); None where there are none."""
+
+    @abstractmethod
+    def derivatives(self, z: Reals) -> tuple[Reals, Reals]:
+        """Their derivatives (m, k) and (c, k)."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class ConstrainedMinimum:
+    """Where a descent ended."""
+
+    z: Reals
+    converged: bool
+    """whether no further step promised anything"""
+    damping: float
+    """the last one, for a descent that goes on"""
+
+
+def constrained_minimum(
+    problem: ConstrainedProblem,
+    start: Reals,
+    *,
+    steps: int,
+    damping: float = FIRST_DAMPING,
+    slight: float = MIN_REDUCTION,
+) -> ConstrainedMinimum:
+    """The variables after at most `steps` evaluations of the residuals.
+
+    `slight` is the promised part of the cost up to which a step is not worth it.
+    """
+    low, high = problem.bounds
+    z = np.clip(start, low, high)
+    found = problem.values(z)
+    if found is None:
+        return ConstrainedMinimum(z=z, converged=False, damping=damping)
+    residuals, constrained = found
+    penalty, growth, gain, done = 0.0, 2.0, 1.0, 1
+    while done < steps:
+        slopes, walls = problem.derivatives(z)
+        turned, matrix = np.linalg.qr(slopes)
+        aim = -turned.T @ residuals
+        scale = float(np.max(np.sum(slopes**2, axis=0), initial=1e-300))
+        sizes = np.sqrt(np.sum(slopes**2, axis=0) + damping * scale)
+        moved = False
+        while done < steps:
+            within = (
+                damping * scale,
+                walls,
+                constrained,
+                np.maximum(low - z, -LARGEST_CHANGE),
+                np.minimum(high - z, LARGEST_CHANGE),
+            )
+            step, largest = _step(matrix, aim, *within)
+            penalty = max(penalty, PENALTY * largest)
+            before = float(residuals @ residuals) + penalty * float(np.sum(np.maximum(constrained, 0.0)))
+            linear = aim - matrix @ step
+            promised = (
+                float(aim @ aim)
+                - float(linear @ linear)
+                + penalty * float(np.sum(np.maximum(constrained, 0.0) - np.maximum(constrained + walls @ step, 0.0)))
+            )
+            if not promised > slight * before:
+                return ConstrainedMinimum(z=z, converged=True, damping=damping)
+            bend = _second_derivative(problem, z, step, residuals, slopes) if gain < GOOD_GAIN else None
+            if bend is not None:
+                curved, _ = _step(matrix, aim - 0.5 * turned.T @ bend, *within)
+                if np.sum(((curved - step) * sizes) ** 2) <= LARGEST_BEND**2 * np.sum((step * sizes) ** 2):
+                    step = curved
+            trial = np.clip(z + step, low, high)
+            fresh = problem.values(trial)
+            done += 1
+            after = np.inf
+            if fresh is not None:
+                after = float(fresh[0] @ fresh[0]) + penalty * float(np.sum(np.maximum(fresh[1], 0.0)))
+            gain = (before - after) / promised
+            if gain > 1e-3 and fresh is not None:
+                z, (residuals, constrained) = trial, fresh
+                damping *= max(1.0 / 10.0, 1.0 - (2.0 * min(gain, 1.0) - 1.0) ** 3)
+                damping, growth, moved = max(damping, 1e-16), 2.0, True
+                if gain > GOOD_GAIN and max(1.0 - gain, EXPECTED_REST) * promised < slight * after:
+                    return ConstrainedMinimum(z=z, converged=True, damping=damping)
+                break
+            damping *= growth
+            growth *= 2.0
+        if not moved:
+            break
+    return ConstrainedMinimum(z=z, converged=False, damping=damping)
+
+
+def _second_derivative(
+    problem: ConstrainedProblem, z: Reals, step: Reals, residuals: Reals, slopes: Reals
+) -> Reals | None:
+    """Second derivative of the residuals (m,) along a step; None where there are none beside it."""
+    low, high = problem.bounds
+    part = PROBE_SHARE * step
+    if np.any(z + part < low) or np.any(z + part > high):
+        return None
+    beside = problem.values(z + part)
+    if beside is None:
+        return None
+    return np.asarray(2.0 / PROBE_SHARE * ((beside[0] - residuals) / PROBE_SHARE - slopes @ step))
+
+
+def _step(
+    matrix: Reals, aim: Reals, damping: float, walls: Reals, constrained: Reals, low: Reals, high: Reals
+) -> tuple[Reals, float]:
+    """The damped step within the linearised inequalities, and the largest multiplier of one of them."""
+    count = matrix.shape[1]
+    rows = np.vstack([matrix, np.sqrt(damping) * np.eye(count)])
+    triangle = np.asarray(np.linalg.qr(np.column_stack([rows, np.append(aim, np.zeros(count))]), mode="r"))
+    upper, right = triangle[:count, :count], triangle[:count, -1]
+    free = solve_triangular(upper, right)
+    rows = np.vstack([walls, np.eye(count), -np.eye(count)])
+    for mended in CORRECTED_SHARES:
+        room = np.concatenate([np.where(constrained > 0.0, -mended * constrained, -constrained), high, -low])
+        found = _nearest_feasible(upper, free, rows, room)
+        if found is not None:
+            return found[0], float(np.max(found[1][: len(walls)], initial=0.0))
+    return np.zeros(count), 0.0
+
+
+def _nearest_feasible(upper: Reals, free: Reals, rows: Reals, room: Reals) -> tuple[Reals, Reals] | None:
+    """The step with rows @ step <= room nearest to the free one, and the multipliers; None where there is none.
+
+    Distances are measured through the triangle `upper`. Rows join in as a step breaks them.
+    """
+    step, multipliers = free, np.zeros(len(rows))
+    working = np.zeros(len(rows), dtype=bool)
+    aim = np.append(np.zeros(len(free)), 1.0)
+    for _ in range(ACTIVE_SET_CHANGES):
+        broken = rows @ step - room > 1e-12 * (1.0 + np.abs(room))
+        if not np.any(broken & ~working):
+            return step, multipliers
+        working |= broken
+        within = rows[working]
+        turned = solve_triangular(upper, within.T, trans="T")
+        system = np.vstack([-turned, (within @ free - room[working])[None]])
+        weights, _ = nnls(system, aim, maxiter=50 * len(free))
+        short = float(1.0 - system[-1] @ weights)
+        if not short > 1e-14:
+            return None
+        step = free - solve_triangular(upper, turned @ (weights / short))
+        multipliers = np.zeros(len(rows))
+        multipliers[working] = weights / short
+    return None

@@ -1,0 +1,79 @@
+"""How far the edges of a design may stand out of its cloud: no further than the points there are apart.
+
+Without it an edge that sticks out as a thin fin costs nothing, as it is nobody's nearest place.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.spatial import cKDTree
+
+from bladewright.fitting.matching.footpoints import Footpoints, Side, footpoints_at
+from bladewright.nurbs.basis import Reals
+from bladewright.nurbs.surface import Surface
+
+STATIONS: Reals = np.concatenate([[0.0], np.linspace(1.0 / 32.0, 31.0 / 32.0, 16), [1.0]])
+"""places along the span at which each edge is looked at"""
+COVERED_SPAN = 0.05
+"""how far, in v, the nearest point may be from an end of the span: a cloud may show a part of the span only"""
+SPANWISE_WEIGHT = 0.2
+"""what a distance along the edge counts while the nearest point is sought: a cloud may have few rows"""
+NEIGHBOURS = 6
+"""points whose distances from each other are looked at"""
+ALLOWED_SPACINGS, ALLOWED_SPACINGS_EXACT = 1.5, 15.0
+"""allowed distance, of that between neighbours, and the same in a cloud that is exact"""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class EdgeOverhang:
+    """Places along both edges, and beside each the nearest point."""
+
+    points: Reals
+    """(m, d) [m]"""
+    u: Reals
+    """(m,) of the edge: 0 or 1"""
+    v: Reals
+    """(m,)"""
+    allowed: Reals
+    """(m,) [m]; infinite where the cloud does not tell"""
+
+    def edges(self, sides: Sequence[Side]) -> Footpoints:
+        """The places on the edges beside the points."""
+        return footpoints_at(self.points, sides, np.zeros(len(self.u), dtype=np.intp), self.u, self.v)
+
+    def excess(self, edges: Footpoints) -> Reals:
+        """By how much edges stand out further than allowed (m,) [m]; negative where they do not."""
+        return np.asarray(-np.sum(edges.miss * edges.normals, axis=-1) - self.allowed)
+
+
+def edge_overhang_of(
+    points: Reals, sides: Sequence[Side], rows: NDArray[np.bool_], *, exact: bool = False
+) -> EdgeOverhang:
+    """The points beside each edge, of those in `rows` (n,); of an `exact` cloud an edge is only kept from running off.
+
+    By chance a point may be further from an edge than others from each other, and the true edge must cost nothing.
+    """
+    upper, cloud = sides[0], points[rows]
+    stations: Reals = STATIONS if isinstance(upper, Surface) else np.zeros(1)
+    u, v = np.repeat([0.0, 1.0], len(stations)), np.tile(stations, 2)
+    side = np.zeros(len(u), dtype=np.intp)
+    edges = footpoints_at(np.zeros((len(u), points.shape[1])), sides, side, u, v)
+    chosen, shown = [], np.ones(len(u), dtype=bool)
+    for i, at in enumerate(edges.points):
+        off = cloud - at
+        away = np.sum(off**2, axis=-1)
+        if isinstance(upper, Surface):
+            along = np.asarray(upper.derivative(u[i : i + 1], v[i : i + 1], 0, 1))[0]
+            way = off @ along / (along @ along)
+            away -= (1.0 - SPANWISE_WEIGHT**2) * way**2 * (along @ along)
+            shown[i] = 0.0 < v[i] < 1.0 or abs(way[np.argmin(away)]) < COVERED_SPAN
+        chosen.append(int(np.argmin(away)))
+    beside = cloud[chosen]
+    tree = cKDTree(cloud)
+    _, around = tree.query(beside, k=NEIGHBOURS)
+    apart = tree.query(cloud[around.ravel()], k=3)[0][:, -1]
+    most = ALLOWED_SPACINGS_EXACT if exact else ALLOWED_SPACINGS
+    allowed = np.where(shown, most * np.median(apart.reshape(len(chosen), NEIGHBOURS), axis=1), np.inf)
+    return EdgeOverhang(points=beside, u=u, v=v, allowed=allowed)

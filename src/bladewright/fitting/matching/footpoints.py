@@ -1,0 +1,277 @@
+"""Footpoints: the nearest places of a cloud on the two sides of a blade or section."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, fields, replace
+from functools import cache
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.spatial import cKDTree
+
+from bladewright.nurbs.basis import Reals
+from bladewright.nurbs.bezier import Patches, Samples, bernstein, patches, sampled
+from bladewright.nurbs.curve import Curve
+from bladewright.nurbs.proximity import PatchPoints, polished
+from bladewright.nurbs.surface import Surface
+
+CURVE_STEPS = 60
+ROUNDING = 1e-13
+"""relative rise of a squared distance that is rounding"""
+LONGEST_STEP = 2.0
+"""widths of a piece that a step may lead"""
+
+
+def _descended_on_curve(on: Patches, points: Reals, start: Reals, *, converged: float) -> tuple[Reals, Reals]:
+    """Parameters (n,) where descents from a start (n,) end, and squared distances (n,) there.
+
+    `converged` is a last step, of the width of a piece. Points (n, d) pass from piece to piece.
+    """
+    degree = on.degrees[0]
+    coefficients = np.einsum("ij,kjd->ikd", _powers(degree), on.nets[:, :, 0, :-1])
+    low = on.low[:, 0]
+    width = on.high[:, 0] - low
+    ends = low[0], on.high[-1, 0]
+
+    def model(at: Reals, aims: Reals) -> tuple[Reals, Reals, Reals, Reals]:
+        """Squared distance, half its slope and bend by the parameter, and the width of the piece, (m,) each."""
+        piece = np.clip(np.searchsorted(low, at, side="right") - 1, 0, len(low) - 1)
+        size = width[piece]
+        t = ((at - low[piece]) / size)[:, None]
+        of = coefficients[:, piece]
+        value, first, second = of[degree], np.zeros_like(aims), np.zeros_like(aims)
+        for row in of[degree - 1 :: -1] if degree else ():
+            second = second * t + first
+            first = first * t + value
+            value = value * t + row
+        miss = value - aims
+        speed = np.einsum("md,md->m", first, first)
+        bend = speed + 2.0 * np.einsum("md,md->m", miss, second)
+        slope = np.einsum("md,md->m", miss, first)
+        # where the distance is not convex Gauss's bend descends
+        bend = np.where(bend > 0.0, bend, np.where(speed > 0.0, speed, 1.0))
+        return np.einsum("md,md->m", miss, miss), slope / size, bend / size**2, size
+
+    u = np.clip(start, *ends)
+    square, slope, bend, size = model(u, points)
+    step = np.clip(-slope / bend, -LONGEST_STEP * size, LONGEST_STEP * size)
+    active = np.arange(len(u))
+    for _ in range(CURVE_STEPS):
+        trial = np.clip(u[active] + step[active], *ends)
+        far = np.abs(trial - u[active]) > converged * size[active]
+        active, trial = active[far], trial[far]
+        if len(active) == 0:
+            break
+        new = model(trial, points[active])
+        better = new[0] <= square[active] * (1.0 + ROUNDING)
+        step[active[~better]] *= 0.25
+        taken = active[better]
+        u[taken], square[taken], size[taken] = trial[better], new[0][better], new[3][better]
+        full = -new[1][better] / new[2][better]
+        step[taken] = np.clip(full, -LONGEST_STEP * size[taken], LONGEST_STEP * size[taken])
+    return u, square
+
+
+@cache
+def _powers(degree: int) -> Reals:
+    """The matrix (degree + 1, degree + 1) from Bernstein coefficients to those of powers."""
+    orders = [bernstein(degree, np.zeros(1), order)[0] for order in range(degree + 1)]
+    factorials = np.cumprod([1.0, *range(1, degree + 1)])
+    return np.asarray(np.stack(orders) / factorials[:, None])
+
+
+Side = Curve | Surface
+OTHER_SIDE_RATIO = 2.0
+"""the other side is tried too where its nearest sample is not this much further away"""
+EDGE_BAND = 0.02
+"""how near to the trailing edge, in u, a known foot may change sides"""
+DEEP_SHARE, DEEP_EXTENT = 0.25, 1e-5
+"""a point inside the blade is sought on its other side too where its foot is so much of the thickness there away, and
+more than so much of the cloud's extent"""
+CONVERGED = 1e-8
+"""last step of a descent, in the parameters of a patch"""
+SAMPLES = (6, 5)
+"""samples along and across a patch; a patch is small where the side bends"""
+EDGE_PATCHES, EDGE_SAMPLES = (0.05, 0.9), (4, 17)
+"""u before and after which a patch is beside an edge, and samples of those: along the span they must be as close to
+each other as the sides are there"""
+CURVE_SAMPLES = (24, 1)
+AT_ONCE = 20_000
+"""points that are projected at a time, to bound the memory"""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Footpoints:
+    """The nearest places of n points on the sides, in d dimensions."""
+
+    side: NDArray[np.intp]
+    """(n,) 0 upper, 1 lower"""
+    u: Reals
+    v: Reals
+    """0 on curves"""
+    points: Reals
+    """(n, d) the places themselves"""
+    normals: Reals
+    """(n, d) unit normals there, out of the blade"""
+    beyond: Reals
+    """(n, d) at an end of the blade the unit vector in the surface that points past it; 0 elsewhere"""
+    miss: Reals
+    """(n, d) from the place to the point"""
+
+    @property
+    def distances(self) -> Reals:
+        """(n,) true distances."""
+        return np.sqrt(np.sum(self.miss**2, axis=-1))
+
+    @property
+    def heights(self) -> Reals:
+        """(n,) signed distances along the normals."""
+        return np.sum(self.miss * self.normals, axis=-1)
+
+    def part(self, rows: NDArray[Any]) -> "Footpoints":
+        """Some of them, by their numbers or as a mask (n,)."""
+        return Footpoints(**{each.name: getattr(self, each.name)[rows] for each in fields(Footpoints)})
+
+
+def concatenated(parts: Sequence[Footpoints]) -> Footpoints:
+    """Feet one after the other."""
+    names = [each.name for each in fields(Footpoints)]
+    return Footpoints(**{name: np.concatenate([getattr(part, name) for part in parts]) for name in names})
+
+
+def nearest_footpoints(
+    points: Reals, sides: Sequence[Side], hint: Footpoints | None = None, *, converged: float = CONVERGED
+) -> Footpoints:
+    """The nearest places of points (n, d) on the upper and the lower side.
+
+    Each starts from the nearest of samples that are close to each other where the sides bend, and descends by damped
+    Newton steps, around the leading edge where need be, until it converges. With a `hint`, the feet on sides that have
+    moved little since, it starts from there. `converged` is the last step in the parameters of a patch: heights above
+    the sides are exact to its square, the distances of points on them to itself.
+    """
+    on = _ring(sides)
+    best, around, v = np.full(len(points), np.inf), np.zeros(len(points)), np.zeros(len(points))
+    for rows, patch, local in _starts(points, on) if hint is None else _hinted(on, hint):
+        if len(rows) == 0:
+            continue
+        for part in np.array_split(np.arange(len(rows)), max(1, -(-len(rows) // AT_ONCE))):
+            where = rows[part]
+            square, *place = _descended(on, points[where], patch[part], local[part], converged)
+            nearer = square < best[where]
+            where = where[nearer]
+            best[where] = square[nearer]
+            around[where], v[where] = place[0][nearer], place[1][nearer]
+    found = footpoints_at(points, sides, (around < 0.0).astype(np.intp), np.abs(around), v)
+    rows = _deep_inside(found, points, sides)
+    if hint is None:
+        rows = np.union1d(rows, np.flatnonzero(found.u > 1.0 - EDGE_BAND))
+    if len(rows) == 0:
+        return found
+    square, *place = _descended(on, points[rows], *on.at(-around[rows], v[rows]), converged)
+    nearer = square < best[rows]
+    around[rows[nearer]], v[rows[nearer]] = place[0][nearer], place[1][nearer]
+    return footpoints_at(points, sides, (around < 0.0).astype(np.intp), np.abs(around), v) if np.any(nearer) else found
+
+
+def _deep_inside(on: Footpoints, points: Reals, sides: Sequence[Side]) -> NDArray[np.intp]:
+    """The points so deep inside a blade that their nearest place may lie on its other side."""
+    heights = on.heights
+    rows = np.flatnonzero(heights < -DEEP_EXTENT * float(np.max(np.ptp(points, axis=0))))
+    if len(rows) == 0:
+        return rows
+    across = footpoints_at(points[rows], sides, 1 - on.side[rows], on.u[rows], on.v[rows]).points - on.points[rows]
+    return rows[heights[rows] < -DEEP_SHARE * np.sqrt(np.sum(across**2, axis=-1))]
+
+
+def _descended(
+    on: Patches, points: Reals, patch: NDArray[np.intp], local: Reals, converged: float
+) -> tuple[Reals, Reals, Reals]:
+    """Squared distances (m,) where descents from places on patches end, and both parameters there."""
+    if not (on.degrees[1] or on.rational):
+        low = on.low[patch, 0]
+        start = low + local[:, 0] * (on.high[patch, 0] - low)
+        around, square = _descended_on_curve(on, points, start, converged=converged)
+        return square, around, np.zeros(len(points))
+    found = polished(on, points, patch, local, converged=converged)
+    return found.square, *_parameters(on, found)
+
+
+Start = tuple[NDArray[np.intp], NDArray[np.intp], Reals]
+"""points that are projected, their patches and local parameters"""
+
+
+def _ring(sides: Sequence[Side]) -> Patches:
+    """The patches of both sides as one: u runs from -1, the trailing edge, along the lower side to 0, and on to 1."""
+    upper, lower = (patches(side) for side in sides)
+    rows, columns = lower.shape
+    order = np.arange(rows * columns).reshape(rows, columns)[::-1].ravel()
+    mirror = np.array([-1.0, 1.0])
+    ends = np.where(mirror < 0.0, lower.high, lower.low), np.where(mirror < 0.0, lower.low, lower.high)
+    return Patches(
+        nets=np.concatenate([lower.nets[order, ::-1], upper.nets]),
+        low=np.concatenate([(mirror * ends[0])[order], upper.low]),
+        high=np.concatenate([(mirror * ends[1])[order], upper.high]),
+        shape=(rows + upper.shape[0], columns),
+        rational=lower.rational or upper.rational,
+    )
+
+
+def _starts(points: Reals, on: Patches) -> list[Start]:
+    """From the nearest sample, and from that on the other half where it is not much further."""
+    samples = sampled(on, *(SAMPLES if on.degrees[1] else CURVE_SAMPLES))
+    if on.degrees[1]:
+        around = 0.5 * np.abs(on.low[:, 0] + on.high[:, 0])
+        beside = np.flatnonzero((around < EDGE_PATCHES[0]) | (around > EDGE_PATCHES[1]))
+        more = sampled(replace(on, nets=on.nets[beside]), *EDGE_SAMPLES)
+        samples = Samples(
+            points=np.concatenate([samples.points, more.points]),
+            patch=np.concatenate([samples.patch, beside[more.patch]]),
+            local=np.concatenate([samples.local, more.local]),
+        )
+    lower = on.low[samples.patch, 0] < 0.0
+    halves = np.flatnonzero(lower), np.flatnonzero(~lower)
+    nearest = [cKDTree(samples.points[half]).query(points) for half in halves]
+    found = []
+    for k, half in enumerate(halves):
+        rows = np.flatnonzero(nearest[k][0] <= OTHER_SIDE_RATIO * nearest[1 - k][0])
+        index = half[nearest[k][1][rows]]
+        found.append((rows, samples.patch[index], samples.local[index]))
+    return found
+
+
+def _hinted(on: Patches, hint: Footpoints) -> list[Start]:
+    """From known feet, and from the other side of a trailing edge beside it."""
+    around = np.where(hint.side == 0, hint.u, -hint.u)
+    every, beside = np.arange(len(around)), np.flatnonzero(hint.u > 1.0 - EDGE_BAND)
+    return [(every, *on.at(around, hint.v)), (beside, *on.at(-around[beside], hint.v[beside]))]
+
+
+def footpoints_at(points: Reals, sides: Sequence[Side], side: NDArray[np.intp], u: Reals, v: Reals) -> Footpoints:
+    """Feet at known parameters."""
+    at, normals, beyond = np.empty_like(points), np.empty_like(points), np.zeros_like(points)
+    for k, shape in enumerate(sides):
+        rows = np.flatnonzero(side == k)
+        sign = 1.0 if k == 0 else -1.0
+        if isinstance(shape, Curve):
+            at[rows] = shape(u[rows])
+            along = np.asarray(shape.derivative(u[rows]))
+            normals[rows] = sign * _unit(np.stack([-along[:, 1], along[:, 0]], axis=-1))
+            continue
+        at[rows] = shape(u[rows], v[rows])
+        along, across = (np.asarray(shape.derivative(u[rows], v[rows], *order)) for order in ((1, 0), (0, 1)))
+        normals[rows] = sign * _unit(np.cross(across, along))
+        out = sign * _unit(np.cross(along, normals[rows]))
+        low, high = shape.domain_v
+        beyond[rows] = out * ((v[rows] >= high).astype(float) - (v[rows] <= low))[:, None]
+    return Footpoints(side=side, u=u, v=v, points=at, normals=normals, beyond=beyond, miss=points - at)
+
+
+def _parameters(on: Patches, found: PatchPoints) -> tuple[Reals, Reals]:
+    low, high = on.low[found.patch], on.high[found.patch]
+    place = np.where(found.local >= 1.0, high, low + found.local * (high - low))
+    return place[:, 0], place[:, 1]
+
+
+def _unit(vectors: Reals) -> Reals:
+    size = np.sqrt(np.sum(vectors**2, axis=-1, keepdims=True))
+    return np.asarray(vectors / np.where(size > 0.0, size, 1.0))

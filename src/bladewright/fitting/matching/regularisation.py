@@ -1,0 +1,100 @@
+"""What is held of a design where its cloud says nothing: smooth laws, sides alike, nothing far from the start.
+
+The rows are linear in the scaled parameters and of variance one: a search weighs them with the noise of the cloud over
+their own spread, so that they vanish beside data that are exact.
+"""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from itertools import chain
+from typing import Any
+
+import numpy as np
+
+from bladewright.designs import Design, Part
+from bladewright.fitting.families.laws import lines_of
+from bladewright.fitting.model_selection.structure import SPANWISE
+from bladewright.nurbs.basis import Reals
+from bladewright.section.unified_limits import THICKNESSES
+
+SPREAD_ABOUT_START = 3.0
+"""spread of a parameter about its start, in its own scale"""
+CHANNEL_SPREAD = 1.0
+"""the same of the channel's control points, which the cloud lets slide along their curves"""
+MERIDIANS = ("channel.", "flow_path.", "leading_edge.", "trailing_edge.")
+"""beginnings of the paths of those, and of the edge curves and walls of blades from sections"""
+BEND_SPREAD = 0.5
+"""spread of second differences of a law"""
+CAMBER_SPREAD = 0.3
+"""spread of the difference of upper and lower thickness: the camber line runs in the middle"""
+
+Terms = list[tuple[str, float]]
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Regularisation:
+    """Rows `matrix @ z - aim`, z the scaled change of the parameters."""
+
+    matrix: Reals
+    """(m, k)"""
+    aim: Reals
+    """(m,)"""
+
+
+def regularisation_of(start: Design, paths: Sequence[str], size: Reals) -> Regularisation:
+    """The prior about a start, for parameters (k,) of scale `size`."""
+    spread = np.where([path.startswith(MERIDIANS) for path in paths], CHANNEL_SPREAD, SPREAD_ABOUT_START)
+    rows, aims = [np.diag(1.0 / spread)], [np.zeros(len(paths))]
+    values = start.parameters()
+    index = {path: i for i, path in enumerate(paths)}
+    for terms, width in chain(_second_differences(start), _thickness_differences(start)):
+        free = [index[path] for path, _ in terms if path in index]
+        if not free:
+            continue
+        scale = float(np.max(size[free]))
+        row = np.zeros((1, len(paths)))
+        for path, factor in terms:
+            if path in index:
+                row[0, index[path]] += factor * size[index[path]] / (width * scale)
+        rows.append(row)
+        aims.append(np.array([-sum(factor * values[path] for path, factor in terms) / (width * scale)]))
+    return Regularisation(matrix=np.concatenate(rows), aim=np.concatenate(aims))
+
+
+def _second_differences(start: Design) -> Iterator[tuple[Terms, float]]:
+    """Second differences along the span and along the chord."""
+    for name in (*SPANWISE, *THICKNESSES, "leading_edge_theta", "leading_edge_y"):
+        grid = paths_of(name, getattr(start, name, None))
+        counts = {len(line) for line in grid}
+        lines = [*grid, *(zip(*grid, strict=True) if len(counts) == 1 else ())]
+        for line in lines:
+            yield from _second_differences_of(line)
+    if isinstance(getattr(start, "section", None), Part):
+        for line in lines_of(start.section, "section"):  # type: ignore[attr-defined]
+            yield from _second_differences_of(line)
+
+
+def _second_differences_of(line: Sequence[str]) -> Iterator[tuple[Terms, float]]:
+    for before, at, after in zip(line, line[1:], line[2:], strict=False):
+        yield [(before, 1.0), (at, -2.0), (after, 1.0)], BEND_SPREAD
+
+
+def _thickness_differences(start: Design) -> Iterator[tuple[Terms, float]]:
+    if not hasattr(start, THICKNESSES[0]):
+        return
+    above, below = (paths_of(name, getattr(start, name)) for name in THICKNESSES)
+    if [len(row) for row in above] == [len(row) for row in below]:
+        for pair in zip(chain(*above), chain(*below), strict=True):
+            yield list(zip(pair, (1.0, -1.0), strict=True)), CAMBER_SPREAD
+
+
+def paths_of(name: str, law: Any) -> list[list[str]]:
+    """Paths of a law's control points along the span, a list for each control point along the chord."""
+    if law is None:
+        return []
+    chordwise = name in THICKNESSES
+    rows = []
+    for i, entry in enumerate(law if chordwise else (law,)):
+        stem = f"{name}[{i}]" if chordwise else name
+        rows.append([f"{stem}[{j}]" for j in range(len(entry))] if isinstance(entry, tuple) else [stem])
+    return rows

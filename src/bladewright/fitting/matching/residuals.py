@@ -1,0 +1,205 @@
+"""The least-squares problem of a fit: residuals in chords and their derivatives by the scaled parameters."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from bladewright.designs import Design
+from bladewright.errors import DesignError
+from bladewright.fitting.matching.blade_ends import BladeEnds, WallPoints
+from bladewright.fitting.matching.constrained_least_squares import ConstrainedProblem
+from bladewright.fitting.matching.edge_overhang import EdgeOverhang
+from bladewright.fitting.matching.footpoints import Footpoints, concatenated, nearest_footpoints
+from bladewright.fitting.matching.regularisation import Regularisation
+from bladewright.fitting.matching.scales import Scales
+from bladewright.fitting.models.law_jacobian import LawJacobian, law_jacobian
+from bladewright.fitting.models.model import Model, ModelShape
+from bladewright.nurbs.basis import Reals
+
+EDGE_SHARE = 0.05
+"""part of a cloud that tells of its edges"""
+USUAL_EDGE_HEIGHT = (0.8, 0.2)
+"""how high the control point that sets an edge's radius usually stands, of the thickness beside it, and its spread"""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class PlacedCloud:
+    """A shape and where the cloud stands on it."""
+
+    shape: ModelShape
+    feet: Footpoints
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Residuals:
+    """What is measured of a cloud against a shape: points, ends, walls and reach, as residuals in chords."""
+
+    points: Reals
+    """(n, d) [m]"""
+    roots: Reals
+    """(n,) square roots of the points' weights"""
+    model: Model
+    ends: BladeEnds
+    reach: EdgeOverhang
+    noise: float
+    """of the cloud, in chords: what scatters more counts less"""
+    precision: Reals | None = None
+    """(n,) inverse variances of the points, relative to each other; where None, as they are weighed"""
+
+    def residuals(self, state: PlacedCloud) -> Reals:
+        """All residuals (m,), those of the points (n,) along their normals first."""
+        on, chord = state.feet, self.model.chord
+        rows = [self.roots * on.heights / chord]
+        rows.append((self.roots * np.sum(on.miss * on.beyond, axis=-1))[self.ends.near] / chord)
+        exact = state.shape.exact
+        if exact is not None:
+            rows += [self._of_wall(wall) * wall.distances(exact) / chord for wall in self.ends.walls.values()]
+        excess = self.reach.excess(self.reach.edges(state.shape.sides))
+        rows.append(self._of_edge * np.maximum(excess, 0.0) / chord)
+        return np.concatenate(rows)
+
+    def slopes(self, state: PlacedCloud, paths: Sequence[str]) -> Reals:
+        """Derivatives (m, k) by parameters, at held feet: those move along the surface only."""
+        shape, chord = state.shape, self.model.chord
+        every, edges = np.split(self.model.along(shape, *self.places(state), paths), [-len(self.reach.u)])
+        blocks = [every]
+        for wall in self.ends.walls.values():
+            if shape.exact is not None:
+                t, normal, _ = wall.misses(shape.exact)
+                moving = wall.rates(shape, t, paths)
+                blocks.append(-self._of_wall(wall) * np.einsum("nkd,nd->nk", moving, normal))
+        return np.concatenate([*blocks, edges]) / chord
+
+    def motion(self, state: PlacedCloud, paths: Sequence[str]) -> LawJacobian:
+        """How the residuals (m,) of a blade of the unified family move with what its parameters are made of."""
+        shape, chord = state.shape, self.model.chord
+        on, ways = self.places(state)
+        chain = law_jacobian(shape.exact, self.model.knots, on, ways / chord, paths)  # type: ignore[attr-defined]
+        count, before = len(chain.sites), len(on.u) - len(self.reach.u)
+        misses = {name: (wall, *wall.misses(shape.exact)) for name, wall in self.ends.walls.items()}
+        moves = {}
+        for step, rows in chain.moves.items():
+            parts = [rows[:before]]
+            for name, (wall, t, normal, _) in misses.items():
+                rate = np.zeros(len(t))
+                if step[0] == name and not isinstance(step, str):
+                    rate = -self._of_wall(wall) * wall.basis(shape.exact, t)[:, step[1]] * normal[:, step[2]] / chord
+                parts.append(np.tile(rate[:, None] / count, (1, count)))
+            moves[step] = np.concatenate([*parts, rows[before:]])
+        return replace(chain, moves=moves)
+
+    def places(self, state: PlacedCloud) -> tuple[Footpoints, Reals]:
+        """The places on the sides whose motion changes residuals, and the directions (n, d) that count.
+
+        Those of the points, those of points past an end, and those of the edges' reach, last.
+        """
+        on, near = state.feet, self.ends.near
+        edges = self.reach.edges(state.shape.sides)
+        ways = [-self.roots[:, None] * on.normals, -(self.roots[:, None] * on.beyond)[near]]
+        ways.append(edges.normals * (self._of_edge * (self.reach.excess(edges) > 0.0))[:, None])
+        return concatenated([on, on.part(near), edges]), np.concatenate(ways)
+
+    def _of_wall(self, wall: WallPoints) -> float:
+        """Weight of a wall's places: one where they stand in a row, less where they scatter."""
+        spread = wall.spread / self.model.chord
+        return self.noise / max(self.noise, spread) if spread > 0.0 else 1.0
+
+    @property
+    def _of_edge(self) -> float:
+        """Weight as of so many points, which the part of the cloud has that tells of an edge."""
+        return float(np.sqrt(max(1.0, EDGE_SHARE * len(self.points) / max(1, len(self.reach.u)))))
+
+
+class MatchProblem(ConstrainedProblem):
+    """Residuals of a cloud, of noses that are not as usual, and of the prior; noses may not exceed their thickness."""
+
+    def __init__(
+        self,
+        *,
+        measures: Residuals,
+        start: Design,
+        paths: Sequence[str],
+        scales: Scales,
+        prior: Regularisation,
+        alone: float,
+        hint: Footpoints,
+        margin: float = 0.0,
+    ) -> None:
+        self.measures, self.model = measures, measures.model
+        self.start, self.paths, self.scales, self.margin = start, tuple(paths), scales, margin
+        self.noise = measures.noise
+        self.trust = self.noise / float(np.sqrt(alone))
+        """what the spread of the noses is measured by: larger where points repeat each other"""
+        self.prior = Regularisation(matrix=prior.matrix * self.noise, aim=prior.aim * self.noise)
+        self.first = self.values_of(start)
+        self.evaluations, self._least = 0, np.inf
+        self._hint = hint
+        self.best = np.zeros(len(self.paths))
+        """of all that were asked"""
+        self._last: tuple[bytes, PlacedCloud | None] = (b"", None)
+
+    @property
+    def bounds(self) -> tuple[Reals, Reals]:
+        """Lowest and highest scaled change."""
+        return (self.scales.low - self.first) / self.scales.size, (self.scales.high - self.first) / self.scales.size
+
+    def values_of(self, design: Design) -> Reals:
+        """The parameters (k,) of a design, in the units of their fields."""
+        values = design.parameters()
+        return np.array([float(values[path]) for path in self.paths])
+
+    def vector(self, design: Design) -> Reals:
+        """The scaled change (k,) of a design."""
+        return (self.values_of(design) - self.first) / self.scales.size
+
+    def design(self, z: Reals) -> Design:
+        """The design of a scaled change (k,)."""
+        values = self.first + z * self.scales.size
+        return self.start.changed({path: float(value) for path, value in zip(self.paths, values, strict=True)})
+
+    def state(self, z: Reals) -> PlacedCloud | None:
+        """The shape and the cloud's feet; None where there is no such shape."""
+        key = z.tobytes()
+        if self._last[0] != key:
+            self._last = key, self._state(z)
+        return self._last[1]
+
+    def _state(self, z: Reals) -> PlacedCloud | None:
+        self.evaluations += 1
+        try:
+            shape = self.model.shape(self.design(z))
+        except DesignError:
+            return None
+        if not shape.finite:
+            return None
+        self._hint = nearest_footpoints(self.measures.points, shape.sides, self._hint)
+        return PlacedCloud(shape=shape, feet=self._hint)
+
+    def values(self, z: Reals) -> tuple[Reals, Reals] | None:
+        """All residuals (m,), and (c,) by how much noses exceed the thickness beside them and the channel folds."""
+        state = self.state(z)
+        if state is None:
+            return None
+        full = self._of_noses(state.shape) * (np.ravel(state.shape.noses[1]) - USUAL_EDGE_HEIGHT[0])
+        rows = np.concatenate([self.measures.residuals(state), full, self.prior.matrix @ z - self.prior.aim])
+        held = np.concatenate([np.ravel(state.shape.noses[0]) + self.margin, state.shape.folds])
+        cost = float(rows @ rows) * (1.0 + 1e3 * float(np.max(held, initial=0.0)))
+        if cost < self._least:
+            self._least, self.best = cost, np.array(z)
+        return rows, held
+
+    def derivatives(self, z: Reals) -> tuple[Reals, Reals]:
+        """Those (m, k) of all residuals and those (c, k) of the noses."""
+        state = self.state(z)
+        if state is None:
+            raise DesignError("there is no shape to differentiate: start from a design that can be built")
+        noses = self.model.nose_rates(state.shape, self.paths)
+        held, full = (noses[:, i].reshape(len(self.paths), -1).T for i in (0, 1))
+        held = np.concatenate([held, self.model.fold_rates(state.shape, self.paths).T])
+        rows = np.concatenate([self.measures.slopes(state, self.paths), self._of_noses(state.shape) * full])
+        return np.concatenate([rows * self.scales.size, self.prior.matrix]), held * self.scales.size
+
+    def _of_noses(self, shape: ModelShape) -> float:
+        stations = max(shape.noses[0].size / 4.0, 1.0)
+        return self.trust / (USUAL_EDGE_HEIGHT[1] * float(np.sqrt(stations)))

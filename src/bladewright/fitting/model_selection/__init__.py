@@ -1,0 +1,1 @@
+"""How many control points a design has: what a cloud asks for, predicted, added and taken away."""

@@ -1,0 +1,232 @@
+"""The structure of a design as its cloud asks for it: control points are added until an aim is reached."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from bladewright.designs import Design
+from bladewright.errors import DesignError
+from bladewright.fitting.clouds.cloud import is_rounded
+from bladewright.fitting.clouds.thinning import drawn
+from bladewright.fitting.free_parameters import corner_radii
+from bladewright.fitting.matching.constrained_least_squares import MIN_REDUCTION
+from bladewright.fitting.matching.search import MOST_ROUNDS, ROUGH_REDUCTION, Match, Task, searched
+from bladewright.fitting.model_selection.best_structure import best_match_of_size, smallest_match
+from bladewright.fitting.model_selection.given_structure import (
+    GUESS_NOISE,
+    QUICK_ROUNDS,
+    QUIET_SHARE,
+    has_systematic_misfit,
+    matched_structure,
+    reduced_to,
+)
+from bladewright.fitting.model_selection.growth import gained_little, grown_match, with_grown_thickness
+from bladewright.fitting.model_selection.identification import identified_section
+from bladewright.fitting.model_selection.reshaping import reshaped, with_feasible_edges
+from bladewright.fitting.model_selection.steps import FEWEST_THICKNESSES
+from bladewright.fitting.model_selection.stopping import NOISE_CORRELATION, MatchTarget, needs_more
+from bladewright.fitting.model_selection.structure import Structure, structure_of
+from bladewright.fitting.model_selection.tolerance import match_within_tolerance
+from bladewright.fitting.models.law_jacobian import stands_on_channel
+from bladewright.section.unified import UnifiedSection
+
+RESTART_NOISE = 0.03
+"""noise from which a match of a section is tried once more, of the chord"""
+FINEST_RESTART = 1e-6
+"""misfit at which it is not, of that"""
+FINAL_REDUCTION = 1e-3
+"""part of the cost that a step of the last search must promise, where the cloud is not taken for exact"""
+QUICK_POINTS, THOROUGH_POINTS = {2: 2500, 3: 1000}, 12_000
+"""points of a quick, by dimension, and of a thorough search"""
+TOLERANCE_POINTS = 2500
+"""points with which a blade grows towards a tolerance, which asks for every row of them"""
+REFUSED_MARGIN = 30.0
+"""by how much noses are held further from what is refused, where a design is"""
+COMPACT_RMS = 0.5
+"""root mean square distance, of a tolerance, with which a blade begins to grow towards it"""
+NEARLY_WITHIN = (0.3, 0.02)
+"""root mean square distance, of a tolerance, and part of the points beyond it with which no more is added at first"""
+GROWTH_GAIN = 0.7
+"""misfit, of that before, with which a match that had settled goes on growing"""
+MOST_GROWTHS = 40
+"""times that more is added at most"""
+ROW_SPREAD = 1e-3
+"""spread of the points at an end below which they stand in a row on the wall, of the chord"""
+CORNERS_HELD_NOTE = (
+    "the radii of the channel's corners are read off the points at hub and shroud, held, and not counted"
+)
+
+
+def selected_match(
+    task: Task, first: Design, aim: MatchTarget, *, base: Structure | None, guessed: bool
+) -> tuple[Match, str]:
+    """The match, and why it ends where no aim is met.
+
+    `first` is a first design, a guess or a start; `base` the structure from which to grow, where it is not that of
+    `first`.
+    """
+    few = task.part(drawn(len(task.points), QUICK_POINTS[task.points.shape[1]]))
+    several, many = (task.part(drawn(len(task.points), most)) for most in (TOLERANCE_POINTS, THOROUGH_POINTS))
+    noise = GUESS_NOISE if guessed else None
+    if aim.structured and aim.tolerance is None:
+        return matched_structure(few, many, first, base, guessed=guessed), ""
+    found = searched(
+        few, first, noise=noise, rounds=2 * QUICK_ROUNDS if base is None else QUICK_ROUNDS, slight=ROUGH_REDUCTION
+    )
+    exact = guessed and aim.open and not is_rounded(task.points)
+    if exact and isinstance(first, UnifiedSection) and has_systematic_misfit(found, QUIET_SHARE):
+        known = identified_section(few, first)
+        if known is not None:
+            return (known if known.interrupted else searched(many, known.design)), ""
+    standing, everything = aim.parameters is not None and _ends_in_rows(found), few
+    if standing:
+        few, many = _with_corners_held(few), _with_corners_held(many)
+    found, reason = _match_for_target(few, several, found, aim, base, guessed=guessed)
+    if standing:
+        reason = CORNERS_HELD_NOTE
+        found = found if found.interrupted else searched(everything, found.design, rounds=1, slight=ROUGH_REDUCTION)
+    if found.interrupted:
+        return found, reason
+    rounds = MOST_ROUNDS
+    if task.points.shape[1] == 3 and not aim.open:
+        # growth to a tolerance has weighed points by their distances, and what follows does so too
+        rounds = QUICK_ROUNDS if aim.tolerance is None else 0
+    if task.points.shape[1] == 3 and not aim.open and _refused(found):
+        many = replace(many, slack=REFUSED_MARGIN * many.slack)
+    found = searched(many, found.design, rounds=rounds, slight=MIN_REDUCTION if aim.open else FINAL_REDUCTION)
+    if guessed and task.points.shape[1] == 2:
+        found = _restarted(many, found)
+    elif guessed and aim.open:
+        found = _grown_further(several, many, found, aim)
+    if aim.tolerance is not None and (not reason or found.scatter.shared >= NOISE_CORRELATION):
+        found = match_within_tolerance(many, found, aim, aim.tolerance)
+        reason = reason if found.maximum > aim.tolerance else ""
+    return found, reason
+
+
+def _match_for_target(
+    task: Task, several: Task, found: Match, aim: MatchTarget, base: Structure | None, *, guessed: bool
+) -> tuple[Match, str]:
+    """A match with as many control points as the aim asks for, as forecasts or growth lead there, or why not."""
+    solid = guessed and task.points.shape[1] == 3 and stands_on_channel(found.design) and not found.interrupted
+    if solid and aim.parameters is not None:
+        foreseen = best_match_of_size(task, found, aim.parameters)
+        if foreseen is not None:
+            return foreseen, ""
+    if solid and aim.tolerance is not None:
+        if found.rms * found.model.chord > aim.tolerance:
+            found = best_match_of_size(task, found, len(found.problem.paths)) or found
+        if found.rms * found.model.chord < COMPACT_RMS * aim.tolerance:
+            found = smallest_match(task, found, COMPACT_RMS * aim.tolerance) or found
+        if not found.interrupted:
+            task = several
+            measured = searched(task, found.design, rounds=0)
+            found = replace(measured, evaluations=measured.evaluations + found.evaluations)
+    elif solid:
+        # forecasts are linear: they tell of more the nearer a match is
+        found = searched(task, found.design, noise=found.rms, slight=ROUGH_REDUCTION)
+        found = best_match_of_size(task, found, len(found.problem.paths)) or found
+    elif base is not None and not found.interrupted and _has_spare_parameters(found, aim):
+        found = reduced_to(task, found, base)
+    return _grown_to_target(task, found, aim)
+
+
+def _grown_to_target(task: Task, found: Match, aim: MatchTarget) -> tuple[Match, str]:
+    """A match with as many control points as the aim asks for, or why there are no more."""
+    reason = ""
+    for _ in range(MOST_GROWTHS):
+        if found.interrupted:
+            return found, ""
+        short, reason = needs_more(found, aim, task)
+        if not short or _nearly_within_tolerance(found, aim):
+            break
+        before = found.rms
+        found, grew = grown_match(task, found, aim)
+        if not grew:
+            found, grew = with_grown_thickness(task, found, aim)
+        if not grew or gained_little(task, found, aim, before):
+            break
+    if aim.parameters is not None and task.points.shape[1] == 2:
+        found = _thickness_shared_out(task, found)
+    return found, reason
+
+
+def _grown_further(several: Task, many: Task, found: Match, aim: MatchTarget) -> Match:
+    """A match that grows on where it has settled at a misfit that is no noise: forecasts are truer the nearer it is."""
+    while has_systematic_misfit(found):
+        more, grew = grown_match(several, found, aim)
+        if not grew:
+            break
+        fresh = more if more.interrupted else searched(many, more.design)
+        if fresh.misfit > GROWTH_GAIN * found.misfit:
+            return replace(found, interrupted=fresh.interrupted)
+        found = fresh
+    return found
+
+
+def _nearly_within_tolerance(found: Match, aim: MatchTarget) -> bool:
+    """Whether all but a few points of a blade keep a tolerance: weighing those more may do."""
+    on = found.state.feet
+    if (
+        aim.tolerance is None
+        or on.points.shape[1] == 2
+        or found.rms * found.model.chord > NEARLY_WITHIN[0] * aim.tolerance
+    ):
+        return False
+    return bool(np.mean(on.distances[found.rows] > aim.tolerance) < NEARLY_WITHIN[1])
+
+
+def _thickness_shared_out(task: Task, found: Match) -> Match:
+    """The best of the ways to share the control points of a section's thickness between its sides."""
+    for way in (1, -1):
+        while not found.interrupted:
+            structure = structure_of(found.design)
+            upper, lower = structure.chordwise[0] + way, structure.chordwise[1] - way
+            if min(upper, lower) < FEWEST_THICKNESSES:
+                break
+            design = with_feasible_edges(reshaped(found.design, replace(structure, chordwise=(upper, lower))))
+            other = searched(task, design, rounds=QUICK_ROUNDS + 1, noise=found.rms, slight=ROUGH_REDUCTION)
+            evaluations = found.evaluations + other.evaluations
+            if not (other.rms < found.rms or other.interrupted):
+                found = replace(found, evaluations=evaluations)
+                break
+            found = replace(other, evaluations=evaluations)
+    return found
+
+
+def _restarted(task: Task, found: Match) -> Match:
+    """The better of a match and of one that starts from it as if it knew little: a nose may lie in a wrong place."""
+    if found.interrupted or found.rms < RESTART_NOISE * FINEST_RESTART:
+        return found
+    other = searched(task, found.design, noise=RESTART_NOISE)
+    # of all points: a match that takes more of them for outliers is no nearer
+    nearer = other if other.off < found.off and other.rms < found.rms else found
+    evaluations = found.evaluations + other.evaluations
+    return replace(nearer, evaluations=evaluations, interrupted=other.interrupted)
+
+
+def _refused(found: Match) -> bool:
+    """Whether a design that searches pass is refused when it is built: its noses must be held further off."""
+    try:
+        found.design.build()
+    except DesignError:
+        return True
+    return False
+
+
+def _ends_in_rows(found: Match) -> bool:
+    """Whether the cloud shows by rows of points where hub and shroud are."""
+    walls = found.ends.walls
+    return len(walls) == 2 and all(wall.spread < ROW_SPREAD * found.model.chord for wall in walls.values())
+
+
+def _with_corners_held(task: Task) -> Task:
+    """A task that holds the radii of the channel's corners."""
+    return replace(task, free=lambda design: tuple(p for p in task.free(design) if p not in corner_radii(design)))
+
+
+def _has_spare_parameters(found: Match, aim: MatchTarget) -> bool:
+    """Whether a first design has more parameters than its cloud may need, or than are asked for."""
+    if aim.tolerance is not None and found.rms * found.model.chord > aim.tolerance:
+        return False
+    return aim.parameters is None or len(found.problem.paths) > aim.parameters

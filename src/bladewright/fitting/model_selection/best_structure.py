@@ -1,0 +1,153 @@
+"""The structure of so many parameters that is predicted to leave least: control points go, and are exchanged."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from bladewright.errors import FitError
+from bladewright.fitting.matching.search import ROUGH_REDUCTION, Match, Task, searched
+from bladewright.fitting.model_selection.forecast import Forecast, forecast_of
+from bladewright.fitting.model_selection.steps import (
+    StructureStep,
+    intersection_of,
+    steps_down,
+    steps_taken_together,
+    steps_up,
+    union_of,
+    widest_reach,
+)
+from bladewright.fitting.model_selection.structure import Structure, structure_of
+from bladewright.nurbs.basis import Reals
+
+SHARE_AT_ONCE = 4
+"""part, one in so many, of the parameters that are too many which is taken away at a time"""
+EXCHANGES, EXCHANGES_TRIED = 6, 3
+"""of control points, and laws that are tried each time"""
+EXCHANGE_GAIN = 0.995
+"""foreseen cost, of that before, from which an exchange is worth it"""
+FEWEST_PARAMETERS, REDUCTION = 16, 0.85
+"""parameters below which none are taken away before a match, and part of them that is left each time"""
+STAGES = 4
+"""searches, each with the structure that the last one's forecast gives"""
+
+
+def best_match_of_size(task: Task, found: Match, most: int) -> Match | None:
+    """The match with at most so many free parameters that forecasts lead to; None where there are no forecasts."""
+    best = found if len(found.problem.paths) <= most else None
+    for stage in range(STAGES):
+        now = structure_of(found.design)
+        forecast = forecast_of(found, widest_reach(now))
+        if forecast is None:
+            return best if stage else None
+        structure = best_structure(forecast, now, most - _parameters_outside(found, forecast))
+        if structure == now and best is not None:
+            break
+        try:
+            start = forecast.designed(structure, forecast.foreseen(structure))
+            fresh = searched(task, start, rounds=1, noise=found.rms, slight=ROUGH_REDUCTION)
+        except FitError:
+            break
+        fresh = replace(fresh, evaluations=fresh.evaluations + found.evaluations)
+        if best is not None and not fresh.misfit < best.misfit:
+            break
+        best = found = fresh
+        if found.interrupted:
+            break
+    return best
+
+
+def smallest_match(task: Task, found: Match, rms: float) -> Match | None:
+    """The match with as few parameters as are foreseen to leave a root mean square [m]; None without forecasts."""
+    structure = structure_of(found.design)
+    forecast = forecast_of(found, structure)
+    if forecast is None:
+        return None
+    count = forecast.foreseen(structure).parameters
+    while count > FEWEST_PARAMETERS:
+        structure = _reduced(forecast, structure, int(REDUCTION * count), None)
+        told = forecast.foreseen(structure)
+        left = float(np.sqrt(np.mean(told.rows[: forecast.points] ** 2))) * found.model.chord
+        if left > rms or told.parameters == count:
+            break
+        count = told.parameters
+    return best_match_of_size(task, found, count + _parameters_outside(found, forecast))
+
+
+def _parameters_outside(found: Match, forecast: Forecast) -> int:
+    """Free parameters that no structure has a say in."""
+    return len(found.problem.paths) - forecast.foreseen(structure_of(found.design)).parameters
+
+
+def best_structure(forecast: Forecast, structure: Structure, most: int, roots: Reals | None = None) -> Structure:
+    """The structure of at most so many parameters that a forecast prefers, beginning with one of more or of fewer."""
+    found = _extended(forecast, _reduced(forecast, structure, most, roots), most, roots)
+    cost = forecast.foreseen(found, roots).cost
+    for _ in range(EXCHANGES):
+        ups = ranked_steps(forecast, found, roots)[:EXCHANGES_TRIED]
+        for _, step in ups:
+            other = _extended(forecast, _reduced(forecast, step.structure, most, roots), most, roots)
+            fresh = forecast.foreseen(other, roots).cost
+            if fresh < EXCHANGE_GAIN * cost:
+                found, cost = other, fresh
+                break
+        else:
+            break
+    return found
+
+
+def _reduced(forecast: Forecast, structure: Structure, most: int, roots: Reals | None) -> Structure:
+    """A structure with at most so many parameters: what is foreseen to cost least goes first."""
+    while True:
+        now = forecast.foreseen(structure, roots)
+        over = now.parameters - most
+        if over <= 0:
+            return structure
+        names = set(forecast.names())
+        steps = [step for step in steps_down(structure) if step.law in names]
+        if not steps:
+            return structure
+        costs = forecast.costs(structure, [(step.law, step.structure) for step in steps], roots)
+        order = sorted(zip(costs, steps, strict=True), key=lambda pair: (pair[0] - now.cost) / pair[1].parameters)
+        taken: list[StructureStep] = []
+        left = max(1, over // SHARE_AT_ONCE)
+        for _, step in order:
+            if not taken or (step.parameters <= left and step.law not in {each.law for each in taken}):
+                taken.append(step)
+                left -= step.parameters
+            if left <= 0:
+                break
+        structure = intersection_of(taken)
+
+
+def _extended(forecast: Forecast, structure: Structure, most: int, roots: Reals | None) -> Structure:
+    """A structure with as many parameters as there may be: what is foreseen to gain most comes first."""
+    while True:
+        room = most - forecast.foreseen(structure, roots).parameters
+        fitting = [(gain, step) for gain, step in ranked_steps(forecast, structure, roots) if step.parameters <= room]
+        if not fitting or fitting[0][0] <= 0.0:
+            return structure
+        structure = union_of(
+            structure, steps_taken_together(fitting, max(fitting[0][1].parameters, room // SHARE_AT_ONCE))
+        )
+
+
+def ranked_steps(
+    forecast: Forecast, structure: Structure, roots: Reals | None = None
+) -> list[tuple[float, StructureStep]]:
+    """Steps that a forecast can tell of with what each is foreseen to gain, best for each parameter first."""
+    names = set(forecast.names())
+    steps = [step for step in steps_up(structure) if step.law in names and _is_within(step.structure, forecast.widest)]
+    if not steps:
+        return []
+    now = forecast.foreseen(structure, roots).cost
+    costs = forecast.costs(structure, [(step.law, step.structure) for step in steps], roots)
+    return sorted(
+        ((now - cost, step) for cost, step in zip(costs, steps, strict=True)),
+        key=lambda pair: -pair[0] / pair[1].parameters,
+    )
+
+
+def _is_within(structure: Structure, widest: Structure) -> bool:
+    """Whether a structure is nowhere wider along the chord and the walls than the widest."""
+    chord = all(own <= most for own, most in zip(structure.chordwise, widest.chordwise, strict=True))
+    return chord and all(structure.channel[wall] <= widest.channel[wall] for wall in ("hub", "shroud"))

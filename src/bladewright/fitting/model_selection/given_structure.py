@@ -1,0 +1,134 @@
+"""The match of a structure that is given: of an exact cloud the design that it was drawn from."""
+
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from bladewright.designs import Design
+from bladewright.errors import FitError
+from bladewright.fitting.clouds.thinning import drawn
+from bladewright.fitting.matching.search import MOST_ROUNDS, ROUGH_REDUCTION, Match, Task, searched
+from bladewright.fitting.model_selection.identification import KNOWN_MISFIT, nearest_trial
+from bladewright.fitting.model_selection.reshaping import reshaped
+from bladewright.fitting.model_selection.stopping import NOISE_CORRELATION
+from bladewright.fitting.model_selection.structure import Structure, structure_of
+from bladewright.section.unified import UnifiedSection
+
+GUESS_NOISE = 3e-3
+"""noise of the first round where the start is a guess, of the chord"""
+QUICK_ROUNDS = 2
+"""rounds of a first search"""
+WEAK_REGULARISATION = 0.1
+"""strength of the prior where a match is only made better, of the usual"""
+QUIET_SHARE, CLEAR_SHARE = 0.1, 0.5
+"""part of the misfit that is noise up to which a cloud may be exact, after a quick search and after a thorough one"""
+EXACT_TURNS, EXACT_GAIN = 3, 0.5
+"""turns in which an exact design is sought, and ratio of the misfits of the two searches from which there is another"""
+FURTHER_ROUNDS = 20
+"""rounds in which a given structure is sought in a cloud that may be exact"""
+EDGE_BANDS, END_BAND = (0.03, 0.9), 0.02
+"""places in u before and after which points tell of the edges, and in v of the ends"""
+NEARLY_EXACT = 1e-6
+"""misfit of those points from which all are asked, of the chord"""
+EDGE_POINTS, OTHER_POINTS = 2500, 1000
+"""points with which an exact design is sought: of those that tell of edges and ends, and of all"""
+
+
+def matched_structure(few: Task, many: Task, first: Design, base: Structure | None, *, guessed: bool) -> Match:
+    """The match with the structure of a first design, or with that of `base`; that of some points comes first."""
+    found = searched(
+        few, first, noise=GUESS_NOISE if guessed else None, rounds=MOST_ROUNDS if base is None else QUICK_ROUNDS
+    )
+    if guessed and isinstance(first, UnifiedSection) and found.rms > KNOWN_MISFIT and has_systematic_misfit(found):
+        other = nearest_trial(few, first, [structure_of(first)])
+        if other is not None:
+            nearer = min((found, other), key=lambda each: each.rms)
+            found = replace(nearer, interrupted=other.interrupted)
+    if base is not None and structure_of(found.design) != base and not found.interrupted:
+        found = reduced_to(few, found, base)
+    if found.interrupted:
+        return found
+    found = searched(many, found.design) if base is None or not guessed else _exact_or_nearest(many, found)
+    if found.rms < KNOWN_MISFIT and not np.all(found.scatter.inliers) and not found.interrupted:
+        # points past the ends of an exact match are none, if it can be widened to hold them too
+        whole = searched(replace(many, outlying=False), found.design)
+        found = whole if whole.rms < KNOWN_MISFIT else found
+    return _weakly_regularised(many, found)
+
+
+def _exact_or_nearest(task: Task, found: Match) -> Match:
+    """The match with all points, or the exact design, which is sought by turns with and without what seems to lie off.
+
+    Where the one search stands still the other may go on: a wrong foot holds the first, a short edge the second.
+    """
+    most = QUIET_SHARE
+    for _ in range(EXACT_TURNS):
+        exact = _exact_match(task, found, most)
+        if exact is not None and (exact.rms < KNOWN_MISFIT or exact.interrupted):
+            return exact
+        before = np.inf if exact is None else exact.rms
+        start = exact or found
+        found = searched(task, start.design)
+        found = replace(found, evaluations=start.evaluations + found.evaluations)
+        if (
+            found.interrupted
+            or found.rms < KNOWN_MISFIT
+            or found.rms > EXACT_GAIN * before
+            or (exact is None and most > QUIET_SHARE)
+        ):
+            break
+        most = CLEAR_SHARE
+    return found
+
+
+def _exact_match(task: Task, found: Match, most: float) -> Match | None:
+    """The exact design near one, or the same where none is nearer; None where the cloud is not exact.
+
+    Such a cloud has no outliers, and edges and ends that are not yet found look like some. The noise is `most` of its
+    misfit at most.
+    """
+    every = searched(task, found.design, rounds=0)
+    if not has_systematic_misfit(every, most):
+        return None
+    exact_task = replace(task, outlying=False)
+    exact = searched(
+        exact_task.part(_informative_points(every)), found.design, noise=GUESS_NOISE, rounds=FURTHER_ROUNDS
+    )
+    evaluations = found.evaluations + exact.evaluations
+    if exact.rms < NEARLY_EXACT and not exact.interrupted:
+        exact = searched(exact_task, exact.design)
+        evaluations += exact.evaluations
+    return replace(exact if exact.interrupted or exact.rms < every.rms else found, evaluations=evaluations)
+
+
+def _informative_points(found: Match) -> NDArray[np.intp]:
+    """Points that tell of edges and ends, which few points of a cloud may leave open, and some of all."""
+    on = found.state.feet
+    beside = (on.u < EDGE_BANDS[0]) | (on.u > EDGE_BANDS[1]) | (on.v < END_BAND) | (on.v > 1.0 - END_BAND)
+    rows = np.flatnonzero(beside)
+    return np.union1d(rows[drawn(len(rows), EDGE_POINTS)], drawn(len(on.u), OTHER_POINTS))
+
+
+def has_systematic_misfit(found: Match, most: float = np.inf) -> bool:
+    """Whether a search came to its end at a misfit that is no noise, and of which the noise is `most` at most."""
+    quiet = found.scatter.noise < most * found.rms * found.model.chord
+    return quiet and found.scatter.shared > NOISE_CORRELATION and not found.interrupted
+
+
+def reduced_to(task: Task, found: Match, base: Structure) -> Match:
+    """A match with the structure from which to grow, or the one before where its laws leave no shape so."""
+    try:
+        return searched(
+            task, reshaped(found.design, base), noise=GUESS_NOISE, rounds=2 * QUICK_ROUNDS, slight=ROUGH_REDUCTION
+        )
+    except FitError:
+        return found
+
+
+def _weakly_regularised(task: Task, found: Match) -> Match:
+    """A match whose misfit is noise, with a prior so weak that it does not shift what the points determine."""
+    if found.interrupted or found.scatter.shared > NOISE_CORRELATION:
+        return found
+    weak = searched(replace(task, smooth=WEAK_REGULARISATION), found.design, rounds=2)
+    return replace(weak, evaluations=found.evaluations + weak.evaluations)

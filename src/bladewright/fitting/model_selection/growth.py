@@ -1,0 +1,203 @@
+"""A match with more control points, those that are predicted to gain most."""
+
+from collections.abc import Iterator
+from dataclasses import replace
+
+import numpy as np
+
+from bladewright.designs import Design
+from bladewright.errors import FitError
+from bladewright.fitting.matching.search import ROUGH_REDUCTION, Match, Task, searched
+from bladewright.fitting.model_selection.best_structure import best_structure
+from bladewright.fitting.model_selection.forecast import Forecast, forecast_of
+from bladewright.fitting.model_selection.reshaping import reshaped, with_feasible_edges
+from bladewright.fitting.model_selection.steps import (
+    MOST_CURVE,
+    MOST_SPAN,
+    StructureStep,
+    gains,
+    row_factors,
+    steps_taken_together,
+    steps_up,
+    tolerance_weights,
+    union_of,
+    widest_reach,
+)
+from bladewright.fitting.model_selection.stopping import MatchTarget
+from bladewright.fitting.model_selection.structure import structure_of
+from bladewright.fitting.models.law_jacobian import stands_on_channel
+from bladewright.nurbs.basis import Reals
+from bladewright.section.unified_limits import THICKNESSES
+
+EDGE_BAND = 0.05
+"""how near to an edge, in u, a deviation is one of it"""
+FEW_BEYOND = 0.1
+"""part of the points beyond the tolerance from which it is the whole blade that is not matched yet"""
+GATHERED_AT_EDGE = 0.25
+"""part of those that lie beside an edge from which its laws grow"""
+EDGE_LAWS = {
+    "leading_edge": ("place", "leading_edge_radius", "metal_angle_in"),
+    "trailing_edge": ("stagger", "trailing_edge_radius", "metal_angle_out"),
+}
+"""laws along the span that place an edge and round it, besides its curve in the channel"""
+
+
+def edge_steps(found: Match, tolerance: float) -> list[StructureStep]:
+    """The steps, by half as many control points each, of the edges that stay beyond a tolerance [m]."""
+    on, rows = found.state.feet, found.rows
+    beyond = rows & (on.distances > tolerance)
+    structure = structure_of(found.design)
+    if not structure.channel or not np.any(beyond) or np.mean(beyond[rows]) > FEW_BEYOND:
+        return []
+    steps = []
+    for edge, beside in (("leading_edge", on.u < EDGE_BAND), ("trailing_edge", on.u > 1.0 - EDGE_BAND)):
+        if np.mean(beside[beyond]) < GATHERED_AT_EDGE:
+            continue
+        counts = {name: _half_more(structure.span[name], MOST_SPAN) for name in EDGE_LAWS[edge]}
+        curve = _half_more(structure.channel[edge], MOST_CURVE)
+        added = sum(count - structure.span[name] for name, count in counts.items())
+        added += 2 * (curve - structure.channel[edge])
+        if added:
+            wider = replace(structure, span={**structure.span, **counts}, channel={**structure.channel, edge: curve})
+            steps.append(StructureStep(fields=(*EDGE_LAWS[edge], f"channel.{edge}"), structure=wider, parameters=added))
+    return steps
+
+
+def _half_more(count: int, most: int) -> int:
+    return max(count, min(most, count + max(1, count // 2)))
+
+
+FAR_SECTION = 5e-5
+"""root mean square distance, of the chord, above which a section is tried with more"""
+THICKNESS_GROWTHS = 3
+"""times that both thicknesses grow before it is given up"""
+NEARER_RATIO = 0.9
+"""ratio of the distances from which a try is taken"""
+NEAR_ENOUGH = {2: FAR_SECTION, 3: 1e-3}
+"""root mean square distance, of the chord, below which a section, or a blade, is near enough"""
+LITTLE_GAIN = {2: 0.75, 3: 0.9}
+"""ratio of the distances above which one that is near enough grows no more"""
+
+
+def with_grown_thickness(task: Task, found: Match, aim: MatchTarget) -> tuple[Match, bool]:
+    """A section with more control points of both thicknesses, and whether it is nearer.
+
+    Where thicknesses stand on their bounds, as at a sharp edge, what growth gains cannot be foreseen linearly: the
+    step that is foreseen for the fewer ones leads out of the bounds.
+    """
+    structure = structure_of(found.design) if task.points.shape[1] == 2 else None
+    if structure is None or not aim.open or found.rms < FAR_SECTION:
+        return found, False
+    evaluations = found.evaluations
+    for _ in range(THICKNESS_GROWTHS):
+        steps = [step for step in steps_up(structure) if set(step.fields) <= set(THICKNESSES)]
+        if not steps or not any(path.startswith(THICKNESSES) for path in found.problem.paths):
+            break
+        structure = union_of(structure, steps)
+        try:
+            fresh = searched(
+                task,
+                with_feasible_edges(reshaped(found.design, structure)),
+                rounds=2,
+                noise=found.rms,
+                slight=ROUGH_REDUCTION,
+            )
+        except FitError:
+            break
+        evaluations += fresh.evaluations
+        if fresh.interrupted or fresh.rms < NEARER_RATIO * found.rms:
+            return replace(fresh, evaluations=evaluations), True
+    return replace(found, evaluations=evaluations), False
+
+
+def gained_little(task: Task, found: Match, aim: MatchTarget, before: float) -> bool:
+    """Whether a match is near enough, and growth from a distance `before`, of the chord, brought it little nearer."""
+    dimension = task.points.shape[1]
+    return aim.open and LITTLE_GAIN[dimension] * before < found.rms < NEAR_ENOUGH[dimension]
+
+
+WORTHWHILE_GAIN = 0.02
+"""part of the sum of squares that growth must be foreseen to gain"""
+NEAR_MISFIT, WORTHWHILE_GAIN_NEAR = 1e-3, 0.2
+"""misfit, of the chord, below which a blade is near enough for a tenth more parameters to be worth that part instead"""
+SHARE_ADDED = 3
+"""part, one in so many, of the parameters that are left, or far from a tolerance of those that are there, which is
+added at a time"""
+MANY_PARAMETERS, SHARE_ADDED_NEAR = 50, 10
+"""parameters from which one in so many is added at a time near a tolerance"""
+FAR_OF_TOLERANCE = 0.4
+"""of the tolerance: root mean square that is far"""
+
+
+def grown_match(task: Task, found: Match, aim: MatchTarget) -> tuple[Match, bool]:
+    """The match with the control points that promise most, and whether there were any."""
+    emphasis = tolerance_weights(found, aim)
+    sharpened = task
+    if emphasis is not None:
+        weights = task.weights * emphasis
+        sharpened = replace(task, weights=weights * (np.sum(task.weights) / np.sum(weights)))
+    for design in _candidates(task, found, aim, emphasis):
+        try:
+            start = design if task.points.shape[1] == 3 else with_feasible_edges(design)
+            fresh = searched(sharpened, start, rounds=1, noise=found.rms, slight=ROUGH_REDUCTION)
+        except FitError:
+            continue
+        return replace(fresh, evaluations=fresh.evaluations + found.evaluations), True
+    return found, False
+
+
+def _candidates(task: Task, found: Match, aim: MatchTarget, emphasis: Reals | None) -> Iterator[Design]:
+    """Designs with more control points, the next one where the one before has no shape."""
+    forecast = None
+    if task.points.shape[1] == 3 and aim.parameters is None and stands_on_channel(found.design):
+        forecast = forecast_of(found, widest_reach(structure_of(found.design)))
+    if forecast is not None:
+        task.told("structure")
+        design = _predicted_design(forecast, found, aim, emphasis)
+        if design is not None:
+            yield design
+        elif aim.open:
+            return
+    stepped = _stepwise_design(found, aim, emphasis)
+    if stepped is not None:
+        yield stepped
+
+
+def _least_added(found: Match, aim: MatchTarget) -> int:
+    """Parameters that are added at least."""
+    count = len(found.problem.paths)
+    if aim.parameters is not None:
+        return (aim.parameters - count) // SHARE_ADDED
+    far = aim.tolerance is not None and found.rms * found.model.chord > FAR_OF_TOLERANCE * aim.tolerance
+    return count // (SHARE_ADDED if far else SHARE_ADDED_NEAR) if count >= MANY_PARAMETERS else 0
+
+
+def _predicted_design(forecast: Forecast, found: Match, aim: MatchTarget, emphasis: Reals | None) -> Design | None:
+    """The design with more control points that a forecast prefers; None where more are not worth it."""
+    now = structure_of(found.design)
+    roots = None if emphasis is None else row_factors(emphasis, len(forecast.rows))
+    count = forecast.foreseen(now).parameters
+    structure = best_structure(forecast, now, count + max(_least_added(found, aim), count // SHARE_ADDED_NEAR), roots)
+    if aim.tolerance is not None:
+        steps = [StructureStep(fields=(), structure=structure, parameters=0), *edge_steps(found, aim.tolerance)]
+        structure = union_of(structure, steps) if len(steps) > 1 else structure
+    told = forecast.foreseen(structure, roots)
+    worth = WORTHWHILE_GAIN if found.rms > NEAR_MISFIT else WORTHWHILE_GAIN_NEAR
+    if structure == now or (aim.open and told.cost > (1.0 - worth) * forecast.foreseen(now).cost):
+        return None
+    return forecast.designed(structure, told)
+
+
+def _stepwise_design(found: Match, aim: MatchTarget, emphasis: Reals | None) -> Design | None:
+    """The design with the control points that promise most; None where there are none."""
+    ranked = gains(found, emphasis)
+    left = None if aim.parameters is None else aim.parameters - len(found.problem.paths)
+    steps = steps_taken_together(ranked, left, _least_added(found, aim))
+    if aim.tolerance is not None:
+        steps += edge_steps(found, aim.tolerance)
+    if not steps:
+        return None
+    total = float(np.sum(found.problem.measures.residuals(found.state) ** 2))
+    if aim.parameters is None and emphasis is None and sum(gain for gain, _ in ranked[:3]) < WORTHWHILE_GAIN * total:
+        return None
+    return reshaped(found.design, union_of(structure_of(found.design), steps))

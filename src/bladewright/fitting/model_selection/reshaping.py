@@ -1,0 +1,153 @@
+"""The same shape with other numbers of control points, as nearly as they allow, and with edges of a valid shape."""
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from bladewright.blade.design.flow_path import Channel
+from bladewright.blade.design.unified import UnifiedBlade
+from bladewright.designs import Design, Law, Point, Points
+from bladewright.errors import DesignError, FitError
+from bladewright.fitting.matching.search import COARSEST_TOLERANCE
+from bladewright.fitting.model_selection.structure import SPANWISE, Structure
+from bladewright.fitting.models.model import model_of
+from bladewright.nurbs.basis import Reals, basis, uniform_knots
+from bladewright.section.laws import law_basis
+from bladewright.section.unified import UnifiedSection
+from bladewright.section.unified_limits import ANGLES, RADII, TANGENTS, THICKNESSES
+from bladewright.section.unified_sides import sample_places
+
+LAW_LIMITS = {
+    **dict.fromkeys(ANGLES, (-88.0, 88.0)),
+    **dict.fromkeys(TANGENTS, (0.03, 0.99)),
+    **dict.fromkeys(RADII, (1e-4, 0.9)),
+}
+"""within which a law is kept that another number of control points would carry past the family's own"""
+COMPARED_PLACES = np.linspace(0.0, 1.0, 101)
+
+
+def reshaped(design: Design, structure: Structure) -> Design:
+    """A design of another structure whose laws and curves are nearest to those of `design`, by least squares."""
+    if isinstance(design, UnifiedSection):
+        thicknesses: dict[str, Any] = {
+            name: tuple(float(row[0]) for row in grid_of(getattr(design, name), count, 1, structure))
+            for name, count in zip(THICKNESSES, structure.chordwise, strict=True)
+        }
+        return replace(design, samples=structure.samples, clustering=structure.clustering, **thicknesses)
+    if not isinstance(design, UnifiedBlade):
+        raise FitError(
+            f"a {type(design).__name__} has no structure of the unified family: give a design of that family"
+        )
+    place = "leading_edge_theta" if design.arrangement == "annular" else "leading_edge_y"
+    changes: dict[str, Any] = {
+        name: law_of(getattr(design, name), structure.span[name], LAW_LIMITS[name]) for name in SPANWISE
+    }
+    changes[place] = law_of(getattr(design, place), structure.span["place"])
+    for name, count in zip(THICKNESSES, structure.chordwise, strict=True):
+        grid = grid_of(getattr(design, name), count, structure.span[name], structure)
+        changes[name] = tuple(_plain(row) for row in grid)
+    return replace(
+        design,
+        samples=structure.samples,
+        clustering=structure.clustering,
+        channel=_channel(design.channel, structure),
+        **changes,
+    )
+
+
+def _values(law: Law) -> Reals:
+    leaves = law if isinstance(law, tuple) else (law,)
+    return np.asarray(law_basis(len(leaves), COMPARED_PLACES) @ np.array(leaves, dtype=float))
+
+
+def law_of(law: Law, count: int, limits: tuple[float, float] = (-np.inf, np.inf)) -> Law:
+    """The nearest law of so many control points, within limits."""
+    if count == (len(law) if isinstance(law, tuple) else 1):
+        return law
+    found, *_ = np.linalg.lstsq(law_basis(count, COMPARED_PLACES), _values(law), rcond=None)
+    return _plain(np.clip(np.asarray(found, dtype=np.float64), *limits))
+
+
+def _plain(values: Reals) -> Law:
+    return tuple(float(value) for value in values) if len(values) > 1 else float(values[0])
+
+
+def grid_of(laws: tuple[Law, ...], count: int, span: int, structure: Structure) -> Reals:
+    """Control points (count, span) of a thickness, positive."""
+    if len(laws) == count and all((len(law) if isinstance(law, tuple) else 1) == span for law in laws):
+        return np.array([law if isinstance(law, tuple) else (law,) for law in laws], dtype=float)
+    rows = np.stack([np.linalg.lstsq(law_basis(span, COMPARED_PLACES), _values(law), rcond=None)[0] for law in laws])
+    if len(laws) != count:
+        # where the samples of the sides stand, the law matters most
+        u = samples_of(structure)
+        rows, *_ = np.linalg.lstsq(law_basis(count, u), law_basis(len(laws), u) @ rows, rcond=None)
+    least = 0.02 * float(np.max(rows))
+    return np.asarray(np.maximum(rows, least))
+
+
+def samples_of(structure: Structure) -> Reals:
+    """Places along the chord at which laws of the thickness are compared."""
+    return np.sort(np.concatenate([sample_places(structure.samples, structure.clustering)[2:-2], COMPARED_PLACES]))
+
+
+def _channel(channel: Channel, structure: Structure) -> Channel:
+    corners = [channel.leading_edge[0], channel.leading_edge[-1], channel.trailing_edge[0], channel.trailing_edge[-1]]
+    curves = {
+        "leading_edge": channel.leading_edge,
+        "trailing_edge": channel.trailing_edge,
+        "hub": (corners[0], *channel.hub, corners[2]),
+        "shroud": (corners[1], *channel.shroud, corners[3]),
+    }
+    found = {name: curve_of(points, structure.channel[name], channel.degree) for name, points in curves.items()}
+    return replace(
+        channel,
+        leading_edge=found["leading_edge"],
+        trailing_edge=found["trailing_edge"],
+        hub=found["hub"][1:-1],
+        shroud=found["shroud"][1:-1],
+    )
+
+
+def curve_of(points: Points, count: int, highest: int) -> Points:
+    """The nearest curve of so many control points, and at most of a degree, between the same ends."""
+    if count == len(points):
+        return points
+    old = np.array(points, dtype=float)
+    before, after = (min(n - 1, highest) for n in (len(points), count))
+    values = basis(uniform_knots(len(points), before), before, COMPARED_PLACES) @ old
+    rows = basis(uniform_knots(count, after), after, COMPARED_PLACES)
+    aim = values - rows[:, [0, -1]] @ old[[0, -1]]
+    inner, *_ = np.linalg.lstsq(rows[:, 1:-1], aim, rcond=None)
+    full = np.concatenate([old[:1], inner, old[-1:]])
+    return tuple(Point(float(x), float(r)) for x, r in full)
+
+
+THINNER_EDGES, THINNINGS = 0.7, 12
+"""thickness beside the edges at each turn, of that before, and turns"""
+
+
+def with_feasible_edges(design: Design) -> Design:
+    """The design, or one with thinner edges where values that it was given leave it no shape; the last where none has.
+
+    A camber that is turned away from the points may leave the third control points of the sides outside the edges.
+    """
+    if not isinstance(design, UnifiedSection | UnifiedBlade):
+        return design
+    for _ in range(THINNINGS):
+        if _has_shape(design):
+            break
+        values = design.parameters()
+        ends = tuple(f"{name}[{place}]" for name in THICKNESSES for place in (0, len(getattr(design, name)) - 1))
+        design = design.changed(
+            {path: THINNER_EDGES * value for path, value in values.items() if path.startswith(ends)}
+        )
+    return design
+
+
+def _has_shape(design: UnifiedSection | UnifiedBlade) -> bool:
+    try:
+        with np.errstate(all="ignore"):
+            return model_of(design, COARSEST_TOLERANCE).shape(design).finite
+    except DesignError:
+        return False

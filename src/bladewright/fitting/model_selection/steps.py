@@ -1,0 +1,240 @@
+"""Steps between structures: one law more or less, and what each is predicted to gain or to lose."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from bladewright.errors import DesignError
+from bladewright.fitting.matching.footpoints import footpoints_at
+from bladewright.fitting.matching.residuals import PlacedCloud
+from bladewright.fitting.matching.scales import scales_of
+from bladewright.fitting.matching.search import Match
+from bladewright.fitting.model_selection.reshaping import reshaped
+from bladewright.fitting.model_selection.stopping import MatchTarget
+from bladewright.fitting.model_selection.structure import Structure, structure_of
+from bladewright.nurbs.basis import Reals
+from bladewright.section.unified_limits import THICKNESSES
+
+WEIGHT_RANGE = (0.1, 10.0)
+"""least and largest weight of a point by its distance, where a tolerance is to be met"""
+WORTH_OF_BEST = 0.4
+"""gain for each parameter, of the best, from which a law grows too"""
+QUARTER_STEPS_FROM = 8
+"""control points along the chord from which a thickness grows by a quarter at a time"""
+SPARE_SAMPLES = 4
+"""samples along the chord beyond a thickness's control points"""
+FEWEST_THICKNESSES = 3
+"""control points of a thickness"""
+MOST_SAMPLES, MOST_SPAN, MOST_CURVE = 60, 12, 12
+
+
+@dataclass(frozen=True, kw_only=True)
+class StructureStep:
+    """One law with more control points."""
+
+    fields: tuple[str, ...]
+    """beginnings of the paths that change"""
+    structure: Structure
+    parameters: int
+    """that it adds"""
+
+    @property
+    def law(self) -> str:
+        """The name of the first law in a structure."""
+        name = self.fields[0].removeprefix("channel.")
+        return "place" if self.fields[0] in _fields("place") else name
+
+
+def steps_up(structure: Structure) -> list[StructureStep]:
+    """What may grow."""
+    found = []
+    for side, name in enumerate(THICKNESSES):
+        count = structure.chordwise[side]
+        more = _thickness_step(count)
+        counts = [*structure.chordwise]
+        counts[side] = count + more
+        samples = max(structure.samples, counts[side] + SPARE_SAMPLES)
+        if samples <= MOST_SAMPLES:
+            wider = replace(structure, chordwise=(counts[0], counts[1]), samples=samples)
+            found.append(StructureStep(fields=(name,), structure=wider, parameters=more * structure.span.get(name, 1)))
+    for name, count in structure.span.items():
+        if count < MOST_SPAN:
+            wider = replace(structure, span={**structure.span, name: count + 1})
+            added = structure.chordwise[THICKNESSES.index(name)] if name in THICKNESSES else 1
+            found.append(StructureStep(fields=_fields(name), structure=wider, parameters=added))
+    for name, count in structure.channel.items():
+        if count < MOST_CURVE:
+            wider = replace(structure, channel={**structure.channel, name: count + 1})
+            found.append(StructureStep(fields=(f"channel.{name}",), structure=wider, parameters=2))
+    return found
+
+
+def steps_down(structure: Structure) -> list[StructureStep]:
+    """What may shrink by one control point, and by how many parameters."""
+    found = []
+    for side, name in enumerate(THICKNESSES):
+        if structure.chordwise[side] > FEWEST_THICKNESSES:
+            counts = [*structure.chordwise]
+            counts[side] -= 1
+            narrower = replace(structure, chordwise=(counts[0], counts[1]))
+            found.append(StructureStep(fields=(name,), structure=narrower, parameters=structure.span.get(name, 1)))
+    for name, count in structure.span.items():
+        if count > 1:
+            narrower = replace(structure, span={**structure.span, name: count - 1})
+            left_out = structure.chordwise[THICKNESSES.index(name)] if name in THICKNESSES else 1
+            found.append(StructureStep(fields=_fields(name), structure=narrower, parameters=left_out))
+    for name, count in structure.channel.items():
+        if count > 2:
+            narrower = replace(structure, channel={**structure.channel, name: count - 1})
+            found.append(StructureStep(fields=(f"channel.{name}",), structure=narrower, parameters=2))
+    return found
+
+
+def widest_reach(structure: Structure) -> Structure:
+    """A structure that has all steps along the chord and the walls, where laws are stepped leaf by leaf."""
+    chordwise = [count + _thickness_step(count) for count in structure.chordwise]
+    samples = min(MOST_SAMPLES, max(structure.samples, max(chordwise) + SPARE_SAMPLES))
+    walls = {wall: min(structure.channel[wall] + 1, MOST_CURVE) for wall in ("hub", "shroud")}
+    return replace(
+        structure,
+        chordwise=(min(chordwise[0], samples - SPARE_SAMPLES), min(chordwise[1], samples - SPARE_SAMPLES)),
+        samples=samples,
+        channel={**structure.channel, **walls},
+    )
+
+
+def _thickness_step(count: int) -> int:
+    """By how many control points a thickness grows at a time."""
+    return max(1, count // 4) if count >= QUARTER_STEPS_FROM else 1
+
+
+def _fields(name: str) -> tuple[str, ...]:
+    return ("leading_edge_theta", "leading_edge_y") if name == "place" else (name,)
+
+
+def union_of(structure: Structure, steps: Sequence[StructureStep]) -> Structure:
+    """A structure with several steps taken at once."""
+    chordwise = [max(step.structure.chordwise[side] for step in steps) for side in (0, 1)]
+    span = {name: max(step.structure.span[name] for step in steps) for name in structure.span}
+    channel = {name: max(step.structure.channel[name] for step in steps) for name in structure.channel}
+    samples = max(step.structure.samples for step in steps)
+    return replace(structure, chordwise=(chordwise[0], chordwise[1]), span=span, channel=channel, samples=samples)
+
+
+def intersection_of(steps: Sequence[StructureStep]) -> Structure:
+    """The structure that several steps back lead to together."""
+    structures = [step.structure for step in steps]
+    chordwise = [min(each.chordwise[side] for each in structures) for side in (0, 1)]
+    span = {name: min(each.span[name] for each in structures) for name in structures[0].span}
+    channel = {name: min(each.channel[name] for each in structures) for name in structures[0].channel}
+    return replace(structures[0], chordwise=(chordwise[0], chordwise[1]), span=span, channel=channel)
+
+
+def tolerance_weights(found: Match, aim: MatchTarget) -> Reals | None:
+    """Further weights (n,) by which points far off count more; none where no tolerance is asked for."""
+    if aim.tolerance is None:
+        return None
+    return np.clip((found.state.feet.distances / aim.tolerance) ** 2, *WEIGHT_RANGE)
+
+
+def row_factors(emphasis: Reals | None, count: int) -> Reals:
+    """Factors (count,) of the rows of a least squares, of which those of the points, with their weights, come first."""
+    roots = np.ones(count)
+    if emphasis is not None:
+        roots[: len(emphasis)] = np.sqrt(emphasis)
+    return roots
+
+
+def gains(found: Match, emphasis: Reals | None = None) -> list[tuple[float, StructureStep]]:
+    """What each step would take off the sum of squares, foreseen linearly, best for each parameter first.
+
+    `emphasis` (n,) are further weights of the points. Laws that are not free do not grow.
+    """
+    problem = found.problem
+    rows = problem.measures.residuals(found.state)
+    slopes = problem.measures.slopes(found.state, problem.paths) * problem.scales.size
+    roots = row_factors(emphasis, len(rows))
+    before = predicted_rest(slopes, rows, roots, problem.noise)
+    result = [
+        (before - predicted_rest(wider, rows, roots, problem.noise), step)
+        for step, _, wider in _predicted_systems(found, slopes, steps_up(structure_of(found.design)))
+    ]
+    return sorted(result, key=lambda pair: -pair[0] / pair[1].parameters)
+
+
+def losses(found: Match) -> list[tuple[float, StructureStep]]:
+    """What each step back would leave of the sum of squares, foreseen linearly, least for each parameter first."""
+    problem = found.problem
+    slopes = problem.measures.slopes(found.state, problem.paths) * problem.scales.size
+    roots = np.ones(len(slopes))
+    result = [
+        (predicted_rest(narrower, rows, roots, problem.noise), step)
+        for step, rows, narrower in _predicted_systems(found, slopes, steps_down(structure_of(found.design)))
+    ]
+    return sorted(result, key=lambda pair: pair[0] / pair[1].parameters)
+
+
+def _predicted_systems(
+    found: Match, slopes: Reals, steps: Sequence[StructureStep]
+) -> Iterator[tuple[StructureStep, Reals, Reals]]:
+    """The steps of laws that are free, with the residuals after each and their derivatives (m, k)."""
+    paths = found.problem.paths
+    for step in steps:
+        own = [path for path in found.design.parameters() if path.startswith(step.fields)]
+        if not set(own) <= set(paths):
+            continue
+        kept = [i for i, path in enumerate(paths) if path not in own]
+        try:
+            rows, columns = _residuals_after(found, step)
+        except DesignError:
+            continue
+        yield step, rows, np.concatenate([slopes[:, kept], columns], axis=1)
+
+
+def predicted_rest(slopes: Reals, rows: Reals, roots: Reals, noise: float) -> float:
+    """The sum of squares of rows (n,) weighed by roots (n,) after the linear step that makes it least.
+
+    `slopes` (n, k) are by scaled parameters, which are held by the spread `noise` of the prior.
+    """
+    count = slopes.shape[1]
+    triangle = np.linalg.qr(np.column_stack([slopes * roots[:, None], rows * roots]), mode="r")
+    held = np.zeros((count, count + 1))
+    held[:, :-1] = noise * np.eye(count)
+    # the last diagonal entry is what no step takes away
+    left = np.asarray(np.linalg.qr(np.vstack([np.asarray(triangle), held]), mode="r"))[-1, -1]
+    return float(left**2)
+
+
+def steps_taken_together(
+    ranked: Sequence[tuple[float, StructureStep]], most: int | None = None, least: int = 0
+) -> list[StructureStep]:
+    """The steps that are worth taking together, of at most so many parameters, and of so many at least if they help."""
+    if not ranked:
+        return []
+    best = ranked[0][0] / ranked[0][1].parameters
+    taken: list[StructureStep] = []
+    left = np.inf if most is None else most
+    for gain, step in ranked:
+        added = sum(each.parameters for each in taken)
+        worth = not taken or gain / step.parameters >= WORTH_OF_BEST * best or (added < least and gain > 0.0)
+        if step.parameters <= left and worth:
+            taken.append(step)
+            left -= step.parameters
+    return taken
+
+
+def _residuals_after(found: Match, step: StructureStep) -> tuple[Reals, Reals]:
+    """Residuals after a step, and their derivatives by the parameters of its law, where the cloud stands now."""
+    other = reshaped(found.design, step.structure)
+    paths = tuple(path for path in other.parameters() if path.startswith(step.fields))
+    measures, on = found.problem.measures, found.state.feet
+    shape = measures.model.shape(other)
+    if not shape.finite:
+        raise DesignError("a law with another number of control points left no shape: take another one")
+    state = PlacedCloud(shape=shape, feet=footpoints_at(measures.points, shape.sides, on.side, on.u, on.v))
+    rows = measures.residuals(state)
+    if not paths:
+        # a wall between its corners alone
+        return rows, np.zeros((len(rows), 0))
+    return rows, measures.slopes(state, paths) * scales_of(other, paths, found.model.chord).size

@@ -1,0 +1,52 @@
+"""What is asked of a match, and when no more control points are added."""
+
+from dataclasses import dataclass
+
+from bladewright.fitting.matching.search import Match, Task
+
+ENOUGH_DEVIATION = {2: 5e-7, 3: 5e-5}
+"""largest deviation at which nothing more is added where no aim is stated, of the chord, by dimension"""
+MOST_PARAMETERS = {2: 80, 3: 340}
+"""parameters above which nothing is added"""
+NOISE_CORRELATION = 0.15
+"""part of the misfit that neighbours share below which it is noise"""
+POINTS_PER_PARAMETER = {2: 2, 3: 3}
+"""points for each parameter at least, by dimension: published profiles have few and exact ones"""
+
+
+@dataclass(frozen=True, kw_only=True)
+class MatchTarget:
+    """What is asked of a match."""
+
+    tolerance: float | None = None
+    """largest distance of an inlier [m]"""
+    parameters: int | None = None
+    structured: bool = False
+    """whether the structure is given"""
+    moved: bool = False
+    """whether the axes were found first, by a start that need not be the blade"""
+
+    @property
+    def open(self) -> bool:
+        """Whether nothing is asked for."""
+        return self.tolerance is None and self.parameters is None and not self.structured
+
+
+def needs_more(found: Match, aim: MatchTarget, task: Task) -> tuple[bool, str]:
+    """Whether more control points are wanted, and if not though the aim is not met, why."""
+    count = len(found.problem.paths)
+    dimension = task.points.shape[1]
+    if aim.parameters is not None:
+        return count < aim.parameters, ""
+    limit = aim.tolerance if aim.tolerance is not None else ENOUGH_DEVIATION[dimension] * found.model.chord
+    if found.maximum <= limit:
+        return False, ""
+    noise = found.scatter.noise
+    if found.scatter.shared < NOISE_CORRELATION:
+        return (
+            False,
+            f"what is left is the cloud's own noise, {1e3 * noise:.2g} mm: more control points would follow it",
+        )
+    if count >= min(MOST_PARAMETERS[dimension], len(task.points) // POINTS_PER_PARAMETER[dimension]):
+        return False, f"the design has {count} parameters, and more are not added"
+    return True, ""

@@ -1,0 +1,111 @@
+"""How many control points the laws of a design have, apart from their values; and those that a match begins with."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from bladewright.blade.design.unified import UnifiedBlade
+from bladewright.designs import Design
+from bladewright.errors import FitError
+from bladewright.section.unified import UnifiedSection
+from bladewright.section.unified_limits import ANGLES, RADII, TANGENTS, THICKNESSES
+
+CHANNEL_CURVES = ("leading_edge", "trailing_edge", "hub", "shroud")
+SPANWISE = (*ANGLES, *TANGENTS, *RADII)
+"""laws along the span, besides the position of the leading edge and the thicknesses"""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Structure:
+    """Numbers and places of control points: what is chosen before a fit, where its values are found by it."""
+
+    chordwise: tuple[int, int] = (6, 6)
+    """control points of the upper and the lower thickness along the chord"""
+    span: Mapping[str, int] = field(default_factory=dict)
+    """control points along the span by field: those of SPANWISE, `place` of the leading edge, and `thickness_upper` and
+    `thickness_lower`; empty for a section"""
+    channel: Mapping[str, int] = field(default_factory=dict)
+    """control points of the four curves, corners among them; empty for a section"""
+    samples: int = 16
+    clustering: float = 1.0
+
+
+def structure_of(design: Design) -> Structure:
+    """The structure of a design."""
+    if isinstance(design, UnifiedSection):
+        return Structure(
+            chordwise=(len(design.thickness_upper), len(design.thickness_lower)),
+            samples=design.samples,
+            clustering=design.clustering,
+        )
+    if not isinstance(design, UnifiedBlade):
+        raise FitError(f"a {type(design).__name__} has no laws of the unified family; give a design of that family")
+    place = design.leading_edge_theta if design.arrangement == "annular" else design.leading_edge_y
+    span = {name: _count(getattr(design, name)) for name in SPANWISE} | {"place": _count(place)}
+    for name in THICKNESSES:
+        span[name] = max(_count(law) for law in getattr(design, name))
+    channel = design.channel
+    return Structure(
+        chordwise=(len(design.thickness_upper), len(design.thickness_lower)),
+        span=span,
+        channel={
+            "leading_edge": len(channel.leading_edge),
+            "trailing_edge": len(channel.trailing_edge),
+            "hub": len(channel.hub) + 2,
+            "shroud": len(channel.shroud) + 2,
+        },
+        samples=design.samples,
+        clustering=design.clustering,
+    )
+
+
+def _count(law: object) -> int:
+    return len(law) if isinstance(law, tuple) else 1
+
+
+def initial_structure(dimension: int, parameters: int | None) -> Structure:
+    """A structure with few parameters, or one with nearly as many as are asked for, and no more."""
+    if dimension == 2:
+        count = 4 if parameters is None else min(4, max(2, (parameters - 10) // 2))
+        return Structure(chordwise=(count, count))
+    if parameters is None:
+        return INITIAL_BLADES[1]
+    return next((each for each in reversed(INITIAL_BLADES) if parameter_count(each) <= parameters), INITIAL_BLADES[0])
+
+
+def first_blade_structure(parameters: int | None) -> Structure:
+    """The structure of a first blade, which finds its edges best with laws that are free enough."""
+    return initial_structure(3, max(parameters or 0, parameter_count(INITIAL_BLADES[-2])))
+
+
+def parameter_count(structure: Structure) -> int:
+    """Number of parameters of a structure."""
+    thickness = sum(
+        count * structure.span.get(name, 1)
+        for name, count in zip(("thickness_upper", "thickness_lower"), structure.chordwise, strict=True)
+    )
+    if not structure.channel:
+        return 10 + thickness
+    laws = sum(count for name, count in structure.span.items() if not name.startswith("thickness"))
+    return thickness + laws + 2 * (sum(structure.channel.values()) - 4)
+
+
+def _blade(
+    chordwise: int, thickness: int, angles: int, tangents: int, radii: int, channel: tuple[int, ...]
+) -> Structure:
+    span = {name: angles if name == "stagger" or "angle" in name else tangents for name in SPANWISE}
+    span |= {name: radii for name in SPANWISE if name.endswith("radius")}
+    return Structure(
+        chordwise=(chordwise, chordwise),
+        span={**span, "place": angles, "thickness_upper": thickness, "thickness_lower": thickness},
+        channel=dict(zip(("leading_edge", "trailing_edge", "hub", "shroud"), channel, strict=True)),
+    )
+
+
+INITIAL_BLADES = (
+    _blade(4, 1, 1, 1, 1, (2, 2, 2, 2)),
+    _blade(5, 2, 3, 2, 1, (3, 3, 4, 4)),
+    _blade(5, 3, 4, 3, 2, (3, 4, 4, 4)),
+    _blade(6, 3, 4, 3, 2, (4, 5, 4, 4)),
+    _blade(6, 4, 5, 4, 2, (4, 5, 4, 4)),
+)
+"""from a prismatic blade to one that is twisted and swept"""

@@ -1,0 +1,254 @@
+"""A match within a tolerance: at every point, with as few control points and as smooth as it allows."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from bladewright.blade.native.extrema import extrema_of
+from bladewright.designs import Design
+from bladewright.errors import DesignError, FitError
+from bladewright.fitting.matching.constrained_least_squares import MIN_REDUCTION
+from bladewright.fitting.matching.search import ROUGH_REDUCTION, Match, Task, searched
+from bladewright.fitting.model_selection.forecast import Forecast, Prediction, forecast_of
+from bladewright.fitting.model_selection.growth import grown_match
+from bladewright.fitting.model_selection.reshaping import reshaped
+from bladewright.fitting.model_selection.steps import StructureStep, intersection_of, losses, row_factors, steps_down
+from bladewright.fitting.model_selection.stopping import MatchTarget
+from bladewright.fitting.model_selection.structure import Structure, structure_of
+from bladewright.nurbs.basis import Reals
+
+TRUSTED_DEVIATION = 0.95
+"""largest deviation that is foreseen, of the tolerance, up to which a structure is tried"""
+REMOVED_AT_ONCE = 0.04
+"""part of the parameters that go between two looks at the forecast"""
+CHEAP_LOSS = 3.0
+"""foreseen loss for each parameter, of the least, up to which a law loses one too"""
+WEIGHTED_DEVIATION = 0.8
+"""deviation, of the tolerance, from which a point is weighed more"""
+WEIGHT_CHANGE, WEIGHT_RANGE = (0.7, 1.5), (0.1, 30.0)
+"""by how much the weight of a point changes at a time, and all in all"""
+MOST_FAILURES = 3
+"""structures that are tried and do not keep the tolerance, each half as far away as the last"""
+FIRST_SHARE = 0.25
+"""part of the structures that are foreseen to keep a tolerance which the first one tried is away: forecasts that go too
+far lose their way where laws turn much"""
+HOPELESS_DEVIATION = 1.4
+"""largest deviation, of the tolerance, that other weights do not mend"""
+REWEIGHTINGS, REWEIGHTING_GAIN = 6, 0.75
+"""searches of one structure, each with other weights, and what each leaves at most of the excess over the tolerance"""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class _SmallerStructure:
+    """A structure with fewer control points, and the weights with which it is foreseen to keep a tolerance."""
+
+    structure: Structure
+    foreseen: Prediction
+    weights: Reals
+    """(n,) of the points, of those before"""
+
+
+def reduced_blade(task: Task, found: Match, tolerance: float) -> Match | None:
+    """A match of fewer parameters within a tolerance; None where there are no forecasts."""
+    failed, further = 0, FIRST_SHARE
+    weights = np.ones(len(task.points))
+    while failed < MOST_FAILURES and not found.interrupted:
+        forecast = forecast_of(found, structure_of(found.design))
+        if forecast is None:
+            return None
+        plans = _smaller_structures(forecast, found, tolerance)
+        if not plans:
+            break
+        number = int(np.ceil(further * len(plans)))
+        start = forecast.designed(plans[number - 1].structure, plans[number - 1].foreseen)
+        fresh = _match_of_prediction(task, found, start, weights * plans[number - 1].weights, tolerance)
+        if fresh is None:
+            failed, further = failed + 1, 0.5 * further
+            continue
+        found, further = fresh, min(1.0, 1.5 * further)
+        weights = _weights_of_match(found, task)
+    return found
+
+
+def _weights_of_match(found: Match, task: Task) -> Reals:
+    """The weights (n,) with which a match was found, of those of its task."""
+    own = found.problem.measures.roots**2 / np.where(task.weights > 0.0, task.weights, 1.0)
+    return np.where(own > 0.0, own, 1.0)
+
+
+def _match_of_prediction(task: Task, found: Match, start: Design, weights: Reals, tolerance: float) -> Match | None:
+    """The match of a foreseen design, where it keeps the tolerance."""
+    evaluations, most = found.evaluations, HOPELESS_DEVIATION * tolerance
+    for _ in range(REWEIGHTINGS):
+        weights = weights * len(weights) / np.sum(weights)
+        try:
+            fresh = searched(
+                replace(task, weights=task.weights * weights), start, rounds=1, noise=found.rms, slight=ROUGH_REDUCTION
+            )
+        except FitError:
+            return None
+        evaluations += fresh.evaluations
+        if fresh.maximum <= tolerance or fresh.interrupted:
+            return replace(fresh, evaluations=evaluations)
+        if fresh.maximum > most:
+            return None
+        most = tolerance + REWEIGHTING_GAIN * (fresh.maximum - tolerance)
+        start, weights = fresh.design, weights * _weight_factors(fresh.state.feet.distances, tolerance)
+    return None
+
+
+def _weight_factors(distances: Reals, tolerance: float) -> Reals:
+    """By how much the weights (n,) of points change with their distances [m]."""
+    return np.clip(distances / (WEIGHTED_DEVIATION * tolerance), *WEIGHT_CHANGE)
+
+
+def _smaller_structures(forecast: Forecast, found: Match, tolerance: float) -> list[_SmallerStructure]:
+    """Structures of fewer and fewer parameters that are foreseen to keep a tolerance."""
+    count, roots = forecast.points, found.problem.measures.roots
+    inside = roots > 0.0
+    structure, weights = structure_of(found.design), np.ones(count)
+    names = set(forecast.names())
+    plans: list[_SmallerStructure] = []
+    tried = forecast.foreseen(structure)
+    while True:
+        roots_now = row_factors(weights, len(forecast.rows))
+        base = forecast.foreseen(structure, roots_now).cost
+        steps = [step for step in steps_down(structure) if step.law in names]
+        if not steps:
+            return plans
+        costs = forecast.costs(structure, [(step.law, step.structure) for step in steps], roots_now)
+        order = np.argsort([(cost - base) / step.parameters for cost, step in zip(costs, steps, strict=True)])
+        ranked = [((costs[i] - base) / steps[i].parameters, steps[i]) for i in order]
+        structure = intersection_of(_cheapest(ranked, REMOVED_AT_ONCE * tried.parameters))
+        for attempt in range(2):
+            tried = forecast.foreseen(structure, row_factors(weights, len(forecast.rows)))
+            heights = np.zeros(count)
+            heights[inside] = np.abs(tried.rows[:count][inside] / roots[inside]) * found.model.chord
+            kept = float(np.max(heights)) <= TRUSTED_DEVIATION * tolerance
+            if kept or attempt:
+                break
+            weights = np.clip(weights * _weight_factors(heights, tolerance), *WEIGHT_RANGE)
+        if not kept:
+            return plans
+        plans.append(_SmallerStructure(structure=structure, foreseen=tried, weights=weights))
+
+
+def _cheapest(ranked: list[tuple[float, StructureStep]], most: float) -> list[StructureStep]:
+    """The steps back that go together: those that cost little more than the first, up to so many parameters."""
+    taken = [ranked[0][1]]
+    bound = CHEAP_LOSS * max(ranked[0][0], 0.0)
+    for loss, step in ranked[1:]:
+        added = sum(each.parameters for each in taken)
+        if loss > bound or added + step.parameters > most:
+            break
+        if step.law not in {each.law for each in taken}:
+            taken.append(step)
+    return taken
+
+
+LATER_GROWTHS = 4
+"""times that more is added where points outside the quick searches stay beyond the tolerance"""
+WEIGHTED_SEARCHES = 4
+"""times that points are weighed by their distances before anything is added"""
+SEARCH_ROUNDS = 2
+LAWS_AT_ONCE = {2: (4, 1), 3: (8, 4)}
+"""laws that lose a control point together, those first of which it is foreseen to cost least; half as many where that
+is too much, down to so few: searches of blades are dear"""
+SMOOTHING = (3.0, 10.0, 30.0, 100.0, 1000.0)
+"""strengths of the prior, in turn"""
+PLAIN_EXTREMA = 4
+"""extrema of a side's curvature that a plain section has"""
+
+
+def match_within_tolerance(task: Task, found: Match, aim: MatchTarget, tolerance: float) -> Match:
+    """The match that keeps a tolerance, where a little more brings it there, with as little as keeps it."""
+    found = _within_everywhere(task, found, aim, tolerance)
+    return smoothed(task, reduced(task, found, tolerance), tolerance)
+
+
+def _within_everywhere(task: Task, found: Match, aim: MatchTarget, tolerance: float) -> Match:
+    """A match that keeps a tolerance at the points of a thorough search too, where a little more brings it there."""
+    found = _within(task, found, tolerance)
+    for _ in range(LATER_GROWTHS):
+        if found.maximum <= tolerance or found.interrupted:
+            break
+        found, grew = grown_match(task, found, aim)
+        if not grew:
+            break
+        found = _within(task, found, tolerance)
+    return found
+
+
+def _within(task: Task, found: Match, tolerance: float) -> Match:
+    """A match whose largest deviations are weighed more, where that brings them within the tolerance."""
+    best, weights = found, task.weights
+    for _ in range(WEIGHTED_SEARCHES):
+        if best.maximum <= tolerance or best.interrupted:
+            break
+        distances = found.state.feet.distances
+        weights = weights * np.clip((distances / tolerance) ** 2, 0.3, 4.0)
+        weights = weights * (np.sum(task.weights) / np.sum(weights))
+        rounds = SEARCH_ROUNDS if task.points.shape[1] == 2 else 1
+        found = searched(replace(task, weights=weights), found.design, rounds=rounds, slight=_min_reduction(task))
+        best = found if found.maximum < best.maximum else best
+    return best
+
+
+def reduced(task: Task, found: Match, tolerance: float) -> Match:
+    """A match within a tolerance without the control points that it does not need."""
+    if task.points.shape[1] == 3 and found.maximum <= tolerance:
+        fewer_still = reduced_blade(task, found, tolerance)
+        if fewer_still is not None:
+            return fewer_still
+    most, least_at_once = LAWS_AT_ONCE[task.points.shape[1]]
+    at_once = most
+    while at_once >= least_at_once and found.maximum <= tolerance and not found.interrupted:
+        steps = [step for _, step in losses(found)[:at_once]]
+        fewer = _without(task, found, steps) if steps else None
+        if fewer is not None and fewer.maximum <= tolerance and not fewer.interrupted:
+            found = fewer
+        else:
+            at_once = min(at_once, len(steps)) // 2
+    return found
+
+
+def _without(task: Task, found: Match, steps: Sequence[StructureStep]) -> Match | None:
+    try:
+        fresh = searched(
+            task,
+            reshaped(found.design, intersection_of(steps)),
+            rounds=SEARCH_ROUNDS,
+            noise=found.rms,
+            slight=_min_reduction(task),
+        )
+    except FitError:
+        return None
+    return replace(fresh, evaluations=fresh.evaluations + found.evaluations)
+
+
+def _min_reduction(task: Task) -> float:
+    """What a step must promise: searches of blades are dear."""
+    return MIN_REDUCTION if task.points.shape[1] == 2 else ROUGH_REDUCTION
+
+
+def smoothed(task: Task, found: Match, tolerance: float) -> Match:
+    """A match within a tolerance whose sides' curvature has fewer extrema, where a smoother one has."""
+    waves = _curvature_extrema(found)
+    for strength in SMOOTHING:
+        if waves is None or waves <= PLAIN_EXTREMA or found.interrupted or found.maximum > tolerance:
+            break
+        fresh = searched(replace(task, smooth=strength * task.smooth), found.design, rounds=1)
+        fewer = _curvature_extrema(fresh)
+        if fresh.maximum > tolerance or fewer is None or fewer > waves:
+            break
+        found, waves = replace(fresh, evaluations=fresh.evaluations + found.evaluations), fewer
+    return found
+
+
+def _curvature_extrema(found: Match) -> int | None:
+    """Extrema of the curvature of the side that has most; None where the design cannot be built."""
+    try:
+        return max(extrema_of(found.design.build()).values())
+    except DesignError:
+        return None

@@ -1,0 +1,121 @@
+"""The sides of sections and blades with blunt edges, each with its half of the face: they close the outline.
+
+A side and half a face are one curve, or surface, with a corner, so that the nearest place of a point may lie on either.
+"""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from bladewright.blade.native.blade import Blade
+from bladewright.fitting.matching.footpoints import Footpoints
+from bladewright.numerics.elementary import Array
+from bladewright.nurbs.basis import Reals
+from bladewright.nurbs.curve import Curve
+from bladewright.nurbs.surface import Surface
+from bladewright.section.section import Section
+
+FACE_SHARE = 0.02
+"""part of the parameter that half a face takes"""
+BluntEdges = tuple[bool, bool]
+"""whether the leading and the trailing edge are blunt"""
+
+
+def closed_knots(knots: Reals, degree: int, blunt: BluntEdges) -> Reals:
+    """Knots of a side with half a face at its blunt edges, from those of the side over [0, 1]."""
+    low, high = side_bounds(blunt)
+    inner = low + (high - low) * knots[degree + 1 : -degree - 1]
+    corner = [np.full(degree, at) if is_blunt else np.empty(0) for at, is_blunt in zip((low, high), blunt, strict=True)]
+    return np.concatenate([np.zeros(degree + 1), corner[0], inner, corner[1], np.ones(degree + 1)])
+
+
+def closed_nets(upper: Array, lower: Array, degree: int, blunt: BluntEdges) -> tuple[Array, Array]:
+    """Control points (..., n, d) of both sides with half a face at their blunt edges."""
+    found = []
+    for side, other in ((upper, lower), (lower, upper)):
+        parts = [side]
+        for end, is_blunt in enumerate(blunt):
+            if is_blunt:
+                at = (0, -1)[end]
+                corner = side[..., at, :][..., None, :]
+                middle = 0.5 * (corner + other[..., at, :][..., None, :])
+                steps = (np.arange(1, degree + 1) / degree)[:, None]
+                face = corner + steps * (middle - corner)
+                parts = [face[..., ::-1, :], *parts] if end == 0 else [*parts, face]
+        found.append(np.concatenate(parts, axis=-2))
+    return found[0], found[1]
+
+
+def side_bounds(blunt: BluntEdges) -> tuple[float, float]:
+    """Where the side itself begins and ends."""
+    return (FACE_SHARE if blunt[0] else 0.0), (1.0 - FACE_SHARE if blunt[1] else 1.0)
+
+
+def closed_with(upper: Surface, lower: Surface, faces: Mapping[str, Surface]) -> tuple[Surface, Surface]:
+    """Two sides of a blade with the halves of the faces of its blunt edges, by the names of these."""
+    blunt = "leading_edge" in faces, "trailing_edge" in faces
+    if not any(blunt):
+        return upper, lower
+    degree = upper.degree_u
+    knots = closed_knots(upper.knots_u, degree, blunt)
+    found = []
+    for side, first in ((upper, True), (lower, False)):
+        parts = [side.control_points]
+        for name in faces:
+            halves = _halved(faces[name].control_points)
+            half = halves[0] if first else halves[1][::-1]
+            parts = [half[:0:-1], *parts] if name == "leading_edge" else [*parts, half[1:]]
+        found.append(replace(side, control_points=np.concatenate(parts), knots_u=knots))
+    return found[0], found[1]
+
+
+def _halved(net: Reals) -> tuple[Reals, Reals]:
+    """Both halves of a polynomial with control points (n, ...), by de Casteljau's construction."""
+    rows, first, last = net, [net[0]], [net[-1]]
+    while len(rows) > 1:
+        rows = 0.5 * (rows[:-1] + rows[1:])
+        first.append(rows[0])
+        last.append(rows[-1])
+    return np.stack(first), np.stack(last[::-1])
+
+
+def sides_of(built: Blade | Section) -> tuple[Curve, Curve] | tuple[Surface, Surface]:
+    """The sides of what is built with the halves of the faces of its blunt edges."""
+    if isinstance(built, Section):
+        return closed_sides(built)
+    faces = {name: built.surfaces[name] for name in ("leading_edge", "trailing_edge") if name in built.surfaces}
+    upper, lower = built.sides
+    return closed_with(upper, lower, {name: face for name, face in faces.items() if isinstance(face, Surface)})
+
+
+def edges_of(built: Blade | Section) -> tuple[str, str]:
+    """How the sides meet at the leading and at the trailing edge."""
+    if isinstance(built, Section):
+        return built.edges
+    first, last = ("blunt" if name in built.surfaces else "closed" for name in ("leading_edge", "trailing_edge"))
+    return first, last
+
+
+def closed_sides(section: Section) -> tuple[Curve, Curve]:
+    """The sides of a section with the halves of the faces of its blunt edges."""
+    upper, lower, blunt = section.curves["upper"], section.curves["lower"], blunt_edges_of(section.edges)
+    if not any(blunt):
+        return upper, lower
+    knots = closed_knots(upper.knots, upper.degree, blunt)
+    nets = closed_nets(upper.control_points, lower.control_points, upper.degree, blunt)
+    first, last = (Curve(control_points=net, knots=knots, degree=upper.degree) for net in nets)
+    return first, last
+
+
+def blunt_edges_of(edges: Sequence[str]) -> BluntEdges:
+    """Which of two edges are blunt."""
+    return edges[0] == "blunt", edges[1] == "blunt"
+
+
+def on_sides(on: Footpoints, edges: Sequence[str]) -> tuple[Footpoints, NDArray[np.intp]]:
+    """Feet by the parameters of the sides themselves, and -1 where one is on the leading, 1 on the trailing face."""
+    low, high = side_bounds(blunt_edges_of(edges))
+    faces = np.where(on.u < low, -1, np.where(on.u > high, 1, 0))
+    return replace(on, u=np.clip((on.u - low) / (high - low), 0.0, 1.0)), faces

@@ -1,0 +1,105 @@
+"""2D designs of the families that are one part, as a search sees them."""
+
+from collections.abc import Mapping, Sequence
+from typing import Any, final
+
+import numpy as np
+
+from bladewright.blade.exact.section_stack import EdgeDerivatives
+from bladewright.blade.native.interpolation import interpolated_along_u
+from bladewright.derivatives.complex_step import STEP
+from bladewright.designs import Design
+from bladewright.fitting.models.blunt_edges import BluntEdges, closed_knots, closed_nets
+from bladewright.fitting.models.feasibility import infeasibility
+from bladewright.fitting.models.model import Model, ModelShape
+from bladewright.numerics.elementary import Array
+from bladewright.nurbs.basis import Reals, greville
+from bladewright.nurbs.curve import Curve
+from bladewright.section.checks import UNITS
+from bladewright.section.laws import Span
+from bladewright.section.native import DEGREE, side_knots_for
+from bladewright.section.outline import Edge
+from bladewright.section.planar import PlanarSection
+
+SINGLE_SECTION = Span(np.zeros(1))
+"""the one place along the span of a section that stands alone"""
+
+
+@final
+class PlanarModel(Model):
+    """A section of any such family at the knots that one of them needs for a tolerance, of the chord."""
+
+    def __init__(self, design: PlanarSection, tolerance: float | None = None) -> None:
+        self.chord = float(np.real(design.chord)) * UNITS[design.length_unit]
+        outline = design.section.outline(SINGLE_SECTION)
+        self.knots: Reals = side_knots_for(outline, design.tolerance if tolerance is None else tolerance)
+        self.blunt: BluntEdges = outline.leading_edge.kind == "blunt", outline.trailing_edge.kind == "blunt"
+        self.closed = closed_knots(self.knots, DEGREE, self.blunt)
+
+    def _shape(self, design: Any) -> ModelShape:
+        upper, lower = (np.real(net) for net in self._nets(design))
+        sides = [Curve(control_points=net, knots=self.closed, degree=DEGREE) for net in (upper, lower)]
+        folds = np.real(infeasibility(design.section, SINGLE_SECTION))
+        return ModelShape(design=design, sides=(sides[0], sides[1]), noses=np.zeros((2, 0)), folds=folds)
+
+    def tangents(self, shape: ModelShape, paths: Sequence[str]) -> tuple[Reals, Reals]:
+        """From one rebuild with a step on each parameter in a batch."""
+        nets = self._nets(shape.design.changed(complex_steps(shape.design, paths)))
+        upper, lower = (np.imag(np.broadcast_to(net, (len(paths), *net.shape[-2:]))) / STEP for net in nets)
+        return upper, lower
+
+    def nose_rates(self, shape: ModelShape, paths: Sequence[str]) -> Reals:  # noqa: ARG002 - the contract's
+        """None: what may not be is refused by the parts themselves."""
+        return np.zeros((len(paths), 2, 0))
+
+    def fold_rates(self, shape: ModelShape, paths: Sequence[str]) -> Reals:
+        """Of what the part comes near to."""
+        return infeasibility_rates(shape, paths, SINGLE_SECTION)
+
+    def _nets(self, design: Any) -> tuple[Array, Array]:
+        """Control points (..., n, 2) of both sides where the section stands [m]."""
+        outline, turn = design.section.outline(SINGLE_SECTION), design.section.stagger(SINGLE_SECTION)
+        inner = greville(self.knots, DEGREE)[3:-3]
+        edges = outline.leading_edge, outline.trailing_edge
+        nets = [
+            _net(points, edges, name, self.knots)
+            for points, name in zip(outline.points(inner), ("upper", "lower"), strict=True)
+        ]
+        metre = UNITS[design.length_unit]
+        chord, x, y = (
+            np.asarray(value)[..., None] * metre
+            for value in (design.chord, design.leading_edge_x, design.leading_edge_y)
+        )
+        cosine, sine = np.cos(turn), np.sin(turn)
+        placed = []
+        for net in nets:
+            a, b = net[..., 0], net[..., 1]
+            points = [x + chord * (a * cosine - b * sine), y + chord * (a * sine + b * cosine)]
+            placed.append(np.stack(np.broadcast_arrays(*points), axis=-1))
+        return closed_nets(placed[0], placed[1], DEGREE, self.blunt)
+
+
+def _net(points: Array, edges: tuple[Edge, Edge], name: str, knots: Reals) -> Array:
+    """Control points (..., n, 2) of a side in chords, from its points (..., 1, n - 6, 2) between the edges."""
+    starts = [getattr(edge, name) for edge in edges]
+    batch = np.broadcast_shapes(points.shape[:-3], *[each.shape[:-2] for start in starts for each in start])
+    rows = [EdgeDerivatives(*(np.broadcast_to(each, (*batch, 1, 2)) for each in start)) for start in starts]
+    lines = np.broadcast_to(points, (*batch, *points.shape[-3:]))
+    return interpolated_along_u(np.swapaxes(lines, -3, -2), rows[0], rows[1], knots)[..., 0, :]
+
+
+def infeasibility_rates(shape: ModelShape, paths: Sequence[str], span: Span) -> Reals:
+    """Derivatives (k, c) of a section's `folds` by every parameter."""
+    found = np.zeros((len(paths), len(shape.folds)))
+    own = [i for i, path in enumerate(paths) if path.startswith("section.")]
+    if len(shape.folds) and own:
+        design = shape.design.changed(complex_steps(shape.design, [paths[i] for i in own]))
+        found[own] = np.imag(infeasibility(design.section, span)) / STEP
+    return found
+
+
+def complex_steps(design: Design, paths: Sequence[str]) -> Mapping[str, Any]:
+    """Changes that put an imaginary step on each parameter in a batch."""
+    values = design.parameters()
+    kicks = 1j * STEP * np.eye(len(paths))
+    return {path: values[path] + kick for path, kick in zip(paths, kicks, strict=True)}

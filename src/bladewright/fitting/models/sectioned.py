@@ -1,0 +1,67 @@
+"""Blades from sections, as a search sees them."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+from types import MappingProxyType
+from typing import Any, final
+
+import numpy as np
+
+from bladewright.blade.design.sectioned import SectionedBlade
+from bladewright.blade.exact.sectioned import exact_sectioned_blade
+from bladewright.blade.native.blade import Blade, side_surface
+from bladewright.blade.native.interpolation import edge_faces, native_sides
+from bladewright.blade.native.knots import DEGREE, Knots
+from bladewright.blade.native.refinement import mean_chord, refined_knots
+from bladewright.derivatives.complex_step import side_tangents
+from bladewright.fitting.models.blunt_edges import BluntEdges, closed_nets, closed_with
+from bladewright.fitting.models.feasibility import infeasibility
+from bladewright.fitting.models.model import Model, ModelShape
+from bladewright.fitting.models.planar import infeasibility_rates
+from bladewright.nurbs.basis import Reals
+from bladewright.section.laws import Span
+
+FEASIBILITY_SPAN = Span(np.linspace(0.0, 1.0, 5))
+"""places along the span at which it is asked how near sections come to what is refused"""
+
+
+@final
+class SectionedModel(Model):
+    """A blade of any family from sections, at the knots that one of them needs for a tolerance, of the chord."""
+
+    def __init__(self, design: SectionedBlade, tolerance: float | None = None) -> None:
+        own = replace(design, tolerance=design.tolerance if tolerance is None else tolerance)
+        exact = exact_sectioned_blade(own, checked=False)
+        self.chord = mean_chord(exact)
+        self.knots: Knots = refined_knots(exact, self.chord)
+        kinds = exact.survey.kinds
+        self.blunt: BluntEdges = kinds[0] == "blunt", kinds[1] == "blunt"
+
+    def _shape(self, design: Any) -> ModelShape:
+        exact = exact_sectioned_blade(design, checked=False)
+        stations = exact.stations(self.knots.sites_v)
+        sides = [side_surface(net, self.knots, DEGREE) for net in native_sides(stations, self.knots)]
+        faces = edge_faces(stations, sides[0], sides[1], self.knots) if any(self.blunt) else {}
+        upper, lower = closed_with(sides[0], sides[1], faces)
+        folds = np.real(infeasibility(design.section, FEASIBILITY_SPAN))
+        return ModelShape(design=design, sides=(upper, lower), noses=np.zeros((2, 0)), exact=exact, folds=folds)
+
+    def tangents(self, shape: ModelShape, paths: Sequence[str]) -> tuple[Reals, Reals]:
+        """By every parameter in a batch; a face of a blunt edge moves as the straight one between its edges."""
+        blade = Blade(
+            design=shape.design, surfaces=MappingProxyType({}), knots=self.knots, chord=self.chord, exact=shape.exact
+        )
+        pairs = list(side_tangents(blade, paths))
+        upper, lower = (np.concatenate([pair[side] for pair in pairs]) for side in (0, 1))
+        if not any(self.blunt):
+            return upper, lower
+        rates = closed_nets(np.moveaxis(upper, 1, -2), np.moveaxis(lower, 1, -2), DEGREE, self.blunt)
+        return np.moveaxis(rates[0], -2, 1), np.moveaxis(rates[1], -2, 1)
+
+    def nose_rates(self, shape: ModelShape, paths: Sequence[str]) -> Reals:  # noqa: ARG002 - the contract's
+        """None: what may not be is refused by the parts themselves."""
+        return np.zeros((len(paths), 2, 0))
+
+    def fold_rates(self, shape: ModelShape, paths: Sequence[str]) -> Reals:
+        """Of what the sections come near to."""
+        return infeasibility_rates(shape, paths, FEASIBILITY_SPAN)

@@ -1,0 +1,223 @@
+"""The axis about which both ends of a blade lie on surfaces of revolution.
+
+The axis has four freedoms; each end's meridional line is a polynomial of low degree in the (x, r) plane, over the
+direction from edge to edge. All are found at once by least squares of the distances in that plane.
+"""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.polynomial import chebyshev
+
+from bladewright.fitting.assessment.result import Motion
+from bladewright.fitting.registration.rigid_motion import GENERATORS, composed, rotation_by
+from bladewright.fitting.registration.robust_motion import tukey_weights
+from bladewright.nurbs.basis import Reals
+
+LINE_DEGREES = (1, 2, 3, 4, 5, 6, 7, 8)
+"""from which the last one is taken, by the Bayesian information criterion (Schwarz 1978)"""
+AXIS_STEPS = 25
+HALVINGS = 4
+"""how often a step is shortened that makes things worse"""
+LEAST_WIDTH = 1e-13
+"""least width of the weights, of the ends' extent"""
+LEAST_NOISE = 1e-8
+"""of the ends' extent: points are not taken to be more exact, so that what nothing determines has a large deviation"""
+WEAKEST_DIRECTION = 1e-10
+"""of the largest singular value: weaker directions stay"""
+FEWEST_END_POINTS = 40
+"""points that an end must keep"""
+
+
+@dataclass(frozen=True, kw_only=True)
+class EndPoints:
+    """Points on one end of a blade."""
+
+    points: Reals
+    """(n, 3)"""
+    along: Reals
+    """(n,) place from edge to edge, 0 to 1"""
+
+
+@dataclass(frozen=True, kw_only=True)
+class RevolutionAxis:
+    """An axis found from two ends."""
+
+    motion: Motion
+    """into axes of which the first is the machine's"""
+    rms: float
+    """distance of the ends' points from their surfaces [m]"""
+    width: float
+    """at which the weights end [m]"""
+    shares: tuple[float, float]
+    """of the points of each end that lie on its surface"""
+    direction: float
+    """standard deviation of the direction [rad]"""
+    offset: float
+    """standard deviation of the distance from the blade [m]"""
+    degree: int
+    """of the meridional lines"""
+    score: float
+    """Bayesian information criterion, by the scatter's median"""
+
+
+@dataclass(frozen=True, kw_only=True)
+class _Line:
+    """A meridional line: the ordinate as a polynomial of the abscissa, in axes along and across it."""
+
+    turn: Reals
+    """(2, 2) from (x, r) to abscissa and ordinate"""
+    middle: float
+    half: float
+    coefficients: Reals
+
+
+def axis_of(
+    ends: tuple[EndPoints, EndPoints], start: Motion, degrees: tuple[int, ...] = LINE_DEGREES, steps: int = AXIS_STEPS
+) -> RevolutionAxis | None:
+    """The axis near a first one, with lines of the degree that the points ask for; None where an end loses its points.
+
+    Each degree starts anew: lines of a high degree and the axis make up for each other under noise.
+    """
+    centre = np.concatenate([start(end.points) for end in ends]).mean(axis=0)
+    back = Motion(rotation=np.eye(3), translation=np.array([-centre[0], 0.0, 0.0]))
+    best: RevolutionAxis | None = None
+    for degree in degrees:
+        motion, lines, width = _settled(ends, composed(back, start), degree, steps)
+        axis = _axis(ends, motion, lines, width, degree)
+        if axis is not None and (best is None or axis.score < best.score):
+            best = axis
+    return best
+
+
+def _settled(
+    ends: tuple[EndPoints, EndPoints], motion: Motion, degree: int, steps: int
+) -> tuple[Motion, list[_Line], float]:
+    """Axis and lines at which the steps end, and the width of the weights that the scatter asks for."""
+    reach = _reach(ends)
+    lines = [_first_line(end, motion, degree) for end in ends]
+    offs = _equations(ends, motion, lines, np.inf)[2]
+    wide = max(7.0 * float(np.median(np.abs(np.concatenate(offs)))), LEAST_WIDTH * reach)
+    before = _cost(offs, wide)
+    for _ in range(steps):
+        rows, right, offs = _equations(ends, motion, lines, wide)
+        scale = np.ones(rows.shape[1])
+        scale[:2] = 1.0 / reach
+        found = np.linalg.lstsq(rows * scale, right, rcond=WEAKEST_DIRECTION)[0]
+        share = min(1.0, 0.1 * reach / max(float(np.max(np.abs(found[:4]))), 1e-300))
+        for _ in range(HALVINGS):
+            trial, curves = _changed(motion, lines, share * found * scale)
+            offs = _equations(ends, trial, curves, np.inf)[2]
+            cost = _cost(offs, wide)
+            if cost <= before:
+                break
+            share *= 0.4
+        else:
+            break
+        motion, lines = trial, curves
+        narrow = max(7.0 * float(np.median(np.abs(np.concatenate(offs)))), LEAST_WIDTH * reach)
+        narrow, wide = wide, min(wide, narrow)
+        before = _cost(offs, wide)
+        if share * np.max(np.abs(found)) < 1e-12 * reach or (
+            share * np.max(np.abs(found)) < 1e-3 * wide and wide > 0.99 * narrow
+        ):
+            break
+    return motion, lines, wide
+
+
+def _changed(motion: Motion, lines: list[_Line], step: Reals) -> tuple[Motion, list[_Line]]:
+    change = Motion(rotation=rotation_by(np.array([0.0, *step[:2]])), translation=np.array([0.0, *step[2:4]]))
+    curves = [
+        replace(line, coefficients=line.coefficients + part)
+        for line, part in zip(lines, np.split(step[4:], 2), strict=True)
+    ]
+    return composed(change, motion), curves
+
+
+def _cost(offs: list[Reals], width: float) -> float:
+    """Sum of Tukey's losses, 1 for each point outside of the width."""
+    inside = np.minimum(1.0, (np.concatenate(offs) / width) ** 2)
+    return float(np.sum(1.0 - (1.0 - inside) ** 3))
+
+
+def _first_line(end: EndPoints, motion: Motion, degree: int) -> _Line:
+    flat = _meridional(motion(end.points))
+    way = (end.along - np.median(end.along)) @ (flat - np.median(flat, axis=0))
+    c, s = way / max(float(np.sqrt(np.sum(way**2))), 1e-300)
+    turn = np.array([[c, s], [-s, c]])
+    abscissa, ordinate = turn @ flat.T
+    low, high = np.min(abscissa), np.max(abscissa)
+    middle, half = 0.5 * float(low + high), 0.5 * float(high - low)
+    vander = chebyshev.chebvander((abscissa - middle) / half, degree)
+    weight = np.ones(len(flat))
+    for _ in range(10):
+        root = np.sqrt(weight)
+        coefficients = np.linalg.lstsq(vander * root[:, None], ordinate * root, rcond=1e-9)[0]
+        off = np.abs(ordinate - vander @ coefficients)
+        weight = tukey_weights(off, max(7.0 * float(np.median(off)), 1e-12))
+    return _Line(turn=turn, middle=middle, half=half, coefficients=coefficients)
+
+
+def _equations(
+    ends: tuple[EndPoints, EndPoints], motion: Motion, lines: list[_Line], width: float
+) -> tuple[Reals, Reals, list[Reals]]:
+    """Weighted rows of the axis' four freedoms and the lines' coefficients, right sides, and each end's distances."""
+    blocks, rights, offs = [], [], []
+    size = len(lines[0].coefficients)
+    for k, (end, line) in enumerate(zip(ends, lines, strict=True)):
+        points = motion(end.points)
+        flat = _meridional(points)
+        abscissa, ordinate = line.turn @ flat.T
+        place = (abscissa - line.middle) / line.half
+        vander = chebyshev.chebvander(place, size - 1)
+        slope = chebyshev.chebval(place, chebyshev.chebder(line.coefficients)) / line.half
+        lean = 1.0 / np.sqrt(1.0 + slope**2)
+        off = (ordinate - vander @ line.coefficients) * lean
+        radial = points[:, 1:] / flat[:, 1:]
+        rates = np.einsum("kde,ne->nkd", GENERATORS[3][1:], points)
+        rates = np.concatenate([rates, np.broadcast_to(np.eye(3)[1:], (len(points), 2, 3))], axis=1)
+        moves = np.stack([rates[..., 0], np.einsum("nkd,nd->nk", rates[..., 1:], radial)])
+        along, across = np.einsum("ab,bnk->ank", line.turn, moves)
+        block = np.zeros((len(points), 4 + 2 * size))
+        block[:, :4] = (across - slope[:, None] * along) * lean[:, None]
+        block[:, 4 + k * size : 4 + (k + 1) * size] = -vander * lean[:, None]
+        root = np.sqrt(tukey_weights(np.abs(off), width)) if np.isfinite(width) else np.ones(len(off))
+        blocks.append(block * root[:, None])
+        rights.append(-off * root)
+        offs.append(off)
+    return np.concatenate(blocks), np.concatenate(rights), offs
+
+
+def _axis(
+    ends: tuple[EndPoints, EndPoints], motion: Motion, lines: list[_Line], width: float, degree: int
+) -> RevolutionAxis | None:
+    rows, right, offs = _equations(ends, motion, lines, width)
+    on = [np.abs(off) < width for off in offs]
+    if min(np.count_nonzero(each) for each in on) < FEWEST_END_POINTS:
+        return None
+    reach = _reach(ends)
+    scale = np.ones(rows.shape[1])
+    scale[:2] = 1.0 / reach
+    _, values, across = np.linalg.svd(rows * scale, full_matrices=False)
+    half = across.T / np.maximum(values, WEAKEST_DIRECTION * values[0])
+    spread = float(np.sum(right**2)) / max(1, np.count_nonzero(right) - rows.shape[1])
+    spread = max(spread, (LEAST_NOISE * reach) ** 2)
+    covariance = (spread * half @ half.T)[:4, :4]
+    return RevolutionAxis(
+        motion=motion,
+        rms=float(np.sqrt(np.mean(np.concatenate([off[each] for off, each in zip(offs, on, strict=True)]) ** 2))),
+        width=width,
+        shares=(float(np.mean(on[0])), float(np.mean(on[1]))),
+        direction=float(np.sqrt(np.linalg.eigvalsh(covariance[:2, :2])[-1])) / reach,
+        offset=float(np.sqrt(np.linalg.eigvalsh(covariance[2:, 2:])[-1])),
+        degree=degree,
+        score=len(rows) * 2.0 * float(np.log(width)) + 2 * (degree + 1) * float(np.log(len(rows))),
+    )
+
+
+def _meridional(points: Reals) -> Reals:
+    return np.stack([points[:, 0], np.sqrt(points[:, 1] ** 2 + points[:, 2] ** 2)], axis=-1)
+
+
+def _reach(ends: tuple[EndPoints, EndPoints]) -> float:
+    return float(np.max(np.ptp(np.concatenate([end.points for end in ends]), axis=0)))

@@ -1,0 +1,158 @@
+"""The rigid motion of least true distances from a target, with outliers left out step by step.
+
+Gauss and Newton's method on the distances along the target's normals, and past an edge also along the side; weights are
+Tukey's (Beaton and Tukey 1974). Their width starts wide and shrinks to what the inliers' own scatter asks for, as in
+graduated non-convexity (Blake and Zisserman 1987), so that the few points at the ends, which alone hold a prismatic
+blade along its span, take part before they could be taken for outliers.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from bladewright.fitting.assessment.result import Motion
+from bladewright.fitting.registration.rigid_motion import GENERATORS, composed, free_columns, rotation_by
+from bladewright.fitting.registration.target import Contact, RegistrationTarget
+from bladewright.nurbs.basis import Reals
+
+FIRST_WIDTH = 0.04
+"""first width of the weights, of the target's extent"""
+WIDTH_FACTOR = 8.0
+"""the width shrinks by this factor"""
+FAST_WIDTH = 1e-3
+"""width, of the extent, below which it shrinks three times as fast"""
+TUKEY = 4.685
+"""width in standard deviations at which Tukey's weights have 95 % efficiency"""
+NEWTON_STEP = 1e-3
+"""a step that is smaller than this, of the extent, leaves the nearest places where they were but for Newton steps"""
+LEAST_WIDTH = 1e-13
+"""least width, of the target's extent"""
+SETTLED_STEP = 1e-13
+"""a step that is smaller than this, of the target's extent, ends the descent"""
+MOST_STEPS = 60
+LONGEST_STEP = 0.2
+"""a step is not longer than this, of the extent"""
+WEAKEST_FREEDOM = 1e-5
+"""of the best determined freedom: a weaker one is not determined by the points"""
+
+
+@dataclass(frozen=True, kw_only=True)
+class RobustMotion:
+    """Where a descent ends."""
+
+    motion: Motion
+    contact: Contact
+    """of the moved points"""
+    weights: Reals
+    """(n,) of the points in the last step, 0 for outliers"""
+    undetermined: tuple[Reals, ...]
+    """directions in the space of the freedoms, scaled to lengths, that the points do not determine"""
+    covariance: Reals
+    """(k, k) of the free freedoms, [rad] and [m]"""
+    settled: bool
+
+
+def robust_motion(
+    target: RegistrationTarget,
+    points: Reals,
+    motion: Motion,
+    *,
+    freedoms: tuple[str, ...] | None = None,
+    width: float = FIRST_WIDTH,
+    steps: int = MOST_STEPS,
+) -> RobustMotion:
+    """The motion of points (n, d) near `motion` that brings them onto the target."""
+    columns = free_columns(points.shape[1], freedoms)
+    extent = target.extent
+    wide, least = width * extent, LEAST_WIDTH * extent
+    settled, small = False, np.inf
+    start, total = motion, np.zeros(len(GENERATORS[points.shape[1]]) + points.shape[1])
+    contact: Contact | None = None
+    for _ in range(steps):
+        moved = motion(points)
+        contact = target.contact(moved, contact if small < NEWTON_STEP * extent else None)
+        distances = contact.distances
+        scatter = TUKEY * 1.4826 * float(np.median(distances[distances < wide])) if np.any(distances < wide) else wide
+        weights = tukey_weights(distances, max(wide, least))
+        pivot = np.mean(moved, axis=0) if freedoms is None else np.zeros(points.shape[1])
+        rows, right = equations(moved, contact, weights, pivot)
+        step = _step(rows, right, columns, pivot, moved, extent)
+        if freedoms is None:
+            motion = composed(_about(pivot, step), motion)
+        else:
+            # what is held stays exactly so: one turn and one shift after the start, not many small ones in a row
+            total = total + step
+            motion = composed(_about(pivot, total), start)
+        small = float(np.max(np.abs(motion(points) - moved)))
+        if wide <= max(scatter, least) * (1.0 + 1e-9) and small < SETTLED_STEP * extent:
+            settled = True
+            break
+        if small < wide / 10.0:
+            shrinking = WIDTH_FACTOR if wide > FAST_WIDTH * extent else WIDTH_FACTOR**3
+            wide = max(wide / shrinking, min(scatter, wide), least)
+    moved = motion(points)
+    contact = target.contact(moved, contact if small < NEWTON_STEP * extent else None)
+    weights = tukey_weights(contact.distances, max(wide, least))
+    pivot = np.mean(moved, axis=0)
+    undetermined, _ = _determined(*equations(moved, contact, weights, pivot), columns, extent)
+    _, covariance = _determined(*equations(moved, contact, weights, 0.0 * pivot), columns, extent)
+    return RobustMotion(
+        motion=motion,
+        contact=contact,
+        weights=weights,
+        undetermined=undetermined,
+        covariance=covariance,
+        settled=settled,
+    )
+
+
+def equations(moved: Reals, contact: Contact, weights: Reals, pivot: Reals) -> tuple[Reals, Reals]:
+    """Weighted rows (m, k) of the effects on the distances of turns about a pivot and of shifts, and right sides."""
+    dimension = moved.shape[1]
+    past = np.flatnonzero(np.any(contact.beyond != 0.0, axis=1))
+    directions = np.concatenate([contact.normals, contact.beyond[past]])
+    which = np.concatenate([np.arange(len(moved)), past])
+    turns = np.einsum("nd,kde,ne->nk", directions, GENERATORS[dimension], moved[which] - pivot)
+    root = np.sqrt(weights[which])
+    miss = np.sum(directions * contact.miss[which], axis=1)
+    return np.concatenate([turns, directions], axis=1) * root[:, None], -miss * root
+
+
+def tukey_weights(distances: Reals, width: float) -> Reals:
+    """Tukey's weights (n,): they fall smoothly to 0 at `width`."""
+    return np.asarray(np.maximum(0.0, 1.0 - (distances / width) ** 2) ** 2)
+
+
+def _step(rows: Reals, right: Reals, columns: list[int], pivot: Reals, moved: Reals, extent: float) -> Reals:
+    """Changes (k,) of all freedoms: least squares in those that are free and that the rows determine."""
+    dimension = moved.shape[1]
+    turns = len(GENERATORS[dimension])
+    reach = float(np.sqrt(np.max(np.sum((moved - pivot) ** 2, axis=1))))
+    scale = np.where(np.arange(rows.shape[1]) < turns, 1.0 / reach, 1.0)
+    found = np.linalg.lstsq(rows[:, columns] * scale[columns], right, rcond=WEAKEST_FREEDOM)[0]
+    longest = float(np.sqrt(np.max(found**2)))
+    step = np.zeros(rows.shape[1])
+    shortened = LONGEST_STEP * extent / longest if longest > LONGEST_STEP * extent else 1.0
+    step[columns] = found * scale[columns] * shortened
+    return step
+
+
+def _about(pivot: Reals, step: Reals) -> Motion:
+    """A turn about a point, then a shift."""
+    turns = len(GENERATORS[len(pivot)])
+    rotation = rotation_by(step[:turns])
+    return Motion(rotation=rotation, translation=pivot - rotation @ pivot + step[turns:])
+
+
+def _determined(
+    rows: Reals, right: Reals, columns: list[int], extent: float
+) -> tuple[tuple[Reals, ...], NDArray[np.float64]]:
+    turns = len(GENERATORS[2 if rows.shape[1] == 3 else 3])
+    scale: Reals = np.where(np.arange(rows.shape[1]) < turns, 1.0 / extent, 1.0)[columns]
+    _, values, across = np.linalg.svd(rows[:, columns] * scale, full_matrices=False)
+    weak = values <= WEAKEST_FREEDOM * values[0]
+    spread = float(np.sum(right**2)) / max(1, int(np.count_nonzero(right)) - len(columns))
+    inverse = np.where(weak, 0.0, 1.0 / np.where(weak, 1.0, values))
+    half = scale[:, None] * across.T * inverse
+    return tuple(across[weak]), spread * half @ half.T

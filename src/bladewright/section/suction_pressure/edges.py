@@ -1,0 +1,204 @@
+"""The edges of a section by suction and pressure side: characteristic points, and one polynomial through them."""
+
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+
+from bladewright.numerics.elementary import Array, concatenated, dot
+from bladewright.nurbs.basis import Reals
+from bladewright.section.camber import turned_left
+
+Continuity = Literal["C1", "C2"]
+
+MAX_OPENING = {"C1": 1.2, "C2": 0.95}
+"""largest a / b tan(wedge / 2): beyond it no edge of the nose's radius of curvature reaches the sides"""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Corner:
+    """Where a side leaves an edge."""
+
+    point: Array
+    """(..., 2)"""
+    offset: Array
+    """(..., 2) of the point from the nose"""
+    direction: Array
+    """(..., 2) unit vector from the edge along the side, into the blade"""
+    speed: Array
+    """(...) of the edge there, by a parameter that is 0 at the nose and 1 at the corner"""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class EdgePoints:
+    """The three characteristic points of an edge: its nose and the corners of both sides."""
+
+    nose: Array
+    """(2,)"""
+    inward: Array
+    """(..., 2) unit vector of the edge's direction, from the nose into the blade"""
+    upper: Corner
+    lower: Corner
+
+
+def opening(stretch: Array, wedge: Array) -> Array:
+    """a / b tan(wedge / 2) (...): cotangent of the ellipse's parameter at which a side leaves it."""
+    return stretch * np.tan(0.5 * wedge)
+
+
+def characteristic_points(
+    nose: Array,
+    camber_angle: Array,
+    *,
+    inward: float,
+    radius: Array,
+    stretch: Array,
+    skew: Array,
+    wedge: Array,
+    continuity: Continuity,
+) -> EdgePoints:
+    """The characteristic points of an edge at `nose` (2,), its camber line's angle from the chord line (...) [rad].
+
+    `inward` is 1 where the camber line leaves the edge (leading), -1 where it arrives (trailing); radius (...) in
+    chords, stretch, skew (positive: longer on the upper side) (...), wedge (...) [rad].
+    """
+    forward = np.stack([np.cos(camber_angle), np.sin(camber_angle)], axis=-1)
+    along, across = inward * forward, turned_left(forward)
+    corners = [
+        _corner(nose, along, sign * across, radius, stretch * (1.0 + sign * skew), wedge, continuity)
+        for sign in (1.0, -1.0)
+    ]
+    return EdgePoints(nose=nose, inward=along, upper=corners[0], lower=corners[1])
+
+
+def _corner(
+    nose: Array, along: Array, across: Array, radius: Array, stretch: Array, wedge: Array, continuity: Continuity
+) -> Corner:
+    ratio = opening(stretch, wedge)
+    sine = 1.0 / np.sqrt(1.0 + ratio**2)
+    advance, height = stretch * (1.0 - ratio * sine), sine
+    c, s = np.cos(0.5 * wedge), np.sin(0.5 * wedge)
+    offset = radius[..., None] * (advance[..., None] * along + height[..., None] * across)
+    return Corner(
+        point=nose + offset,
+        offset=offset,
+        direction=c[..., None] * along + s[..., None] * across,
+        speed=radius * _speed(advance, height, c, s, stretch, continuity),
+    )
+
+
+def _speed(x: Array, y: Array, c: Array, s: Array, stretch: Array, continuity: Continuity) -> Array:
+    """Speed m at the corner (x, y), direction (c, s), that gives the nose the ellipse's curvature, a / b^2 with b = 1.
+
+    For mirrored straight sides the edge's polynomial has x'' / y'^2 at the nose, with x'' = 2 (p x - q m c) and
+    y' = u y - v m s: a quadratic in m.
+    """
+    p, q, u, v = (2.0, 0.5, 1.5, 0.5) if continuity == "C1" else (3.0, 1.125, 1.875, 0.875)
+    square = stretch * (v * s) ** 2
+    linear = 2.0 * q * c - 2.0 * u * v * stretch * y * s
+    constant = stretch * (u * y) ** 2 - 2.0 * p * x
+    return -2.0 * constant / (linear + np.sqrt(linear**2 - 4.0 * square * constant))
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class EdgeCamber:
+    """The camber line of an edge by t in [0, 1]: from the nose in the edge's direction, then on to the sides' middle.
+
+    Its height over the edge's direction is a quartic of the way along it, so that it is as smooth by its length as it
+    looks, and continues the middle of the two sides to second order.
+    """
+
+    nose: Array
+    """(2,)"""
+    inward: Array
+    """(..., 2) unit vector"""
+    length: Array
+    """(...) along it to the middle of the two corners"""
+    fraction: Array
+    """(..., 5) of the powers of t: the way along"""
+    height: Array
+    """(..., 5) of the powers of that fraction"""
+
+    def points(self, t: Reals) -> Array:
+        """Points (..., k, 2) at t (k,)."""
+        fraction = powers_at(self.fraction[..., None], t)[..., 0]
+        height = powers_at(self.height[..., None], fraction)
+        inward = self.inward[..., None, :]
+        return self.nose + (self.length[..., None] * fraction)[..., None] * inward + height * turned_left(inward)
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class EdgeCurve:
+    """An edge by t, -1 where it meets the lower side, 0 at the nose, 1 where it meets the upper side."""
+
+    coefficients: Array
+    """(..., 5 or 7, 2) of the powers of t"""
+    camber: EdgeCamber
+
+
+def edge_curve(points: EdgePoints, bend_upper: Array, bend_lower: Array, continuity: Continuity) -> EdgeCurve:
+    """The polynomial of degree 4 (C1) or 6 (C2) through corner, nose and corner, with the sides' derivatives there.
+
+    The bends (..., 2) are the sides' curvature vectors at the corners times the speed squared; C1 leaves them alone.
+    Being one polynomial, the edge is smooth to any order at the nose.
+    """
+    (even, even_1, even_2), (odd, odd_1, odd_2) = _halves(points, bend_upper, bend_lower)
+    nose = np.broadcast_to(points.nose, even.shape)
+    if continuity == "C1":
+        fourth = 0.5 * even_1 - even
+        third = 0.5 * (odd_1 - odd)
+        powers = [nose, odd - third, even - fourth, third, fourth]
+    else:
+        fifth = 0.125 * (odd_2 - 3.0 * odd_1 + 3.0 * odd)
+        third = 0.5 * (odd_1 - odd) - 2.0 * fifth
+        sixth = 0.125 * (even_2 - 5.0 * even_1 + 8.0 * even)
+        fourth = 0.5 * (even_1 - 2.0 * even) - 2.0 * sixth
+        powers = [nose, odd - third - fifth, even - fourth - sixth, third, fourth, fifth, sixth]
+    return EdgeCurve(coefficients=_stacked(powers), camber=_camber(points, even, even_1, even_2))
+
+
+def powers_at(coefficients: Array, t: Array) -> Array:
+    """Values (..., k, d) of polynomials with coefficients (..., n, d) at t (k,) or (..., k)."""
+    found = coefficients[..., -1:, :] + 0.0 * t[..., None]
+    for power in range(coefficients.shape[-2] - 2, -1, -1):
+        found = found * t[..., None] + coefficients[..., power : power + 1, :]
+    return found
+
+
+def _halves(points: EdgePoints, bend_upper: Array, bend_lower: Array) -> tuple[tuple[Array, ...], tuple[Array, ...]]:
+    """Even and odd parts at t = 1 of the edge about its nose, with two derivatives."""
+    upper, lower = points.upper, points.lower
+    at_upper = (upper.offset, upper.speed[..., None] * upper.direction, bend_upper)
+    at_lower = (lower.offset, -lower.speed[..., None] * lower.direction, bend_lower)
+    even = tuple(0.5 * (a + sign * b) for a, b, sign in zip(at_upper, at_lower, (1.0, -1.0, 1.0), strict=True))
+    odd = tuple(0.5 * (a - sign * b) for a, b, sign in zip(at_upper, at_lower, (1.0, -1.0, 1.0), strict=True))
+    return even, odd
+
+
+def _camber(points: EdgePoints, even: Array, even_1: Array, even_2: Array) -> EdgeCamber:
+    left = turned_left(points.inward)
+    along, along_1, along_2 = (dot(each, points.inward) for each in (even, even_1, even_2))
+    off, off_1, off_2 = (dot(each, left) for each in (even, even_1, even_2))
+    slope = off_1 / along_1
+    bend = (off_2 - slope * along_2) / along_1**2
+    fraction = _flat_start(np.zeros_like(along), along_1 / along - 1.0, along_2 / along)
+    fraction[..., 1] = 1.0
+    return EdgeCamber(
+        nose=points.nose,
+        inward=points.inward,
+        length=along,
+        fraction=fraction,
+        height=_flat_start(off, slope * along, bend * along**2),
+    )
+
+
+def _flat_start(value: Array, slope: Array, bend: Array) -> Array:
+    """Coefficients (..., 5) of a quartic by its value and two derivatives (...) at 1, both zero but the second at 0."""
+    fourth = 0.5 * (bend - 4.0 * slope + 6.0 * value)
+    third = slope - 2.0 * value - 2.0 * fourth
+    none = np.zeros_like(fourth)
+    return np.stack(np.broadcast_arrays(none, none, value - third - fourth, third, fourth), axis=-1)
+
+
+def _stacked(rows: list[Array]) -> Array:
+    return concatenated([row[..., None, :] for row in rows], axis=-2)

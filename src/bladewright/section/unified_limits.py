@@ -1,0 +1,117 @@
+"""Limits of the unified family's parameters, each on its own, and of the edge radius that a thickness can hold."""
+
+import numpy as np
+
+from bladewright.designs import Design
+from bladewright.errors import DesignError
+from bladewright.numerics.elementary import Array
+from bladewright.nurbs.basis import Reals
+from bladewright.section import checks
+from bladewright.section.laws import Span
+from bladewright.section.unified_sides import advances, edge_height
+
+ANGLES = ("stagger", "metal_angle_in", "metal_angle_out")
+TANGENTS = ("tangent_in", "tangent_out")
+RADII = ("leading_edge_radius", "trailing_edge_radius")
+THICKNESSES = ("thickness_upper", "thickness_lower")
+WEIGHTS = ("weights_upper", "weights_lower")
+
+
+def check_labels(design: Design) -> None:
+    """Name, header texts and unit of length."""
+    for label in ("name", "description", "author", "organisation"):
+        checks.text(label, getattr(design, label))
+    name = getattr(design, "name")  # noqa: B009 - a field of every family, not of the base
+    if not name.strip() or any(sign in name for sign in '/\\:*?"<>|'):
+        raise DesignError(f'name is {name!r}: it names files, so it must not be empty nor hold / \\ : * ? " < > |')
+    checks.choice("length_unit", getattr(design, "length_unit"), list(checks.UNITS))  # noqa: B009 - as above
+
+
+def check_laws(design: Design) -> None:
+    """Angles, tangent proportions, edge radii, thicknesses and weights; brings them to tuples of numbers."""
+    for name in (*ANGLES, *TANGENTS, *RADII):
+        object.__setattr__(design, name, checks.law(name, getattr(design, name)))
+    for name in (*THICKNESSES, *WEIGHTS):
+        if name in THICKNESSES or getattr(design, name) != ():
+            object.__setattr__(design, name, checks.chordwise(name, getattr(design, name)))
+    for name in ANGLES:
+        checks.between(name, getattr(design, name), -90.0, 90.0, "an angle must lie between -90 and 90 deg")
+    for name in TANGENTS:
+        what = "a tangent proportion must lie above 0 and not above 1, or the camber turns back"
+        checks.between(name, getattr(design, name), 0.0, 1.0 + 1e-12, what)
+    for name in RADII:
+        checks.between(name, getattr(design, name), 0.0, 1.0, "an edge radius must lie between 0 and 1")
+    for name in THICKNESSES:
+        checks.between(name, getattr(design, name), 0.0, 10.0, "thickness must be positive, and below 10; raise it")
+    for name in WEIGHTS:
+        checks.between(name, getattr(design, name), 0.0, 1e6, "a weight must be positive, and below 1e6")
+
+
+def check_sampling(design: Design) -> None:
+    """Number and clustering of the samples along the chord."""
+    samples = getattr(design, "samples")  # noqa: B009 - a field of every family, not of the base
+    object.__setattr__(design, "samples", checks.integer("samples", samples, 3, 60, "a whole number is needed"))
+    check_range(design, "clustering", 0.0, 1.0)
+
+
+def check_range(design: Design, name: str, low: float, high: float) -> None:
+    """A number from low to high."""
+    object.__setattr__(design, name, checks.number(name, getattr(design, name)))
+    checks.between(name, getattr(design, name), low, high, f"it must lie from {low:g} to {high:g}", closed=True)
+
+
+def check_edges(
+    design: Design,
+    name: str,
+    line: Array,
+    places: Reals,
+    thickness: Array,
+    curvatures: list[Array],
+    weights: Array | None,
+    span: Span,
+) -> None:
+    """Refuse edges that cannot be rounded: outward thickness, a radius too large for the thickness beside it.
+
+    `line` (..., m, 4, 2) camber lines at the places of `span`; `thickness` (..., m, k) at the inner `places`;
+    `curvatures` at leading and trailing edge (..., m); `weights` (..., m, n) or None.
+    """
+    reached = advances(line, places, thickness, name == "upper")
+    count = len(getattr(design, f"thickness_{name}"))
+    for i, edge in enumerate(("leading", "trailing")):
+        entry = f"thickness_{name}[{0 if i == 0 else count - 1}]"
+        radius = span.values(getattr(design, f"{edge}_edge_radius"))
+        advance, curvature = np.real(reached[i]), np.real(curvatures[i])
+        where = _first(advance <= 0.0)
+        if where is not None:
+            raise DesignError(
+                f"{entry}: next to the {edge} edge at v = {span.v[where[-1]]:.3f} the {name} side leaves the blade "
+                f"outwards: the camber turns too fast for the thickness there; lower {entry}, or the camber's turning"
+            )
+        where = _first(curvature <= 0.0)
+        if where is not None:
+            raise DesignError(
+                f"{edge}_edge_radius is {_at(radius, where):.4g} at v = {span.v[where[-1]]:.3f}: the stream surface "
+                f"there bends more than such an edge; lower {edge}_edge_radius"
+            )
+        ratio = 1.0
+        if weights is not None:
+            ends = np.real(weights if i == 0 else weights[..., ::-1])
+            ratio = ends[..., 0] * ends[..., 2] / ends[..., 1] ** 2
+        height = np.real(edge_height(advance, curvature, ratio))
+        beside = np.real(thickness[..., 0 if i == 0 else -1])
+        where = _first(height > beside)
+        if where is not None:
+            largest = _at(radius, where) * (_at(beside, where) / _at(height, where)) ** 2
+            raise DesignError(
+                f"{edge}_edge_radius is {_at(radius, where):.4g} at v = {span.v[where[-1]]:.3f}: the thickness of the "
+                f"{name} side next to it can hold at most {largest:.4g}; lower {edge}_edge_radius or raise {entry}"
+            )
+
+
+def _first(mask: Array) -> tuple[int, ...] | None:
+    found = np.argwhere(mask)
+    return tuple(int(i) for i in found[0]) if len(found) else None
+
+
+def _at(values: Array, where: tuple[int, ...]) -> float:
+    return float(np.ravel(np.real(values)[..., where[-1]])[0])

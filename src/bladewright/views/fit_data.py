@@ -1,0 +1,264 @@
+"""What a picture of a fit needs of it: the points that are drawn, and the outline of a section beside them."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Protocol
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.colors import LinearSegmentedColormap, Normalize
+from numpy.typing import NDArray
+
+from bladewright.numerics.elementary import dot, length, unit
+from bladewright.nurbs.basis import Reals
+from bladewright.views.sections import cosine_spacing, millimetres_per_unit
+from bladewright.views.style import INK, MILLIMETRES
+
+if TYPE_CHECKING:
+    from bladewright.section.section import Section
+
+
+Index = NDArray[np.intp]
+SIDES = ("upper", "lower")
+WORST_POINTS = 500
+"""points farthest off that are always drawn"""
+DEVIATION_COLOURS = LinearSegmentedColormap.from_list(
+    "deviation", ["#0b3c66", "#2f7fb5", "#8fbfd9", "#f4f1ea", "#e9a582", "#c4553f", "#7a1526"]
+)
+"""inside the blade blue, outside red"""
+ROUND_NUMBERS = (1.0, 1.2, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0)
+
+
+class DistanceStatistics(Protocol):
+    """Figures of some distances [m]."""
+
+    @property
+    def count(self) -> int: ...
+    @property
+    def mean(self) -> float: ...
+    @property
+    def rms(self) -> float: ...
+    @property
+    def percentile_99(self) -> float: ...
+    @property
+    def maximum(self) -> float: ...
+
+
+class FitResult(Protocol):
+    """A fit of a design to a cloud of n points, as `bladewright.fit` hands it back."""
+
+    @property
+    def design(self) -> Any: ...
+    @property
+    def built(self) -> Any: ...
+    @property
+    def cloud(self) -> Reals: ...
+    @property
+    def places(self) -> NDArray[np.str_]: ...
+    @property
+    def u(self) -> Reals: ...
+    @property
+    def v(self) -> Reals: ...
+    @property
+    def deviations(self) -> Reals: ...
+    @property
+    def regions(self) -> NDArray[np.str_]: ...
+    @property
+    def inliers(self) -> NDArray[np.bool_]: ...
+    @property
+    def estimates(self) -> Any: ...
+    @property
+    def rank(self) -> int: ...
+    @property
+    def noise(self) -> float: ...
+    @property
+    def extrema(self) -> Mapping[str, int]: ...
+    @property
+    def tolerance(self) -> float | None: ...
+    @property
+    def failures(self) -> tuple[str, ...]: ...
+    @property
+    def interrupted(self) -> bool: ...
+    @property
+    def passed(self) -> bool: ...
+    @property
+    def deviation(self) -> DistanceStatistics: ...
+    @property
+    def by_region(self) -> Mapping[str, DistanceStatistics]: ...
+
+
+def on_sides(fit: FitResult) -> NDArray[np.bool_]:
+    """Whether each point (n,) lies nearest to a side, rather than to an end."""
+    return np.isin(fit.places, SIDES)
+
+
+def points_to_draw(fit: FitResult, among: NDArray[np.bool_], most: int) -> Index:
+    """Indices of at most about `most` points among a mask (n,), those far off last; the worst are always there.
+
+    The rest is an even choice, the same one every time.
+    """
+    index = np.flatnonzero(among)
+    off = np.abs(fit.deviations[index])
+    if len(index) > most:
+        order = np.argpartition(off, -min(WORST_POINTS, most // 2))
+        near, far = np.split(order, [len(order) - min(WORST_POINTS, most // 2)])
+        chosen = np.random.default_rng(0).choice(near, most - len(far), replace=False)
+        index, off = index[np.append(chosen, far)], off[np.append(chosen, far)]
+    return index[np.argsort(off, kind="stable")]
+
+
+def deviations_mm(fit: FitResult, index: Index) -> Reals:
+    """Signed deviations of points [mm]."""
+    return fit.deviations[index] * MILLIMETRES
+
+
+def colour_scale(fit: FitResult) -> Normalize:
+    """Colours of deviations [mm]: symmetric about 0, up to a round number that 99 of 100 inliers stay below."""
+    off = np.abs(fit.deviations[fit.inliers])
+    most = float(np.percentile(off, 99.0)) * MILLIMETRES if len(off) else 0.0
+    limit = rounded_up(most) if most > 0.0 else 1.0
+    return Normalize(-limit, limit, clip=True)
+
+
+def rounded_up(value: float) -> float:
+    """The next round number at or above a positive value."""
+    decade = 10.0 ** np.floor(np.log10(value))
+    return float(next(each for each in ROUND_NUMBERS if each * decade >= value * (1.0 - 1e-9)) * decade)
+
+
+def cross_out(axes: Axes, abscissae: Reals, ordinates: Reals, few: int) -> None:
+    """Draws a cross for each outlier, smaller and fainter where there are more than a few: they must hide nothing."""
+    share = min(1.0, few / max(len(abscissae), 1))
+    size = max(6.0 * share**0.5, 1.4)
+    style: dict[str, Any] = {"markersize": size, "markeredgewidth": 0.2 * size, "alpha": max(share**0.4, 0.08)}
+    axes.plot(abscissae, ordinates, color=INK, linestyle="none", marker="x", rasterized=True, **style)
+
+
+def count_of(number: int, what: str) -> str:
+    """A number with its thousands apart, and what it counts."""
+    return f"{number:,} {what}{'' if number == 1 else 's'}"
+
+
+OUTLINE_POINTS = 801
+BLUNT_FACES = ("leading_edge", "trailing_edge")
+"""faces of blunt edges"""
+BAND, WIDEST_BAND = 0.04, 0.16
+"""half height in v of the band whose points are drawn beside a section, and what it may grow to"""
+BAND_POINTS = 80
+"""points in a band"""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Outline:
+    """Both sides of a section at the parameters u of its blade [mm], with the points of the cloud that belong to it."""
+
+    section: "Section"
+    u: Reals
+    """(k,)"""
+    sides: dict[str, Reals]
+    """(k, 2) of `upper` and `lower`"""
+    outwards: dict[str, Reals]
+    """(k, 2) unit normals"""
+    points: NDArray[np.bool_]
+    """(n,) whether a point of the cloud is drawn beside it"""
+    band: float
+    """half height in v of the part of the blade that the points are from; 0 for a section"""
+
+    @property
+    def closed(self) -> Reals:
+        """The outline (2 k, 2), upper side from leading to trailing edge, lower side back."""
+        return np.concatenate([self.sides["upper"], self.sides["lower"][::-1]])
+
+    def moved(self, side: str, off: Reals | float) -> Reals:
+        """A side (k, 2), moved outwards [mm]."""
+        return self.sides[side] + self.outwards[side] * np.reshape(off, (-1, 1))
+
+    def feet(self, fit: FitResult, index: Index) -> tuple[Reals, Reals]:
+        """Places (m, 2) on the outline of the points' nearest ones, and the normals (m, 2) there."""
+        feet, normals = np.zeros((2, len(index), 2))
+        for name in SIDES:
+            own = fit.places[index] == name
+            for table, found in ((self.sides, feet), (self.outwards, normals)):
+                for axis in (0, 1):
+                    found[own, axis] = np.interp(fit.u[index[own]], self.u, table[name][:, axis])
+        for end, name in enumerate(BLUNT_FACES):
+            own = fit.places[index] == name
+            upper, lower = (self.sides[side][-end] for side in SIDES)
+            feet[own] = upper + _across(fit, index[own], float(end))[:, None] * (lower - upper)
+            normals[own] = -self.inwards(trailing=bool(end))
+        return feet, normals
+
+    def inwards(self, *, trailing: bool) -> Reals:
+        """Direction (2,) into the section from its leading or its trailing edge."""
+        end = -1 if trailing else 0
+        if self.section.edges[end] == "round":
+            return -self.outwards["upper"][end]
+        slope = np.real(unit(self.section.camber.derivative(np.array([float(trailing)]))))[0]
+        return np.asarray(-slope if trailing else slope)
+
+
+def outline_at(fit: FitResult, v: float) -> Outline:
+    """The outline at v in [0, 1] of a blade, or the outline of a section."""
+    u = cosine_spacing(OUTLINE_POINTS)
+    solid = fit.cloud.shape[-1] == 3
+    if solid:
+        section = fit.built.section(v)
+        plane = fit.built.exact.stations(np.array([v])).plane.points(u)
+        sides = {name: np.real(points[0]) for name, points in zip(SIDES, plane, strict=True)}
+    else:
+        section = fit.built
+        sides = {name: np.real(section.curves[name](u)) for name in SIDES}
+    size = millimetres_per_unit(section)
+    outwards = {}
+    for name, sign in (("upper", 1.0), ("lower", -1.0)):
+        tangent = np.gradient(sides[name], u, axis=0, edge_order=2)
+        tangent /= length(tangent)[:, None]
+        outwards[name] = sign * np.stack([-tangent[:, 1], tangent[:, 0]], axis=-1)
+    near, band = _near_span(fit, v) if solid else (_on_outline(fit), 0.0)
+    return Outline(
+        section=section,
+        u=u,
+        sides={name: points * size for name, points in sides.items()},
+        outwards=outwards,
+        points=near,
+        band=band,
+    )
+
+
+def worst_span(fit: FitResult, region: str) -> float:
+    """v where an inlier of a region is farthest off; the middle of the cloud where the region has none."""
+    index = np.flatnonzero(fit.inliers & on_sides(fit) & (fit.regions == region))
+    if len(index):
+        return float(np.clip(fit.v[index[np.argmax(np.abs(fit.deviations[index]))]], 0.0, 1.0))
+    return span_at_share(fit, 0.5)
+
+
+def span_at_share(fit: FitResult, share: float) -> float:
+    """v at a share of the span that the cloud covers."""
+    covered = fit.v[fit.inliers & on_sides(fit)]
+    low, high = (float(covered.min()), float(covered.max())) if len(covered) else (0.0, 1.0)
+    return float(np.clip(low + share * (high - low), 0.0, 1.0))
+
+
+def _across(fit: FitResult, index: Index, end: float) -> Reals:
+    """Shares (m,) of the way from the upper to the lower side at which points stand on the face of a blunt edge."""
+    if fit.cloud.shape[-1] == 3:
+        upper, lower = (np.real(fit.built.surfaces[name](end, fit.v[index])) for name in SIDES)
+    else:
+        upper, lower = (np.real(fit.built.curves[name](np.full(len(index), end))) for name in SIDES)
+    way = lower - upper
+    return np.clip(dot(fit.cloud[index] - upper, way) / dot(way, way), 0.0, 1.0)
+
+
+def _on_outline(fit: FitResult) -> NDArray[np.bool_]:
+    """Whether each point (n,) lies nearest to a side or to the face of a blunt edge."""
+    return on_sides(fit) | np.isin(fit.places, BLUNT_FACES)
+
+
+def _near_span(fit: FitResult, v: float) -> tuple[NDArray[np.bool_], float]:
+    sides, band = _on_outline(fit), BAND
+    while True:
+        near = sides & (np.abs(fit.v - v) <= band)
+        if np.count_nonzero(near) >= BAND_POINTS or band >= WIDEST_BAND:
+            return near, band
+        band *= 2.0

@@ -1,0 +1,218 @@
+"""The sheet of a fit: where the cloud lies off the design, how far, and the figures by region."""
+
+from collections.abc import Sequence
+from pathlib import Path
+from textwrap import shorten, wrap
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from bladewright.section.curvature_extrema import turning_places
+from bladewright.views.distributions import draw_curvature, side_curvature
+from bladewright.views.fit_data import SIDES, FitResult, count_of, outline_at, span_at_share, worst_span
+from bladewright.views.fit_deviations import draw_edge_points, draw_magnified, draw_map, draw_outline_deviation
+from bladewright.views.pages import checked_path, draw_header, rows, with_fixed_layout, write_figure
+from bladewright.views.sections import cosine_spacing
+from bladewright.views.style import (
+    BLUE,
+    GREEN,
+    INK,
+    MILLIMETRES,
+    ORANGE,
+    RED,
+    SOFT,
+    WALLS,
+    drawing_style,
+    label_axes,
+    legend_below,
+    span_name,
+)
+
+if TYPE_CHECKING:
+    from bladewright.section.section import Section
+
+
+REGIONS = ("sides", "leading edge", "trailing edge", "ends")
+EDGE_COLOURS = {"leading edge": ORANGE, "trailing edge": GREEN}
+TABLE_COLUMNS = (0.415, 0.565, 0.715, 0.86, 1.0)
+"""right ends of the table's columns after the first"""
+FAILURE_LINES = 6
+"""of failures"""
+
+
+def draw_histogram(axes: Axes, fit: FitResult) -> None:
+    """Draws the distribution of the inliers' signed deviations, with the cloud's noise and the tolerance."""
+    off = fit.deviations[fit.inliers] * MILLIMETRES
+    most = float(np.max(np.abs(off), initial=0.0))
+    tolerance = None if fit.tolerance is None else fit.tolerance * MILLIMETRES
+    seen = most if tolerance is None or tolerance > 4.0 * most > 0.0 else max(most, tolerance)
+    limit = 1.12 * (seen if seen > 0.0 else 1.0)
+    bins = np.linspace(-limit, limit, 1 + 2 * int(np.clip(np.sqrt(len(off)) / 2.0, 10, 60)))
+    weights = np.full(len(off), 100.0 / max(len(off), 1))
+    axes.hist(off, list(bins), weights=weights, color=BLUE, alpha=0.30, label="all inliers")
+    for name, colour in EDGE_COLOURS.items():
+        own = off[fit.regions[fit.inliers] == name]
+        if len(own):
+            shares = np.full(len(own), 100.0 / len(own))
+            axes.hist(own, list(bins), weights=shares, histtype="step", color=colour, linewidth=1.3, label=name)
+    tallest = max(axes.get_ylim()[1] / 1.05, 1e-9)
+    sigma = fit.noise * MILLIMETRES
+    width = bins[1] - bins[0]
+    if np.isfinite(sigma) and sigma > width / 3.0:
+        at = np.linspace(-limit, limit, 401)
+        bell = 100.0 * width / (sigma * np.sqrt(2.0 * np.pi)) * np.exp(-0.5 * (at / sigma) ** 2)
+        axes.plot(at, bell, color=RED, linewidth=1.3, label=f"noise, σ = {sigma:.3g} mm")
+    else:
+        axes.plot([], [], color=RED, label=f"noise, σ = {sigma:.2g} mm")
+    axes.axvline(0.0, color=SOFT, linewidth=0.8)
+    if tolerance is not None:
+        for sign in (-1.0, 1.0):
+            axes.axvline(sign * tolerance, color=INK, linewidth=1.1, linestyle="--")
+        axes.plot([], [], color=INK, linewidth=1.1, linestyle="--", label=f"tolerance ± {tolerance:.3g} mm")
+    axes.set_xlim(-limit, limit)
+    # noise far below the deviations has a needle of a bell
+    axes.set_ylim(0.0, 1.1 * min(max(axes.get_ylim()[1] / 1.05, tallest), 1.5 * tallest))
+    label_axes(axes, "Distribution of the deviations", "deviation, outside positive [mm]", "part of the points [%]")
+    legend_below(axes, 2)
+
+
+def draw_extrema(axes: Axes, fit: FitResult, sections: Sequence["Section"], ends: tuple[str, str] = WALLS) -> None:
+    """Draws the curvature of the sides along their arc, and marks the extrema that are counted."""
+    draw_curvature(axes, sections, ends)
+    for section in sections:
+        for name in SIDES:
+            arc, curvature = side_curvature(section, name)
+            u = turning_places(section, name)
+            marks = [np.interp(u, cosine_spacing(len(arc)), values) for values in (arc, curvature)]
+            style: dict[str, Any] = {"marker": "o" if name == "upper" else "s", "markersize": 5.0, "zorder": 4.0}
+            axes.plot(*marks, linestyle="none", markerfacecolor="white", markeredgecolor=RED, **style)
+    counts = ", ".join(f"{fit.extrema[name]} {name}" for name in SIDES if name in fit.extrema)
+    axes.set_title(f"Curvature, extrema: {counts}")
+
+
+def draw_table(axes: Axes, fit: FitResult) -> None:
+    """Writes whether the fit passed, why not, and the distances by region."""
+    axes.axis("off")
+    axes.set_xlim(0.0, 1.0)
+    axes.set_ylim(0.0, 1.0)
+    colour = GREEN if fit.passed else RED
+    verdict = ("Passed" if fit.passed else "Not passed") + (", interrupted" if fit.interrupted else "")
+    axes.set_title("Distances of the inliers [mm]")
+    height, line = 0.98, 0.074
+    for name, right in zip(("points", "mean", "rms", "99 %", "max"), TABLE_COLUMNS, strict=True):
+        axes.text(right, height, name, ha="right", va="top", fontsize=9.0, color=SOFT)
+    for name, of in {"all": fit.deviation, **{name: fit.by_region.get(name) for name in REGIONS}}.items():
+        height -= line
+        known = of is not None and of.count > 0
+        weight = "bold" if name == "all" else "normal"
+        axes.text(0.0, height, name, va="top", fontsize=9.5, fontweight=weight)
+        cells = ["none", *"––––"]
+        if of is not None and known:
+            figures = (of.mean, of.rms, of.percentile_99, of.maximum)
+            cells = [f"{of.count:,}", *(f"{value * MILLIMETRES:.3g}" for value in figures)]
+        for cell, right in zip(cells, TABLE_COLUMNS, strict=True):
+            over = known and right == TABLE_COLUMNS[-1] and _beyond(fit, of)
+            ink = RED if over else INK
+            axes.text(right, height, cell, ha="right", va="top", fontsize=9.5, fontweight=weight, color=ink)
+    height -= 1.6 * line
+    axes.text(0.0, height, verdict, va="top", fontsize=12.0, fontweight="bold", color=colour)
+    asked = "no tolerance asked" if fit.tolerance is None else f"tolerance {fit.tolerance * MILLIMETRES:.3g} mm"
+    axes.text(1.0, height, asked, ha="right", va="top", fontsize=10.0)
+    height -= 1.15 * line
+    told = [piece for each in fit.failures for piece in wrap(shorten(each, 260, placeholder=" …"), 66)]
+    if not told:
+        told = [f"{count_of(len(fit.estimates), 'free parameter')}, rank {fit.rank}"]
+    for piece in told[:FAILURE_LINES] + (["…"] if len(told) > FAILURE_LINES else []):
+        axes.text(0.0, height, piece, va="top", fontsize=9.0, parse_math=False)
+        height -= 0.85 * line
+
+
+def _beyond(fit: FitResult, of: Any) -> bool:
+    return fit.tolerance is not None and of.maximum > fit.tolerance
+
+
+DOTS = 150
+"""to an inch of a PNG"""
+SPAN_SHARES = (0.08, 0.5, 0.92)
+"""of the span that the cloud covers, where sections are drawn"""
+
+
+def fit_picture(fit: FitResult, path: str | Path) -> None:
+    """Draws a fit, as PNG, SVG or PDF by the suffix of `path`; the file appears whole or not at all.
+
+    On it are the deviations on the unwrapped blade (of a section: along its outline), sections with the deviations
+    magnified, both edges close by, the distribution of the deviations, the curvature of the sides and the figures. Of
+    large clouds a part is drawn and the panel says so, but always the points farthest off, and on the map all outliers.
+    Raises FileError where the suffix is another or the path cannot be written.
+    """
+    checked_path(path)
+    figure = fit_sheet(fit)
+    with drawing_style():
+        write_figure(figure, path, DOTS)
+
+
+def fit_sheet(fit: FitResult) -> Figure:
+    """The figure that `fit_picture` writes."""
+    with drawing_style():
+        return with_fixed_layout(_blade_sheet(fit) if fit.cloud.shape[-1] == 3 else _section_sheet(fit))
+
+
+def _blade_sheet(fit: FitResult) -> Figure:
+    blade = fit.built
+    figure = Figure(figsize=(16.0, 15.0))
+    draw_header(figure, fit.design.name, fit.design.description, _header(fit))
+    top, centre, bottom = rows(figure, 4.5, 4.4, 5.0)
+    axes = top.subplots(1, 2, width_ratios=[2.1, 1.0])
+    draw_map(axes[0], fit)
+    draw_table(axes[1], fit)
+    outlines = [outline_at(fit, span_at_share(fit, share)) for share in SPAN_SHARES]
+    for place, outline in zip(centre.subplots(1, 3), outlines, strict=True):
+        name = _place(outline.section.span, blade.design.ends)
+        draw_magnified(place, fit, outline, f"{name[:1].upper()}{name[1:]} ± {100.0 * outline.band:.2g} %")
+    axes = bottom.subplots(1, 4, width_ratios=[1.0, 1.0, 1.1, 1.3])
+    for place, region in zip(axes, ("leading edge", "trailing edge"), strict=False):
+        outline = outline_at(fit, worst_span(fit, region))
+        where = f", {_place(outline.section.span, blade.design.ends)}"
+        draw_edge_points(place, fit, outline, trailing=region == "trailing edge", where=where)
+    draw_histogram(axes[2], fit)
+    draw_extrema(axes[3], fit, [blade.section(v) for v in (0.0, 0.5, 1.0)], blade.design.ends)
+    return figure
+
+
+def _section_sheet(fit: FitResult) -> Figure:
+    figure = Figure(figsize=(16.0, 14.0))
+    draw_header(figure, fit.design.name, fit.design.description, _header(fit))
+    top, centre, bottom = rows(figure, 3.8, 5.4, 4.6)
+    axes = top.subplots(1, 2, width_ratios=[2.1, 1.0])
+    draw_outline_deviation(axes[0], fit)
+    draw_table(axes[1], fit)
+    outline = outline_at(fit, 0.0)
+    axes = centre.subplots(1, 3, width_ratios=[1.5, 1.0, 1.0])
+    draw_magnified(axes[0], fit, outline, "Section")
+    draw_edge_points(axes[1], fit, outline, trailing=False, where="")
+    draw_edge_points(axes[2], fit, outline, trailing=True, where="")
+    axes = bottom.subplots(1, 2)
+    draw_histogram(axes[0], fit)
+    draw_extrema(axes[1], fit, [fit.built])
+    return figure
+
+
+def _header(fit: FitResult) -> list[str]:
+    outliers = len(fit.inliers) - int(np.count_nonzero(fit.inliers))
+    said = [
+        "passed" if fit.passed else "NOT PASSED",
+        f"{count_of(len(fit.cloud), 'point')}, {count_of(outliers, 'outlier')}",
+        f"mean {fit.deviation.mean * MILLIMETRES:.3g} mm, largest {fit.deviation.maximum * MILLIMETRES:.3g} mm",
+        f"noise {fit.noise * MILLIMETRES:.2g} mm",
+        f"chord {float(np.real(fit.built.chord)) * MILLIMETRES:.4g} mm",
+        count_of(len(fit.estimates), "free parameter"),
+    ]
+    if fit.tolerance is not None:
+        said.insert(3, f"tolerance {fit.tolerance * MILLIMETRES:.3g} mm")
+    return said
+
+
+def _place(v: float, ends: tuple[str, str]) -> str:
+    return span_name(v if v in {0.0, 1.0} else round(v, 2), ends)

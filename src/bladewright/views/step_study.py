@@ -1,0 +1,81 @@
+"""Errors of central differences and of the complex step over their steps, a line for each parameter."""
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+
+from bladewright.nurbs.basis import Reals
+from bladewright.views.pages import checked_path, write_figure
+from bladewright.views.style import BLUE, GREEN, INK, ORANGE, RED, SOFT, drawing_style, label_axes
+
+if TYPE_CHECKING:
+    from bladewright.derivatives.step_study import StepStudy
+
+
+SMALLEST_ERROR = 1e-17
+"""errors below are drawn there"""
+KINDS = {
+    "angles": (BLUE, ("stagger", "metal_angle", "leading_edge_theta")),
+    "lengths": (GREEN, ("channel", "leading_edge_x", "leading_edge_y", "axial_chord", "pitch", "span", "tip_", "hub_")),
+    "edge radii": (RED, ("leading_edge_radius", "trailing_edge_radius")),
+    "thickness, tangents, weights": (ORANGE, ("",)),
+}
+"""colour and beginnings of the parameters' names, the first that fits"""
+
+
+def draw_step_studies(found: Sequence["StepStudy"], path: str | Path, *, title: str, limit: float) -> None:
+    """Draws the check of derivatives, as PNG, SVG or PDF by the suffix of `path`.
+
+    `limit` is the error of the closest difference that passes. Raises FileError where the path cannot be written.
+    """
+    checked_path(path)
+    with drawing_style():
+        figure = Figure(figsize=(13.0, 6.6), layout="constrained")
+        figure.suptitle(title, x=0.01, ha="left", fontsize=14.0, fontweight="bold", parse_math=False)
+        left, right = figure.subplots(1, 2, sharey=True)
+        for each in found:
+            colour = KINDS[parameter_kind(each.path)][0]
+            _line(left, each.steps, each.errors, colour)
+            _line(right, each.imaginary, each.floor, colour)
+        _slopes(left)
+        left.axhline(limit, color=INK, linewidth=1.0, linestyle=(0, (5, 3)))
+        left.set_ylim(SMALLEST_ERROR / 3.0, 30.0)
+        label_axes(left, "Differences", "step, of the parameter's scale", "error of the derivative, of its size")
+        label_axes(right, "Complex step", "imaginary step, of the parameter's scale", "")
+        figure.legend(handles=_handles(found, limit), loc="outside lower left", ncols=5)
+        write_figure(figure, path, 150)
+
+
+def parameter_kind(path: str) -> str:
+    """The kind of a parameter, a key of `KINDS`."""
+    return next(kind for kind, (_, starts) in KINDS.items() if path.startswith(starts))
+
+
+def _line(axes: Axes, steps: Reals, errors: Reals, colour: str) -> None:
+    order = np.argsort(steps)
+    at, high = steps[order], np.maximum(errors[order], SMALLEST_ERROR)
+    axes.loglog(at, high, color=colour, linewidth=0.8, alpha=0.6, marker=".", markersize=3.5)
+
+
+def _slopes(axes: Axes) -> None:
+    """What truncation and rounding look like."""
+    style = {"color": SOFT, "linewidth": 1.6, "linestyle": ":"}
+    axes.loglog([1e-4, 1e-2], [1e-5, 1e-1], **style)
+    axes.loglog([1e-10, 1e-6], [1.0, 1e-4], **style)
+    axes.annotate("truncation: step²", (10**-2.9, 10**-2.6), color=INK, ha="right", fontsize=9.0)
+    axes.annotate("rounding: 1 / step", (10**-7.6, 10**-2.1), color=INK, ha="left", fontsize=9.0)
+
+
+def _handles(found: Sequence["StepStudy"], limit: float) -> list[Line2D]:
+    counts = {kind: sum(parameter_kind(each.path) == kind and len(each.errors) > 0 for each in found) for kind in KINDS}
+    lines = [
+        Line2D([], [], color=KINDS[kind][0], marker=".", label=f"{count} {kind}")
+        for kind, count in counts.items()
+        if count
+    ]
+    return [*lines, Line2D([], [], color=INK, linestyle=(0, (5, 3)), label=f"the closest must come below {limit:g}")]
