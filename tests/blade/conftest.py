@@ -2,7 +2,7 @@
 
 import pytest
 
-from .machines import DESIGNS
+from machines.unified import DESIGNS
 
 
 @pytest.fixture(scope="session", params=list(DESIGNS))

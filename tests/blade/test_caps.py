@@ -7,8 +7,7 @@ import pytest
 
 from bladewright import cad
 from bladewright.section.profiles.flat_plate import FlatPlate
-
-from .sectioned import DIFFUSER, VANE
+from machines.sectioned import DIFFUSER, VANE
 
 COARSE = 1e-4
 """tolerance of the blades, of the chord: what caps keep does not depend on it"""

@@ -11,8 +11,7 @@ from bladewright.blade.design.flow_path import Channel
 from bladewright.blade.exact.unified import exact_unified_blade
 from bladewright.errors import DesignError
 from bladewright.nurbs.mass_properties import mass_properties
-
-from .machines import CASCADE, FAN, IMPELLER, INFLOW
+from machines.unified import CASCADE, FAN, IMPELLER, INFLOW
 
 PRISM = CASCADE.changed(
     {

@@ -7,8 +7,7 @@ from bladewright.blade.design.flow_path import Channel
 from bladewright.blade.design.unified import UnifiedBlade
 from bladewright.blade.exact.unified import exact_unified_blade
 from bladewright.section.unified import UnifiedSection
-
-from .machines import CASCADE, FAN, IMPELLER
+from machines.unified import CASCADE, FAN, IMPELLER
 
 SHAPE = {
     "length_unit": "m",

@@ -11,8 +11,7 @@ from bladewright.blade.design.meridional_curve import ControlPolygon, StraightsA
 from bladewright.blade.flow_path.quasi_orthogonals import measured_curve
 from bladewright.blade.flow_path.stream_surfaces import stream_surfaces
 from bladewright.errors import DesignError
-
-from .flow_paths import BEND, GIVEN, IMPELLER, MACHINES, bend, cornered, on, through
+from machines.flow_paths import BEND, GIVEN, IMPELLER, MACHINES, bend, cornered, on, through
 
 POINTS = ((0.0, 1.0), (0.4, 1.1), (0.7, 1.5), (1.2, 1.6), (1.5, 2.2))
 CURVES = {

@@ -9,8 +9,7 @@ from bladewright.blade.flow_path.location import located
 from bladewright.blade.flow_path.stream_surface_map import Conformal, DiscreteConformal
 from bladewright.blade.flow_path.stream_surfaces import stream_surfaces
 from bladewright.errors import DesignError
-
-from .flow_paths import CYLINDER, UNEVEN, on, through
+from machines.flow_paths import CYLINDER, UNEVEN, on, through
 
 V = np.array([0.0, 0.21, 0.5, 0.83, 1.0])
 

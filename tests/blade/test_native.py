@@ -10,8 +10,7 @@ from bladewright.blade.native.refinement import approximation_error
 from bladewright.errors import DesignError
 from bladewright.nurbs.mass_properties import mass_properties
 from bladewright.nurbs.surface import Surface
-
-from .machines import CASCADE, FAN, IMPELLER, INFLOW
+from machines.unified import CASCADE, FAN, IMPELLER, INFLOW
 
 
 def sides(exact, knots):

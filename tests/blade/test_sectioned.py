@@ -13,9 +13,8 @@ from bladewright.files.reading import design_from, parsed
 from bladewright.files.schema import schema
 from bladewright.files.writing import text_of, updated
 from bladewright.section.laws import Span
-
-from . import stacked
-from .sectioned import BLUNT, COMPRESSOR, DESIGNS, DIFFUSER, STATOR, VANE, through
+from machines import stacked
+from machines.sectioned import BLUNT, COMPRESSOR, DESIGNS, DIFFUSER, STATOR, VANE, through
 
 SWAPPED = replace(COMPRESSOR.flow_path, hub=COMPRESSOR.flow_path.shroud, shroud=COMPRESSOR.flow_path.hub)
 SHORT = replace(VANE.flow_path, hub=through((0, 0), (120, 0)), shroud=through((0, 50), (120, 60)))

@@ -18,9 +18,8 @@ from bladewright.errors import DesignError
 from bladewright.numerics.elementary import length
 from bladewright.nurbs.surface import Surface
 from bladewright.section.laws import Span
-
-from . import stacked
-from .sectioned import COMPRESSOR, IMPELLER, VANE, through
+from machines import stacked
+from machines.sectioned import COMPRESSOR, IMPELLER, VANE, through
 
 V = np.array([0.0, 0.21, 0.5, 0.77, 1.0])
 SPAN = Span(V)

@@ -22,8 +22,7 @@ from bladewright.blade.flow_path.streamlines import stream_lines
 from bladewright.errors import DesignError
 from bladewright.files.tblade3 import read_tblade3
 from bladewright.numerics.elementary import cross2
-
-from .flow_paths import BEND, CONE, CYLINDER, DISC, DUCT, GIVEN, IMPELLER, MACHINES, through
+from machines.flow_paths import BEND, CONE, CYLINDER, DISC, DUCT, GIVEN, IMPELLER, MACHINES, through
 
 V = np.array([0.0, 0.21, 0.5, 0.83, 1.0])
 ROUNDING = 4e-15

@@ -9,8 +9,7 @@ import bladewright as bw
 from bladewright.blade.native.throat import throat
 from bladewright.designs import unit_at
 from bladewright.errors import DesignError
-
-from .machines import CASCADE, FAN, IMPELLER
+from machines.unified import CASCADE, FAN, IMPELLER
 
 
 @pytest.mark.parametrize("design", [FAN, IMPELLER, CASCADE], ids=lambda design: design.name)

@@ -3,8 +3,7 @@
 import pytest
 
 from bladewright import cad
-
-from .blades import BODIES, annular
+from machines.closed_forms import BODIES, annular
 
 ENDINGS = ("step", "stp", "igs", "iges", "brep")
 

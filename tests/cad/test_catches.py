@@ -17,8 +17,7 @@ from bladewright.cad.kernel import quiet
 from bladewright.cad.reading import format_of, subshapes
 from bladewright.cad.solids import occ_solid
 from bladewright.cad.writing import _write_format
-
-from .blades import annular, moved, replaced
+from machines.closed_forms import annular, moved, replaced
 
 
 def solid_of(faces):

@@ -14,8 +14,7 @@ from bladewright.errors import CadError
 from bladewright.files.examples import example_text
 from bladewright.nurbs.revolution import arc
 from bladewright.section.profiles.flat_plate import FlatPlate
-
-from .sectors import Cuttable, sector, standing
+from machines.closed_form_sectors import Cuttable, sector, standing
 
 
 def through(*points):

@@ -16,9 +16,9 @@ from bladewright.cad.topology import side_curve, smooth_pieces, topology
 from bladewright.errors import CadError
 from bladewright.nurbs.domain import reparametrised
 from bladewright.nurbs.surface import Surface
+from machines.closed_form_passages import ALONG, BEFORE, divided, passage
+from machines.closed_forms import moved, replaced
 
-from .blades import moved, replaced
-from .passages import ALONG, BEFORE, divided, passage
 from .test_catches import about, failing, put, solid_of, written
 
 COUNTS = {"whole": (24, 34, 10), "gap": (26, 35, 11), "split": (24, 48, 24), "split gap": (26, 49, 25)}

@@ -16,8 +16,7 @@ from bladewright.cad.solids import occ_solid
 from bladewright.cad.verification import limits_of
 from bladewright.errors import CadError
 from bladewright.nurbs.surface import Surface
-
-from .blades import annular, moved, replaced
+from machines.closed_forms import annular, moved, replaced
 
 
 def test_a_body_becomes_one_valid_closed_solid_of_its_own_faces(built):

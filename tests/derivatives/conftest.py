@@ -2,7 +2,7 @@
 
 import pytest
 
-from .machines import BLADES
+from machines.coarse import BLADES
 
 
 @pytest.fixture(scope="session", params=list(BLADES))

@@ -15,8 +15,7 @@ from bladewright.errors import DerivativeError
 from bladewright.files.examples import example_text, examples
 from bladewright.files.reading import design_from
 from bladewright.section.unified import UnifiedSection
-
-from .machines import CASCADE, CLEARED
+from machines.coarse import CASCADE, CLEARED
 
 UNIFIED = [name for name in examples() if 'family = "unified' in example_text(name)]
 BLADES = [name for name in UNIFIED if name != "turbine-section"]

@@ -9,8 +9,7 @@ from bladewright.blade.native.interpolation import native_sides
 from bladewright.derivatives import net_jacobian
 from bladewright.derivatives.complex_step import stepped
 from bladewright.numerics.quadrature import panels
-
-from .machines import CASCADE, CLEARED, RADIAL, ROTOR, SECTION
+from machines.coarse import CASCADE, CLEARED, RADIAL, ROTOR, SECTION
 
 STEP = 1e-30
 ROUNDING = 1e-12

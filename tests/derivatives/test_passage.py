@@ -11,8 +11,7 @@ from bladewright.derivatives.enclosed_volume import enclosed_volume_rates
 from bladewright.errors import DerivativeError
 from bladewright.files.examples import example_text
 from bladewright.files.reading import design_from
-
-from .machines import SECTION
+from machines.coarse import SECTION
 
 FREE = {"vki-ls89": ["stagger", "thickness_upper[2]", "pitch"], "fan-rotor": ["tip_clearance", "stagger[2]"]}
 

@@ -11,8 +11,7 @@ from bladewright.derivatives.complex_step import stepped, varied
 from bladewright.designs import unit_at
 from bladewright.errors import DerivativeError, DesignError
 from bladewright.nurbs.curvature import surface_curvature
-
-from .machines import CASCADE, CLEARED, ROTOR, SECTION
+from machines.coarse import CASCADE, CLEARED, ROTOR, SECTION
 
 U, V = np.linspace(0.0, 1.0, 7)[:, None], np.linspace(0.0, 1.0, 5)
 MILLIMETRE = 1e-3

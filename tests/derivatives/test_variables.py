@@ -9,8 +9,7 @@ from scipy.optimize import NonlinearConstraint, minimize
 import bladewright as bw
 from bladewright.derivatives import sensitivity, variables
 from bladewright.errors import DesignError
-
-from .machines import CASCADE, ROTOR, SECTION
+from machines.coarse import CASCADE, ROTOR, SECTION
 
 
 @pytest.mark.parametrize("module", [variables, sensitivity], ids=lambda module: module.__name__)

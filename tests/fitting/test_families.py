@@ -15,9 +15,8 @@ from bladewright.fitting.free_parameters import FreeParameters
 from bladewright.fitting.matching.scales import scales_of
 from bladewright.fitting.models.blunt_edges import closed_sides
 from bladewright.fitting.models.model import model_of
-
-from ..section.families import EXAMPLES
-from ..section.meanline_examples import BLUNT, on_meanline
+from machines.meanlines import BLUNT, on_meanline
+from machines.sections import EXAMPLES
 
 FLAT = "curvature meanline, blunt behind"
 MEMBERS: dict[str, Any] = {FLAT: on_meanline(curvature=(0.8, 1.0, 0.4), thickness=BLUNT)}

@@ -22,9 +22,8 @@ from bladewright.fitting.model_selection.stopping import MatchTarget
 from bladewright.fitting.models.feasibility import infeasibility
 from bladewright.section.laws import Span
 from bladewright.section.profiles.flat_plate import FlatPlate
-
-from ..blade.sectioned import COMPRESSOR, DESIGNS, DIFFUSER
-from ..section.suction_pressure_examples import STATOR, section
+from machines.sectioned import COMPRESSOR, DESIGNS, DIFFUSER
+from machines.suction_pressure import STATOR, section
 
 PLACES = np.linspace(0.0, 1.0, 33)
 ALONE = Span(np.zeros(1))

@@ -16,8 +16,7 @@ from bladewright.fitting.matching.scales import scales_of
 from bladewright.fitting.models.blunt_edges import sides_of
 from bladewright.fitting.models.model import model_of
 from bladewright.section.laws import Span
-
-from ..blade.sectioned import BLUNT, COMPRESSOR, DESIGNS, DIFFUSER
+from machines.sectioned import BLUNT, COMPRESSOR, DESIGNS, DIFFUSER
 
 VANE = replace(DIFFUSER, tolerance=1e-4)
 """a blade that is built fast"""

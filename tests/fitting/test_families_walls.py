@@ -20,8 +20,7 @@ from bladewright.fitting.models.model import model_of
 from bladewright.nurbs.surface import Surface
 from bladewright.section.curvature_meanline import CurvatureMeanline
 from bladewright.section.thickness.wennerstrom import Wennerstrom
-
-from ..blade.sectioned import COMPRESSOR, DIFFUSER
+from machines.sectioned import COMPRESSOR, DIFFUSER
 
 VANE = replace(DIFFUSER, tolerance=1e-3)
 

@@ -10,8 +10,7 @@ from scipy.interpolate import BSpline
 from bladewright.errors import DesignError
 from bladewright.section.camber_angle import CamberAngle
 from bladewright.section.laws import Span, law_basis
-
-from .camber_angle_examples import CAMBER_ANGLES
+from machines.camber_angles import CAMBER_ANGLES
 
 SPAN = Span(np.zeros(1))
 S = np.linspace(0.0, 1.0, 81)

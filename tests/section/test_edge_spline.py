@@ -10,8 +10,7 @@ from bladewright.section.edge_spline import EdgeSpline
 from bladewright.section.laws import Span
 from bladewright.section.native import native_curves
 from bladewright.section.outline import Outline
-
-from .meanline_examples import MEANLINES
+from machines.meanlines import MEANLINES
 
 SPAN = Span(np.array([0.0, 1.0]))
 ROUND = [

@@ -12,8 +12,7 @@ from bladewright.files.writing import text_of
 from bladewright.section.crossing import check_outline
 from bladewright.section.laws import Span
 from bladewright.section.planar import PlanarSection
-
-from .families import EXAMPLES
+from machines.sections import EXAMPLES
 
 SCHEMA = jsonschema.Draft202012Validator(schema())
 STEP = 1e-30

@@ -12,8 +12,8 @@ from bladewright.section.laws import Span
 from bladewright.section.meanline import CurvatureIntegral, CurvedMeanline, MixedMeanline, backward, camber_scale
 from bladewright.section.offset import merged_joints
 from bladewright.section.outline import Joint
+from machines.meanlines import ELLIPTIC, MEANLINES, NACA, SHARP, on_meanline
 
-from .meanline_examples import ELLIPTIC, MEANLINES, NACA, SHARP, on_meanline
 from .tblade3_sections import CASES, computed
 
 HUB = Span(np.zeros(1))

@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 
 from bladewright.blade.design.families import prismatic
-
-from .families import EXAMPLES
+from machines.sections import EXAMPLES
 
 PLANAR = {
     name: EXAMPLES[name].design.changed("span", 20.0)

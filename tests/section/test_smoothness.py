@@ -15,8 +15,7 @@ from bladewright.section.thickness.modified_naca import ModifiedNaca
 from bladewright.section.thickness.quartic import QuarticSpline
 from bladewright.section.thickness.wennerstrom import Wennerstrom
 from bladewright.section.unified import UnifiedSection
-
-from .families import EXAMPLES
+from machines.sections import EXAMPLES
 
 NACA = ModifiedNaca(
     leading_edge_index=5.0,

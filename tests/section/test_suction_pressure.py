@@ -11,9 +11,9 @@ from bladewright.nurbs.curve import Curve
 from bladewright.section.laws import Span
 from bladewright.section.suction_pressure.outline import EDGE, closed_curve
 from bladewright.section.suction_pressure.part import characteristic
+from machines.suction_pressure import FAN_TIP, STATOR, TURBINE, section
 
 from .one_sided import one_sided
-from .suction_pressure_examples import FAN_TIP, STATOR, TURBINE, section
 
 PARTS = {"stator": STATOR, "fan tip": FAN_TIP, "turbine": TURBINE}
 SPAN = Span(np.zeros(1))

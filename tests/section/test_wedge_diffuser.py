@@ -7,9 +7,9 @@ from bladewright.errors import DesignError
 from bladewright.numerics.elementary import cross2
 from bladewright.section.laws import Span
 from bladewright.section.wedge_diffuser import CORNER, EDGE, FACE, WedgeDiffuser
+from machines.suction_pressure import TEARDROP, WEDGE
 
 from .one_sided import one_sided
-from .suction_pressure_examples import TEARDROP, WEDGE
 
 SPAN = Span(np.zeros(1))
 VANES = {"face": WEDGE, "circles": TEARDROP}

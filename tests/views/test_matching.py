@@ -37,8 +37,7 @@ from bladewright.views.fit_deviations import (
 from bladewright.views.fit_sheet import draw_histogram, draw_table, fit_picture, fit_sheet
 from bladewright.views.sections import millimetres_per_unit
 from bladewright.views.style import drawing_style
-
-from ..section.families import EXAMPLES
+from machines.sections import EXAMPLES
 
 NAMES = {"section": "turbine-section", "annular": "fan-rotor", "linear": "vki-ls89"}
 _BUILT = {}

@@ -15,9 +15,9 @@ from bladewright.views.meridional import built_edges
 from bladewright.views.picture import sheet
 from bladewright.views.sections import draw_edge, millimetres_per_unit, neighbour_outline, outline
 from bladewright.views.solid import blade_meshes, draw_solid
+from machines.sectioned import BLUNT, COMPRESSOR, DESIGNS, IMPELLER, STATOR, VANE
+from machines.sections import EXAMPLES
 
-from ..blade.sectioned import BLUNT, COMPRESSOR, DESIGNS, IMPELLER, STATOR, VANE
-from ..section.families import EXAMPLES
 from .test_sheet import texts_of
 
 ROUGH = 1e-4

@@ -6,8 +6,7 @@ import pytest
 from bladewright.errors import DesignError
 from bladewright.section.laws import Span
 from bladewright.section.profiles.naca4 import Naca4
-
-from .examples import CUT, LENS, OVAL, through
+from machines.profiles import CUT, LENS, OVAL, through
 
 SPAN = Span(np.zeros(1))
 S = np.linspace(0.0, 1.0, 101)

@@ -5,8 +5,7 @@ import pytest
 
 from bladewright.section.laws import Span
 from bladewright.section.thickness.law import ThicknessLaw
-
-from .laws import LAWS
+from machines.thickness_laws import LAWS
 
 SPAN = Span(np.array([0.0, 0.35, 1.0]))
 PLACES = np.linspace(0.0, 1.0, 41)

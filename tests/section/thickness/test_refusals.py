@@ -5,8 +5,7 @@ import pytest
 
 from bladewright.errors import DesignError
 from bladewright.section.laws import Span
-
-from .laws import NACA, QUARTIC, WENNERSTROM
+from machines.thickness_laws import NACA, QUARTIC, WENNERSTROM
 
 SPAN = Span(np.array([0.0, 1.0]))
 

@@ -11,7 +11,7 @@ from bladewright.nurbs.revolution import Revolution
 from bladewright.nurbs.surface import Surface
 from bladewright.nurbs.trimmed import TrimmedSurface
 
-from .blades import HUB, SHROUD, Blade, annular, doubled, fitted, meridian, side
+from .closed_forms import HUB, SHROUD, Blade, annular, doubled, fitted, meridian, side
 
 INLET, OUTLET = 0.08, 0.92
 """where on the meridian curves the sector begins and ends"""

@@ -8,7 +8,7 @@ from bladewright.nurbs.mass_properties import mass_properties
 from bladewright.nurbs.surface import Surface
 from bladewright.nurbs.trimmed import TrimmedSurface
 
-from .blades import Blade
+from .closed_forms import Blade
 
 DEGREE = 5
 SIDE = np.array([0.0] * 6 + [0.1, 0.2, 0.35, 0.5, 0.5, 0.65, 0.8, 0.9] + [1.0] * 6)

@@ -8,11 +8,11 @@ from typing import Any
 
 from bladewright.section.planar import PlanarSection
 
-from .camber_angle_examples import ANGLES, CAMBER_ANGLES, angle_section_of
-from .meanline_examples import MEANLINES
+from .camber_angles import ANGLES, CAMBER_ANGLES, angle_section_of
+from .meanlines import MEANLINES
 from .oval import OVAL
-from .profiles.examples import PROFILES, PROPERTIES, section_of
-from .suction_pressure_examples import FAN_TIP, STATOR, TEARDROP, TURBINE, WEDGE, section, vane
+from .profiles import PROFILES, PROPERTIES, section_of
+from .suction_pressure import FAN_TIP, STATOR, TEARDROP, TURBINE, WEDGE, section, vane
 
 
 @dataclass(frozen=True, kw_only=True)
