@@ -1,11 +1,18 @@
-"""What a design builds while its parameters carry a complex step: control nets, blades, whole builds."""
+"""What a design builds while a parameter carries a complex step, or changes a little: nets, blades, any build.
+
+A blade's control nets are linear in the points of its sections. A law of evolution of the unified family acts on the
+section at span fraction v by its value there alone: a step of the whole law gives the derivative of the section, and
+the derivative by control point j of the law is N_j(v) times that, so that one rebuild serves all control points of a
+law. The other parameters, those of the channel above all and every parameter of a blade from sections, are stepped one
+by one; AT_ONCE steps go through one rebuild as a batch.
+"""
 
 import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import cached_property, partial
 from itertools import islice
-from typing import Any, NamedTuple, TypeGuard
+from typing import Any, TypeGuard
 
 import numpy as np
 
@@ -27,76 +34,83 @@ from bladewright.section.laws import law_basis
 from bladewright.section.unified_limits import ANGLES, RADII, TANGENTS, THICKNESSES, WEIGHTS
 
 STEP = 1e-30
-"""imaginary step: its square vanishes beside 1, so that the derivative is exact to rounding"""
+"""The complex step, in the unit of the parameter (Squire and Trapp 1998): nothing is subtracted, so it may be so small
+that its square vanishes beside 1, and the derivative is exact to rounding."""
 AT_ONCE = 16
-"""parameters in one rebuild"""
-LAWS = ("leading_edge_theta", "leading_edge_y", *ANGLES, *TANGENTS, *RADII)
+"""Steps in one batched rebuild: larger batches save little more time and take more memory."""
+SPANWISE = ("leading_edge_theta", "leading_edge_y", *ANGLES, *TANGENTS, *RADII)
+"""Fields of the unified family that are one law along the span each."""
 CHORDWISE = (*THICKNESSES, *WEIGHTS)
+"""Fields of the unified family with a law along the span for each control point along the chord."""
 Nets = tuple[Array, Array]
+"""Control nets, or their derivatives, of the upper and the lower side."""
 
 
-class Source(NamedTuple):
-    """Where a parameter's derivative comes from."""
+@dataclass(frozen=True)
+class LawPoint:
+    """What is stepped for the derivative by one parameter: a whole law, of which it is a control point, or itself."""
 
     step: str
-    """the law, or the leaf, that is stepped"""
-    place: int = 0
-    """number of the control point in its law"""
-    points: int = 0
-    """control points of the law; 0 for a leaf that is no law"""
+    """path of the law, or of the parameter, that is stepped"""
+    index: int = 0
+    """index of the control point in its law"""
+    count: int = 0
+    """number of control points of the law; 0 for a parameter that belongs to no law"""
+
+    def factor(self, v: Reals) -> Reals:
+        """The derivative by the parameter over that by the whole law, at v (m,): the basis function N_j."""
+        return law_basis(self.count, v)[:, self.index] if self.count else np.ones(len(v))
 
 
 def side_tangents(blade: Blade, paths: Sequence[str]) -> Iterator[Nets]:
-    """Derivatives (k, n_u, n_v, 3) of the upper and lower net by parameters, in chunks of at most `AT_ONCE` in order.
+    """Derivatives (k, n_u, n_v, 3) of the upper and the lower net by parameters, in order, at most AT_ONCE at a time.
 
-    Metres per unit of the parameter's field, at the blade's knots.
+    In metres per unit of the parameter's field, at the blade's knots.
     """
-    sources = [source_of(blade.design, path) for path in paths]
+    sources = [law_point(blade.design, path) for path in paths]
     steps = list(dict.fromkeys(source.step for source in sources))
     rates = np.concatenate([_skeleton_rates_by(blade, steps[i : i + AT_ONCE]) for i in range(0, len(steps), AT_ONCE)])
     mirrored = [edge is None for edge in blade.exact.survey.lower_edges()]
     for first in range(0, len(paths), AT_ONCE):
         chunk = sources[first : first + AT_ONCE]
-        shares = np.stack([_law_share(source, blade.knots.sites_v) for source in chunk])
-        rows = rates[[steps.index(source.step) for source in chunk]] * shares[..., None]
+        factors = np.stack([source.factor(blade.knots.sites_v) for source in chunk])
+        rows = rates[[steps.index(source.step) for source in chunk]] * factors[..., None]
         yield sides_through(parted(rows, mirrored), blade.knots)
 
 
-def source_of(design: UnifiedBlade | SectionedBlade, path: str) -> Source:
-    """Where the derivative of a design by one of its parameters comes from."""
+def law_point(design: UnifiedBlade | SectionedBlade, path: str) -> LawPoint:
+    """What is stepped for the derivative of a design by one of its parameters."""
     name, *places = re.findall(r"\w+", path)
-    if not isinstance(design, UnifiedBlade) or name not in (*LAWS, *CHORDWISE):
-        return Source(path)
+    if not isinstance(design, UnifiedBlade) or name not in (*SPANWISE, *CHORDWISE):
+        return LawPoint(path)
     depth = 1 if name in CHORDWISE else 0
     if len(places) == depth:
-        return Source(path, 0, 1)
+        return LawPoint(path, 0, 1)
     law = getattr(design, name)[int(places[0])] if depth else getattr(design, name)
-    return Source(path.rpartition("[")[0], int(places[-1]), len(law))
-
-
-def _law_share(source: Source, v: Reals) -> Reals:
-    return law_basis(source.points, v)[:, source.place] if source.points else np.ones(len(v))
+    return LawPoint(path.rpartition("[")[0], int(places[-1]), len(law))
 
 
 def _skeleton_rates_by(blade: Blade, steps: Sequence[str]) -> Array:
-    """Derivatives (len(steps), m, k) of the skeleton, in a row for each section, by laws as a whole and by leaves."""
+    """Derivatives (len(steps), m, k) of the skeleton by whole laws and single parameters, in a row for each section."""
     moved = blade.exact.moved_to(stepped_design(blade.design, steps))
     return skeleton_rates(moved.stations(blade.knots.sites_v), blade.knots, len(steps))
 
 
 def stepped_design(design: UnifiedBlade | SectionedBlade, steps: Sequence[str]) -> Any:
-    """A design with a batch (len(steps),) of imaginary steps, each of a law as a whole or of a leaf."""
+    """A design with a batch (len(steps),) of complex steps, each on a whole law or a single parameter."""
     values = design.parameters()
     changes: dict[str, Any] = {}
     for place, step in enumerate(steps):
-        kick = np.zeros(len(steps), dtype=np.complex128)
-        kick[place] = STEP * 1j
-        changes |= {path: value + kick for path, value in values.items() if path == step or path.startswith(f"{step}[")}
+        change = np.zeros(len(steps), dtype=np.complex128)
+        change[place] = STEP * 1j
+        changes |= {
+            path: value + change for path, value in values.items() if path == step or path.startswith(f"{step}[")
+        }
     return design.changed(changes)
 
 
 def skeleton_rates(stations: Any, knots: Knots, count: int) -> Array:
-    """Derivatives (count, m, k) of the skeleton of stations with as many imaginary steps, in a row for each section."""
+    """Derivatives (count, m, k) of the skeleton of stations that carry `count` steps, in a row for each section."""
     skeleton = skeleton_of(stations, knots)
     sides = [side.reshape(*side.shape[:-2], -1) for side in (skeleton.upper, skeleton.lower)]
     edges = [skeleton.leading_edge, skeleton.trailing_edge, *skeleton.lower_edges]
@@ -105,7 +119,7 @@ def skeleton_rates(stations: Any, knots: Knots, count: int) -> Array:
 
 
 def parted(rows: Array, mirrored: Sequence[bool]) -> Skeleton:
-    """The skeleton in rows; `mirrored` says of which edges the lower side has no derivatives of its own."""
+    """The skeleton of such rows; `mirrored` says at which edges the lower side mirrors the upper's derivatives."""
     count = 2 + sum(not each for each in mirrored)
     edges, upper, lower = np.split(rows, [9 * count, (9 * count + rows.shape[-1]) // 2], axis=-1)
     parts = iter(np.split(edges, 3 * count, axis=-1))
@@ -120,21 +134,21 @@ Face = Surface | TrimmedSurface
 
 
 def built(design: Design, knots: Any = None) -> Any:
-    """What the design builds, at given knots where there are some."""
+    """What the design builds, at the given knots if any."""
     return design.build() if knots is None else design.build(knots=knots)  # type: ignore[call-arg]
 
 
 def stepped(design: Design, base: Any, paths: Sequence[str]) -> Iterator[Any]:
-    """What the design builds with an imaginary step on each parameter in turn, at the knots of `base`, its build.
+    """What the design builds with a complex step on each parameter in turn, at the knots of `base`, its build.
 
-    A blade of two sides is made from its nets and their derivatives, its ends when they are asked for.
+    A blade of two sides is made from its nets and their derivatives, and its ends only when they are used.
     """
     values = design.parameters()
     if not two_sided(base):
         for path in paths:
             yield built(design.changed(path, values[path] + STEP * 1j), getattr(base, "knots", None))
         return
-    rows, moments = iter(paths), _Moments(base)
+    rows, moments = iter(paths), _SteppedMoments(base)
     for tangents in side_tangents(base, paths):
         for pair in zip(*tangents, strict=True):
             path = next(rows)
@@ -146,7 +160,7 @@ def stepped(design: Design, base: Any, paths: Sequence[str]) -> Iterator[Any]:
 def varied(design: Design, base: Any, changes: Sequence[Mapping[str, complex]]) -> Iterator[Any]:
     """What the design builds with each of several changes of its parameters, at the knots of `base`, its build.
 
-    For small changes: also what a build chooses besides knots is that of `base`.
+    For small changes: what a build chooses besides knots is taken from `base` too.
     """
     if not two_sided(base):
         for each in changes:
@@ -161,14 +175,14 @@ def varied(design: Design, base: Any, changes: Sequence[Mapping[str, complex]]) 
 
 
 def two_sided(built: Any) -> TypeGuard[Blade]:
-    """Whether it is a blade whose faces are two sides and two ends: one without blunt edges."""
+    """Whether it is a blade whose faces are two sides and two ends, without faces of blunt edges."""
     return isinstance(built, Blade) and set(built.surfaces) == {"upper", "lower", *built.design.ends}
 
 
 def varied_nets(blade: Blade, changes: Sequence[Mapping[str, complex]]) -> Nets:
-    """Nets (k, n_u, n_v, 3) of the upper and lower side with each of k changes of parameters, at the blade's knots."""
-    if len(changes) > 1 and any(_is_sought(blade, each) for each in changes):
-        # where a clearance surface lies, or edges meet stream lines, is found for one real channel at a time
+    """Nets (k, n_u, n_v, 3) of the upper and the lower side after each of k changes, at the blade's knots."""
+    if len(changes) > 1 and any(_needs_search(blade, each) for each in changes):
+        # a clearance surface, and the edges' intersections with stream lines, are found for one real channel at a time
         alone = [varied_nets(blade, [each]) for each in changes]
         return np.concatenate([nets[0] for nets in alone]), np.concatenate([nets[1] for nets in alone])
     values = blade.design.parameters()
@@ -180,8 +194,8 @@ def varied_nets(blade: Blade, changes: Sequence[Mapping[str, complex]]) -> Nets:
     return np.broadcast_to(upper, shape), np.broadcast_to(lower, shape)
 
 
-def _is_sought(blade: Blade, change: Mapping[str, complex]) -> bool:
-    """Whether the blade is found by a search that a real change leads to another place."""
+def _needs_search(blade: Blade, change: Mapping[str, complex]) -> bool:
+    """Whether a change moves something that is found by a search in real numbers: a root, a nearest point."""
     real = [path for path, value in change.items() if not np.iscomplexobj(value)]
     if isinstance(blade.design, UnifiedBlade):
         walls = any(path.startswith("channel.") or "clearance" in path for path in real)
@@ -192,8 +206,8 @@ def _is_sought(blade: Blade, change: Mapping[str, complex]) -> bool:
     return not all(path.startswith(("section.", "leading_edge_theta", "leading_edge_y", "pitch")) for path in real)
 
 
-class _Moments:
-    """The moments of blades that carry a step, from their nets' derivatives and the gradients of the sides' moments."""
+class _SteppedMoments:
+    """The moments of blades that carry a step: by the chain rule from the gradients of the moments by the nets."""
 
     def __init__(self, base: Blade) -> None:
         self.base = base
@@ -214,8 +228,8 @@ class _Moments:
         return value + STEP * 1j * (rates[0] + rates[1])
 
 
-class _Faces(Mapping[str, Face]):
-    """A blade's sides, and its ends, which are made when one is asked for."""
+class _LazyFaces(Mapping[str, Face]):
+    """A blade's sides, and its ends, which are made when one is first used."""
 
     def __init__(
         self, sides: Mapping[str, Surface], names: Sequence[str], ends: Callable[[], Mapping[str, Face]]
@@ -236,6 +250,7 @@ class _Faces(Mapping[str, Face]):
 
 
 def _blade(base: Blade, design: Any, upper: Array, lower: Array) -> Blade:
+    """The blade `base` with another design and nets, its knots held."""
     exact = base.exact.moved_to(design)
     sides = [replace(side, control_points=net) for side, net in zip(base.sides, (upper, lower), strict=True)]
 
@@ -243,5 +258,5 @@ def _blade(base: Blade, design: Any, upper: Array, lower: Array) -> Blade:
         like = {name: face for name, face in base.surfaces.items() if isinstance(face, TrimmedSurface)}
         return trimmed_ends(exact, sides[0], sides[1], base.chord, like)
 
-    surfaces = _Faces({"upper": sides[0], "lower": sides[1]}, tuple(base.surfaces), ends)
+    surfaces = _LazyFaces({"upper": sides[0], "lower": sides[1]}, tuple(base.surfaces), ends)
     return replace(base, design=design, surfaces=surfaces, exact=exact)

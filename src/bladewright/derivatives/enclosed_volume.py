@@ -10,7 +10,8 @@ from bladewright.errors import DerivativeError
 from bladewright.nurbs.surface import Surface
 
 AGREED = 1e-6
-"""relative difference of the volume found on the way from the known one"""
+"""Relative difference from the known volume above which the fluxes do not describe the body: a passage that winds
+around the axis is off by a part of its volume, any other by the accuracy of its walls."""
 
 
 def enclosed_volume_rates(
@@ -18,8 +19,9 @@ def enclosed_volume_rates(
 ) -> dict[str, float]:
     """Derivatives by path of the volume [m^3] that faces enclose, +1 where a face's dS/du x dS/dv points outwards.
 
-    `found` is the Jacobian of those of them that are no surfaces of revolution, or drawn along y in a cascade: through
-    these, as through a trimmed tip, a field along theta, or y, has no flux. `middle` is the theta or y amid the faces.
+    `found` is the Jacobian of those faces that are not surfaces of revolution (in a cascade, not extruded along y): a
+    field along theta, or y, has no flux through the others, nor through a trimmed tip. `middle` is the theta, or y, in
+    the middle of the faces.
     Raises DerivativeError where the fluxes do not add up to the known `volume`.
     """
     faces: dict[str, Surface] = {}

@@ -1,4 +1,8 @@
-"""Derivatives of control nets by parameters, and what follows from them for points, forward and in reverse."""
+"""Derivatives of control nets by parameters, and from them those of points, in forward and reverse mode.
+
+A point S = sum B_i w_i P_i / sum B_i w_i is a quotient of sums that are linear in the homogeneous control points, so
+that one Jacobian of the nets serves any number of points.
+"""
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -23,16 +27,16 @@ from bladewright.nurbs.trimmed import TrimmedSurface
 
 Shape = Curve | Surface
 Bars = Mapping[str, Sequence[ArrayLike]]
-"""by name (u, v, bar), or (u, bar) for a curve"""
+"""(u, v, bar) by name of a surface, or (u, bar) of a curve: bar is the derivative of a scalar by the points there."""
 POINTS_AT_ONCE = 50_000
-"""points whose basis functions are held at a time: 36 for each"""
+"""Points whose basis functions are held at a time, some 36 for each, which bounds the memory: 20 MB."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class NetJacobian:
     """Derivatives of the control points of surfaces, or curves, by a design's parameters, at held knots.
 
-    That of a trimmed surface is that of the whole surface below it: a piece of the wall, held where it is.
+    A trimmed surface is represented by the surface that it is a part of; the derivative of its boundary is left out.
     """
 
     paths: tuple[str, ...]
@@ -40,11 +44,11 @@ class NetJacobian:
     shapes: Mapping[str, Shape]
     """surfaces, or curves, by name, as the design builds them [m]"""
     homogeneous: Mapping[str, Array]
-    """(k, n_u, n_v, d), of (w P, w) where the shape has weights [m per unit of the field]"""
+    """(k, n_u, n_v, d), of the control points, or of (w P, w) where there are weights [m per unit of the field]"""
 
     @property
     def nets(self) -> Mapping[str, Array]:
-        """Derivatives (k, n_u, n_v, 3) of the control points themselves, which are a CAD file's poles."""
+        """Derivatives (k, n_u, n_v, 3) of the control points themselves, which are the poles in a CAD file."""
         return MappingProxyType({name: self._net(name) for name in self.shapes})
 
     @property
@@ -60,8 +64,8 @@ class NetJacobian:
     def points(self, name: str, u: ArrayLike, v: ArrayLike = 0.0) -> Array:
         """Derivatives (k, ..., 3) of points at parameters that broadcast; a curve has no v.
 
-        Time and memory grow with the number of points times that of parameters. Raises DerivativeError for an unknown
-        name.
+        Time and memory grow with the number of points times the number of parameters. Raises DerivativeError for an
+        unknown name.
         """
         shape = self._shape(name)
         at = _places(name, [u, v])
@@ -155,7 +159,7 @@ def _gathered(shape: Shape, at: Sequence[Reals], bar: Reals) -> Reals:
 
 
 Part = Callable[..., Any]
-"""what is made of a design's build, such as its passage; it has `surfaces` or `curves` by name"""
+"""Makes a body with `surfaces` or `curves` by name from what a design builds, such as its passage."""
 
 
 def net_jacobian(
@@ -169,8 +173,8 @@ def net_jacobian(
     """Derivatives of the control points of what a design builds, by all its parameters or those that `free` matches.
 
     `names` are the surfaces wanted, where None all that are not trimmed; `knots` those to hold, where None the design's
-    own; `of` makes of the build the body whose surfaces are meant, such as `bladewright.passage`, and takes that body's
-    `knots` where it has some. Raises DerivativeError for an unknown name, DesignError where a pattern matches no
+    own; `of` makes from the build the body whose surfaces are wanted, such as `bladewright.passage`, and is given that
+    body's `knots` where it has some. Raises DerivativeError for an unknown name, DesignError where a pattern matches no
     parameter or the design cannot be built.
     """
     base = built(design, knots)
@@ -182,18 +186,18 @@ def net_jacobian(
         if name not in faces:
             raise DerivativeError(unknown(f"'{name}'", name, list(faces)))
     wanted = wanted if names is None else tuple(dict.fromkeys(names))
-    shapes = {name: whole(faces[name]) for name in wanted}
+    shapes = {name: untrimmed(faces[name]) for name in wanted}
     return NetJacobian(
         paths=paths,
         shapes=MappingProxyType(shapes),
-        homogeneous=MappingProxyType(_rates(design, base, _held(of, body), paths, shapes)),
+        homogeneous=MappingProxyType(_rates(design, base, _with_held_knots(of, body), paths, shapes)),
     )
 
 
 def pullback(
     design: Design, bars: Bars, *, free: Patterns = None, knots: Any = None, of: Part | None = None
 ) -> dict[str, float]:
-    """Sums over all points of bar * dS/dparameter, by path: the gradient of what a solver knows at points of surfaces.
+    """Sums over all points of bar * dS/dparameter, by path: the gradient of what an adjoint solver gives at points.
 
     `bars` is {name: (u, v, bar)}, with bar of the shape of S(u, v) the derivative of a scalar by the points [1/m];
     (u, bar) for the curves of a 2D design. Other arguments and errors are those of `net_jacobian`, and of
@@ -213,12 +217,12 @@ def _rates(
     for place, carrying in enumerate(stepped(design, base, paths)):
         faces = faces_of(carrying if of is None else of(carrying))
         for name in shapes:
-            rates[name][place] = np.imag(whole(faces[name]).homogeneous) / STEP
+            rates[name][place] = np.imag(untrimmed(faces[name]).homogeneous) / STEP
     return rates
 
 
-def _held(of: Part | None, body: Any) -> Part | None:
-    """The same part, at the knots of `body`, where it has some."""
+def _with_held_knots(of: Part | None, body: Any) -> Part | None:
+    """The same function with the knots of `body` held, where it has some."""
     knots = getattr(body, "knots", None)
     return of if of is None or knots is None else partial(of, knots=knots)
 
@@ -231,7 +235,7 @@ def faces_of(body: Any) -> Mapping[str, Any]:
     return faces
 
 
-def whole(face: Any) -> Shape:
-    """The surface below a trimmed one, or the shape itself."""
+def untrimmed(face: Any) -> Shape:
+    """The surface that a trimmed one is a part of, or the shape itself."""
     found: Shape = face.surface if isinstance(face, TrimmedSurface) else face
     return found

@@ -1,4 +1,4 @@
-"""Parameters chosen by patterns of their paths, in which square brackets stand for themselves."""
+"""Selection of parameters by patterns of their dotted paths."""
 
 import re
 from collections.abc import Iterable, Sequence
@@ -8,13 +8,14 @@ from bladewright.designs import Design
 from bladewright.errors import DesignError
 
 Patterns = str | Sequence[str] | None
-"""patterns of paths, in which `*` stands for any letters and `?` for one; None for every parameter"""
+"""Patterns of paths, in which `*` stands for any characters, `?` for one, and brackets for themselves; None for every
+parameter."""
 
 
 def chosen(design: Design, free: Patterns = None) -> tuple[str, ...]:
-    """The paths of `design.parameters()` that a pattern matches, in their order.
+    """The paths of `design.parameters()` that any of the patterns matches, in their order.
 
-    Raises DesignError with the nearest path where a pattern matches none.
+    Raises DesignError with the most similar path where a pattern matches none.
     """
     paths = tuple(design.parameters())
     if free is None:
@@ -26,7 +27,7 @@ def chosen(design: Design, free: Patterns = None) -> tuple[str, ...]:
 
 
 def matching(pattern: str, paths: Iterable[str]) -> list[str]:
-    """The paths that one pattern matches; raises DesignError with the nearest where it matches none."""
+    """The paths that one pattern matches; raises DesignError with the most similar path where it matches none."""
     known = list(paths)
     wild = re.escape(pattern).replace(r"\*", ".*").replace(r"\?", ".")
     found = [path for path in known if re.fullmatch(wild, path)]

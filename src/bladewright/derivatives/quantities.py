@@ -1,4 +1,4 @@
-"""Quantities that have a name: what the command line differentiates."""
+"""Named quantities that the command line differentiates."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
@@ -25,7 +25,7 @@ class NamedQuantity:
     power: int
     """its unit is this power of a metre"""
     points: bool = False
-    """whether it is a set of control points (k, d), whose derivative is told by its root mean square"""
+    """whether it is a set of control points (k, d), whose derivative is reported as a root mean square"""
 
 
 def _net(blade: Any) -> Array:
@@ -56,8 +56,8 @@ BLADE: Mapping[str, NamedQuantity] = MappingProxyType(
         )
     }
 )
-"""of a blade: its sides' control points; volume, area, centroid and inertia; the mean straight distance from leading to
-trailing edge; the throat's area"""
+"""Quantities of a blade: its sides' control points; volume, area, centroid and inertia; the mean straight distance from
+leading to trailing edge; the area of the throat."""
 SECTION: Mapping[str, NamedQuantity] = MappingProxyType(
     {
         each.name: each
@@ -71,13 +71,14 @@ SECTION: Mapping[str, NamedQuantity] = MappingProxyType(
         )
     }
 )
-"""of a section: its sides' control points; area, centroid, chord, length of both sides, and of the camber line"""
+"""Quantities of a section: its curves' control points; area, centroid, chord, length of both sides, and of the camber
+line."""
 
 
 def named_quantity(base: Any, name: str, more: Mapping[str, NamedQuantity] | None = None) -> NamedQuantity:
-    """The quantity of that name for what a design builds, `more` among the known ones.
+    """The quantity of that name for what a design builds; `more` are known besides the usual ones.
 
-    Raises DerivativeError with the nearest name.
+    Raises DerivativeError with the most similar name where there is none.
     """
     known = {**(BLADE if hasattr(base, "surfaces") else SECTION), **(more or {})}
     if name not in known:

@@ -1,4 +1,4 @@
-"""The derivative of any quantity of what a design builds, by the complex step."""
+"""Derivatives of any quantity of what a design builds, by the complex step."""
 
 import warnings
 from collections.abc import Callable, Iterable, Sequence
@@ -13,12 +13,13 @@ from bladewright.errors import BladewrightError, DerivativeError
 from bladewright.numerics.elementary import Array
 
 Quantity = Callable[[Any], Any]
-"""a function of what is built, made of analytic steps: it carries complex numbers"""
+"""An analytic function of what is built: it carries complex numbers."""
 NUDGE = 1e-6
-"""relative change that shows whether a quantity that returns real numbers depends on a parameter"""
+"""Relative change of a parameter by which a quantity that returned real numbers is tested for having lost a derivative:
+small enough for any design to be built, and far above rounding."""
 UNCHANGED = 1e-10
-"""relative change of a quantity below which it is rounding"""
-CURE = (
+"""Relative change of a quantity below which it counts as rounding: NUDGE times 1e-4."""
+_CURE = (
     "use what carries complex numbers: sqrt(sum(x * x)) for a norm or abs, values compared on .real, no float(), and "
     "the fields of the build that are arrays"
 )
@@ -28,9 +29,9 @@ def sensitivity(design: Design, quantity: Quantity, *, free: Patterns = None, kn
     """Derivatives of a quantity by the design's parameters, by path, in the order of `design.parameters()`.
 
     `quantity` takes what the design builds and returns a number or an array of any shape, in metres and radians; the
-    derivative has its shape, per unit of the parameter's field. It is exact to rounding: the quantity is taken of a
-    build that carries an imaginary step (Squire and Trapp 1998), so it must be an analytic function made of steps that
-    carry complex numbers. `free` are patterns of paths such as "stagger[*]", where None every parameter; `knots` are
+    derivative has its shape, per unit of the parameter's field. It is exact to rounding: the quantity is computed for a
+    build that carries a complex step (Squire and Trapp 1998), so it must be made of analytic operations that carry
+    complex numbers. `free` are patterns of paths such as "stagger[*]", where None every parameter; `knots` are
     held, where None the design's own.
 
     Raises DerivativeError where the quantity loses the imaginary part or gives no finite numbers, and DesignError where
@@ -87,7 +88,7 @@ def _value(quantity: Quantity, carrying: Any, path: str) -> Array:
         raise
     except Exception as error:
         reason = f"{type(error).__name__}: {error}"
-        raise DerivativeError(f"the quantity fails with a complex step on {path} ({reason}): {CURE}") from error
+        raise DerivativeError(f"the quantity fails with a complex step on {path} ({reason}): {_CURE}") from error
 
 
 def _array(value: Any, what: str) -> Array:
@@ -112,7 +113,7 @@ def _check_finite(value: Array, path: str) -> None:
 
 
 def _check_real(design: Design, base: Any, quantity: Quantity, value: Array, paths: Sequence[str]) -> None:
-    """Refuse a quantity that was real for steps on these parameters, but changes when they are all nudged."""
+    """Refuse a quantity that stayed real for steps on these parameters, but changes when they all change a little."""
     if not paths:
         return
     own = design.parameters()
@@ -123,5 +124,5 @@ def _check_real(design: Design, base: Any, quantity: Quantity, value: Array, pat
         others = f" and {len(paths) - 1} others" if len(paths) > 1 else ""
         raise DerivativeError(
             f"the quantity is real for a design that carries a complex step on {paths[0]}{others}, yet changes by "
-            f"{change:.3g} when they grow by {NUDGE:g} of themselves: its derivative was lost; {CURE}"
+            f"{change:.3g} when they grow by {NUDGE:g} of themselves: its derivative was lost; {_CURE}"
         )

@@ -1,4 +1,9 @@
-"""Derivatives by the complex step against central differences, over a range of steps for each parameter."""
+"""Derivatives by the complex step against central differences, over a range of steps for each parameter.
+
+The error of a central difference falls with the square of its step until rounding, which grows as its inverse, takes
+over; that of the complex step falls with the square and stays at rounding. Agromayor et al. 2021, section 5 and figure
+13.
+"""
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
@@ -16,26 +21,27 @@ from bladewright.numerics.elementary import Array
 from bladewright.nurbs.basis import Reals
 
 STEPS = 10.0 ** -np.arange(2.0, 11.0)
-"""of central differences, in units of a parameter's scale"""
+"""Steps of the differences, in units of a parameter's scale."""
 IMAGINARY = 10.0 ** -np.array([30.0, 20.0, 16.0, 12.0, 10.0, 8.0, 6.0, 5.0, 4.0, 3.0, 2.0])
-"""of complex steps, in units of a parameter's scale; real parts are found for the smallest first"""
+"""Complex steps, in units of a parameter's scale; the smallest is taken first."""
 LIMIT = 1e-5
-"""relative difference from the closest difference that passes
+"""Largest relative error of the best difference that passes.
 
-Decades apart, central differences come as close as the 2/3 power of a build's rounding, some 1e-15 of its coordinates,
-over the parameter's own share of them, which is 1e-5 at least for the radius of an edge: 3e-7 for every parameter of
-the built-in examples. A derivative with anything left out misses by more than 1e-3.
+With steps a decade apart, central differences reach the 2/3 power of a build's rounding, some 1e-15 of its coordinates,
+over the parameter's share of them, which is 1e-5 at least (for the radius of an edge): 3e-7 for every parameter of the
+built-in examples. A derivative in which anything is left out is off by more than 1e-3.
 """
 DIFFERENCES = (
     ((1.0, -1.0), (0.5, -0.5)),
     ((0.0, 1.0, 2.0), (-1.5, 2.0, -0.5)),
     ((0.0, -1.0, -2.0), (1.5, -2.0, 0.5)),
 )
-"""offsets in steps, and weights: a central difference; to one side, for a parameter that stands at its limit"""
-NOTHING = 1e-11
-"""change of a quantity by one scale of a parameter, of the quantity, that is rounding"""
+"""Offsets in steps, and weights: a central difference, and one-sided ones of the same order for a parameter that lies
+at its limit."""
+NO_EFFECT = 1e-11
+"""Relative change of a quantity by one scale of a parameter below which the parameter has no effect: it is rounding."""
 ELSEWHERE = {"pitch": "places the next blade", "span": "is the height of the section's solid"}
-"""parameters that leave the shape of a blade or section as it is"""
+"""Parameters that do not change the shape of a blade or section, and what they do instead."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -46,19 +52,19 @@ class StepStudy:
     size: float
     """root mean square of the derivative, in the quantity's unit per unit of the field"""
     scale: float
-    """what steps are counted in, in units of the field"""
+    """unit of the steps, in the unit of the field"""
     steps: Reals
-    """(k,) steps of the differences, of the scale"""
+    """(k,) steps of the differences, in scales"""
     errors: Reals
     """(k,) their errors over `size`"""
     imaginary: Reals
-    """(m,) complex steps, of the scale"""
+    """(m,) complex steps, in scales"""
     floor: Reals
     """(m,) their errors over `size`"""
     failure: str = ""
     """why it fails; empty where it passes"""
     note: str = ""
-    """why it has no effect where it need not"""
+    """why it has no effect, where that is allowed"""
 
     @property
     def best(self) -> float:
@@ -75,15 +81,15 @@ def step_studies(
     steps: Reals = STEPS,
     imaginary: Reals = IMAGINARY,
 ) -> Iterator[StepStudy]:
-    """The check of every parameter of `space` in turn; `base` is the design's build, whose knots are held.
+    """The study of every parameter of `space` in turn; `base` is the design's build, whose knots are held.
 
-    `steps` and `imaginary` are those of the differences and of the complex steps, in units of a parameter's scale; of
-    the latter the smallest is the first.
+    `steps` are those of the differences and `imaginary` the complex steps, smallest first, in units of a parameter's
+    scale.
     """
     whole = size_of(np.real(np.asarray(quantity.of(base))), quantity)
     for path, scale, carrying in zip(space.paths, space.scale, stepped(design, base, space.paths), strict=True):
         exact = np.imag(np.asarray(quantity.of(carrying))) / STEP
-        yield _step_study(_Sought(design, base, quantity, path, float(scale), exact, whole), steps, imaginary)
+        yield _step_study(_Derivative(design, base, quantity, path, float(scale), exact, whole), steps, imaginary)
 
 
 def size_of(rate: Array, quantity: NamedQuantity) -> float:
@@ -92,8 +98,8 @@ def size_of(rate: Array, quantity: NamedQuantity) -> float:
     return float(np.sqrt(per_entry * np.mean(np.square(rate))))
 
 
-class _Sought(NamedTuple):
-    """One derivative that is checked."""
+class _Derivative(NamedTuple):
+    """One derivative that is studied."""
 
     design: Design
     base: Any
@@ -120,9 +126,9 @@ class _Sought(NamedTuple):
         return np.array([size_of(each / self.scale - self.exact, self.quantity) / size for each in found])
 
     def differences(self, steps: Reals) -> tuple[Reals, Reals]:
-        """Steps (k,) and errors (k,) of differences, without the largest where these leave what can be built.
+        """Steps (k,) and errors (k,) of differences, without the largest steps where those cannot be built.
 
-        Central ones, or, where a value stands at its limit, of the same order to one side.
+        They are central, or one-sided of the same order where a value lies at its limit.
         """
         for offsets, weights in DIFFERENCES:
             for first in range(len(steps)):
@@ -132,24 +138,24 @@ class _Sought(NamedTuple):
                 except DesignError:
                     continue
                 rows = np.tensordot(found.reshape(len(kept), len(offsets), *found.shape[1:]), weights, axes=(1, 0))
-                return kept, self.errors(rows / _beside(kept, rows))
+                return kept, self.errors(rows / _aligned(kept, rows))
         return np.empty(0), np.empty(0)
 
 
-def _step_study(sought: _Sought, steps: Reals, imaginary: Reals) -> StepStudy:
-    path, quantity, size = sought.path, sought.quantity, size_of(sought.exact, sought.quantity)
+def _step_study(derivative: _Derivative, steps: Reals, imaginary: Reals) -> StepStudy:
+    path, quantity, size = derivative.path, derivative.quantity, size_of(derivative.exact, derivative.quantity)
     none: Reals = np.empty(0)
-    bare = StepStudy(path=path, size=size, scale=sought.scale, steps=none, errors=none, imaginary=none, floor=none)
+    bare = StepStudy(path=path, size=size, scale=derivative.scale, steps=none, errors=none, imaginary=none, floor=none)
     if not np.isfinite(size):
         return replace(bare, failure=f"{path}: the derivative of the {quantity.name} is not finite")
-    if size * sought.scale <= NOTHING * sought.whole:
+    if size * derivative.scale <= NO_EFFECT * derivative.whole:
         idle = f"{path} has no effect on the {quantity.name}"
         if quantity.points and path not in ELSEWHERE:
             return replace(bare, failure=idle)
         return replace(bare, note=f"{idle}: it {ELSEWHERE[path]}" if path in ELSEWHERE else idle)
-    carried = np.imag(sought.values(1j * imaginary))
-    kept, errors = sought.differences(steps)
-    floor = sought.errors(carried / _beside(imaginary, carried))
+    carried = np.imag(derivative.values(1j * imaginary))
+    kept, errors = derivative.differences(steps)
+    floor = derivative.errors(carried / _aligned(imaginary, carried))
     sweep = replace(bare, steps=kept, errors=errors, imaginary=imaginary, floor=floor)
     if sweep.best <= LIMIT:
         return sweep
@@ -162,5 +168,6 @@ def _step_study(sought: _Sought, steps: Reals, imaginary: Reals) -> StepStudy:
     return replace(sweep, failure=reason)
 
 
-def _beside(steps: Reals, values: Array) -> Reals:
+def _aligned(steps: Reals, values: Array) -> Reals:
+    """Steps (k,) with as many axes as values (k, ...)."""
     return steps.reshape(-1, *(1,) * (values.ndim - 1))

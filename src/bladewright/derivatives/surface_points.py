@@ -1,4 +1,4 @@
-"""Numbered points on surfaces of a build, such as a solver's, which follow the design."""
+"""Numbered points on the surfaces of what a design builds, such as a solver's, which move with the design."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.spatial import cKDTree
 
-from bladewright.derivatives.net_jacobian import Shape, faces_of, whole
+from bladewright.derivatives.net_jacobian import Shape, faces_of, untrimmed
 from bladewright.designs import unknown
 from bladewright.errors import DerivativeError
 from bladewright.numerics.elementary import Array, length
@@ -17,14 +17,15 @@ from bladewright.nurbs.closest import closest_on_curve, closest_on_surface
 from bladewright.nurbs.curve import Curve
 
 SAME = 1e-9
-"""distance below which points of two faces are one, of the points' extent"""
+"""Distance, in units of the points' extent, below which points of two faces are one: they differ by rounding."""
 NEAR = 1e-4
-"""largest distance of a given point from the surfaces, of their extent"""
+"""Default of `near`, in units of the points' extent: how far a given point may lie off the surfaces. Meshes from files
+with few digits must be accepted, and those of another design, or in millimetres, refused."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class SurfacePoints:
-    """Points on named surfaces, or curves, each with the number that a solver knows it by."""
+    """Points on named surfaces, or curves, each with its number in a solver."""
 
     ids: NDArray[np.int64]
     """(n,) numbers, each once"""
@@ -38,10 +39,10 @@ class SurfacePoints:
     """(n, 3), or (n, 2) on the curves of a 2D design [m]"""
 
     def on(self, built: Any) -> Self:
-        """The same places on what another design builds, with the points there."""
+        """The points at the same parameters on what another design builds."""
         faces, moved = faces_of(built), np.empty_like(self.points)
         for name, which in self._by_name().items():
-            moved[which] = np.real(_at(whole(_face(faces, name)), self.u[which], self.v[which]))
+            moved[which] = np.real(_at(untrimmed(_face(faces, name)), self.u[which], self.v[which]))
         return replace(self, points=moved)
 
     def bars(self, values: ArrayLike) -> dict[str, tuple[Reals, ...]]:
@@ -70,8 +71,9 @@ def surface_points(
 ) -> SurfacePoints:
     """Points on surfaces of a blade or passage, or on the curves of a section, numbered from 0.
 
-    `along` u, closer at both ends, and `across` v, evenly; a point that two of the surfaces share is there once, on the
-    first of them. Raises DerivativeError for an unknown name, or fewer than 2 points either way.
+    `along` is their number in u, where they are closer at both ends, and `across` that in v, where they are equally
+    spaced; a point that two surfaces share is listed once, on the first of them. Raises DerivativeError for
+    an unknown name, or fewer than 2 points either way.
     """
     if along < 2 or across < 2:
         raise DerivativeError(f"{along} x {across} points were asked for: at least 2 x 2 are needed")
@@ -79,7 +81,7 @@ def surface_points(
     rows: list[Reals] = []
     places: list[tuple[str, Reals, Reals]] = []
     for name in names:
-        shape = whole(_face(faces_of(built), name))
+        shape = untrimmed(_face(faces_of(built), name))
         v = np.zeros(1) if isinstance(shape, Curve) else np.linspace(0.0, 1.0, across)
         at_u, at_v = (part.ravel() for part in np.meshgrid(u, v, indexing="ij"))
         rows.append(np.real(_at(shape, at_u, at_v)))
@@ -99,7 +101,7 @@ def surface_points(
 def placed_points(
     built: Any, ids: ArrayLike, points: ArrayLike, *, names: Sequence[str] = ("upper", "lower"), near: float = NEAR
 ) -> SurfacePoints:
-    """Where points (n, 3), or (n, 2) of a 2D design, numbered `ids` (n,), lie: at the nearest places of the surfaces.
+    """The points on the surfaces closest to given ones (n, 3), or (n, 2) of a 2D design, with numbers `ids` (n,).
 
     So a mesh made elsewhere can follow a design. Raises DerivativeError where a number occurs twice, or a point lies
     further than `near` times the extent of all off the surfaces.
@@ -112,7 +114,7 @@ def placed_points(
     u, v, face = np.zeros(len(given)), np.zeros(len(given)), np.zeros(len(given), dtype=np.intp)
     reached = np.empty_like(given)
     for place, name in enumerate(names):
-        at_u, at_v, on = _nearest(whole(_face(faces_of(built), name)), given)
+        at_u, at_v, on = _nearest(untrimmed(_face(faces_of(built), name)), given)
         away = length(on - given)
         nearer = away < best
         best[nearer], face[nearer], reached[nearer] = away[nearer], place, on[nearer]
@@ -146,6 +148,6 @@ def _face(faces: Mapping[str, Any], name: str) -> Any:
 
 
 def _first_of_same(points: Reals) -> NDArray[np.intp]:
-    """The points (n, d) of which none before is the same."""
+    """Indices of the points (n, d) that do not coincide with an earlier one."""
     pairs = cKDTree(points).query_pairs(SAME * float(np.ptp(points, axis=0).max()), output_type="ndarray")
     return np.setdiff1d(np.arange(len(points)), pairs.max(axis=1) if len(pairs) else [])

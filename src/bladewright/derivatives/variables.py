@@ -20,7 +20,7 @@ from bladewright.section.checks import UNITS
 
 @final
 class Builds:
-    """What a vector's design builds, and builds that carry a step; those of the last vector are kept."""
+    """What the design of a vector builds, and the builds that carry a step; those of the last vector are cached."""
 
     def __init__(self, *, design_of: Callable[[Array], Design], paths: Sequence[str], knots: Any) -> None:
         self.design_of, self.paths, self.knots = design_of, tuple(paths), knots
@@ -40,7 +40,7 @@ class Builds:
         return self._design, self._base
 
     def stepped(self, x: ArrayLike) -> list[Any]:
-        """Builds that carry a step on each parameter in turn."""
+        """The builds that carry a step on each parameter in turn."""
         design, base = self.at(x)
         if self._stepped is None:
             self._stepped = list(stepped(design, base, self.paths))
@@ -51,8 +51,8 @@ class Builds:
 class Objective:
     """A quantity of what a design builds as a function of the vector of `Variables`, at held knots.
 
-    Several objectives of the same variables share one build a vector. An objective itself gives value and derivatives
-    together, as scipy.optimize.minimize takes them with jac=True.
+    Several objectives of the same variables share one build of each vector. Called as a function, an objective returns
+    value and derivatives together, as scipy.optimize.minimize takes them with jac=True.
     """
 
     def __init__(
@@ -75,20 +75,20 @@ class Objective:
         return self._gradient(differentiated(design, base, self.quantity, self._builds.paths, self._builds.stepped(x)))
 
 
-TURN = 10.0
-"""an angle's scale [deg]"""
-SHARE = 0.1
-"""a length's scale, of the chord"""
+ANGLE_SCALE = 10.0
+"""Scale of an angle [deg]: with LENGTH_SCALE, one unit of either moves the surface by about a tenth of the chord."""
+LENGTH_SCALE = 0.1
+"""Scale of a length, in chords."""
 Bounds = Mapping[str, tuple[float, float]]
-"""lowest and highest value by pattern"""
+"""Lowest and highest values by pattern."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Variables:
-    """Some parameters of a design as a vector x, each its value over its scale; made by `variables`."""
+    """Some parameters of a design as a vector x, each divided by its scale; made by `variables`."""
 
     origin: Design
-    """where a search starts"""
+    """the design from which a search starts"""
     paths: tuple[str, ...]
     """the parameters, in the order of x"""
     scale: Reals
@@ -98,7 +98,7 @@ class Variables:
     high: Reals
     """(n,) highest values, in the units of the fields"""
     knots: Any
-    """held in all builds; None for designs without"""
+    """held in all builds; None for designs without knots"""
 
     @property
     def x0(self) -> Reals:
@@ -139,9 +139,10 @@ class Variables:
         return Objective(builds=self._builds, gradient=self.gradient, quantity=quantity)
 
     def restarted(self, x: ArrayLike) -> Self:
-        """The same variables from another origin, at the knots that its own build chooses.
+        """The same variables from another origin, at the knots that its own build selects.
 
-        For an accepted step of a search: within one, knots are held, or a refinement would jump into the objective.
+        For use between the stages of a search: within one, knots are held, or a refinement would make the objective
+        jump.
         """
         design = self.design(x)
         return replace(self, origin=design, knots=getattr(design.build(), "knots", None))
@@ -166,7 +167,7 @@ def variables(
     unit of the field; `changes` the same counted from the design's own value, such as {"stagger*": (-5.0, 5.0)}; what
     neither names is unbounded. `scale` is what one unit of x is, by pattern, in the unit of the field; elsewhere an
     angle's is 10 deg, a length's a tenth of the chord and a proportion's the largest of its field, so that one unit of
-    any entry moves the surface by a like amount. `knots` are held, where None those that the design chooses.
+    any entry moves the surface by a similar amount. `knots` are held, where None those that the design selects.
 
     Raises DesignError where a pattern matches no free parameter, two patterns bound or scale one parameter, or the
     design lies outside its bounds.
@@ -237,10 +238,10 @@ def _checked_scale(path: str, value: float) -> float:
 def _scale(design: Design, base: Any, path: str) -> float:
     unit = unit_at(design, path)
     if unit == "deg":
-        return TURN
+        return ANGLE_SCALE
     if unit == "length":
         metre = UNITS[getattr(design, "length_unit", "m")]
-        return SHARE * float(np.real(base.chord)) / metre
+        return LENGTH_SCALE * float(np.real(base.chord)) / metre
     field = path.partition("[")[0]
     squares = [float(value) ** 2 for name, value in design.parameters().items() if name.partition("[")[0] == field]
     return float(np.sqrt(max(squares))) or 1.0

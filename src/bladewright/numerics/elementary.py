@@ -1,4 +1,4 @@
-"""Elementary functions that stay analytic, so that an imaginary step survives them."""
+"""Elementary functions that are analytic, so that a complex step passes through them unharmed."""
 
 from collections.abc import Sequence
 from typing import Any
@@ -7,7 +7,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 Array = NDArray[Any]
-"""float64, or complex128 where a step is carried: a type checker cannot follow which"""
+"""An array of float64, or of complex128 where a complex step is carried: a type checker cannot follow which."""
+Reals = NDArray[np.float64]
+"""An array that is real by nature, such as knots."""
 
 
 def length(vectors: Array) -> Array:
@@ -16,7 +18,7 @@ def length(vectors: Array) -> Array:
 
 
 def cumulative_length(line: Array) -> Array:
-    """Lengths (n,) along a polyline (n, d) from its first point."""
+    """Arc lengths (n,) along a polyline (n, d), from 0 at its first point."""
     steps = length(np.diff(line, axis=0))
     return np.concatenate([np.zeros(1, dtype=steps.dtype), np.cumsum(steps)])
 
@@ -28,12 +30,12 @@ def unit(vectors: Array) -> Array:
 
 def dot(a: Array, b: Array) -> Array:
     """Sum of products over the last axis, without conjugation."""
-    # numpy's own sum over an axis of two or three entries takes three times as long
+    # np.sum over an axis of two or three entries takes three times as long
     return np.asarray(np.einsum("...i,...i->...", a, b))
 
 
 def cross(a: Array, b: Array) -> Array:
-    """The vector product of vectors (..., 3), which numpy's own takes three times as long for."""
+    """The vector product of vectors (..., 3), in a third of the time of `np.cross`."""
     product = np.empty(np.broadcast_shapes(a.shape, b.shape), dtype=np.result_type(a, b))
     for k in range(3):
         i, j = (k + 1) % 3, (k + 2) % 3
@@ -62,7 +64,7 @@ def angle(y: Array, x: Array) -> Array:
 
 
 def concatenated(parts: Sequence[Array], axis: int) -> Array:
-    """Arrays put together along a negative axis, the other axes broadcast: some may carry a batch, others not."""
+    """Arrays concatenated along a negative axis, the other axes broadcast: some may carry a batch, others not."""
     own = [part.shape[axis] for part in parts]
     rest = np.broadcast_shapes(*[(*part.shape[:axis], 1, *part.shape[axis:][1:]) for part in parts])
     shapes = [(*rest[:axis], count, *rest[axis:][1:]) for count in own]

@@ -4,18 +4,27 @@ from collections.abc import Callable
 from functools import cache
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-from bladewright.numerics.elementary import Array
+from bladewright.numerics.elementary import Array, Reals
 
-Reals = NDArray[np.float64]
-
-FIRST_ORDER, LAST_ORDER, MORE = 12, 72, 1.7
-"""points a panel to start with, at most, and the factor between two tries of `integrated`"""
-DEEPEST = 40
-"""most halvings of a panel by `adaptive`"""
+FIRST_ORDER = 12
+"""Gauss points on a panel at the first attempt of `converged_quadrature`: most integrands on one knot span need no
+more, and an integral costs two attempts at least."""
+LAST_ORDER = 72
+"""Gauss points on a panel at its last attempt: more do not help an integrand that is not smooth."""
+ORDER_GROWTH = 1.7
+"""Ratio of the Gauss points of two attempts: near 1 attempts are many, far above it the last one is wasteful."""
+MAX_HALVINGS = 40
+"""Halvings of a panel by `adaptive`: what then remains of a kink is 1e-12 of its panel."""
+ADAPTIVE_ORDER = 16
+"""Gauss points on a panel of `adaptive`: exact for polynomials of degree 31."""
+ADAPTIVE_TOLERANCE = 1e-14
+"""Difference between a panel and its halves, in units of the whole integral, below which `adaptive` accepts them:
+some fifty roundings."""
 TOLERANCE = 1e-13
-"""change between two tries, in units of the integral's size, below which `integrated` stops"""
+"""Change between two attempts, in units of the integral, below which `converged_quadrature` stops: the rounding of a
+sum over a thousand points."""
 
 
 @cache
@@ -39,12 +48,12 @@ def panels(breaks: ArrayLike, order: int) -> tuple[Reals, Reals]:
 def adaptive(function: Callable[[Reals], Array], breaks: ArrayLike) -> Array:
     """Integral () of function(x) (m,) over the panels between `breaks` (k + 1,), rising or falling.
 
-    A panel is halved until sixteen Gauss points on it and on its halves agree within 1e-14 of the whole, or it is
-    2^-40 of itself, so that cusps and kinks between the breaks cost more points but no accuracy.
+    A panel is halved until ADAPTIVE_ORDER Gauss points on it and on each of its halves agree within ADAPTIVE_TOLERANCE
+    of the whole, at most MAX_HALVINGS times: cusps and kinks between the breaks cost more points but no accuracy.
     """
     ends = np.asarray(breaks, dtype=np.float64)
     start, step = ends[:-1], np.diff(ends)
-    nodes, weights = gauss(16)
+    nodes, weights = gauss(ADAPTIVE_ORDER)
 
     def on(low: Reals, size: Reals) -> Array:
         values = function((low[:, None] + size[:, None] * nodes).ravel()).reshape(len(low), len(nodes))
@@ -52,12 +61,12 @@ def adaptive(function: Callable[[Reals], Array], breaks: ArrayLike) -> Array:
 
     coarse = on(start, step)
     done: Array = np.zeros(())
-    for _ in range(DEEPEST):
+    for _ in range(MAX_HALVINGS):
         halves = np.concatenate([start, start + 0.5 * step]), np.concatenate([0.5 * step, 0.5 * step])
         fine = on(*halves)
         both = fine[: len(start)] + fine[len(start) :]
         size = np.real(done + both.sum())
-        rough = np.real(both - coarse) ** 2 > (1e-14 * size) ** 2
+        rough = np.real(both - coarse) ** 2 > (ADAPTIVE_TOLERANCE * size) ** 2
         done = done + both[~rough].sum()
         if not rough.any():
             return done
@@ -67,17 +76,17 @@ def adaptive(function: Callable[[Reals], Array], breaks: ArrayLike) -> Array:
 
 
 def quadrature_orders(first: int = FIRST_ORDER) -> list[int]:
-    """Points a panel for successive tries of an integral, growing up to `LAST_ORDER`."""
+    """Gauss points on a panel for successive attempts at an integral, growing up to LAST_ORDER."""
     found = [first]
     while found[-1] < LAST_ORDER:
-        found.append(min(LAST_ORDER, int(np.ceil(found[-1] * MORE))))
+        found.append(min(LAST_ORDER, int(np.ceil(found[-1] * ORDER_GROWTH))))
     return found
 
 
 def converged_quadrature(value: Callable[[int], Array], first: int = FIRST_ORDER) -> Array:
-    """value(order) (...) at the first order that changes it by less than 1e-13 of its largest entry.
+    """value(order) (...) at the first order at which it changes by less than TOLERANCE of its largest entry.
 
-    Where no order settles, the value at the last, 72 points a panel.
+    Where it does not converge, the value at LAST_ORDER.
     """
     before = value(first)
     for order in quadrature_orders(first)[1:]:

@@ -1,4 +1,4 @@
-"""Roots of many equations at once, bracketed, with their derivative by one more Newton step; crossings of a level."""
+"""Bracketed roots of many equations at once, with their derivatives, and where a function crosses given levels."""
 
 from collections.abc import Callable
 
@@ -8,8 +8,9 @@ from numpy.typing import ArrayLike
 from bladewright.numerics.elementary import Array
 
 EPSILON = float(np.finfo(np.float64).eps)
+"""Relative spacing of doubles, to which `level_crossings` are found."""
 STEPS = 80
-"""bisection alone needs no more: the bracket is then below the spacing of doubles"""
+"""Iterations: bisection alone needs no more until a bracket is below the spacing of doubles."""
 
 
 def bracketed_root(function: Callable[[Array], tuple[Array, Array]], low: ArrayLike, high: ArrayLike) -> Array:
@@ -44,9 +45,9 @@ def bracketed_root(function: Callable[[Array], tuple[Array, Array]], low: ArrayL
 def level_crossings(
     function: Callable[[Array], Array], places: ArrayLike, values: ArrayLike, levels: ArrayLike
 ) -> Array:
-    """Places (k,), rising, where a continuous real function passes a level, or any of several, to rounding.
+    """Arguments (k,), increasing, at which a continuous real function equals a level, or any of several, to rounding.
 
-    `values` (m,) are the function's at `places` (m,), rising; what crosses twice between two of them is not seen.
+    `values` (m,) are the function's at increasing `places` (m,); two crossings between neighbouring places are missed.
     """
     at, asked = np.asarray(places, dtype=np.float64), np.atleast_1d(np.asarray(levels, dtype=np.float64))
     off = np.asarray(values, dtype=np.float64) - asked[:, None]

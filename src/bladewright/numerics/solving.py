@@ -1,4 +1,4 @@
-"""Linear systems with one real matrix and many right sides."""
+"""Linear systems with one real matrix and many right-hand sides."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -7,10 +7,10 @@ from bladewright.numerics.elementary import Array
 
 
 def solved(matrix: NDArray[np.float64], values: Array) -> Array:
-    """The solutions (..., n, k) of matrix (n, n) times them = values (..., n, k), real or complex.
+    """The solutions x (..., n, k) of `matrix` (n, n) x = `values` (..., n, k), real or complex.
 
-    By the inverse, which is as exact as elimination where the matrix is well conditioned, as in an interpolation at
-    Greville abscissae (about 10), and many times faster for a batch.
+    By the inverse, which is as accurate as elimination where the matrix is well conditioned, as in interpolation at
+    Greville abscissae (condition about 10), and several times faster for a batch.
     """
     inverse = np.linalg.inv(matrix)
     if not np.iscomplexobj(values):

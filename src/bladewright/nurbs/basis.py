@@ -1,4 +1,4 @@
-"""B-spline basis functions on clamped knot vectors."""
+"""Clamped knot vectors and the B-spline basis functions on them."""
 
 from collections.abc import Iterable
 from functools import lru_cache
@@ -8,11 +8,14 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.interpolate import BSpline
 
 from bladewright.errors import GeometryError
+from bladewright.numerics.elementary import Reals as Reals  # noqa: PLC0414 - exported for the rooms above
 
-Reals = NDArray[np.float64]
-
-FEW = 400
-"""parameters up to which a matrix of basis functions is kept"""
+MAX_CACHED = 400
+"""Parameters up to which a matrix of basis functions is cached. Builds at held knots ask for the same matrices again:
+without the cache one of Rotor 67 took 45 ms, with it 36. Larger matrices would fill the memory."""
+JOINT_TOLERANCE = 1e-9
+"""Distance from a joint, in units of the knots' range, below which a knot is moved onto the joint: joints are computed,
+and a knot so near is the same one but for rounding."""
 
 
 def uniform_knots(count: int, degree: int) -> Reals:
@@ -53,17 +56,16 @@ def spans(knots: Reals, degree: int, u: ArrayLike) -> NDArray[np.intp]:
 def basis(knots: Reals, degree: int, u: ArrayLike, order: int = 0) -> Reals:
     """Dense matrix (len(u), n) of all basis functions' `order`-th derivatives at real parameters u (m,), read-only.
 
-    Outside the knots' range the end polynomials are continued. Matrices of few parameters are kept: builds at held
-    knots ask for the same ones again and again.
+    Outside the knots' range the end polynomials are continued. Matrices of up to MAX_CACHED parameters are cached.
     """
     at, on = np.asarray(u, dtype=np.float64), np.asarray(knots, dtype=np.float64)
-    if at.ndim == 1 and len(at) <= FEW:
-        return _kept(on.tobytes(), degree, at.tobytes(), order)
+    if at.ndim == 1 and len(at) <= MAX_CACHED:
+        return _cached_matrix(on.tobytes(), degree, at.tobytes(), order)
     return _matrix(on, degree, at, order)
 
 
 @lru_cache(maxsize=128)
-def _kept(knots: bytes, degree: int, u: bytes, order: int) -> Reals:
+def _cached_matrix(knots: bytes, degree: int, u: bytes, order: int) -> Reals:
     return _matrix(np.frombuffer(knots), degree, np.frombuffer(u), order)
 
 
@@ -111,17 +113,13 @@ def checked_knots(knots: ArrayLike, degree: int, count: int, name: str) -> Reals
     return values
 
 
-SNAPPED = 1e-9
-"""distance from a joint, of the knots' range, below which the joint takes the place of a knot"""
-
-
 def knots_with_joints(knots: Reals, degree: int, joints: Iterable[tuple[float, int]]) -> Reals:
-    """Knots with joints: places strictly inside, each with the number of derivatives that are continuous there.
+    """Knots with the multiplicity that joints need: parameters inside, each with its number of continuous derivatives.
 
-    A curve of `degree` on these knots may have a jump in the next derivative at each joint.
+    A curve of `degree` on these knots can follow one whose next derivative jumps at each joint.
     """
     start, end = knots[0], knots[-1]
-    near = SNAPPED * (end - start)
+    near = JOINT_TOLERANCE * (end - start)
     for place, smooth in joints:
         if not start + near < place < end - near:
             continue

@@ -1,4 +1,4 @@
-"""Bezier pieces of curves and surfaces, and the algebra of Bernstein coefficients."""
+"""Bezier patches of curves and surfaces, and the algebra of polynomials in Bernstein form."""
 
 from dataclasses import dataclass
 from functools import cache, lru_cache
@@ -15,7 +15,7 @@ from bladewright.nurbs.surface import Surface
 
 @dataclass(frozen=True, kw_only=True)
 class Patches:
-    """The Bezier patches of a real surface, or of a real curve as a surface of degree 0 in v; all in one array."""
+    """The Bezier patches of a real surface in one array; a real curve counts as a surface of degree 0 in v."""
 
     nets: Reals
     """(k, p + 1, q + 1, d + 1) homogeneous control points (w P, w)"""
@@ -26,7 +26,7 @@ class Patches:
     shape: tuple[int, int]
     """number of patches along u and v: patch i, j has index i shape[1] + j"""
     rational: bool
-    """whether weights differ from one"""
+    """whether there are weights: all are one otherwise"""
 
     @property
     def degrees(self) -> tuple[int, int]:
@@ -36,14 +36,14 @@ class Patches:
     def neighbours(
         self, patch: NDArray[np.intp], steps: NDArray[np.intp]
     ) -> tuple[NDArray[np.intp], NDArray[np.bool_]]:
-        """Indices (m,) of the patches `steps` (m, 2) further along u and v, and where there is one each way (m, 2)."""
+        """Indices (m,) of the patches `steps` (m, 2) away along u and v, and whether there is one each way (m, 2)."""
         place = np.stack(np.divmod(patch, self.shape[1]), axis=-1)
         exists = (place + steps >= 0) & (place + steps < np.array(self.shape))
         place = place + np.where(exists, steps, 0)
         return place[:, 0] * self.shape[1] + place[:, 1], exists
 
     def at(self, u: Reals, v: Reals) -> tuple[NDArray[np.intp], Reals]:
-        """Indices (m,) of the patches that hold parameters u and v (m,), and the local ones (m, 2) there."""
+        """Indices (m,) of the patches that contain the parameters u and v (m,), and local parameters (m, 2) on them."""
         starts = self.low[:: self.shape[1], 0], self.low[: self.shape[1], 1]
         i, j = (
             np.clip(np.searchsorted(start, at, side="right") - 1, 0, len(start) - 1)
@@ -56,7 +56,7 @@ class Patches:
 
 
 def patches(shape: Curve | Surface) -> Patches:
-    """The Bezier patches of a curve or surface (real parts), weighted by one where it has no weights."""
+    """The Bezier patches of a curve or surface, of real parts; weights are one where it has none."""
     net = shape.homogeneous.real
     rational = shape.weights is not None
     if not rational:
@@ -93,7 +93,8 @@ def bernstein(degree: int, s: Reals, order: int = 0) -> Reals:
 def bernsteins(degree: int, s: Reals) -> Reals:
     """Bernstein polynomials and their first two derivatives (m, 3, degree + 1) at s (m,) in [0, 1].
 
-    Those of each degree are means of those of the one below (de Casteljau's triangle), and derivatives its differences.
+    By de Casteljau's triangle: those of a degree are blends of those of the degree below, whose differences are the
+    derivatives.
     """
     lower = [np.ones((len(s), 1))]
     right, left = s[:, None], 1.0 - s[:, None]
@@ -113,7 +114,7 @@ def bernsteins(degree: int, s: Reals) -> Reals:
 
 @dataclass(frozen=True, kw_only=True)
 class Samples:
-    """Points on patches, a grid in each: where a search for nearest places starts."""
+    """Points on patches, a grid on each, from which a search for closest points starts."""
 
     points: Reals
     """(n, d)"""
@@ -124,7 +125,7 @@ class Samples:
 
 
 def sampled(on: Patches, along: int, across: int) -> Samples:
-    """`along` x `across` samples of each patch, those on its borders among them; one across a curve."""
+    """`along` x `across` samples of each patch, its borders included; only one across a curve."""
     s, t = (
         np.linspace(0.0, 1.0, count) if degree else np.zeros(1)
         for degree, count in zip(on.degrees, (along, across), strict=True)
@@ -158,7 +159,7 @@ def products(a: Reals, b: Reals) -> Reals:
 
 @cache
 def halving(degree: int) -> tuple[Reals, Reals]:
-    """Matrices (degree + 1, degree + 1) from Bernstein coefficients to those of the left and right half."""
+    """Matrices (degree + 1, degree + 1) from Bernstein coefficients to those of the left and the right half."""
     left = np.array([[comb(i, j) / 2.0**i if j <= i else 0.0 for j in range(degree + 1)] for i in range(degree + 1)])
     return left, left[::-1, ::-1].copy()
 
@@ -169,6 +170,7 @@ def _binomials(degree: int) -> Reals:
 
 
 def _pieces(knots: Reals, degree: int, net: Reals) -> Reals:
+    """Control points (k, degree + 1, ...) of the Bezier pieces of a spline with control points (n, ...)."""
     control = np.tensordot(_extraction(np.asarray(knots, dtype=np.float64).tobytes(), degree), net, axes=1)
     starts = np.arange((len(control) - 1) // degree) * degree
     return np.asarray(control[starts[:, None] + np.arange(degree + 1)])
@@ -176,7 +178,7 @@ def _pieces(knots: Reals, degree: int, net: Reals) -> Reals:
 
 @lru_cache(maxsize=32)
 def _extraction(knots: bytes, degree: int) -> Reals:
-    """The matrix to the control points of the pieces, which share those at the breaks; knots as they lie in memory."""
+    """The Bezier extraction matrix; pieces share control points at the breaks. `knots` are the array's bytes."""
     plain = np.frombuffer(knots)
     full = np.concatenate([plain[:1], np.repeat(breaks(plain), degree), plain[-1:]])
     return knot_change(plain, degree, full)

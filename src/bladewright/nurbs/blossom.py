@@ -1,4 +1,4 @@
-"""Control points of one spline on other knots, through the polar form (blossom) of its polynomial pieces."""
+"""Control points of a spline on other knots, by the blossom (polar form) of its polynomial pieces."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -7,11 +7,11 @@ from bladewright.nurbs.basis import Reals, multiplicities, spans
 
 
 def blossom_matrix(knots: Reals, degree: int, span: NDArray[np.intp], arguments: Reals) -> Reals:
-    """Rows (m, n) that take control points to values of the polar form of the piece over knots[span], knots[span + 1].
+    """Rows (m, n) that map control points to values of the blossom of the piece over knots[span], knots[span + 1].
 
-    `arguments` (m, degree) are the polar form's; all equal to u they give the point at u, equal to `degree`
-    consecutive knots the control point between them. De Boor's algorithm with a new argument at each level
-    (Ramshaw 1989, section 6).
+    `arguments` (m, degree) are those of the blossom: where all equal u, its value is the point at u; where they are
+    `degree` consecutive knots, it is a control point. De Boor's algorithm with a new argument at each level (Ramshaw
+    1989, section 6).
     """
     rows, count = len(span), len(knots) - degree - 1
     local = np.broadcast_to(np.eye(degree + 1), (rows, degree + 1, degree + 1)).copy()
@@ -29,31 +29,34 @@ def blossom_matrix(knots: Reals, degree: int, span: NDArray[np.intp], arguments:
 def knot_change(knots: Reals, degree: int, target: Reals) -> Reals:
     """Matrix (n_target, n) from control points on `knots` to those of the same spline on `target`, of the same degree.
 
-    The target's inner knots include those of the source within the target's range (as often at least); past the
-    source's ends the end polynomials are continued. Each target control point is the polar form, at its own knots, of
-    the piece in the middle of its support, so that insertion only takes means (Goldman and Lyche 1993, chapter 1).
+    The target's inner knots include those of the source within the target's range, at least as often; past the
+    source's ends the end polynomials are continued. Each target control point is the blossom, at its own knots, of the
+    piece in the middle of its support, so that knot insertion only takes convex combinations (Goldman and Lyche 1993,
+    chapter 1).
     """
-    return _polar(knots, degree, target, degree, _windows(target, degree))
+    return _blossoms(knots, degree, target, degree, _windows(target, degree))
 
 
 def elevation(knots: Reals, degree: int) -> tuple[Reals, Reals]:
-    """The knots of degree + 1 that hold the same splines, and the matrix (n_target, n) to their control points.
+    """The knots of degree + 1 on which the same splines stand, and the matrix (n_target, n) to their control points.
 
-    A control point of the higher degree is the mean of the polar forms that leave out one of its knots each
-    (Ramshaw 1989, section 8).
+    A control point of the higher degree is the mean of the blossoms that each leave out one of its knots (Ramshaw 1989,
+    section 8).
     """
     values, repeats = multiplicities(knots)
     target = np.repeat(values, repeats + 1)
     windows = _windows(target, degree + 1)
-    matrices = [_polar(knots, degree, target, degree + 1, np.delete(windows, j, axis=1)) for j in range(degree + 1)]
+    matrices = [_blossoms(knots, degree, target, degree + 1, np.delete(windows, j, axis=1)) for j in range(degree + 1)]
     return target, np.mean(matrices, axis=0)
 
 
 def _windows(knots: Reals, degree: int) -> Reals:
+    """The `degree` consecutive knots (n, degree) whose blossom is each control point."""
     return np.lib.stride_tricks.sliding_window_view(knots[1:-1], degree)
 
 
-def _polar(knots: Reals, degree: int, target: Reals, target_degree: int, arguments: Reals) -> Reals:
+def _blossoms(knots: Reals, degree: int, target: Reals, target_degree: int, arguments: Reals) -> Reals:
+    """Rows to the blossoms at `arguments`, of the piece in the middle of each target control point's support."""
     starts = np.flatnonzero(np.diff(target) > 0.0)
     first = np.arange(len(arguments))
     low, high = np.searchsorted(starts, first), np.searchsorted(starts, first + target_degree, side="right") - 1

@@ -1,4 +1,4 @@
-"""Closest points on curves and surfaces: global ones."""
+"""Globally closest points on curves and surfaces, with their derivatives."""
 
 from dataclasses import dataclass
 
@@ -14,14 +14,17 @@ from bladewright.nurbs.proximity import nearest
 from bladewright.nurbs.surface import Surface
 
 TOLERANCE = 1e-9
-"""of the extent of the control points: how much nearer a place may be that is passed over"""
+"""Default of `tolerance`, in units of the extent of the control points: how much nearer a point may be that the search
+passes over. On a blade of 100 mm that is 1e-7 mm, below what any CAD file keeps."""
 STATIONARY = 1e-7
-"""cosine of the angle to a tangent below which a distance is perpendicular to it: that parameter moves with the data"""
+"""Largest cosine of the angle between the distance and a tangent for which the point counts as a perpendicular foot,
+whose parameter moves with the data; at an end or a kink it stays. It must exceed what the search leaves of the cosine
+(about the root of rounding) and lie below any kink worth the name."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class ClosestOnCurve:
-    """The places on a curve nearest to given points (...)."""
+    """The points on a curve closest to given points (...)."""
 
     u: Array
     """(...) parameters, complex where curve or points are"""
@@ -33,7 +36,7 @@ class ClosestOnCurve:
 
 @dataclass(frozen=True, kw_only=True)
 class ClosestOnSurface:
-    """The places on a surface nearest to given points (...)."""
+    """The points on a surface closest to given points (...)."""
 
     u: Array
     """(...) parameters, complex where surface or points are"""
@@ -46,18 +49,16 @@ class ClosestOnSurface:
 
 
 def closest_on_curve(curve: Curve, points: ArrayLike, *, tolerance: float = TOLERANCE) -> ClosestOnCurve:
-    """The places on a curve, ends included, that are nearest to points (..., d) of all.
+    """The points on a curve, ends included, that are closest to points (..., d).
 
-    The search is global (see `proximity`): no place is nearer by more than `tolerance` times the extent of the control
-    points. Where several are equally near, any of them. With complex control points or points the search is on real
-    parts and the parameters' imaginary part is that of one more Newton step; a parameter at an end or at a kink, where
-    the distance is not stationary, stays. Raises GeometryError where dimensions differ or points are not finite.
+    The search is global (see `proximity`): no other point is closer by more than `tolerance` times the extent of the
+    control points. Of several that are equally close it returns any. With complex control points or points the search
+    takes real parts, and the parameters' imaginary part is that of one more Newton step; a parameter at an end or a
+    kink, where the distance is not stationary, stays. Raises GeometryError where dimensions differ or points are not
+    finite.
     """
-    queries, flat = _queries(points, curve.control_points.shape[-1])
-    on = patches(curve)
-    found = nearest(on, flat, tolerance * _extent(curve.control_points))
-    place = on.low[found.patch] + found.local * (on.high - on.low)[found.patch]
-    u: Array = np.clip(place[:, 0], *curve.domain).reshape(queries.shape[:-1])
+    queries, found = _search(curve, points, tolerance)
+    u: Array = np.clip(found[:, 0], *curve.domain).reshape(queries.shape[:-1])
     if np.iscomplexobj(curve.homogeneous) or np.iscomplexobj(queries):
         point, first, second = curve.derivatives(u, 2)
         miss = point - queries
@@ -69,17 +70,14 @@ def closest_on_curve(curve: Curve, points: ArrayLike, *, tolerance: float = TOLE
 
 
 def closest_on_surface(surface: Surface, points: ArrayLike, *, tolerance: float = TOLERANCE) -> ClosestOnSurface:
-    """The places on a surface, edges included, that are nearest to points (..., d) of all.
+    """The points on a surface, edges included, that are closest to points (..., d).
 
-    As `closest_on_curve` does on a curve. A point with a whole line of nearest places, such as one on the axis of a
-    surface of revolution, takes seconds rather than microseconds.
+    As `closest_on_curve` on a curve. A point with a whole line of closest points, such as one on the axis of a surface
+    of revolution, takes seconds instead of a fraction of a millisecond.
     """
-    queries, flat = _queries(points, surface.control_points.shape[-1])
-    on = patches(surface)
-    found = nearest(on, flat, tolerance * _extent(surface.control_points))
-    place = on.low[found.patch] + found.local * (on.high - on.low)[found.patch]
-    u: Array = np.clip(place[:, 0], *surface.domain_u).reshape(queries.shape[:-1])
-    v: Array = np.clip(place[:, 1], *surface.domain_v).reshape(queries.shape[:-1])
+    queries, found = _search(surface, points, tolerance)
+    u: Array = np.clip(found[:, 0], *surface.domain_u).reshape(queries.shape[:-1])
+    v: Array = np.clip(found[:, 1], *surface.domain_v).reshape(queries.shape[:-1])
     if np.iscomplexobj(surface.homogeneous) or np.iscomplexobj(queries):
         of = surface.derivatives(u, v, 2)
         miss = of[0, 0] - queries
@@ -94,6 +92,14 @@ def closest_on_surface(surface: Surface, points: ArrayLike, *, tolerance: float 
         v = v - 1j * (uu * step_v - uv * step_u) / determinant
     reached = surface(u, v)
     return ClosestOnSurface(u=u, v=v, points=reached, distances=length(reached - queries))
+
+
+def _search(shape: Curve | Surface, points: ArrayLike, tolerance: float) -> tuple[Array, Reals]:
+    """The points as an array (..., d), and the parameters (m, 2) closest to their real parts."""
+    queries, flat = _queries(points, shape.control_points.shape[-1])
+    on = patches(shape)
+    found = nearest(on, flat, tolerance * _extent(shape.control_points))
+    return queries, on.low[found.patch] + found.local * (on.high - on.low)[found.patch]
 
 
 def _queries(points: ArrayLike, dimension: int) -> tuple[Array, Reals]:
@@ -114,6 +120,7 @@ def _extent(control_points: Array) -> float:
 
 
 def _stationary(slope: Array, tangent: Array, miss: Array) -> NDArray[np.bool_]:
+    """Where the distance is perpendicular to a tangent, so that it is stationary in that parameter."""
     size = length(tangent.real) * length(miss.real)
     moves = length(tangent.real) > 0.0
     return np.asarray(

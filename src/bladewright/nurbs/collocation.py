@@ -1,4 +1,4 @@
-"""The sparse matrix of basis functions at scattered places: points are it times the control points."""
+"""The sparse collocation matrix: times the control points it gives the points at scattered parameters."""
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -10,7 +10,7 @@ from bladewright.nurbs.surface import Surface
 
 
 def collocation(shape: Curve | Surface, u: ArrayLike, v: ArrayLike = 0.0) -> csr_array:
-    """The matrix (m, n), or (m, n_u n_v), of the basis functions at real parameters (m,), without the weights.
+    """The basis functions (m, n), or (m, n_u n_v), at real parameters (m,), without weights.
 
     Outside the knots' range the end polynomials are continued.
     """

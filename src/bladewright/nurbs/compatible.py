@@ -1,4 +1,4 @@
-"""Several curves brought to one degree and one knot vector, and curves joined end to end."""
+"""Curves made compatible (one degree, one knot vector), and curves joined end to end."""
 
 from collections.abc import Sequence
 
@@ -13,9 +13,9 @@ from bladewright.nurbs.domain import reparametrised
 from bladewright.nurbs.refine import changed_along, elevated
 
 SAME_KNOT = 1e-12
-"""knots nearer to each other than this, in units of the domain, are one knot: they differ by rounding"""
+"""Distance, in units of the domain, below which knots of two curves are one knot: it is a few thousand roundings."""
 SAME_POINT = 1e-9
-"""ends nearer to each other than this, in units of the extent of the curves, meet"""
+"""Gap, in units of the extent of the curves, below which two ends meet: 1e-7 mm on a blade of 100 mm."""
 
 
 def compatible(curves: Sequence[Curve]) -> tuple[Curve, ...]:
@@ -78,7 +78,7 @@ def joined(curves: Sequence[Curve]) -> Curve:
 
 
 def weighted(curve: Curve) -> Curve:
-    """The same curve with weights: all one where it had none."""
+    """The same curve as a rational one: with weights of one where it had none."""
     if curve.weights is not None:
         return curve
     ones = np.ones(len(curve.control_points))

@@ -1,4 +1,4 @@
-"""The parameter's range: pieces of a curve or surface, its continuation past the ends, its direction and its scale."""
+"""The parameter's domain: pieces of a curve or surface, its continuation, its direction and its scale."""
 
 from itertools import pairwise
 
@@ -15,7 +15,7 @@ from bladewright.nurbs.surface import Surface
 def extended(shape: Shape, start: float, end: float, direction: Direction = "u") -> Shape:
     """The same curve or surface over [start, end], continued past the old ends by its own end polynomials.
 
-    The parameter keeps its meaning: extended(c, -0.1, 1.2)(u) is c(u). `reparametrised` maps it to [0, 1] afterwards.
+    Its parametrisation stays: extended(c, -0.1, 1.2)(u) is c(u); `reparametrised` can map it to [0, 1] afterwards.
     Where start or end lie inside the old domain it is cut there. A rational one is continued by its quotient of
     polynomials. Raises GeometryError where start is not below end, or a weight of the continuation is not positive.
     """
@@ -73,7 +73,7 @@ def reparametrised(shape: Shape, start: float = 0.0, end: float = 1.0, direction
 
 
 def reversed(shape: Shape, direction: Direction = "u") -> Shape:  # noqa: A001 - the field's word
-    """The same curve or surface run backwards over the same domain: u becomes first + last - u."""
+    """The same curve or surface in the opposite direction over the same domain: u becomes first + last - u."""
     knots, degree = direction_of(shape, direction)
     axis = 0 if direction == "u" else 1
     backwards = (knots[0] + knots[-1] - knots)[::-1]

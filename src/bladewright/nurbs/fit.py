@@ -13,6 +13,10 @@ from bladewright.nurbs.basis import Reals, basis, checked_knots
 from bladewright.nurbs.curve import Curve
 from bladewright.nurbs.surface import Surface
 
+SINGULAR = 1e-14
+"""Diagonal of the normal equations, in units of the largest, below which no site determines a control point: such a
+small one is rounding."""
+
 
 def interpolated(
     points: ArrayLike,
@@ -28,7 +32,7 @@ def interpolated(
     `start` and `end` hold the first, second... derivatives (d,) at the first and last site; each takes one more control
     point, so that n = m + len(start) + len(end). `knots` (n + degree + 1,) default to `averaged_knots`. Points and
     derivatives may be complex. Raises GeometryError where sites do not increase, shapes do not fit, or a basis function
-    has no site of its own (Schoenberg and Whitney 1953). Piegl and Tiller 1997, sections 9.2.1 and 9.2.2.
+    has no site in its support (Schoenberg and Whitney 1953). Piegl and Tiller 1997, sections 9.2.1 and 9.2.2.
     """
     values, at = np.asarray(points), _increasing(sites)
     if knots is None:
@@ -95,9 +99,9 @@ def averaged_knots(sites: ArrayLike, degree: int, start: int = 0, end: int = 0) 
 
 
 def chord_sites(points: ArrayLike, power: float = 1.0) -> Reals:
-    """Sites (m,) in [0, 1] whose steps are as the distances between points (m, d) to a power.
+    """Sites (m,) in [0, 1] with steps in proportion to a power of the distances between points (m, d).
 
-    Power 1 is chord length, 0.5 centripetal (Lee 1989). Real parts only: sites are held fixed while differentiating.
+    Power 1 is chord length, 0.5 is centripetal (Lee 1989). Real parts only: sites are held fixed while differentiating.
     Raises GeometryError where two consecutive points coincide.
     """
     steps = length(np.diff(np.real(np.asarray(points)), axis=0)) ** power
@@ -146,9 +150,9 @@ def approximated(
     weights: ArrayLike | None = None,
     ends: bool = False,
 ) -> Curve:
-    """The B-spline curve on fixed knots nearest to points (m, d) at real sites (m,): least sum of weighted squares.
+    """The B-spline curve on fixed knots that fits points (m, d) at real sites (m,) by weighted least squares.
 
-    `weights` (m,) are real and positive, of the squares; with `ends` the first and last point are interpolated. Sites
+    `weights` (m,) of the squares are real and positive; with `ends` the first and last point are interpolated. Sites
     need not increase. Points may be complex: the curve is linear in them. Raises GeometryError where a control point is
     not determined by the sites. Piegl and Tiller 1997, section 9.4.1, by the normal equations.
     """
@@ -178,7 +182,7 @@ def _least_squares(matrix: Reals, scale: Reals, values: Array, degree: int) -> A
     for k in range(len(banded)):
         banded[k, : count - k] = np.diagonal(normal, k)
     try:
-        if not (diagonal > 1e-14 * diagonal.max(initial=0.0)).all():
+        if not (diagonal > SINGULAR * diagonal.max(initial=0.0)).all():
             raise np.linalg.LinAlgError("no site lies in the support of a control point")  # noqa: TRY301
         factor = cholesky_banded(banded, lower=True)
     except np.linalg.LinAlgError as error:
@@ -189,7 +193,7 @@ def _least_squares(matrix: Reals, scale: Reals, values: Array, degree: int) -> A
     flat = values.reshape(len(values), -1)
     columns = np.concatenate([flat.real, flat.imag], axis=1) if np.iscomplexobj(flat) else flat
     solved = cho_solve_banded((factor, True), weighted @ columns)
-    # the normal equations square the condition number; one step of refinement takes that back
+    # the normal equations square the condition number; one step of iterative refinement makes up for that
     solved = solved + cho_solve_banded((factor, True), weighted @ (columns - matrix @ solved))
     if np.iscomplexobj(flat):
         solved = solved[:, : flat.shape[1]] + 1j * solved[:, flat.shape[1] :]

@@ -16,12 +16,12 @@ from bladewright.nurbs.surface import Surface
 from bladewright.nurbs.trimmed import TrimmedSurface
 
 Face = tuple[Surface | TrimmedSurface, int]
-"""a face and its orientation: +1 where its normal points out of the solid, -1 where it points into it"""
+"""A face and its orientation: +1 where its normal points out of the solid, -1 where it points into it."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class MassProperties:
-    """What a closed set of faces encloses, for unit density."""
+    """Mass properties of the solid that a closed set of faces encloses, for unit density."""
 
     volume: Array
     """() [length^3]"""
@@ -30,7 +30,7 @@ class MassProperties:
     inertia: Array
     """(3, 3) about the centroid, integral of (x.x) I - x x^T [length^5]"""
     measured: Callable[[], tuple[Array, Array]]
-    """gives the areas (k,) of the faces and their summed outward area vector (3,): they take longer than the rest"""
+    """returns the areas (k,) of the faces and their summed outward area vector (3,), which take longer than the rest"""
 
     @cached_property
     def _measured(self) -> tuple[Array, Array]:
@@ -58,7 +58,7 @@ class MassProperties:
 
 
 def mass_properties(faces: Sequence[Face]) -> MassProperties:
-    """Properties of the solid that oriented faces in space enclose.
+    """Mass properties of the solid that oriented faces in space enclose.
 
     With n the outward normal and x measured from the middle of the faces: volume is the flux of x / 3, first moments of
     x_i^2 e_i / 2, second moments of x_i^2 x_j e_i / 2 and x_i^3 e_i / 3. Control points may be complex. Raises
@@ -118,7 +118,7 @@ def face_moments(face: Surface | TrimmedSurface, origin: Array) -> Array:
 
 
 def _of_polynomials(surface: Surface, origin: Array) -> Array:
-    """The same, exact: on a knot span the densities have the degree 5 p - 1 at most."""
+    """The same, exactly: on a knot span the densities are polynomials of degree 5 p - 1 at most."""
     (u, weight_u), (v, weight_v) = (
         panels(breaks(knots), (5 * degree + 1) // 2)
         for knots, degree in ((surface.knots_u, surface.degree_u), (surface.knots_v, surface.degree_v))

@@ -15,17 +15,19 @@ from bladewright.nurbs.curve import Curve
 from bladewright.nurbs.surface import Surface
 
 PER_PATCH = 6
-"""Gauss points each way on a patch"""
+"""Gauss points each way on a patch of `area`: where six do not suffice a patch is quartered."""
 ROUNDING = 1e-13
-"""share of a whole area that a patch may be off"""
-DEEPEST = 24
-"""most quarterings of a patch"""
-MOST_PATCHES = 20_000
-"""patches that are quartered at once; more are rough where the normal vanishes along a line"""
+"""Difference between a patch and its quarters, in units of the whole area, below which `area` accepts them: the
+rounding of a sum over a thousand points."""
+MAX_QUARTERINGS = 24
+"""Quarterings of a patch: what then remains of it is 4e-15 of its area."""
+MAX_PATCHES = 20_000
+"""Patches that are quartered at once, which bounds time and memory: only where the normal vanishes along a whole line
+would there be more."""
 _QUARTERS = np.array([[0.0, 0.0], [0.0, 1.0], [1.0, 0.0], [1.0, 1.0]])
 
 Density = Callable[[Array, Array, Array], Array]
-"""of points S, dS/du and dS/dv, each (..., d), a density (..., k) per du dv"""
+"""A density (..., k) per du dv as a function of S, dS/du and dS/dv, each (..., d)."""
 
 
 def arc_length(curve: Curve, start: float | None = None, end: float | None = None) -> Array:
@@ -65,23 +67,23 @@ def parameters_at_length(curve: Curve, fractions: ArrayLike) -> Array:
 def area(surface: Surface) -> Array:
     """Area () of a whole surface in space.
 
-    A patch between knots is quartered until six Gauss points each way on it and on its quarters agree within 1e-14 of
-    the whole, so that a normal that turns round within a patch costs more points but no accuracy.
+    A patch between knots is quartered until PER_PATCH Gauss points each way on it and on its quarters agree within
+    ROUNDING of the whole, so that a normal that turns round within a patch costs more points but no accuracy.
     """
     u, v = breaks(surface.knots_u), breaks(surface.knots_v)
     starts, stops = _quarters(*_corners(u, v))
-    # the first quarters lie on a grid too, which costs a tenth of points one by one
+    # the first quarters lie on a grid too, which takes a tenth of the time of scattered points
     coarse, fine = _grid_areas(surface, u, v).ravel(), _grid_areas(surface, _halved(u), _halved(v))
     fine = fine.reshape(len(u) - 1, 2, len(v) - 1, 2).swapaxes(1, 2).ravel()
     done: Array = np.zeros(())
-    for _ in range(DEEPEST):
+    for _ in range(MAX_QUARTERINGS):
         both = fine.reshape(-1, 4).sum(axis=1)
         whole = np.real(done + both.sum())
         rough = np.square(np.real(both - coarse)) > (ROUNDING * whole) ** 2
         done = done + both[~rough].sum()
         again = np.repeat(rough, 4)
         coarse = fine[again]
-        if not 0 < len(coarse) <= MOST_PATCHES:
+        if not 0 < len(coarse) <= MAX_PATCHES:
             break
         starts, stops = _quarters(starts[again], stops[again])
         fine = _patch_areas(surface, starts, stops)
@@ -95,6 +97,7 @@ def _corners(u: Reals, v: Reals) -> tuple[Reals, Reals]:
 
 
 def _halved(ends: Reals) -> Reals:
+    """Breaks with the middles between them."""
     return np.sort(np.concatenate([ends, 0.5 * (ends[1:] + ends[:-1])]))
 
 
@@ -126,7 +129,7 @@ def surface_integral(surface: Surface, density: Density, order: int | None = Non
     """Integral (k) of a density per du dv over a whole surface.
 
     Gauss quadrature on each pair of knot spans, `order` points each way; where None, with more points until the largest
-    entry settles within 1e-13 of itself. A polynomial of degree 2 order - 1 in u and v is integrated exactly.
+    entry converges to 1e-13 of itself. A polynomial of degree 2 order - 1 in u and v is integrated exactly.
     """
 
     def total(points: int) -> Array:

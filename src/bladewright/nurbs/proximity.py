@@ -1,4 +1,12 @@
-"""Globally nearest points on Bezier patches: branch and bound, and Newton's descent."""
+"""Globally closest points on Bezier patches: branch and bound on Bernstein coefficients, and Newton's method.
+
+`polished` is the local search: damped Newton steps on the squared distance, from patch to patch. `nearest` is the
+global one. With N / D the squared distance on a patch (D = 1 without weights) and f the smallest squared distance found
+so far, a box of parameters is dropped when all Bernstein coefficients of N - f D are positive, or when N - f D is
+convex there and its tangent plane at the closest point found is not negative on the box; otherwise it is halved. Where
+a value at the corner of a box is below f, a descent from there finds a new closest point. A point that is missed is
+closer by at most a tolerance.
+"""
 
 from dataclasses import dataclass
 
@@ -11,17 +19,23 @@ from bladewright.nurbs.basis import Reals
 from bladewright.nurbs.bezier import Patches, bernstein, bernsteins, halving, products, sampled
 from bladewright.nurbs.rational import surface_quotients
 
-ROUNDS, STEPS = 80, 40
-"""patches a point may cross, and Newton steps in each"""
+MAX_CROSSINGS = 80
+"""Patches that a descent may cross: a side with thin patches near its edges has some dozens in a row."""
+MAX_STEPS = 40
+"""Newton steps on each patch: convergence is quadratic, so that more are needed only where damping has to find its
+size."""
 CONVERGED = 1e-12
-"""step in local parameters after which Newton's next one is below rounding"""
+"""Step in a patch's parameters, each over [0, 1], after which the next Newton step is below rounding."""
 NOISE = 1e-13
-"""relative rise of a squared distance that is rounding"""
+"""Relative rise of a squared distance that counts as rounding, and so does not reject a step."""
+SINGULAR = 1e-12
+"""Determinant of the Hessian, in units of the product of its diagonal, below which the step is that of Gauss and
+Newton: less is rounding."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class PatchPoints:
-    """Points on patches: one for each of m queries."""
+    """Points on patches, one for each of m queries."""
 
     patch: NDArray[np.intp]
     """(m,) index"""
@@ -34,15 +48,15 @@ class PatchPoints:
 def polished(
     on: Patches, queries: Reals, patch: NDArray[np.intp], local: Reals, *, converged: float = CONVERGED
 ) -> PatchPoints:
-    """Where descent from a start on a patch (m,), (m, 2) ends: a local minimum of the distance to queries (m, d).
+    """The local minima of the distance to queries (m, d) at which descents from starts on patches (m,), (m, 2) end.
 
-    `converged` is a last step in local parameters; the distance is exact to its square.
+    `converged` is the last step in local parameters; the distance is accurate to its square.
     """
     patch, local = patch.copy(), local.copy()
     nets = on.nets if on.rational else on.nets[..., :-1]
     square = np.full(len(patch), np.inf)
     moving = np.arange(len(patch))
-    for _ in range(ROUNDS):
+    for _ in range(MAX_CROSSINGS):
         local[moving], square[moving], out = _descended(nets[patch[moving]], queries[moving], local[moving], converged)
         onward, exists = on.neighbours(patch[moving], out)
         cross = exists & (out != 0)
@@ -56,12 +70,12 @@ def polished(
 
 
 def _descended(nets: Reals, queries: Reals, local: Reals, converged: float) -> tuple[Reals, Reals, NDArray[np.intp]]:
-    """Local parameters (m, 2) and squared distance after descent in each patch, and which way it would leave it."""
+    """Local parameters (m, 2) and squared distances after descent on a patch each, and the borders it ended at."""
     local = local.copy()
     square, gradient, hessian, metric = _distance_model(nets, queries, local)
     damping = np.zeros(len(local))
     active = np.arange(len(local))
-    for _ in range(STEPS):
+    for _ in range(MAX_STEPS):
         step = _step(gradient[active], hessian[active], metric[active], damping[active], local[active])
         trial = np.clip(local[active] + step, 0.0, 1.0)
         far = np.max((trial - local[active]) ** 2, axis=1) > converged**2
@@ -81,9 +95,9 @@ def _descended(nets: Reals, queries: Reals, local: Reals, converged: float) -> t
 
 
 def _distance_model(nets: Reals, queries: Reals, local: Reals) -> tuple[Reals, Reals, Reals, Reals]:
-    """Squared distance (m,), half its gradient (m, 2) and Hessian (m, 2, 2), and the metric tensor (m, 2, 2)."""
+    """Squared distance (m,), half its gradient (m, 2) and half its Hessian (m, 2, 2), and the metric (m, 2, 2)."""
     along, across = (bernsteins(count - 1, local[:, i]) for i, count in enumerate(nets.shape[1:3]))
-    # stacked products: sums over the products of small arrays take ten times as long
+    # stacked matrix products: einsum over such small arrays takes ten times as long
     rows = np.matmul(along, nets.reshape(*nets.shape[:2], -1)).reshape(len(nets), 3, *nets.shape[2:])
     orders = [(0, 0), (1, 0), (0, 1), (2, 0), (1, 1), (0, 2)]
     both = np.matmul(across[:, None], rows)
@@ -99,7 +113,7 @@ def _distance_model(nets: Reals, queries: Reals, local: Reals) -> tuple[Reals, R
 
 
 def _step(gradient: Reals, hessian: Reals, metric: Reals, damping: Reals, local: Reals) -> Reals:
-    """Newton's step, or Gauss and Newton's where that does not descend, in the directions that are free to move."""
+    """The Newton step, or the Gauss-Newton step where the Hessian is not convex, in the parameters free to move."""
     held = ((local <= 0.0) & (gradient >= 0.0)) | ((local >= 1.0) & (gradient <= 0.0))
     held |= np.einsum("maa->ma", metric) <= 1e-300
     free = ~held
@@ -110,7 +124,7 @@ def _step(gradient: Reals, hessian: Reals, metric: Reals, damping: Reals, local:
     exact = np.where(both, hessian, 0.0) + np.where(eye, np.where(free, 0.0, 1.0)[:, :, None], 0.0)
     convex = (exact[:, 0, 0] > 0.0) & (exact[:, 1, 1] > 0.0)
     determinant = exact[:, 0, 0] * exact[:, 1, 1] - exact[:, 0, 1] ** 2
-    convex &= determinant > 1e-12 * exact[:, 0, 0] * exact[:, 1, 1]
+    convex &= determinant > SINGULAR * exact[:, 0, 0] * exact[:, 1, 1]
     matrix = np.where(convex[:, None, None], exact, tensor)
     matrix = matrix + np.where(eye, damping[:, None, None] * tensor, 0.0)
     a, b, c = matrix[:, 0, 0], matrix[:, 0, 1], matrix[:, 1, 1]
@@ -121,13 +135,13 @@ def _step(gradient: Reals, hessian: Reals, metric: Reals, damping: Reals, local:
 
 
 BLOCK = 2_000_000
-"""coefficients that are worked on at a time: it bounds the memory"""
-DEPTH = 48
-"""halvings after which a box is below the spacing of doubles"""
+"""Bernstein coefficients held at a time, which bounds the memory: 16 MB an array."""
+MAX_HALVINGS = 48
+"""Halvings of a box, after which its width is near the spacing of doubles."""
 
 
 def nearest(on: Patches, queries: Reals, tolerance: float) -> PatchPoints:
-    """The places (m,) nearest to queries (m, d): no other is nearer by more than `tolerance` [length]."""
+    """The points on patches closest to queries (m, d): no other is closer by more than `tolerance` [length]."""
     search = _Search.of(on)
     chunk = max(1, BLOCK // len(on.nets))
     found = [search.nearest(queries[i : i + chunk], tolerance) for i in range(0, len(queries), chunk)]
@@ -140,7 +154,7 @@ def nearest(on: Patches, queries: Reals, tolerance: float) -> PatchPoints:
 
 @dataclass(frozen=True, kw_only=True)
 class _Boxes:
-    """Boxes of patches still in question: one row for each pair of a query and a box."""
+    """Boxes of patches that are not decided yet: one row for each pair of a query and a box."""
 
     query: NDArray[np.intp]
     patch: NDArray[np.intp]
@@ -171,21 +185,21 @@ class _Boxes:
             patch=np.tile(self.patch, len(quarters)),
             low=np.concatenate([self.low + 0.5 * self.width * np.array(quarter) for quarter in quarters]),
             width=0.5 * self.width,
-            numerator=_parts(self.numerator, quarters, both=both),
-            denominator=_parts(self.denominator, quarters, both=both),
+            numerator=_subdivided(self.numerator, quarters, both=both),
+            denominator=_subdivided(self.denominator, quarters, both=both),
             depth=self.depth + 1,
         )
 
 
 @dataclass(frozen=True, kw_only=True)
 class _Search:
-    """What the search needs of the patches, worked out once."""
+    """What the search needs to know of the patches, computed once."""
 
     on: Patches
     centres: Reals
     radii: Reals
     forms: Reals
-    """(k, d + 2, 2p + 1, 2q + 1): N = forms . (1, x, |x|^2) with x the query from the patch's centre; D is the last"""
+    """(k, d + 2, 2p + 1, 2q + 1): N = forms . (1, x, |x|^2), x being the query relative to the centre; the last is D"""
     samples: cKDTree
     sample_patch: NDArray[np.intp]
     sample_local: Reals
@@ -220,7 +234,7 @@ class _Search:
         best = PatchPoints(patch=best.patch, local=best.local, square=best.square.copy())
         reach = np.sqrt(best.square)
         distance = np.sqrt(np.maximum(0.0, _square_distances(queries, self.centres)))
-        # the margin is the rounding of a difference of squares
+        # the margin covers the rounding of a difference of squares
         margin = 1e-7 * (self.radii + length(self.centres).max() + length(queries)[:, None])
         query, patch = np.nonzero(distance - self.radii < reach[:, None] + np.minimum(margin, self.radii))
         coefficients = self.forms.shape[2] * self.forms.shape[3]
@@ -232,7 +246,7 @@ class _Search:
                 boxes = waiting.pop()
                 self._improve(best, queries, boxes)
                 boxes = boxes.of(self._open(best, boxes, tolerance))
-                if len(boxes.query) and boxes.depth < DEPTH:
+                if len(boxes.query) and boxes.depth < MAX_HALVINGS:
                     halves = boxes.halved(both=self.forms.shape[3] > 1)
                     rows = np.arange(len(halves.query))
                     waiting += [halves.of(rows[k : k + limit]) for k in range(0, len(rows), limit)]
@@ -253,7 +267,7 @@ class _Search:
         )
 
     def _improve(self, best: PatchPoints, queries: Reals, boxes: _Boxes) -> None:
-        """Descends from the lowest box corner of each query where that is below the best place."""
+        """Descend for each query from its lowest box corner, where that is below the closest point so far."""
         values = np.stack(
             [boxes.numerator[:, i, j] / boxes.denominator[:, i, j] for i in (0, -1) for j in (0, -1)], axis=-1
         )
@@ -276,21 +290,21 @@ class _Search:
         best.square[query[better]] = new.square[better]
 
     def _open(self, best: PatchPoints, boxes: _Boxes, tolerance: float) -> NDArray[np.intp]:
-        """The rows of boxes that may hold a place nearer than the best one by more than the tolerance."""
+        """The boxes that may contain a point closer than the best one by more than the tolerance."""
         square = best.square[boxes.query]
         root = np.sqrt(square)
         slack = np.where(root > tolerance, tolerance * (2.0 * root - tolerance), square)
-        room = boxes.numerator - (square - slack)[:, None, None] * boxes.denominator
-        rows = np.flatnonzero((root > tolerance) & (room.min(axis=(1, 2)) < 0.0))
+        margin = boxes.numerator - (square - slack)[:, None, None] * boxes.denominator
+        rows = np.flatnonzero((root > tolerance) & (margin.min(axis=(1, 2)) < 0.0))
         at = self._local(best, boxes.query[rows], boxes.patch[rows])
         inside = (at >= boxes.low[rows] - 1e-12) & (at <= boxes.low[rows] + boxes.width + 1e-12)
         holds = inside.all(axis=1)
         kept = np.ones(len(rows), dtype=bool)
-        kept[holds] = ~_certified(room[rows[holds]], (at[holds] - boxes.low[rows[holds]]) / boxes.width)
+        kept[holds] = ~_certified(margin[rows[holds]], (at[holds] - boxes.low[rows[holds]]) / boxes.width)
         return rows[kept]
 
     def _local(self, best: PatchPoints, query: NDArray[np.intp], patch: NDArray[np.intp]) -> Reals:
-        """The best places in the local parameters of other patches; outside [0, 1] when they are not on them."""
+        """The closest points in the local parameters of other patches: outside [0, 1] where they are not on them."""
         low, high = self.on.low, self.on.high
         home = best.patch[query]
         place = low[home] + best.local[query] * (high[home] - low[home])
@@ -298,10 +312,10 @@ class _Search:
         return np.where(width > 0.0, (place - low[patch]) / np.where(width > 0.0, width, 1.0), 0.0)
 
 
-def _certified(room: Reals, at: Reals) -> NDArray[np.bool_]:
-    """Where `room` (k, m, n) is convex on its box and not negative anywhere on its tangent plane `at` (k, 2)."""
-    m, n = room.shape[1] - 1, room.shape[2] - 1
-    along, across = np.diff(room, axis=1), np.diff(room, axis=2)
+def _certified(margin: Reals, at: Reals) -> NDArray[np.bool_]:
+    """Where the margin (k, m, n) is convex on its box and its tangent plane at `at` (k, 2) not negative there."""
+    m, n = margin.shape[1] - 1, margin.shape[2] - 1
+    along, across = np.diff(margin, axis=1), np.diff(margin, axis=2)
     bend = m * (m - 1) * np.diff(along, axis=1).min(axis=(1, 2))
     convex = bend >= 0.0
     if n:
@@ -310,14 +324,14 @@ def _certified(room: Reals, at: Reals) -> NDArray[np.bool_]:
         convex &= (other >= 0.0) & (bend * other >= twist**2)
     at = np.clip(at, 0.0, 1.0)
     s, t = [bernstein(m, at[:, 0], order) for order in (0, 1)], [bernstein(n, at[:, 1], order) for order in (0, 1)]
-    rows = [(s[a][:, None] @ room)[:, 0] for a in (0, 1)]
+    rows = [(s[a][:, None] @ margin)[:, 0] for a in (0, 1)]
     value, slope_s, slope_t = (np.sum(rows[a] * t[b], axis=1) for a, b in ((0, 0), (1, 0), (0, 1)))
     fall_s = np.minimum(-at[:, 0] * slope_s, (1.0 - at[:, 0]) * slope_s)
     fall_t = np.minimum(-at[:, 1] * slope_t, (1.0 - at[:, 1]) * slope_t)
     return np.asarray(convex & (value + fall_s + fall_t >= 0.0))
 
 
-def _parts(coefficients: Reals, quarters: list[tuple[int, int]], *, both: bool) -> Reals:
+def _subdivided(coefficients: Reals, quarters: list[tuple[int, int]], *, both: bool) -> Reals:
     along = halving(coefficients.shape[1] - 1)
     across = halving(coefficients.shape[2] - 1)
     halves = [matrix @ coefficients for matrix in along]

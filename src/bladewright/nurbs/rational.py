@@ -1,4 +1,4 @@
-"""Quotients of homogeneous coordinates and their derivatives, and the way into homogeneous coordinates and back."""
+"""Homogeneous coordinates of rational curves and surfaces: the way there and back, and derivatives of quotients."""
 
 from math import comb
 

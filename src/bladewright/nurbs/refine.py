@@ -18,7 +18,7 @@ Shape = TypeVar("Shape", Curve, Surface)
 
 
 def direction_of(shape: Curve | Surface, direction: Direction) -> tuple[Reals, int]:
-    """Knots and degree along u or v; a curve has only u. Raises GeometryError for another direction."""
+    """Knots and degree along u or v; a curve has only u. Raises GeometryError for any other direction."""
     if isinstance(shape, Surface) and direction in ("u", "v"):
         return (shape.knots_u, shape.degree_u) if direction == "u" else (shape.knots_v, shape.degree_v)
     if isinstance(shape, Curve) and direction == "u":
@@ -73,7 +73,7 @@ def inserted(shape: Shape, knots: ArrayLike, direction: Direction = "u") -> Shap
 
 
 def elevated(shape: Shape, times: int = 1, direction: Direction = "u") -> Shape:
-    """The same curve or surface with its degree raised `times` times; every knot occurs as much more often.
+    """The same curve or surface with its degree raised by `times`, and so the multiplicity of every knot.
 
     Raises GeometryError where `times` is negative.
     """

@@ -1,4 +1,4 @@
-"""Segments, exact arcs and circles, and surfaces of revolution, also about the machine axis."""
+"""Straight segments, exact circular arcs, and exact surfaces of revolution."""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -15,7 +15,7 @@ from bladewright.nurbs.surface import Surface
 
 FULL_TURN = 2.0 * pi
 ROUNDING = 1e-9
-"""a turn may pass a full one by this fraction before it is refused; so much is rounding"""
+"""Part of a full turn by which one may exceed it before it is refused: what rounding of angles may add."""
 
 
 def segment(start: ArrayLike, end: ArrayLike) -> Curve:
@@ -35,7 +35,7 @@ def arc(
 ) -> Curve:
     """The exact circular arc centre + radius (cos(a) axes[0] + sin(a) axes[1]), a from start to end [rad].
 
-    Quadratic and rational over [0, 1], in as few equal pieces of at most 90 degrees as will do. The axes (d,) are
+    Rational quadratic over [0, 1], in the fewest equal pieces of at most 90 degrees. The axes (d,) are
     orthonormal. Centre, radius, angles and axes may be complex. Raises GeometryError where start = end, the sweep
     passes a full turn or the radius is not positive. Piegl and Tiller 1997, algorithm A7.1.
     """
@@ -87,7 +87,7 @@ def revolved(
 
 
 def arc_count(turns: float) -> int:
-    """Number of equal rational arcs, each of at most a right angle, in a part of a full turn."""
+    """Number of equal rational arcs of at most a right angle in a part of a full turn."""
     return max(1, ceil(4.0 * turns - ROUNDING))
 
 
@@ -112,7 +112,7 @@ def _turn(start: complex, end: complex) -> tuple[Array, Array, Reals]:
 
 
 LEFT_HANDED = (-1.0, 0.0, 0.0)
-"""the axis about which theta, from z towards y, turns right-handed"""
+"""The axis about which theta, which turns z towards y, is right-handed."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

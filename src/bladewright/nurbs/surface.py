@@ -145,7 +145,8 @@ def _product(last: Array, first: Array, net: Array) -> Array:
 
 
 COLLAPSED = 1e-10
-"""a derivative or a sine between two shorter than this fraction counts as none: the limit is taken instead"""
+"""Length of a derivative, in units of the control points' extent, or sine between the two, below which the normal is
+taken as the limit from inside: about the root of rounding, where the product of both has no digits left."""
 
 
 def unit_normals(surface: "Surface", u: Array, v: Array) -> Array:

@@ -1,4 +1,4 @@
-"""Affine maps of curves, surfaces and trimmed surfaces: they act on the control points and leave knots and weights."""
+"""Affine maps of curves, surfaces and trimmed surfaces: they move control points and leave knots and weights."""
 
 from dataclasses import replace
 from typing import TypeVar
@@ -16,13 +16,13 @@ Mapped = TypeVar("Mapped", Curve, Surface, TrimmedSurface)
 
 
 def transformed(shape: Mapped, matrix: ArrayLike, offset: ArrayLike = 0.0) -> Mapped:
-    """The shape of the points `matrix` (d_new, d) times x plus `offset` (d_new,); both may be complex.
+    """The shape of the points `matrix` (d_new, d) x + `offset` (d_new,); both may be complex.
 
     A matrix with a negative determinant turns the normals of a surface to its other side. Raises GeometryError where
     the matrix does not fit the dimension.
     """
     if isinstance(shape, TrimmedSurface):
-        # what it was revolved about does not move along
+        # it need not be a surface of revolution about the machine axis any more
         return replace(shape, surface=transformed(shape.surface, matrix, offset), revolution=None)
     linear, points = np.asarray(matrix), shape.control_points
     if linear.ndim != 2 or linear.shape[1] != points.shape[-1]:

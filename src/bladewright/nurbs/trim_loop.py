@@ -16,10 +16,10 @@ from bladewright.nurbs.domain import piece as part
 
 @dataclass(frozen=True, kw_only=True)
 class TrimLoop:
-    """A closed chain of plane curves cut into pieces on which v rises or falls throughout."""
+    """A closed loop of plane curves cut into pieces on which v is monotone."""
 
     curves: tuple[Curve, ...]
-    """the chain, real"""
+    """the loop, of real parts"""
     curve: NDArray[np.intp]
     """(k,) which curve a piece belongs to"""
     start: Reals
@@ -31,16 +31,16 @@ class TrimLoop:
     v_end: Reals
     """(k,) v at its end"""
     low: Reals
-    """(2,) smallest u and v of the chain's control points"""
+    """(2,) smallest u and v of the control points"""
     high: Reals
-    """(2,) largest u and v of the chain's control points"""
+    """(2,) largest u and v of the control points"""
 
 
 def coordinate_roots(curve: Curve, coordinate: int, value: float, order: int = 0) -> Reals:
     """Parameters (k,), sorted and inside the domain, where a coordinate of a real curve has a value.
 
     With order 1, where a B-spline's coordinate or the numerator of a rational one's derivative is stationary.
-    Stretches on which the coordinate has the value throughout give no parameters.
+    A stretch on which the coordinate is constant at the value gives none.
     """
     points = curve.control_points.real[:, coordinate]
     if curve.weights is None:
@@ -65,7 +65,7 @@ def meeting_parameters(curve: Curve, values_u: Reals, values_v: Reals) -> Reals:
 
 
 def trim_loop(curves: Sequence[Curve]) -> TrimLoop:
-    """The pieces of a closed chain of curves (real parts) on which v is monotone."""
+    """The closed loop of curves, of real parts, cut into pieces on which v is monotone."""
     real = tuple(_real(curve) for curve in curves)
     which: list[int] = []
     starts: list[Reals] = []
@@ -90,12 +90,12 @@ def trim_loop(curves: Sequence[Curve]) -> TrimLoop:
     )
 
 
-def contained(closed: TrimLoop, u: Reals, v: Reals) -> NDArray[np.bool_]:
-    """Whether points (m,) lie inside: a ray towards greater u crosses the chain an odd number of times."""
+def contained(loop: TrimLoop, u: Reals, v: Reals) -> NDArray[np.bool_]:
+    """Whether points (m,) lie inside: a ray towards greater u crosses the loop an odd number of times."""
     inside = np.zeros(len(u), dtype=bool)
-    for piece in range(len(closed.curve)):
-        curve, start, end = closed.curves[closed.curve[piece]], closed.start[piece], closed.end[piece]
-        v_start, v_end = closed.v_start[piece], closed.v_end[piece]
+    for piece in range(len(loop.curve)):
+        curve, start, end = loop.curves[loop.curve[piece]], loop.start[piece], loop.end[piece]
+        v_start, v_end = loop.v_start[piece], loop.v_end[piece]
         level = np.flatnonzero((v >= min(v_start, v_end)) & (v < max(v_start, v_end)))
         if len(level) == 0:
             continue

@@ -19,19 +19,19 @@ from bladewright.nurbs.surface import Surface
 from bladewright.nurbs.trim_loop import TrimLoop, contained, meeting_parameters, trim_loop
 
 CLOSED = 1e-9
-"""largest gap between consecutive boundary curves, in units of their extent"""
+"""Largest gap between consecutive boundary curves, in units of their extent: so much may be rounding."""
 ORIENTING = 2
-"""Gauss points a knot span that tell which way a boundary runs"""
+"""Gauss points on a knot span by which the sense of a boundary is found: only the sign of its area matters."""
 DRAWS = 4_000_000
-"""most points that are drawn in the boundary's box to find some inside"""
+"""Largest number of points drawn in the bounding box of a boundary to find some inside: about a second."""
 
 
 @final
 @dataclass(frozen=True, kw_only=True, eq=False)
 class TrimmedSurface:
-    """The part of `surface` to the left of `boundary`, a closed chain of curves in (u, v) run counter-clockwise.
+    """The part of `surface` inside `boundary`, a closed loop of curves in (u, v) that runs counter-clockwise.
 
-    The chain does not cross itself. Raises GeometryError where it is not plane, not closed or runs clockwise.
+    The loop does not cross itself. Raises GeometryError where it is not plane, not closed or runs clockwise.
     """
 
     surface: Surface
@@ -98,7 +98,7 @@ class TrimmedSurface:
 
         Green's theorem: the sum over the boundary of F dv, with F the integral of the density along u from the
         boundary's smallest u. Both quadratures break at the surface's knots, the outer one also at the boundary's;
-        `order` Gauss points a panel, or, where None, as many as the result needs to settle within 1e-13 of itself.
+        `order` Gauss points a panel, or, where None, as many as the result needs to converge to 1e-13 of itself.
         The parameters are complex where the boundary is; `Surface` carries their imaginary parts to first order.
         """
         return (
@@ -110,15 +110,15 @@ class TrimmedSurface:
     def contains(self, u: ArrayLike, v: ArrayLike) -> NDArray[np.bool_]:
         """Whether points (...) of the parameter plane lie inside the boundary; on the boundary itself, either."""
         at_u, at_v = np.broadcast_arrays(np.asarray(u, dtype=np.float64), np.asarray(v, dtype=np.float64))
-        return contained(self._chain, at_u.ravel(), at_v.ravel()).reshape(at_u.shape)
+        return contained(self._loop, at_u.ravel(), at_v.ravel()).reshape(at_u.shape)
 
     def interior_points(self, count: int, seed: int = 0) -> tuple[Reals, Reals]:
-        """Parameters u, v (count,) drawn evenly in the (u, v) plane inside the boundary, the same for the same seed.
+        """Random parameters u, v (count,), uniform in the (u, v) plane inside the boundary, the same for the same seed.
 
         Raises GeometryError where the region is too thin for four million draws in its box.
         """
         random = default_rng(seed)
-        low, high = self._chain.low, self._chain.high
+        low, high = self._loop.low, self._loop.high
         share = float(self.parametric_area.real) / float(np.prod(high - low))
         found: list[Reals] = []
         inside, drawn = 0, 0
@@ -136,7 +136,7 @@ class TrimmedSurface:
         return sites[:, 0], sites[:, 1]
 
     @cached_property
-    def _chain(self) -> TrimLoop:
+    def _loop(self) -> TrimLoop:
         return trim_loop(self.boundary)
 
     def _green(self, density: Callable[[Array, Array], Array], order: int) -> Array:
@@ -144,10 +144,10 @@ class TrimmedSurface:
         knots = breaks(self.surface.knots_u), breaks(self.surface.knots_v)
         within = [
             inner[(inner > low) & (inner < high)]
-            for inner, low, high in zip(knots, self._chain.low, self._chain.high, strict=True)
+            for inner, low, high in zip(knots, self._loop.low, self._loop.high, strict=True)
         ]
         lines = 0 if len(within[0]) <= len(within[1]) else 1
-        starts = np.concatenate([[float(self._chain.low[lines])], within[lines]])
+        starts = np.concatenate([[float(self._loop.low[lines])], within[lines]])
         tops = np.append(starts[1:], np.inf)
         nodes, weights = gauss(order)
         total: Array = np.zeros(())

@@ -16,13 +16,12 @@ from bladewright.blade.exact.unified import ExactUnifiedBlade, moved_exact_blade
 from bladewright.blade.flow_path.channel import ChannelCurve, TransfiniteChannel
 from bladewright.blade.native.interpolation import interpolated_along_u, lower_edges
 from bladewright.blade.native.knots import DEGREE, Knots
-from bladewright.derivatives.complex_step import STEP, parted, skeleton_rates, source_of, stepped_design
+from bladewright.derivatives.complex_step import STEP, law_point, parted, skeleton_rates, stepped_design
 from bladewright.designs import Design
 from bladewright.fitting.matching.footpoints import Footpoints
 from bladewright.numerics.elementary import Array
 from bladewright.nurbs.basis import Reals, basis, uniform_knots
 from bladewright.section.checks import UNITS
-from bladewright.section.laws import law_basis
 
 AT_ONCE = 40
 """steps in one rebuild"""
@@ -65,8 +64,8 @@ class LawJacobian:
 def law_shares(design: UnifiedBlade, path: str, sites: Reals) -> Iterator[tuple[str | ChannelShift, Reals]]:
     """The steps that a parameter is made of, and its share (m,) in each at the sites."""
     if not (path.startswith("channel.") and stands_on_channel(design)):
-        source = source_of(design, path)
-        share = law_basis(source.points, sites)[:, source.place] if source.points else np.ones(len(sites))
+        source = law_point(design, path)
+        share = source.factor(sites)
         yield source.step, share
         return
     metre = UNITS[design.length_unit]
