@@ -53,12 +53,11 @@ def hazards(text: str) -> Iterator[str]:
             yield f"line {node.lineno}: {lines[node.lineno - 1].strip()}"
 
 
-SOURCES = [each for floor in FLOORS for each in sorted((PACKAGE / floor).rglob("*.py")) if each != SAFE_FORMS]
-
-
-@pytest.mark.parametrize("source", SOURCES, ids=lambda source: str(source.relative_to(PACKAGE)))
-def test_a_file_drops_no_imaginary_part(source: Path) -> None:
-    assert list(hazards(source.read_text())) == []
+def test_no_file_of_floors_0_to_4_drops_an_imaginary_part() -> None:
+    sources = [each for floor in FLOORS for each in sorted((PACKAGE / floor).rglob("*.py")) if each != SAFE_FORMS]
+    assert len(sources) > 100
+    found = [f"{each.relative_to(PACKAGE)}, {hazard}" for each in sources for hazard in hazards(each.read_text())]
+    assert not found, "\n".join(found)
 
 
 @pytest.mark.parametrize(
