@@ -4,6 +4,8 @@ A point S = sum B_i w_i P_i / sum B_i w_i is a quotient of sums that are linear 
 that one Jacobian of the nets serves any number of points.
 """
 
+from __future__ import annotations
+
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial

@@ -1,5 +1,7 @@
 """Derivatives of any quantity of what a design builds, by the complex step."""
 
+from __future__ import annotations
+
 import warnings
 from collections.abc import Callable, Iterable, Sequence
 from typing import Any

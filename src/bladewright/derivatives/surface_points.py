@@ -1,5 +1,7 @@
 """Numbered points on the surfaces of what a design builds, such as a solver's, which move with the design."""
 
+from __future__ import annotations
+
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, Self

@@ -1,5 +1,7 @@
 """A design as a vector for an optimiser: scaled, bounded variables, and objectives with exact gradients."""
 
+from __future__ import annotations
+
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -148,7 +150,7 @@ class Variables:
         return replace(self, origin=design, knots=getattr(design.build(), "knots", None))
 
     @cached_property
-    def _builds(self) -> "Builds":
+    def _builds(self) -> Builds:
         return Builds(design_of=self.design, paths=self.paths, knots=self.knots)
 
 

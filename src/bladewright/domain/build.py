@@ -1,5 +1,7 @@
 """From a native blade to its flow passage."""
 
+from __future__ import annotations
+
 from types import MappingProxyType
 from typing import cast
 

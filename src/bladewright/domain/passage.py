@@ -1,5 +1,7 @@
 """The flow passage around one blade: native patches that close up pole for pole."""
 
+from __future__ import annotations
+
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property

@@ -1,5 +1,7 @@
 """The flow domain about a 2D section in a cascade, as curves."""
 
+from __future__ import annotations
+
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property

@@ -1,5 +1,7 @@
 """A design imported from another program's file, with what was changed and points to measure it with."""
 
+from __future__ import annotations
+
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any, Generic, TypeVar

@@ -1,5 +1,7 @@
 """Reading a design from its file."""
 
+from __future__ import annotations
+
 import json
 import tomllib
 from collections.abc import Mapping

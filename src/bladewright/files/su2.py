@@ -1,5 +1,7 @@
 """Surface points for the flow solver SU2, and the sensitivities to them that it returns as CSV or VTU."""
 
+from __future__ import annotations
+
 import csv
 from collections.abc import Sequence
 from contextlib import ExitStack

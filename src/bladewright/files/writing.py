@@ -1,5 +1,7 @@
 """Writing a design to its file, the exact inverse of reading; an existing file keeps its comments and layout."""
 
+from __future__ import annotations
+
 import math
 from collections.abc import MutableMapping
 from dataclasses import MISSING, fields

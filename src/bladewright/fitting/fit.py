@@ -1,5 +1,7 @@
 """From a cloud of points to a design: `fit` and what it accepts."""
 
+from __future__ import annotations
+
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 from typing import Any, Literal

@@ -1,5 +1,7 @@
 """NURBS curve of any degree and dimension."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise

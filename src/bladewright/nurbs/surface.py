@@ -1,5 +1,7 @@
 """NURBS surface of any degrees and dimension."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 from functools import cached_property
 from typing import final
@@ -149,7 +151,7 @@ COLLAPSED = 1e-10
 taken as the limit from inside: about the root of rounding, where the product of both has no digits left."""
 
 
-def unit_normals(surface: "Surface", u: Array, v: Array) -> Array:
+def unit_normals(surface: Surface, u: Array, v: Array) -> Array:
     """Unit normals (..., 3) at real u, v of one shape: the direction of dS/du x dS/dv.
 
     Where that product vanishes at an end of the surface (the pole of a sphere, the tip of a cone) it is the limit from

@@ -1,5 +1,7 @@
 """A piece of a surface inside closed boundary curves in its parameter plane."""
 
+from __future__ import annotations
+
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property

@@ -4,6 +4,8 @@ References: M. Casey, A computational geometry for the blades and internal flow 
 1983; freeform blading with NURBS: a camber angle and a thickness curve of six control points each.
 """
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 from typing import Any, Literal
 

@@ -5,6 +5,8 @@ exactly, and scaled so that the inlet and outlet metal angles are held; the stag
 Reference: Nemnem et al. 2014, ASAT-16-142-PP.
 """
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 from typing import Annotated, Literal
 

@@ -1,5 +1,7 @@
 """2D designs of the families that are one part: the part's section laid in the plane (x, y)."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass, fields
 from typing import Any, Literal, get_args, get_type_hints
 

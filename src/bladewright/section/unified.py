@@ -1,5 +1,7 @@
 """The unified section as a 2D design: camber and two thickness laws in the plane (Agromayor et al. 2021, section 3)."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 from types import MappingProxyType
 from typing import Any, Literal

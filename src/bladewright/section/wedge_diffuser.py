@@ -1,5 +1,7 @@
 """Vanes of wedge diffusers: triangles with rounded corners (Voss et al. 2025, section 3.2)."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 
 import numpy as np

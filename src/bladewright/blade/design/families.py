@@ -1,5 +1,7 @@
 """The blades from sections, one of each family, and the prismatic blade of a 2D section."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 from typing import Any, overload
 

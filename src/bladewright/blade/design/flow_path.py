@@ -1,5 +1,7 @@
 """The flow past a blade as a design: the channel of unified blades, and the flow path of blades from sections."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 from typing import Any, Literal
 

@@ -1,5 +1,7 @@
 """A meridian as a design: a curve in (x, r) through points, on control points, or of straight and arc pieces."""
 
+from __future__ import annotations
+
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from itertools import pairwise

@@ -1,5 +1,7 @@
 """What every design of a blade says of its row: around the machine axis, or side by side in a cascade."""
 
+from __future__ import annotations
+
 from typing import TYPE_CHECKING
 
 from bladewright.errors import DesignError
@@ -10,7 +12,7 @@ if TYPE_CHECKING:
     from bladewright.blade.design.unified import UnifiedBlade
 
 
-def check_arrangement(design: "UnifiedBlade | SectionedBlade") -> None:
+def check_arrangement(design: UnifiedBlade | SectionedBlade) -> None:
     """Refuse what the other arrangement has; bring what this one has to numbers."""
     put = object.__setattr__
     own, other = ("annular", "linear") if design.arrangement == "annular" else ("linear", "annular")
@@ -30,7 +32,7 @@ def check_arrangement(design: "UnifiedBlade | SectionedBlade") -> None:
         checks.between(count, design.pitch, 0.0, float("inf"), "the pitch must be positive")
 
 
-def _check_place(design: "UnifiedBlade | SectionedBlade", place: str, other: str) -> None:
+def _check_place(design: UnifiedBlade | SectionedBlade, place: str, other: str) -> None:
     """Refuse two tangential positions; without any, the leading edge's is 0."""
     stacking = getattr(design, "stacking", None)
     if stacking is None:

@@ -1,5 +1,7 @@
 """Blades from sections as designs: a family's section between edge curves in a flow path."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Literal
 
@@ -157,7 +159,7 @@ class SectionedBlade(Design):
         """Names of the blade's ends at v = 0 and v = 1."""
         return "hub", "shroud"
 
-    def build(self, knots: "Knots | None" = None) -> "Blade":
+    def build(self, knots: Knots | None = None) -> Blade:
         """The native blade in metres; `knots=blade.knots` holds another build's knots and interpolation sites.
 
         Raises DesignError where the shape is impossible or the tolerance cannot be reached within 200 x 100 poles.

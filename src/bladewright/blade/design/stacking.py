@@ -1,5 +1,7 @@
 """Stacking by reference point, as a design: where on each stream surface a point of the section is to stand."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 from typing import Literal
 

@@ -1,5 +1,7 @@
 """The unified blade as a design: camber and two thickness laws between hub and shroud (Agromayor et al. 2021)."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal
 
@@ -118,7 +120,7 @@ class UnifiedBlade(Design):
         hub = "hub" if self.hub_clearance is None else "tip"
         return hub, "shroud" if self.tip_clearance is None else "tip"
 
-    def build(self, knots: "Knots | None" = None) -> "Blade":
+    def build(self, knots: Knots | None = None) -> Blade:
         """The native blade in metres; `knots=blade.knots` holds another build's knots and interpolation sites.
 
         Raises DesignError where the shape is impossible or the tolerance cannot be reached within 200 x 100 poles.

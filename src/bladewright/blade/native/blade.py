@@ -1,5 +1,7 @@
 """The native blade: named surfaces in metres, with what was asked of them and what they reach."""
 
+from __future__ import annotations
+
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
@@ -109,21 +111,21 @@ class Blade:
         return mass_properties([(self.surfaces[name], sign) for name, sign in self.orientations.items()])
 
     @cached_property
-    def promises(self) -> "Conformance":
+    def promises(self) -> Conformance:
         """What the built surfaces keep of what was asked: angles, radii, smooth edges, ends on the walls."""
         from bladewright.blade.native.conformance import conformance_of
 
         return conformance_of(self)
 
     @cached_property
-    def sections(self) -> tuple["Section", ...]:
+    def sections(self) -> tuple[Section, ...]:
         """Sections at hub, mid-span and shroud, and where a design gives more, from hub to shroud.
 
         Ruled blades have those at hub and shroud, developable ones that at the hub.
         """
         return tuple(self.section(v) for v in self.exact.section_spans)
 
-    def section(self, v: float) -> "Section":
+    def section(self, v: float) -> Section:
         """The exact section at v in [0, 1], in its plane, with the properties it has on its stream surface.
 
         Raises DesignError where v is outside.
@@ -132,7 +134,7 @@ class Blade:
 
         return section_at(self.exact, v)
 
-    def smoothness(self, v: float) -> "Smoothness":
+    def smoothness(self, v: float) -> Smoothness:
         """Curvature, its slope and their jumps along the exact section at v in [0, 1], in chords of its plane.
 
         Raises DesignError where v is outside.
@@ -141,7 +143,7 @@ class Blade:
 
         return smoothness_at(self.exact, v)
 
-    def extended(self, span: float) -> "Blade":
+    def extended(self, span: float) -> Blade:
         """The blade continued past hub and shroud by `span` of its own span at each end, for a later cut.
 
         Sides and the faces of blunt edges continue their own polynomials, and the part between is unchanged; caps close

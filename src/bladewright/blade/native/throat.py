@@ -7,6 +7,8 @@ it, t the unit direction of the outlines there and S_v the mean of both outlines
 along the outlines with v adds nothing, as that is along t.
 """
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 from functools import lru_cache
 

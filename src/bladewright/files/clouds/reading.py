@@ -1,5 +1,7 @@
 """Reading a cloud of points from a file whose format its contents tell."""
 
+from __future__ import annotations
+
 import os
 from collections.abc import Callable, Sequence
 from pathlib import Path

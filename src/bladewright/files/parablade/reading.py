@@ -1,5 +1,7 @@
 """Reading a ParaBlade configuration as a design, with what was changed and how far it lies from ParaBlade's blade."""
 
+from __future__ import annotations
+
 import os
 import re
 from pathlib import Path

@@ -1,5 +1,7 @@
 """A T-Blade3 case as a design, with what was kept and changed, and points of T-Blade3's blade to measure it with."""
 
+from __future__ import annotations
+
 import os
 from collections.abc import Iterator
 from dataclasses import replace

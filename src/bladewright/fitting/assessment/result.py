@@ -1,5 +1,7 @@
 """What a fit hands back: the design, how well it matches the cloud, and its report."""
 
+from __future__ import annotations
+
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -154,7 +156,7 @@ FIGURES = ("mean", "rms", "percentile_99", "maximum")
 MILLIMETRES = 1e3
 
 
-def report(fit: "Fit") -> dict[str, Any]:
+def report(fit: Fit) -> dict[str, Any]:
     """A fit as plain numbers, strings, lists and dictionaries, ready for JSON; what is not finite is None.
 
     Deviations are those of the inliers, each in metres, in millimetres and of the chord; a region without points has
@@ -195,7 +197,7 @@ def report(fit: "Fit") -> dict[str, Any]:
     }
 
 
-def text(fit: "Fit") -> str:
+def text(fit: Fit) -> str:
     """A fit for people: whether it passes and why not, deviations by region in millimetres, then the parameters."""
     verdict = "passed" if fit.passed else "FAILED"
     state = ", interrupted" if fit.interrupted else ""
@@ -218,7 +220,7 @@ def text(fit: "Fit") -> str:
     return "\n".join(lines)
 
 
-def _chord_of(fit: "Fit") -> float:
+def _chord_of(fit: Fit) -> float:
     """The chord of what was built, the mean over the span [m]."""
     return float(np.real(fit.built.chord))
 
@@ -235,7 +237,7 @@ def plain(value: Any) -> Any:
     return number if math.isfinite(number) else None
 
 
-def unit_of_path(fit: "Fit", path: str) -> str:
+def unit_of_path(fit: Fit, path: str) -> str:
     """Unit of a parameter: that of its field, the design's unit of length where it is one."""
     unit = unit_at(fit.design, path) or "-"
     return str(getattr(fit.design, "length_unit", unit)) if unit == "length" else unit
@@ -250,7 +252,7 @@ def _figures(deviation: Deviation | None, chord: float) -> dict[str, Any]:
     }
 
 
-def _outliers(fit: "Fit") -> dict[str, Any]:
+def _outliers(fit: Fit) -> dict[str, Any]:
     index = fit.outliers
     far = fit.distances[index]
     return {
@@ -263,7 +265,7 @@ def _outliers(fit: "Fit") -> dict[str, Any]:
     }
 
 
-def _worst(fit: "Fit") -> dict[str, Any] | None:
+def _worst(fit: Fit) -> dict[str, Any] | None:
     """The inlier that is farthest off."""
     index = np.flatnonzero(fit.inliers)
     if len(index) == 0:
@@ -281,7 +283,7 @@ def _worst(fit: "Fit") -> dict[str, Any] | None:
     }
 
 
-def _estimate(fit: "Fit", each: "Estimate") -> dict[str, Any]:
+def _estimate(fit: Fit, each: Estimate) -> dict[str, Any]:
     return {
         "path": each.path,
         "unit": unit_of_path(fit, each.path),
@@ -293,7 +295,7 @@ def _estimate(fit: "Fit", each: "Estimate") -> dict[str, Any]:
     }
 
 
-def _motion(fit: "Fit") -> dict[str, Any]:
+def _motion(fit: Fit) -> dict[str, Any]:
     assert fit.motion is not None  # noqa: S101 - the caller asks only where there is one
     return {
         "rotation": plain(fit.motion.rotation),
@@ -302,7 +304,7 @@ def _motion(fit: "Fit") -> dict[str, Any]:
     }
 
 
-def _table(fit: "Fit") -> list[str]:
+def _table(fit: Fit) -> list[str]:
     """Deviations of the inliers in millimetres, a row for each region."""
     chord = _chord_of(fit)
     rows = [["deviation [mm]", "points", "mean", "rms", "99 %", "max", "max of chord"]]
@@ -320,7 +322,7 @@ def _table(fit: "Fit") -> list[str]:
     ]
 
 
-def _said_of_outliers(fit: "Fit") -> str:
+def _said_of_outliers(fit: Fit) -> str:
     count, total = len(fit.outliers), len(fit.cloud)
     if count == 0:
         return f"{_counted(total, 'point')}, no outliers"
@@ -332,7 +334,7 @@ def _said_of_outliers(fit: "Fit") -> str:
     )
 
 
-def _said_of_motion(fit: "Fit") -> str:
+def _said_of_motion(fit: Fit) -> str:
     if fit.motion is None:
         return ""
     turn, shift = np.asarray(fit.motion.rotation), np.asarray(fit.motion.translation)
@@ -342,7 +344,7 @@ def _said_of_motion(fit: "Fit") -> str:
     return f"moved to the machine's axes: turned by {angle:.6g} deg, then shifted by ({moved}) mm"
 
 
-def _parameters(fit: "Fit") -> list[str]:
+def _parameters(fit: Fit) -> list[str]:
     """A line for each parameter, or for each that the reader must look at where there are many."""
     doubtful = [each for each in fit.estimates if not each.identified or each.at_bound]
     shown = list(fit.estimates) if len(fit.estimates) <= FEW_PARAMETERS else doubtful
@@ -360,7 +362,7 @@ def _parameters(fit: "Fit") -> list[str]:
     return lines
 
 
-def _with_spread(each: "Estimate") -> tuple[str, str]:
+def _with_spread(each: Estimate) -> tuple[str, str]:
     """The value to the digits that are known, and half of its 95 % interval."""
     half = (each.high - each.low) / 2.0
     if not (each.identified and math.isfinite(half) and half > 0.0):

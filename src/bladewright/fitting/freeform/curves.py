@@ -1,5 +1,7 @@
 """NURBS curves fitted to points of any dimension."""
 
+from __future__ import annotations
+
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from itertools import pairwise

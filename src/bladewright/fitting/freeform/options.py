@@ -1,5 +1,7 @@
 """What fits of plain shapes have in common: what they are asked, and the figures that they hand back."""
 
+from __future__ import annotations
+
 from collections.abc import Callable
 from dataclasses import dataclass
 

@@ -1,5 +1,7 @@
 """Profiles fitted by a camber line and a half thickness around it."""
 
+from __future__ import annotations
+
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import partial
@@ -394,8 +396,8 @@ WORTHWHILE_RATIO = 0.97
 
 
 def _within_tolerance(
-    fitted: "Callable[[int, int], ProfileFit]", camber: int, thickness: int, tolerance: float
-) -> "ProfileFit":
+    fitted: Callable[[int, int], ProfileFit], camber: int, thickness: int, tolerance: float
+) -> ProfileFit:
     """The fit that keeps a tolerance with few control points, from so many on, or the nearest, which says why."""
     found = fitted(camber, thickness)
     evaluations = found.iterations

@@ -1,5 +1,7 @@
 """NURBS surfaces fitted to scattered points in space."""
 
+from __future__ import annotations
+
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from itertools import pairwise

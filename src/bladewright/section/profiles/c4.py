@@ -1,5 +1,7 @@
 """The British C4 profile (Howell 1942, R. & M. 2095), on a circular-arc mean line."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 from typing import ClassVar, Literal
 

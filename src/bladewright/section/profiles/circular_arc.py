@@ -1,5 +1,7 @@
 """Double- and multiple-circular-arc profiles (Johnsen and Bullock 1965, NASA SP-36, chapter VI; Crouse et al. 1969)."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 from functools import cached_property
 from typing import ClassVar, Literal

@@ -1,5 +1,7 @@
 """Flat plates with round, elliptic or blunt edges."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 from typing import ClassVar, Literal
 

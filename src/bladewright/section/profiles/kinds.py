@@ -1,5 +1,7 @@
 """The kinds of standard profiles, and the 2D design of a section of any of them."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 from typing import Annotated
 

@@ -1,5 +1,7 @@
 """NACA four-digit profiles (Jacobs, Ward and Pinkerton 1933, NACA Report 460)."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 from typing import Literal
 

@@ -1,5 +1,7 @@
 """NACA five-digit profiles (Jacobs and Pinkerton 1935, NACA Report 537)."""
 
+from __future__ import annotations
+
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import ClassVar, Literal

@@ -1,5 +1,7 @@
 """NACA 6-series profiles (Abbott, von Doenhoff and Stivers 1945, NACA Report 824)."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 from typing import ClassVar, Literal
 

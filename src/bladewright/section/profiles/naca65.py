@@ -1,5 +1,7 @@
 """NACA 65-series compressor profiles (Herrig, Emery and Erwin 1951, NACA RM L51G31)."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 from typing import ClassVar, Literal
 

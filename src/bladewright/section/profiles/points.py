@@ -1,5 +1,7 @@
 """Profiles through any closed set of points."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 from typing import Literal
 

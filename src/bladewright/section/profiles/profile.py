@@ -1,5 +1,7 @@
 """What all standard profiles have: a stagger, and for published forms a thickness and a trailing edge of choice."""
 
+from __future__ import annotations
+
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
 from dataclasses import dataclass

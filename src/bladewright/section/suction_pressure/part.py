@@ -1,5 +1,7 @@
 """Sections by their suction and their pressure side (Voss et al. 2025, sections 3 and 3.1): parameters and assembly."""
 
+from __future__ import annotations
+
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Literal
@@ -108,7 +110,7 @@ class SuctionPressure(Part):
 
     def refined(
         self, knots: int | Sequence[float], *, side: Literal["suction", "pressure", "both"] = "both"
-    ) -> "SuctionPressure":
+    ) -> SuctionPressure:
         """The same section with further control points: so many new knots a side, or knots at given places in (0, 1).
 
         Raises DesignError for laws along the span, and for a pressure side by a thickness: refine the suction side
@@ -116,7 +118,7 @@ class SuctionPressure(Part):
         """
         return self.changed(refined(self, knots, side))
 
-    def independent(self) -> "SuctionPressure":
+    def independent(self) -> SuctionPressure:
         """The same section, its pressure side by heights of its own; raises DesignError for laws along the span."""
         return self.changed(freed(self))
 
@@ -129,7 +131,7 @@ class SuctionPressureSection(PlanarSection):
     """the section's parameters"""
 
 
-def assembled(part: "SuctionPressure", span: Span) -> SuctionPressureOutline:
+def assembled(part: SuctionPressure, span: Span) -> SuctionPressureOutline:
     """The outline of sections (..., m); raises DesignError where edges or sides do not fit."""
     leading, trailing = characteristic(part, span)
     check_room(leading, trailing, span)
@@ -146,13 +148,13 @@ def assembled(part: "SuctionPressure", span: Span) -> SuctionPressureOutline:
     return SuctionPressureOutline(edges=(curves[0], curves[1]), upper=upper, lower=lower, continuity=part.edges)
 
 
-def camber_angles(part: "SuctionPressure", span: Span) -> tuple[Array, Array]:
+def camber_angles(part: SuctionPressure, span: Span) -> tuple[Array, Array]:
     """Angles (..., m) of both edges' directions from the chord line [rad]."""
     turn = span.values(part.stagger_angle)
     return radians(span.values(part.metal_angle_in) - turn), radians(span.values(part.metal_angle_out) - turn)
 
 
-def characteristic(part: "SuctionPressure", span: Span) -> tuple[EdgePoints, EdgePoints]:
+def characteristic(part: SuctionPressure, span: Span) -> tuple[EdgePoints, EdgePoints]:
     """The characteristic points of the leading and the trailing edge."""
     found = []
     suction = 1.0 if part.suction_side == "upper" else -1.0
@@ -178,12 +180,12 @@ def characteristic(part: "SuctionPressure", span: Span) -> tuple[EdgePoints, Edg
     return found[0], found[1]
 
 
-def skeleton_of(part: "SuctionPressure", span: Span) -> Skeleton:
+def skeleton_of(part: SuctionPressure, span: Span) -> Skeleton:
     """The line of places and heights."""
     return pseudo_line(*camber_angles(part, span)) if part.skeleton == "pseudo" else chord_line((len(span.v),))
 
 
-def sides(part: "SuctionPressure", span: Span, leading: EdgePoints, trailing: EdgePoints) -> tuple[Side, Side]:
+def sides(part: SuctionPressure, span: Span, leading: EdgePoints, trailing: EdgePoints) -> tuple[Side, Side]:
     """The suction and the pressure side."""
     skeleton = skeleton_of(part, span)
     on, off = ("upper", "lower") if part.suction_side == "upper" else ("lower", "upper")
@@ -218,14 +220,14 @@ def sides(part: "SuctionPressure", span: Span, leading: EdgePoints, trailing: Ed
     return suction, parametrised(controls_of(*other, *tangents, free), knots, *other, SHARE)
 
 
-def _numbers(span: Span, places: "ChordwiseLaw", offsets: "ChordwiseLaw", knots: "Reals") -> tuple[Array, Array]:
+def _numbers(span: Span, places: ChordwiseLaw, offsets: ChordwiseLaw, knots: Reals) -> tuple[Array, Array]:
     """Places and offsets (..., m, k)."""
     values = _stacked(span, offsets)
     at = _stacked(span, places) if places else np.broadcast_to(spread(knots), (len(span.v), len(offsets)))
     return at, values
 
 
-def _stacked(span: Span, laws: "ChordwiseLaw") -> Array:
+def _stacked(span: Span, laws: ChordwiseLaw) -> Array:
     return np.stack(np.broadcast_arrays(*[span.values(law) for law in laws]), axis=-1)
 
 
@@ -237,7 +239,7 @@ def _thickened(side: Side, places: Array, offsets: Array) -> Array:
     )
 
 
-def refined(part: "SuctionPressure", knots: int | Sequence[float], side: str) -> dict[str, Any]:
+def refined(part: SuctionPressure, knots: int | Sequence[float], side: str) -> dict[str, Any]:
     """The fields that change when a side, or `both`, gets further knots and keeps its shape."""
     if side not in ("suction", "pressure", "both"):
         raise DesignError(f"side is {side!r}: it must be one of suction, pressure, both")
@@ -254,14 +256,14 @@ def refined(part: "SuctionPressure", knots: int | Sequence[float], side: str) ->
     return found
 
 
-def freed(part: "SuctionPressure") -> dict[str, Any]:
+def freed(part: SuctionPressure) -> dict[str, Any]:
     """The fields that change when the pressure side gets heights of its own and keeps its shape."""
     if part.pressure_heights:
         return {}
     return {"pressure_thickness": (), **_fields(part, "pressure", _curve(_sides(part)[1]))}
 
 
-def _sides(part: "SuctionPressure") -> tuple[Side, Side]:
+def _sides(part: SuctionPressure) -> tuple[Side, Side]:
     for path, value in part.parameters().items():
         name = path.partition("[")[0]
         if np.size(value) > 1 or (isinstance(getattr(part, name), tuple) and path.count("[") != _depth(name)):
@@ -297,7 +299,7 @@ def _new(knots: Reals, asked: int | Sequence[float]) -> list[float]:
     return found
 
 
-def _fields(part: "SuctionPressure", name: str, curve: Curve) -> dict[str, Any]:
+def _fields(part: SuctionPressure, name: str, curve: Curve) -> dict[str, Any]:
     controls = curve.control_points
     inner = curve.knots[DEGREE + 1 : -DEGREE - 1]
     places, heights = skeleton_of(part, Span(np.zeros(1))).at(0).places(controls[2:-2], spread(curve.knots))

@@ -6,6 +6,8 @@ given by the parameter s of the outline; how u(s) is chosen so that each law's j
 `bladewright.section.thickness.piecewise`.
 """
 
+from __future__ import annotations
+
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from typing import Any, ClassVar, Literal

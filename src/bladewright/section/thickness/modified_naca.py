@@ -5,6 +5,8 @@ from the maximum to the trailing edge with a given slope there, second derivativ
 Reference: Stack and von Doenhoff 1934, NACA report 492; the circle and the slope as in T-Blade3.
 """
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 from typing import Literal
 

@@ -1,5 +1,7 @@
 """The quartic B-spline thickness of 18 control points, closed around both edges."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 from typing import Literal
 

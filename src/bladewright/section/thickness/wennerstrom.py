@@ -6,6 +6,8 @@ tangent to the body is added outside it, and the chord counts from tip to tip.
 Reference: Wennerstrom 2000, Design of Highly Loaded Axial-Flow Fans and Compressors; the edges as in T-Blade3.
 """
 
+from __future__ import annotations
+
 from dataclasses import dataclass
 from typing import Literal, NamedTuple
 
