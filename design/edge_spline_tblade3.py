@@ -30,10 +30,10 @@ from pathlib import Path
 
 import numpy as np
 
-from bladewright.section.chord_spline import ChordSpline
+from bladewright.section.chord_spline import ChordSpline, segments
 from bladewright.section.laws import Span
 from bladewright.section.meanline import CurvatureIntegral
-from bladewright.section.thickness.quartic import QuarticSpline, segments
+from bladewright.section.thickness.quartic import QuarticSpline
 
 OUTPUT = Path(__file__).parents[2] / "shared" / "data" / "tblade3" / "LE_spline_turb4_v1.2.2" / "output"
 ELONGATION, VERTEX_DISTANCE = -0.10, 0.35

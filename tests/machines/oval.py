@@ -4,10 +4,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from bladewright.designs import Law, Part, parameter
+from bladewright.designs import Law, parameter
 from bladewright.numerics.elementary import radians
 from bladewright.section import checks
-from bladewright.section.outline import Edge, Outline, Start
+from bladewright.section.family import SectionFamily
+from bladewright.section.outline import Edge, EdgeDerivatives, Outline
 from bladewright.section.planar import PlanarSection
 
 PI = np.pi
@@ -27,7 +28,7 @@ class OvalOutline(Outline):
             point = np.stack([zero + place, zero], axis=-1)
             first = np.stack([zero, side * self.thickness / 2 * PI * flip + zero], axis=-1)
             second = np.stack([zero + flip * PI**2 / 2, 4 * self.height * PI**2 / 2 + zero], axis=-1)
-            starts.append(Start(point, first, second))
+            starts.append(EdgeDerivatives(point, first, second))
         return Edge(kind="round", upper=starts[0], lower=starts[1])
 
     @property
@@ -55,7 +56,7 @@ class OvalOutline(Outline):
 
 
 @dataclass(frozen=True, kw_only=True)
-class Oval(Part):
+class Oval(SectionFamily):
     """An oval about a parabola."""
 
     stagger_angle: Law = parameter("deg")

@@ -8,7 +8,7 @@ import pytest
 from bladewright.errors import DesignError
 from bladewright.section.arc_length import ArcLength
 from bladewright.section.native import knots_for, native_curves
-from bladewright.section.outline import Edge, Joint, Outline, Start
+from bladewright.section.outline import Edge, EdgeDerivatives, Joint, Outline
 
 PI = np.pi
 
@@ -34,7 +34,7 @@ class Oval(Outline):
             point = np.array([[s, side * off[0]]])
             first = np.array([[0.0, side * (self.thickness / 2 * PI * flip + off[1])]])
             second = np.array([[flip * PI**2 / 2, 4 * self.height * PI**2 / 2 + side * off[2]]])
-            starts.append(Start(point, first, second))
+            starts.append(EdgeDerivatives(point, first, second))
         return Edge(kind="blunt" if self.step else "round", upper=starts[0], lower=starts[1])
 
     @property

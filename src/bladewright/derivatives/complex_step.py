@@ -18,7 +18,6 @@ import numpy as np
 
 from bladewright.blade.design.sectioned import SectionedBlade
 from bladewright.blade.design.unified import UnifiedBlade
-from bladewright.blade.exact.section_stack import EdgeDerivatives
 from bladewright.blade.native.blade import Blade
 from bladewright.blade.native.end_faces import trimmed_ends
 from bladewright.blade.native.interpolation import Skeleton, native_sides, sides_through, skeleton_of
@@ -31,6 +30,7 @@ from bladewright.nurbs.basis import Reals
 from bladewright.nurbs.surface import Surface
 from bladewright.nurbs.trimmed import TrimmedSurface
 from bladewright.section.laws import law_basis
+from bladewright.section.outline import EdgeDerivatives
 from bladewright.section.unified_limits import ANGLES, RADII, TANGENTS, THICKNESSES, WEIGHTS
 
 STEP = 1e-30

@@ -7,11 +7,11 @@ References: M. Casey, A computational geometry for the blades and internal flow 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, Literal
+from typing import Any, ClassVar, Literal
 
 import numpy as np
 
-from bladewright.designs import ChordwiseLaw, Part, parameter
+from bladewright.designs import ChordwiseLaw, parameter
 from bladewright.errors import DesignError
 from bladewright.numerics.elementary import Array, concatenated, radians
 from bladewright.section import checks
@@ -19,10 +19,11 @@ from bladewright.section.camber_angle_outline import (
     CamberAngleOutline,
     CamberByAngle,
     LengthFraction,
-    MeridionalFraction,
     SplinePieces,
 )
+from bladewright.section.family import MeridionalFraction, SectionFamily
 from bladewright.section.laws import Span
+from bladewright.section.outline import Outline
 from bladewright.section.planar import PlanarSection
 
 NEAR = 0.0625
@@ -30,7 +31,7 @@ NEAR = 0.0625
 
 
 @dataclass(frozen=True, kw_only=True)
-class CamberAngle(Part):
+class CamberAngle(SectionFamily):
     """A section whose camber line has a given angle along the meridional distance.
 
     beta(m) is a B-spline of degree 3, or one less than its number of control points, on uniform knots over the
@@ -39,6 +40,8 @@ class CamberAngle(Part):
     at the leading edge, where the first value stands at the same place: the nose is round, and the sides join with
     equal curvature.
     """
+
+    depends_on_stream_surface: ClassVar[bool] = True
 
     camber_angle: ChordwiseLaw = parameter("deg")
     """angle of the camber line from the meridional direction: control points along the meridional distance [deg]"""
@@ -110,6 +113,9 @@ class CamberAngle(Part):
     def stagger(self, span: Span, meridional: MeridionalFraction | None = None) -> Array:
         """Angles (..., m) of the chord lines [rad], which follow from the camber angle."""
         return self._line(span, meridional).stagger
+
+    def on_stream_surfaces(self, span: Span, meridional: MeridionalFraction) -> tuple[Outline, Array]:
+        return self.outline(span, meridional), self.stagger(span, meridional)
 
     def _line(self, span: Span, meridional: MeridionalFraction | None) -> CamberByAngle:
         angles = _stacked([radians(span.values(law)) for law in self.camber_angle])

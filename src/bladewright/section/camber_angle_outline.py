@@ -1,6 +1,5 @@
 """Sections on camber lines of given angle: the camber line is an exact integral, the half thickness a NURBS."""
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 from math import factorial
@@ -13,8 +12,9 @@ from bladewright.numerics.elementary import Array, angle
 from bladewright.numerics.quadrature import gauss
 from bladewright.numerics.roots import bracketed_root
 from bladewright.nurbs.basis import Reals, basis, breaks, uniform_knots
+from bladewright.section.family import MeridionalFraction
 from bladewright.section.offset import merged_joints
-from bladewright.section.outline import Edge, Joint, Outline, Start
+from bladewright.section.outline import Edge, EdgeDerivatives, Joint, Outline
 from bladewright.section.power_series import Series, composed, polynomial, sine_and_cosine, variable
 
 
@@ -61,9 +61,6 @@ class SplinePieces:
             taken = [np.take_along_axis(each, index, axis=-1) for each in wide]
         return polynomial(taken, at - self.ends[piece])
 
-
-MeridionalFraction = Callable[[Reals], Array]
-"""Fractions (..., m, k) of the meridional length at fractions (k,) of m', of each of the m stream surfaces"""
 
 ORDER = 16
 """Gauss points on each panel"""
@@ -245,6 +242,10 @@ class CamberAngleOutline(Outline):
         x, _ = self._thickness(s, 0)
         return np.stack(np.broadcast_arrays(*(each.value for each in self._laid(x))), axis=-1)
 
+    @property
+    def has_exact_derivatives(self) -> bool:
+        return True
+
     def derivatives(self, s: Reals, order: int) -> tuple[Array, Array]:
         """Points and derivatives by s (..., k, 2, order + 1) of both sides, exact."""
         upper, lower = self._sides(s, order)
@@ -335,5 +336,5 @@ class CamberAngleOutline(Outline):
         return bracketed_root(off, np.zeros(len(own)), np.ones(len(own))).reshape(shape)
 
     def _edge(self, s: float, kind: Literal["sharp", "blunt", "round"]) -> Edge:
-        starts = [Start(*(side[..., 0, :, k] for k in range(3))) for side in self._sides(np.array([s]), 2)]
-        return Edge(kind=kind, upper=starts[0], lower=starts[1])
+        upper, lower = (EdgeDerivatives.of_side(side) for side in self._sides(np.array([s]), 2))
+        return Edge(kind=kind, upper=upper, lower=lower)

@@ -10,7 +10,6 @@ from bladewright.numerics.roots import bracketed_root
 from bladewright.nurbs.basis import Reals
 from bladewright.section.power_series import Series
 from bladewright.section.power_series import polynomial as composed
-from bladewright.section.thickness.quartic import segments
 
 NEWTON = 12
 """Newton's steps that the parameter of a point may take"""
@@ -96,6 +95,19 @@ def _unbatched(values: Reals, rank: int) -> Reals:
     while values.ndim > rank and np.array_equal(values, np.broadcast_to(values[:1], values.shape)):
         values = values[0]
     return values
+
+
+QUARTIC = np.array(
+    [[1, 11, 11, 1, 0], [-4, -12, 12, 4, 0], [6, -6, -6, 6, 0], [-4, 12, -12, 4, 0], [1, -4, 6, -4, 1]]
+) / np.array(24.0)
+"""row k: coefficients of t^k, 0 <= t <= 1, from a segment's five control points"""
+
+
+def segments(controls: Array) -> Array:
+    """Coefficients (..., n - 4, 5) of the powers of t on each segment of control points (..., n)."""
+    count = controls.shape[-1] - 4
+    windows = np.stack([controls[..., k : k + 5] for k in range(count)], axis=-2)
+    return windows @ QUARTIC.T
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

@@ -7,17 +7,20 @@ Reference: Nemnem et al. 2014, ASAT-16-142-PP.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Annotated, Literal
 
 import numpy as np
 
-from bladewright.designs import ChordwiseLaw, Law, Part, parameter
+from bladewright.designs import ChordwiseLaw, Law, parameter
 from bladewright.errors import DesignError
 from bladewright.numerics.elementary import Array, degrees, radians
 from bladewright.section import checks
+from bladewright.section.chord_map import Breakpoint
 from bladewright.section.chord_spline import ChordSpline
 from bladewright.section.edge_spline import EdgeSpline
+from bladewright.section.family import SectionFamily
 from bladewright.section.laws import Span
 from bladewright.section.meanline import (
     STRAIGHT,
@@ -34,18 +37,15 @@ from bladewright.section.planar import PlanarSection
 from bladewright.section.tagged_unions import ByField
 from bladewright.section.thickness.law import Thickness
 from bladewright.section.thickness.modified_naca import ModifiedNaca
-from bladewright.section.thickness.piecewise import Breakpoint, PiecewiseThickness
 from bladewright.section.thickness.quartic import QuarticSpline
 from bladewright.section.thickness.wennerstrom import Wennerstrom
 
 GRID = np.linspace(0.0, 1.0, 9)
 """places along the span at which it is seen whether a joint moves"""
-STRAIGHT_AT = (0.1, 0.95)
-"""fixed coordinates of the ends of a mixed camber line's straight parts: their places in a usual blade"""
 
 
 @dataclass(frozen=True, kw_only=True)
-class CurvatureMeanline(Part):
+class CurvatureMeanline(SectionFamily):
     """A section on a meanline of given second derivative, between given metal angles."""
 
     metal_angle_in: Law = parameter("deg")
@@ -129,8 +129,8 @@ class CurvatureMeanline(Part):
         """The same without leading_edge_spline, in chords of their own."""
         meanline, thickness = self.meanline(span), self.thickness.at(span)
         kinks: tuple[Joint, ...] = ()
-        if isinstance(meanline, MixedMeanline):
-            thickness, kinks = _parted(thickness, meanline)
+        if meanline.kinks:
+            thickness, kinks = _with_kinks(thickness, meanline.kinks)
         return OffsetOutline(
             meanline=meanline,
             thickness=thickness,
@@ -186,18 +186,10 @@ class CurvatureMeanline(Part):
         return places
 
 
-def _parted(thickness: Thickness, meanline: MixedMeanline) -> tuple[Thickness, tuple[Joint, ...]]:
-    """The thickness with the meanline's joints at fixed s, and these, where the sides have kinks."""
-    if not isinstance(thickness, PiecewiseThickness):
-        raise DesignError(
-            "camber is mixed, thickness.law is quartic-spline: the kinks of a mixed camber line need a thickness in "
-            "pieces; set camber to curvature, or take another thickness law"
-        )
-    joints = meanline.joints
-    low = Breakpoint(joints[..., 0], 1.0 - joints[..., 0], 1, STRAIGHT_AT[0])
-    high = Breakpoint(joints[..., 1], STRAIGHT[1] * np.cos(meanline.angle_out), 1, STRAIGHT_AT[1])
+def _with_kinks(thickness: Thickness, kinks: Sequence[Breakpoint]) -> tuple[Thickness, tuple[Joint, ...]]:
+    """The thickness with the kinks of a meanline at fixed s, and the sides' joints there."""
     try:
-        found = thickness.parted([low, high])
+        found = thickness.with_breakpoints(kinks)
     except ValueError as error:
         raise DesignError(
             "thickness.maximum_thickness_at, or the end of a round edge, lies on the wrong side of an end of the mixed "

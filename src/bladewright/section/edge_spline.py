@@ -21,10 +21,9 @@ from bladewright.numerics.elementary import Array, angle, concatenated, unit
 from bladewright.numerics.solving import solved
 from bladewright.nurbs.basis import Reals
 from bladewright.section import checks
+from bladewright.section.chord_spline import QUARTIC, segments
 from bladewright.section.laws import Span
-from bladewright.section.offset import OffsetOutline
-from bladewright.section.outline import Edge, Joint, Outline, Start
-from bladewright.section.thickness.quartic import QUARTIC, segments
+from bladewright.section.outline import Edge, EdgeDerivatives, Joint, Outline
 
 SEGMENTS = 5
 SAME = 1e-9
@@ -128,13 +127,13 @@ class SplinedOutline(Outline):
         second = np.sum(powers[..., 2:] * (np.array([2, 6, 12]) * half[:3]), axis=-1) * step**2
         origin = np.zeros_like(first)
         first, second = (self._turned(each[..., None, :])[..., 0, :] for each in (first, second))
-        return Edge(kind="round", upper=Start(origin, first, second), lower=Start(origin, -first, second))
+        return Edge.rounded(EdgeDerivatives(origin, first, second))
 
     @cached_property
     def trailing_edge(self) -> Edge:
         edge = self.outline.trailing_edge
         upper, lower = (
-            Start(
+            EdgeDerivatives(
                 self._placed(side.point[..., None, :])[..., 0, :],
                 self._turned(side.first[..., None, :])[..., 0, :],
                 self._turned(side.second[..., None, :])[..., 0, :],
@@ -186,8 +185,7 @@ class SplinedOutline(Outline):
         """Point and three derivatives by s (..., m, 4, 2) of the upper and the lower side at the contact."""
         outline, contact = self.outline, self.contact
         joints = [joint.s for joint in outline.joints]
-        exact = isinstance(outline, OffsetOutline) and outline.multiplier is None
-        if exact and not any((place - contact) ** 2 < SAME**2 for place in joints):
+        if outline.has_exact_derivatives and not any((place - contact) ** 2 < SAME**2 for place in joints):
             sides = outline.derivatives(np.array([contact]), 3)
             upper, lower = (np.swapaxes(each[..., 0, :, :], -1, -2) for each in sides)
             return upper, lower

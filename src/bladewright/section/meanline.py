@@ -9,12 +9,17 @@ from numpy.typing import NDArray
 
 from bladewright.numerics.elementary import Array, concatenated
 from bladewright.nurbs.basis import Reals
+from bladewright.section.chord_map import Breakpoint
 from bladewright.section.chord_spline import by_abscissa
 
 UNIFORM_CUBIC = (
     np.array([[1.0, 4.0, 1.0, 0.0], [-3.0, 0.0, 3.0, 0.0], [3.0, -6.0, 3.0, 0.0], [-1.0, 3.0, -3.0, 1.0]]) / 6
 )
 """powers (rows) of the uniform cubic B-spline's four basis functions on a segment"""
+STRAIGHT = (0.10, 0.05)
+"""lengths of the straight ends of a mixed meanline at the leading and at the trailing edge [chords], as in T-Blade3"""
+STRAIGHT_AT = (0.1, 0.95)
+"""sigma of these ends in the map u(s): their chord fractions in a usual blade, where the map is then the identity"""
 
 
 class Meanline(ABC):
@@ -47,6 +52,16 @@ class Meanline(ABC):
     @abstractmethod
     def fourth(self, u: Array) -> Array:
         """The fourth derivative of v (..., m, k) there."""
+
+    @property
+    def kinks(self) -> tuple[Breakpoint, ...]:
+        """Those of the joints at which the second derivative jumps, so that both sides have kinks; mostly none."""
+        return ()
+
+    def of_first_section(self, u: Array) -> tuple[Array, Array, Array]:
+        """v and its first two derivatives (..., k) at u (..., k) of the first section."""
+        value, slope, bend, _ = self.derivatives(u)
+        return value[..., 0, :], slope[..., 0, :], bend[..., 0, :]
 
 
 def backward(places: Reals) -> NDArray[np.bool_]:
@@ -204,6 +219,14 @@ class MixedMeanline(Meanline):
     def smooth(self) -> int:
         return 1
 
+    @property
+    def kinks(self) -> tuple[Breakpoint, ...]:
+        first, last = self.joints[..., 0], self.joints[..., 1]
+        return (
+            Breakpoint(first, 1.0 - first, 1, STRAIGHT_AT[0]),
+            Breakpoint(last, STRAIGHT[1] * np.cos(self.angle_out), 1, STRAIGHT_AT[1]),
+        )
+
     def derivatives(self, u: Array) -> tuple[Array, Array, Array, Array]:
         low, high = self.joints[..., :1], self.joints[..., 1:]
         steep, flat = (np.tan(each)[..., None] for each in self.angles)
@@ -229,10 +252,6 @@ class MixedMeanline(Meanline):
     def fourth(self, u: Array) -> Array:
         steep, flat = self.angles
         return 0.0 * (u + (steep + flat)[..., None])
-
-
-STRAIGHT = (0.10, 0.05)
-"""lengths [chords] of the straight ends of a mixed meanline at the leading and the trailing edge"""
 
 
 def _segments(points: Array) -> Array:

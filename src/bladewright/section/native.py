@@ -3,7 +3,6 @@
 from collections.abc import Callable
 from dataclasses import dataclass
 from types import MappingProxyType
-from typing import Any, Protocol
 
 import numpy as np
 
@@ -14,9 +13,8 @@ from bladewright.nurbs.basis import Reals, basis, breaks, greville, knots_with_j
 from bladewright.nurbs.curve import Curve
 from bladewright.nurbs.transform import transformed
 from bladewright.section.arc_length import ArcLength
-from bladewright.section.laws import Span
 from bladewright.section.meanline import Meanline
-from bladewright.section.outline import Outline, Start
+from bladewright.section.outline import EdgeDerivatives, Outline
 from bladewright.section.section import Section
 
 DEGREE = 5
@@ -102,7 +100,7 @@ def _sides(outline: Outline, knots: Reals) -> tuple[Array, Array]:
     )
 
 
-def _interpolated(points: Array, sites: Reals, knots: Reals, start: Start, end: Start) -> Array:
+def _interpolated(points: Array, sites: Reals, knots: Reals, start: EdgeDerivatives, end: EdgeDerivatives) -> Array:
     """Control points (n, 2) through points (n - 6, 2) at the sites, with value and two derivatives at both ends."""
     first = _end_rows(start, 1.0, knots[DEGREE + 1], knots[DEGREE + 2])
     last = _end_rows(end, -1.0, 1.0 - knots[-DEGREE - 2], 1.0 - knots[-DEGREE - 3])[::-1]
@@ -112,7 +110,7 @@ def _interpolated(points: Array, sites: Reals, knots: Reals, start: Start, end: 
     return concatenated([known[:3], solved(matrix[:, 3:-3], right), known[3:]], axis=-2)
 
 
-def _end_rows(edge: Start, sign: float, near: float, far: float) -> list[Array]:
+def _end_rows(edge: EdgeDerivatives, sign: float, near: float, far: float) -> list[Array]:
     """The three control points at a clamped end, whose first two inner knots stand near and far from it."""
     point, slope, bend = (_single(each[..., None, :])[0] for each in edge)
     step = sign * slope * (near / DEGREE)
@@ -170,18 +168,6 @@ def _distance(a: Array, b: Array) -> Reals:
     return np.sqrt(dot(off, off))
 
 
-class Family(Protocol):
-    """A family's part: its sections along a span, each number of it a law."""
-
-    def outline(self, span: Span) -> Outline:
-        """The exact sections (..., m) at the places of the span, in chords, unstaggered."""
-        ...
-
-    def stagger(self, span: Span) -> Array:
-        """Angles (..., m) of the chord lines [rad]."""
-        ...
-
-
 def native_section(
     outline: Outline,
     knots: SectionKnots,
@@ -192,7 +178,7 @@ def native_section(
     span: float,
     plane: str,
     scale: Callable[[Array], Array],
-    meanline: Callable[[Array], tuple[Array, Array, Array]] | None,
+    meanline: Meanline | None,
 ) -> Section:
     """The section of an outline of shape () or (1,), staggered by `turn` (), `chord` () long, its edge at `shift` (2,).
 
@@ -215,23 +201,9 @@ def native_section(
         scale=scale,
         edges=(outline.leading_edge.kind, outline.trailing_edge.kind),
         knots=knots,
-        meanline=meanline,
+        meanline=None if meanline is None else meanline.of_first_section,
         outline=outline,
     )
-
-
-def meanline_of(part: Any, span: Span) -> Callable[[Array], tuple[Array, Array, Array]] | None:
-    """v and its first two derivatives (k,) by u (k,) of the first of a part's meanlines; None where it has none."""
-    found = getattr(part, "meanline", None)
-    if found is None:
-        return None
-    line: Meanline = found(span)
-
-    def derivatives(u: Array) -> tuple[Array, Array, Array]:
-        value, slope, bend, _ = line.derivatives(u)
-        return value[..., 0, :], slope[..., 0, :], bend[..., 0, :]
-
-    return derivatives
 
 
 def _faces(outline: Outline, upper: Curve, lower: Curve) -> dict[str, Curve]:

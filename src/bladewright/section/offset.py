@@ -11,9 +11,9 @@ from bladewright.numerics.elementary import Array
 from bladewright.nurbs.basis import Reals
 from bladewright.section.chord_spline import ChordSpline
 from bladewright.section.meanline import Meanline
-from bladewright.section.outline import Edge, Joint, Outline, Start
+from bladewright.section.outline import Edge, EdgeDerivatives, Joint, Outline
 from bladewright.section.power_series import Series, polynomial, variable
-from bladewright.section.thickness.law import Thickness
+from bladewright.section.thickness.law import EdgeKind, Thickness
 
 APART = 1e-9
 """distance by s below which two joints are one"""
@@ -80,12 +80,17 @@ class OffsetOutline(Outline):
             found += fixed_joints(self.thickness, self.multiplier.joints, 3)
         return np.array([joint.s for joint in merged_joints(found)])
 
+    @property
+    def has_exact_derivatives(self) -> bool:
+        """Not with a multiplier, which is not known to third order in closed form."""
+        return self.multiplier is None
+
     def derivatives(self, s: Reals, order: int) -> tuple[Array, Array]:
         """Points and derivatives by s (..., m, k, 2, order + 1) of both sides, exact; s rises, and order is 3 at most.
 
-        With a multiplier, those of the base class: it is not known to third order in closed form.
+        With a multiplier, those of the base class.
         """
-        if self.multiplier is not None:
+        if not self.has_exact_derivatives:
             return super().derivatives(s, order)
         upper, lower = self._series(s, order)
         return _differentiated(*upper), _differentiated(*lower)
@@ -102,9 +107,10 @@ class OffsetOutline(Outline):
         u = variable(t, order).derivatives()
         return np.stack(np.broadcast_arrays(u, values[..., : order + 1]), axis=-2)
 
-    def _edge(self, s: float, kind: str) -> Edge:
+    def _edge(self, s: float, kind: EdgeKind) -> Edge:
         upper, lower = self._series(np.array([s]), 2)
-        return Edge(kind=kind, upper=_start(*upper), lower=_start(*lower))  # type: ignore[arg-type]
+        starts = [EdgeDerivatives.of_side(_differentiated(*side)) for side in (upper, lower)]
+        return Edge(kind=kind, upper=starts[0], lower=starts[1])
 
     def _series(self, s: Reals, order: int) -> tuple[tuple[Series, Series], tuple[Series, Series]]:
         """Coordinates of both sides as series of s, the third order without a multiplier only."""
@@ -161,8 +167,3 @@ def _stacked(x: Array, y: Array) -> Array:
 def _differentiated(x: Series, y: Series) -> Array:
     """Derivatives (..., k, 2, order + 1)."""
     return np.stack(np.broadcast_arrays(x.derivatives(), y.derivatives()), axis=-2)
-
-
-def _start(x: Series, y: Series) -> Start:
-    found = _stacked(x.derivatives()[..., 0, :], y.derivatives()[..., 0, :])
-    return Start(found[..., 0, :], found[..., 1, :], found[..., 2, :])

@@ -13,12 +13,21 @@ STEP = 1e-4
 """step by s from an edge that tells a camber line with a speed there from one without"""
 
 
-class Start(NamedTuple):
-    """A side where it leaves an edge: value and derivatives by s (..., 2)."""
+class EdgeDerivatives(NamedTuple):
+    """A side at an edge: its point and first two derivatives by s, (..., 2) in the plane or (..., 3) in space."""
 
     point: Array
     first: Array
     second: Array
+
+    @classmethod
+    def of_side(cls, derivatives: Array) -> "EdgeDerivatives":
+        """Those of a side from what `Outline.derivatives` gives at the edge alone, (..., 1, 2, 3)."""
+        return cls(*(derivatives[..., 0, :, order] for order in range(3)))
+
+    def mirrored(self) -> "EdgeDerivatives":
+        """The other side's at a round edge: opposite first, equal second derivatives."""
+        return EdgeDerivatives(self.point, -self.first, self.second)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -27,8 +36,13 @@ class Edge:
 
     kind: Literal["round", "sharp", "blunt"]
     """round: opposite first and equal second derivatives; sharp: one point; blunt: two points and a straight face"""
-    upper: Start
-    lower: Start
+    upper: EdgeDerivatives
+    lower: EdgeDerivatives
+
+    @classmethod
+    def rounded(cls, upper: EdgeDerivatives) -> "Edge":
+        """A round edge by its upper side."""
+        return cls(kind="round", upper=upper, lower=upper.mirrored())
 
 
 class Joint(NamedTuple):
@@ -79,6 +93,11 @@ class Outline(ABC):
     def breaks(self) -> Reals:
         """Places s (j,) inside (0, 1) of a single section where a side is not analytic; `joints` hold for all."""
         return np.array([joint.s for joint in self.joints])
+
+    @property
+    def has_exact_derivatives(self) -> bool:
+        """Whether `derivatives` are those of a closed form, for many sections at once."""
+        return False
 
     def derivatives(self, s: Reals, order: int) -> tuple[Array, Array]:
         """Points and derivatives by s (k, 2, order + 1) of both sides of a single section at s (k,), beside the breaks.

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, fields
-from typing import Any, Literal, get_args, get_type_hints
+from typing import Literal, get_args, get_type_hints
 
 import numpy as np
 
@@ -12,8 +12,9 @@ from bladewright.errors import DesignError
 from bladewright.nurbs.basis import Reals
 from bladewright.section import checks
 from bladewright.section.crossing import check_outline, closed_outlines, touching
+from bladewright.section.family import SectionFamily
 from bladewright.section.laws import Span
-from bladewright.section.native import Family, SectionKnots, knots_for, meanline_of, native_section
+from bladewright.section.native import SectionKnots, knots_for, native_section
 from bladewright.section.section import Section
 from bladewright.section.unified_limits import check_labels
 
@@ -34,7 +35,7 @@ class PlanarSection(Design):
     """axial position of the leading edge [length]"""
     leading_edge_y: float = parameter("length", default=0.0)
     """tangential position of the leading edge [length]"""
-    section: Any
+    section: SectionFamily
     """the family's parameters, each a number"""
     span: float | None = parameter("length", default=None)
     """height of the prismatic blade that the section becomes as a solid; none: a section only [length]"""
@@ -56,7 +57,7 @@ class PlanarSection(Design):
             if getattr(self, name) is not None:
                 checks.between(name, getattr(self, name), 0.0, float("inf"), "it must be positive")
         checks.between("tolerance", self.tolerance, 1e-13, 1e-2, "it must lie above 1e-13 and below 0.01")
-        if not isinstance(self.section, Part):
+        if not isinstance(self.section, SectionFamily):
             raise DesignError(f"section is {self.section!r}: the family's parameters are needed")
         _check_plain(self.section, "section")
 
@@ -65,10 +66,9 @@ class PlanarSection(Design):
 
         `knots` are those to hold, a section's own `knots`.
         """
-        family: Family = self.section
         span, metre = Span(np.zeros(1)), checks.UNITS[self.length_unit]
-        outline = family.outline(span)
-        turn = family.stagger(span)[..., 0]
+        outline = self.section.outline(span)
+        turn = self.section.stagger(span)[..., 0]
         check_outline(outline, [""])
         if self.pitch is not None:
             rotation = np.array([[np.cos(turn), -np.sin(turn)], [np.sin(turn), np.cos(turn)]])
@@ -82,7 +82,7 @@ class PlanarSection(Design):
             span=0.0,
             plane="x-y",
             scale=np.ones_like,
-            meanline=meanline_of(family, span),
+            meanline=self.section.meanline(span),
         )
 
     def _check_pitch(self, outlines: Reals, pitch: float) -> None:

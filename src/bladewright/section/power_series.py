@@ -100,16 +100,6 @@ def variable(values: Array, order: int, slope: float = 1.0) -> Series:
     return Series([values, np.full(np.shape(values), slope), *[zeros] * order][: order + 1])
 
 
-def sine(angle: Series) -> Series:
-    """The sine of a series."""
-    sines, cosines = [np.sin(angle.value)], [np.cos(angle.value)]
-    steps = [power * each for power, each in enumerate(angle.coefficients)]
-    for k in range(1, angle.order + 1):
-        sines.append(_total([steps[i] * cosines[k - i] for i in range(1, k + 1)]) / k)
-        cosines.append(-_total([steps[i] * sines[k - i] for i in range(1, k + 1)]) / k)
-    return Series(sines)
-
-
 def polynomial(coefficients: Sequence[Array], at: Series) -> Series:
     """c0 + c1 x + ... by Horner's rule at a series."""
     value: Series | Array = coefficients[-1]

@@ -7,13 +7,14 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from bladewright.designs import Law, Part, parameter
+from bladewright.designs import Law, parameter
 from bladewright.errors import DesignError
 from bladewright.numerics.elementary import Array, degrees, radians
 from bladewright.nurbs.basis import Reals
 from bladewright.section import checks
+from bladewright.section.family import SectionFamily
 from bladewright.section.laws import Span
-from bladewright.section.outline import Edge, Joint, Outline, Start
+from bladewright.section.outline import Edge, EdgeDerivatives, Joint, Outline
 from bladewright.section.planar import PlanarSection
 
 EDGE = 0.1
@@ -53,7 +54,7 @@ class WedgeOutline(Outline):
         speed = self.face / (1.0 - FACE)
         zero = 0.0 * speed
         point, second = np.stack([1.0 + zero, zero], axis=-1), np.stack([zero, zero], axis=-1)
-        upper, lower = (Start(point, np.stack([zero, sign * speed], axis=-1), second) for sign in (-1.0, 1.0))
+        upper, lower = (EdgeDerivatives(point, np.stack([zero, sign * speed], axis=-1), second) for sign in (-1.0, 1.0))
         return Edge(kind="round", upper=upper, lower=lower)
 
     @property
@@ -133,7 +134,7 @@ def monotone(t: Reals, slope_in: Array, slope_out: Array) -> Array:
 
 
 @dataclass(frozen=True, kw_only=True)
-class WedgeDiffuser(Part):
+class WedgeDiffuser(SectionFamily):
     """A vane with straight sides, a circular leading edge and circular trailing-edge corners, all in touch.
 
     With a wedge angle the vane is a triangle with three rounded corners: a back face stands across the chord line at
@@ -203,6 +204,6 @@ def _round(abscissa: float, radius: Array, turn: Array, inward: float) -> Edge:
     point = np.stack([abscissa + zero, zero], axis=-1)
     second = np.stack([inward * radius * turn**2, zero], axis=-1)
     upper, lower = (
-        Start(point, np.stack([zero, sign * inward * radius * turn], axis=-1), second) for sign in (1.0, -1.0)
+        EdgeDerivatives(point, np.stack([zero, sign * inward * radius * turn], axis=-1), second) for sign in (1.0, -1.0)
     )
     return Edge(kind="round", upper=upper, lower=lower)

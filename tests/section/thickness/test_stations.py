@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from bladewright.section.thickness.piecewise import Breakpoint, ChordMap
+from bladewright.section.chord_map import Breakpoint, ChordMap
 
 S = np.linspace(0.0, 1.0, 401)
 

@@ -7,7 +7,6 @@ from typing import NamedTuple
 import numpy as np
 
 from bladewright.blade.exact.family_sections import FamilySections, FlowPathSections
-from bladewright.blade.exact.section_stack import EdgeDerivatives
 from bladewright.blade.flow_path.blade_streamlines import BladeStreamlines, blade_streamlines
 from bladewright.blade.flow_path.meridional_curve import real_first
 from bladewright.blade.flow_path.stream_surface_map import DiscreteConformal, StreamSurfaceMap
@@ -16,6 +15,7 @@ from bladewright.errors import DesignError
 from bladewright.numerics.elementary import Array, angle, concatenated, dot
 from bladewright.nurbs.basis import Reals
 from bladewright.section.crossing import FINE
+from bladewright.section.outline import EdgeDerivatives
 
 STEPS = 60
 """Newton's steps after which no crossing is expected; mostly five do"""

@@ -6,13 +6,13 @@ from functools import cached_property
 
 import numpy as np
 
-from bladewright.blade.exact.section_stack import EdgeDerivatives, SectionStack
+from bladewright.blade.exact.section_stack import SectionStack
 from bladewright.blade.flow_path.blade_streamlines import BladeStreamlines
 from bladewright.blade.flow_path.meridional_curve import real_first
 from bladewright.numerics.elementary import Array
 from bladewright.nurbs.basis import Reals
 from bladewright.section.crossing import closed_outlines
-from bladewright.section.outline import Outline, Start
+from bladewright.section.outline import EdgeDerivatives, Outline
 from bladewright.section.smooth_camber import SmoothCamber, smooth_camber
 
 
@@ -119,7 +119,7 @@ class FamilySections(FlowPathSections):
                 found[name] = self.in_space(self.plane.placed(upper + w[:, None] * (lower - upper)))
         return found
 
-    def _row(self, end: int, start: Start) -> EdgeDerivatives:
+    def _row(self, end: int, start: EdgeDerivatives) -> EdgeDerivatives:
         point = self.plane.placed(start.point[..., None, :])
         first, second = (self.plane.turned(each[..., None, :])[..., 0, :] for each in (start.first, start.second))
         u: Array = np.array([float(end)])

@@ -13,7 +13,7 @@ from bladewright.blade.exact.unified import UnifiedSections
 from bladewright.errors import DesignError
 from bladewright.numerics.elementary import Array
 from bladewright.section.laws import Span
-from bladewright.section.native import knots_for, meanline_of, native_section
+from bladewright.section.native import knots_for, native_section
 from bladewright.section.section import Section
 from bladewright.section.smoothness import Smoothness, smoothness
 from bladewright.section.unified_sides import camber_curve, side_curve
@@ -70,7 +70,7 @@ def _of_family(exact: ExactBlade, v: float, scale: Callable[[Array], Array]) -> 
         span=v,
         plane=exact.mapping.plane,
         scale=scale,
-        meanline=meanline_of(part, Span(at)),
+        meanline=part.meanline(Span(at)),
     )
 
 

@@ -5,11 +5,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from bladewright.blade.exact.family_sections import FamilySections, FlowPathSections
-from bladewright.blade.exact.section_stack import EdgeDerivatives, Plane
+from bladewright.blade.exact.section_stack import Plane
 from bladewright.blade.flow_path.meridional_curve import real_first
 from bladewright.errors import DesignError
 from bladewright.numerics.elementary import Array, cross, dot
 from bladewright.nurbs.basis import Reals
+from bladewright.section.outline import EdgeDerivatives
 
 ENDS = np.array([0.0, 1.0])
 JUDGED = np.linspace(0.0, 1.0, 41)

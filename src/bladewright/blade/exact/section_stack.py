@@ -2,25 +2,14 @@
 
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
-from typing import NamedTuple, Protocol, Self
+from typing import Protocol, Self
 
 import numpy as np
 
 from bladewright.blade.flow_path.stream_surface_map import Conformal, StreamSurfaceMap, Taylor
 from bladewright.numerics.elementary import Array, concatenated, unit
 from bladewright.nurbs.basis import Reals
-
-
-class EdgeDerivatives(NamedTuple):
-    """A side at its edge, in space: points and derivatives by s along the side (..., m, 3)."""
-
-    point: Array
-    first: Array
-    second: Array
-
-    def mirrored(self) -> "EdgeDerivatives":
-        """The other side's at a round edge: opposite first, equal second derivatives."""
-        return EdgeDerivatives(self.point, -self.first, self.second)
+from bladewright.section.outline import EdgeDerivatives
 
 
 class Lines(Protocol):

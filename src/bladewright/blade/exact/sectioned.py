@@ -27,7 +27,6 @@ from bladewright.blade.native.knots import DEGREE
 from bladewright.errors import DesignError
 from bladewright.numerics.elementary import Array, radians
 from bladewright.nurbs.basis import Reals
-from bladewright.section.camber_angle import CamberAngle
 from bladewright.section.checks import UNITS
 from bladewright.section.crossing import check_outline
 from bladewright.section.laws import DEGREE as LAW_DEGREE
@@ -71,14 +70,14 @@ def placed_sections(design: SectionedBlade, place: Place, mapping: StreamSurface
 def family_sections(design: SectionedBlade, span: Span, lines: BladeStreamlines) -> tuple[Outline, Array]:
     """The family's sections in chords and their stagger (..., m) [rad] on stream lines."""
     part = design.section
-    if not (isinstance(part, CamberAngle) and lines.mapping.plane == "m'-theta"):
+    if lines.mapping.plane != "m'-theta":
         return part.outline(span), part.stagger(span)
 
     def meridional(fractions: Reals) -> Array:
         u = lines.u_at(lines.extents()[..., None] * fractions)
         return lines.meridional(u) / lines.lengths[..., None]
 
-    return part.outline(span, meridional), part.stagger(span, meridional)
+    return part.on_stream_surfaces(span, meridional)
 
 
 def _stacked(design: SectionedBlade, place: StackingAxis, mapping: StreamSurfaceMap, span: Span) -> Found:
@@ -95,7 +94,7 @@ def _stacked(design: SectionedBlade, place: StackingAxis, mapping: StreamSurface
 
     part = design.section
     outline, stagger = part.outline(span), part.stagger(span)
-    if not (isinstance(part, CamberAngle) and mapping.plane == "m'-theta"):
+    if not (part.depends_on_stream_surface and mapping.plane == "m'-theta"):
         return laid(outline, stagger)
 
     def again(lines: BladeStreamlines) -> tuple[Outline, Array]:

@@ -10,7 +10,7 @@ from bladewright.blade.exact.clearance import Clearance, clearance_of, cleared
 from bladewright.blade.exact.exact_blade import ExactBlade, WallMeridian
 from bladewright.blade.exact.meridional_extent import ChannelExtent
 from bladewright.blade.exact.meridional_view import MeridionalView, channel_view
-from bladewright.blade.exact.section_stack import EdgeDerivatives, SectionStack
+from bladewright.blade.exact.section_stack import SectionStack
 from bladewright.blade.flow_path.channel import TransfiniteChannel, transfinite_channel
 from bladewright.blade.flow_path.meridional_curve import real_first
 from bladewright.blade.flow_path.stream_surface_map import StreamSurfaceMap, mapping_of
@@ -23,6 +23,7 @@ from bladewright.nurbs.domain import extended
 from bladewright.section.camber import camber_line, camber_points
 from bladewright.section.checks import UNITS
 from bladewright.section.laws import Span
+from bladewright.section.outline import EdgeDerivatives
 from bladewright.section.unified_limits import check_edges
 from bladewright.section.unified_sides import PlaneSections, matched, plane_sections, sample_places, side
 

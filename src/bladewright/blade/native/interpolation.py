@@ -9,12 +9,13 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bladewright.blade.exact.section_stack import EdgeDerivatives, SectionStack
+from bladewright.blade.exact.section_stack import SectionStack
 from bladewright.blade.native.knots import DEGREE, Knots
 from bladewright.numerics.elementary import Array, concatenated
 from bladewright.numerics.solving import solved
 from bladewright.nurbs.basis import Reals, basis, greville
 from bladewright.nurbs.surface import Surface
+from bladewright.section.outline import EdgeDerivatives
 
 
 def native_sides(stations: SectionStack, knots: Knots) -> tuple[Array, Array]:

@@ -5,7 +5,6 @@ from typing import Any, final
 
 import numpy as np
 
-from bladewright.blade.exact.section_stack import EdgeDerivatives
 from bladewright.blade.native.interpolation import interpolated_along_u
 from bladewright.derivatives.complex_step import STEP
 from bladewright.designs import Design
@@ -18,7 +17,7 @@ from bladewright.nurbs.curve import Curve
 from bladewright.section.checks import UNITS
 from bladewright.section.laws import Span
 from bladewright.section.native import DEGREE, side_knots_for
-from bladewright.section.outline import Edge
+from bladewright.section.outline import Edge, EdgeDerivatives
 from bladewright.section.planar import PlanarSection
 
 SINGLE_SECTION = Span(np.zeros(1))

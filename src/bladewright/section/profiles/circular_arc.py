@@ -15,7 +15,7 @@ from bladewright.nurbs.basis import Reals
 from bladewright.section import checks
 from bladewright.section.camber import turned_left
 from bladewright.section.laws import Span
-from bladewright.section.outline import Edge, Joint, Outline, Start
+from bladewright.section.outline import Edge, EdgeDerivatives, Joint, Outline
 from bladewright.section.profiles.profile import THICKNESS, Profile
 
 EDGE = 0.12
@@ -208,7 +208,7 @@ class ArcOutline(Outline):
                 growth = (6.0 * arc.length / step - 4.0 * speed - 2.0 * other) / step * (-1.0 if end else 1.0)
             bend = (speed**2 * arc.turning / arc.length)[..., None] * turned_left(along)
             first, second = speed[..., None] * along, growth[..., None] * along + bend
-            starts.append(Start(point + 0.0 * first, first, second))
+            starts.append(EdgeDerivatives(point + 0.0 * first, first, second))
         return Edge(kind="sharp" if self.radii[end] is None else "round", upper=starts[0], lower=starts[1])
 
 

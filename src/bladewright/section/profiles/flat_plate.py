@@ -13,7 +13,7 @@ from bladewright.numerics.elementary import Array
 from bladewright.nurbs.basis import Reals
 from bladewright.section import checks
 from bladewright.section.laws import Span
-from bladewright.section.outline import Edge, Joint, Outline, Start
+from bladewright.section.outline import Edge, EdgeDerivatives, Joint, Outline
 from bladewright.section.profiles.profile import THICKNESS, Profile
 
 EDGE = 0.15
@@ -148,7 +148,7 @@ class PlateOutline(Outline):
             else:
                 turn = 0.5 * np.pi * NOSE / EDGE
                 rows = [(zero + end, zero), (zero, sense * sign * self.half * turn), (sense * size * turn**2, zero)]
-            starts.append(Start(*(np.stack(np.broadcast_arrays(*row), axis=-1) for row in rows)))
+            starts.append(EdgeDerivatives(*(np.stack(np.broadcast_arrays(*row), axis=-1) for row in rows)))
         return Edge(kind="blunt" if size is None else "round", upper=starts[0], lower=starts[1])
 
 

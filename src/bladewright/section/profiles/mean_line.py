@@ -4,101 +4,24 @@ from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Literal, NamedTuple
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
 from bladewright.numerics.elementary import Array
 from bladewright.nurbs.basis import Reals
-from bladewright.section.outline import Edge, Joint, Outline, Start
+from bladewright.section.chord_map import JOINT, ChordPlace, ClusteredChordMap
+from bladewright.section.outline import Edge, EdgeDerivatives, Joint, Outline
 from bladewright.section.power_series import (
     Series,
     composed,
     differentiated,
-    hyperbolic_tangent,
     polynomial,
     relative_exponential,
     relative_logarithm,
-    sine_and_cosine,
     variable,
 )
-
-JOINT = 0.5
-"""s of the mean line's joint, where it has one"""
-
-
-class ProfilePlace(NamedTuple):
-    """Chord fractions as power series of s."""
-
-    root: Series
-    """sqrt(x)"""
-    x: Series
-    rest: Series
-    """1 - x, exact next to the trailing edge"""
-    end_root: Series | None
-    """sqrt(1 - x), where the trailing edge is round"""
-
-
-@dataclass(frozen=True, kw_only=True)
-class ProfileChordMap:
-    """The map from s to x, the same in form for all sections.
-
-    sqrt(x) is analytic and odd about s = 0 but for its second derivative, and so is sqrt(1 - x) about s = 1 where the
-    trailing edge is round; elsewhere x runs into s = 1 with a slope.
-    """
-
-    round_end: bool
-    gathered_in: float
-    """share of the steps of s drawn towards the leading edge, 0 to below 1"""
-    gathered_out: float
-    """the same at a round trailing edge"""
-    crowded: float
-    """k of the hyperbolic tangent that crowds the steps exponentially at a trailing edge that is not round; 0: none"""
-    bend: float
-    """-a1 / a0 of a thickness a0 sqrt(x) + a1 x + ...: with it the thickness has no second derivative at s = 0"""
-    joint: Array | None
-    """x (..., 1) that stands at s = `JOINT`"""
-
-    def at(self, s: Reals, order: int) -> ProfilePlace:
-        """Places at s (k,) with their derivatives up to an order."""
-        sine, cosine = sine_and_cosine(self._phase(s, order))
-        if self.round_end:
-            root, before = sine, cosine * cosine
-        else:
-            # 1 - cos = 2 sin^2 of half the phase, and 1 less that is the cosine
-            root, _ = sine_and_cosine(self._phase(s, order) * 0.5)
-            root, before = root * np.sqrt(2.0), cosine
-        ratio: Array | float = 1.0 if self.joint is None else self._ratio(self.joint)
-        scale = root * root + before * ratio
-        first = root / scale.sqrt()
-        lift = first * first * self.bend + 1.0
-        x_root = first * (first * self.bend + 1.0) / lift
-        kept = ratio / scale * (x_root + 1.0) / (first + 1.0) / lift
-        end = cosine * kept.sqrt() if self.round_end else None
-        return ProfilePlace(root=x_root, x=x_root * x_root, rest=before * kept, end_root=end)
-
-    def _phase(self, s: Reals, order: int) -> Series:
-        """The angle that runs from 0 to pi / 2; steps gathered at the edges, odd about them."""
-        angle = variable(s, order) * np.pi
-        once, _ = sine_and_cosine(angle)
-        twice, _ = sine_and_cosine(angle * 2.0)
-        both = twice * 0.25 * (self.gathered_in + self.gathered_out)
-        drawn = both + once * 0.5 * (self.gathered_in - self.gathered_out)
-        phase = (angle - drawn) * 0.5
-        if not self.crowded:
-            return phase
-        return hyperbolic_tangent(phase * (2.0 / np.pi * self.crowded)) * (0.5 * np.pi / np.tanh(self.crowded))
-
-    def _ratio(self, joint: Array) -> Array:
-        """What brings the joint to its s: a projective map of x."""
-        middle = float(self._phase(np.array([JOINT]), 0).value[0])
-        at = np.sin(middle) ** 2 if self.round_end else 1.0 - np.cos(middle)
-        root = np.sqrt(joint)
-        before_bend = 2.0 * root / (1.0 + np.sqrt(1.0 + 4.0 * self.bend * (1.0 - root) * root))
-        square = before_bend * before_bend
-        ratio: Array = at * (1.0 - square) / (square * (1.0 - at))
-        return ratio
 
 
 class ThicknessForm(ABC):
@@ -156,7 +79,7 @@ class ChebyshevForm(ThicknessForm):
 
 TrailingEdge = Literal["sharp", "blunt", "round"]
 
-GATHERED = 0.9
+END_CLUSTERING = 0.9
 """share of the steps of s drawn towards an edge that is small"""
 FAR = 0.99
 """1 - x from which on a round trailing edge is not felt"""
@@ -186,27 +109,27 @@ class MeanLineOutline(Outline):
     mean_line: MeanLine
     thickness: ThicknessForm
     end: TrailingEdge
-    gathered: float = 0.0
+    clustering: float = 0.0
     """share of the steps of s drawn towards the leading edge"""
-    crowded: float = 0.0
+    stretching: float = 0.0
     """how the steps crowd at a sharp or blunt trailing edge"""
 
     @cached_property
-    def _places(self) -> ProfileChordMap:
-        return ProfileChordMap(
+    def _chord_map(self) -> ClusteredChordMap:
+        return ClusteredChordMap(
             round_end=self.end == "round",
-            gathered_in=self.gathered,
-            gathered_out=GATHERED if self.end == "round" else 0.0,
-            crowded=0.0 if self.end == "round" else self.crowded,
+            clustering_in=self.clustering,
+            clustering_out=END_CLUSTERING if self.end == "round" else 0.0,
+            stretching=0.0 if self.end == "round" else self.stretching,
             bend=self.thickness.bend,
             joint=self.mean_line.joint,
         )
 
-    def _half(self, place: ProfilePlace) -> Series:
-        half = self.thickness.half(place.root)
-        if place.end_root is None:
+    def _half(self, place: ChordPlace) -> Series:
+        half = self.thickness.half(place.leading_root())
+        if place.rest_root is None:
             return half
-        return half * place.end_root * composed(self._cap(place.rest), place.rest).sqrt()
+        return half * place.rest_root * composed(self._cap(place.rest), place.rest).sqrt()
 
     def _cap(self, rest: Series) -> Series:
         """(1 - x^n) / (1 - x) and its derivatives by 1 - x: half the thickness there, as far as they are asked for."""
@@ -242,14 +165,14 @@ class MeanLineOutline(Outline):
 
     def _sides(self, s: Reals, order: int) -> list[Array]:
         """Points and their derivatives by s, (..., k, 2, order + 1), of both sides."""
-        place = self._places.at(s, order)
-        ordinate, rise = self._line(place.x, s)
+        place = self._chord_map.at(s, order)
+        ordinate, rise = self._line(place.u, s)
         half = self._half(place)
         across = half / (rise * rise + 1.0).sqrt()
         along = across * rise
         sides = []
         for sign in (1.0, -1.0):
-            pair = [(place.x - along * sign).derivatives(), (ordinate + across * sign).derivatives()]
+            pair = [(place.u - along * sign).derivatives(), (ordinate + across * sign).derivatives()]
             sides.append(np.stack(np.broadcast_arrays(*pair), axis=-2))
         return sides
 
@@ -260,7 +183,7 @@ class MeanLineOutline(Outline):
 
     def camber(self, s: Reals) -> Array:
         """Points (..., len(s), 2) of the mean line."""
-        x = self._places.at(s, 0).x
+        x = self._chord_map.at(s, 0).u
         pair = np.broadcast_arrays(x.value, self._line(x, s)[0].value)
         return np.stack(pair, axis=-1)
 
@@ -280,5 +203,5 @@ class MeanLineOutline(Outline):
         return () if self.mean_line.joint is None else (Joint(JOINT, self.mean_line.joint_derivatives),)
 
     def _edge(self, s: float, kind: TrailingEdge) -> Edge:
-        starts = [Start(*(side[..., 0, :, k] for k in range(3))) for side in self._sides(np.array([s]), 2)]
-        return Edge(kind=kind, upper=starts[0], lower=starts[1])
+        upper, lower = (EdgeDerivatives.of_side(side) for side in self._sides(np.array([s]), 2))
+        return Edge(kind=kind, upper=upper, lower=lower)

@@ -21,7 +21,7 @@ ROUNDING = 0.005
 """distance e over which ln|u| is rounded to ln(u^2 + e^2) / 2: the mean line begins with its slope at 0.005 chords"""
 SHARE = 0.08
 """by how much of 1 - a the rounding at x = a, and of the term in 1 - x, is wider"""
-GATHERED, CROWDED = 0.8, 3.5
+CLUSTERING, STRETCHING = 0.8, 3.5
 """how the steps of s are drawn to the edges, where the mean line bends: towards a nose, and a sharp or blunt edge"""
 OWN_END = 0.01
 FORMS: dict[str, tuple[tuple[float, ...], ...]] = {
@@ -102,14 +102,14 @@ class Naca6(PublishedProfile):
                 end=0.5 * thickness * self.end_share(span, OWN_END),
             ),
             end=self.trailing_edge,
-            gathered=gathered(self.trailing_edge),
-            crowded=CROWDED,
+            clustering=clustering(self.trailing_edge),
+            stretching=STRETCHING,
         )
 
 
-def gathered(end: TrailingEdge) -> float:
+def clustering(end: TrailingEdge) -> float:
     """Share of the steps drawn towards the nose, more where crowding at the trailing edge thins them out."""
-    return GATHERED if end == "round" else 1.0 - (1.0 - GATHERED) / CROWDED
+    return CLUSTERING if end == "round" else 1.0 - (1.0 - CLUSTERING) / STRETCHING
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -11,7 +11,7 @@ from bladewright.designs import Law, parameter
 from bladewright.section.laws import Span
 from bladewright.section.outline import Outline
 from bladewright.section.profiles.mean_line import ChebyshevForm, MeanLineOutline
-from bladewright.section.profiles.naca6 import CROWDED, LoadedLine, gathered
+from bladewright.section.profiles.naca6 import STRETCHING, LoadedLine, clustering
 from bladewright.section.profiles.profile import PublishedProfile
 
 FORM = (
@@ -50,6 +50,6 @@ class Naca65(PublishedProfile):
                 end=0.5 * thickness * self.end_share(span, OWN_END),
             ),
             end=self.trailing_edge,
-            gathered=gathered(self.trailing_edge),
-            crowded=CROWDED,
+            clustering=clustering(self.trailing_edge),
+            stretching=STRETCHING,
         )

@@ -9,7 +9,7 @@ from bladewright.numerics.elementary import Array, dot, magnitude
 from bladewright.numerics.roots import bracketed_root
 from bladewright.nurbs.basis import Reals
 from bladewright.section.offset import merged_joints
-from bladewright.section.outline import Edge, Joint, Outline, Start
+from bladewright.section.outline import Edge, EdgeDerivatives, Joint, Outline
 from bladewright.section.power_series import Series, polynomial, variable
 from bladewright.section.profiles.contour import Contour
 from bladewright.section.profiles.quintic_spline import QuinticSpline
@@ -84,6 +84,10 @@ class PointsOutline(Outline):
             for side in self._sides
         )
         return upper, lower
+
+    @property
+    def has_exact_derivatives(self) -> bool:
+        return True
 
     def derivatives(self, s: Reals, order: int) -> tuple[Array, Array]:
         """Points and derivatives by s (..., k, 2, order + 1) of both sides, exact."""
@@ -227,9 +231,5 @@ class PointsOutline(Outline):
         return [Joint(float(row[0]), 4) for row in rows.T if np.ptp(row) <= APART]
 
     def _edge(self, s: float, end: int) -> Edge:
-        starts = []
-        for side in self._sides:
-            x, y = (each.derivatives() for each in self._laid(side, np.array([s]), 2))
-            both = np.stack(np.broadcast_arrays(x, y), axis=-1)[..., 0, :, :]
-            starts.append(Start(*(both[..., k, :] for k in range(3))))
-        return Edge(kind=self.contour.kinds[end], upper=starts[0], lower=starts[1])
+        upper, lower = (EdgeDerivatives.of_side(side) for side in self.derivatives(np.array([s]), 2))
+        return Edge(kind=self.contour.kinds[end], upper=upper, lower=lower)

@@ -2,24 +2,24 @@
 
 from __future__ import annotations
 
-from abc import ABC, abstractmethod
+from abc import ABC
 from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import ClassVar
 
 import numpy as np
 
-from bladewright.designs import Law, Part, parameter
+from bladewright.designs import Law, parameter
 from bladewright.errors import DesignError
 from bladewright.numerics.elementary import Array, radians
 from bladewright.section import checks
+from bladewright.section.family import SectionFamily
 from bladewright.section.laws import Span
-from bladewright.section.outline import Outline
 from bladewright.section.profiles.mean_line import TrailingEdge
 
 
 @dataclass(frozen=True, kw_only=True)
-class Profile(Part, ABC):
+class Profile(SectionFamily, ABC):
     """Base of the kinds of profiles: each is one final class with a `kind` by which design files choose it."""
 
     LIMITS: ClassVar[dict[str, tuple[float, float, str]]] = {}
@@ -33,10 +33,6 @@ class Profile(Part, ABC):
         for name, (low, high, what) in limits.items():
             object.__setattr__(self, name, checks.law(name, getattr(self, name)))
             checks.between(name, getattr(self, name), low, high, what)
-
-    @abstractmethod
-    def outline(self, span: Span) -> Outline:
-        """The exact sections (..., m) at the places of the span, in chords, unstaggered."""
 
     def stagger(self, span: Span) -> Array:
         """Angles (..., m) of the chord lines [rad]."""

@@ -1,6 +1,7 @@
 """What a section by suction and pressure side refuses: parameters out of range, edges and sides that do not fit."""
 
-from typing import TYPE_CHECKING, Any
+from collections.abc import Mapping
+from typing import Any
 
 import numpy as np
 
@@ -11,10 +12,6 @@ from bladewright.section import checks
 from bladewright.section.laws import Span
 from bladewright.section.suction_pressure.edges import MAX_OPENING, Continuity, EdgePoints, opening
 from bladewright.section.suction_pressure.side import DEGREE, End, Side, pace
-
-if TYPE_CHECKING:
-    from bladewright.section.suction_pressure.part import SuctionPressure
-
 
 ANGLES = ("stagger_angle", "metal_angle_in", "metal_angle_out")
 EDGES = ("leading_edge", "trailing_edge")
@@ -28,31 +25,31 @@ TANGENTS = ("suction_tangent_in", "suction_tangent_out", "pressure_tangent_in", 
 POINTS = ("suction_heights", "suction_places", "pressure_heights", "pressure_thickness", "pressure_places")
 
 
-def checked(part: "SuctionPressure") -> dict[str, Any]:
-    """Its fields as laws and tuples of numbers; raises DesignError where one is out of its range."""
+def checked(given: Mapping[str, Any]) -> dict[str, Any]:
+    """The fields of a part as laws and tuples of numbers; raises DesignError where one is out of its range."""
     found: dict[str, Any] = {}
     for name in ANGLES:
-        found[name] = checks.law(name, getattr(part, name))
+        found[name] = checks.law(name, given[name])
         checks.between(name, found[name], -90.0, 90.0, "an angle must lie between -90 and 90 deg")
     for name, (low, high, closed, what) in ((f"{edge}_{k}", RANGES[k]) for edge in EDGES for k in RANGES):
-        found[name] = checks.law(name, getattr(part, name))
+        found[name] = checks.law(name, given[name])
         checks.between(name, found[name], low, high, what, closed=closed)
     for name in TANGENTS:
-        if getattr(part, name) is not None or name.startswith("suction"):
-            found[name] = checks.law(name, getattr(part, name))
+        if given[name] is not None or name.startswith("suction"):
+            found[name] = checks.law(name, given[name])
             what = "it must lie above 0 and below 10 chords, along the tangent from the corner"
             checks.between(name, found[name], 0.0, 10.0, what)
-    checks.choice("suction_side", part.suction_side, ("upper", "lower"))
-    checks.choice("edges", part.edges, ("C1", "C2"))
-    checks.choice("skeleton", part.skeleton, ("chord", "pseudo"))
+    checks.choice("suction_side", given["suction_side"], ("upper", "lower"))
+    checks.choice("edges", given["edges"], ("C1", "C2"))
+    checks.choice("skeleton", given["skeleton"], ("chord", "pseudo"))
     for name in POINTS:
-        value = getattr(part, name)
+        value = given[name]
         empty = checks.is_sequence(value) and len(value) == 0
         found[name] = () if empty else checks.chordwise(name, value)
     _check_counts(found)
     for side, count in (("suction", "suction_heights"), ("pressure", _pressure(found))):
         name = f"{side}_knots"
-        found[name] = _knots(name, getattr(part, name), len(found[count]), count)
+        found[name] = _knots(name, given[name], len(found[count]), count)
     return found
 
 
@@ -155,19 +152,19 @@ def check_pace(name: str, side: Side, span: Span) -> None:
             )
 
 
-def check_crossing(part: "SuctionPressure", upper: Side, lower: Side, span: Span) -> None:
-    """Refuse sides of which the upper is not on the left of the lower."""
+def check_crossing(upper: Side, lower: Side, span: Span, *, suction_side: str, by_thickness: bool) -> None:
+    """Refuse sides of which the upper is not on the left of the lower; for the message, what was given of them."""
     one, other = (np.real(side.points(CHECKED_AT)) for side in (upper, lower))
     across, middle = one - other, 0.5 * (one + other)
     parted = cross2(np.diff(middle, axis=-2), 0.5 * (across[..., 1:, :] + across[..., :-1, :]))
     if np.any(parted <= 0.0):
         at = _worst(np.max(-parted, axis=-1))
         place = float(CHECKED_AT[int(np.argmin(parted[at]))])
-        pressure = "pressure_thickness" if part.pressure_thickness else "pressure_heights"
-        gap = "raise pressure_thickness" if part.pressure_thickness else f"part suction_heights and {pressure}"
+        pressure = "pressure_thickness" if by_thickness else "pressure_heights"
+        gap = "raise pressure_thickness" if by_thickness else f"part suction_heights and {pressure}"
         raise DesignError(
             f"suction_heights and {pressure}: the two sides cross{_where(at, span)} near {place:.2f} of the way from "
-            f"leading to trailing edge (suction_side is the {part.suction_side} one); {gap} there, or lower an edge "
+            f"leading to trailing edge (suction_side is the {suction_side} one); {gap} there, or lower an edge "
             "radius or a tangent that reaches too far"
         )
 

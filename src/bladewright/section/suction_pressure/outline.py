@@ -1,7 +1,6 @@
 """The outline of a section by suction and pressure side: edges and sides in fixed parts of s."""
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,14 +11,9 @@ from bladewright.nurbs.bezier import bernstein
 from bladewright.nurbs.compatible import joined
 from bladewright.nurbs.curve import Curve
 from bladewright.nurbs.domain import reversed as backwards
-from bladewright.section.laws import Span
-from bladewright.section.outline import Edge, Joint, Outline, Start
+from bladewright.section.outline import Edge, EdgeDerivatives, Joint, Outline
 from bladewright.section.suction_pressure.edges import Continuity, EdgeCurve, powers_at
 from bladewright.section.suction_pressure.side import DEGREE, Side
-
-if TYPE_CHECKING:
-    from bladewright.section.suction_pressure.part import SuctionPressure
-
 
 EDGE = 0.1
 """part of s that each edge takes"""
@@ -82,8 +76,7 @@ class SuctionPressureOutline(Outline):
 
 def _meeting(edge: EdgeCurve, direction: float) -> Edge:
     point, first, second = (edge.coefficients[..., k, :] * EDGE**-k for k in range(3))
-    upper, lower = (Start(point, sign * direction * first, 2.0 * second) for sign in (1.0, -1.0))
-    return Edge(kind="round", upper=upper, lower=lower)
+    return Edge.rounded(EdgeDerivatives(point, direction * first, 2.0 * second))
 
 
 Mask = NDArray[np.bool_]
@@ -107,15 +100,14 @@ def _put(parts: list[tuple[Mask, Array]], count: int) -> Array:
     return found
 
 
-def closed_curve(part: "SuctionPressure", v: float = 0.0) -> Curve:
-    """One closed B-spline curve, in chords and unstaggered, of a section at v of the span.
+def closed_curve(outline: SuctionPressureOutline) -> Curve:
+    """One closed B-spline curve, in chords and unstaggered, of the first section of an outline.
 
     From the corner of the leading edge and the upper side: upper side, trailing edge, lower side backwards, leading
     edge. Its degree is that of the edges, 4 (C1) or 6 (C2), to which the sides are elevated; each piece is one unit of
     its parameter long, and the pieces meet at knots of multiplicity `degree`, tangents and with C2 edges curvatures
     alike. Voss et al. 2025, section 3.
     """
-    outline = part.outline(Span(np.array([v])))
     leading, trailing = (_bezier(edge.coefficients[0]) for edge in outline.edges)
     upper, lower = (_spline(side) for side in (outline.upper, outline.lower))
     return joined([upper, backwards(trailing), backwards(lower), leading])

@@ -4,17 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Literal
+from typing import Any, Literal
 
 import numpy as np
 
-from bladewright.designs import ChordwiseLaw, Law, Part, parameter
+from bladewright.designs import ChordwiseLaw, Law, parameter
 from bladewright.errors import DesignError
 from bladewright.numerics.elementary import Array, length, radians
 from bladewright.nurbs.basis import Reals
 from bladewright.nurbs.curve import Curve
 from bladewright.nurbs.refine import inserted
 from bladewright.section.camber import turned_left
+from bladewright.section.family import SectionFamily
 from bladewright.section.laws import Span
 from bladewright.section.planar import PlanarSection
 from bladewright.section.suction_pressure.edges import Corner, EdgePoints, characteristic_points, edge_curve
@@ -32,12 +33,9 @@ from bladewright.section.suction_pressure.side import (
 )
 from bladewright.section.suction_pressure.skeleton import Skeleton, chord_line, pseudo_line
 
-if TYPE_CHECKING:
-    from bladewright.designs import ChordwiseLaw
-
 
 @dataclass(frozen=True, kw_only=True)
-class SuctionPressure(Part):
+class SuctionPressure(SectionFamily):
     """A section whose suction and pressure side are cubic B-splines between two rounded edges.
 
     Lengths are fractions of the chord. Each side runs from corner to corner: its first and its last free control point
@@ -97,7 +95,7 @@ class SuctionPressure(Part):
     """inner knots of the pressure side, as many as its heights or thicknesses; none: uniform [-]"""
 
     def __post_init__(self) -> None:
-        for name, value in checked(self).items():
+        for name, value in checked(vars(self)).items():
             object.__setattr__(self, name, value)
 
     def outline(self, span: Span) -> SuctionPressureOutline:
@@ -144,7 +142,8 @@ def assembled(part: SuctionPressure, span: Span) -> SuctionPressureOutline:
         edge_curve(points, one.bend, other.bend, part.edges)
         for points, one, other in ((leading, upper.start, lower.start), (trailing, upper.end, lower.end))
     ]
-    check_crossing(part, upper, lower, span)
+    by_thickness = bool(part.pressure_thickness)
+    check_crossing(upper, lower, span, suction_side=part.suction_side, by_thickness=by_thickness)
     return SuctionPressureOutline(edges=(curves[0], curves[1]), upper=upper, lower=lower, continuity=part.edges)
 
 

@@ -9,6 +9,7 @@ given by the parameter s of the outline; how u(s) is chosen so that each law's j
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, ClassVar, Literal
 
@@ -19,6 +20,7 @@ from bladewright.errors import DesignError
 from bladewright.numerics.elementary import Array
 from bladewright.nurbs.basis import Reals
 from bladewright.section import checks
+from bladewright.section.chord_map import Breakpoint
 from bladewright.section.laws import Span
 from bladewright.section.outline import Joint
 from bladewright.section.power_series import Series
@@ -52,6 +54,14 @@ class Thickness(ABC):
     @abstractmethod
     def series(self, s: Reals, order: int) -> tuple[Series, Series]:
         """Power series about s (k,), not falling, of the chord fraction u and of the half thickness, (..., m, k)."""
+
+    @abstractmethod
+    def with_breakpoints(self, further: Sequence[Breakpoint]) -> Thickness:
+        """The same thickness with further joints at fixed s, those of a meanline that it stands on.
+
+        Raises DesignError for a thickness in one piece, and ValueError where the breakpoints do not stand in the order
+        of their fixed coordinates in every section.
+        """
 
     @abstractmethod
     def half_at(self, u: Reals) -> Array:

@@ -16,13 +16,11 @@ from bladewright.designs import Law, parameter
 from bladewright.errors import DesignError
 from bladewright.numerics.elementary import Array
 from bladewright.section import checks
+from bladewright.section.chord_map import Breakpoint, ChordMap, ChordPlace
 from bladewright.section.laws import Span
 from bladewright.section.power_series import Series, polynomial
 from bladewright.section.thickness.law import EdgeKind, Thickness, ThicknessLaw
 from bladewright.section.thickness.piecewise import (
-    Breakpoint,
-    ChordMap,
-    ChordPlace,
     Formula,
     PiecewiseThickness,
     check_positive,
@@ -115,8 +113,8 @@ class ModifiedNaca(ThicknessLaw):
         self._demand(np.real(curvature) < 0.0, span, "maximum_thickness_at", at, cure)
         front, bend = _front(maximum, at, curvature, span.values(self.leading_edge_index))
         kind: EdgeKind = "round" if self.trailing_edge == "circular" else self.trailing_edge
-        stations = ChordMap(breaks, leading_round=True, trailing_round=kind == "round", bend=bend)
-        thickness = PiecewiseThickness(stations, [front, rear, *pieces], leading="round", trailing=kind)
+        chord_map = ChordMap(breaks, leading_round=True, trailing_round=kind == "round", bend=bend)
+        thickness = PiecewiseThickness(chord_map, [front, rear, *pieces], leading="round", trailing=kind)
         check_positive(thickness, self.path, span)
         return thickness
 
@@ -149,8 +147,6 @@ def _front(maximum: Array, at: Array, curvature: Array, index: Array) -> tuple[F
     coefficients = [each[..., None] for each in (first, second / at, third / at**2)]
 
     def half(place: ChordPlace) -> Series:
-        if place.root is None:
-            raise ValueError("the front needs a round edge")  # a law that forgot to say so
-        return root[..., None] * place.root + place.u * polynomial(coefficients, place.u)
+        return root[..., None] * place.leading_root() + place.u * polynomial(coefficients, place.u)
 
     return half, first / root

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Literal
 
@@ -14,23 +15,13 @@ from bladewright.numerics.roots import bracketed_root
 from bladewright.numerics.solving import solved
 from bladewright.nurbs.basis import Reals
 from bladewright.section import checks
+from bladewright.section.chord_map import Breakpoint
+from bladewright.section.chord_spline import QUARTIC, segments
 from bladewright.section.laws import Span
 from bladewright.section.outline import Joint
 from bladewright.section.power_series import Series, joined_series, polynomial, variable
 from bladewright.section.thickness.law import EdgeKind, Thickness, ThicknessLaw
 from bladewright.section.thickness.piecewise import check_positive
-
-QUARTIC = np.array(
-    [[1, 11, 11, 1, 0], [-4, -12, 12, 4, 0], [6, -6, -6, 6, 0], [-4, 12, -12, 4, 0], [1, -4, 6, -4, 1]]
-) / np.array(24.0)
-"""row k: coefficients of t^k, 0 <= t <= 1, from a segment's five control points"""
-
-
-def segments(controls: Array) -> Array:
-    """Coefficients (..., n - 4, 5) of the powers of t on each segment of control points (..., n)."""
-    count = controls.shape[-1] - 4
-    windows = np.stack([controls[..., k : k + 5] for k in range(count)], axis=-2)
-    return windows @ QUARTIC.T
 
 
 def value_at(coefficients: Array, tau: Array) -> tuple[Array, Array]:
@@ -96,6 +87,12 @@ class UniformThickness(Thickness):
             for parts, all_segments in ((u, self._u), (half, self._half)):
                 parts.append(polynomial([all_segments[..., k, power, None] for power in range(5)], local))
         return joined_series(u), joined_series(half)
+
+    def with_breakpoints(self, further: Sequence[Breakpoint]) -> Thickness:  # noqa: ARG002 - always refused
+        raise DesignError(
+            "camber is mixed, thickness.law is quartic-spline: the kinks of a mixed camber line need a thickness in "
+            "pieces; set camber to curvature, or take another thickness law"
+        )
 
     def half_at(self, u: Reals) -> Array:
         return value_at(self._half, parameter_of(self._u, u, 0.0, float(self._count)))[0]

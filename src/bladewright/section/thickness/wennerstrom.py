@@ -17,13 +17,11 @@ from bladewright.designs import Law, parameter
 from bladewright.errors import DesignError
 from bladewright.numerics.elementary import Array
 from bladewright.section import checks
+from bladewright.section.chord_map import Breakpoint, ChordMap, ChordPlace
 from bladewright.section.laws import Span
 from bladewright.section.power_series import Series, polynomial
 from bladewright.section.thickness.law import EdgeKind, Thickness, ThicknessLaw, leaves_of, same_law
 from bladewright.section.thickness.piecewise import (
-    Breakpoint,
-    ChordMap,
-    ChordPlace,
     Formula,
     PiecewiseThickness,
     check_positive,
@@ -145,8 +143,8 @@ class Wennerstrom(ThicknessLaw):
             breaks = [*breaks, Breakpoint(1.0 - last, last, 1, AT_TRAILING_EDGE)]
             pieces = [*pieces, ellipse(rear.semi_axis / chord, rear.height, leading=False)]
         leading, trailing = (_kind(shape) for shape in (self.leading_edge, self.trailing_edge))
-        stations = ChordMap(breaks, leading_round=leading == "round", trailing_round=trailing == "round")
-        thickness = PiecewiseThickness(stations, pieces, leading=leading, trailing=trailing)
+        chord_map = ChordMap(breaks, leading_round=leading == "round", trailing_round=trailing == "round")
+        thickness = PiecewiseThickness(chord_map, pieces, leading=leading, trailing=trailing)
         check_positive(thickness, self.path, span)
         return thickness
 

@@ -1,0 +1,283 @@
+"""The parameter s of a section on its chord: the map u(s) to the chord fraction, by which joints stand at fixed s.
+
+Near a round edge a half thickness grows as the root of the distance from it. Both maps make that root an odd analytic
+function of s about the edge, so that a side and its other side are one smooth curve there; at a sharp or blunt edge u
+has a slope by s.
+
+Thickness laws in pieces (`ChordMap`). Their joints (the place of the maximum, where an edge's ellipse ends) move with
+the parameters and along the span, but those of an outline stand at the same s in all sections. So u = R(sigma(s)):
+
+* sigma(s) is fixed: (1 - cos pi s) / 2 between two round edges, 1 - cos(pi s / 2) or sin(pi s / 2) where only one edge
+  is round, s where none is.
+* R is a rational function on each piece between joints, quadratic over quadratic, that rises whatever the joints
+  (Delbourgo and Gregory 1983): through (sigma_j, u_j), with as many continuous derivatives as the law has there, one or
+  two. It is the identity where the joints stand at their usual places, and analytic in every parameter; it has joints
+  only where the law has.
+
+A law that begins as sqrt(u) + b u is not odd about its leading edge: seen from the other side the second term has the
+other sign. There s is replaced in the first piece by p(s) = s + k s^2 (1 - s / s_1)^3 / (1 + c s / s_1)^2, which rises
+for every k when c^2 = 1 + (k s_1)^2, keeps two derivatives at the joint s_1, and with k = -b d(sqrt u)/ds makes the
+second derivative of the half thickness vanish at the edge, so that the sides have equal second derivatives there.
+
+Profiles on a mean line (`ClusteredChordMap`) have at most one joint and a published form of thickness; there the steps
+of s are clustered towards the edges as well.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import NamedTuple
+
+import numpy as np
+
+from bladewright.numerics.elementary import Array
+from bladewright.nurbs.basis import Reals
+from bladewright.section.outline import Joint
+from bladewright.section.power_series import Series, hyperbolic_tangent, joined_series, sine_and_cosine, variable
+
+JOINT = 0.5
+"""s of the mean line's joint, where it has one"""
+
+
+class ChordPlace(NamedTuple):
+    """Chord fractions as power series of s: u, 1 - u and their roots, which change sign with s beyond a round edge."""
+
+    u: Series
+    rest: Series
+    """1 - u, without cancellation next to the trailing edge"""
+    root: Series | None
+    """of u; None beyond the first piece, or behind a leading edge that is not round"""
+    rest_root: Series | None
+    """of 1 - u; None before the last piece, or in front of a trailing edge that is not round"""
+
+    def leading_root(self) -> Series:
+        """The root of u, for formulas of the piece behind a round leading edge."""
+        if self.root is None:
+            raise ValueError("the root of u is known behind a round leading edge only")
+        return self.root
+
+    def trailing_root(self) -> Series:
+        """The root of 1 - u, for formulas of the piece before a round trailing edge."""
+        if self.rest_root is None:
+            raise ValueError("the root of 1 - u is known before a round trailing edge only")
+        return self.rest_root
+
+
+class Breakpoint(NamedTuple):
+    """Where a law is less smooth."""
+
+    u: Array
+    """chord fraction (..., m)"""
+    rest: Array
+    """1 - u (..., m) without cancellation"""
+    derivatives: int
+    """how many are continuous: 1 or 2"""
+    sigma: float
+    """where it stands in the fixed coordinate"""
+
+
+@dataclass(frozen=True, kw_only=True)
+class _RationalPiece:
+    """R between two joints: rises by `rise` (..., m, 1) over `width`, with slopes at both ends."""
+
+    start: float
+    width: float
+    low: Array
+    rise: Array
+    slope_in: Array
+    slope_out: Array
+
+    def risen(self, zeta: Series, rest: Series) -> tuple[Series, Series, Series]:
+        """R's way from the start over zeta, from the end over 1 - zeta, and their common denominator."""
+        secant = self.rise / self.width
+        bottom = secant + (self.slope_in + self.slope_out - 2.0 * secant) * (zeta * rest)
+        return secant * zeta + self.slope_in * rest, secant * rest + self.slope_out * zeta, bottom
+
+
+class ChordMap:
+    """The map u(s) of sections (..., m) with given breaks, one or more and increasing, and round edges or not.
+
+    Two breaks of two derivatives must not be neighbours.
+    """
+
+    def __init__(
+        self, breaks: Sequence[Breakpoint], *, leading_round: bool, trailing_round: bool, bend: Array | None = None
+    ) -> None:
+        """`bend` (..., m) is b of a half thickness that begins as sqrt(u) + b u at a round leading edge."""
+        self.breaks = tuple(breaks)
+        self.leading_round, self.trailing_round = leading_round, trailing_round
+        self.joints = tuple(Joint(self._placed(each.sigma), each.derivatives) for each in self.breaks)
+        self.ends = np.array([each.s for each in self.joints])
+        self._pieces = _rational_pieces(self.breaks)
+        self._skew = None if bend is None else -bend[..., None] * self._root_slope()
+
+    def _root_slope(self) -> Array:
+        """d(sqrt u)/ds (..., m, 1) at a round leading edge."""
+        start = self._pieces[0].slope_in
+        return np.sqrt(start) * (0.5 * np.pi if self.trailing_round else np.sqrt(0.125) * np.pi)
+
+    def _skewed(self, s: Series) -> Series:
+        """p(s) in the first piece."""
+        if self._skew is None:
+            return s
+        x = s * (1.0 / self.ends[0])
+        drawn = x * np.sqrt(1.0 + (self._skew * self.ends[0]) ** 2) + 1.0
+        rest = 1.0 - x
+        return s + self._skew * (s * s * rest * rest * rest / (drawn * drawn))
+
+    def _placed(self, sigma: float) -> float:
+        """The s of a sigma."""
+        if self.leading_round and self.trailing_round:
+            return float(2.0 / np.pi * np.arcsin(np.sqrt(sigma)))
+        if self.leading_round:
+            return float(2.0 / np.pi * np.arccos(1.0 - sigma))
+        return float(2.0 / np.pi * np.arcsin(sigma)) if self.trailing_round else sigma
+
+    def pieces_of(self, s: Reals) -> list[tuple[int, Reals]]:
+        """Indices of pieces and the places s on each, in the order of s, which must not fall."""
+        owner = np.searchsorted(self.ends, s)
+        return [(int(k), s[owner == k]) for k in np.unique(owner)]
+
+    def place(self, piece: int, s: Reals, order: int) -> ChordPlace:
+        """Series in s of the place on a piece at s (k,), which may lie beyond the piece's ends."""
+        each = self._pieces[piece]
+        at, back = variable(s, order), variable(1.0 - s, order, -1.0)
+        if piece == 0:
+            at = self._skewed(at)
+        sigma, rest = _fixed(at, back, leading=self.leading_round, trailing=self.trailing_round)
+        # near an edge the distance from it is what the root is taken of
+        end = each.start + each.width
+        ahead = sigma[0] if piece == 0 else sigma[0] - each.start
+        last = piece == len(self.breaks)
+        behind = rest[0] if last else end - sigma[0]
+        zeta, omega = ahead / each.width, behind / each.width
+        top, back, bottom = each.risen(zeta, omega)
+        factor, factor_back = each.rise * top / bottom, each.rise * back / bottom
+        u, left = each.low + factor * zeta, (1.0 - each.low - each.rise) + factor_back * omega
+        if piece == 0:
+            u = factor * zeta
+        if last:
+            left = factor_back * omega
+        root = (factor / each.width).sqrt() * sigma[1] if piece == 0 and sigma[1] is not None else None
+        rest_root = (factor_back / each.width).sqrt() * rest[1] if last and rest[1] is not None else None
+        return ChordPlace(u, left, root, rest_root)
+
+    def u(self, s: Reals, order: int = 0) -> Series:
+        """Series in s of u at s (k,), which must not fall."""
+        return joined_series([self.place(piece, part, order).u for piece, part in self.pieces_of(s)])
+
+
+Rooted = tuple[Series, Series | None]
+
+
+def _sine(angle: Series) -> Series:
+    return sine_and_cosine(angle)[0]
+
+
+def _fixed(s: Series, back: Series, *, leading: bool, trailing: bool) -> tuple[Rooted, Rooted]:
+    """Series of sigma(s) and, for s = 1 - back, of 1 - sigma, each with its signed root where the edge is round."""
+    half, quarter = 0.5 * np.pi, 0.25 * np.pi
+    if leading and trailing:
+        first, last = _sine(half * s), _sine(half * back)
+        return (first * first, first), (last * last, last)
+    if leading:
+        first = _sine(quarter * s) * np.sqrt(2.0)
+        return (first * first, first), (_sine(half * back), None)
+    if trailing:
+        last = _sine(quarter * back) * np.sqrt(2.0)
+        return (_sine(half * s), None), (last * last, last)
+    return (s, None), (back, None)
+
+
+def _rational_pieces(breaks: tuple[Breakpoint, ...]) -> list[_RationalPiece]:
+    sigmas = np.array([0.0, *[each.sigma for each in breaks], 1.0])
+    widths = np.diff(sigmas)
+    lows = [np.zeros((1, 1)), *[each.u[..., None] for each in breaks]]
+    rises = [high - low for low, high in pairwise(lows)]
+    rises.append(breaks[-1].rest[..., None])
+    secants = [rise / width for rise, width in zip(rises, widths, strict=True)]
+    slopes: list[Array] = [secants[0], *[np.zeros(())] * len(breaks), secants[-1]]
+    once = [k for k, each in enumerate(breaks, 1) if each.derivatives == 1]
+    for k in once:
+        slopes[k] = 2.0 * secants[k - 1] * secants[k] / (secants[k - 1] + secants[k])
+    for k in (k for k in range(1, len(breaks) + 1) if k not in once):
+        slopes[k] = _smooth_slope(widths[k - 1 : k + 1], secants[k - 1 : k + 1], slopes[k - 1], slopes[k + 1])
+    return [
+        _RationalPiece(
+            start=sigmas[k], width=widths[k], low=lows[k], rise=rises[k], slope_in=slopes[k], slope_out=slopes[k + 1]
+        )
+        for k in range(len(rises))
+    ]
+
+
+def _smooth_slope(widths: Reals, secants: Sequence[Array], before: Array, after: Array) -> Array:
+    """The slope at a joint that makes the second derivative continuous, the positive root of a quadratic.
+
+    Reference: Delbourgo and Gregory 1983, SIAM J. Sci. Stat. Comput. 4, eq. 2.11.
+    """
+    a, b = 1.0 / (widths[0] * secants[0]), 1.0 / (widths[1] * secants[1])
+    linear = a * before + b * after - (1.0 / widths[0] + 1.0 / widths[1])
+    constant = secants[0] / widths[0] + secants[1] / widths[1]
+    quadratic = a + b
+    return 2.0 * constant / (linear + np.sqrt(linear**2 + 4.0 * quadratic * constant))
+
+
+@dataclass(frozen=True, kw_only=True)
+class ClusteredChordMap:
+    """The map from s to x, the same in form for all sections.
+
+    sqrt(x) is analytic and odd about s = 0 but for its second derivative, and so is sqrt(1 - x) about s = 1 where the
+    trailing edge is round; elsewhere x runs into s = 1 with a slope.
+    """
+
+    round_end: bool
+    clustering_in: float
+    """amplitude of the sine waves that cluster the steps of s at the leading edge, 0 (none) to below 1 [-]"""
+    clustering_out: float
+    """the same at a round trailing edge [-]"""
+    stretching: float
+    """k of the hyperbolic tangent that clusters the steps of s at a sharp or blunt trailing edge; 0: none [-]"""
+    bend: float
+    """-a1 / a0 of a thickness a0 sqrt(x) + a1 x + ...: with it the thickness has no second derivative at s = 0"""
+    joint: Array | None
+    """x (..., 1) that stands at s = `JOINT`"""
+
+    def at(self, s: Reals, order: int) -> ChordPlace:
+        """Places at s (k,) with their derivatives up to an order."""
+        sine, cosine = sine_and_cosine(self._phase(s, order))
+        if self.round_end:
+            root, before = sine, cosine * cosine
+        else:
+            # 1 - cos = 2 sin^2 of half the phase, and 1 less that is the cosine
+            root, _ = sine_and_cosine(self._phase(s, order) * 0.5)
+            root, before = root * np.sqrt(2.0), cosine
+        ratio: Array | float = 1.0 if self.joint is None else self._ratio(self.joint)
+        scale = root * root + before * ratio
+        first = root / scale.sqrt()
+        lift = first * first * self.bend + 1.0
+        x_root = first * (first * self.bend + 1.0) / lift
+        kept = ratio / scale * (x_root + 1.0) / (first + 1.0) / lift
+        end = cosine * kept.sqrt() if self.round_end else None
+        return ChordPlace(u=x_root * x_root, rest=before * kept, root=x_root, rest_root=end)
+
+    def _phase(self, s: Reals, order: int) -> Series:
+        """The angle that runs from 0 to pi / 2; steps clustered at the edges, odd about them."""
+        angle = variable(s, order) * np.pi
+        once, _ = sine_and_cosine(angle)
+        twice, _ = sine_and_cosine(angle * 2.0)
+        both = twice * 0.25 * (self.clustering_in + self.clustering_out)
+        drawn = both + once * 0.5 * (self.clustering_in - self.clustering_out)
+        phase = (angle - drawn) * 0.5
+        if not self.stretching:
+            return phase
+        return hyperbolic_tangent(phase * (2.0 / np.pi * self.stretching)) * (0.5 * np.pi / np.tanh(self.stretching))
+
+    def _ratio(self, joint: Array) -> Array:
+        """What brings the joint to its s: a projective map of x."""
+        middle = float(self._phase(np.array([JOINT]), 0).value[0])
+        at = np.sin(middle) ** 2 if self.round_end else 1.0 - np.cos(middle)
+        root = np.sqrt(joint)
+        before_bend = 2.0 * root / (1.0 + np.sqrt(1.0 + 4.0 * self.bend * (1.0 - root) * root))
+        square = before_bend * before_bend
+        ratio: Array = at * (1.0 - square) / (square * (1.0 - at))
+        return ratio
