@@ -6,7 +6,7 @@ import pytest
 import bladewright as bw
 from bladewright.errors import DerivativeError, FileError
 from bladewright.files.examples import example_text
-from bladewright.files.su2 import places_beside
+from bladewright.files.su2 import places_path
 
 UNITS = np.array([2.0, -3.0, 5.0])
 
@@ -228,7 +228,7 @@ def test_nothing_is_left_behind_where_points_cannot_be_written(points, tmp_path)
 
 
 def test_the_file_beside_is_needed_to_read_points(written):
-    places_beside(written).unlink()
+    places_path(written).unlink()
     with pytest.raises(FileError, match=r"there is no file '.*places.csv'"):
         bw.read_surface_points(written)
 

@@ -105,10 +105,10 @@ def written_points(built: Any, path: Path, points: tuple[int, int]) -> Outcome:
 def pulled_back(design: Design, built: Any, free: Sequence[str], sensitivity: Path, points_file: Path) -> Outcome:
     """The gradient of a solver's objective, from its sensitivity at the points of a file."""
     from bladewright.derivatives.net_jacobian import pullback
-    from bladewright.files.su2 import check_of, read_surface_points, read_surface_sensitivity
+    from bladewright.files.su2 import check_same_design, read_surface_points, read_surface_sensitivity
 
     points = read_surface_points(points_file)
-    check_of(points_file, points, points.on(built))
+    check_same_design(points_file, points, points.on(built))
     bars = points.bars(read_surface_sensitivity(sensitivity, points))
     rates = pullback(design, bars, free=list(free) or None, knots=getattr(built, "knots", None))
     units = {path: f"1{_by(design, path)}" for path in rates}

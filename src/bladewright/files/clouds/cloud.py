@@ -1,4 +1,4 @@
-"""A cloud of points as it was read, and the numbers of a file before they are understood."""
+"""A point cloud as it was read, and the columns of numbers that a file format gives before they become points."""
 
 from dataclasses import dataclass
 
@@ -7,33 +7,35 @@ from bladewright.nurbs.basis import Reals
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Cloud:
-    """Points that a file holds."""
+    """The points of a file."""
 
     points: Reals
     """(n, 2) or (n, 3) in the order of the file: x y, or x y z [m]"""
     format: str
-    """what the file is, in words"""
+    """file format, in words"""
     unit: str
-    """unit that its lengths were taken to be in"""
+    """length unit that the file was read in"""
     columns: tuple[str, ...]
-    """what its columns were taken for, in their order"""
+    """what each column of the file was read as, in order"""
     notes: tuple[str, ...] = ()
-    """what was assumed, each a sentence"""
+    """assumptions that were made, each a sentence"""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Columns:
-    """The columns of a file, as its format gives them."""
+    """The columns of a file, before it is known which of them are coordinates."""
 
     values: Reals
     """(n, k)"""
     format: str
+    """file format, in words"""
     names: tuple[str, ...] = ()
-    """names of the columns, where the file has some"""
+    """names of the columns, where the file gives them"""
     lines: Reals | None = None
-    """(n,) line of each row in the file, where it has lines"""
+    """(n,) line number of each row in a text file"""
     whole: bool = False
-    """whether the first column is written without decimal points throughout"""
+    """whether the whole first column is written without decimal points"""
     columns: tuple[str, ...] = ()
-    """what the columns are, where the format itself says it"""
+    """what the columns are, where the format itself defines it"""
     notes: tuple[str, ...] = ()
+    """assumptions that were made, each a sentence"""

@@ -10,13 +10,14 @@ import numpy as np
 from bladewright.errors import FileError
 from bladewright.files.clouds.cloud import Columns
 
-FEWEST_COLUMNS = 12
-"""columns of two or three rows from which a column is a point"""
-_POINTS = ("points", "cloud", "xyz", "vertices", "coordinates")
+TRANSPOSED = 12
+"""An array of two or three rows and more columns than this is read as one point a column, not one a row: a cloud of two
+or three points is of no use, and no program known to us writes more than 12 numbers a point."""
+_POINT_ARRAYS = ("points", "cloud", "xyz", "vertices", "coordinates")
 
 
 def read_arrays(path: Path, data: bytes) -> Columns:
-    """The array of an NPY file, or the points of an NPZ file; raises FileError where there are none."""
+    """The array of an NPY file, or the points of an NPZ file; raises FileError where it has none."""
     try:
         held: Any = np.load(io.BytesIO(data), allow_pickle=False)
         if not isinstance(held, np.ndarray):
@@ -30,7 +31,7 @@ def read_arrays(path: Path, data: bytes) -> Columns:
         raise FileError(f"'{path}' is {what}: {str(error).splitlines()[0]}") from error
     names: tuple[str, ...] = ()
     if isinstance(held, dict):
-        names, held = _chosen(path, held)
+        names, held = _points_array(path, held)
     if held.dtype.names:
         names = held.dtype.names
         held = np.stack([held[name] for name in names], axis=-1)
@@ -41,15 +42,15 @@ def read_arrays(path: Path, data: bytes) -> Columns:
         )
     values = np.asarray(held, dtype=np.float64)
     notes: tuple[str, ...] = ()
-    if len(values) in (2, 3) and values.shape[1] > FEWEST_COLUMNS:
+    if len(values) in (2, 3) and values.shape[1] > TRANSPOSED:
         values, notes = values.T, (f"the array of shape {values.shape} is taken as a column for each point",)
     whole = bool(np.all(values[:, 0] == np.round(values[:, 0])))
     return Columns(values=values, format="a NumPy file", names=names, whole=whole, notes=notes)
 
 
-def _chosen(path: Path, held: dict[str, Any]) -> tuple[tuple[str, ...], Any]:
-    """Names of columns, and the array of points, among those of an NPZ file."""
-    for name in _POINTS:
+def _points_array(path: Path, held: dict[str, Any]) -> tuple[tuple[str, ...], Any]:
+    """Column names and the array of points of an NPZ file: one of its arrays, or its coordinate arrays side by side."""
+    for name in _POINT_ARRAYS:
         if name in held:
             return (), held[name]
     if len(held) == 1:

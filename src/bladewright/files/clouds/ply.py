@@ -1,4 +1,9 @@
-"""Vertices of PLY files, ASCII and binary."""
+"""Vertices of PLY files, ASCII and binary.
+
+They are read here because the libraries lose something: VTK rounds double coordinates to single precision and reads a
+wrong element where the vertices are not the first, meshio depends on the order of x, y and z, and trimesh takes a file
+that breaks off for a complete one (design/cloud_readers.py).
+"""
 
 from pathlib import Path
 from typing import NamedTuple
@@ -18,14 +23,16 @@ _ORDERS = {"binary_little_endian": "<", "binary_big_endian": ">", "ascii": ""}
 
 
 class _Element(NamedTuple):
+    """An element of the header, such as the vertices."""
+
     name: str
     number: int
     properties: list[tuple[str, str]]
-    """name and type"""
+    """name and type of each"""
 
 
 def read_ply(path: Path, data: bytes) -> Columns:
-    """The vertices; raises FileError where the header is none, or the file is cut off."""
+    """The vertices; raises FileError where the header cannot be read or the file is cut off."""
     order, elements, start = _header(path, data)
     before: list[_Element] = []
     for element in elements:
@@ -68,7 +75,7 @@ def _ascii(path: Path, body: list[bytes], element: _Element, places: list[int]) 
 
 
 def _header(path: Path, data: bytes) -> tuple[str, list[_Element], int]:
-    """Byte order ("" for ASCII), elements, and where the header ends."""
+    """Byte order ("" for ASCII), elements, and the offset at which the header ends."""
     end = data.find(b"end_header")
     start = data.find(b"\n", end) + 1
     if end < 0 or start == 0:

@@ -9,15 +9,20 @@ from pathlib import Path
 import numpy as np
 
 from bladewright.errors import FileError
-from bladewright.files.clouds import numpy_arrays, ply, stl, tables, vtk
 from bladewright.files.clouds.cloud import Cloud, Columns
 from bladewright.files.clouds.columns import points_of_columns, roles_of, unit_in, unit_warning
+from bladewright.files.clouds.numpy_arrays import read_arrays
+from bladewright.files.clouds.ply import read_ply
+from bladewright.files.clouds.stl import is_stl, read_stl
+from bladewright.files.clouds.tables import read_table
+from bladewright.files.clouds.vtk import read_vtk_points
 from bladewright.nurbs.basis import Reals
 from bladewright.section.checks import UNITS
 
 LARGEST = 4_000_000_000
-"""bytes beyond which a file is refused before it is read; five million points take 0.4 GB"""
-_OTHERS = {
+"""[bytes] Size above which a file is refused before it is read. Five million points as text take 0.4 GB, so this is no
+limit in practice; it keeps a wrong file, such as a disk image, from filling the memory."""
+_OTHER_FORMATS = {
     b"ISO-10303-21": "a STEP file, whose faces cad.sample gives points of",
     b"DBRep_DrawableShape": "a BREP file, whose faces cad.sample gives points of",
     b"\x1f\x8b": "a gzip archive: unpack it",
@@ -33,46 +38,43 @@ _OTHERS = {
 
 
 def read_cloud(path: str | os.PathLike[str], *, columns: Sequence[str] | None = None, unit: str | None = None) -> Cloud:
-    """The points of a file, in metres; its contents tell its format.
+    """The points of a file, in metres; the format is recognised from the contents, not from the name.
 
-    Tables of numbers with or without names above them, with blanks, tabs, commas or semicolons between, comments and
-    ids; Selig and Lednicer airfoils; SU2 surfaces; PLY, STL, VTK, VTP, VTU, NPY and NPZ.
-    `columns` says what each column of the file is: `x`, `y`, `z`, `r`, `theta` [deg] or `skip`; needed are x y, x y z
-    or x r theta, with y = r sin(theta) and z = r cos(theta). Where not given, names above the columns say it, or two
-    numbers are x y and three x y z, after whole numbers that can only be ids. `unit` is m, cm, mm, um, in or ft; where
-    not given it is what the names of the columns say, or the metre.
+    Read are tables of table, separated by blanks, tabs, commas or semicolons, with or without column names, comments
+    and point ids; Selig and Lednicer airfoils; SU2 surfaces; PLY, STL, VTK, VTP, VTU, NPY and NPZ.
+    `columns` says what each column of the file is: `x`, `y`, `z`, `r`, `theta` [deg] or `skip`. They must give x y,
+    x y z or x r theta, with y = r sin(theta) and z = r cos(theta). Without `columns`, the names above the columns
+    decide; without names, two table are x y and three are x y z, after a column of whole table that can only be
+    ids. `unit` is m, cm, mm, um, in or ft; without it, the unit that the column names state, or the metre.
 
-    Raises FileError where there is no such file, or it holds no such points.
+    Raises FileError where there is no such file, or where it holds no such points.
     """
     path = Path(path)
     if unit is not None and unit not in UNITS:
         raise FileError(f"the unit '{unit}' is not known: it is one of {', '.join(UNITS)}")
     data = _contents(path)
-    numbers = _reader(path, data)(path, data)
+    table = _reader(path, data)(path, data)
     where = f"'{path}'"
-    roles = roles_of(where, numbers, columns)
-    _check_finite(where, numbers, roles)
-    said = unit_in(where, numbers.names, roles)
-    taken = unit or said or "m"
-    points = points_of_columns(numbers, roles, UNITS[taken])
-    notes = [*numbers.notes, *unit_warning(points, taken, given=unit is not None)]
-    return Cloud(points=points, format=numbers.format, unit=taken, columns=roles, notes=tuple(notes))
+    roles = roles_of(where, table, columns)
+    _check_finite(where, table, roles)
+    used_unit = unit or unit_in(where, table.names, roles) or "m"
+    points = points_of_columns(table, roles, UNITS[used_unit])
+    notes = [*table.notes, *unit_warning(points, used_unit, given=unit is not None)]
+    return Cloud(points=points, format=table.format, unit=used_unit, columns=roles, notes=tuple(notes))
 
 
 def _reader(path: Path, data: bytes) -> Callable[[Path, bytes], Columns]:
     head = data[:4096].removeprefix(b"\xef\xbb\xbf").lstrip()
-    for start, what in _OTHERS.items():
+    for start, what in _OTHER_FORMATS.items():
         if data.startswith(start) or head.startswith(start):
             raise FileError(f"'{path}' is {what}")
     if head.startswith((b"ply\n", b"ply\r")):
-        return ply.read_ply
+        return read_ply
     if data.startswith((b"\x93NUMPY", b"PK\x03\x04")):
-        return numpy_arrays.read_arrays
+        return read_arrays
     if head.lower().startswith(b"# vtk datafile") or b"<VTKFile" in head:
-        return vtk.read_vtk
-    if stl.is_stl(data):
-        return stl.read_stl
-    return tables.read_table
+        return read_vtk_points
+    return read_stl if is_stl(data) else read_table
 
 
 def _contents(path: Path) -> bytes:
@@ -92,13 +94,13 @@ def _contents(path: Path) -> bytes:
     return data
 
 
-def _check_finite(where: str, numbers: Columns, roles: Sequence[str]) -> None:
+def _check_finite(where: str, table: Columns, roles: Sequence[str]) -> None:
     used = [place for place, role in enumerate(roles) if role != "skip"]
-    values: Reals = numbers.values[:, used]
+    values: Reals = table.values[:, used]
     bad = np.argwhere(~np.isfinite(values))
     if len(bad):
         row, column = (int(each) for each in bad[0])
-        at = f"line {int(numbers.lines[row])}" if numbers.lines is not None else f"point {row + 1}"
+        at = f"line {int(table.lines[row])}" if table.lines is not None else f"point {row + 1}"
         rows = len(np.unique(bad[:, 0]))
         more = f", and {rows - 1} more like it" if rows > 1 else ""
         raise FileError(

@@ -14,52 +14,44 @@ from bladewright.files.clouds.cloud import Columns
 from bladewright.files.clouds.columns import role_named
 from bladewright.nurbs.basis import Reals
 
-
-def airfoil_layout(values: Reals, title: str) -> tuple[str, int]:
-    """What two columns (n, 2) below a title are, in words, and the row in which their points begin.
-
-    A Lednicer file has the numbers of points of its two sides above them.
-    """
-    first = values[0]
-    counted = bool(np.all(first == np.round(first)) and np.min(first) > 1.0 and first.sum() == len(values) - 1)
-    if counted:
-        return "a Lednicer airfoil", 1
-    around = np.argmin(values[:, 0]) not in (0, len(values) - 1) and np.max(np.abs(values)) <= 2.0
-    return ("a Selig airfoil" if title and around else "a table"), 0
-
-
 COMMENTS = "#%!"
-MOST_NAMES = 30
-"""lines of text that may stand above the numbers"""
-_FORTRAN = re.compile(r"[0-9.][dD][-+]?\d")
+"""Characters that begin a comment."""
+MOST_HEADER_LINES = 30
+"""Most lines of words above the first row of numbers: a file with more is refused as prose. Tables have headers of a
+few lines, so that the limit is generous."""
+_FORTRAN_EXPONENT = re.compile(r"[0-9.][dD][-+]?\d")
 
 
-class _Head(NamedTuple):
+class _Header(NamedTuple):
     """What stands above the first row of numbers."""
 
     lines: int
+    """number of lines"""
     names: tuple[str, ...]
+    """words of the last line, which may be column names"""
     row: str
+    """the first row of numbers"""
     title: str
-    above: tuple[int, str]
-    """number and text of the last line of words"""
+    """the first line that is no comment"""
+    last_words: tuple[int, str]
+    """number and text of the last line that is no comment"""
 
 
 def read_table(path: Path, data: bytes) -> Columns:
-    """The numbers of a text file; raises FileError with line and column where it is no table of them."""
+    """The columns of numbers of a text file; raises FileError with line and column where it is no such table."""
     text = _decoded(path, data)
-    head = _head_of(path, text)
-    body = _plain(text, head)
+    head = _read_header(path, text)
+    body = _normalised(text, head)
     try:
         values = np.loadtxt(io.StringIO(body), comments=None, skiprows=head.lines, ndmin=2)
     except ValueError as error:
-        # numpy counts rows, but not those without numbers, and says not which lines they are
+        # numpy counts the rows with numbers, and does not say on which lines they are
         row = re.search(r"at row (\d+)", str(error))
         raise _refusal(path, body, head, int(row[1]) - 2 if row else 0) from None
-    _check_above(path, head, values.shape[1])
-    lines = _lines_of(body, head, len(values))
+    _check_header(path, head, values.shape[1])
+    lines = _line_numbers(body, head, len(values))
     names = head.names if len(head.names) == values.shape[1] else ()
-    whole = _whole(values[:, 0], head.row)
+    whole = _are_whole(values[:, 0], head.row)
     if values.shape[1] != 2 or any(role_named(name) != "skip" for name in names):
         return Columns(values=values, format="a table", names=names, lines=lines, whole=whole)
     kind, start = airfoil_layout(values, head.title)
@@ -75,7 +67,7 @@ def _decoded(path: Path, data: bytes) -> str:
     try:
         return data.decode("utf-8")
     except UnicodeDecodeError:
-        # names and comments may be in any code; numbers are the same in all
+        # names and comments may be in any encoding; the digits are the same in all of them
         text = data.decode("latin-1")
     strange = sum(not (each.isprintable() or each.isspace()) for each in text[:4096])
     if strange > 0.02 * len(text[:4096]):
@@ -83,32 +75,32 @@ def _decoded(path: Path, data: bytes) -> str:
     return text
 
 
-def _head_of(path: Path, text: str) -> _Head:
-    """The lines above the numbers; the first line of which every word is a number ends them."""
+def _read_header(path: Path, text: str) -> _Header:
+    """The lines above the numbers, which begin with the first line whose words are all numbers."""
     names: tuple[str, ...] = ()
-    title, above, words = "", (0, ""), 0
+    title, last_words, words = "", (0, ""), 0
     for place, line in enumerate(io.StringIO(text)):
         bare = line.strip()
         comment = bare[:1] in COMMENTS and bare != ""
         row = _split(re.split(f"[{COMMENTS}]", bare)[0], ",;")
         counted = len(row) == 1 and row[0].isdigit()  # the number of rows, as some scanners put it above them
         if not comment and row and not counted and all(_is_number(word) for word in row):
-            return _Head(place, names, bare, title, above)
+            return _Header(place, names, bare, title, last_words)
         if not comment and bare:
             words += 1
-            title, above = title or bare, (place + 1, bare)
+            title, last_words = title or bare, (place + 1, bare)
         if bare:
             names = _names(bare.lstrip(COMMENTS)) or names
-        if words > MOST_NAMES or place > 10_000:
+        if words > MOST_HEADER_LINES or place > 10_000:
             break
     first = next((line.strip() for line in io.StringIO(text) if line.strip()), "")
     shown = first if len(first) <= 60 else f"{first[:57]}..."
     raise FileError(f"'{path}' holds no rows of numbers: it begins with '{shown}', where coordinates are needed")
 
 
-def _check_above(path: Path, head: _Head, count: int) -> None:
-    """Refuse a line above the numbers that is a row with a word in it, rather than names or a title."""
-    place, line = head.above
+def _check_header(path: Path, head: _Header, count: int) -> None:
+    """Raise FileError where the line above the numbers is a row with a word in it, not column names or a title."""
+    place, line = head.last_words
     row = _split(line, ",;")
     if len(row) != count or not any(_is_number(word) and "." in word for word in row):
         return
@@ -117,7 +109,7 @@ def _check_above(path: Path, head: _Head, count: int) -> None:
 
 
 def _names(line: str) -> tuple[str, ...]:
-    """Words of a line of names: between quotes, tabs, commas or semicolons, else blanks."""
+    """The column names of a line: in quotes, or separated by semicolons, commas or tabs, or else by blanks."""
     line = re.sub(r"(?i)^\s*variables\s*=", "", line).strip()
     if '"' in line:
         quoted = re.findall(r'"([^"]*)"', line)
@@ -126,12 +118,12 @@ def _names(line: str) -> tuple[str, ...]:
     for sign in ";,\t":
         if sign in line:
             return tuple(word.strip() for word in line.split(sign))
-    # a unit may stand apart from its name: x [mm]
+    # a blank may separate a name from its unit: x [mm]
     return tuple(re.sub(r"\s+([\[(])", r"\1", line).split())
 
 
-def _plain(text: str, head: _Head) -> str:
-    """The text with blanks between numbers and points in them, without comments; every line stays a line."""
+def _normalised(text: str, head: _Header) -> str:
+    """The text with blanks between numbers, decimal points and no comments; the number of lines does not change."""
     decimal_comma = "," in head.row and (";" in head.row or ("." not in head.row and _commas_are_decimal(head.row)))
     if decimal_comma:
         text = text.translate(str.maketrans(",;", ". "))
@@ -141,7 +133,7 @@ def _plain(text: str, head: _Head) -> str:
         text = text.replace(",", " ").replace(";", " ")
     if '"' in head.row:
         text = text.replace('"', " ")
-    if _FORTRAN.search(head.row):
+    if _FORTRAN_EXPONENT.search(head.row):
         text = text.translate(str.maketrans("dD", "ee"))
     if any(sign in text for sign in COMMENTS):
         text = re.sub(f"[{COMMENTS}][^\\n]*", "", text)
@@ -166,12 +158,12 @@ def _is_number(word: str) -> bool:
     return "_" not in word
 
 
-def _whole(column: Reals, row: str) -> bool:
+def _are_whole(column: Reals, row: str) -> bool:
     first = _split(row, ",;")[0]
     return "." not in first and "e" not in first.lower() and bool(np.all(column == np.round(column)))
 
 
-def _lines_of(body: str, head: _Head, count: int) -> Reals:
+def _line_numbers(body: str, head: _Header, count: int) -> Reals:
     """Line (n,) in the file of each row."""
     if count == body.count("\n", 0, len(body.rstrip())) + 1 - head.lines:
         return np.arange(head.lines + 1.0, head.lines + 1.0 + count)
@@ -179,8 +171,8 @@ def _lines_of(body: str, head: _Head, count: int) -> Reals:
     return np.array(rows[:count], dtype=np.float64)
 
 
-def _refusal(path: Path, body: str, head: _Head, start: int) -> FileError:
-    """What is wrong with the first bad row, which is none of the first `start`."""
+def _refusal(path: Path, body: str, head: _Header, start: int) -> FileError:
+    """The error of the first row from number `start` on that is no row of numbers."""
     counts = [len(words) for _, words in islice(_rows(body, head), 100)]
     usual = max(set(counts), key=counts.count)
     for place, words in _rows(body, head, start):
@@ -192,8 +184,8 @@ def _refusal(path: Path, body: str, head: _Head, start: int) -> FileError:
     return FileError(f"'{path}' is no table of numbers")
 
 
-def _rows(body: str, head: _Head, start: int = 0) -> Iterator[tuple[int, list[str]]]:
-    """Line and words of each row from number `start` on."""
+def _rows(body: str, head: _Header, start: int = 0) -> Iterator[tuple[int, list[str]]]:
+    """Line number and words of each row from number `start` on."""
     row = 0
     for place, line in enumerate(io.StringIO(body), 1):
         if place > head.lines and not line.isspace():
@@ -203,7 +195,7 @@ def _rows(body: str, head: _Head, start: int = 0) -> Iterator[tuple[int, list[st
 
 
 def _end_of(body: str, line: int) -> int:
-    """Where the line of a number ends."""
+    """Offset of the end of a line, given its number."""
     end = -1
     for _ in range(line):
         end = body.find("\n", end + 1)
@@ -213,7 +205,7 @@ def _end_of(body: str, line: int) -> int:
 
 
 def _wrong(words: list[str], place: int, usual: int) -> tuple[str, str] | None:
-    """What is wrong with a row, and the cure, if anything is."""
+    """What is wrong with a row, and how to correct it; None where nothing is."""
     try:
         _ = [float(word) for word in words]
         numbers = "_" not in "".join(words)
@@ -226,3 +218,17 @@ def _wrong(words: list[str], place: int, usual: int) -> tuple[str, str] | None:
     if len(words) != usual:
         return f"{len(words)} entries in line {place}, and {usual} in the others", "rows must have the same length"
     return None
+
+
+def airfoil_layout(values: Reals, title: str) -> tuple[str, int]:
+    """The layout of two columns (n, 2) below a title, in words, and the row in which their points begin.
+
+    Below a title, a Selig file holds x y around the profile from the trailing edge; a Lednicer file holds the number of
+    points of each side, then x y of both sides from the leading edge.
+    """
+    first = values[0]
+    counted = bool(np.all(first == np.round(first)) and np.min(first) > 1.0 and first.sum() == len(values) - 1)
+    if counted:
+        return "a Lednicer airfoil", 1
+    around = np.argmin(values[:, 0]) not in (0, len(values) - 1) and np.max(np.abs(values)) <= 2.0
+    return ("a Selig airfoil" if title and around else "a table"), 0

@@ -1,46 +1,21 @@
-"""Points of VTK files, legacy and XML; VTK comes with OpenCASCADE's wheels."""
+"""Points of VTK files, legacy and XML."""
 
 from pathlib import Path
-from typing import Any
-
-import numpy as np
 
 from bladewright.errors import FileError
 from bladewright.files.clouds.cloud import Columns
-
-_XML = {
-    b"PolyData": "vtkXMLPolyDataReader",
-    b"UnstructuredGrid": "vtkXMLUnstructuredGridReader",
-    b"StructuredGrid": "vtkXMLStructuredGridReader",
-}
+from bladewright.files.vtk import XML_READERS, read_vtk, vtk_array
 
 
-def read_vtk(path: Path, data: bytes) -> Columns:
+def read_vtk_points(path: Path, data: bytes) -> Columns:
     """The points; raises FileError where VTK cannot read them."""
-    try:
-        from vtkmodules import vtkIOLegacy, vtkIOXML
-        from vtkmodules.util.numpy_support import vtk_to_numpy
-        from vtkmodules.vtkCommonCore import vtkObject
-    except ImportError:
-        raise FileError(f"'{path}' needs VTK to be read: install the package vtk, or save the points as CSV") from None
+    kind = None
     if b"<VTKFile" in data[:4096]:
-        kind = next((name for name in _XML if b'type="' + name + b'"' in data[:4096]), None)
+        kind = next((name for name in XML_READERS if f'type="{name}"'.encode() in data[:4096]), None)
         if kind is None:
-            known = ", ".join(name.decode() for name in _XML)
+            known = ", ".join(XML_READERS)
             raise FileError(f"'{path}' is a VTK file of a type without points of its own: {known} are read")
-        reader: Any = getattr(vtkIOXML, _XML[kind])()
-    else:
-        reader = vtkIOLegacy.vtkGenericDataObjectReader()
-    reader.SetFileName(str(path))
-    shown = vtkObject.GetGlobalWarningDisplay()
-    vtkObject.GlobalWarningDisplayOff()
-    try:
-        reader.Update()
-    finally:
-        vtkObject.SetGlobalWarningDisplay(shown)
-    grid: Any = reader.GetOutput()
-    points = grid.GetPoints() if grid is not None and hasattr(grid, "GetPoints") else None
-    if reader.GetErrorCode() or points is None or points.GetNumberOfPoints() == 0:
+    grid = read_vtk(path, kind)
+    if grid is None:
         raise FileError(f"'{path}' is a VTK file without points, or not whole: has its writer finished?")
-    values = np.array(vtk_to_numpy(points.GetData()), dtype=np.float64)
-    return Columns(values=values, format="a VTK file", columns=("x", "y", "z"))
+    return Columns(values=vtk_array(grid.GetPoints().GetData()), format="a VTK file", columns=("x", "y", "z"))
