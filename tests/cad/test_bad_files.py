@@ -99,7 +99,7 @@ def test_the_kernel_prints_nothing(files, tmp_path):
 import sys
 sys.path.insert(0, {str(Path(__file__).parents[1])!r})
 from pathlib import Path
-from cad.blades import linear
+from machines.closed_forms import linear
 from bladewright import cad
 from bladewright.errors import CadError
 built = linear()
