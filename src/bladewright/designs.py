@@ -61,6 +61,18 @@ class Part:
 class Design(Part, ABC):
     """Base of the families: a part that is built on its own."""
 
+    dimension: ClassVar[int]
+    """2 where the design builds a section in its plane, 3 where it builds a blade"""
+    reference_length: ClassVar[str] = "chord"
+    """name of the length that thicknesses and edge radii are fractions of"""
+    has_planar_passage: ClassVar[bool] = False
+    """whether the flow domain shown of a 2D design is curves in its plane instead of its prismatic passage"""
+
+    @property
+    def thickness_laws(self) -> Mapping[str, ChordwiseLaw]:
+        """Half-thickness laws along the chord of the `upper` and the `lower` side, in families that have such laws."""
+        return {}
+
     @abstractmethod
     def build(self) -> Any:
         """The native geometry in metres and radians; the same design always builds the same.

@@ -111,7 +111,7 @@ def test_an_interruption_ends_with_130_and_leaves_nothing(run, section_file, mon
     def interrupted(*_, **__):
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("bladewright.meshing.passage_mesh.answered", interrupted)
+    monkeypatch.setattr("bladewright.meshing.passage_mesh.run_gmsh", interrupted)
     found = run("mesh", section_file, "-o", section_file.parent / "passage.msh", "--size", "0.4")
     assert found.status == 130
     assert left(section_file.parent) == [section_file.name]

@@ -279,7 +279,7 @@ def test_a_section_is_drawn_within_its_curves(section_drawn):
 
 
 def test_the_passage_alone_is_drawn_on_a_page(plane, tmp_path, monkeypatch):
-    monkeypatch.setattr(import_module("bladewright.views.picture"), "VIEW", (240, 240))
+    monkeypatch.setattr(import_module("bladewright.views.picture"), "PASSAGE_VIEW", (240, 240))
     views.passage_view(plane, tmp_path / "view.png")
     image = imread(tmp_path / "view.png")
     assert image.shape[:2] == (1280, 1600)

@@ -14,30 +14,30 @@ from bladewright.cli.progress import Bar, Silent
 from bladewright.errors import BladewrightError, DesignError
 
 
-def build_batch(paths: Sequence[Path], making: BuildOptions, jobs: int | None, bar: Bar) -> Outcome:
-    """Make the designs at many paths, `jobs` at a time, or as many as there are processors.
+def build_batch(paths: Sequence[Path], options: BuildOptions, jobs: int | None, bar: Bar) -> Outcome:
+    """Build the designs in many files, `jobs` at a time, or as many as there are processors.
 
-    A design that cannot be made leaves the others to be made; it is a refusal of the outcome. Raises DesignError where
-    two have the same name, before any is made.
+    A design that cannot be built does not keep the others from being built; it is a refusal in the outcome. Raises
+    DesignError, before any is built, where two designs have the same name.
     """
-    _check_names(paths, making)
-    found: dict[Path, Outcome] = {}
+    _check_names(paths, options)
+    built: dict[Path, Outcome] = {}
     refused: dict[Path, str] = {}
     count = min(jobs or os.cpu_count() or 1, len(paths))
     pool = ProcessPoolExecutor(count, get_context("spawn"), initializer=_ignore_interrupts)
     try:
-        waiting = {pool.submit(_build_one, path, making): path for path in paths}
+        waiting = {pool.submit(_build_one, path, options): path for path in paths}
         for done in as_completed(waiting):
             path, result = waiting[done], done.result()
             if isinstance(result, str):
                 refused[path] = result
             else:
-                found[path] = result
+                built[path] = result
             bar.set_description_str(path.name)
             bar.update(1)
     finally:
         pool.shutdown(cancel_futures=True)
-    outcomes = [found[path] for path in paths if path in found]
+    outcomes = [built[path] for path in paths if path in built]
     return Outcome(
         data={
             "passed": not refused and all(each.data["passed"] for each in outcomes),
@@ -50,11 +50,12 @@ def build_batch(paths: Sequence[Path], making: BuildOptions, jobs: int | None, b
     )
 
 
-def _check_names(paths: Sequence[Path], making: BuildOptions) -> None:
+def _check_names(paths: Sequence[Path], options: BuildOptions) -> None:
+    """Raise DesignError where two designs have the same name; files that cannot be read are reported later."""
     names: dict[str, Path] = {}
     for path in paths:
         try:
-            name = getattr(load_design(path, making.changes), "name", "")
+            name = load_design(path, options.changes).name
         except BladewrightError:
             continue
         if name in names:
@@ -66,13 +67,14 @@ def _check_names(paths: Sequence[Path], making: BuildOptions) -> None:
 
 
 def _ignore_interrupts() -> None:
-    """Leave an interrupt to the process that waits: what is being written is finished."""
+    """Leave an interrupt to the parent process, so that files being written are finished."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
 
 
-def _build_one(path: Path, making: BuildOptions) -> Outcome | str:
+def _build_one(path: Path, options: BuildOptions) -> Outcome | str:
+    """The outcome of one design, or the message of its refusal."""
     try:
-        return build_files(path, making, Silent())
+        return build_files(path, options, Silent())
     except BladewrightError as error:
         text = str(error)
         return text if str(path) in text else f"{path}: {text}"

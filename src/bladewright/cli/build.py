@@ -6,10 +6,22 @@ from typing import Any
 import click
 
 from bladewright.cli.build_files import SUFFIXES, BuildOptions, build_files
-from bladewright.cli.load_design import BODIES, check_options, passage_options
-from bladewright.cli.options import Call, comma_separated, common, extend_option, parse_length, set_option
+from bladewright.cli.load_design import BODIES
+from bladewright.cli.options import (
+    Call,
+    check_options,
+    comma_separated,
+    common,
+    extend_option,
+    parse_length,
+    passage_options,
+    set_option,
+)
 from bladewright.cli.outcome import Outcome
 from bladewright.cli.progress import progress
+
+_BUILD_OPTIONS = ("directory", "formats", "schema", "iges_surfaces", "chordal_deviation", "changes")
+"""Options that are fields of `BuildOptions`; the remaining ones shape a passage."""
 
 
 @click.command(short_help="Design to verified CAD files.")
@@ -59,7 +71,7 @@ def build(
     bodies: tuple[str, ...],
     extend: float,
     jobs: int | None,
-    **asked: Any,
+    **others: Any,
 ) -> Outcome:
     """Build DESIGN into verified CAD files: NAME.step, NAME.igs and so on, NAME being the design's name.
 
@@ -68,17 +80,13 @@ def build(
     NAME.igs.roundtrip.json. Where a check fails the files stay, say so, and the exit status is 1. Several designs are
     made side by side; one that is refused does not keep the others from being made.
     """
-    own = {name: asked.pop(name) for name in _OWN}
-    check_options(bodies, extend, asked)
-    making = BuildOptions(bodies=bodies, extend=extend, reach=asked, **own)
+    own = {name: others.pop(name) for name in _BUILD_OPTIONS}
+    check_options(bodies, extend, others)
+    options = BuildOptions(bodies=bodies, extend=extend, extents=others, **own)
     if len(designs) == 1:
-        with progress(making.steps, call) as bar:
-            return build_files(designs[0], making, bar)
+        with progress(options.steps, call) as bar:
+            return build_files(designs[0], options, bar)
     from bladewright.cli.batch import build_batch
 
     with progress(len(designs), call) as bar:
-        return build_batch(designs, making, jobs, bar)
-
-
-_OWN = ("directory", "formats", "schema", "iges_surfaces", "chordal_deviation", "changes")
-"""options that say what is made of a design, and not how far a passage reaches"""
+        return build_batch(designs, options, jobs, bar)

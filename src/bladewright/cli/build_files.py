@@ -12,70 +12,71 @@ from bladewright.cli.outcome import Outcome, jsonable
 from bladewright.cli.progress import Bar
 
 SUFFIXES = {"step": ".step", "iges": ".igs", "brep": ".brep", "stl": ".stl", "3mf": ".3mf"}
+"""Endings of the files of each format."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class BuildOptions:
-    """What is to be made of a design, and where."""
+    """What a design is built into, and where the files go."""
 
     directory: Path
     formats: tuple[str, ...]
-    """keys of SUFFIXES"""
+    """each a key of SUFFIXES"""
     bodies: tuple[str, ...]
-    """of BODIES"""
+    """each a word of BODIES"""
     schema: Literal["AP242", "AP214", "AP203"]
     iges_surfaces: bool
-    """trimmed surfaces in the IGES file, in the place of a solid"""
+    """whether the IGES file holds trimmed surfaces instead of a solid"""
     chordal_deviation: float | None
-    """largest gap of STL and 3MF [m]"""
+    """largest distance of the triangles of STL and 3MF from the solid [m]; None: the default of `cad.write`"""
     extend: float
-    """part of its span by which a blade is extended at both ends"""
+    """fraction of the span by which a blade is extended at both ends [-]"""
     changes: Mapping[str, Any]
-    """of the design's parameters, by path"""
-    reach: Mapping[str, Any]
-    """options of a passage"""
+    """changes of the design's parameters, by path"""
+    extents: Mapping[str, Any]
+    """options of a passage: how far it reaches, its angles, whether it is split"""
 
     @property
     def steps(self) -> int:
-        """Steps of a bar for one design."""
+        """Steps of a progress bar for one design."""
         return len(self.bodies) * (1 + len(self.formats))
 
 
-def build_files(path: Path, making: BuildOptions, bar: Bar) -> Outcome:
-    """Make the design at a path into files; an error leaves none of them behind."""
+def build_files(path: Path, options: BuildOptions, bar: Bar) -> Outcome:
+    """Build the design in a file into CAD files and their reports; an error leaves none of them behind."""
     from bladewright.files.text import write_text
 
-    blueprint: Any = load_design(path, making.changes)
-    names = {body: blueprint.name + ("-passage" if body == "passage" else "") for body in making.bodies}
-    files = [f"{name}{SUFFIXES[each]}" for name in names.values() for each in making.formats]
+    design: Any = load_design(path, options.changes)
+    names = {body: design.name + ("-passage" if body == "passage" else "") for body in options.bodies}
+    files = [f"{name}{SUFFIXES[each]}" for name in names.values() for each in options.formats]
     reports = [
         f"{name}{SUFFIXES[each] if number else ''}.roundtrip.json"
         for name in names.values()
-        for number, each in enumerate(making.formats)
+        for number, each in enumerate(options.formats)
     ]
-    directory, trips = making.directory, list[Any]()
+    directory, trips = options.directory, list[Any]()
     with removing_partial_files(directory, [*files, *reports]):
-        bar.set_description_str(" and ".join(making.bodies))
-        for built in bodies_from(making.bodies, blueprint, path, making.extend, making.reach):
+        bar.set_description_str(" and ".join(options.bodies))
+        for built in bodies_from(options.bodies, design, path, options.extend, options.extents):
             bar.update(1)
             from bladewright import cad
 
-            for each in making.formats:
+            for each in options.formats:
                 bar.set_description_str(each)
                 file, report = files[len(trips)], reports[len(trips)]
                 trip = cad.write(
                     built,
                     directory / file,
-                    schema=making.schema,
-                    solid=not (making.iges_surfaces and each == "iges"),
-                    chordal_deviation=making.chordal_deviation,
+                    schema=options.schema,
+                    solid=not (options.iges_surfaces and each == "iges"),
+                    chordal_deviation=options.chordal_deviation,
                 )
                 write_text(directory / report, json.dumps(jsonable(trip.to_dict()), indent=2) + "\n")
                 trips.append(trip)
                 bar.update(1)
     return Outcome(
         data={
-            "name": built.name if len(making.bodies) == 1 else blueprint.name,
+            "name": built.name if len(options.bodies) == 1 else design.name,
             "passed": all(trip.passed for trip in trips),
             "files": [str(directory / file) for file in files],
             "roundtrips": [trip.to_dict() for trip in trips],

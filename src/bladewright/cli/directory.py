@@ -1,4 +1,4 @@
-"""The directory that a command writes into, tidy after an error."""
+"""The directory that a command writes into."""
 
 import tempfile
 from collections.abc import Iterator, Sequence
@@ -10,9 +10,10 @@ from bladewright.errors import FileError
 
 @contextmanager
 def removing_partial_files(directory: Path, names: Sequence[str]) -> Iterator[None]:
-    """A block that writes files of these names into a directory; an error leaves nothing that was not there before.
+    """Run a block that writes these files into a directory; after an error, remove those that are new.
 
-    The directory is made where it is not there. Raises FileError where it cannot be made or written into.
+    A directory that does not exist is made, and removed again after an error. Raises FileError where it cannot be made
+    or written into.
     """
     made = [each for each in (directory, *directory.parents) if not each.exists()]
     new: list[Path] = []
@@ -30,6 +31,7 @@ def removing_partial_files(directory: Path, names: Sequence[str]) -> Iterator[No
 
 
 def _check_writable(directory: Path, names: Sequence[str]) -> None:
+    """Raise FileError where the directory or one of the files cannot be written."""
     try:
         directory.mkdir(parents=True, exist_ok=True)
         with tempfile.TemporaryFile(dir=directory):

@@ -1,23 +1,80 @@
 """`bladewright fit`: a cloud of points becomes a design, with the report of how well it matches."""
 
+import math
 import re
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import click
 
-from bladewright.cli import fit_options
 from bladewright.cli.directory import removing_partial_files
+from bladewright.cli.fit_files import (
+    check_design_file,
+    picture_beside,
+    read_points,
+    read_start,
+    report_beside,
+    with_labels,
+    write_deviations,
+    write_report,
+)
 from bladewright.cli.options import Call, common, parse_length
 from bladewright.cli.outcome import Outcome
 from bladewright.cli.progress import status_line
+from bladewright.designs import Design
 
 if TYPE_CHECKING:
     from bladewright.files.clouds import Cloud
     from bladewright.fitting.assessment.result import Fit
 
 UNITS = ("m", "cm", "mm", "um", "in", "ft")
+"""Units of length that a cloud or a design may have."""
+
+
+def _parse_columns(_: click.Context, __: click.Parameter, text: str | None) -> tuple[str, ...] | None:
+    """Split words at commas; a word may occur more than once."""
+    return None if text is None else tuple(word.strip() for word in text.split(","))
+
+
+def _parse_name(_: click.Context, __: click.Parameter, text: str | None) -> str | None:
+    """Accept a name that files can have."""
+    if text is not None and (not text.strip() or any(sign in text for sign in '/\\:*?"<>|')):
+        raise click.BadParameter(
+            f"'{text}' cannot be a design's name: it names files, so leave / \\ : * ? \" < > | out"
+        )
+    return text
+
+
+def _parse_bounds(_: click.Context, __: click.Parameter, pairs: Sequence[str]) -> dict[str, tuple[float, float]]:
+    """Read the lowest and the highest value by pattern; one that is left out is infinite."""
+    found = {}
+    for pair in pairs:
+        path, sign, text = pair.rpartition("=")
+        low, comma, high = text.partition(",")
+        try:
+            limits = float(low) if low.strip() else -math.inf, float(high) if high.strip() else math.inf
+        except ValueError:
+            limits = math.nan, math.nan
+        if not (sign and comma and path.strip()) or not limits[0] <= limits[1]:
+            raise click.BadParameter(f"'{pair}' is not PATH=LOW,HIGH: write it like --bound 'stagger[*]=-60,-40'")
+        found[path.strip()] = limits
+    return found
+
+
+def _parse_fixed(_: click.Context, __: click.Parameter, words: Sequence[str]) -> dict[str, float | None]:
+    """Read values by path; None stands for the value of the start design."""
+    found: dict[str, float | None] = {}
+    for word in words:
+        path, sign, text = word.partition("=")
+        try:
+            value = float(text) if sign else None
+        except ValueError:
+            value = math.nan
+        if not path.strip() or (value is not None and not math.isfinite(value)):
+            raise click.BadParameter(f"'{word}' is not PATH or PATH=VALUE: write it like --fix stagger[1]=-52")
+        found[path.strip()] = value
+    return found
 
 
 @click.command(short_help="A cloud of points to a design.")
@@ -46,7 +103,7 @@ UNITS = ("m", "cm", "mm", "um", "in", "ft")
 @click.option("--unit", type=click.Choice(UNITS), help="Unit of the cloud's lengths; the file's own, or m.")
 @click.option(
     "--columns",
-    callback=fit_options.columns,
+    callback=_parse_columns,
     metavar="x,y,...",
     help="What the file's columns are, in their order: x y z r theta skip, with commas between.",
 )
@@ -67,7 +124,7 @@ UNITS = ("m", "cm", "mm", "um", "in", "ft")
     "--fix",
     "fixed",
     multiple=True,
-    callback=fit_options.fixes,
+    callback=_parse_fixed,
     metavar="PATH[=VALUE]",
     help="Hold a parameter at a value, or at that of --start. Repeatable.",
 )
@@ -75,7 +132,7 @@ UNITS = ("m", "cm", "mm", "um", "in", "ft")
     "--bound",
     "bounds",
     multiple=True,
-    callback=fit_options.bounds,
+    callback=_parse_bounds,
     metavar="PATH=LOW,HIGH",
     help="Keep a parameter between two values, either of which may be left out. Repeatable.",
 )
@@ -85,7 +142,7 @@ UNITS = ("m", "cm", "mm", "um", "in", "ft")
 @click.option(
     "--pitch", callback=parse_length, metavar="LENGTH", help="Distance of neighbours in a cascade, such as 57.5mm."
 )
-@click.option("--name", callback=fit_options.name, help="The design's name; that of the cloud's file where not given.")
+@click.option("--name", callback=_parse_name, help="The design's name; that of the cloud's file where not given.")
 @click.option("--length-unit", type=click.Choice(UNITS), default="mm", show_default=True, help="The design's unit.")
 @click.option("--picture", type=click.Path(path_type=Path), help="Picture to write; NAME.fit.png where not given.")
 @click.option("--no-picture", is_flag=True, help="Draw none.")
@@ -106,7 +163,7 @@ def fit(
     deviations: Path | None,
     *,
     no_picture: bool,
-    **how: Any,
+    **fit_options: Any,
 ) -> Outcome:
     """Fit a design to the points of CLOUD, and say how far they lie from it: no first guess is needed.
 
@@ -115,11 +172,9 @@ def fit(
     give --align. NAME.fit.json and NAME.fit.png are written beside the design. The exit status is 1 where the fit does
     not pass; interrupted, it writes the best design so far.
     """
-    from bladewright.cli.fit_files import check_design_file, picture_beside, report_beside
-
     if no_picture and picture is not None:
         raise click.UsageError("--picture names a picture, and --no-picture wants none: leave one out")
-    name = how.pop("name") or _name_from(cloud)
+    name = fit_options.pop("name") or _name_from(cloud)
     design = output or Path(f"{name}.toml")
     report = report_beside(design)
     picture = None if no_picture else picture or picture_beside(design)
@@ -127,76 +182,94 @@ def fit(
     if picture is not None:
         _check_picture(picture, beside=design)
     with removing_partial_files(design.parent, [design.name, report.name]):
-        found, points = _fitted(call, cloud, columns, unit, samples, name, how)
-        data = _written(found, points, cloud, design, report)
+        result, points = _fit(call, cloud, columns, unit, samples, name, fit_options)
+        data = _write(result, points, cloud, design, report)
     if deviations is not None:
-        from bladewright.cli.fit_files import write_deviations
-
-        write_deviations(found, deviations)
+        write_deviations(result, deviations)
         data["files"]["deviations"] = str(deviations)
-    if picture is not None and not found.interrupted:
+    if picture is not None and not result.interrupted:
         from bladewright.views.fit_sheet import fit_picture
 
-        fit_picture(found, picture)
+        fit_picture(result, picture)
         data["files"]["picture"] = str(picture)
-    lines = [str(found), *(f"  note: {note}" for note in points.notes)]
-    if found.interrupted:
+    lines = [str(result), *(f"  note: {note}" for note in points.notes)]
+    if result.interrupted:
         lines.append("interrupted: the best design so far is written")
     lines.append(f"wrote {', '.join(data['files'].values())}")
-    failures = tuple(f"{cloud}: {text}" for text in found.failures)
-    return Outcome(data=data, text="\n".join(lines), failures=failures, interrupted=found.interrupted)
+    failures = tuple(f"{cloud}: {text}" for text in result.failures)
+    return Outcome(data=data, text="\n".join(lines), failures=failures, interrupted=result.interrupted)
 
 
-def _fitted(
+def _fit(
     call: Call,
     path: Path,
     columns: tuple[str, ...] | None,
     unit: str | None,
     samples: int | None,
     name: str,
-    how: dict[str, Any],
+    fit_options: dict[str, Any],
 ) -> "tuple[Fit, Cloud]":
-    """The fit, and the cloud as it was read."""
-    from bladewright.cli.fit_files import cloud_at, start_at
+    """Fit the design; return the result and the cloud as it was read."""
     from bladewright.errors import FitError
 
-    start, like = (None if how[key] is None else start_at(how[key]) for key in ("start", "like"))
-    how = {**how, "start": start, "like": like, "fixed": fit_options.fixed_of(how["fixed"], start)}
-    with status_line(call) as say:
-        say("reading points")
-        points = cloud_at(path, columns, unit, samples)
+    start, like = (None if fit_options[key] is None else read_start(fit_options[key]) for key in ("start", "like"))
+    fit_options = fit_options | {"start": start, "like": like, "fixed": _fixed_parameters(fit_options["fixed"], start)}
+    with status_line(call) as show:
+        show("reading points")
+        points = read_points(path, columns, unit, samples)
         from bladewright.fitting.fit import fit as fitted
 
         try:
-            options: Mapping[str, Any] = how | {"free": how["free"] or None, "bounds": how["bounds"] or None}
-            return fitted(points.points, name=name, progress=say, **options), points
+            options: Mapping[str, Any] = fit_options | {
+                "free": fit_options["free"] or None,
+                "bounds": fit_options["bounds"] or None,
+            }
+            return fitted(points.points, name=name, progress=show, **options), points
         except KeyboardInterrupt as error:
             raise click.Abort("before a design was measured, so nothing is written") from error
         except FitError as error:
-            # a wrong unit or wrong columns may well be the reason
+            # A wrong unit or wrong columns are often the reason.
             more = f"; {'; '.join(points.notes)}" if points.notes else ""
             raise FitError(f"'{path}': {error}{more}") from error
 
 
-def _written(found: "Fit", points: "Cloud", cloud: Path, design: Path, report: Path) -> dict[str, Any]:
-    """What was found, for programs, when the design and the report are written."""
-    from bladewright.cli.fit_files import labelled, write_report
+def _write(result: "Fit", points: "Cloud", cloud: Path, design: Path, report: Path) -> dict[str, Any]:
+    """Write the design and the report; return the JSON object of the command."""
     from bladewright.files.writing import write_design
 
     read = {"file": str(cloud), "format": points.format, "unit": points.unit, "columns": points.columns}
-    data = {**found.to_dict(), "cloud": {**read, "notes": points.notes}}
-    write_design(labelled(found.design, design), design)
+    data = {**result.to_dict(), "cloud": {**read, "notes": points.notes}}
+    write_design(with_labels(result.design, design), design)
     write_report(data, report)
     return {**data, "files": {"design": str(design), "report": str(report)}}
 
 
 def _check_picture(picture: Path, beside: Path) -> None:
+    """Raise FileError, before the work begins, where the picture cannot be written."""
     from bladewright.views.pages import checked_path
 
-    # the design's own directory is made where it is not there
+    # The design's own directory is created later where it does not exist yet.
     if picture.parent != beside.parent or picture.parent.is_dir():
         checked_path(picture)
 
 
 def _name_from(cloud: Path) -> str:
     return re.sub(r'[/\\:*?"<>|\s]+', "-", cloud.stem).strip("-.") or "blade"
+
+
+def _fixed_parameters(
+    given: Mapping[str, float | None], start: Design | None
+) -> Sequence[str] | Mapping[str, float] | None:
+    """The argument `fixed` of `bladewright.fit`: patterns held at the start's values, or values by path."""
+    if not given:
+        return None
+    bare = [path for path, value in given.items() if value is None]
+    if bare and start is None:
+        raise click.UsageError(f"--fix {bare[0]} holds a start's value: give the value, or a design with --start")
+    if len(bare) == len(given) or start is None:
+        return bare or {path: value for path, value in given.items() if value is not None}
+    from bladewright.derivatives.patterns import chosen
+
+    values: dict[str, Any] = start.parameters()
+    held = {path: float(values[path]) for path in chosen(start, bare)} if bare else {}
+    return held | {path: value for path, value in given.items() if value is not None}

@@ -16,41 +16,41 @@ if TYPE_CHECKING:
     from bladewright.fitting.assessment.result import Fit
 
 
-CAD = (".step", ".stp", ".igs", ".iges", ".brep")
-"""endings of files whose faces points are taken of"""
+CAD_SUFFIXES = (".step", ".stp", ".igs", ".iges", ".brep")
+"""Endings of the files whose faces are sampled."""
 SAMPLES = 10_000
-"""points that are taken of them"""
+"""Points sampled on the faces of a CAD file where `--samples` is not given. More points take longer to fit and add
+little, as the faces are exact; fewer leave small edges with too few points."""
+LABELS = ("description", "author", "organisation")
+"""Texts that a design file keeps when a fit overwrites it, as no fit knows them."""
+_ROWS = 100_000
+"""Rows of the table of deviations formatted at a time; more rows take more memory, fewer take more calls."""
 
 
-def parablade_text(path: Path) -> str | None:
-    """The text of a ParaBlade configuration, or None where the file is something else.
-
-    Raises FileError where it cannot be read as text.
-    """
-    from bladewright.files.parablade import is_parablade
-    from bladewright.files.text import read_text
-
-    text = read_text(path)
-    return text if is_parablade(text) else None
-
-
-def start_at(path: Path) -> Design:
-    """The design in a design file, or in a ParaBlade configuration."""
+def read_start(path: Path) -> Design:
+    """Read the design in a design file, or in a ParaBlade configuration."""
     from bladewright.cli.load_design import load_design
     from bladewright.files.parablade import read_parablade
 
-    if path.is_file() and path.suffix.lower() != ".toml" and parablade_text(path) is not None:
+    if path.is_file() and path.suffix.lower() != ".toml" and _is_parablade(path):
         return read_parablade(path)
     return load_design(path, {})
 
 
-def cloud_at(path: Path, columns: Sequence[str] | None, unit: str | None, samples: int | None) -> "Cloud":
-    """The points of a file, or so many of the faces of a CAD file."""
+def _is_parablade(path: Path) -> bool:
+    from bladewright.files.parablade import is_parablade
+    from bladewright.files.text import read_text
+
+    return is_parablade(read_text(path))
+
+
+def read_points(path: Path, columns: Sequence[str] | None, unit: str | None, samples: int | None) -> "Cloud":
+    """Read the points of a file, or sample the faces of a CAD file with so many points."""
     from bladewright.files.clouds import Cloud, read_cloud
 
-    if path.suffix.lower() not in CAD:
+    if path.suffix.lower() not in CAD_SUFFIXES:
         if samples is not None:
-            raise click.UsageError(f"--samples chooses points of the faces of a CAD file ({', '.join(CAD)})")
+            raise click.UsageError(f"--samples chooses points of the faces of a CAD file ({', '.join(CAD_SUFFIXES)})")
         return read_cloud(path, columns=columns, unit=unit)
     if columns is not None or unit is not None:
         raise click.UsageError("--columns and --unit are for tables of points: a CAD file has its own axes and unit")
@@ -62,24 +62,18 @@ def cloud_at(path: Path, columns: Sequence[str] | None, unit: str | None, sample
     return Cloud(points=points, format="a CAD file", unit="mm", columns=("x", "y", "z"))
 
 
-LABELS = ("description", "author", "organisation")
-"""what a file that is there keeps, as no fit knows it"""
-_ROWS = 100_000
-"""rows of a table that are put together at a time"""
-
-
 def report_beside(design: Path) -> Path:
-    """The report's path."""
+    """The path of the report that belongs to a design file."""
     return design.with_name(f"{design.stem}.fit.json")
 
 
 def picture_beside(design: Path) -> Path:
-    """The picture's path."""
+    """The path of the picture that belongs to a design file."""
     return design.with_name(f"{design.stem}.fit.png")
 
 
 def check_design_file(path: Path) -> None:
-    """Refuse, before work begins, a file that is there and holds no design."""
+    """Raise FileError, before the work begins, where a file exists that holds no design."""
     from bladewright.errors import DesignError, FileError
     from bladewright.files.reading import read_design
 
@@ -89,12 +83,12 @@ def check_design_file(path: Path) -> None:
         except FileError as error:
             raise FileError(f"{error}; so it is not overwritten: name another file") from error
         except DesignError:
-            # a design that cannot be built is a design all the same
+            # A design that cannot be built may be overwritten as well.
             return
 
 
-def labelled(design: Any, path: Path) -> Any:
-    """The design with the texts that the file at `path` has for it."""
+def with_labels(design: Any, path: Path) -> Any:
+    """The design with the labels that the file at `path` already has."""
     from bladewright.errors import BladewrightError
     from bladewright.files.reading import read_design
 
@@ -125,10 +119,10 @@ def write_deviations(fit: "Fit", path: Path) -> None:
         stream.write(",".join(names) + "\n")
         for first in range(0, len(fit.cloud), _ROWS):
             part = slice(first, first + _ROWS)
-            stream.writelines(_lines(fit, part))
+            stream.writelines(_table_rows(fit, part))
 
 
-def _lines(fit: "Fit", part: slice) -> Sequence[str]:
+def _table_rows(fit: "Fit", part: slice) -> Sequence[str]:
     columns = zip(
         fit.cloud[part].tolist(),
         fit.places[part].tolist(),

@@ -15,6 +15,7 @@ if TYPE_CHECKING:
 
 
 KNOWN = "ParaBlade's .cfg and T-Blade3's 3dbgbinput.*.dat"
+"""The formats that can be imported, as messages name them."""
 
 
 @click.command("import", short_help="Another program's design to a design file.")
@@ -52,49 +53,50 @@ def import_design(
     """
     with progress(3, call) as bar:
         bar.set_description_str("sections")
-        found = _imported(file, chordwise, edge_spline=edge_spline, true_stagger=true_stagger)
+        imported = _read(file, chordwise, edge_spline=edge_spline, true_stagger=true_stagger)
         bar.update(1)
         bar.set_description_str("surfaces")
-        built = built_from(found.design, file)
+        built = built_from(imported.design, file)
         bar.update(1)
         bar.set_description_str("distances")
-        distances = found.distances(built)
+        distances = imported.distances(built)
         from bladewright.files.writing import write_design
 
-        design = output or Path(f"{found.design.name}.toml")
-        write_design(found.design, design)
+        design = output or Path(f"{imported.design.name}.toml")
+        write_design(imported.design, design)
         bar.update(1)
     chord = float(built.chord)
     mean, most = float(distances.mean()), float(distances.max())
     data = {
         "file": str(file),
-        "program": found.program,
+        "program": imported.program,
         "design": str(design),
-        "name": found.design.name,
-        "parameters": len(found.design.parameters()),
-        "kept": found.kept,
-        "changed": found.changed,
-        "notes": found.notes,
+        "name": imported.design.name,
+        "parameters": len(imported.design.parameters()),
+        "kept": imported.kept,
+        "changed": imported.changed,
+        "notes": imported.notes,
         "deviation": {
             "points": len(distances),
             "mean_m": mean,
             "maximum_m": most,
             "chord_m": chord,
-            "source": found.source,
+            "source": imported.source,
         },
     }
-    lines = [f"{found.design.name}: {found.program}, {data['parameters']} parameters"]
-    lines += [f"  kept: {text}" for text in found.kept]
-    lines += [f"  changed: {text}" for text in found.changed]
-    lines += [f"  note: {text}" for text in found.notes]
+    lines = [f"{imported.design.name}: {imported.program}, {data['parameters']} parameters"]
+    lines += [f"  kept: {text}" for text in imported.kept]
+    lines += [f"  changed: {text}" for text in imported.changed]
+    lines += [f"  note: {text}" for text in imported.notes]
     lines.append(
-        f"  the built sides lie {mean * 1e3:.3g} mm in the mean and {most * 1e3:.3g} mm at most from {found.program}'s "
-        f"({mean / chord:.2g} and {most / chord:.2g} of the chord), by {found.source}"
+        f"  the built sides lie {mean * 1e3:.3g} mm in the mean and {most * 1e3:.3g} mm at most from "
+        f"{imported.program}'s ({mean / chord:.2g} and {most / chord:.2g} of the chord), by {imported.source}"
     )
     return Outcome(data=data, text="\n".join([*lines, f"wrote {design}"]))
 
 
-def _imported(file: Path, chordwise: int | None, *, edge_spline: bool, true_stagger: bool) -> "Imported[Any]":
+def _read(file: Path, chordwise: int | None, *, edge_spline: bool, true_stagger: bool) -> "Imported[Any]":
+    """Read the design in a file whose format its contents tell."""
     from bladewright.errors import FileError
     from bladewright.files.parablade import import_parablade, is_parablade
     from bladewright.files.tblade3 import import_tblade3, is_tblade3

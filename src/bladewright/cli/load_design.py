@@ -1,18 +1,20 @@
 """The design that a command is given, and the blade, section or passage that it builds."""
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any
 
 import click
 
-from bladewright.designs import Design
 from bladewright.errors import DesignError, FileError
 
+BODIES = ("blade", "passage")
+"""The bodies that a design is built into, as `--body` names them."""
 
-def load_design(path: Path, changes: Mapping[str, Any]) -> Design:
-    """The design in a file, with the changes of `--set`."""
+
+def load_design(path: Path, changes: Mapping[str, Any]) -> Any:
+    """Read the design in a file and apply the changes of `--set`."""
     from bladewright.files.examples import examples
     from bladewright.files.reading import read_design
 
@@ -24,7 +26,7 @@ def load_design(path: Path, changes: Mapping[str, Any]) -> Design:
 
 @contextmanager
 def naming_file(path: Path) -> Iterator[None]:
-    """Name the design file at `path` in what is refused of its design."""
+    """Put the name of the design file in front of every DesignError that the block raises."""
     try:
         yield
     except DesignError as error:
@@ -32,7 +34,7 @@ def naming_file(path: Path) -> Iterator[None]:
 
 
 def built_from(design: Any, path: Path) -> Any:
-    """What a design builds: a blade, or a section of a 2D family.
+    """What a design builds: a blade, or the section of a 2D design.
 
     Raises DesignError, naming the file at `path`, where the shape is impossible.
     """
@@ -41,80 +43,65 @@ def built_from(design: Any, path: Path) -> Any:
 
 
 def blade_from(design: Any, path: Path) -> Any:
-    """The blade of a design, a prismatic one where it is 2D.
+    """The blade of a design; of a 2D design, its prismatic blade.
 
     Raises DesignError, naming the file at `path`, where the shape is impossible.
     """
     from bladewright.blade.design.families import prismatic
-    from bladewright.section.planar import PlanarSection
-    from bladewright.section.unified import UnifiedSection
 
     with naming_file(path):
-        return (prismatic(design) if isinstance(design, UnifiedSection | PlanarSection) else design).build()
-
-
-BODIES = ("blade", "passage")
-
-Decorated = TypeVar("Decorated", bound=Callable[..., Any])
-
-
-def passage_options(command: Decorated) -> Decorated:
-    """Let a command take the options of a passage; they come as the keywords of `passage_from`."""
-    options = (
-        click.option("--split", is_flag=True, help="Split a passage's faces where they have a crease."),
-        click.option("--outlet-angle", type=float, metavar="DEG", help="Angle that a passage turns to at its outlet."),
-        click.option("--inlet-angle", type=float, metavar="DEG", help="Angle that a passage turns to at its inlet."),
-        click.option(
-            "--downstream", type=float, metavar="X", help="Reach of a passage behind the blade, in meridional lengths."
-        ),
-        click.option(
-            "--upstream", type=float, metavar="X", help="Reach of a passage before the blade, in meridional lengths."
-        ),
-    )
-    for option in options:
-        command = option(command)
-    return command
-
-
-def check_options(bodies: Sequence[str], extend: float, reach: Mapping[str, Any]) -> None:
-    """Raise a usage error where an option is given for a body that is not asked for."""
-    given = [f"--{name.replace('_', '-')}" for name, value in reach.items() if value not in {None, False}]
-    if given and "passage" not in bodies:
-        raise click.UsageError(f"{' and '.join(given)} shapes a passage: ask for one with --body passage")
-    if extend and "blade" not in bodies:
-        raise click.UsageError("--extend lengthens a blade: ask for one with --body blade")
+        return (prismatic(design) if design.dimension == 2 else design).build()
 
 
 def bodies_from(
-    bodies: Sequence[str], design: Any, path: Path, extend: float, reach: Mapping[str, Any]
+    bodies: Sequence[str], design: Any, path: Path, extend: float, extents: Mapping[str, Any]
 ) -> Iterator[Any]:
-    """The bodies of a design, of BODIES, one after another around one blade.
+    """The bodies of a design, each a word of BODIES, one after another around the same blade.
 
-    A blade is extended past both ends by a part `extend` of its span, a passage has the options `reach`. Raises
-    DesignError, naming the file at `path`, where a shape is impossible.
+    The blade is extended past both ends by the part `extend` of its span; `extents` are the options of the passage.
+    Raises DesignError, naming the file at `path`, where a shape is impossible.
     """
     blade = blade_from(design, path)
     for body in bodies:
         if body == "passage":
-            yield _passage_around(blade, design, path, **reach)
+            yield _passage_around(blade, design, path, **extents)
             continue
         with naming_file(path):
-            long = blade.extended(extend) if extend else blade
-        yield long
+            extended = blade.extended(extend) if extend else blade
+        yield extended
 
 
-def passage_from(design: Any, path: Path, **reach: Any) -> Any:
-    """The passage of a design, around a prismatic blade where it is 2D.
+def passage_from(design: Any, path: Path, **extents: Any) -> Any:
+    """The passage of a design; of a 2D design, the passage around its prismatic blade.
 
     Raises DesignError, naming the file at `path`, where the shape is impossible.
     """
-    return _passage_around(blade_from(design, path), design, path, **reach)
+    return _passage_around(blade_from(design, path), design, path, **extents)
 
 
-def _passage_around(blade: Any, design: Any, path: Path, *, split: bool = False, **reach: Any) -> Any:
+def flow_domain_from(design: Any, path: Path, extents: Mapping[str, Any]) -> Any:
+    """The flow domain that `show` draws: the passage, or of a 2D unified design the curves around its section.
+
+    Raises DesignError, naming the file at `path`, where the shape is impossible.
+    """
+    if not design.has_planar_passage:
+        return passage_from(design, path, **extents)
+    from bladewright.domain.section import section_passage
+    from bladewright.section.checks import UNITS
+
+    if extents.get("split"):
+        raise click.UsageError("--split cuts the faces of a passage: the curves around a 2D section have no creases")
+    if design.pitch is None:
+        raise DesignError(f"{path}: pitch is missing: a passage lies between neighbours; set pitch in the design")
+    given = {name: value for name, value in extents.items() if name != "split" and value is not None}
+    with naming_file(path):
+        return section_passage(design.build(), design.pitch * UNITS[design.length_unit], **given)
+
+
+def _passage_around(blade: Any, design: Any, path: Path, *, split: bool = False, **extents: Any) -> Any:
     from bladewright.domain.build import passage
 
     with naming_file(path):
-        if getattr(design, "pitch", 0.0) is None and getattr(design, "blade_count", None) is None:
+        if design.dimension == 2 and design.pitch is None:
             raise DesignError("pitch is missing: a passage lies between neighbours; set pitch in the design")
-        return passage(blade, split=split, **reach)
+        return passage(blade, split=split, **extents)

@@ -7,13 +7,14 @@ from typing import Any, Literal
 import click
 
 from bladewright.cli.directory import removing_partial_files
-from bladewright.cli.load_design import load_design, passage_from, passage_options
-from bladewright.cli.options import Call, common, design_argument, set_option
+from bladewright.cli.load_design import load_design, passage_from
+from bladewright.cli.options import Call, common, design_argument, passage_options, set_option
 from bladewright.cli.outcome import Outcome
 from bladewright.cli.progress import progress
 
 STEPS = 8
-"""blade, STEP file, and what gmsh does: geometry, edges, faces, volume, writing and reopening, measuring"""
+"""Steps of the progress bar: STEP file, geometry, edges, faces, volume, writing, reopening, measuring. Further
+algorithms that are tried on the volume are not counted, as only some meshes need them."""
 
 
 @click.command(short_help="Design to a volume mesh of its passage.")
@@ -54,14 +55,14 @@ STEPS = 8
 def mesh(
     call: Call,
     /,
-    design: Path,
+    path: Path,
     output: Path | None,
     size: float | None,
     smallest: float | None,
     curvature: float,
     unit: Literal["m", "mm"],
     changes: dict[str, Any],
-    **reach: Any,
+    **extents: Any,
 ) -> Outcome:
     """Mesh the flow passage of DESIGN with tetrahedra, from its STEP file, which gmsh reads without healing.
 
@@ -72,8 +73,8 @@ def mesh(
     """
     from bladewright import meshing
 
-    blueprint: Any = load_design(design, changes)
-    file = output or Path(f"{blueprint.name}-passage.msh")
+    design: Any = load_design(path, changes)
+    file = output or Path(f"{design.name}-passage.msh")
     meshing.check(file, size=size, smallest=smallest, curvature=curvature)
     with (
         removing_partial_files(file.parent, [file.name]),
@@ -86,14 +87,14 @@ def mesh(
             bar.set_description_str(text)
 
         bar.set_description_str("passage")
-        passage = passage_from(blueprint, design, **reach)
+        passage = passage_from(design, path, **extents)
         step("STEP file")
         from bladewright import cad
 
-        path = Path(folder) / "passage.step"
-        trip = cad.write(passage, path)
+        step_file = Path(folder) / "passage.step"
+        trip = cad.write(passage, step_file)
         report = meshing.mesh(
-            path,
+            step_file,
             file,
             passage=passage,
             size=size,

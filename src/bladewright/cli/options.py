@@ -1,15 +1,15 @@
-"""Options that several commands share: those that every command takes, their values, and how they are read."""
+"""Options that several commands share, and how their values are read."""
 
 import re
 import tomllib
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Self, TypeVar
 
 import click
 
-Decorated = TypeVar("Decorated", bound=Callable[..., Any])
+Command = TypeVar("Command", bound=Callable[..., Any])
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -17,62 +17,55 @@ class Call:
     """The options that every command takes."""
 
     as_json: bool
-    """one JSON object on standard output, and nothing else"""
+    """print one JSON object on standard output, and nothing else"""
     quiet: bool
-    """nothing but errors and failures"""
+    """print nothing but errors and failures"""
     debug: bool
-    """the traceback of an error"""
+    """show the traceback of an error"""
 
     @classmethod
     def from_words(cls, words: Sequence[str]) -> Self:
-        """The options among the words of a command line, which must be known even where the rest cannot be parsed."""
+        """Read the options off the words of a command line: they are needed even where the rest cannot be parsed."""
         return cls(as_json="--json" in words, quiet=not {"--quiet", "-q"}.isdisjoint(words), debug="--debug" in words)
 
 
-def common(command: Decorated) -> Decorated:
+def common(command: Command) -> Command:
     """Let a command take the options of `Call`."""
-    options = (
-        click.option("--debug", is_flag=True, expose_value=False, help="Show the traceback of an error."),
-        click.option("-q", "--quiet", is_flag=True, expose_value=False, help="Print nothing but errors and failures."),
+    return _with_options(
+        command,
         click.option("--json", is_flag=True, expose_value=False, help="Print one JSON object, and nothing else."),
+        click.option("-q", "--quiet", is_flag=True, expose_value=False, help="Print nothing but errors and failures."),
+        click.option("--debug", is_flag=True, expose_value=False, help="Show the traceback of an error."),
     )
-    for option in options:
-        command = option(command)
-    return command
 
 
-design_argument = click.argument("design", type=click.Path(path_type=Path))
+def passage_options(command: Command) -> Command:
+    """Let a command take the options of a passage; they arrive as the keywords of `passage_from`."""
+    return _with_options(
+        command,
+        click.option(
+            "--upstream", type=float, metavar="X", help="Reach of a passage before the blade, in meridional lengths."
+        ),
+        click.option(
+            "--downstream", type=float, metavar="X", help="Reach of a passage behind the blade, in meridional lengths."
+        ),
+        click.option("--inlet-angle", type=float, metavar="DEG", help="Angle that a passage turns to at its inlet."),
+        click.option("--outlet-angle", type=float, metavar="DEG", help="Angle that a passage turns to at its outlet."),
+        click.option("--split", is_flag=True, help="Split a passage's faces where they have a crease."),
+    )
 
 
-def _parse_changes(_: click.Context, __: click.Parameter, pairs: Sequence[str]) -> dict[str, Any]:
-    changes = {}
-    for pair in pairs:
-        path, sign, text = pair.partition("=")
-        if not sign or not path.strip():
-            raise click.BadParameter(f"'{pair}' is not PATH=VALUE: write it like --set stagger[1]=-52")
-        changes[path.strip()] = _parse_value(path.strip(), text.strip())
-    return changes
-
-
-set_option = click.option(
-    "--set",
-    "changes",
-    multiple=True,
-    metavar="PATH=VALUE",
-    callback=_parse_changes,
-    help="Change a parameter, such as stagger[1]=-52 or channel.hub[0].x=3; the value is TOML. Repeatable.",
-)
-extend_option = click.option(
-    "--extend",
-    type=click.FloatRange(0.0, 0.5),
-    default=0.0,
-    metavar="SPAN",
-    help="Extend the blade past hub and shroud by this part of its span, for a later cut in your CAD; a tip stays.",
-)
+def check_options(bodies: Sequence[str], extend: float, extents: Mapping[str, Any]) -> None:
+    """Raise a usage error where an option is given for a body that is not asked for."""
+    given = [f"--{name.replace('_', '-')}" for name, value in extents.items() if value not in {None, False}]
+    if given and "passage" not in bodies:
+        raise click.UsageError(f"{' and '.join(given)} shapes a passage: ask for one with --body passage")
+    if extend and "blade" not in bodies:
+        raise click.UsageError("--extend lengthens a blade: ask for one with --body blade")
 
 
 def parse_length(_: click.Context, __: click.Parameter, text: str | None) -> float | None:
-    """A length such as 0.01mm [m]."""
+    """Convert a length such as 0.01mm to metres."""
     from bladewright.section.checks import UNITS
 
     if text is None:
@@ -88,7 +81,7 @@ def parse_length(_: click.Context, __: click.Parameter, text: str | None) -> flo
 
 
 def comma_separated(known: Sequence[str]) -> Callable[[click.Context, click.Parameter, str], tuple[str, ...]]:
-    """A callback for a list with commas, each entry one of the known words."""
+    """Return a callback that splits a list at its commas and accepts only known words."""
 
     def entries(_: click.Context, __: click.Parameter, text: str) -> tuple[str, ...]:
         words = tuple(dict.fromkeys(word.strip().lower() for word in text.split(",")))
@@ -100,7 +93,25 @@ def comma_separated(known: Sequence[str]) -> Callable[[click.Context, click.Para
     return entries
 
 
+def _with_options(command: Command, *options: Callable[[Command], Command]) -> Command:
+    """Decorate a command; its help lists the options in the order given."""
+    for option in reversed(options):
+        command = option(command)
+    return command
+
+
+def _parse_changes(_: click.Context, __: click.Parameter, pairs: Sequence[str]) -> dict[str, Any]:
+    changes = {}
+    for pair in pairs:
+        path, sign, text = pair.partition("=")
+        if not sign or not path.strip():
+            raise click.BadParameter(f"'{pair}' is not PATH=VALUE: write it like --set stagger[1]=-52")
+        changes[path.strip()] = _parse_value(path.strip(), text.strip())
+    return changes
+
+
 def _parse_value(path: str, text: str) -> Any:
+    """Read a TOML value, or a word without quotation marks."""
     try:
         document = tomllib.loads(f"value = {text}\n")
     except (ValueError, RecursionError):
@@ -110,3 +121,21 @@ def _parse_value(path: str, text: str) -> Any:
     if re.fullmatch(r"[^\W\d][\w .-]*", text):
         return text
     raise click.BadParameter(f"'{text}' is no TOML value for {path}: a number, a list like [1.0, 2.0], or a \"text\"")
+
+
+design_argument = click.argument("path", type=click.Path(path_type=Path), metavar="DESIGN")
+set_option = click.option(
+    "--set",
+    "changes",
+    multiple=True,
+    metavar="PATH=VALUE",
+    callback=_parse_changes,
+    help="Change a parameter, such as stagger[1]=-52 or channel.hub[0].x=3; the value is TOML. Repeatable.",
+)
+extend_option = click.option(
+    "--extend",
+    type=click.FloatRange(0.0, 0.5),
+    default=0.0,
+    metavar="SPAN",
+    help="Extend the blade past hub and shroud by this part of its span, for a later cut in your CAD; a tip stays.",
+)

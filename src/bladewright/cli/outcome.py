@@ -1,4 +1,4 @@
-"""What a command hands back, and how it is printed."""
+"""The outcome of a command, and how it is printed."""
 
 import json
 import math
@@ -12,7 +12,7 @@ import click
 from bladewright.cli.options import Call
 
 INTERRUPTED = 130
-"""exit status of work that was broken off"""
+"""Exit status after an interrupt: 128 + SIGINT (2), as shells report it."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -20,23 +20,23 @@ class Outcome:
     """The result of a command, for people and for programs."""
 
     data: dict[str, Any]
-    """the JSON object"""
+    """the object that `--json` prints"""
     text: str = ""
-    """for people, the failures in it; nothing is printed where it is empty"""
+    """what people read, failures included; nothing is printed where it is empty"""
     failures: tuple[str, ...] = field(default=())
-    """checks that failed, each a paragraph"""
+    """a paragraph for each check that failed"""
     refusals: tuple[str, ...] = field(default=())
-    """inputs among several that were refused, each a paragraph"""
+    """a paragraph for each input that was refused while others were not"""
     interrupted: bool = False
-    """whether the work was broken off, and what is here is the best until then"""
+    """whether the work was interrupted; the outcome is then the best result up to that point"""
 
 
 def print_outcome(outcome: Outcome, call: Call) -> int:
-    """Print an outcome as the call wants it, and return the exit status."""
+    """Print an outcome as the options of the call ask, and return the exit status."""
     text = json.dumps(jsonable(outcome.data), indent=2, allow_nan=False) if call.as_json else outcome.text
     if text and (call.as_json or not call.quiet):
         _print(text)
-    # On a terminal the text has said it already.
+    # On a terminal the text above already shows the failures.
     if call.quiet or call.as_json or not sys.stdout.isatty():
         for failure in outcome.failures:
             click.echo(one_paragraph(failure), err=True)
@@ -50,12 +50,12 @@ def print_outcome(outcome: Outcome, call: Call) -> int:
 
 
 def one_paragraph(message: str) -> str:
-    """The message on one line, its white space and line breaks single blanks."""
+    """The message on one line: line breaks and runs of white space become single blanks."""
     return " ".join(message.split())
 
 
 def jsonable(value: Any) -> Any:
-    """A value of dictionaries, sequences, numpy numbers and arrays as JSON has it; what is not finite becomes null."""
+    """A nested value as JSON types: arrays become lists, numbers that are not finite become null."""
     if isinstance(value, dict):
         return {str(key): jsonable(item) for key, item in value.items()}
     if isinstance(value, list | tuple):
@@ -72,5 +72,5 @@ def _print(text: str) -> None:
         click.echo(text)
         sys.stdout.flush()
     except BrokenPipeError:
-        # The reader has what it wanted; without this, Python's own flush at exit would complain.
+        # The reader has closed the pipe; without this, Python's own flush at exit would fail as well.
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())

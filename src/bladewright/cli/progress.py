@@ -9,17 +9,17 @@ from bladewright.cli.options import Call
 
 
 class Bar(Protocol):
-    """What moves a progress bar."""
+    """The methods of tqdm's progress bar that are used."""
 
     def set_description_str(self, text: str) -> object:
-        """Say what is being done."""
+        """Show what is being done."""
 
     def update(self, steps: int) -> object:
-        """Say that so many steps are done."""
+        """Advance by a number of steps."""
 
 
 class Silent:
-    """A bar that shows nothing."""
+    """A progress bar that shows nothing."""
 
     def set_description_str(self, text: str) -> None:
         pass
@@ -30,7 +30,7 @@ class Silent:
 
 @contextmanager
 def progress(steps: int, call: Call) -> Iterator[Bar]:
-    """A bar of so many steps, gone when the work is done."""
+    """A progress bar of so many steps; it disappears when the work is done."""
     if call.quiet or not sys.stderr.isatty():
         yield Silent()
         return
@@ -42,16 +42,19 @@ def progress(steps: int, call: Call) -> Iterator[Bar]:
 
 @contextmanager
 def status_line(call: Call) -> Iterator[Callable[[str], None]]:
-    """What says in a line how far work has come whose steps are not known before, gone when the work is done."""
+    """A function that shows one line of text, for work whose number of steps is not known beforehand.
+
+    The line disappears when the work is done.
+    """
     if call.quiet or not sys.stderr.isatty():
         yield lambda _: None
         return
 
-    def say(text: str) -> None:
+    def show(text: str) -> None:
         sys.stderr.write(f"\r\x1b[K{text}")
         sys.stderr.flush()
 
     try:
-        yield say
+        yield show
     finally:
-        say("")
+        show("")

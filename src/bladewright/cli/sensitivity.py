@@ -1,16 +1,27 @@
 """`bladewright sensitivity`: derivatives of what a design builds, their check, and the chain to a flow solver."""
 
+from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import click
 
 from bladewright.cli.load_design import built_from, load_design
 from bladewright.cli.options import Call, common, design_argument, set_option
 from bladewright.cli.outcome import Outcome
+from bladewright.cli.progress import progress
+from bladewright.designs import unit_at
+
+if TYPE_CHECKING:
+    from bladewright.derivatives.quantities import NamedQuantity
+    from bladewright.derivatives.step_study import StepStudy
+
+PASSAGE = "passage-volume"
+"""The quantity `--of passage-volume`: the volume of the passage around a blade."""
 
 
-def _grid(_: click.Context, __: click.Parameter, text: str) -> tuple[int, int]:
+def _parse_grid(_: click.Context, __: click.Parameter, text: str) -> tuple[int, int]:
+    """Read numbers of points such as 81x21."""
     along, _sign, across = text.lower().partition("x")
     if not (along.strip().isdigit() and across.strip().isdigit()):
         raise click.BadParameter(f"'{text}' is no number of points along and across: write it like 81x21")
@@ -30,12 +41,14 @@ def _grid(_: click.Context, __: click.Parameter, text: str) -> tuple[int, int]:
 @click.option(
     "--free", multiple=True, metavar="PATTERN", help="Only these parameters, such as 'stagger[*]'. Repeatable."
 )
-@click.option("--check", is_flag=True, help="Compare with central differences over a sweep of steps.")
+@click.option("--check", is_flag=True, help="Compare with central differences over a study of steps.")
 @click.option("-o", "--output", type=click.Path(path_type=Path), help="Picture of the check: .png, .svg or .pdf.")
 @click.option(
     "--write-points", type=click.Path(path_type=Path), metavar="FILE", help="Points of both sides for SU2_DEF."
 )
-@click.option("--points", default="81x21", show_default=True, callback=_grid, help="How many, along and across a side.")
+@click.option(
+    "--points", default="81x21", show_default=True, callback=_parse_grid, help="How many, along and across a side."
+)
 @click.option(
     "--from",
     "sensitivity_file",
@@ -49,7 +62,7 @@ def _grid(_: click.Context, __: click.Parameter, text: str) -> tuple[int, int]:
 @click.pass_obj
 def sensitivity(
     call: Call,
-    design: Path,
+    path: Path,
     of: str | None,
     free: tuple[str, ...],
     check: bool,
@@ -66,18 +79,16 @@ def sensitivity(
     or a parameter has no effect on the surface. --write-points and --from chain a design to the flow solver SU2: its
     adjoint's sensitivity at the points becomes the gradient of its objective by the parameters.
     """
-    from bladewright.cli.derivatives import checked, derivatives_of, pulled_back, written_points
-
     _one_task(check=check, output=output, write_points=write_points, of=of, given=(sensitivity_file, points_file))
-    blueprint = load_design(design, changes)
-    built = built_from(blueprint, design)
+    design = load_design(path, changes)
+    built = built_from(design, path)
     if write_points is not None:
-        return written_points(built, write_points, points)
+        return _write_points(built, write_points, points)
     if sensitivity_file is not None and points_file is not None:
-        return pulled_back(blueprint, built, free, sensitivity_file, points_file)
+        return _pull_back(design, built, free, sensitivity_file, points_file)
     if check:
-        return checked(call, blueprint, built, of or "surface", free, output)
-    return derivatives_of(call, blueprint, built, of, free)
+        return _check(call, design, built, of or "surface", free, output)
+    return _derivatives(call, design, built, of, free)
 
 
 def _one_task(
@@ -99,3 +110,202 @@ def _one_task(
         raise click.UsageError(f"{' and '.join(asked)} are different tasks: call the program once for each")
     if of is not None and asked and asked != ["--check"]:
         raise click.UsageError(f"--of chooses a quantity, which {asked[0]} does not take")
+
+
+def _derivatives(call: Call, design: Any, built: Any, of: str | None, free: Sequence[str]) -> Outcome:
+    """Table of the derivatives of a named quantity."""
+    import numpy as np
+
+    from bladewright.derivatives.patterns import chosen
+    from bladewright.derivatives.sensitivity import sensitivity
+    from bladewright.derivatives.step_study import size_of
+
+    quantity = _quantity(built, of or ("volume" if built.dimension == 3 else "area"))
+    paths = chosen(design, list(free) or None)
+    with progress(1, call) as bar:
+        bar.set_description_str(quantity.name)
+        rates = _rates(design, built, quantity, paths) or sensitivity(
+            design, quantity.of, free=paths, knots=built.knots
+        )
+        bar.update(1)
+    if quantity.points:
+        rates = {path: np.asarray(size_of(rate, quantity)) for path, rate in rates.items()}
+    value = None if quantity.points else np.real(np.asarray(quantity.of(built)))
+    unit, shown = _units(quantity.power)
+    units = {path: unit + _by(design, path) for path in paths}
+    data = {
+        "name": design.name,
+        "quantity": quantity.name,
+        "unit": unit,
+        "value": value,
+        "derivatives": rates,
+        "units": units,
+    }
+    head = f"{data['name']}: {quantity.name}"
+    head += ", root mean square over the control points" if quantity.points else ""
+    head += f" {_figures(value, shown[1])} {shown[0]}" if value is not None else ""
+    rows = [(path, _figures(rate, shown[1]), shown[0] + _by(design, path)) for path, rate in rates.items()]
+    return Outcome(data=data, text=_table(head, rows))
+
+
+def _check(call: Call, design: Any, built: Any, of: str, free: Sequence[str], output: Path | None) -> Outcome:
+    """Table of each derivative checked against central differences; a picture as well where `output` names one."""
+    from bladewright.derivatives.step_study import LIMIT, step_studies
+    from bladewright.derivatives.variables import variables
+
+    if output is not None:
+        from bladewright.views.pages import checked_path
+
+        checked_path(output)
+    quantity = _quantity(built, of)
+    space = variables(design, free=list(free) or None, knots=built.knots)
+    studies: list[StepStudy] = []
+    with progress(len(space.paths), call) as bar:
+        for study in step_studies(design, built, quantity, space):
+            bar.set_description_str(study.path)
+            studies.append(study)
+            bar.update(1)
+    name = design.name
+    failures = tuple(f"{name}: {study.failure}" for study in studies if study.failure)
+    data = {
+        "name": name,
+        "quantity": quantity.name,
+        "limit": LIMIT,
+        "passed": not failures,
+        "checks": [_record(study) for study in studies],
+    }
+    head = f"{name}: {quantity.name} by {len(studies)} parameters; closest difference, and complex step"
+    rows = [(study.path, *_verdict(study)) for study in studies]
+    text = _table(head, rows)
+    text += f"\n{len(failures)} of {len(studies)} FAILED" if failures else f"\nall within {LIMIT:g}"
+    if output is not None:
+        from bladewright.views.step_study import draw_step_studies
+
+        draw_step_studies(
+            studies, output, title=f"{name}: the {quantity.name} by {len(studies)} parameters", limit=LIMIT
+        )
+        data["picture"] = str(output)
+        text += f"\nwrote {output}"
+    return Outcome(data=data, text=text, failures=failures)
+
+
+def _write_points(built: Any, path: Path, points: tuple[int, int]) -> Outcome:
+    """Write points of both sides for SU2_DEF, and their surface parameters beside them."""
+    from bladewright.derivatives.surface_points import surface_points
+    from bladewright.files.su2 import write_surface_points
+
+    found = surface_points(built, along=points[0], across=points[1])
+    beside = write_surface_points(found, path)
+    data = {"points": len(found.ids), "file": str(path), "places": str(beside)}
+    return Outcome(data=data, text=f"wrote {len(found.ids)} points to {path}, and where they lie to {beside}")
+
+
+def _pull_back(design: Any, built: Any, free: Sequence[str], sensitivity: Path, points_file: Path) -> Outcome:
+    """Table of the gradient of a solver's objective, from its sensitivity at the points of a file."""
+    from bladewright.derivatives.net_jacobian import pullback
+    from bladewright.files.su2 import check_same_design, read_surface_points, read_surface_sensitivity
+
+    points = read_surface_points(points_file)
+    check_same_design(points_file, points, points.on(built))
+    bars = points.bars(read_surface_sensitivity(sensitivity, points))
+    rates = pullback(design, bars, free=list(free) or None, knots=built.knots)
+    units = {path: f"1{_by(design, path)}" for path in rates}
+    name = design.name
+    data = {"name": name, "quantity": "objective", "points": len(points.ids), "derivatives": rates, "units": units}
+    rows = [(path, f"{rate:.6g}", units[path]) for path, rate in rates.items()]
+    return Outcome(data=data, text=_table(f"{name}: objective of {sensitivity} at {len(points.ids)} points", rows))
+
+
+def _quantity(built: Any, name: str) -> "NamedQuantity":
+    """The quantity of this name; a blade has the volume of its passage besides its own quantities."""
+    from bladewright.derivatives.quantities import NamedQuantity, named_quantity
+
+    more: dict[str, NamedQuantity] = {}
+    if built.dimension == 3:
+        more[PASSAGE] = NamedQuantity(name=PASSAGE, of=_PassageVolume(), power=3)
+    return named_quantity(built, name, more)
+
+
+class _PassageVolume:
+    """The volume of a blade's passage, at the knots and extents of the passage of the first blade."""
+
+    def __init__(self) -> None:
+        self.knots: Any = None
+
+    def __call__(self, blade: Any) -> Any:
+        from bladewright.domain.build import passage
+
+        found = passage(blade, knots=self.knots)
+        self.knots = found.knots
+        return found.properties.volume
+
+
+def _rates(design: Any, built: Any, quantity: "NamedQuantity", paths: Sequence[str]) -> dict[str, Any] | None:
+    """The derivatives of a passage's volume from its control nets, or None where another way is needed.
+
+    This is many times faster than rebuilding the passage for every parameter.
+    """
+    if quantity.name != PASSAGE:
+        return None
+    from bladewright.blade.native.properties import middle_of
+    from bladewright.derivatives.enclosed_volume import enclosed_volume_rates
+    from bladewright.derivatives.net_jacobian import net_jacobian
+    from bladewright.domain.build import passage
+    from bladewright.errors import DerivativeError
+
+    body = passage(built)
+    found = net_jacobian(design, free=list(paths), knots=built.knots, of=passage)
+    volume, revolved = float(body.properties.volume), built.exact.mapping.revolved
+    try:
+        rates = enclosed_volume_rates(found, body.orientations, volume, middle_of(built.surfaces), revolved=revolved)
+    except DerivativeError:
+        return None
+    return dict(rates)
+
+
+def _record(study: "StepStudy") -> dict[str, Any]:
+    return {
+        "path": study.path,
+        "passed": not study.failure,
+        "derivative_rms": study.size,
+        "closest": study.best,
+        "scale": study.scale,
+        "steps": study.steps,
+        "errors": study.errors,
+        "complex_steps": study.imaginary,
+        "complex_errors": study.floor,
+        "note": study.failure or study.note,
+    }
+
+
+def _verdict(study: "StepStudy") -> tuple[str, str]:
+    """The closest difference and the error of the complex step, and whether the check failed."""
+    import numpy as np
+
+    if not len(study.errors):
+        return study.failure or study.note, ""
+    return f"{study.best:.1e}  {np.min(study.floor):.1e}", "FAILED" if study.failure else ""
+
+
+def _units(power: int) -> tuple[str, tuple[str, float]]:
+    """The SI unit of the JSON figures, and the unit of the table with its factor."""
+    raised = "" if power == 1 else str(power)
+    return f"m{raised}", (f"mm{raised}", 1e3**power)
+
+
+def _by(design: Any, path: str) -> str:
+    """What is appended to the unit of a quantity to make the unit of its derivative."""
+    unit = unit_at(design, path)
+    return {"length": f"/{design.length_unit}", "-": ""}.get(str(unit), f"/{unit}")
+
+
+def _figures(value: Any, factor: float) -> str:
+    import numpy as np
+
+    return " ".join(f"{entry * factor:.6g}" for entry in np.ravel(value))
+
+
+def _table(head: str, rows: Sequence[Sequence[str]]) -> str:
+    widths = [max((len(row[place]) for row in rows), default=0) for place in range(2)]
+    lines = [f"  {row[0]:<{widths[0]}}  {row[1]:>{widths[1]}}  {row[2]}".rstrip() for row in rows]
+    return "\n".join([head, *lines])

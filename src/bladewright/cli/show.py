@@ -5,13 +5,12 @@ from typing import Any
 
 import click
 
-from bladewright.cli.load_design import BODIES, built_from, check_options, load_design, passage_options
-from bladewright.cli.options import Call, common, design_argument, set_option
+from bladewright.cli.load_design import BODIES, built_from, flow_domain_from, load_design
+from bladewright.cli.options import Call, check_options, common, design_argument, passage_options, set_option
 from bladewright.cli.outcome import Outcome
 from bladewright.cli.progress import progress
 from bladewright.cli.summary import (
     broken_promises,
-    flow_domain,
     passage_data,
     passage_rows,
     smoothness_data,
@@ -31,7 +30,7 @@ from bladewright.cli.summary import (
 @set_option
 @common
 @click.pass_obj
-def show(call: Call, /, design: Path, output: Path | None, body: str, changes: dict[str, Any], **reach: Any) -> Outcome:
+def show(call: Call, /, path: Path, output: Path | None, body: str, changes: dict[str, Any], **extents: Any) -> Outcome:
     """Print the properties of what DESIGN builds and the promises it keeps; draw it where -o names a picture.
 
     The picture shows sections, curvature and its slope, the meridional channel, edges from close by, the laws of
@@ -39,23 +38,23 @@ def show(call: Call, /, design: Path, output: Path | None, body: str, changes: d
     unwrapped with the lines of their patches. The flow domain of a 2D design is the curves around its section, and
     reaches are in axial chords. The exit status is 1 where a promise is not kept.
     """
-    check_options((body,), 0.0, reach)
-    blueprint: Any = load_design(design, changes)
+    check_options((body,), 0.0, extents)
+    design: Any = load_design(path, changes)
     with progress(2 if output else 1, call) as bar:
         bar.set_description_str(body)
         if body == "passage":
-            built = flow_domain(blueprint, design, reach)
-            data = passage_data(blueprint, built)
+            built = flow_domain_from(design, path, extents)
+            data = passage_data(design, built)
         else:
-            built = built_from(blueprint, design)
-            data = summary_data(blueprint, built)
+            built = built_from(design, path)
+            data = summary_data(design, built)
             data["smoothness"] = smoothness_data(built)
         bar.update(1)
         if output is not None:
             from bladewright import views
 
             bar.set_description_str("picture")
-            views.picture(blueprint, output, blade=built)
+            views.picture(design, output, blade=built)
             data["picture"] = str(output)
             bar.update(1)
     rows = [*passage_rows(data), *smoothness_rows(data.get("smoothness", []))]

@@ -5,8 +5,8 @@ from typing import Any
 
 import click
 
-from bladewright.cli.load_design import BODIES, bodies_from, check_options, load_design, passage_options
-from bladewright.cli.options import common, design_argument, extend_option, set_option
+from bladewright.cli.load_design import BODIES, bodies_from, load_design
+from bladewright.cli.options import check_options, common, design_argument, extend_option, passage_options, set_option
 from bladewright.cli.outcome import Outcome
 
 
@@ -18,10 +18,10 @@ from bladewright.cli.outcome import Outcome
 @passage_options
 @set_option
 @common
-def verify(file: Path, design: Path, body: str, extend: float, changes: dict[str, Any], **reach: Any) -> Outcome:
+def verify(file: Path, path: Path, body: str, extend: float, changes: dict[str, Any], **extents: Any) -> Outcome:
     """Measure the CAD file FILE against the blade of DESIGN, or against its passage, both ways."""
-    check_options([body], extend, reach)
-    [built] = bodies_from([body], load_design(design, changes), design, extend, reach)
+    check_options([body], extend, extents)
+    [built] = bodies_from([body], load_design(path, changes), path, extend, extents)
     from bladewright import cad
 
     trip = cad.verify(file, built)

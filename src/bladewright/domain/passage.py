@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from types import MappingProxyType
-from typing import cast
+from typing import ClassVar, cast
 
 import numpy as np
 
@@ -49,6 +49,8 @@ OUTWARD = MappingProxyType(
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Passage:
     """What the fluid fills around one blade, half a pitch to each side, from inlet to outlet."""
+
+    dimension: ClassVar[int] = 3
 
     blade: Blade
     whole: Faces

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from types import MappingProxyType
+from typing import ClassVar
 
 import numpy as np
 
@@ -28,6 +29,8 @@ PLACES = 401
 @dataclass(frozen=True, kw_only=True, eq=False)
 class SectionPassage:
     """What the fluid fills about one section, half a pitch to each side of its continued camber line."""
+
+    dimension: ClassVar[int] = 2
 
     section: Section
     curves: Mapping[str, Curve]

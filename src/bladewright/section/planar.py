@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, fields
-from typing import Literal, get_args, get_type_hints
+from typing import ClassVar, Literal, get_args, get_type_hints
 
 import numpy as np
 
@@ -22,6 +22,8 @@ from bladewright.section.unified_limits import check_labels
 @dataclass(frozen=True, kw_only=True)
 class PlanarSection(Design):
     """Base of the 2D designs that hold a family's part; each has a final subclass that says of which family."""
+
+    dimension: ClassVar[int] = 2
 
     name: str
     """the part's name, used in files"""

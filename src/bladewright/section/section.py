@@ -3,7 +3,7 @@
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -28,6 +28,8 @@ class Section:
     those on the stream surface. Lengths, area and centroid are complex where the curves are; thickness, camber and
     curvature are searched for on the real section.
     """
+
+    dimension: ClassVar[int] = 2
 
     span: float
     """v of the section, 0 for a 2D one"""

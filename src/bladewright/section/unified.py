@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
-from typing import Any, Literal
+from typing import Any, ClassVar, Literal
 
 import numpy as np
 
-from bladewright.designs import Design, parameter
+from bladewright.designs import ChordwiseLaw, Design, parameter
 from bladewright.errors import DesignError
 from bladewright.numerics.elementary import Array, radians
 from bladewright.nurbs.transform import translated
@@ -38,6 +39,10 @@ class UnifiedSection(Design):
     Thicknesses, radii and tangent proportions are fractions of the axial chord.
     Reference: Agromayor et al. 2021, section 3.
     """
+
+    dimension: ClassVar[int] = 2
+    reference_length: ClassVar[str] = "axial chord"
+    has_planar_passage: ClassVar[bool] = True
 
     name: str
     """the part's name, used in files"""
@@ -97,6 +102,11 @@ class UnifiedSection(Design):
             if getattr(self, name) is not None:
                 checks.between(name, getattr(self, name), 0.0, float("inf"), "it must be positive")
         check_sampling(self)
+
+    @property
+    def thickness_laws(self) -> Mapping[str, ChordwiseLaw]:
+        """Half-thickness laws along the chord of the `upper` and the `lower` side."""
+        return {"upper": self.thickness_upper, "lower": self.thickness_lower}
 
     def outline(self, *, tentative: bool = False) -> tuple[Array, Array, Array]:
         """Control points [m] of the camber line (..., 1, 4, 2) and of the upper and the lower side (..., 1, n, 2).

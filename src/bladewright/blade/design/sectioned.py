@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any, ClassVar, Literal
 
 from bladewright.blade.design.flow_path import FlowPath, increasing_spans
 from bladewright.blade.design.meridional_curve import Meridian, meridian_at
@@ -32,6 +32,8 @@ class SectionedBlade(Design):
     `sweep` and `lean` then shift each section as it is, in its plane: its reference point, the leading edge where there
     is no `stacking`, moves along its stream line and around the axis.
     """
+
+    dimension: ClassVar[int] = 3
 
     name: str
     """the part's name, used in files"""

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, ClassVar, Literal
 
 from bladewright.blade.design.flow_path import Channel
 from bladewright.blade.design.row_design import check_arrangement
@@ -26,6 +27,9 @@ class UnifiedBlade(Design):
     that wall: v = 0 and v = 1 are the blade's own ends, and so are those of the laws.
     Reference: Agromayor et al. 2021, sections 3 and 4.
     """
+
+    dimension: ClassVar[int] = 3
+    reference_length: ClassVar[str] = "length"
 
     name: str
     """the part's name, used in files"""
@@ -119,6 +123,11 @@ class UnifiedBlade(Design):
         """Names of the blade's ends at v = 0 and v = 1: `hub` and `shroud`, or `tip` where there is a clearance."""
         hub = "hub" if self.hub_clearance is None else "tip"
         return hub, "shroud" if self.tip_clearance is None else "tip"
+
+    @property
+    def thickness_laws(self) -> Mapping[str, ChordwiseLaw]:
+        """Half-thickness laws along the chord of the `upper` and the `lower` side."""
+        return {"upper": self.thickness_upper, "lower": self.thickness_lower}
 
     def build(self, knots: Knots | None = None) -> Blade:
         """The native blade in metres; `knots=blade.knots` holds another build's knots and interpolation sites.

@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from types import MappingProxyType
-from typing import TYPE_CHECKING, cast
+from typing import TYPE_CHECKING, ClassVar, cast
 
 import numpy as np
 
@@ -36,6 +36,8 @@ Faces = Mapping[str, Surface | TrimmedSurface]
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Blade:
     """A closed blade of native surfaces."""
+
+    dimension: ClassVar[int] = 3
 
     design: UnifiedBlade | SectionedBlade
     surfaces: Faces
