@@ -151,7 +151,7 @@ def test_the_gradient_is_that_of_central_differences(weighted, closed, power):
         knots=(np.linspace(0.0, 1.0, 7) if closed else uniform_knots(6, 3),),
         degrees=(3,),
         points=np.stack([np.cos(angle), np.sin(angle), 0.3 * rng.normal(size=6)], axis=-1),
-        logs=0.2 * rng.normal(size=6) if weighted else None,
+        log_weights=0.2 * rng.normal(size=6) if weighted else None,
         weighted=weighted,
         held="none" if closed else "corners",
         closed=closed,
@@ -182,7 +182,7 @@ def test_without_unknowns_a_match_is_a_projection():
     )
     assert not net.free[[0, -1]].any()
     target = NetTarget(points=np.array([[0.5, 0.6], [1.0, 1.5], [2.0, 2.2]]), weights=np.ones(3))
-    assert matched_net(net, target, penalty=Penalty()).feet.distances.max() < 0.5
+    assert matched_net(net, target, penalty=Penalty()).footpoints.distances.max() < 0.5
 
 
 NAN = np.where(np.arange(81)[:, None] == 7, np.nan, BENT)

@@ -16,7 +16,7 @@ class Linear(ConstrainedProblem):
 
     def __init__(self, matrix, aim, *, walls=None, room=None, low=-np.inf, high=np.inf):
         count = matrix.shape[1]
-        self.matrix, self.aim = matrix, aim
+        self.matrix, self.rhs = matrix, aim
         self.walls = np.empty((0, count)) if walls is None else walls
         self.room = np.empty(0) if room is None else room
         self._bounds = np.broadcast_to(low, count).astype(float), np.broadcast_to(high, count).astype(float)
@@ -26,7 +26,7 @@ class Linear(ConstrainedProblem):
         return self._bounds
 
     def values(self, z):
-        return self.matrix @ z - self.aim, self.walls @ z - self.room
+        return self.matrix @ z - self.rhs, self.walls @ z - self.room
 
     def derivatives(self, z):  # noqa: ARG002 - as the base has it
         return self.matrix, self.walls
@@ -56,8 +56,8 @@ class Nowhere(Linear):
 
 def made(seed, *, walls=0):
     random = np.random.default_rng(seed)
-    matrix, aim = random.normal(size=(12, 5)), random.normal(size=12)
-    return matrix, aim, random.normal(size=(walls, 5)), 0.3 * random.random(walls)
+    matrix, target = random.normal(size=(12, 5)), random.normal(size=12)
+    return matrix, target, random.normal(size=(walls, 5)), 0.3 * random.random(walls)
 
 
 def unsettled(matrix, residuals):

@@ -18,7 +18,7 @@ U = np.linspace(0.0, 1.0, 101)
 def found(distances, design=STATOR):
     """As much of a match as steps look at: points evenly along the chord, and how far off they are."""
     on = SimpleNamespace(u=U, distances=np.asarray(distances))
-    return SimpleNamespace(design=design, state=SimpleNamespace(feet=on), rows=np.ones(101, dtype=bool))
+    return SimpleNamespace(design=design, state=SimpleNamespace(footpoints=on), rows=np.ones(101, dtype=bool))
 
 
 @pytest.mark.parametrize(("edge", "near"), [("leading_edge", U < 0.03), ("trailing_edge", U > 0.97)])

@@ -12,13 +12,13 @@ POINTS, COUNT = 400, 5
 SIZE = np.array([5.0, 0.2, 1.0, 0.01, 3.0])
 
 
-def found(slopes, *, shared=0.0, alone=1.0, low=-np.inf, high=np.inf, seed=1, deviation=1e-3):
+def found(slopes, *, correlation=0.0, independent_share=1.0, low=-np.inf, high=np.inf, seed=1, deviation=1e-3):
     """A match whose residuals are noise, and whose derivatives are given."""
     rows = deviation * np.random.default_rng(seed).normal(size=len(slopes))
     problem = SimpleNamespace(
         scales=SimpleNamespace(size=SIZE, low=np.full(COUNT, low), high=np.full(COUNT, high)),
         paths=tuple("abcde"),
-        measures=SimpleNamespace(
+        cloud_residuals=SimpleNamespace(
             residuals=lambda _: rows,
             slopes=lambda *_: slopes,
             roots=np.ones(POINTS),
@@ -27,8 +27,8 @@ def found(slopes, *, shared=0.0, alone=1.0, low=-np.inf, high=np.inf, seed=1, de
         ),
         values_of=lambda _: np.arange(1.0, COUNT + 1.0),
     )
-    scatter = SimpleNamespace(shared=shared, alone=lambda _: alone)
-    return SimpleNamespace(problem=problem, state=None, scatter=scatter, design=None), rows
+    scatter = SimpleNamespace(correlation=correlation, independent_share=lambda _: independent_share)
+    return SimpleNamespace(problem=problem, state=None, noise_estimate=scatter, design=None), rows
 
 
 def slopes_of(seed):
@@ -39,18 +39,18 @@ def slopes_of(seed):
 def test_the_covariance_is_that_of_linear_least_squares(seed):
     slopes = slopes_of(seed)
     match, rows = found(slopes)
-    certainty = parameter_estimates(match)
+    statistics = parameter_estimates(match)
     variance = np.sum(rows**2) / (POINTS - COUNT)
-    np.testing.assert_allclose(certainty.covariance, variance * np.linalg.inv(slopes.T @ slopes), rtol=1e-9)
-    deviations = np.sqrt(np.diag(certainty.covariance))
-    np.testing.assert_allclose([each.deviation for each in certainty.estimates], deviations, rtol=1e-12)
+    np.testing.assert_allclose(statistics.covariance, variance * np.linalg.inv(slopes.T @ slopes), rtol=1e-9)
+    deviations = np.sqrt(np.diag(statistics.covariance))
+    np.testing.assert_allclose([each.deviation for each in statistics.estimates], deviations, rtol=1e-12)
     factor = student.ppf(0.975, POINTS - COUNT)
-    for each, deviation in zip(certainty.estimates, deviations, strict=True):
+    for each, deviation in zip(statistics.estimates, deviations, strict=True):
         assert each.high - each.value == pytest.approx(factor * deviation, rel=1e-9)
         assert each.value - each.low == pytest.approx(factor * deviation, rel=1e-9)
         assert each.identified
-    assert certainty.rank == COUNT
-    assert certainty.condition == pytest.approx(np.linalg.cond(slopes * SIZE))
+    assert statistics.rank == COUNT
+    assert statistics.condition == pytest.approx(np.linalg.cond(slopes * SIZE))
 
 
 def test_intervals_hold_the_truth_as_often_as_they_say():
@@ -60,7 +60,7 @@ def test_intervals_hold_the_truth_as_often_as_they_say():
         # the step to the minimum, whose residuals are what is left
         step, *_ = np.linalg.lstsq(slopes, -rows, rcond=None)
         left = rows + slopes @ step
-        match.problem.measures.residuals = lambda _, left=left: left
+        match.problem.cloud_residuals.residuals = lambda _, left=left: left
         match.problem.values_of = lambda _, step=step: step
         held += [each.low <= 0.0 <= each.high for each in parameter_estimates(match).estimates]
     # three standard errors of a share of 0.95 of 1,500
@@ -70,24 +70,26 @@ def test_intervals_hold_the_truth_as_often_as_they_say():
 def test_what_no_residual_depends_on_is_not_identified():
     slopes = slopes_of(0)
     slopes[:, 2] = 0.0
-    certainty = parameter_estimates(found(slopes)[0])
-    assert [each.path for each in certainty.estimates if not each.identified] == ["c"]
-    assert certainty.estimates[2].deviation == np.inf
-    assert certainty.rank == COUNT - 1
-    assert certainty.condition > 1e15
-    assert np.isfinite(certainty.covariance).all()
+    statistics = parameter_estimates(found(slopes)[0])
+    assert [each.path for each in statistics.estimates if not each.identified] == ["c"]
+    assert statistics.estimates[2].deviation == np.inf
+    assert statistics.rank == COUNT - 1
+    assert statistics.condition > 1e15
+    assert np.isfinite(statistics.covariance).all()
 
 
 def test_parameters_that_do_the_same_are_not_identified():
     slopes = slopes_of(0)
     slopes[:, 3] = slopes[:, 1] * SIZE[1] / SIZE[3]
-    certainty = parameter_estimates(found(slopes)[0])
-    assert [each.path for each in certainty.estimates if not each.identified] == ["b", "d"]
-    assert certainty.rank == COUNT - 1
+    statistics = parameter_estimates(found(slopes)[0])
+    assert [each.path for each in statistics.estimates if not each.identified] == ["b", "d"]
+    assert statistics.rank == COUNT - 1
 
 
 def test_points_that_share_their_misfit_count_as_fewer():
-    plain, shared = (parameter_estimates(found(slopes_of(0), shared=part, alone=0.01)[0]) for part in (0.0, 0.9))
+    plain, shared = (
+        parameter_estimates(found(slopes_of(0), correlation=part, independent_share=0.01)[0]) for part in (0.0, 0.9)
+    )
     # a hundredth of the points: ten times the deviation
     np.testing.assert_allclose(shared.covariance, 100.0 * plain.covariance, rtol=1e-9)
 
@@ -102,16 +104,16 @@ def test_weights_of_a_search_that_are_no_inverse_variances_take_no_error_away():
     slopes, random = slopes_of(0), np.random.default_rng(0)
     roots = np.sqrt(random.uniform(0.1, 10.0, POINTS))
     match, rows = found(slopes)
-    measures = match.problem.measures
-    measures.precision, measures.roots = np.ones(POINTS), roots
-    measures.ends = SimpleNamespace(near=np.empty(0, dtype=int))
-    measures.residuals, measures.slopes = lambda _: roots * rows, lambda *_: roots[:, None] * slopes
+    cloud_residuals = match.problem.cloud_residuals
+    cloud_residuals.precision, cloud_residuals.roots = np.ones(POINTS), roots
+    cloud_residuals.ends = SimpleNamespace(near=np.empty(0, dtype=int))
+    cloud_residuals.residuals, cloud_residuals.slopes = lambda _: roots * rows, lambda *_: roots[:, None] * slopes
     # of errors of one size, by hand: the inverse of the weighted curvature on both sides of what the errors do
     inverse = np.linalg.inv(slopes.T @ (roots[:, None] ** 2 * slopes))
     variance = np.sum(rows**2) / (POINTS - COUNT)
     expected = variance * inverse @ (slopes.T @ (roots[:, None] ** 4 * slopes)) @ inverse
     np.testing.assert_allclose(parameter_estimates(match).covariance, expected, rtol=1e-9)
     # as inverse variances the same weights give the plain formula
-    measures.precision = roots**2
+    cloud_residuals.precision = roots**2
     variance = np.sum((roots * rows) ** 2) / (POINTS - COUNT)
     np.testing.assert_allclose(parameter_estimates(match).covariance, variance * inverse, rtol=1e-9)

@@ -50,7 +50,7 @@ def forecast():
 @pytest.mark.parametrize("name", NAMES)
 def test_places_move_with_whole_laws_as_with_their_control_points(name):
     found = met(name)
-    places, paths = found.problem.measures.places(found.state), found.problem.paths
+    places, paths = found.problem.cloud_residuals.places(found.state), found.problem.paths
     whole = found.model.along(found.state.shape, *places, paths)
     single = Model.along(found.model, found.state.shape, *places, paths)
     # sums of as many terms as there are sections, in another order
@@ -61,12 +61,12 @@ def test_the_structure_that_is_there_is_foreseen_as_its_own_least_squares():
     found, _ = forecast()
     own = structure_of(found.design)
     about = forecast_of(found, own)
-    slopes = found.problem.measures.slopes(found.state, found.problem.paths) * found.problem.scales.size
-    rows = found.problem.measures.residuals(found.state)
+    slopes = found.problem.cloud_residuals.slopes(found.state, found.problem.paths) * found.problem.scales.size
+    rows = found.problem.cloud_residuals.residuals(found.state)
     held = found.problem.noise * np.eye(slopes.shape[1])
-    system, aim = np.concatenate([slopes, held]), np.concatenate([rows, np.zeros(len(held))])
-    left = aim - system @ np.linalg.lstsq(system, aim, rcond=None)[0]
-    told = about.foreseen(own)
+    system, target = np.concatenate([slopes, held]), np.concatenate([rows, np.zeros(len(held))])
+    left = target - system @ np.linalg.lstsq(system, target, rcond=None)[0]
+    told = about.prediction(own)
     assert told.parameters == slopes.shape[1]
     # products of rows lose half the digits
     np.testing.assert_allclose(told.cost, left @ left, rtol=1e-6, atol=1e-6 * (rows @ rows) + 1e-20)
@@ -77,7 +77,7 @@ def test_what_steps_back_leave_is_foreseen_alike_one_by_one_and_together():
     own = structure_of(found.design)
     steps = [step for step in steps_down(own) if step.law in set(about.names())]
     together = about.costs(own, [(step.law, step.structure) for step in steps], None)
-    alone = [about.foreseen(step.structure).cost for step in steps]
+    alone = [about.prediction(step.structure).cost for step in steps]
     np.testing.assert_allclose(together, alone, rtol=1e-4, atol=1e-5 * max(alone))
 
 
@@ -105,18 +105,18 @@ def test_the_law_along_the_span_that_is_short_of_a_control_point_is_foreseen_to_
 def test_a_structure_of_so_many_parameters_is_no_worse_foreseen_than_the_one_that_was_there():
     found, about = forecast()
     own = structure_of(found.design)
-    most = about.foreseen(own).parameters
+    most = about.prediction(own).parameters
     best = best_structure(about, widest_reach(own), most)
-    assert about.foreseen(best).parameters <= most
-    assert about.foreseen(best).cost <= 1.001 * about.foreseen(own).cost
+    assert about.prediction(best).parameters <= most
+    assert about.prediction(best).cost <= 1.001 * about.prediction(own).cost
     fewer = best_structure(about, own, most - 6)
-    assert about.foreseen(fewer).parameters <= most - 6
+    assert about.prediction(fewer).parameters <= most - 6
 
 
 def test_the_foreseen_design_has_the_structure_and_is_no_further_than_the_nearest_laws():
     found, about = forecast()
     structure = best_structure(about, structure_of(found.design), 24)
-    told = about.designed(structure, about.foreseen(structure))
+    told = about.designed(structure, about.prediction(structure))
     assert structure_of(told) == structure
     assert about._misfit(told) <= about._misfit(reshaped(about.design, structure))
 
@@ -129,8 +129,8 @@ def test_radii_of_corners_that_are_held_stay_where_they_are():
     about = forecast_of(found, structure_of(found.design))
     assert len(about.held) == len(corners)
     own = structure_of(found.design)
-    assert about.foreseen(own).parameters == len(found.problem.paths)
-    told = about.designed(own, about.foreseen(own))
+    assert about.prediction(own).parameters == len(found.problem.paths)
+    told = about.designed(own, about.prediction(own))
     for path in corners:
         assert told.parameters()[path] == pytest.approx(found.design.parameters()[path], rel=1e-12)
 
@@ -145,7 +145,7 @@ def test_blades_with_a_clearance_have_no_forecast():
 def test_a_blade_within_a_tolerance_loses_the_control_points_that_it_does_not_need():
     name = "aachen-stator"
     wide = reshaped(design(name), widest_reach(structure_of(design(name))))
-    found = searched(task(name), wide, rounds=1, noise=1e-4, slight=1e-2)
+    found = searched(task(name), wide, rounds=1, noise=1e-4, min_reduction=1e-2)
     tolerance = max(1e-3 * found.model.chord, 1.2 * found.maximum)
     fewer = reduced_blade(task(name), found, tolerance)
     assert len(fewer.problem.paths) < len(found.problem.paths) - 3

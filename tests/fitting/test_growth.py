@@ -109,9 +109,11 @@ def test_a_match_grows_on_as_long_as_it_comes_much_nearer(monkeypatch, ratios, t
     steps, later = iter(ratios), []
 
     def nearer(match, ratio):
-        feet = match.state.feet
-        shrunk = replace(feet, points=feet.points + (1.0 - ratio) * feet.miss, miss=ratio * feet.miss)
-        return replace(match, state=replace(match.state, feet=shrunk))
+        footpoints = match.state.footpoints
+        shrunk = replace(
+            footpoints, points=footpoints.points + (1.0 - ratio) * footpoints.miss, miss=ratio * footpoints.miss
+        )
+        return replace(match, state=replace(match.state, footpoints=shrunk))
 
     def grown(_, match, __):
         ratio = next(steps, None)
@@ -132,11 +134,11 @@ def test_a_match_grows_on_as_long_as_it_comes_much_nearer(monkeypatch, ratios, t
 def test_a_search_that_leaves_points_out_comes_no_nearer(monkeypatch):
     base = design("turbine-section")
     match = found(base, replace(base, stagger=base.stagger + 0.5), rounds=0)
-    inliers = match.scatter.inliers.copy()
-    inliers[np.argsort(match.state.feet.distances)[-5:]] = False
-    fewer = replace(match, scatter=replace(match.scatter, inliers=inliers))
+    inliers = match.noise_estimate.inliers.copy()
+    inliers[np.argsort(match.state.footpoints.distances)[-5:]] = False
+    fewer = replace(match, noise_estimate=replace(match.noise_estimate, inliers=inliers))
     assert fewer.rms < match.rms
     monkeypatch.setattr(adaptation, "searched", lambda *_, **__: fewer)
     kept = adaptation._restarted(None, match)
-    assert np.all(kept.scatter.inliers == match.scatter.inliers)
+    assert np.all(kept.noise_estimate.inliers == match.noise_estimate.inliers)
     assert kept.evaluations == 2 * match.evaluations

@@ -70,8 +70,8 @@ def test_places_move_as_central_differences_say(name):
 @pytest.mark.parametrize("name", NAMES)
 def test_noses_change_as_central_differences_say(name):
     design, model = made(name)
-    exact = model.nose_rates(model.shape(design), paths(name))
-    found = differences(name, lambda other: other.noses)
+    exact = model.edge_radius_margin_rates(model.shape(design), paths(name))
+    found = differences(name, lambda other: other.edge_radius_margins)
     laws = [i for i, path in enumerate(paths(name)) if not path.startswith("channel.")]
     np.testing.assert_allclose((found / scaled(exact))[laws], (exact / scaled(exact))[laws], atol=3e-6)
     assert np.any(exact[:, 0])
@@ -80,16 +80,16 @@ def test_noses_change_as_central_differences_say(name):
 def test_folds_of_a_channel_change_as_central_differences_say():
     design, model = made("compressor-stator")
     shape = model.shape(design)
-    exact = model.fold_rates(shape, paths("compressor-stator"))
+    exact = model.constraint_rates(shape, paths("compressor-stator"))
     # the median that they are a part of is held
     held = model.shape(design).exact
 
-    def folds(other):
+    def constraints(other):
         return np.real(_fold_margins(held, other.exact.channel))
 
-    found = differences("compressor-stator", folds)
+    found = differences("compressor-stator", constraints)
     np.testing.assert_allclose(found / scaled(exact), exact / scaled(exact), atol=3e-6)
-    assert np.all(shape.folds < 0.0)
+    assert np.all(shape.constraints < 0.0)
 
 
 @pytest.mark.parametrize("name", NAMES)

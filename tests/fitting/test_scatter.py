@@ -39,7 +39,7 @@ def test_noise_is_found_and_is_not_taken_for_misfit(seed, dimension):
     found = scattered(*made(seed, dimension=dimension))
     # a median of 2,000 magnitudes, through neighbours that share them
     assert found.noise == pytest.approx(NOISE, rel=0.1)
-    assert found.shared < 0.1
+    assert found.correlation < 0.1
     # of normal heights, hardly any is eight robust deviations off
     assert np.count_nonzero(~found.inliers) <= 2
 
@@ -48,7 +48,7 @@ def test_noise_is_found_and_is_not_taken_for_misfit(seed, dimension):
 def test_a_smooth_misfit_is_neither_noise_nor_outliers(dimension):
     found = scattered(*made(0, misfit=100.0 * NOISE, dimension=dimension))
     assert found.inliers.all()
-    assert found.shared > 0.95
+    assert found.correlation > 0.95
     if dimension == 2:
         assert found.noise == pytest.approx(NOISE, rel=0.15)
 
@@ -74,15 +74,15 @@ def test_points_past_an_end_are_outliers_though_they_have_no_height():
     on = placed_feet(side, u, v, points, normals, heights)
     on.miss[at, 2] += 0.01
     assert not noise_of(on.points + on.miss, on).inliers[at]
-    assert noise_of(on.points + on.miss, on, outlying=False).inliers.all()
+    assert noise_of(on.points + on.miss, on, allow_outliers=False).inliers.all()
 
 
 def test_points_repeat_each_other_where_neighbours_share_the_misfit():
     noise, misfit = scattered(*made(0)), scattered(*made(0, misfit=1e3 * NOISE))
-    assert noise.alone(20) > 0.2
+    assert noise.independent_share(20) > 0.2
     # 2,000 points for 20 parameters: one in 50 tells something of its own
-    assert misfit.alone(20) == pytest.approx(40.0 / 2000.0, rel=0.1)
-    assert misfit.alone(1000) == pytest.approx(1.0)
+    assert misfit.independent_share(20) == pytest.approx(40.0 / 2000.0, rel=0.1)
+    assert misfit.independent_share(1000) == pytest.approx(1.0)
 
 
 def test_few_points_on_a_side_do_not_stop_it():

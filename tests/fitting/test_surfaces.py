@@ -85,7 +85,7 @@ def test_the_gradient_is_that_of_central_differences(weighted):
         knots=(surface.knots_u, surface.knots_v),
         degrees=(3, 3),
         points=surface.control_points.reshape(-1, 3).copy(),
-        logs=0.2 * rng.normal(size=20) if weighted else None,
+        log_weights=0.2 * rng.normal(size=20) if weighted else None,
         weighted=weighted,
     )
     points = net.surface(U[:60], V[:60]) + 0.02 * rng.normal(size=(60, 3))

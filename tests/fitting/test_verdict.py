@@ -30,7 +30,7 @@ def test_a_given_structure_is_met_exactly_but_in_axes_that_a_start_shows(moved, 
     found = searched(task, STATOR, rounds=0)
     at = measured(points, built)
     said = failures_of(
-        np.abs(at.deviations), at.scatter.inliers, at.regions, found, MatchTarget(structured=True, moved=moved)
+        np.abs(at.deviations), at.noise_estimate.inliers, at.regions, found, MatchTarget(structured=True, moved=moved)
     )
     assert len(said) == failures
     assert all("misfit of the given structure" in each for each in said)
@@ -46,9 +46,9 @@ def test_points_of_a_solid_on_its_end_faces_are_said_to_be_there():
     stray = np.mean(sides, axis=0) + 0.5 * np.ptp(sides, axis=0)
     points = np.concatenate([sides, face, stray[None]])
     at = measured(points, built)
-    outlying = ~at.scatter.inliers[len(sides) : -1]
+    allow_outliers = ~at.noise_estimate.inliers[len(sides) : -1]
     # those beside the outline are as near to the sides, on which an exact cloud has them
-    assert np.mean(at.faced[len(sides) : -1][outlying]) > 0.95
+    assert np.mean(at.faced[len(sides) : -1][allow_outliers]) > 0.95
     assert not np.any(at.faced[: len(sides)])
     assert not at.faced[-1]
     assert set(at.regions[at.faced]) == {"ends"}
@@ -59,7 +59,9 @@ def test_points_of_a_solid_on_its_end_faces_are_said_to_be_there():
     found, distances = searched(task, STATOR, rounds=0), np.abs(at.deviations)
     said = [
         " ".join(
-            failures_of(distances, at.scatter.inliers, at.regions, found, MatchTarget(structured=True), faced=faced)
+            failures_of(
+                distances, at.noise_estimate.inliers, at.regions, found, MatchTarget(structured=True), faced=faced
+            )
         )
         for faced in (0, int(np.count_nonzero(at.faced)))
     ]
@@ -79,7 +81,9 @@ def test_a_blade_that_is_laid_through_one_side_is_called_a_sheet(share, sheet):
         points=points, weights=np.ones(len(points)), free=free_parameters_of("stagger", None, started=True), bounds={}
     )
     found, at = searched(task, blade, rounds=0), measured(points, built)
-    said = failures_of(np.abs(at.deviations), at.scatter.inliers, at.regions, found, MatchTarget(structured=True))
+    said = failures_of(
+        np.abs(at.deviations), at.noise_estimate.inliers, at.regions, found, MatchTarget(structured=True)
+    )
     assert any("the blade is a sheet" in each for each in said) == sheet
 
 
@@ -93,7 +97,7 @@ def test_a_blade_needs_more_points_than_it_has_parameters(count, few):
     found, at = searched(task, STATOR, rounds=0), measured(points, built)
     distances, open_aim = np.abs(at.deviations), MatchTarget()
     said = [
-        " ".join(failures_of(distances, at.scatter.inliers, at.regions, found, aim))
+        " ".join(failures_of(distances, at.noise_estimate.inliers, at.regions, found, aim))
         for aim in (open_aim, MatchTarget(parameters=30))
     ]
     assert ("points are too few" in said[0]) == few

@@ -99,30 +99,30 @@ def fit(
         tell("axes")
         motion, points, arrangement, more = _aligned(points, start, arrangement)
         notes = (*notes, *more)
-    freedom = free_parameters_of(free, fixed, started=start is not None)
+    free_parameters = free_parameters_of(free, fixed, started=start is not None)
     task = Task(
         points=points,
         weights=_weights(weights, len(points)),
-        free=freedom,
+        free=free_parameters,
         bounds=dict(bounds or {}),
-        told=tell,
+        progress=tell,
         precision=None if weights is None else _weights(weights, len(points)),
     )
     structured = parameters is None and (start is not None or like is not None)
-    aim = MatchTarget(tolerance=tolerance, parameters=parameters, structured=structured, moved=align)
-    frame = DesignHeader(
+    target = MatchTarget(tolerance=tolerance, parameters=parameters, structured=structured, moved=align)
+    header = DesignHeader(
         name=name, length_unit=length_unit, pitch=pitch, arrangement=arrangement, blade_count=blade_count
     )
     try:
         if kind is None:
-            found, built, reason = matched_unified(task, start, like, frame, aim)
+            found, built, reason = matched_unified(task, start, like, header, target)
         else:
-            first = None if start is None else freedom.applied(start)
+            first = None if start is None else free_parameters.applied(start)
             matched = matched_section if points.shape[1] == 2 else matched_blade
-            found, reason = matched(task, kind, first, like, frame, aim)
+            found, reason = matched(task, kind, first, like, header, target)
             built = _built(found)
     except KeyboardInterrupt:
-        nearest = task.standby.built()
+        nearest = task.best_so_far.built()
         if nearest is None:
             raise
         found, built, reason = replace(nearest[0], interrupted=True), nearest[1], ""
@@ -130,7 +130,7 @@ def fit(
         raise FitError(f"no design of the family was found near the points ({error}): {WHOLE_BLADE_HINT}") from error
     if start is None and like is None and arrangement is None and getattr(found.design, "arrangement", "") == "linear":
         notes = (*notes, CASCADE_NOTE)
-    return _reported(found, built, points, task, aim, (*notes, *([reason] if reason else [])), motion)
+    return _reported(found, built, points, task, target, (*notes, *([reason] if reason else [])), motion)
 
 
 def named_family(family: str, dimension: int, given: Design | None = None) -> FitFamily | None:
@@ -200,32 +200,32 @@ def _weights(weights: ArrayLike | None, count: int) -> Reals:
 
 
 def _reported(
-    found: Match, built: Any, points: Reals, task: Task, aim: MatchTarget, notes: tuple[str, ...], motion: Any
+    found: Match, built: Any, points: Reals, task: Task, target: MatchTarget, notes: tuple[str, ...], motion: Any
 ) -> Fit:
-    task.told("measuring")
-    judgement = measured(points, built, task.precision)
-    certainty = parameter_estimates(found)
-    inliers = judgement.scatter.inliers
-    distances, faced = np.abs(judgement.deviations), int(np.count_nonzero(judgement.faced))
+    task.progress("measuring")
+    measurement = measured(points, built, task.precision)
+    statistics = parameter_estimates(found)
+    inliers = measurement.noise_estimate.inliers
+    distances, faced = np.abs(measurement.deviations), int(np.count_nonzero(measurement.faced))
     return Fit(
         design=found.design,
         built=built,
         cloud=points,
-        places=judgement.places,
-        u=judgement.on.u,
-        v=judgement.on.v,
-        deviations=judgement.deviations,
-        regions=judgement.regions,
+        places=measurement.places,
+        u=measurement.on.u,
+        v=measurement.on.v,
+        deviations=measurement.deviations,
+        regions=measurement.regions,
         inliers=inliers,
-        estimates=certainty.estimates,
-        covariance=certainty.covariance,
-        rank=certainty.rank,
-        condition=certainty.condition,
-        noise=judgement.scatter.noise,
+        estimates=statistics.estimates,
+        covariance=statistics.covariance,
+        rank=statistics.rank,
+        condition=statistics.condition,
+        noise=measurement.noise_estimate.noise,
         extrema=extrema_of(built),
-        tolerance=aim.tolerance,
-        failures=failures_of(distances, inliers, judgement.regions, found, aim, faced=faced),
-        notes=notes_of(notes, certainty, distances, inliers, found, aim, faced=faced),
+        tolerance=target.tolerance,
+        failures=failures_of(distances, inliers, measurement.regions, found, target, faced=faced),
+        notes=notes_of(notes, statistics, distances, inliers, found, target, faced=faced),
         evaluations=found.evaluations,
         motion=motion,
         interrupted=found.interrupted,

@@ -43,7 +43,7 @@ def failures_of(
     inliers: NDArray[np.bool_],
     regions: NDArray[np.str_],
     found: Match,
-    aim: MatchTarget,
+    target: MatchTarget,
     *,
     faced: int = 0,
 ) -> tuple[str, ...]:
@@ -57,12 +57,12 @@ def failures_of(
     if off > LARGEST_OUTLIER_SHARE * len(distances):
         failures.append(f"{off} of {len(distances)} points lie off the blade: is it one blade, and of this family?")
     worst = int(np.flatnonzero(inliers)[np.argmax(kept)])
-    if aim.tolerance is not None and kept.max() > aim.tolerance:
+    if target.tolerance is not None and kept.max() > target.tolerance:
         failures.append(
             f"the largest deviation is {1e3 * kept.max():.4g} mm ({regions[worst]}, point {worst}), and "
-            f"{1e3 * aim.tolerance:.4g} mm were asked for"
+            f"{1e3 * target.tolerance:.4g} mm were asked for"
         )
-    elif aim.tolerance is None:
+    elif target.tolerance is None:
         for word, value, limit in (
             ("mean", np.mean(kept), GROSS_DEVIATION[0]),
             ("largest", kept.max(), GROSS_DEVIATION[1]),
@@ -72,7 +72,7 @@ def failures_of(
                     f"the {word} deviation is {1e3 * value:.4g} mm, {100 * value / chord:.2g} % of the chord, and "
                     f"{100 * limit:.2g} % are allowed where no tolerance is stated: give more parameters"
                 )
-    failures += filter(None, (_structure_not_met(found, aim), _too_few_points(found, aim)))
+    failures += filter(None, (_structure_not_met(found, target), _too_few_points(found, target)))
     one_sided = _one_sided(found)
     if one_sided:
         failures.append(f"{one_sided}: is it one side of a blade alone? Give points of both")
@@ -83,22 +83,22 @@ def failures_of(
         if share > HALF_BLADE_WIDTH
     ]
     loose = loose_ends(found)
-    if loose and aim.structured and aim.tolerance is None and not found.interrupted and found.rms < EXACT_MISFIT:
+    if loose and target.structured and target.tolerance is None and not found.interrupted and found.rms < EXACT_MISFIT:
         failures.append(
             f"the sides are met exactly, but {_loose_ends_message(loose)}; state the tolerance that is enough"
         )
-    if shape_not_found(distances, inliers, found, aim) and not _near_enough(found):
+    if shape_not_found(distances, inliers, found, target) and not _near_enough(found):
         failures.append(_shape_not_found_message(found))
     return tuple(failures)
 
 
-def _structure_not_met(found: Match, aim: MatchTarget) -> str:
+def _structure_not_met(found: Match, target: MatchTarget) -> str:
     """Why a given structure is not met, if it is not."""
-    if not aim.structured or aim.tolerance is not None:
+    if not target.structured or target.tolerance is not None:
         return ""
-    rms, noise = found.rms * found.model.chord, found.scatter.noise
+    rms, noise = found.rms * found.model.chord, found.noise_estimate.noise
     # in axes that a start shows no structure is met exactly
-    least = NEAR_ENOUGH[_points(found).shape[1]] if aim.moved else EXACT_MISFIT
+    least = NEAR_ENOUGH[_points(found).shape[1]] if target.moved else EXACT_MISFIT
     if found.rms > least and rms > SYSTEMATIC_OVER_NOISE * noise:
         return (
             f"the misfit of the given structure is {1e3 * rms:.3g} mm rms, and the cloud's noise {1e3 * noise:.3g} mm: "
@@ -113,10 +113,10 @@ def _structure_not_met(found: Match, aim: MatchTarget) -> str:
     return ""
 
 
-def _too_few_points(found: Match, aim: MatchTarget) -> str:
+def _too_few_points(found: Match, target: MatchTarget) -> str:
     """Why points are too few to tell of a blade where nothing is asked for, if they are."""
     shown, count = int(np.count_nonzero(found.rows)), len(found.problem.paths)
-    if not aim.open or _points(found).shape[1] == 2 or shown >= FEWEST_POINTS_PER_PARAMETER * count:
+    if not target.open or _points(found).shape[1] == 2 or shown >= FEWEST_POINTS_PER_PARAMETER * count:
         return ""
     return (
         f"{shown} points are too few for the {count} parameters of this blade: give more points, or a number of "
@@ -124,11 +124,16 @@ def _too_few_points(found: Match, aim: MatchTarget) -> str:
     )
 
 
-def shape_not_found(distances: Reals, inliers: NDArray[np.bool_], found: Match, aim: MatchTarget) -> bool:
+def shape_not_found(distances: Reals, inliers: NDArray[np.bool_], found: Match, target: MatchTarget) -> bool:
     """Whether nothing was asked for, and the shape of the cloud is not met as far as its noise lets it be told."""
     enough = ENOUGH_DEVIATION[_points(found).shape[1]] * found.model.chord
     largest = float(np.max(distances[inliers]))
-    return aim.open and not found.interrupted and largest > 2.0 * enough and found.scatter.shared > SHAPE_CORRELATION
+    return (
+        target.open
+        and not found.interrupted
+        and largest > 2.0 * enough
+        and found.noise_estimate.correlation > SHAPE_CORRELATION
+    )
 
 
 def _one_sided(found: Match) -> str:
@@ -144,14 +149,14 @@ def _one_sided(found: Match) -> str:
 
 def _bare_side(found: Match) -> str:
     """The side of a blade that has hardly a point between its edges, if one has."""
-    on = found.state.feet
+    on = found.state.footpoints
     between = found.rows & (on.u > BETWEEN_EDGES) & (on.u < 1.0 - BETWEEN_EDGES)
     shares = {name: np.mean(on.side[between] == side) if np.any(between) else 1.0 for side, name in enumerate(SIDES)}
     return next((name for name, share in shares.items() if share < BARE_SIDE_SHARE), "")
 
 
 def _points(found: Match) -> Reals:
-    return np.asarray(found.problem.measures.points)
+    return np.asarray(found.problem.cloud_residuals.points)
 
 
 def _gross(distances: Reals, inliers: NDArray[np.bool_], found: Match) -> bool:
@@ -163,7 +168,7 @@ def _near_enough(found: Match) -> bool:
 
 
 def _shape_not_found_message(found: Match) -> str:
-    rms, noise = 1e3 * found.rms * found.model.chord, 1e3 * found.scatter.noise
+    rms, noise = 1e3 * found.rms * found.model.chord, 1e3 * found.noise_estimate.noise
     return (
         f"the shape is not found: deviations go on from point to point, {rms:.3g} mm rms where the cloud's own noise "
         f"is {noise:.3g} mm; state the tolerance that is enough, a number of parameters, or a start"
@@ -177,11 +182,11 @@ def _loose_ends_message(ends: Mapping[str, float]) -> str:
 
 def notes_of(
     notes: tuple[str, ...],
-    certainty: ParameterEstimates,
+    statistics: ParameterEstimates,
     distances: Reals,
     inliers: NDArray[np.bool_],
     found: Match,
-    aim: MatchTarget,
+    target: MatchTarget,
     *,
     faced: int = 0,
 ) -> tuple[str, ...]:
@@ -191,7 +196,7 @@ def notes_of(
         said.append(
             f"{faced} of {np.count_nonzero(~inliers)} outliers lie on the end faces: the sides are met without them"
         )
-    if shape_not_found(distances, inliers, found, aim) and _near_enough(found):
+    if shape_not_found(distances, inliers, found, target) and _near_enough(found):
         said.append(f"near enough to make, but {_shape_not_found_message(found)}")
     if _points(found).shape[1] == 3 and _gross(distances, inliers, found):
         said.append(f"a blade in other axes is met no nearer than this: {AXES_HINT}")
@@ -203,11 +208,11 @@ def notes_of(
     loose = loose_ends(found)
     if loose:
         said.append(_loose_ends_message(loose))
-    unknown = [each.path for each in certainty.estimates if not each.identified]
+    unknown = [each.path for each in statistics.estimates if not each.identified]
     if unknown:
         more = f" and {len(unknown) - LISTED_NAMES} more" if len(unknown) > LISTED_NAMES else ""
         said.append(f"the cloud does not determine {', '.join(unknown[:LISTED_NAMES])}{more}")
-    bound = [each.path for each in certainty.estimates if each.at_bound]
+    bound = [each.path for each in statistics.estimates if each.at_bound]
     if bound:
         said.append(f"on a bound: {', '.join(bound[:LISTED_NAMES])}{'...' if len(bound) > LISTED_NAMES else ''}")
     return tuple(said)

@@ -32,7 +32,7 @@ def loose_ends(found: Match) -> dict[str, float]:
         wall = walls.get(name)
         if wall is None:
             loose[name] = chord
-        elif wall.spread > max(ROW_SPREAD * chord, ROW_SPREAD_OF_NOISE * found.scatter.noise):
+        elif wall.spread > max(ROW_SPREAD * chord, ROW_SPREAD_OF_NOISE * found.noise_estimate.noise):
             loose[name] = GAP_OVER_SPREAD * wall.spread / len(wall.places)
     return loose
 
@@ -53,7 +53,7 @@ def uncovered_edges(found: Match) -> dict[str, tuple[float, float]]:
     """
     if not isinstance(found.design, UnifiedSection | UnifiedBlade):
         return {}
-    on, sides = found.state.feet, found.state.shape.sides
+    on, sides = found.state.footpoints, found.state.shape.sides
     unseen = {}
     for name, end in EDGE_PARAMETERS.items():
         nearest = _nearest(on, found.rows, end)

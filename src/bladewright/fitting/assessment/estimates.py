@@ -42,15 +42,15 @@ def parameter_estimates(found: Match) -> ParameterEstimates:
     """
     problem = found.problem
     size = problem.scales.size
-    rows = problem.measures.residuals(found.state)
-    slopes = problem.measures.slopes(found.state, problem.paths) * size
-    excess = _excess_weights(problem.measures, len(rows))
-    points = len(problem.measures.points)
-    count = int(np.count_nonzero(problem.measures.roots))
+    rows = problem.cloud_residuals.residuals(found.state)
+    slopes = problem.cloud_residuals.slopes(found.state, problem.paths) * size
+    excess = _excess_weights(problem.cloud_residuals, len(rows))
+    points = len(problem.cloud_residuals.points)
+    count = int(np.count_nonzero(problem.cloud_residuals.roots))
     left = max(count - len(problem.paths), 1)
     variance = float(np.sum(rows[:points] ** 2 / excess[:points])) / left
-    if found.scatter.shared > INDEPENDENT_CORRELATION:
-        variance /= found.scatter.alone(len(problem.paths))
+    if found.noise_estimate.correlation > INDEPENDENT_CORRELATION:
+        variance /= found.noise_estimate.independent_share(len(problem.paths))
     across, values, turns = np.linalg.svd(slopes, full_matrices=False)
     largest = float(values[0])
     known = values > 1e-13 * largest
@@ -91,13 +91,15 @@ def parameter_estimates(found: Match) -> ParameterEstimates:
     )
 
 
-def _excess_weights(measures: Residuals, count: int) -> Reals:
+def _excess_weights(cloud_residuals: Residuals, count: int) -> Reals:
     """By how much more the points count in a search than as the inverse of their variance (count,); 1 elsewhere."""
     found = np.ones(count)
-    if measures.precision is None:
+    if cloud_residuals.precision is None:
         return found
-    points = len(measures.points)
-    found[:points] = measures.roots**2 / np.where(measures.precision > 0.0, measures.precision, 1.0)
+    points = len(cloud_residuals.points)
+    found[:points] = cloud_residuals.roots**2 / np.where(
+        cloud_residuals.precision > 0.0, cloud_residuals.precision, 1.0
+    )
     found[:points][found[:points] == 0.0] = 1.0
-    found[points : points + len(measures.ends.near)] = found[measures.ends.near]
+    found[points : points + len(cloud_residuals.ends.near)] = found[cloud_residuals.ends.near]
     return found

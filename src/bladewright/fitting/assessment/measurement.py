@@ -34,7 +34,7 @@ class Measurement:
     on: Footpoints
     deviations: Reals
     regions: NDArray[np.str_]
-    scatter: NoiseEstimate
+    noise_estimate: NoiseEstimate
     faced: NDArray[np.bool_]
     """(n,) whether an outlier lies on an end face, as those of a solid do"""
 
@@ -47,11 +47,11 @@ def measured(points: Reals, built: Blade | Section, precision: Reals | None = No
     sides = sides_of(built)
     exact = built.exact if isinstance(built, Blade) else None
     on = _nearest(points, sides)
-    scatter = noise_of(points, on, precision)
-    shape = ModelShape(design=None, sides=sides, noses=np.zeros(0), exact=exact)
-    ends = blade_ends_of(points, on, shape, scatter.inliers)
+    noise_estimate = noise_of(points, on, precision)
+    shape = ModelShape(design=None, sides=sides, edge_radius_margins=np.zeros(0), exact=exact)
+    ends = blade_ends_of(points, on, shape, noise_estimate.inliers)
     # few against the sides and far inside them, points of end faces are outliers to these
-    faced = ~scatter.inliers
+    faced = ~noise_estimate.inliers
     if np.any(faced):
         faced &= blade_ends_of(points, on, shape, np.ones(len(points), dtype=bool)).covered
     deviations = np.where(on.heights < 0.0, -1.0, 1.0) * on.distances
@@ -66,7 +66,9 @@ def measured(points: Reals, built: Blade | Section, precision: Reals | None = No
     regions = np.where(past, "ends", edge).astype(f"<U{max(map(len, REGIONS))}")
     if exact is not None and np.any(ends.covered | faced):
         _place_on_end_faces(points, ends.covered | faced, built, deviations, places, regions, on)
-    return Measurement(places=places, on=on, deviations=deviations, regions=regions, scatter=scatter, faced=faced)
+    return Measurement(
+        places=places, on=on, deviations=deviations, regions=regions, noise_estimate=noise_estimate, faced=faced
+    )
 
 
 def _nearest(points: Reals, sides: Sequence[Side]) -> Footpoints:

@@ -28,5 +28,5 @@ def has_neighbours(points: Reals) -> NDArray[np.bool_]:
     """Whether points (n, d) have neighbours: strewn outliers have none."""
     if len(points) <= 2 * NEIGHBOURS:
         return np.ones(len(points), dtype=bool)
-    reach = cKDTree(points).query(points, k=NEIGHBOURS + 1)[0][:, -1]
-    return np.asarray(reach <= ISOLATED * np.median(reach))
+    distance = cKDTree(points).query(points, k=NEIGHBOURS + 1)[0][:, -1]
+    return np.asarray(distance <= ISOLATED * np.median(distance))

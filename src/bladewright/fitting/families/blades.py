@@ -55,7 +55,7 @@ TRIAL_STRIDE = 4
 
 
 def matched_blade(
-    task: Task, kind: FitFamily, start: Any, like: Any, frame: DesignHeader, aim: MatchTarget
+    task: Task, kind: FitFamily, start: Any, like: Any, header: DesignHeader, target: MatchTarget
 ) -> tuple[Match, str]:
     """The match of points (n, 3) by a blade of the family, and why it ends where no aim is met.
 
@@ -68,43 +68,48 @@ def matched_blade(
         many, few = (replace(each, free=replace(task.free, walls=True)) for each in (many, few))
         task = many
     if start is None or like is not None:
-        closed = _closed_blade(few, many.points, frame, like) if start is None else start.build()
-        task.told("first design of the family")
-        first = _first(closed, kind, like, frame)
+        closed = _closed_blade(few, many.points, header, like) if start is None else start.build()
+        task.progress("first design of the family")
+        first = _first(closed, kind, like, header)
     first = task.free.applied(first) if isinstance(task.free, FreeParameters) else first
     check_bounds(first, task.free(first), task.bounds)
-    enough = _enough(first, aim)
+    enough = _enough(first, target)
     grown = partial(extended_blade, kind=kind, enough=enough)
     # what is only on the way need not come to its end
-    found, reason = searched(few, first, enough=enough, slight=MIN_REDUCTION if aim.structured else ROUGH_REDUCTION), ""
+    found, reason = (
+        searched(few, first, enough=enough, min_reduction=MIN_REDUCTION if target.structured else ROUGH_REDUCTION),
+        "",
+    )
     for some in (few, many)[: 1 + (len(few.points) < len(many.points))]:
         if some is not few:
             found = _better(some, found, searched(some, found.design, noise=found.rms, enough=enough))
-        if aim.structured or found.interrupted:
+        if target.structured or found.interrupted:
             continue
-        found, reason = grown_to_target(some, found, aim, grown, coarse=COARSE_TOLERANCE)
+        found, reason = grown_to_target(some, found, target, grown, coarse=COARSE_TOLERANCE)
     return found, "; ".join(filter(None, (reason, "" if own else WALLS_HELD_NOTE)))
 
 
-def _enough(design: Any, aim: MatchTarget) -> float:
+def _enough(design: Any, target: MatchTarget) -> float:
     """The misfit below which nothing is sought any more, of the chord: what native sides may miss themselves."""
-    return EXACT_MISFIT if aim.structured else ENOUGH_MISFIT * float(design.tolerance)
+    return EXACT_MISFIT if target.structured else ENOUGH_MISFIT * float(design.tolerance)
 
 
 def _better(task: Task, before: Match, after: Match) -> Match:
     """The one of two matches that is nearer to all points, the first measured as the second is."""
     same = evaluated(task, before.design, noise=after.rms)
-    nearest = after if after.off <= same.off else same
+    nearest = after if after.mean_distance <= same.mean_distance else same
     return replace(nearest, evaluations=before.evaluations + after.evaluations)
 
 
-def _closed_blade(task: Task, points: Reals, frame: DesignHeader, like: Any) -> Blade:
+def _closed_blade(task: Task, points: Reals, header: DesignHeader, like: Any) -> Blade:
     """The closed blade in a channel that points (n, 3) alone show, matched to those of a task."""
-    row = frame.row(like)
+    row = header.row(like)
     first = first_blade(
-        points, structure=first_blade_structure(None), name=frame.name, length_unit=frame.length_unit, **row
+        points, structure=first_blade_structure(None), name=header.name, length_unit=header.length_unit, **row
     )
-    plain_task = Task(points=task.points, weights=task.weights, free=FreeParameters(), bounds={}, told=task.told)
+    plain_task = Task(
+        points=task.points, weights=task.weights, free=FreeParameters(), bounds={}, progress=task.progress
+    )
     for design in (searched(plain_task, first, noise=3e-3, rounds=QUICK_ROUNDS).design, first):
         built = _built(design)
         if built is not None:
@@ -120,10 +125,10 @@ def _built(design: Any) -> Blade | None:
     return blade
 
 
-def _first(closed: Blade, kind: FitFamily, like: Any, frame: DesignHeader) -> Design:
+def _first(closed: Blade, kind: FitFamily, like: Any, header: DesignHeader) -> Design:
     """The blade of the family whose sections are those of a closed blade."""
     design = closed.design
-    metre = UNITS[frame.length_unit]
+    metre = UNITS[header.length_unit]
     sections = [_samples(closed.section(float(v))) for v in START_SPANS]
     found = ChannelCurves(
         blade=closed, backwards=_backwards(ChannelCurves(blade=closed), kind, like, sections[TRIAL_SECTION])
@@ -141,8 +146,8 @@ def _first(closed: Blade, kind: FitFamily, like: Any, frame: DesignHeader) -> De
     linear = design.arrangement == "linear"
     place = [float(each.start[1]) / metre if linear else float(np.degrees(each.start[1])) for each in sections]
     fields: dict[str, Any] = {
-        "name": frame.name,
-        "length_unit": frame.length_unit,
+        "name": header.name,
+        "length_unit": header.length_unit,
         "arrangement": design.arrangement,
         "blade_count": design.blade_count,
         "pitch": None if design.pitch is None else design.pitch * UNITS[design.length_unit] / metre,

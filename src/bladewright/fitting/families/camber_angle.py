@@ -32,12 +32,12 @@ def templates(section: SampledSection, parameters: int | None) -> Sequence[Cambe
     return TEMPLATES
 
 
-def started(section: SampledSection, like: CamberAngle) -> Sequence[CamberAngle]:
+def starts(section: SampledSection, like: CamberAngle) -> Sequence[CamberAngle]:
     """The part of a structure nearest to a section, alone."""
-    return [_started(section, like)]
+    return [_start(section, like)]
 
 
-def _started(section: SampledSection, like: CamberAngle) -> CamberAngle:
+def _start(section: SampledSection, like: CamberAngle) -> CamberAngle:
     """The part of a structure nearest to a section, by least squares of its angle and its half thickness."""
     fraction = _fractions(section, PLACES)
     slope = np.arctan(section.mean(PLACES, 1))
@@ -73,7 +73,7 @@ def _heights(like: CamberAngle, fraction: Reals, half: Reals) -> Reals:
     return np.asarray(lsq_linear(matrix, wanted, bounds=(least, 0.39)).x)
 
 
-def grown(part: CamberAngle, section: SampledSection) -> Sequence[CamberAngle]:  # noqa: ARG001 - what every family answers
+def extensions(part: CamberAngle, section: SampledSection) -> Sequence[CamberAngle]:  # noqa: ARG001 - what every family answers
     """The same with one control point more of the angle, or of the half thickness."""
     found = []
     if len(part.camber_angle) < MOST_CONTROL_POINTS:

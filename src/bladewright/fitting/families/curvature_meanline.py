@@ -62,12 +62,12 @@ def templates(section: SampledSection, parameters: int | None) -> Sequence[Curva
     return TEMPLATES
 
 
-def started(section: SampledSection, like: CurvatureMeanline) -> Sequence[CurvatureMeanline]:
+def starts(section: SampledSection, like: CurvatureMeanline) -> Sequence[CurvatureMeanline]:
     """The part of a structure nearest to a section, alone."""
-    return [_started(section, like)]
+    return [_start(section, like)]
 
 
-def _started(section: SampledSection, like: CurvatureMeanline) -> CurvatureMeanline:
+def _start(section: SampledSection, like: CurvatureMeanline) -> CurvatureMeanline:
     """The part of a structure nearest to a section: angles and bends of its mean line, and its thickness."""
     angles = [float(np.degrees(np.clip(section.stagger + each, -1.5, 1.5))) for each in section.angles]
     found = replace(like, metal_angle_in=angles[0], metal_angle_out=angles[1], thickness=_thickness(section, like))
@@ -145,7 +145,7 @@ def _number(law: float | tuple[float, ...]) -> float:
     return float(np.mean(law))
 
 
-def grown(part: CurvatureMeanline, section: SampledSection) -> Sequence[CurvatureMeanline]:  # noqa: ARG001 - the contract's
+def extensions(part: CurvatureMeanline, section: SampledSection) -> Sequence[CurvatureMeanline]:  # noqa: ARG001 - the contract's
     """The same with one control point more of the second derivative, or of what multiplies the thickness."""
     found = []
     if part.curvature and not part.curvature_places and len(part.curvature) < MOST_CONTROL_POINTS:

@@ -27,10 +27,10 @@ def predicted_gains(
 
     `emphasis` (n,) are further weights of the points. Designs without a shape, or that gain nothing, are left out.
     """
-    measures, paths = found.problem.measures, found.problem.paths
+    cloud_residuals, paths = found.problem.cloud_residuals, found.problem.paths
     values = found.design.parameters()
-    rows = measures.residuals(found.state)
-    slopes = measures.slopes(found.state, paths) * found.problem.scales.size
+    rows = cloud_residuals.residuals(found.state)
+    slopes = cloud_residuals.slopes(found.state, paths) * found.problem.scales.size
     roots = row_factors(emphasis, len(rows))
     before = predicted_rest(slopes, rows, roots, found.problem.noise)
     ranked: list[PredictedGain] = []
@@ -53,13 +53,13 @@ def predicted_gains(
 
 def _residuals_of(found: Match, design: Design, paths: tuple[str, ...]) -> tuple[Reals, Reals]:
     """Residuals of a design where the cloud stands on a match's, and their derivatives by scaled parameters."""
-    measures, on = found.problem.measures, found.state.feet
-    shape = measures.model.shape(design)
+    cloud_residuals, on = found.problem.cloud_residuals, found.state.footpoints
+    shape = cloud_residuals.model.shape(design)
     if not shape.finite:
         raise DesignError("a law with another number of control points left no shape: take another one")
-    state = PlacedCloud(shape=shape, feet=footpoints_at(measures.points, shape.sides, on.side, on.u, on.v))
-    slopes = measures.slopes(state, paths) * scales_of(design, paths, found.model.chord).size
-    return measures.residuals(state), slopes
+    state = PlacedCloud(shape=shape, footpoints=footpoints_at(cloud_residuals.points, shape.sides, on.side, on.u, on.v))
+    slopes = cloud_residuals.slopes(state, paths) * scales_of(design, paths, found.model.chord).size
+    return cloud_residuals.residuals(state), slopes
 
 
 WORTHWHILE_RATIO = 0.9
@@ -74,7 +74,7 @@ GrowthStep = Callable[[Task, Match, MatchTarget, int], Iterator[Match]]
 
 
 def grown_to_target(
-    task: Task, found: Match, aim: MatchTarget, wider: GrowthStep, *, coarse: float
+    task: Task, found: Match, target: MatchTarget, wider: GrowthStep, *, coarse: float
 ) -> tuple[Match, str]:
     """A match with as many control points as the aim asks for, or why there are no more.
 
@@ -83,11 +83,13 @@ def grown_to_target(
     """
     best, idle, back = found, 0, 0
     for _ in range(MOST_GROWTHS):
-        short, reason = needs_more(found, aim, task)
+        short, reason = needs_more(found, target, task)
         if not short or found.interrupted:
             met = not short and not reason
-            return found if met or found.rms <= best.rms or aim.parameters is not None else best, reason
-        tried = [each for each in wider(task, found, aim, back) if _allowed(each, aim) and can_be_built(each, coarse)]
+            return found if met or found.rms <= best.rms or target.parameters is not None else best, reason
+        tried = [
+            each for each in wider(task, found, target, back) if _allowed(each, target) and can_be_built(each, coarse)
+        ]
         if not tried and not back:
             return best, "no control point can be added to the design that leaves it one that can be built"
         fresh = min(tried, key=lambda each: each.rms, default=None)
@@ -95,12 +97,12 @@ def grown_to_target(
             if back < PATIENCE and not (fresh is not None and fresh.interrupted):
                 back += 1
                 continue
-            if fresh is None or aim.parameters is None:
+            if fresh is None or target.parameters is None:
                 return best, FUTILE_REASON
         found, back = fresh, 0
         idle = idle + 1 if found.rms > WORTHWHILE_RATIO * best.rms else 0
-        best = found if found.rms < WORTHWHILE_RATIO * best.rms or aim.parameters is not None else best
-        if aim.open and idle > PATIENCE:
+        best = found if found.rms < WORTHWHILE_RATIO * best.rms or target.parameters is not None else best
+        if target.open and idle > PATIENCE:
             return best, FUTILE_REASON
     return best, f"control points were added {MOST_GROWTHS} times, and no more are"
 
@@ -115,5 +117,5 @@ def can_be_built(found: Match, tolerance: float) -> bool:
     return True
 
 
-def _allowed(found: Match, aim: MatchTarget) -> bool:
-    return aim.parameters is None or len(found.problem.paths) <= aim.parameters
+def _allowed(found: Match, target: MatchTarget) -> bool:
+    return target.parameters is None or len(found.problem.paths) <= target.parameters

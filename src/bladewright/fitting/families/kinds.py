@@ -31,11 +31,11 @@ class FitFamily:
     section: type[PlanarSection]
     templates: Callable[[SampledSection, int | None], Sequence[Any]]
     """parts whose structures are tried for a section where none is given, or so many free parameters"""
-    started: Callable[[SampledSection, Any], Sequence[Any]]
+    starts: Callable[[SampledSection, Any], Sequence[Any]]
     """parts of a structure near to a section, nearest first; may raise DesignError"""
-    grown: Callable[[Any, SampledSection], Sequence[Any]]
+    extensions: Callable[[Any, SampledSection], Sequence[Any]]
     """parts near to one, which stands for a section, each with a control point more; may raise DesignError"""
-    outlined: Callable[[SampledSection, int], Any] | None = None
+    through_points: Callable[[SampledSection, int], Any] | None = None
     """the part through so many points of a section, where the family has one that follows any outline"""
 
     @property
@@ -49,9 +49,9 @@ def _family(name: str, section: type[PlanarSection], module: Any) -> FitFamily:
         name=name,
         section=section,
         templates=module.templates,
-        started=module.started,
-        grown=module.grown,
-        outlined=getattr(module, "outlined", None),
+        starts=module.starts,
+        extensions=module.extensions,
+        through_points=getattr(module, "through_points", None),
     )
 
 

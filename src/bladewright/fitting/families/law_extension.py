@@ -60,7 +60,7 @@ def law_extensions(design: Any, kind: FitFamily) -> list[LawExtension]:
         if isinstance(getattr(design, name), ThroughPoints)
     ]
     middle = _section_at(design.section, 0.5)
-    count = len(kind.grown(middle, _samples(middle)))
+    count = len(kind.extensions(middle, _samples(middle)))
     return found + [
         LawExtension(law=f"section along the chord ({i})", applied=partial(_along_chord, kind=kind, which=i))
         for i in range(count)
@@ -68,20 +68,20 @@ def law_extensions(design: Any, kind: FitFamily) -> list[LawExtension]:
 
 
 def extended_blade(
-    task: Task, found: Match, aim: MatchTarget, back: int, *, kind: FitFamily, enough: float = EXACT_MISFIT
+    task: Task, found: Match, target: MatchTarget, back: int, *, kind: FitFamily, enough: float = EXACT_MISFIT
 ) -> Iterator[Match]:
     """The match with the laws widened that promise most, several at once; where that was taken back, one after another.
 
     Taken back `back` times, it is the one that comes after so many better ones, alone.
     """
-    room = None if aim.parameters is None else aim.parameters - len(found.problem.paths)
+    room = None if target.parameters is None else target.parameters - len(found.problem.paths)
     named: dict[str, tuple[LawExtension, Any]] = {}
     for widening in law_extensions(found.design, kind):
         try:
             named[widening.law] = widening, widening.applied(found.design)
         except DesignError:
             continue
-    ranked = predicted_gains(task, found, [design for _, design in named.values()], tolerance_weights(found, aim))
+    ranked = predicted_gains(task, found, [design for _, design in named.values()], tolerance_weights(found, target))
     of = {id(design): widening for widening, design in named.values()}
     design: Any = found.design
     taken = 0
@@ -99,7 +99,9 @@ def extended_blade(
     if not taken:
         return
     try:
-        fresh = searched(task, design, rounds=EXTENSION_ROUNDS, noise=found.rms, slight=ROUGH_REDUCTION, enough=enough)
+        fresh = searched(
+            task, design, rounds=EXTENSION_ROUNDS, noise=found.rms, min_reduction=ROUGH_REDUCTION, enough=enough
+        )
     except FitError:
         return
     yield replace(fresh, evaluations=fresh.evaluations + found.evaluations)
@@ -159,7 +161,7 @@ def _along_chord(design: Any, kind: FitFamily, which: int) -> Any:
 def _extensions_along_chord(kind: FitFamily, part: Any) -> list[Sequence[Any]]:
     """The ways in which the sections of a part at PLACED may grow along the chord."""
     sections = [_section_at(part, float(v)) for v in GROWN_SPANS]
-    return [kind.grown(section, _samples(section)) for section in sections]
+    return [kind.extensions(section, _samples(section)) for section in sections]
 
 
 def _is_unchanged(parts: list[Any], path: str, section: Any) -> bool:

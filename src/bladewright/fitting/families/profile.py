@@ -43,12 +43,12 @@ def templates(section: SampledSection, parameters: int | None) -> Sequence[Profi
     return TEMPLATES
 
 
-def started(section: SampledSection, like: Profile) -> Sequence[Profile]:
+def starts(section: SampledSection, like: Profile) -> Sequence[Profile]:
     """The profile of a structure nearest to a section, alone."""
-    return [_started(section, like)]
+    return [_start(section, like)]
 
 
-def _started(section: SampledSection, like: Profile) -> Profile:
+def _start(section: SampledSection, like: Profile) -> Profile:
     """The profile of a kind nearest to a section, by its thickness, camber and stagger."""
     if isinstance(like, PointsProfile):
         return _through(section, like)
@@ -97,12 +97,12 @@ def _through(section: SampledSection, like: PointsProfile) -> PointsProfile:
     )
 
 
-def outlined(section: SampledSection, count: int) -> PointsProfile:
+def through_points(section: SampledSection, count: int) -> PointsProfile:
     """The contour through so many points of a section."""
     places = (0.0,) * count
     return _through(section, PointsProfile(abscissas=places, ordinates=places))
 
 
-def grown(part: Profile, section: SampledSection) -> Sequence[Profile]:  # noqa: ARG001 - what every family answers
+def extensions(part: Profile, section: SampledSection) -> Sequence[Profile]:  # noqa: ARG001 - what every family answers
     """Nothing: a kind has its parameters."""
     return ()

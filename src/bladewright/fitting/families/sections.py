@@ -50,7 +50,7 @@ LAWS_TRIED = 2
 
 
 def matched_section(
-    task: Task, kind: FitFamily, start: Any, like: Any, frame: DesignHeader, aim: MatchTarget
+    task: Task, kind: FitFamily, start: Any, like: Any, header: DesignHeader, target: MatchTarget
 ) -> tuple[Match, str]:
     """The match of points (n, 2) by a section of the family, and why it ends where no aim is met.
 
@@ -64,40 +64,40 @@ def matched_section(
         check_bounds(start, task.free(start), task.bounds)
         found = searched(few, start)
     else:
-        section = _closed_section(few, frame) if start is None else section_samples(start.build())
+        section = _closed_section(few, header) if start is None else section_samples(start.build())
         rough = thinned_task(task, TRIAL_POINTS)
-        parts = kind.templates(section, aim.parameters) if like is None else [like.section]
+        parts = kind.templates(section, target.parameters) if like is None else [like.section]
         starts = [start for part in parts for start in starts_of(kind, section, part)]
-        found = best_trial(rough, few, _maker(kind, section, frame, task), starts)
+        found = best_trial(rough, few, _maker(kind, section, header, task), starts)
     reason = ""
-    if not (aim.structured or found.interrupted):
-        found, reason = grown_to_target(few, found, aim, partial(_wider, kind=kind), coarse=TOLERANCES[-1])
-        if kind.outlined is not None and section is not None:
+    if not (target.structured or found.interrupted):
+        found, reason = grown_to_target(few, found, target, partial(_wider, kind=kind), coarse=TOLERANCES[-1])
+        if kind.through_points is not None and section is not None:
             found, reason = _through_points(
-                few, found, aim, partial(kind.outlined, section), _maker(kind, section, frame, task)
+                few, found, target, partial(kind.through_points, section), _maker(kind, section, header, task)
             )
     return _buildable_tolerance(found if found.interrupted else _searched_thoroughly(many, found)), reason
 
 
 def _through_points(
-    task: Task, found: Match, aim: MatchTarget, outlined: Callable[[int], Any], made: Callable[[Any], Design]
+    task: Task, found: Match, target: MatchTarget, through_points: Callable[[int], Any], made: Callable[[Any], Design]
 ) -> tuple[Match, str]:
     """A match by points of the outline where no other has what is asked for, as few as have it."""
-    asked = 0 if aim.parameters is None else aim.parameters - OUTLINE_SURPLUS
+    asked = 0 if target.parameters is None else target.parameters - OUTLINE_SURPLUS
     for count in (asked,) if asked >= FEWEST_OUTLINE_POINTS else OUTLINE_COUNTS:
-        short, reason = needs_more(found, aim, task)
-        near = aim.open and found.maximum < GROSS_DEVIATION[1] * found.model.chord
+        short, reason = needs_more(found, target, task)
+        near = target.open and found.maximum < GROSS_DEVIATION[1] * found.model.chord
         if not short or near or found.interrupted:
             return found, reason
         try:
-            fresh = searched(task, made(outlined(count)), rounds=QUICK_ROUNDS)
+            fresh = searched(task, made(through_points(count)), rounds=QUICK_ROUNDS)
         except (DesignError, FitError):
             continue
         fresh = replace(fresh, evaluations=fresh.evaluations + found.evaluations)
-        within = aim.parameters is None or len(fresh.problem.paths) <= aim.parameters
+        within = target.parameters is None or len(fresh.problem.paths) <= target.parameters
         if within and fresh.rms < found.rms and _is_buildable(fresh):
             found = fresh
-    met = aim.parameters is not None or not needs_more(found, aim, task)[0]
+    met = target.parameters is not None or not needs_more(found, target, task)[0]
     return found, "" if met else "no outline of points comes nearer"
 
 
@@ -107,25 +107,25 @@ def section_samples(built: Section) -> SampledSection:
     return sampled_section(built.curves["upper"], built.curves["lower"], radii)
 
 
-def _closed_section(task: Task, frame: DesignHeader) -> SampledSection:
+def _closed_section(task: Task, header: DesignHeader) -> SampledSection:
     """The section that points alone show, closed around both edges: that of the unified family."""
-    task = Task(points=task.points, weights=task.weights, free=FreeParameters(), bounds={}, told=task.told)
+    task = Task(points=task.points, weights=task.weights, free=FreeParameters(), bounds={}, progress=task.progress)
     try:
-        return section_samples(matched_unified(task, None, None, frame, MatchTarget(parameters=CLOSED_PARAMETERS))[1])
+        return section_samples(matched_unified(task, None, None, header, MatchTarget(parameters=CLOSED_PARAMETERS))[1])
     except FitError as error:
         raise FitError(f"no closed section was found near the points ({error}); give a start design") from error
 
 
-def _maker(kind: FitFamily, section: SampledSection, frame: DesignHeader, task: Task) -> Callable[[Any], Design]:
+def _maker(kind: FitFamily, section: SampledSection, header: DesignHeader, task: Task) -> Callable[[Any], Design]:
     """The design that a part begins as."""
-    metre = UNITS[frame.length_unit]
+    metre = UNITS[header.length_unit]
 
     def made(part: Any) -> Design:
         design: Design = kind.section(
-            name=frame.name,
-            length_unit=frame.length_unit,
+            name=header.name,
+            length_unit=header.length_unit,
             chord=section.chord / metre,
-            pitch=None if frame.pitch is None else frame.pitch / metre,
+            pitch=None if header.pitch is None else header.pitch / metre,
             leading_edge_x=float(section.start[0]) / metre,
             leading_edge_y=float(section.start[1]) / metre,
             section=part,
@@ -140,7 +140,7 @@ def _maker(kind: FitFamily, section: SampledSection, frame: DesignHeader, task: 
 def starts_of(kind: FitFamily, section: SampledSection, part: Any) -> Sequence[Any]:
     """The parts of a structure near a section; none where it has no such shape."""
     try:
-        return kind.started(section, part)
+        return kind.starts(section, part)
     except DesignError:
         return ()
 
@@ -189,17 +189,17 @@ def _is_buildable(found: Match) -> bool:
     return can_be_built(found, TOLERANCES[-1])
 
 
-def _wider(task: Task, found: Match, aim: MatchTarget, back: int, *, kind: FitFamily) -> Iterator[Match]:
+def _wider(task: Task, found: Match, target: MatchTarget, back: int, *, kind: FitFamily) -> Iterator[Match]:
     """Matches with a control point more, of the laws that promise most, or of the next where those were taken back."""
     design: Any = found.design
     try:
         # a section that crosses itself on the way has sides all the same
         sides: Any = found.state.shape.sides
-        parts = kind.grown(design.section, sampled_section(sides[0], sides[1], (0.0, 0.0)))
+        parts = kind.extensions(design.section, sampled_section(sides[0], sides[1], (0.0, 0.0)))
     except DesignError:
         return
     designs = [replace(design, section=part) for part in parts]
-    for _, _, wider in predicted_gains(task, found, designs, tolerance_weights(found, aim))[back * LAWS_TRIED :][
+    for _, _, wider in predicted_gains(task, found, designs, tolerance_weights(found, target))[back * LAWS_TRIED :][
         :LAWS_TRIED
     ]:
         try:

@@ -63,7 +63,7 @@ def templates(section: SampledSection, parameters: int | None) -> Sequence[Sucti
     return [replace(sized, skeleton="pseudo"), sized]
 
 
-def started(section: SampledSection, like: SuctionPressure) -> Sequence[SuctionPressure]:
+def starts(section: SampledSection, like: SuctionPressure) -> Sequence[SuctionPressure]:
     """Parts of a structure near to a section, nearest first: edges by their ends, sides by least squares.
 
     How far a nose reaches is a matter of taste, as its sides may be taken for parts of it: there is one for each of
@@ -106,7 +106,7 @@ def _misfit(part: SuctionPressure, section: SampledSection) -> float:
     return float(np.sqrt(np.mean(nearest_on(around, np.concatenate([upper, lower])).heights ** 2)))
 
 
-def grown(part: SuctionPressure, section: SampledSection) -> Sequence[SuctionPressure]:
+def extensions(part: SuctionPressure, section: SampledSection) -> Sequence[SuctionPressure]:
     """The same with one free control point more on the suction or the pressure side, or with free places on one."""
     found = []
     for name in ("suction", "pressure"):
@@ -171,16 +171,16 @@ def _side_through(part: SuctionPressure, line: Reals, name: str) -> dict[str, fl
     fixed = fixed + rows[:, 2:-2] @ low
     own = [part.parameters().get(f"{name}_tangent_{way}") for way in ("in", "out")]
     width = np.array([knots[DEGREE + 1], 1.0 - knots[-DEGREE - 2]]) / DEGREE
-    reach = width * np.sqrt(np.sum((points[1] - points[0]) ** 2))
-    ends = [reach[i] if each is None else each for i, each in enumerate(own)]
+    even_tangents = width * np.sqrt(np.sum((points[1] - points[0]) ** 2))
+    ends = [even_tangents[i] if each is None else each for i, each in enumerate(own)]
     heights = _heights_above(line, low, high)
     unknowns = np.array([ends[0], *heights, ends[1]])
-    least = np.array([LEAST_TANGENT * reach[0], *np.full(count, -2.0), LEAST_TANGENT * reach[1]])
+    least = np.array([LEAST_TANGENT * even_tangents[0], *np.full(count, -2.0), LEAST_TANGENT * even_tangents[1]])
     most = np.array([MOST_TANGENT, *np.full(count, 2.0), MOST_TANGENT])
     for _ in range(PROJECTIONS):
-        foot = nearest_on(line, fixed + np.einsum("nkd,k->nd", moves, unknowns))
-        slopes = np.einsum("nkd,nd->nk", moves, foot.normals)
-        wanted = np.sum((foot.points - fixed) * foot.normals, axis=1)
+        footpoint = nearest_on(line, fixed + np.einsum("nkd,k->nd", moves, unknowns))
+        slopes = np.einsum("nkd,nd->nk", moves, footpoint.normals)
+        wanted = np.sum((footpoint.points - fixed) * footpoint.normals, axis=1)
         held = STIFFNESS * np.eye(len(unknowns))
         unknowns = lsq_linear(
             np.concatenate([slopes, held]), np.concatenate([wanted, held @ unknowns]), bounds=(least, most)

@@ -36,43 +36,45 @@ REDUCED_NOTE = (
 
 
 def matched_unified(
-    task: Task, start: Design | None, like: Design | None, frame: DesignHeader, aim: MatchTarget
+    task: Task, start: Design | None, like: Design | None, header: DesignHeader, target: MatchTarget
 ) -> tuple[Match, Any, str]:
     """The match of points (n, 2) or (n, 3), what it builds, and why it ends where no aim is met.
 
     Raises FitError where no design is found near the points, or the nearest one cannot be built.
     """
     solid, wanted = task.points.shape[1] == 3, None if like is None else structure_of(like)
-    told = solid and wanted is not None and start is None and aim.structured and aim.tolerance is None
-    task.told("first design")
+    keeps_structure = solid and wanted is not None and start is None and target.structured and target.tolerance is None
+    task.progress("first design")
     if start is not None:
         guessed = start if wanted is None else reshaped(start, wanted)
     else:
-        free = first_blade_structure(aim.parameters) if solid else wanted
+        free = first_blade_structure(target.parameters) if solid else wanted
         try:
-            guessed = _first_design(task, wanted if told else free, like, frame)
+            guessed = _first_design(task, wanted if keeps_structure else free, like, header)
         except FitError:
-            if not told:
+            if not keeps_structure:
                 raise
-            guessed = _first_design(task, free, like, frame)
+            guessed = _first_design(task, free, like, header)
     first = _with_held_values(task, guessed, started=start is not None)
     check_bounds(first, task.free(first), task.bounds)
     base = None
     if start is None and (solid or wanted is None):
-        base = wanted or initial_structure(task.points.shape[1], aim.parameters)
+        base = wanted or initial_structure(task.points.shape[1], target.parameters)
     try:
-        found, reason = selected_match(task, first, aim, base=base, guessed=start is None)
-        if told and found.rms > KNOWN_MISFIT and has_systematic_misfit(found, CLEAR_SHARE):
+        found, reason = selected_match(task, first, target, base=base, guessed=start is None)
+        if keeps_structure and found.rms > KNOWN_MISFIT and has_systematic_misfit(found, CLEAR_SHARE):
             # from a first design with freer laws the same structure is met elsewhere
             freer = _with_held_values(
-                task, _first_design(task, first_blade_structure(None), like, frame), started=False
+                task, _first_design(task, first_blade_structure(None), like, header), started=False
             )
-            other, _ = selected_match(task, freer, aim, base=base, guessed=True)
+            other, _ = selected_match(task, freer, target, base=base, guessed=True)
             evaluations = found.evaluations + other.evaluations
             found = replace(min((found, other), key=lambda each: each.rms), evaluations=evaluations)
-        found, built, leaner = _buildable(task, found, fewer=start is None and like is None and aim.parameters is None)
+        found, built, leaner = _buildable(
+            task, found, fewer=start is None and like is None and target.parameters is None
+        )
     except FitError as error:
-        if frame.blade_count is None and isinstance(guessed, UnifiedBlade) and guessed.blade_count == 1:
+        if header.blade_count is None and isinstance(guessed, UnifiedBlade) and guessed.blade_count == 1:
             raise FitError(f"{error}; the points go far around x: {AXES_HINT}") from error
         raise
     return found, built, leaner or reason
@@ -84,16 +86,16 @@ def _with_held_values(task: Task, guessed: Design, *, started: bool) -> Design:
     return first if started or first is guessed else with_feasible_edges(first)
 
 
-def _first_design(task: Task, structure: Structure | None, like: Design | None, frame: DesignHeader) -> Design:
+def _first_design(task: Task, structure: Structure | None, like: Design | None, header: DesignHeader) -> Design:
     """The first design, from the points alone; what `like` says of the row where nothing else does."""
     some = task.points[drawn(len(task.points), THOROUGH_POINTS)]
     if task.points.shape[1] == 2:
         lengths: dict[str, Any] = {}
         if structure is not None:
             lengths = {name: getattr(structure, name) for name in ("chordwise", "samples", "clustering")}
-        return first_section(some, name=frame.name, length_unit=frame.length_unit, **lengths)
-    row = frame.row(like)
-    return first_blade(some, structure=structure, name=frame.name, length_unit=frame.length_unit, **row)
+        return first_section(some, name=header.name, length_unit=header.length_unit, **lengths)
+    row = header.row(like)
+    return first_blade(some, structure=structure, name=header.name, length_unit=header.length_unit, **row)
 
 
 def _buildable(task: Task, found: Match, *, fewer: bool) -> tuple[Match, Any, str]:
@@ -103,10 +105,12 @@ def _buildable(task: Task, found: Match, *, fewer: bool) -> tuple[Match, Any, st
     camber has no hooks at the edges, or of one with fewer control points along the chord besides.
     """
     refusal = ""
-    for slack in (0.0, 1.0, 30.0, 1000.0):
-        if slack:
-            slight = FINAL_REDUCTION if found.rms > KNOWN_MISFIT else MIN_REDUCTION
-            found = searched(replace(task, slack=slack), found.design, rounds=2, slight=slight)
+    for margin_factor in (0.0, 1.0, 30.0, 1000.0):
+        if margin_factor:
+            min_reduction = FINAL_REDUCTION if found.rms > KNOWN_MISFIT else MIN_REDUCTION
+            found = searched(
+                replace(task, margin_factor=margin_factor), found.design, rounds=2, min_reduction=min_reduction
+            )
         try:
             return found, found.design.build(), ""
         except DesignError as error:
@@ -118,7 +122,7 @@ def _buildable(task: Task, found: Match, *, fewer: bool) -> tuple[Match, Any, st
         upper, lower = (max(FEWEST_THICKNESSES, round(share * count)) for count in structure.chordwise)
         design = with_feasible_edges(reshaped(found.design, replace(structure, chordwise=(upper, lower))))
         try:
-            other = searched(straight, design, noise=REDUCED_NOISE, slight=ROUGH_REDUCTION)
+            other = searched(straight, design, noise=REDUCED_NOISE, min_reduction=ROUGH_REDUCTION)
             built = other.design.build()
         except (DesignError, FitError):
             continue

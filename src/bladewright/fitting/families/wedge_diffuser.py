@@ -20,12 +20,12 @@ def templates(section: SampledSection, parameters: int | None) -> Sequence[Wedge
     return TEMPLATES
 
 
-def started(section: SampledSection, like: WedgeDiffuser) -> Sequence[WedgeDiffuser]:
+def starts(section: SampledSection, like: WedgeDiffuser) -> Sequence[WedgeDiffuser]:
     """The vane of a structure nearest to a section, alone."""
-    return [_started(section, like)]
+    return [_start(section, like)]
 
 
-def _started(section: SampledSection, like: WedgeDiffuser) -> WedgeDiffuser:
+def _start(section: SampledSection, like: WedgeDiffuser) -> WedgeDiffuser:
     """The vane of a structure nearest to a section: its stagger, the angle between its sides, and its edges."""
     opening = (section.half_at(0.8) - section.half_at(0.2)) / 0.6
     first = float(np.clip(section.half_at(0.2) - 0.2 * opening, 1e-3, 0.2))
@@ -41,6 +41,6 @@ def _started(section: SampledSection, like: WedgeDiffuser) -> WedgeDiffuser:
     )
 
 
-def grown(part: WedgeDiffuser, section: SampledSection) -> Sequence[WedgeDiffuser]:  # noqa: ARG001 - what every family answers
+def extensions(part: WedgeDiffuser, section: SampledSection) -> Sequence[WedgeDiffuser]:  # noqa: ARG001 - what every family answers
     """Nothing: the vane has three parameters."""
     return ()

@@ -75,7 +75,7 @@ def fit_curve(
     _check_ends(ends)
     centre, extent = np.mean(given, axis=0), float(np.ptp(given, axis=0).max())
     scaled = (given - centre) / extent
-    way = checked_options(
+    options = checked_options(
         weights=weights, power=power, robust=robust, tolerance=tolerance, extent=extent, progress=progress
     )
     if start is None:
@@ -94,18 +94,18 @@ def fit_curve(
             inner = net.points[1:-1]
             net = replace(net, held="corners", points=np.concatenate([pair[:1], inner, pair[1:]]))
     target = NetTarget(points=scaled, weights=np.ones(len(scaled)), held=held)
-    _check_numbers(net, scaled, weights_free=way.weights_free)
-    found, notes = match_within_tolerance(net, target, way, _further_knots, warm=start is not None)
+    _check_numbers(net, scaled, weights_free=options.weights_free)
+    found, notes = match_within_tolerance(net, target, options, _further_knots, warm=start is not None)
     if start is None and _systematic(found, target):
         # stiff first curves cut corners that a bent one has; a soft one from the same start ends elsewhere
-        other = match_within_tolerance(net, target, way, _further_knots, warm=True)
+        other = match_within_tolerance(net, target, options, _further_knots, warm=True)
         found, notes = min((found, notes), other, key=lambda each: _cost(each[0], power, notes=each[1]))
     net = found.match.net
     shape = net.curve
-    feet = projected(shape, scaled, closed=closed)
-    feet = projected(shape, scaled, certified_parameters(shape, scaled, feet), closed=closed)
+    footpoints = projected(shape, scaled, closed=closed)
+    footpoints = projected(shape, scaled, certified_parameters(shape, scaled, footpoints), closed=closed)
     if held is None:
-        feet = nearer_projections(feet, found.match.feet, found.inliers)
+        footpoints = nearer_projections(footpoints, found.match.footpoints, found.inliers)
     if found.rank < len(found.singular_values):
         notes += (
             (
@@ -115,14 +115,15 @@ def fit_curve(
         )
     return CurveFit(
         curve=replace(shape, control_points=shape.control_points * extent + centre),
-        u=feet.parameters[:, 0],
-        distances=feet.distances * extent,
+        u=footpoints.parameters[:, 0],
+        distances=footpoints.distances * extent,
         inliers=found.inliers,
         iterations=found.evaluations,
         converged=found.match.converged,
         singular_values=found.singular_values,
         rank=found.rank,
-        noise=noise_along(feet.parameters[found.inliers, 0], (feet.points - scaled)[found.inliers]) * extent,
+        noise=noise_along(footpoints.parameters[found.inliers, 0], (footpoints.points - scaled)[found.inliers])
+        * extent,
         tolerance=tolerance,
         notes=notes,
     )
@@ -145,12 +146,12 @@ def noise_along(u: Reals, misses: Reals) -> float:
     return float(np.sqrt(np.mean(square) / (misses.shape[1] - 1)))
 
 
-def _further_knots(found: StagedMatch, target: NetTarget, way: FitOptions, limit: float) -> tuple[Net | None, str]:
+def _further_knots(found: StagedMatch, target: NetTarget, options: FitOptions, limit: float) -> tuple[Net | None, str]:
     """A knot in each span that is too far off for other reasons than noise, or why there is none."""
-    extent = way.extent
-    net, feet = found.match.net, found.match.feet
-    u, distances = feet.parameters[:, 0], feet.distances
-    misses = feet.points - target.points[found.inliers]
+    extent = options.extent
+    net, footpoints = found.match.net, found.match.footpoints
+    u, distances = footpoints.parameters[:, 0], footpoints.distances
+    misses = footpoints.points - target.points[found.inliers]
     codimension = misses.shape[1] - 1
     noise = noise_along(u, misses)
     ends = breaks(net.knots[0])
@@ -183,14 +184,14 @@ def _further_knots(found: StagedMatch, target: NetTarget, way: FitOptions, limit
 
 def _systematic(found: StagedMatch, target: NetTarget) -> bool:
     """Whether the distances are more than noise."""
-    feet = found.match.feet
-    noise = noise_along(feet.parameters[:, 0], feet.points - target.points[found.inliers])
-    return float(np.sqrt(np.mean(feet.distances**2))) > SYSTEMATIC_RATIO * noise
+    footpoints = found.match.footpoints
+    noise = noise_along(footpoints.parameters[:, 0], footpoints.points - target.points[found.inliers])
+    return float(np.sqrt(np.mean(footpoints.distances**2))) > SYSTEMATIC_RATIO * noise
 
 
 def _cost(found: StagedMatch, power: float, notes: tuple[str, ...]) -> tuple[bool, int, float]:
     """What is less for a better match: within its tolerance, of fewer control points, at lower distances."""
-    distances = found.match.feet.distances
+    distances = found.match.footpoints.distances
     return bool(notes), len(found.match.net.points), float(np.mean((distances / 1e-3) ** power))
 
 
@@ -223,8 +224,10 @@ def _empty(
             own = checked_knots(knots, degree, count, "knots")
         except GeometryError as error:
             raise FitError(f"the knots cannot carry a curve: {error}") from error
-    logs = checked_logs(weights, (count,))
-    return Net(knots=(own,), degrees=(degree,), points=np.zeros((count, dimension)), logs=logs, closed=closed)
+    log_weights = checked_logs(weights, (count,))
+    return Net(
+        knots=(own,), degrees=(degree,), points=np.zeros((count, dimension)), log_weights=log_weights, closed=closed
+    )
 
 
 def _through(points: Reals, sites: Reals, net: Net) -> Net:
@@ -238,7 +241,7 @@ def _net_of_curve(curve: Curve, *, closed: bool) -> Net:
         knots=(curve.knots,),
         degrees=(curve.degree,),
         points=np.array(curve.control_points),
-        logs=None if curve.weights is None else np.log(curve.weights),
+        log_weights=None if curve.weights is None else np.log(curve.weights),
     )
     return periodic(net, curve) if closed else net
 

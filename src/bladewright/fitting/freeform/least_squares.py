@@ -56,14 +56,14 @@ class Penalty:
     power: float = 2.0
     scale: float = 1.0
     """distance that costs 1 (powers above 2 would vanish in rounding without it)"""
-    reach: float | None = None
+    soft_from: float | None = None
 
     def __call__(self, distances: Reals) -> tuple[Reals, Reals, Reals]:
         """Cost rho (m,), its slope drho/dz (m,) by z = d^2, and its curvature along and across the distance over it."""
-        if self.reach is not None:
-            root = np.sqrt(1.0 + (distances / self.reach) ** 2)
+        if self.soft_from is not None:
+            root = np.sqrt(1.0 + (distances / self.soft_from) ** 2)
             # the second derivative is left out: it is negative, and the slope alone bounds the cost from above
-            return 2.0 * self.reach**2 * (root - 1.0), 1.0 / root, np.ones_like(root)
+            return 2.0 * self.soft_from**2 * (root - 1.0), 1.0 / root, np.ones_like(root)
         share = (distances / self.scale) ** (self.power - 2.0) if self.power != 2.0 else np.ones_like(distances)
         slope = 0.5 * self.power * share
         return distances**2 * share, slope, np.full_like(distances, self.power - 1.0)

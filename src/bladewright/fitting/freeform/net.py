@@ -42,7 +42,7 @@ class Net:
     degrees: tuple[int, ...]
     points: Reals
     """(N, d) control points, the last direction fastest; of a closed curve each once"""
-    logs: Reals | None = None
+    log_weights: Reals | None = None
     """(N,) logarithms of the weights, or None where all are one"""
     weighted: bool = False
     """whether the weights are unknown"""
@@ -125,7 +125,7 @@ class Net:
     @property
     def shape(self) -> Curve | Surface:
         """The curve or surface."""
-        points, weights = self.points, None if self.logs is None else np.exp(self.logs)
+        points, weights = self.points, None if self.log_weights is None else np.exp(self.log_weights)
         if self.spread is not None:
             if weights is None:
                 points = self.spread @ points
@@ -162,11 +162,11 @@ class Net:
         points = self.points.copy()
         moved = int(self.free.sum()) * points.shape[1]
         points[self.free] = unknowns[:moved].reshape(-1, points.shape[1])
-        logs = self.logs
+        log_weights = self.log_weights
         if self.weighted:
-            logs = (0.0 if logs is None else logs) + self.gauge @ unknowns[moved:]
-            logs = np.clip(logs, -LARGEST_LOG_WEIGHT, LARGEST_LOG_WEIGHT)
-        return replace(self, points=points, logs=logs)
+            log_weights = (0.0 if log_weights is None else log_weights) + self.gauge @ unknowns[moved:]
+            log_weights = np.clip(log_weights, -LARGEST_LOG_WEIGHT, LARGEST_LOG_WEIGHT)
+        return replace(self, points=points, log_weights=log_weights)
 
     def through(self, points: Reals, parameters: Reals, stiffness: float) -> "Net":
         """The net nearest to points (m, d) at parameters (m, k), with a weight of its bending."""
@@ -184,17 +184,17 @@ class Net:
         if self.closed:
             return replace(periodic(finer, inserted(self.curve, knots)), weighted=self.weighted)
         shape = inserted(self.curve, knots) if len(every) == 1 else inserted(self.surface, knots, DIRECTIONS[direction])
-        logs = None if shape.weights is None else np.log(shape.weights).ravel()
-        return replace(finer, points=shape.control_points.reshape(-1, self.points.shape[1]), logs=logs)
+        log_weights = None if shape.weights is None else np.log(shape.weights).ravel()
+        return replace(finer, points=shape.control_points.reshape(-1, self.points.shape[1]), log_weights=log_weights)
 
     def basis(self, parameters: Reals) -> csr_array:
         """(m, N) matrix whose product with the control points are the places at parameters (m, k)."""
         matrix = collocation(self.shape, *parameters.T)
         if self.spread is not None:
             matrix = csr_array(matrix @ csr_array(self.spread))
-        if self.logs is None:
+        if self.log_weights is None:
             return matrix
-        scaled = csr_array(matrix * np.exp(self.logs)[None, :])
+        scaled = csr_array(matrix * np.exp(self.log_weights)[None, :])
         return csr_array(scaled * (1.0 / scaled.sum(axis=1))[:, None])
 
     def rows(self, matrix: csr_array, places: Reals, directions: Reals) -> csr_array:
@@ -223,7 +223,7 @@ def periodic(net: Net, curve: Curve) -> Net:
     once: Reals = np.linalg.lstsq(np.asarray(empty.spread), curve.homogeneous, rcond=None)[0]
     if curve.weights is None:
         return replace(empty, points=once)
-    return replace(empty, points=once[:, :dimension] / once[:, dimension:], logs=np.log(once[:, dimension]))
+    return replace(empty, points=once[:, :dimension] / once[:, dimension:], log_weights=np.log(once[:, dimension]))
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -231,7 +231,7 @@ class NetMatch:
     """A net matched to points."""
 
     net: Net
-    feet: Projections
+    footpoints: Projections
     data: Quadratic
     """of the distances alone"""
     evaluations: int
@@ -273,33 +273,37 @@ def matched_net(
         )
         total += found.evaluations
         net, converged = net.changed(found.x), found.converged
-        feet = search.feet(net, search.near)
+        footpoints = search.footpoints(net, search.near)
         everywhere = projected(net.shape, target.points, None, closed=net.closed, held=target.held)
-        nearer = everywhere.distances < feet.distances - 1e-8
-        places = np.where(nearer[:, None], everywhere.parameters, feet.parameters)
+        nearer = everywhere.distances < footpoints.distances - 1e-8
+        places = np.where(nearer[:, None], everywhere.parameters, footpoints.parameters)
         if certain and not nearer.any() and isinstance(net.shape, Curve):
-            places = certified_parameters(net.shape, target.points, feet)
-        if np.array_equal(places, feet.parameters):
+            places = certified_parameters(net.shape, target.points, footpoints)
+        if np.array_equal(places, footpoints.parameters):
             break
-    feet = search.feet(net, feet.parameters)
+    footpoints = search.footpoints(net, footpoints.parameters)
     return NetMatch(
-        net=net, feet=feet, data=quadratic_of(net, target, feet, penalty), evaluations=total, converged=converged
+        net=net,
+        footpoints=footpoints,
+        data=quadratic_of(net, target, footpoints, penalty),
+        evaluations=total,
+        converged=converged,
     )
 
 
-def quadratic_of(net: Net, target: NetTarget, feet: Projections, penalty: Penalty) -> Quadratic:
+def quadratic_of(net: Net, target: NetTarget, footpoints: Projections, penalty: Penalty) -> Quadratic:
     """The objective of distances alone near the present unknowns."""
     total: Quadratic | None = None
-    for first in range(0, len(feet.points), AT_ONCE):
+    for first in range(0, len(footpoints.points), AT_ONCE):
         rows = slice(first, first + AT_ONCE)
-        here = np.flatnonzero((feet.across_of >= first) & (feet.across_of < first + AT_ONCE))
-        across_of = feet.across_of[here] - first
-        matrix = net.basis(feet.parameters[rows])
-        places = feet.points[rows]
+        here = np.flatnonzero((footpoints.across_of >= first) & (footpoints.across_of < first + AT_ONCE))
+        across_of = footpoints.across_of[here] - first
+        matrix = net.basis(footpoints.parameters[rows])
+        places = footpoints.points[rows]
         part = quadratic_of_distances(
-            net.rows(matrix, places, feet.along[rows]),
-            feet.distances[rows],
-            net.rows(csr_array(matrix[across_of]), places[across_of], feet.across[here]),
+            net.rows(matrix, places, footpoints.along[rows]),
+            footpoints.distances[rows],
+            net.rows(csr_array(matrix[across_of]), places[across_of], footpoints.across[here]),
             across_of,
             penalty,
             target.weights[rows],
@@ -319,14 +323,14 @@ class NetObjective:
     def accept(self) -> None:
         self.near = self.tried
 
-    def feet(self, net: Net, near: Reals) -> Projections:
+    def footpoints(self, net: Net, near: Reals) -> Projections:
         return projected(net.shape, self.target.points, near, closed=net.closed, held=self.target.held)
 
     def objective(self, unknowns: Reals) -> Quadratic:
         net = self.net.changed(unknowns)
-        feet = self.feet(net, self.near)
-        self.tried = feet.parameters
-        return quadratic_of(net, self.target, feet, self.penalty) + self._of_net(net)
+        footpoints = self.footpoints(net, self.near)
+        self.tried = footpoints.parameters
+        return quadratic_of(net, self.target, footpoints, self.penalty) + self._of_net(net)
 
     def _of_net(self, net: Net) -> Quadratic:
         dimension, free = net.points.shape[1], net.free
@@ -340,8 +344,8 @@ class NetObjective:
             gradient[:moved] = pull[free].ravel()
             block = self.stiffness * scale * net.bending[np.ix_(free, free)]
             curvature[:moved, :moved] = np.kron(block, np.eye(dimension))
-        if net.weighted and net.logs is not None:
-            own = net.gauge.T @ net.logs
+        if net.weighted and net.log_weights is not None:
+            own = net.gauge.T @ net.log_weights
             value += WEIGHT_REGULARISATION**2 * scale * float(own @ own)
             gradient[moved:] += WEIGHT_REGULARISATION**2 * scale * own
             curvature[moved:, moved:] += WEIGHT_REGULARISATION**2 * scale * np.eye(len(own))

@@ -72,8 +72,8 @@ def _tree_path(points: Reals) -> Reals:
         return points[np.lexsort(points.T)][[0, -1]] if len(centres) < 2 else centres
     tree = minimum_spanning_tree(cdist(centres, centres))
     first = int(np.argmax(dijkstra(tree, directed=False, indices=0)))
-    reach, before = dijkstra(tree, directed=False, indices=first, return_predecessors=True)
-    path = [int(np.argmax(reach))]
+    distances, before = dijkstra(tree, directed=False, indices=first, return_predecessors=True)
+    path = [int(np.argmax(distances))]
     while path[-1] != first:
         path.append(int(before[path[-1]]))
     return np.asarray(centres[path[::-1]])

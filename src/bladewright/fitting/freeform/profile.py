@@ -93,10 +93,10 @@ def fit_profile(
     def fitted(camber: int, thickness: int) -> ProfileFit:
         _check(given, camber, thickness, ends, trailing_edge)
         extent = float(np.ptp(given, axis=0).max())
-        way = checked_options(
+        options = checked_options(
             weights="free", power=power, robust=False, tolerance=tolerance, extent=extent, progress=progress
         )
-        return _fitted(given, camber, thickness, ends, way, round_end=trailing_edge == "round", tolerance=tolerance)
+        return _fitted(given, camber, thickness, ends, options, round_end=trailing_edge == "round", tolerance=tolerance)
 
     return fitted(camber, thickness) if tolerance is None else _within_tolerance(fitted, camber, thickness, tolerance)
 
@@ -106,13 +106,13 @@ def _fitted(
     camber: int,
     thickness: int,
     ends: str | tuple[ArrayLike, ArrayLike],
-    way: FitOptions,
+    options: FitOptions,
     *,
     round_end: bool,
     tolerance: float | None,
 ) -> ProfileFit:
     """The fit with so many control points."""
-    centre, extent, power = np.mean(given, axis=0), way.extent, way.power
+    centre, extent, power = np.mean(given, axis=0), options.extent, options.power
     scaled = (given - centre) / extent
     start, upper = _start(scaled, camber, thickness, round_end=round_end)
     if not isinstance(ends, str):
@@ -122,14 +122,14 @@ def _fitted(
     profile, evaluations, converged = start, 0, False
     search = ProfileObjective(points=scaled, upper=upper, fixed=fixed, penalty=Penalty(), stiffness=0.0, profile=start)
     for stiffness in (*STIFFNESSES, STIFFNESSES[-1]):
-        way.say(f"stiffness {stiffness:g}")
+        options.report(f"stiffness {stiffness:g}")
         search = replace(search, stiffness=stiffness, profile=profile, upper=_upper(profile, scaled))
         found = minimised(search.objective, search.unknowns, evaluations=60, tolerance=1e-6)
         profile, converged = search.changed(found.x), found.converged
         evaluations += found.evaluations
     for _ in range(SIDE_TURNS):
         upper = _upper(profile, scaled)
-        scale = float(search.feet(profile).distances.max())
+        scale = float(search.footpoints(profile).distances.max())
         penalty = Penalty(power=power, scale=scale) if power != 2.0 else Penalty()
         search = replace(search, stiffness=1e-12, profile=profile, upper=upper, penalty=penalty)
         found = minimised(search.objective, search.unknowns, evaluations=100, tolerance=1e-8)
@@ -138,8 +138,8 @@ def _fitted(
         if np.array_equal(_upper(profile, scaled), upper):
             break
     search = replace(search, profile=profile)
-    feet = search.feet(profile)
-    values = singular_values(search.of_distances(profile, feet).curvature)
+    footpoints = search.footpoints(profile)
+    values = singular_values(search.of_distances(profile, footpoints).curvature)
     stretch = np.array([extent, extent])
     return ProfileFit(
         camber=replace(profile.camber, control_points=profile.camber.control_points * extent + centre),
@@ -147,14 +147,14 @@ def _fitted(
             profile.thickness, control_points=profile.thickness.control_points * stretch + np.array([centre[0], 0.0])
         ),
         upper=search.upper,
-        t=feet.parameters[:, 0],
-        distances=feet.distances * extent,
+        t=footpoints.parameters[:, 0],
+        distances=footpoints.distances * extent,
         inliers=np.ones(len(given), dtype=bool),
         iterations=evaluations,
         converged=converged,
         singular_values=values,
         rank=rank_of(values),
-        noise=_noise(feet, scaled, search.upper) * extent,
+        noise=_noise(footpoints, scaled, search.upper) * extent,
         tolerance=tolerance,
         notes=(),
     )
@@ -189,7 +189,7 @@ class ProfileObjective:
         of = self.profile.thickness
         points = np.array(of.control_points)
         return Net(
-            knots=(of.knots,), degrees=(DEGREE,), points=points, logs=np.log(self.profile.weights), weighted=True
+            knots=(of.knots,), degrees=(DEGREE,), points=points, log_weights=np.log(self.profile.weights), weighted=True
         )
 
     @property
@@ -206,8 +206,8 @@ class ProfileObjective:
         camber[self.moving] = unknowns[:moved].reshape(-1, 2)
         net = self.profile.thickness.control_points.copy()
         net[self.heights, 1] = unknowns[moved : moved + free]
-        logs = np.log(self.profile.weights) + self.net.gauge @ unknowns[moved + free :]
-        weights = np.exp(np.clip(logs, -10.0, 10.0))
+        log_weights = np.log(self.profile.weights) + self.net.gauge @ unknowns[moved + free :]
+        weights = np.exp(np.clip(log_weights, -10.0, 10.0))
         found = replace(
             self.profile,
             camber=replace(self.profile.camber, control_points=camber),
@@ -215,7 +215,7 @@ class ProfileObjective:
         )
         return found if self.fixed else found.between(camber[[0, -1]])
 
-    def feet(self, profile: CamberThickness) -> Projections:
+    def footpoints(self, profile: CamberThickness) -> Projections:
         """The nearest places of the points on their sides."""
         t = np.zeros(len(self.points))
         grid = np.linspace(0.0, 1.0, SIDE_SAMPLES) ** 1.5
@@ -232,15 +232,15 @@ class ProfileObjective:
 
     def objective(self, unknowns: Reals) -> Quadratic:
         profile = self.changed(unknowns)
-        return self.of_distances(profile, self.feet(profile)) + self._of_shape(profile, unknowns)
+        return self.of_distances(profile, self.footpoints(profile)) + self._of_shape(profile, unknowns)
 
-    def of_distances(self, profile: CamberThickness, feet: Projections) -> Quadratic:
+    def of_distances(self, profile: CamberThickness, footpoints: Projections) -> Quadratic:
         counts = np.where(self.upper, self.upper.sum(), (~self.upper).sum())
-        t, of = feet.parameters[:, 0], feet.across_of
+        t, of = footpoints.parameters[:, 0], footpoints.across_of
         return quadratic_of_distances(
-            self.rows(profile, t, self.upper, feet.along),
-            feet.distances,
-            self.rows(profile, t[of], self.upper[of], feet.across),
+            self.rows(profile, t, self.upper, footpoints.along),
+            footpoints.distances,
+            self.rows(profile, t[of], self.upper[of], footpoints.across),
             of,
             self.penalty,
             1.0 / counts,
@@ -266,8 +266,8 @@ class ProfileObjective:
         by_abscissa = by_site / first[:, :1]
         by_camber[:, :, 0] -= at * by_abscissa
         by_control = ratio * by_abscissa
-        logs = ratio * (thickness.control_points[:, 0] - x[:, None]) * by_abscissa
-        logs += ratio * (thickness.control_points[:, 1] - h[:, None]) * lift
+        log_weights = ratio * (thickness.control_points[:, 0] - x[:, None]) * by_abscissa
+        log_weights += ratio * (thickness.control_points[:, 1] - h[:, None]) * lift
         if not self.fixed:
             low, high = camber.control_points[[0, -1], 0]
             share = (thickness.control_points[:, 0] - low) / (high - low)
@@ -276,7 +276,7 @@ class ProfileObjective:
         columns = [
             by_camber[:, self.moving].reshape(len(t), 2 * len(self.moving)),
             (ratio * lift)[:, self.heights],
-            logs @ net.gauge,
+            log_weights @ net.gauge,
         ]
         return csr_array(np.concatenate(columns, axis=1))
 
@@ -360,11 +360,13 @@ def _upper(profile: CamberThickness, points: Reals) -> NDArray[np.bool_]:
     return np.asarray(np.sum((points - place) * turned_left(tangent), axis=-1) > 0.0)
 
 
-def _noise(feet: Projections, points: Reals, upper: NDArray[np.bool_]) -> float:
+def _noise(footpoints: Projections, points: Reals, upper: NDArray[np.bool_]) -> float:
     squares = []
     for side in (True, False):
         rows = upper == side
-        squares.append(rows.sum() * noise_along(feet.parameters[rows, 0], (feet.points - points)[rows]) ** 2)
+        squares.append(
+            rows.sum() * noise_along(footpoints.parameters[rows, 0], (footpoints.points - points)[rows]) ** 2
+        )
     return float(np.sqrt(sum(squares) / len(points)))
 
 

@@ -79,15 +79,15 @@ def projected(
     return with_frames(parameters, np.asarray(place), points, tangents, free)
 
 
-def nearer_projections(feet: Projections, others: Projections, rows: NDArray[np.bool_]) -> Projections:
+def nearer_projections(footpoints: Projections, others: Projections, rows: NDArray[np.bool_]) -> Projections:
     """Feet, or at some rows (n,) the others, one each, where these are nearer; without their directions across."""
     better = np.zeros(len(rows), dtype=bool)
-    better[rows] = others.distances < feet.distances[rows]
+    better[rows] = others.distances < footpoints.distances[rows]
     chosen = better[rows]
-    changed = {name: getattr(feet, name).copy() for name in ("parameters", "points", "distances", "along")}
+    changed = {name: getattr(footpoints, name).copy() for name in ("parameters", "points", "distances", "along")}
     for name, values in changed.items():
         values[better] = getattr(others, name)[chosen]
-    return replace(feet, across=feet.across[:0], across_of=feet.across_of[:0], **changed)
+    return replace(footpoints, across=footpoints.across[:0], across_of=footpoints.across_of[:0], **changed)
 
 
 def sampled_parameters(shape: Curve | Surface, points: Reals) -> Reals:
@@ -99,17 +99,17 @@ def sampled_parameters(shape: Curve | Surface, points: Reals) -> Reals:
     return (low + samples.local[index] * (high - low))[:, : 1 if isinstance(shape, Curve) else 2]
 
 
-def certified_parameters(shape: Curve | Surface, points: Reals, feet: Projections) -> Reals:
+def certified_parameters(shape: Curve | Surface, points: Reals, footpoints: Projections) -> Reals:
     """Parameters (n, k) of places at most a `CERTAIN` of the largest distance further away than the nearest of all.
 
     Those of `feet` stay where the search has nothing nearer.
     """
     on = patches(shape)
     extent = float(np.ptp(shape.control_points.reshape(-1, points.shape[1]), axis=0).max())
-    found = nearest(on, points, max(TOLERANCE * extent, CERTIFIED_SHARE * float(feet.distances.max())))
-    nearer = np.sqrt(found.square) < feet.distances * (1.0 - CERTIFIED_SHARE) - TOLERANCE * extent
-    parameters = _parameters(on, found)[:, : feet.parameters.shape[1]]
-    return np.where(nearer[:, None], parameters, feet.parameters)
+    found = nearest(on, points, max(TOLERANCE * extent, CERTIFIED_SHARE * float(footpoints.distances.max())))
+    nearer = np.sqrt(found.square) < footpoints.distances * (1.0 - CERTIFIED_SHARE) - TOLERANCE * extent
+    parameters = _parameters(on, found)[:, : footpoints.parameters.shape[1]]
+    return np.where(nearer[:, None], parameters, footpoints.parameters)
 
 
 def with_frames(

@@ -46,7 +46,7 @@ class FitOptions:
     """of the points in their own unit, for messages"""
     progress: Callable[[str], None] | None = None
 
-    def say(self, text: str) -> None:
+    def report(self, text: str) -> None:
         """Hands a short text on."""
         if self.progress is not None:
             self.progress(text)
@@ -75,48 +75,48 @@ KnotSource = Callable[[StagedMatch, NetTarget, FitOptions, float], tuple[Net | N
 
 
 def match_within_tolerance(
-    net: Net, target: NetTarget, way: FitOptions, further: KnotSource, *, warm: bool
+    net: Net, target: NetTarget, options: FitOptions, further: KnotSource, *, warm: bool
 ) -> tuple[StagedMatch, tuple[str, ...]]:
     """The match within a largest distance, where there is one, and why it is not reached where it is not.
 
     `further` gives a net with further knots, or None and the reason; a `warm` net is near already.
     """
-    found = staged_match(net, target, way, warm=warm)
+    found = staged_match(net, target, options, warm=warm)
     evaluations, reason = found.evaluations, ""
     for _ in range(KNOT_ROUNDS):
-        if way.limit is None or found.match.feet.distances.max() <= way.limit:
+        if options.limit is None or found.match.footpoints.distances.max() <= options.limit:
             return replace(found, evaluations=evaluations), ()
-        more, reason = further(found, target, way, way.limit)
+        more, reason = further(found, target, options, options.limit)
         if more is None:
             return replace(found, evaluations=evaluations), (reason,)
-        way.say(f"{len(more.points)} control points")
-        found = staged_match(more, target, way, warm=True)
+        options.report(f"{len(more.points)} control points")
+        found = staged_match(more, target, options, warm=True)
         evaluations += found.evaluations
     return replace(found, evaluations=evaluations), (
         f"the tolerance is not reached after {KNOT_ROUNDS} rounds of knots",
     )
 
 
-def staged_match(net: Net, target: NetTarget, way: FitOptions, *, warm: bool = False) -> StagedMatch:
+def staged_match(net: Net, target: NetTarget, options: FitOptions, *, warm: bool = False) -> StagedMatch:
     """The match of a net to points, stage by stage; a `warm` one is near already, and only the last stages are left."""
     inliers = np.ones(len(target.points), dtype=bool)
     total = 0
-    if way.robust:
-        net, inliers, total = _without_outliers(net, target, way, warm=warm)
+    if options.robust:
+        net, inliers, total = _without_outliers(net, target, options, warm=warm)
         target = target_rows(target, inliers)
-    match = _softened(net, target, way, None, last=2 if warm else None)
+    match = _softened(net, target, options, None, last=2 if warm else None)
     total += match.evaluations
-    if way.weights_free and not net.weighted:
-        way.say("free weights")
-        freed = replace(match.net, weighted=True, logs=match.net.logs)
-        match = _softened(freed, target, way, match.feet.parameters, last=2)
+    if options.weights_free and not net.weighted:
+        options.report("free weights")
+        freed = replace(match.net, weighted=True, log_weights=match.net.log_weights)
+        match = _softened(freed, target, options, match.footpoints.parameters, last=2)
         total += match.evaluations
-    if way.power != 2.0:
-        way.say(f"power {way.power:g}")
-        scale = max(float(match.feet.distances.max()), NEVER_OUTLIER)
-        penalty = Penalty(power=way.power, scale=scale)
+    if options.power != 2.0:
+        options.report(f"power {options.power:g}")
+        scale = max(float(match.footpoints.distances.max()), NEVER_OUTLIER)
+        penalty = Penalty(power=options.power, scale=scale)
         match = matched_net(
-            match.net, target, penalty=penalty, near=match.feet.parameters, stiffness=_least_stiffness(match)
+            match.net, target, penalty=penalty, near=match.footpoints.parameters, stiffness=_least_stiffness(match)
         )
         total += match.evaluations
     return StagedMatch(match=match, inliers=inliers, evaluations=total)
@@ -132,25 +132,27 @@ def target_rows(target: NetTarget, rows: NDArray[np.bool_]) -> NetTarget:
     return NetTarget(points=target.points[rows], weights=target.weights[rows], held=held)
 
 
-def _softened(net: Net, target: NetTarget, way: FitOptions, near: Reals | None, *, last: int | None = None) -> NetMatch:
+def _softened(
+    net: Net, target: NetTarget, options: FitOptions, near: Reals | None, *, last: int | None = None
+) -> NetMatch:
     tried: list[NetMatch] = []
     total = 0
     levels = list(STIFFNESSES[0 if last is None else -last :])
     for stiffness in levels:
-        way.say(f"{len(net.points)} control points, stiffness {stiffness:g}")
+        options.report(f"{len(net.points)} control points, stiffness {stiffness:g}")
         match = matched_net(
             net, target, penalty=Penalty(), stiffness=stiffness, near=near, evaluations=20, tolerance=ROUGH_FALL
         )
-        net, near = match.net, match.feet.parameters
+        net, near = match.net, match.footpoints.parameters
         total += match.evaluations
         tried.append(match)
-        if stiffness == levels[-1] and stiffness > 0.0 and _least_stiffness(match, well=way.always_stiff) == 0.0:
+        if stiffness == levels[-1] and stiffness > 0.0 and _least_stiffness(match, well=options.always_stiff) == 0.0:
             levels.append(0.0)
     best = len(tried) - 1
-    if way.always_stiff:
+    if options.always_stiff:
         enough = STIFFNESS_COST * max(_rms(tried[-1]), NEVER_OUTLIER)
         best = next(i for i, each in enumerate(tried) if _rms(each) <= enough)
-    net, near = tried[best].net, tried[best].feet.parameters
+    net, near = tried[best].net, tried[best].footpoints.parameters
     match = matched_net(
         net,
         target,
@@ -171,31 +173,31 @@ def _least_stiffness(match: NetMatch, *, well: bool = False) -> float:
 
 
 def _rms(match: NetMatch) -> float:
-    return float(np.sqrt(np.mean(match.feet.distances**2)))
+    return float(np.sqrt(np.mean(match.footpoints.distances**2)))
 
 
 def _without_outliers(
-    net: Net, target: NetTarget, way: FitOptions, *, warm: bool
+    net: Net, target: NetTarget, options: FitOptions, *, warm: bool
 ) -> tuple[Net, NDArray[np.bool_], int]:
     """The net matched softly, and which points are not further from it than noise explains."""
-    feet = projected(net.shape, target.points, closed=net.closed)
-    near, total = feet.parameters, 0
-    deviation = float(np.median(feet.distances)) / MEDIAN_OVER_DEVIATION
-    reach = max(deviation, NEVER_OUTLIER) if warm else 0.05
+    footpoints = projected(net.shape, target.points, closed=net.closed)
+    near, total = footpoints.parameters, 0
+    deviation = float(np.median(footpoints.distances)) / MEDIAN_OVER_DEVIATION
+    soft_from = max(deviation, NEVER_OUTLIER) if warm else 0.05
     for stiffness in (1e-8, 1e-8) if warm else (1e-4, 1e-6, 1e-8, 1e-8):
-        way.say(f"without outliers, stiffness {stiffness:g}")
+        options.report(f"without outliers, stiffness {stiffness:g}")
         match = matched_net(
             net,
             target,
-            penalty=Penalty(reach=reach),
+            penalty=Penalty(soft_from=soft_from),
             stiffness=stiffness,
             near=near,
             evaluations=40,
             tolerance=ROUGH_FALL,
         )
-        net, near = match.net, match.feet.parameters
+        net, near = match.net, match.footpoints.parameters
         total += match.evaluations
-        deviation = float(np.median(match.feet.distances)) / MEDIAN_OVER_DEVIATION
-        reach = min(reach, max(deviation, NEVER_OUTLIER))
-    inliers = match.feet.distances <= max(OUTLYING_NOISE * deviation, NEVER_OUTLIER)
+        deviation = float(np.median(match.footpoints.distances)) / MEDIAN_OVER_DEVIATION
+        soft_from = min(soft_from, max(deviation, NEVER_OUTLIER))
+    inliers = match.footpoints.distances <= max(OUTLYING_NOISE * deviation, NEVER_OUTLIER)
     return net, inliers, total

@@ -92,10 +92,10 @@ def fit_surface(
         raise FitError("a fixed boundary was asked for without `start`: give the surface whose boundary is to stay")
     centre, extent = np.mean(given, axis=0), float(np.ptp(given, axis=0).max())
     scaled = (given - centre) / extent
-    way = checked_options(
+    options = checked_options(
         weights=weights, power=power, robust=robust, tolerance=tolerance, extent=extent, progress=progress
     )
-    way = replace(way, always_stiff=True)
+    options = replace(options, always_stiff=True)
     plane = _principal(scaled)
     if start is None:
         corners = _corners(plane)
@@ -110,16 +110,16 @@ def fit_surface(
     if boundary == "free":
         net = _of_surface(_widened(net.surface))
     net = replace(net, held=HELD_BY_BOUNDARY[boundary])
-    _check_numbers(net, scaled, weights_free=way.weights_free)
+    _check_numbers(net, scaled, weights_free=options.weights_free)
     found, notes = match_within_tolerance(
-        net, NetTarget(points=scaled, weights=np.ones(len(scaled))), way, _further_knots, warm=start is not None
+        net, NetTarget(points=scaled, weights=np.ones(len(scaled))), options, _further_knots, warm=start is not None
     )
-    shape, near = found.match.net.surface, found.match.feet.parameters
+    shape, near = found.match.net.surface, found.match.footpoints.parameters
     if boundary == "free":
         shape, near = _cut(shape, near, domain)
     last = projected(shape, scaled[found.inliers], near)
-    feet = nearer_projections(projected(shape, scaled), last, found.inliers)
-    signed = np.sum((feet.points - scaled) * shape.normal(*feet.parameters.T), axis=-1)
+    footpoints = nearer_projections(projected(shape, scaled), last, found.inliers)
+    signed = np.sum((footpoints.points - scaled) * shape.normal(*footpoints.parameters.T), axis=-1)
     inliers = found.inliers
     if found.rank < len(found.singular_values):
         notes += (
@@ -130,15 +130,15 @@ def fit_surface(
         )
     return SurfaceFit(
         surface=replace(shape, control_points=shape.control_points * extent + centre),
-        u=feet.parameters[:, 0],
-        v=feet.parameters[:, 1],
-        distances=feet.distances * extent,
+        u=footpoints.parameters[:, 0],
+        v=footpoints.parameters[:, 1],
+        distances=footpoints.distances * extent,
         inliers=inliers,
         iterations=found.evaluations,
         converged=found.match.converged,
         singular_values=found.singular_values,
         rank=found.rank,
-        noise=_noise(feet.parameters[inliers], signed[inliers]) * extent,
+        noise=_noise(footpoints.parameters[inliers], signed[inliers]) * extent,
         tolerance=tolerance,
         notes=notes,
     )
@@ -149,7 +149,7 @@ def _of_surface(surface: Surface) -> Net:
         knots=(surface.knots_u, surface.knots_v),
         degrees=(surface.degree_u, surface.degree_v),
         points=surface.control_points.reshape(-1, 3).copy(),
-        logs=None if surface.weights is None else np.log(surface.weights).ravel(),
+        log_weights=None if surface.weights is None else np.log(surface.weights).ravel(),
     )
 
 
@@ -258,8 +258,8 @@ def _empty(
             raise FitError(f"a surface of degrees {degrees} was asked for: both must be at least 1")
     except GeometryError as error:
         raise FitError(f"a surface of degrees {degrees} with {counts} control points: {error}") from error
-    logs = checked_logs(weights, (counts[0], counts[1]))
-    return Net(knots=own, degrees=degrees, points=np.zeros((counts[0] * counts[1], 3)), logs=logs)
+    log_weights = checked_logs(weights, (counts[0], counts[1]))
+    return Net(knots=own, degrees=degrees, points=np.zeros((counts[0] * counts[1], 3)), log_weights=log_weights)
 
 
 def _through(points: Reals, parameters: Reals, net: Net) -> Net:
@@ -288,27 +288,27 @@ def _noise(parameters: Reals, signed: Reals) -> float:
     return float(np.sqrt(np.mean(off**2) / (1.0 + 1.0 / count)))
 
 
-def _further_knots(found: StagedMatch, target: NetTarget, way: FitOptions, limit: float) -> tuple[Net | None, str]:
+def _further_knots(found: StagedMatch, target: NetTarget, options: FitOptions, limit: float) -> tuple[Net | None, str]:
     """Further knots in strips too far off for other reasons than noise, along the direction that gains more."""
-    net, feet = found.match.net, found.match.feet
+    net, footpoints = found.match.net, found.match.footpoints
     points = target.points[found.inliers]
     shape = net.surface
-    signed = np.sum((feet.points - points) * shape.normal(*feet.parameters.T), axis=-1)
-    noise = _noise(feet.parameters, signed)
+    signed = np.sum((footpoints.points - points) * shape.normal(*footpoints.parameters.T), axis=-1)
+    noise = _noise(footpoints.parameters, signed)
     best: tuple[float, Net | None] = (0.0, None)
     sparse = False
     for direction in range(2):
         knots = []
-        at = feet.parameters[:, direction]
+        at = footpoints.parameters[:, direction]
         for low, high in pairwise(breaks(net.knots[direction])):
             here = (at >= low) & (at <= high)
-            worst = feet.distances[here].max(initial=0.0)
+            worst = footpoints.distances[here].max(initial=0.0)
             if worst <= limit or (
-                worst <= 4.0 * noise and np.sqrt(np.mean(feet.distances[here] ** 2)) <= NOISE_RATIO * noise
+                worst <= 4.0 * noise and np.sqrt(np.mean(footpoints.distances[here] ** 2)) <= NOISE_RATIO * noise
             ):
                 continue
             order = np.argsort(at[here])
-            square = np.cumsum(feet.distances[here][order] ** 2)
+            square = np.cumsum(footpoints.distances[here][order] ** 2)
             middle = at[here][order][np.searchsorted(square, 0.5 * square[-1])]
             knots.append(float(np.clip(middle, low + 0.25 * (high - low), high - 0.25 * (high - low))))
         if not knots:
@@ -318,7 +318,7 @@ def _further_knots(found: StagedMatch, target: NetTarget, way: FitOptions, limit
             sparse = True
             continue
         chosen = NetTarget(points=points, weights=target.weights[found.inliers])
-        quadratic = quadratic_of(more, chosen, feet, Penalty())
+        quadratic = quadratic_of(more, chosen, footpoints, Penalty())
         damping = 1e-9 * np.trace(quadratic.curvature) / len(quadratic.gradient) * np.eye(len(quadratic.gradient))
         gain = float(quadratic.gradient @ np.linalg.solve(quadratic.curvature + damping, quadratic.gradient))
         rate = gain / (len(more.points) - len(net.points))
@@ -326,9 +326,8 @@ def _further_knots(found: StagedMatch, target: NetTarget, way: FitOptions, limit
             best = (rate, more)
     if best[1] is not None:
         return best[1], ""
-    far = (
-        f"the largest distance is {feet.distances.max() * way.extent:.3g} where {limit * way.extent:.3g} was asked for"
-    )
+    largest = footpoints.distances.max() * options.extent
+    far = f"the largest distance is {largest:.3g} where {limit * options.extent:.3g} was asked for"
     if sparse:
         return None, f"{far}: the points are too few for further knots"
-    return None, f"{far}: noise of a standard deviation of about {noise * way.extent:.3g} stops further knots"
+    return None, f"{far}: noise of a standard deviation of about {noise * options.extent:.3g} stops further knots"

@@ -45,7 +45,7 @@ def found_arrangement(points: Reals) -> Arrangement:
     for name in ("annular", "linear"):
         _, found = ranked_outlines(machine_coordinates(some, name), revolved=name == "annular")
         away.append(found[0].match.mean)
-        if away[0] < ANNULAR_AT_ONCE * found[0].laid.chord:
+        if away[0] < ANNULAR_AT_ONCE * found[0].unwrapped.chord:
             return "annular"
     return "linear" if away[1] < 0.5 * away[0] else "annular"
 

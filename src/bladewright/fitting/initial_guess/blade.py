@@ -176,10 +176,10 @@ def first_blade(
             refusal = error
             continue
         # a design that had to be tamed lies further from the points than its sections did
-        away += 0.004 * tamings * found.laid.chord
+        away += 0.004 * tamings * found.unwrapped.chord
         if best is None or away < best[0]:
             best = away, design
-        if best[0] < GOOD_DISTANCE * found.laid.chord:
+        if best[0] < GOOD_DISTANCE * found.unwrapped.chord:
             break
     if best is None:
         raise refusal

@@ -47,22 +47,29 @@ class SideAssignment(NamedTuple):
 
 
 def assigned_sides(
-    shape: SectionShape, laid: UnwrappedPoints, turn: Callable[[Reals], Reals], lean: Reals, count: int = SPAN_COUNT
+    shape: SectionShape,
+    unwrapped: UnwrappedPoints,
+    turn: Callable[[Reals], Reals],
+    lean: Reals,
+    count: int = SPAN_COUNT,
 ) -> SideAssignment:
     """The sides of points whose chord lies along the angle `turn` [rad] by place along the span.
 
     `lean` (k,) is a law of the ordinate along which the sections stand, `count` the control points along the span.
     """
-    direction, unit = turn(laid.v), shape.extent(laid.v)
+    direction, unit = turn(unwrapped.v), shape.extent(unwrapped.v)
     cosine, sine = np.cos(direction), np.sin(direction)
-    a = laid.points[:, 0] / unit
-    b = (laid.points[:, 1] - law_basis(len(lean), laid.v) @ lean) / unit
+    a = unwrapped.points[:, 0] / unit
+    b = (unwrapped.points[:, 1] - law_basis(len(lean), unwrapped.v) @ lean) / unit
     along, across = cosine * a + sine * b, -sine * a + cosine * b
-    rows = law_basis(count, laid.v)
-    low, high = _envelope(rows, along, laid.v, -1.0, laid.flat), _envelope(rows, along, laid.v, 1.0, laid.flat)
+    rows = law_basis(count, unwrapped.v)
+    low, high = (
+        _envelope(rows, along, unwrapped.v, -1.0, unwrapped.flat),
+        _envelope(rows, along, unwrapped.v, 1.0, unwrapped.flat),
+    )
     start, end = rows @ low, rows @ high
     t = np.clip((along - start) / np.maximum(end - start, 1e-9), 0.0, 1.0)
-    even = _even(t, laid)
+    even = _even(t, unwrapped)
     vander = (chebyshev.chebvander(2.0 * t - 1.0, 3)[:, :, None] * rows[:, None, :]).reshape(len(t), -1)
     upper = across > vander @ _ridged(vander, across, even)
     middle, half = np.zeros(vander.shape[1]), np.zeros(vander.shape[1])
@@ -81,18 +88,23 @@ def assigned_sides(
 
 
 def first_laws(
-    shape: SectionShape, laid: UnwrappedPoints, turn: Callable[[Reals], Reals], lean: Reals, count: int
+    shape: SectionShape, unwrapped: UnwrappedPoints, turn: Callable[[Reals], Reals], lean: Reals, count: int
 ) -> Reals:
     """Laws (count, q) of sections through the middle between the sides of points, as `parted` has them."""
-    found = assigned_sides(shape, laid, turn, lean, count)
-    return _as_laws(shape, laid, turn, lean, found.ends, np.stack([found.middle, found.half]))
+    found = assigned_sides(shape, unwrapped, turn, lean, count)
+    return _as_laws(shape, unwrapped, turn, lean, found.ends, np.stack([found.middle, found.half]))
 
 
 def _as_laws(
-    shape: SectionShape, laid: UnwrappedPoints, turn: Callable[[Reals], Reals], lean: Reals, ends: Reals, fields: Reals
+    shape: SectionShape,
+    unwrapped: UnwrappedPoints,
+    turn: Callable[[Reals], Reals],
+    lean: Reals,
+    ends: Reals,
+    fields: Reals,
 ) -> Reals:
     count = ends.shape[1]
-    at = np.zeros(1) if laid.flat else np.linspace(0.0, 1.0, max(9, 2 * count + 1))
+    at = np.zeros(1) if unwrapped.flat else np.linspace(0.0, 1.0, max(9, 2 * count + 1))
     rows = law_basis(count, at)
     direction = turn(at)
     cosine, sine = np.cos(direction)[:, None], np.sin(direction)[:, None]
@@ -116,7 +128,7 @@ def _as_laws(
         )
         numbers[:, tangent] = np.clip(np.sqrt(np.sum(vector**2, axis=-1)) / extent, SHORTEST_TANGENT, LONGEST_TANGENT)
     size = shape.scale((shape.extent(at) * (line[:, 0, 0] + extent / 2.0))[:, None], at)[:, 0]
-    thickness = np.maximum(np.mean(half[1:3], axis=0) * shape.extent(at) / size, 2e-3 * laid.ratio)
+    thickness = np.maximum(np.mean(half[1:3], axis=0) * shape.extent(at) / size, 2e-3 * unwrapped.ratio)
     for side in (shape.upper, shape.lower):
         shares = np.ones(side.stop - side.start)
         shares[[0, -1]] = 0.6
@@ -144,20 +156,20 @@ def _envelope(rows: Reals, along: Reals, v: Reals, sign: float, flat: bool) -> R
     tame = 1e-3 * np.eye(rows.shape[1])
     middle = float(np.mean(along[chosen]))
     matrix = np.concatenate([rows[chosen], tame])
-    aim = np.concatenate([along[chosen] - middle, np.zeros(rows.shape[1])])
-    return np.linalg.lstsq(matrix, aim, rcond=None)[0] + middle
+    rhs = np.concatenate([along[chosen] - middle, np.zeros(rows.shape[1])])
+    return np.linalg.lstsq(matrix, rhs, rcond=None)[0] + middle
 
 
-def _even(t: Reals, laid: UnwrappedPoints) -> Reals:
-    bins = (t * 9.999).astype(int) + 10 * (np.clip(laid.v, 0.0, 1.0) * 3.999).astype(int) * (not laid.flat)
+def _even(t: Reals, unwrapped: UnwrappedPoints) -> Reals:
+    bins = (t * 9.999).astype(int) + 10 * (np.clip(unwrapped.v, 0.0, 1.0) * 3.999).astype(int) * (not unwrapped.flat)
     return np.asarray(1.0 / np.sqrt(np.bincount(bins)[bins]))
 
 
-def _ridged(matrix: Reals, aim: Reals, weight: Reals) -> Reals:
+def _ridged(matrix: Reals, rhs: Reals, weight: Reals) -> Reals:
     tame = 1e-3 * np.sqrt(np.sum(weight**2)) * np.eye(matrix.shape[1])
-    middle = float(np.mean(aim))
+    middle = float(np.mean(rhs))
     rows = np.concatenate([matrix * weight[:, None], tame])
-    found = np.linalg.lstsq(rows, np.concatenate([(aim - middle) * weight, np.zeros(len(tame))]), rcond=None)[0]
+    found = np.linalg.lstsq(rows, np.concatenate([(rhs - middle) * weight, np.zeros(len(tame))]), rcond=None)[0]
     # the basis along the span adds up to one, so a constant is its coefficients
     found[: matrix.shape[1] // 4] += middle
     return found

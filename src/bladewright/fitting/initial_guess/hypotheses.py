@@ -53,10 +53,10 @@ def ranked_outlines(machine: Reals, *, revolved: bool) -> tuple[Reals, list[Sect
     found = _likely(machine, revolved=revolved)
     best = found[0]
     distances = nearest_places(best.shape, unwrapped_in(machine, best.channel), best.match.laws)[2]
-    kept = distances < 5.0 * np.median(distances) + 0.03 * best.laid.chord
+    kept = distances < 5.0 * np.median(distances) + 0.03 * best.unwrapped.chord
     if np.mean(kept) < 0.995:
         other = _likely(machine[kept], revolved=revolved)
-        if other[0].match.mean / other[0].laid.chord < NEARER_RATIO * best.match.mean / best.laid.chord:
+        if other[0].match.mean / other[0].unwrapped.chord < NEARER_RATIO * best.match.mean / best.unwrapped.chord:
             return machine[kept], other
     return machine, found
 
@@ -72,7 +72,7 @@ def _likely(machine: Reals, *, revolved: bool) -> list[SectionsInChannel]:
                 found = _tried(few, _reversed(named), revolved=revolved)
             tried.append(found)
         away = sorted(mean_distance(found, few) for found in tried)
-        if away[0] < min([CLEAR_DISTANCE * tried[0].laid.chord, *(each / 3.0 for each in away[1:2])]):
+        if away[0] < min([CLEAR_DISTANCE * tried[0].unwrapped.chord, *(each / 3.0 for each in away[1:2])]):
             break
     return sorted(tried, key=lambda found: mean_distance(found, few))
 

@@ -119,9 +119,9 @@ def _costs(ring: Reals) -> Reals:
     return result
 
 
-def _turns(ring: Reals, reach: int = 4) -> Reals:
+def _turns(ring: Reals, steps_apart: int = 4) -> Reals:
     """Angles (STEPS,) by which the boundary turns to the left around each place, at most 1.2 [rad]."""
-    before, after = ring - np.roll(ring, reach, axis=0), np.roll(ring, -reach, axis=0) - ring
+    before, after = ring - np.roll(ring, steps_apart, axis=0), np.roll(ring, -steps_apart, axis=0) - ring
     turn = np.arctan2(before[:, 0] * after[:, 1] - before[:, 1] * after[:, 0], np.sum(before * after, axis=-1))
     return np.clip(turn, 0.0, 1.2)
 

@@ -35,19 +35,21 @@ ALLOWED_GAPS, OVERHANG_WEIGHT = 4.0, 0.3
 of what it does further"""
 
 
-def regularisation_rows(shape: SectionShape, laid: UnwrappedPoints, laws: Reals, smooth: float) -> tuple[Reals, Reals]:
+def regularisation_rows(
+    shape: SectionShape, unwrapped: UnwrappedPoints, laws: Reals, smooth: float
+) -> tuple[Reals, Reals]:
     """Rows that keep what the points leave open: alike sides, even thickness, tangents of a third, even laws."""
     count, k = shape.columns, len(laws)
     rows: list[tuple[Reals, float]] = []
 
-    def add(parts: dict[int, float], aim: float, weight: float) -> None:
+    def add(parts: dict[int, float], rhs: float, weight: float) -> None:
         row = np.zeros(count)
         for column, value in parts.items():
             row[column] = weight * value
-        rows.append((row, weight * aim))
+        rows.append((row, weight * rhs))
 
     nu, nl = shape.chordwise
-    up, low, unit = shape.upper.start, shape.lower.start, 1.0 / laid.ratio
+    up, low, unit = shape.upper.start, shape.lower.start, 1.0 / unwrapped.ratio
     if nu == nl:
         for i in range(nu):
             add({up + i: unit, low + i: -unit}, 0.0, 0.3 * smooth)
@@ -57,28 +59,28 @@ def regularisation_rows(shape: SectionShape, laid: UnwrappedPoints, laws: Reals,
     for column in (TANGENT_IN, TANGENT_OUT):
         add({column: 1.0}, 0.35, 0.03 * smooth)
     for column in (ROOT_IN, ROOT_OUT):
-        add({column: 1.0 / np.sqrt(laid.ratio)}, 0.05, 0.03 * smooth)
+        add({column: 1.0 / np.sqrt(unwrapped.ratio)}, 0.05, 0.03 * smooth)
     matrix = np.array([np.kron(row, np.eye(k)) for row, _ in rows]).reshape(-1, count * k)
-    aims = np.repeat([aim for _, aim in rows], k)
+    rhs_rows = np.repeat([rhs for _, rhs in rows], k)
     if k > 2:
-        units = limits(shape, laid, ends=False)[2]
+        units = limits(shape, unwrapped, ends=False)[2]
         bend = np.diff(np.eye(k), n=2, axis=0)
         extra = np.kron(np.diag(BEND_WEIGHT * smooth / units), bend)
-        matrix, aims = np.concatenate([matrix, extra]), np.concatenate([aims, np.zeros(len(extra))])
+        matrix, rhs_rows = np.concatenate([matrix, extra]), np.concatenate([rhs_rows, np.zeros(len(extra))])
     flat = laws.T.reshape(-1)
-    return matrix, aims - matrix @ flat
+    return matrix, rhs_rows - matrix @ flat
 
 
-def overhang_rows(shape: SectionShape, laid: UnwrappedPoints, laws: Reals) -> tuple[Reals, Reals]:
+def overhang_rows(shape: SectionShape, unwrapped: UnwrappedPoints, laws: Reals) -> tuple[Reals, Reals]:
     """Rows that draw in what reaches past the points: thin fins are nobody's nearest place and would cost nothing."""
-    count, rows, aims = shape.columns * len(laws), [], []
-    for v in section_stations(laid):
-        beside = np.abs(laid.v - v) < SPAN_BAND
+    count, rows, rhs_rows = shape.columns * len(laws), [], []
+    for v in section_stations(unwrapped):
+        beside = np.abs(unwrapped.v - v) < SPAN_BAND
         number = np.count_nonzero(beside)
         if number < SPAN_BAND_POINTS:
             continue
         room = ALLOWED_GAPS / number
-        at = laid.points[beside, 0] / shape.extent(laid.v[beside])
+        at = unwrapped.points[beside, 0] / shape.extent(unwrapped.v[beside])
         values = law_basis(len(laws), np.array([v]))[0]
         start = float(values @ laws[:, START])
         end = start + float(values @ laws[:, EXTENT])
@@ -88,24 +90,24 @@ def overhang_rows(shape: SectionShape, laid: UnwrappedPoints, laws: Reals) -> tu
                 row = np.zeros((shape.columns, len(laws)))
                 row[columns] = OVERHANG_WEIGHT * values
                 rows.append(row.ravel())
-                aims.append(OVERHANG_WEIGHT * excess)
-    return np.array(rows).reshape(-1, count), np.array(aims)
+                rhs_rows.append(OVERHANG_WEIGHT * excess)
+    return np.array(rows).reshape(-1, count), np.array(rhs_rows)
 
 
-def limits(shape: SectionShape, laid: UnwrappedPoints, *, ends: bool) -> tuple[Reals, Reals, Reals]:
+def limits(shape: SectionShape, unwrapped: UnwrappedPoints, *, ends: bool) -> tuple[Reals, Reals, Reals]:
     """Lowest and highest values of the columns, and the most that one step may change them."""
     low, high = np.full(shape.columns, -np.inf), np.full(shape.columns, np.inf)
-    most = np.full(shape.columns, 0.1 * laid.ratio)
+    most = np.full(shape.columns, 0.1 * unwrapped.ratio)
     for columns, least, largest, step in (
-        ([START], -2.0 if laid.flat else -0.4, 0.6, 0.1),
-        ([EXTENT], 0.03 if laid.flat else 0.2, 1.5, 0.15),
+        ([START], -2.0 if unwrapped.flat else -0.4, 0.6, 0.1),
+        ([EXTENT], 0.03 if unwrapped.flat else 0.2, 1.5, 0.15),
         ([STAGGER, ANGLE_IN, ANGLE_OUT], -STEEPEST_ANGLE, STEEPEST_ANGLE, 0.35),
         ([TANGENT_IN, TANGENT_OUT], SHORTEST_TANGENT, LONGEST_TANGENT, 0.3),
-        ([ROOT_IN, ROOT_OUT], np.sqrt(2e-4 * laid.ratio), 0.95, 0.15 * np.sqrt(laid.ratio)),
+        ([ROOT_IN, ROOT_OUT], np.sqrt(2e-4 * unwrapped.ratio), 0.95, 0.15 * np.sqrt(unwrapped.ratio)),
     ):
         low[columns], high[columns], most[columns] = least, largest, step
-    low[FIRST_THICKNESS:] = THINNEST_SECTION * laid.ratio
-    most[PLACE] = 0.15 * laid.chord * float(np.median(laid.size))
+    low[FIRST_THICKNESS:] = THINNEST_SECTION * unwrapped.ratio
+    most[PLACE] = 0.15 * unwrapped.chord * float(np.median(unwrapped.size))
     if ends:
         low[START], high[START], low[EXTENT], high[EXTENT] = 0.0, 0.0, 1.0, 1.0
     return low, high, most

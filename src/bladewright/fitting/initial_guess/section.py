@@ -60,8 +60,10 @@ def first_section(
         scale=lambda abscissa, _: np.ones_like(abscissa),
         extent=np.ones_like,
     )
-    laid = UnwrappedPoints(points=(points - middle) / chord, v=0.0 * one, size=one, chord=1.0, ratio=1.0, flat=True)
-    match = best_match(shape, laid, axis)
+    unwrapped = UnwrappedPoints(
+        points=(points - middle) / chord, v=0.0 * one, size=one, chord=1.0, ratio=1.0, flat=True
+    )
+    match = best_match(shape, unwrapped, axis)
     return built_section(shape, match, middle, chord, name, length_unit)
 
 
@@ -77,16 +79,16 @@ def longest_chord(points: Reals) -> tuple[float, float]:
     return float(np.arctan2(along[1], along[0])), float(np.sqrt(squares[i, j]))
 
 
-def best_match(shape: SectionShape, laid: UnwrappedPoints, axis: float) -> SectionMatch:
+def best_match(shape: SectionShape, unwrapped: UnwrappedPoints, axis: float) -> SectionMatch:
     """The closest of matches that start from several directions of the chord."""
     found: list[SectionMatch] = []
     for turn in (0.0, 0.2, -0.2, 0.5, -0.5):
         direction = axis + turn
         if abs(axis + turn) > np.radians(88.0):
             continue
-        laws = first_laws(shape, laid, partial(np.full_like, fill_value=direction), np.zeros(1), 1)
-        found.append(matched_sections(shape, laid, laws))
-        if found[-1].mean < 2e-3 * laid.chord:
+        laws = first_laws(shape, unwrapped, partial(np.full_like, fill_value=direction), np.zeros(1), 1)
+        found.append(matched_sections(shape, unwrapped, laws))
+        if found[-1].mean < 2e-3 * unwrapped.chord:
             break
     if not found:
         raise FitError("no chord")

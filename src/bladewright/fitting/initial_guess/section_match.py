@@ -39,26 +39,28 @@ class SectionMatch:
     upper: NDArray[np.bool_]
 
 
-def nearest_places(shape: SectionShape, laid: UnwrappedPoints, laws: Reals) -> tuple[Reals, NDArray[np.bool_], Reals]:
+def nearest_places(
+    shape: SectionShape, unwrapped: UnwrappedPoints, laws: Reals
+) -> tuple[Reals, NDArray[np.bool_], Reals]:
     """Place along the side, side and distance [m] of each point."""
-    at = section_stations(laid)
+    at = section_stations(unwrapped)
     lines = np.stack(shape.polylines(numbers_at(laws, at), at, SIDE_PLACES), axis=1)
-    place = np.clip(laid.v, 0.0, 1.0) * (len(at) - 1)
+    place = np.clip(unwrapped.v, 0.0, 1.0) * (len(at) - 1)
     low = np.clip(place.astype(int), 0, max(0, len(at) - 2))
     high = np.minimum(low + 1, len(at) - 1)
     share = place - low
     squares = np.empty((len(low), 2, len(SIDE_PLACES)))
     for station in np.unique(low):
         mask = low == station
-        part, p = share[mask, None, None], laid.points[mask]
+        part, p = share[mask, None, None], unwrapped.points[mask]
         total = np.zeros((len(p), 2, len(SIDE_PLACES)))
         for i in (0, 1):
             first = lines[station, ..., i]
             step = lines[min(station + 1, len(at) - 1), ..., i] - first
             total += (p[:, i, None, None] - first - part * step) ** 2
         squares[mask] = total
-    if laid.upper is not None and laid.sure is not None:
-        squares[laid.sure, np.where(laid.upper, 1, 0)[laid.sure]] = np.inf
+    if unwrapped.upper is not None and unwrapped.sure is not None:
+        squares[unwrapped.sure, np.where(unwrapped.upper, 1, 0)[unwrapped.sure]] = np.inf
     index = np.argmin(squares.reshape(len(low), -1), axis=1)
     upper = index < len(SIDE_PLACES)
     side, vertex = index // len(SIDE_PLACES), index % len(SIDE_PLACES)
@@ -72,18 +74,18 @@ def nearest_places(shape: SectionShape, laid: UnwrappedPoints, laws: Reals) -> t
     for way in (-1, 1):
         other = np.clip(vertex + way, 0, len(SIDE_PLACES) - 1)
         step = on(other) - middle
-        t = np.sum((laid.points - middle) * step, axis=-1) / (np.sum(step**2, axis=-1) + 1e-300)
+        t = np.sum((unwrapped.points - middle) * step, axis=-1) / (np.sum(step**2, axis=-1) + 1e-300)
         t = np.clip(t, 0.0, 1.0)
-        distance = np.sqrt(np.sum((laid.points - middle - t[:, None] * step) ** 2, axis=-1))
+        distance = np.sqrt(np.sum((unwrapped.points - middle - t[:, None] * step) ** 2, axis=-1))
         nearer = distance < best
         best = np.where(nearer, distance, best)
         s = np.where(nearer, SIDE_PLACES[vertex] + t * (SIDE_PLACES[other] - SIDE_PLACES[vertex]), s)
-    return s, upper, best / laid.size
+    return s, upper, best / unwrapped.size
 
 
 def matched_sections(
     shape: SectionShape,
-    laid: UnwrappedPoints,
+    unwrapped: UnwrappedPoints,
     laws: Reals,
     *,
     turns: int = 25,
@@ -96,16 +98,16 @@ def matched_sections(
     `ends` holds the ends of the camber lines at those of the stream lines; `among` draws in what reaches past the
     points.
     """
-    laws = within_limits(shape, laid, laws)
+    laws = within_limits(shape, unwrapped, laws)
     best: SectionMatch | None = None
     history: list[float] = []
     smooth = 3e-2 * stiff
     for turn in range(turns + 1):
-        s, upper, distances = nearest_places(shape, laid, laws)
-        weight = _weights(laid, s, upper, distances, turn / turns)
+        s, upper, distances = nearest_places(shape, unwrapped, laws)
+        weight = _weights(unwrapped, s, upper, distances, turn / turns)
         # places that no point is near count as well: a side without points is none
         mean = float(np.sum(weight * distances) / np.sum(weight)) + 0.2 * float(
-            np.mean(np.minimum(distances, 0.1 * laid.chord))
+            np.mean(np.minimum(distances, 0.1 * unwrapped.chord))
         )
         history.append(mean)
         if best is None or mean < best.mean:
@@ -113,20 +115,22 @@ def matched_sections(
         settled = len(history) > 6 and min(history[-3:]) > 0.97 * min(history[:-3])
         if turn == turns or (settled and smooth <= 1.01 * LEAST_SMOOTHING):
             break
-        laws = within_limits(shape, laid, laws + _step(shape, laid, laws, s, upper, weight, smooth, ends, among))
+        laws = within_limits(
+            shape, unwrapped, laws + _step(shape, unwrapped, laws, s, upper, weight, smooth, ends, among)
+        )
         smooth = max(0.5 * smooth, LEAST_SMOOTHING)
     if best is None:
         raise FitError("no section was found near the points")
     return replace(best, mean=float(np.mean(np.sort(best.distances)[: max(1, int(0.94 * len(best.distances)))])))
 
 
-def within_limits(shape: SectionShape, laid: UnwrappedPoints, laws: Reals) -> Reals:
+def within_limits(shape: SectionShape, unwrapped: UnwrappedPoints, laws: Reals) -> Reals:
     """The laws within the family's limits, and radii that the thickness beside them can hold."""
-    low, high, _ = limits(shape, laid, ends=False)
+    low, high, _ = limits(shape, unwrapped, ends=False)
     laws = np.clip(laws, low, high)
-    laws = _with_thin_edges(shape, laid, laws)
-    least = np.sqrt(2e-4 * laid.ratio)
-    at = section_stations(laid)
+    laws = _with_thin_edges(shape, unwrapped, laws)
+    least = np.sqrt(2e-4 * unwrapped.ratio)
+    at = section_stations(unwrapped)
     numbers = numbers_at(laws, at)
     for column, beside, end in ((ROOT_IN, 2, 0), (ROOT_OUT, -3, 1)):
         most = np.full(len(at), np.inf)
@@ -139,38 +143,42 @@ def within_limits(shape: SectionShape, laid: UnwrappedPoints, laws: Reals) -> Re
             laws[:, column] = np.maximum(capped, 0.2 * least)
             excess = float(np.max((law_basis(len(laws), at) @ laws[:, column]) / most))
         laws[:, column] /= max(excess, 1.0)
-    if laid.flat:
+    if unwrapped.flat:
         laws[:, [ROOT_IN, ROOT_OUT]] = np.minimum(laws[:, [ROOT_IN, ROOT_OUT]], np.sqrt(0.9 * laws[:, [EXTENT]]))
     return laws
 
 
-def _with_thin_edges(shape: SectionShape, laid: UnwrappedPoints, laws: Reals) -> Reals:
+def _with_thin_edges(shape: SectionShape, unwrapped: UnwrappedPoints, laws: Reals) -> Reals:
     """The laws with edges so thin that the sides leave them inwards."""
-    at = section_stations(laid)
+    at = section_stations(unwrapped)
     numbers = numbers_at(laws, at)
     for side, upper in ((shape.upper, True), (shape.lower, False)):
         room = shape.rooms(numbers, at, upper)
         for column, most in ((side.start, room[0]), (side.stop - 1, room[1])):
             share = float(np.min(0.8 * most / numbers[:, column]))
-            laws[:, column] = np.maximum(laws[:, column] * min(1.0, share), 0.2 * THINNEST_SECTION * laid.ratio)
+            laws[:, column] = np.maximum(laws[:, column] * min(1.0, share), 0.2 * THINNEST_SECTION * unwrapped.ratio)
     return laws
 
 
-def _weights(laid: UnwrappedPoints, s: Reals, upper: NDArray[np.bool_], distances: Reals, progress: float) -> Reals:
+def _weights(
+    unwrapped: UnwrappedPoints, s: Reals, upper: NDArray[np.bool_], distances: Reals, progress: float
+) -> Reals:
     """Of the points: as much for each part of a side, less for what lies far off."""
     bins = (
-        (s * 11.999).astype(int) + 12 * upper + 24 * (np.clip(laid.v, 0.0, 1.0) * 3.999).astype(int) * (not laid.flat)
+        (s * 11.999).astype(int)
+        + 12 * upper
+        + 24 * (np.clip(unwrapped.v, 0.0, 1.0) * 3.999).astype(int) * (not unwrapped.flat)
     )
     counts = np.bincount(bins)[bins]
     even = 1.0 / np.sqrt(counts / np.mean(counts) + 0.05)
     spread = 1.4826 * float(np.median(distances))
-    reach = max(5.0 * spread, laid.chord * (0.05 * (1.0 - progress) ** 2 + 2e-3))
-    return even / np.mean(even) / (1.0 + (distances / reach) ** 2) ** 2
+    width = max(5.0 * spread, unwrapped.chord * (0.05 * (1.0 - progress) ** 2 + 2e-3))
+    return even / np.mean(even) / (1.0 + (distances / width) ** 2) ** 2
 
 
 def _step(
     shape: SectionShape,
-    laid: UnwrappedPoints,
+    unwrapped: UnwrappedPoints,
     laws: Reals,
     s: Reals,
     upper: NDArray[np.bool_],
@@ -179,20 +187,20 @@ def _step(
     ends: bool,
     among: bool,
 ) -> Reals:
-    numbers = numbers_at(laws, laid.v)
-    foot = shape.feet(numbers, laid.v, s, upper)
-    root = np.sqrt(weight / np.sum(weight)) / (laid.size * laid.chord)
-    away = root * np.sum((laid.points - foot.point) * foot.normal, axis=-1)
-    rows = law_basis(len(laws), laid.v)
-    slopes = (root[:, None] * foot.slopes)[:, :, None] * rows[:, None, :]
+    numbers = numbers_at(laws, unwrapped.v)
+    footpoint = shape.footpoints(numbers, unwrapped.v, s, upper)
+    root = np.sqrt(weight / np.sum(weight)) / (unwrapped.size * unwrapped.chord)
+    away = root * np.sum((unwrapped.points - footpoint.point) * footpoint.normal, axis=-1)
+    rows = law_basis(len(laws), unwrapped.v)
+    slopes = (root[:, None] * footpoint.slopes)[:, :, None] * rows[:, None, :]
     matrix = slopes.reshape(len(s), -1)
-    for prior, aim in (
-        regularisation_rows(shape, laid, laws, smooth),
-        *([overhang_rows(shape, laid, laws)] if among else []),
+    for prior, rhs in (
+        regularisation_rows(shape, unwrapped, laws, smooth),
+        *([overhang_rows(shape, unwrapped, laws)] if among else []),
     ):
-        matrix, away = np.concatenate([matrix, prior]), np.concatenate([away, aim])
+        matrix, away = np.concatenate([matrix, prior]), np.concatenate([away, rhs])
     flat = laws.T.reshape(-1)
-    low, high, most = (np.repeat(a, len(laws)) for a in limits(shape, laid, ends=ends))
+    low, high, most = (np.repeat(a, len(laws)) for a in limits(shape, unwrapped, ends=ends))
     free = np.ones(len(flat), dtype=bool)
     step = np.zeros(len(flat))
     normal, right = matrix.T @ matrix, matrix.T @ away

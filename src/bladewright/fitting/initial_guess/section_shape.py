@@ -40,9 +40,9 @@ def numbers_at(laws: Reals, v: Reals) -> Reals:
     return law_basis(len(laws), v) @ laws
 
 
-def section_stations(laid: UnwrappedPoints) -> Reals:
+def section_stations(unwrapped: UnwrappedPoints) -> Reals:
     """Places along the span where sections are drawn."""
-    return np.zeros(1) if laid.flat else np.linspace(0.0, 1.0, 13)
+    return np.zeros(1) if unwrapped.flat else np.linspace(0.0, 1.0, 13)
 
 
 START, PLACE, EXTENT, STAGGER, ANGLE_IN, ANGLE_OUT, TANGENT_IN, TANGENT_OUT, ROOT_IN, ROOT_OUT = range(10)
@@ -163,7 +163,7 @@ class SectionShape:
         )
         return upper, lower
 
-    def feet(self, numbers: Reals, v: Reals, s: Reals, upper: np.ndarray) -> SidePlaces:
+    def footpoints(self, numbers: Reals, v: Reals, s: Reals, upper: np.ndarray) -> SidePlaces:
         """Places at s (n,) of the sides of n sections."""
         line = self.camber(numbers, v)
         places = self.places

@@ -32,7 +32,7 @@ class SectionsInChannel:
 
     channel: RoughChannel
     shape: SectionShape
-    laid: UnwrappedPoints
+    unwrapped: UnwrappedPoints
     match: SectionMatch
 
 
@@ -60,14 +60,14 @@ def first_sections(
     machine: Reals, channel: RoughChannel, chordwise: tuple[int, int], count: int, *, turns: int
 ) -> SectionsInChannel:
     """What is found in a channel without a guess: `count` control points of the laws along the span."""
-    laid = unwrapped_in(machine, channel)
+    unwrapped = unwrapped_in(machine, channel)
     shape = section_shape_in(channel, chordwise, 16, 1.0)
-    turn, lean, chord = _direction(laid)
-    laid = replace(laid, chord=chord, ratio=chord / laid.chord)
-    known = assigned_sides(shape, laid, turn, lean)
-    laid = replace(laid, upper=known.upper, sure=known.sure)
-    match = matched_sections(shape, laid, first_laws(shape, laid, turn, lean, count), turns=turns)
-    return SectionsInChannel(channel=channel, shape=shape, laid=laid, match=match)
+    turn, lean, chord = _direction(unwrapped)
+    unwrapped = replace(unwrapped, chord=chord, ratio=chord / unwrapped.chord)
+    known = assigned_sides(shape, unwrapped, turn, lean)
+    unwrapped = replace(unwrapped, upper=known.upper, sure=known.sure)
+    match = matched_sections(shape, unwrapped, first_laws(shape, unwrapped, turn, lean, count), turns=turns)
+    return SectionsInChannel(channel=channel, shape=shape, unwrapped=unwrapped, match=match)
 
 
 def transferred_sections(
@@ -95,31 +95,31 @@ def transferred_sections(
         values = lengths[:, None] * (old[:, then] @ law_basis(then.stop - then.start, u).T)
         numbers[:, now] = np.linalg.lstsq(law_basis(now.stop - now.start, u), values.T, rcond=None)[0].T
     laws = np.asarray(np.linalg.lstsq(law_basis(count, SPAN), numbers, rcond=None)[0])
-    laid = unwrapped_in(machine, channel)
-    laid = replace(laid, chord=before.laid.chord, ratio=before.laid.chord / laid.chord)
+    unwrapped = unwrapped_in(machine, channel)
+    unwrapped = replace(unwrapped, chord=before.unwrapped.chord, ratio=before.unwrapped.chord / unwrapped.chord)
     if parting:
-        turn, lean, _ = _direction(laid)
-        known = assigned_sides(shape, laid, turn, lean)
-        laid = replace(laid, upper=known.upper, sure=known.sure)
-    match = matched_sections(shape, laid, laws, turns=10, stiff=0.3, ends=ends, among=True)
-    return SectionsInChannel(channel=channel, shape=shape, laid=laid, match=match)
+        turn, lean, _ = _direction(unwrapped)
+        known = assigned_sides(shape, unwrapped, turn, lean)
+        unwrapped = replace(unwrapped, upper=known.upper, sure=known.sure)
+    match = matched_sections(shape, unwrapped, laws, turns=10, stiff=0.3, ends=ends, among=True)
+    return SectionsInChannel(channel=channel, shape=shape, unwrapped=unwrapped, match=match)
 
 
-def _direction(laid: UnwrappedPoints) -> tuple[Callable[[Reals], Reals], Reals, float]:
+def _direction(unwrapped: UnwrappedPoints) -> tuple[Callable[[Reals], Reals], Reals, float]:
     """Angle of the chord by place along the span, law of the middle ordinate, and the typical chord [m]."""
-    rows = law_basis(DIRECTION_COUNT, laid.v) / laid.size[:, None]
-    lean = np.asarray(np.linalg.lstsq(rows, laid.points[:, 1] / laid.size, rcond=None)[0])
+    rows = law_basis(DIRECTION_COUNT, unwrapped.v) / unwrapped.size[:, None]
+    lean = np.asarray(np.linalg.lstsq(rows, unwrapped.points[:, 1] / unwrapped.size, rcond=None)[0])
     places, angles, chords = [], [], []
     for middle in np.linspace(0.0, 1.0, DIRECTION_BANDS):
-        band = (laid.v - middle) ** 2 < (1.5 / DIRECTION_BANDS) ** 2
+        band = (unwrapped.v - middle) ** 2 < (1.5 / DIRECTION_BANDS) ** 2
         if np.count_nonzero(band) < DIRECTION_POINTS:
             continue
-        metres = laid.points[band] / np.median(laid.size[band])
-        trend = np.column_stack([np.ones(len(metres)), laid.v[band]])
+        metres = unwrapped.points[band] / np.median(unwrapped.size[band])
+        trend = np.column_stack([np.ones(len(metres)), unwrapped.v[band]])
         metres = metres - trend @ np.linalg.lstsq(trend, metres, rcond=None)[0]
         _, turned = np.linalg.eigh(metres.T @ metres)
         along = metres @ turned[:, 1]
-        places.append(float(np.mean(laid.v[band])))
+        places.append(float(np.mean(unwrapped.v[band])))
         angles.append(float(np.arctan2(*(turned[::-1, 1] * np.sign(turned[0, 1] + 1e-300)))))
         chords.append(float(np.percentile(along, 98.0) - np.percentile(along, 2.0)))
     count = min(DIRECTION_COUNT, len(places))
@@ -168,7 +168,7 @@ def _reached_span(
     """Lowest and highest v of the points by u, as parabolas."""
     u, v = found.channel.places(machine[:, :2])
     distances = nearest_places(found.shape, unwrapped_in(machine, found.channel), found.match.laws)[2]
-    good = distances < 4.0 * np.median(distances) + 0.02 * found.laid.chord
+    good = distances < 4.0 * np.median(distances) + 0.02 * found.unwrapped.chord
     u, v = u[good], v[good]
     walls = []
     for sign in (1.0, -1.0):

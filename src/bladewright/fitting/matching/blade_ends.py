@@ -70,9 +70,9 @@ class WallPoints:
 
     def distances(self, exact: Any) -> Reals:
         """Signed distances (m,) from the curve [m]."""
-        return self.off(exact)[1]
+        return self.located(exact)[1]
 
-    def off(self, exact: Any) -> tuple[Reals, Reals]:
+    def located(self, exact: Any) -> tuple[Reals, Reals]:
         """Nearest parameters and signed distances (m,) from the curve [m]."""
         t, normal, miss = self.misses(exact)
         return t, np.asarray(np.sum(normal * miss, axis=-1))
@@ -148,7 +148,7 @@ def blade_ends_of(points: Reals, on: Footpoints, shape: ModelShape, rows: NDArra
         if len(chosen) < FEWEST_ROW_POINTS:
             continue
         wall = WallPoints(name=name, places=places[chosen], spread=0.0)
-        aside = _off_row(*wall.off(exact), inward=1.0 if end == 0.0 else -1.0)
+        aside = _off_row(*wall.located(exact), inward=1.0 if end == 0.0 else -1.0)
         spread = DEVIATION_OVER_MEDIAN * float(np.median(aside))
         # beside a row lie points that are on the sides alone: they would pull the end inwards
         chosen = chosen[aside <= ROW_WIDTH * max(spread, ROW_LEAST_WIDTH * float(np.ptp(places)))]

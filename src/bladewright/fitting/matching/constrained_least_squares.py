@@ -70,7 +70,7 @@ def constrained_minimum(
     *,
     steps: int,
     damping: float = FIRST_DAMPING,
-    slight: float = MIN_REDUCTION,
+    min_reduction: float = MIN_REDUCTION,
 ) -> ConstrainedMinimum:
     """The variables after at most `steps` evaluations of the residuals.
 
@@ -84,34 +84,35 @@ def constrained_minimum(
     residuals, constrained = found
     penalty, growth, gain, done = 0.0, 2.0, 1.0, 1
     while done < steps:
-        slopes, walls = problem.derivatives(z)
-        turned, matrix = np.linalg.qr(slopes)
-        aim = -turned.T @ residuals
+        slopes, constraint_slopes = problem.derivatives(z)
+        orthogonal, matrix = np.linalg.qr(slopes)
+        rhs = -orthogonal.T @ residuals
         scale = float(np.max(np.sum(slopes**2, axis=0), initial=1e-300))
         sizes = np.sqrt(np.sum(slopes**2, axis=0) + damping * scale)
         moved = False
         while done < steps:
             within = (
                 damping * scale,
-                walls,
+                constraint_slopes,
                 constrained,
                 np.maximum(low - z, -LARGEST_CHANGE),
                 np.minimum(high - z, LARGEST_CHANGE),
             )
-            step, largest = _step(matrix, aim, *within)
+            step, largest = _step(matrix, rhs, *within)
             penalty = max(penalty, PENALTY * largest)
             before = float(residuals @ residuals) + penalty * float(np.sum(np.maximum(constrained, 0.0)))
-            linear = aim - matrix @ step
-            promised = (
-                float(aim @ aim)
+            linear = rhs - matrix @ step
+            predicted = (
+                float(rhs @ rhs)
                 - float(linear @ linear)
-                + penalty * float(np.sum(np.maximum(constrained, 0.0) - np.maximum(constrained + walls @ step, 0.0)))
+                + penalty
+                * float(np.sum(np.maximum(constrained, 0.0) - np.maximum(constrained + constraint_slopes @ step, 0.0)))
             )
-            if not promised > slight * before:
+            if not predicted > min_reduction * before:
                 return ConstrainedMinimum(z=z, converged=True, damping=damping)
             bend = _second_derivative(problem, z, step, residuals, slopes) if gain < GOOD_GAIN else None
             if bend is not None:
-                curved, _ = _step(matrix, aim - 0.5 * turned.T @ bend, *within)
+                curved, _ = _step(matrix, rhs - 0.5 * orthogonal.T @ bend, *within)
                 if np.sum(((curved - step) * sizes) ** 2) <= LARGEST_BEND**2 * np.sum((step * sizes) ** 2):
                     step = curved
             trial = np.clip(z + step, low, high)
@@ -120,12 +121,12 @@ def constrained_minimum(
             after = np.inf
             if fresh is not None:
                 after = float(fresh[0] @ fresh[0]) + penalty * float(np.sum(np.maximum(fresh[1], 0.0)))
-            gain = (before - after) / promised
+            gain = (before - after) / predicted
             if gain > 1e-3 and fresh is not None:
                 z, (residuals, constrained) = trial, fresh
                 damping *= max(1.0 / 10.0, 1.0 - (2.0 * min(gain, 1.0) - 1.0) ** 3)
                 damping, growth, moved = max(damping, 1e-16), 2.0, True
-                if gain > GOOD_GAIN and max(1.0 - gain, EXPECTED_REST) * promised < slight * after:
+                if gain > GOOD_GAIN and max(1.0 - gain, EXPECTED_REST) * predicted < min_reduction * after:
                     return ConstrainedMinimum(z=z, converged=True, damping=damping)
                 break
             damping *= growth
@@ -150,44 +151,44 @@ def _second_derivative(
 
 
 def _step(
-    matrix: Reals, aim: Reals, damping: float, walls: Reals, constrained: Reals, low: Reals, high: Reals
+    matrix: Reals, rhs: Reals, damping: float, constraint_slopes: Reals, constrained: Reals, low: Reals, high: Reals
 ) -> tuple[Reals, float]:
     """The damped step within the linearised inequalities, and the largest multiplier of one of them."""
     count = matrix.shape[1]
     rows = np.vstack([matrix, np.sqrt(damping) * np.eye(count)])
-    triangle = np.asarray(np.linalg.qr(np.column_stack([rows, np.append(aim, np.zeros(count))]), mode="r"))
+    triangle = np.asarray(np.linalg.qr(np.column_stack([rows, np.append(rhs, np.zeros(count))]), mode="r"))
     upper, right = triangle[:count, :count], triangle[:count, -1]
-    free = solve_triangular(upper, right)
-    rows = np.vstack([walls, np.eye(count), -np.eye(count)])
-    for mended in CORRECTED_SHARES:
-        room = np.concatenate([np.where(constrained > 0.0, -mended * constrained, -constrained), high, -low])
-        found = _nearest_feasible(upper, free, rows, room)
+    unconstrained = solve_triangular(upper, right)
+    rows = np.vstack([constraint_slopes, np.eye(count), -np.eye(count)])
+    for share in CORRECTED_SHARES:
+        limit = np.concatenate([np.where(constrained > 0.0, -share * constrained, -constrained), high, -low])
+        found = _nearest_feasible(upper, unconstrained, rows, limit)
         if found is not None:
-            return found[0], float(np.max(found[1][: len(walls)], initial=0.0))
+            return found[0], float(np.max(found[1][: len(constraint_slopes)], initial=0.0))
     return np.zeros(count), 0.0
 
 
-def _nearest_feasible(upper: Reals, free: Reals, rows: Reals, room: Reals) -> tuple[Reals, Reals] | None:
+def _nearest_feasible(upper: Reals, unconstrained: Reals, rows: Reals, limit: Reals) -> tuple[Reals, Reals] | None:
     """The step with rows @ step <= room nearest to the free one, and the multipliers; None where there is none.
 
     Distances are measured through the triangle `upper`. Rows join in as a step breaks them.
     """
-    step, multipliers = free, np.zeros(len(rows))
+    step, multipliers = unconstrained, np.zeros(len(rows))
     working = np.zeros(len(rows), dtype=bool)
-    aim = np.append(np.zeros(len(free)), 1.0)
+    rhs = np.append(np.zeros(len(unconstrained)), 1.0)
     for _ in range(ACTIVE_SET_CHANGES):
-        broken = rows @ step - room > 1e-12 * (1.0 + np.abs(room))
+        broken = rows @ step - limit > 1e-12 * (1.0 + np.abs(limit))
         if not np.any(broken & ~working):
             return step, multipliers
         working |= broken
         within = rows[working]
-        turned = solve_triangular(upper, within.T, trans="T")
-        system = np.vstack([-turned, (within @ free - room[working])[None]])
-        weights, _ = nnls(system, aim, maxiter=50 * len(free))
+        orthogonal = solve_triangular(upper, within.T, trans="T")
+        system = np.vstack([-orthogonal, (within @ unconstrained - limit[working])[None]])
+        weights, _ = nnls(system, rhs, maxiter=50 * len(unconstrained))
         short = float(1.0 - system[-1] @ weights)
         if not short > 1e-14:
             return None
-        step = free - solve_triangular(upper, turned @ (weights / short))
+        step = unconstrained - solve_triangular(upper, orthogonal @ (weights / short))
         multipliers = np.zeros(len(rows))
         multipliers[working] = weights / short
     return None

@@ -33,18 +33,18 @@ def _descended_on_curve(on: Patches, points: Reals, start: Reals, *, converged: 
     width = on.high[:, 0] - low
     ends = low[0], on.high[-1, 0]
 
-    def model(at: Reals, aims: Reals) -> tuple[Reals, Reals, Reals, Reals]:
+    def model(at: Reals, targets: Reals) -> tuple[Reals, Reals, Reals, Reals]:
         """Squared distance, half its slope and bend by the parameter, and the width of the piece, (m,) each."""
         piece = np.clip(np.searchsorted(low, at, side="right") - 1, 0, len(low) - 1)
         size = width[piece]
         t = ((at - low[piece]) / size)[:, None]
         of = coefficients[:, piece]
-        value, first, second = of[degree], np.zeros_like(aims), np.zeros_like(aims)
+        value, first, second = of[degree], np.zeros_like(targets), np.zeros_like(targets)
         for row in of[degree - 1 :: -1] if degree else ():
             second = second * t + first
             first = first * t + value
             value = value * t + row
-        miss = value - aims
+        miss = value - targets
         speed = np.einsum("md,md->m", first, first)
         bend = speed + 2.0 * np.einsum("md,md->m", miss, second)
         slope = np.einsum("md,md->m", miss, first)

@@ -21,31 +21,33 @@ class NoiseEstimate:
     """standard deviation of what neighbours do not share, of a point of the mean weight [m]"""
     inliers: NDArray[np.bool_]
     """(n,)"""
-    shared: float
+    correlation: float
     """part of the inliers' variance that neighbours share: 0 for pure noise, 1 for a misfit of the design"""
 
-    def alone(self, parameters: int) -> float:
+    def independent_share(self, parameters: int) -> float:
         """Part of the points that tell something of their own, as far as a design of so many parameters can follow.
 
         A misfit is shared by as many neighbours as there are points for two parameters.
         """
         points = float(np.count_nonzero(self.inliers)) / (2.0 * parameters)
-        return 1.0 / (1.0 + self.shared * max(points - 1.0, 0.0))
+        return 1.0 / (1.0 + self.correlation * max(points - 1.0, 0.0))
 
 
-def noise_of(points: Reals, on: Footpoints, weights: Reals | None = None, *, outlying: bool = True) -> NoiseEstimate:
+def noise_of(
+    points: Reals, on: Footpoints, weights: Reals | None = None, *, allow_outliers: bool = True
+) -> NoiseEstimate:
     """The scatter of points (n, d) about their feet; where not `outlying`, every point is an inlier.
 
     Weights (n,) are inverse variances relative to each other. A point of weight 0 tells nothing of the scatter, and is
     an outlier where it lies further off than every other inlier.
     """
     if weights is not None and not np.all(weights > 0.0):
-        return _noise_of_weighted(points, on, weights, outlying=outlying)
+        return _noise_of_weighted(points, on, weights, allow_outliers=allow_outliers)
     weights = np.ones(len(points)) if weights is None else weights / np.mean(weights)
     heights, distances = on.heights, on.distances
     around = neighbourhood_of(points, on)
     inliers = np.ones(len(points), dtype=bool)
-    if outlying:
+    if allow_outliers:
         past = np.sqrt(np.sum((on.miss - heights[:, None] * on.normals) ** 2, axis=-1))
         inliers = ~outliers_of(heights, past, distances, weights, on, around)
     index = around.index
@@ -56,17 +58,19 @@ def noise_of(points: Reals, on: Footpoints, weights: Reals | None = None, *, out
     # of variance one where the noise is
     rest = (height - np.sum(beside * heights[index[kept]], axis=1) / total) / np.sqrt(1.0 / own_weight + 1.0 / total)
     variance, own = float(np.mean(own_weight * height**2)), float(np.mean(rest**2))
-    shared = float(np.clip(1.0 - own / variance, 0.0, 1.0)) if variance > 0.0 else 0.0
-    return NoiseEstimate(noise=DEVIATION_OVER_MEDIAN * float(np.median(np.abs(rest))), inliers=inliers, shared=shared)
+    correlation = float(np.clip(1.0 - own / variance, 0.0, 1.0)) if variance > 0.0 else 0.0
+    return NoiseEstimate(
+        noise=DEVIATION_OVER_MEDIAN * float(np.median(np.abs(rest))), inliers=inliers, correlation=correlation
+    )
 
 
-def _noise_of_weighted(points: Reals, on: Footpoints, weights: Reals, *, outlying: bool) -> NoiseEstimate:
+def _noise_of_weighted(points: Reals, on: Footpoints, weights: Reals, *, allow_outliers: bool) -> NoiseEstimate:
     """The scatter of the points that have a weight, and where the others are."""
     rows = weights > 0.0
     part = on.part(rows)
-    found = noise_of(points[rows], part, weights[rows], outlying=outlying)
+    found = noise_of(points[rows], part, weights[rows], allow_outliers=allow_outliers)
     inliers = np.ones(len(points), dtype=bool)
     inliers[rows] = found.inliers
-    if outlying:
+    if allow_outliers:
         inliers[~rows] = on.distances[~rows] <= np.max(part.distances[found.inliers])
     return replace(found, inliers=inliers)

@@ -133,8 +133,8 @@ def _spikes(heights: Reals, least: Reals, around: Neighbourhood) -> NDArray[np.b
 
     No wrong radius of an edge does that.
     """
-    index, feet = around.index, around.places[:, :-1]
-    way = np.sqrt(np.sum((feet[index] - feet[:, None]) ** 2, axis=-1))
+    index, footpoints = around.index, around.places[:, :-1]
+    way = np.sqrt(np.sum((footpoints[index] - footpoints[:, None]) ** 2, axis=-1))
     step = np.abs(heights[index] - heights[:, None])
     steep = (step > SPIKE_SLOPE * way) & (step > np.maximum(least[:, None], least[index]))
     level = np.median(np.abs(heights[index]), axis=1) < SPIKE_NEIGHBOURS * np.abs(heights)

@@ -37,14 +37,14 @@ class Regularisation:
 
     matrix: Reals
     """(m, k)"""
-    aim: Reals
+    rhs: Reals
     """(m,)"""
 
 
 def regularisation_of(start: Design, paths: Sequence[str], size: Reals) -> Regularisation:
     """The prior about a start, for parameters (k,) of scale `size`."""
     spread = np.where([path.startswith(MERIDIANS) for path in paths], CHANNEL_SPREAD, SPREAD_ABOUT_START)
-    rows, aims = [np.diag(1.0 / spread)], [np.zeros(len(paths))]
+    rows, rhs_rows = [np.diag(1.0 / spread)], [np.zeros(len(paths))]
     values = start.parameters()
     index = {path: i for i, path in enumerate(paths)}
     for terms, width in chain(_second_differences(start), _thickness_differences(start)):
@@ -57,8 +57,8 @@ def regularisation_of(start: Design, paths: Sequence[str], size: Reals) -> Regul
             if path in index:
                 row[0, index[path]] += factor * size[index[path]] / (width * scale)
         rows.append(row)
-        aims.append(np.array([-sum(factor * values[path] for path, factor in terms) / (width * scale)]))
-    return Regularisation(matrix=np.concatenate(rows), aim=np.concatenate(aims))
+        rhs_rows.append(np.array([-sum(factor * values[path] for path, factor in terms) / (width * scale)]))
+    return Regularisation(matrix=np.concatenate(rows), rhs=np.concatenate(rhs_rows))
 
 
 def _second_differences(start: Design) -> Iterator[tuple[Terms, float]]:

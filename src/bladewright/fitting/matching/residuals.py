@@ -28,7 +28,7 @@ class PlacedCloud:
     """A shape and where the cloud stands on it."""
 
     shape: ModelShape
-    feet: Footpoints
+    footpoints: Footpoints
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -41,7 +41,7 @@ class Residuals:
     """(n,) square roots of the points' weights"""
     model: Model
     ends: BladeEnds
-    reach: EdgeOverhang
+    overhang: EdgeOverhang
     noise: float
     """of the cloud, in chords: what scatters more counts less"""
     precision: Reals | None = None
@@ -49,20 +49,20 @@ class Residuals:
 
     def residuals(self, state: PlacedCloud) -> Reals:
         """All residuals (m,), those of the points (n,) along their normals first."""
-        on, chord = state.feet, self.model.chord
+        on, chord = state.footpoints, self.model.chord
         rows = [self.roots * on.heights / chord]
         rows.append((self.roots * np.sum(on.miss * on.beyond, axis=-1))[self.ends.near] / chord)
         exact = state.shape.exact
         if exact is not None:
             rows += [self._of_wall(wall) * wall.distances(exact) / chord for wall in self.ends.walls.values()]
-        excess = self.reach.excess(self.reach.edges(state.shape.sides))
+        excess = self.overhang.excess(self.overhang.edges(state.shape.sides))
         rows.append(self._of_edge * np.maximum(excess, 0.0) / chord)
         return np.concatenate(rows)
 
     def slopes(self, state: PlacedCloud, paths: Sequence[str]) -> Reals:
         """Derivatives (m, k) by parameters, at held feet: those move along the surface only."""
         shape, chord = state.shape, self.model.chord
-        every, edges = np.split(self.model.along(shape, *self.places(state), paths), [-len(self.reach.u)])
+        every, edges = np.split(self.model.along(shape, *self.places(state), paths), [-len(self.overhang.u)])
         blocks = [every]
         for wall in self.ends.walls.values():
             if shape.exact is not None:
@@ -71,15 +71,15 @@ class Residuals:
                 blocks.append(-self._of_wall(wall) * np.einsum("nkd,nd->nk", moving, normal))
         return np.concatenate([*blocks, edges]) / chord
 
-    def motion(self, state: PlacedCloud, paths: Sequence[str]) -> LawJacobian:
+    def jacobian(self, state: PlacedCloud, paths: Sequence[str]) -> LawJacobian:
         """How the residuals (m,) of a blade of the unified family move with what its parameters are made of."""
         shape, chord = state.shape, self.model.chord
-        on, ways = self.places(state)
-        chain = law_jacobian(shape.exact, self.model.knots, on, ways / chord, paths)  # type: ignore[attr-defined]
-        count, before = len(chain.sites), len(on.u) - len(self.reach.u)
+        on, directions = self.places(state)
+        jacobian = law_jacobian(shape.exact, self.model.knots, on, directions / chord, paths)  # type: ignore[attr-defined]
+        count, before = len(jacobian.sites), len(on.u) - len(self.overhang.u)
         misses = {name: (wall, *wall.misses(shape.exact)) for name, wall in self.ends.walls.items()}
         moves = {}
-        for step, rows in chain.moves.items():
+        for step, rows in jacobian.moves.items():
             parts = [rows[:before]]
             for name, (wall, t, normal, _) in misses.items():
                 rate = np.zeros(len(t))
@@ -87,18 +87,18 @@ class Residuals:
                     rate = -self._of_wall(wall) * wall.basis(shape.exact, t)[:, step[1]] * normal[:, step[2]] / chord
                 parts.append(np.tile(rate[:, None] / count, (1, count)))
             moves[step] = np.concatenate([*parts, rows[before:]])
-        return replace(chain, moves=moves)
+        return replace(jacobian, moves=moves)
 
     def places(self, state: PlacedCloud) -> tuple[Footpoints, Reals]:
         """The places on the sides whose motion changes residuals, and the directions (n, d) that count.
 
         Those of the points, those of points past an end, and those of the edges' reach, last.
         """
-        on, near = state.feet, self.ends.near
-        edges = self.reach.edges(state.shape.sides)
-        ways = [-self.roots[:, None] * on.normals, -(self.roots[:, None] * on.beyond)[near]]
-        ways.append(edges.normals * (self._of_edge * (self.reach.excess(edges) > 0.0))[:, None])
-        return concatenated([on, on.part(near), edges]), np.concatenate(ways)
+        on, near = state.footpoints, self.ends.near
+        edges = self.overhang.edges(state.shape.sides)
+        directions = [-self.roots[:, None] * on.normals, -(self.roots[:, None] * on.beyond)[near]]
+        directions.append(edges.normals * (self._of_edge * (self.overhang.excess(edges) > 0.0))[:, None])
+        return concatenated([on, on.part(near), edges]), np.concatenate(directions)
 
     def _of_wall(self, wall: WallPoints) -> float:
         """Weight of a wall's places: one where they stand in a row, less where they scatter."""
@@ -108,7 +108,7 @@ class Residuals:
     @property
     def _of_edge(self) -> float:
         """Weight as of so many points, which the part of the cloud has that tells of an edge."""
-        return float(np.sqrt(max(1.0, EDGE_SHARE * len(self.points) / max(1, len(self.reach.u)))))
+        return float(np.sqrt(max(1.0, EDGE_SHARE * len(self.points) / max(1, len(self.overhang.u)))))
 
 
 class MatchProblem(ConstrainedProblem):
@@ -117,21 +117,21 @@ class MatchProblem(ConstrainedProblem):
     def __init__(
         self,
         *,
-        measures: Residuals,
+        cloud_residuals: Residuals,
         start: Design,
         paths: Sequence[str],
         scales: Scales,
         prior: Regularisation,
-        alone: float,
+        independent_share: float,
         hint: Footpoints,
         margin: float = 0.0,
     ) -> None:
-        self.measures, self.model = measures, measures.model
+        self.cloud_residuals, self.model = cloud_residuals, cloud_residuals.model
         self.start, self.paths, self.scales, self.margin = start, tuple(paths), scales, margin
-        self.noise = measures.noise
-        self.trust = self.noise / float(np.sqrt(alone))
+        self.noise = cloud_residuals.noise
+        self.trust = self.noise / float(np.sqrt(independent_share))
         """what the spread of the noses is measured by: larger where points repeat each other"""
-        self.prior = Regularisation(matrix=prior.matrix * self.noise, aim=prior.aim * self.noise)
+        self.prior = Regularisation(matrix=prior.matrix * self.noise, rhs=prior.rhs * self.noise)
         self.first = self.values_of(start)
         self.evaluations, self._least = 0, np.inf
         self._hint = hint
@@ -173,17 +173,19 @@ class MatchProblem(ConstrainedProblem):
             return None
         if not shape.finite:
             return None
-        self._hint = nearest_footpoints(self.measures.points, shape.sides, self._hint)
-        return PlacedCloud(shape=shape, feet=self._hint)
+        self._hint = nearest_footpoints(self.cloud_residuals.points, shape.sides, self._hint)
+        return PlacedCloud(shape=shape, footpoints=self._hint)
 
     def values(self, z: Reals) -> tuple[Reals, Reals] | None:
         """All residuals (m,), and (c,) by how much noses exceed the thickness beside them and the channel folds."""
         state = self.state(z)
         if state is None:
             return None
-        full = self._of_noses(state.shape) * (np.ravel(state.shape.noses[1]) - USUAL_EDGE_HEIGHT[0])
-        rows = np.concatenate([self.measures.residuals(state), full, self.prior.matrix @ z - self.prior.aim])
-        held = np.concatenate([np.ravel(state.shape.noses[0]) + self.margin, state.shape.folds])
+        full = self._edge_height_weight(state.shape) * (
+            np.ravel(state.shape.edge_radius_margins[1]) - USUAL_EDGE_HEIGHT[0]
+        )
+        rows = np.concatenate([self.cloud_residuals.residuals(state), full, self.prior.matrix @ z - self.prior.rhs])
+        held = np.concatenate([np.ravel(state.shape.edge_radius_margins[0]) + self.margin, state.shape.constraints])
         cost = float(rows @ rows) * (1.0 + 1e3 * float(np.max(held, initial=0.0)))
         if cost < self._least:
             self._least, self.best = cost, np.array(z)
@@ -194,12 +196,14 @@ class MatchProblem(ConstrainedProblem):
         state = self.state(z)
         if state is None:
             raise DesignError("there is no shape to differentiate: start from a design that can be built")
-        noses = self.model.nose_rates(state.shape, self.paths)
-        held, full = (noses[:, i].reshape(len(self.paths), -1).T for i in (0, 1))
-        held = np.concatenate([held, self.model.fold_rates(state.shape, self.paths).T])
-        rows = np.concatenate([self.measures.slopes(state, self.paths), self._of_noses(state.shape) * full])
+        edge_radius_margins = self.model.edge_radius_margin_rates(state.shape, self.paths)
+        held, full = (edge_radius_margins[:, i].reshape(len(self.paths), -1).T for i in (0, 1))
+        held = np.concatenate([held, self.model.constraint_rates(state.shape, self.paths).T])
+        rows = np.concatenate(
+            [self.cloud_residuals.slopes(state, self.paths), self._edge_height_weight(state.shape) * full]
+        )
         return np.concatenate([rows * self.scales.size, self.prior.matrix]), held * self.scales.size
 
-    def _of_noses(self, shape: ModelShape) -> float:
-        stations = max(shape.noses[0].size / 4.0, 1.0)
+    def _edge_height_weight(self, shape: ModelShape) -> float:
+        stations = max(shape.edge_radius_margins[0].size / 4.0, 1.0)
         return self.trust / (USUAL_EDGE_HEIGHT[1] * float(np.sqrt(stations)))

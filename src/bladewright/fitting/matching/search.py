@@ -36,8 +36,8 @@ class BestSoFar:
 
     def note(self, found: Any) -> None:
         """Keep where a round of a search ended, if few are nearer."""
-        if np.isfinite(found.off):
-            self.found.append((found.off, found))
+        if np.isfinite(found.mean_distance):
+            self.found.append((found.mean_distance, found))
             self.found.sort(key=lambda each: each[0])
             del self.found[KEPT_DESIGNS:]
 
@@ -84,16 +84,16 @@ class Task:
     free: Callable[[Design], tuple[str, ...]]
     """the free parameters of a design, whatever its structure"""
     bounds: Mapping[str, tuple[float, float]]
-    told: Progress = lambda _: None
-    smooth: float = 1.0
+    progress: Progress = lambda _: None
+    regularisation_factor: float = 1.0
     """by how much the prior is stronger"""
-    slack: float = 1.0
+    margin_factor: float = 1.0
     """by how much noses are held further from what is refused"""
     precision: Reals | None = None
     """(n,) inverse variances of the points, relative to each other; where None they are alike"""
-    outlying: bool = True
+    allow_outliers: bool = True
     """whether points may be outliers"""
-    standby: BestSoFar = field(default_factory=BestSoFar)
+    best_so_far: BestSoFar = field(default_factory=BestSoFar)
     """the nearest designs that searches have come to"""
 
     def part(self, rows: NDArray[np.intp]) -> "Task":
@@ -111,7 +111,7 @@ class Match:
     design: Design
     problem: MatchProblem
     state: PlacedCloud
-    scatter: NoiseEstimate
+    noise_estimate: NoiseEstimate
     ends: BladeEnds
     damping: float
     evaluations: int
@@ -127,28 +127,28 @@ class Match:
     @property
     def rows(self) -> NDArray[np.bool_]:
         """(n,) the points that take part as points of the sides."""
-        return self.scatter.inliers & ~self.ends.covered
+        return self.noise_estimate.inliers & ~self.ends.covered
 
     @property
     def rms(self) -> float:
         """Root mean square of the distances of those, of the chord."""
-        return float(np.sqrt(np.mean(self.state.feet.distances[self.rows] ** 2))) / self.model.chord
+        return float(np.sqrt(np.mean(self.state.footpoints.distances[self.rows] ** 2))) / self.model.chord
 
     @property
-    def off(self) -> float:
+    def mean_distance(self) -> float:
         """Mean distance of all points but those that lie on end faces, outliers too [m]."""
-        return float(np.mean(self.state.feet.distances[~self.ends.covered]))
+        return float(np.mean(self.state.footpoints.distances[~self.ends.covered]))
 
     @property
     def misfit(self) -> float:
         """The same with what ends, walls and edges add to it."""
-        residuals = self.problem.measures.residuals(self.state)
+        residuals = self.problem.cloud_residuals.residuals(self.state)
         return float(np.sqrt(np.sum(residuals**2) / max(1.0, float(np.count_nonzero(self.rows)))))
 
     @property
     def maximum(self) -> float:
         """Largest distance of those [m]."""
-        return float(np.max(self.state.feet.distances[self.rows]))
+        return float(np.max(self.state.footpoints.distances[self.rows]))
 
 
 def searched(
@@ -157,7 +157,7 @@ def searched(
     *,
     rounds: int = MOST_ROUNDS,
     noise: float | None = None,
-    slight: float = MIN_REDUCTION,
+    min_reduction: float = MIN_REDUCTION,
     enough: float = EXACT_MISFIT,
 ) -> Match:
     """The design nearest to the cloud that a search from `start` finds, with the structure of `start`.
@@ -167,23 +167,23 @@ def searched(
     start has no shape.
     """
     found, idle = _prepared_round(task, start, start, noise), 0
-    task.standby.note(found)
+    task.best_so_far.note(found)
     for number in range(rounds):
         before = found.misfit
         if (number and before < enough) or found.interrupted:
             break
         try:
             found = _descended_round(
-                found if number == 0 else _prepared_round(task, start, found.design, noise, found), slight
+                found if number == 0 else _prepared_round(task, start, found.design, noise, found), min_reduction
             )
         except FitError:
             # at finer knots the design has no shape: it stays as it was found
             break
-        task.standby.note(found)
+        task.best_so_far.note(found)
         rms = f"{1e3 * found.rms * found.model.chord:.3g} mm rms, {1e3 * found.maximum:.3g} mm at most"
-        task.told(f"{len(found.problem.paths)} parameters, {rms}")
+        task.progress(f"{len(found.problem.paths)} parameters, {rms}")
         ratio = found.misfit / before
-        idle = idle + 1 if ratio**2 > min(SETTLED_RATIO**2, 1.0 - slight) else 0
+        idle = idle + 1 if ratio**2 > min(SETTLED_RATIO**2, 1.0 - min_reduction) else 0
         if number and idle and (found.converged or idle > 1):
             break
         noise = found.rms * (max(ratio, 1e-3) if ratio < FAST_RATIO else 1.0)
@@ -214,48 +214,54 @@ def _prepared_round(
     if not shape.finite:
         raise FitError("the start design has no shape near its edges: give another start, or none")
     on = nearest_footpoints(points, shape.sides)
-    scatter = noise_of(points, on, task.precision, outlying=task.outlying)
-    ends = blade_ends_of(points, on, shape, scatter.inliers)
-    misfit = float(np.sqrt(np.mean(on.distances[scatter.inliers & ~ends.covered] ** 2))) / model.chord
+    noise_estimate = noise_of(points, on, task.precision, allow_outliers=task.allow_outliers)
+    ends = blade_ends_of(points, on, shape, noise_estimate.inliers)
+    misfit = float(np.sqrt(np.mean(on.distances[noise_estimate.inliers & ~ends.covered] ** 2))) / model.chord
     scales = scales_of(start, paths, model.chord, task.bounds)
     prior = regularisation_of(start, paths, scales.size)
-    measures = Residuals(
+    cloud_residuals = Residuals(
         points=points,
-        roots=np.sqrt(task.weights * (scatter.inliers & ~ends.covered)),
+        roots=np.sqrt(task.weights * (noise_estimate.inliers & ~ends.covered)),
         model=model,
         ends=ends,
-        reach=edge_overhang_of(points, shape.sides, scatter.inliers & ~ends.covered, exact=not task.outlying),
+        overhang=edge_overhang_of(
+            points, shape.sides, noise_estimate.inliers & ~ends.covered, exact=not task.allow_outliers
+        ),
         noise=misfit if noise is None else noise,
         precision=np.ones(len(points)) if task.precision is None else task.precision,
     )
     problem = MatchProblem(
-        measures=measures,
+        cloud_residuals=cloud_residuals,
         start=start,
         paths=paths,
         scales=scales,
-        prior=replace(prior, matrix=task.smooth * prior.matrix, aim=task.smooth * prior.aim),
-        alone=scatter.alone(len(paths)) / task.smooth**2,
+        prior=replace(
+            prior, matrix=task.regularisation_factor * prior.matrix, rhs=task.regularisation_factor * prior.rhs
+        ),
+        independent_share=noise_estimate.independent_share(len(paths)) / task.regularisation_factor**2,
         hint=on,
-        margin=EDGE_RADIUS_MARGIN[points.shape[1]] * task.slack,
+        margin=EDGE_RADIUS_MARGIN[points.shape[1]] * task.margin_factor,
     )
     return Match(
         design=design,
         problem=problem,
-        state=PlacedCloud(shape=shape, feet=on),
-        scatter=scatter,
+        state=PlacedCloud(shape=shape, footpoints=on),
+        noise_estimate=noise_estimate,
         ends=ends,
         damping=FIRST_DAMPING if before is None else before.damping,
         evaluations=1 if before is None else before.evaluations + 1,
     )
 
 
-def _descended_round(found: Match, slight: float) -> Match:
+def _descended_round(found: Match, min_reduction: float) -> Match:
     """What a descent from a prepared design finds."""
     problem, interrupted, converged = found.problem, False, False
     first = problem.vector(found.design)
     z, damping = first, found.damping
     try:
-        descent = constrained_minimum(problem, first, steps=EVALUATIONS_PER_ROUND, damping=damping, slight=slight)
+        descent = constrained_minimum(
+            problem, first, steps=EVALUATIONS_PER_ROUND, damping=damping, min_reduction=min_reduction
+        )
         z, damping, converged = descent.z, descent.damping, descent.converged
     except KeyboardInterrupt:
         z, interrupted = problem.best, True

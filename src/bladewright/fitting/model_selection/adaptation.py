@@ -58,7 +58,7 @@ CORNERS_HELD_NOTE = (
 
 
 def selected_match(
-    task: Task, first: Design, aim: MatchTarget, *, base: Structure | None, guessed: bool
+    task: Task, first: Design, target: MatchTarget, *, base: Structure | None, guessed: bool
 ) -> tuple[Match, str]:
     """The match, and why it ends where no aim is met.
 
@@ -68,93 +68,99 @@ def selected_match(
     few = task.part(drawn(len(task.points), QUICK_POINTS[task.points.shape[1]]))
     several, many = (task.part(drawn(len(task.points), most)) for most in (TOLERANCE_POINTS, THOROUGH_POINTS))
     noise = GUESS_NOISE if guessed else None
-    if aim.structured and aim.tolerance is None:
+    if target.structured and target.tolerance is None:
         return matched_structure(few, many, first, base, guessed=guessed), ""
     found = searched(
-        few, first, noise=noise, rounds=2 * QUICK_ROUNDS if base is None else QUICK_ROUNDS, slight=ROUGH_REDUCTION
+        few,
+        first,
+        noise=noise,
+        rounds=2 * QUICK_ROUNDS if base is None else QUICK_ROUNDS,
+        min_reduction=ROUGH_REDUCTION,
     )
-    exact = guessed and aim.open and not is_rounded(task.points)
+    exact = guessed and target.open and not is_rounded(task.points)
     if exact and isinstance(first, UnifiedSection) and has_systematic_misfit(found, QUIET_SHARE):
         known = identified_section(few, first)
         if known is not None:
             return (known if known.interrupted else searched(many, known.design)), ""
-    standing, everything = aim.parameters is not None and _ends_in_rows(found), few
+    standing, everything = target.parameters is not None and _ends_in_rows(found), few
     if standing:
         few, many = _with_corners_held(few), _with_corners_held(many)
-    found, reason = _match_for_target(few, several, found, aim, base, guessed=guessed)
+    found, reason = _match_for_target(few, several, found, target, base, guessed=guessed)
     if standing:
         reason = CORNERS_HELD_NOTE
-        found = found if found.interrupted else searched(everything, found.design, rounds=1, slight=ROUGH_REDUCTION)
+        found = (
+            found if found.interrupted else searched(everything, found.design, rounds=1, min_reduction=ROUGH_REDUCTION)
+        )
     if found.interrupted:
         return found, reason
     rounds = MOST_ROUNDS
-    if task.points.shape[1] == 3 and not aim.open:
+    if task.points.shape[1] == 3 and not target.open:
         # growth to a tolerance has weighed points by their distances, and what follows does so too
-        rounds = QUICK_ROUNDS if aim.tolerance is None else 0
-    if task.points.shape[1] == 3 and not aim.open and _refused(found):
-        many = replace(many, slack=REFUSED_MARGIN * many.slack)
-    found = searched(many, found.design, rounds=rounds, slight=MIN_REDUCTION if aim.open else FINAL_REDUCTION)
+        rounds = QUICK_ROUNDS if target.tolerance is None else 0
+    if task.points.shape[1] == 3 and not target.open and _refused(found):
+        many = replace(many, margin_factor=REFUSED_MARGIN * many.margin_factor)
+    found = searched(many, found.design, rounds=rounds, min_reduction=MIN_REDUCTION if target.open else FINAL_REDUCTION)
     if guessed and task.points.shape[1] == 2:
         found = _restarted(many, found)
-    elif guessed and aim.open:
-        found = _grown_further(several, many, found, aim)
-    if aim.tolerance is not None and (not reason or found.scatter.shared >= NOISE_CORRELATION):
-        found = match_within_tolerance(many, found, aim, aim.tolerance)
-        reason = reason if found.maximum > aim.tolerance else ""
+    elif guessed and target.open:
+        found = _grown_further(several, many, found, target)
+    if target.tolerance is not None and (not reason or found.noise_estimate.correlation >= NOISE_CORRELATION):
+        found = match_within_tolerance(many, found, target, target.tolerance)
+        reason = reason if found.maximum > target.tolerance else ""
     return found, reason
 
 
 def _match_for_target(
-    task: Task, several: Task, found: Match, aim: MatchTarget, base: Structure | None, *, guessed: bool
+    task: Task, several: Task, found: Match, target: MatchTarget, base: Structure | None, *, guessed: bool
 ) -> tuple[Match, str]:
     """A match with as many control points as the aim asks for, as forecasts or growth lead there, or why not."""
     solid = guessed and task.points.shape[1] == 3 and stands_on_channel(found.design) and not found.interrupted
-    if solid and aim.parameters is not None:
-        foreseen = best_match_of_size(task, found, aim.parameters)
-        if foreseen is not None:
-            return foreseen, ""
-    if solid and aim.tolerance is not None:
-        if found.rms * found.model.chord > aim.tolerance:
+    if solid and target.parameters is not None:
+        chosen = best_match_of_size(task, found, target.parameters)
+        if chosen is not None:
+            return chosen, ""
+    if solid and target.tolerance is not None:
+        if found.rms * found.model.chord > target.tolerance:
             found = best_match_of_size(task, found, len(found.problem.paths)) or found
-        if found.rms * found.model.chord < COMPACT_RMS * aim.tolerance:
-            found = smallest_match(task, found, COMPACT_RMS * aim.tolerance) or found
+        if found.rms * found.model.chord < COMPACT_RMS * target.tolerance:
+            found = smallest_match(task, found, COMPACT_RMS * target.tolerance) or found
         if not found.interrupted:
             task = several
             measured = searched(task, found.design, rounds=0)
             found = replace(measured, evaluations=measured.evaluations + found.evaluations)
     elif solid:
         # forecasts are linear: they tell of more the nearer a match is
-        found = searched(task, found.design, noise=found.rms, slight=ROUGH_REDUCTION)
+        found = searched(task, found.design, noise=found.rms, min_reduction=ROUGH_REDUCTION)
         found = best_match_of_size(task, found, len(found.problem.paths)) or found
-    elif base is not None and not found.interrupted and _has_spare_parameters(found, aim):
+    elif base is not None and not found.interrupted and _has_spare_parameters(found, target):
         found = reduced_to(task, found, base)
-    return _grown_to_target(task, found, aim)
+    return _grown_to_target(task, found, target)
 
 
-def _grown_to_target(task: Task, found: Match, aim: MatchTarget) -> tuple[Match, str]:
+def _grown_to_target(task: Task, found: Match, target: MatchTarget) -> tuple[Match, str]:
     """A match with as many control points as the aim asks for, or why there are no more."""
     reason = ""
     for _ in range(MOST_GROWTHS):
         if found.interrupted:
             return found, ""
-        short, reason = needs_more(found, aim, task)
-        if not short or _nearly_within_tolerance(found, aim):
+        short, reason = needs_more(found, target, task)
+        if not short or _nearly_within_tolerance(found, target):
             break
         before = found.rms
-        found, grew = grown_match(task, found, aim)
+        found, grew = grown_match(task, found, target)
         if not grew:
-            found, grew = with_grown_thickness(task, found, aim)
-        if not grew or gained_little(task, found, aim, before):
+            found, grew = with_grown_thickness(task, found, target)
+        if not grew or gained_little(task, found, target, before):
             break
-    if aim.parameters is not None and task.points.shape[1] == 2:
+    if target.parameters is not None and task.points.shape[1] == 2:
         found = _thickness_shared_out(task, found)
     return found, reason
 
 
-def _grown_further(several: Task, many: Task, found: Match, aim: MatchTarget) -> Match:
+def _grown_further(several: Task, many: Task, found: Match, target: MatchTarget) -> Match:
     """A match that grows on where it has settled at a misfit that is no noise: forecasts are truer the nearer it is."""
     while has_systematic_misfit(found):
-        more, grew = grown_match(several, found, aim)
+        more, grew = grown_match(several, found, target)
         if not grew:
             break
         fresh = more if more.interrupted else searched(many, more.design)
@@ -164,16 +170,16 @@ def _grown_further(several: Task, many: Task, found: Match, aim: MatchTarget) ->
     return found
 
 
-def _nearly_within_tolerance(found: Match, aim: MatchTarget) -> bool:
+def _nearly_within_tolerance(found: Match, target: MatchTarget) -> bool:
     """Whether all but a few points of a blade keep a tolerance: weighing those more may do."""
-    on = found.state.feet
+    on = found.state.footpoints
     if (
-        aim.tolerance is None
+        target.tolerance is None
         or on.points.shape[1] == 2
-        or found.rms * found.model.chord > NEARLY_WITHIN[0] * aim.tolerance
+        or found.rms * found.model.chord > NEARLY_WITHIN[0] * target.tolerance
     ):
         return False
-    return bool(np.mean(on.distances[found.rows] > aim.tolerance) < NEARLY_WITHIN[1])
+    return bool(np.mean(on.distances[found.rows] > target.tolerance) < NEARLY_WITHIN[1])
 
 
 def _thickness_shared_out(task: Task, found: Match) -> Match:
@@ -185,7 +191,7 @@ def _thickness_shared_out(task: Task, found: Match) -> Match:
             if min(upper, lower) < FEWEST_THICKNESSES:
                 break
             design = with_feasible_edges(reshaped(found.design, replace(structure, chordwise=(upper, lower))))
-            other = searched(task, design, rounds=QUICK_ROUNDS + 1, noise=found.rms, slight=ROUGH_REDUCTION)
+            other = searched(task, design, rounds=QUICK_ROUNDS + 1, noise=found.rms, min_reduction=ROUGH_REDUCTION)
             evaluations = found.evaluations + other.evaluations
             if not (other.rms < found.rms or other.interrupted):
                 found = replace(found, evaluations=evaluations)
@@ -200,7 +206,7 @@ def _restarted(task: Task, found: Match) -> Match:
         return found
     other = searched(task, found.design, noise=RESTART_NOISE)
     # of all points: a match that takes more of them for outliers is no nearer
-    nearer = other if other.off < found.off and other.rms < found.rms else found
+    nearer = other if other.mean_distance < found.mean_distance and other.rms < found.rms else found
     evaluations = found.evaluations + other.evaluations
     return replace(nearer, evaluations=evaluations, interrupted=other.interrupted)
 
@@ -225,8 +231,8 @@ def _with_corners_held(task: Task) -> Task:
     return replace(task, free=lambda design: tuple(p for p in task.free(design) if p not in corner_radii(design)))
 
 
-def _has_spare_parameters(found: Match, aim: MatchTarget) -> bool:
+def _has_spare_parameters(found: Match, target: MatchTarget) -> bool:
     """Whether a first design has more parameters than its cloud may need, or than are asked for."""
-    if aim.tolerance is not None and found.rms * found.model.chord > aim.tolerance:
+    if target.tolerance is not None and found.rms * found.model.chord > target.tolerance:
         return False
-    return aim.parameters is None or len(found.problem.paths) > aim.parameters
+    return target.parameters is None or len(found.problem.paths) > target.parameters

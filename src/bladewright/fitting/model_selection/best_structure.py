@@ -43,8 +43,8 @@ def best_match_of_size(task: Task, found: Match, most: int) -> Match | None:
         if structure == now and best is not None:
             break
         try:
-            start = forecast.designed(structure, forecast.foreseen(structure))
-            fresh = searched(task, start, rounds=1, noise=found.rms, slight=ROUGH_REDUCTION)
+            start = forecast.designed(structure, forecast.prediction(structure))
+            fresh = searched(task, start, rounds=1, noise=found.rms, min_reduction=ROUGH_REDUCTION)
         except FitError:
             break
         fresh = replace(fresh, evaluations=fresh.evaluations + found.evaluations)
@@ -62,31 +62,31 @@ def smallest_match(task: Task, found: Match, rms: float) -> Match | None:
     forecast = forecast_of(found, structure)
     if forecast is None:
         return None
-    count = forecast.foreseen(structure).parameters
+    count = forecast.prediction(structure).parameters
     while count > FEWEST_PARAMETERS:
         structure = _reduced(forecast, structure, int(REDUCTION * count), None)
-        told = forecast.foreseen(structure)
-        left = float(np.sqrt(np.mean(told.rows[: forecast.points] ** 2))) * found.model.chord
-        if left > rms or told.parameters == count:
+        predicted = forecast.prediction(structure)
+        left = float(np.sqrt(np.mean(predicted.rows[: forecast.points] ** 2))) * found.model.chord
+        if left > rms or predicted.parameters == count:
             break
-        count = told.parameters
+        count = predicted.parameters
     return best_match_of_size(task, found, count + _parameters_outside(found, forecast))
 
 
 def _parameters_outside(found: Match, forecast: Forecast) -> int:
     """Free parameters that no structure has a say in."""
-    return len(found.problem.paths) - forecast.foreseen(structure_of(found.design)).parameters
+    return len(found.problem.paths) - forecast.prediction(structure_of(found.design)).parameters
 
 
 def best_structure(forecast: Forecast, structure: Structure, most: int, roots: Reals | None = None) -> Structure:
     """The structure of at most so many parameters that a forecast prefers, beginning with one of more or of fewer."""
     found = _extended(forecast, _reduced(forecast, structure, most, roots), most, roots)
-    cost = forecast.foreseen(found, roots).cost
+    cost = forecast.prediction(found, roots).cost
     for _ in range(EXCHANGES):
         ups = ranked_steps(forecast, found, roots)[:EXCHANGES_TRIED]
         for _, step in ups:
             other = _extended(forecast, _reduced(forecast, step.structure, most, roots), most, roots)
-            fresh = forecast.foreseen(other, roots).cost
+            fresh = forecast.prediction(other, roots).cost
             if fresh < EXCHANGE_GAIN * cost:
                 found, cost = other, fresh
                 break
@@ -98,7 +98,7 @@ def best_structure(forecast: Forecast, structure: Structure, most: int, roots: R
 def _reduced(forecast: Forecast, structure: Structure, most: int, roots: Reals | None) -> Structure:
     """A structure with at most so many parameters: what is foreseen to cost least goes first."""
     while True:
-        now = forecast.foreseen(structure, roots)
+        now = forecast.prediction(structure, roots)
         over = now.parameters - most
         if over <= 0:
             return structure
@@ -122,7 +122,7 @@ def _reduced(forecast: Forecast, structure: Structure, most: int, roots: Reals |
 def _extended(forecast: Forecast, structure: Structure, most: int, roots: Reals | None) -> Structure:
     """A structure with as many parameters as there may be: what is foreseen to gain most comes first."""
     while True:
-        room = most - forecast.foreseen(structure, roots).parameters
+        room = most - forecast.prediction(structure, roots).parameters
         fitting = [(gain, step) for gain, step in ranked_steps(forecast, structure, roots) if step.parameters <= room]
         if not fitting or fitting[0][0] <= 0.0:
             return structure
@@ -139,7 +139,7 @@ def ranked_steps(
     steps = [step for step in steps_up(structure) if step.law in names and _is_within(step.structure, forecast.widest)]
     if not steps:
         return []
-    now = forecast.foreseen(structure, roots).cost
+    now = forecast.prediction(structure, roots).cost
     costs = forecast.costs(structure, [(step.law, step.structure) for step in steps], roots)
     return sorted(
         ((now - cost, step) for cost, step in zip(costs, steps, strict=True)),

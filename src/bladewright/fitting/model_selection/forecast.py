@@ -60,7 +60,7 @@ class Forecast:
 
     design: Any
     widest: Structure
-    chain: LawJacobian
+    jacobian: LawJacobian
     rows: Reals
     """(m,) residuals of the widest design where the cloud stands now"""
     sizes: dict[str, float]
@@ -79,7 +79,7 @@ class Forecast:
         """The laws that a structure has a say in and that are free."""
         yield from (name for name in STRUCTURE_LAWS if name not in self.still)
 
-    def foreseen(self, structure: Structure, roots: Reals | None = None) -> Prediction:
+    def prediction(self, structure: Structure, roots: Reals | None = None) -> Prediction:
         """What a structure, nowhere wider than the widest, leaves; rows are multiplied by `roots` (m,)."""
         parts = [self.block(name, self.counts(structure, name)) for name in self.names()]
         columns = np.concatenate([part[0] for part in parts], axis=1)
@@ -87,9 +87,9 @@ class Forecast:
         cost, step = _least_squares(columns, rows, roots, self.noise)
         return Prediction(cost=cost, parameters=columns.shape[1], rows=rows + columns @ step, step=step)
 
-    def designed(self, structure: Structure, foreseen: Prediction) -> Any:
+    def designed(self, structure: Structure, prediction: Prediction) -> Any:
         """The design that is foreseen for a structure, or one on the way there that is nearer to the cloud."""
-        tried = [self._on_the_way(structure, foreseen, share) for share in STEP_SHARES]
+        tried = [self._on_the_way(structure, prediction, share) for share in STEP_SHARES]
         return min(tried, key=self._misfit)
 
     def _misfit(self, design: Any) -> float:
@@ -97,22 +97,22 @@ class Forecast:
         state = self._state(design)
         if state is None:
             return np.inf
-        rows = self.found.problem.measures.residuals(state)
+        rows = self.found.problem.cloud_residuals.residuals(state)
         return float(rows @ rows)
 
     def _state(self, design: Any) -> PlacedCloud | None:
-        measures, on = self.found.problem.measures, self.found.state.feet
+        cloud_residuals, on = self.found.problem.cloud_residuals, self.found.state.footpoints
         try:
-            shape = measures.model.shape(design)
+            shape = cloud_residuals.model.shape(design)
         except DesignError:
             return None
         if not shape.finite:
             return None
         return PlacedCloud(
-            shape=shape, feet=nearest_footpoints(measures.points, shape.sides, on, converged=COARSE_STEP)
+            shape=shape, footpoints=nearest_footpoints(cloud_residuals.points, shape.sides, on, converged=COARSE_STEP)
         )
 
-    def _on_the_way(self, structure: Structure, foreseen: Prediction, share: float) -> Any:
+    def _on_the_way(self, structure: Structure, prediction: Prediction, share: float) -> Any:
         """The design that is foreseen for a structure, or part of the way there, within the bounds of the family."""
         nearest = reshaped(self.design, structure)
         values = nearest.parameters()
@@ -120,7 +120,7 @@ class Forecast:
         scales = scales_of(nearest, paths, self.found.model.chord)
         now = np.array([float(values[path]) for path in paths])
         sizes = np.array([self.sizes[path.partition("[")[0]] for path in paths])
-        fresh = np.clip(now + share * sizes * foreseen.step, scales.low, scales.high)
+        fresh = np.clip(now + share * sizes * prediction.step, scales.low, scales.high)
         return nearest.changed({path: float(value) for path, value in zip(paths, fresh, strict=True)})
 
     def _paths(self, name: str, structure: Structure) -> list[str]:
@@ -160,9 +160,9 @@ class Forecast:
             mixed = (columns.T @ np.column_stack([fresh, moved]))[kept]
             cross = mixed[:, :-1]
             whole = np.block([[gram[np.ix_(kept, kept)], cross], [cross.T, fresh.T @ fresh]])
-            aim = np.concatenate([right[kept] + mixed[:, -1], fresh.T @ now])
-            step = regularised_step(whole, aim, self.noise)
-            found.append(float(now @ now - aim @ step))
+            rhs = np.concatenate([right[kept] + mixed[:, -1], fresh.T @ now])
+            step = regularised_step(whole, rhs, self.noise)
+            found.append(float(now @ now - rhs @ step))
         return found
 
     def counts(self, structure: Structure, name: str) -> Counts:
@@ -182,15 +182,15 @@ class Forecast:
 
     def _law(self, name: str, counts: Counts) -> tuple[Reals, Reals]:
         label = _field(self.design, name)
-        law, sites, moves = getattr(self.design, label), self.chain.sites, self.chain.moves[label]
+        law, sites, moves = getattr(self.design, label), self.jacobian.sites, self.jacobian.moves[label]
         other = law_of(law, counts[0], LAW_LIMITS.get(name, (-np.inf, np.inf)))
         rows = law_basis(counts[0], sites)
         change = rows @ np.atleast_1d(other) - law_basis(np.size(law), sites) @ np.atleast_1d(law)
         return moves @ rows * self.sizes[label], moves @ change
 
     def _thickness(self, name: str, counts: Counts) -> tuple[Reals, Reals]:
-        sites, laws = self.chain.sites, getattr(self.design, name)
-        moves = np.stack([self.chain.moves[f"{name}[{i}]"] for i in range(len(laws))])
+        sites, laws = self.jacobian.sites, getattr(self.design, name)
+        moves = np.stack([self.jacobian.moves[f"{name}[{i}]"] for i in range(len(laws))])
         grid = grid_of(laws, counts[0], counts[1], self.widest)
         u = samples_of(self.widest)
         share = np.linalg.lstsq(law_basis(len(laws), u), law_basis(counts[0], u), rcond=None)[0]
@@ -201,7 +201,7 @@ class Forecast:
         return columns.reshape(len(self.rows), -1) * self.sizes[name], np.einsum("lnm,lm->n", moves, change)
 
     def _edge(self, name: str, counts: Counts) -> tuple[Reals, Reals]:
-        sites, channel, metre = self.chain.sites, self.design.channel, UNITS[self.design.length_unit]
+        sites, channel, metre = self.jacobian.sites, self.design.channel, UNITS[self.design.length_unit]
         old = np.array(getattr(channel, name), dtype=float)
         new = np.array(curve_of(getattr(channel, name), counts[0], channel.degree), dtype=float)
         rows = edge_basis(len(new), channel.degree, sites)
@@ -212,13 +212,13 @@ class Forecast:
                 wall = {0: 0, len(new) - 1: 1}.get(point)
                 if wall is not None and f"channel.{name}[{0 if wall == 0 else len(old) - 1}].{label}" in self.held:
                     continue
-                column = self.chain.moves[name, None, axis] @ rows[:, point]
+                column = self.jacobian.moves[name, None, axis] @ rows[:, point]
                 if wall is not None:
                     share = self._along_wall(WALLS[wall], counts[1 + wall])[:, 0 if name == EDGES[0] else -1]
                     column = column + self._leaves(WALLS[wall], axis) @ share
                 columns.append(column)
         for axis in AXES.values():
-            shift += self.chain.moves[name, None, axis] @ change[:, axis]
+            shift += self.jacobian.moves[name, None, axis] @ change[:, axis]
         return np.stack(columns, axis=1) * metre * self.sizes[f"channel.{name}"], shift * metre
 
     def _wall(self, name: str, counts: Counts) -> tuple[Reals, Reals]:
@@ -237,23 +237,23 @@ class Forecast:
         degree, own = self.design.channel.degree, len(getattr(self.design.channel, name)) + 2
         if own == count:
             return np.eye(own)
-        rows, aim = edge_basis(own, degree, COMPARED_PLACES), edge_basis(count, degree, COMPARED_PLACES)
+        rows, rhs = edge_basis(own, degree, COMPARED_PLACES), edge_basis(count, degree, COMPARED_PLACES)
         share = np.zeros((own, count))
         share[0, 0] = share[-1, -1] = 1.0
-        inner = aim - rows @ share
+        inner = rhs - rows @ share
         share[1:-1] = np.linalg.lstsq(rows[:, 1:-1], inner, rcond=None)[0]
         return share
 
     def _leaves(self, name: str, axis: int) -> Reals:
         """Derivatives (m, n) by the control points of a wall; none by corners that are held."""
         own, none = len(getattr(self.design.channel, name)) + 2, np.zeros((len(self.rows), 1))
-        moves = [self.chain.moves.get((name, point, axis), none) for point in range(own)]
+        moves = [self.jacobian.moves.get((name, point, axis), none) for point in range(own)]
         return np.stack([np.sum(each, axis=1) for each in moves], axis=1)
 
 
 def forecast_of(found: Match, widest: Structure) -> Forecast | None:
     """The forecast about a match; None where it is of another kind, or the widest structure leaves it no shape."""
-    problem, on = found.problem, found.state.feet
+    problem, on = found.problem, found.state.footpoints
     if (
         found.state.shape.exact is None
         or not hasattr(found.state.shape.exact, "before")
@@ -267,8 +267,8 @@ def forecast_of(found: Match, widest: Structure) -> Forecast | None:
         return None
     if not shape.finite:
         return None
-    measures = problem.measures
-    state = PlacedCloud(shape=shape, feet=footpoints_at(measures.points, shape.sides, on.side, on.u, on.v))
+    cloud_residuals = problem.cloud_residuals
+    state = PlacedCloud(shape=shape, footpoints=footpoints_at(cloud_residuals.points, shape.sides, on.side, on.u, on.v))
     free = set(problem.paths)
     ends = [(edge, end) for edge in EDGES for end in (0, len(getattr(design.channel, edge)) - 1)]
     corners = {f"channel.{edge}[{end}].{label}" for edge, end in ends for label in AXES}
@@ -281,14 +281,14 @@ def forecast_of(found: Match, widest: Structure) -> Forecast | None:
     return Forecast(
         design=design,
         widest=structure_of(design),
-        chain=measures.motion(state, paths),
-        rows=measures.residuals(state),
+        jacobian=cloud_residuals.jacobian(state, paths),
+        rows=cloud_residuals.residuals(state),
         sizes=sizes,
         held=held,
         still=still,
         noise=problem.noise,
         found=found,
-        points=len(measures.points),
+        points=len(cloud_residuals.points),
     )
 
 
@@ -335,10 +335,10 @@ def _wall_points(channel: Any, name: str) -> Any:
 def _least_squares(columns: Reals, rows: Reals, roots: Reals | None, noise: float) -> tuple[float, Reals]:
     """The least squares by parameters that are held by the prior's spread, and the step there."""
     own = columns if roots is None else columns * roots[:, None]
-    aim = rows if roots is None else rows * roots
-    gram, right = own.T @ own, own.T @ aim
+    rhs = rows if roots is None else rows * roots
+    gram, right = own.T @ own, own.T @ rhs
     step = regularised_step(gram, right, noise)
-    return float(aim @ aim - right @ step), -step
+    return float(rhs @ rhs - right @ step), -step
 
 
 def regularised_step(gram: Reals, right: Reals, noise: float) -> Reals:

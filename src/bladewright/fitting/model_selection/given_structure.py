@@ -50,9 +50,9 @@ def matched_structure(few: Task, many: Task, first: Design, base: Structure | No
     if found.interrupted:
         return found
     found = searched(many, found.design) if base is None or not guessed else _exact_or_nearest(many, found)
-    if found.rms < KNOWN_MISFIT and not np.all(found.scatter.inliers) and not found.interrupted:
+    if found.rms < KNOWN_MISFIT and not np.all(found.noise_estimate.inliers) and not found.interrupted:
         # points past the ends of an exact match are none, if it can be widened to hold them too
-        whole = searched(replace(many, outlying=False), found.design)
+        whole = searched(replace(many, allow_outliers=False), found.design)
         found = whole if whole.rms < KNOWN_MISFIT else found
     return _weakly_regularised(many, found)
 
@@ -91,7 +91,7 @@ def _exact_match(task: Task, found: Match, most: float) -> Match | None:
     every = searched(task, found.design, rounds=0)
     if not has_systematic_misfit(every, most):
         return None
-    exact_task = replace(task, outlying=False)
+    exact_task = replace(task, allow_outliers=False)
     exact = searched(
         exact_task.part(_informative_points(every)), found.design, noise=GUESS_NOISE, rounds=FURTHER_ROUNDS
     )
@@ -104,7 +104,7 @@ def _exact_match(task: Task, found: Match, most: float) -> Match | None:
 
 def _informative_points(found: Match) -> NDArray[np.intp]:
     """Points that tell of edges and ends, which few points of a cloud may leave open, and some of all."""
-    on = found.state.feet
+    on = found.state.footpoints
     beside = (on.u < EDGE_BANDS[0]) | (on.u > EDGE_BANDS[1]) | (on.v < END_BAND) | (on.v > 1.0 - END_BAND)
     rows = np.flatnonzero(beside)
     return np.union1d(rows[drawn(len(rows), EDGE_POINTS)], drawn(len(on.u), OTHER_POINTS))
@@ -112,15 +112,19 @@ def _informative_points(found: Match) -> NDArray[np.intp]:
 
 def has_systematic_misfit(found: Match, most: float = np.inf) -> bool:
     """Whether a search came to its end at a misfit that is no noise, and of which the noise is `most` at most."""
-    quiet = found.scatter.noise < most * found.rms * found.model.chord
-    return quiet and found.scatter.shared > NOISE_CORRELATION and not found.interrupted
+    quiet = found.noise_estimate.noise < most * found.rms * found.model.chord
+    return quiet and found.noise_estimate.correlation > NOISE_CORRELATION and not found.interrupted
 
 
 def reduced_to(task: Task, found: Match, base: Structure) -> Match:
     """A match with the structure from which to grow, or the one before where its laws leave no shape so."""
     try:
         return searched(
-            task, reshaped(found.design, base), noise=GUESS_NOISE, rounds=2 * QUICK_ROUNDS, slight=ROUGH_REDUCTION
+            task,
+            reshaped(found.design, base),
+            noise=GUESS_NOISE,
+            rounds=2 * QUICK_ROUNDS,
+            min_reduction=ROUGH_REDUCTION,
         )
     except FitError:
         return found
@@ -128,7 +132,7 @@ def reduced_to(task: Task, found: Match, base: Structure) -> Match:
 
 def _weakly_regularised(task: Task, found: Match) -> Match:
     """A match whose misfit is noise, with a prior so weak that it does not shift what the points determine."""
-    if found.interrupted or found.scatter.shared > NOISE_CORRELATION:
+    if found.interrupted or found.noise_estimate.correlation > NOISE_CORRELATION:
         return found
-    weak = searched(replace(task, smooth=WEAK_REGULARISATION), found.design, rounds=2)
+    weak = searched(replace(task, regularisation_factor=WEAK_REGULARISATION), found.design, rounds=2)
     return replace(weak, evaluations=found.evaluations + weak.evaluations)

@@ -44,7 +44,7 @@ EDGE_LAWS = {
 
 def edge_steps(found: Match, tolerance: float) -> list[StructureStep]:
     """The steps, by half as many control points each, of the edges that stay beyond a tolerance [m]."""
-    on, rows = found.state.feet, found.rows
+    on, rows = found.state.footpoints, found.rows
     beyond = rows & (on.distances > tolerance)
     structure = structure_of(found.design)
     if not structure.channel or not np.any(beyond) or np.mean(beyond[rows]) > FEW_BEYOND:
@@ -79,14 +79,14 @@ LITTLE_GAIN = {2: 0.75, 3: 0.9}
 """ratio of the distances above which one that is near enough grows no more"""
 
 
-def with_grown_thickness(task: Task, found: Match, aim: MatchTarget) -> tuple[Match, bool]:
+def with_grown_thickness(task: Task, found: Match, target: MatchTarget) -> tuple[Match, bool]:
     """A section with more control points of both thicknesses, and whether it is nearer.
 
     Where thicknesses stand on their bounds, as at a sharp edge, what growth gains cannot be foreseen linearly: the
     step that is foreseen for the fewer ones leads out of the bounds.
     """
     structure = structure_of(found.design) if task.points.shape[1] == 2 else None
-    if structure is None or not aim.open or found.rms < FAR_SECTION:
+    if structure is None or not target.open or found.rms < FAR_SECTION:
         return found, False
     evaluations = found.evaluations
     for _ in range(THICKNESS_GROWTHS):
@@ -100,7 +100,7 @@ def with_grown_thickness(task: Task, found: Match, aim: MatchTarget) -> tuple[Ma
                 with_feasible_edges(reshaped(found.design, structure)),
                 rounds=2,
                 noise=found.rms,
-                slight=ROUGH_REDUCTION,
+                min_reduction=ROUGH_REDUCTION,
             )
         except FitError:
             break
@@ -110,10 +110,10 @@ def with_grown_thickness(task: Task, found: Match, aim: MatchTarget) -> tuple[Ma
     return replace(found, evaluations=evaluations), False
 
 
-def gained_little(task: Task, found: Match, aim: MatchTarget, before: float) -> bool:
+def gained_little(task: Task, found: Match, target: MatchTarget, before: float) -> bool:
     """Whether a match is near enough, and growth from a distance `before`, of the chord, brought it little nearer."""
     dimension = task.points.shape[1]
-    return aim.open and LITTLE_GAIN[dimension] * before < found.rms < NEAR_ENOUGH[dimension]
+    return target.open and LITTLE_GAIN[dimension] * before < found.rms < NEAR_ENOUGH[dimension]
 
 
 WORTHWHILE_GAIN = 0.02
@@ -129,75 +129,77 @@ FAR_OF_TOLERANCE = 0.4
 """of the tolerance: root mean square that is far"""
 
 
-def grown_match(task: Task, found: Match, aim: MatchTarget) -> tuple[Match, bool]:
+def grown_match(task: Task, found: Match, target: MatchTarget) -> tuple[Match, bool]:
     """The match with the control points that promise most, and whether there were any."""
-    emphasis = tolerance_weights(found, aim)
+    emphasis = tolerance_weights(found, target)
     sharpened = task
     if emphasis is not None:
         weights = task.weights * emphasis
         sharpened = replace(task, weights=weights * (np.sum(task.weights) / np.sum(weights)))
-    for design in _candidates(task, found, aim, emphasis):
+    for design in _candidates(task, found, target, emphasis):
         try:
             start = design if task.points.shape[1] == 3 else with_feasible_edges(design)
-            fresh = searched(sharpened, start, rounds=1, noise=found.rms, slight=ROUGH_REDUCTION)
+            fresh = searched(sharpened, start, rounds=1, noise=found.rms, min_reduction=ROUGH_REDUCTION)
         except FitError:
             continue
         return replace(fresh, evaluations=fresh.evaluations + found.evaluations), True
     return found, False
 
 
-def _candidates(task: Task, found: Match, aim: MatchTarget, emphasis: Reals | None) -> Iterator[Design]:
+def _candidates(task: Task, found: Match, target: MatchTarget, emphasis: Reals | None) -> Iterator[Design]:
     """Designs with more control points, the next one where the one before has no shape."""
     forecast = None
-    if task.points.shape[1] == 3 and aim.parameters is None and stands_on_channel(found.design):
+    if task.points.shape[1] == 3 and target.parameters is None and stands_on_channel(found.design):
         forecast = forecast_of(found, widest_reach(structure_of(found.design)))
     if forecast is not None:
-        task.told("structure")
-        design = _predicted_design(forecast, found, aim, emphasis)
+        task.progress("structure")
+        design = _predicted_design(forecast, found, target, emphasis)
         if design is not None:
             yield design
-        elif aim.open:
+        elif target.open:
             return
-    stepped = _stepwise_design(found, aim, emphasis)
+    stepped = _stepwise_design(found, target, emphasis)
     if stepped is not None:
         yield stepped
 
 
-def _least_added(found: Match, aim: MatchTarget) -> int:
+def _least_added(found: Match, target: MatchTarget) -> int:
     """Parameters that are added at least."""
     count = len(found.problem.paths)
-    if aim.parameters is not None:
-        return (aim.parameters - count) // SHARE_ADDED
-    far = aim.tolerance is not None and found.rms * found.model.chord > FAR_OF_TOLERANCE * aim.tolerance
+    if target.parameters is not None:
+        return (target.parameters - count) // SHARE_ADDED
+    far = target.tolerance is not None and found.rms * found.model.chord > FAR_OF_TOLERANCE * target.tolerance
     return count // (SHARE_ADDED if far else SHARE_ADDED_NEAR) if count >= MANY_PARAMETERS else 0
 
 
-def _predicted_design(forecast: Forecast, found: Match, aim: MatchTarget, emphasis: Reals | None) -> Design | None:
+def _predicted_design(forecast: Forecast, found: Match, target: MatchTarget, emphasis: Reals | None) -> Design | None:
     """The design with more control points that a forecast prefers; None where more are not worth it."""
     now = structure_of(found.design)
     roots = None if emphasis is None else row_factors(emphasis, len(forecast.rows))
-    count = forecast.foreseen(now).parameters
-    structure = best_structure(forecast, now, count + max(_least_added(found, aim), count // SHARE_ADDED_NEAR), roots)
-    if aim.tolerance is not None:
-        steps = [StructureStep(fields=(), structure=structure, parameters=0), *edge_steps(found, aim.tolerance)]
+    count = forecast.prediction(now).parameters
+    structure = best_structure(
+        forecast, now, count + max(_least_added(found, target), count // SHARE_ADDED_NEAR), roots
+    )
+    if target.tolerance is not None:
+        steps = [StructureStep(fields=(), structure=structure, parameters=0), *edge_steps(found, target.tolerance)]
         structure = union_of(structure, steps) if len(steps) > 1 else structure
-    told = forecast.foreseen(structure, roots)
+    predicted = forecast.prediction(structure, roots)
     worth = WORTHWHILE_GAIN if found.rms > NEAR_MISFIT else WORTHWHILE_GAIN_NEAR
-    if structure == now or (aim.open and told.cost > (1.0 - worth) * forecast.foreseen(now).cost):
+    if structure == now or (target.open and predicted.cost > (1.0 - worth) * forecast.prediction(now).cost):
         return None
-    return forecast.designed(structure, told)
+    return forecast.designed(structure, predicted)
 
 
-def _stepwise_design(found: Match, aim: MatchTarget, emphasis: Reals | None) -> Design | None:
+def _stepwise_design(found: Match, target: MatchTarget, emphasis: Reals | None) -> Design | None:
     """The design with the control points that promise most; None where there are none."""
     ranked = gains(found, emphasis)
-    left = None if aim.parameters is None else aim.parameters - len(found.problem.paths)
-    steps = steps_taken_together(ranked, left, _least_added(found, aim))
-    if aim.tolerance is not None:
-        steps += edge_steps(found, aim.tolerance)
+    left = None if target.parameters is None else target.parameters - len(found.problem.paths)
+    steps = steps_taken_together(ranked, left, _least_added(found, target))
+    if target.tolerance is not None:
+        steps += edge_steps(found, target.tolerance)
     if not steps:
         return None
-    total = float(np.sum(found.problem.measures.residuals(found.state) ** 2))
-    if aim.parameters is None and emphasis is None and sum(gain for gain, _ in ranked[:3]) < WORTHWHILE_GAIN * total:
+    total = float(np.sum(found.problem.cloud_residuals.residuals(found.state) ** 2))
+    if target.parameters is None and emphasis is None and sum(gain for gain, _ in ranked[:3]) < WORTHWHILE_GAIN * total:
         return None
     return reshaped(found.design, union_of(structure_of(found.design), steps))

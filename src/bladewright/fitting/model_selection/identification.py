@@ -82,7 +82,7 @@ def nearest_trial(task: Task, first: UnifiedSection, structures: Sequence[Struct
         try:
             found = searched(bounded, start, noise=TRIAL_NOISE, rounds=TRIAL_ROUNDS)
             if KNOWN_MISFIT < found.rms < PROMISING_MISFIT and not found.interrupted:
-                found = searched(replace(few, outlying=False), found.design, rounds=FURTHER_ROUNDS)
+                found = searched(replace(few, allow_outliers=False), found.design, rounds=FURTHER_ROUNDS)
         except FitError:
             continue
         evaluations += found.evaluations
@@ -97,7 +97,7 @@ def nearest_trial(task: Task, first: UnifiedSection, structures: Sequence[Struct
 
 def _starts(task: Task, first: UnifiedSection, structures: Sequence[Structure]) -> Iterator[tuple[Task, Design]]:
     # an exact cloud has none, and a nose that is not yet found looks like some
-    task = replace(task, outlying=False)
+    task = replace(task, allow_outliers=False)
     own = any(map(_of_tangents, task.bounds))
     straight = task if own else replace(task, bounds={**task.bounds, **STRAIGHT_CAMBER})
     designs = trial_cambers(first, task.free)

@@ -117,8 +117,8 @@ def curve_of(points: Points, count: int, highest: int) -> Points:
     before, after = (min(n - 1, highest) for n in (len(points), count))
     values = basis(uniform_knots(len(points), before), before, COMPARED_PLACES) @ old
     rows = basis(uniform_knots(count, after), after, COMPARED_PLACES)
-    aim = values - rows[:, [0, -1]] @ old[[0, -1]]
-    inner, *_ = np.linalg.lstsq(rows[:, 1:-1], aim, rcond=None)
+    rhs = values - rows[:, [0, -1]] @ old[[0, -1]]
+    inner, *_ = np.linalg.lstsq(rows[:, 1:-1], rhs, rcond=None)
     full = np.concatenate([old[:1], inner, old[-1:]])
     return tuple(Point(float(x), float(r)) for x, r in full)
 

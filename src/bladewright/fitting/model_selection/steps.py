@@ -131,11 +131,11 @@ def intersection_of(steps: Sequence[StructureStep]) -> Structure:
     return replace(structures[0], chordwise=(chordwise[0], chordwise[1]), span=span, channel=channel)
 
 
-def tolerance_weights(found: Match, aim: MatchTarget) -> Reals | None:
+def tolerance_weights(found: Match, target: MatchTarget) -> Reals | None:
     """Further weights (n,) by which points far off count more; none where no tolerance is asked for."""
-    if aim.tolerance is None:
+    if target.tolerance is None:
         return None
-    return np.clip((found.state.feet.distances / aim.tolerance) ** 2, *WEIGHT_RANGE)
+    return np.clip((found.state.footpoints.distances / target.tolerance) ** 2, *WEIGHT_RANGE)
 
 
 def row_factors(emphasis: Reals | None, count: int) -> Reals:
@@ -152,8 +152,8 @@ def gains(found: Match, emphasis: Reals | None = None) -> list[tuple[float, Stru
     `emphasis` (n,) are further weights of the points. Laws that are not free do not grow.
     """
     problem = found.problem
-    rows = problem.measures.residuals(found.state)
-    slopes = problem.measures.slopes(found.state, problem.paths) * problem.scales.size
+    rows = problem.cloud_residuals.residuals(found.state)
+    slopes = problem.cloud_residuals.slopes(found.state, problem.paths) * problem.scales.size
     roots = row_factors(emphasis, len(rows))
     before = predicted_rest(slopes, rows, roots, problem.noise)
     result = [
@@ -166,7 +166,7 @@ def gains(found: Match, emphasis: Reals | None = None) -> list[tuple[float, Stru
 def losses(found: Match) -> list[tuple[float, StructureStep]]:
     """What each step back would leave of the sum of squares, foreseen linearly, least for each parameter first."""
     problem = found.problem
-    slopes = problem.measures.slopes(found.state, problem.paths) * problem.scales.size
+    slopes = problem.cloud_residuals.slopes(found.state, problem.paths) * problem.scales.size
     roots = np.ones(len(slopes))
     result = [
         (predicted_rest(narrower, rows, roots, problem.noise), step)
@@ -228,13 +228,13 @@ def _residuals_after(found: Match, step: StructureStep) -> tuple[Reals, Reals]:
     """Residuals after a step, and their derivatives by the parameters of its law, where the cloud stands now."""
     other = reshaped(found.design, step.structure)
     paths = tuple(path for path in other.parameters() if path.startswith(step.fields))
-    measures, on = found.problem.measures, found.state.feet
-    shape = measures.model.shape(other)
+    cloud_residuals, on = found.problem.cloud_residuals, found.state.footpoints
+    shape = cloud_residuals.model.shape(other)
     if not shape.finite:
         raise DesignError("a law with another number of control points left no shape: take another one")
-    state = PlacedCloud(shape=shape, feet=footpoints_at(measures.points, shape.sides, on.side, on.u, on.v))
-    rows = measures.residuals(state)
+    state = PlacedCloud(shape=shape, footpoints=footpoints_at(cloud_residuals.points, shape.sides, on.side, on.u, on.v))
+    rows = cloud_residuals.residuals(state)
     if not paths:
         # a wall between its corners alone
         return rows, np.zeros((len(rows), 0))
-    return rows, measures.slopes(state, paths) * scales_of(other, paths, found.model.chord).size
+    return rows, cloud_residuals.slopes(state, paths) * scales_of(other, paths, found.model.chord).size

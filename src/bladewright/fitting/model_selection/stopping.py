@@ -32,17 +32,17 @@ class MatchTarget:
         return self.tolerance is None and self.parameters is None and not self.structured
 
 
-def needs_more(found: Match, aim: MatchTarget, task: Task) -> tuple[bool, str]:
+def needs_more(found: Match, target: MatchTarget, task: Task) -> tuple[bool, str]:
     """Whether more control points are wanted, and if not though the aim is not met, why."""
     count = len(found.problem.paths)
     dimension = task.points.shape[1]
-    if aim.parameters is not None:
-        return count < aim.parameters, ""
-    limit = aim.tolerance if aim.tolerance is not None else ENOUGH_DEVIATION[dimension] * found.model.chord
+    if target.parameters is not None:
+        return count < target.parameters, ""
+    limit = target.tolerance if target.tolerance is not None else ENOUGH_DEVIATION[dimension] * found.model.chord
     if found.maximum <= limit:
         return False, ""
-    noise = found.scatter.noise
-    if found.scatter.shared < NOISE_CORRELATION:
+    noise = found.noise_estimate.noise
+    if found.noise_estimate.correlation < NOISE_CORRELATION:
         return (
             False,
             f"what is left is the cloud's own noise, {1e3 * noise:.2g} mm: more control points would follow it",

@@ -44,7 +44,7 @@ class _SmallerStructure:
     """A structure with fewer control points, and the weights with which it is foreseen to keep a tolerance."""
 
     structure: Structure
-    foreseen: Prediction
+    prediction: Prediction
     weights: Reals
     """(n,) of the points, of those before"""
 
@@ -61,7 +61,7 @@ def reduced_blade(task: Task, found: Match, tolerance: float) -> Match | None:
         if not plans:
             break
         number = int(np.ceil(further * len(plans)))
-        start = forecast.designed(plans[number - 1].structure, plans[number - 1].foreseen)
+        start = forecast.designed(plans[number - 1].structure, plans[number - 1].prediction)
         fresh = _match_of_prediction(task, found, start, weights * plans[number - 1].weights, tolerance)
         if fresh is None:
             failed, further = failed + 1, 0.5 * further
@@ -73,7 +73,7 @@ def reduced_blade(task: Task, found: Match, tolerance: float) -> Match | None:
 
 def _weights_of_match(found: Match, task: Task) -> Reals:
     """The weights (n,) with which a match was found, of those of its task."""
-    own = found.problem.measures.roots**2 / np.where(task.weights > 0.0, task.weights, 1.0)
+    own = found.problem.cloud_residuals.roots**2 / np.where(task.weights > 0.0, task.weights, 1.0)
     return np.where(own > 0.0, own, 1.0)
 
 
@@ -84,7 +84,11 @@ def _match_of_prediction(task: Task, found: Match, start: Design, weights: Reals
         weights = weights * len(weights) / np.sum(weights)
         try:
             fresh = searched(
-                replace(task, weights=task.weights * weights), start, rounds=1, noise=found.rms, slight=ROUGH_REDUCTION
+                replace(task, weights=task.weights * weights),
+                start,
+                rounds=1,
+                noise=found.rms,
+                min_reduction=ROUGH_REDUCTION,
             )
         except FitError:
             return None
@@ -94,7 +98,7 @@ def _match_of_prediction(task: Task, found: Match, start: Design, weights: Reals
         if fresh.maximum > most:
             return None
         most = tolerance + REWEIGHTING_GAIN * (fresh.maximum - tolerance)
-        start, weights = fresh.design, weights * _weight_factors(fresh.state.feet.distances, tolerance)
+        start, weights = fresh.design, weights * _weight_factors(fresh.state.footpoints.distances, tolerance)
     return None
 
 
@@ -105,15 +109,15 @@ def _weight_factors(distances: Reals, tolerance: float) -> Reals:
 
 def _smaller_structures(forecast: Forecast, found: Match, tolerance: float) -> list[_SmallerStructure]:
     """Structures of fewer and fewer parameters that are foreseen to keep a tolerance."""
-    count, roots = forecast.points, found.problem.measures.roots
+    count, roots = forecast.points, found.problem.cloud_residuals.roots
     inside = roots > 0.0
     structure, weights = structure_of(found.design), np.ones(count)
     names = set(forecast.names())
     plans: list[_SmallerStructure] = []
-    tried = forecast.foreseen(structure)
+    tried = forecast.prediction(structure)
     while True:
         roots_now = row_factors(weights, len(forecast.rows))
-        base = forecast.foreseen(structure, roots_now).cost
+        base = forecast.prediction(structure, roots_now).cost
         steps = [step for step in steps_down(structure) if step.law in names]
         if not steps:
             return plans
@@ -122,7 +126,7 @@ def _smaller_structures(forecast: Forecast, found: Match, tolerance: float) -> l
         ranked = [((costs[i] - base) / steps[i].parameters, steps[i]) for i in order]
         structure = intersection_of(_cheapest(ranked, REMOVED_AT_ONCE * tried.parameters))
         for attempt in range(2):
-            tried = forecast.foreseen(structure, row_factors(weights, len(forecast.rows)))
+            tried = forecast.prediction(structure, row_factors(weights, len(forecast.rows)))
             heights = np.zeros(count)
             heights[inside] = np.abs(tried.rows[:count][inside] / roots[inside]) * found.model.chord
             kept = float(np.max(heights)) <= TRUSTED_DEVIATION * tolerance
@@ -131,7 +135,7 @@ def _smaller_structures(forecast: Forecast, found: Match, tolerance: float) -> l
             weights = np.clip(weights * _weight_factors(heights, tolerance), *WEIGHT_RANGE)
         if not kept:
             return plans
-        plans.append(_SmallerStructure(structure=structure, foreseen=tried, weights=weights))
+        plans.append(_SmallerStructure(structure=structure, prediction=tried, weights=weights))
 
 
 def _cheapest(ranked: list[tuple[float, StructureStep]], most: float) -> list[StructureStep]:
@@ -161,19 +165,19 @@ PLAIN_EXTREMA = 4
 """extrema of a side's curvature that a plain section has"""
 
 
-def match_within_tolerance(task: Task, found: Match, aim: MatchTarget, tolerance: float) -> Match:
+def match_within_tolerance(task: Task, found: Match, target: MatchTarget, tolerance: float) -> Match:
     """The match that keeps a tolerance, where a little more brings it there, with as little as keeps it."""
-    found = _within_everywhere(task, found, aim, tolerance)
+    found = _within_everywhere(task, found, target, tolerance)
     return smoothed(task, reduced(task, found, tolerance), tolerance)
 
 
-def _within_everywhere(task: Task, found: Match, aim: MatchTarget, tolerance: float) -> Match:
+def _within_everywhere(task: Task, found: Match, target: MatchTarget, tolerance: float) -> Match:
     """A match that keeps a tolerance at the points of a thorough search too, where a little more brings it there."""
     found = _within(task, found, tolerance)
     for _ in range(LATER_GROWTHS):
         if found.maximum <= tolerance or found.interrupted:
             break
-        found, grew = grown_match(task, found, aim)
+        found, grew = grown_match(task, found, target)
         if not grew:
             break
         found = _within(task, found, tolerance)
@@ -186,11 +190,13 @@ def _within(task: Task, found: Match, tolerance: float) -> Match:
     for _ in range(WEIGHTED_SEARCHES):
         if best.maximum <= tolerance or best.interrupted:
             break
-        distances = found.state.feet.distances
+        distances = found.state.footpoints.distances
         weights = weights * np.clip((distances / tolerance) ** 2, 0.3, 4.0)
         weights = weights * (np.sum(task.weights) / np.sum(weights))
         rounds = SEARCH_ROUNDS if task.points.shape[1] == 2 else 1
-        found = searched(replace(task, weights=weights), found.design, rounds=rounds, slight=_min_reduction(task))
+        found = searched(
+            replace(task, weights=weights), found.design, rounds=rounds, min_reduction=_min_reduction(task)
+        )
         best = found if found.maximum < best.maximum else best
     return best
 
@@ -220,7 +226,7 @@ def _without(task: Task, found: Match, steps: Sequence[StructureStep]) -> Match 
             reshaped(found.design, intersection_of(steps)),
             rounds=SEARCH_ROUNDS,
             noise=found.rms,
-            slight=_min_reduction(task),
+            min_reduction=_min_reduction(task),
         )
     except FitError:
         return None
@@ -238,7 +244,9 @@ def smoothed(task: Task, found: Match, tolerance: float) -> Match:
     for strength in SMOOTHING:
         if waves is None or waves <= PLAIN_EXTREMA or found.interrupted or found.maximum > tolerance:
             break
-        fresh = searched(replace(task, smooth=strength * task.smooth), found.design, rounds=1)
+        fresh = searched(
+            replace(task, regularisation_factor=strength * task.regularisation_factor), found.design, rounds=1
+        )
         fewer = _curvature_extrema(fresh)
         if fresh.maximum > tolerance or fewer is None or fewer > waves:
             break

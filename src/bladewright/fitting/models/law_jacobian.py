@@ -89,7 +89,7 @@ def edge_basis(count: int, degree: int, v: Reals) -> Reals:
 
 
 def law_jacobian(
-    exact: ExactUnifiedBlade, knots: Knots, on: Footpoints, ways: Reals, paths: Sequence[str]
+    exact: ExactUnifiedBlade, knots: Knots, on: Footpoints, directions: Reals, paths: Sequence[str]
 ) -> LawJacobian:
     """How places move along directions (n, 3) with what the parameters at `paths` are made of; knots are held."""
     design, sites = exact.design, knots.sites_v
@@ -97,7 +97,7 @@ def law_jacobian(
     across = basis(knots.v, DEGREE, on.v) @ np.linalg.inv(basis(knots.v, DEGREE, sites))
     moves: dict[str | ChannelShift, Reals] = {}
     for some, other in _stepped(exact, steps):
-        moves |= dict(zip(some, _motion(_along_u(other, knots, len(some)), knots, on, ways, across), strict=True))
+        moves |= dict(zip(some, _motion(_along_u(other, knots, len(some)), knots, on, directions, across), strict=True))
     return LawJacobian(design=design, sites=sites, moves=moves)
 
 
@@ -126,7 +126,7 @@ def _along_u(other: ExactUnifiedBlade, knots: Knots, count: int) -> tuple[Array,
     return first, second
 
 
-def _motion(lines: tuple[Array, Array], knots: Knots, on: Footpoints, ways: Reals, across: Reals) -> Reals:
+def _motion(lines: tuple[Array, Array], knots: Knots, on: Footpoints, directions: Reals, across: Reals) -> Reals:
     """(k, n, m) what places move by along their directions."""
     steps, _, sites, _ = lines[0].shape
     found = np.zeros((steps, len(on.u), sites))
@@ -138,7 +138,7 @@ def _motion(lines: tuple[Array, Array], knots: Knots, on: Footpoints, ways: Real
                 continue
             matrix = BSpline.design_matrix(np.clip(on.u[part], 0.0, 1.0), knots.u, DEGREE)
             places = (matrix @ flat).reshape(len(part), steps, sites, 3)
-            along = np.matmul(places, ways[part, None, :, None])[..., 0]
+            along = np.matmul(places, directions[part, None, :, None])[..., 0]
             found[:, part] = np.moveaxis(along * across[part, None], 1, 0)
     return found
 

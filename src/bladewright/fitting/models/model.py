@@ -56,10 +56,10 @@ class ModelShape:
 
     design: Any
     sides: tuple[Side, Side]
-    noses: Reals
+    edge_radius_margins: Reals
     """(2, ...) by how much, at each edge of each side that is set by one, the control point that sets the radius stands
     higher than the thickness beside it, of the section's extent, and how high it stands, of that thickness"""
-    folds: Reals = field(default_factory=lambda: np.empty(0))
+    constraints: Reals = field(default_factory=lambda: np.empty(0))
     """(c,) by how much the channel comes nearer to folding over than it may, of the median of its Jacobian"""
     exact: Any = None
     """the exact blade, where it is one"""
@@ -91,32 +91,32 @@ class Model(ABC):
         """Derivatives (k, ..., d) of both sides' homogeneous control points by parameters."""
 
     @abstractmethod
-    def nose_rates(self, shape: ModelShape, paths: Sequence[str]) -> Reals:
+    def edge_radius_margin_rates(self, shape: ModelShape, paths: Sequence[str]) -> Reals:
         """Derivatives (k, ...) of `shape.noses`."""
 
-    def fold_rates(self, shape: ModelShape, paths: Sequence[str]) -> Reals:
+    def constraint_rates(self, shape: ModelShape, paths: Sequence[str]) -> Reals:
         """Derivatives (k, c) of `shape.folds`."""
-        return np.zeros((len(paths), len(shape.folds)))
+        return np.zeros((len(paths), len(shape.constraints)))
 
-    def along(self, shape: ModelShape, on: Footpoints, ways: Reals, paths: Sequence[str]) -> Reals:
+    def along(self, shape: ModelShape, on: Footpoints, directions: Reals, paths: Sequence[str]) -> Reals:
         """Derivatives (n, k) of the places along directions (n, d), at held parameters."""
-        return np.einsum("nkd,nd->nk", self.rates(shape, on, self.tangents(shape, paths)), ways)
+        return np.einsum("nkd,nd->nk", self.rates(shape, on, self.tangents(shape, paths)), directions)
 
     @staticmethod
-    def rates(shape: ModelShape, feet: Footpoints, tangents: tuple[Reals, Reals]) -> Reals:
+    def rates(shape: ModelShape, footpoints: Footpoints, tangents: tuple[Reals, Reals]) -> Reals:
         """Derivatives (n, k, d) of the places, at held parameters."""
         count = len(tangents[0])
-        found = np.empty((len(feet.u), count, feet.points.shape[1]))
+        found = np.empty((len(footpoints.u), count, footpoints.points.shape[1]))
         for number, (side, rates) in enumerate(zip(shape.sides, tangents, strict=True)):
-            rows = np.flatnonzero(feet.side == number)
+            rows = np.flatnonzero(footpoints.side == number)
             if len(rows) == 0:
                 continue
-            matrix = collocation(side, feet.u[rows], feet.v[rows])
+            matrix = collocation(side, footpoints.u[rows], footpoints.v[rows])
             columns = np.moveaxis(rates, 0, -2).reshape(-1, count * rates.shape[-1])
             moved_places = (matrix @ columns).reshape(len(rows), count, rates.shape[-1])
             if side.weights is not None:
                 weight = (matrix @ np.ravel(side.weights))[:, None, None]
-                share = feet.points[rows, None] * moved_places[..., -1:]
+                share = footpoints.points[rows, None] * moved_places[..., -1:]
                 moved_places = (moved_places[..., :-1] - share) / weight
             found[rows] = moved_places
         return found
@@ -135,7 +135,9 @@ class SectionModel(Model):
         line, upper, lower = _outline(design)
         sides = side_curve(upper[0]), side_curve(lower[0])
         return ModelShape(
-            design=design, sides=sides, noses=np.real(_edge_radius_margins(design, line, upper, lower))[..., 0]
+            design=design,
+            sides=sides,
+            edge_radius_margins=np.real(_edge_radius_margins(design, line, upper, lower))[..., 0],
         )
 
     def tangents(self, shape: ModelShape, paths: Sequence[str]) -> tuple[Reals, Reals]:
@@ -144,7 +146,7 @@ class SectionModel(Model):
         upper, lower = (np.imag(side)[:, 0] / STEP for side in sides)
         return upper, lower
 
-    def nose_rates(self, shape: ModelShape, paths: Sequence[str]) -> Reals:
+    def edge_radius_margin_rates(self, shape: ModelShape, paths: Sequence[str]) -> Reals:
         """From the same rebuild."""
         found = np.imag(_edge_radius_margins(shape.design, *self._stepped(shape, paths)))[..., 0] / STEP
         return np.moveaxis(found, 1, 0)
@@ -176,8 +178,8 @@ class BladeModel(Model):
         return ModelShape(
             design=design,
             sides=(side_surface(upper, self.knots, DEGREE), side_surface(lower, self.knots, DEGREE)),
-            noses=np.real(_edge_radius_margins(design, plane.camber, plane.upper, plane.lower)),
-            folds=np.real(_fold_margins(exact, exact.channel)),
+            edge_radius_margins=np.real(_edge_radius_margins(design, plane.camber, plane.upper, plane.lower)),
+            constraints=np.real(_fold_margins(exact, exact.channel)),
             exact=exact,
         )
 
@@ -194,13 +196,13 @@ class BladeModel(Model):
         upper, lower = (np.concatenate([pair[side] for pair in pairs]) for side in (0, 1))
         return upper, lower
 
-    def along(self, shape: ModelShape, on: Footpoints, ways: Reals, paths: Sequence[str]) -> Reals:
+    def along(self, shape: ModelShape, on: Footpoints, directions: Reals, paths: Sequence[str]) -> Reals:
         """From the motion with whole laws."""
-        return law_jacobian(shape.exact, self.knots, on, ways, paths).columns(paths)
+        return law_jacobian(shape.exact, self.knots, on, directions, paths).columns(paths)
 
-    def nose_rates(self, shape: ModelShape, paths: Sequence[str]) -> Reals:
+    def edge_radius_margin_rates(self, shape: ModelShape, paths: Sequence[str]) -> Reals:
         """Those by the laws; by the channel they vanish but for the walls' slopes, which are left out."""
-        found = np.zeros((len(paths), *shape.noses.shape))
+        found = np.zeros((len(paths), *shape.edge_radius_margins.shape))
         laws = [place for place, path in enumerate(paths) if not path.startswith(("channel.", "tip_", "hub_"))]
         parts = [next(law_shares(shape.design, paths[place], RADIUS_STATIONS)) for place in laws]
         steps = list(dict.fromkeys(step for step, _ in parts))
@@ -217,9 +219,9 @@ class BladeModel(Model):
             found[place] = rates[steps.index(step)] * share
         return found
 
-    def fold_rates(self, shape: ModelShape, paths: Sequence[str]) -> Reals:
+    def constraint_rates(self, shape: ModelShape, paths: Sequence[str]) -> Reals:
         """From one channel with a step on each of its parameters in a batch."""
-        found = np.zeros((len(paths), len(shape.folds)))
+        found = np.zeros((len(paths), len(shape.constraints)))
         walls = [place for place, path in enumerate(paths) if path.startswith("channel.")]
         if walls and shape.exact is not None:
             some = [paths[place] for place in walls]

@@ -38,8 +38,10 @@ class PlanarModel(Model):
     def _shape(self, design: Any) -> ModelShape:
         upper, lower = (np.real(net) for net in self._nets(design))
         sides = [Curve(control_points=net, knots=self.closed, degree=DEGREE) for net in (upper, lower)]
-        folds = np.real(infeasibility(design.section, SINGLE_SECTION))
-        return ModelShape(design=design, sides=(sides[0], sides[1]), noses=np.zeros((2, 0)), folds=folds)
+        constraints = np.real(infeasibility(design.section, SINGLE_SECTION))
+        return ModelShape(
+            design=design, sides=(sides[0], sides[1]), edge_radius_margins=np.zeros((2, 0)), constraints=constraints
+        )
 
     def tangents(self, shape: ModelShape, paths: Sequence[str]) -> tuple[Reals, Reals]:
         """From one rebuild with a step on each parameter in a batch."""
@@ -47,11 +49,11 @@ class PlanarModel(Model):
         upper, lower = (np.imag(np.broadcast_to(net, (len(paths), *net.shape[-2:]))) / STEP for net in nets)
         return upper, lower
 
-    def nose_rates(self, shape: ModelShape, paths: Sequence[str]) -> Reals:  # noqa: ARG002 - the contract's
+    def edge_radius_margin_rates(self, shape: ModelShape, paths: Sequence[str]) -> Reals:  # noqa: ARG002 - the contract's
         """None: what may not be is refused by the parts themselves."""
         return np.zeros((len(paths), 2, 0))
 
-    def fold_rates(self, shape: ModelShape, paths: Sequence[str]) -> Reals:
+    def constraint_rates(self, shape: ModelShape, paths: Sequence[str]) -> Reals:
         """Of what the part comes near to."""
         return infeasibility_rates(shape, paths, SINGLE_SECTION)
 
@@ -89,9 +91,9 @@ def _net(points: Array, edges: tuple[Edge, Edge], name: str, knots: Reals) -> Ar
 
 def infeasibility_rates(shape: ModelShape, paths: Sequence[str], span: Span) -> Reals:
     """Derivatives (k, c) of a section's `folds` by every parameter."""
-    found = np.zeros((len(paths), len(shape.folds)))
+    found = np.zeros((len(paths), len(shape.constraints)))
     own = [i for i, path in enumerate(paths) if path.startswith("section.")]
-    if len(shape.folds) and own:
+    if len(shape.constraints) and own:
         design = shape.design.changed(complex_steps(shape.design, [paths[i] for i in own]))
         found[own] = np.imag(infeasibility(design.section, span)) / STEP
     return found

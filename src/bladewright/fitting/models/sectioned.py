@@ -43,8 +43,14 @@ class SectionedModel(Model):
         sides = [side_surface(net, self.knots, DEGREE) for net in native_sides(stations, self.knots)]
         faces = edge_faces(stations, sides[0], sides[1], self.knots) if any(self.blunt) else {}
         upper, lower = closed_with(sides[0], sides[1], faces)
-        folds = np.real(infeasibility(design.section, FEASIBILITY_SPAN))
-        return ModelShape(design=design, sides=(upper, lower), noses=np.zeros((2, 0)), exact=exact, folds=folds)
+        constraints = np.real(infeasibility(design.section, FEASIBILITY_SPAN))
+        return ModelShape(
+            design=design,
+            sides=(upper, lower),
+            edge_radius_margins=np.zeros((2, 0)),
+            exact=exact,
+            constraints=constraints,
+        )
 
     def tangents(self, shape: ModelShape, paths: Sequence[str]) -> tuple[Reals, Reals]:
         """By every parameter in a batch; a face of a blunt edge moves as the straight one between its edges."""
@@ -58,10 +64,10 @@ class SectionedModel(Model):
         rates = closed_nets(np.moveaxis(upper, 1, -2), np.moveaxis(lower, 1, -2), DEGREE, self.blunt)
         return np.moveaxis(rates[0], -2, 1), np.moveaxis(rates[1], -2, 1)
 
-    def nose_rates(self, shape: ModelShape, paths: Sequence[str]) -> Reals:  # noqa: ARG002 - the contract's
+    def edge_radius_margin_rates(self, shape: ModelShape, paths: Sequence[str]) -> Reals:  # noqa: ARG002 - the contract's
         """None: what may not be is refused by the parts themselves."""
         return np.zeros((len(paths), 2, 0))
 
-    def fold_rates(self, shape: ModelShape, paths: Sequence[str]) -> Reals:
+    def constraint_rates(self, shape: ModelShape, paths: Sequence[str]) -> Reals:
         """Of what the sections come near to."""
         return infeasibility_rates(shape, paths, FEASIBILITY_SPAN)

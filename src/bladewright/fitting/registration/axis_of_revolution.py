@@ -94,17 +94,17 @@ def _settled(
     ends: tuple[EndPoints, EndPoints], motion: Motion, degree: int, steps: int
 ) -> tuple[Motion, list[_Line], float]:
     """Axis and lines at which the steps end, and the width of the weights that the scatter asks for."""
-    reach = _reach(ends)
+    extent = _extent(ends)
     lines = [_first_line(end, motion, degree) for end in ends]
     offs = _equations(ends, motion, lines, np.inf)[2]
-    wide = max(7.0 * float(np.median(np.abs(np.concatenate(offs)))), LEAST_WIDTH * reach)
+    wide = max(7.0 * float(np.median(np.abs(np.concatenate(offs)))), LEAST_WIDTH * extent)
     before = _cost(offs, wide)
     for _ in range(steps):
         rows, right, offs = _equations(ends, motion, lines, wide)
         scale = np.ones(rows.shape[1])
-        scale[:2] = 1.0 / reach
+        scale[:2] = 1.0 / extent
         found = np.linalg.lstsq(rows * scale, right, rcond=WEAKEST_DIRECTION)[0]
-        share = min(1.0, 0.1 * reach / max(float(np.max(np.abs(found[:4]))), 1e-300))
+        share = min(1.0, 0.1 * extent / max(float(np.max(np.abs(found[:4]))), 1e-300))
         for _ in range(HALVINGS):
             trial, curves = _changed(motion, lines, share * found * scale)
             offs = _equations(ends, trial, curves, np.inf)[2]
@@ -115,10 +115,10 @@ def _settled(
         else:
             break
         motion, lines = trial, curves
-        narrow = max(7.0 * float(np.median(np.abs(np.concatenate(offs)))), LEAST_WIDTH * reach)
+        narrow = max(7.0 * float(np.median(np.abs(np.concatenate(offs)))), LEAST_WIDTH * extent)
         narrow, wide = wide, min(wide, narrow)
         before = _cost(offs, wide)
-        if share * np.max(np.abs(found)) < 1e-12 * reach or (
+        if share * np.max(np.abs(found)) < 1e-12 * extent or (
             share * np.max(np.abs(found)) < 1e-3 * wide and wide > 0.99 * narrow
         ):
             break
@@ -195,20 +195,20 @@ def _axis(
     on = [np.abs(off) < width for off in offs]
     if min(np.count_nonzero(each) for each in on) < FEWEST_END_POINTS:
         return None
-    reach = _reach(ends)
+    extent = _extent(ends)
     scale = np.ones(rows.shape[1])
-    scale[:2] = 1.0 / reach
+    scale[:2] = 1.0 / extent
     _, values, across = np.linalg.svd(rows * scale, full_matrices=False)
     half = across.T / np.maximum(values, WEAKEST_DIRECTION * values[0])
     spread = float(np.sum(right**2)) / max(1, np.count_nonzero(right) - rows.shape[1])
-    spread = max(spread, (LEAST_NOISE * reach) ** 2)
+    spread = max(spread, (LEAST_NOISE * extent) ** 2)
     covariance = (spread * half @ half.T)[:4, :4]
     return RevolutionAxis(
         motion=motion,
         rms=float(np.sqrt(np.mean(np.concatenate([off[each] for off, each in zip(offs, on, strict=True)]) ** 2))),
         width=width,
         shares=(float(np.mean(on[0])), float(np.mean(on[1]))),
-        direction=float(np.sqrt(np.linalg.eigvalsh(covariance[:2, :2])[-1])) / reach,
+        direction=float(np.sqrt(np.linalg.eigvalsh(covariance[:2, :2])[-1])) / extent,
         offset=float(np.sqrt(np.linalg.eigvalsh(covariance[2:, 2:])[-1])),
         degree=degree,
         score=len(rows) * 2.0 * float(np.log(width)) + 2 * (degree + 1) * float(np.log(len(rows))),
@@ -219,5 +219,5 @@ def _meridional(points: Reals) -> Reals:
     return np.stack([points[:, 0], np.sqrt(points[:, 1] ** 2 + points[:, 2] ** 2)], axis=-1)
 
 
-def _reach(ends: tuple[EndPoints, EndPoints]) -> float:
+def _extent(ends: tuple[EndPoints, EndPoints]) -> float:
     return float(np.max(np.ptp(np.concatenate([end.points for end in ends]), axis=0)))

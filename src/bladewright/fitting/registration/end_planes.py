@@ -121,17 +121,17 @@ def first_axes(pieces: list[EndPlane]) -> list[tuple[float, Motion]]:
             chosen.append(each)
         if len(chosen) == MOST_AXES:
             break
-    return [(miss, _into_axis(direction, pivot + size * foot)) for miss, direction, foot in chosen]
+    return [(miss, _into_axis(direction, pivot + size * footpoint)) for miss, direction, footpoint in chosen]
 
 
-def _miss(direction: Reals, foot: Reals, at: Reals, facing: Reals) -> float:
+def _miss(direction: Reals, footpoint: Reals, at: Reals, facing: Reals) -> float:
     """Angle [rad] that the better share of the planes keeps."""
-    return float(np.quantile(np.abs(_angles(direction, foot, at, facing)), AGREEING_SHARE))
+    return float(np.quantile(np.abs(_angles(direction, footpoint, at, facing)), AGREEING_SHARE))
 
 
-def _angles(direction: Reals, foot: Reals, at: Reals, facing: Reals) -> Reals:
+def _angles(direction: Reals, footpoint: Reals, at: Reals, facing: Reals) -> Reals:
     """Angles (n,) between planes and the circles around an axis [rad]."""
-    speed = np.cross(direction, at - foot)
+    speed = np.cross(direction, at - footpoint)
     return np.sum(facing * speed, axis=1) / np.sqrt(np.sum(speed**2, axis=1) + 1e-12)
 
 
@@ -160,16 +160,16 @@ def _starts(at: Reals, facing: Reals) -> list[tuple[float, Reals, Reals]]:
             if not size > 1e-6:
                 continue
             direction = field[:3] / size
-            foot = np.cross(direction, field[3:] / size)
-            if foot @ foot < FARTHEST_AXIS**2:
-                starts.append((_miss(direction, foot, at, facing), direction, foot))
+            footpoint = np.cross(direction, field[3:] / size)
+            if footpoint @ footpoint < FARTHEST_AXIS**2:
+                starts.append((_miss(direction, footpoint, at, facing), direction, footpoint))
     return starts
 
 
-def _into_axis(direction: Reals, foot: Reals) -> Motion:
+def _into_axis(direction: Reals, footpoint: Reals) -> Motion:
     """A motion that brings a line onto the x axis."""
     other = np.eye(3)[np.argmin(np.abs(direction))]
     second = np.cross(direction, other)
     second /= np.sqrt(np.sum(second**2))
     rotation = np.stack([direction, second, np.cross(direction, second)])
-    return Motion(rotation=rotation, translation=-rotation @ foot)
+    return Motion(rotation=rotation, translation=-rotation @ footpoint)

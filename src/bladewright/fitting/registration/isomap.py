@@ -77,8 +77,8 @@ def unrolled_sheet(points: Reals) -> UnrolledSheet:
     kept = points[cKDTree(even).query(points)[0] < 3.0 * spacing]
     distances, index = cKDTree(even).query(kept, k=4)
     weights = 1.0 / (distances + 1e-3 * spacing) ** 2
-    laid = np.einsum("nk,nkd->nd", weights / weights.sum(axis=1, keepdims=True), flat[index])
-    return UnrolledSheet(points=kept, flat=laid, spacing=spacing, sides=tuple(flat[way] for way in ways))
+    unwrapped = np.einsum("nk,nkd->nd", weights / weights.sum(axis=1, keepdims=True), flat[index])
+    return UnrolledSheet(points=kept, flat=unwrapped, spacing=spacing, sides=tuple(flat[way] for way in ways))
 
 
 def _graph(points: Reals) -> csr_array:

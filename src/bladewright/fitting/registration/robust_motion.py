@@ -73,7 +73,9 @@ def robust_motion(
         moved = motion(points)
         contact = target.contact(moved, contact if small < NEWTON_STEP * extent else None)
         distances = contact.distances
-        scatter = TUKEY * 1.4826 * float(np.median(distances[distances < wide])) if np.any(distances < wide) else wide
+        noise_width = (
+            TUKEY * 1.4826 * float(np.median(distances[distances < wide])) if np.any(distances < wide) else wide
+        )
         weights = tukey_weights(distances, max(wide, least))
         pivot = np.mean(moved, axis=0) if freedoms is None else np.zeros(points.shape[1])
         rows, right = equations(moved, contact, weights, pivot)
@@ -85,12 +87,12 @@ def robust_motion(
             total = total + step
             motion = composed(_about(pivot, total), start)
         small = float(np.max(np.abs(motion(points) - moved)))
-        if wide <= max(scatter, least) * (1.0 + 1e-9) and small < SETTLED_STEP * extent:
+        if wide <= max(noise_width, least) * (1.0 + 1e-9) and small < SETTLED_STEP * extent:
             settled = True
             break
         if small < wide / 10.0:
             shrinking = WIDTH_FACTOR if wide > FAST_WIDTH * extent else WIDTH_FACTOR**3
-            wide = max(wide / shrinking, min(scatter, wide), least)
+            wide = max(wide / shrinking, min(noise_width, wide), least)
     moved = motion(points)
     contact = target.contact(moved, contact if small < NEWTON_STEP * extent else None)
     weights = tukey_weights(contact.distances, max(wide, least))

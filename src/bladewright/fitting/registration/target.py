@@ -102,8 +102,8 @@ class RegistrationTarget:
             low, high = on.low[patch], on.high[patch]
             place[rows] = np.where(local >= 1.0, high, low + local * (high - low))
             square[rows], part[rows] = found.square[better], k
-        feet = footpoints_at(points, self.sides, part, place[:, 0], place[:, 1])
-        normals, beyond, miss = feet.normals.copy(), feet.beyond.copy(), feet.miss.copy()
+        footpoints = footpoints_at(points, self.sides, part, place[:, 0], place[:, 1])
+        normals, beyond, miss = footpoints.normals.copy(), footpoints.beyond.copy(), footpoints.miss.copy()
         for k in range(len(self.ends)):
             rows = np.flatnonzero(wanted[2 + k])
             if len(rows):
