@@ -11,8 +11,8 @@ from bladewright.files.examples import example_text
 from bladewright.files.reading import design_from, parsed
 from bladewright.fitting.assessment.result import Motion
 from bladewright.fitting.registration.axes import found_axes
-from bladewright.fitting.registration.registration import aligned_section, improved, registered
-from bladewright.fitting.registration.rigid_motion import SEPARABLE, composed, inverted
+from bladewright.fitting.registration.registration import registered, registration
+from bladewright.fitting.registration.rigid_motion import composed
 from bladewright.fitting.registration.target import target_of
 
 
@@ -81,28 +81,15 @@ def test_a_mirrored_blade_is_told_from_the_design():
 def test_a_blade_of_another_stagger_is_told_from_the_design():
     other = built("vki-ls89").design.changed("stagger", -50.0).build()
     points = np.concatenate([side.grid(np.linspace(0.0, 1.0, 40), np.linspace(0.0, 1.0, 8)) for side in other.sides])
-    found = improved(points.reshape(-1, 3), built("vki-ls89"), Motion(rotation=np.eye(3), translation=np.zeros(3)))
+    found = registered(points.reshape(-1, 3), target("vki-ls89"))
     assert not found.same
     assert "another blade" in " ".join(found.notes)
 
 
 def test_a_prism_without_its_ends_leaves_the_shift_along_the_span_undetermined():
     points = cloud("vki-ls89", 800, span=(0.3, 0.7))
-    found = improved(points, built("vki-ls89"), Motion(rotation=np.eye(3), translation=np.array([2e-4, 1e-4, 0.0])))
+    found = registered(points, target("vki-ls89"))
     assert found.undetermined == ("shift_z",)
-
-
-def test_only_the_freedoms_that_are_named_change():
-    away = Motion(rotation=Rotation.from_rotvec([0.0, 2e-3, -1e-3]).as_matrix(), translation=np.array([0, 2e-4, -3e-4]))
-    points = cloud("radial-turbine", 800)
-    given = inverted(away)(points)
-    motion = Motion(rotation=np.eye(3), translation=np.zeros(3))
-    found = improved(given, built("radial-turbine"), motion, freedoms=SEPARABLE["annular"]).motion
-    # the motion sought has no part in the freedoms that are held: it is found as exactly as with all of them
-    assert np.abs(found(given) - points).max() < 1e-9 * built("radial-turbine").chord
-    assert found.translation[0] == 0.0
-    with pytest.raises(FitError, match="turn_w"):
-        improved(points, built("radial-turbine"), motion, freedoms=("turn_w",))
 
 
 def test_a_section_is_found_in_its_plane():
@@ -111,13 +98,8 @@ def test_a_section_is_found_in_its_plane():
     points = np.concatenate([curve(u) for curve in design.build().curves.values()])
     c, s = np.cos(2.0), np.sin(2.0)
     away = Motion(rotation=np.array([[c, -s], [s, c]]), translation=np.array([0.3, -0.1]))
-    back = aligned_section(away(points), design)
+    back = registration(away(points), design).motion
     assert np.abs(back(away(points)) - points).max() < 1e-9 * 0.03
-
-
-def test_a_motion_and_its_inverse_leave_points_where_they_are():
-    points = np.random.default_rng(0).normal(size=(5, 3))
-    assert np.abs(composed(inverted(thrown(5)), thrown(5))(points) - points).max() < 1e-14
 
 
 @pytest.mark.parametrize("points", ["strewn", "rows"])

@@ -81,7 +81,7 @@ def test_the_derivatives_of_a_sections_sides_are_those_of_the_sides_built_with_a
 def test_a_sections_samples_are_those_of_the_part_it_is_made_of(name):
     section, design = section_samples(built(name)), MEMBERS[name]
     assert section.chord == pytest.approx(design.chord * 1e-3, rel=1e-9)
-    started = family_of(design).started(section, design.section)[0]
+    started = family_of(design).starts(section, design.section)[0]
     assert type(started) is type(design.section)
     assert started.parameters().keys() == design.section.parameters().keys()
 

@@ -12,7 +12,7 @@ from bladewright.fitting.families.flow_path import LEAST_RADIUS, _share_off_axis
 from bladewright.fitting.families.kinds import FAMILIES, family_of
 from bladewright.fitting.families.law_extension import law_extensions
 from bladewright.fitting.families.polyline import nearest_on
-from bladewright.fitting.families.profile import outlined, started
+from bladewright.fitting.families.profile import through_points
 from bladewright.fitting.families.rounded_edge import edge_through
 from bladewright.fitting.families.sections import _maker, _through_points, section_samples
 from bladewright.fitting.families.suction_pressure import templates
@@ -60,7 +60,7 @@ def test_every_law_along_the_chord_of_a_blade_may_grow():
 
 def test_a_blade_whose_sections_do_not_grow_alike_is_left_as_it_is():
     ways = iter([2, *[1] * 50])
-    kind = replace(FAMILIES["curvature-meanline"], grown=lambda part, _: [part] * next(ways))
+    kind = replace(FAMILIES["curvature-meanline"], extensions=lambda part, _: [part] * next(ways))
     last = [each for each in law_extensions(COMPRESSOR, kind) if "along the chord" in each.law][-1]
     with pytest.raises(DesignError, match="do not grow alike"):
         last.applied(COMPRESSOR)
@@ -86,8 +86,8 @@ def test_an_outline_of_points_follows_what_no_profile_of_a_kind_does():
     points = np.concatenate([side(np.random.default_rng(4).random(150)) for side in built.curves.values()])
     task = Task(points=points, weights=np.ones(len(points)), free=FreeParameters(), bounds={})
     made = _maker(FAMILIES["profile"], samples, DesignHeader(name="found", length_unit="mm"), task)
-    found = searched(task, made(started(samples, FlatPlate(thickness=0.06))[0]), rounds=1)
-    outline, reason = _through_points(task, found, MatchTarget(parameters=26), partial(outlined, samples), made)
+    found = searched(task, made(starts(samples, FlatPlate(thickness=0.06))[0]), rounds=1)
+    outline, reason = _through_points(task, found, MatchTarget(parameters=26), partial(through_points, samples), made)
     assert len(outline.problem.paths) == 26
     assert (reason, outline.design.section.kind) == ("", "points")
     # so many points come within a thousandth of the chord; the plate has no camber

@@ -8,7 +8,8 @@ import pytest
 from bladewright.blade.design.unified import UnifiedBlade
 from bladewright.blade.native.blade import Blade
 from bladewright.files.reading import read_design
-from bladewright.fitting.first import first_blade, found_arrangement
+from bladewright.fitting.initial_guess.arrangement import found_arrangement
+from bladewright.fitting.initial_guess.blade import first_blade
 from bladewright.fitting.model_selection.structure import structure_of
 from bladewright.nurbs.closest import closest_on_surface
 

@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from bladewright.fitting.first import first_section
+from bladewright.fitting.initial_guess.section import first_section
 from bladewright.nurbs.closest import closest_on_curve
 from bladewright.section.unified import UnifiedSection
 

@@ -10,7 +10,8 @@ from bladewright.files.reading import design_from, parsed
 from bladewright.fitting.clouds.cloud import checked_cloud
 from bladewright.fitting.matching.footpoints import footpoints_at, nearest_footpoints
 from bladewright.fitting.matching.search import Task, searched
-from bladewright.fitting.models.model import _fold_margins, model_of
+from bladewright.fitting.models.model import model_of
+from bladewright.fitting.models.unified import _fold_margins
 
 NAMES = ("turbine-section", "compressor-stator")
 

@@ -22,8 +22,6 @@ WITHOUT_HEIGHTS = 18
 """free parameters of a section besides those"""
 MOST_CONTROL_POINTS = 12
 """of each side"""
-PSEUDO_SKELETON_TURNING = np.radians(60.0)
-"""turning from which the pseudo skeleton line is taken"""
 TEMPLATE_TANGENT = 0.08
 """distance of the control points on the tangents in a structure, of the chord"""
 LEAST_TANGENT, MOST_TANGENT = 0.25, 0.9

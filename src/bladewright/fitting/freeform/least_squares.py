@@ -74,7 +74,6 @@ class Minimum:
     """Where the descent ended."""
 
     x: Reals
-    quadratic: Quadratic
     evaluations: int
     converged: bool
 
@@ -129,7 +128,7 @@ def minimised(
         return found
 
     if len(start) == 0:
-        return Minimum(x=start, quadratic=objective(start), evaluations=1, converged=True)
+        return Minimum(x=start, evaluations=1, converged=True)
     found = least_squares(
         lambda x: compressed(x)[1],
         start,
@@ -146,7 +145,6 @@ def minimised(
     left = quadratic.value - float(residuals[-1]) ** 2
     return Minimum(
         x=found.x,
-        quadratic=quadratic,
         evaluations=int(found.nfev),
         converged=bool(found.status > 0) or left <= SETTLED_SHARE * quadratic.value,
     )

@@ -44,10 +44,6 @@ class LawJacobian:
     moves: dict[str | ChannelShift, Reals]
     """(n, m) by step: by so much as a step's value at the section says [m per unit of the field]"""
 
-    def by_law(self, step: str | ChannelShift, rows: Reals) -> Reals:
-        """Derivatives (n, k) by what has the values `rows` (m, k) at the sites."""
-        return self.moves[step] @ rows
-
     def columns(self, paths: Sequence[str]) -> Reals:
         """Derivatives (n, k) by parameters."""
         count = len(next(iter(self.moves.values())))

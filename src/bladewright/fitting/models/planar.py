@@ -1,16 +1,15 @@
 """2D designs of the families that are one part, as a search sees them."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from typing import Any, final
 
 import numpy as np
 
 from bladewright.blade.native.interpolation import interpolated_along_u
 from bladewright.derivatives.complex_step import STEP
-from bladewright.designs import Design
 from bladewright.fitting.models.blunt_edges import BluntEdges, closed_knots, closed_nets
 from bladewright.fitting.models.feasibility import infeasibility
-from bladewright.fitting.models.model import Model, ModelShape
+from bladewright.fitting.models.model import Model, ModelShape, complex_steps, model_of
 from bladewright.numerics.elementary import Array
 from bladewright.nurbs.basis import Reals, greville
 from bladewright.nurbs.curve import Curve
@@ -39,19 +38,13 @@ class PlanarModel(Model):
         upper, lower = (np.real(net) for net in self._nets(design))
         sides = [Curve(control_points=net, knots=self.closed, degree=DEGREE) for net in (upper, lower)]
         constraints = np.real(infeasibility(design.section, SINGLE_SECTION))
-        return ModelShape(
-            design=design, sides=(sides[0], sides[1]), edge_radius_margins=np.zeros((2, 0)), constraints=constraints
-        )
+        return ModelShape(design=design, sides=(sides[0], sides[1]), constraints=constraints)
 
     def tangents(self, shape: ModelShape, paths: Sequence[str]) -> tuple[Reals, Reals]:
         """From one rebuild with a step on each parameter in a batch."""
         nets = self._nets(shape.design.changed(complex_steps(shape.design, paths)))
         upper, lower = (np.imag(np.broadcast_to(net, (len(paths), *net.shape[-2:]))) / STEP for net in nets)
         return upper, lower
-
-    def edge_radius_margin_rates(self, shape: ModelShape, paths: Sequence[str]) -> Reals:  # noqa: ARG002 - the contract's
-        """None: what may not be is refused by the parts themselves."""
-        return np.zeros((len(paths), 2, 0))
 
     def constraint_rates(self, shape: ModelShape, paths: Sequence[str]) -> Reals:
         """Of what the part comes near to."""
@@ -90,7 +83,7 @@ def _net(points: Array, edges: tuple[Edge, Edge], name: str, knots: Reals) -> Ar
 
 
 def infeasibility_rates(shape: ModelShape, paths: Sequence[str], span: Span) -> Reals:
-    """Derivatives (k, c) of a section's `folds` by every parameter."""
+    """Derivatives (k, c) of a section's `constraints` by every parameter."""
     found = np.zeros((len(paths), len(shape.constraints)))
     own = [i for i, path in enumerate(paths) if path.startswith("section.")]
     if len(shape.constraints) and own:
@@ -99,8 +92,6 @@ def infeasibility_rates(shape: ModelShape, paths: Sequence[str], span: Span) -> 
     return found
 
 
-def complex_steps(design: Design, paths: Sequence[str]) -> Mapping[str, Any]:
-    """Changes that put an imaginary step on each parameter in a batch."""
-    values = design.parameters()
-    kicks = 1j * STEP * np.eye(len(paths))
-    return {path: values[path] + kick for path, kick in zip(paths, kicks, strict=True)}
+@model_of.register
+def _(design: PlanarSection, tolerance: float | None = None) -> Model:
+    return PlanarModel(design, tolerance)

@@ -16,7 +16,7 @@ from bladewright.blade.native.refinement import mean_chord, refined_knots
 from bladewright.derivatives.complex_step import side_tangents
 from bladewright.fitting.models.blunt_edges import BluntEdges, closed_nets, closed_with
 from bladewright.fitting.models.feasibility import infeasibility
-from bladewright.fitting.models.model import Model, ModelShape
+from bladewright.fitting.models.model import Model, ModelShape, model_of
 from bladewright.fitting.models.planar import infeasibility_rates
 from bladewright.nurbs.basis import Reals
 from bladewright.section.laws import Span
@@ -44,13 +44,7 @@ class SectionedModel(Model):
         faces = edge_faces(stations, sides[0], sides[1], self.knots) if any(self.blunt) else {}
         upper, lower = closed_with(sides[0], sides[1], faces)
         constraints = np.real(infeasibility(design.section, FEASIBILITY_SPAN))
-        return ModelShape(
-            design=design,
-            sides=(upper, lower),
-            edge_radius_margins=np.zeros((2, 0)),
-            exact=exact,
-            constraints=constraints,
-        )
+        return ModelShape(design=design, sides=(upper, lower), exact=exact, constraints=constraints)
 
     def tangents(self, shape: ModelShape, paths: Sequence[str]) -> tuple[Reals, Reals]:
         """By every parameter in a batch; a face of a blunt edge moves as the straight one between its edges."""
@@ -64,10 +58,12 @@ class SectionedModel(Model):
         rates = closed_nets(np.moveaxis(upper, 1, -2), np.moveaxis(lower, 1, -2), DEGREE, self.blunt)
         return np.moveaxis(rates[0], -2, 1), np.moveaxis(rates[1], -2, 1)
 
-    def edge_radius_margin_rates(self, shape: ModelShape, paths: Sequence[str]) -> Reals:  # noqa: ARG002 - the contract's
-        """None: what may not be is refused by the parts themselves."""
-        return np.zeros((len(paths), 2, 0))
-
     def constraint_rates(self, shape: ModelShape, paths: Sequence[str]) -> Reals:
         """Of what the sections come near to."""
         return infeasibility_rates(shape, paths, FEASIBILITY_SPAN)
+
+
+@model_of.register
+def _(design: SectionedBlade, tolerance: float | None = None) -> Model:
+    with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
+        return SectionedModel(design, tolerance)

@@ -43,23 +43,12 @@ OTHER_AXIS_COSINE = np.cos(2.0 * np.pi / 180.0)
 
 
 @dataclass(frozen=True, kw_only=True)
-class AxesUncertainty:
-    """Standard deviations of the axes found."""
-
-    direction: float
-    """of the machine axis, or of the span of a cascade [rad]"""
-    offset: float
-    """of the machine axis' distance from the blade [m]; 0 in a cascade, where it is a convention"""
-
-
-@dataclass(frozen=True, kw_only=True)
 class MachineAxes:
     """The machine's axes as a cloud alone shows them."""
 
     motion: Motion
     """from the points as given to the machine's axes"""
     arrangement: Arrangement
-    uncertainty: AxesUncertainty
     notes: tuple[str, ...]
     """what is a convention, each a sentence"""
 
@@ -113,7 +102,6 @@ def _cascade(cloud: Reals, prism: Prism) -> MachineAxes:
     return MachineAxes(
         motion=Motion(rotation=rotation, translation=-origin),
         arrangement="linear",
-        uncertainty=AxesUncertainty(direction=prism.deviation, offset=0.0),
         notes=(
             "the cloud is a prism, taken as a blade of a linear cascade with its span along z",
             (
@@ -166,7 +154,6 @@ def _annular(cloud: Reals) -> MachineAxes:
     return MachineAxes(
         motion=motion,
         arrangement="annular",
-        uncertainty=AxesUncertainty(direction=axis.direction, offset=axis.offset),
         notes=notes,
     )
 

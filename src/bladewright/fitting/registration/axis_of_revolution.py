@@ -47,16 +47,10 @@ class RevolutionAxis:
     """into axes of which the first is the machine's"""
     rms: float
     """distance of the ends' points from their surfaces [m]"""
-    width: float
-    """at which the weights end [m]"""
-    shares: tuple[float, float]
-    """of the points of each end that lie on its surface"""
     direction: float
     """standard deviation of the direction [rad]"""
     offset: float
     """standard deviation of the distance from the blade [m]"""
-    degree: int
-    """of the meridional lines"""
     score: float
     """Bayesian information criterion, by the scatter's median"""
 
@@ -206,11 +200,8 @@ def _axis(
     return RevolutionAxis(
         motion=motion,
         rms=float(np.sqrt(np.mean(np.concatenate([off[each] for off, each in zip(offs, on, strict=True)]) ** 2))),
-        width=width,
-        shares=(float(np.mean(on[0])), float(np.mean(on[1]))),
         direction=float(np.sqrt(np.linalg.eigvalsh(covariance[:2, :2])[-1])) / extent,
         offset=float(np.sqrt(np.linalg.eigvalsh(covariance[2:, 2:])[-1])),
-        degree=degree,
         score=len(rows) * 2.0 * float(np.log(width)) + 2 * (degree + 1) * float(np.log(len(rows))),
     )
 

@@ -31,7 +31,6 @@ TILT_DAMPING = 1e-3
 class EndPlane:
     """A short piece of a side of the sheet."""
 
-    side: int
     point: Reals
     normal: Reals
     """(3,) of the plane"""
@@ -39,8 +38,6 @@ class EndPlane:
     """indices of the sheet's points on the plane"""
     along: Reals
     """their places along the side, 0 to 1"""
-    crowding: float
-    """how much denser the points stand on the plane than inside of it"""
 
 
 def end_planes(sheet: UnrolledSheet, side: int) -> list[EndPlane]:
@@ -55,13 +52,13 @@ def end_planes(sheet: UnrolledSheet, side: int) -> list[EndPlane]:
             (np.abs(along - place) < 0.7 / END_PIECES) & (np.abs(inside) < LOOKED_INSIDE * sheet.spacing)
         )
         if len(rows) >= 12:
-            piece = _end_plane(sheet, side, rows, along[rows], inside[rows])
+            piece = _end_plane(sheet, rows, along[rows], inside[rows])
             if piece is not None:
                 found.append(piece)
     return found
 
 
-def _end_plane(sheet: UnrolledSheet, side: int, rows: NDArray[np.intp], along: Reals, inside: Reals) -> EndPlane | None:
+def _end_plane(sheet: UnrolledSheet, rows: NDArray[np.intp], along: Reals, inside: Reals) -> EndPlane | None:
     points, spacing = sheet.points[rows], sheet.spacing
     local = points - points.mean(axis=0)
     inward = np.linalg.lstsq(local, inside - inside.mean(), rcond=1e-3)[0]
@@ -83,14 +80,11 @@ def _end_plane(sheet: UnrolledSheet, side: int, rows: NDArray[np.intp], along: R
     if np.count_nonzero(on) < 4:
         return None
     normal = frame[0] - plane[1] * frame[1] - plane[2] * frame[2]
-    inner = np.count_nonzero((off >= ON_PLANE * spacing) & (off < 1.1 * spacing))
     return EndPlane(
-        side=side,
         point=points[on].mean(axis=0),
         normal=normal / np.sqrt(np.sum(normal**2)),
         rows=rows[on],
         along=along[on],
-        crowding=float(np.count_nonzero(on) / max(0.2 * inner, 1.0)),
     )
 
 

@@ -33,8 +33,6 @@ class Prism:
     """(3,) unit vector"""
     rms: float
     """distance of the projected points from the curve through their neighbours, but for outliers [m]"""
-    deviation: float
-    """standard deviation of the direction [rad]"""
 
 
 def prism_of(points: Reals) -> Prism:
@@ -50,7 +48,7 @@ def prism_of(points: Reals) -> Prism:
 
 
 def _followed(cloud: Reals, direction: Reals) -> Prism:
-    rms, deviation = np.inf, np.inf
+    rms = np.inf
     for _ in range(PRISM_STEPS):
         frame = _across(direction)
         flat, height = cloud @ frame.T, cloud @ direction
@@ -72,12 +70,11 @@ def _followed(cloud: Reals, direction: Reals) -> Prism:
         step = np.linalg.lstsq(rows, -left * root, rcond=1e-9)[0]
         inner = np.abs(left) < width
         rms = float(np.sqrt(np.mean(left[inner] ** 2)))
-        deviation = rms / max(float(np.linalg.svd(rows, compute_uv=False)[-1]), 1e-300)
         direction = direction + step @ frame
         direction = direction / np.sqrt(np.sum(direction**2))
         if np.max(np.abs(step)) < 1e-12:
             break
-    return Prism(direction=direction, rms=rms, deviation=deviation)
+    return Prism(direction=direction, rms=rms)
 
 
 def flat_ends(cloud: Reals, direction: Reals) -> bool:

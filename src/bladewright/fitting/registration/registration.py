@@ -1,7 +1,7 @@
 """The motion that brings a cloud from anywhere onto the blade or section of a design."""
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 from scipy.spatial import cKDTree
@@ -10,7 +10,7 @@ from bladewright.errors import FitError
 from bladewright.fitting.assessment.result import Motion
 from bladewright.fitting.clouds.thinning import drawn
 from bladewright.fitting.registration.global_search import TARGET_SAMPLES, found_motions
-from bladewright.fitting.registration.rigid_motion import FREEDOMS, PLANE_FREEDOMS, free_columns
+from bladewright.fitting.registration.rigid_motion import FREEDOMS, PLANE_FREEDOMS
 from bladewright.fitting.registration.robust_motion import RobustMotion, robust_motion
 from bladewright.fitting.registration.target import RegistrationTarget, target_of
 from bladewright.nurbs.basis import Reals
@@ -84,19 +84,7 @@ def registered(points: Reals, target: RegistrationTarget) -> Registration:
     if best is None:
         raise FitError(f"no motion of the {len(points)} points was found; are they of a blade?")
     some = cloud[drawn(len(cloud), DECIDING_POINTS)]
-    return _reported(cloud, target, robust_motion(target, some, best[1].motion, width=FINAL_WIDTH), None)
-
-
-def improved(points: Reals, built: Any, motion: Motion, *, freedoms: tuple[str, ...] | None = None) -> Registration:
-    """The motion near `motion` that brings points (n, d) [m] onto a built blade or section, in some freedoms only.
-
-    Turns and shifts are along the machine's axes, after `motion`; see `SEPARABLE` for those that no parameter of a
-    design stands for. Raises FitError for freedoms that do not exist.
-    """
-    target = target_of(built)
-    cloud = _checked(points, target)
-    some = cloud[drawn(len(cloud), DECIDING_POINTS)]
-    return _reported(cloud, target, robust_motion(target, some, motion, freedoms=freedoms), freedoms)
+    return _reported(cloud, target, robust_motion(target, some, best[1].motion, width=FINAL_WIDTH))
 
 
 def _checked(points: Reals, target: RegistrationTarget) -> Reals:
@@ -112,15 +100,13 @@ def _checked(points: Reals, target: RegistrationTarget) -> Reals:
     return cloud
 
 
-def _reported(
-    cloud: Reals, target: RegistrationTarget, descent: RobustMotion, freedoms: tuple[str, ...] | None
-) -> Registration:
+def _reported(cloud: Reals, target: RegistrationTarget, descent: RobustMotion) -> Registration:
     dimension = cloud.shape[1]
     cloud = cloud[drawn(len(cloud), DECIDING_POINTS)]
     distances, taking = descent.contact.distances, descent.weights > 0.0
     rms = float(np.sqrt(np.mean(distances[taking] ** 2))) if taking.any() else float("inf")
     systematic, share = _systematic(cloud, descent), _share(descent)
-    known = [(FREEDOMS if dimension == 3 else PLANE_FREEDOMS)[k] for k in free_columns(dimension, freedoms)]
+    known = FREEDOMS if dimension == 3 else PLANE_FREEDOMS
     weak = tuple(
         name for k, name in enumerate(known) if any(abs(direction[k]) > 0.1 for direction in descent.undetermined)
     )
@@ -168,18 +154,3 @@ def _systematic(points: Reals, descent: RobustMotion) -> float:
     heights = np.sum(descent.contact.normals * descent.contact.miss, axis=1)[taking]
     other = cKDTree(points[taking]).query(points[taking], k=3)[1][:, 1:]
     return float(np.sqrt(max(0.0, float(np.mean(heights[:, None] * heights[other])))))
-
-
-def aligned_to(points: Reals, design: "UnifiedBlade") -> Motion:
-    """The motion of points (n, 3) [m] that lie anywhere onto a design's blade; see `registration` for how well."""
-    return registration(points, design).motion
-
-
-def aligned_section(points: Reals, design: "UnifiedSection") -> Motion:
-    """The motion of points (n, 2) [m] that lie anywhere in the plane onto a design's section."""
-    return registration(points, design).motion
-
-
-def refined(points: Reals, built: Any, motion: Motion, *, freedoms: tuple[str, ...] | None = None) -> Motion:
-    """The motion near `motion` of points (n, d) [m] onto a built blade or section; see `improved`."""
-    return improved(points, built, motion, freedoms=freedoms).motion

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bladewright.fitting.assessment.result import Motion
-from bladewright.fitting.registration.rigid_motion import GENERATORS, composed, free_columns, rotation_by
+from bladewright.fitting.registration.rigid_motion import GENERATORS, composed, rotation_by
 from bladewright.fitting.registration.target import Contact, RegistrationTarget
 from bladewright.nurbs.basis import Reals
 
@@ -58,16 +58,13 @@ def robust_motion(
     points: Reals,
     motion: Motion,
     *,
-    freedoms: tuple[str, ...] | None = None,
     width: float = FIRST_WIDTH,
     steps: int = MOST_STEPS,
 ) -> RobustMotion:
     """The motion of points (n, d) near `motion` that brings them onto the target."""
-    columns = free_columns(points.shape[1], freedoms)
     extent = target.extent
     wide, least = width * extent, LEAST_WIDTH * extent
     settled, small = False, np.inf
-    start, total = motion, np.zeros(len(GENERATORS[points.shape[1]]) + points.shape[1])
     contact: Contact | None = None
     for _ in range(steps):
         moved = motion(points)
@@ -77,15 +74,10 @@ def robust_motion(
             TUKEY * 1.4826 * float(np.median(distances[distances < wide])) if np.any(distances < wide) else wide
         )
         weights = tukey_weights(distances, max(wide, least))
-        pivot = np.mean(moved, axis=0) if freedoms is None else np.zeros(points.shape[1])
+        pivot = np.mean(moved, axis=0)
         rows, right = equations(moved, contact, weights, pivot)
-        step = _step(rows, right, columns, pivot, moved, extent)
-        if freedoms is None:
-            motion = composed(_about(pivot, step), motion)
-        else:
-            # what is held stays exactly so: one turn and one shift after the start, not many small ones in a row
-            total = total + step
-            motion = composed(_about(pivot, total), start)
+        step = _step(rows, right, pivot, moved, extent)
+        motion = composed(_about(pivot, step), motion)
         small = float(np.max(np.abs(motion(points) - moved)))
         if wide <= max(noise_width, least) * (1.0 + 1e-9) and small < SETTLED_STEP * extent:
             settled = True
@@ -97,8 +89,8 @@ def robust_motion(
     contact = target.contact(moved, contact if small < NEWTON_STEP * extent else None)
     weights = tukey_weights(contact.distances, max(wide, least))
     pivot = np.mean(moved, axis=0)
-    undetermined, _ = _determined(*equations(moved, contact, weights, pivot), columns, extent)
-    _, covariance = _determined(*equations(moved, contact, weights, 0.0 * pivot), columns, extent)
+    undetermined, _ = _determined(*equations(moved, contact, weights, pivot), extent)
+    _, covariance = _determined(*equations(moved, contact, weights, 0.0 * pivot), extent)
     return RobustMotion(
         motion=motion,
         contact=contact,
@@ -126,18 +118,16 @@ def tukey_weights(distances: Reals, width: float) -> Reals:
     return np.asarray(np.maximum(0.0, 1.0 - (distances / width) ** 2) ** 2)
 
 
-def _step(rows: Reals, right: Reals, columns: list[int], pivot: Reals, moved: Reals, extent: float) -> Reals:
+def _step(rows: Reals, right: Reals, pivot: Reals, moved: Reals, extent: float) -> Reals:
     """Changes (k,) of all freedoms: least squares in those that are free and that the rows determine."""
     dimension = moved.shape[1]
     turns = len(GENERATORS[dimension])
     reach = float(np.sqrt(np.max(np.sum((moved - pivot) ** 2, axis=1))))
     scale = np.where(np.arange(rows.shape[1]) < turns, 1.0 / reach, 1.0)
-    found = np.linalg.lstsq(rows[:, columns] * scale[columns], right, rcond=WEAKEST_FREEDOM)[0]
+    found = np.linalg.lstsq(rows * scale, right, rcond=WEAKEST_FREEDOM)[0]
     longest = float(np.sqrt(np.max(found**2)))
-    step = np.zeros(rows.shape[1])
     shortened = LONGEST_STEP * extent / longest if longest > LONGEST_STEP * extent else 1.0
-    step[columns] = found * scale[columns] * shortened
-    return step
+    return np.asarray(found * scale * shortened)
 
 
 def _about(pivot: Reals, step: Reals) -> Motion:
@@ -147,14 +137,12 @@ def _about(pivot: Reals, step: Reals) -> Motion:
     return Motion(rotation=rotation, translation=pivot - rotation @ pivot + step[turns:])
 
 
-def _determined(
-    rows: Reals, right: Reals, columns: list[int], extent: float
-) -> tuple[tuple[Reals, ...], NDArray[np.float64]]:
+def _determined(rows: Reals, right: Reals, extent: float) -> tuple[tuple[Reals, ...], NDArray[np.float64]]:
     turns = len(GENERATORS[2 if rows.shape[1] == 3 else 3])
-    scale: Reals = np.where(np.arange(rows.shape[1]) < turns, 1.0 / extent, 1.0)[columns]
-    _, values, across = np.linalg.svd(rows[:, columns] * scale, full_matrices=False)
+    scale: Reals = np.where(np.arange(rows.shape[1]) < turns, 1.0 / extent, 1.0)
+    _, values, across = np.linalg.svd(rows * scale, full_matrices=False)
     weak = values <= WEAKEST_FREEDOM * values[0]
-    spread = float(np.sum(right**2)) / max(1, int(np.count_nonzero(right)) - len(columns))
+    spread = float(np.sum(right**2)) / max(1, int(np.count_nonzero(right)) - rows.shape[1])
     inverse = np.where(weak, 0.0, 1.0 / np.where(weak, 1.0, values))
     half = scale[:, None] * across.T * inverse
     return tuple(across[weak]), spread * half @ half.T

@@ -1,0 +1,205 @@
+"""Sections and blades of the unified family, as a search sees them."""
+
+from collections.abc import Sequence
+from types import MappingProxyType
+from typing import Any, final
+
+import numpy as np
+
+from bladewright.blade.design.unified import UnifiedBlade
+from bladewright.blade.exact.unified import SURVEY, ExactUnifiedBlade, exact_unified_blade, moved_exact_blade
+from bladewright.blade.flow_path.channel import TransfiniteChannel
+from bladewright.blade.native.blade import Blade, side_surface
+from bladewright.blade.native.interpolation import native_sides
+from bladewright.blade.native.knots import DEGREE, Knots
+from bladewright.blade.native.refinement import mean_chord, refined_knots
+from bladewright.derivatives.complex_step import STEP, side_tangents, stepped_design
+from bladewright.fitting.matching.footpoints import Footpoints
+from bladewright.fitting.models.law_jacobian import (
+    channel_shifts,
+    law_jacobian,
+    law_shares,
+    shifted_channel,
+    stands_on_channel,
+)
+from bladewright.fitting.models.model import Model, ModelShape, complex_steps, model_of
+from bladewright.numerics.elementary import Array, concatenated, cross2, length
+from bladewright.nurbs.basis import Reals
+from bladewright.section.camber import camber_points
+from bladewright.section.checks import UNITS
+from bladewright.section.unified import UnifiedSection
+from bladewright.section.unified_sides import sample_places, side_curve
+
+RADIUS_STATIONS = SURVEY
+"""places along the span where it is asked whether the thickness can hold the edges' radii"""
+FOLD_GRID = (21, 21)
+"""places along and across the channel where it is asked whether it folds over"""
+COARSE_SEARCH, KNOT_SLACK = 3.0, 100.0
+"""tolerance of a search, of the design's own, from which knots may miss what they promise of walls and edges, and by
+how many times as much"""
+SMALLEST_JACOBIAN = 0.02
+"""smallest Jacobian of the channel, of its median"""
+
+
+@final
+class SectionModel(Model):
+    """Sections of the unified family."""
+
+    def __init__(self, design: UnifiedSection) -> None:
+        slope = np.cos(np.radians(design.stagger))
+        self.chord = float(design.axial_chord * UNITS[design.length_unit] / slope)
+        self._last: tuple[ModelShape | None, tuple[str, ...], list[Array]] = (None, (), [])
+
+    def _shape(self, design: Any) -> ModelShape:
+        line, upper, lower = _outline(design)
+        sides = side_curve(upper[0]), side_curve(lower[0])
+        return ModelShape(
+            design=design,
+            sides=sides,
+            edge_radius_margins=np.real(_edge_radius_margins(design, line, upper, lower))[..., 0],
+        )
+
+    def tangents(self, shape: ModelShape, paths: Sequence[str]) -> tuple[Reals, Reals]:
+        """From one rebuild with a step on each parameter in a batch, as those of the noses."""
+        _, *sides = self._stepped(shape, paths)
+        upper, lower = (np.imag(side)[:, 0] / STEP for side in sides)
+        return upper, lower
+
+    def edge_radius_margin_rates(self, shape: ModelShape, paths: Sequence[str]) -> Reals:
+        """From the same rebuild."""
+        found = np.imag(_edge_radius_margins(shape.design, *self._stepped(shape, paths)))[..., 0] / STEP
+        return np.moveaxis(found, 1, 0)
+
+    def _stepped(self, shape: ModelShape, paths: Sequence[str]) -> list[Array]:
+        known, asked, parts = self._last
+        if known is not shape or asked != tuple(paths):
+            found = _outline(shape.design.changed(complex_steps(shape.design, paths)))
+            parts = [np.broadcast_to(part, (len(paths), *part.shape[-3:])) for part in found]
+            self._last = shape, tuple(paths), parts
+        return parts
+
+
+@final
+class BladeModel(Model):
+    """Blades of the unified family, at the knots that one of them needs."""
+
+    def __init__(self, design: UnifiedBlade, tolerance: float | None = None) -> None:
+        self.tolerance = design.tolerance if tolerance is None else tolerance
+        exact = exact_unified_blade(design.changed("tolerance", self.tolerance), tentative=True)
+        self.chord = mean_chord(exact)
+        slack = KNOT_SLACK if self.tolerance > COARSE_SEARCH * design.tolerance else 1.0
+        self.knots: Knots = refined_knots(exact, self.chord, slack=slack)
+
+    def _shape(self, design: Any) -> ModelShape:
+        exact = exact_unified_blade(design, self.knots.tip, tentative=True)
+        upper, lower = native_sides(exact.stations(self.knots.sites_v), self.knots)
+        plane = exact.stations(RADIUS_STATIONS).plane
+        return ModelShape(
+            design=design,
+            sides=(side_surface(upper, self.knots, DEGREE), side_surface(lower, self.knots, DEGREE)),
+            edge_radius_margins=np.real(_edge_radius_margins(design, plane.camber, plane.upper, plane.lower)),
+            constraints=np.real(_fold_margins(exact, exact.channel)),
+            exact=exact,
+        )
+
+    def tangents(self, shape: ModelShape, paths: Sequence[str]) -> tuple[Reals, Reals]:
+        """By laws as a whole and leaves of the channel."""
+        blade = Blade(
+            design=shape.design,
+            surfaces=MappingProxyType({}),
+            knots=self.knots,
+            chord=self.chord,
+            exact=shape.exact,
+        )
+        pairs = list(side_tangents(blade, paths))
+        upper, lower = (np.concatenate([pair[side] for pair in pairs]) for side in (0, 1))
+        return upper, lower
+
+    def along(self, shape: ModelShape, on: Footpoints, directions: Reals, paths: Sequence[str]) -> Reals:
+        """From the motion with whole laws."""
+        return law_jacobian(shape.exact, self.knots, on, directions, paths).columns(paths)
+
+    def edge_radius_margin_rates(self, shape: ModelShape, paths: Sequence[str]) -> Reals:
+        """Those by the laws; by the channel they vanish but for the walls' slopes, which are left out."""
+        found = np.zeros((len(paths), *shape.edge_radius_margins.shape))
+        laws = [place for place, path in enumerate(paths) if not path.startswith(("channel.", "tip_", "hub_"))]
+        parts = [next(law_shares(shape.design, paths[place], RADIUS_STATIONS)) for place in laws]
+        steps = list(dict.fromkeys(step for step, _ in parts))
+        plane = (
+            moved_exact_blade(shape.exact, stepped_design(shape.design, [str(step) for step in steps]))
+            .stations(RADIUS_STATIONS)
+            .plane
+        )
+        rates = (
+            np.moveaxis(np.imag(_edge_radius_margins(shape.design, plane.camber, plane.upper, plane.lower)), 1, 0)
+            / STEP
+        )
+        for place, (step, share) in zip(laws, parts, strict=True):
+            found[place] = rates[steps.index(step)] * share
+        return found
+
+    def constraint_rates(self, shape: ModelShape, paths: Sequence[str]) -> Reals:
+        """From one channel with a step on each of its parameters in a batch."""
+        found = np.zeros((len(paths), len(shape.constraints)))
+        walls = [place for place, path in enumerate(paths) if path.startswith("channel.")]
+        if walls and shape.exact is not None:
+            some = [paths[place] for place in walls]
+            if stands_on_channel(shape.design):
+                metre = UNITS[shape.design.length_unit]
+                channel = shifted_channel(shape.exact.channel, [channel_shifts(shape.design, path) for path in some])
+            else:
+                metre = 1.0
+                channel = moved_exact_blade(
+                    shape.exact, shape.design.changed(complex_steps(shape.design, some))
+                ).channel
+            found[walls] = np.imag(_fold_margins(shape.exact, channel)) / STEP * metre
+        return found
+
+
+def _fold_margins(exact: ExactUnifiedBlade, channel: TransfiniteChannel) -> Array:
+    """How near a channel (...) comes to folding over (..., c), as `Shape` has it."""
+    u = np.linspace(-exact.before, 1.0 + exact.after, FOLD_GRID[0])
+    v = np.linspace(0.0, 1.0, FOLD_GRID[1])
+    along, across = exact.channel.slopes(u, v)
+    size = np.median(np.sqrt(np.sum(np.real(along) ** 2, axis=-1) * np.sum(np.real(across) ** 2, axis=-1)))
+    share = cross2(*channel.slopes(u, v)) / size
+    return np.asarray(SMALLEST_JACOBIAN - share.reshape(*share.shape[:-2], -1))
+
+
+def _outline(design: UnifiedSection) -> tuple[Array, Array, Array]:
+    """Control points (..., 1, n, 2) where the section stands, those of rational sides (..., 1, n, 3)."""
+    line, upper, lower = design.outline(tentative=True)
+    shift = np.asarray(design.leading_edge_x)[..., None, None] * UNITS[design.length_unit]
+    parts = []
+    for part in (line, upper, lower):
+        weight = part[..., 2] if part.shape[-1] == 3 else 1.0
+        abscissa = part[..., 0] + shift * weight
+        others = [np.broadcast_to(part[..., i], abscissa.shape) for i in range(1, part.shape[-1])]
+        parts.append(np.stack([abscissa, *others], axis=-1))
+    return parts[0], parts[1], parts[2]
+
+
+def _edge_radius_margins(design: Any, line: Array, upper: Array, lower: Array) -> Array:
+    """The noses (2, ..., 4, m) of sections, as `Shape` has them."""
+    extent = line[..., 3, 0] - line[..., 0, 0]
+    places = sample_places(design.samples, design.clustering)[[2, -3]]
+    camber = camber_points(line, places)
+    rows = []
+    for side in (upper, lower):
+        plain = side if side.shape[-1] == 2 else side[..., :2] / side[..., 2:]
+        for end, (first, second, third) in enumerate(((0, 1, 2), (-1, -2, -3))):
+            height = length(plain[..., second, :] - plain[..., first, :])
+            beside = length(plain[..., third, :] - camber[..., end, :])
+            rows.append(np.stack([(height - beside) / extent, height / beside])[..., None, :])
+    return concatenated(rows, axis=-2)
+
+
+@model_of.register
+def _(design: UnifiedSection, tolerance: float | None = None) -> Model:  # noqa: ARG001 - the contract's
+    return SectionModel(design)
+
+
+@model_of.register
+def _(design: UnifiedBlade, tolerance: float | None = None) -> Model:
+    with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
+        return BladeModel(design, tolerance)
