@@ -12,7 +12,7 @@ from bladewright.fitting.families.flow_path import LEAST_RADIUS, _share_off_axis
 from bladewright.fitting.families.kinds import FAMILIES, family_of
 from bladewright.fitting.families.law_extension import law_extensions
 from bladewright.fitting.families.polyline import nearest_on
-from bladewright.fitting.families.profile import through_points
+from bladewright.fitting.families.profile import starts, through_points
 from bladewright.fitting.families.rounded_edge import edge_through
 from bladewright.fitting.families.sections import _maker, _through_points, section_samples
 from bladewright.fitting.families.suction_pressure import templates
