@@ -12,7 +12,7 @@ from bladewright.fitting.matching.constrained_least_squares import (
 
 
 class Linear(ConstrainedProblem):
-    """Residuals `matrix @ z - aim` and constrained values `walls @ z - room`."""
+    """CloudResiduals `matrix @ z - aim` and constrained values `walls @ z - room`."""
 
     def __init__(self, matrix, aim, *, walls=None, room=None, low=-np.inf, high=np.inf):
         count = matrix.shape[1]

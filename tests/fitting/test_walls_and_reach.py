@@ -59,7 +59,7 @@ def test_rows_at_both_ends_lie_on_the_walls():
         # native sides follow the exact blade within 1e-6 of the chord
         assert np.max(np.abs(wall.distances(there.exact))) < 3e-6 * model.chord
         assert wall.spread < 1e-6 * model.chord
-    assert not found.covered.any()
+    assert not found.on_end_face.any()
 
 
 def test_a_row_is_found_among_points_beside_it_where_its_wall_is_not_known_yet():
@@ -91,7 +91,7 @@ def test_points_a_little_inside_beside_an_end_are_no_end_face():
     )
     points = sides_cloud(BLADE, 300, rows=60)
     found = blade_ends_of(points, nearest_footpoints(points, blunt.sides), blunt, np.ones(len(points), dtype=bool))
-    assert not found.covered.any()
+    assert not found.on_end_face.any()
 
 
 def test_without_points_at_the_ends_there_are_no_walls():
@@ -120,8 +120,8 @@ def between(v):
 def test_points_of_an_end_face_are_told_from_those_of_the_sides():
     points = np.concatenate([sides_cloud(BLADE, 300), between(1.0)])
     found, _ = ends(BLADE, points)
-    assert found.covered[600:].all()
-    assert not found.covered[:600].any()
+    assert found.on_end_face[600:].all()
+    assert not found.on_end_face[:600].any()
     assert len(found.walls["shroud"].places) == 25
 
 
@@ -130,7 +130,7 @@ def test_outliers_belong_to_an_end_face_where_they_stand_in_its_row(v, belong):
     points = np.concatenate([sides_cloud(BLADE, 300), between(v)])
     _, _, there = shape(BLADE)
     found = blade_ends_of(points, nearest_footpoints(points, there.sides), there, np.arange(len(points)) < 600)
-    assert np.all(found.covered == (belong & (np.arange(len(points)) >= 600)))
+    assert np.all(found.on_end_face == (belong & (np.arange(len(points)) >= 600)))
     assert set(found.walls) == ({"shroud"} if belong else set())
 
 

@@ -6,7 +6,7 @@ import numpy as np
 from scipy.stats import t as student
 
 from bladewright.fitting.assessment.result import Estimate
-from bladewright.fitting.matching.residuals import Residuals
+from bladewright.fitting.matching.residuals import CloudResiduals
 from bladewright.fitting.matching.search import Match
 from bladewright.nurbs.basis import Reals
 
@@ -91,7 +91,7 @@ def parameter_estimates(found: Match) -> ParameterEstimates:
     )
 
 
-def _excess_weights(cloud_residuals: Residuals, count: int) -> Reals:
+def _excess_weights(cloud_residuals: CloudResiduals, count: int) -> Reals:
     """By how much more the points count in a search than as the inverse of their variance (count,); 1 elsewhere."""
     found = np.ones(count)
     if cloud_residuals.precision is None:

@@ -53,7 +53,7 @@ def measured(points: Reals, built: Blade | Section, precision: Reals | None = No
     # few against the sides and far inside them, points of end faces are outliers to these
     faced = ~noise_estimate.inliers
     if np.any(faced):
-        faced &= blade_ends_of(points, on, shape, np.ones(len(points), dtype=bool)).covered
+        faced &= blade_ends_of(points, on, shape, np.ones(len(points), dtype=bool)).on_end_face
     deviations = np.where(on.heights < 0.0, -1.0, 1.0) * on.distances
     places = np.array(["upper", "lower"], dtype="<U13")[on.side]
     edge = np.where(on.u < EDGE_REGION, "leading edge", np.where(on.u > 1.0 - EDGE_REGION, "trailing edge", "sides"))
@@ -64,8 +64,8 @@ def measured(points: Reals, built: Blade | Section, precision: Reals | None = No
             places = np.where(faces == side, name, places)
     past = np.any(on.beyond != 0.0, axis=1) & (np.abs(np.sum(on.miss * on.beyond, axis=1)) > np.abs(on.heights))
     regions = np.where(past, "ends", edge).astype(f"<U{max(map(len, REGIONS))}")
-    if exact is not None and np.any(ends.covered | faced):
-        _place_on_end_faces(points, ends.covered | faced, built, deviations, places, regions, on)
+    if exact is not None and np.any(ends.on_end_face | faced):
+        _place_on_end_faces(points, ends.on_end_face | faced, built, deviations, places, regions, on)
     return Measurement(
         places=places, on=on, deviations=deviations, regions=regions, noise_estimate=noise_estimate, faced=faced
     )
@@ -85,13 +85,13 @@ def _nearest(points: Reals, sides: Sequence[Side]) -> Footpoints:
 
 
 def _place_on_end_faces(
-    points: Reals, covered: Any, built: Any, deviations: Reals, places: Any, regions: Any, on: Footpoints
+    points: Reals, on_end_face: Any, built: Any, deviations: Reals, places: Any, regions: Any, on: Footpoints
 ) -> None:
     """Puts the points that lie on end faces there."""
     exact = built.exact
     radius = np.sqrt(points[:, 1] ** 2 + points[:, 2] ** 2) if exact.mapping.revolved else points[:, 2]
     for (name, end), face in zip(END_PARAMETERS.items(), built.design.ends, strict=True):
-        rows = np.flatnonzero(covered & (np.abs(on.v - end) < 0.5))
+        rows = np.flatnonzero(on_end_face & (np.abs(on.v - end) < 0.5))
         if len(rows) == 0:
             continue
         wall = WallPoints(name=name, places=np.stack([points[rows, 0], radius[rows]], axis=-1), spread=0.0)

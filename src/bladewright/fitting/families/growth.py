@@ -52,7 +52,7 @@ def predicted_gains(
 
 
 def _residuals_of(found: Match, design: Design, paths: tuple[str, ...]) -> tuple[Reals, Reals]:
-    """Residuals of a design where the cloud stands on a match's, and their derivatives by scaled parameters."""
+    """CloudResiduals of a design where the cloud stands on a match's, and their derivatives by scaled parameters."""
     cloud_residuals, on = found.problem.cloud_residuals, found.state.footpoints
     shape = cloud_residuals.model.shape(design)
     if not shape.finite:

@@ -163,7 +163,7 @@ def rank_of(values: Reals) -> int:
 
 
 def _compressed(of: Quadratic) -> tuple[Reals, Reals]:
-    """Residuals (n + 1,) and their derivatives (n + 1, n) that have this value, gradient and curvature."""
+    """CloudResiduals (n + 1,) and their derivatives (n + 1, n) that have this value, gradient and curvature."""
     size = np.sqrt(np.diagonal(of.curvature))
     size = np.where(size > 0.0, size, 1.0)
     eigenvalues, vectors = np.linalg.eigh(of.curvature / size / size[:, None])

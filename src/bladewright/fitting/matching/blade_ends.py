@@ -1,4 +1,4 @@
-"""The ends of a blade as its cloud shows them: points that lie at hub and shroud, or where the blade ends."""
+"""The ends of a blade as its cloud shows them: points at hub and shroud, and points on the end faces."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -18,38 +18,43 @@ from bladewright.nurbs.basis import Reals, basis
 from bladewright.section.checks import UNITS
 
 ROW_BAND = 0.015
-"""how far from an end, in v, a point may tell of it"""
+"""distance from an end, in v, within which a point may belong to the row that shows it."""
 FACE_BAND, FACE_DEPTH, FACE_NEARER_WALL = 0.1, 5.0, 0.3
-"""a point of an end face has its foot this near the end, in v, lies this many usual distances inside the sides, and is
-this much nearer to the wall than to them"""
+"""a point of an end face has its footpoint within this distance of the end, in v, lies `FACE_DEPTH` usual distances
+inside the sides, and is nearer to the wall than to the sides by the ratio `FACE_NEARER_WALL`."""
 FACE_OUTLIERS, FACE_OUTLIERS_NEARER_WALL = 20, 0.1
-"""outliers on an end face that belong to it: so many, half of which are so much nearer to the wall than to the sides"""
+"""outliers on an end face belong to it where there are so many, and half of them are nearer to the wall than to the
+sides by the ratio `FACE_OUTLIERS_NEARER_WALL`."""
 DEEPEST_FACE_POINT = 0.2
-"""of the half thickness of the blade: how deep inside it the deepest point of an end face lies at least"""
+"""depth of the deepest point of an end face, of the half thickness of the blade: shallower ones lie beside an edge that
+is not yet found."""
 PAST_END_BAND = 0.05
-"""how far from an end, in v, a point may come to lie past it while the design changes"""
+"""distance from an end, in v, within which a point may come to lie past it while the design changes."""
 FEWEST_ROW_POINTS = 5
+"""points that a row at an end needs."""
 ROW_WIDTH, ROW_LEAST_WIDTH = 4.5, 1e-6
-"""a point belongs to the row at an end where it lies within so many deviations of its middle; of the extent of the
-places, as the sides are no nearer to the walls"""
+"""a point belongs to the row at an end within so many standard deviations of its middle, but within `ROW_LEAST_WIDTH`
+of the places' extent in any case: the sides themselves are no nearer to the walls (design/fit_made.md)."""
 ROW_DEGREE, ROW_TURNS, ROW_SETTLING_TURNS = 6, 30, 3
-"""highest degree by which a row may be off the wall, and turns in which it is found and settles"""
+"""highest degree of the polynomial by which a row may be off the wall; it is found in `ROW_TURNS` reweighted turns as a
+quantile, then in `ROW_SETTLING_TURNS` by least squares."""
 OUTER_QUANTILE = 0.2
-"""part of the places at an end beyond the law that is first sought: a row is the outermost, beside it lie points of
-the sides"""
+"""share of the places at an end that lie outside the law that is first sought: a row is the outermost, and beside it
+lie points of the sides."""
 END_PARAMETERS = {"hub": 0.0, "shroud": 1.0}
+"""v of the two ends, by the name of their wall."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class WallPoints:
-    """Places of the cloud at one end of the blade."""
+    """Points of the cloud at one end of the blade, in the meridional plane."""
 
     name: str
-    """of the channel's curve"""
+    """of the wall: hub or shroud"""
     places: Reals
     """(m, 2) in (x, r) [m]"""
     spread: float
-    """of their distances from one curve: small where the cloud has a row there [m]"""
+    """standard deviation of their distances from one curve: small where the cloud has a row there [m]"""
 
     def misses(self, exact: Any) -> tuple[Reals, Reals, Reals]:
         """Nearest parameters, unit normals and misses (m,), (m, 2), (m, 2) on the channel's curve, continued."""
@@ -78,7 +83,7 @@ class WallPoints:
         return t, np.asarray(np.sum(normal * miss, axis=-1))
 
     def basis(self, exact: ExactUnifiedBlade, t: Reals) -> Reals:
-        """What the places at parameters (m,) are made of: basis functions (m, n) of the channel's curve."""
+        """Basis functions (m, n) of the channel's curve at parameters (m,)."""
         line = exact.channel.line(self.name)
         return np.asarray(basis(line.knots, line.degree, t))
 
@@ -111,7 +116,7 @@ class BladeEnds:
     """What a cloud says of the blade's ends."""
 
     walls: Mapping[str, WallPoints]
-    covered: NDArray[np.bool_]
+    on_end_face: NDArray[np.bool_]
     """(n,) whether a point lies on an end face, inside the blade's outline"""
     near: NDArray[np.intp]
     """points that may lie past an end of the sides"""
@@ -124,10 +129,10 @@ def _line(exact: Any, name: str) -> Any:
 
 def blade_ends_of(points: Reals, on: Footpoints, shape: ModelShape, rows: NDArray[np.bool_]) -> BladeEnds:
     """The ends as points (n, d) show them, of those in `rows` (n,)."""
-    covered = np.zeros(len(points), dtype=bool)
+    on_end_face = np.zeros(len(points), dtype=bool)
     exact = shape.exact
     if exact is None:
-        return BladeEnds(walls={}, covered=covered, near=np.empty(0, dtype=np.intp))
+        return BladeEnds(walls={}, on_end_face=on_end_face, near=np.empty(0, dtype=np.intp))
     radius = np.sqrt(points[:, 1] ** 2 + points[:, 2] ** 2) if exact.mapping.revolved else points[:, 2]
     places = np.stack([points[:, 0], radius], axis=-1)
     usual = DEVIATION_OVER_MEDIAN * float(np.median(on.distances[rows]))
@@ -136,32 +141,33 @@ def blade_ends_of(points: Reals, on: Footpoints, shape: ModelShape, rows: NDArra
         inside = np.flatnonzero((np.abs(on.v - end) < FACE_BAND) & (on.heights < -FACE_DEPTH * usual))
         off = WallPoints(name=name, places=places[inside], spread=0.0).distances(exact)
         share = np.abs(off) / -on.heights[inside]
-        # points of a solid's faces are outliers to its sides, and so are strays, which stand in no row
+        # points of a solid's end faces are outliers to its sides; so are stray points, which stand in no row
         apart = ~rows[inside] & (share < FACE_NEARER_WALL)
         dense = np.count_nonzero(apart) >= FACE_OUTLIERS and float(np.median(share[apart])) < FACE_OUTLIERS_NEARER_WALL
         face = inside[(share < FACE_NEARER_WALL) & (rows[inside] | dense)]
-        # beside an edge that is not yet found points lie a little inside, too
+        # beside an edge that is not yet found, points lie a little inside too
         if np.max(-on.heights[face], initial=0.0) > DEEPEST_FACE_POINT * _half_thickness(shape, end):
-            covered[face] = True
-        row = rows & (np.abs(on.v - end) < ROW_BAND) & ~covered
-        chosen = np.flatnonzero(row | (covered & (np.abs(on.v - end) < FACE_BAND)))
+            on_end_face[face] = True
+        row = rows & (np.abs(on.v - end) < ROW_BAND) & ~on_end_face
+        chosen = np.flatnonzero(row | (on_end_face & (np.abs(on.v - end) < FACE_BAND)))
         if len(chosen) < FEWEST_ROW_POINTS:
             continue
         wall = WallPoints(name=name, places=places[chosen], spread=0.0)
         aside = _off_row(*wall.located(exact), inward=1.0 if end == 0.0 else -1.0)
         spread = DEVIATION_OVER_MEDIAN * float(np.median(aside))
-        # beside a row lie points that are on the sides alone: they would pull the end inwards
+        # points of the sides beside the row would pull the end inwards
         chosen = chosen[aside <= ROW_WIDTH * max(spread, ROW_LEAST_WIDTH * float(np.ptp(places)))]
         walls[name] = WallPoints(name=name, places=places[chosen], spread=spread)
-    near = np.flatnonzero(((on.v < PAST_END_BAND) | (on.v > 1.0 - PAST_END_BAND)) & ~covered)
-    return BladeEnds(walls=walls, covered=covered, near=near)
+    near = np.flatnonzero(((on.v < PAST_END_BAND) | (on.v > 1.0 - PAST_END_BAND)) & ~on_end_face)
+    return BladeEnds(walls=walls, on_end_face=on_end_face, near=near)
 
 
 def _off_row(t: Reals, off: Reals, *, inward: float) -> Reals:
-    """Distances (m,) [m] from the row that most places stand in, which may be off the wall (`off`) by a smooth law.
+    """Distances (m,) [m] from the row in which most places stand, which may be off the wall by a smooth law.
 
-    The law is a polynomial of `t`, first that of a quantile, as places beside the row lie inwards of it alone, where
-    `off` has the sign `inward`. Reference: Koenker and Bassett 1978 (quantiles), by weights from turn to turn.
+    The law is a polynomial of `t`, first that of a quantile, as places beside the row lie inwards of it only, where
+    `off` has the sign `inward`. Reference: Koenker and Bassett 1978 (quantiles), by iteratively reweighted least
+    squares.
     """
     if len(t) == 0:
         return off
@@ -181,7 +187,7 @@ def _off_row(t: Reals, off: Reals, *, inward: float) -> Reals:
 
 
 def _half_thickness(shape: ModelShape, end: float) -> float:
-    """Largest half distance [m] of the sides beside an end."""
+    """Largest half distance [m] between the sides beside an end."""
     u = np.linspace(0.1, 0.9, 9)
     none, v = np.zeros((len(u), 3)), np.full(len(u), end)
     upper, lower = (footpoints_at(none, shape.sides, np.full(len(u), side), u, v).points for side in (0, 1))

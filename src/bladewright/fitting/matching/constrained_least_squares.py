@@ -1,8 +1,8 @@
 """Least squares under inequalities: Levenberg's damped steps, each the solution of the linearised problem.
 
-A penalty alone would stop a search at the kink where an inequality begins to hold; a step that sees the inequality
-slides along it. Reference: Lawson and Hanson 1974, chapter 23 (least distance programming by non-negative least
-squares); Nielsen 1999 (damping).
+A penalty alone would stop a search at the kink where an inequality begins to hold; a step that knows the linearised
+inequality slides along it. References: Lawson and Hanson 1974, chapter 23 (least distance programming by non-negative
+least squares); Nielsen 1999 (damping).
 """
 
 from abc import ABC, abstractmethod
@@ -15,29 +15,35 @@ from scipy.optimize import nnls
 from bladewright.nurbs.basis import Reals
 
 FIRST_DAMPING = 1e-6
-"""first damping, of the largest squared column"""
+"""first damping, relative to the largest squared column of the Jacobian (Nielsen 1999 recommends 1e-6 for a start that
+is believed to be near)."""
 LARGEST_CHANGE = 1.0
-"""largest change of a variable in one step"""
+"""largest change of a scaled variable in one step: one scale is what matters in a parameter, and linearisations reach
+about so far."""
 PENALTY = 4.0
-"""merit of a violated inequality, in multiples of the largest multiplier seen"""
+"""merit of a violated inequality, in multiples of the largest multiplier seen. The penalty is exact above 1; more makes
+steps short."""
 CORRECTED_SHARES = (1.0, 0.5, 0.2, 0.05, 0.0)
-"""part of a violation that a step mends: the largest that bounds and other inequalities allow"""
+"""shares of a violation that a step is asked to correct, in turn; the largest that the bounds and the other
+inequalities allow is taken."""
 PROBE_SHARE = 0.1
-"""part of a step at which the bend of the residuals is taken"""
+"""share of a step at which the second derivative of the residuals along it is measured: small against the step, large
+against rounding."""
 GOOD_GAIN = 0.8
-"""gain of the last step, of what was promised, from which the next one goes straight"""
+"""ratio of actual to predicted reduction of the last step from which the next one needs no second derivative."""
 EXPECTED_REST = 0.05
-"""part of what an even step promised that the next one is taken to promise, where the step kept all of it"""
+"""share of what a good step predicted that the next one is expected to predict at least, even where the step kept all
+of it."""
 LARGEST_BEND = 0.4
-"""largest change of a step by that bend, of the step"""
+"""largest change of a step by the second derivative, of the step. Beyond it the second-order model is not trusted."""
 ACTIVE_SET_CHANGES = 20
-"""of the inequalities that hold a step"""
+"""changes of the set of active inequalities in one step at most; a step that needs more is given up."""
 MIN_REDUCTION = 1e-6
-"""predicted part of the cost below which a step is not worth its evaluation"""
+"""predicted relative reduction of the cost below which a step is not worth its evaluation."""
 
 
 class ConstrainedProblem(ABC):
-    """A vector of residuals to be made small and one of values that may not be positive, both of variables (k,)."""
+    """Residuals to be made small and values that may not be positive, both functions of variables (k,)."""
 
     @property
     @abstractmethod
@@ -46,7 +52,7 @@ class ConstrainedProblem(ABC):
 
     @abstractmethod
     def values(self, z: Reals) -> tuple[Reals, Reals] | None:
-        """Residuals (m,) and constrained values (c,); None where there are none."""
+        """Residuals (m,) and constrained values (c,); None where the variables describe no shape."""
 
     @abstractmethod
     def derivatives(self, z: Reals) -> tuple[Reals, Reals]:
@@ -59,9 +65,9 @@ class ConstrainedMinimum:
 
     z: Reals
     converged: bool
-    """whether no further step promised anything"""
+    """whether no further step predicted a reduction worth its evaluation"""
     damping: float
-    """the last one, for a descent that goes on"""
+    """the last one, for a descent that goes on from here"""
 
 
 def constrained_minimum(
@@ -74,7 +80,7 @@ def constrained_minimum(
 ) -> ConstrainedMinimum:
     """The variables after at most `steps` evaluations of the residuals.
 
-    `slight` is the promised part of the cost up to which a step is not worth it.
+    `min_reduction` is the predicted relative reduction of the cost up to which a step is not worth it.
     """
     low, high = problem.bounds
     z = np.clip(start, low, high)
@@ -139,7 +145,7 @@ def constrained_minimum(
 def _second_derivative(
     problem: ConstrainedProblem, z: Reals, step: Reals, residuals: Reals, slopes: Reals
 ) -> Reals | None:
-    """Second derivative of the residuals (m,) along a step; None where there are none beside it."""
+    """Second derivative of the residuals (m,) along a step; None where a probe would leave the bounds."""
     low, high = problem.bounds
     part = PROBE_SHARE * step
     if np.any(z + part < low) or np.any(z + part > high):
@@ -153,7 +159,7 @@ def _second_derivative(
 def _step(
     matrix: Reals, rhs: Reals, damping: float, constraint_slopes: Reals, constrained: Reals, low: Reals, high: Reals
 ) -> tuple[Reals, float]:
-    """The damped step within the linearised inequalities, and the largest multiplier of one of them."""
+    """The damped step within the linearised inequalities, and the largest multiplier of an inequality."""
     count = matrix.shape[1]
     rows = np.vstack([matrix, np.sqrt(damping) * np.eye(count)])
     triangle = np.asarray(np.linalg.qr(np.column_stack([rows, np.append(rhs, np.zeros(count))]), mode="r"))
@@ -169,9 +175,9 @@ def _step(
 
 
 def _nearest_feasible(upper: Reals, unconstrained: Reals, rows: Reals, limit: Reals) -> tuple[Reals, Reals] | None:
-    """The step with rows @ step <= room nearest to the free one, and the multipliers; None where there is none.
+    """The step with rows @ step <= limit nearest to the free one, and the multipliers; None if there is none.
 
-    Distances are measured through the triangle `upper`. Rows join in as a step breaks them.
+    Distances are measured through the triangle `upper`. Inequalities join the active set as a step breaks them.
     """
     step, multipliers = unconstrained, np.zeros(len(rows))
     working = np.zeros(len(rows), dtype=bool)

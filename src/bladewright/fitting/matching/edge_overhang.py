@@ -1,6 +1,6 @@
 """How far the edges of a design may stand out of its cloud: no further than the points there are apart.
 
-Without it an edge that sticks out as a thin fin costs nothing, as it is nobody's nearest place.
+Without this limit an edge that sticks out as a thin fin costs nothing, as it is nobody's nearest place.
 """
 
 from collections.abc import Sequence
@@ -15,20 +15,22 @@ from bladewright.nurbs.basis import Reals
 from bladewright.nurbs.surface import Surface
 
 STATIONS: Reals = np.concatenate([[0.0], np.linspace(1.0 / 32.0, 31.0 / 32.0, 16), [1.0]])
-"""places along the span at which each edge is looked at"""
+"""places along the span, v, at which each edge is looked at; more add rows that say the same."""
 COVERED_SPAN = 0.05
-"""how far, in v, the nearest point may be from an end of the span: a cloud may show a part of the span only"""
+"""distance of the nearest point from an end of the span, in v, up to which the cloud shows that end: it may show a part
+of the span only."""
 SPANWISE_WEIGHT = 0.2
-"""what a distance along the edge counts while the nearest point is sought: a cloud may have few rows"""
+"""factor of distances along the edge while the nearest point is sought: a cloud may have few rows along the span."""
 NEIGHBOURS = 6
-"""points whose distances from each other are looked at"""
+"""points beside an edge whose distances from each other are looked at."""
 ALLOWED_SPACINGS, ALLOWED_SPACINGS_EXACT = 1.5, 15.0
-"""allowed distance, of that between neighbours, and the same in a cloud that is exact"""
+"""allowed overhang in spacings of the points beside the edge, and in a cloud that is exact (`ALLOWED_SPACINGS_EXACT`),
+where the true edge must cost nothing even by chance."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class EdgeOverhang:
-    """Places along both edges, and beside each the nearest point."""
+    """Places along both edges, and beside each the nearest point of the cloud."""
 
     points: Reals
     """(m, d) [m]"""
@@ -37,10 +39,10 @@ class EdgeOverhang:
     v: Reals
     """(m,)"""
     allowed: Reals
-    """(m,) [m]; infinite where the cloud does not tell"""
+    """(m,) overhang that costs nothing [m]; infinite where the cloud does not show the edge"""
 
     def edges(self, sides: Sequence[Side]) -> Footpoints:
-        """The places on the edges beside the points."""
+        """The places on the edges beside the points, as footpoints."""
         return footpoints_at(self.points, sides, np.zeros(len(self.u), dtype=np.intp), self.u, self.v)
 
     def excess(self, edges: Footpoints) -> Reals:
@@ -51,7 +53,7 @@ class EdgeOverhang:
 def edge_overhang_of(
     points: Reals, sides: Sequence[Side], rows: NDArray[np.bool_], *, exact: bool = False
 ) -> EdgeOverhang:
-    """The points beside each edge, of those in `rows` (n,); of an `exact` cloud an edge is only kept from running off.
+    """The overhang of both edges over the points in `rows` (n,); loose limits for an `exact` cloud.
 
     By chance a point may be further from an edge than others from each other, and the true edge must cost nothing.
     """

@@ -1,4 +1,8 @@
-"""Footpoints: the nearest places of a cloud on the two sides of a blade or section."""
+"""Footpoints: the nearest places of a cloud on the two sides of a blade or section.
+
+On curves, which are polynomials between their knots, Newton's iteration runs in one parameter; on surfaces it runs
+patch by patch.
+"""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, fields, replace
@@ -16,16 +20,18 @@ from bladewright.nurbs.proximity import PatchPoints, polished
 from bladewright.nurbs.surface import Surface
 
 CURVE_STEPS = 60
+"""Newton steps of a point on a curve at most; steps that raised the distance and were shortened count too."""
 ROUNDING = 1e-13
-"""relative rise of a squared distance that is rounding"""
+"""relative rise of a squared distance that still counts as no rise: a few hundred times the rounding of a double."""
 LONGEST_STEP = 2.0
-"""widths of a piece that a step may lead"""
+"""longest Newton step, in widths of the polynomial piece it starts from. Longer ones leave the piece whose derivatives
+predicted them."""
 
 
 def _descended_on_curve(on: Patches, points: Reals, start: Reals, *, converged: float) -> tuple[Reals, Reals]:
     """Parameters (n,) where descents from a start (n,) end, and squared distances (n,) there.
 
-    `converged` is a last step, of the width of a piece. Points (n, d) pass from piece to piece.
+    `converged` is the last step, of the width of a piece. Points (n, d) pass from piece to piece.
     """
     degree = on.degrees[0]
     coefficients = np.einsum("ij,kjd->ikd", _powers(degree), on.nets[:, :, 0, :-1])
@@ -82,22 +88,26 @@ def _powers(degree: int) -> Reals:
 
 Side = Curve | Surface
 OTHER_SIDE_RATIO = 2.0
-"""the other side is tried too where its nearest sample is not this much further away"""
+"""the other side is tried too where its nearest sample is at most this many times further away than the nearest of all:
+the samples are only about so exact."""
 EDGE_BAND = 0.02
-"""how near to the trailing edge, in u, a known foot may change sides"""
+"""distance from the trailing edge, in u, within which a known footpoint may change to the other side. Wider bands cost
+projections that change nothing."""
 DEEP_SHARE, DEEP_EXTENT = 0.25, 1e-5
-"""a point inside the blade is sought on its other side too where its foot is so much of the thickness there away, and
-more than so much of the cloud's extent"""
+"""a point inside the blade is projected onto the other side too where it lies deeper than this share of the thickness
+there (`DEEP_SHARE`), and deeper than this share of the cloud's extent (`DEEP_EXTENT`), which keeps noise out."""
 CONVERGED = 1e-8
-"""last step of a descent, in the parameters of a patch"""
+"""last step of a descent, in the parameters of a patch: distances of points off the surface are exact to its square."""
 SAMPLES = (6, 5)
-"""samples along and across a patch; a patch is small where the side bends"""
+"""samples along and across a patch from which descents start. More cost time for every projection, fewer start at the
+wrong hump."""
 EDGE_PATCHES, EDGE_SAMPLES = (0.05, 0.9), (4, 17)
-"""u before and after which a patch is beside an edge, and samples of those: along the span they must be as close to
-each other as the sides are there"""
+"""u before and after which a patch is sampled more densely (`EDGE_PATCHES`), and its samples along and across
+(`EDGE_SAMPLES`): along the span samples must be as close to each other as the two sides are beside an edge."""
 CURVE_SAMPLES = (24, 1)
+"""samples along a piece of a curve from which descents start; on curves they are cheap."""
 AT_ONCE = 20_000
-"""points that are projected at a time, to bound the memory"""
+"""points that are projected at a time; it bounds the memory, not the result."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -110,13 +120,13 @@ class Footpoints:
     v: Reals
     """0 on curves"""
     points: Reals
-    """(n, d) the places themselves"""
+    """(n, d) the footpoints themselves"""
     normals: Reals
     """(n, d) unit normals there, out of the blade"""
     beyond: Reals
-    """(n, d) at an end of the blade the unit vector in the surface that points past it; 0 elsewhere"""
+    """(n, d) at an end of the blade the unit vector in the surface that points past the end; 0 elsewhere"""
     miss: Reals
-    """(n, d) from the place to the point"""
+    """(n, d) vectors from the footpoints to the points"""
 
     @property
     def distances(self) -> Reals:
@@ -134,7 +144,7 @@ class Footpoints:
 
 
 def concatenated(parts: Sequence[Footpoints]) -> Footpoints:
-    """Feet one after the other."""
+    """Several sets of footpoints as one, in order."""
     names = [each.name for each in fields(Footpoints)]
     return Footpoints(**{name: np.concatenate([getattr(part, name) for part in parts]) for name in names})
 
@@ -144,10 +154,10 @@ def nearest_footpoints(
 ) -> Footpoints:
     """The nearest places of points (n, d) on the upper and the lower side.
 
-    Each starts from the nearest of samples that are close to each other where the sides bend, and descends by damped
-    Newton steps, around the leading edge where need be, until it converges. With a `hint`, the feet on sides that have
-    moved little since, it starts from there. `converged` is the last step in the parameters of a patch: heights above
-    the sides are exact to its square, the distances of points on them to itself.
+    Each descent starts at the nearest of samples that are close to each other where the sides bend, and takes damped
+    Newton steps, around the leading edge if need be, until it converges. With a `hint`, footpoints on sides that have
+    moved little since, it starts there. `converged` is the last step in the parameters of a patch: signed distances of
+    points off the sides are exact to its square, distances of points on them to itself.
     """
     on = _ring(sides)
     best, around, v = np.full(len(points), np.inf), np.zeros(len(points)), np.zeros(len(points))
@@ -201,7 +211,7 @@ Start = tuple[NDArray[np.intp], NDArray[np.intp], Reals]
 
 
 def _ring(sides: Sequence[Side]) -> Patches:
-    """The patches of both sides as one: u runs from -1, the trailing edge, along the lower side to 0, and on to 1."""
+    """The patches of both sides in a row: u runs from -1, the trailing edge, along the lower side to 0, and on to 1."""
     upper, lower = (patches(side) for side in sides)
     rows, columns = lower.shape
     order = np.arange(rows * columns).reshape(rows, columns)[::-1].ravel()
@@ -217,7 +227,7 @@ def _ring(sides: Sequence[Side]) -> Patches:
 
 
 def _starts(points: Reals, on: Patches) -> list[Start]:
-    """From the nearest sample, and from that on the other half where it is not much further."""
+    """Starts at the nearest sample, and at the nearest on the other side where that is not much further away."""
     samples = sampled(on, *(SAMPLES if on.degrees[1] else CURVE_SAMPLES))
     if on.degrees[1]:
         around = 0.5 * np.abs(on.low[:, 0] + on.high[:, 0])
@@ -240,14 +250,14 @@ def _starts(points: Reals, on: Patches) -> list[Start]:
 
 
 def _hinted(on: Patches, hint: Footpoints) -> list[Start]:
-    """From known feet, and from the other side of a trailing edge beside it."""
+    """Starts at known footpoints, and beside a trailing edge on the other side too."""
     around = np.where(hint.side == 0, hint.u, -hint.u)
     every, beside = np.arange(len(around)), np.flatnonzero(hint.u > 1.0 - EDGE_BAND)
     return [(every, *on.at(around, hint.v)), (beside, *on.at(-around[beside], hint.v[beside]))]
 
 
 def footpoints_at(points: Reals, sides: Sequence[Side], side: NDArray[np.intp], u: Reals, v: Reals) -> Footpoints:
-    """Feet at known parameters."""
+    """Footpoints at known sides and parameters."""
     at, normals, beyond = np.empty_like(points), np.empty_like(points), np.zeros_like(points)
     for k, shape in enumerate(sides):
         rows = np.flatnonzero(side == k)

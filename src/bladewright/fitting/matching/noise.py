@@ -1,4 +1,4 @@
-"""What is noise in a cloud, and what a design misses: told by a point's neighbours.
+"""How much of a cloud's distances is noise, and how much a misfit of the design: neighbouring points tell.
 
 A misfit of the design varies slowly along the surface; noise does not.
 """
@@ -15,17 +15,17 @@ from bladewright.nurbs.basis import Reals
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class NoiseEstimate:
-    """How the heights of a cloud above a surface scatter."""
+    """The noise of a cloud, its inliers, and how far neighbours share their distances."""
 
     noise: float
     """standard deviation of what neighbours do not share, of a point of the mean weight [m]"""
     inliers: NDArray[np.bool_]
     """(n,)"""
     correlation: float
-    """part of the inliers' variance that neighbours share: 0 for pure noise, 1 for a misfit of the design"""
+    """share of the inliers' variance that neighbours have in common: 0 for pure noise, 1 for a misfit of the design"""
 
     def independent_share(self, parameters: int) -> float:
-        """Part of the points that tell something of their own, as far as a design of so many parameters can follow.
+        """Share of the points that count as independent, for a design with so many parameters.
 
         A misfit is shared by as many neighbours as there are points for two parameters.
         """
@@ -36,10 +36,10 @@ class NoiseEstimate:
 def noise_of(
     points: Reals, on: Footpoints, weights: Reals | None = None, *, allow_outliers: bool = True
 ) -> NoiseEstimate:
-    """The scatter of points (n, d) about their feet; where not `outlying`, every point is an inlier.
+    """The noise estimate of points (n, d) about their footpoints; unless `allow_outliers`, every point is an inlier.
 
-    Weights (n,) are inverse variances relative to each other. A point of weight 0 tells nothing of the scatter, and is
-    an outlier where it lies further off than every other inlier.
+    Weights (n,) are inverse variances relative to each other. A point of weight 0 tells nothing of the noise, and is an
+    outlier where it lies further off than every inlier.
     """
     if weights is not None and not np.all(weights > 0.0):
         return _noise_of_weighted(points, on, weights, allow_outliers=allow_outliers)
@@ -65,7 +65,7 @@ def noise_of(
 
 
 def _noise_of_weighted(points: Reals, on: Footpoints, weights: Reals, *, allow_outliers: bool) -> NoiseEstimate:
-    """The scatter of the points that have a weight, and where the others are."""
+    """The noise estimate of the points that have a weight, and which of the others are inliers."""
     rows = weights > 0.0
     part = on.part(rows)
     found = noise_of(points[rows], part, weights[rows], allow_outliers=allow_outliers)

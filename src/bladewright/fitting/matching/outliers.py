@@ -1,7 +1,8 @@
 """Which points of a cloud lie off the surface that the others show.
 
-Along a surface the heights of points change steadily, by noise and by what a design misses: outliers are small groups,
-of one point or of many, that no step within the noise leads to. Where the rest is matched well, distances alone tell.
+Along a surface the signed distances of points change steadily, by noise and by what the design misses. Outliers are
+small groups, of one point or of many, that no step within the noise leads to. Where the rest is matched well, distances
+alone tell them.
 """
 
 from dataclasses import dataclass
@@ -17,47 +18,54 @@ from bladewright.fitting.matching.footpoints import Footpoints
 from bladewright.nurbs.basis import Reals
 
 NEIGHBOURS = {2: 4, 3: 8}
-"""neighbours asked, by dimension"""
+"""neighbours that a point is compared with, by dimension: two to each side of a curve, a ring on a surface."""
 OUTLYING_NOISE = 8.0
-"""deviations of the noise that an outlier exceeds"""
+"""distance of an outlier, in standard deviations of the noise. Of a million normal points none is so far off."""
 NEIGHBOUR_STEP = 5.0
-"""deviations of the noise by which neighbours on one surface differ at most"""
+"""largest difference of neighbours on one surface, in standard deviations of the noise."""
 OUTLYING_MISFIT, OUTLYING_MISFIT_AT_EDGES = 6.0, 60.0
-"""usual misfits that an outlier exceeds, and near an edge, where a misfit is large and neighbours are few"""
+"""distance of an outlier, in usual misfits of the design, and near an edge (`OUTLYING_MISFIT_AT_EDGES`), where misfits
+are large and neighbours are few. Lower values take points of an edge that is not yet found for outliers."""
 STEEPEST_MISFIT = 40.0
-"""usual misfits by which the misfit may change along the extent"""
+"""usual misfits by which the misfit may change along the cloud's extent."""
 STEEPER_THAN_AROUND = 4.0
-"""by how much steeper than around a point the misfit may become"""
+"""ratio by which the misfit may become steeper than it is around a point."""
 EDGE_BAND = 0.03
-"""how near, in u"""
+"""distance from an edge, in u, within which a point counts as near it."""
 SIDES_APART = 0.05
-"""how far apart the two sides of a thin blade are taken to be, of the extent"""
+"""distance that the two sides of a thin blade are taken to have, of the extent, so that points of one are not
+neighbours of the other."""
 STEADY_MISFIT = 100.0
-"""usual misfits from which a small group away from the edges is no misfit, though heights rise to it steadily"""
+"""usual misfits beyond which a small group away from the edges is outlying though distances rise to it steadily."""
 CHANCE_EXCESS = 3.0
-"""by how much more than the noise distances may usually be by chance, of the root of the number of points"""
+"""excess of the usual distance over the noise by chance, in multiples of the noise over the root of the number of
+points."""
 LARGEST_GROUP, SMALL_GROUP = 0.05, 20
-"""largest group of outliers, of the points, and however few there are"""
+"""largest group of outliers, as a share of the points, but `SMALL_GROUP` points are always allowed."""
 END_BAND, WRONG_END_SHARE = 0.02, 0.2
-"""how near an end of the blade points are, in v, and the part of them which past it shows that the end is wrong"""
+"""distance from an end of the blade, in v, within which points tell of it; where more than `WRONG_END_SHARE` of them
+lie past the end, the end is wrong and not the points."""
 PAST_END_BY_CHANCE = 1
-"""points past an end, level with the sides, that may be there by chance"""
+"""points level with the sides that may lie past an end by chance."""
 LEVEL_SLOPE = 0.05
-"""height, of the way past an end, up to which a point is level with the sides, which may bend there"""
+"""a point past an end is level with the sides up to this height per length past the end: the sides may bend there."""
 SPIKE_SLOPE, SPIKE_NEIGHBOURS = 2.0, 0.1
-"""slope to all neighbours that no surface has, and their height, of the point's own, from which they are on it"""
+"""slope to all neighbours that no surface has (`SPIKE_SLOPE`), and height of the neighbours, of the point's own, up to
+which they lie on the surface (`SPIKE_NEIGHBOURS`)."""
 LARGEST_OUTLIER_SHARE = 0.15
-"""part of the points from which it is the design that lies off, and not they"""
+"""share of outliers from which it is the design that lies off, and all points count as inliers."""
 LOCAL_POINTS, LOCAL_SITES = 64, 5000
-"""points around each of so many sites whose noise is taken to be alike"""
+"""points around each of `LOCAL_SITES` sites whose noise is taken to be the same: enough for a quartile, few enough to
+follow a scanner whose noise varies."""
 DEVIATION_OVER_QUARTILE = 3.1384
-"""standard deviation of normal noise over the lower quartile of its magnitude, which a group of outliers spoils less"""
+"""standard deviation of normal noise over the lower quartile of its magnitude, which a group of outliers spoils less
+than the median."""
 CORE_NEIGHBOURS = 3
-"""points of the large groups beside a small one to which a step may lead"""
+"""points of the large groups beside a small one to which a step within the noise may lead."""
 ALWAYS_INLIER = 1e-6
-"""distance up to which no point is an outlier, of the cloud's extent"""
+"""distance up to which no point is an outlier, of the cloud's extent; it is for clouds that are exact."""
 DEVIATION_OVER_MEDIAN = 1.4826
-"""standard deviation of normal noise over its median magnitude"""
+"""standard deviation of normal noise over its median magnitude."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -65,15 +73,15 @@ class Neighbourhood:
     """Which of n points are beside each other on the sides of a design."""
 
     places: Reals
-    """(n, d + 1) the feet, and how far from both edges, so that the sides are apart but at the edges"""
+    """(n, d + 1) the footpoints, and a coordinate that holds the sides apart except at the edges"""
     index: NDArray[np.intp]
-    """(n, k) the nearest others; a point itself where there are no others"""
+    """(n, k) the nearest other points; the point itself where there are no others"""
     extent: float
     """[m]"""
 
 
 def neighbourhood_of(points: Reals, on: Footpoints) -> Neighbourhood:
-    """The neighbours of points (n, d) with known feet."""
+    """The neighbours of points (n, d) with known footpoints."""
     extent = float(np.ptp(points, axis=0).max())
     inward = np.minimum(np.minimum(on.u, 1.0 - on.u) / EDGE_BAND, 1.0)
     lifted = np.where(on.side == 0, 1.0, -1.0) * SIDES_APART * extent * inward
@@ -92,9 +100,9 @@ def neighbourhood_of(points: Reals, on: Footpoints) -> Neighbourhood:
 def outliers_of(
     heights: Reals, past: Reals, distances: Reals, weights: Reals, on: Footpoints, around: Neighbourhood
 ) -> NDArray[np.bool_]:
-    """Which of n points are outliers, by their heights above the surface, their way past its ends and distances [m].
+    """Which of n points are outliers, by their signed distances, their way past the ends and their distances [m].
 
-    Weights are positive, and inverse variances relative to each other.
+    Weights are positive inverse variances, relative to each other.
     """
     index, roots = around.index, np.sqrt(weights)
     # a median of k neighbours has about 1 / k of the variance
@@ -129,7 +137,7 @@ def outliers_of(
 
 
 def _spikes(heights: Reals, least: Reals, around: Neighbourhood) -> NDArray[np.bool_]:
-    """Whether points (n,) stand higher off their neighbours, which are on the surface, than these are away.
+    """Whether points (n,) stand higher above their neighbours, which are on the surface, than these are away.
 
     No wrong radius of an edge does that.
     """
@@ -144,7 +152,7 @@ def _spikes(heights: Reals, least: Reals, around: Neighbourhood) -> NDArray[np.b
 def _short_of_ends(past: NDArray[np.bool_], level: NDArray[np.bool_], on: Footpoints) -> NDArray[np.bool_]:
     """Whether points (n,) are at an end of the blade that so many are past that it is the end which is wrong.
 
-    So it is, too, where most of those past it are `level` with the sides that go on there.
+    It is wrong too where most of the points past it are `level` with the sides that go on there.
     """
     wrong = np.zeros(len(past), dtype=bool)
     for beside in (on.v < END_BAND, on.v > 1.0 - END_BAND):
@@ -155,7 +163,7 @@ def _short_of_ends(past: NDArray[np.bool_], level: NDArray[np.bool_], on: Footpo
 
 
 def _local_noise(off: Reals, around: Neighbourhood) -> Reals:
-    """The noise (n,) around each point."""
+    """The standard deviation of the noise (n,) around each point."""
     sites = spread(around.places, LOCAL_SITES)
     _, near = cKDTree(around.places).query(around.places[sites], k=min(LOCAL_POINTS, len(off)))
     noise = DEVIATION_OVER_QUARTILE * np.quantile(off[near.reshape(len(sites), -1)], 0.25, axis=1)
@@ -163,7 +171,7 @@ def _local_noise(off: Reals, around: Neighbourhood) -> Reals:
 
 
 def _slopes(heights: Reals, level: Reals, misfit: float, around: Neighbourhood) -> Reals:
-    """How much heights may change along the surface (n,) by a misfit that varies steadily."""
+    """How much signed distances may change per length along the surface (n,) by a misfit that varies steadily."""
     index = around.index
     way = np.sqrt(np.sum((around.places[index] - around.places[:, None]) ** 2, axis=-1)) + ALWAYS_INLIER * around.extent
     change = np.maximum(np.abs(heights[index] - heights[:, None]) - NEIGHBOUR_STEP * level[:, None], 0.0) / way
@@ -179,7 +187,7 @@ def _lower(values: Reals) -> Reals:
 def _cut_off(
     heights: Reals, level: Reals, beyond: NDArray[np.bool_], slopes: Reals, largest: int, around: Neighbourhood
 ) -> NDArray[np.bool_]:
-    """Whether points (n,) are in a group of at most `largest` that no step leads to."""
+    """Whether points (n,) are in a group of at most `largest` that no step within the noise leads to."""
 
     def steps(start: NDArray[np.intp], end: NDArray[np.intp]) -> NDArray[np.bool_]:
         way = np.sqrt(np.sum((around.places[end] - around.places[start]) ** 2, axis=-1))
@@ -206,9 +214,9 @@ def _cut_off(
 
 
 def _groups(rows: NDArray[np.bool_], linked: NDArray[np.bool_], index: NDArray[np.intp]) -> NDArray[np.intp]:
-    """Labels (n,) of the groups that neighbours (n, k) make with each other where they are `linked`.
+    """Labels (n,) of the groups that linked neighbours (n, k) form.
 
-    Only points in `rows` are in groups with others; `linked` is (n, k), or (n,) for all ways from a point.
+    Only points in `rows` are in groups with others; `linked` is (n, k), or (n,) for all neighbours of a point.
     """
     count = len(index)
     taken = rows[:, None] & rows[index] & (linked if linked.ndim == 2 else linked[:, None])
@@ -218,5 +226,5 @@ def _groups(rows: NDArray[np.bool_], linked: NDArray[np.bool_], index: NDArray[n
 
 
 def _sizes(label: NDArray[np.intp]) -> NDArray[np.intp]:
-    """Number of points (n,) in the group of each."""
+    """Number of points (n,) in each point's group."""
     return np.bincount(label)[label]

@@ -1,7 +1,7 @@
-"""What is held of a design where its cloud says nothing: smooth laws, sides alike, nothing far from the start.
+"""What is held of a design where its cloud says nothing: smooth laws, equal sides, nothing far from the start.
 
-The rows are linear in the scaled parameters and of variance one: a search weighs them with the noise of the cloud over
-their own spread, so that they vanish beside data that are exact.
+The rows are linear in the scaled parameters and have variance one. A search weighs them with the noise of the cloud, so
+that they vanish beside data that are exact.
 """
 
 from collections.abc import Iterator, Sequence
@@ -18,22 +18,23 @@ from bladewright.nurbs.basis import Reals
 from bladewright.section.unified_limits import THICKNESSES
 
 SPREAD_ABOUT_START = 3.0
-"""spread of a parameter about its start, in its own scale"""
+"""spread of a parameter about its start, in its own scale. It only holds what nothing else does."""
 CHANNEL_SPREAD = 1.0
-"""the same of the channel's control points, which the cloud lets slide along their curves"""
+"""the same of control points of the meridional curves, which the cloud lets slide along their curves."""
 MERIDIANS = ("channel.", "flow_path.", "leading_edge.", "trailing_edge.")
-"""beginnings of the paths of those, and of the edge curves and walls of blades from sections"""
+"""beginnings of the paths of those, and of the edge curves and walls of blades from sections."""
 BEND_SPREAD = 0.5
-"""spread of second differences of a law"""
+"""spread of the second differences of a law, in the scale of its parameters. Smaller values straighten laws that the
+cloud bends."""
 CAMBER_SPREAD = 0.3
-"""spread of the difference of upper and lower thickness: the camber line runs in the middle"""
+"""spread of the difference of upper and lower thickness, in their scale: a camber line in the middle is preferred."""
 
 Terms = list[tuple[str, float]]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Regularisation:
-    """Rows `matrix @ z - aim`, z the scaled change of the parameters."""
+    """Rows `matrix @ z - rhs`, with z the scaled change of the parameters."""
 
     matrix: Reals
     """(m, k)"""
@@ -42,7 +43,7 @@ class Regularisation:
 
 
 def regularisation_of(start: Design, paths: Sequence[str], size: Reals) -> Regularisation:
-    """The prior about a start, for parameters (k,) of scale `size`."""
+    """The regularisation about a start, for parameters (k,) of scale `size`."""
     spread = np.where([path.startswith(MERIDIANS) for path in paths], CHANNEL_SPREAD, SPREAD_ABOUT_START)
     rows, rhs_rows = [np.diag(1.0 / spread)], [np.zeros(len(paths))]
     values = start.parameters()
@@ -62,7 +63,7 @@ def regularisation_of(start: Design, paths: Sequence[str], size: Reals) -> Regul
 
 
 def _second_differences(start: Design) -> Iterator[tuple[Terms, float]]:
-    """Second differences along the span and along the chord."""
+    """Second differences of laws along the span and along the chord."""
     for name in (*SPANWISE, *THICKNESSES, "leading_edge_theta", "leading_edge_y"):
         grid = paths_of(name, getattr(start, name, None))
         counts = {len(line) for line in grid}

@@ -1,4 +1,4 @@
-"""The least-squares problem of a fit: residuals in chords and their derivatives by the scaled parameters."""
+"""The least-squares problem of a match: residuals in chords and their derivatives by the scaled parameters."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -18,22 +18,24 @@ from bladewright.fitting.models.model import Model, ModelShape
 from bladewright.nurbs.basis import Reals
 
 EDGE_SHARE = 0.05
-"""part of a cloud that tells of its edges"""
+"""share of a cloud's points that tell of its edges: the rows that hold overhanging edges count as much as so many
+points."""
 USUAL_EDGE_HEIGHT = (0.8, 0.2)
-"""how high the control point that sets an edge's radius usually stands, of the thickness beside it, and its spread"""
+"""usual height of the control point that sets an edge's radius, of the thickness beside it, and its spread. It is weak,
+and holds edge radii that no point shows."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class PlacedCloud:
-    """A shape and where the cloud stands on it."""
+    """A shape and the cloud's footpoints on it."""
 
     shape: ModelShape
     footpoints: Footpoints
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Residuals:
-    """What is measured of a cloud against a shape: points, ends, walls and reach, as residuals in chords."""
+class CloudResiduals:
+    """What is measured of a cloud against a shape: points, ends, walls and edge overhang, as residuals in chords."""
 
     points: Reals
     """(n, d) [m]"""
@@ -43,12 +45,12 @@ class Residuals:
     ends: BladeEnds
     overhang: EdgeOverhang
     noise: float
-    """of the cloud, in chords: what scatters more counts less"""
+    """of the cloud, in chords: places on walls that scatter more than this count less"""
     precision: Reals | None = None
-    """(n,) inverse variances of the points, relative to each other; where None, as they are weighed"""
+    """(n,) inverse variances of the points, relative to each other; None where they are as the weights"""
 
     def residuals(self, state: PlacedCloud) -> Reals:
-        """All residuals (m,), those of the points (n,) along their normals first."""
+        """All residuals (m,); those of the points (n,) along their normals come first."""
         on, chord = state.footpoints, self.model.chord
         rows = [self.roots * on.heights / chord]
         rows.append((self.roots * np.sum(on.miss * on.beyond, axis=-1))[self.ends.near] / chord)
@@ -60,7 +62,7 @@ class Residuals:
         return np.concatenate(rows)
 
     def slopes(self, state: PlacedCloud, paths: Sequence[str]) -> Reals:
-        """Derivatives (m, k) by parameters, at held feet: those move along the surface only."""
+        """Derivatives (m, k) by parameters at held footpoints, which move along the surface only."""
         shape, chord = state.shape, self.model.chord
         every, edges = np.split(self.model.along(shape, *self.places(state), paths), [-len(self.overhang.u)])
         blocks = [every]
@@ -72,7 +74,7 @@ class Residuals:
         return np.concatenate([*blocks, edges]) / chord
 
     def jacobian(self, state: PlacedCloud, paths: Sequence[str]) -> LawJacobian:
-        """How the residuals (m,) of a blade of the unified family move with what its parameters are made of."""
+        """How the residuals (m,) of a blade of the unified family move with whole laws and channel points."""
         shape, chord = state.shape, self.model.chord
         on, directions = self.places(state)
         jacobian = law_jacobian(shape.exact, self.model.knots, on, directions / chord, paths)  # type: ignore[attr-defined]
@@ -90,9 +92,9 @@ class Residuals:
         return replace(jacobian, moves=moves)
 
     def places(self, state: PlacedCloud) -> tuple[Footpoints, Reals]:
-        """The places on the sides whose motion changes residuals, and the directions (n, d) that count.
+        """The footpoints whose motion changes residuals, and the directions (n, d) that count.
 
-        Those of the points, those of points past an end, and those of the edges' reach, last.
+        First those of the points, then those of points past an end, and last those of the edges' overhang.
         """
         on, near = state.footpoints, self.ends.near
         edges = self.overhang.edges(state.shape.sides)
@@ -107,17 +109,17 @@ class Residuals:
 
     @property
     def _of_edge(self) -> float:
-        """Weight as of so many points, which the part of the cloud has that tells of an edge."""
+        """Weight of a place on an edge: together they count as the points that tell of an edge."""
         return float(np.sqrt(max(1.0, EDGE_SHARE * len(self.points) / max(1, len(self.overhang.u)))))
 
 
 class MatchProblem(ConstrainedProblem):
-    """Residuals of a cloud, of noses that are not as usual, and of the prior; noses may not exceed their thickness."""
+    """Residuals of a cloud, of unusual edge heights and of the regularisation, under the shape's constraints."""
 
     def __init__(
         self,
         *,
-        cloud_residuals: Residuals,
+        cloud_residuals: CloudResiduals,
         start: Design,
         paths: Sequence[str],
         scales: Scales,
@@ -141,7 +143,7 @@ class MatchProblem(ConstrainedProblem):
 
     @property
     def bounds(self) -> tuple[Reals, Reals]:
-        """Lowest and highest scaled change."""
+        """Lowest and highest scaled change of the parameters."""
         return (self.scales.low - self.first) / self.scales.size, (self.scales.high - self.first) / self.scales.size
 
     def values_of(self, design: Design) -> Reals:
@@ -159,7 +161,7 @@ class MatchProblem(ConstrainedProblem):
         return self.start.changed({path: float(value) for path, value in zip(self.paths, values, strict=True)})
 
     def state(self, z: Reals) -> PlacedCloud | None:
-        """The shape and the cloud's feet; None where there is no such shape."""
+        """The shape and the cloud's footpoints; None where there is no such shape."""
         key = z.tobytes()
         if self._last[0] != key:
             self._last = key, self._state(z)
@@ -177,7 +179,7 @@ class MatchProblem(ConstrainedProblem):
         return PlacedCloud(shape=shape, footpoints=self._hint)
 
     def values(self, z: Reals) -> tuple[Reals, Reals] | None:
-        """All residuals (m,), and (c,) by how much noses exceed the thickness beside them and the channel folds."""
+        """All residuals (m,), and by how much edge radii exceed the thickness and the channel folds (c,)."""
         state = self.state(z)
         if state is None:
             return None
@@ -192,7 +194,7 @@ class MatchProblem(ConstrainedProblem):
         return rows, held
 
     def derivatives(self, z: Reals) -> tuple[Reals, Reals]:
-        """Those (m, k) of all residuals and those (c, k) of the noses."""
+        """Derivatives (m, k) of all residuals and (c, k) of the constrained values."""
         state = self.state(z)
         if state is None:
             raise DesignError("there is no shape to differentiate: start from a design that can be built")

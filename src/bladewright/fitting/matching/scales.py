@@ -1,4 +1,4 @@
-"""What a change of a parameter that matters is, and how far a parameter may go."""
+"""What change of a parameter matters, and how far a parameter may go."""
 
 import re
 from collections.abc import Callable, Mapping, Sequence
@@ -14,13 +14,13 @@ from bladewright.nurbs.basis import Reals
 from bladewright.section.checks import UNITS
 
 SMALLEST_LENGTH = 2e-5
-"""smallest thickness and edge radius, of the chord"""
+"""smallest thickness and edge radius, of the chord: about what can be made, and far above rounding."""
 LARGEST_ANGLE = 89.0
-"""largest angle [deg]"""
+"""largest angle [deg]: at 90 deg the tangent that places the camber is infinite."""
 
 
 class ParameterRange(NamedTuple):
-    """Of a parameter, in the unit of its field."""
+    """Of one parameter, in the unit of its field."""
 
     size: float
     """a change that matters"""
@@ -29,6 +29,8 @@ class ParameterRange(NamedTuple):
 
 
 WEDGE_RANGE, ANGLE_RANGE = ParameterRange(3.0, 0.0, LARGEST_ANGLE), ParameterRange(5.0, -LARGEST_ANGLE, LARGEST_ANGLE)
+"""of a wedge angle [deg]"""
+"""of any other angle [deg]"""
 RANGE_BY_NAME = {
     "maximum_thickness_at": ParameterRange(0.1, 0.051, 0.949),
     "camber_position": ParameterRange(0.1, 0.021, 0.979),
@@ -51,6 +53,7 @@ RANGE_BY_NAME = {
     "suction_places": ParameterRange(0.05, -0.49, 1.49),
     "pressure_places": ParameterRange(0.05, -0.49, 1.49),
 }
+"""Of fields whose limits the family states: a little inside them, so that a search may differentiate at its bounds."""
 
 
 RangeRule = Callable[[float, float], ParameterRange]
@@ -68,10 +71,11 @@ RANGE_BY_ENDING: tuple[tuple[str, RangeRule], ...] = (
     ("tangent_out", lambda value, _: ParameterRange(float(np.clip(0.5 * value, 2e-3, 0.05)), 1e-3, 9.9)),
     ("", lambda _, largest: ParameterRange(max(0.3 * largest, 0.02))),
 )
+"""of other fields of a part by the end of their name; the first ending that matches counts"""
 
 
 def part_range(path: str, unit: str | None, value: float, largest: float) -> ParameterRange:
-    """Of the parameter of a part at a path; `largest` is the largest magnitude in its field."""
+    """The range of a part's parameter at a path; `largest` is the largest magnitude in its field."""
     name = re.findall(r"[a-z_]\w*", path)[-1]
     if name in RANGE_BY_NAME:
         return RANGE_BY_NAME[name]
@@ -86,7 +90,7 @@ class Scales:
     """Of k parameters, in the units of their fields."""
 
     size: Reals
-    """(k,) a change that matters: the unit of a search, and how far a prior guess may be off"""
+    """(k,) a change that matters: the unit of a search, and how far a first guess may be off"""
     low: Reals
     """(k,)"""
     high: Reals
@@ -96,7 +100,7 @@ class Scales:
 def scales_of(
     design: Design, paths: Sequence[str], chord: float, bounds: Mapping[str, tuple[float, float]] | None = None
 ) -> Scales:
-    """Scales of a design's parameters, `chord` in metres, `bounds` by pattern within those of the family."""
+    """Scales of a design's parameters; `chord` in metres, `bounds` by pattern within those of the family."""
     kinds = _ranges(design, paths, chord)
     size, low, high = (np.array([getattr(kind, name) for kind in kinds]) for name in ("size", "low", "high"))
     for pattern, (least, most) in (bounds or {}).items():
@@ -106,7 +110,7 @@ def scales_of(
 
 
 def check_bounds(design: Design, paths: Sequence[str], bounds: Mapping[str, tuple[float, float]]) -> None:
-    """Refuse bounds of no parameter (k,) that is free, in the wrong order, or outside what the family allows."""
+    """Refuse bounds of no free parameter (k,), in the wrong order, or outside what the family allows."""
     for pattern, (least, most) in bounds.items():
         if not least < most:
             raise FitError(f"the bounds of {pattern} are {least:g} to {most:g}: the first must be below the second")
@@ -123,7 +127,7 @@ def check_bounds(design: Design, paths: Sequence[str], bounds: Mapping[str, tupl
 
 
 def _matched_indices(pattern: str, paths: Sequence[str]) -> list[int]:
-    """Places of the paths that a pattern matches: none where a structure has no such parameter."""
+    """Indices of the paths that a pattern matches: none where a structure has no such parameter."""
     try:
         found = set(matching(pattern, paths))
     except DesignError:
@@ -132,7 +136,7 @@ def _matched_indices(pattern: str, paths: Sequence[str]) -> list[int]:
 
 
 def _ranges(design: Design, paths: Sequence[str], chord: float) -> list[ParameterRange]:
-    """What parameters are like, a law's by the values of all of it."""
+    """Ranges of parameters; a law's sizes follow from the values of all of it."""
     values = {path: float(value) for path, value in design.parameters().items()}
     fields: dict[str, list[float]] = {}
     for path, value in values.items():

@@ -19,30 +19,30 @@ from bladewright.fitting.matching.edge_overhang import edge_overhang_of
 from bladewright.fitting.matching.footpoints import nearest_footpoints
 from bladewright.fitting.matching.noise import NoiseEstimate, noise_of
 from bladewright.fitting.matching.regularisation import regularisation_of
-from bladewright.fitting.matching.residuals import MatchProblem, PlacedCloud, Residuals
+from bladewright.fitting.matching.residuals import CloudResiduals, MatchProblem, PlacedCloud
 from bladewright.fitting.matching.scales import scales_of
 from bladewright.fitting.models.model import Model, model_of
 from bladewright.nurbs.basis import Reals
 
 KEPT_DESIGNS = 3
-"""designs that are kept: the nearest may be one that cannot be built"""
+"""designs that are kept for an interruption: the nearest may be one that cannot be built."""
 
 
 @dataclass(frozen=True, eq=False)
 class BestSoFar:
-    """The nearest designs so far, nearest first."""
+    """The nearest designs so far, nearest first, for when a match is interrupted."""
 
     found: list[tuple[float, Any]] = field(default_factory=list)
 
     def note(self, found: Any) -> None:
-        """Keep where a round of a search ended, if few are nearer."""
+        """Keeps the end of a round if few noted designs are nearer."""
         if np.isfinite(found.mean_distance):
             self.found.append((found.mean_distance, found))
             self.found.sort(key=lambda each: each[0])
             del self.found[KEPT_DESIGNS:]
 
     def built(self) -> tuple[Any, Any] | None:
-        """The nearest that can be built, and what it builds; None where there is none."""
+        """The nearest design that can be built, and what it builds; None where there is none."""
         for _, found in self.found:
             try:
                 return found, found.design.build()
@@ -52,30 +52,33 @@ class BestSoFar:
 
 
 EVALUATIONS_PER_ROUND = 10
-"""evaluations of the surface in a round"""
+"""evaluations of the surface in a round; after it knots, outliers and noise are updated."""
 MOST_ROUNDS = 12
+"""rounds of a search at most: it bounds the time of a search that does not settle."""
 SETTLED_RATIO = 0.995
-"""ratio of a round's misfit to that of the last at which a search ends"""
+"""ratio of a round's misfit to the one before from which a search has settled."""
 ROUGH_REDUCTION = 0.01
-"""part of the cost that a step must promise while a search is only one on the way"""
+"""predicted relative reduction of the cost that a step needs while a search is only one on the way: exact minima of
+intermediate structures are not needed."""
 FAST_RATIO = 0.5
-"""ratio below which the next round's misfit is foreseen to fall as much again"""
+"""ratio of misfits below which the next round is predicted to reduce the misfit as much again."""
 EXACT_MISFIT = 3e-14
-"""misfit below which nothing is left to find, of the chord"""
+"""misfit below which nothing is left to find, of the chord: rounding of the surfaces themselves."""
 NATIVE_TOLERANCE_OF_NOISE = 0.1
-"""tolerance of the native surfaces in a round, of the noise"""
+"""tolerance of the native surfaces in a round, of the noise: a tenth adds less than 1 % to the distances."""
 COARSEST_TOLERANCE = 1e-4
-"""tolerance of the native surfaces, of the chord"""
+"""coarsest tolerance of the native surfaces in a search, of the chord."""
 EDGE_RADIUS_MARGIN = {2: 2e-6, 3: 2e-5}
-"""by how much a nose is at first held below the thickness beside it, of the section's extent, by dimension: a blade is
-    asked between its stations too"""
+"""margin by which the control point that sets an edge's radius is held below the thickness beside it, of the section's
+extent, by dimension: a blade is refused between its stations too."""
 
 Progress = Callable[[str], None]
+"""is handed a few words on what is done"""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Task:
-    """What is sought."""
+    """What is sought: points, weights, free parameters and bounds."""
 
     points: Reals
     """(n, d) [m]"""
@@ -85,19 +88,20 @@ class Task:
     """the free parameters of a design, whatever its structure"""
     bounds: Mapping[str, tuple[float, float]]
     progress: Progress = lambda _: None
+    """is handed a few words on what is done"""
     regularisation_factor: float = 1.0
-    """by how much the prior is stronger"""
+    """factor of the regularisation"""
     margin_factor: float = 1.0
-    """by how much noses are held further from what is refused"""
+    """factor of the margin that keeps edge radii from what is refused"""
     precision: Reals | None = None
-    """(n,) inverse variances of the points, relative to each other; where None they are alike"""
+    """(n,) inverse variances of the points, relative to each other; None where they are equal"""
     allow_outliers: bool = True
     """whether points may be outliers"""
     best_so_far: BestSoFar = field(default_factory=BestSoFar)
     """the nearest designs that searches have come to"""
 
     def part(self, rows: NDArray[np.intp]) -> "Task":
-        """The same with some of the points (m,)."""
+        """The same task with some of the points (m,)."""
         if len(rows) == len(self.points):
             return self
         precision = None if self.precision is None else self.precision[rows]
@@ -106,7 +110,7 @@ class Task:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Match:
-    """Where a search ended."""
+    """A design found for a cloud: where a search ended."""
 
     design: Design
     problem: MatchProblem
@@ -116,7 +120,7 @@ class Match:
     damping: float
     evaluations: int
     converged: bool = False
-    """whether the last descent came to its end"""
+    """whether the last descent converged"""
     interrupted: bool = False
 
     @property
@@ -127,27 +131,27 @@ class Match:
     @property
     def rows(self) -> NDArray[np.bool_]:
         """(n,) the points that take part as points of the sides."""
-        return self.noise_estimate.inliers & ~self.ends.covered
+        return self.noise_estimate.inliers & ~self.ends.on_end_face
 
     @property
     def rms(self) -> float:
-        """Root mean square of the distances of those, of the chord."""
+        """Root mean square of the distances of those points, of the chord."""
         return float(np.sqrt(np.mean(self.state.footpoints.distances[self.rows] ** 2))) / self.model.chord
 
     @property
     def mean_distance(self) -> float:
-        """Mean distance of all points but those that lie on end faces, outliers too [m]."""
-        return float(np.mean(self.state.footpoints.distances[~self.ends.covered]))
+        """Mean distance of all points except those on end faces, outliers included [m]."""
+        return float(np.mean(self.state.footpoints.distances[~self.ends.on_end_face]))
 
     @property
     def misfit(self) -> float:
-        """The same with what ends, walls and edges add to it."""
+        """Root mean square of all residuals, those of ends, walls and edges included, of the chord."""
         residuals = self.problem.cloud_residuals.residuals(self.state)
         return float(np.sqrt(np.sum(residuals**2) / max(1.0, float(np.count_nonzero(self.rows)))))
 
     @property
     def maximum(self) -> float:
-        """Largest distance of those [m]."""
+        """Largest distance of those points [m]."""
         return float(np.max(self.state.footpoints.distances[self.rows]))
 
 
@@ -162,9 +166,9 @@ def searched(
 ) -> Match:
     """The design nearest to the cloud that a search from `start` finds, with the structure of `start`.
 
-    `noise` is the first round's, of the chord; where None the misfit of the start. `slight` is the part of the cost
-    that a step must promise, `enough` the misfit, of the chord, below which the search ends. Raises FitError where the
-    start has no shape.
+    `noise` is the first round's, of the chord; None takes the misfit of the start. `min_reduction` is the relative
+    reduction of the cost that a step must predict, `enough` the misfit, of the chord, below which the search ends.
+    Raises FitError where the start has no shape.
     """
     found, idle = _prepared_round(task, start, start, noise), 0
     task.best_so_far.note(found)
@@ -177,7 +181,7 @@ def searched(
                 found if number == 0 else _prepared_round(task, start, found.design, noise, found), min_reduction
             )
         except FitError:
-            # at finer knots the design has no shape: it stays as it was found
+            # at finer knots the design has no shape: the round before stands
             break
         task.best_so_far.note(found)
         rms = f"{1e3 * found.rms * found.model.chord:.3g} mm rms, {1e3 * found.maximum:.3g} mm at most"
@@ -216,16 +220,16 @@ def _prepared_round(
     on = nearest_footpoints(points, shape.sides)
     noise_estimate = noise_of(points, on, task.precision, allow_outliers=task.allow_outliers)
     ends = blade_ends_of(points, on, shape, noise_estimate.inliers)
-    misfit = float(np.sqrt(np.mean(on.distances[noise_estimate.inliers & ~ends.covered] ** 2))) / model.chord
+    misfit = float(np.sqrt(np.mean(on.distances[noise_estimate.inliers & ~ends.on_end_face] ** 2))) / model.chord
     scales = scales_of(start, paths, model.chord, task.bounds)
     prior = regularisation_of(start, paths, scales.size)
-    cloud_residuals = Residuals(
+    cloud_residuals = CloudResiduals(
         points=points,
-        roots=np.sqrt(task.weights * (noise_estimate.inliers & ~ends.covered)),
+        roots=np.sqrt(task.weights * (noise_estimate.inliers & ~ends.on_end_face)),
         model=model,
         ends=ends,
         overhang=edge_overhang_of(
-            points, shape.sides, noise_estimate.inliers & ~ends.covered, exact=not task.allow_outliers
+            points, shape.sides, noise_estimate.inliers & ~ends.on_end_face, exact=not task.allow_outliers
         ),
         noise=misfit if noise is None else noise,
         precision=np.ones(len(points)) if task.precision is None else task.precision,

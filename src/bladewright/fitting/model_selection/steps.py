@@ -225,7 +225,7 @@ def steps_taken_together(
 
 
 def _residuals_after(found: Match, step: StructureStep) -> tuple[Reals, Reals]:
-    """Residuals after a step, and their derivatives by the parameters of its law, where the cloud stands now."""
+    """CloudResiduals after a step, and their derivatives by the parameters of its law, where the cloud stands now."""
     other = reshaped(found.design, step.structure)
     paths = tuple(path for path in other.parameters() if path.startswith(step.fields))
     cloud_residuals, on = found.problem.cloud_residuals, found.state.footpoints

@@ -1,6 +1,6 @@
-"""The sides of sections and blades with blunt edges, each with its half of the face: they close the outline.
+"""The sides of sections and blades with blunt edges, each with its half of the edge's face: they close the outline.
 
-A side and half a face are one curve, or surface, with a corner, so that the nearest place of a point may lie on either.
+A side and half a face are one curve, or surface, with a corner, so that a point's nearest place may lie on either.
 """
 
 from collections.abc import Mapping, Sequence
@@ -18,7 +18,7 @@ from bladewright.nurbs.surface import Surface
 from bladewright.section.section import Section
 
 FACE_SHARE = 0.02
-"""part of the parameter that half a face takes"""
+"""share of a side's parameter that half a face takes; only the parametrisation depends on it."""
 BluntEdges = tuple[bool, bool]
 """whether the leading and the trailing edge are blunt"""
 
@@ -49,12 +49,12 @@ def closed_nets(upper: Array, lower: Array, degree: int, blunt: BluntEdges) -> t
 
 
 def side_bounds(blunt: BluntEdges) -> tuple[float, float]:
-    """Where the side itself begins and ends."""
+    """Parameters at which the side itself begins and ends."""
     return (FACE_SHARE if blunt[0] else 0.0), (1.0 - FACE_SHARE if blunt[1] else 1.0)
 
 
 def closed_with(upper: Surface, lower: Surface, faces: Mapping[str, Surface]) -> tuple[Surface, Surface]:
-    """Two sides of a blade with the halves of the faces of its blunt edges, by the names of these."""
+    """Two sides of a blade with the halves of the faces of its blunt edges, given by name."""
     blunt = "leading_edge" in faces, "trailing_edge" in faces
     if not any(blunt):
         return upper, lower
@@ -115,7 +115,7 @@ def blunt_edges_of(edges: Sequence[str]) -> BluntEdges:
 
 
 def on_sides(on: Footpoints, edges: Sequence[str]) -> tuple[Footpoints, NDArray[np.intp]]:
-    """Feet by the parameters of the sides themselves, and -1 where one is on the leading, 1 on the trailing face."""
+    """Footpoints by the sides' own parameters, and -1 for those on the leading face, 1 on the trailing face, 0 else."""
     low, high = side_bounds(blunt_edges_of(edges))
     faces = np.where(on.u < low, -1, np.where(on.u > high, 1, 0))
     return replace(on, u=np.clip((on.u - low) / (high - low), 0.0, 1.0)), faces

@@ -1,6 +1,6 @@
-"""How near sections come to what their family refuses: a search that sees it slides along it.
+"""How near sections are to what their family refuses, so that a search can slide along the limit.
 
-Without it, the steps of a search are refused one after the other where a side leaves an edge on too short a tangent.
+Without it, steps of a search are refused one after the other where a side leaves an edge on too short a tangent.
 """
 
 from typing import Any
@@ -15,15 +15,15 @@ from bladewright.section.suction_pressure.part import SuctionPressure, character
 from bladewright.section.suction_pressure.side import pace
 
 SLOWEST_PACE = 0.003
-"""smallest pace of a side, of what it has further on"""
+"""smallest pace of a side beside an edge, of its pace further on; at 0 the family refuses the side."""
 OPENING_MARGIN = 0.003
-"""smallest distance from the largest opening of an edge"""
+"""smallest distance of an edge's opening from the largest one that the family allows."""
 
 
 def infeasibility(part: Any, span: Span) -> Array:
-    """By how much sections at places along the span are nearer to a refusal than they may be (..., c), where positive.
+    """By how much sections at places along the span are nearer to a refusal than they may be (..., c).
 
-    Raises DesignError where they are refused already.
+    Values above 0 violate the margin. Raises DesignError where the sections are refused already.
     """
     if not isinstance(part, SuctionPressure):
         return np.zeros(0)
@@ -36,7 +36,7 @@ def infeasibility(part: Any, span: Span) -> Array:
 
 
 def _opening_excess(part: SuctionPressure, edge: str, span: Span) -> Array:
-    """The same of an edge's two ellipses (..., m, 2), by their opening."""
+    """The same for the two ellipses of an edge (..., m, 2), by their opening."""
     stretch, skew, wedge = (span.values(getattr(part, f"{edge}_{each}")) for each in ("stretch", "skew", "wedge"))
     ratios = [opening(stretch * (1.0 + sign * skew), radians(wedge)) for sign in (1.0, -1.0)]
     return np.stack(np.broadcast_arrays(*ratios), axis=-1) - (MAX_OPENING[part.edges] - OPENING_MARGIN)

@@ -1,7 +1,8 @@
-"""How places on a blade of the unified family move with its laws as wholes, from which all else is a product.
+"""How places on a blade of the unified family move with whole laws, from which all derivatives are products.
 
-A law acts on the section at v by its value there alone, and so do the edges of the channel: what places move by, law by
-law and section by section, gives the derivatives by the control points of any law in its stead, of more or of fewer.
+A law acts on the section at v by its value there alone, and so do the edges of the channel. The motion by law and by
+section therefore gives the derivatives by the control points of any law in its place, with more control points or
+fewer.
 """
 
 import re
@@ -24,25 +25,25 @@ from bladewright.nurbs.basis import Reals, basis, uniform_knots
 from bladewright.section.checks import UNITS
 
 AT_ONCE = 40
-"""steps in one rebuild"""
+"""complex steps in one rebuild; it bounds the memory."""
 PRODUCT_SIZE = 4_000_000
-"""of a product at a time, to bound the memory"""
+"""numbers of one product; it bounds the memory."""
 EDGES = ("leading_edge", "trailing_edge")
 AXES = {"x": 0, "r": 1}
 
 ChannelShift = tuple[str, int | None, int]
-"""a curve of the channel, the control point of it that moves (None: all, and no wall), and whether x or r does"""
+"""a curve of the channel, the control point of it that moves (None: all of them, and no wall), and the axis, x or r"""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class LawJacobian:
-    """How n places move along given directions with steps of laws and of the channel's curves, section by section."""
+    """How n places move along given directions with steps of laws and of the channel's curves, by section."""
 
     design: UnifiedBlade
     sites: Reals
-    """(m,) places of the sections along the span"""
+    """(m,) v of the sections along the span"""
     moves: dict[str | ChannelShift, Reals]
-    """(n, m) by step: by so much as a step's value at the section says [m per unit of the field]"""
+    """(n, m) by step: motion for a unit of the step's value at each section [m per unit of the field]"""
 
     def columns(self, paths: Sequence[str]) -> Reals:
         """Derivatives (n, k) by parameters."""
@@ -58,7 +59,7 @@ class LawJacobian:
 
 
 def law_shares(design: UnifiedBlade, path: str, sites: Reals) -> Iterator[tuple[str | ChannelShift, Reals]]:
-    """The steps that a parameter is made of, and its share (m,) in each at the sites."""
+    """The steps that a parameter consists of, and its share (m,) in each at the sites."""
     if not (path.startswith("channel.") and stands_on_channel(design)):
         source = law_point(design, path)
         share = source.factor(sites)
@@ -87,7 +88,7 @@ def edge_basis(count: int, degree: int, v: Reals) -> Reals:
 def law_jacobian(
     exact: ExactUnifiedBlade, knots: Knots, on: Footpoints, directions: Reals, paths: Sequence[str]
 ) -> LawJacobian:
-    """How places move along directions (n, 3) with what the parameters at `paths` are made of; knots are held."""
+    """How places move along directions (n, 3) with what the parameters at `paths` consist of; knots are held."""
     design, sites = exact.design, knots.sites_v
     steps = list(dict.fromkeys(step for path in paths for step, _ in law_shares(design, path, sites)))
     across = basis(knots.v, DEGREE, on.v) @ np.linalg.inv(basis(knots.v, DEGREE, sites))
@@ -100,7 +101,7 @@ def law_jacobian(
 def _stepped(
     exact: ExactUnifiedBlade, steps: Sequence[str | ChannelShift]
 ) -> Iterator[tuple[Sequence[str | ChannelShift], ExactUnifiedBlade]]:
-    """Some of the steps at a time, and the exact blade with them in a batch."""
+    """Some of the steps at a time, and the exact blade with these in a batch."""
     laws = [step for step in steps if isinstance(step, str)]
     shifts = [step for step in steps if not isinstance(step, str)]
     for first in range(0, len(laws), AT_ONCE):
@@ -123,7 +124,7 @@ def _along_u(other: ExactUnifiedBlade, knots: Knots, count: int) -> tuple[Array,
 
 
 def _motion(lines: tuple[Array, Array], knots: Knots, on: Footpoints, directions: Reals, across: Reals) -> Reals:
-    """(k, n, m) what places move by along their directions."""
+    """(k, n, m) motion of the places along their directions."""
     steps, _, sites, _ = lines[0].shape
     found = np.zeros((steps, len(on.u), sites))
     for number, side in enumerate(lines):

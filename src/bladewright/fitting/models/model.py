@@ -26,16 +26,16 @@ class ModelShape:
     design: Any
     sides: tuple[Side, Side]
     edge_radius_margins: Reals = field(default_factory=lambda: np.zeros((2, 0)))
-    """(2, ...) by how much, at each edge of each side that is set by one, the control point that sets the radius stands
-    higher than the thickness beside it, of the section's extent, and how high it stands, of that thickness"""
+    """(2, ...) for each edge of each side whose radius a control point sets: by how much that point stands higher than
+    the thickness beside it, of the section's extent, and its height, of that thickness"""
     constraints: Reals = field(default_factory=lambda: np.empty(0))
-    """(c,) by how much the channel comes nearer to folding over than it may, of the median of its Jacobian"""
+    """(c,) values that may not be positive: how near a channel is to folding over, or sections are to a refusal"""
     exact: Any = None
-    """the exact blade, where it is one"""
+    """the exact blade; None for sections"""
 
     @property
     def finite(self) -> bool:
-        """Whether there is such a shape at all."""
+        """Whether the shape exists at all."""
         return all(bool(np.isfinite(side.homogeneous).all()) for side in self.sides)
 
 
@@ -47,13 +47,13 @@ class Model(ABC):
 
     def shape(self, design: Design) -> ModelShape:
         """The sides of a design; raises DesignError where there are none at all."""
-        # what is not finite is told by the shape itself
+        # the shape itself tells where it is not finite
         with np.errstate(invalid="ignore", divide="ignore", over="ignore"):
             return self._shape(design)
 
     @abstractmethod
     def _shape(self, design: Any) -> ModelShape:
-        """The same."""
+        """The sides of a design; invalid operations leave values that are not finite."""
 
     @abstractmethod
     def tangents(self, shape: ModelShape, paths: Sequence[str]) -> tuple[Reals, Reals]:
@@ -68,12 +68,12 @@ class Model(ABC):
         return np.zeros((len(paths), len(shape.constraints)))
 
     def along(self, shape: ModelShape, on: Footpoints, directions: Reals, paths: Sequence[str]) -> Reals:
-        """Derivatives (n, k) of the places along directions (n, d), at held parameters."""
+        """Derivatives (n, k) of the footpoints along directions (n, d), at held surface parameters."""
         return np.einsum("nkd,nd->nk", self.rates(shape, on, self.tangents(shape, paths)), directions)
 
     @staticmethod
     def rates(shape: ModelShape, footpoints: Footpoints, tangents: tuple[Reals, Reals]) -> Reals:
-        """Derivatives (n, k, d) of the places, at held parameters."""
+        """Derivatives (n, k, d) of the footpoints, at held surface parameters."""
         count = len(tangents[0])
         found = np.empty((len(footpoints.u), count, footpoints.points.shape[1]))
         for number, (side, rates) in enumerate(zip(shape.sides, tangents, strict=True)):

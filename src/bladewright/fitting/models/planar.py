@@ -1,4 +1,4 @@
-"""2D designs of the families that are one part, as a search sees them."""
+"""Sections of the families that are one part, as a search sees them."""
 
 from collections.abc import Sequence
 from typing import Any, final
@@ -25,7 +25,7 @@ SINGLE_SECTION = Span(np.zeros(1))
 
 @final
 class PlanarModel(Model):
-    """A section of any such family at the knots that one of them needs for a tolerance, of the chord."""
+    """A section of such a family, at the knots that one design needs for a tolerance, of the chord."""
 
     def __init__(self, design: PlanarSection, tolerance: float | None = None) -> None:
         self.chord = float(np.real(design.chord)) * UNITS[design.length_unit]
@@ -41,13 +41,13 @@ class PlanarModel(Model):
         return ModelShape(design=design, sides=(sides[0], sides[1]), constraints=constraints)
 
     def tangents(self, shape: ModelShape, paths: Sequence[str]) -> tuple[Reals, Reals]:
-        """From one rebuild with a step on each parameter in a batch."""
+        """From one rebuild with a complex step on each parameter in a batch."""
         nets = self._nets(shape.design.changed(complex_steps(shape.design, paths)))
         upper, lower = (np.imag(np.broadcast_to(net, (len(paths), *net.shape[-2:]))) / STEP for net in nets)
         return upper, lower
 
     def constraint_rates(self, shape: ModelShape, paths: Sequence[str]) -> Reals:
-        """Of what the part comes near to."""
+        """Derivatives of the section's infeasibility."""
         return infeasibility_rates(shape, paths, SINGLE_SECTION)
 
     def _nets(self, design: Any) -> tuple[Array, Array]:
@@ -83,7 +83,7 @@ def _net(points: Array, edges: tuple[Edge, Edge], name: str, knots: Reals) -> Ar
 
 
 def infeasibility_rates(shape: ModelShape, paths: Sequence[str], span: Span) -> Reals:
-    """Derivatives (k, c) of a section's `constraints` by every parameter."""
+    """Derivatives (k, c) of the infeasibility of sections by every parameter."""
     found = np.zeros((len(paths), len(shape.constraints)))
     own = [i for i, path in enumerate(paths) if path.startswith("section.")]
     if len(shape.constraints) and own:

@@ -22,12 +22,12 @@ from bladewright.nurbs.basis import Reals
 from bladewright.section.laws import Span
 
 FEASIBILITY_SPAN = Span(np.linspace(0.0, 1.0, 5))
-"""places along the span at which it is asked how near sections come to what is refused"""
+"""places along the span at which sections must stay feasible; each costs one more section a step"""
 
 
 @final
 class SectionedModel(Model):
-    """A blade of any family from sections, at the knots that one of them needs for a tolerance, of the chord."""
+    """A blade from sections of any family, at the knots that one design needs for a tolerance, of the chord."""
 
     def __init__(self, design: SectionedBlade, tolerance: float | None = None) -> None:
         own = replace(design, tolerance=design.tolerance if tolerance is None else tolerance)
@@ -59,7 +59,7 @@ class SectionedModel(Model):
         return np.moveaxis(rates[0], -2, 1), np.moveaxis(rates[1], -2, 1)
 
     def constraint_rates(self, shape: ModelShape, paths: Sequence[str]) -> Reals:
-        """Of what the sections come near to."""
+        """Derivatives of the sections' infeasibility."""
         return infeasibility_rates(shape, paths, FEASIBILITY_SPAN)
 
 

@@ -31,14 +31,15 @@ from bladewright.section.unified import UnifiedSection
 from bladewright.section.unified_sides import sample_places, side_curve
 
 RADIUS_STATIONS = SURVEY
-"""places along the span where it is asked whether the thickness can hold the edges' radii"""
+"""places along the span at which the thickness must hold the edges' radii"""
 FOLD_GRID = (21, 21)
-"""places along and across the channel where it is asked whether it folds over"""
+"""places along and across the channel at which it is checked for folding; a fold between them is refused by `build`."""
 COARSE_SEARCH, KNOT_SLACK = 3.0, 100.0
-"""tolerance of a search, of the design's own, from which knots may miss what they promise of walls and edges, and by
-how many times as much"""
+"""tolerance of a search, of the design's own, from which knots may miss walls and edges by the factor `KNOT_SLACK` of
+what `build` promises. On Rotor 67 it saves half of the derivatives' time and changes distances by 1e-5 mm
+(design/matches.md)."""
 SMALLEST_JACOBIAN = 0.02
-"""smallest Jacobian of the channel, of its median"""
+"""smallest Jacobian of the channel, of its median: a channel that comes nearer to folding over is held there."""
 
 
 @final
@@ -60,13 +61,13 @@ class SectionModel(Model):
         )
 
     def tangents(self, shape: ModelShape, paths: Sequence[str]) -> tuple[Reals, Reals]:
-        """From one rebuild with a step on each parameter in a batch, as those of the noses."""
+        """From one rebuild with a complex step on each parameter in a batch; the edges' rates come from the same."""
         _, *sides = self._stepped(shape, paths)
         upper, lower = (np.imag(side)[:, 0] / STEP for side in sides)
         return upper, lower
 
     def edge_radius_margin_rates(self, shape: ModelShape, paths: Sequence[str]) -> Reals:
-        """From the same rebuild."""
+        """From the same rebuild as the tangents."""
         found = np.imag(_edge_radius_margins(shape.design, *self._stepped(shape, paths)))[..., 0] / STEP
         return np.moveaxis(found, 1, 0)
 
@@ -103,7 +104,7 @@ class BladeModel(Model):
         )
 
     def tangents(self, shape: ModelShape, paths: Sequence[str]) -> tuple[Reals, Reals]:
-        """By laws as a whole and leaves of the channel."""
+        """By laws as a whole, and by each parameter of the channel."""
         blade = Blade(
             design=shape.design,
             surfaces=MappingProxyType({}),
@@ -120,7 +121,7 @@ class BladeModel(Model):
         return law_jacobian(shape.exact, self.knots, on, directions, paths).columns(paths)
 
     def edge_radius_margin_rates(self, shape: ModelShape, paths: Sequence[str]) -> Reals:
-        """Those by the laws; by the channel they vanish but for the walls' slopes, which are left out."""
+        """By the laws only: by the channel they vanish but for the walls' slopes, which are left out."""
         found = np.zeros((len(paths), *shape.edge_radius_margins.shape))
         laws = [place for place, path in enumerate(paths) if not path.startswith(("channel.", "tip_", "hub_"))]
         parts = [next(law_shares(shape.design, paths[place], RADIUS_STATIONS)) for place in laws]
@@ -139,7 +140,7 @@ class BladeModel(Model):
         return found
 
     def constraint_rates(self, shape: ModelShape, paths: Sequence[str]) -> Reals:
-        """From one channel with a step on each of its parameters in a batch."""
+        """From one channel with a complex step on each of its parameters in a batch."""
         found = np.zeros((len(paths), len(shape.constraints)))
         walls = [place for place, path in enumerate(paths) if path.startswith("channel.")]
         if walls and shape.exact is not None:
@@ -157,7 +158,7 @@ class BladeModel(Model):
 
 
 def _fold_margins(exact: ExactUnifiedBlade, channel: TransfiniteChannel) -> Array:
-    """How near a channel (...) comes to folding over (..., c), as `Shape` has it."""
+    """By how much a channel (...) comes nearer to folding over than it may (..., c), of its median Jacobian."""
     u = np.linspace(-exact.before, 1.0 + exact.after, FOLD_GRID[0])
     v = np.linspace(0.0, 1.0, FOLD_GRID[1])
     along, across = exact.channel.slopes(u, v)
@@ -167,7 +168,7 @@ def _fold_margins(exact: ExactUnifiedBlade, channel: TransfiniteChannel) -> Arra
 
 
 def _outline(design: UnifiedSection) -> tuple[Array, Array, Array]:
-    """Control points (..., 1, n, 2) where the section stands, those of rational sides (..., 1, n, 3)."""
+    """Control points (..., 1, n, 2) in the section's place; those of rational sides (..., 1, n, 3)."""
     line, upper, lower = design.outline(tentative=True)
     shift = np.asarray(design.leading_edge_x)[..., None, None] * UNITS[design.length_unit]
     parts = []
@@ -180,7 +181,7 @@ def _outline(design: UnifiedSection) -> tuple[Array, Array, Array]:
 
 
 def _edge_radius_margins(design: Any, line: Array, upper: Array, lower: Array) -> Array:
-    """The noses (2, ..., 4, m) of sections, as `Shape` has them."""
+    """The edge radius margins (2, ..., 4, m) of sections, as `ModelShape` defines them."""
     extent = line[..., 3, 0] - line[..., 0, 0]
     places = sample_places(design.samples, design.clustering)[[2, -3]]
     camber = camber_points(line, places)
