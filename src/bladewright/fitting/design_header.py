@@ -1,4 +1,4 @@
-"""What a fitted design is to have besides its shape."""
+"""What a fitted design has besides its shape: a name, a unit and a row."""
 
 from dataclasses import dataclass
 from typing import Any, Literal
@@ -10,7 +10,7 @@ Unit = Literal["m", "cm", "mm", "um", "in", "ft"]
 
 @dataclass(frozen=True, kw_only=True)
 class DesignHeader:
-    """A name, a unit, and the row that a blade stands in; None is what nobody has said."""
+    """Name, unit and the row that a blade stands in; None where nobody has said it."""
 
     name: str
     length_unit: Unit
@@ -20,7 +20,7 @@ class DesignHeader:
     blade_count: int | None = None
 
     def row(self, like: Any = None) -> dict[str, Any]:
-        """Arrangement, blade count and pitch [m]: those of a design where they are not stated."""
+        """Arrangement, blade count and pitch [m]: those of a given design where they are not stated."""
         stated = {"arrangement": self.arrangement, "blade_count": self.blade_count, "pitch": self.pitch}
         if like is None:
             return stated

@@ -33,7 +33,7 @@ from bladewright.section.unified import UnifiedSection
 
 
 def _aligned(points: Reals, start: Design | None, arrangement: Any) -> tuple[Motion, Reals, Any, tuple[str, ...]]:
-    """The motion, the points (n, d) after it, the arrangement where it was found, and what is to be said of them."""
+    """The motion, the moved points (n, d), the arrangement where one was found, and notes."""
     from bladewright.fitting.registration.axes import found_axes
     from bladewright.fitting.registration.registration import registration
 
@@ -45,12 +45,16 @@ def _aligned(points: Reals, start: Design | None, arrangement: Any) -> tuple[Mot
 
 
 UNIFIED_NAMES = ("unified", "unified-section")
+"""names of the unified family"""
 CASCADE_NOTE = (
     "nothing said how the blade stands, and it is taken for one of a linear cascade, with its span along z: one that "
     "stands around x needs the arrangement annular"
 )
+"""note where a cloud without a start was taken for a blade of a linear cascade"""
 WHOLE_BLADE_HINT = "is it one whole blade, with both sides and both edges? If so, give a start design or bounds"
+"""what to check where no design was found"""
 Progress = Callable[[str], None]
+"""is handed a few words on what is done"""
 
 
 def fit(
@@ -79,16 +83,17 @@ def fit(
     `UnifiedBlade`, or the section or blade of the `family` that is named, or that `start` or `like` is of; with `align`
     they may lie anywhere in space. No guess is needed; `start` is one, whose structure is kept unless `tolerance` [m]
     or `parameters` ask for another. `like` is a design whose structure is taken, not its values; the flow path of a
-    blade from sections is part of it. Without any of these, control points are added while the cloud tells of them;
-    with `tolerance`, until no inlier lies further away; with `parameters`, up to that number of free ones.
+    blade from sections is part of it. Without any of these, control points are added as long as the cloud shows that
+    more are needed; with `tolerance`, until no inlier lies further away; with `parameters`, up to that number of free
+    ones.
 
     `free` are patterns of the parameters that may change, `fixed` of those that are held at the start's values, or
     values by pattern; `bounds` are lowest and highest values by pattern, in the units of the fields. `weights` (n,) of
-    the points, `pitch` in metres. `progress` is told in a few words what is done. Ctrl-C ends the search with the best
-    design so far, `interrupted`.
+    the points, `pitch` in metres. `progress` is handed a few words on what is done. Ctrl-C ends the search with the
+    best design so far, `interrupted`.
 
-    The distances are true ones; those of points off the rest are not weighed (`outliers`). Raises FitError where the
-    cloud or the call is wrong, and where no design is found. Reference: Agromayor et al. 2021, section 6.
+    Distances are true ones; points that lie off the rest are not weighed (`outliers`). Raises FitError where the cloud
+    or the call is wrong, and where no design is found. Reference: Agromayor et al. 2021, section 6.
     """
     tell: Progress = progress or (lambda _: None)
     points, notes = checked_cloud(cloud)
@@ -134,9 +139,9 @@ def fit(
 
 
 def named_family(family: str, dimension: int, given: Design | None = None) -> FitFamily | None:
-    """The family that is meant, that of a given design where none is named; None is the unified one.
+    """The named family, or that of a given design where none is named; None is the unified one.
 
-    Raises FitError where it is unknown or of the other dimension.
+    Raises FitError where the name is unknown or of the other dimension.
     """
     known = [*UNIFIED_NAMES, *FAMILIES, *(f"{name}-section" for name in FAMILIES)]
     try:

@@ -15,17 +15,19 @@ from bladewright.errors import DesignError, FitError
 from bladewright.section.profiles.points import PointsProfile
 
 EDGES = ("leading_edge", "trailing_edge")
+"""edge curves of a blade"""
 WALLS = ("hub", "shroud")
+"""walls of a flow path"""
 
 
 def gauge_parameters(design: Design, *, walls: bool = False) -> frozenset[str]:
-    """Paths of what is held.
+    """Paths of the parameters that a cloud cannot determine, which are held unless they are freed.
 
-    Of control points that count by their ratios alone it is the largest. Of points of a contour it is the coordinate
-    along which they slide on it, and both of its first and last along the chord, as their size and direction count for
-    nothing. Of a blade it is the flow path, which a blade shows by its ends only, and that coordinate of the points of
-    its edge curves along which they slide on the curve. Where the `walls` are free, of the points of hub and shroud
-    only that coordinate is held along which they slide on these.
+    Of control points that count by their ratios only it is the largest. Of points of a contour it is the coordinate
+    along which they slide on it, and both coordinates of the first and the last along the chord, as their size and
+    direction do not matter. Of a blade it is the flow path, which a blade shows by its ends only, and the coordinate
+    along which the points of its edge curves slide on the curve. Where the `walls` are free, only that coordinate of
+    the points of hub and shroud is held.
     """
     section = getattr(design, "section", None)
     if section is None:
@@ -54,7 +56,7 @@ def sliding_coordinate(design: SectionedBlade, edge: str) -> str:
 
 
 def _across_walls(design: SectionedBlade) -> frozenset[str]:
-    """Of every point of hub and shroud the coordinate, x or r, across which the wall runs there."""
+    """For every point of hub and shroud the coordinate, x or r, across which the wall runs there."""
     found = set()
     for wall in WALLS:
         curve = getattr(design.flow_path, wall)
@@ -67,7 +69,7 @@ def _across_walls(design: SectionedBlade) -> frozenset[str]:
 
 
 def _along_contour(section: PointsProfile) -> set[str]:
-    """Paths of what does not change a contour through points, or hardly does."""
+    """Paths of coordinates that do not change a contour through points, or hardly."""
     if any(isinstance(law, tuple) for law in (*section.abscissas, *section.ordinates)):
         return set()
     x, y = (np.array([float(np.real(each)) for each in law]) for law in (section.abscissas, section.ordinates))
@@ -88,7 +90,7 @@ def _largest_curvature(values: dict[str, float]) -> list[str]:
 
 
 NOT_IN_CLOUD = ("pitch", "span", "tip_clearance", "hub_clearance")
-"""fields that a cloud of one blade's points says nothing of"""
+"""fields that the points of one blade do not determine"""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -99,7 +101,7 @@ class FreeParameters:
     fixed: tuple[str, ...] = ()
     values: Mapping[str, float] | None = None
     walls: bool = False
-    """whether hub and shroud of a blade from sections are found too"""
+    """whether hub and shroud of a blade from sections are free too"""
 
     def __call__(self, design: Design) -> tuple[str, ...]:
         """The free parameters of a design; raises FitError where there are none."""
@@ -118,7 +120,7 @@ class FreeParameters:
         return found
 
     def applied(self, design: Design) -> Design:
-        """The design with the values that are given."""
+        """The design with the given values."""
         if not self.values:
             return design
         try:
@@ -130,7 +132,7 @@ class FreeParameters:
 
 
 def free_parameters_of(free: Patterns, fixed: "Patterns | Mapping[str, float]", *, started: bool) -> FreeParameters:
-    """The freedom that was asked for; raises FitError where what is held has no value."""
+    """The free parameters that were asked for; raises FitError where what is held has no value."""
     if isinstance(fixed, Mapping):
         return FreeParameters(free=free, fixed=tuple(fixed), values=dict(fixed))
     names = () if fixed is None else (fixed,) if isinstance(fixed, str) else tuple(fixed)
@@ -141,7 +143,7 @@ def free_parameters_of(free: Patterns, fixed: "Patterns | Mapping[str, float]", 
 
 
 def corner_radii(design: Design) -> tuple[str, ...]:
-    """Paths of the radii at which the edges of a blade stand on hub and shroud."""
+    """Paths of the radii at which a blade's edges meet hub and shroud."""
     if not isinstance(design, UnifiedBlade):
         return ()
     last = {edge: len(getattr(design.channel, edge)) - 1 for edge in ("leading_edge", "trailing_edge")}

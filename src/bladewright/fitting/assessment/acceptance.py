@@ -14,28 +14,33 @@ from bladewright.fitting.model_selection.stopping import ENOUGH_DEVIATION, Match
 from bladewright.nurbs.basis import Reals
 
 GROSS_DEVIATION = (1.5e-3, 5e-3)
-"""mean and largest distance of a match to which no tolerance is stated, of the chord"""
+"""mean and largest distance allowed where no tolerance is stated, of the chord: a match beyond them is of another
+blade, or has far too few parameters."""
 EXACT_MISFIT, SYSTEMATIC_OVER_NOISE = 1e-9, 3.0
-"""misfit of a given structure that is rounding, of the chord, and one that is not noise, of the cloud's noise"""
+"""misfit of a given structure that is rounding, of the chord; `SYSTEMATIC_OVER_NOISE` is the misfit, in noises, from
+which it is none."""
 FINEST_NOISE = 1e-6
-"""misfit of a given structure, of the chord, below which it is no noise of a measured cloud"""
+"""misfit of a given structure, of the chord, below which it cannot be the noise of a measured cloud."""
 SHAPE_CORRELATION = 0.5
-"""part of the misfit that neighbours share from which it is the shape's, where nothing is asked for"""
+"""share of the misfit that neighbours have in common from which it is the shape's, where nothing is asked for."""
 NEAR_ENOUGH = {2: 5e-5, 3: 1e-4}
-"""root mean square misfit of the shape, of the chord, below which it is near enough where nothing is asked for, by
-dimension: below what a blade can be made to"""
+"""root mean square misfit, of the chord and by dimension, that is near enough where nothing is asked for: less than a
+blade can be made to."""
 LARGEST_OUTLIER_SHARE = 0.1
-"""part of the points that may be outliers"""
+"""share of the points that may be outliers: with more, the cloud is not one blade of the family."""
 LISTED_NAMES = 5
+"""parameters that a note lists by name"""
 SIDES = ("upper", "lower")
 HALF_BLADE_WIDTH = 0.5
-"""width of an open edge, of the blade's thickest, from which it is half a blade"""
+"""width of the blade where its points end, of its thickest, from which it is half a blade."""
 SHEET_THICKNESS = 3e-3
-"""of the chord: no blade is so thin, and two sides are that are both laid through the points of one"""
+"""thickness, of the chord, below which no blade is; two sides are so near to each other where both pass through the
+points of one."""
 FEWEST_POINTS_PER_PARAMETER = 1.5
-"""points for each parameter of a blade without which they tell of no shape, where nothing is asked for"""
+"""points for each parameter of a blade without which they do not determine a shape, where nothing is asked for."""
 BARE_SIDE_SHARE, BETWEEN_EDGES = 0.1, 0.1
-"""part of the points between the edges, and where those end in u, below which a side is not seen"""
+"""share of the points between the edges below which a side is not shown; `BETWEEN_EDGES` is where the edges end, in
+u."""
 
 
 def failures_of(
@@ -47,7 +52,7 @@ def failures_of(
     *,
     faced: int = 0,
 ) -> tuple[str, ...]:
-    """Why a match does not pass, each a sentence; `faced` is the number of outliers that lie on end faces."""
+    """Why a match does not pass, each a sentence; `faced` is the number of outliers on end faces."""
     failures = []
     chord = found.model.chord
     kept = distances[inliers]
@@ -97,7 +102,7 @@ def _structure_not_met(found: Match, target: MatchTarget) -> str:
     if not target.structured or target.tolerance is not None:
         return ""
     rms, noise = found.rms * found.model.chord, found.noise_estimate.noise
-    # in axes that a start shows no structure is met exactly
+    # in axes that were found by a start no structure is met exactly
     least = NEAR_ENOUGH[_points(found).shape[1]] if target.moved else EXACT_MISFIT
     if found.rms > least and rms > SYSTEMATIC_OVER_NOISE * noise:
         return (
@@ -114,7 +119,7 @@ def _structure_not_met(found: Match, target: MatchTarget) -> str:
 
 
 def _too_few_points(found: Match, target: MatchTarget) -> str:
-    """Why points are too few to tell of a blade where nothing is asked for, if they are."""
+    """Why points are too few for a blade where nothing is asked for, if they are."""
     shown, count = int(np.count_nonzero(found.rows)), len(found.problem.paths)
     if not target.open or _points(found).shape[1] == 2 or shown >= FEWEST_POINTS_PER_PARAMETER * count:
         return ""
@@ -125,7 +130,7 @@ def _too_few_points(found: Match, target: MatchTarget) -> str:
 
 
 def shape_not_found(distances: Reals, inliers: NDArray[np.bool_], found: Match, target: MatchTarget) -> bool:
-    """Whether nothing was asked for, and the shape of the cloud is not met as far as its noise lets it be told."""
+    """Whether nothing was asked for, and the misfit is not as small as the noise allows."""
     enough = ENOUGH_DEVIATION[_points(found).shape[1]] * found.model.chord
     largest = float(np.max(distances[inliers]))
     return (
@@ -137,7 +142,7 @@ def shape_not_found(distances: Reals, inliers: NDArray[np.bool_], found: Match, 
 
 
 def _one_sided(found: Match) -> str:
-    """What tells that the points are those of one side alone, if anything does."""
+    """Why the points must be those of one side only, if anything shows it."""
     bare = _bare_side(found)
     if bare:
         return f"hardly a point lies on the {bare} side"
@@ -190,7 +195,7 @@ def notes_of(
     *,
     faced: int = 0,
 ) -> tuple[str, ...]:
-    """What else there is to know, each a sentence; `faced` is the number of outliers that lie on end faces."""
+    """What else there is to know, each a sentence; `faced` is the number of outliers on end faces."""
     said = list(notes)
     if faced:
         said.append(

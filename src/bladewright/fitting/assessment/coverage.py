@@ -11,18 +11,19 @@ from bladewright.nurbs.basis import Reals
 from bladewright.section.unified import UnifiedSection
 
 ROW_SPREAD = 1e-4
-"""spread of the points at an end, of the chord, from which they stand in no row"""
+"""spread of the points at an end, of the chord, from which they stand in no row; and of the cloud's noise
+(`ROW_SPREAD_OF_NOISE`): a noisy row is a row."""
 ROW_SPREAD_OF_NOISE = 2.0
 """the same, of the cloud's noise"""
 GAP_OVER_SPREAD = 2.7
-"""distance of evenly scattered values over their deviation by the median, times their number"""
+"""mean distance of evenly scattered values times their number, over their deviation by the median."""
 
 
 def loose_ends(found: Match) -> dict[str, float]:
     """The ends of a blade that no row of points shows, and how far apart the points are there [m].
 
-    Empty for sections, and where the channel is not sought: the sides of a blade that goes on a little further are the
-    same, so that only its outermost points tell where it ends.
+    Empty for sections, and where the channel is held. The sides of a blade that goes on a little further are the same,
+    so that without a row only its outermost points tell where it ends.
     """
     if found.state.shape.exact is None or not any(path.startswith("channel.") for path in found.problem.paths):
         return {}
@@ -38,16 +39,17 @@ def loose_ends(found: Match) -> dict[str, float]:
 
 
 EDGE_PARAMETERS = {"leading edge": 0.0, "trailing edge": 1.0}
+"""u of the two edges"""
 SPAN_PARTS = 5
-"""of the span, in each of which both sides are looked at"""
+"""parts of the span in each of which both sides are looked at"""
 COVERED_SHARE = 0.5
-"""part of these that must have a point on the edge's arc"""
+"""share of these parts that must have a point on the edge's arc; below it the edge is uncovered."""
 THICKNESS_SAMPLES = 25
-"""places along a section among which the blade is thickest"""
+"""places along a section among which it is thickest"""
 
 
 def uncovered_edges(found: Match) -> dict[str, tuple[float, float]]:
-    """The rounded edges on whose arc no point lies: width of the blade where its points end [m], and of its thickest.
+    """Rounded edges without a point on their arc: the blade's width where the points end [m], and of its thickest.
 
     A point on the arc is nearer to its middle than the other side is, which no point before it is.
     """
@@ -71,14 +73,14 @@ def uncovered_edges(found: Match) -> dict[str, tuple[float, float]]:
 
 
 def least_thickness(found: Match) -> float:
-    """The least thickness along the span, where sections are thickest [m]; infinite of other families."""
+    """The least over the span of the sections' largest thickness [m]; infinite for other families."""
     if not isinstance(found.design, UnifiedSection | UnifiedBlade):
         return np.inf
     return min(_thickness(found.state.shape.sides, v) for v in (0.1, 0.3, 0.5, 0.7, 0.9))
 
 
 def _nearest(on: Footpoints, rows: NDArray[np.bool_], end: float) -> NDArray[np.intp]:
-    """Of each side and part of the span the point that is nearest to an edge."""
+    """For each side and part of the span the point that is nearest to an edge."""
     away = np.where(rows, np.abs(on.u - end), np.inf)
     part = np.minimum((SPAN_PARTS * on.v).astype(int), SPAN_PARTS - 1) + SPAN_PARTS * on.side
     found = [np.flatnonzero(part == each)[np.argmin(away[part == each])] for each in np.unique(part)]

@@ -1,4 +1,4 @@
-"""How far a cloud lies from what was fitted to it, region by region."""
+"""Figures of the distances between a cloud and what was fitted to it, region by region."""
 
 from dataclasses import asdict, dataclass
 

@@ -11,14 +11,16 @@ from bladewright.fitting.matching.search import Match
 from bladewright.nurbs.basis import Reals
 
 CONFIDENCE = 0.95
+"""confidence of the intervals"""
 IDENTIFIED_SPREAD = 0.3
-"""standard deviation below which a parameter is determined, of its own scale"""
+"""standard deviation, of a parameter's own scale, below which the cloud determines it. Its 95 % interval is then about
+one scale wide."""
 INDEPENDENT_CORRELATION = 0.2
-"""part of the misfit that neighbours share above which points do not count as independent"""
+"""share of the misfit that neighbours have in common above which points do not count as independent."""
 NULL_DIRECTION_SHARE = 1e-8
-"""part of a parameter in a direction that nothing depends on below which it is rounding"""
+"""share of a parameter in a direction on which nothing depends, below which it is rounding."""
 AT_BOUND = 1e-3
-"""how near a parameter is to a bound that it lies on, of its scale"""
+"""distance from a bound, of a parameter's scale, within which it lies on the bound."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -33,12 +35,12 @@ class ParameterEstimates:
 
 
 def parameter_estimates(found: Match) -> ParameterEstimates:
-    """From the derivatives of the residuals where a search ended, without the prior.
+    """From the derivatives of the residuals where a search ended, without the regularisation.
 
-    The points' distances are taken as independent normal errors, their variances as the inverse of the given weights;
-    where the misfit is one that neighbours share, as many as share it count as one. A search may weigh points further,
-    by their distances: that takes no error away. Reference: Bates and Watts 1988, section 2.3 (linear approximation);
-    Seber and Wild 1989, section 2.1.4 (weights that are not the inverse variances).
+    The points' distances are taken as independent normal errors, with variances inverse to the given weights; where
+    neighbours share a misfit, as many as share it count as one. A search may weigh points further by their distances;
+    that takes no error away. References: Bates and Watts 1988, section 2.3 (linear approximation); Seber and Wild 1989,
+    section 2.1.4 (weights that are not the inverse variances).
     """
     problem = found.problem
     size = problem.scales.size
@@ -54,7 +56,7 @@ def parameter_estimates(found: Match) -> ParameterEstimates:
     across, values, turns = np.linalg.svd(slopes, full_matrices=False)
     largest = float(values[0])
     known = values > 1e-13 * largest
-    # the covariance of the turned parameters, of variance one: the identity where no point is weighed further
+    # covariance of the rotated parameters at variance one: the identity where no point is weighed further
     middle = across[:, known].T @ (excess[:, None] * across[:, known]) / np.outer(values[known], values[known])
     rank = int(np.count_nonzero(np.sqrt(variance * np.diag(middle)) < 1.0))
     kept = turns[known]
@@ -92,7 +94,7 @@ def parameter_estimates(found: Match) -> ParameterEstimates:
 
 
 def _excess_weights(cloud_residuals: CloudResiduals, count: int) -> Reals:
-    """By how much more the points count in a search than as the inverse of their variance (count,); 1 elsewhere."""
+    """How much more the points (count,) weigh in a search than their inverse variances; 1 for other rows."""
     found = np.ones(count)
     if cloud_residuals.precision is None:
         return found

@@ -1,4 +1,4 @@
-"""The final measure of a match: every point of the cloud against what the design builds."""
+"""The final measurement of a match: every point of the cloud against what the design builds."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, fields
@@ -18,17 +18,17 @@ from bladewright.nurbs.basis import Reals
 from bladewright.section.section import Section
 
 EDGE_REGION = 0.03
-"""how far the edges reach, in u"""
+"""extent of the edges' regions, in u; it only sorts points for the report."""
 LAST_STEP, LAST_STEP_EXACT = 1e-6, 1e-12
-"""last steps of the descents, in the parameters of a patch: of all points, and of those that lie on the blade, whose
-distances are exact to the step itself; others are so to its square"""
+"""last step of the descents, in the parameters of a patch, for all points (`LAST_STEP`) and for those that lie on the
+blade (`LAST_STEP_EXACT`), whose distances are exact to the step itself; others are exact to its square."""
 ON_BLADE = 3e-6
-"""distance up to which a point lies on the blade, of the cloud's extent"""
+"""distance up to which a point lies on the blade, of the cloud's extent, and is projected once more."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Measurement:
-    """Where the n points of a cloud stand."""
+    """Where the n points of a cloud lie on what was built."""
 
     places: NDArray[np.str_]
     on: Footpoints
@@ -36,7 +36,7 @@ class Measurement:
     regions: NDArray[np.str_]
     noise_estimate: NoiseEstimate
     faced: NDArray[np.bool_]
-    """(n,) whether an outlier lies on an end face, as those of a solid do"""
+    """(n,) whether an outlier lies on an end face, as the points of a solid's faces do"""
 
 
 def measured(points: Reals, built: Blade | Section, precision: Reals | None = None) -> Measurement:
@@ -50,7 +50,7 @@ def measured(points: Reals, built: Blade | Section, precision: Reals | None = No
     noise_estimate = noise_of(points, on, precision)
     shape = ModelShape(design=None, sides=sides, edge_radius_margins=np.zeros(0), exact=exact)
     ends = blade_ends_of(points, on, shape, noise_estimate.inliers)
-    # few against the sides and far inside them, points of end faces are outliers to these
+    # points of end faces, few and far inside the sides, are outliers to these
     faced = ~noise_estimate.inliers
     if np.any(faced):
         faced &= blade_ends_of(points, on, shape, np.ones(len(points), dtype=bool)).on_end_face
@@ -72,7 +72,7 @@ def measured(points: Reals, built: Blade | Section, precision: Reals | None = No
 
 
 def _nearest(points: Reals, sides: Sequence[Side]) -> Footpoints:
-    """The nearest places of points (n, d)."""
+    """The footpoints of points (n, d), those on the blade to rounding."""
     on = nearest_footpoints(points, sides, converged=LAST_STEP)
     exact = np.flatnonzero(on.distances < ON_BLADE * float(np.ptp(points, axis=0).max()))
     if len(exact) == 0:
@@ -87,7 +87,7 @@ def _nearest(points: Reals, sides: Sequence[Side]) -> Footpoints:
 def _place_on_end_faces(
     points: Reals, on_end_face: Any, built: Any, deviations: Reals, places: Any, regions: Any, on: Footpoints
 ) -> None:
-    """Puts the points that lie on end faces there."""
+    """Gives points on end faces the place, the region and the distance from there."""
     exact = built.exact
     radius = np.sqrt(points[:, 1] ** 2 + points[:, 2] ** 2) if exact.mapping.revolved else points[:, 2]
     for (name, end), face in zip(END_PARAMETERS.items(), built.design.ends, strict=True):

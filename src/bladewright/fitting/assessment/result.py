@@ -59,7 +59,7 @@ class Fit:
     cloud: Reals
     """(n, 2) or (n, 3) the points in the machine's axes, after `motion` where there is one [m]"""
     places: NDArray[np.str_]
-    """(n,) name of the nearest curve or surface: `upper`, `lower`, or one of the blade's ends"""
+    """(n,) name of the nearest curve or surface: `upper`, `lower`, or one of the blade's ends or faces"""
     u: Reals
     """(n,) parameter of the nearest place along the chord"""
     v: Reals
@@ -89,7 +89,7 @@ class Fit:
     notes: tuple[str, ...]
     """what else there is to know, each a sentence"""
     evaluations: int
-    """of the surface while fitting"""
+    """of the surface during the fit"""
     motion: Motion | None = None
     """the rigid motion from the points as given to the machine's axes"""
     interrupted: bool = False
@@ -151,9 +151,11 @@ class Fit:
 LISTED_OUTLIERS = 1000
 """outliers that are listed; the count is that of all"""
 FEW_PARAMETERS = 30
-"""parameters up to which all of them stand in the text"""
+"""parameters up to which the text shows all of them; with more it shows the doubtful ones"""
 FIGURES = ("mean", "rms", "percentile_99", "maximum")
+"""figures of a deviation that are reported"""
 MILLIMETRES = 1e3
+"""millimetres in a metre"""
 
 
 def report(fit: Fit) -> dict[str, Any]:

@@ -8,13 +8,13 @@ from bladewright.fitting.clouds.repetition import repetition
 from bladewright.nurbs.basis import Reals
 
 ROUNDED_DIGITS = 1e-8
-"""of the extent: digits beyond this tell of an exact cloud"""
+"""digit, of the cloud's extent, from which on others than zero show that coordinates were not rounded for writing."""
 ROUNDED_SAMPLE = 200
-"""points that are looked at"""
+"""points whose digits are looked at"""
 
 
 def is_rounded(points: Reals) -> bool:
-    """Whether all coordinates of points (n, d) are multiples of a power of ten that their extent makes coarse."""
+    """Whether all coordinates of points (n, d) are multiples of a power of ten that is coarse for their extent."""
     extent = float(np.max(np.ptp(points, axis=0)))
     finest = int(np.floor(-np.log10(ROUNDED_DIGITS * extent)))
     some = points[:: max(1, len(points) // ROUNDED_SAMPLE)]
@@ -23,22 +23,22 @@ def is_rounded(points: Reals) -> bool:
 
 
 FEWEST_POINTS = {2: 24, 3: 100}
-"""points that a fit of a section and of a blade needs"""
+"""points that a fit of a section and of a blade needs, by dimension; fewer leave most parameters undetermined."""
 FLATTEST = 1e-5
-"""of its extent: a cloud that is thinner lies on a line or a plane"""
+"""thickness, of its extent, below which a cloud lies on a line or a plane."""
 LARGEST, SMALLEST = 20.0, 5e-3
-"""extents beyond which another unit is suspected [m]"""
+"""extents of a blade [m] beyond which the cloud's unit is suspected: larger than `LARGEST`, smaller than `SMALLEST`."""
 SHEET_SAMPLE = 3000
-"""points by which one side alone is known"""
+"""points by which a cloud of one side only is recognised; it bounds the time."""
 THINNEST_BLADE = 1.3e-3
-"""of its width: a sheet this thin is one side, and no blade"""
+"""roughness, of its width, below which a cloud is a smooth sheet: one side and no blade."""
 
 
 def checked_cloud(cloud: ArrayLike) -> tuple[Reals, tuple[str, ...]]:
     """The points (n, 2) or (n, 3) [m] as given, and notes on what is suspicious about them.
 
     Raises FitError for anything but finite numbers in two or three columns, fewer than 24 different points (100 in
-    space), points on one line or one plane, two blades, and one side of a blade alone.
+    space), points on one line or one plane, two blades, and one side of a blade only.
     """
     points = _numbers(cloud)
     different = np.unique(points, axis=0)

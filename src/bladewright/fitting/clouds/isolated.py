@@ -8,7 +8,7 @@ from bladewright.nurbs.basis import Reals
 
 
 def without_isolated_points(points: Reals, neighbours: int = 5) -> Reals:
-    """The points that have neighbours about as near as their neighbours have."""
+    """The points whose neighbours are about as near as those of the points around them."""
     tree = cKDTree(points)
     distances, index = tree.query(points, k=neighbours + 1)
     own = np.mean(distances[:, 1:], axis=1)
@@ -21,7 +21,8 @@ def without_isolated_points(points: Reals, neighbours: int = 5) -> Reals:
 
 
 NEIGHBOURS, ISOLATED = 5, 6.0
-"""a point stands alone whose fifth neighbour is so many times further away than is usual"""
+"""a point is isolated whose fifth neighbour (`NEIGHBOURS`) is so many times further away than usual (`ISOLATED`). Lower
+ratios drop points of sparse rows."""
 
 
 def has_neighbours(points: Reals) -> NDArray[np.bool_]:

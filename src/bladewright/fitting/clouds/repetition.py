@@ -6,23 +6,23 @@ from numpy.typing import NDArray
 from bladewright.nurbs.basis import Reals
 
 SMALLEST_PITCH = 0.12
-"""of its extent: how far from itself a blade is found again"""
+"""smallest pitch that is looked for, of the cloud's extent: nearer shapes are the two sides of one blade."""
 COMPARED_POINTS = 3000, 6000
-"""points among which neighbours are compared: fewer join the rows of a blade, more part blades that stand close"""
+"""points among which neighbours are compared: few join the rows of one blade, more part blades that stand close."""
 TURNED_POINTS = 300
-"""points that are turned by the pitches of rows"""
+"""points that are turned by each trial pitch; it bounds the time."""
 BLADE_COUNTS = range(4, 151)
 """numbers of blades around the axis that are tried"""
 REPEATED_SHARE = 0.25
-"""part of the points that lie again a pitch to either side from which the cloud holds three blades or more"""
+"""share of the points that must lie again a pitch to either side for the cloud to hold three blades or more."""
 MULTIPLE_PITCH_GAIN = 0.8
-"""a longer pitch must bring the points nearer by so much: it may be a multiple"""
+"""ratio by which a longer pitch must bring the points nearer: it may be a multiple of the true one."""
 PITCH_OVER_SPACING = 4.0
-"""a pitch is so many times longer than the distance at which a point is found again"""
+"""smallest pitch, in distances at which a point is found again: below it neighbours on the same blade are found."""
 
 
 def repetition(points: Reals) -> str | None:
-    """How far along the pitch, in words, a part of the cloud is found again in another; None where it is not."""
+    """How far along the pitch, in words, part of the cloud is found again in another part; None where it is not."""
     points = points[np.random.default_rng(0).permutation(len(points))]
     for count in COMPARED_POINTS[: 2 if len(points) > COMPARED_POINTS[0] else 1]:
         some = points[:count]
@@ -37,7 +37,7 @@ def repetition(points: Reals) -> str | None:
 
 
 def _around(points: Reals) -> str | None:
-    """The pitch of three blades or more around the axis, in words: those between others lie again on either side."""
+    """The pitch of three blades or more around the axis, in words: those in the middle lie again on either side."""
     from scipy.spatial import cKDTree
 
     tree, radius = cKDTree(points), np.sqrt(points[:, 1] ** 2 + points[:, 2] ** 2)
@@ -72,7 +72,7 @@ def _parts(points: Reals) -> list[NDArray[np.intp]]:
 
 
 def _turned_onto(part: Reals, other: Reals) -> str | None:
-    """How far the part must be moved along y, or turned about x, to lie on the other; None where neither is so."""
+    """How far a part must be moved along y, or turned about x, to lie on the other; None where neither works."""
     from scipy.spatial import cKDTree
 
     if not 0.6 < len(part) / len(other) < 1.7:

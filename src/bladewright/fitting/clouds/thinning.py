@@ -8,7 +8,7 @@ from bladewright.nurbs.basis import Reals
 FINEST = 12
 """halvings of the extent in the finest grid"""
 TRIALS = 9
-"""grids that are tried"""
+"""grids that are tried: halvings of the interval in which the right cell size lies"""
 
 
 def drawn(count: int, most: int) -> NDArray[np.intp]:
@@ -22,9 +22,9 @@ def drawn(count: int, most: int) -> NDArray[np.intp]:
 
 
 def spread(points: Reals, most: int) -> NDArray[np.intp]:
-    """Indices, in order, of at most `most` of points (n, d), the middle one of each cell of a grid.
+    """Indices, in order, of at most `most` of points (n, d): the middle one of each cell of a grid.
 
-    It is the finest grid with so few cells that have points. The order of the points does not matter.
+    The grid is the finest one with so few occupied cells. The order of the points does not matter.
     """
     if len(points) <= most:
         return np.arange(len(points), dtype=np.intp)

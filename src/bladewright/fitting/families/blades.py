@@ -32,32 +32,36 @@ from bladewright.section.laws import Span
 from bladewright.section.section import Section
 
 QUICK_POINTS, THOROUGH_POINTS = 1000, 12_000
-"""points of a quick and of a thorough search"""
+"""points of a quick and of a thorough search (`THOROUGH_POINTS`): more points take proportionally longer and determine
+parameters better."""
 ENOUGH_MISFIT = 2.0
-"""misfit below which a blade of a structure that is not given is found, of the tolerance of its native sides"""
+"""misfit below which a blade whose structure is not given is found, of the tolerance of its native sides: these miss
+the design about so much themselves."""
 COARSE_TOLERANCE = 1e-3
-"""tolerance of the native sides of blades that are on the way, of the chord"""
+"""tolerance of the native sides of intermediate blades, of the chord."""
 WALLS_HELD_NOTE = "hub and shroud are held as they are given"
+"""note where the flow path is given"""
 ROUNDNESS_PLACE, ROUNDER_RATIO = 0.04, 1.3
-"""chord fraction from an edge at which it is seen how round it is, and ratio from which one is rounder"""
+"""chord fraction from an edge at which its roundness is compared, and the ratio of half thicknesses (`ROUNDER_RATIO`)
+from which one edge is the rounder one."""
 QUICK_ROUNDS = 4
-"""rounds of the search for the closed blade that says where to begin"""
+"""rounds of the search for the closed blade from which the family's first design is taken"""
 START_SPANS: Reals = np.linspace(0.0, 1.0, 7)
-"""places of the sections that a start is taken from"""
+"""places along the span of the sections that a start is taken from"""
 FEASIBILITY_SPANS = Span(np.linspace(0.0, 1.0, 13))
 """places along the span at which laws must leave sections a shape"""
 LAW_COUNT = 3
-"""control points of each law along the span, where none is given"""
+"""control points of each law along the span where no structure is given"""
 TRIAL_SECTION = 3
-"""number of the section by which structures are told apart"""
+"""number of the section, among those of the start, by which structures are compared"""
 TRIAL_STRIDE = 4
-"""part, one in so many, of a section's samples that structures are told apart by"""
+"""structures are compared by every so many-th sample of that section"""
 
 
 def matched_blade(
     task: Task, kind: FitFamily, start: Any, like: Any, header: DesignHeader, target: MatchTarget
 ) -> tuple[Match, str]:
-    """The match of points (n, 3) by a blade of the family, and why it ends where no aim is met.
+    """The match of points (n, 3) by a blade of the family, and why it ends where no target is met.
 
     `start` and `like` are blades of the family, or None. Raises FitError where no blade of the family has a shape near
     the points.
@@ -75,7 +79,7 @@ def matched_blade(
     check_bounds(first, task.free(first), task.bounds)
     enough = _enough(first, target)
     grown = partial(extended_blade, kind=kind, enough=enough)
-    # what is only on the way need not come to its end
+    # an intermediate match need not converge
     found, reason = (
         searched(few, first, enough=enough, min_reduction=MIN_REDUCTION if target.structured else ROUGH_REDUCTION),
         "",
@@ -102,7 +106,7 @@ def _better(task: Task, before: Match, after: Match) -> Match:
 
 
 def _closed_blade(task: Task, points: Reals, header: DesignHeader, like: Any) -> Blade:
-    """The closed blade in a channel that points (n, 3) alone show, matched to those of a task."""
+    """The closed blade of the unified family that points (n, 3) show, matched to those of a task."""
     row = header.row(like)
     first = first_blade(
         points, structure=first_blade_structure(None), name=header.name, length_unit=header.length_unit, **row
@@ -165,9 +169,9 @@ def _first(closed: Blade, kind: FitFamily, like: Any, header: DesignHeader) -> D
 
 
 def _backwards(found: ChannelCurves, kind: FitFamily, like: Any, section: SampledSection) -> bool:
-    """Whether the flow comes from the other side than the one that the closed blade was found with.
+    """Whether the flow comes from the other side than the closed blade was found for.
 
-    Points do not tell it: `like` does. Without it flow goes downstream along x; where blades stand radially it meets
+    Points do not show it: `like` does. Without it flow goes downstream along x; where blades stand radially it meets
     the rounder edge first, and leads outwards through the passages of a diffuser of vanes.
     """
     middle = np.array([0.5])
@@ -184,7 +188,7 @@ def _backwards(found: ChannelCurves, kind: FitFamily, like: Any, section: Sample
 
 
 def _laws(parts: list[Any], counts: Mapping[str, int]) -> Any:
-    """One part of laws: constants where a law, or that together with those before it, leaves sections no shape."""
+    """One part of laws: constants where a law, alone or together with those before it, leaves sections no shape."""
     whole = _part_with_shape(parts, counts)
     if whole is not None:
         return whole
@@ -221,7 +225,7 @@ def _samples(section: Section) -> SampledSection:
 
 
 def _parts_along_span(kind: FitFamily, sections: list[SampledSection], first: Any) -> list[Any]:
-    """Parts of sections in a row, of which the first is known: each begins as the one before, or as its samples say."""
+    """Parts of sections in a row, the first known: each begins as the one before, or as its samples say."""
     found = [first]
     for section in sections[1:]:
         found.append(_matched(kind, section, [found[-1], *starts_of(kind, section, found[-1])[:1]]))
@@ -229,7 +233,7 @@ def _parts_along_span(kind: FitFamily, sections: list[SampledSection], first: An
 
 
 def _matched(kind: FitFamily, section: SampledSection, starts: list[Any]) -> Any:
-    """The best part that is found from several, matched to a section's samples."""
+    """The best part from several starts, matched to a section's samples."""
     cosine, sine = np.cos(section.stagger), np.sin(section.stagger)
     turn = np.array([[cosine, sine], [-sine, cosine]])
     points = np.concatenate([section.upper[::TRIAL_STRIDE], section.lower[TRIAL_STRIDE // 2 :: TRIAL_STRIDE]]) @ turn

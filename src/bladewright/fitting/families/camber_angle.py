@@ -1,4 +1,4 @@
-"""Where a section by its camber angle begins, and what may grow in it."""
+"""Where a section by its camber angle begins, and which control points may be added."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -13,11 +13,11 @@ from bladewright.section.camber_angle import CamberAngle
 from bladewright.section.laws import law_basis
 
 ANGLES, THICKNESSES = 4, 4
-"""control points to begin with"""
+"""control points of the camber angle and of the half thickness (`THICKNESSES`) to begin with"""
 LEAST_HALF_THICKNESS = 0.1
-"""smallest half thickness to begin with, of the largest: beside a round edge it may rise so much only"""
+"""smallest half thickness to begin with, of the largest: beside a round edge it may rise only so much."""
 MOST_CONTROL_POINTS = 14
-"""control points of either"""
+"""control points of either law at most; it bounds the time of growth."""
 _FEW, _ANGLES = (0.02,) * THICKNESSES, (0.0,) * ANGLES
 TEMPLATES = (
     CamberAngle(camber_angle=_ANGLES, half_thickness=_FEW),
@@ -33,7 +33,7 @@ def templates(section: SampledSection, parameters: int | None) -> Sequence[Cambe
 
 
 def starts(section: SampledSection, like: CamberAngle) -> Sequence[CamberAngle]:
-    """The part of a structure nearest to a section, alone."""
+    """The part of a structure nearest to a section."""
     return [_start(section, like)]
 
 
@@ -58,7 +58,7 @@ def _fractions(section: SampledSection, u: Reals) -> Reals:
 
 
 def _heights(like: CamberAngle, fraction: Reals, half: Reals) -> Reals:
-    """Control points of the half thickness, their places and weights held."""
+    """Control points of the half thickness, with their places and weights held."""
     plain = replace(like, half_thickness=tuple(0.01 for _ in like.half_thickness))
     outline = plain.outline(SINGLE_SECTION)
     weights, places = (np.real(each.controls)[0] for each in (outline.weights, outline.places))
@@ -74,7 +74,7 @@ def _heights(like: CamberAngle, fraction: Reals, half: Reals) -> Reals:
 
 
 def extensions(part: CamberAngle, section: SampledSection) -> Sequence[CamberAngle]:  # noqa: ARG001 - what every family answers
-    """The same with one control point more of the angle, or of the half thickness."""
+    """The part with one control point more of the angle or of the half thickness, or with free places or weights."""
     found = []
     if len(part.camber_angle) < MOST_CONTROL_POINTS:
         at = np.linspace(0.0, 1.0, 101)
@@ -99,7 +99,7 @@ def extensions(part: CamberAngle, section: SampledSection) -> Sequence[CamberAng
 
 
 def _inner_places(part: CamberAngle) -> tuple[float, ...]:
-    """The places of the control points of the half thickness that do not stand at an edge."""
+    """The places of the control points of the half thickness that are not at an edge."""
     outline = part.outline(SINGLE_SECTION)
     at = np.real(outline.places.controls / outline.weights.controls)[0]
     return tuple(at[2 : -2 if part.trailing_edge == "round" else -1].tolist())

@@ -1,4 +1,4 @@
-"""Where a section on a meanline of given second derivative begins, and what may grow in it."""
+"""Where a section on a mean line of given second derivative begins, and which control points may be added."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -14,17 +14,17 @@ from bladewright.section.thickness.quartic import QuarticSpline
 from bladewright.section.thickness.wennerstrom import Wennerstrom
 
 CURVATURES, MULTIPLIERS = 4, 5
-"""control points to begin with"""
+"""control points of the second derivative and of the thickness multiplier (`MULTIPLIERS`) to begin with"""
 MOST_CONTROL_POINTS = 14
-"""control points of either"""
+"""control points of either law at most; it bounds the time of growth."""
 STRAIGHT_CAMBER = np.radians(0.5)
-"""camber below which the second derivative is as good as even"""
+"""camber [rad] below which the second derivative is taken as constant: its shape cannot be seen."""
 LEAST_CURVATURE = 0.1
-"""smallest control point of the second derivative to begin with, of the largest"""
+"""smallest control point of the second derivative to begin with, of the largest."""
 FREE_PLACES_FROM = 2
-"""control points of the second derivative that have no places of their own"""
+"""control points of the second derivative up to which they have no places of their own"""
 BENT_BACK = 0.7
-"""part of its bending that a meanline which bends back turns at most"""
+"""ratio of a mean line's turning to its total bending below which it clearly bends back."""
 _EVEN = (1.0,) * CURVATURES
 _LAWS = (
     Wennerstrom(
@@ -63,12 +63,12 @@ def templates(section: SampledSection, parameters: int | None) -> Sequence[Curva
 
 
 def starts(section: SampledSection, like: CurvatureMeanline) -> Sequence[CurvatureMeanline]:
-    """The part of a structure nearest to a section, alone."""
+    """The part of a structure nearest to a section."""
     return [_start(section, like)]
 
 
 def _start(section: SampledSection, like: CurvatureMeanline) -> CurvatureMeanline:
-    """The part of a structure nearest to a section: angles and bends of its mean line, and its thickness."""
+    """The part of a structure nearest to a section: its angles, the bends of its mean line, and its thickness."""
     angles = [float(np.degrees(np.clip(section.stagger + each, -1.5, 1.5))) for each in section.angles]
     found = replace(like, metal_angle_in=angles[0], metal_angle_out=angles[1], thickness=_thickness(section, like))
     if like.curvature:
@@ -82,11 +82,11 @@ def _start(section: SampledSection, like: CurvatureMeanline) -> CurvatureMeanlin
 
 
 def _curvatures(section: SampledSection, places: Reals) -> Reals:
-    """Control points of the second derivative; of one sign, but where the meanline clearly bends back."""
+    """Control points of the second derivative; of one sign unless the mean line clearly bends back."""
     turning = np.tan(section.angles[1]) - np.tan(section.angles[0])
     if turning**2 < STRAIGHT_CAMBER**2:
         return np.ones(len(places))
-    # higher powers bend back at the edges, where the mean line is seen badly
+    # higher powers bend back at the edges, where the mean line is badly known
     u = np.linspace(0.03, 0.97, 60)
     bends = np.polynomial.Polynomial.fit(u, section.mean(u), 4).deriv(2)(places) / turning
     even = np.maximum(bends, LEAST_CURVATURE * np.max(bends))
@@ -146,7 +146,7 @@ def _number(law: float | tuple[float, ...]) -> float:
 
 
 def extensions(part: CurvatureMeanline, section: SampledSection) -> Sequence[CurvatureMeanline]:  # noqa: ARG001 - the contract's
-    """The same with one control point more of the second derivative, or of what multiplies the thickness."""
+    """The part with one control point more of the second derivative or of the thickness multiplier, or free places."""
     found = []
     if part.curvature and not part.curvature_places and len(part.curvature) < MOST_CONTROL_POINTS:
         found.append(replace(part, curvature=_wider(part.curvature)))

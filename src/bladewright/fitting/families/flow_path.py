@@ -17,29 +17,32 @@ from bladewright.numerics.elementary import cumulative_length
 from bladewright.nurbs.basis import Reals, basis, uniform_knots
 
 WALL_COUNTS = (3, 4, 5, 7, 9)
-"""points on each wall beside the blade, the fewest that are near enough"""
+"""points on each wall beside the blade; the fewest are taken that are near enough."""
 WALL_DISTANCE = 0.01
-"""distance of a wall from the one that is found that is near enough, of its length: it is found by points alone"""
+"""distance of a wall from the one that was found that is near enough, of its length: walls found by points alone are no
+better known."""
 WALL_MARGIN = 0.1
-"""how far in front of the blade and behind it the first and the last of them stand, of its length"""
+"""distance ahead of and behind the blade of the first and last of these points, of its length."""
 CONTINUATION = 0.8
-"""where a point stands on its straight continuation, of its length"""
+"""length of the straight continuation at whose end a point stands, of the wall's length."""
 LEAST_RADIUS = 0.6
-"""part of the radius at its end that the continuation may lose"""
+"""share of the radius at its end that the continuation may lose: it must not meet the axis."""
 EDGE_POINTS = 4
 """points on an edge curve"""
 EDGE_OVERREACH = 0.06
-"""how far an edge curve reaches past the walls, of its length"""
+"""length by which an edge curve reaches past the walls, of its length; `EDGE_OVERREACH_LIKE` is how many times that
+where points of another curve say how far it reaches."""
 EDGE_OVERREACH_LIKE = 4.0
 """how often that far, where the points of another curve say how far it reaches"""
 OPPOSITE_CURVE = {"leading_edge": "trailing_edge", "trailing_edge": "leading_edge", "hub": "shroud", "shroud": "hub"}
-"""the curve that is in its place where the flow comes from the other side"""
+"""the curve in whose place each stands when the flow comes from the other side"""
 CURVE_PLACES: Reals = np.linspace(0.0, 1.0, 201)
+"""parameters at which curves are sampled"""
 
 
 @dataclass(frozen=True, kw_only=True)
 class ChannelCurves:
-    """A closed blade's channel, for the flow that it was found with, or for the one from the other side."""
+    """A closed blade's channel, for the flow that it was found for, or for flow from the other side."""
 
     blade: Blade
     backwards: bool = False
@@ -52,7 +55,7 @@ class ChannelCurves:
         return np.asarray(np.real(channel.line(name).values(at)))
 
     def flow_path(self, metre: float) -> FlowPath:
-        """Hub and shroud, lengthened straight on; fractions count from edge to edge."""
+        """Hub and shroud, continued straight; fractions count from edge to edge."""
         hub, shroud = (ThroughPoints(points=_points(_wall(self.values(name, CURVE_PLACES)), metre)) for name in WALLS)
         return FlowPath(hub=hub, shroud=shroud, matched="edges")
 
@@ -63,7 +66,7 @@ class ChannelCurves:
         return ThroughPoints(points=_points(_along(line, at), metre))
 
     def edge_like(self, name: str, curve: Any, metre: float) -> Meridian:
-        """The edge with the points of another curve: where these stand along the edge, they stay."""
+        """The edge with the points of another curve, in their places along the edge."""
         if isinstance(curve, ThroughPoints):
             own, field = curve.points, "points"
         elif isinstance(curve, ControlPolygon):
@@ -91,7 +94,7 @@ class ChannelCurves:
 
 
 def _wall(line: Reals) -> Reals:
-    """Points of a wall, a line (n, 2) lengthened straight on: as few as follow it within a part of its length."""
+    """Points of a wall, a line (n, 2) continued straight: as few as follow it within `WALL_DISTANCE`."""
     way = cumulative_length(line)
     size = float(way[-1])
     first, last = _unit(line[0] - line[1]), _unit(line[-1] - line[-2])
@@ -111,12 +114,12 @@ def _wall(line: Reals) -> Reals:
 
 
 def _share_off_axis(radius: float, slope: float) -> float:
-    """The part of a straight continuation that keeps off the axis."""
+    """The share of a straight continuation that keeps off the axis."""
     return 1.0 if slope >= 0.0 else min(1.0, LEAST_RADIUS * radius / (-slope * CONTINUATION))
 
 
 def _extended(line: Reals, times: float = 1.0) -> Reals:
-    """A line (n, 2) that goes on straight past both ends."""
+    """A line (n, 2) that is continued straight past both ends."""
     size = float(np.sum(np.sqrt(np.sum(np.diff(line, axis=0) ** 2, axis=1))))
     steps = times * EDGE_OVERREACH * size * np.linspace(0.0, 1.0, 13)[1:, None]
     first, last = _unit(line[0] - line[1]), _unit(line[-1] - line[-2])

@@ -17,15 +17,16 @@ from bladewright.fitting.model_selection.stopping import MatchTarget, needs_more
 from bladewright.nurbs.basis import Reals
 
 PredictedGain = tuple[float, int, Design]
-"""gain for each parameter, number of parameters more, and the design"""
+"""reduction of the sum of squares for each parameter, number of added parameters, and the design"""
 
 
 def predicted_gains(
     task: Task, found: Match, designs: Iterable[Design], emphasis: Reals | None = None
 ) -> list[PredictedGain]:
-    """Designs that have more control points than a match's, best gain for each parameter first.
+    """Designs with more control points than a match's, best predicted gain for each parameter first.
 
-    `emphasis` (n,) are further weights of the points. Designs without a shape, or that gain nothing, are left out.
+    The gains are linear predictions, without a search. `emphasis` (n,) are further weights of the points. Designs
+    without a shape, or that gain nothing, are left out.
     """
     cloud_residuals, paths = found.problem.cloud_residuals, found.problem.paths
     values = found.design.parameters()
@@ -52,7 +53,7 @@ def predicted_gains(
 
 
 def _residuals_of(found: Match, design: Design, paths: tuple[str, ...]) -> tuple[Reals, Reals]:
-    """CloudResiduals of a design where the cloud stands on a match's, and their derivatives by scaled parameters."""
+    """Residuals of a design at the footpoints of a match, and their derivatives by scaled parameters."""
     cloud_residuals, on = found.problem.cloud_residuals, found.state.footpoints
     shape = cloud_residuals.model.shape(design)
     if not shape.finite:
@@ -63,20 +64,22 @@ def _residuals_of(found: Match, design: Design, paths: tuple[str, ...]) -> tuple
 
 
 WORTHWHILE_RATIO = 0.9
-"""ratio of misfits from which control points more are worth it where no aim is stated"""
+"""ratio of misfits below which further control points are worthwhile where no target is stated."""
 PATIENCE = 2
-"""times in a row that they may bring nothing before growth ends"""
+"""times in a row that further control points may be in vain before growth ends"""
 MOST_GROWTHS = 30
+"""times that control points are added at most; it bounds the time."""
 FUTILE_REASON = "further control points bring the design hardly nearer to the points"
+"""why growth ended where it was in vain"""
 
 GrowthStep = Callable[[Task, Match, MatchTarget, int], Iterator[Match]]
-"""matches near to one with control points more, in another way each time that so many have been taken back"""
+"""matches near to one with control points more; the number says how often growth was taken back"""
 
 
 def grown_to_target(
     task: Task, found: Match, target: MatchTarget, wider: GrowthStep, *, coarse: float
 ) -> tuple[Match, str]:
-    """A match with as many control points as the aim asks for, or why there are no more.
+    """A match with as many control points as the target needs, or why there are no more.
 
     A step that brings the design no nearer is taken back, and another is tried. What is grown can be built, with native
     sides of the `coarse` tolerance.
@@ -108,7 +111,7 @@ def grown_to_target(
 
 
 def can_be_built(found: Match, tolerance: float) -> bool:
-    """Whether the design can be built with a tolerance: whether its sections do not cross themselves."""
+    """Whether the design can be built with a tolerance, that is, its sections do not cross themselves."""
     design: Any = found.design
     try:
         replace(design, tolerance=max(design.tolerance, tolerance)).build()

@@ -1,4 +1,4 @@
-"""The families that are one part, as fits know them: by name their designs, starts and growth."""
+"""The families that are one part, as fits know them: designs, starts and growth, by name."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -30,11 +30,11 @@ class FitFamily:
     name: str
     section: type[PlanarSection]
     templates: Callable[[SampledSection, int | None], Sequence[Any]]
-    """parts whose structures are tried for a section where none is given, or so many free parameters"""
+    """parts whose structures are tried for a section where none is given, or for so many free parameters"""
     starts: Callable[[SampledSection, Any], Sequence[Any]]
     """parts of a structure near to a section, nearest first; may raise DesignError"""
     extensions: Callable[[Any, SampledSection], Sequence[Any]]
-    """parts near to one, which stands for a section, each with a control point more; may raise DesignError"""
+    """parts near to one that stands for a section, each with one control point more; may raise DesignError"""
     through_points: Callable[[SampledSection, int], Any] | None = None
     """the part through so many points of a section, where the family has one that follows any outline"""
 
@@ -68,5 +68,5 @@ FAMILIES = {
 
 
 def family_of(design: Design) -> FitFamily | None:
-    """The family of a design; None where it is no such one."""
+    """The family of a design; None for designs of the unified family."""
     return next((kind for kind in FAMILIES.values() if isinstance(design, (kind.section, kind.blade))), None)

@@ -23,30 +23,32 @@ from bladewright.nurbs.basis import Reals
 from bladewright.section.laws import Span, law_basis, named_laws
 
 MOST_SPAN = 10
-"""control points of a law along the span, and of an edge curve"""
+"""control points of a law along the span, and of an edge curve, at most; it bounds the time of growth."""
 SPANS: Reals = np.linspace(0.0, 1.0, 21)
-"""places along the span at which laws are taken for others"""
+"""places along the span at which laws are compared"""
 GROWN_SPANS: Reals = np.linspace(0.0, 1.0, MOST_SPAN + 1)
-"""places along the span at which sections grow along the chord one by one"""
+"""places along the span at which sections are extended along the chord one by one"""
 PLACES: Reals = (1.0 - np.cos(np.pi * np.linspace(0.0, 1.0, 201))) / 2.0
+"""chord fractions of the samples of a section"""
 WORTH_OF_BEST = 0.4
-"""gain for each parameter, of the best, from which a law grows too"""
+"""gain for each parameter, of the best, from which a law is extended together with it."""
 AT_ONCE = 4
-"""laws that grow together"""
+"""laws that are extended together at most"""
 EXTENSION_ROUNDS = 2
+"""rounds of the search after an extension"""
 
 
 @dataclass(frozen=True, kw_only=True)
 class LawExtension:
-    """A law with control points more."""
+    """A law with more control points."""
 
     law: str
     applied: Callable[[Any], Any]
-    """the blade with it; may raise DesignError"""
+    """the blade with the extension; may raise DesignError"""
 
 
 def law_extensions(design: Any, kind: FitFamily) -> list[LawExtension]:
-    """What may grow in a blade."""
+    """The laws of a blade that may be extended."""
     names = dict.fromkeys(path.partition("[")[0] for path, _ in named_laws(design.section))
     found = [LawExtension(law=f"section.{name}", applied=partial(_along_span, name=name)) for name in names]
     found += [
@@ -70,9 +72,9 @@ def law_extensions(design: Any, kind: FitFamily) -> list[LawExtension]:
 def extended_blade(
     task: Task, found: Match, target: MatchTarget, back: int, *, kind: FitFamily, enough: float = EXACT_MISFIT
 ) -> Iterator[Match]:
-    """The match with the laws widened that promise most, several at once; where that was taken back, one after another.
+    """The match with those laws extended that are predicted to gain most, several at once.
 
-    Taken back `back` times, it is the one that comes after so many better ones, alone.
+    Where that was taken back `back` times, the law that comes after so many better ones is extended, alone.
     """
     room = None if target.parameters is None else target.parameters - len(found.problem.paths)
     named: dict[str, tuple[LawExtension, Any]] = {}
@@ -139,7 +141,7 @@ def _extended_law(law: Law) -> Law:
 def _along_chord(design: Any, kind: FitFamily, which: int) -> Any:
     """The blade with a control point more along the chord, as its sections have it one by one.
 
-    Raises DesignError where some of its sections cannot grow so.
+    Raises DesignError where some of its sections cannot be extended in this way.
     """
     ways = _extensions_along_chord(kind, design.section)
     parts = [each[which] for each in ways if which < len(each)]
@@ -149,7 +151,7 @@ def _along_chord(design: Any, kind: FitFamily, which: int) -> Any:
     most: dict[str, int] = {}
     for path, count in known.items():
         most[path.partition("[")[0]] = max(count, most.get(path.partition("[")[0], 1))
-    # what is new has as many control points along the span as the law that it stands in
+    # a new control point has as many values along the span as the law that it belongs to
     counts = {path: known.get(path, most.get(path.partition("[")[0], 1)) for path in parts[0].parameters()}
     changed = part_along_span(parts, GROWN_SPANS, counts)
     laws = [(path, law) for path, law in named_laws(design.section) if path in counts]
@@ -159,13 +161,13 @@ def _along_chord(design: Any, kind: FitFamily, which: int) -> Any:
 
 @lru_cache(maxsize=4)
 def _extensions_along_chord(kind: FitFamily, part: Any) -> list[Sequence[Any]]:
-    """The ways in which the sections of a part at PLACED may grow along the chord."""
+    """The ways in which the sections of a part at `GROWN_SPANS` may be extended along the chord."""
     sections = [_section_at(part, float(v)) for v in GROWN_SPANS]
     return [kind.extensions(section, _samples(section)) for section in sections]
 
 
 def _is_unchanged(parts: list[Any], path: str, section: Any) -> bool:
-    """Whether growth has left a law as it was."""
+    """Whether an extension has left a law as it was."""
     now = [part.parameters()[path] for part in parts]
     was = [_section_at(section, float(v)).parameters()[path] for v in GROWN_SPANS[[0, -1]]]
     return now[0] == was[0] and now[-1] == was[-1]

@@ -12,7 +12,7 @@ from bladewright.section.laws import law_basis, named_laws
 
 
 def lines_of(part: Part, stem: str) -> Iterator[list[str]]:
-    """Paths of control points in a row, for every law and every row of laws of a part."""
+    """Paths of control points in a row, for every law of a part and every row of laws."""
     for each in fields(part):
         value, path = getattr(part, each.name), f"{stem}.{each.name}"
         if isinstance(value, Part):
@@ -35,7 +35,7 @@ def _lines(value: tuple[Any, ...], path: str) -> Iterator[list[str]]:
 
 
 def with_mean_laws(part: Any) -> Any:
-    """The part with a number in place of each law: its mean."""
+    """The part with each law replaced by its mean, a number."""
     return part.changed({path: float(np.mean(law)) for path, law in named_laws(part)})
 
 
@@ -52,7 +52,7 @@ def part_along_span(parts: Sequence[Any], v: Reals, counts: Mapping[str, int]) -
 
 
 def nearest_law(values: Sequence[float], v: Reals, count: int) -> Law:
-    """The law of so many control points nearest to values (m,) at places v (m,), inside their range."""
+    """The law of so many control points nearest to values (m,) at places v (m,), kept inside their range."""
     at = np.asarray(values)
     if count == 1:
         return float(np.median(at))
@@ -65,7 +65,7 @@ def nearest_law(values: Sequence[float], v: Reals, count: int) -> Law:
 
 
 def _with_unit_curvature(part: Any) -> Any:
-    """The part with control points of a second derivative whose sum of magnitudes is one: they count by ratios."""
+    """The part with control points of a second derivative scaled to a sum of magnitudes of one: ratios count."""
     values = {path: value for path, value in part.parameters().items() if path.startswith("curvature[")}
     total = float(np.sum(np.abs(list(values.values()))))
     return part.changed({path: value / total for path, value in values.items()}) if total > 0.0 else part

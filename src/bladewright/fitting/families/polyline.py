@@ -1,4 +1,4 @@
-"""Lines of points, and the places on them that are nearest to others."""
+"""The places on a polyline that are nearest to points."""
 
 from dataclasses import dataclass
 
@@ -10,23 +10,23 @@ from bladewright.nurbs.basis import Reals
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class PolylineFootpoints:
-    """The nearest places of m points on a line."""
+    """The nearest places of m points on a polyline."""
 
     points: Reals
     """(m, 2)"""
     tangents: Reals
     """(m, 2) unit vectors along the line"""
     heights: Reals
-    """(m,) of the points above the line, positive on its left"""
+    """(m,) signed distances of the points from the line, positive on its left"""
 
     @property
     def normals(self) -> Reals:
-        """(m, 2) to the left."""
+        """(m, 2) unit normals to the left."""
         return np.stack([-self.tangents[:, 1], self.tangents[:, 0]], axis=-1)
 
 
 def nearest_on(line: Reals, points: Reals) -> PolylineFootpoints:
-    """The nearest places of points (m, 2) on a line through points (n, 2), which goes on straight past its ends."""
+    """The nearest places of points (m, 2) on a polyline (n, 2), which continues straight past its ends."""
     start, along = line[:-1], np.diff(line, axis=0)
     size = np.sqrt(np.sum(along**2, axis=1))
     kept = size > 1e-12 * float(np.sum(size))

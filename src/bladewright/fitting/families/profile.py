@@ -20,7 +20,7 @@ from bladewright.section.profiles.profile import Profile
 LIFT = 4.0 * np.pi / np.log(2.0)
 """design lift of a mean line of uniform load, over its camber (Abbott and von Doenhoff 1959, eq. 4.26)"""
 TURNING = 0.6
-"""part of a contour's points that are spread by its turning"""
+"""share of a contour's points that are spread by its turning; the others are spread by its length."""
 TEMPLATES: tuple[Profile, ...] = (
     Naca4(thickness=0.1, camber=0.02, camber_position=0.4),
     Naca4(thickness=0.1, camber=0.02, camber_position=0.4, trailing_edge="round"),
@@ -44,7 +44,7 @@ def templates(section: SampledSection, parameters: int | None) -> Sequence[Profi
 
 
 def starts(section: SampledSection, like: Profile) -> Sequence[Profile]:
-    """The profile of a structure nearest to a section, alone."""
+    """The profile of a structure nearest to a section."""
     return [_start(section, like)]
 
 
@@ -75,9 +75,9 @@ def _start(section: SampledSection, like: Profile) -> Profile:
 
 
 def _through(section: SampledSection, like: PointsProfile) -> PointsProfile:
-    """As many points of the section as the profile has, from its trailing edge around the nose.
+    """As many points of the section as the profile has, from its trailing edge around the leading edge.
 
-    They are as dense as the section turns and, by less, as it is long: where a contour turns fast it has a corner.
+    They are as dense as the section turns and, less so, as it is long: where a contour turns fast it has a corner.
     """
     count = len(like.abscissas)
     around = np.concatenate([section.upper[::-1], section.lower[1:-1]])
@@ -104,5 +104,5 @@ def through_points(section: SampledSection, count: int) -> PointsProfile:
 
 
 def extensions(part: Profile, section: SampledSection) -> Sequence[Profile]:  # noqa: ARG001 - what every family answers
-    """Nothing: a kind has its parameters."""
+    """None: a kind of profile has its parameters."""
     return ()

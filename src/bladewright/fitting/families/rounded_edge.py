@@ -1,4 +1,4 @@
-"""The edge of a section by suction and pressure side that lies nearest to the end of a section's samples."""
+"""The edge of a section by suction and pressure side that is nearest to the end of a section's samples."""
 
 from dataclasses import dataclass
 
@@ -18,20 +18,23 @@ from bladewright.section.suction_pressure.edges import (
 )
 
 CORNER_MISS, DIRECTION_MISS = 0.1, np.radians(5.0)
-"""what a miss of a corner, of the edge's radius, and of its side's direction there count"""
+"""miss of a corner, of the edge's radius, that counts 1 in the least squares, and error of its side's direction there
+(`DIRECTION_MISS`) [rad]."""
 CURVATURE_SPREAD, STRETCH_SPREAD, SKEW_SPREAD = 0.5, 0.4, 0.3
-"""spread of the logarithms of the nose's curvature and of the stretch, and of the skewness"""
+"""spread of the logarithm of the edge's curvature, of that of its stretch (`STRETCH_SPREAD`) and of its skewness
+(`SKEW_SPREAD`); they hold what the corners leave open."""
 WEDGE_SPREAD, DIRECTION_SPREAD = np.radians(4.0), np.radians(15.0)
-"""spread of the wedge angle about the one wanted, and of the edge's direction about the normal of the nose"""
+"""spread of the wedge angle about the one asked for, and of the edge's direction about the normal of its end
+(`DIRECTION_SPREAD`) [rad]."""
 LARGEST_OPENING = 0.95
-"""part of the largest opening that a first edge has"""
+"""share of the largest opening that a first edge may have, so that a search can change it both ways."""
 LOWEST, HIGHEST = (-1.5, np.log(4e-4), np.log(0.2), -0.8, 0.0), (1.5, np.log(0.2), np.log(6.0), 0.8, 1.5)
-"""bounds of the angle, the logarithms of radius and stretch, the skewness and the wedge angle"""
+"""bounds of the direction [rad], the logarithms of radius and stretch, the skewness and the wedge angle [rad]"""
 
 
 @dataclass(frozen=True, kw_only=True)
 class RoundedEdge:
-    """An edge's numbers, of the chord and from the chord line."""
+    """An edge's numbers, of the chord and relative to the chord line."""
 
     angle: float
     """of the edge's direction [rad]"""
@@ -44,7 +47,7 @@ class RoundedEdge:
 
 
 def edge_through(section: SampledSection, end: int, wedge: float, continuity: Continuity) -> RoundedEdge:
-    """The leading (0) or trailing (1) edge about so wide [rad] whose corners lie on the sides and leave along them."""
+    """The leading (0) or trailing (1) edge of about this wedge angle [rad] whose sides are tangent to the section."""
     nose = np.array([float(end), 0.0])
     sides = [side if end == 0 else side[::-1] for side in (section.upper, section.lower)]
     radius = float(np.clip(section.radii[end], 8e-4, 0.15))
@@ -98,12 +101,12 @@ def _points(unknowns: Reals, nose: Reals, end: int, continuity: Continuity) -> E
 
 
 def _normal_angle(sides: list[Reals], beside: float) -> float:
-    """The angle of the normal of the line between the sides, so far behind the nose along them."""
+    """The direction of the edge: normal to the line between the sides at this distance along them."""
     across = _point_along(sides[0], beside) - _point_along(sides[1], beside)
     return float(np.clip(np.arctan2(-across[0], across[1]), -1.4, 1.4))
 
 
 def _point_along(side: Reals, way: float) -> Reals:
-    """The point of a side (n, 2) so far along it."""
+    """The point of a side (n, 2) at this distance along it."""
     steps = cumulative_length(side)
     return np.array([np.interp(way, steps, side[:, i]) for i in (0, 1)])

@@ -10,13 +10,13 @@ from bladewright.nurbs.basis import Reals
 from bladewright.nurbs.curve import Curve
 
 OUTLINE_SAMPLES = 600
-"""points of an outline, in equal steps"""
+"""points of an outline, in equal steps; edges are found to about one step."""
 OPPOSITE_COSINE = -0.2
-"""cosine between the normals of two touching places below which they are on two sides, not on one edge"""
+"""cosine between the normals of two touching points below which they lie on two sides, not on one edge."""
 COSINE_SLACK = 1e-3
-"""by how much the cosine of a normal with the direction of an edge may be off where it is as good as along it"""
+"""slack of the cosine between a normal and an edge's direction within which they agree."""
 EDGE_MOVED = 0.02
-"""distance of an edge from there, of the chord, from which it is moved there"""
+"""distance of an edge from where its normals show it, of the chord, from which it is moved there."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -29,7 +29,7 @@ class InscribedCircles:
     radii: Reals
     """(n,)"""
     other: NDArray[np.intp]
-    """(n,) the other point where each touches"""
+    """(n,) the other point at which each circle touches"""
 
     @property
     def centres(self) -> Reals:
@@ -43,7 +43,7 @@ class InscribedCircles:
 
 
 def sides_between_edges(upper: Reals, lower: Reals) -> tuple[Reals, Reals, tuple[float, float] | None]:
-    """Both sides (n, 2) from edge to edge, and the edges' radii where they are others than those given."""
+    """Both sides (n, 2) from edge to edge, and the edges' radii where the edges were moved."""
     along = upper[-1] - upper[0]
     chord = float(np.sqrt(np.sum(along**2)))
     circles = inscribed_circles(_even_steps(np.concatenate([upper, lower[::-1]])))
@@ -64,7 +64,7 @@ def sides_between_edges(upper: Reals, lower: Reals) -> tuple[Reals, Reals, tuple
 
 
 def inscribed_circles(around: Reals) -> InscribedCircles:
-    """The circles of an outline whose points (n, 2) go once around."""
+    """The circles of an outline whose points (n, 2) run once around."""
     tangent = np.roll(around, -1, axis=0) - np.roll(around, 1, axis=0)
     normal = np.stack([-tangent[:, 1], tangent[:, 0]], axis=-1)
     normal = normal / (np.sqrt(np.sum(normal**2, axis=1))[:, None] + 1e-300)
@@ -115,15 +115,16 @@ def _distance(a: Reals, b: Reals) -> float:
 
 
 SIDE_POINTS = 400
-"""of each side"""
+"""samples of each side"""
 PLACES: Reals = (1.0 - np.cos(np.pi * np.linspace(0.0, 1.0, 121)[1:-1])) / 2.0
 """chord fractions of the mean line and the half thickness"""
 MEAN_LINE_POWERS = 5
-"""of the polynomial that multiplies u (1 - u) in the mean line"""
+"""coefficients of the polynomial that multiplies u (1 - u) in the mean line"""
 WEDGE_PLACE, WEDGE_STEP = (0.02, 0.06), 0.06
-"""how far behind an edge, and over which part of the chord, its wedge is seen, of the chord"""
+"""range of the distance behind an edge at which its wedge angle is measured, and the length over which it is
+(`WEDGE_STEP`), of the chord"""
 MEAN_LINE_TURNS = 6
-"""times that the mean line is brought to the middle"""
+"""fixed-point iterations that bring the mean line to the middle of the sides"""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -209,7 +210,7 @@ class SampledSection:
 
 
 def reversed_flow(section: SampledSection) -> SampledSection:
-    """The same section for the flow that comes from the other side: its edges exchanged, its sides as they are."""
+    """The same section for flow from the other side: its edges exchanged, its sides kept."""
     turn = np.array([-1.0, 1.0])
     end = section.start + section.chord * np.array([np.cos(section.stagger), np.sin(section.stagger)])
     return SampledSection(

@@ -1,4 +1,4 @@
-"""From points in the plane to a design of a family that is one part: the best of its structures, and more of it."""
+"""From points in the plane to a design of a family that is one part: the best of its structures, and growth."""
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
@@ -25,34 +25,36 @@ from bladewright.section.checks import UNITS
 from bladewright.section.section import Section
 
 TRIAL_POINTS = 400
-"""points by which structures are told apart"""
+"""points by which structures are compared"""
 QUICK_POINTS, THOROUGH_POINTS = 1000, 12_000
-"""points of a quick and of a thorough search"""
+"""points of a quick and of a thorough search (`THOROUGH_POINTS`): more points take proportionally longer and determine
+parameters better."""
 CLOSED_PARAMETERS = 32
-"""parameters of the unified section that says where to begin"""
+"""parameters of the unified section from which the family's first design is taken"""
 TRIAL_ROUNDS, QUICK_ROUNDS = 2, 4
-"""rounds of a search that tells structures apart, and of one between two steps of growth"""
+"""rounds of a search that compares structures, and of one between two steps of growth (`QUICK_ROUNDS`)"""
 PROMISING_RATIO = 3.0
-"""ratio of misfits within which a structure is searched on after the rough search"""
+"""ratio of misfits to the best within which a structure is searched on after its trial, in order of their misfits;
+`MOST_SEARCHED` at most."""
 MOST_SEARCHED = 4
 """structures that are searched on"""
 KNOWN_MISFIT = 1e-9
-"""misfit at which a structure is known, of the chord"""
+"""misfit at which the structure is known, of the chord: no noise is so small."""
 TOLERANCES = (0.0, 1e-8, 1e-6)
-"""of the native sides, of the chord"""
+"""tolerances of the native sides, of the chord, finest first: the first is taken that the design can be built with."""
 OUTLINE_COUNTS = (24, 32, 44, 60, 80)
 """points of outlines that are tried in turn"""
 FEWEST_OUTLINE_POINTS, OUTLINE_SURPLUS = 12, 2
-"""fewest points of an outline of so many parameters as are asked for, and by how many it has more points than those:
-one number is free of each point but two, and four place the section"""
+"""fewest points of an outline where a number of parameters is asked for, and by how many (`OUTLINE_SURPLUS`) its points
+are fewer than those: one coordinate is free of each point but two, and four numbers place the section."""
 LAWS_TRIED = 2
-"""laws that are given a control point more by a search, of those that promise most"""
+"""laws that a search gives a control point more, of those that are predicted to gain most."""
 
 
 def matched_section(
     task: Task, kind: FitFamily, start: Any, like: Any, header: DesignHeader, target: MatchTarget
 ) -> tuple[Match, str]:
-    """The match of points (n, 2) by a section of the family, and why it ends where no aim is met.
+    """The match of points (n, 2) by a section of the family, and why it ends where no target is met.
 
     `start` and `like` are sections of the family, or None. Raises FitError where no structure of the family has a shape
     near the points.
@@ -82,7 +84,7 @@ def matched_section(
 def _through_points(
     task: Task, found: Match, target: MatchTarget, through_points: Callable[[int], Any], made: Callable[[Any], Design]
 ) -> tuple[Match, str]:
-    """A match by points of the outline where no other has what is asked for, as few as have it."""
+    """A match by points of the outline where no other meets the target, by as few as do."""
     asked = 0 if target.parameters is None else target.parameters - OUTLINE_SURPLUS
     for count in (asked,) if asked >= FEWEST_OUTLINE_POINTS else OUTLINE_COUNTS:
         short, reason = needs_more(found, target, task)
@@ -190,10 +192,10 @@ def _is_buildable(found: Match) -> bool:
 
 
 def _wider(task: Task, found: Match, target: MatchTarget, back: int, *, kind: FitFamily) -> Iterator[Match]:
-    """Matches with a control point more, of the laws that promise most, or of the next where those were taken back."""
+    """Matches with one control point more, of the laws predicted to gain most, or of the next ones after a failure."""
     design: Any = found.design
     try:
-        # a section that crosses itself on the way has sides all the same
+        # an intermediate section that crosses itself has sides all the same
         sides: Any = found.state.shape.sides
         parts = kind.extensions(design.section, sampled_section(sides[0], sides[1], (0.0, 0.0)))
     except DesignError:
@@ -216,7 +218,7 @@ def _searched_thoroughly(task: Task, found: Match) -> Match:
 
 
 def _buildable_tolerance(found: Match) -> Match:
-    """The match with the finest tolerance of its native sides that it can be built with: edges may turn fast."""
+    """The match with the finest tolerance of its native sides with which it can be built: edges may turn fast."""
     for tolerance in TOLERANCES:
         if can_be_built(found, tolerance):
             design: Any = found.design
@@ -225,7 +227,7 @@ def _buildable_tolerance(found: Match) -> Match:
 
 
 def thinned_task(task: Task, count: int) -> Task:
-    """A task with so many of its points at most."""
+    """A task with at most so many of its points."""
     rows = drawn(len(task.points), count)
     if len(rows) == len(task.points):
         return task

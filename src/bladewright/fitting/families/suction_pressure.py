@@ -1,4 +1,4 @@
-"""Where a section by its suction and its pressure side begins, and what may grow in it."""
+"""Where a section by its suction and pressure side begins, and which control points may be added."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -21,20 +21,22 @@ HEIGHTS = 2
 WITHOUT_HEIGHTS = 18
 """free parameters of a section besides those"""
 MOST_CONTROL_POINTS = 12
-"""of each side"""
+"""free control points of each side at most; it bounds the time of growth."""
 TEMPLATE_TANGENT = 0.08
-"""distance of the control points on the tangents in a structure, of the chord"""
+"""distance of the control points on the end tangents in a template, of the chord"""
 LEAST_TANGENT, MOST_TANGENT = 0.25, 0.9
-"""smallest one to begin with, of that of evenly spread control points, and largest, of the chord"""
+"""smallest of these distances to begin with, of that of evenly spread control points, and largest (`MOST_TANGENT`), of
+the chord."""
 TRIAL_WEDGES = tuple(np.radians([25.0, 50.0, 75.0]).tolist())
-"""of first leading edges besides the section's own"""
+"""wedge angles [rad] of the leading edge that are tried besides the section's own"""
 WEDGE_RANGE = (np.radians(2.0), np.radians(40.0))
-"""between what the section's own are taken"""
+"""range [rad] to which the section's own wedge angles are limited"""
 SAMPLES: Reals = (1.0 - np.cos(np.pi * np.linspace(0.0, 1.0, 121)[1:-1])) / 2.0
+"""parameters at which a side is compared with the section"""
 STIFFNESS = 1e-3
-"""by which a control point stays where it was, of what all samples weigh"""
+"""weight that holds a control point where it was, of the weight of all samples."""
 PROJECTIONS = 8
-"""times that the places of a side's samples are found anew"""
+"""times that the samples of a side are projected onto the section anew"""
 _PLAIN = SuctionPressure(
     stagger_angle=0.0,
     metal_angle_in=0.0,
@@ -53,7 +55,7 @@ _PLAIN = SuctionPressure(
 
 
 def templates(section: SampledSection, parameters: int | None) -> Sequence[SuctionPressure]:
-    """Structures that are tried where none is given, of nearly so many free parameters of a section."""
+    """Structures that are tried where none is given, with about so many free parameters of a section."""
     free = 0 if parameters is None else parameters - WITHOUT_HEIGHTS
     counts = max(HEIGHTS, min(MOST_CONTROL_POINTS, -(-free // 2))), max(HEIGHTS, min(MOST_CONTROL_POINTS, free // 2))
     side: Literal["upper", "lower"] = "upper" if section.most_cambered[0] > 0.0 else "lower"
@@ -62,10 +64,10 @@ def templates(section: SampledSection, parameters: int | None) -> Sequence[Sucti
 
 
 def starts(section: SampledSection, like: SuctionPressure) -> Sequence[SuctionPressure]:
-    """Parts of a structure near to a section, nearest first: edges by their ends, sides by least squares.
+    """Parts of a structure near to a section, nearest first: edges by the section's ends, sides by least squares.
 
-    How far a nose reaches is a matter of taste, as its sides may be taken for parts of it: there is one for each of
-    several wedges. Raises DesignError where none has a shape.
+    How far an edge extends is ambiguous, as its sides may be taken for parts of it: there is one start for each of
+    several wedge angles. Raises DesignError where none has a shape.
     """
     own, last = (float(np.clip(section.wedge(end), *WEDGE_RANGE)) for end in (0, 1))
     tried, refusal = [], DesignError("no wedge of the leading edge was tried")
@@ -81,7 +83,7 @@ def starts(section: SampledSection, like: SuctionPressure) -> Sequence[SuctionPr
 
 
 def _with_edges(section: SampledSection, like: SuctionPressure, wedges: tuple[float, float]) -> SuctionPressure:
-    """The part of a structure with edges about so wide [rad], its sides through a section's."""
+    """The part of a structure with about these wedge angles [rad], its sides through a section's."""
     upward = 1.0 if like.suction_side == "upper" else -1.0
     values: dict[str, Any] = {"stagger_angle": float(np.degrees(section.stagger))}
     for end, (edge, angle) in enumerate((("leading_edge", "metal_angle_in"), ("trailing_edge", "metal_angle_out"))):
@@ -105,7 +107,7 @@ def _misfit(part: SuctionPressure, section: SampledSection) -> float:
 
 
 def extensions(part: SuctionPressure, section: SampledSection) -> Sequence[SuctionPressure]:
-    """The same with one free control point more on the suction or the pressure side, or with free places on one."""
+    """The part with one free control point more on the suction or the pressure side, or with free places on one."""
     found = []
     for name in ("suction", "pressure"):
         heights, places = getattr(part, f"{name}_heights"), _numbers(getattr(part, f"{name}_places"))
@@ -191,7 +193,7 @@ def _side_through(part: SuctionPressure, line: Reals, name: str) -> dict[str, fl
 
 
 def _heights_above(line: Reals, low: Reals, high: Reals) -> Reals:
-    """How far from places (k, 2) a line is in the directions to other places (k, 2)."""
+    """Distances of a line from places (k, 2) in the directions to other places (k, 2)."""
     across = high - low
     along = np.stack([across[:, 1], -across[:, 0]], axis=-1)
     found = []

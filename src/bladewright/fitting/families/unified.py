@@ -27,18 +27,19 @@ from bladewright.fitting.model_selection.structure import (
 )
 
 FEWER_SHARES = (1.0, 0.5)
-"""parts of the control points along the chord that are tried where a nearest design cannot be built"""
+"""shares of the control points along the chord that are tried where the nearest design cannot be built"""
 REDUCED_NOISE, REDUCED_POINTS = 3e-3, 2500
-"""noise of the first round with those, of the chord, and points"""
+"""noise of the first round with those, of the chord, and their number of points (`REDUCED_POINTS`)"""
 REDUCED_NOTE = (
     "the nearest design cannot be built: this one's camber bends less at the edges, with {} parameters for {}"
 )
+"""note where the nearest design cannot be built"""
 
 
 def matched_unified(
     task: Task, start: Design | None, like: Design | None, header: DesignHeader, target: MatchTarget
 ) -> tuple[Match, Any, str]:
-    """The match of points (n, 2) or (n, 3), what it builds, and why it ends where no aim is met.
+    """The match of points (n, 2) or (n, 3), what it builds, and why it ends where no target is met.
 
     Raises FitError where no design is found near the points, or the nearest one cannot be built.
     """
@@ -63,7 +64,7 @@ def matched_unified(
     try:
         found, reason = selected_match(task, first, target, base=base, guessed=start is None)
         if keeps_structure and found.rms > KNOWN_MISFIT and has_systematic_misfit(found, CLEAR_SHARE):
-            # from a first design with freer laws the same structure is met elsewhere
+            # a first design with freer laws leads to another minimum of the same structure
             freer = _with_held_values(
                 task, _first_design(task, first_blade_structure(None), like, header), started=False
             )
@@ -81,13 +82,13 @@ def matched_unified(
 
 
 def _with_held_values(task: Task, guessed: Design, *, started: bool) -> Design:
-    """A first design with the values that are held, opened where it is a guess that they leave no shape."""
+    """A first design with the held values; a guess that they leave no shape gets thinner edges."""
     first = task.free.applied(guessed) if isinstance(task.free, FreeParameters) else guessed
     return first if started or first is guessed else with_feasible_edges(first)
 
 
 def _first_design(task: Task, structure: Structure | None, like: Design | None, header: DesignHeader) -> Design:
-    """The first design, from the points alone; what `like` says of the row where nothing else does."""
+    """The first design from the points alone; what `like` says of the row counts where nothing else does."""
     some = task.points[drawn(len(task.points), THOROUGH_POINTS)]
     if task.points.shape[1] == 2:
         lengths: dict[str, Any] = {}
@@ -99,10 +100,10 @@ def _first_design(task: Task, structure: Structure | None, like: Design | None, 
 
 
 def _buildable(task: Task, found: Match, *, fewer: bool) -> tuple[Match, Any, str]:
-    """What the found design builds, and in words where it is not the nearest one.
+    """What the found design builds, and a note where it is not the nearest one.
 
-    Where that is refused, of a design that keeps further from what is refused; with `fewer`, at last of one whose
-    camber has no hooks at the edges, or of one with fewer control points along the chord besides.
+    Where that is refused, a design is taken that keeps further from what is refused; with `fewer`, at last one whose
+    camber has no hooks at the edges, also with fewer control points along the chord.
     """
     refusal = ""
     for margin_factor in (0.0, 1.0, 30.0, 1000.0):

@@ -1,4 +1,4 @@
-"""Where a vane of a wedge diffuser begins; nothing may grow in it."""
+"""Where a vane of a wedge diffuser begins; it has no control points to add."""
 
 from collections.abc import Sequence
 from dataclasses import replace
@@ -21,7 +21,7 @@ def templates(section: SampledSection, parameters: int | None) -> Sequence[Wedge
 
 
 def starts(section: SampledSection, like: WedgeDiffuser) -> Sequence[WedgeDiffuser]:
-    """The vane of a structure nearest to a section, alone."""
+    """The vane of a structure nearest to a section."""
     return [_start(section, like)]
 
 
@@ -35,12 +35,12 @@ def _start(section: SampledSection, like: WedgeDiffuser) -> WedgeDiffuser:
         like,
         stagger_angle=float(np.degrees(section.stagger)),
         leading_edge_radius=first,
-        # two corners are rounder the smaller they are: what they round off is small beside the face
+        # the corners of a blunt face are rounded by much less than its half width
         trailing_edge_radius=last if wedge is None else 0.2 * last,
         wedge_angle=wedge,
     )
 
 
 def extensions(part: WedgeDiffuser, section: SampledSection) -> Sequence[WedgeDiffuser]:  # noqa: ARG001 - what every family answers
-    """Nothing: the vane has three parameters."""
+    """None: the vane has three parameters."""
     return ()
