@@ -1,4 +1,4 @@
-"""The structure of a design as its cloud asks for it: control points are added until an aim is reached."""
+"""The structure of a design as its cloud asks for it: control points are added until a target is reached."""
 
 from dataclasses import replace
 
@@ -31,36 +31,41 @@ from bladewright.fitting.models.law_jacobian import stands_on_channel
 from bladewright.section.unified import UnifiedSection
 
 RESTART_NOISE = 0.03
-"""noise from which a match of a section is tried once more, of the chord"""
+"""noise assumed when a match of a section is searched once more from where it ended, of the chord: as if little were
+known."""
 FINEST_RESTART = 1e-6
-"""misfit at which it is not, of that"""
+"""misfit, of that noise, below which a match is not searched once more: it is the minimum."""
 FINAL_REDUCTION = 1e-3
-"""part of the cost that a step of the last search must promise, where the cloud is not taken for exact"""
+"""predicted relative reduction of the cost that a step of the last search needs, where the cloud is not taken for
+exact."""
 QUICK_POINTS, THOROUGH_POINTS = {2: 2500, 3: 1000}, 12_000
-"""points of a quick, by dimension, and of a thorough search"""
+"""points of a quick search, by dimension, and of a thorough one (`THOROUGH_POINTS`): time is proportional to them."""
 TOLERANCE_POINTS = 2500
-"""points with which a blade grows towards a tolerance, which asks for every row of them"""
+"""points with which a blade grows towards a tolerance, which needs every row of them."""
 REFUSED_MARGIN = 30.0
-"""by how much noses are held further from what is refused, where a design is"""
+"""factor of the margin of edge radii once a design that searches allow is refused when built."""
 COMPACT_RMS = 0.5
-"""root mean square distance, of a tolerance, with which a blade begins to grow towards it"""
+"""root mean square distance, of a tolerance, of the match from which a blade grows towards it: smaller values start
+with more parameters."""
 NEARLY_WITHIN = (0.3, 0.02)
-"""root mean square distance, of a tolerance, and part of the points beyond it with which no more is added at first"""
+"""root mean square distance, of a tolerance, and share of the points beyond it, with which points are reweighted rather
+than control points added."""
 GROWTH_GAIN = 0.7
-"""misfit, of that before, with which a match that had settled goes on growing"""
+"""ratio of misfits with which a match that had settled goes on growing."""
 MOST_GROWTHS = 40
-"""times that more is added at most"""
+"""times that control points are added at most; it bounds the time."""
 ROW_SPREAD = 1e-3
-"""spread of the points at an end below which they stand in a row on the wall, of the chord"""
+"""spread of the points at an end below which they stand in a row on the wall, of the chord."""
 CORNERS_HELD_NOTE = (
     "the radii of the channel's corners are read off the points at hub and shroud, held, and not counted"
 )
+"""note where the channel's corners are read off the points (design/matches.md)"""
 
 
 def selected_match(
     task: Task, first: Design, target: MatchTarget, *, base: Structure | None, guessed: bool
 ) -> tuple[Match, str]:
-    """The match, and why it ends where no aim is met.
+    """The match, and why it ends where no target is met.
 
     `first` is a first design, a guess or a start; `base` the structure from which to grow, where it is not that of
     `first`.
@@ -95,7 +100,7 @@ def selected_match(
         return found, reason
     rounds = MOST_ROUNDS
     if task.points.shape[1] == 3 and not target.open:
-        # growth to a tolerance has weighed points by their distances, and what follows does so too
+        # growth to a tolerance has weighted points by their distances, as the search that follows will
         rounds = QUICK_ROUNDS if target.tolerance is None else 0
     if task.points.shape[1] == 3 and not target.open and _refused(found):
         many = replace(many, margin_factor=REFUSED_MARGIN * many.margin_factor)
@@ -113,7 +118,7 @@ def selected_match(
 def _match_for_target(
     task: Task, several: Task, found: Match, target: MatchTarget, base: Structure | None, *, guessed: bool
 ) -> tuple[Match, str]:
-    """A match with as many control points as the aim asks for, as forecasts or growth lead there, or why not."""
+    """A match with as many control points as the target asks for, by forecasts or growth, or why not."""
     solid = guessed and task.points.shape[1] == 3 and stands_on_channel(found.design) and not found.interrupted
     if solid and target.parameters is not None:
         chosen = best_match_of_size(task, found, target.parameters)
@@ -129,7 +134,7 @@ def _match_for_target(
             measured = searched(task, found.design, rounds=0)
             found = replace(measured, evaluations=measured.evaluations + found.evaluations)
     elif solid:
-        # forecasts are linear: they tell of more the nearer a match is
+        # forecasts are linear: they are truer the nearer a match is
         found = searched(task, found.design, noise=found.rms, min_reduction=ROUGH_REDUCTION)
         found = best_match_of_size(task, found, len(found.problem.paths)) or found
     elif base is not None and not found.interrupted and _has_spare_parameters(found, target):
@@ -138,7 +143,7 @@ def _match_for_target(
 
 
 def _grown_to_target(task: Task, found: Match, target: MatchTarget) -> tuple[Match, str]:
-    """A match with as many control points as the aim asks for, or why there are no more."""
+    """A match with as many control points as the target asks for, or why there are no more."""
     reason = ""
     for _ in range(MOST_GROWTHS):
         if found.interrupted:
@@ -158,7 +163,7 @@ def _grown_to_target(task: Task, found: Match, target: MatchTarget) -> tuple[Mat
 
 
 def _grown_further(several: Task, many: Task, found: Match, target: MatchTarget) -> Match:
-    """A match that grows on where it has settled at a misfit that is no noise: forecasts are truer the nearer it is."""
+    """A match that grows on after it settled at a systematic misfit: the nearer it is, the truer are forecasts."""
     while has_systematic_misfit(found):
         more, grew = grown_match(several, found, target)
         if not grew:
@@ -171,7 +176,7 @@ def _grown_further(several: Task, many: Task, found: Match, target: MatchTarget)
 
 
 def _nearly_within_tolerance(found: Match, target: MatchTarget) -> bool:
-    """Whether all but a few points of a blade keep a tolerance: weighing those more may do."""
+    """Whether all but a few points of a blade keep a tolerance: reweighting these may be enough."""
     on = found.state.footpoints
     if (
         target.tolerance is None
@@ -183,7 +188,7 @@ def _nearly_within_tolerance(found: Match, target: MatchTarget) -> bool:
 
 
 def _thickness_shared_out(task: Task, found: Match) -> Match:
-    """The best of the ways to share the control points of a section's thickness between its sides."""
+    """The best of the ways to share a section's thickness control points between its sides."""
     for way in (1, -1):
         while not found.interrupted:
             structure = structure_of(found.design)
@@ -201,18 +206,18 @@ def _thickness_shared_out(task: Task, found: Match) -> Match:
 
 
 def _restarted(task: Task, found: Match) -> Match:
-    """The better of a match and of one that starts from it as if it knew little: a nose may lie in a wrong place."""
+    """The better of a match and of one searched again from it with little trust: an edge may be in a wrong place."""
     if found.interrupted or found.rms < RESTART_NOISE * FINEST_RESTART:
         return found
     other = searched(task, found.design, noise=RESTART_NOISE)
-    # of all points: a match that takes more of them for outliers is no nearer
+    # over all points: a match that takes more of them for outliers is no nearer (design/matches.md)
     nearer = other if other.mean_distance < found.mean_distance and other.rms < found.rms else found
     evaluations = found.evaluations + other.evaluations
     return replace(nearer, evaluations=evaluations, interrupted=other.interrupted)
 
 
 def _refused(found: Match) -> bool:
-    """Whether a design that searches pass is refused when it is built: its noses must be held further off."""
+    """Whether a design that searches allow is refused when it is built: its edge radii need a larger margin."""
     try:
         found.design.build()
     except DesignError:
@@ -221,7 +226,7 @@ def _refused(found: Match) -> bool:
 
 
 def _ends_in_rows(found: Match) -> bool:
-    """Whether the cloud shows by rows of points where hub and shroud are."""
+    """Whether rows of points show where hub and shroud are."""
     walls = found.ends.walls
     return len(walls) == 2 and all(wall.spread < ROW_SPREAD * found.model.chord for wall in walls.values())
 

@@ -20,19 +20,19 @@ from bladewright.fitting.model_selection.structure import Structure, structure_o
 from bladewright.nurbs.basis import Reals
 
 SHARE_AT_ONCE = 4
-"""part, one in so many, of the parameters that are too many which is taken away at a time"""
+"""one in so many of the surplus parameters is removed at a time."""
 EXCHANGES, EXCHANGES_TRIED = 6, 3
-"""of control points, and laws that are tried each time"""
+"""exchanges of control points at most, with `EXCHANGES_TRIED` laws tried each time."""
 EXCHANGE_GAIN = 0.995
-"""foreseen cost, of that before, from which an exchange is worth it"""
+"""ratio of predicted costs from which an exchange is worthwhile."""
 FEWEST_PARAMETERS, REDUCTION = 16, 0.85
-"""parameters below which none are taken away before a match, and part of them that is left each time"""
+"""parameters below which none are removed before a match; `REDUCTION` is the share of them that is left each time."""
 STAGES = 4
-"""searches, each with the structure that the last one's forecast gives"""
+"""searches, each with the structure that the forecast about the last one prefers."""
 
 
 def best_match_of_size(task: Task, found: Match, most: int) -> Match | None:
-    """The match with at most so many free parameters that forecasts lead to; None where there are no forecasts."""
+    """The match with at most so many free parameters that forecasts lead to; None without forecasts."""
     best = found if len(found.problem.paths) <= most else None
     for stage in range(STAGES):
         now = structure_of(found.design)
@@ -57,7 +57,7 @@ def best_match_of_size(task: Task, found: Match, most: int) -> Match | None:
 
 
 def smallest_match(task: Task, found: Match, rms: float) -> Match | None:
-    """The match with as few parameters as are foreseen to leave a root mean square [m]; None without forecasts."""
+    """The match of fewest parameters predicted to leave a root mean square [m]; None without forecasts."""
     structure = structure_of(found.design)
     forecast = forecast_of(found, structure)
     if forecast is None:
@@ -74,12 +74,12 @@ def smallest_match(task: Task, found: Match, rms: float) -> Match | None:
 
 
 def _parameters_outside(found: Match, forecast: Forecast) -> int:
-    """Free parameters that no structure has a say in."""
+    """Free parameters that do not depend on the structure."""
     return len(found.problem.paths) - forecast.prediction(structure_of(found.design)).parameters
 
 
 def best_structure(forecast: Forecast, structure: Structure, most: int, roots: Reals | None = None) -> Structure:
-    """The structure of at most so many parameters that a forecast prefers, beginning with one of more or of fewer."""
+    """The structure of at most so many parameters that a forecast prefers, reached from another one."""
     found = _extended(forecast, _reduced(forecast, structure, most, roots), most, roots)
     cost = forecast.prediction(found, roots).cost
     for _ in range(EXCHANGES):
@@ -96,7 +96,7 @@ def best_structure(forecast: Forecast, structure: Structure, most: int, roots: R
 
 
 def _reduced(forecast: Forecast, structure: Structure, most: int, roots: Reals | None) -> Structure:
-    """A structure with at most so many parameters: what is foreseen to cost least goes first."""
+    """A structure with at most so many parameters: what is predicted to cost least is removed first."""
     while True:
         now = forecast.prediction(structure, roots)
         over = now.parameters - most
@@ -120,7 +120,7 @@ def _reduced(forecast: Forecast, structure: Structure, most: int, roots: Reals |
 
 
 def _extended(forecast: Forecast, structure: Structure, most: int, roots: Reals | None) -> Structure:
-    """A structure with as many parameters as there may be: what is foreseen to gain most comes first."""
+    """A structure with as many parameters as allowed: what is predicted to gain most is added first."""
     while True:
         room = most - forecast.prediction(structure, roots).parameters
         fitting = [(gain, step) for gain, step in ranked_steps(forecast, structure, roots) if step.parameters <= room]
@@ -134,7 +134,7 @@ def _extended(forecast: Forecast, structure: Structure, most: int, roots: Reals 
 def ranked_steps(
     forecast: Forecast, structure: Structure, roots: Reals | None = None
 ) -> list[tuple[float, StructureStep]]:
-    """Steps that a forecast can tell of with what each is foreseen to gain, best for each parameter first."""
+    """Steps that a forecast covers with the gain predicted for each, best for each parameter first."""
     names = set(forecast.names())
     steps = [step for step in steps_up(structure) if step.law in names and _is_within(step.structure, forecast.widest)]
     if not steps:

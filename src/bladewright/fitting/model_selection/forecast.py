@@ -1,7 +1,8 @@
-"""What matches of other structures would leave, foreseen linearly about one design, without a search.
+"""What matches of other structures would leave, predicted linearly about one design, without a search.
 
-Laws of other numbers of control points are products with the motion of whole laws. Along the chord and along the walls
-laws are stepped leaf by leaf: there, narrower ones are taken as the nearest that the widest can show.
+Laws with other numbers of control points are products with the motion of whole laws. Along the chord and along the
+walls laws move control point by control point: there, narrower ones are taken as the nearest that the widest can
+represent.
 """
 
 from collections.abc import Iterator, Sequence
@@ -34,17 +35,17 @@ from bladewright.section.unified_limits import THICKNESSES
 
 WALLS = ("hub", "shroud")
 STRUCTURE_LAWS = (*SPANWISE, "place", *THICKNESSES, *EDGES, *WALLS)
-"""what a structure has a say in"""
+"""laws whose numbers of control points a structure states"""
 STEP_SHARES = (1.0, 0.3, 0.0)
-"""parts of a step that are tried: far from a match it is not the motion alone that tells"""
+"""shares of a predicted step that are tried: far from a match the linear prediction goes too far."""
 COARSE_STEP = 1e-3
-"""last step of the descents there, in the parameters of a patch"""
+"""last step of the projections of these trials, in the parameters of a patch."""
 Counts = tuple[int, ...]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Prediction:
-    """The least squares that a structure is foreseen to leave."""
+    """The least squares that a structure is predicted to leave."""
 
     cost: float
     parameters: int
@@ -56,27 +57,27 @@ class Prediction:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Forecast:
-    """The motion of all laws of the widest design of a family of structures, about which all others are foreseen."""
+    """The motion of all laws of the widest design of a set of structures, by which all others are predicted."""
 
     design: Any
     widest: Structure
     jacobian: LawJacobian
     rows: Reals
-    """(m,) residuals of the widest design where the cloud stands now"""
+    """(m,) residuals of the widest design at the present footpoints"""
     sizes: dict[str, float]
-    """of the parameters by field: their scales"""
+    """scales of the parameters by field"""
     held: frozenset[str]
-    """the radii of the channel's corners that are not free"""
+    """radii of the channel's corners that are not free"""
     still: frozenset[str]
-    """laws that are not free"""
+    """laws that are held"""
     noise: float
     found: Match
     points: int
-    """rows of points, which come first"""
+    """number of rows of points, which come first"""
     _known: dict[tuple[str, Counts], tuple[Reals, Reals]] = field(default_factory=dict)
 
     def names(self) -> Iterator[str]:
-        """The laws that a structure has a say in and that are free."""
+        """The laws that a structure determines and that are free."""
         yield from (name for name in STRUCTURE_LAWS if name not in self.still)
 
     def prediction(self, structure: Structure, roots: Reals | None = None) -> Prediction:
@@ -88,12 +89,12 @@ class Forecast:
         return Prediction(cost=cost, parameters=columns.shape[1], rows=rows + columns @ step, step=step)
 
     def designed(self, structure: Structure, prediction: Prediction) -> Any:
-        """The design that is foreseen for a structure, or one on the way there that is nearer to the cloud."""
+        """The design predicted for a structure, or one on the way there that is nearer to the cloud."""
         tried = [self._on_the_way(structure, prediction, share) for share in STEP_SHARES]
         return min(tried, key=self._misfit)
 
     def _misfit(self, design: Any) -> float:
-        """Sum of squares of a design where the cloud stands on it; infinite where it has no shape."""
+        """Sum of squares of a design at its own footpoints; infinite where it has no shape."""
         state = self._state(design)
         if state is None:
             return np.inf
@@ -113,7 +114,7 @@ class Forecast:
         )
 
     def _on_the_way(self, structure: Structure, prediction: Prediction, share: float) -> Any:
-        """The design that is foreseen for a structure, or part of the way there, within the bounds of the family."""
+        """The design predicted for a structure, or a share of the way there, within the family's bounds."""
         nearest = reshaped(self.design, structure)
         values = nearest.parameters()
         paths = [path for name in self.names() for path in self._paths(name, structure)]
@@ -124,7 +125,7 @@ class Forecast:
         return nearest.changed({path: float(value) for path, value in zip(paths, fresh, strict=True)})
 
     def _paths(self, name: str, structure: Structure) -> list[str]:
-        """The paths of the columns of a law."""
+        """The paths of a law's columns."""
         if name in THICKNESSES:
             along, across = structure.chordwise[THICKNESSES.index(name)], structure.span[name]
             return [path for i in range(along) for path in _row(f"{name}[{i}]", across)]
@@ -140,7 +141,7 @@ class Forecast:
         return _row(_field(self.design, name), structure.span[name])
 
     def costs(self, structure: Structure, others: Sequence[tuple[str, Structure]], roots: Reals | None) -> list[float]:
-        """What structures leave that differ from one in the law that is named with each."""
+        """What structures leave that differ from one in the law named with each."""
         names = list(self.names())
         parts = {name: self.block(name, self.counts(structure, name)) for name in names}
         root = np.ones(len(self.rows)) if roots is None else roots
@@ -166,7 +167,7 @@ class Forecast:
         return found
 
     def counts(self, structure: Structure, name: str) -> Counts:
-        """What the motion with a law depends on in a structure."""
+        """The numbers of control points on which the motion with a law depends."""
         if name in THICKNESSES:
             return structure.chordwise[THICKNESSES.index(name)], structure.span[name]
         if name in EDGES:
@@ -174,7 +175,7 @@ class Forecast:
         return (structure.channel[name],) if name in WALLS else (structure.span[name],)
 
     def block(self, name: str, counts: Counts) -> tuple[Reals, Reals]:
-        """Derivatives (m, k) by the scaled parameters of a law, and by how much its nearest one moves the rows (m,)."""
+        """Derivatives (m, k) by a law's scaled parameters, and the rows' change (m,) by its nearest law."""
         if (name, counts) not in self._known:
             kind = self._thickness if name in THICKNESSES else self._edge if name in EDGES else self._wall
             self._known[name, counts] = (kind if name in (*THICKNESSES, *EDGES, *WALLS) else self._law)(name, counts)
@@ -245,14 +246,14 @@ class Forecast:
         return share
 
     def _leaves(self, name: str, axis: int) -> Reals:
-        """Derivatives (m, n) by the control points of a wall; none by corners that are held."""
+        """Derivatives (m, n) by the control points of a wall; zero for corners that are held."""
         own, none = len(getattr(self.design.channel, name)) + 2, np.zeros((len(self.rows), 1))
         moves = [self.jacobian.moves.get((name, point, axis), none) for point in range(own)]
         return np.stack([np.sum(each, axis=1) for each in moves], axis=1)
 
 
 def forecast_of(found: Match, widest: Structure) -> Forecast | None:
-    """The forecast about a match; None where it is of another kind, or the widest structure leaves it no shape."""
+    """The forecast about a match; None for other kinds, or where the widest structure leaves it no shape."""
     problem, on = found.problem, found.state.footpoints
     if (
         found.state.shape.exact is None
@@ -333,7 +334,7 @@ def _wall_points(channel: Any, name: str) -> Any:
 
 
 def _least_squares(columns: Reals, rows: Reals, roots: Reals | None, noise: float) -> tuple[float, Reals]:
-    """The least squares by parameters that are held by the prior's spread, and the step there."""
+    """The least squares by parameters that the regularisation's spread holds, and the step there."""
     own = columns if roots is None else columns * roots[:, None]
     rhs = rows if roots is None else rows * roots
     gram, right = own.T @ own, own.T @ rhs
@@ -342,11 +343,11 @@ def _least_squares(columns: Reals, rows: Reals, roots: Reals | None, noise: floa
 
 
 def regularised_step(gram: Reals, right: Reals, noise: float) -> Reals:
-    """The solution (k,) of normal equations that is held by the prior's spread, and by rounding where that is less."""
+    """The solution (k,) of normal equations held by the regularisation's spread, or by rounding if that is more."""
     hold, rounding = noise**2, len(gram) * float(np.finfo(float).eps) * float(np.max(np.diag(gram), initial=1e-300))
     while True:
         try:
             return np.asarray(cho_solve(cho_factor(gram + hold * np.eye(len(gram))), right))
         except LinAlgError:
-            # of an exact cloud the spread is nothing, and laws that do alike leave products of rows indefinite
+            # the spread of an exact cloud vanishes, and laws of equal effect leave the normal equations indefinite
             hold = max(10.0 * hold, rounding)

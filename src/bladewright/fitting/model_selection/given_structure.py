@@ -16,27 +16,30 @@ from bladewright.fitting.model_selection.structure import Structure, structure_o
 from bladewright.section.unified import UnifiedSection
 
 GUESS_NOISE = 3e-3
-"""noise of the first round where the start is a guess, of the chord"""
+"""noise of the first round where the start is a guess, of the chord."""
 QUICK_ROUNDS = 2
 """rounds of a first search"""
 WEAK_REGULARISATION = 0.1
-"""strength of the prior where a match is only made better, of the usual"""
+"""factor of the regularisation where a match is only improved."""
 QUIET_SHARE, CLEAR_SHARE = 0.1, 0.5
-"""part of the misfit that is noise up to which a cloud may be exact, after a quick search and after a thorough one"""
+"""share of the misfit that is noise up to which a cloud may be exact, after a quick search (`QUIET_SHARE`) and after a
+thorough one (`CLEAR_SHARE`)."""
 EXACT_TURNS, EXACT_GAIN = 3, 0.5
-"""turns in which an exact design is sought, and ratio of the misfits of the two searches from which there is another"""
+"""turns in which an exact design is sought; `EXACT_GAIN` is the ratio of the misfits of two searches from which there
+is another turn."""
 FURTHER_ROUNDS = 20
-"""rounds in which a given structure is sought in a cloud that may be exact"""
+"""rounds of the search for a given structure in a cloud that may be exact"""
 EDGE_BANDS, END_BAND = (0.03, 0.9), 0.02
-"""places in u before and after which points tell of the edges, and in v of the ends"""
+"""places in u before and after which points tell of the edges, and distance in v within which they tell of the ends
+(`END_BAND`)"""
 NEARLY_EXACT = 1e-6
-"""misfit of those points from which all are asked, of the chord"""
+"""misfit of those points from which all points are used, of the chord."""
 EDGE_POINTS, OTHER_POINTS = 2500, 1000
-"""points with which an exact design is sought: of those that tell of edges and ends, and of all"""
+"""points with which an exact design is sought: of those that tell of edges and ends, and of all (`OTHER_POINTS`)."""
 
 
 def matched_structure(few: Task, many: Task, first: Design, base: Structure | None, *, guessed: bool) -> Match:
-    """The match with the structure of a first design, or with that of `base`; that of some points comes first."""
+    """The match with the structure of a first design or of `base`; some of the points are matched first."""
     found = searched(
         few, first, noise=GUESS_NOISE if guessed else None, rounds=MOST_ROUNDS if base is None else QUICK_ROUNDS
     )
@@ -51,16 +54,16 @@ def matched_structure(few: Task, many: Task, first: Design, base: Structure | No
         return found
     found = searched(many, found.design) if base is None or not guessed else _exact_or_nearest(many, found)
     if found.rms < KNOWN_MISFIT and not np.all(found.noise_estimate.inliers) and not found.interrupted:
-        # points past the ends of an exact match are none, if it can be widened to hold them too
+        # points past the ends of an exact match are no outliers if it can be extended to hold them too
         whole = searched(replace(many, allow_outliers=False), found.design)
         found = whole if whole.rms < KNOWN_MISFIT else found
     return _weakly_regularised(many, found)
 
 
 def _exact_or_nearest(task: Task, found: Match) -> Match:
-    """The match with all points, or the exact design, which is sought by turns with and without what seems to lie off.
+    """The match with all points, or the exact design, sought in turns with and without apparent outliers.
 
-    Where the one search stands still the other may go on: a wrong foot holds the first, a short edge the second.
+    Where one search stands still the other may go on: a wrong footpoint stops the first, a short edge the second.
     """
     most = QUIET_SHARE
     for _ in range(EXACT_TURNS):
@@ -83,10 +86,10 @@ def _exact_or_nearest(task: Task, found: Match) -> Match:
 
 
 def _exact_match(task: Task, found: Match, most: float) -> Match | None:
-    """The exact design near one, or the same where none is nearer; None where the cloud is not exact.
+    """The exact design near one, or that one where none is nearer; None where the cloud is not exact.
 
-    Such a cloud has no outliers, and edges and ends that are not yet found look like some. The noise is `most` of its
-    misfit at most.
+    Such a cloud has no outliers, but edges and ends that are not yet found look like some. `most` is the largest share
+    of the misfit that is noise.
     """
     every = searched(task, found.design, rounds=0)
     if not has_systematic_misfit(every, most):
@@ -103,7 +106,7 @@ def _exact_match(task: Task, found: Match, most: float) -> Match | None:
 
 
 def _informative_points(found: Match) -> NDArray[np.intp]:
-    """Points that tell of edges and ends, which few points of a cloud may leave open, and some of all."""
+    """Points that tell of edges and ends, which few points of a cloud show, and some of all."""
     on = found.state.footpoints
     beside = (on.u < EDGE_BANDS[0]) | (on.u > EDGE_BANDS[1]) | (on.v < END_BAND) | (on.v > 1.0 - END_BAND)
     rows = np.flatnonzero(beside)
@@ -111,13 +114,13 @@ def _informative_points(found: Match) -> NDArray[np.intp]:
 
 
 def has_systematic_misfit(found: Match, most: float = np.inf) -> bool:
-    """Whether a search came to its end at a misfit that is no noise, and of which the noise is `most` at most."""
+    """Whether a search ended at a misfit that is not noise, of which noise is at most the share `most`."""
     quiet = found.noise_estimate.noise < most * found.rms * found.model.chord
     return quiet and found.noise_estimate.correlation > NOISE_CORRELATION and not found.interrupted
 
 
 def reduced_to(task: Task, found: Match, base: Structure) -> Match:
-    """A match with the structure from which to grow, or the one before where its laws leave no shape so."""
+    """A match with the structure to grow from, or the one before where its laws leave no shape so."""
     try:
         return searched(
             task,
@@ -131,7 +134,7 @@ def reduced_to(task: Task, found: Match, base: Structure) -> Match:
 
 
 def _weakly_regularised(task: Task, found: Match) -> Match:
-    """A match whose misfit is noise, with a prior so weak that it does not shift what the points determine."""
+    """A match whose misfit is noise, regularised so weakly that what points determine is not shifted."""
     if found.interrupted or found.noise_estimate.correlation > NOISE_CORRELATION:
         return found
     weak = searched(replace(task, regularisation_factor=WEAK_REGULARISATION), found.design, rounds=2)

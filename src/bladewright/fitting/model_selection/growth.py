@@ -30,11 +30,12 @@ from bladewright.nurbs.basis import Reals
 from bladewright.section.unified_limits import THICKNESSES
 
 EDGE_BAND = 0.05
-"""how near to an edge, in u, a deviation is one of it"""
+"""distance from an edge, in u, within which a deviation belongs to it."""
 FEW_BEYOND = 0.1
-"""part of the points beyond the tolerance from which it is the whole blade that is not matched yet"""
+"""share of the points beyond the tolerance from which it is the whole blade that is not matched yet."""
 GATHERED_AT_EDGE = 0.25
-"""part of those that lie beside an edge from which its laws grow"""
+"""share of these points beside an edge from which all laws of the edge grow: the rows of a cloud may differ at their
+edges by more than the tolerance, as Rotor 67's do (design/rotor_67_rows.py)."""
 EDGE_LAWS = {
     "leading_edge": ("place", "leading_edge_radius", "metal_angle_in"),
     "trailing_edge": ("stagger", "trailing_edge_radius", "metal_angle_out"),
@@ -43,7 +44,11 @@ EDGE_LAWS = {
 
 
 def edge_steps(found: Match, tolerance: float) -> list[StructureStep]:
-    """The steps, by half as many control points each, of the edges that stay beyond a tolerance [m]."""
+    """The steps, by half as many control points again, of the edges that stay beyond a tolerance [m].
+
+    The rows of a cloud may differ from each other at their edges: no single law is predicted to gain much there, but
+    all laws of an edge together do.
+    """
     on, rows = found.state.footpoints, found.rows
     beyond = rows & (on.distances > tolerance)
     structure = structure_of(found.design)
@@ -68,22 +73,24 @@ def _half_more(count: int, most: int) -> int:
 
 
 FAR_SECTION = 5e-5
-"""root mean square distance, of the chord, above which a section is tried with more"""
+"""root mean square distance, of the chord, above which a section is tried with more control points though no gain is
+predicted."""
 THICKNESS_GROWTHS = 3
-"""times that both thicknesses grow before it is given up"""
+"""times that both thicknesses grow before this is given up"""
 NEARER_RATIO = 0.9
-"""ratio of the distances from which a try is taken"""
+"""ratio of distances below which a trial is taken"""
 NEAR_ENOUGH = {2: FAR_SECTION, 3: 1e-3}
-"""root mean square distance, of the chord, below which a section, or a blade, is near enough"""
+"""root mean square distance, of the chord and by dimension, below which a match is near enough to stop at little
+gain."""
 LITTLE_GAIN = {2: 0.75, 3: 0.9}
-"""ratio of the distances above which one that is near enough grows no more"""
+"""ratio of distances, by dimension, above which a match that is near enough grows no more."""
 
 
 def with_grown_thickness(task: Task, found: Match, target: MatchTarget) -> tuple[Match, bool]:
     """A section with more control points of both thicknesses, and whether it is nearer.
 
-    Where thicknesses stand on their bounds, as at a sharp edge, what growth gains cannot be foreseen linearly: the
-    step that is foreseen for the fewer ones leads out of the bounds.
+    Where thicknesses lie on their bounds, as at a sharp edge, the gain of growth cannot be predicted linearly: the step
+    predicted for the fewer ones leads out of the bounds.
     """
     structure = structure_of(found.design) if task.points.shape[1] == 2 else None
     if structure is None or not target.open or found.rms < FAR_SECTION:
@@ -111,26 +118,27 @@ def with_grown_thickness(task: Task, found: Match, target: MatchTarget) -> tuple
 
 
 def gained_little(task: Task, found: Match, target: MatchTarget, before: float) -> bool:
-    """Whether a match is near enough, and growth from a distance `before`, of the chord, brought it little nearer."""
+    """Whether a match is near enough, and growth from a distance `before`, of the chord, gained little."""
     dimension = task.points.shape[1]
     return target.open and LITTLE_GAIN[dimension] * before < found.rms < NEAR_ENOUGH[dimension]
 
 
 WORTHWHILE_GAIN = 0.02
-"""part of the sum of squares that growth must be foreseen to gain"""
+"""share of the sum of squares that growth must be predicted to gain; `WORTHWHILE_GAIN_NEAR` counts instead once a
+blade's misfit is below `NEAR_MISFIT`, of the chord, where a tenth more parameters must be worth more."""
 NEAR_MISFIT, WORTHWHILE_GAIN_NEAR = 1e-3, 0.2
-"""misfit, of the chord, below which a blade is near enough for a tenth more parameters to be worth that part instead"""
+"""misfit of a blade, of the chord, below which growth must gain more"""
 SHARE_ADDED = 3
-"""part, one in so many, of the parameters that are left, or far from a tolerance of those that are there, which is
-added at a time"""
+"""one in so many of the parameters is added at a time: of those left, or far from a tolerance of those there are. A
+third of them reached Rotor 67's tolerance in four searches instead of seven (design/matches.md)."""
 MANY_PARAMETERS, SHARE_ADDED_NEAR = 50, 10
-"""parameters from which one in so many is added at a time near a tolerance"""
+"""parameters from which one in `SHARE_ADDED_NEAR` is added at a time near a tolerance."""
 FAR_OF_TOLERANCE = 0.4
-"""of the tolerance: root mean square that is far"""
+"""root mean square distance, of the tolerance, that is far from it."""
 
 
 def grown_match(task: Task, found: Match, target: MatchTarget) -> tuple[Match, bool]:
-    """The match with the control points that promise most, and whether there were any."""
+    """The match with the control points predicted to gain most, and whether there were any."""
     emphasis = tolerance_weights(found, target)
     sharpened = task
     if emphasis is not None:
@@ -147,7 +155,7 @@ def grown_match(task: Task, found: Match, target: MatchTarget) -> tuple[Match, b
 
 
 def _candidates(task: Task, found: Match, target: MatchTarget, emphasis: Reals | None) -> Iterator[Design]:
-    """Designs with more control points, the next one where the one before has no shape."""
+    """Designs with more control points; the next one is for where the one before has no shape."""
     forecast = None
     if task.points.shape[1] == 3 and target.parameters is None and stands_on_channel(found.design):
         forecast = forecast_of(found, widest_reach(structure_of(found.design)))
@@ -173,7 +181,7 @@ def _least_added(found: Match, target: MatchTarget) -> int:
 
 
 def _predicted_design(forecast: Forecast, found: Match, target: MatchTarget, emphasis: Reals | None) -> Design | None:
-    """The design with more control points that a forecast prefers; None where more are not worth it."""
+    """The design with more control points that a forecast prefers; None where none are worthwhile."""
     now = structure_of(found.design)
     roots = None if emphasis is None else row_factors(emphasis, len(forecast.rows))
     count = forecast.prediction(now).parameters
@@ -191,7 +199,7 @@ def _predicted_design(forecast: Forecast, found: Match, target: MatchTarget, emp
 
 
 def _stepwise_design(found: Match, target: MatchTarget, emphasis: Reals | None) -> Design | None:
-    """The design with the control points that promise most; None where there are none."""
+    """The design with the control points predicted to gain most; None where there are none."""
     ranked = gains(found, emphasis)
     left = None if target.parameters is None else target.parameters - len(found.problem.paths)
     steps = steps_taken_together(ranked, left, _least_added(found, target))

@@ -16,17 +16,18 @@ from bladewright.section.unified import UnifiedSection
 from bladewright.section.unified_limits import TANGENTS
 
 PLAIN_TANGENT = 0.35
-"""of a camber that is as plain as it can be"""
+"""tangent length of a camber that is as plain as it can be, of the meridional length"""
 TURNING_RATIO = 0.6
-"""turning from one edge to the chord, of that from the chord to the other edge, where one edge tells the other"""
+"""turning from one edge to the chord, of that from the chord to the other edge, by which one edge predicts the
+other."""
 STRAIGHT_CAMBER = {"tangent_*": (0.12, 1.0)}
-"""bounds while a guess is far off: an edge that lies beside the nose would be reached by a hook of the camber"""
+"""bounds while a guess is far off: shorter tangents let the camber reach an edge by a hook."""
 
 
 def trial_cambers(design: UnifiedSection, free: Callable[[Design], tuple[str, ...]]) -> list[UnifiedSection]:
-    """A section with turnings alike at both edges, as it is, and with either edge as the other tells; all its own free.
+    """A section with equal turning at both edges, as it is, and with either edge predicted by the other.
 
-    What is not free stays.
+    An edge's direction shows in few points, and a search may end at a wrong one. What is not free stays.
     """
     into, out = design.metal_angle_in - design.stagger, design.metal_angle_out - design.stagger
     alike = (into - out) / 2.0
@@ -46,24 +47,26 @@ def trial_cambers(design: UnifiedSection, free: Callable[[Design], tuple[str, ..
 
 
 TRIAL_COUNTS = ((7, 7), (6, 6), (7, 6), (6, 7))
-"""control points of both thicknesses that are tried: laws of 7 hold those of 3, 4 and 5, laws of 6 those of 3 and 4"""
+"""control points of both thicknesses that are tried: laws of 7 contain those of 3, 4 and 5, laws of 6 those of 3 and
+4."""
 FEWEST_THICKNESSES = 3
+"""control points of a thickness at least"""
 TRIAL_POINTS = 1200
 """points of a trial"""
 TRIAL_NOISE = 3e-3
-"""noise of its first round, of the chord"""
+"""noise of a trial's first round, of the chord"""
 TRIAL_ROUNDS, FURTHER_ROUNDS = 6, 10
-"""rounds of every trial, and of one that gets near"""
+"""rounds of every trial, and of one that gets near (`FURTHER_ROUNDS`)"""
 PROMISING_MISFIT = 3e-6
 """misfit from which a trial goes on, of the chord"""
 KNOWN_MISFIT = 1e-9
-"""misfit at which the section is known, of the chord"""
+"""misfit at which the section is known, of the chord: rounding of its points."""
 SAME_THICKNESS = 1e-6
-"""part of a thickness by which one with fewer control points may differ and still be the same"""
+"""relative difference by which a thickness with fewer control points may differ and still be the same."""
 
 
 def identified_section(task: Task, first: UnifiedSection) -> Match | None:
-    """The match with the numbers of control points that a cloud was drawn with; None where there is no such."""
+    """The match with the numbers of control points that a cloud was drawn with; None where there is none."""
     structure = structure_of(first)
     structures = [replace(structure, chordwise=counts) for counts in TRIAL_COUNTS]
     found = nearest_trial(task, first, structures)
@@ -96,7 +99,7 @@ def nearest_trial(task: Task, first: UnifiedSection, structures: Sequence[Struct
 
 
 def _starts(task: Task, first: UnifiedSection, structures: Sequence[Structure]) -> Iterator[tuple[Task, Design]]:
-    # an exact cloud has none, and a nose that is not yet found looks like some
+    # an exact cloud has no outliers, and an edge that is not yet found looks like some
     task = replace(task, allow_outliers=False)
     own = any(map(_of_tangents, task.bounds))
     straight = task if own else replace(task, bounds={**task.bounds, **STRAIGHT_CAMBER})
@@ -113,7 +116,7 @@ def _of_tangents(pattern: str) -> bool:
 
 
 def plainest(design: Design) -> Design:
-    """The same section with as few control points of each thickness as hold it."""
+    """The same section with as few control points of each thickness as can represent it."""
     found = design
     structure = structure_of(design)
     for side in (0, 1):

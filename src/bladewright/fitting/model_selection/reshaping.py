@@ -23,8 +23,9 @@ LAW_LIMITS = {
     **dict.fromkeys(TANGENTS, (0.03, 0.99)),
     **dict.fromkeys(RADII, (1e-4, 0.9)),
 }
-"""within which a law is kept that another number of control points would carry past the family's own"""
+"""within which a law is kept that another number of control points would carry past the family's own limits"""
 COMPARED_PLACES = np.linspace(0.0, 1.0, 101)
+"""parameters at which laws and curves are compared"""
 
 
 def reshaped(design: Design, structure: Structure) -> Design:
@@ -74,7 +75,7 @@ def _plain(values: Reals) -> Law:
 
 
 def grid_of(laws: tuple[Law, ...], count: int, span: int, structure: Structure) -> Reals:
-    """Control points (count, span) of a thickness, positive."""
+    """Control points (count, span) of a thickness, kept positive."""
     if len(laws) == count and all((len(law) if isinstance(law, tuple) else 1) == span for law in laws):
         return np.array([law if isinstance(law, tuple) else (law,) for law in laws], dtype=float)
     rows = np.stack([np.linalg.lstsq(law_basis(span, COMPARED_PLACES), _values(law), rcond=None)[0] for law in laws])
@@ -110,7 +111,7 @@ def _channel(channel: Channel, structure: Structure) -> Channel:
 
 
 def curve_of(points: Points, count: int, highest: int) -> Points:
-    """The nearest curve of so many control points, and at most of a degree, between the same ends."""
+    """The nearest curve of so many control points and at most the highest degree, between the same ends."""
     if count == len(points):
         return points
     old = np.array(points, dtype=float)
@@ -124,11 +125,11 @@ def curve_of(points: Points, count: int, highest: int) -> Points:
 
 
 THINNER_EDGES, THINNINGS = 0.7, 12
-"""thickness beside the edges at each turn, of that before, and turns"""
+"""ratio by which the thickness beside the edges is reduced at a time, `THINNINGS` times at most."""
 
 
 def with_feasible_edges(design: Design) -> Design:
-    """The design, or one with thinner edges where values that it was given leave it no shape; the last where none has.
+    """The design, or one with thinner edges where given values leave it no shape; the last where none has.
 
     A camber that is turned away from the points may leave the third control points of the sides outside the edges.
     """

@@ -1,4 +1,4 @@
-"""Steps between structures: one law more or less, and what each is predicted to gain or to lose."""
+"""Steps between structures: one law with more or fewer control points, and what each is predicted to gain or lose."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
@@ -17,27 +17,30 @@ from bladewright.nurbs.basis import Reals
 from bladewright.section.unified_limits import THICKNESSES
 
 WEIGHT_RANGE = (0.1, 10.0)
-"""least and largest weight of a point by its distance, where a tolerance is to be met"""
+"""least and largest weight of a point by its distance, where a tolerance is to be met: wider ranges leave all but the
+worst points out of account."""
 WORTH_OF_BEST = 0.4
-"""gain for each parameter, of the best, from which a law grows too"""
+"""gain for each parameter, of the best, from which a law grows together with it."""
 QUARTER_STEPS_FROM = 8
-"""control points along the chord from which a thickness grows by a quarter at a time"""
+"""control points along the chord from which a thickness grows by a quarter at a time."""
 SPARE_SAMPLES = 4
-"""samples along the chord beyond a thickness's control points"""
+"""samples along the chord beyond a thickness's control points: fewer leave its law undetermined."""
 FEWEST_THICKNESSES = 3
-"""control points of a thickness"""
+"""control points of a thickness at least"""
 MOST_SAMPLES, MOST_SPAN, MOST_CURVE = 60, 12, 12
+"""samples along the chord, control points along the span (`MOST_SPAN`) and of a curve of the channel (`MOST_CURVE`) at
+most; they bound the time."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class StructureStep:
-    """One law with more control points."""
+    """One law with more or fewer control points."""
 
     fields: tuple[str, ...]
     """beginnings of the paths that change"""
     structure: Structure
     parameters: int
-    """that it adds"""
+    """by how many parameters the structures differ"""
 
     @property
     def law(self) -> str:
@@ -47,7 +50,7 @@ class StructureStep:
 
 
 def steps_up(structure: Structure) -> list[StructureStep]:
-    """What may grow."""
+    """The structures with more control points in one law."""
     found = []
     for side, name in enumerate(THICKNESSES):
         count = structure.chordwise[side]
@@ -71,7 +74,7 @@ def steps_up(structure: Structure) -> list[StructureStep]:
 
 
 def steps_down(structure: Structure) -> list[StructureStep]:
-    """What may shrink by one control point, and by how many parameters."""
+    """The structures with one control point fewer in one law."""
     found = []
     for side, name in enumerate(THICKNESSES):
         if structure.chordwise[side] > FEWEST_THICKNESSES:
@@ -92,7 +95,7 @@ def steps_down(structure: Structure) -> list[StructureStep]:
 
 
 def widest_reach(structure: Structure) -> Structure:
-    """A structure that has all steps along the chord and the walls, where laws are stepped leaf by leaf."""
+    """A structure wide enough for all steps along the chord and the walls, where laws move point by point."""
     chordwise = [count + _thickness_step(count) for count in structure.chordwise]
     samples = min(MOST_SAMPLES, max(structure.samples, max(chordwise) + SPARE_SAMPLES))
     walls = {wall: min(structure.channel[wall] + 1, MOST_CURVE) for wall in ("hub", "shroud")}
@@ -114,7 +117,7 @@ def _fields(name: str) -> tuple[str, ...]:
 
 
 def union_of(structure: Structure, steps: Sequence[StructureStep]) -> Structure:
-    """A structure with several steps taken at once."""
+    """A structure with several steps up taken at once."""
     chordwise = [max(step.structure.chordwise[side] for step in steps) for side in (0, 1)]
     span = {name: max(step.structure.span[name] for step in steps) for name in structure.span}
     channel = {name: max(step.structure.channel[name] for step in steps) for name in structure.channel}
@@ -123,7 +126,7 @@ def union_of(structure: Structure, steps: Sequence[StructureStep]) -> Structure:
 
 
 def intersection_of(steps: Sequence[StructureStep]) -> Structure:
-    """The structure that several steps back lead to together."""
+    """The structure that several steps down lead to together."""
     structures = [step.structure for step in steps]
     chordwise = [min(each.chordwise[side] for each in structures) for side in (0, 1)]
     span = {name: min(each.span[name] for each in structures) for name in structures[0].span}
@@ -132,14 +135,14 @@ def intersection_of(steps: Sequence[StructureStep]) -> Structure:
 
 
 def tolerance_weights(found: Match, target: MatchTarget) -> Reals | None:
-    """Further weights (n,) by which points far off count more; none where no tolerance is asked for."""
+    """Further weights (n,) by which distant points count more; none where no tolerance is asked for."""
     if target.tolerance is None:
         return None
     return np.clip((found.state.footpoints.distances / target.tolerance) ** 2, *WEIGHT_RANGE)
 
 
 def row_factors(emphasis: Reals | None, count: int) -> Reals:
-    """Factors (count,) of the rows of a least squares, of which those of the points, with their weights, come first."""
+    """Factors (count,) of the rows of a least-squares problem, those of the points first."""
     roots = np.ones(count)
     if emphasis is not None:
         roots[: len(emphasis)] = np.sqrt(emphasis)
@@ -147,9 +150,9 @@ def row_factors(emphasis: Reals | None, count: int) -> Reals:
 
 
 def gains(found: Match, emphasis: Reals | None = None) -> list[tuple[float, StructureStep]]:
-    """What each step would take off the sum of squares, foreseen linearly, best for each parameter first.
+    """What each step is predicted to take off the sum of squares, best for each parameter first.
 
-    `emphasis` (n,) are further weights of the points. Laws that are not free do not grow.
+    Predictions are linear. `emphasis` (n,) are further weights of the points. Laws that are held do not grow.
     """
     problem = found.problem
     rows = problem.cloud_residuals.residuals(found.state)
@@ -164,7 +167,7 @@ def gains(found: Match, emphasis: Reals | None = None) -> list[tuple[float, Stru
 
 
 def losses(found: Match) -> list[tuple[float, StructureStep]]:
-    """What each step back would leave of the sum of squares, foreseen linearly, least for each parameter first."""
+    """What each step down is predicted to leave of the sum of squares, least for each parameter first."""
     problem = found.problem
     slopes = problem.cloud_residuals.slopes(found.state, problem.paths) * problem.scales.size
     roots = np.ones(len(slopes))
@@ -178,7 +181,7 @@ def losses(found: Match) -> list[tuple[float, StructureStep]]:
 def _predicted_systems(
     found: Match, slopes: Reals, steps: Sequence[StructureStep]
 ) -> Iterator[tuple[StructureStep, Reals, Reals]]:
-    """The steps of laws that are free, with the residuals after each and their derivatives (m, k)."""
+    """The steps of free laws, with the residuals after each and their derivatives (m, k)."""
     paths = found.problem.paths
     for step in steps:
         own = [path for path in found.design.parameters() if path.startswith(step.fields)]
@@ -193,15 +196,15 @@ def _predicted_systems(
 
 
 def predicted_rest(slopes: Reals, rows: Reals, roots: Reals, noise: float) -> float:
-    """The sum of squares of rows (n,) weighed by roots (n,) after the linear step that makes it least.
+    """The sum of squares of rows (n,) weighted by roots (n,) after the linear step that minimises it.
 
-    `slopes` (n, k) are by scaled parameters, which are held by the spread `noise` of the prior.
+    `slopes` (n, k) are by scaled parameters, which are held by the spread `noise` of the regularisation.
     """
     count = slopes.shape[1]
     triangle = np.linalg.qr(np.column_stack([slopes * roots[:, None], rows * roots]), mode="r")
     held = np.zeros((count, count + 1))
     held[:, :-1] = noise * np.eye(count)
-    # the last diagonal entry is what no step takes away
+    # the last diagonal entry is what no step removes
     left = np.asarray(np.linalg.qr(np.vstack([np.asarray(triangle), held]), mode="r"))[-1, -1]
     return float(left**2)
 
@@ -209,7 +212,7 @@ def predicted_rest(slopes: Reals, rows: Reals, roots: Reals, noise: float) -> fl
 def steps_taken_together(
     ranked: Sequence[tuple[float, StructureStep]], most: int | None = None, least: int = 0
 ) -> list[StructureStep]:
-    """The steps that are worth taking together, of at most so many parameters, and of so many at least if they help."""
+    """The steps worth taking together, of at most `most` parameters, and of `least` if they help."""
     if not ranked:
         return []
     best = ranked[0][0] / ranked[0][1].parameters
@@ -225,7 +228,7 @@ def steps_taken_together(
 
 
 def _residuals_after(found: Match, step: StructureStep) -> tuple[Reals, Reals]:
-    """CloudResiduals after a step, and their derivatives by the parameters of its law, where the cloud stands now."""
+    """Residuals after a step at the present footpoints, and their derivatives by its law's parameters."""
     other = reshaped(found.design, step.structure)
     paths = tuple(path for path in other.parameters() if path.startswith(step.fields))
     cloud_residuals, on = found.problem.cloud_residuals, found.state.footpoints
@@ -235,6 +238,6 @@ def _residuals_after(found: Match, step: StructureStep) -> tuple[Reals, Reals]:
     state = PlacedCloud(shape=shape, footpoints=footpoints_at(cloud_residuals.points, shape.sides, on.side, on.u, on.v))
     rows = cloud_residuals.residuals(state)
     if not paths:
-        # a wall between its corners alone
+        # a wall with no control points but its corners
         return rows, np.zeros((len(rows), 0))
     return rows, cloud_residuals.slopes(state, paths) * scales_of(other, paths, found.model.chord).size

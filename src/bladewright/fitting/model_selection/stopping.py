@@ -5,13 +5,13 @@ from dataclasses import dataclass
 from bladewright.fitting.matching.search import Match, Task
 
 ENOUGH_DEVIATION = {2: 5e-7, 3: 5e-5}
-"""largest deviation at which nothing more is added where no aim is stated, of the chord, by dimension"""
+"""largest deviation at which nothing is added where no target is stated, of the chord, by dimension."""
 MOST_PARAMETERS = {2: 80, 3: 340}
-"""parameters above which nothing is added"""
+"""parameters above which nothing is added, by dimension; it bounds the time."""
 NOISE_CORRELATION = 0.15
-"""part of the misfit that neighbours share below which it is noise"""
+"""share of the misfit that neighbours have in common below which the misfit is noise."""
 POINTS_PER_PARAMETER = {2: 2, 3: 3}
-"""points for each parameter at least, by dimension: published profiles have few and exact ones"""
+"""points for each parameter at least, by dimension: published profiles have few points, and exact ones."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -24,7 +24,7 @@ class MatchTarget:
     structured: bool = False
     """whether the structure is given"""
     moved: bool = False
-    """whether the axes were found first, by a start that need not be the blade"""
+    """whether the axes were found first, from a start that need not be this blade"""
 
     @property
     def open(self) -> bool:
@@ -33,7 +33,7 @@ class MatchTarget:
 
 
 def needs_more(found: Match, target: MatchTarget, task: Task) -> tuple[bool, str]:
-    """Whether more control points are wanted, and if not though the aim is not met, why."""
+    """Whether more control points are wanted; if not and the target is not met, why."""
     count = len(found.problem.paths)
     dimension = task.points.shape[1]
     if target.parameters is not None:

@@ -10,13 +10,14 @@ from bladewright.section.unified import UnifiedSection
 from bladewright.section.unified_limits import ANGLES, RADII, TANGENTS, THICKNESSES
 
 CHANNEL_CURVES = ("leading_edge", "trailing_edge", "hub", "shroud")
+"""the four curves of a channel"""
 SPANWISE = (*ANGLES, *TANGENTS, *RADII)
 """laws along the span, besides the position of the leading edge and the thicknesses"""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Structure:
-    """Numbers and places of control points: what is chosen before a fit, where its values are found by it."""
+    """Numbers of control points: chosen before a fit, which finds the values."""
 
     chordwise: tuple[int, int] = (6, 6)
     """control points of the upper and the lower thickness along the chord"""
@@ -63,7 +64,7 @@ def _count(law: object) -> int:
 
 
 def initial_structure(dimension: int, parameters: int | None) -> Structure:
-    """A structure with few parameters, or one with nearly as many as are asked for, and no more."""
+    """A structure with few parameters to grow from, or with nearly as many as are asked for, and no more."""
     if dimension == 2:
         count = 4 if parameters is None else min(4, max(2, (parameters - 10) // 2))
         return Structure(chordwise=(count, count))
@@ -108,4 +109,4 @@ INITIAL_BLADES = (
     _blade(6, 3, 4, 3, 2, (4, 5, 4, 4)),
     _blade(6, 4, 5, 4, 2, (4, 5, 4, 4)),
 )
-"""from a prismatic blade to one that is twisted and swept"""
+"""from a prismatic blade to a twisted and swept one"""

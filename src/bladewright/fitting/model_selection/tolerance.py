@@ -19,34 +19,36 @@ from bladewright.fitting.model_selection.structure import Structure, structure_o
 from bladewright.nurbs.basis import Reals
 
 TRUSTED_DEVIATION = 0.95
-"""largest deviation that is foreseen, of the tolerance, up to which a structure is tried"""
+"""largest predicted deviation, of the tolerance, up to which a structure is tried."""
 REMOVED_AT_ONCE = 0.04
-"""part of the parameters that go between two looks at the forecast"""
+"""share of the parameters that is removed between two evaluations of the forecast."""
 CHEAP_LOSS = 3.0
-"""foreseen loss for each parameter, of the least, up to which a law loses one too"""
+"""predicted loss for each parameter, of the least, up to which a law loses a control point together with it."""
 WEIGHTED_DEVIATION = 0.8
-"""deviation, of the tolerance, from which a point is weighed more"""
+"""deviation, of the tolerance, from which a point's weight rises."""
 WEIGHT_CHANGE, WEIGHT_RANGE = (0.7, 1.5), (0.1, 30.0)
-"""by how much the weight of a point changes at a time, and all in all"""
+"""range by which the weight of a point changes at a time, and in all (`WEIGHT_RANGE`)."""
 MOST_FAILURES = 3
-"""structures that are tried and do not keep the tolerance, each half as far away as the last"""
+"""structures that are tried and miss the tolerance, each half as far away as the last."""
 FIRST_SHARE = 0.25
-"""part of the structures that are foreseen to keep a tolerance which the first one tried is away: forecasts that go too
-far lose their way where laws turn much"""
+"""share of the structures predicted to keep a tolerance by which the first one tried is away. Trying all, or half of
+them, ended 0.4 to 0.6 mm off on Rotor 67 (design/matches.md)."""
 HOPELESS_DEVIATION = 1.4
-"""largest deviation, of the tolerance, that other weights do not mend"""
+"""largest deviation, of the tolerance, that other weights do not correct."""
 REWEIGHTINGS, REWEIGHTING_GAIN = 6, 0.75
-"""searches of one structure, each with other weights, and what each leaves at most of the excess over the tolerance"""
+"""searches of one structure with other weights, and the share of the excess over the tolerance that each may leave
+(`REWEIGHTING_GAIN`): three quarters, as three searches had given up 0.4 % above Rotor 67's tolerance
+(design/matches.md)."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class _SmallerStructure:
-    """A structure with fewer control points, and the weights with which it is foreseen to keep a tolerance."""
+    """A structure with fewer control points, and the weights with which it is predicted to keep a tolerance."""
 
     structure: Structure
     prediction: Prediction
     weights: Reals
-    """(n,) of the points, of those before"""
+    """(n,) of the points, relative to those before"""
 
 
 def reduced_blade(task: Task, found: Match, tolerance: float) -> Match | None:
@@ -72,13 +74,13 @@ def reduced_blade(task: Task, found: Match, tolerance: float) -> Match | None:
 
 
 def _weights_of_match(found: Match, task: Task) -> Reals:
-    """The weights (n,) with which a match was found, of those of its task."""
+    """The weights (n,) with which a match was found, relative to those of its task."""
     own = found.problem.cloud_residuals.roots**2 / np.where(task.weights > 0.0, task.weights, 1.0)
     return np.where(own > 0.0, own, 1.0)
 
 
 def _match_of_prediction(task: Task, found: Match, start: Design, weights: Reals, tolerance: float) -> Match | None:
-    """The match of a foreseen design, where it keeps the tolerance."""
+    """The match of a predicted design, where it keeps the tolerance."""
     evaluations, most = found.evaluations, HOPELESS_DEVIATION * tolerance
     for _ in range(REWEIGHTINGS):
         weights = weights * len(weights) / np.sum(weights)
@@ -103,12 +105,12 @@ def _match_of_prediction(task: Task, found: Match, start: Design, weights: Reals
 
 
 def _weight_factors(distances: Reals, tolerance: float) -> Reals:
-    """By how much the weights (n,) of points change with their distances [m]."""
+    """Factors by which the weights (n,) of points change with their distances [m]."""
     return np.clip(distances / (WEIGHTED_DEVIATION * tolerance), *WEIGHT_CHANGE)
 
 
 def _smaller_structures(forecast: Forecast, found: Match, tolerance: float) -> list[_SmallerStructure]:
-    """Structures of fewer and fewer parameters that are foreseen to keep a tolerance."""
+    """Structures of fewer and fewer parameters that are predicted to keep a tolerance."""
     count, roots = forecast.points, found.problem.cloud_residuals.roots
     inside = roots > 0.0
     structure, weights = structure_of(found.design), np.ones(count)
@@ -139,7 +141,7 @@ def _smaller_structures(forecast: Forecast, found: Match, tolerance: float) -> l
 
 
 def _cheapest(ranked: list[tuple[float, StructureStep]], most: float) -> list[StructureStep]:
-    """The steps back that go together: those that cost little more than the first, up to so many parameters."""
+    """The steps down that go together: those that cost little more than the first, up to so many parameters."""
     taken = [ranked[0][1]]
     bound = CHEAP_LOSS * max(ranked[0][0], 0.0)
     for loss, step in ranked[1:]:
@@ -152,27 +154,28 @@ def _cheapest(ranked: list[tuple[float, StructureStep]], most: float) -> list[St
 
 
 LATER_GROWTHS = 4
-"""times that more is added where points outside the quick searches stay beyond the tolerance"""
+"""times that control points are added where points outside the quick searches stay beyond the tolerance."""
 WEIGHTED_SEARCHES = 4
-"""times that points are weighed by their distances before anything is added"""
+"""searches with points weighted by their distances before anything is added"""
 SEARCH_ROUNDS = 2
+"""rounds of each of these searches"""
 LAWS_AT_ONCE = {2: (4, 1), 3: (8, 4)}
-"""laws that lose a control point together, those first of which it is foreseen to cost least; half as many where that
-is too much, down to so few: searches of blades are dear"""
+"""laws that lose a control point together, by dimension, those predicted to cost least first: half as many where that
+is too much, down to the second number. Searches of blades are dear."""
 SMOOTHING = (3.0, 10.0, 30.0, 100.0, 1000.0)
-"""strengths of the prior, in turn"""
+"""factors of the regularisation that are tried in turn"""
 PLAIN_EXTREMA = 4
 """extrema of a side's curvature that a plain section has"""
 
 
 def match_within_tolerance(task: Task, found: Match, target: MatchTarget, tolerance: float) -> Match:
-    """The match that keeps a tolerance, where a little more brings it there, with as little as keeps it."""
+    """The match that keeps a tolerance, where growth brings it there, with as few parameters as keep it."""
     found = _within_everywhere(task, found, target, tolerance)
     return smoothed(task, reduced(task, found, tolerance), tolerance)
 
 
 def _within_everywhere(task: Task, found: Match, target: MatchTarget, tolerance: float) -> Match:
-    """A match that keeps a tolerance at the points of a thorough search too, where a little more brings it there."""
+    """A match that keeps a tolerance at the points of a thorough search too, where growth brings it there."""
     found = _within(task, found, tolerance)
     for _ in range(LATER_GROWTHS):
         if found.maximum <= tolerance or found.interrupted:
@@ -185,7 +188,7 @@ def _within_everywhere(task: Task, found: Match, target: MatchTarget, tolerance:
 
 
 def _within(task: Task, found: Match, tolerance: float) -> Match:
-    """A match whose largest deviations are weighed more, where that brings them within the tolerance."""
+    """A match whose largest deviations are weighted more, where that brings them within the tolerance."""
     best, weights = found, task.weights
     for _ in range(WEIGHTED_SEARCHES):
         if best.maximum <= tolerance or best.interrupted:
@@ -234,7 +237,7 @@ def _without(task: Task, found: Match, steps: Sequence[StructureStep]) -> Match 
 
 
 def _min_reduction(task: Task) -> float:
-    """What a step must promise: searches of blades are dear."""
+    """The relative reduction that a step must predict: searches of blades are dear."""
     return MIN_REDUCTION if task.points.shape[1] == 2 else ROUGH_REDUCTION
 
 
