@@ -103,7 +103,7 @@ def test_points_past_an_end_and_level_with_the_sides_are_no_outliers():
 
 def test_a_search_that_ends_further_off_leaves_the_match_before_it():
     task = SimpleNamespace()
-    near, far = (SimpleNamespace(off=off, rms=off, evaluations=2) for off in (1.0, 2.0))
+    near, far = (SimpleNamespace(mean_distance=off, rms=off, evaluations=2) for off in (1.0, 2.0))
     kept = []
 
     def replaced(found, **_):
@@ -121,7 +121,7 @@ def test_a_search_that_ends_further_off_leaves_the_match_before_it():
 def test_a_match_within_the_tolerance_is_taken_though_another_was_nearer_on_average(monkeypatch):
     aim = SimpleNamespace(parameters=None, tolerance=1.0, open=False)
     steps = iter([(True, ""), (False, "")])
-    monkeypatch.setattr("bladewright.fitting.families.growth.short_of", lambda *_: next(steps))
+    monkeypatch.setattr("bladewright.fitting.families.growth.needs_more", lambda *_: next(steps))
     monkeypatch.setattr("bladewright.fitting.families.growth.can_be_built", lambda *_: True)
     first, second = (SimpleNamespace(rms=r, maximum=m, interrupted=False) for r, m in ((1.0, 3.0), (1.1, 0.9)))
     assert grown_to_target(None, first, aim, lambda *_: iter([second]), coarse=1e-3) == (second, "")
@@ -129,7 +129,7 @@ def test_a_match_within_the_tolerance_is_taken_though_another_was_nearer_on_aver
 
 def test_growth_that_brings_a_design_no_nearer_is_taken_back_and_another_is_tried(monkeypatch):
     aim = SimpleNamespace(parameters=None, tolerance=None, open=True)
-    monkeypatch.setattr("bladewright.fitting.families.growth.short_of", lambda found, *_: (found.rms > 0.1, ""))
+    monkeypatch.setattr("bladewright.fitting.families.growth.needs_more", lambda found, *_: (found.rms > 0.1, ""))
     monkeypatch.setattr("bladewright.fitting.families.growth.can_be_built", lambda *_: True)
     first, worse, better = (SimpleNamespace(rms=r, maximum=r, interrupted=False) for r in (1.0, 1.5, 0.05))
     asked = []

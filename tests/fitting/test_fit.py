@@ -171,7 +171,7 @@ def test_an_interrupted_search_hands_back_the_best_design_so_far(monkeypatch):
             raise KeyboardInterrupt
         return plain(*given)
 
-    monkeypatch.setattr("bladewright.fitting.matching.residuals.feet", interrupting)
+    monkeypatch.setattr("bladewright.fitting.matching.residuals.nearest_footpoints", interrupting)
     found = fit(cloud(0, 400), like=BASE)
     assert len(calls) >= 9
     assert found.interrupted
@@ -185,7 +185,7 @@ def test_the_best_design_is_kept_where_the_interruption_falls_between_two_search
     def interrupted(*_, **__):
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("bladewright.fitting.model_selection.adaptation.identified", interrupted)
+    monkeypatch.setattr("bladewright.fitting.model_selection.adaptation.identified_section", interrupted)
     found = fit(cloud(0, 400))
     assert found.interrupted
     assert not found.passed

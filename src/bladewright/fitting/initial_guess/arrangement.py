@@ -11,21 +11,26 @@ from bladewright.nurbs.basis import Reals
 
 Arrangement = Literal["annular", "linear"]
 DECIDING_POINTS = 600
-"""points that decide"""
+"""points by which the two arrangements are compared; it bounds the time."""
 ANNULAR_AT_ONCE = 3e-3
-"""of the chord: a mean distance with which a blade around the axis is taken without asking for another"""
+"""mean distance, of the chord, with which a blade around the axis is accepted without comparing the other
+arrangement."""
 ROW_BINS, ROW_HEIGHT = 16, 0.03
-"""parts of x in which the lowest points are sought, and how far above them, of the span, others are of their row"""
+"""parts of x in each of which the lowest point is sought; points up to `ROW_HEIGHT` of the span above it belong to the
+same row."""
 ROW_DEGREE, ROW_TURNS, ROW_OUTLIER = 5, 5, 6.7
-"""degree of its line, turns in which it is found, and medians beyond which a point is none of the row"""
+"""degree of the row's line, iterations in which it is found (`ROW_TURNS`), and the distance, in medians, beyond which a
+point does not belong to it (`ROW_OUTLIER`)."""
 CLEARER_ROW, CLEAR_ROW = 0.5, 1e-3
-"""scatter of rows of the one kind, of that of the other, and, on planes, of the span, below which they are such"""
+"""ratio of the scatter of rows about the axis to that on planes which decides; rows on planes must also scatter by less
+than `CLEAR_ROW` of the span."""
 
 
 def found_arrangement(points: Reals) -> Arrangement:
-    """How the blade of points (n, 3) [m] stands: as sections lie closer, on surfaces of revolution or on planes.
+    """The arrangement of the blade of points (n, 3) [m], by which sections are the closer ones.
 
-    A blade that reaches the machine axis, or goes around it, is one of a cascade.
+    Sections lie on surfaces of revolution or on planes. A blade that reaches the machine axis, or surrounds it, belongs
+    to a cascade.
     """
     points = np.asarray(points, dtype=np.float64)
     y, z = points[:, 1], points[:, 2]
@@ -51,15 +56,15 @@ def found_arrangement(points: Reals) -> Arrangement:
 
 
 def _arrangement_by_rows(points: Reals) -> Arrangement | None:
-    """How the rows of points (n, 3) at both ends stand: on surfaces about the axis or on planes; None without rows.
+    """The arrangement by the rows of points (n, 3) at both ends: around the axis, or on planes; None without rows.
 
-    Sections of a blade far from the axis are met alike on both.
+    Sections of a blade far from the axis are matched alike on both.
     """
     x, radius, z = points[:, 0], np.sqrt(points[:, 1] ** 2 + points[:, 2] ** 2), points[:, 2]
     around, level = (np.sqrt(_row_scatter(x, span) * _row_scatter(x, -span)) for span in (radius, z))
     if around < CLEARER_ROW * level:
         return "annular"
-    # of a radial machine neither is a row over x
+    # in a radial machine neither end is a row over x
     return "linear" if level < min(CLEARER_ROW * around, CLEAR_ROW * float(np.ptp(z))) else None
 
 

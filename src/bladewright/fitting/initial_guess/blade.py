@@ -47,11 +47,11 @@ LAW_LIMITS = {
     **dict.fromkeys(RADII, (1e-5, 0.95)),
     **dict.fromkeys(THICKNESSES, (1e-5, 9.0)),
 }
-"""of a first blade's laws"""
+"""limits of a first blade's laws, inside the family's own"""
 
 
 AXES_HINT = "x must be the machine axis: say which column is which (--columns), or let the axis be found (--align)"
-"""what may be wrong with a cloud that no blade is found near"""
+"""what may be wrong with a cloud near which no blade is found"""
 
 
 def built_blade(
@@ -64,7 +64,7 @@ def built_blade(
     name: str,
     length_unit: Unit,
 ) -> tuple[UnifiedBlade, int]:
-    """The blade of what was found, tamed until it can be built, and how often it had to be."""
+    """The blade of what was found, simplified until it can be built, and how often it had to be."""
     metre = UNITS[length_unit]
     span = structure.span
     numbers = numbers_at(found.match.laws, SPAN)
@@ -137,9 +137,9 @@ def _as_channel(channel: RoughChannel, metre: float) -> Channel:
 
 
 DRAWN_POINTS = 1200
-"""points that a first blade is drawn through"""
+"""points that a first blade is drawn through; it bounds the time."""
 GOOD_DISTANCE = 4e-3
-"""of the chord: a mean distance with which no other outline is tried"""
+"""mean distance, of the chord, with which no other outline is tried."""
 
 
 def first_blade(
@@ -154,8 +154,8 @@ def first_blade(
 ) -> UnifiedBlade:
     """A blade of the unified family near points (n, 3) [m] in the machine's axes, found from them alone.
 
-    `pitch` [m] of a linear cascade. Where blade_count or pitch is not given, one at which neighbours stand apart is
-    taken. Raises FitError where no blade that can be built lies near the points.
+    `pitch` [m] of a linear cascade. Where blade_count or pitch is not given, one is taken at which neighbours stand
+    apart. Raises FitError where no blade that can be built lies near the points.
     """
     points = without_isolated_points(np.unique(np.asarray(points, dtype=np.float64), axis=0))
     points = points[spread(points, DRAWN_POINTS)]
@@ -175,7 +175,7 @@ def first_blade(
         except FitError as error:
             refusal = error
             continue
-        # a design that had to be tamed lies further from the points than its sections did
+        # a design that had to be simplified lies further from the points than its sections did
         away += 0.004 * tamings * found.unwrapped.chord
         if best is None or away < best[0]:
             best = away, design
@@ -187,9 +187,9 @@ def first_blade(
 
 
 def _refined(rough: SectionsInChannel, machine: Reals, structure: Structure, *, parting: bool) -> SectionsInChannel:
-    """The blade between the ends of its own camber lines, in the numbers of control points that are asked for.
+    """The blade between the ends of its own camber lines, with the numbers of control points that are asked for.
 
-    `parting` holds points to the side that they are seen to belong to.
+    `parting` holds points to the side that they seem to belong to.
     """
     count = 4 if len(machine) > 400 else 3
     found = rough

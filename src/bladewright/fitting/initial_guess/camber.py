@@ -1,4 +1,4 @@
-"""A first camber: the middle between the two sides in a frame along the chord, alternating with which side is which."""
+"""A first camber: the middle between the two sides in a frame along the chord, and which points are on which side."""
 
 from collections.abc import Callable
 from typing import NamedTuple
@@ -26,22 +26,22 @@ from bladewright.nurbs.basis import Reals
 from bladewright.section.laws import law_basis
 
 SPAN_COUNT = 4
-"""control points along the span of the camber that parts the sides"""
+"""control points along the span of the camber that separates the sides"""
 SURE_DISTANCE = 0.3
-"""of the half thickness: how far off the middle a point's side is sure"""
+"""distance from the middle, of the half thickness, from which a point's side is certain."""
 
 
 class SideAssignment(NamedTuple):
-    """Points in a frame along the chord, parted by the middle between the two sheets that they make."""
+    """Points in a frame along the chord, assigned to the two sides by the middle between them."""
 
     upper: NDArray[np.bool_]
-    """(n,) whether a point belongs to the upper sheet"""
+    """(n,) whether a point belongs to the upper side"""
     sure: NDArray[np.bool_]
-    """(n,) whether that is sure: it lies clear of the middle"""
+    """(n,) whether that is certain: the point is clear of the middle"""
     ends: Reals
     """(2, k) control points along the span of where sections begin and end along the chord"""
     middle: Reals
-    """(4 k,) of the middle across the chord, Chebyshev series along it"""
+    """(4 k,) coefficients of the middle across the chord, a Chebyshev series along it"""
     half: Reals
     """(4 k,) of the half thickness"""
 
@@ -55,7 +55,8 @@ def assigned_sides(
 ) -> SideAssignment:
     """The sides of points whose chord lies along the angle `turn` [rad] by place along the span.
 
-    `lean` (k,) is a law of the ordinate along which the sections stand, `count` the control points along the span.
+    `lean` (k,) is a law of the ordinate along which the sections are stacked, `count` the control points along the
+    span.
     """
     direction, unit = turn(unwrapped.v), shape.extent(unwrapped.v)
     cosine, sine = np.cos(direction), np.sin(direction)
@@ -90,7 +91,7 @@ def assigned_sides(
 def first_laws(
     shape: SectionShape, unwrapped: UnwrappedPoints, turn: Callable[[Reals], Reals], lean: Reals, count: int
 ) -> Reals:
-    """Laws (count, q) of sections through the middle between the sides of points, as `parted` has them."""
+    """Laws (count, q) of sections through the middle between the sides, as `assigned_sides` finds them."""
     found = assigned_sides(shape, unwrapped, turn, lean, count)
     return _as_laws(shape, unwrapped, turn, lean, found.ends, np.stack([found.middle, found.half]))
 
@@ -103,6 +104,7 @@ def _as_laws(
     ends: Reals,
     fields: Reals,
 ) -> Reals:
+    """The laws of sections by the ends, the middle and the half thickness of their points."""
     count = ends.shape[1]
     at = np.zeros(1) if unwrapped.flat else np.linspace(0.0, 1.0, max(9, 2 * count + 1))
     rows = law_basis(count, at)
@@ -161,15 +163,17 @@ def _envelope(rows: Reals, along: Reals, v: Reals, sign: float, flat: bool) -> R
 
 
 def _even(t: Reals, unwrapped: UnwrappedPoints) -> Reals:
+    """Weights (n,) by which each part of the blade counts alike, however many points it has."""
     bins = (t * 9.999).astype(int) + 10 * (np.clip(unwrapped.v, 0.0, 1.0) * 3.999).astype(int) * (not unwrapped.flat)
     return np.asarray(1.0 / np.sqrt(np.bincount(bins)[bins]))
 
 
 def _ridged(matrix: Reals, rhs: Reals, weight: Reals) -> Reals:
+    """Weighted least squares with a weak pull of all coefficients towards the mean."""
     tame = 1e-3 * np.sqrt(np.sum(weight**2)) * np.eye(matrix.shape[1])
     middle = float(np.mean(rhs))
     rows = np.concatenate([matrix * weight[:, None], tame])
     found = np.linalg.lstsq(rows, np.concatenate([(rhs - middle) * weight, np.zeros(len(tame))]), rcond=None)[0]
-    # the basis along the span adds up to one, so a constant is its coefficients
+    # the basis along the span sums to one: a constant is the same coefficient everywhere
     found[: matrix.shape[1] // 4] += middle
     return found

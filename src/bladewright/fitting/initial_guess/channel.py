@@ -12,10 +12,13 @@ from bladewright.numerics.elementary import cumulative_length
 from bladewright.nurbs.basis import Reals, basis, uniform_knots
 
 CHANNEL_CURVES = ("hub", "shroud", "leading_edge", "trailing_edge")
+"""the curves of the channel"""
 CONTINUED = 0.5
 """how far, in u, stream lines are continued past the edges"""
 SPAN = np.linspace(0.0, 1.0, 25)
+"""v at which stream lines are tabulated"""
 ALONG = np.linspace(-CONTINUED, 1.0 + CONTINUED, 129)
+"""u at which stream lines are tabulated"""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -26,7 +29,7 @@ class RoughChannel:
     revolved: bool
 
     def position(self, u: Reals, v: Reals) -> Reals:
-        """(x, r) of the transfinite interpolation at u and v of one shape."""
+        """(x, r) of the transfinite interpolation at u and v of the same shape."""
         hub, shroud, leading, trailing = (
             _curve(self.curves[name], along.ravel()).reshape(*along.shape, 2)
             for name, along in zip(CHANNEL_CURVES, (u, u, v, v), strict=True)
@@ -38,7 +41,7 @@ class RoughChannel:
         return np.asarray((1 - v) * hub + v * shroud + (1 - u) * leading + u * trailing - ruled)
 
     def places(self, points: Reals) -> tuple[Reals, Reals]:
-        """u and v (n,) of points (n, 2), past the ends where they lie outside."""
+        """u and v (n,) of points (n, 2), beyond the ends where they lie outside."""
         u, v = np.meshgrid(np.linspace(-0.3, 1.3, 81), np.linspace(-0.15, 1.15, 66), indexing="ij")
         _, index = cKDTree(self.position(u, v).reshape(-1, 2)).query(points)
         u, v = u.ravel()[index], v.ravel()[index]
@@ -72,7 +75,7 @@ class RoughChannel:
         return _interpolated(self._grid[1], u, v)
 
     def folding(self, past: float) -> float:
-        """The least Jacobian of the map, of its median, as far as `past` the edges in u; negative where it folds."""
+        """The least Jacobian of the map, of its median, up to `past` beyond the edges in u; negative where it folds."""
         v, u = np.meshgrid(np.linspace(0.0, 1.0, 21), np.linspace(-past, 1.0 + past, 49), indexing="ij")
         position = self.position(u, v)
         along, across = position[:, 1:] - position[:, :-1], position[1:] - position[:-1]
@@ -102,7 +105,7 @@ class RoughChannel:
         return self.extents()[1][:, None] / np.maximum(radius, floor), low, high
 
     def size(self, abscissa: Reals, v: Reals) -> Reals:
-        """Size in the plane of one meridional length by abscissa (n, k) and v (n,)."""
+        """Size in the plane of one meridional length, by abscissa (n, k) and v (n,)."""
         table, low, high = self._sizes
         column = (abscissa - low) / (high - low) * 199.0
         row = np.broadcast_to((np.clip(v, 0.0, 1.0) * (len(SPAN) - 1))[:, None], abscissa.shape)
@@ -118,21 +121,22 @@ class RoughChannel:
 
 
 SIMPLIFIED_DISTANCE = 3e-3
-"""of its length: how far a curve may move for fewer control points"""
+"""distance, of its length, by which a curve may move for fewer control points."""
 BOUNDARY_RAGGEDNESS = 0.9
-"""how far a boundary is off its curve, of the distance between points"""
+"""distance of a boundary of points from its curve, of the distance between points."""
 PLAIN_DISTANCE = 0.03
-"""how far a curve that is made plainer may be off its polyline, of its length"""
+"""distance, of its length, by which a curve that is simplified so that the channel does not fold may leave its
+polyline."""
 LEAST_JACOBIAN = 0.02
-"""least Jacobian of a channel, of its median"""
+"""least Jacobian of a channel, of its median; below it the channel counts as folded."""
 
 
 def rough_channel(
     pieces: dict[str, Reals], counts: dict[str, int], *, revolved: bool, past: float = 0.03
 ) -> RoughChannel:
-    """A channel whose curves run along polylines by name; its corners are the ends of leading and trailing edge.
+    """A channel along four polylines by name; its corners are the ends of leading and trailing edge.
 
-    The curves are made as plain as they must be so that the channel does not fold.
+    The curves get as few control points as they need so that the channel does not fold.
     """
     plain, found, best = counts, None, -np.inf
     for most in (9, 5, 4, 3, 2) if past > 0.1 else (9, 5, 4, 3):
@@ -156,7 +160,7 @@ def rough_channel(
 
 
 def curve_counts(channel: RoughChannel) -> dict[str, int]:
-    """Control points, from 2 to 6, that the curves of a channel need so that none moves by more than NEAR."""
+    """Control points, from 2 to 6, that the curves of a channel need to move by no more than `SIMPLIFIED_DISTANCE`."""
     t = np.linspace(0.0, 1.0, 41)
     counts = {}
     for name in CHANNEL_CURVES:
@@ -173,7 +177,7 @@ def curve_counts(channel: RoughChannel) -> dict[str, int]:
 def needed_counts(pieces: dict[str, Reals], most: int, count: int) -> dict[str, int]:
     """Control points, from 2 to `most`, that the boundary of `count` points needs to be met as well as it is known.
 
-    Where few points lie a boundary is ragged, by about their distance from each other.
+    Where points are few a boundary is ragged, by about their distance from each other.
     """
     loop = np.concatenate(
         [pieces["hub"], pieces["trailing_edge"], pieces["shroud"][::-1], pieces["leading_edge"][::-1]]
@@ -189,12 +193,12 @@ def needed_counts(pieces: dict[str, Reals], most: int, count: int) -> dict[str, 
 
 
 def _relative_distance(line: Reals, count: int) -> float:
-    """What a curve of so many control points leaves to a polyline, of its length."""
+    """The distance that a curve of so many control points leaves to a polyline, of its length."""
     return _distance_left(line, count) / float(np.sum(np.sqrt(np.sum(np.diff(line, axis=0) ** 2, axis=-1))))
 
 
 def _distance_left(line: Reals, count: int) -> float:
-    """Root mean square distance that a curve of so many control points leaves to a polyline, at equal lengths."""
+    """Root mean square distance that a curve of so many control points leaves to a polyline."""
     way = cumulative_length(line)
     t = np.linspace(0.0, 1.0, 61)
     places = np.stack([np.interp(t * way[-1], way, line[:, i]) for i in (0, 1)], axis=-1)

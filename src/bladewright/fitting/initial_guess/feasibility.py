@@ -1,4 +1,4 @@
-"""Sections made plainer until they can be built."""
+"""Sections made simpler until they can be built."""
 
 import numpy as np
 
@@ -15,11 +15,11 @@ from bladewright.fitting.initial_guess.section_shape import (
 from bladewright.nurbs.basis import Reals
 
 SHARPENINGS = 8
-"""times that edges are sharpened before anything else is changed"""
+"""times that edges are made sharper before anything else is changed"""
 
 
 def with_sharper_edges(numbers: Reals, shape: SectionShape) -> Reals:
-    """Numbers (n, q) of sections with smaller edge radii, and thinner next to the edges."""
+    """Numbers (n, q) of sections with smaller edge radii, and thinner beside the edges."""
     numbers = np.array(numbers)
     numbers[:, [ROOT_IN, ROOT_OUT]] *= 0.72
     for side in (shape.upper, shape.lower):

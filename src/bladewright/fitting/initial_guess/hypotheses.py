@@ -17,21 +17,21 @@ from bladewright.numerics.elementary import cumulative_length
 from bladewright.nurbs.basis import Reals
 
 DECIDING_POINTS = 450
-"""points that decide which of several outlines it is"""
+"""points by which outlines are compared; it bounds the time."""
 MOST_CURVE_POINTS = 5
 """control points of a piece of the outline at most"""
 BESIDE_SHARE, BESIDE_POINTS, CORNER_MARGIN = 0.06, 24, 0.12
-"""part and least number of the points that tell beside a piece of the outline whether the sides meet there, clear of
-its ends by so much of it"""
+"""share of the points (and at least `BESIDE_POINTS`) beside a piece of the outline that show whether the sides meet
+there; they keep clear of its ends by `CORNER_MARGIN` of it."""
 WALL_OPENING_RATIO = 1.4
-"""ratio of the openings at which two opposite pieces are the walls"""
+"""ratio of the openings from which two opposite pieces are the walls."""
 CLEAR_DISTANCE = 3e-3
-"""of the chord: a mean distance that settles the outline where the other pairing lies three times as far off"""
+"""mean distance, of the chord, that settles the outline where the other pairing lies three times as far off."""
 NEARER_RATIO = 0.9
-"""ratio of the mean distances from which an outline without the points that lie off is taken: where it is not, they
-belong to the blade, and lie off as the channel does not follow it yet"""
+"""ratio of mean distances below which an outline without the distant points is taken; otherwise these belong to the
+blade, and lie off as the channel does not follow it yet."""
 RADIAL_SHARE = 0.05
-"""axial share of the way from edge to edge below which the rounder edge leads"""
+"""axial share of the way from edge to edge below which the rounder edge leads."""
 
 
 def machine_coordinates(points: Reals, arrangement: str) -> Reals:
@@ -49,7 +49,7 @@ def machine_coordinates(points: Reals, arrangement: str) -> Reals:
 
 
 def ranked_outlines(machine: Reals, *, revolved: bool) -> tuple[Reals, list[SectionsInChannel]]:
-    """The points that count, and the blades whose walls and edges are pieces of the outline, the closest first."""
+    """The points that count, and the blades for each choice of walls and edges, the nearest first."""
     found = _likely(machine, revolved=revolved)
     best = found[0]
     distances = nearest_places(best.shape, unwrapped_in(machine, best.channel), best.match.laws)[2]
@@ -62,6 +62,7 @@ def ranked_outlines(machine: Reals, *, revolved: bool) -> tuple[Reals, list[Sect
 
 
 def _likely(machine: Reals, *, revolved: bool) -> list[SectionsInChannel]:
+    """The blades for each likely choice of walls and edges, the nearest first."""
     few = machine[np.random.default_rng(1).permutation(len(machine))[:DECIDING_POINTS]]
     tried = []
     for pieces in corner_sets(alpha_boundary(machine[:, :2])):
@@ -78,7 +79,7 @@ def _likely(machine: Reals, *, revolved: bool) -> list[SectionsInChannel]:
 
 
 def pairings(machine: Reals, pieces: list[Reals], *, revolved: bool) -> tuple[int, ...]:
-    """Which of the two ways to pair the pieces are to be tried: at walls the sides stand apart, at edges they meet."""
+    """Which of the two ways to pair the pieces to try: at walls the sides stand apart, at edges they meet."""
     openings = [_opening(machine, piece, revolved=revolved) for piece in pieces]
     pairs = [[opening for opening in openings[start::2] if opening is not None] for start in (0, 1)]
     if not all(pairs):
@@ -90,7 +91,7 @@ def pairings(machine: Reals, pieces: list[Reals], *, revolved: bool) -> tuple[in
 
 
 def _opening(machine: Reals, piece: Reals, *, revolved: bool) -> float | None:
-    """Root mean square tangential distance [m] of the points beside a piece of the outline from one sheet there.
+    """Root mean square tangential distance [m] of the points beside a piece of the outline from one surface.
 
     None where too few points are beside it.
     """
@@ -113,7 +114,7 @@ def _opening(machine: Reals, piece: Reals, *, revolved: bool) -> float | None:
 def _named(pieces: list[Reals], turn: int) -> dict[str, Reals]:
     """Four pieces of an anticlockwise boundary by their names, for one of the two ways to pair them.
 
-    Anticlockwise in (x, r) come hub, trailing edge, shroud, leading edge; the flow goes on towards +x.
+    Anticlockwise in (x, r) they are hub, trailing edge, shroud, leading edge; the flow goes towards +x.
     """
     hub, trailing, shroud, leading = (pieces[(i + turn) % 4] for i in range(4))
     if np.mean(leading[:, 0]) > np.mean(trailing[:, 0]):
@@ -122,12 +123,13 @@ def _named(pieces: list[Reals], turn: int) -> dict[str, Reals]:
 
 
 def _tried(few: Reals, named: dict[str, Reals], *, revolved: bool) -> SectionsInChannel:
+    """The sections found in the channel of one outline."""
     channel = rough_channel(named, needed_counts(named, MOST_CURVE_POINTS, len(few)), revolved=revolved)
     return first_sections(few, channel, (4, 4), 3, turns=10)
 
 
 def _radial(named: dict[str, Reals]) -> bool:
-    """Whether the stream lines hardly lead along x, so that x does not tell where they start."""
+    """Whether the stream lines hardly lead along x, so that x does not show where they start."""
     step = np.mean(named["trailing_edge"], axis=0) - np.mean(named["leading_edge"], axis=0)
     return abs(float(step[0])) < RADIAL_SHARE * float(np.sqrt(np.sum(step**2)))
 
@@ -137,7 +139,7 @@ def _rounder_at_end(found: SectionsInChannel) -> bool:
 
 
 def _reversed(named: dict[str, Reals]) -> dict[str, Reals]:
-    """The same outline with the flow the other way."""
+    """The same outline for flow in the other direction."""
     return {
         "hub": named["shroud"][::-1],
         "shroud": named["hub"][::-1],

@@ -1,4 +1,4 @@
-"""The meridional outline of a cloud: its boundary, and the four corners that part it into smooth curves."""
+"""The meridional outline of a cloud: its boundary, and the four corners that divide it into smooth curves."""
 
 import numpy as np
 from scipy.spatial import Delaunay
@@ -6,13 +6,13 @@ from scipy.spatial import Delaunay
 from bladewright.nurbs.basis import Reals
 
 RING_PLACES = 120
-"""places of the boundary between which corners are sought"""
+"""places of the boundary between which corners are sought; the search takes their cube in time."""
 FINE_PER_PLACE, CORNER_REACH = 10, 14
-"""places of the finer ring to one of them, and how far on it a corner is sought around a cut"""
+"""places of the finer ring for each of them, and how far on it the corner is sought around a cut (`CORNER_REACH`)"""
 SHORTEST_CURVE = 0.03
-"""of the boundary: one of its four curves"""
+"""shortest of the four curves, of the boundary."""
 CORNER_WORTH = 0.01
-"""what a corner of one radian is worth, in squares left by the curves"""
+"""what a corner of one radian is worth, in squared distances left by the curves."""
 
 
 def alpha_boundary(places: Reals) -> Reals:
@@ -46,7 +46,7 @@ def alpha_boundary(places: Reals) -> Reals:
 
 
 def _loop(triangles: np.ndarray, count: int) -> np.ndarray | None:
-    """The vertices of the one closed boundary of triangles that hold nearly all points, or None."""
+    """The vertices of the single closed boundary of triangles that contain nearly all points, or None."""
     if len(triangles) == 0:
         return None
     edges = np.sort(triangles[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1)
@@ -72,7 +72,7 @@ def _loop(triangles: np.ndarray, count: int) -> np.ndarray | None:
 
 
 def corner_sets(line: Reals, sets: int = 2) -> list[list[Reals]]:
-    """Partings of a closed boundary (m, 2) into four smooth pieces in its order, the likeliest first."""
+    """Divisions of a closed boundary (m, 2) into four smooth pieces in order, the likeliest first."""
     closed = np.concatenate([line, line[:1]])
     spread = np.ptp(line, axis=0)
     away = np.sqrt(np.sum((np.diff(closed, axis=0) / spread) ** 2, axis=-1))
@@ -98,7 +98,7 @@ def corner_sets(line: Reals, sets: int = 2) -> list[list[Reals]]:
 
 
 def _outermost(fine: Reals, cut: int) -> int:
-    """The place of a ring near a cut that stands out furthest: where the corner is."""
+    """The place of a ring near a cut that stands out most: the corner."""
     near = np.arange(cut - CORNER_REACH, cut + CORNER_REACH + 1)
     places = fine[near % len(fine)] - fine[(cut - CORNER_REACH) % len(fine)]
     along = places[-1]
@@ -106,7 +106,7 @@ def _outermost(fine: Reals, cut: int) -> int:
 
 
 def _costs(ring: Reals) -> Reals:
-    """Squares (STEPS, STEPS + 1) left by cubics through the pieces from a place, by their number of steps."""
+    """Squared distances (RING_PLACES, RING_PLACES + 1) left by cubics through pieces, by start and number of steps."""
     result = np.full((RING_PLACES, RING_PLACES + 1), np.inf)
     least = max(2, int(SHORTEST_CURVE * RING_PLACES))
     around = np.concatenate([ring, ring])
@@ -120,18 +120,18 @@ def _costs(ring: Reals) -> Reals:
 
 
 def _turns(ring: Reals, steps_apart: int = 4) -> Reals:
-    """Angles (STEPS,) by which the boundary turns to the left around each place, at most 1.2 [rad]."""
+    """Angles (RING_PLACES,) [rad] by which the boundary turns left around each place, at most 1.2."""
     before, after = ring - np.roll(ring, steps_apart, axis=0), np.roll(ring, -steps_apart, axis=0) - ring
     turn = np.arctan2(before[:, 0] * after[:, 1] - before[:, 1] * after[:, 0], np.sum(before * after, axis=-1))
     return np.clip(turn, 0.0, 1.2)
 
 
 def _best_cuts(cost: Reals) -> list[int] | None:
-    """Four cuts of the ring at which the squares add up to the least."""
+    """The four cuts of the ring with the least sum of squared distances."""
     steps = np.arange(RING_PLACES + 1)
     best: tuple[float, list[int]] = (np.inf, [])
     ahead = (np.arange(RING_PLACES)[:, None] + steps) % RING_PLACES
-    # from each start the least squares of two pieces, by their steps together, and where they are cut
+    # from each start the least sum of two pieces, by their steps together, and where they are cut
     two, cut = np.full((RING_PLACES, RING_PLACES + 1), np.inf), np.zeros((RING_PLACES, RING_PLACES + 1), dtype=int)
     for first in range(1, RING_PLACES):
         value = cost[:, [first]] + cost[ahead[:, first]][:, : RING_PLACES + 1 - first]

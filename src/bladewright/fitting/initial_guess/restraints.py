@@ -1,4 +1,4 @@
-"""What holds sections while they are drawn through points: limits, priors, and ends that stay among the points."""
+"""What holds sections while they are drawn through points: limits, regularisation, and ends among the points."""
 
 import numpy as np
 
@@ -22,23 +22,25 @@ from bladewright.nurbs.basis import Reals
 from bladewright.section.laws import law_basis
 
 STEEPEST_ANGLE = np.radians(87.0)
+"""steepest angle of a first camber [rad]"""
 SHORTEST_TANGENT, LONGEST_TANGENT = 0.03, 0.97
-"""of the extent: tangents of a first camber"""
+"""shortest and longest (`LONGEST_TANGENT`) tangent of a first camber, of the extent."""
 THINNEST_SECTION = 5e-4
-"""of the chord: half thickness of a first section"""
+"""smallest half thickness of a first section, of the chord."""
 BEND_WEIGHT = 0.7
-"""weight of the bends of the laws along the span, of that of other priors"""
+"""weight of the laws' second differences along the span, relative to that of the other rows."""
 SPAN_BAND, SPAN_BAND_POINTS = 0.06, 12
-"""of the span: half the band whose outermost points tell where a section ends, and the least number of points there"""
+"""half width, of the span, of the band whose outermost points show where a section ends, and the points that it needs
+(`SPAN_BAND_POINTS`)"""
 ALLOWED_GAPS, OVERHANG_WEIGHT = 4.0, 0.3
-"""how far a section may reach past them, of the even distance between so many points along the stream line, and weight
-of what it does further"""
+"""allowed overhang of a section, in even distances between so many points along the stream line, and the weight of what
+exceeds it (`OVERHANG_WEIGHT`)."""
 
 
 def regularisation_rows(
     shape: SectionShape, unwrapped: UnwrappedPoints, laws: Reals, smooth: float
 ) -> tuple[Reals, Reals]:
-    """Rows that keep what the points leave open: alike sides, even thickness, tangents of a third, even laws."""
+    """Rows that keep what the points leave open: equal sides, even thickness, tangents of a third, even laws."""
     count, k = shape.columns, len(laws)
     rows: list[tuple[Reals, float]] = []
 
@@ -72,7 +74,7 @@ def regularisation_rows(
 
 
 def overhang_rows(shape: SectionShape, unwrapped: UnwrappedPoints, laws: Reals) -> tuple[Reals, Reals]:
-    """Rows that draw in what reaches past the points: thin fins are nobody's nearest place and would cost nothing."""
+    """Rows that draw in what overhangs the points: thin fins are nobody's nearest place and would cost nothing."""
     count, rows, rhs_rows = shape.columns * len(laws), [], []
     for v in section_stations(unwrapped):
         beside = np.abs(unwrapped.v - v) < SPAN_BAND

@@ -31,7 +31,7 @@ from bladewright.section.unified import UnifiedSection
 
 Unit = Literal["m", "cm", "mm", "um", "in", "ft"]
 DRAWN_POINTS = 600
-"""points that a first section is drawn through"""
+"""points that a first section is drawn through; it bounds the time."""
 
 
 def first_section(
@@ -68,7 +68,7 @@ def first_section(
 
 
 def longest_chord(points: Reals) -> tuple[float, float]:
-    """Angle [rad] of the longest distance between two points, towards +x, and that distance."""
+    """Direction [rad] of the longest distance between two points, towards +x, and that distance."""
     from scipy.spatial import ConvexHull
 
     corners = points[ConvexHull(points).vertices]
@@ -80,7 +80,7 @@ def longest_chord(points: Reals) -> tuple[float, float]:
 
 
 def best_match(shape: SectionShape, unwrapped: UnwrappedPoints, axis: float) -> SectionMatch:
-    """The closest of matches that start from several directions of the chord."""
+    """The nearest of matches that start from several directions of the chord."""
     found: list[SectionMatch] = []
     for turn in (0.0, 0.2, -0.2, 0.5, -0.5):
         direction = axis + turn
@@ -98,7 +98,7 @@ def best_match(shape: SectionShape, unwrapped: UnwrappedPoints, axis: float) -> 
 def built_section(
     shape: SectionShape, match: SectionMatch, middle: Reals, chord: float, name: str, length_unit: Unit
 ) -> UnifiedSection:
-    """The section of a match, with thickness raised or edges sharpened until it can be built."""
+    """The section of a match, with edges made sharper or the shape simplified until it can be built."""
     numbers = match.laws[0].copy()
     metre = UNITS[length_unit]
     error: DesignError | None = None

@@ -20,23 +20,25 @@ from bladewright.nurbs.basis import Reals
 from bladewright.section.laws import law_basis
 
 LEAST_SMOOTHING = 1e-3
-"""least weight of what keeps even that which the points leave open"""
+"""least weight of the rows that keep even what the points leave open."""
 SIDE_PLACES = np.linspace(0.0, 1.0, 65)
-"""along a side, where the nearest place is sought"""
+"""parameters along a side among which the nearest place is sought"""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class SectionMatch:
-    """Laws of sections and how far points lie from them."""
+    """Laws of sections, and how far points lie from them."""
 
     laws: Reals
     """(k, q) control points along the span of each number of a section"""
     distances: Reals
     """(n,) [m]"""
     mean: float
-    """of the points that count [m]"""
+    """mean distance of the nearest 94 % of the points [m]"""
     s: Reals
+    """(n,) places along the side"""
     upper: NDArray[np.bool_]
+    """(n,) whether the nearest place is on the upper side"""
 
 
 def nearest_places(
@@ -93,10 +95,9 @@ def matched_sections(
     ends: bool = False,
     among: bool = False,
 ) -> SectionMatch:
-    """Laws near the given ones whose sections lie close to the points.
+    """Laws near the given ones whose sections are near the points.
 
-    `ends` holds the ends of the camber lines at those of the stream lines; `among` draws in what reaches past the
-    points.
+    `ends` holds the ends of the camber lines at those of the stream lines; `among` draws in what overhangs the points.
     """
     laws = within_limits(shape, unwrapped, laws)
     best: SectionMatch | None = None
@@ -105,7 +106,7 @@ def matched_sections(
     for turn in range(turns + 1):
         s, upper, distances = nearest_places(shape, unwrapped, laws)
         weight = _weights(unwrapped, s, upper, distances, turn / turns)
-        # places that no point is near count as well: a side without points is none
+        # a cap on distances is added, so that a side that few points are near does not look good
         mean = float(np.sum(weight * distances) / np.sum(weight)) + 0.2 * float(
             np.mean(np.minimum(distances, 0.1 * unwrapped.chord))
         )
@@ -125,7 +126,7 @@ def matched_sections(
 
 
 def within_limits(shape: SectionShape, unwrapped: UnwrappedPoints, laws: Reals) -> Reals:
-    """The laws within the family's limits, and radii that the thickness beside them can hold."""
+    """The laws within the family's limits, with edge radii that fit into the thickness beside them."""
     low, high, _ = limits(shape, unwrapped, ends=False)
     laws = np.clip(laws, low, high)
     laws = _with_thin_edges(shape, unwrapped, laws)
@@ -163,7 +164,7 @@ def _with_thin_edges(shape: SectionShape, unwrapped: UnwrappedPoints, laws: Real
 def _weights(
     unwrapped: UnwrappedPoints, s: Reals, upper: NDArray[np.bool_], distances: Reals, progress: float
 ) -> Reals:
-    """Of the points: as much for each part of a side, less for what lies far off."""
+    """Weights of the points: each part of a side counts alike, distant points count less."""
     bins = (
         (s * 11.999).astype(int)
         + 12 * upper
@@ -187,6 +188,7 @@ def _step(
     ends: bool,
     among: bool,
 ) -> Reals:
+    """The step of a damped least squares within the limits."""
     numbers = numbers_at(laws, unwrapped.v)
     footpoint = shape.footpoints(numbers, unwrapped.v, s, upper)
     root = np.sqrt(weight / np.sum(weight)) / (unwrapped.size * unwrapped.chord)

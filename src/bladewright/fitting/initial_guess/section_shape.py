@@ -24,15 +24,15 @@ class UnwrappedPoints:
     size: Reals
     """(n,) of one metre in the plane"""
     chord: float
-    """typical, [m]"""
+    """typical one [m]"""
     ratio: float
-    """typical chord of the meridional length"""
+    """typical chord, of the meridional length"""
     flat: bool = False
     """whether all points belong to one section"""
     upper: NDArray[np.bool_] | None = None
     """(n,) which side a point belongs to"""
     sure: NDArray[np.bool_] | None = None
-    """(n,) whether that is known"""
+    """(n,) whether the side is certain"""
 
 
 def numbers_at(laws: Reals, v: Reals) -> Reals:
@@ -46,13 +46,14 @@ def section_stations(unwrapped: UnwrappedPoints) -> Reals:
 
 
 START, PLACE, EXTENT, STAGGER, ANGLE_IN, ANGLE_OUT, TANGENT_IN, TANGENT_OUT, ROOT_IN, ROOT_OUT = range(10)
-FIRST_THICKNESS = 10
 """columns of a section's numbers: abscissa of the leading edge and extent, both of the stream line's extent; ordinate
-of the leading edge; angles [rad]; tangents of the section's extent; square roots of the edge radii and half thicknesses
-of the upper and the lower side, of the meridional length"""
+of the leading edge; angles [rad]; tangents of the section's extent; square roots of the edge radii, of the meridional
+length"""
+FIRST_THICKNESS = 10
+"""the first of the columns of half thicknesses of the upper and the lower side, of the meridional length"""
 
 PlaneScale = Callable[[Reals, Reals], Reals]
-"""size in the plane of one meridional length by abscissa (n, k) and place along the span (n,)"""
+"""size in the plane of one meridional length, by abscissa (n, k) and place along the span (n,)"""
 SpanFunction = Callable[[Reals], Reals]
 """a quantity (n,) by place along the span (n,)"""
 
@@ -81,7 +82,7 @@ class SectionShape:
 
     @property
     def columns(self) -> int:
-        """Numbers of a section."""
+        """Number of numbers of a section."""
         return FIRST_THICKNESS + sum(self.chordwise)
 
     @property
@@ -110,7 +111,7 @@ class SectionShape:
         return np.stack([first, second, third, last], axis=1)
 
     def heights(self, numbers: Reals, v: Reals, upper: bool) -> tuple[Reals, Reals, Reals, Reals]:
-        """Heights (n, k) of a side's control points above the camber, those of the edges for a root of one, and sizes.
+        """Heights (n, k) of a side's control points above the camber, heights at the edges for unit roots, and sizes.
 
         The sizes (n, k - 2) are those of one metre in the plane at the edges' and the inner control points.
         """
@@ -138,7 +139,7 @@ class SectionShape:
         return np.concatenate(columns, axis=1), unit_in, unit_out, scale
 
     def rooms(self, numbers: Reals, v: Reals, upper: bool) -> tuple[Reals, Reals]:
-        """Half thickness (n,) [m] beside the leading and the trailing edge at which a side leaves the edge sideways."""
+        """Half thickness (n,) [m] beside both edges from which on a side leaves the edge sideways."""
         line = self.camber(numbers, v)
         at = self.places[[0, 2, -3, -1]]
         on, (tangents, _) = bernstein(at) @ line, _tangents(line, at)
@@ -164,7 +165,7 @@ class SectionShape:
         return upper, lower
 
     def footpoints(self, numbers: Reals, v: Reals, s: Reals, upper: np.ndarray) -> SidePlaces:
-        """Places at s (n,) of the sides of n sections."""
+        """Places at s (n,) on the sides of n sections."""
         line = self.camber(numbers, v)
         places = self.places
         count = len(places)

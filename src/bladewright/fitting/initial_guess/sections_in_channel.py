@@ -22,8 +22,8 @@ from bladewright.nurbs.basis import Reals
 from bladewright.section.laws import law_basis
 
 DIRECTION_BANDS, DIRECTION_POINTS, DIRECTION_COUNT = 9, 12, 3
-"""bands along the span whose points tell the direction of the chord there, the least of them, and control points of
-what is told"""
+"""bands along the span whose points show the direction of the chord there, the points that a band needs
+(`DIRECTION_POINTS`), and control points of the resulting law (`DIRECTION_COUNT`)"""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -37,7 +37,7 @@ class SectionsInChannel:
 
 
 def unwrapped_in(machine: Reals, channel: RoughChannel) -> UnwrappedPoints:
-    """Points (n, 3) in x, r and theta, or x, z and y, laid in the planes of a channel's stream surfaces."""
+    """Points (n, 3) in x, r and theta, or x, z and y, in the planes of a channel's stream surfaces."""
     u, v = channel.places(machine[:, :2])
     a = channel.abscissa(u, v)
     size = 1.0 / machine[:, 1] if channel.revolved else np.ones(len(machine))
@@ -59,7 +59,7 @@ def section_shape_in(
 def first_sections(
     machine: Reals, channel: RoughChannel, chordwise: tuple[int, int], count: int, *, turns: int
 ) -> SectionsInChannel:
-    """What is found in a channel without a guess: `count` control points of the laws along the span."""
+    """Sections in a channel without a guess, with `count` control points of the laws along the span."""
     unwrapped = unwrapped_in(machine, channel)
     shape = section_shape_in(channel, chordwise, 16, 1.0)
     turn, lean, chord = _direction(unwrapped)
@@ -80,9 +80,9 @@ def transferred_sections(
     ends: bool,
     parting: bool,
 ) -> SectionsInChannel:
-    """What is found in another channel from the sections found in the one before.
+    """Sections in another channel, from those found in the one before.
 
-    `parting` holds points to the side that they are seen to belong to.
+    `parting` holds points to the side that they seem to belong to.
     """
     old = numbers_at(before.match.laws, SPAN)
     numbers = np.zeros((len(SPAN), shape.columns))

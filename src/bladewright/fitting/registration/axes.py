@@ -18,28 +18,26 @@ from bladewright.nurbs.basis import Reals
 
 Arrangement = Literal["annular", "linear"]
 AXES_POINTS = 50_000
-"""points that are looked at: more say nothing new about where a blade lies"""
+"""points that are looked at; it bounds the time, and more say little new about where a blade lies."""
 PRISM_THICKNESS = 1e-3
-"""of the extent: a projection that is thinner is that of a prism"""
+"""thickness of a projection, of the cloud's extent, below which the cloud is a prism."""
 COMPARED_DEGREES = (1, 2, 4)
-"""of the meridional lines while axes are compared"""
+"""degrees of the meridional lines while axes are compared"""
 LAST_STEPS = 200
-"""of the least squares that decide"""
+"""steps of the least squares that decides"""
 COMPARED_END_POINTS, DECIDING_END_POINTS = 150, 400
-"""points of an end by which axes are compared, and those that decide"""
+"""points of an end by which axes are compared, and those that decide (`DECIDING_END_POINTS`)"""
 DIRECTION_LIMIT = 0.2 * np.pi / 180.0
-"""largest standard deviation of the axis' direction [rad]"""
+"""largest standard deviation of the axis' direction [rad]; a less certain axis is refused."""
 OFFSET_LIMIT = 0.01
-"""largest standard deviation of the axis' distance, of the blade's extent"""
+"""largest standard deviation of the axis' distance, of the blade's extent; a less certain axis is refused."""
 REVOLUTION_LIMIT = 2e-6
-"""Largest distance of the ends from surfaces of revolution, of the blade's extent.
-
-It lets no noise pass: where the search stops short of the axis, it does so at 1e-5 and more, with small deviations.
-"""
+"""largest distance of the ends from surfaces of revolution, of the blade's extent. It lets no noise pass: where the
+search stops short of the axis, it does so at 1e-5 and more, with small standard deviations."""
 AMBIGUITY_RATIO = 5.0
-"""another axis, that the ends do not tell from this one, lies off them at least so many times further"""
+"""ratio by which the ends must lie further off any other axis; otherwise the axis is ambiguous."""
 OTHER_AXIS_COSINE = np.cos(2.0 * np.pi / 180.0)
-"""cosine of the angle from which on axes are others"""
+"""cosine of the angle from which axes count as different."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -57,9 +55,9 @@ def found_axes(points: Reals, *, arrangement: Arrangement | None = None) -> Mach
     """The machine's axes of a cloud (n, 3) [m] of one blade that lies anywhere, without a design.
 
     A prism is a blade of a linear cascade: its direction is the span z, and the chord line is laid along x. Otherwise
-    both ends must lie on surfaces of revolution about the machine axis, and be shown by rows of points without
-    noise: then x = 0 is at the foremost point and theta = 0 in the middle. Raises FitError where the points do
-    not determine the axes.
+    both ends must lie on surfaces of revolution about the machine axis, and be shown by rows of points without noise;
+    then x = 0 is at the foremost point and theta = 0 in the middle. Raises FitError where the points do not determine
+    the axes.
     """
     cloud = np.asarray(points, dtype=np.float64)
     if cloud.ndim != 2 or cloud.shape[1] != 3:
@@ -85,6 +83,7 @@ def found_axes(points: Reals, *, arrangement: Arrangement | None = None) -> Mach
 
 
 def _cascade(cloud: Reals, prism: Prism) -> MachineAxes:
+    """The axes of a prism."""
     span = prism.direction
     frame = np.linalg.svd(span[None])[2][1:]
     flat = cloud @ frame.T
@@ -129,6 +128,7 @@ def _chord(flat: Reals) -> Reals:
 
 
 def _annular(cloud: Reals) -> MachineAxes:
+    """The axes of a blade between surfaces of revolution."""
     sheet = unrolled_sheet(cloud)
     pieces = [end_planes(sheet, side) for side in range(4)]
     tried: list[tuple[RevolutionAxis, int]] = []
@@ -161,6 +161,7 @@ def _annular(cloud: Reals) -> MachineAxes:
 def _ends(
     sheet: UnrolledSheet, low: list[EndPlane], high: list[EndPlane], count: int
 ) -> tuple[EndPoints, EndPoints] | None:
+    """Points of the two ends, at most `count` of each; None where an end has no planes."""
     found = []
     for pieces in (low, high):
         if not pieces:
@@ -173,6 +174,7 @@ def _ends(
 
 
 def _check(axis: RevolutionAxis, others: list[RevolutionAxis], extent: float) -> None:
+    """Refuses an axis that the points do not determine."""
     if axis.rms > REVOLUTION_LIMIT * extent:
         raise _undetermined(
             f"of all axes tried, the ends still lie {axis.rms:.3g} m off surfaces of revolution about the best, more "

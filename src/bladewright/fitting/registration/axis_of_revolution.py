@@ -1,7 +1,7 @@
 """The axis about which both ends of a blade lie on surfaces of revolution.
 
-The axis has four freedoms; each end's meridional line is a polynomial of low degree in the (x, r) plane, over the
-direction from edge to edge. All are found at once by least squares of the distances in that plane.
+The axis has four degrees of freedom; each end's meridional line is a polynomial of low degree in the (x, r) plane, over
+the direction from edge to edge. All are found at once by least squares of the distances in that plane.
 """
 
 from dataclasses import dataclass, replace
@@ -15,16 +15,18 @@ from bladewright.fitting.registration.robust_motion import tukey_weights
 from bladewright.nurbs.basis import Reals
 
 LINE_DEGREES = (1, 2, 3, 4, 5, 6, 7, 8)
-"""from which the last one is taken, by the Bayesian information criterion (Schwarz 1978)"""
+"""degrees of the meridional lines that are tried; the Bayesian information criterion chooses (Schwarz 1978)."""
 AXIS_STEPS = 25
+"""steps of the least squares at most"""
 HALVINGS = 4
-"""how often a step is shortened that makes things worse"""
+"""times that a step is shortened that raises the cost"""
 LEAST_WIDTH = 1e-13
-"""least width of the weights, of the ends' extent"""
+"""least width of the weights, of the ends' extent: rounding."""
 LEAST_NOISE = 1e-8
-"""of the ends' extent: points are not taken to be more exact, so that what nothing determines has a large deviation"""
+"""noise that points are taken to have at least, of the ends' extent, so that what nothing determines has a large
+standard deviation."""
 WEAKEST_DIRECTION = 1e-10
-"""of the largest singular value: weaker directions stay"""
+"""singular value, of the largest, below which a direction of the unknowns stays."""
 FEWEST_END_POINTS = 40
 """points that an end must keep"""
 
@@ -44,7 +46,7 @@ class RevolutionAxis:
     """An axis found from two ends."""
 
     motion: Motion
-    """into axes of which the first is the machine's"""
+    """into axes of which the first is the machine's axis"""
     rms: float
     """distance of the ends' points from their surfaces [m]"""
     direction: float
@@ -69,9 +71,9 @@ class _Line:
 def axis_of(
     ends: tuple[EndPoints, EndPoints], start: Motion, degrees: tuple[int, ...] = LINE_DEGREES, steps: int = AXIS_STEPS
 ) -> RevolutionAxis | None:
-    """The axis near a first one, with lines of the degree that the points ask for; None where an end loses its points.
+    """The axis near a first one, with lines of the degree that the points need; None where an end loses its points.
 
-    Each degree starts anew: lines of a high degree and the axis make up for each other under noise.
+    Each degree starts anew: lines of a high degree and the axis compensate each other under noise.
     """
     centre = np.concatenate([start(end.points) for end in ends]).mean(axis=0)
     back = Motion(rotation=np.eye(3), translation=np.array([-centre[0], 0.0, 0.0]))
@@ -87,7 +89,7 @@ def axis_of(
 def _settled(
     ends: tuple[EndPoints, EndPoints], motion: Motion, degree: int, steps: int
 ) -> tuple[Motion, list[_Line], float]:
-    """Axis and lines at which the steps end, and the width of the weights that the scatter asks for."""
+    """Axis and lines where the steps end, and the width of the weights that the residuals need."""
     extent = _extent(ends)
     lines = [_first_line(end, motion, degree) for end in ends]
     offs = _equations(ends, motion, lines, np.inf)[2]
@@ -135,6 +137,7 @@ def _cost(offs: list[Reals], width: float) -> float:
 
 
 def _first_line(end: EndPoints, motion: Motion, degree: int) -> _Line:
+    """The meridional line of an end about a first axis, by Tukey's weights."""
     flat = _meridional(motion(end.points))
     way = (end.along - np.median(end.along)) @ (flat - np.median(flat, axis=0))
     c, s = way / max(float(np.sqrt(np.sum(way**2))), 1e-300)
@@ -185,6 +188,7 @@ def _equations(
 def _axis(
     ends: tuple[EndPoints, EndPoints], motion: Motion, lines: list[_Line], width: float, degree: int
 ) -> RevolutionAxis | None:
+    """The axis with its figures; None where an end has too few points on its surface."""
     rows, right, offs = _equations(ends, motion, lines, width)
     on = [np.abs(off) < width for off in offs]
     if min(np.count_nonzero(each) for each in on) < FEWEST_END_POINTS:
@@ -211,4 +215,5 @@ def _meridional(points: Reals) -> Reals:
 
 
 def _extent(ends: tuple[EndPoints, EndPoints]) -> float:
+    """Largest extent of both ends [m]."""
     return float(np.max(np.ptp(np.concatenate([end.points for end in ends]), axis=0)))

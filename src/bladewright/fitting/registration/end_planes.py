@@ -18,18 +18,19 @@ from bladewright.nurbs.basis import Reals
 END_PIECES = 20
 """pieces of an end"""
 LOOKED_INSIDE = 2.5
-"""how far inside points are looked at, of the points' spacing"""
+"""depth up to which points inside the side are looked at, of the points' spacing"""
 FIRST_WIDTH, LAST_WIDTH, NARROWINGS = 1.5, 0.03, 24
-"""widths of the weights, of the points' spacing, and how often they narrow"""
+"""first and last (`LAST_WIDTH`) width of the weights, of the points' spacing, and how often they narrow
+(`NARROWINGS`)"""
 ON_PLANE = 0.1
-"""of the points' spacing: nearer points are on the plane"""
+"""distance, of the points' spacing, within which points lie on the plane."""
 TILT_DAMPING = 1e-3
-"""holds the tilt across a loop that is thin for its points' spacing"""
+"""weight that holds the tilt across a loop that is thin for its points' spacing"""
 
 
 @dataclass(frozen=True, kw_only=True)
 class EndPlane:
-    """A short piece of a side of the sheet."""
+    """The plane on a short piece of an end."""
 
     point: Reals
     normal: Reals
@@ -37,11 +38,11 @@ class EndPlane:
     rows: NDArray[np.intp]
     """indices of the sheet's points on the plane"""
     along: Reals
-    """their places along the side, 0 to 1"""
+    """(m,) their places along the side, 0 to 1"""
 
 
 def end_planes(sheet: UnrolledSheet, side: int) -> list[EndPlane]:
-    """Pieces of a side of the sheet on which planes can be laid.
+    """Planes on the pieces of a side of the sheet.
 
     The weights are one-sided, 1 outside and Tukey's inside, and narrow: the plane moves out to the last points.
     """
@@ -89,15 +90,15 @@ def _end_plane(sheet: UnrolledSheet, rows: NDArray[np.intp], along: Reals, insid
 
 
 AGREEING_SHARE = 0.6
-"""of the planes that must agree on an axis"""
+"""share of the planes that must agree on an axis"""
 TRIALS, PLANES_DRAWN = 400, 7
-"""draws of a few planes, and how many each"""
+"""draws of a few planes, and how many planes each has (`PLANES_DRAWN`)"""
 MOST_AXES = 10
 """axes that are handed on"""
 DISTINCT_COSINE = 0.996
-"""cosine of the angle from which on directions are different"""
+"""cosine of the angle from which directions count as different."""
 FARTHEST_AXIS = 25.0
-"""distance of an axis from the blade, of the ends' extent: further away it is no longer told from none"""
+"""distance of an axis from the blade, of the ends' extent, beyond which it cannot be told from a translation."""
 
 
 def first_axes(pieces: list[EndPlane]) -> list[tuple[float, Motion]]:
@@ -119,7 +120,7 @@ def first_axes(pieces: list[EndPlane]) -> list[tuple[float, Motion]]:
 
 
 def _miss(direction: Reals, footpoint: Reals, at: Reals, facing: Reals) -> float:
-    """Angle [rad] that the better share of the planes keeps."""
+    """Angle [rad] that the agreeing share of the planes keeps."""
     return float(np.quantile(np.abs(_angles(direction, footpoint, at, facing)), AGREEING_SHARE))
 
 
@@ -130,7 +131,7 @@ def _angles(direction: Reals, footpoint: Reals, at: Reals, facing: Reals) -> Rea
 
 
 def _starts(at: Reals, facing: Reals) -> list[tuple[float, Reals, Reals]]:
-    """Misses, directions and feet of axes through a few planes each, drawn at random, and through all.
+    """Misses, directions and footpoints of axes through a few planes each, drawn at random, and through all.
 
     A velocity field c' + c x p of least (n . v)^2 over v^2 belongs to the smallest generalised eigenvalues of 6 x 6
     matrices; of a cylinder two are zero, as it also slides along itself.

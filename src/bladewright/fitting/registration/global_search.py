@@ -17,25 +17,25 @@ from bladewright.fitting.registration.rigid_motion import GENERATORS, rotation_b
 from bladewright.nurbs.basis import Reals
 
 TARGET_SAMPLES = {2: 800, 3: 4000}
-"""of the target"""
+"""samples of the target, by dimension"""
 SEARCH_POINTS = {2: 120, 3: 160}
-"""of the cloud that take part in the search"""
+"""points of the cloud that take part in the search, by dimension"""
 START_SHIFT = 0.25
-"""further starts are shifted by this share of the target's extents, as the cloud may cover a part of it"""
+"""shift of further starts, of the target's extents, as the cloud may cover a part of it only."""
 SEARCH_ROUNDS = ((3, 8, 0.25), (3, 8, 0.25), (0, 20, 0.1))
-"""steps point to point, steps point to plane, and share of the starts that is kept"""
+"""steps point to point, steps point to plane, and share of the starts that is kept, round by round"""
 SATURATION = 0.08
-"""of the target's extent: a point that is further away counts as much as one at this distance"""
+"""distance, of the target's extent, beyond which a point counts no more."""
 FALLBACK_TURNS = {2: 48, 3: 600}
-"""of the fallback: evenly many turns in the plane, random ones in space"""
+"""turns of the fallback, by dimension: evenly many in the plane, random ones in space"""
 DISTINCT_MOTIONS = 0.05
-"""motions are different that take the cloud's points this far apart, of the target's extent"""
+"""distance, of the target's extent, by which two motions must differ to count as different."""
 
 
 def found_motions(cloud: Reals, samples: Reals, normals: Reals, *, everywhere: bool, most: int = 4) -> list[Motion]:
     """The best different motions of a cloud (n, d) onto samples (m, d) with normals, best first.
 
-    They start from the principal axes of both or, `everywhere`, from turns all over the space of turns.
+    They start from the principal axes of both or, `everywhere`, from turns all over the space of rotations.
     """
     dimension = cloud.shape[1]
     cloud = cloud[drawn(len(cloud), 20_000)]

@@ -1,7 +1,7 @@
-"""A blade's cloud as a sheet: unrolled by distances along it, with its four corners and the four sides between them.
+"""A blade's cloud as a sheet: unrolled by distances along it, with its four corners and the sides between them.
 
 The unrolling is landmark Isomap (Tenenbaum et al. 2000, de Silva and Tenenbaum 2004): multidimensional scaling of the
-shortest ways through a graph of neighbours. Both sides of a blade come to lie on each other.
+shortest paths through a graph of neighbours. Both sides of a blade come to lie on each other.
 """
 
 from dataclasses import dataclass
@@ -18,17 +18,17 @@ from bladewright.numerics.elementary import cumulative_length
 from bladewright.nurbs.basis import Reals
 
 GRAPH_NEIGHBOURS = 12
-"""of a point in the graph"""
+"""neighbours of a point in the graph"""
 GRAPH_POINTS = 900
-"""evenly spread points that make the graph"""
+"""evenly spread points that make the graph; it bounds the time."""
 LANDMARKS = 60
-"""points from which ways are measured"""
+"""points from which path lengths are measured"""
 HULL_CORNERS = 36
 """corners of the convex hull from which four are chosen"""
 RIM_NEIGHBOURS = 24
-"""neighbours whose centre tells whether a point is on the rim"""
+"""neighbours whose centre shows whether a point is on the rim"""
 INSIDE_COST = 12.0
-"""a way is so many times longer off the rim than along it"""
+"""factor by which a path inside the sheet costs more than one along the rim."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -40,7 +40,7 @@ class UnrolledSheet:
     flat: Reals
     """(n, 2) unrolled"""
     spacing: float
-    """of evenly spread points among them [m]"""
+    """typical distance of evenly spread points among them [m]"""
     sides: tuple[Reals, ...]
     """(m, 2) of each of the four sides, around the sheet, the way in the plane from corner to corner"""
 
@@ -91,7 +91,7 @@ def _graph(points: Reals) -> csr_array:
 
 
 def _scaled_coordinates(graph: csr_array, points: Reals) -> Reals:
-    """Coordinates (n, 2) whose distances are nearest to the ways through the graph."""
+    """Coordinates (n, 2) whose distances are nearest to the path lengths through the graph."""
     marks = spread(points, LANDMARKS)
     square = dijkstra(graph, directed=False, indices=marks) ** 2
     own = square[:, marks]
@@ -103,7 +103,7 @@ def _scaled_coordinates(graph: csr_array, points: Reals) -> Reals:
 
 
 def _corners(flat: Reals) -> NDArray[np.intp]:
-    """The four points, in their order around the sheet, with the largest area between them."""
+    """The four points, in order around the sheet, with the largest area between them."""
     hull = ConvexHull(flat).vertices
     while len(hull) > HULL_CORNERS:
         sides = np.sqrt(np.sum((flat[hull] - flat[np.roll(hull, 1)]) ** 2, axis=1))
@@ -116,7 +116,7 @@ def _corners(flat: Reals) -> NDArray[np.intp]:
 
 
 def _insideness(flat: Reals) -> Reals:
-    """0 on the rim to 1 inside (n,), by how far the centre of a point's neighbours lies aside."""
+    """0 on the rim to 1 inside (n,), by how far the centre of a point's neighbours is off the point."""
     distances, index = cKDTree(flat).query(flat, k=RIM_NEIGHBOURS + 1)
     aside = np.sqrt(np.sum((flat[index].mean(axis=1) - flat) ** 2, axis=1)) / distances[:, -1]
     return np.asarray(np.clip(1.0 - aside / 0.4, 0.0, 1.0))

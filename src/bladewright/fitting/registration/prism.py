@@ -10,19 +10,22 @@ from bladewright.fitting.registration.robust_motion import tukey_weights
 from bladewright.nurbs.basis import Reals
 
 PRISM_POINTS = 1_200
+"""points by which directions are compared; it bounds the time."""
 TRIAL_DIRECTIONS = 500
-"""that are tried, spread evenly over half a sphere"""
+"""directions that are tried, spread evenly over half a sphere"""
 GRID_CELLS = 40
-"""cells of a grid in the cloud's extent, by which directions are compared"""
+"""cells of a grid in the cloud's extent by which directions are compared"""
 FOLLOWED_DIRECTIONS = 6
-"""of them that are followed"""
+"""directions that are followed to their minimum"""
 CURVE_NEIGHBOURS = 60
 """points of the projection that a piece of the curve is laid through"""
 SECTION_CELLS = 40
-"""of the section's extent, in each of which the last point is taken"""
+"""cells of the section's extent, in each of which the last point is taken"""
 BENT_RATIO, BENT_SHARE = 3.0, 2e-4
-"""an end bends where a parabola leaves a third of what a plane misses, and that is more than a share of the extent"""
+"""an end bends where a plane misses it by this many times what a parabola leaves, and by more than `BENT_SHARE` of the
+extent."""
 PRISM_STEPS = 12
+"""steps of the least squares at most"""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -41,13 +44,14 @@ def prism_of(points: Reals) -> Prism:
     cloud = cloud - np.median(cloud, axis=0)
     directions = _hemisphere(TRIAL_DIRECTIONS)
     cell = float(np.max(np.ptp(cloud, axis=0))) / GRID_CELLS
-    # a curve passes few cells of a grid, whatever rows the points stand in
+    # a curve passes through few cells of a grid, whatever rows the points stand in
     scores = [len(np.unique(np.floor(cloud @ _across(d).T / cell).astype(int) @ [1, 10_000])) for d in directions]
     tried = [_followed(cloud, directions[k]) for k in np.argsort(scores)[:FOLLOWED_DIRECTIONS]]
     return min(tried, key=lambda prism: prism.rms)
 
 
 def _followed(cloud: Reals, direction: Reals) -> Prism:
+    """The prism near a direction."""
     rms = np.inf
     for _ in range(PRISM_STEPS):
         frame = _across(direction)

@@ -22,17 +22,17 @@ if TYPE_CHECKING:
 DECIDING_POINTS = 3_000
 """points whose true distances decide"""
 SEARCH_POINTS = 600
-"""points whose true distances choose among the motions that the search finds"""
+"""points whose true distances choose among the motions of the global search"""
 GOOD_DISTANCE = 2e-3
-"""systematic distance, of the chord, above which every turn is tried"""
+"""systematic distance, of the chord, above which all turns are tried."""
 OTHER_BLADE_DISTANCE = 5e-3
-"""systematic distance, of the chord, above which it is another blade"""
+"""systematic distance, of the chord, above which the cloud is of another blade."""
 FINAL_WIDTH = 0.01
 """first width of the weights in the last descent, of the extent"""
 TRIAL_STEPS = 8
-"""of the descent that chooses"""
+"""steps of the descent that chooses"""
 LEAST_SHARE = 0.7
-"""of the points at least must take part, or it is another blade"""
+"""share of the points that must take part; with fewer the cloud is of another blade."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -43,15 +43,15 @@ class Registration:
     rms: float
     """root mean square of the true distances of the points that took part [m]"""
     systematic: float
-    """part of it that neighbouring points share, which noise is not [m]"""
+    """part of it that neighbouring points have in common, which is not noise [m]"""
     share: float
     """of the points that took part; the others are outliers"""
     undetermined: tuple[str, ...]
-    """freedoms that the points do not determine"""
+    """degrees of freedom that the points do not determine"""
     covariance: Reals
-    """(k, k) of the free freedoms in their order, turns about the origin of the machine's axes [rad], shifts [m]"""
+    """(k, k) of the degrees of freedom, turns about the origin of the machine's axes [rad], then shifts [m]"""
     same: bool
-    """whether it may be this blade: the systematic distance and the outliers do not speak against it"""
+    """whether it may be this blade, by the systematic distance and the outliers"""
     notes: tuple[str, ...]
 
 
@@ -59,8 +59,8 @@ def registration(points: Reals, design: "UnifiedBlade | UnifiedSection") -> Regi
     """The motion of points (n, d) [m] that lie anywhere onto what a design builds, found without a guess.
 
     The search starts from all proper choices of principal axes and, where none leads to small distances, from turns all
-    over; then true distances are brought to a minimum by Tukey's weights (see `descent`). Raises FitError where the
-    points do not fit the dimension of the design, or are too few.
+    over; then true distances are minimised with Tukey's weights (see `robust_motion`). Raises FitError where the points
+    do not have the dimension of the design, or are too few.
     """
     return registered(points, target_of(design.build()))
 
@@ -101,6 +101,7 @@ def _checked(points: Reals, target: RegistrationTarget) -> Reals:
 
 
 def _reported(cloud: Reals, target: RegistrationTarget, descent: RobustMotion) -> Registration:
+    """The registration of a descent, with its figures and notes."""
     dimension = cloud.shape[1]
     cloud = cloud[drawn(len(cloud), DECIDING_POINTS)]
     distances, taking = descent.contact.distances, descent.weights > 0.0

@@ -1,4 +1,4 @@
-"""Rigid motions in the plane and in space, and the freedoms in which they may change."""
+"""Rigid motions in the plane and in space, and their degrees of freedom."""
 
 import numpy as np
 from scipy.spatial.transform import Rotation
@@ -7,9 +7,9 @@ from bladewright.fitting.assessment.result import Motion
 from bladewright.nurbs.basis import Reals
 
 FREEDOMS = ("turn_x", "turn_y", "turn_z", "shift_x", "shift_y", "shift_z")
-"""of a motion in space: right-handed turns about the machine's axes, then shifts along them"""
+"""degrees of freedom in space: right-handed turns about the machine's axes, then shifts along them"""
 PLANE_FREEDOMS = ("turn", "shift_x", "shift_y")
-"""of a motion in the plane"""
+"""degrees of freedom in the plane"""
 GENERATORS = {
     2: np.array([[[0.0, -1.0], [1.0, 0.0]]]),
     3: np.array(

@@ -1,7 +1,7 @@
 """The rigid motion of least true distances from a target, with outliers left out step by step.
 
-Gauss and Newton's method on the distances along the target's normals, and past an edge also along the side; weights are
-Tukey's (Beaton and Tukey 1974). Their width starts wide and shrinks to what the inliers' own scatter asks for, as in
+It is Gauss and Newton's method on the distances along the target's normals, and past an edge also along the side, with
+Tukey's weights (Beaton and Tukey 1974). Their width starts wide and shrinks to what the inliers' own noise needs, as in
 graduated non-convexity (Blake and Zisserman 1987), so that the few points at the ends, which alone hold a prismatic
 blade along its span, take part before they could be taken for outliers.
 """
@@ -17,24 +17,25 @@ from bladewright.fitting.registration.target import Contact, RegistrationTarget
 from bladewright.nurbs.basis import Reals
 
 FIRST_WIDTH = 0.04
-"""first width of the weights, of the target's extent"""
+"""first width of the weights, of the target's extent."""
 WIDTH_FACTOR = 8.0
-"""the width shrinks by this factor"""
+"""factor by which the width shrinks, and its cube below `FAST_WIDTH`."""
 FAST_WIDTH = 1e-3
-"""width, of the extent, below which it shrinks three times as fast"""
+"""width, of the extent, below which it shrinks three times as fast."""
 TUKEY = 4.685
 """width in standard deviations at which Tukey's weights have 95 % efficiency"""
 NEWTON_STEP = 1e-3
-"""a step that is smaller than this, of the extent, leaves the nearest places where they were but for Newton steps"""
+"""step, of the extent, below which nearest places are followed by Newton steps instead of searched anew."""
 LEAST_WIDTH = 1e-13
-"""least width, of the target's extent"""
+"""least width, of the target's extent: rounding."""
 SETTLED_STEP = 1e-13
-"""a step that is smaller than this, of the target's extent, ends the descent"""
+"""step, of the target's extent, that ends the descent: rounding."""
 MOST_STEPS = 60
+"""steps of a descent at most"""
 LONGEST_STEP = 0.2
-"""a step is not longer than this, of the extent"""
+"""longest step, of the extent"""
 WEAKEST_FREEDOM = 1e-5
-"""of the best determined freedom: a weaker one is not determined by the points"""
+"""singular value, of the largest, below which the points do not determine a degree of freedom."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -47,9 +48,9 @@ class RobustMotion:
     weights: Reals
     """(n,) of the points in the last step, 0 for outliers"""
     undetermined: tuple[Reals, ...]
-    """directions in the space of the freedoms, scaled to lengths, that the points do not determine"""
+    """directions in the space of the degrees of freedom, scaled to lengths, that the points do not determine"""
     covariance: Reals
-    """(k, k) of the free freedoms, [rad] and [m]"""
+    """(k, k) of the degrees of freedom, [rad] and [m]"""
     settled: bool
 
 
@@ -102,7 +103,7 @@ def robust_motion(
 
 
 def equations(moved: Reals, contact: Contact, weights: Reals, pivot: Reals) -> tuple[Reals, Reals]:
-    """Weighted rows (m, k) of the effects on the distances of turns about a pivot and of shifts, and right sides."""
+    """Weighted rows (m, k) of the effects of turns about a pivot and of shifts on the distances, and right sides."""
     dimension = moved.shape[1]
     past = np.flatnonzero(np.any(contact.beyond != 0.0, axis=1))
     directions = np.concatenate([contact.normals, contact.beyond[past]])
@@ -119,7 +120,7 @@ def tukey_weights(distances: Reals, width: float) -> Reals:
 
 
 def _step(rows: Reals, right: Reals, pivot: Reals, moved: Reals, extent: float) -> Reals:
-    """Changes (k,) of all freedoms: least squares in those that are free and that the rows determine."""
+    """Changes (k,) of the degrees of freedom that the rows determine, by least squares."""
     dimension = moved.shape[1]
     turns = len(GENERATORS[dimension])
     reach = float(np.sqrt(np.max(np.sum((moved - pivot) ** 2, axis=1))))

@@ -18,9 +18,9 @@ from bladewright.nurbs.trimmed import TrimmedSurface
 from bladewright.section.section import Section
 
 OTHER_SIDE_RATIO = 3.0
-"""another side is tried too where its nearest sample is not this much further away"""
+"""another side is tried too where its nearest sample is at most this many times further away."""
 CHORDWISE_SAMPLES, SPANWISE_SAMPLES = 241, 61
-"""places along and across a side from which samples are taken that are spread evenly"""
+"""places along and across (`SPANWISE_SAMPLES`) a side among which evenly spread samples are chosen"""
 OUTLINE_CORNERS = 60
 """corners on each curve of an end face's outline"""
 FACE_SAMPLES = 9
@@ -28,7 +28,7 @@ FACE_SAMPLES = 9
 
 
 EDGE_BAND = 0.02
-"""parameter from an edge within which the nearest place may change to the other side"""
+"""distance from an edge, in u, within which the nearest place may change to the other side."""
 
 Starts = Callable[[int, NDArray[np.intp]], tuple[NDArray[np.intp], Reals]]
 """patches and local parameters on a side for some points"""
