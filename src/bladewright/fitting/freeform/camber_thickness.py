@@ -26,12 +26,12 @@ def abscissae_of(count: int, low: float, high: float, *, round_end: bool) -> Rea
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class CamberThickness:
-    """The profile of a camber (x, y) and thickness (x, h), both over [0, 1]; the sides are exact, but no NURBS."""
+    """The profile of a camber (x, y) and a thickness (x, h), both over [0, 1]; its sides are exact, but no NURBS."""
 
     camber: Curve
     thickness: Curve
     round_end: bool = False
-    """whether the trailing edge is made like the leading edge"""
+    """whether the trailing edge is round as the leading edge is"""
 
     @property
     def weights(self) -> Reals:

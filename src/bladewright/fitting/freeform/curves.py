@@ -20,11 +20,11 @@ from bladewright.nurbs.basis import Reals, breaks, checked_knots, uniform_knots
 from bladewright.nurbs.curve import Curve
 
 FIRST_STIFFNESS = 1e-8
-"""weight of the bending of the first curve"""
+"""weight of the bending of the first curve: enough to hold control points that no point is near."""
 SYSTEMATIC_RATIO = 3.0
-"""root mean square of the distances, of the noise, from which a second way is tried"""
+"""root mean square of the distances, of the noise, from which the curve is searched a second way."""
 NOISE_RATIO = 1.25
-"""root mean square of a knot span's distances, of the noise, up to which it is noise"""
+"""root mean square of a knot span's distances, of the noise, up to which they are noise."""
 
 
 @final
@@ -54,22 +54,22 @@ def fit_curve(
 ) -> CurveFit:
     """The NURBS curve from which the mean `power` of the true distances of points (n, d) is least.
 
-    Points come in any order and dimension. A list that is an order is taken as one; otherwise the order is the longest
-    path of the minimum spanning tree, which needs a curve that keeps away from itself by more than its points are
-    apart; where it does not, give `start`, whose degree, knots, control points and weights are then the first ones.
+    Points come in any order and dimension. A list that is in order is taken as it is; otherwise the order is the
+    longest path of the minimum spanning tree, which needs a curve that keeps away from itself by more than its points
+    are apart; where it does not, give `start`, whose degree, knots, control points and weights are then the first ones.
 
     `knots` are uniform by default; those of a closed curve are the n + 1 distinct ones of a period. `weights` are one,
     (n,) given ones, or `free`; free ones are positive, and the mean of their logarithms is zero (without inner knots
     their logarithms have no linear trend either), which leaves out what changes no shape. `ends` of an open curve are
     `fixed` at the first and the last point along it, `free` (the ends are matched to these points as others to their
-    nearest places), or two points. `power` 2 is least squares, 4 the objective of the source. With `tolerance` (in
-    the unit of the points) knots are added where the deviation is until no inlier is further away; notes say where
-    noise stops it. `robust` tells outliers apart and leaves them out.
+    nearest places), or two points. `power` 2 is least squares, 4 the objective of the source. With `tolerance` (in the
+    unit of the points) knots are added where the deviation is until no inlier is further away; notes say where noise
+    stops it. `robust` finds outliers and leaves them out.
 
-    Raises FitError where points are too few, not finite or all the same, or a choice is unknown.
-    Source: the objective and its 'true distance by Newton' of the freeform NURBS blading paper, section 4.1, here with
-    exact derivatives (a point is linear in the control points; at its nearest place the distance does not change with
-    the parameter) and a trust region in place of finite differences.
+    Raises FitError where points are too few, not finite or all the same, or a choice is unknown. Source: the objective
+    and its 'true distance by Newton' of the freeform NURBS blading paper, section 4.1, here with exact derivatives (a
+    point is linear in the control points; at its nearest place the distance does not change with the parameter) and a
+    trust region in place of finite differences.
     """
     given = checked_points(points, "a curve")
     _check_ends(ends)
@@ -97,7 +97,7 @@ def fit_curve(
     _check_numbers(net, scaled, weights_free=options.weights_free)
     found, notes = match_within_tolerance(net, target, options, _further_knots, warm=start is not None)
     if start is None and _systematic(found, target):
-        # stiff first curves cut corners that a bent one has; a soft one from the same start ends elsewhere
+        # a stiff first curve cuts the corners of a bent one; a soft one from the same start ends elsewhere
         other = match_within_tolerance(net, target, options, _further_knots, warm=True)
         found, notes = min((found, notes), other, key=lambda each: _cost(each[0], power, notes=each[1]))
     net = found.match.net
@@ -130,7 +130,7 @@ def fit_curve(
 
 
 def noise_along(u: Reals, misses: Reals) -> float:
-    """Standard deviation of a coordinate across a curve by how misses (n, d) at parameters (n,) differ from neighbours.
+    """Standard deviation of a coordinate across a curve, by how misses (n, d) at parameters (n,) vary locally.
 
     Each is compared with the straight line between the one before and the one after it; what changes slowly along the
     curve cancels.
@@ -231,7 +231,7 @@ def _empty(
 
 
 def _through(points: Reals, sites: Reals, net: Net) -> Net:
-    """The net nearest to points at sites (n,) in [0, 1], with some bending left out."""
+    """The net nearest to points at sites (n,) in [0, 1], with a weak bending."""
     low, high = net.knots[0][[0, -1]]
     return net.through(points, (low + (high - low) * sites)[:, None], FIRST_STIFFNESS)
 

@@ -17,18 +17,16 @@ from scipy.sparse import csr_array
 from bladewright.nurbs.basis import Reals
 
 DENSE_UNKNOWNS = 400
-"""unknowns up to which full products of rows are faster than sparse ones"""
+"""unknowns up to which full products of rows are taken for faster than sparse ones."""
 BLOCK_ROWS = 8192
-"""rows in a full product"""
+"""rows in a full product; it bounds the memory."""
 LOST_EIGENVALUE = 1e-14
-"""eigenvalue of the scaled curvature, of the largest, below which its direction is rounding"""
+"""eigenvalue of the scaled curvature, of the largest, below which its direction is rounding."""
 SETTLED_SHARE = 0.02
-"""share of the value that the quadratic at the end would take away, up to which a descent has converged
-
-Where control points slide along the shape the value falls for hundreds of steps by little.
-"""
+"""share of the value that the quadratic at the end would remove, up to which a descent has converged. Where control
+points slide along the shape the value falls little for hundreds of steps."""
 DETERMINED_EIGENVALUE = 1e-12
-"""eigenvalue of the scaled curvature, of the largest, above which the points determine its direction"""
+"""eigenvalue of the scaled curvature, of the largest, above which the points determine its direction."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -51,12 +49,13 @@ class Quadratic:
 
 @dataclass(frozen=True, kw_only=True)
 class Penalty:
-    """What a distance costs: `d^power`, or with `reach` soft beyond it, `2 reach^2 (sqrt(1 + d^2 / reach^2) - 1)`."""
+    """Cost of a distance: `d^power`, or with `soft_from` `2 s^2 (sqrt(1 + d^2 / s^2) - 1)`, s being that distance."""
 
     power: float = 2.0
     scale: float = 1.0
     """distance that costs 1 (powers above 2 would vanish in rounding without it)"""
     soft_from: float | None = None
+    """distance beyond which the cost grows linearly"""
 
     def __call__(self, distances: Reals) -> tuple[Reals, Reals, Reals]:
         """Cost rho (m,), its slope drho/dz (m,) by z = d^2, and its curvature along and across the distance over it."""

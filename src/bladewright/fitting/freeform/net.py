@@ -21,16 +21,16 @@ from bladewright.nurbs.refine import Direction, inserted
 from bladewright.nurbs.surface import Surface
 
 LARGEST_LOG_WEIGHT = 30.0
-"""logarithm of a weight beyond which it changes nothing more"""
+"""magnitude of a weight's logarithm beyond which it changes nothing more."""
 TENSION = 0.01
-"""weight of squared first derivatives, of that of squared second ones"""
+"""weight of squared first derivatives, of that of squared second ones: it holds stretches that leave the points."""
 WEIGHT_REGULARISATION = 1e-10
-"""cost of a unit of a logarithm of a weight, in extents of the points: it holds weights that do nothing"""
+"""cost of a unit of a weight's logarithm, in extents of the points: it holds weights without effect."""
 DIRECTIONS: tuple[Direction, Direction] = ("u", "v")
 AT_ONCE = 100_000
-"""points whose rows are built at a time"""
+"""points whose rows are built at a time; it bounds the memory."""
 GLOBAL_SEARCHES = 8
-"""searches for places that are nearer than the ones descended to"""
+"""searches for places that are nearer than the ones descended to, at most"""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -233,7 +233,7 @@ class NetMatch:
     net: Net
     footpoints: Projections
     data: Quadratic
-    """of the distances alone"""
+    """objective of the distances alone, without bending"""
     evaluations: int
     converged: bool
 
@@ -260,8 +260,8 @@ def matched_net(
 ) -> NetMatch:
     """The net at which the penalties of true distances, and `stiffness` times its bending, are least.
 
-    Places follow the shape by descent while it moves; after that they are searched for from samples everywhere, on
-    a curve with `certain` by bounds as well (on a surface that takes milliseconds a point), and the whole is repeated
+    Places follow the shape by descent while it moves; after that they are searched for from samples everywhere, on a
+    curve with `certain` by bounds as well (on a surface that takes milliseconds a point), and the whole is repeated
     where a nearer one is found.
     """
     places = sampled_parameters(net.shape, target.points) if near is None else near

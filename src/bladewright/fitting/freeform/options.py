@@ -1,4 +1,4 @@
-"""What fits of plain shapes have in common: what they are asked, and the figures that they hand back."""
+"""What fits of plain curves, surfaces and profiles have in common: their options, and the figures they hand back."""
 
 from __future__ import annotations
 
@@ -15,16 +15,16 @@ from bladewright.nurbs.basis import Reals
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class FreeformFit:
-    """Figures of a fit to n points, in their order and unit; the base of the fits of curves, surfaces and profiles."""
+    """Figures of a fit to n points, in their order and unit; base of the fits of curves, surfaces and profiles."""
 
     distances: Reals
     """(n,) true distances"""
     inliers: NDArray[np.bool_]
-    """(n,) whether a point took part; the others are outliers, which are only told apart with `robust`"""
+    """(n,) whether a point took part; the others are outliers, which only `robust` fits have"""
     iterations: int
     """evaluations of all distances while fitting"""
     converged: bool
-    """whether the last descent ended by itself"""
+    """whether the last descent converged"""
     singular_values: Reals
     """of the distances by the unknowns, each scaled to length one; largest first"""
     rank: int
@@ -80,7 +80,7 @@ def checked_options(
     extent: float,
     progress: Callable[[str], None] | None,
 ) -> FitOptions:
-    """What is asked of a fit to points of an extent; FitError where it is unknown or out of its limits."""
+    """The options of a fit to points of an extent; FitError where one is unknown or out of its limits."""
     if isinstance(weights, str) and weights not in ("fixed", "free"):
         raise FitError(f"weights {weights!r} are unknown: `fixed` (all one), `free`, or positive numbers")
     if not 2.0 <= power <= 16.0:

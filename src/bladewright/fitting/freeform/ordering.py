@@ -8,13 +8,13 @@ from scipy.spatial.distance import cdist
 from bladewright.nurbs.basis import Reals
 
 GRID_CELLS = 150
-"""cells along the extent of the points in which neighbours become one, so that noise does not fold the path"""
+"""cells along the extent of the points in which neighbours become one, so that noise does not fold the path."""
 MOST_CELLS = 1500
-"""cells of which all distances are compared"""
+"""cells of which all distances are compared; it bounds time and memory."""
 IN_ORDER_SHARE = 0.9
-"""share of points whose nearest point stands next to them in the list, from which the list is an order"""
+"""share of points whose nearest point is next to them in the list, from which the list is an order."""
 LONGEST_DETOUR = 3.0
-"""length of the way through the list, of the length through the tree, from which it is none"""
+"""length of the way through the list, of the length through the tree, from which the list is no order."""
 PLACES_PER_PIECE = 8
 """places on a piece of the path among which the nearest is sought"""
 

@@ -36,10 +36,11 @@ DEGREE = 3
 SIDE_SAMPLES = 400
 """places of a side at which a search for the nearest one starts"""
 STIFFNESSES = (1e-3, 1e-5, 1e-7, 1e-9)
-"""weights of the bending of camber and thickness, in extents of the points squared"""
+"""weights of the bending of camber and thickness, in extents of the points squared, in turn"""
 SIDE_TURNS = 6
-"""of telling the sides apart"""
+"""times that points are assigned to the sides"""
 CHORD_BINS = 40
+"""parts of the chord by whose outermost points a first profile is drawn"""
 
 
 @final
@@ -162,7 +163,7 @@ def _fitted(
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class ProfileObjective:
-    """The objective of a profile: unknowns are its camber's control points, its heights, and logarithms of weights."""
+    """The objective of a profile, of its camber's control points, its heights and logarithms of weights."""
 
     points: Reals
     upper: NDArray[np.bool_]
@@ -318,7 +319,7 @@ def _start(points: Reals, camber: int, thickness: int, *, round_end: bool) -> tu
     rows = [np.flatnonzero(bins == k) for k in range(CHORD_BINS)]
     known = [(np.mean(xi[r]), eta[r].min(), eta[r].max()) for r in rows if len(r) >= 2]
     at, bottom, top = np.array(known).T
-    # the ends' bins hold only the edges
+    # the bins at the ends hold only the edges
     middle = np.polynomial.Polynomial.fit(at, 0.5 * (bottom + top), 4, domain=[0.0, 1.0], window=[0.0, 1.0])
     half = max(0.5 * float(np.median(top - bottom)), 1e-3) * size
     s = np.linspace(0.0, 1.0, 101)
@@ -391,16 +392,17 @@ def _check(points: Reals, camber: int, thickness: int, ends: object, trailing_ed
 ADDED_COUNTS = ((1, 0), (0, 1), (1, 1))
 """control points of camber and thickness that are added at a time"""
 MOST_GROWTHS = 8
+"""times that control points are added at most; it bounds the time."""
 NOISE_MAXIMUM = 3.0
-"""deviations of the points' noise that the largest of many distances has by chance"""
+"""standard deviations of the points' noise that the largest of many distances has by chance"""
 WORTHWHILE_RATIO = 0.97
-"""ratio of largest distances below which further control points are worth it"""
+"""ratio of largest distances below which further control points are worthwhile."""
 
 
 def _within_tolerance(
     fitted: Callable[[int, int], ProfileFit], camber: int, thickness: int, tolerance: float
 ) -> ProfileFit:
-    """The fit that keeps a tolerance with few control points, from so many on, or the nearest, which says why."""
+    """The fit that keeps a tolerance with few control points, or the nearest one, which says why it does not."""
     found = fitted(camber, thickness)
     evaluations = found.iterations
     reason = f"the tolerance is not reached after {MOST_GROWTHS} rounds of control points"

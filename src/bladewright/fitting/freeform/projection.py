@@ -15,15 +15,15 @@ from bladewright.nurbs.proximity import PatchPoints, nearest, polished
 from bladewright.nurbs.surface import Surface
 
 NEWTON_STEPS = 60
-"""of Newton's iteration, halvings among them"""
+"""Newton steps of a point at most, halvings included"""
 LAST_NEWTON_STEP = 1e-9
-"""of the domain: step after which Newton's next one is rounding"""
+"""step, of the domain, after which the next Newton step is rounding."""
 SAMPLES = ((6, 6), (24, 1))
-"""places along and across a patch of a surface and of a curve at which a search starts"""
+"""samples along and across a patch of a surface and of a curve at which a search starts"""
 CERTIFIED_SHARE = 0.01
-"""share of the largest distance that a search for nearer places leaves open"""
+"""share of the largest distance within which a certified search does not look for nearer places."""
 AT_ONCE = 20_000
-"""points that are projected onto a surface at a time, to bound the memory"""
+"""points that are projected onto a surface at a time; it bounds the memory."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -80,7 +80,7 @@ def projected(
 
 
 def nearer_projections(footpoints: Projections, others: Projections, rows: NDArray[np.bool_]) -> Projections:
-    """Feet, or at some rows (n,) the others, one each, where these are nearer; without their directions across."""
+    """Projections, or at some rows (n,) the others where these are nearer; without directions across."""
     better = np.zeros(len(rows), dtype=bool)
     better[rows] = others.distances < footpoints.distances[rows]
     chosen = better[rows]
@@ -100,9 +100,9 @@ def sampled_parameters(shape: Curve | Surface, points: Reals) -> Reals:
 
 
 def certified_parameters(shape: Curve | Surface, points: Reals, footpoints: Projections) -> Reals:
-    """Parameters (n, k) of places at most a `CERTAIN` of the largest distance further away than the nearest of all.
+    """Parameters (n, k) of places that are nearest up to `CERTIFIED_SHARE` of the largest distance.
 
-    Those of `feet` stay where the search has nothing nearer.
+    Those of the given projections stay where the search has nothing nearer.
     """
     on = patches(shape)
     extent = float(np.ptp(shape.control_points.reshape(-1, points.shape[1]), axis=0).max())
@@ -115,7 +115,7 @@ def certified_parameters(shape: Curve | Surface, points: Reals, footpoints: Proj
 def with_frames(
     parameters: Reals, places: Reals, points: Reals, tangents: Sequence[Reals], free: NDArray[np.bool_]
 ) -> Projections:
-    """Feet at known parameters (n, k); along the k `tangents` (n, d) the places are `free` (n, k) to move."""
+    """Projections at known parameters (n, k); along the k `tangents` (n, d) the places are `free` (n, k) to move."""
     miss = places - points
     distances = np.sqrt(np.sum(miss**2, axis=-1))
     dimension = points.shape[1]
@@ -150,7 +150,7 @@ def with_frames(
 def newton_descent(
     derivatives: Callable[[Reals], Sequence[Reals]], points: Reals, start: Reals, domain: tuple[float, float]
 ) -> Reals:
-    """Parameters (n,) of a curve where Newton's descent of the distance from `start` (n,) ends, clipped to the domain.
+    """Parameters (n,) of a curve where Newton's descent of the distance from `start` (n,) ends, within the domain.
 
     `derivatives` gives the curve's point and its first and second derivative (m, d). A step that would raise the
     distance is halved.

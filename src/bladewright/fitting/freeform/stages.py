@@ -12,23 +12,23 @@ from bladewright.fitting.freeform.projection import projected
 from bladewright.nurbs.basis import Reals
 
 STIFFNESSES = (1e-4, 1e-6, 1e-8, 1e-10, 1e-13)
-"""weights of the bending, in extents of the points squared"""
+"""weights of the bending, in extents of the points squared, in turn"""
 STIFFNESS_COST = 1.002
-"""rise of the root mean square that a stiffness may cost where points leave control points undetermined"""
+"""rise of the root mean square that a stiffness may cost where points leave control points undetermined."""
 WELL_DETERMINED = 1e-4
-"""smallest singular value, of the largest, from which every direction is determined well"""
+"""smallest singular value, of the largest, from which every direction is determined well."""
 LAST_EVALUATIONS = (200, 80)
 """evaluations of the last descent of a curve and of a surface"""
 ROUGH_FALL = 1e-3
-"""relative fall of the value at which a match on the way ends"""
+"""relative fall of the value at which an intermediate match ends."""
 KNOT_ROUNDS = 25
-"""of further knots"""
+"""times that knots are added at most; it bounds the time."""
 OUTLYING_NOISE = 4.5
-"""deviations of the noise from which a point is an outlier"""
+"""standard deviations of the noise from which a point is an outlier."""
 MEDIAN_OVER_DEVIATION = 0.6745
-"""of the magnitudes of a normal distribution, in deviations"""
+"""median magnitude of a normal distribution, over its standard deviation"""
 NEVER_OUTLIER = 1e-10
-"""of the extent: distance that is never an outlier"""
+"""distance, of the extent, up to which no point is an outlier."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -39,7 +39,7 @@ class FitOptions:
     weights_free: bool = False
     robust: bool = False
     always_stiff: bool = False
-    """whether the bending stays as far as the noise allows it, also where every direction is determined"""
+    """whether the bending stays as large as the noise allows, also where every direction is determined"""
     limit: float | None = None
     """largest distance, in extents"""
     extent: float = 1.0
@@ -47,7 +47,7 @@ class FitOptions:
     progress: Callable[[str], None] | None = None
 
     def report(self, text: str) -> None:
-        """Hands a short text on."""
+        """Hands a short text to the progress, if there is one."""
         if self.progress is not None:
             self.progress(text)
 
@@ -72,12 +72,13 @@ class StagedMatch:
 
 
 KnotSource = Callable[[StagedMatch, NetTarget, FitOptions, float], tuple[Net | None, str]]
+"""gives a net with further knots, or None and the reason"""
 
 
 def match_within_tolerance(
     net: Net, target: NetTarget, options: FitOptions, further: KnotSource, *, warm: bool
 ) -> tuple[StagedMatch, tuple[str, ...]]:
-    """The match within a largest distance, where there is one, and why it is not reached where it is not.
+    """The match within a largest distance, where there is one, and why it is not reached otherwise.
 
     `further` gives a net with further knots, or None and the reason; a `warm` net is near already.
     """
@@ -98,7 +99,7 @@ def match_within_tolerance(
 
 
 def staged_match(net: Net, target: NetTarget, options: FitOptions, *, warm: bool = False) -> StagedMatch:
-    """The match of a net to points, stage by stage; a `warm` one is near already, and only the last stages are left."""
+    """The match of a net to points, stage by stage; of a `warm` one, near already, only the last stages are left."""
     inliers = np.ones(len(target.points), dtype=bool)
     total = 0
     if options.robust:
@@ -179,7 +180,7 @@ def _rms(match: NetMatch) -> float:
 def _without_outliers(
     net: Net, target: NetTarget, options: FitOptions, *, warm: bool
 ) -> tuple[Net, NDArray[np.bool_], int]:
-    """The net matched softly, and which points are not further from it than noise explains."""
+    """The net matched softly, and which points are no further from it than noise explains."""
     footpoints = projected(net.shape, target.points, closed=net.closed)
     near, total = footpoints.parameters, 0
     deviation = float(np.median(footpoints.distances)) / MEDIAN_OVER_DEVIATION

@@ -23,15 +23,15 @@ from bladewright.nurbs.domain import extended, reparametrised
 from bladewright.nurbs.surface import Surface
 
 FIRST_STIFFNESS = 1e-6
-"""weight of the bending of the first surface"""
+"""weight of the bending of the first surface: enough to hold control points that no point is near."""
 CONTINUED_SHARE = 0.05
-"""of the domain: how far the surface is continued past its edges while it moves"""
+"""length, of the domain, by which the surface is continued past its edges while it moves."""
 SAME_END = 1e-10
-"""of the domain: difference of two of its ends that is rounding"""
+"""difference of two ends, of the domain, that is rounding."""
 NEIGHBOURS = 6
-"""points with which one is compared to see noise"""
+"""points with which one is compared to estimate noise"""
 NOISE_RATIO = 1.25
-"""root mean square of a strip's distances, of the noise, up to which it is noise"""
+"""root mean square of a strip's distances, of the noise, up to which they are noise."""
 HELD_BY_BOUNDARY: dict[str, Literal["none", "corners", "boundary"]] = {
     "free": "none",
     "corners": "corners",
@@ -39,7 +39,7 @@ HELD_BY_BOUNDARY: dict[str, Literal["none", "corners", "boundary"]] = {
 }
 """control points that a boundary holds"""
 ON_A_LINE = 1e-9
-"""second extent of the points, of the first, below which they lie on a line"""
+"""second extent of the points, of the first, below which they lie on a line."""
 
 
 @final
@@ -77,13 +77,13 @@ def fit_surface(
     `weights` are one, (n_u, n_v) given ones, or `free` ones, whose logarithms have no mean (and no trend along a
     direction without inner knots). `boundary` is `free`, or the `corners` are held at four of the points (at those of
     `start`), or all outer control points are `fixed` at those of `start`. Where the points leave control points open,
-    or nearly so, the bending of the surface decides, with the most weight that raises the root mean square by 0.2 % at
-    most; `rank` says how many directions the points determine. With `tolerance` knots are added along u or v, whichever
-    gains more for a control point, until no inlier is further away; notes say where noise stops it. The other
+    or nearly so, the bending of the surface decides, with the largest weight that raises the root mean square by at
+    most 0.2 %; `rank` says how many directions the points determine. With `tolerance` knots are added along u or v,
+    whichever gains more for a control point, until no inlier is further away; notes say where noise stops it. The other
     arguments are those of `fit_curve`.
 
-    Raises FitError where points are too few, not finite or on a line, or a choice is unknown.
-    Source: as of `fit_curve`; the bending is the thin-plate energy (Duchon 1977) in the surface's parameters.
+    Raises FitError where points are too few, not finite or on a line, or a choice is unknown. Source: as of
+    `fit_curve`; the bending is the thin-plate energy (Duchon 1977) in the surface's parameters.
     """
     given = checked_points(points, "a surface", (3,))
     if boundary not in ("free", "corners", "fixed"):
@@ -156,7 +156,7 @@ def _of_surface(surface: Surface) -> Net:
 def _widened(surface: Surface) -> Surface:
     """The surface continued past its edges, so that no place is held at one while it moves.
 
-    An edge that moves inwards past a point is a wall for the descent: hundreds of steps where a dozen do.
+    An edge that moves inwards past a point is a wall for the descent: hundreds of steps where a dozen are enough.
     """
     try:
         for direction in DIRECTIONS:
@@ -203,7 +203,7 @@ def _corners(plane: Reals) -> list[int]:
     if len(hull) < 4:
         raise FitError(f"the outline of the {len(plane)} points has {len(hull)} corners, not four; give `start`")
     at = plane[hull]
-    # of a diagonal, the largest triangles on its two sides make the largest quadrilateral
+    # the largest triangles on both sides of a diagonal make the largest quadrilateral with it
     best, chosen = -1.0, (0, 1, 2, 3)
     for i in range(len(at) - 2):
         for k in range(i + 2, len(at)):
