@@ -1,4 +1,4 @@
-"""The README's tables: the worst promise and the worst figure of a round trip over all built-in examples.
+"""The tables of docs/verify.md: the worst figure of a blade and of a round trip over all built-in examples.
 
 python design/proof.py
 """

@@ -1,4 +1,4 @@
-"""Remake the pictures of the README.
+"""Remake the pictures of the README and of docs/.
 
 python design/readme_pictures.py
 """

@@ -154,7 +154,7 @@ def _moved(place: Path) -> None:
 
 
 def _start(place: Path) -> None:
-    shutil.copy(place / "compressor-stator.toml", place / "rotor.toml")
+    shutil.copy(place / "compressor-stator.toml", place / "stator.toml")
 
 
 def _case(place: Path) -> None:
