@@ -7,7 +7,8 @@ import pytest
 
 from bladewright.errors import MeshError
 from bladewright.meshing.gmsh_process import Answer
-from bladewright.meshing.mesh_file import GROUP, read_mesh
+from bladewright.meshing.mesh_file import read_mesh
+from bladewright.meshing.names import GROUP_PREFIX
 from bladewright.meshing.periodicity import match_periodic, periodicity
 from bladewright.meshing.quality import condition_numbers
 from bladewright.meshing.verification import check_complete, deviation_limit, deviations, unmatched_facets
@@ -20,13 +21,13 @@ def held(rotor_mesh):
 
 
 def triangles(held):
-    return {name.removeprefix(GROUP): rows for name, rows in held.items() if name.startswith(GROUP)}
+    return {name.removeprefix(GROUP_PREFIX): rows for name, rows in held.items() if name.startswith(GROUP_PREFIX)}
 
 
 def inner(held, group):
     """A node of a group's triangles that no other group has."""
     others = [rows for name, rows in triangles(held).items() if name != group]
-    return np.setdiff1d(held[GROUP + group], np.concatenate(others))[0]
+    return np.setdiff1d(held[GROUP_PREFIX + group], np.concatenate(others))[0]
 
 
 def test_one_inverted_tetrahedron_is_seen(held):
@@ -39,7 +40,7 @@ def test_one_inverted_tetrahedron_is_seen(held):
 @pytest.mark.parametrize("group", ["blade_upper", "hub_lower", "tip", "inlet"])
 def test_a_node_off_its_surface_is_seen(group, held, rotor):
     allowed = deviation_limit(rotor.passage.blade.chord)
-    points = held["nodes"][held[GROUP + group][:3]].reshape(-1, 3)
+    points = held["nodes"][held[GROUP_PREFIX + group][:3]].reshape(-1, 3)
     off = deviations(rotor.passage.surfaces, group, points, allowed)
     assert off.max() <= allowed
     # off along a side of the passage is off in space, if by less
@@ -53,14 +54,14 @@ def test_a_native_surface_that_the_mesh_does_not_follow_is_seen(held, rotor):
     net = np.array(side.control_points)
     net[len(net) // 2] += [0.0, 1e-5, 1e-5]
     other = {"blade_lower": dataclasses.replace(side, control_points=net)}
-    points = held["nodes"][np.unique(held[GROUP + "blade_lower"])]
+    points = held["nodes"][np.unique(held[GROUP_PREFIX + "blade_lower"])]
     allowed = deviation_limit(rotor.passage.blade.chord)
     assert deviations(other, "blade_lower", points, allowed).max() > 5.0 * allowed
 
 
 def test_a_periodic_node_off_its_partner_is_seen(held, rotor):
     motion = periodicity(rotor.passage.surfaces)
-    rows = held[GROUP + "periodic_lower"], held[GROUP + "periodic_upper"]
+    rows = held[GROUP_PREFIX + "periodic_lower"], held[GROUP_PREFIX + "periodic_upper"]
     assert match_periodic(motion, held["nodes"], *rows).mismatch < 1e-12
     nodes = np.array(held["nodes"])
     nodes[inner(held, "periodic_upper"), 0] += 3e-9 * motion.pitch
@@ -71,7 +72,7 @@ def test_a_periodic_node_off_its_partner_is_seen(held, rotor):
 
 def test_periodic_boundaries_with_other_nodes_or_triangles_are_seen(held, rotor):
     motion = periodicity(rotor.passage.surfaces)
-    lower, upper = held[GROUP + "periodic_lower"], held[GROUP + "periodic_upper"]
+    lower, upper = held[GROUP_PREFIX + "periodic_lower"], held[GROUP_PREFIX + "periodic_upper"]
     fewer = upper[(upper != inner(held, "periodic_upper")).all(axis=1)]
     assert match_periodic(motion, held["nodes"], lower, fewer).mismatch == np.inf
     assert not match_periodic(motion, held["nodes"], lower, upper[1:]).triangles

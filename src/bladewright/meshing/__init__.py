@@ -1,4 +1,4 @@
-"""Volume meshes of passages: the only room that loads gmsh, in a process of its own."""
+"""Volume meshes of passages: the only room that loads gmsh, and that in a process of its own."""
 
 from bladewright.meshing.passage_mesh import check as check
 from bladewright.meshing.passage_mesh import mesh as mesh

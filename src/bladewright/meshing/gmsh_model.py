@@ -1,13 +1,12 @@
-"""A STEP file in gmsh, unrepaired: its faces by name, periodic boundaries, and element sizes."""
+"""A STEP file in gmsh, unrepaired: its faces by name, its periodic boundaries, and the element sizes."""
 
 from collections.abc import Mapping
-from typing import Any
 
+import gmsh
 import numpy as np
 
 from bladewright.errors import MeshError
-from bladewright.meshing.gmsh_process import Job, SizeSource
-from bladewright.meshing.library import gmsh
+from bladewright.meshing.gmsh_process import Job
 from bladewright.meshing.names import FLUID, group_of
 
 NO_REPAIR = {
@@ -19,24 +18,28 @@ NO_REPAIR = {
     "Geometry.OCCAutoFix": 0,
     "Geometry.OCCImportLabels": 1,
 }
-"""The geometry is read without repair."""
+"""Options under which the geometry is read as it is."""
 QUIET = {"General.Terminal": 1, "General.AbortOnError": 0, "General.NumThreads": 1}
-"""One thread, so that the same input gives the same mesh; the output is the parent's."""
-SAMPLES_OF_CURVE, SAMPLES_OF_FACE = 400, 60
-"""points of a curve, and each way on a face, from which distances are taken"""
+"""Options of the process: one thread, so that the same input gives the same mesh, and output for the parent to read."""
+CURVE_SAMPLES, FACE_SAMPLES = 400, 60
+"""Points on a curve, and points each way on a face, from which gmsh measures the distance to a source of sizes. They
+must lie closer together than the smallest elements, or sizes vary between them; gmsh compares every node with each of
+them."""
 
 Faces = dict[str, int]
-"""tags of faces by name"""
+"""Tags of faces by name."""
+Place = tuple[float, float, float]
+"""Coordinates [mm]."""
 
 
 def set_options(values: Mapping[str, float]) -> None:
-    """Set options of gmsh."""
+    """Set numeric options of gmsh."""
     for name, value in values.items():
         gmsh.option.setNumber(name, value)
 
 
 def open_step(job: Job) -> Faces:
-    """The faces of the job's STEP file, which becomes the current model. Raises MeshError where it is not one solid."""
+    """Read the job's STEP file into a new model and return its faces. Raises MeshError where it is not one solid."""
     set_options(NO_REPAIR)
     gmsh.model.add("passage")
     gmsh.model.occ.importShapes(job.step)
@@ -52,7 +55,7 @@ def open_step(job: Job) -> Faces:
 
 
 def set_periodic(job: Job, faces: Faces) -> dict[int, int]:
-    """The tags of the upper periodic faces with those of the lower ones, of whose meshes theirs become images."""
+    """Make the meshes of the upper periodic faces copies of the lower ones; return the tags, upper to lower."""
     pairs = {
         tag: faces[name.replace("periodic_upper", "periodic_lower")]
         for name, tag in faces.items()
@@ -73,28 +76,30 @@ def name_groups(faces: Faces) -> None:
 
 
 def set_sizes(job: Job, faces: Faces) -> None:
-    """Set the size at every point: it grows with the distance from the job's curves and faces."""
+    """Set the element size at every point: it grows with the distance from the job's sources."""
     field = gmsh.model.mesh.field
-    grown = []
-    for near in job.near:
+    fields = []
+    for source in job.sources:
         distance = field.add("Distance")
-        kind, tag = ("SurfacesList", faces[near.face]) if near.face else ("CurvesList", _curve_at(near, faces))
+        kind, tag = (
+            ("SurfacesList", faces[source.face]) if source.face else ("CurvesList", _curve_at(source.place, faces))
+        )
         field.setNumbers(distance, kind, [tag])
-        field.setNumber(distance, "Sampling", SAMPLES_OF_FACE if near.face else SAMPLES_OF_CURVE)
+        field.setNumber(distance, "Sampling", FACE_SAMPLES if source.face else CURVE_SAMPLES)
         size = field.add("Threshold")
         values = {
             "InField": distance,
-            "SizeMin": near.size,
+            "SizeMin": source.size,
             "SizeMax": job.largest,
             "DistMin": 0.0,
-            "DistMax": (job.largest - near.size) / job.growth,
+            "DistMax": (job.largest - source.size) / job.growth,
         }
         for name, value in values.items():
             field.setNumber(size, name, value)
-        grown.append(size)
-    if grown:
+        fields.append(size)
+    if fields:
         smallest = field.add("Min")
-        field.setNumbers(smallest, "FieldsList", grown)
+        field.setNumbers(smallest, "FieldsList", fields)
         field.setAsBackgroundMesh(smallest)
     set_options(
         {
@@ -106,8 +111,8 @@ def set_sizes(job: Job, faces: Faces) -> None:
     )
 
 
-def _curve_at(near: SizeSource, faces: Faces) -> int:
-    """The curve between the blade's faces whose middle is the nearest to a place."""
+def _curve_at(place: Place, faces: Faces) -> int:
+    """The curve between two faces of the blade whose middle is the nearest to a place [mm]."""
     count: dict[int, int] = {}
     for name, tag in faces.items():
         if name.startswith("blade"):
@@ -116,10 +121,10 @@ def _curve_at(near: SizeSource, faces: Faces) -> int:
     shared = [curve for curve, times in count.items() if times > 1]
     if not shared:
         raise MeshError("the blade's faces share no curve in the STEP file: export the passage as one closed solid")
-    return min(shared, key=lambda curve: _distance(curve, near.place))
+    return min(shared, key=lambda curve: _squared_distance(curve, place))
 
 
-def _distance(curve: int, place: Any) -> float:
+def _squared_distance(curve: int, place: Place) -> float:
     low, high = gmsh.model.getParametrizationBounds(1, curve)
     middle = np.array(gmsh.model.getValue(1, curve, [0.5 * (low[0] + high[0])]))
     return float(np.sum((middle - np.array(place)) ** 2))

@@ -1,4 +1,4 @@
-"""gmsh in a process of its own: the job it is given, the answer it leaves, its steps and output on the way."""
+"""gmsh in a process of its own: its job and its answer as files in one directory, its steps and output on the way."""
 
 import importlib.util
 import os
@@ -14,79 +14,80 @@ from pydantic import TypeAdapter
 from bladewright.errors import MeshError
 
 CONTENT_FILE = "arrays.npz"
-"""name of the file beside them that holds what the mesh file holds"""
+"""Name of the file in which the process leaves the content of the mesh file."""
 STEP_PREFIX = "@step "
-"""what a line of the process's output begins with that says what it does"""
+"""Beginning of the lines of output in which the process names its step."""
 
 
 class Message:
-    """A frozen record in a file that bears its type's name."""
+    """A frozen record, kept in a JSON file that is named after its type."""
 
     @classmethod
     def path(cls, directory: Path) -> Path:
-        """The file in a directory."""
+        """The path of the record in a directory."""
         return directory / f"{cls.__name__.lower()}.json"
 
-    def put(self, directory: Path) -> None:
+    def write(self, directory: Path) -> None:
         """Write the record into a directory."""
         self.path(directory).write_bytes(TypeAdapter(type(self)).dump_json(self))
 
     @classmethod
-    def taken(cls, directory: Path) -> Self:
-        """The record in a directory."""
+    def read(cls, directory: Path) -> Self:
+        """Read the record from a directory."""
         return TypeAdapter(cls).validate_json(cls.path(directory).read_bytes())
 
 
 @dataclass(frozen=True, kw_only=True)
 class SizeSource:
-    """A curve or face that sizes grow away from."""
+    """A curve or face from which element sizes grow."""
 
     face: str
     """name of the face; empty for a curve"""
     place: tuple[float, float, float]
     """middle of the curve [mm]"""
     size: float
-    """[mm]"""
+    """size of the elements there [mm]"""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Job(Message):
-    """A mesh to make."""
+    """A mesh that gmsh is to make."""
 
     step: str
     """the STEP file, in millimetres"""
     faces: tuple[str, ...]
-    """names of its faces, in the order of the shell"""
+    """names of its faces in the order of the shell"""
     motion: tuple[float, ...]
-    """(16,) affine matrix from the lower to the upper periodic boundary, by rows [mm]"""
+    """(16,) affine matrix from the lower to the upper periodic boundary, row by row [mm]"""
     largest: float
-    """[mm]"""
+    """size of the elements far from every source [mm]"""
     smallest: float
-    """[mm]"""
+    """smallest size [mm]"""
     growth: float
-    """[-]"""
-    near: tuple[SizeSource, ...]
+    """increase of the size over the distance from a source [-]"""
+    sources: tuple[SizeSource, ...]
     mesh: str
     """the file to write"""
     scale: float
-    """of its unit in a millimetre"""
+    """the millimetre in the unit of that file"""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Answer(Message):
-    """How a mesh was made."""
+    """How gmsh made a mesh, or why it did not."""
 
     error: str = ""
-    """why there is none"""
+    """why there is no mesh; empty where there is one"""
     gmsh: str = ""
-    """version"""
+    """version of gmsh"""
     surface: tuple[str, ...] = ()
-    """what meshed the faces"""
+    """algorithms that meshed the faces"""
     volume: tuple[str, ...] = ()
-    """what meshed the volume and improved it"""
+    """algorithms that meshed and improved the volume"""
     nodes: int = 0
-    """that the mesh had before it was written"""
+    """nodes before the file was written"""
     tetrahedra: int = 0
+    """tetrahedra before the file was written"""
 
 
 WORKER = "bladewright.meshing.worker"
@@ -95,10 +96,11 @@ MISSING = (
     "STEP file of `bladewright build --body passage` to another mesher"
 )
 QUOTED_LINES = 12
-"""lines of gmsh's output that an error quotes where gmsh ended without an answer"""
+"""Last lines of gmsh's output that an error quotes where the process ended without an answer: enough for gmsh's own
+error and the steps before it, and still one paragraph."""
 
 Listener = Callable[[str], object]
-"""takes one line"""
+"""Is called with one line of text."""
 
 
 def check_installed() -> None:
@@ -108,12 +110,12 @@ def check_installed() -> None:
 
 
 def run_gmsh(job: Job, directory: Path, *, step: Listener, log: Listener) -> Answer:
-    """The answer of a process that was given a job in a directory; `step` hears what it does, `log` what gmsh prints.
+    """Run gmsh on a job in a process of its own, and return its answer.
 
-    The process ends with this call, however that ends. Raises MeshError, with gmsh's output as a note, where there is
-    no mesh.
+    `step` is called with the name of each step, `log` with each line that gmsh prints. The process ends with this
+    call, however the call ends. Raises MeshError, with gmsh's output as a note, where there is no mesh.
     """
-    job.put(directory)
+    job.write(directory)
     output: list[str] = []
     with subprocess.Popen(  # noqa: S603  it is this Python, and a module of our own
         [sys.executable, "-m", WORKER, str(directory)],
@@ -134,11 +136,10 @@ def run_gmsh(job: Job, directory: Path, *, step: Listener, log: Listener) -> Ans
         except BaseException:
             process.kill()
             raise
-    answer = (
-        Answer.taken(directory)
-        if Answer.path(directory).exists()
-        else Answer(error=_failure(process.returncode, output))
-    )
+    if Answer.path(directory).exists():
+        answer = Answer.read(directory)
+    else:
+        answer = Answer(error=_failure(process.returncode, output))
     if answer.error:
         error = MeshError(answer.error)
         error.add_note("\n".join(output))
@@ -147,6 +148,7 @@ def run_gmsh(job: Job, directory: Path, *, step: Listener, log: Listener) -> Ans
 
 
 def _failure(status: int, output: list[str]) -> str:
+    """The message for a process that ended without an answer."""
     how = f"was ended by signal {-status}" if status < 0 else f"ended with status {status}"
     words = " ".join(line for line in output[-QUOTED_LINES:] if line)
     return f"gmsh {how} before it had a mesh: choose another size, or more memory; its last words: {words or 'none'}"

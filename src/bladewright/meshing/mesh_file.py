@@ -8,15 +8,17 @@ from typing import Any
 import numpy as np
 
 from bladewright.errors import MeshError
-from bladewright.meshing.library import gmsh
+from bladewright.meshing.names import GROUP_PREFIX
 from bladewright.meshing.quality import Indices
 
 
 def write_mesh(path: Path, scale: float) -> None:
-    """Write the current mesh to a path, by its ending, with lengths times `scale`.
+    """Write gmsh's current mesh in the format that the path's ending names, with lengths multiplied by `scale`.
 
-    Other formats than gmsh's own are written from that one, in which all lengths can be scaled.
+    gmsh's own format is written first, as all lengths in it can be scaled; the other formats are made from it.
     """
+    import gmsh
+
     native = path.with_suffix(".msh")
     gmsh.option.setNumber("Mesh.MshFileVersion", 4.1)
     gmsh.option.setNumber("Mesh.Binary", 0)
@@ -26,7 +28,7 @@ def write_mesh(path: Path, scale: float) -> None:
     if scale != 1.0:
         rewrite(native, lambda lines: rescaled(lines, scale))
     if native != path:
-        # CGNS holds periodic motions in single precision, and gmsh then moves the nodes by them when it reads the file
+        # CGNS holds periodic motions in single precision, and gmsh moves nodes by them when it reads such a file.
         rewrite(native, motionless)
         gmsh.clear()
         gmsh.open(str(native))
@@ -35,20 +37,22 @@ def write_mesh(path: Path, scale: float) -> None:
 
 
 def _name_entities() -> None:
-    """Give faces and volume the names of their groups, by which CGNS calls its boundary conditions."""
+    """Give faces and volume the names of their groups, which CGNS takes as names of its boundary conditions."""
+    import gmsh
+
     for dimension, group in gmsh.model.getPhysicalGroups():
         for entity in gmsh.model.getEntitiesForPhysicalGroup(dimension, group):
             gmsh.model.setEntityName(dimension, entity, gmsh.model.getPhysicalName(dimension, group))
 
 
 Lines = Iterator[str]
+"""Lines of a file of gmsh's own format, version 4.1."""
 
 
 def rescaled(lines: Lines, scale: float) -> Lines:
-    """The lines with entities and periodic motions scaled.
+    """The lines with the bounding boxes of entities and the periodic motions scaled.
 
-    gmsh itself scales the nodes, but leaves the boxes of its entities and the translations between periodic ones in the
-    unit of the geometry.
+    gmsh itself scales the nodes only, and leaves these in the unit of the geometry.
     """
     for line in lines:
         yield line
@@ -70,7 +74,7 @@ def motionless(lines: Lines) -> Lines:
 
 
 def rewrite(path: Path, change: Callable[[Lines], Lines]) -> None:
-    """Replace the lines of the file at a path by what `change` makes of them."""
+    """Replace the lines of a file by what `change` makes of them."""
     other = path.with_suffix(".rewritten")
     with path.open(encoding="utf-8") as source, other.open("w", encoding="utf-8") as target:
         target.writelines(change(source))
@@ -78,6 +82,7 @@ def rewrite(path: Path, change: Callable[[Lines], Lines]) -> None:
 
 
 def _entities(lines: Lines, scale: float) -> Lines:
+    """The lines of the entities: a point has three coordinates, every other entity a box of six."""
     head = next(lines)
     yield head
     points, *others = map(int, head.split())
@@ -91,7 +96,7 @@ def _motions(lines: Lines, scale: float) -> Lines:
     for _ in range(int(head)):
         yield next(lines)
         words = next(lines).split()
-        # the fourth column of a matrix by rows, after the count of its numbers
+        # These are the fourth column of a 4 x 4 matrix written row by row, after the count of its numbers.
         for place in (4, 8, 12) if len(words) > 1 else ():
             words[place] = repr(float(words[place]) * scale)
         yield " ".join(words) + "\n"
@@ -107,24 +112,25 @@ def _scaled(line: str, first: int, last: int, scale: float) -> str:
 
 
 Content = dict[str, Any]
-"""`nodes` (n, 3) in the file's unit, `tetrahedra` (k, 4), and for each group of faces `group NAME` (m, 3)"""
-GROUP = "group "
+"""`nodes` (n, 3) in the file's unit, `tetrahedra` (k, 4), and for each group of faces `group NAME` (m, 3)."""
 TRIANGLE, TETRAHEDRON = 5, 10
-"""as VTK and SU2 number them"""
+"""Numbers of the element types in SU2 files, which are those of VTK."""
 
 
 def read_mesh(path: Path) -> Content:
-    """What the mesh file at a path holds; gmsh reads all but SU2, which it only writes."""
+    """Read a mesh file back; gmsh reads every format but SU2, which it only writes."""
     return _read_su2(path) if path.suffix == ".su2" else _read_gmsh(path)
 
 
 def _read_gmsh(path: Path) -> Content:
+    import gmsh
+
     gmsh.clear()
     gmsh.open(str(path))
     tags, coordinates, _ = gmsh.model.mesh.getNodes()
     place = np.zeros(int(tags.max(initial=0)) + 1, dtype=np.intp)
     place[tags.astype(np.intp)] = np.arange(len(tags))
-    found: Content = {"nodes": coordinates.reshape(-1, 3)}
+    content: Content = {"nodes": coordinates.reshape(-1, 3)}
     for dimension, group in gmsh.model.getPhysicalGroups():
         name = gmsh.model.getPhysicalName(dimension, group)
         corners = [
@@ -132,29 +138,30 @@ def _read_gmsh(path: Path) -> Content:
             for entity in gmsh.model.getEntitiesForPhysicalGroup(dimension, group)
             for nodes in gmsh.model.mesh.getElements(dimension, entity)[2]
         ]
-        key = "tetrahedra" if dimension == 3 else GROUP + name
-        found[key] = place[np.concatenate([*corners, np.zeros(0, dtype=np.intp)])].reshape(-1, dimension + 1)
-    return found
+        key = "tetrahedra" if dimension == 3 else GROUP_PREFIX + name
+        content[key] = place[np.concatenate([*corners, np.zeros(0, dtype=np.intp)])].reshape(-1, dimension + 1)
+    return content
 
 
 def _read_su2(path: Path) -> Content:
-    found: Content = {}
+    content: Content = {}
     with path.open(encoding="utf-8") as lines:
         for line in lines:
             key, _, value = (part.strip() for part in line.partition("="))
             if key == "NELEM":
-                found["tetrahedra"] = _read_elements(lines, int(value), TETRAHEDRON)
+                content["tetrahedra"] = _read_elements(lines, int(value), TETRAHEDRON)
             elif key == "NPOIN":
                 rows = (next(lines).split() for _ in range(int(value.split()[0])))
                 table = np.array([[float(word) for word in row[:4]] for row in rows])
-                found["nodes"] = table[np.argsort(table[:, 3]), :3]
+                content["nodes"] = table[np.argsort(table[:, 3]), :3]
             elif key == "MARKER_TAG":
                 count = int(next(lines).partition("=")[2])
-                found[GROUP + value] = _read_elements(lines, count, TRIANGLE)
-    return found
+                content[GROUP_PREFIX + value] = _read_elements(lines, count, TRIANGLE)
+    return content
 
 
 def _read_elements(lines: Iterator[str], count: int, kind: int) -> Indices:
+    """Read the nodes of so many elements of one type."""
     corners = 4 if kind == TETRAHEDRON else 3
     rows = [next(lines).split() for _ in range(count)]
     if any(int(row[0]) != kind for row in rows):

@@ -1,4 +1,4 @@
-"""The faces of a STEP file by name, as any mesher finds them in its text."""
+"""Names: the faces of a STEP file as its text has them, and the groups of a mesh."""
 
 import re
 from pathlib import Path
@@ -24,15 +24,17 @@ GROUPS = (
     "shroud_wake",
     "tip",
 )
-"""Physical groups of a passage's mesh; a face that is a piece of one is called GROUP_PIECE."""
+"""Physical groups of the faces of a passage; where a face is split, its pieces are called GROUP_PIECE."""
 FLUID = "fluid"
 """Physical group of the volume."""
+GROUP_PREFIX = "group "
+"""Beginning of the keys under which the content of a mesh file holds the triangles of a group."""
 
 
 def face_names(text: str) -> tuple[str, ...]:
     """Names of the faces of the one closed shell in the text of a STEP file, in the order of the shell.
 
-    gmsh numbers faces in that order, but does not hand on their names. Raises MeshError where there is not one shell.
+    gmsh numbers the faces in that order, but does not keep their names. Raises MeshError where there is not one shell.
     """
     joined = re.sub(r"\s+", "", text)
     shells = re.findall(r"=CLOSED_SHELL\('[^']*',\(([#\d,]+)\)\);", joined)
@@ -51,5 +53,5 @@ def step_face_names(path: str | Path) -> tuple[str, ...]:
 
 
 def group_of(face: str) -> str:
-    """The physical group that a face belongs to: its own name, or that of which it is a piece."""
+    """The physical group of a face: its own name, or the group of which the face is a piece."""
     return next((group for group in GROUPS if face == group or face.startswith(f"{group}_")), face)

@@ -21,11 +21,11 @@ from bladewright.meshing.sizes import ELEMENTS_PER_TURN, Sizes, check_sizes, siz
 from bladewright.meshing.verification import MM, UNITS, mesh_report
 
 FORMATS = {".msh": "Gmsh 4.1", ".su2": "SU2", ".cgns": "CGNS"}
-"""by the ending of the file"""
+"""Formats of mesh files by their endings."""
 
 
 def format_of(path: str | os.PathLike[str]) -> str:
-    """The format that the ending of a path says. Raises MeshError where it says none."""
+    """The format that the ending of a path names. Raises MeshError where it names none."""
     ending = Path(path).suffix.lower()
     if ending not in FORMATS:
         raise MeshError(
@@ -42,7 +42,7 @@ def check(
     curvature: float = ELEMENTS_PER_TURN,
     unit: str = "m",
 ) -> None:
-    """Raise MeshError for what `mesh` would refuse whatever the passage: an ending, a size, a unit, gmsh missing."""
+    """Raise MeshError for what `mesh` refuses of any passage: an unknown ending, size or unit, or a missing gmsh."""
     format_of(path)
     check_sizes(size=size, smallest=smallest, curvature=curvature)
     if unit not in UNITS:
@@ -64,11 +64,11 @@ def mesh(
 ) -> MeshReport:
     """Mesh the passage in a STEP file with tetrahedra, write the mesh to `path` and measure what was written.
 
-    The file is read as it is, without healing. `size` is that of elements in the open passage, `smallest` the least at
-    the edges, both of the chord; `curvature` is how many elements a full circle as tight as an edge would get. Where no
-    size is given, about 150,000 tetrahedra are made. Physical groups (markers, families) have the names of the faces;
-    that of the volume is `fluid`. The nodes of `periodic_upper` are those of `periodic_lower` moved. `progress` hears
-    each step, `log` each line that gmsh prints.
+    The file is read as it is, without repair. `size` is the size of elements in the open passage, `smallest` the
+    smallest one at the edges, both in chords; `curvature` is the number of elements on a full circle of an edge's
+    radius. Where no size is given, about 150,000 tetrahedra are made. Physical groups (markers, families) have the
+    names of the faces; that of the volume is `fluid`. The nodes of `periodic_upper` are those of `periodic_lower`,
+    turned or shifted by one pitch. `progress` is called with each step, `log` with each line that gmsh prints.
 
     Raises MeshError for sizes or endings that are refused, or where gmsh is not installed or gives up. A mesh that
     fails a check is written, and the report says why.
@@ -78,18 +78,18 @@ def mesh(
     step, path = Path(step), Path(path)
     faces = step_face_names(step)
     _check_faces(step, faces, passage)
-    plan = sizes(passage, size=size, smallest=smallest, curvature=curvature)
+    element_sizes = sizes(passage, size=size, smallest=smallest, curvature=curvature)
     motion = periodicity(passage.surfaces)
     with atomic_write(path) as unfinished, tempfile.TemporaryDirectory(prefix="bladewright-mesh-") as folder:
         made = Path(folder) / f"passage{path.suffix.lower()}"
-        job = _job(step, made, faces, plan, motion, MM / UNITS[unit])
+        job = _job(step, made, faces, element_sizes, motion, MM / UNITS[unit])
         answer = run_gmsh(job, Path(folder), step=progress or _ignore, log=log or _ignore)
         with np.load(Path(folder) / CONTENT_FILE) as arrays:
             content = dict(arrays)
         if progress:
             progress("measuring")
         seconds = time.monotonic() - start
-        report = mesh_report(content, passage, motion, plan, answer, path, format_of(path), unit, seconds)
+        report = mesh_report(content, passage, motion, element_sizes, answer, path, format_of(path), unit, seconds)
         shutil.copyfile(made, unfinished)
     return report
 
@@ -107,25 +107,21 @@ def _ignore(_: str) -> None:
 
 
 def _job(
-    step: Path,
-    made: Path,
-    faces: tuple[str, ...],
-    plan: Sizes,
-    motion: Periodicity,
-    scale: float,
+    step: Path, mesh_file: Path, faces: tuple[str, ...], element_sizes: Sizes, motion: Periodicity, scale: float
 ) -> Job:
-    near = []
-    for each in plan.sources:
-        x, y, z = (coordinate / MM for coordinate in each.place)
-        near.append(SizeSource(face=each.face, place=(x, y, z), size=each.size / MM))
+    """The job for gmsh, in the millimetres of the STEP file."""
+    size_sources = []
+    for source in element_sizes.sources:
+        x, y, z = (coordinate / MM for coordinate in source.place)
+        size_sources.append(SizeSource(face=source.face, place=(x, y, z), size=source.size / MM))
     return Job(
         step=str(step.resolve()),
         faces=faces,
         motion=tuple(motion.matrix(MM).ravel().tolist()),
-        largest=plan.largest / MM,
-        smallest=plan.smallest / MM,
-        growth=plan.growth,
-        near=tuple(near),
-        mesh=str(made),
+        largest=element_sizes.largest / MM,
+        smallest=element_sizes.smallest / MM,
+        growth=element_sizes.growth,
+        sources=tuple(size_sources),
+        mesh=str(mesh_file),
         scale=scale,
     )

@@ -1,4 +1,4 @@
-"""What a mesh file holds and how good that is, measured on the file."""
+"""The report on a mesh file: what it holds and how good it is, measured on the file."""
 
 from dataclasses import asdict, dataclass
 from typing import Any
@@ -6,7 +6,7 @@ from typing import Any
 from bladewright.meshing.periodicity import MISMATCH
 
 FLAT = 0.0
-"""minSICN that every tetrahedron must exceed"""
+"""minSICN that every tetrahedron must exceed: at zero it is flat, and its Jacobian is singular."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -27,7 +27,7 @@ class Quality:
 
     worst: float
     percentile: float
-    """that one in a hundred lies below"""
+    """the value that one in a hundred lies below"""
     mean: float
 
 
@@ -38,11 +38,11 @@ class MeshReport:
     file: str
     format: str
     unit: str
-    """of length in the file"""
+    """unit of length in the file"""
     tetrahedra: int
     nodes: int
     inverted: int
-    """tetrahedra whose Jacobian is not positive"""
+    """number of tetrahedra whose Jacobian is not positive"""
     min_sicn: Quality
     """signed inverse condition number of the map from the regular tetrahedron"""
     gamma: Quality
@@ -50,31 +50,31 @@ class MeshReport:
     faces: tuple[FaceMesh, ...]
     deviation_limit_mm: float
     loose: int
-    """sides of tetrahedra that neither another one nor a triangle of a group covers, and triangles on none"""
+    """number of facets that belong to one tetrahedron and to no triangle of a group, and of triangles on no facet"""
     periodic_nodes: int
-    """pairs of partners on the periodic boundaries"""
+    """number of pairs of nodes on the periodic boundaries"""
     periodic_mismatch: float
-    """largest distance of a node from its partner's image, of the pitch"""
+    """largest distance of a node from its partner's image, in pitches"""
     periodic_triangles: bool
-    """whether the triangles are partners too"""
+    """whether the triangles of the periodic boundaries correspond as well"""
     rotation_deg: float
-    """from the lower periodic boundary to the upper one, right-handed about +x"""
+    """rotation from the lower periodic boundary to the upper one, right-handed about +x"""
     translation: tuple[float, float, float]
-    """the same for a linear cascade, in the file's unit"""
+    """translation between them in a linear cascade, in the file's unit"""
     volume_error: float
-    """of the native volume: what flat facets cut off"""
+    """relative difference from the native volume, which flat facets do not fill"""
     size: float
-    """in the open passage, of the chord"""
+    """size in the open passage, in chords"""
     smallest: float
-    """at the edges, of the chord"""
+    """smallest size, in chords"""
     expected: int
-    """tetrahedra that were expected"""
+    """number of tetrahedra expected"""
     gmsh: str
-    """its version"""
+    """version of gmsh"""
     algorithms: tuple[str, ...]
-    """what meshed the faces, then the volume, and improved it"""
+    """algorithms that meshed the faces, then the volume, and those that improved it"""
     seconds: float
-    """that the mesh took, measuring apart"""
+    """time that the mesh took, without measuring"""
 
     @property
     def failures(self) -> tuple[str, ...]:

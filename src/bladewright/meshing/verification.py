@@ -10,8 +10,7 @@ from bladewright.blade.native.blade import Faces
 from bladewright.domain.passage import Passage
 from bladewright.errors import MeshError
 from bladewright.meshing.gmsh_process import Answer
-from bladewright.meshing.mesh_file import GROUP
-from bladewright.meshing.names import GROUPS, group_of
+from bladewright.meshing.names import GROUP_PREFIX, GROUPS, group_of
 from bladewright.meshing.periodicity import Periodicity, match_periodic
 from bladewright.meshing.quality import FACETS, Indices, condition_numbers, radius_ratios, volumes
 from bladewright.meshing.report import FLAT, FaceMesh, MeshReport, Quality
@@ -21,9 +20,12 @@ from bladewright.nurbs.closest import closest_on_surface
 from bladewright.nurbs.trimmed import TrimmedSurface
 
 DEVIATION_LIMIT = 1e-8, 1e-7
-"""[m], and of the chord: how far a node may lie off its native surface, what the round trip allows a trimmed end"""
+"""Largest distance of a node from its native surface, in metres and in chords, whichever is more: what the round trip
+allows a trimmed end of the STEP file that the mesh is made from."""
 REFINED_SEARCHES = 200
-"""nodes that are searched for more closely where the first places found are further away than allowed"""
+"""Largest number of nodes of a face, the farthest ones first, whose closest point is searched for a second time,
+globally, where the first search ends further away than allowed. A global search is slow, and one bad node is enough to
+fail."""
 
 
 def deviation_limit(chord: float) -> float:
@@ -34,7 +36,7 @@ def deviation_limit(chord: float) -> float:
 def deviations(faces: Faces, group: str, points: Reals, allowed: float) -> Reals:
     """Distances (n,) of points (n, 3) from the native surfaces of a group [m], infinite where there are none.
 
-    Each is that of the place which a descent from the nearest sample reaches; the worst of those above `allowed` are
+    The closest point is found by descent from the nearest sample; for the worst distances above `allowed` it is
     searched for again, globally.
     """
     best = np.full(len(points), np.inf)
@@ -42,38 +44,38 @@ def deviations(faces: Faces, group: str, points: Reals, allowed: float) -> Reals
         if group_of(name) != group:
             continue
         surface = face.surface if isinstance(face, TrimmedSurface) else face
-        found = closest_on_surface(surface, points, tolerance=1.0).distances.real
-        off = np.argsort(found)[::-1][:REFINED_SEARCHES]
-        off = off[found[off] > allowed]
-        if len(off):
-            found = np.array(found)
-            found[off] = closest_on_surface(surface, points[off], tolerance=1e-7).distances.real
-        best = np.minimum(best, found)
+        distances = closest_on_surface(surface, points, tolerance=1.0).distances.real
+        worst = np.argsort(distances)[::-1][:REFINED_SEARCHES]
+        worst = worst[distances[worst] > allowed]
+        if len(worst):
+            distances = np.array(distances)
+            distances[worst] = closest_on_surface(surface, points[worst], tolerance=1e-7).distances.real
+        best = np.minimum(best, distances)
     return best
 
 
 def unmatched_facets(tetrahedra: Indices, groups: Mapping[str, Indices]) -> int:
-    """How many sides belong to one tetrahedron and no triangle, or more than twice, and how many triangles to none.
+    """Number of facets that occur other than twice among the tetrahedra and the triangles of the groups.
 
-    0 says that the groups together are the whole boundary, each piece of it once.
+    0 says that the groups together cover the whole boundary, each piece of it once.
     """
-    sides = np.sort(tetrahedra[:, FACETS].reshape(-1, 3), axis=1)
+    facets = np.sort(tetrahedra[:, FACETS].reshape(-1, 3), axis=1)
     triangles = np.sort(np.concatenate([*groups.values(), np.zeros((0, 3), dtype=np.intp)]), axis=1)
-    _, uses = np.unique(np.concatenate([sides, triangles]), axis=0, return_counts=True)
+    _, uses = np.unique(np.concatenate([facets, triangles]), axis=0, return_counts=True)
     return int(np.count_nonzero(uses != 2))
 
 
 UNITS = {"m": 1.0, "mm": 1e-3}
-"""[m]"""
+"""Metres in the units that a mesh file may have."""
 MM = 1e-3
-"""[m] the unit of deviations and of STEP files"""
+"""Metres in a millimetre, the unit of deviations and of STEP files."""
 
 
 def mesh_report(
     content: Mapping[str, Any],
     passage: Passage,
     motion: Periodicity,
-    plan: Sizes,
+    element_sizes: Sizes,
     answer: Answer,
     path: Path,
     kind: str,
@@ -82,12 +84,12 @@ def mesh_report(
 ) -> MeshReport:
     """The report on the content of a mesh file: `kind` is its format, `unit` that of its lengths.
 
-    Raises MeshError where its groups are not the faces of the passage, or not all that was written is there.
+    Raises MeshError where its groups are not the faces of the passage, or where nodes or tetrahedra are missing.
     """
     nodes: Reals = content["nodes"] * UNITS[unit]
     tetrahedra: Indices = content["tetrahedra"]
     groups: dict[str, Indices] = {
-        name.removeprefix(GROUP): rows for name, rows in content.items() if name.startswith(GROUP)
+        name.removeprefix(GROUP_PREFIX): rows for name, rows in content.items() if name.startswith(GROUP_PREFIX)
     }
     check_complete(groups, passage, len(nodes), len(tetrahedra), answer)
     native = float(np.real(passage.properties.volume))
@@ -104,7 +106,7 @@ def mesh_report(
         min_sicn=_quality(condition),
         gamma=_quality(radius_ratios(nodes, tetrahedra)),
         faces=tuple(_face(name, groups[name], nodes, passage) for name in GROUPS if name in groups),
-        deviation_limit_mm=deviation_limit(plan.chord) / MM,
+        deviation_limit_mm=deviation_limit(element_sizes.chord) / MM,
         loose=unmatched_facets(tetrahedra, groups),
         periodic_nodes=pairs.nodes,
         periodic_mismatch=pairs.mismatch,
@@ -112,9 +114,9 @@ def mesh_report(
         rotation_deg=float(np.degrees(motion.angle)),
         translation=(x, y, z),
         volume_error=float(volumes(nodes, tetrahedra).sum()) / native - 1.0,
-        size=plan.largest / plan.chord,
-        smallest=plan.smallest / plan.chord,
-        expected=plan.expected,
+        size=element_sizes.largest / element_sizes.chord,
+        smallest=element_sizes.smallest / element_sizes.chord,
+        expected=element_sizes.expected,
         gmsh=answer.gmsh,
         algorithms=(*answer.surface, *answer.volume),
         seconds=seconds,
@@ -124,7 +126,7 @@ def mesh_report(
 def check_complete(
     groups: Mapping[str, Indices], passage: Passage, nodes: int, tetrahedra: int, answer: Answer
 ) -> None:
-    """Raise MeshError where the groups are not the faces of the passage, or nodes or tetrahedra are lost."""
+    """Raise MeshError where the groups are not the faces of the passage, or where nodes or tetrahedra are missing."""
     wanted = {group_of(name) for name in passage.surfaces}
     if set(groups) != wanted or not all(map(len, groups.values())):
         raise MeshError(

@@ -1,7 +1,7 @@
-"""The process that loads gmsh: `python -m bladewright.meshing.worker DIRECTORY`, where the job is and the answer goes.
+"""The process that loads gmsh: `python -m bladewright.meshing.worker DIRECTORY` reads the job there, and answers there.
 
-gmsh takes seconds in which no signal reaches Python, and ends its process where it fails badly; both touch this one
-only.
+For seconds at a time gmsh lets no signal reach Python, and it ends its process where it fails badly. A process of its
+own keeps both from the caller.
 """
 
 import sys
@@ -18,22 +18,23 @@ def main(directory: Path) -> None:
     try:
         import gmsh
     except (ImportError, OSError) as error:
-        Answer(error=_unloadable(error)).put(directory)
+        Answer(error=_unloadable(error)).write(directory)
         return
-    # SIGINT ends this process at once; the parent has its own handler
+    # SIGINT ends this process at once; the parent handles it in its own way.
     gmsh.initialize(interruptible=True, readConfigFiles=False)
     try:
-        made = _made(Job.taken(directory), directory)
+        answer = _answer(Job.read(directory), directory)
     except MeshError as error:
-        made = Answer(error=str(error))
+        answer = Answer(error=str(error))
     except Exception as error:  # noqa: BLE001  gmsh has no types of errors
-        made = Answer(error=f"gmsh gives up: {error}; try another size")
+        answer = Answer(error=f"gmsh gives up: {error}; try another size")
     finally:
         gmsh.finalize()
-    made.put(directory)
+    answer.write(directory)
 
 
-def _made(job: Job, directory: Path) -> Answer:
+def _answer(job: Job, directory: Path) -> Answer:
+    """Make the mesh, write it, read it back from disk, and say how it was made."""
     import gmsh
 
     from bladewright.meshing import generation, gmsh_model
@@ -49,7 +50,7 @@ def _made(job: Job, directory: Path) -> Answer:
     surface = generation.mesh_faces(followers)
     volume = generation.mesh_volume()
     generation.place_periodic_nodes(followers, job.motion)
-    made = Answer(
+    answer = Answer(
         gmsh=gmsh.__version__,
         surface=surface,
         volume=volume,
@@ -60,7 +61,7 @@ def _made(job: Job, directory: Path) -> Answer:
     write_mesh(Path(job.mesh), job.scale)
     generation.report_step("reopening")
     np.savez(directory / CONTENT_FILE, **read_mesh(Path(job.mesh)))
-    return made
+    return answer
 
 
 def _unloadable(error: Exception) -> str:
