@@ -46,7 +46,7 @@ def main():
         off = []
         for way in (subtracted, divided, made):
             # fresh solids: the operations raise tolerances of what they are given
-            sector, blade = occ_solid(passage.sector), occ_solid(passage.blade.extended(SPAN_EXTENSION))
+            sector, blade = occ_solid(passage.periodic_sector), occ_solid(passage.blade.extended(SPAN_EXTENSION))
             with quiet():
                 off.append(f"{volume(way(sector, blade), sector) / native - 1.0:+.1e}")
         print(f"{name:<22}", *off, sep="  ")

@@ -23,7 +23,7 @@ def through(*points):
 
 @pytest.fixture(scope="module")
 def passage():
-    return Cuttable(sector=sector())
+    return Cuttable(periodic_sector=sector())
 
 
 @pytest.fixture(scope="module")
@@ -45,7 +45,7 @@ def test_its_faces_have_the_names_of_what_they_were(cut):
 
 
 def test_its_volume_is_that_of_the_sector_less_the_blade(passage, cut):
-    native = passage.sector.properties.volume - standing().properties.volume
+    native = passage.periodic_sector.properties.volume - standing().properties.volume
     assert cut.properties.volume == pytest.approx(native, rel=1e-6)
     # the sector's own edges lie 7e-9 m off its walls, and the bound covers that
     assert abs(cut.properties.volume - native) <= cut.properties.volume_error <= 1e-6 * native
@@ -56,7 +56,7 @@ def test_its_gaps_are_those_of_the_sector_and_of_the_blades_ends(cut):
 
 
 def test_its_centroid_is_the_sectors_without_the_blades(passage, cut):
-    whole, blade = passage.sector.properties, standing().properties
+    whole, blade = passage.periodic_sector.properties, standing().properties
     rest = (whole.volume * whole.centroid - blade.volume * blade.centroid) / (whole.volume - blade.volume)
     np.testing.assert_allclose(cut.properties.centroid, rest, atol=1e-7)
 
@@ -85,7 +85,7 @@ def test_a_sector_that_winds_more_than_a_turn_is_refused():
         name = "pump"
 
         @property
-        def sector(self):
+        def periodic_sector(self):
             return arc((0.0, 0.0), 1.0, 0.0, 7.0)
 
     with pytest.raises(CadError, match="one face within a turn"):

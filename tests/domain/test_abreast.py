@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from bladewright.blade.exact.sectioned import exact_sectioned_blade
-from bladewright.domain.camber_correspondence import CamberCorrespondence, camber_correspondence
-from bladewright.domain.extents import end_cambers
+from bladewright.domain.camber_correspondence import CamberCorrespondence
+from bladewright.domain.extents import end_camber_lines
 from bladewright.files.reading import read_design
 
 NAMES = ("core-rotor", "backswept-impeller", "wedge-diffuser", "booster-stator", "vaned-diffuser")
@@ -17,7 +17,7 @@ T = np.linspace(0.0, 1.0, 201)
 @pytest.fixture(params=NAMES, scope="module")
 def ends(request):
     design = read_design(resources.files("bladewright") / "examples" / f"{request.param}.toml")
-    return end_cambers(exact_sectioned_blade(design))
+    return end_camber_lines(exact_sectioned_blade(design))
 
 
 def lag(ends, way):
@@ -29,13 +29,13 @@ def lag(ends, way):
 
 
 def test_the_camber_is_kept_amid_the_sides(ends):
-    way = camber_correspondence(ends, -0.65)
+    way = ends.fitted_correspondence(0.35)
     # beside round edges the sides stand still, and the camber may not
     assert lag(ends, way) < min(0.1, 0.85 * lag(ends, CamberCorrespondence(slopes=way.slopes)))
 
 
 def test_it_goes_on_all_the_way_and_leaves_the_edges_as_stated(ends):
-    way = camber_correspondence(ends, -0.65)
+    way = ends.fitted_correspondence(0.35)
     assert way(np.array([0.0, 1.0])) == pytest.approx([0.0, 1.0], abs=1e-14)
     assert np.min(np.diff(way(T))) > 0.0
     # round edges as slowly as asked, and others as the sides that meet there

@@ -83,5 +83,5 @@ def test_where_cross_lines_that_turn_back_early_fold_others_are_taken():
         channel=Channel(leading_edge=((0.0, 0.0), (0.0, 50.0)), trailing_edge=((40.0, 0.0), (40.0, 50.0))),
     )
     made = passage(vane.build())
-    assert made.knots.crossing in CROSS_LINES[1:]
+    assert made.knots.cross_lines in CROSS_LINES[1:]
     assert min(share for share, _, _ in made.folds.values()) > 0.0

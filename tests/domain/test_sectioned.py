@@ -106,8 +106,8 @@ def test_halves_strips_faces_and_outlet_share_their_boundary_control_points(arou
         for wall, row in (("hub", 0), ("shroud", -1)):
             chain = [net(around, f"{wall}_lower")[-past, ::-1], net(around, f"{wall}_upper")[-past]]
             strip = f"{wall}_{STRIPS[past]}"
-            assert (strip in around.surfaces) == around.knots.parted[past]
-            if around.knots.parted[past]:
+            assert (strip in around.surfaces) == around.knots.blunt[past]
+            if around.knots.blunt[past]:
                 middle = net(around, strip)
                 chain.insert(1, middle[-past])
                 count = middle.shape[0]

@@ -107,6 +107,6 @@ class Extensible:
 
 @dataclass(frozen=True, kw_only=True)
 class Cuttable:
-    sector: Blade
+    periodic_sector: Blade
     blade: Extensible = Extensible()
     name: str = "passage"

@@ -46,7 +46,7 @@ class Cuttable(Protocol):
         """Name of the product in a CAD file."""
 
     @property
-    def sector(self) -> ClosedBody:
+    def periodic_sector(self) -> ClosedBody:
         """What lies between inlet, outlet, periodic boundaries and exact walls, without a blade."""
 
     @property
@@ -98,7 +98,7 @@ class CutPassage:
 
 
 def cut_passage(passage: Cuttable, *, span: float = SPAN_EXTENSION) -> CutPassage:
-    """The passage cut by OpenCASCADE: `passage.sector` without `passage.blade`, extended by `span` of its span.
+    """The passage cut by OpenCASCADE: `passage.periodic_sector` less `passage.blade`, extended by `span` of its span.
 
     Its walls are exact, so that its volume tells how well the untrimmed patches follow them. Raises CadError where the
     kernel does not leave one closed valid solid of named faces.
@@ -106,7 +106,7 @@ def cut_passage(passage: Cuttable, *, span: float = SPAN_EXTENSION) -> CutPassag
     with quiet():
         # fresh solids: the operation raises tolerances of what it is given
         try:
-            sector, blade = occ_solid(passage.sector), occ_solid(passage.blade.extended(span))
+            sector, blade = occ_solid(passage.periodic_sector), occ_solid(passage.blade.extended(span))
         except GeometryError as error:
             raise CadError(
                 f"the sector of {passage.name!r} cannot be made: {error}. Each of its walls must be one face within a "

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from types import MappingProxyType
-from typing import cast
+from typing import Any, cast
 
 import numpy as np
 
@@ -12,7 +12,7 @@ from bladewright.blade.native.knots import DEGREE
 from bladewright.domain.camber_lines import camber_lines
 from bladewright.domain.checks import check_folds, check_pitch
 from bladewright.domain.extents import shortest_duct
-from bladewright.domain.knot_selection import WALL_TOLERANCE, knots_at_tolerance, unfolded_walls, with_span_knots
+from bladewright.domain.knot_selection import WALL_TOLERANCE, unfolded_walls, with_span_knots, with_wall_knots
 from bladewright.domain.knots import PassageKnots
 from bladewright.domain.nets import BladeNets, native_nets
 from bladewright.domain.passage import Passage
@@ -25,9 +25,13 @@ from bladewright.nurbs.refine import inserted
 from bladewright.nurbs.surface import Surface
 from bladewright.nurbs.trimmed import TrimmedSurface
 from bladewright.section.checks import UNITS, number
+from bladewright.section.section import Section
 
-RESERVES = (0.5, 0.2, 0.08, 0.025)
-"""shares of the walls' tolerance that one direction may use while knots are sought: less where all miss it together"""
+TOLERANCE_SHARES = (0.5, 0.2, 0.08, 0.025)
+"""Shares of the walls' tolerance that the knots of each direction may use, tried in turn until all directions together
+keep the whole of it: most passages need the first only."""
+STEEPEST = 89.0
+"""Largest angle of the flow from the meridional direction at inlet and outlet [deg]: its tangent must stay finite."""
 
 
 def passage(
@@ -51,43 +55,42 @@ def passage(
     Raises DesignError where a patch would fold, the channel cannot be continued so far, or the blade does not keep
     within its pitch. Agromayor et al. 2021, section 4.
     """
-    if hasattr(blade, "camber"):
+    if isinstance(cast(Any, blade), Section):
         raise DesignError(
             "passage: a 2D section was given: use section_passage for its flow domain, or build prismatic(design) first"
         )
-    full = blade.exact.whole()
     turned = _slope("inlet_angle", inlet_angle), _slope("outlet_angle", outlet_angle)
-    asked = PassageSpec(blade=blade, full=full, half=_half_pitch(blade), turned=turned)
+    spec = PassageSpec(blade=blade, exact=blade.exact.whole(), half_pitch=_half_pitch(blade), turned=turned)
     if knots is not None:
         for name, given in (("upstream", upstream), ("downstream", downstream)):
             if given is not None and given != getattr(knots, name):
                 raise DesignError(
                     f"{name} is {given!r}, but the knots given hold {getattr(knots, name):g}: leave one of them out"
                 )
-        return _passage(asked, knots, split)
-    _check_within(asked)
-    start, walls = unfolded_walls(asked, upstream, downstream)
-    start = with_span_knots(asked, start, RESERVES[0] * WALL_TOLERANCE * blade.chord)
-    for reserve in RESERVES:
-        made = _passage(asked, knots_at_tolerance(start, walls, reserve * WALL_TOLERANCE * blade.chord), split)
+        return _passage(spec, knots, split)
+    _check_within_pitch(spec)
+    start, walls = unfolded_walls(spec, upstream, downstream)
+    start = with_span_knots(spec, start, TOLERANCE_SHARES[0] * WALL_TOLERANCE * blade.chord)
+    for share in TOLERANCE_SHARES:
+        made = _passage(spec, with_wall_knots(start, walls, share * WALL_TOLERANCE * blade.chord), split)
         if made.wall_error <= WALL_TOLERANCE:
             break
     check_folds(made.folds)
-    _check_reached(made)
+    _check_walls(made)
     return made
 
 
-def _passage(asked: PassageSpec, knots: PassageKnots, split: bool) -> Passage:
+def _passage(spec: PassageSpec, knots: PassageKnots, split: bool) -> Passage:
     """The passage at given knots."""
-    blade = asked.blade
-    camber, walls, between = asked.plane(knots, knots.sites("span"))
+    blade = spec.blade
+    camber, walls, strips = spec.plane(knots, knots.sites("span"))
     upper, lower = (_with_knots(side, knots.side) for side in blade.sides)
     own = BladeNets(
         upper.control_points,
         lower.control_points,
         [cast(Surface, blade.surfaces[name]).control_points if name in blade.surfaces else None for name in EDGE_FACES],
     )
-    nets = native_nets(camber, walls, between, own, knots, asked.half)
+    nets = native_nets(camber, walls, strips, own, knots, spec.half_pitch)
     surfaces: dict[str, Surface | TrimmedSurface] = {name: _surface(net, name, knots) for name, net in nets.items()}
     surfaces |= {"blade_upper": upper, "blade_lower": lower}
     surfaces |= {f"blade_{name}": blade.surfaces[name] for name in EDGE_FACES if name in blade.surfaces}
@@ -98,16 +101,17 @@ def _passage(asked: PassageSpec, knots: PassageKnots, split: bool) -> Passage:
         knots=knots,
         camber=camber,
         walls=walls,
-        strips=between,
+        strips=strips,
         split=split,
     )
 
 
 def _slope(name: str, degrees: complex | None) -> Array | None:
+    """d theta / dm' of a flow angle."""
     if degrees is None:
         return None
     angle = number(name, degrees)
-    if not -89.0 < np.real(angle) < 89.0:
+    if not -STEEPEST < np.real(angle) < STEEPEST:
         raise DesignError(f"{name} is {np.real(angle):g} deg: it must lie between -89 and 89 deg, as flow goes onwards")
     return np.asarray(np.tan(radians(angle)))
 
@@ -119,9 +123,9 @@ def _half_pitch(blade: Blade) -> Array:
     return np.asarray(0.5 * UNITS[design.length_unit] * np.asarray(design.pitch))
 
 
-def _check_within(asked: PassageSpec) -> None:
-    exact = asked.blade.exact
-    check_pitch(camber_lines(exact.survey, shortest_duct(exact)), asked.blade, asked.real_half)
+def _check_within_pitch(spec: PassageSpec) -> None:
+    exact = spec.blade.exact
+    check_pitch(camber_lines(exact.survey, shortest_duct(exact)), spec.blade, spec.real_half_pitch)
 
 
 def _with_knots(side: Surface, knots: Reals) -> Surface:
@@ -130,7 +134,7 @@ def _with_knots(side: Surface, knots: Reals) -> Surface:
         return side
     missing = list(knots)
     for knot in side.knots_u:
-        # where sides have a back face, knots come back from another scale
+        # beside a back face the knots were scaled and scaled back, so they may differ by rounding
         del missing[int(np.argmin(np.square(np.array(missing) - knot)))]
     return inserted(side, np.array(missing), "u")
 
@@ -139,8 +143,8 @@ def _surface(net: Array, name: str, knots: PassageKnots) -> Surface:
     if name in {"inlet", "outlet"}:
         along, across = knots.around(int(name == "outlet")), knots.span
     elif name.endswith(STRIPS):
-        past = int(name.endswith(STRIPS[1]))
-        along, across = knots.outlet if past else knots.inlet, knots.strip(past)
+        edge = int(name.endswith(STRIPS[1]))
+        along, across = knots.outlet if edge else knots.inlet, knots.strip(edge)
     elif name.startswith("periodic"):
         along, across = knots.u, knots.span
     else:
@@ -148,12 +152,11 @@ def _surface(net: Array, name: str, knots: PassageKnots) -> Surface:
     return Surface(control_points=net, knots_u=along, knots_v=across, degree_u=DEGREE, degree_v=DEGREE)
 
 
-def _check_reached(made: Passage) -> None:
+def _check_walls(made: Passage) -> None:
     if made.wall_error <= WALL_TOLERANCE:
         return
     raise DesignError(
         f"passage: hub and shroud lie {made.wall_error:.2g} of the chord off their surfaces of revolution, at most "
-        f"{WALL_TOLERANCE:g} is allowed: shorten upstream or downstream, "
-        "let the flow turn to a lower angle there, or lower "
-        "the blade's tolerance, so that it has more knots along the chord"
+        f"{WALL_TOLERANCE:g} is allowed: shorten upstream or downstream, let the flow turn to a lower angle there, or "
+        "lower the blade's tolerance, so that it has more knots along the chord"
     )

@@ -1,13 +1,24 @@
-"""Camber lines from inlet to outlet: the sections' own, continued up- and downstream."""
+"""Camber lines from inlet to outlet: the sections' own, continued up- and downstream.
+
+A continuation keeps the slope d theta / dm' of the camber line at its end, or turns to a stated one as the square of
+the way: theta = theta_0 + reach (slope t + (turned - slope) t^3 / 3), with t from 0 at the edge to 1 at inlet or
+outlet.
+"""
 
 from dataclasses import dataclass
 
 import numpy as np
 
 from bladewright.blade.exact.section_stack import SectionStack
+from bladewright.blade.flow_path.meridional_curve import real_first
 from bladewright.blade.flow_path.stream_surface_map import Taylor
 from bladewright.blade.flow_path.streamlines import StreamLines
-from bladewright.domain.camber_correspondence import CamberCorrespondence
+from bladewright.domain.camber_correspondence import (
+    CAMBER_SHARES,
+    SIDE_SHARES,
+    CamberCorrespondence,
+    fitted_correspondence,
+)
 from bladewright.domain.duct import Duct
 from bladewright.numerics.elementary import Array, unit
 from bladewright.nurbs.basis import Reals
@@ -15,60 +26,64 @@ from bladewright.nurbs.basis import Reals
 
 @dataclass(frozen=True, kw_only=True)
 class CamberLines:
-    """Continued camber lines (..., m) in the planes (m', theta) of their stream surfaces, (m, y) in a cascade."""
+    """Continued camber lines (..., m) in the planes (m', theta) of their stream surfaces, (m, y) in a cascade.
+
+    The leading edge and what lies upstream of it have the number 0 in all that is by edge, the trailing edge and what
+    lies downstream the number 1.
+    """
 
     stations: SectionStack
     duct: Duct
     lines: StreamLines
-    """of the duct, at the stations' v"""
+    """the duct's stream lines, at the stations' v"""
     slopes: tuple[Array, Array]
     """(..., m) d theta / dm' at the leading and the trailing edge"""
     turned: tuple[Array | None, Array | None]
     """() d theta / dm' at inlet and outlet where an angle is stated"""
     correspondence: CamberCorrespondence
-    """how `points` follow the sides"""
+    """which point of the camber line belongs to a point of the sides"""
     joints: Reals
     """where, along the span, laws of evolution and the channel's edges lose derivatives"""
 
     def points(self, piece: str, t: Reals, sign: int = 0) -> Array:
         """Points (..., m, k, 2) at t (k,) in [0, 1] along `inlet`, `blade` or `outlet`.
 
-        With `sign` +1 or -1, up- or downstream of the blade: of the line that starts where the upper or the lower side
-        ends, which is another where the edge is blunt.
+        Upstream and downstream of a blunt edge, `sign` +1 or -1 gives the line that continues the end of the upper or
+        the lower side instead of that of the camber line.
         """
         if piece == "blade":
             return self.in_plane(self.stations.camber(self.correspondence(t)))
-        past = 0 if piece == "inlet" else 1
-        edge = self.start(past, sign)
-        end = np.array([self.duct.high if past else self.duct.low])
-        reach = self.lines.abscissa(end) - edge[..., 0]
-        share = 1.0 - t if past == 0 else t
-        slope, turn = self.slopes[past][..., None], self.turned[past]
+        edge = 0 if piece == "inlet" else 1
+        start = self.edge_points(edge, sign)
+        end = np.array([self.duct.high if edge else self.duct.low])
+        reach = self.lines.abscissa(end) - start[..., 0]
+        share = t if edge else 1.0 - t
+        slope, turn = self.slopes[edge][..., None], self.turned[edge]
         rise = slope * share
         if turn is not None:
             rise = rise + (turn - slope) * share**3 / 3.0
-        return np.stack([edge[..., 0] + reach * share, edge[..., 1] + reach * rise], axis=-1)
+        return np.stack([start[..., 0] + reach * share, start[..., 1] + reach * rise], axis=-1)
 
-    def start(self, past: int, sign: int = 0) -> Array:
-        """The end (..., m, 1, 2) of the camber at an edge; of the upper (+1) or lower side (-1) where it is blunt."""
-        if sign == 0 or not self.parted[past]:
-            return self.points("blade", np.array([float(past)]))
-        return self.side(np.array([float(past)]), sign)
+    def edge_points(self, edge: int, sign: int = 0) -> Array:
+        """Ends (..., m, 1, 2) of camber lines at an edge; where it is blunt, of the upper (+1) or lower side (-1)."""
+        if sign == 0 or not self.blunt[edge]:
+            return self.points("blade", np.array([float(edge)]))
+        return self.side(np.array([float(edge)]), sign)
 
     @property
-    def parted(self) -> tuple[bool, bool]:
-        """Whether a face stands between the sides' ends at the leading, and at the trailing edge."""
+    def blunt(self) -> tuple[bool, bool]:
+        """Whether a face lies between the sides' ends at the leading, and at the trailing edge: a back face counts."""
         first, last = (kind == "blunt" for kind in self.stations.kinds)
         return first, last or self.stations.back is not None
 
     def side(self, t: Reals, sign: int) -> Array:
-        """Points (..., m, k, 2) of the upper (+1) or the lower side (-1) at shares t (k,) of it, a back face apart."""
+        """Points (..., m, k, 2) at shares t (k,) of the upper (+1) or the lower side (-1) without its back face."""
         whole = 1.0 if self.stations.back is None else self.stations.back
         return self.in_plane(self.stations.plane.points(whole * t)[0 if sign > 0 else 1])
 
-    def direction(self, past: int) -> Array:
-        """Unit vectors (..., m, 2) along the camber, downstream, at the leading (0) or trailing (1) edge."""
-        slope = self.slopes[past]
+    def direction(self, edge: int) -> Array:
+        """Unit vectors (..., m, 2) along the camber lines, downstream, at the leading (0) or trailing (1) edge."""
+        slope = self.slopes[edge]
         return unit(np.stack([np.ones_like(slope), slope], axis=-1))
 
     def in_plane(self, section: Array) -> Array:
@@ -79,6 +94,13 @@ class CamberLines:
             return np.stack(np.broadcast_arrays(start + section[..., 0], section[..., 1]), axis=-1)
         u, _, tangential = stations.on_lines(section)
         return np.stack([self.lines.abscissa(stations.channel_parameter(u)), tangential], axis=-1)
+
+    def fitted_correspondence(self, edge_slope: float) -> CamberCorrespondence:
+        """The correspondence that suits all stations, for the real design: see `camber_correspondence`."""
+        camber = _abscissae(self.in_plane(self.stations.camber(CAMBER_SHARES)))
+        sides = 0.5 * (_abscissae(self.side(SIDE_SHARES, 1)) + _abscissae(self.side(SIDE_SHARES, -1)))
+        first, last = (kind == "round" for kind in self.stations.kinds)
+        return fitted_correspondence(camber, sides, (first, last), edge_slope)
 
 
 def camber_lines(
@@ -102,10 +124,10 @@ def camber_lines(
     )
 
 
-def _slope(stations: SectionStack, lines: StreamLines, past: int) -> Array:
+def _slope(stations: SectionStack, lines: StreamLines, edge: int) -> Array:
     """d theta / dm' (..., m) of the camber at an edge."""
-    at = np.array([float(past)])
-    along, point = stations.camber_ends()[past], stations.camber(at)[..., 0, :]
+    at = np.array([float(edge)])
+    along, point = stations.camber_ends()[edge], stations.camber(at)[..., 0, :]
     position, slope = (stations.lines.position(at, order)[..., 0, :] for order in range(2))
     by_u = along[..., 0] / stations.lines.densities(at)[0][..., 0]
     nothing = np.zeros_like(by_u)
@@ -115,3 +137,8 @@ def _slope(stations: SectionStack, lines: StreamLines, past: int) -> Array:
         stations.lines.lengths,
     )
     return tangential.first / (lines.mapping.density(position, slope) * by_u)
+
+
+def _abscissae(points: Array) -> Reals:
+    """Real abscissae (m, k) of points (..., m, k, 2)."""
+    return real_first(points[..., 0], 2)

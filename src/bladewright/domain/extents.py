@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 
 from bladewright.blade.exact.exact_blade import ExactBlade
-from bladewright.blade.exact.meridional_extent import MeridionalExtent
+from bladewright.blade.flow_path.meridional_curve import real_first
 from bladewright.domain.camber_lines import CamberLines, camber_lines
 from bladewright.domain.duct import Duct
 from bladewright.domain.walls import CrossLines, departure, edge_skew
@@ -15,104 +15,107 @@ from bladewright.nurbs.basis import Reals
 from bladewright.section.checks import number
 
 USUAL = 0.5
-"""extent, in mean meridional lengths, where none is given and the pitch needs no more"""
+"""Extent, in mean meridional lengths of the blade, where none is given and the pitch needs no more: half a blade."""
 STEP = 0.25
-"""extents that the pitch needs are rounded up to multiples of this, so that small changes of a design keep them"""
-MOST = 20.0
-"""extent, in mean meridional lengths, above which a duct is refused"""
-ROOM = 1.25
-"""extents of the walls' patches in which lines of equal v lie, over the bulge of the cross-lines at the edge"""
-NOSE = 0.05
-"""how much further than the nose, in mean meridional lengths, a duct reaches"""
+"""Extents that the pitch needs are rounded up to multiples of this, in mean meridional lengths, so that most small
+changes of a design leave them as they are."""
+MAX_EXTENT = 20.0
+"""Extent, in mean meridional lengths (axial chords in 2D), above which a duct is refused: it is a slip of the pen, and
+takes many knots."""
+BULGE_MARGIN = 1.25
+"""Least extent over the bulge of cross-lines at an edge: with 1 the last cross-line would touch inlet or outlet."""
+CLEARANCE = 0.05
+"""Least distance from the blade's foremost or rearmost point to inlet or outlet, in mean meridional lengths."""
+LIMIT_SHARE = 0.8
+"""Share of the extent at which the duct folds or meets the axis that a usual extent may take: cells near it are
+thin."""
 
 
 def extents(
-    full: ExactBlade, half_pitch: Array, crossing: CrossLines, upstream: float | None, downstream: float | None
+    exact: ExactBlade, half_pitch: Array, cross_lines: CrossLines, upstream: float | None, downstream: float | None
 ) -> tuple[float, float]:
-    """Extents up- and downstream in mean meridional lengths: those given where they suffice, else usual or needed ones.
+    """Extents up- and downstream in mean meridional lengths: those given, or usual ones, or more if needed.
 
-    A usual one is shortened where the duct would fold over or meet the axis. Raises DesignError where one is not a
-    number above what the nose and the pitch need.
+    A usual one is shortened where the duct would fold over or meet the axis. Raises DesignError where a given one is
+    not a number, or less than the blade and its pitch need.
     """
-    found, ends = [], end_cambers(full)
-    for past, (name, given) in enumerate((("upstream", upstream), ("downstream", downstream))):
-        needed = _needed(full.meridional_extent, ends, half_pitch, crossing, past)
+    found, ends = [], end_camber_lines(exact)
+    for edge, (name, given) in enumerate((("upstream", upstream), ("downstream", downstream))):
+        needed = _needed(exact, ends, half_pitch, cross_lines, edge)
         if given is None:
-            found.append(_usual(full, past, needed))
+            found.append(_usual(exact, edge, needed))
             continue
         value = float(np.real(number(name, given)))
-        if not needed <= value <= MOST:
+        if not needed <= value <= MAX_EXTENT:
             raise DesignError(
                 f"{name} is {value:g} meridional lengths of the blade: it must be at least {needed:.4g}, so "
-                f"that the walls' patches hold the blade's nose and do not fold beside it, and at most {MOST:g}"
+                f"that the walls' patches hold the blade's nose and do not fold beside it, and at most {MAX_EXTENT:g}"
             )
         found.append(value)
     return found[0], found[1]
 
 
-def shortest_duct(full: ExactBlade) -> Duct:
-    """The duct that reaches just past the noses."""
-    course = full.meridional_extent
+def shortest_duct(exact: ExactBlade) -> Duct:
+    """The duct that ends at the blade's foremost and rearmost points."""
+    extent = exact.meridional_extent
     return Duct(
-        channel=course.channel,
-        start=course.start,
-        end=course.end,
-        edges=course.edges,
-        length=course.length,
-        unit=course.unit,
-        low=course.noses[0],
-        high=course.noses[1],
-        revolved=full.mapping.revolved,
+        channel=extent.channel,
+        start=extent.start,
+        end=extent.end,
+        edges=extent.edges,
+        length=extent.length,
+        unit=extent.unit,
+        low=extent.noses[0],
+        high=extent.noses[1],
+        revolved=exact.mapping.revolved,
     )
 
 
-def openings(ends: CamberLines, half_pitch: float) -> tuple[float, float]:
-    """The share of the width at which cross-lines leave the blade, on hub and shroud."""
-    edges = [_at_edge(ends, past) for past in (0, 1)]
+def end_camber_lines(exact: ExactBlade) -> CamberLines:
+    """Camber lines on hub and shroud, hardly continued."""
+    return camber_lines(exact.stations(np.array([0.0, 1.0])), shortest_duct(exact))
+
+
+def departures(ends: CamberLines, half_pitch: float) -> tuple[float, float]:
+    """The rates o at which cross-lines leave the blade on hub and shroud."""
+    edges = [_at_edge(ends, edge) for edge in (0, 1)]
     hub, shroud = edges[1][:, 0] - edges[0][:, 0]
     return departure(half_pitch, hub), departure(half_pitch, shroud)
 
 
-def _at_edge(camber: CamberLines, past: int) -> Reals:
-    """Real points (m, 2) of the camber at an edge."""
-    points = np.real(camber.points("blade", np.array([float(past)])))[..., 0, :]
-    return np.asarray(points.reshape(-1, *points.shape[-2:])[0])
+def _at_edge(camber: CamberLines, edge: int) -> Reals:
+    """Real points (m, 2) of the camber lines at an edge."""
+    return real_first(camber.points("blade", np.array([float(edge)]))[..., 0, :], 2)
 
 
-def _usual(full: ExactBlade, past: int, needed: float) -> float:
-    """The usual extent; more where it is needed, less where the duct ends before that."""
-    course = full.meridional_extent
+def _usual(exact: ExactBlade, edge: int, needed: float) -> float:
+    """The usual extent; more where it is needed, less where the duct must end before that."""
+    extent = exact.meridional_extent
     wanted = max(USUAL, STEP * float(np.ceil(needed / STEP)))
-    duct, end = shortest_duct(full), course.place(past, wanted)
-    longer = replace(duct, high=end) if past else replace(duct, low=end)
-    limit = longer.limit("downstream" if past else "upstream")
-    return wanted if limit is None else max(needed, 0.8 * course.extent(past, limit.last))
+    duct, end = shortest_duct(exact), extent.place(edge, wanted)
+    longer = replace(duct, high=end) if edge else replace(duct, low=end)
+    limit = longer.limit("downstream" if edge else "upstream")
+    return wanted if limit is None else max(needed, LIMIT_SHARE * extent.extent(edge, limit.last))
 
 
-def _needed(
-    meridional_extent: MeridionalExtent, ends: CamberLines, half_pitch: Array, crossing: CrossLines, past: int
-) -> float:
-    """The extension must outlast the bulge of the cross-lines, and reach past the nose."""
-    sign = 1.0 if past else -1.0
-    nose = meridional_extent.noses[past] + sign * NOSE * meridional_extent.unit
-    places = _bulges(ends, half_pitch, crossing, past)
-    return meridional_extent.extent(past, float(np.max([nose, *places]) if past else np.min([nose, *places])))
+def _needed(exact: ExactBlade, ends: CamberLines, half_pitch: Array, cross_lines: CrossLines, edge: int) -> float:
+    """The least extent: past the bulge of the cross-lines, and past the blade's foremost or rearmost point."""
+    extent = exact.meridional_extent
+    sign = 1.0 if edge else -1.0
+    nose = extent.noses[edge] + sign * CLEARANCE * extent.unit
+    places = _bulges(ends, half_pitch, cross_lines, edge)
+    return extent.extent(edge, float(np.max([nose, *places]) if edge else np.min([nose, *places])))
 
 
-def _bulges(camber: CamberLines, half_pitch: Array, crossing: CrossLines, past: int) -> Reals:
-    """u (2,) on hub and shroud up to which a duct must reach past cross-lines from an edge."""
-    direction = np.real(camber.direction(past)).reshape(-1, 2, 2)[0]
-    u = np.broadcast_to(np.real(camber.stations.channel_parameter(np.array([float(past)]))), (2, 1))
+def _bulges(camber: CamberLines, half_pitch: Array, cross_lines: CrossLines, edge: int) -> Reals:
+    """u (2,) on hub and shroud that the duct must reach for the cross-lines from an edge."""
+    direction = np.real(camber.direction(edge)).reshape(-1, 2, 2)[0]
+    u = np.broadcast_to(np.real(camber.stations.channel_parameter(np.array([float(edge)]))), (2, 1))
     density = np.real(camber.lines.densities(u)[0])
     half = float(np.real(half_pitch).flat[0])
-    size = np.max([edge_skew(direction[:, 1], half, each, past, crossing.lean) for each in (1, -1)], axis=0)
-    if camber.stations.kinds[past] != "round":
+    size = np.max([edge_skew(direction[:, 1], half, each, edge, cross_lines.skew) for each in (1, -1)], axis=0)
+    if camber.stations.kinds[edge] != "round":
         size = 0.0 * size
-    bulge = crossing.bulge * np.array(openings(camber, half)) * size * direction[:, 0]
-    reach = ROOM * bulge / density.reshape(-1, 2)[0]
-    return np.asarray(u[:, 0] + (reach if past else -reach))
-
-
-def end_cambers(full: ExactBlade) -> CamberLines:
-    """Camber lines on hub and shroud, barely continued."""
-    return camber_lines(full.stations(np.array([0.0, 1.0])), shortest_duct(full))
+    bulge = cross_lines.bulge * np.array(departures(camber, half)) * size * direction[:, 0]
+    reach = BULGE_MARGIN * bulge / density.reshape(-1, 2)[0]
+    return np.asarray(u[:, 0] + (reach if edge else -reach))

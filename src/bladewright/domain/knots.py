@@ -1,4 +1,4 @@
-"""Knots of a passage: real numbers chosen once, held while a design is differentiated."""
+"""Knots of a passage, and all else that is real and held while a design is differentiated."""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -12,23 +12,24 @@ from bladewright.numerics.elementary import frozen
 from bladewright.nurbs.basis import Reals, greville
 
 PIECES = ("inlet", "blade", "outlet")
-"""pieces of a passage's faces along the flow"""
+"""Pieces of a passage's faces along the flow."""
 BLADE_AT = (0.25, 0.75)
-"""u of the leading and the trailing edge on the passage's faces"""
+"""u of the leading and the trailing edge on the passage's faces: a convention, since each piece has knots of its
+own."""
 MIDDLE = (0.5,)
-"""u of inlet and outlet amid both halves of the walls"""
+"""u of inlet and outlet where the halves of the walls meet."""
 STRIP_AT = (0.4, 0.6)
-"""the same where a strip lies between the halves: on both its sides"""
+"""u of inlet and outlet where a strip between the halves begins and ends: a convention too."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class PassageKnots:
-    """Knots of the passage's faces over [0, 1], and the real numbers that place them."""
+    """Knots of the passage's faces over [0, 1], and the real numbers that its shape depends on besides the design."""
 
     length: float
-    """mean meridional length of the blade [m], in which extents count"""
+    """mean meridional length of the blade [m], the unit of extents"""
     unit: float
-    """how much of the channel's u it takes"""
+    """how much of the channel's u such a length takes"""
     edges: tuple[float, float]
     """mean u of the blade's edges"""
     upstream: float
@@ -40,31 +41,31 @@ class PassageKnots:
     high: float
     """u of the outlet"""
     start: float
-    """u down to which the duct keeps to the channel's polynomials"""
+    """u down to which the duct is the channel; it straightens upstream"""
     end: float
-    """u up to which it does"""
-    opening: tuple[float, float]
-    """share of the passage's width at which cross-lines leave the blade, on hub and shroud"""
-    parted: tuple[bool, bool]
-    """whether a face stands between the sides' ends at the leading, and at the trailing edge"""
+    """u up to which it is"""
+    departures: tuple[float, float]
+    """o of the walls' halves on hub and shroud: the rate at which cross-lines leave the blade"""
+    blunt: tuple[bool, bool]
+    """whether a face lies between the sides' ends at the leading, and at the trailing edge"""
     back: float | None
-    """u from which both sides are that face themselves, where they are"""
+    """u from which the sides themselves form a back face; None where they do not"""
     tail: Reals
-    """the blade's own knots along u from there on"""
-    crossing: CrossLines
+    """the blade's own inner knots along u on the back face"""
+    cross_lines: CrossLines
     """how cross-lines leave the edges and turn back"""
     correspondence: CamberCorrespondence
     """how periodic boundaries follow the blade's sides"""
     blade: Reals
-    """the blade's own along u, up to a back face of its sides, and what the walls need besides"""
+    """knots beside the blade along u: its own, without a back face, and those that the walls need as well"""
     inlet: Reals
-    """of the piece upstream of the blade, along u"""
+    """knots of the piece upstream of the blade along u"""
     outlet: Reals
-    """of the piece downstream of the blade, along u"""
+    """knots of the piece downstream of the blade along u"""
     across: Reals
-    """from the blade to a periodic boundary"""
+    """knots from the blade to a periodic boundary"""
     span: Reals
-    """of inlet, outlet and periodic boundaries, along v"""
+    """knots of inlet, outlet and periodic boundaries along v"""
 
     def __post_init__(self) -> None:
         for name in (*PIECES, "across", "span", "tail"):
@@ -76,7 +77,7 @@ class PassageKnots:
 
     @cached_property
     def u(self) -> Reals:
-        """Knots along the flow: the three pieces, which meet with a full knot at the blade's edges."""
+        """Knots along the flow: the three pieces, which meet in knots of full multiplicity at the blade's edges."""
         low, high = BLADE_AT
         ends = (0.0, low, high, 1.0)
         parts = [
@@ -86,31 +87,31 @@ class PassageKnots:
         full = [np.full(DEGREE, edge) for edge in BLADE_AT]
         return clamped(np.concatenate([parts[0], full[0], parts[1], full[1], parts[2]]))
 
-    def around(self, past: int) -> Reals:
-        """Knots of inlet (0) or outlet (1) from one periodic boundary to the other, full where walls have creases."""
+    def around(self, edge: int) -> Reals:
+        """Knots of inlet (0) or outlet (1) between periodic boundaries, of full multiplicity at creases."""
         inner = self.across[DEGREE + 1 : -DEGREE - 1]
-        cuts = self.cuts(past)
+        cuts = self.cuts(edge)
         low, high = cuts[0], cuts[-1]
         full = [np.full(DEGREE, cut) for cut in cuts]
-        if self.parted[past]:
-            full[1:1] = [low + (high - low) * self.strip(past)[DEGREE + 1 : -DEGREE - 1]]
+        if self.blunt[edge]:
+            full[1:1] = [low + (high - low) * self.strip(edge)[DEGREE + 1 : -DEGREE - 1]]
         return clamped(np.concatenate([low - low * inner[::-1], *full, high + (1.0 - high) * inner]))
 
     @property
     def side(self) -> Reals:
-        """Knots of the blade's sides along u: full where a back face begins."""
+        """Knots of the blade's sides along u, of full multiplicity where a back face begins."""
         if self.back is None:
             return self.blade
         inner = [self.back * self.blade[DEGREE + 1 : -DEGREE - 1], np.full(DEGREE, self.back)]
         return clamped(np.concatenate([*inner, self.tail[DEGREE + 1 : -DEGREE - 1]]))
 
-    def strip(self, past: int) -> Reals:
-        """Knots across a strip, from the lower to the upper half: one polynomial, or as both sides along the back."""
-        if self.back is None or not past:
+    def strip(self, edge: int) -> Reals:
+        """Knots across a strip, from lower to upper half: none inside, or those of both sides of a back face."""
+        if self.back is None or not edge:
             return clamped(np.empty(0))
         ahead = 0.5 * (self.tail[DEGREE + 1 : -DEGREE - 1] - self.back) / (1.0 - self.back)
         return clamped(np.concatenate([ahead, np.full(DEGREE, 0.5), 1.0 - ahead[::-1]]))
 
-    def cuts(self, past: int) -> tuple[float, ...]:
-        """Places along u of inlet (0) or outlet (1) where walls have creases: two where the edge is blunt."""
-        return STRIP_AT if self.parted[past] else MIDDLE
+    def cuts(self, edge: int) -> tuple[float, ...]:
+        """u of inlet (0) or outlet (1) at which walls have creases: two where the edge is blunt."""
+        return STRIP_AT if self.blunt[edge] else MIDDLE

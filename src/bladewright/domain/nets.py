@@ -19,34 +19,35 @@ class BladeNets(NamedTuple):
     upper: Array
     lower: Array
     edges: Sequence[Array | None]
-    """of the faces of leading and trailing edge, where they are blunt; u from the upper to the lower side"""
+    """those of the faces of leading and trailing edge where these are blunt, u from the upper to the lower side"""
 
 
 def native_nets(
     camber: CamberLines,
     walls: Mapping[str, WallHalf],
-    between: Mapping[str, WallStrip],
+    strips: Mapping[str, WallStrip],
     blade: BladeNets,
     knots: PassageKnots,
     half_pitch: Array,
 ) -> dict[str, Array]:
     """Control nets (..., n_u, n_v, 3) of the walls' halves and strips, the periodic boundaries, inlet and outlet.
 
-    The walls that the blade stands on take over the ends of its nets.
+    Patches are interpolated, and then given the boundary control points of the neighbours that they join: the walls
+    that the blade stands on those of the blade's ends.
     """
     middle = _middle(camber, knots)
     shifted = {f"periodic_{half}": _shifted(camber, middle, sign * half_pitch) for half, sign in _HALVES}
     nets = dict(shifted)
     for name, wall in walls.items():
         half = name.removeprefix("hub_").removeprefix("shroud_")
-        line = _beside(wall, blade, knots) if wall.touched else middle[..., wall.row, :]
-        nets[name] = _edged(_wall(wall, knots), line, shifted[f"periodic_{half}"][..., wall.row, :], -2)
-    for name, strip in between.items():
+        line = _beside(wall, blade, knots) if wall.has_blade else middle[..., wall.row, :]
+        nets[name] = _with_ends(_wall(wall, knots), line, shifted[f"periodic_{half}"][..., wall.row, :], -2)
+    for name, strip in strips.items():
         wall_name = name.partition("_")[0]
         lines = [nets[f"{wall_name}_{half}"][..., 0, :] for half in ("lower", "upper")]
         nets[name] = _strip(strip, blade, lines, knots)
     for name, end in (("inlet", 0), ("outlet", -1)):
-        nets[name] = _opening(camber, walls, nets, knots, end)
+        nets[name] = _open_end(camber, walls, nets, knots, end)
     return nets
 
 
@@ -54,7 +55,7 @@ _HALVES = (("upper", 1.0), ("lower", -1.0))
 
 
 def _along(points: Mapping[str, Array], knots: PassageKnots, axis: int) -> Array:
-    """Control points through points of the three pieces, which share those at the edges."""
+    """Control points of the spline through points of the three pieces, which share those at the edges."""
     parts = [through(points[piece], getattr(knots, piece), axis) for piece in PIECES]
     taken = [np.take(part, np.arange(1, part.shape[axis]), axis=axis) for part in parts[1:]]
     return np.concatenate([parts[0], *taken], axis=axis)
@@ -69,7 +70,7 @@ def through(points: Array, knots: Reals, axis: int) -> Array:
 
 
 def _middle(camber: CamberLines, knots: PassageKnots) -> Array:
-    """Net of the continued camber surface: u along the flow, v along the span."""
+    """Net of the continued camber surface, u along the flow and v along the span."""
     points = {}
     for piece in PIECES:
         plane = camber.points(piece, knots.sites(piece))
@@ -79,6 +80,7 @@ def _middle(camber: CamberLines, knots: PassageKnots) -> Array:
 
 
 def _wall(wall: WallHalf, knots: PassageKnots) -> Array:
+    """Net of a wall's half, u along the flow and v from the blade to the periodic boundary."""
     v = knots.sites("across")
     points = {piece: wall.in_space(piece, knots.sites(piece), v)[0] for piece in PIECES}
     return through(_along(points, knots, -3), knots.across, -2)
@@ -109,22 +111,22 @@ def _poles(knots: Reals) -> int:
 def _strip(strip: WallStrip, blade: BladeNets, lines: Sequence[Array], knots: PassageKnots) -> Array:
     """Net of a strip between the lower and the upper half, which run along `lines` (..., n, 3) from inlet to outlet."""
     sites = knots.sites(strip.piece)
-    across = knots.strip(strip.past)
+    across = knots.strip(strip.edge)
     net = through(strip.in_space(strip.piece, sites, greville(across, DEGREE))[0], getattr(knots, strip.piece), -3)
     net = through(net, across, -2)
-    part = slice(-len(sites), None) if strip.past else slice(len(sites))
-    face = blade.edges[strip.past]
+    part = slice(-len(sites), None) if strip.edge else slice(len(sites))
+    face = blade.edges[strip.edge]
     if face is None:
         lower, upper = (side[..., _poles(knots.blade) - 1 :, strip.row, :] for side in (blade.lower, blade.upper))
         own = concatenated([lower, upper[..., -2::-1, :]], -2)
     else:
         own = face[..., ::-1, strip.row, :]
-    far = net[..., -1 if strip.past else 0, :, :]
-    net = _edged(net, *((own, far) if strip.past else (far, own)), -3)
-    return _edged(net, lines[0][..., part, :], lines[1][..., part, :], -2)
+    far = net[..., -1 if strip.edge else 0, :, :]
+    net = _with_ends(net, *((own, far) if strip.edge else (far, own)), -3)
+    return _with_ends(net, lines[0][..., part, :], lines[1][..., part, :], -2)
 
 
-def _opening(
+def _open_end(
     camber: CamberLines, walls: Mapping[str, WallHalf], nets: Mapping[str, Array], knots: PassageKnots, end: int
 ) -> Array:
     """Net of inlet (0) or outlet (-1): u from the lower to the upper periodic boundary, v along the span."""
@@ -132,7 +134,7 @@ def _opening(
     plane = camber.points(piece, np.array([t]))
     position = camber.lines.position(camber.lines.u_at(plane[..., 0]))
     v, across = knots.sites("span")[:, None], knots.sites("across")
-    share = (1.0 - v) * width_share(knots.opening[0], across) + v * width_share(knots.opening[1], across)
+    share = (1.0 - v) * width_share(knots.departures[0], across) + v * width_share(knots.departures[1], across)
     half = walls["hub_upper"].half_pitch[..., None, None]
     edges = {sign: camber.points(piece, np.array([t]), sign)[..., 1] for sign in (-1, 1)}
 
@@ -144,18 +146,18 @@ def _opening(
     lower, upper = (
         part(edges[sign] + (plane[..., 1] + sign * half - edges[sign]) * share, knots.across) for sign in (-1, 1)
     )
-    parts, between = [lower[..., ::-1, :], upper[..., 1:, :]], []
-    if knots.parted[end]:
+    parts, named = [lower[..., ::-1, :], upper[..., 1:, :]], []
+    if knots.blunt[end]:
         width = knots.strip(end % 2)
         strip = part(edges[-1] + (edges[1] - edges[-1]) * greville(width, DEGREE), width)
         parts[1:1] = [strip[..., 1:, :]]
-        between = [STRIPS[end]]
+        named = [STRIPS[end]]
     net = concatenated(parts, -2)
     hub, shroud = (
         concatenated(
             [
                 nets[f"{name}_lower"][..., end, ::-1, :],
-                *(nets[f"{name}_{strip}"][..., end, 1:, :] for strip in between),
+                *(nets[f"{name}_{strip}"][..., end, 1:, :] for strip in named),
                 nets[f"{name}_upper"][..., end, 1:, :],
             ],
             -2,
@@ -163,17 +165,17 @@ def _opening(
         for name in ("hub", "shroud")
     )
     lower, upper = (nets[f"periodic_{half}"][..., end, :, :] for half in ("lower", "upper"))
-    return np.swapaxes(_edged(_edged(net, hub, shroud, -3), lower, upper, -2), -3, -2)
+    return np.swapaxes(_with_ends(_with_ends(net, hub, shroud, -3), lower, upper, -2), -3, -2)
 
 
-def _edged(net: Array, first: Array, last: Array, axis: int) -> Array:
+def _with_ends(net: Array, first: Array, last: Array, axis: int) -> Array:
     """The net with other control points at both ends of an axis."""
     inner = np.take(net, np.arange(1, net.shape[axis] - 1), axis=axis)
     return concatenated([np.expand_dims(first, axis), inner, np.expand_dims(last, axis)], axis)
 
 
 def _shifted(camber: CamberLines, net: Array, by: Array) -> Array:
-    """A net turned about the machine axis by theta, or moved along y in a cascade."""
+    """A net rotated about the machine axis by theta, or translated along y in a cascade."""
     x, y, z = np.moveaxis(net, -1, 0)
     by = by[..., None, None]
     if not camber.lines.mapping.revolved:

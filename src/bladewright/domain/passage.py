@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
@@ -43,12 +44,12 @@ OUTWARD = MappingProxyType(
         "blade_trailing_edge": 1,
     }
 )
-"""+1 for the faces whose dS/du x dS/dv points out of the passage"""
+"""+1 for the faces whose dS/du x dS/dv points out of the passage, -1 for the others."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Passage:
-    """What the fluid fills around one blade, half a pitch to each side, from inlet to outlet."""
+    """The flow passage around one blade: half a pitch to each side of it, from inlet to outlet."""
 
     dimension: ClassVar[int] = 3
 
@@ -60,7 +61,7 @@ class Passage:
     strips of the walls downstream of it, `hub_wake` and `shroud_wake` (u along the flow, v from the lower to the upper
     half), or `blade_leading_edge`, `hub_stagnation` and `shroud_stagnation`; metres"""
     knots: PassageKnots
-    """give them to `passage(..., knots=...)` to hold them"""
+    """as `passage(..., knots=...)` takes them, to hold them"""
     camber: CamberLines
     """continued camber lines, from hub to shroud"""
     walls: Mapping[str, WallHalf]
@@ -72,7 +73,7 @@ class Passage:
 
     @cached_property
     def surfaces(self) -> Faces:
-        """The passage's faces by name; the whole ones, or `hub_upper_inlet`, `inlet_lower`... where they are split."""
+        """The passage's faces by name: the whole ones, or `hub_upper_inlet`, `inlet_lower`... where they are split."""
         if not self.split:
             return self.whole
         pieces: dict[str, Surface | TrimmedSurface] = {}
@@ -132,27 +133,34 @@ class Passage:
 
     @cached_property
     def ring_error(self) -> float:
-        """How much more than the ring blade count x (passage + blade) fill, of the ring; one of each in a cascade."""
+        """blade count x (passage + blade) over the ring, less one; in a cascade, one of each over a pitch."""
         share = (self.blade.design.blade_count or 1) * (self.properties.volume + self.blade.properties.volume)
         return float(np.real(share / self.ring - 1.0))
 
     @cached_property
-    def sector(self) -> PeriodicSector:
-        """Passage and blade together, between exact surfaces of revolution."""
+    def periodic_sector(self) -> PeriodicSector:
+        """One blade's share of the duct, fluid and blade together, between exact surfaces of revolution."""
         faces = {name: cast(Surface, face) for name, face in self.whole.items() if name != "tip"}
         cuts = self.knots.cuts(0), self.knots.cuts(1)
         return periodic_sector(f"{self.blade.name}-sector", faces, self.duct, self.blade.chord, cuts)
 
+    @property
+    def sector(self) -> PeriodicSector:
+        """Deprecated: `periodic_sector`, of which this is the old name."""
+        warnings.warn("Passage.sector is deprecated: use Passage.periodic_sector", DeprecationWarning, stacklevel=2)
+        return self.periodic_sector
+
     @cached_property
     def folds(self) -> dict[str, tuple[float, float, float]]:
-        """By the name of a wall's half: the least Jacobian in (m', theta), of its median, and u, v where it is."""
+        """By the name of a wall's half: least Jacobian in (m', theta) over its median, and the u, v where it is."""
         return {name: self._least(name, wall) for name, wall in self.walls.items()}
 
     @cached_property
     def wall_error(self) -> float:
-        """Largest distance of hub and shroud from their surfaces of revolution, of the chord."""
-        halves = [self._off(name, wall) for name, wall in self.walls.items()]
-        return max([*halves, *(self._off_strip(name, strip) for name, strip in self.strips.items())]) / self.blade.chord
+        """Largest distance of hub and shroud from their surfaces of revolution, in chords."""
+        halves = [self._wall_distance(name, wall) for name, wall in self.walls.items()]
+        strips = [self._strip_distance(name, strip) for name, strip in self.strips.items()]
+        return max([*halves, *strips]) / self.blade.chord
 
     def _least(self, name: str, wall: WallHalf) -> tuple[float, float, float]:
         face = cast(Surface, self.whole[name])
@@ -162,30 +170,30 @@ class Passage:
             t = _between(getattr(self.knots, piece), (1e-6, 0.3, 0.7, 1.0 - 1e-6))
             u = start + (end - start) * t
             normal = np.cross(np.real(face.grid(u, v, 1, 0)), np.real(face.grid(u, v, 0, 1)))
-            points, upright = (np.real(part) for part in wall.in_space(piece, t, v))
+            points, normals = (np.real(part) for part in wall.in_space(piece, t, v))
             radius = points[..., 1] ** 2 + points[..., 2] ** 2 if self.duct.revolved else 1.0
-            lowest.append(wall.sign * dot(normal, upright) / radius)
+            lowest.append(wall.sign * dot(normal, normals) / radius)
             places.append(u)
         jacobian, u = np.concatenate(lowest), np.concatenate(places)
         i, j = np.unravel_index(int(np.argmin(jacobian)), jacobian.shape)
         return float(jacobian[i, j] / np.median(jacobian)), float(u[i]), float(v[j])
 
-    def _off(self, name: str, wall: WallHalf) -> float:
+    def _wall_distance(self, name: str, wall: WallHalf) -> float:
         face = cast(Surface, self.whole[name])
         v = _between(self.knots.across, (0.0, 0.31, 0.74))
         worst = 0.0
         for piece, start, end in self._pieces():
             t = _between(getattr(self.knots, piece), (0.31, 0.74))
-            points, upright = (np.real(part) for part in wall.in_space(piece, t, v))
-            off = dot(np.real(face.grid(start + (end - start) * t, v)) - points, upright)
+            points, normals = (np.real(part) for part in wall.in_space(piece, t, v))
+            off = dot(np.real(face.grid(start + (end - start) * t, v)) - points, normals)
             worst = max(worst, float(np.max(np.abs(off))))  # real: a measured distance
         return worst
 
-    def _off_strip(self, name: str, strip: WallStrip) -> float:
+    def _strip_distance(self, name: str, strip: WallStrip) -> float:
         face = cast(Surface, self.whole[name])
         t, v = _between(getattr(self.knots, strip.piece), (0.31, 0.74)), np.linspace(0.0, 1.0, 9)
-        points, upright = (np.real(part) for part in strip.in_space(strip.piece, t, v))
-        return float(np.max(np.abs(dot(np.real(face.grid(t, v)) - points, upright))))  # real: a measured distance
+        points, normals = (np.real(part) for part in strip.in_space(strip.piece, t, v))
+        return float(np.max(np.abs(dot(np.real(face.grid(t, v)) - points, normals))))  # real: a measured distance
 
     @staticmethod
     def _pieces() -> tuple[tuple[str, float, float], ...]:
@@ -194,21 +202,21 @@ class Passage:
 
 
 def _between(knots: Reals, shares: tuple[float, ...]) -> Reals:
-    """Places inside each knot span, and the last knot where `shares` has the first."""
+    """Parameters at shares of each knot span, and the last knot where 0 is among them."""
     spans = breaks(knots)
     places = np.concatenate([spans[:-1] + share * np.diff(spans) for share in shares])
     return np.sort(np.append(places, spans[-1]) if 0.0 in shares else places)
 
 
 def pieces_of(name: str, face: Surface, knots: PassageKnots) -> dict[str, Surface]:
-    """The smooth pieces of a face, each over [0, 1], by names that begin with the face's."""
+    """The smooth pieces of a face between its creases, each over [0, 1], by names that begin with the face's."""
     if name.startswith("blade") or name.endswith(STRIPS):
         return {name: face}
     cuts: tuple[float, ...] = BLADE_AT
     ends: tuple[str, ...] = PIECES
     if name in {"inlet", "outlet"}:
-        past = int(name == "outlet")
-        cuts = knots.cuts(past)
-        ends = ("lower", STRIPS[past], "upper") if knots.parted[past] else ("lower", "upper")
+        edge = int(name == "outlet")
+        cuts = knots.cuts(edge)
+        ends = ("lower", STRIPS[edge], "upper") if knots.blunt[edge] else ("lower", "upper")
     parts = split(face, np.array(cuts), "u")
     return {f"{name}_{end}": reparametrised(part) for end, part in zip(ends, parts, strict=True)}

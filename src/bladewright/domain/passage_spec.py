@@ -14,31 +14,31 @@ from bladewright.domain.walls import WallHalf, WallStrip, wall_halves, wall_stri
 from bladewright.numerics.elementary import Array
 from bladewright.nurbs.basis import Reals
 
-Planes = tuple[CamberLines, Mapping[str, WallHalf], Mapping[str, WallStrip]]
-"""camber lines, walls' halves and strips"""
+PlaneGeometry = tuple[CamberLines, Mapping[str, WallHalf], Mapping[str, WallStrip]]
+"""Camber lines, the halves of the walls and their strips."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class PassageSpec:
-    """A blade and what its passage depends on besides knots."""
+    """A blade and all that its passage depends on besides knots."""
 
     blade: Blade
-    full: ExactBlade
-    """the exact blade without gaps"""
-    half: Array
-    """half the pitch, in theta or in y"""
+    exact: ExactBlade
+    """the exact blade from wall to wall, without clearances"""
+    half_pitch: Array
+    """() in theta, or y in a cascade"""
     turned: tuple[Array | None, Array | None]
-    """d theta / dm' at inlet and outlet, where stated"""
+    """() d theta / dm' at inlet and outlet, where an angle is stated"""
 
     @property
-    def real_half(self) -> float:
+    def real_half_pitch(self) -> float:
         """Half the pitch of the real design."""
-        return float(np.real(self.half).flat[0])
+        return float(np.real(self.half_pitch).flat[0])
 
     def duct(self, knots: PassageKnots) -> Duct:
         """The duct at given knots."""
         return Duct(
-            channel=self.full.meridians,
+            channel=self.exact.meridians,
             start=knots.start,
             end=knots.end,
             edges=knots.edges,
@@ -46,16 +46,17 @@ class PassageSpec:
             unit=knots.unit,
             low=knots.low,
             high=knots.high,
-            revolved=self.full.mapping.revolved,
+            revolved=self.exact.mapping.revolved,
         )
 
     def camber(self, knots: PassageKnots, v: Reals) -> CamberLines:
         """Camber lines with stations at v (m,)."""
-        joints = np.unique(self.full.breaks_along_v())
-        return camber_lines(self.full.stations(v), self.duct(knots), self.turned, joints, knots.correspondence)
+        joints = np.unique(self.exact.breaks_along_v())
+        return camber_lines(self.exact.stations(v), self.duct(knots), self.turned, joints, knots.correspondence)
 
-    def plane(self, knots: PassageKnots, v: Reals) -> Planes:
-        """Camber lines with stations at v (m,), hub first and shroud last, and walls' halves and strips."""
+    def plane(self, knots: PassageKnots, v: Reals) -> PlaneGeometry:
+        """Camber lines with stations at v (m,), hub first and shroud last, and the walls' halves and strips."""
         camber, ends = (self.camber(knots, places) for places in (v, v[[0, -1]]))
-        touched = {wall: wall in self.blade.design.ends for wall in ("hub", "shroud")}
-        return camber, wall_halves(ends, touched, self.half, knots.opening, knots.crossing), wall_strips(ends, touched)
+        has_blade = {wall: wall in self.blade.design.ends for wall in ("hub", "shroud")}
+        halves = wall_halves(ends, has_blade, self.half_pitch, knots.departures, knots.cross_lines)
+        return camber, halves, wall_strips(ends, has_blade)

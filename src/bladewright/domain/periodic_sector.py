@@ -22,18 +22,23 @@ from bladewright.nurbs.surface import Surface
 from bladewright.nurbs.trimmed import TrimmedSurface
 
 PLACES = 65
-"""places on an edge from which its way along the wall is followed"""
-ROOM = 0.02
-"""how much further than to inlet and outlet, in mean meridional lengths, walls reach that are trimmed there"""
+"""Points of an edge whose parameters on the wall are found by search; between them they are interpolated and
+polished."""
+MERIDIAN_POINTS = 2001
+"""Points of the wall's meridian among which that search looks for the nearest."""
+OVERHANG = 0.02
+"""How far the untrimmed walls reach past inlet and outlet, in mean meridional lengths: trimming needs a margin."""
+ANGULAR_OVERHANG = 0.05
+"""The same in theta (y in a cascade), as a share of the sector's width."""
 OUTWARD = MappingProxyType(
     {"hub": -1, "shroud": 1, "inlet": -1, "outlet": 1, "periodic_upper": -1, "periodic_lower": 1}
 )
-"""+1 for the faces whose dS/du x dS/dv points out of the sector"""
+"""+1 for the faces whose dS/du x dS/dv points out of the sector, -1 for the others."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class PeriodicSector:
-    """One blade's share of the duct; with the blade cut out, the passage."""
+    """One blade's share of the duct; with the blade cut out of it, the passage is left."""
 
     name: str
     surfaces: Faces
@@ -51,7 +56,7 @@ class PeriodicSector:
 
 
 Cuts = tuple[tuple[float, ...], tuple[float, ...]]
-"""places along u of inlet and outlet where their ends have creases"""
+"""u of inlet and outlet at which their ends have creases."""
 
 
 def periodic_sector(name: str, faces: Mapping[str, Surface], duct: Duct, chord: float, cuts: Cuts) -> PeriodicSector:
@@ -65,21 +70,21 @@ def periodic_sector(name: str, faces: Mapping[str, Surface], duct: Duct, chord: 
 
 def _wall(faces: Mapping[str, Surface], duct: Duct, row: int, name: str, chord: float, cuts: Cuts) -> TrimmedSurface:
     """A wall within its edges: along the lower periodic boundary, the outlet, and back."""
-    room = ROOM * duct.unit
-    meridian = replace(duct, low=duct.low - room, high=duct.high + room).wall(name)
-    traces = [
-        trace
+    margin = OVERHANG * duct.unit
+    meridian = replace(duct, low=duct.low - margin, high=duct.high + margin).wall(name)
+    edges = [
+        edge
         for face, at in (
             ("periodic_lower", BLADE_AT),
             ("outlet", cuts[1]),
             ("periodic_upper", BLADE_AT),
             ("inlet", cuts[0]),
         )
-        for trace in _traces(faces[face], row, np.array(at), meridian, duct)
+        for edge in _wall_curves(faces[face], row, np.array(at), meridian, duct)
     ]
-    across = np.concatenate([trace.across for trace in traces])
-    room = 0.05 * float(np.ptp(across))
-    if duct.revolved and float(np.ptp(across)) + 2.0 * room >= 2.0 * np.pi:
+    across = np.concatenate([edge.across for edge in edges])
+    margin = ANGULAR_OVERHANG * float(np.ptp(across))
+    if duct.revolved and float(np.ptp(across)) + 2.0 * margin >= 2.0 * np.pi:
         raise DesignError(
             f"upstream or downstream: the passage winds {np.degrees(np.ptp(across)):.0f} deg around the axis at the "
             f"{name}, and a sector's wall is one trimmed face of less than 327 deg: shorten them, or let the flow turn "
@@ -89,23 +94,23 @@ def _wall(faces: Mapping[str, Surface], duct: Duct, row: int, name: str, chord: 
         meridian=meridian,
         inner=np.empty(0),
         revolved=duct.revolved,
-        low=float(across.min()) - room,
-        high=float(across.max()) + room,
+        low=float(across.min()) - margin,
+        high=float(across.max()) + margin,
     )
-    curves = [followed(wall, trace, chord) for trace in traces]
+    curves = [followed(wall, edge, chord) for edge in edges]
     first, last = (len(BLADE_AT) + 2 + len(cuts[1])), len(cuts[0]) + 1
     ahead, back = curves[:first], [run_back(curve) for curve in curves[first:][::-1]]
-    # the upper boundary and the inlet are run against their own sense: outlet to inlet, then upper to lower
+    # the upper boundary and the inlet run against their own sense: outlet to inlet, then upper to lower
     boundary = (*ahead, *back[last:], *back[:last])
     return TrimmedSurface(surface=wall.surface, boundary=boundary, revolution=wall.revolution)
 
 
-def _traces(face: Surface, row: int, at: Reals, meridian: Curve, duct: Duct) -> list[WallCurve]:
+def _wall_curves(face: Surface, row: int, at: Reals, meridian: Curve, duct: Duct) -> list[WallCurve]:
     edge = Curve(control_points=np.real(face.control_points[:, row]), knots=face.knots_u, degree=face.degree_u)
-    return [_trace(piece, meridian, duct) for piece in split(edge, at)]
+    return [_wall_curve(piece, meridian, duct) for piece in split(edge, at)]
 
 
-def _trace(edge: Curve, meridian: Curve, duct: Duct) -> WallCurve:
+def _wall_curve(edge: Curve, meridian: Curve, duct: Duct) -> WallCurve:
     places = np.linspace(*edge.domain, PLACES)
     points = edge(places)
     radius = np.sqrt(points[:, 1] ** 2 + points[:, 2] ** 2) if duct.revolved else points[:, 2]
@@ -116,8 +121,8 @@ def _trace(edge: Curve, meridian: Curve, duct: Duct) -> WallCurve:
 
 
 def _nearest(meridian: Curve, points: Array) -> Reals:
-    """Parameters of the nearest of many places on the meridian."""
-    u = np.linspace(*meridian.domain, 2001)
+    """Parameters of the nearest of MERIDIAN_POINTS points on the meridian."""
+    u = np.linspace(*meridian.domain, MERIDIAN_POINTS)
     line = np.real(meridian(u))
     miss = np.sum((points[:, None, :] - line) ** 2, axis=-1)
     return np.asarray(u[np.argmin(miss, axis=1)])

@@ -10,7 +10,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from bladewright.domain.extents import MOST, USUAL
+from bladewright.domain.extents import MAX_EXTENT, USUAL
 from bladewright.errors import DesignError
 from bladewright.numerics.elementary import Array, radians
 from bladewright.numerics.quadrature import panels
@@ -23,12 +23,13 @@ from bladewright.section.checks import between, number
 from bladewright.section.section import Section
 
 PLACES = 401
-"""places along the camber line and the sides between which distances are compared"""
+"""Points of each side whose distance from the camber line is compared with half the pitch; the line has four times as
+many."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class SectionPassage:
-    """What the fluid fills about one section, half a pitch to each side of its continued camber line."""
+    """The flow domain about one section: half a pitch to each side of its continued camber line."""
 
     dimension: ClassVar[int] = 2
 
@@ -67,7 +68,9 @@ def section_passage(
     """
     between("pitch", number("pitch", pitch), 0.0, float("inf"), "it must be positive")
     for name, extent in (("upstream", upstream), ("downstream", downstream)):
-        between(name, number(name, extent), 0.0, MOST, f"it must be positive and below {MOST:g} axial chords")
+        between(
+            name, number(name, extent), 0.0, MAX_EXTENT, f"it must be positive and below {MAX_EXTENT:g} axial chords"
+        )
     for name, angle in (("inlet_angle", inlet_angle), ("outlet_angle", outlet_angle)):
         if angle is not None:
             between(name, number(name, angle), -89.0, 89.0, "it must lie between -89 and 89 deg, as flow goes onwards")
@@ -102,9 +105,10 @@ def _check_within(section: Section, middle: Curve, half: float) -> None:
     line = np.real(middle(np.linspace(*middle.domain, 4 * PLACES)))
     for name, sign in (("upper", 1.0), ("lower", -1.0)):
         side = np.real(section.curves[name](np.linspace(0.0, 1.0, PLACES)))
-        past = float(np.max(sign * (side[:, 1] - np.interp(side[:, 0], line[:, 0], line[:, 1])))) - half
-        if past >= 0.0:
+        outside = float(np.max(sign * (side[:, 1] - np.interp(side[:, 0], line[:, 0], line[:, 1])))) - half
+        if outside >= 0.0:
             raise DesignError(
-                f"pitch is {2.0 * half:g} m: the {name} side of the section stands {past:.4g} m outside its passage, "
-                f"which reaches {half:g} m to each side of the camber line; take a larger pitch or a thinner section"
+                f"pitch is {2.0 * half:g} m: the {name} side of the section stands {outside:.4g} m outside its "
+                f"passage, which reaches {half:g} m to each side of the camber line; take a larger pitch or a thinner "
+                "section"
             )
