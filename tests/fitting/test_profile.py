@@ -9,7 +9,8 @@ import pytest
 import bladewright as bw
 from bladewright.fitting.freeform.camber_thickness import CamberThickness, abscissae_of
 from bladewright.fitting.freeform.least_squares import Penalty
-from bladewright.fitting.freeform.profile import ProfileObjective, _within_tolerance
+from bladewright.fitting.freeform.profile import _within_tolerance
+from bladewright.fitting.freeform.profile_objective import ProfileObjective
 from bladewright.nurbs.basis import uniform_knots
 
 KNOTS = uniform_knots(6, 3)
