@@ -2,11 +2,11 @@
 
 from collections.abc import Callable, Iterable
 
-import gmsh
 import numpy as np
 
 from bladewright.errors import MeshError
 from bladewright.meshing.gmsh_process import STEP_PREFIX
+from bladewright.meshing.lazy_gmsh import gmsh
 
 SURFACE = {"Frontal-Delaunay": 6, "Delaunay": 5, "MeshAdapt": 1}
 """gmsh's numbers of the algorithms for faces, in the order in which they are tried. MeshAdapt is slow, but copes with

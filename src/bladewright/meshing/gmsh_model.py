@@ -2,11 +2,11 @@
 
 from collections.abc import Mapping
 
-import gmsh
 import numpy as np
 
 from bladewright.errors import MeshError
 from bladewright.meshing.gmsh_process import Job
+from bladewright.meshing.lazy_gmsh import gmsh
 from bladewright.meshing.names import FLUID, group_of
 
 NO_REPAIR = {

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from bladewright.errors import MeshError
+from bladewright.meshing.lazy_gmsh import gmsh
 from bladewright.meshing.names import GROUP_PREFIX
 from bladewright.meshing.quality import Indices
 
@@ -17,8 +18,6 @@ def write_mesh(path: Path, scale: float) -> None:
 
     gmsh's own format is written first, as all lengths in it can be scaled; the other formats are made from it.
     """
-    import gmsh
-
     native = path.with_suffix(".msh")
     gmsh.option.setNumber("Mesh.MshFileVersion", 4.1)
     gmsh.option.setNumber("Mesh.Binary", 0)
@@ -38,8 +37,6 @@ def write_mesh(path: Path, scale: float) -> None:
 
 def _name_entities() -> None:
     """Give faces and volume the names of their groups, which CGNS takes as names of its boundary conditions."""
-    import gmsh
-
     for dimension, group in gmsh.model.getPhysicalGroups():
         for entity in gmsh.model.getEntitiesForPhysicalGroup(dimension, group):
             gmsh.model.setEntityName(dimension, entity, gmsh.model.getPhysicalName(dimension, group))
@@ -123,8 +120,6 @@ def read_mesh(path: Path) -> Content:
 
 
 def _read_gmsh(path: Path) -> Content:
-    import gmsh
-
     gmsh.clear()
     gmsh.open(str(path))
     tags, coordinates, _ = gmsh.model.mesh.getNodes()
