@@ -1,4 +1,4 @@
-"""The objective of a profile fit: true distances from its sides, and their derivatives by camber, heights and weights."""
+"""The objective of a profile fit: true distances from its sides, and derivatives by camber, heights and weights."""
 
 from dataclasses import dataclass, replace
 from functools import partial
