@@ -47,9 +47,9 @@ def main():
             path.write_text(example_text(name), encoding="utf-8")
             design = bw.read_design(path)
             blade = (bw.prismatic(design) if isinstance(design, UnifiedSection) else design).build()
-            assert blade.promises.kept, name
+            assert blade.conformance.kept, name
             for promise in PROMISES:
-                value = getattr(blade.promises, promise)
+                value = getattr(blade.conformance, promise)
                 # a family without metal angles promises none
                 worst[promise] = max(worst[promise], (0.0 if value is None else value, name))
             for kind, found in files.items():

@@ -92,9 +92,9 @@ def judged(seed, directory, samples=SAMPLES, of="unified"):
         return ("failed", f"unclear refusal ({wrong}): {error}") if wrong else ("refused", str(error))
     from bladewright import cad
 
-    if not blade.promises.kept:
-        broken = {name: getattr(blade.promises, name) for name in blade.promises.limits}
-        return "failed", f"a promise is not kept: {broken}, limits {blade.promises.limits}"
+    if not blade.conformance.kept:
+        broken = {name: getattr(blade.conformance, name) for name in blade.conformance.limits}
+        return "failed", f"a promise is not kept: {broken}, limits {blade.conformance.limits}"
     trip = cad.write(blade, Path(directory) / f"{design.name}.step", samples=samples)
     if not trip.passed:
         return "failed", f"round trip: {'; '.join(trip.failures)}"

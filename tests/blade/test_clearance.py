@@ -83,9 +83,9 @@ def test_the_end_off_the_wall_is_called_tip_and_every_promise_is_kept(cleared):
     other = {"hub": "shroud", "shroud": "hub"}[wall]
     assert set(cleared.surfaces) == set(cleared.orientations) == {"upper", "lower", "tip", other}
     assert cleared.orientations["tip"] == (1 if wall == "shroud" else -1)
-    assert cleared.promises.kept
-    assert cleared.promises.clearance < 1e-8
-    assert cleared.promises.to_dict()["limits"]["clearance"] == 1e-8
+    assert cleared.conformance.kept
+    assert cleared.conformance.clearance < 1e-8
+    assert cleared.conformance.to_dict()["limits"]["clearance"] == 1e-8
 
 
 def test_the_tip_face_stands_at_the_stated_distance_from_the_wall(cleared):
@@ -162,7 +162,7 @@ def test_a_blade_of_the_same_section_at_every_radius_is_cut_off_where_its_stream
     design = FAN.changed({**laws, "leading_edge_radius": 0.003, "trailing_edge_radius": 0.003, "channel": cylinders})
     whole, cut = exact_unified_blade(design), exact_unified_blade(design.changed("tip_clearance", 3.0))
     v, s = np.linspace(0.0, 1.0, 5), np.linspace(0.0, 1.0, 33)
-    for short, long in zip(cut.stations(v).points(s), whole.stations(37.0 / 40.0 * v).points(s), strict=True):
+    for short, long in zip(cut.sections(v).points(s), whole.sections(37.0 / 40.0 * v).points(s), strict=True):
         assert short == pytest.approx(long, abs=1e-14)
 
 
@@ -171,7 +171,7 @@ def test_a_wall_with_joints_is_followed_as_well(degree, name):
     places = np.linspace(0.0, 1.0, 8)[1:-1]
     walls = {f"channel.{wall}": tuple(map(tuple, 1e3 * curve_of(CASCADE, wall)(places))) for wall in ("hub", "shroud")}
     blade = CASCADE.changed({**walls, "channel.degree": degree, name: 0.5}).build()
-    assert blade.promises.kept
+    assert blade.conformance.kept
     # the foot passes the wall's joint elsewhere than the line u = const does that of the channel
     inner, counts = np.unique(blade.knots.tip[6:-6], return_counts=True)
     joints = inner[counts == 6 - degree]
@@ -246,9 +246,9 @@ def test_a_batch_of_imaginary_steps_is_the_single_steps_one_by_one():
         steps[i] += STEP * 1j
         changes[path] = steps
     v, s = np.linspace(0.0, 1.0, 3), np.linspace(0.0, 1.0, 17)
-    batch = np.stack(exact_unified_blade(design.changed(changes)).stations(v).points(s))
+    batch = np.stack(exact_unified_blade(design.changed(changes)).sections(v).points(s))
     for i, path in enumerate(paths):
-        single = np.stack(exact_unified_blade(design.changed(path, values[path] + STEP * 1j)).stations(v).points(s))
+        single = np.stack(exact_unified_blade(design.changed(path, values[path] + STEP * 1j)).sections(v).points(s))
         scale = np.max(np.abs(np.imag(single)))
         assert scale > 0.0
         assert np.imag(batch[:, i]) == pytest.approx(np.imag(single), abs=1e-13 * scale)

@@ -35,7 +35,7 @@ def test_on_a_cylinder_the_blade_is_the_unrolled_2d_section():
         )
     )
     section = UnifiedSection(**SHAPE, name="flat", axial_chord=1.0).build()
-    points = blade.stations(np.array([0.0])).points(S)
+    points = blade.sections(np.array([0.0])).points(S)
     for name, side in zip(("upper", "lower"), points, strict=True):
         x, y, z = side[0].T
         assert y**2 + z**2 == pytest.approx(np.full(len(S), radius**2), rel=1e-14)
@@ -47,19 +47,19 @@ def test_on_a_cylinder_the_blade_is_the_unrolled_2d_section():
 
 def test_theta_turns_z_towards_y():
     design = FAN.changed({"leading_edge_theta": 90.0})
-    edge = exact_unified_blade(design).stations(np.array([0.0])).leading_edge()
+    edge = exact_unified_blade(design).sections(np.array([0.0])).leading_edge()
     assert edge.point[0, 1] == pytest.approx(95.0e-3, rel=1e-12)
     assert edge.point[0, 2] == pytest.approx(0.0, abs=1e-15)
 
 
 def test_a_cascades_span_is_z_and_its_pitchwise_direction_y():
-    stations = exact_unified_blade(CASCADE).stations(np.array([0.0, 1.0]))
+    stations = exact_unified_blade(CASCADE).sections(np.array([0.0, 1.0]))
     edge = stations.leading_edge()
     assert edge.point == pytest.approx(np.array([[0.0, 0.0, 0.0], [1e-3, 2e-3, 0.1]]), abs=1e-15)
 
 
 def test_the_mean_line_turns_by_the_stagger_in_the_conformal_plane(design):
-    stations = exact_unified_blade(design).stations(np.linspace(0.0, 1.0, 5))
+    stations = exact_unified_blade(design).sections(np.linspace(0.0, 1.0, 5))
     ends = stations.plane.camber[:, [0, 3]]
     from bladewright.section.laws import Span
 
@@ -69,7 +69,7 @@ def test_the_mean_line_turns_by_the_stagger_in_the_conformal_plane(design):
 
 
 def test_edge_derivatives_are_those_of_the_points_along_both_sides(design):
-    stations = exact_unified_blade(design).stations(np.linspace(0.0, 1.0, 4))
+    stations = exact_unified_blade(design).sections(np.linspace(0.0, 1.0, 4))
     errors = []
     for step in (5e-4, 2.5e-4):
         at = step * np.arange(7)
@@ -91,8 +91,8 @@ def test_edge_derivatives_are_those_of_the_points_along_both_sides(design):
 def test_the_papers_mapping_is_its_equation_28():
     design = IMPELLER.changed("mapping", "paper")
     blade = exact_unified_blade(design)
-    stations = blade.stations(np.array([0.4]))
-    plane = stations.plane.points(S)[0]
+    stations = blade.sections(np.array([0.4]))
+    plane = stations.plane_points(S)[0]
     meridional = stations.lines.position(plane[..., 0])
     x, radius = meridional[0].T
     y = plane[0, :, 1] * stations.lines.lengths[0]
@@ -101,7 +101,7 @@ def test_the_papers_mapping_is_its_equation_28():
 
 
 def test_the_papers_mapping_misses_the_metal_angle_by_degrees():
-    promises = FAN.changed("mapping", "paper").build().promises
+    promises = FAN.changed("mapping", "paper").build().conformance
     assert promises.metal_angle_between > 3.0
     assert promises.edge_radius > 0.05
     assert promises.kept
@@ -112,7 +112,7 @@ def test_every_parameter_moves_the_blade_and_its_complex_step_is_its_derivative(
     value, v = IMPELLER.parameters()[path], np.linspace(0.0, 1.0, 5)
 
     def points(at):
-        return np.stack(exact_unified_blade(IMPELLER.changed(path, at)).stations(v).points(S))
+        return np.stack(exact_unified_blade(IMPELLER.changed(path, at)).sections(v).points(S))
 
     analytic = np.imag(points(value + 1e-30j)) / 1e-30
     step = 1e-4 * max(1e-2, abs(value))
@@ -133,8 +133,8 @@ def test_a_batch_of_imaginary_steps_is_the_single_steps_one_by_one():
         steps[i] += 1e-30j
         changes[path] = steps
     v = np.linspace(0.0, 1.0, 3)
-    batch = np.stack(exact_unified_blade(IMPELLER.changed(changes)).stations(v).points(S))
+    batch = np.stack(exact_unified_blade(IMPELLER.changed(changes)).sections(v).points(S))
     for i, path in enumerate(paths):
-        single = np.stack(exact_unified_blade(IMPELLER.changed(path, values[path] + 1e-30j)).stations(v).points(S))
+        single = np.stack(exact_unified_blade(IMPELLER.changed(path, values[path] + 1e-30j)).sections(v).points(S))
         scale = np.max(np.abs(np.imag(single)))
         assert np.imag(batch[:, i]) == pytest.approx(np.imag(single), abs=1e-13 * scale)

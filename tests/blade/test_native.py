@@ -5,7 +5,7 @@ import pytest
 
 from bladewright.blade.exact.unified import exact_unified_blade
 from bladewright.blade.native.interpolation import native_sides
-from bladewright.blade.native.knots import DEGREE, Knots, breaks_along_u, breaks_along_v, clamped
+from bladewright.blade.native.knots import DEGREE, Knots, clamped
 from bladewright.blade.native.refinement import approximation_error
 from bladewright.errors import DesignError
 from bladewright.nurbs.mass_properties import mass_properties
@@ -14,7 +14,7 @@ from machines.unified import CASCADE, FAN, IMPELLER, INFLOW
 
 
 def sides(exact, knots):
-    nets = native_sides(exact.stations(knots.sites_v), knots)
+    nets = native_sides(exact.sections(knots.sites_v), knots)
     return [
         Surface(control_points=net, knots_u=knots.u, knots_v=knots.v, degree_u=DEGREE, degree_v=DEGREE) for net in nets
     ]
@@ -26,7 +26,7 @@ def halved(knots):
 
 
 def test_every_promise_is_kept(blade):
-    promises = blade.promises
+    promises = blade.conformance
     assert promises.kept
     assert promises.metal_angle_at_walls < 1e-6
     assert promises.metal_angle_between < 1e-2
@@ -54,7 +54,7 @@ def test_a_tighter_tolerance_is_reached_with_more_poles():
 
 def test_the_native_sides_converge_to_the_exact_blade_with_order_six():
     exact = exact_unified_blade(INFLOW)
-    u, v = clamped(breaks_along_u(exact)), clamped(breaks_along_v(exact))
+    u, v = clamped(exact.breaks_along_u()), clamped(exact.breaks_along_v())
     u, v = halved(halved(u)), halved(halved(v))
     errors = []
     for _ in range(3):
@@ -210,7 +210,7 @@ def test_rational_sides_keep_every_promise():
     weighted = INFLOW.changed({"weights_upper": (1.0, 2.5, 0.8), "weights_lower": ((1.0, 1.4), 0.7)})
     blade = weighted.build()
     plain = INFLOW.build()
-    assert blade.promises.kept
+    assert blade.conformance.kept
     assert np.max(np.abs(blade.surfaces["upper"](0.5, 0.5) - plain.surfaces["upper"](0.5, 0.5))) > 1e-4 * blade.chord
 
 
@@ -218,7 +218,7 @@ def test_weights_of_one_change_nothing():
     weighted = exact_unified_blade(INFLOW.changed({"weights_upper": (1.0,), "weights_lower": (1.0, 1.0)}))
     plain = exact_unified_blade(INFLOW)
     v, s = np.linspace(0.0, 1.0, 3), np.linspace(0.0, 1.0, 21)
-    for with_weights, without in zip(weighted.stations(v).points(s), plain.stations(v).points(s), strict=True):
+    for with_weights, without in zip(weighted.sections(v).points(s), plain.sections(v).points(s), strict=True):
         assert with_weights == pytest.approx(without, abs=1e-15)
 
 

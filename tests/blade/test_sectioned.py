@@ -37,7 +37,7 @@ def blades():
 @pytest.mark.parametrize("name", DESIGNS)
 def test_a_blade_from_sections_keeps_its_promises(blades, name):
     blade = blades(name)
-    assert blade.promises.kept, blade.promises
+    assert blade.conformance.kept, blade.conformance
     assert blade.error < 1e-6
 
 
@@ -55,10 +55,10 @@ def test_given_sections_are_curves_of_constant_v_within_1e_9_of_the_chord(blades
     # at hub and shroud, and on the stream surface of the stator that is given at 0.45 of the span
     blade, u = blades(name), np.linspace(0.0, 1.0, 501)
     v = np.array(blade.design.flow_path.spans)
-    for side, points in zip(blade.sides, blade.exact.stations(v).points(u), strict=True):
+    for side, points in zip(blade.sides, blade.exact.sections(v).points(u), strict=True):
         miss = side.grid(u, v).swapaxes(0, 1) - points
         assert np.max(np.sqrt(np.sum(miss**2, axis=-1))) < 1e-9 * blade.chord
-    assert blade.promises.sections < blade.promises.limits["sections"] == 1e-9
+    assert blade.conformance.sections < blade.conformance.limits["sections"] == 1e-9
 
 
 def test_a_blunt_edge_is_two_sharp_edges_and_a_face(blades):
@@ -91,7 +91,7 @@ def test_the_chord_line_spans_the_edges_at_the_sections_stagger(blades):
     blade = blades("compressor-rotor")
     for section in blade.sections:
         start, end = section.camber(np.array([0.0, 1.0]))
-        lines = blade.exact.stations(np.array([section.span])).lines
+        lines = blade.exact.sections(np.array([section.span])).lines
         assert end[0] - start[0] == pytest.approx(lines.extents()[0], rel=1e-12)
         assert np.arctan2(*(end - start)[::-1]) == pytest.approx(section.stagger, abs=1e-12)
         asked = COMPRESSOR.section.stagger(Span(np.array([section.span])))[0]
@@ -118,7 +118,7 @@ def test_a_section_on_a_meanline_has_it(blades):
 def test_a_section_lies_on_the_built_sides(blades):
     # the section's curves and the sides have one parameter
     blade, u = blades("diffuser"), np.linspace(0.0, 1.0, 33)
-    section, lines = blade.section(0.5), blade.exact.stations(np.array([0.5]))
+    section, lines = blade.section(0.5), blade.exact.sections(np.array([0.5]))
     for name, side in zip(("upper", "lower"), blade.sides, strict=True):
         points = lines.in_space(section.curves[name](u)[None])[0]
         assert np.max(np.abs(points - side(u, 0.5))) < 1e-6 * blade.chord

@@ -9,7 +9,6 @@ from scipy.integrate import solve_ivp
 from bladewright import cad
 from bladewright.blade.design.flow_path import FlowPath
 from bladewright.blade.exact.orthogonal_trajectory import orthogonal_trajectory
-from bladewright.blade.exact.plane_sections import section_at
 from bladewright.blade.exact.sectioned import exact_sectioned_blade
 from bladewright.blade.exact.stacking_axis import centroid, reference_points
 from bladewright.blade.flow_path.stream_surfaces import stream_surfaces
@@ -33,16 +32,16 @@ def unshifted(design):
 
 def reference(design, v=V):
     """Reference points: (x, r), and theta or y, (m, ...) each, with the sections."""
-    sections = exact_sectioned_blade(design, checked=False).sections(v)
-    points = reference_points(design.stacking, sections.plane.outline, Span(v))
-    _, position, tangential = sections.on_lines(sections.plane.placed(points[:, None, :]))
+    sections = exact_sectioned_blade(design, checked=False).design_sections(v)
+    points = reference_points(design.stacking, sections.outline, Span(v))
+    _, position, tangential = sections.on_lines(sections.placed(points[:, None, :]))
     return position[:, 0], tangential[:, 0], sections
 
 
 def test_the_centre_of_area_is_that_of_the_native_section():
     # its plane is metric; its curves lie within 1e-10 of the exact section
     exact = exact_sectioned_blade(VANE)
-    section, plane = section_at(exact, 0.5), exact.sections(np.array([0.5])).plane
+    section, plane = exact.section(0.5), exact.design_sections(np.array([0.5]))
     assert plane.placed(centroid(plane.outline)[:, None])[0, 0] == pytest.approx(section.centroid, abs=1e-9 * 0.04)
 
 
@@ -74,7 +73,7 @@ def test_the_chord_is_what_it_is_said_to_be(design):
     own = length(np.diff(sections.lines.position(np.linspace(0.0, 1.0, 4001)), axis=1)).sum(axis=1)
     if design.plane == "x-y":
         own = sections.lines.extents()
-    asked = MM * SPAN.values(design.stacking.chord) * np.cos(sections.plane.stagger)
+    asked = MM * SPAN.values(design.stacking.chord) * np.cos(sections.stagger)
     # chords of a curve in 4,000 steps
     assert own == pytest.approx(asked, rel=1e-7)
     if design.plane != "x-y":
@@ -107,13 +106,13 @@ def test_the_line_of_least_distance_is_that_of_another_solver():
 def test_sweep_and_lean_are_shifts_by_their_lengths_of_sections_that_stay_as_they_are(design):
     before, turned, still = reference(unshifted(design))
     after, moved, sections = reference(design)
-    assert sections.plane.points(V)[0] - sections.plane.start[:, None, None] * [0.0, 1.0] == pytest.approx(
-        still.plane.points(V)[0] - still.plane.start[:, None, None] * [0.0, 1.0], abs=1e-14
+    assert sections.plane_points(V)[0] - sections.start[:, None, None] * [0.0, 1.0] == pytest.approx(
+        still.plane_points(V)[0] - still.start[:, None, None] * [0.0, 1.0], abs=1e-14
     )
     assert sections.lines.extents() == pytest.approx(still.lines.extents(), rel=1e-12)
     sweep, lean = (MM * SPAN.values(0.0 if law is None else law) for law in (design.sweep, design.lean))
     if design.shift_directions == "chordwise-normal":
-        cos, sin = np.cos(still.plane.stagger), np.sin(still.plane.stagger)
+        cos, sin = np.cos(still.stagger), np.sin(still.stagger)
         sweep, lean = sweep * cos - lean * sin, sweep * sin + lean * cos
     around = (moved - turned) * (after[:, 1] if design.arrangement == "annular" else 1.0)
     assert around == pytest.approx(lean, abs=1e-14)
@@ -129,8 +128,8 @@ def test_a_fine_bow_leaves_sections_of_few_control_points_without_waves():
     position, theta, sections = reference(fine, v)
     asked = MM * Span(v).values(bow) / position[:, 1] + np.radians(Span(v).values(fine.stacking.theta))
     assert theta == pytest.approx(asked, abs=1e-14)
-    shapes = [section / chord for section, chord in zip(sections.plane.points(V)[0], sections.plane.chord, strict=True)]
-    offsets = (sections.plane.start / sections.plane.chord)[:, None]
+    shapes = [section / chord for section, chord in zip(sections.plane_points(V)[0], sections.chord, strict=True)]
+    offsets = (sections.start / sections.chord)[:, None]
     for shape, offset in zip(shapes, offsets, strict=True):
         assert shape - [0.0, 1.0] * offset == pytest.approx(shapes[0] - [0.0, 1.0] * offsets[0], abs=1e-13)
 
@@ -145,7 +144,7 @@ def test_every_new_parameter_has_an_effect_and_the_derivative_of_differences(des
     shares = np.random.default_rng(5).uniform(0.5, 1.0, len(paths))
 
     def points(changes):
-        stations = exact_sectioned_blade(design.changed(changes), checked=False).stations(V[1:4])
+        stations = exact_sectioned_blade(design.changed(changes), checked=False).sections(V[1:4])
         edge = stations.trailing_edge()
         return np.concatenate([*stations.points(np.array([0.0, 0.3, 1.0])), np.stack(edge, axis=-2)], axis=-2)
 
@@ -168,21 +167,21 @@ def test_every_new_parameter_has_an_effect_and_the_derivative_of_differences(des
 @pytest.mark.parametrize("design", [stacked.AXIAL, stacked.RETURN, stacked.RULED], ids=lambda d: d.name)
 def test_stacked_and_ruled_solids_come_back_from_step_files(design, tmp_path):
     blade = design.build()
-    assert blade.promises.kept, blade.promises
+    assert blade.conformance.kept, blade.conformance
     trip = cad.write(blade, tmp_path / "blade.step")
     assert trip.passed, trip.failures
     if design.skinning == "ruled":
         _check_rulings(blade, parallel=False)
-        assert 30.0 < blade.promises.twist < 90.0  # it is turned by 40 deg between hub and shroud
-        assert "twist" not in blade.promises.limits
+        assert 30.0 < blade.conformance.twist < 90.0  # it is turned by 40 deg between hub and shroud
+        assert "twist" not in blade.conformance.limits
 
 
 @pytest.mark.parametrize("design", [stacked.PRISM, stacked.MILLED], ids=lambda d: d.name)
 def test_a_flank_cutter_touches_developable_sides_along_whole_lines(design):
     blade = design.build()
-    assert blade.promises.kept, blade.promises
-    assert blade.promises.twist < 1e-9  # rounding
-    assert blade.promises.flank_cut < 1e-15
+    assert blade.conformance.kept, blade.conformance
+    assert blade.conformance.twist < 1e-9  # rounding
+    assert blade.conformance.flank_cut < 1e-15
     _check_rulings(blade, parallel=True)
 
 
@@ -234,20 +233,20 @@ def _check_rulings(blade, *, parallel):
 
 def test_a_developable_blade_lies_on_its_stream_surfaces_and_keeps_the_hubs_section():
     exact = exact_sectioned_blade(stacked.MILLED)
-    hub, all_of_them = exact.sections(np.zeros(1)), exact.stations(V)
+    hub, all_of_them = exact.design_sections(np.zeros(1)), exact.sections(V)
     for own, side in zip(hub.points(V), all_of_them.points(V), strict=True):
         assert side[0] == pytest.approx(own[0], abs=1e-15)
     # points by their planes are those by the lines
-    for laid, side in zip(all_of_them.plane.points(V), all_of_them.points(V), strict=True):
+    for laid, side in zip(all_of_them.plane_points(V), all_of_them.points(V), strict=True):
         assert all_of_them.in_space(laid) == pytest.approx(side, abs=1e-14)
 
 
 def test_ruled_blades_have_sections_where_the_design_has_them():
     ruled = exact_sectioned_blade(stacked.RULED)
     assert ruled.section_spans == (0.0, 1.0)
-    assert section_at(ruled, 1.0).edges == ("round", "blunt")
+    assert ruled.section(1.0).edges == ("round", "blunt")
     with pytest.raises(DesignError, match=r"a section was asked at v = 0\.5 of a blade whose skinning is 'ruled'"):
-        section_at(ruled, 0.5)
+        ruled.section(0.5)
 
 
 TURNED = replace(

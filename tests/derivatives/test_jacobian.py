@@ -25,7 +25,7 @@ def test_every_parameter_s_derivative_is_that_of_a_build_with_its_step_alone(des
     assert found.paths == tuple(design.parameters())
     for place, (path, value) in enumerate(design.parameters().items()):
         exact = exact_unified_blade(design.changed(path, value + STEP * 1j), blade.knots.tip)
-        alone = np.imag(native_sides(exact.stations(blade.knots.sites_v), blade.knots)) / STEP
+        alone = np.imag(native_sides(exact.sections(blade.knots.sites_v), blade.knots)) / STEP
         together = np.stack([found.nets["upper"][place], found.nets["lower"][place]])
         assert together == pytest.approx(alone, abs=ROUNDING * np.abs(alone).max()), path
 

@@ -154,8 +154,8 @@ def test_split_faces_have_one_piece_more_where_a_strip_lies_between():
 
 def test_the_periodic_boundary_leaves_a_round_edge_as_its_nose_points():
     around = made("axial rotor")
-    sections = around.blade.exact.stations(np.array([0.0, 1.0]))
-    outline, stagger = sections.plane.outline, sections.plane.stagger
+    sections = around.blade.exact.sections(np.array([0.0, 1.0]))
+    outline, stagger = sections.outline, sections.stagger
     for u, edge in ((BLADE_AT[0] - 1e-9, outline.leading_edge), (BLADE_AT[1] + 1e-9, outline.trailing_edge)):
         nose = edge.upper.first
         wanted = np.degrees(np.arctan(-nose[..., 0] / nose[..., 1]) + stagger)

@@ -69,5 +69,5 @@ def test_the_cloud_reaches_from_hub_to_shroud(name):
 @pytest.mark.parametrize("name", EXAMPLES)
 def test_an_example_of_a_real_machine_keeps_its_promises(name):
     blade = built(name)
-    assert blade.promises.kept
+    assert blade.conformance.kept
     assert len(blade.design.parameters()) <= EXAMPLES[name][1]

@@ -43,7 +43,7 @@ def relative_flow(radius, *, turns_per_second, meridional):
 
 @pytest.mark.parametrize("name", NAMES)
 def test_every_machine_keeps_every_promise(name):
-    promises = blade(name).promises
+    promises = blade(name).conformance
     assert promises.kept, promises
 
 
@@ -94,7 +94,7 @@ def test_the_propeller_meets_the_air_at_a_small_positive_angle_everywhere():
 def test_the_impeller_turns_from_axial_to_radial_and_its_trailing_edge_is_not_leaned():
     v = np.linspace(0.0, 1.0, 21)
     (_, radius_in, _), (_, radius_out, theta_out) = edges("centrifugal-impeller", v)
-    lines = blade("centrifugal-impeller").exact.stations(v).lines
+    lines = blade("centrifugal-impeller").exact.sections(v).lines
     slope = lines.position(np.array([0.0, 1.0]), 1)
     climb = np.degrees(np.arctan2(slope[..., 1], slope[..., 0]))
     # the clearance falls by 0.1 mm, and at both ends the shroud moves on by 80 mm a unit of u, the tip by within 2 %
@@ -115,7 +115,7 @@ def test_the_impeller_turns_from_axial_to_radial_and_its_trailing_edge_is_not_le
 def test_a_wheel_meets_the_flow_that_its_file_states(name, turns_per_second, meridional, incidence):
     v = np.linspace(0.0, 1.0, 21)
     (_, radius, _), _ = edges(name, v)
-    metal = np.degrees(np.real(blade(name).exact.stations(v).angle_in))
+    metal = np.degrees(np.real(blade(name).exact.sections(v).metal_angles[0]))
     flow = relative_flow(radius, turns_per_second=turns_per_second, meridional=meridional)
     # the flow comes at a larger angle than the metal, by no more than such a wheel bears
     assert np.all((metal - flow > 0.0) & (metal - flow < incidence))
@@ -123,21 +123,21 @@ def test_a_wheel_meets_the_flow_that_its_file_states(name, turns_per_second, mer
 
 def test_the_pump_leaves_at_about_45_deg_and_raises_the_angular_momentum():
     v = np.linspace(0.0, 1.0, 21)
-    stations = blade("mixed-flow-pump").exact.stations(v)
+    stations = blade("mixed-flow-pump").exact.sections(v)
     slope = stations.lines.position(np.array([1.0]), 1)[:, 0]
     assert np.degrees(np.arctan2(slope[:, 1], slope[:, 0])) == pytest.approx(np.full(21, 45.0), abs=4.0)
     (_, radius_in, _), (_, radius_out, _) = edges("mixed-flow-pump", v)
     assert np.all(radius_out > 1.3 * radius_in)
     # the blade turns the relative flow towards the meridional direction
-    assert np.all(np.real(stations.angle_out) > np.real(stations.angle_in))
+    assert np.all(np.real(stations.angle_out) > np.real(stations.metal_angles[0]))
 
 
 def test_the_stator_takes_the_swirl_of_the_rotor_before_it_and_hangs_from_the_casing():
     v = np.linspace(0.0, 1.0, 21)
-    stations = blade("compressor-stator").exact.stations(v)
+    stations = blade("compressor-stator").exact.sections(v)
     (_, radius, _), (_, _, _) = edges("compressor-stator", v)
     flow = np.degrees(np.arctan(0.95 * 206e-3 / radius))
-    incidence = flow - np.degrees(np.real(stations.angle_in))
+    incidence = flow - np.degrees(np.real(stations.metal_angles[0]))
     assert np.all((incidence > 0.5) & (incidence < 2.0))
     assert blade("compressor-stator").design.ends == ("tip", "shroud")
     height = radius[-1] - 182e-3

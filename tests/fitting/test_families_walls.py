@@ -42,7 +42,7 @@ def test_a_walls_places_move_with_its_points_as_a_difference_says():
     values, step = VANE.parameters(), 1e-3
     for i, path in enumerate(paths):
         lines = [
-            model.shape(VANE.changed({path: values[path] + way * step})).exact.meridians.walls["hub"].values(t)
+            model.shape(VANE.changed({path: values[path] + way * step})).exact.wall("hub").values(t)
             for way in (1.0, -1.0)
         ]
         # a point that moves across a straight wall moves its places by parts of itself: to second order in the step

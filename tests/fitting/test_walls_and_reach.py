@@ -6,7 +6,6 @@ import fit_made
 import numpy as np
 import pytest
 
-from bladewright.blade.exact.unified import moved_exact_blade
 from bladewright.files.examples import example_text
 from bladewright.files.reading import design_from, parsed
 from bladewright.fitting.clouds.thinning import spread
@@ -145,7 +144,7 @@ def test_places_on_a_wall_move_as_central_differences_say(end):
     for i, path in enumerate(paths):
         step = 1e-4
         ahead, behind = (
-            moved_exact_blade(there.exact, design.changed(path, values[path] + sign * step)).channel.line(end).values(t)
+            there.exact.moved_to(design.changed(path, values[path] + sign * step)).channel.line(end).values(t)
             for sign in (1.0, -1.0)
         )
         # metres a millimetre: rounding of metres over a step

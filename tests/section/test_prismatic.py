@@ -30,4 +30,4 @@ def test_a_section_of_every_family_extrudes_to_a_prism(name):
         assert built[:, 2] == pytest.approx(6e-3, abs=1e-12)
         assert np.max(np.abs(built[:, :2] - section.curves[side](u))) < 1e-6 * section.chord
     assert blade.properties.volume == pytest.approx(float(section.area) * 20e-3, rel=1e-5)
-    assert blade.promises.kept, blade.promises
+    assert blade.conformance.kept, blade.conformance

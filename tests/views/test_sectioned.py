@@ -59,7 +59,7 @@ def test_every_panel_is_there_and_no_text_covers_another(drawn):
 
 
 def test_the_edges_that_are_built_lie_on_the_curves_that_were_asked_for(impeller):
-    plan = impeller.exact.plan
+    plan = impeller.exact.meridional_view
     assert len(plan.quasi_orthogonals) == len(IMPELLER.flow_path.quasi_orthogonals)
     built = built_edges(impeller)
     assert len(built) == 3  # a blunt edge has two
@@ -69,7 +69,7 @@ def test_the_edges_that_are_built_lie_on_the_curves_that_were_asked_for(impeller
 
 
 def test_quasi_orthogonals_divide_the_walls_as_they_were_given(impeller):
-    plan = impeller.exact.plan
+    plan = impeller.exact.meridional_view
     for pair, line in zip(IMPELLER.flow_path.quasi_orthogonals, plan.quasi_orthogonals, strict=True):
         for fraction, end, wall in zip(pair, line[[0, -1]], ("hub", "shroud"), strict=True):
             points = plan.lines[wall].points
@@ -79,7 +79,7 @@ def test_quasi_orthogonals_divide_the_walls_as_they_were_given(impeller):
 
 
 def test_given_stream_surfaces_are_part_of_the_plan():
-    surface = exact_sectioned_blade(STATOR).plan.stream_surfaces[0]
+    surface = exact_sectioned_blade(STATOR).meridional_view.stream_surfaces[0]
     assert not surface.polygon
     assert surface.given * 1e3 == pytest.approx(np.array([(-60, 125), (0, 128), (40, 131), (120, 132)]))
     assert surface.points[[0, -1]] == pytest.approx(surface.given[[0, -1]])
@@ -88,10 +88,13 @@ def test_given_stream_surfaces_are_part_of_the_plan():
 @pytest.mark.parametrize("name", ["diffuser", "inlet-vane"])
 def test_a_wall_is_continued_past_the_edges_and_no_farther_than_it_reaches(name):
     exact = exact_sectioned_blade(DESIGNS[name])
-    wall, inside = exact.wall_line("hub", np.linspace(-50.0, 51.0, 41)), exact.wall_line("hub", np.array([0.0, 1.0]))
-    given = exact.plan.lines["hub"].points
+    wall, inside = (
+        exact.wall_points("hub", np.linspace(-50.0, 51.0, 41)),
+        exact.wall_points("hub", np.array([0.0, 1.0])),
+    )
+    given = exact.meridional_view.lines["hub"].points
     assert wall[[0, -1]] == pytest.approx(given[[0, -1]], abs=1e-9)
-    lines = exact.stations(np.zeros(1)).lines
+    lines = exact.sections(np.zeros(1)).lines
     assert inside == pytest.approx(np.real(lines.position(np.array([0.0, 1.0])))[0], abs=1e-12)
 
 
@@ -143,7 +146,7 @@ def test_neighbours_in_a_plane_of_lengths_stand_as_far_apart_as_their_radius_say
     section = blade.section(0.5)
     shape = outline(section)
     aside = neighbour_outline(blade, section, shape)[:, 1] - shape[:, 1]
-    lines = blade.exact.stations(np.array([0.5])).lines
+    lines = blade.exact.sections(np.array([0.5])).lines
     radius = np.real(lines.position(lines.u_at(shape[None, :, 0] / millimetres_per_unit(section))))[0, :, 1]
     assert aside == pytest.approx(1e3 * radius * 2.0 * np.pi / 22, rel=1e-9)
     assert np.ptp(aside) > 0.1

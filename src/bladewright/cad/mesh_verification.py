@@ -81,7 +81,7 @@ def verify_mesh(path: Path, built: NativeBody, *, samples: int, chordal_deviatio
     if not distance <= limit:
         failures.append(f"the centroid is {distance:.3g} mm off: at most {limit:.3g} mm is allowed")
     sides = np.linalg.norm(mesh.vertices[mesh.edges[:, 0]] - mesh.vertices[mesh.edges[:, 1]], axis=-1)
-    promises: Any = getattr(built, "promises", None)
+    promises: Any = getattr(built, "conformance", None)
     return RoundTrip(
         file=path.name,
         format=kind,

@@ -86,7 +86,7 @@ class _Measurement:
         volume, centroid = self._whole()
         total = Comparison(cad=sum(face.area for face in self.returned), native=float(properties.area) * MM**2)
         self._check_whole(volume, total, centroid)
-        promises: Any = getattr(self.built, "promises", None)
+        promises: Any = getattr(self.built, "conformance", None)
         return RoundTrip(
             file=self.opened.path.name,
             format=self.opened.format,

@@ -44,7 +44,7 @@ def summary_data(design: Design, built: Any) -> dict[str, Any]:
         "chord_m": getattr(built, "chord", None),
         "error": getattr(built, "error", None),
         "properties": _record(getattr(built, "properties", built)),
-        "promises": _record(getattr(built, "promises", None)),
+        "promises": _record(getattr(built, "conformance", None)),
         entities: {name: _poles(entity) for name, entity in getattr(built, entities).items()},
     }
     return {key: jsonable(value) for key, value in data.items() if value is not None}
@@ -74,12 +74,11 @@ def passage_data(design: Any, built: Any) -> dict[str, Any]:
 
 def smoothness_data(built: Any) -> list[dict[str, Any]]:
     """Curvature and its slope with their jumps, by line, of the sections at SMOOTHNESS_SPANS, or of one section."""
-    from bladewright.blade.exact.exact_blade import shown_spans
     from bladewright.section.smoothness import smoothness
 
     if built.dimension == 2:
         return [{"span": built.span, **smoothness(built).to_dict()}]
-    return [{"span": v, **built.smoothness(v).to_dict()} for v in shown_spans(built.exact, SMOOTHNESS_SPANS)]
+    return [{"span": v, **built.smoothness(v).to_dict()} for v in built.exact.shown_spans(SMOOTHNESS_SPANS)]
 
 
 def summary_text(data: dict[str, Any], more: Sequence[tuple[str, str]] = ()) -> str:

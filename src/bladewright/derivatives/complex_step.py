@@ -16,8 +16,7 @@ from typing import Any, TypeGuard
 
 import numpy as np
 
-from bladewright.blade.design.sectioned import SectionedBlade
-from bladewright.blade.design.unified import UnifiedBlade
+from bladewright.blade.design.row_design import RowDesign
 from bladewright.blade.native.blade import Blade
 from bladewright.blade.native.end_faces import trimmed_ends
 from bladewright.blade.native.interpolation import Skeleton, native_sides, sides_through, skeleton_of
@@ -31,17 +30,12 @@ from bladewright.nurbs.surface import Surface
 from bladewright.nurbs.trimmed import TrimmedSurface
 from bladewright.section.laws import law_basis
 from bladewright.section.outline import EdgeDerivatives
-from bladewright.section.unified_limits import ANGLES, RADII, TANGENTS, THICKNESSES, WEIGHTS
 
 STEP = 1e-30
 """The complex step, in the unit of the parameter (Squire and Trapp 1998): nothing is subtracted, so it may be so small
 that its square vanishes beside 1, and the derivative is exact to rounding."""
 AT_ONCE = 16
 """Steps in one batched rebuild: larger batches save little more time and take more memory."""
-SPANWISE = ("leading_edge_theta", "leading_edge_y", *ANGLES, *TANGENTS, *RADII)
-"""Fields of the unified family that are one law along the span each."""
-CHORDWISE = (*THICKNESSES, *WEIGHTS)
-"""Fields of the unified family with a law along the span for each control point along the chord."""
 Nets = tuple[Array, Array]
 """Control nets, or their derivatives, of the upper and the lower side."""
 
@@ -78,12 +72,12 @@ def side_tangents(blade: Blade, paths: Sequence[str]) -> Iterator[Nets]:
         yield sides_through(parted(rows, mirrored), blade.knots)
 
 
-def law_point(design: UnifiedBlade | SectionedBlade, path: str) -> LawPoint:
+def law_point(design: RowDesign, path: str) -> LawPoint:
     """What is stepped for the derivative of a design by one of its parameters."""
     name, *places = re.findall(r"\w+", path)
-    if not isinstance(design, UnifiedBlade) or name not in (*SPANWISE, *CHORDWISE):
+    if name not in (*design.local_laws, *design.local_chordwise_laws):
         return LawPoint(path)
-    depth = 1 if name in CHORDWISE else 0
+    depth = 1 if name in design.local_chordwise_laws else 0
     if len(places) == depth:
         return LawPoint(path, 0, 1)
     law = getattr(design, name)[int(places[0])] if depth else getattr(design, name)
@@ -93,10 +87,10 @@ def law_point(design: UnifiedBlade | SectionedBlade, path: str) -> LawPoint:
 def _skeleton_rates_by(blade: Blade, steps: Sequence[str]) -> Array:
     """Derivatives (len(steps), m, k) of the skeleton by whole laws and single parameters, in a row for each section."""
     moved = blade.exact.moved_to(stepped_design(blade.design, steps))
-    return skeleton_rates(moved.stations(blade.knots.sites_v), blade.knots, len(steps))
+    return skeleton_rates(moved.sections(blade.knots.sites_v), blade.knots, len(steps))
 
 
-def stepped_design(design: UnifiedBlade | SectionedBlade, steps: Sequence[str]) -> Any:
+def stepped_design(design: RowDesign, steps: Sequence[str]) -> Any:
     """A design with a batch (len(steps),) of complex steps, each on a whole law or a single parameter."""
     values = design.parameters()
     changes: dict[str, Any] = {}
@@ -189,7 +183,7 @@ def varied_nets(blade: Blade, changes: Sequence[Mapping[str, complex]]) -> Nets:
     paths = dict.fromkeys(path for each in changes for path in each)
     batch = {path: np.array([each.get(path, values[path]) for each in changes]) for path in paths}
     exact = blade.exact.moved_to(blade.design.changed(batch))
-    upper, lower = native_sides(exact.stations(blade.knots.sites_v), blade.knots)
+    upper, lower = native_sides(exact.sections(blade.knots.sites_v), blade.knots)
     shape = (len(changes), *upper.shape[-3:])
     return np.broadcast_to(upper, shape), np.broadcast_to(lower, shape)
 
@@ -197,13 +191,7 @@ def varied_nets(blade: Blade, changes: Sequence[Mapping[str, complex]]) -> Nets:
 def _needs_search(blade: Blade, change: Mapping[str, complex]) -> bool:
     """Whether a change moves something that is found by a search in real numbers: a root, a nearest point."""
     real = [path for path, value in change.items() if not np.iscomplexobj(value)]
-    if isinstance(blade.design, UnifiedBlade):
-        walls = any(path.startswith("channel.") or "clearance" in path for path in real)
-        return walls and blade.exact.tip_knots is not None
-    if blade.design.leading_edge is None or blade.design.skinning == "developable":
-        # the edges follow from the sections
-        return len(real) > 0
-    return not all(path.startswith(("section.", "leading_edge_theta", "leading_edge_y", "pitch")) for path in real)
+    return blade.design.needs_own_search(real)
 
 
 class _SteppedMoments:

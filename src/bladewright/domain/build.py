@@ -60,7 +60,7 @@ def passage(
             "passage: a 2D section was given: use section_passage for its flow domain, or build prismatic(design) first"
         )
     turned = _slope("inlet_angle", inlet_angle), _slope("outlet_angle", outlet_angle)
-    spec = PassageSpec(blade=blade, exact=blade.exact.whole(), half_pitch=_half_pitch(blade), turned=turned)
+    spec = PassageSpec(blade=blade, exact=blade.exact.without_clearance(), half_pitch=_half_pitch(blade), turned=turned)
     if knots is not None:
         for name, given in (("upstream", upstream), ("downstream", downstream)):
             if given is not None and given != getattr(knots, name):

@@ -79,7 +79,7 @@ class CamberLines:
     def side(self, t: Reals, sign: int) -> Array:
         """Points (..., m, k, 2) at shares t (k,) of the upper (+1) or the lower side (-1) without its back face."""
         whole = 1.0 if self.stations.back is None else self.stations.back
-        return self.in_plane(self.stations.plane.points(whole * t)[0 if sign > 0 else 1])
+        return self.in_plane(self.stations.plane_points(whole * t)[0 if sign > 0 else 1])
 
     def direction(self, edge: int) -> Array:
         """Unit vectors (..., m, 2) along the camber lines, downstream, at the leading (0) or trailing (1) edge."""

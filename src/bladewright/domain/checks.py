@@ -51,7 +51,7 @@ def check_pitch(camber: CamberLines, blade: Blade, half_pitch: float) -> None:
     """
     v = camber.stations.v
     lines = [np.concatenate([real_first(camber.points(piece, SIDES), 3) for piece in PIECES], axis=-2)]
-    sides = [real_first(camber.in_plane(side), 3) for side in camber.stations.plane.points(SIDES)]
+    sides = [real_first(camber.in_plane(side), 3) for side in camber.stations.plane_points(SIDES)]
     design = blade.design
     worst, where = -np.inf, (0, 0.0)
     for side, sign in zip(sides, (1.0, -1.0), strict=True):

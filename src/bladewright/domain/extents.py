@@ -73,7 +73,7 @@ def shortest_duct(exact: ExactBlade) -> Duct:
 
 def end_camber_lines(exact: ExactBlade) -> CamberLines:
     """Camber lines on hub and shroud, hardly continued."""
-    return camber_lines(exact.stations(np.array([0.0, 1.0])), shortest_duct(exact))
+    return camber_lines(exact.sections(np.array([0.0, 1.0])), shortest_duct(exact))
 
 
 def departures(ends: CamberLines, half_pitch: float) -> tuple[float, float]:

@@ -38,7 +38,7 @@ class PassageSpec:
     def duct(self, knots: PassageKnots) -> Duct:
         """The duct at given knots."""
         return Duct(
-            channel=self.exact.meridians,
+            channel=self.exact.meridional_channel,
             start=knots.start,
             end=knots.end,
             edges=knots.edges,
@@ -52,7 +52,7 @@ class PassageSpec:
     def camber(self, knots: PassageKnots, v: Reals) -> CamberLines:
         """Camber lines with stations at v (m,)."""
         joints = np.unique(self.exact.breaks_along_v())
-        return camber_lines(self.exact.stations(v), self.duct(knots), self.turned, joints, knots.correspondence)
+        return camber_lines(self.exact.sections(v), self.duct(knots), self.turned, joints, knots.correspondence)
 
     def plane(self, knots: PassageKnots, v: Reals) -> PlaneGeometry:
         """Camber lines with stations at v (m,), hub first and shroud last, and the walls' halves and strips."""

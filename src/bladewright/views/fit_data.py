@@ -203,7 +203,7 @@ def outline_at(fit: FitResult, v: float) -> Outline:
     solid = fit.cloud.shape[-1] == 3
     if solid:
         section = fit.built.section(v)
-        plane = fit.built.exact.stations(np.array([v])).plane.points(u)
+        plane = fit.built.exact.sections(np.array([v])).plane_points(u)
         sides = {name: np.real(points[0]) for name, points in zip(SIDES, plane, strict=True)}
     else:
         section = fit.built

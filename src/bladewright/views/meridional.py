@@ -22,7 +22,7 @@ CURVES = {"hub": BLUE, "shroud": ORANGE, "leading_edge": GREEN, "trailing_edge":
 
 def draw_meridional(axes: Axes, blade: "Blade") -> None:
     """Draws the plan in the (x, r) plane, or (x, z) of a cascade, equal lengths equal on both axes."""
-    exact, plan = blade.exact, blade.exact.plan
+    exact, plan = blade.exact, blade.exact.meridional_view
     noses = blade_outline(blade) * MILLIMETRES
     axes.fill(*noses.T, color=INK, alpha=0.08, linewidth=0.0, label="blade")
     axes.plot(*noses.T, color=INK, linewidth=0.7)
@@ -74,8 +74,8 @@ def _draw(axes: Axes, line: "ViewLine", colour: str, label: str | None) -> None:
 
 def blade_outline(blade: "Blade") -> Reals:
     """What the blade covers of the meridional plane: its closed outline (n, 2) of (x, r) [m], noses included."""
-    stations = blade.exact.stations(np.linspace(0.0, 1.0, 41))
-    u, position, _ = stations.on_lines(np.concatenate(stations.plane.points(cosine_spacing(101)), axis=-2))
+    stations = blade.exact.sections(np.linspace(0.0, 1.0, 41))
+    u, position, _ = stations.on_lines(np.concatenate(stations.plane_points(cosine_spacing(101)), axis=-2))
     order = np.argsort(np.real(u), axis=-1)
     ends = np.take_along_axis(np.real(position), order[:, [0, -1], None], axis=1)
     hub, shroud = (np.real(position)[row, order[row]] for row in (0, -1))
@@ -104,7 +104,7 @@ def draw_duct(axes: Axes, passage: "Passage") -> None:
         edge = "leading_edge" if name == "inlet" else "trailing_edge"
         line = _meridional(passage, side, np.array([end]), across)[0]
         axes.plot(*line.T, color=CURVES[edge], label=edge.replace("_", " "))
-    draw_clearance(axes, blade.exact.plan)
+    draw_clearance(axes, blade.exact.meridional_view)
     label_axes(axes, "Meridional duct", "x [mm]", "r [mm]" if passage.duct.revolved else "z [mm]")
     axes.set_aspect("equal", adjustable="datalim")
     legend_below(axes, 3)

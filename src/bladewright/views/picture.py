@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 
 from bladewright.blade.design.sectioned import SectionedBlade
 from bladewright.blade.design.unified import UnifiedBlade
-from bladewright.blade.exact.exact_blade import MIDDLE, shown_spans
+from bladewright.blade.exact.exact_blade import MIDDLE
 from bladewright.blade.native.blade import Blade
 from bladewright.domain.passage import Passage
 from bladewright.domain.section import SectionPassage
@@ -105,7 +105,7 @@ def sheet(design: Drawable, blade: Built | None = None) -> Figure:
 
 
 def _blade_sheet(blade: Blade) -> Figure:
-    sections = [blade.section(v) for v in shown_spans(blade.exact, SPANS)]
+    sections = [blade.section(v) for v in blade.exact.shown_spans(SPANS)]
     few = [section for section in sections if section.span in FEW_SPANS]
     middle = sections[len(sections) // 2]
     pitch = pitch_of(blade, middle)
@@ -128,7 +128,7 @@ def _blade_sheet(blade: Blade) -> Figure:
     draw_curvature(axes[1], few, blade.design.ends)
     draw_thickness(axes[2], sections, blade.design.ends)
     draw_edges(near, few, blade.design.ends)
-    draw_smoothness(smooth, {v: blade.smoothness(v) for v in shown_spans(blade.exact, FEW_SPANS)}, blade.design.ends)
+    draw_smoothness(smooth, {v: blade.smoothness(v) for v in blade.exact.shown_spans(FEW_SPANS)}, blade.design.ends)
     across = -(-len(charts) // strips)
     for index, strip in enumerate(bottom):
         own = charts[index * across : (index + 1) * across]
@@ -174,7 +174,7 @@ def _blade_figures(blade: Blade, middle: Section, pitch: float) -> list[str]:
         f"chord / pitch at {_span_title(middle, blade.design.ends).lower()} {middle.chord * MILLIMETRES / pitch:.3g}",
         f"{columns} x {rows} poles a side",
         f"error {blade.error:.1e} of the chord",
-        "every promise kept" if blade.promises.kept else "a promise is not kept",
+        "every promise kept" if blade.conformance.kept else "a promise is not kept",
     ]
 
 

@@ -76,7 +76,7 @@ def pitch_of(blade: "Blade", section: "Section") -> float:
         return design.pitch * UNITS[design.length_unit] * MILLIMETRES
     radius = millimetres_per_unit(section)
     if section.plane != "m'-theta":
-        lines = blade.exact.stations(np.array([section.span])).lines
+        lines = blade.exact.sections(np.array([section.span])).lines
         radius = float(np.mean(np.real(lines.position(np.linspace(0.0, 1.0, 65))[..., 1]))) * MILLIMETRES
     return 2.0 * np.pi / (design.blade_count or 1) * radius
 
@@ -86,7 +86,7 @@ def neighbour_outline(blade: "Blade", section: "Section", shape: Reals) -> Reals
     mapping, pitch = blade.exact.mapping, pitch_of(blade, section)
     aside = np.full(len(shape), pitch)
     if not mapping.keeps_ordinate and mapping.revolved:
-        lines = blade.exact.stations(np.array([section.span])).lines
+        lines = blade.exact.sections(np.array([section.span])).lines
         radius = lines.position(lines.u_at((shape[:, 0] / millimetres_per_unit(section))[None]))[..., 1]
         turn = np.full(radius.shape, 2.0 * np.pi / (blade.design.blade_count or 1))
         aside = np.real(mapping.start(turn, radius, lines.lengths[..., None]))[0] * millimetres_per_unit(section)

@@ -130,7 +130,7 @@ def _face(face: Any, v: Reals, colour: tuple[float, float, float]) -> ShadedGrid
 def _hub(blade: "Blade", turns: list[float]) -> list[ShadedGrid]:
     """The wall that the blades drawn stand on [mm], a little longer than they are; of a whole row with its bore."""
     exact, low, high = blade.exact, *_hub_extent(blade)
-    wall = MILLIMETRES * exact.wall_line("hub", np.linspace(low, high, 61))
+    wall = MILLIMETRES * exact.wall_points("hub", np.linspace(low, high, 61))
     feet = MILLIMETRES * np.concatenate(
         [np.real(blade.surfaces[name](cosine_spacing(41), 0.0)) for name in ("upper", "lower")]
     )
@@ -159,8 +159,8 @@ def _hub(blade: "Blade", turns: list[float]) -> list[ShadedGrid]:
 
 def _hub_extent(blade: "Blade") -> tuple[float, float]:
     """From which to which u the hub is drawn: past the noses."""
-    stations = blade.exact.stations(np.zeros(1))
-    u = np.real(stations.on_lines(np.concatenate(stations.plane.points(cosine_spacing(41)), axis=-2))[0])
+    stations = blade.exact.sections(np.zeros(1))
+    u = np.real(stations.on_lines(np.concatenate(stations.plane_points(cosine_spacing(41)), axis=-2))[0])
     return min(float(u.min()), 0.0) - 0.06, max(float(u.max()), 1.0) + 0.06
 
 
@@ -175,10 +175,10 @@ def viewpoint(blade: "Blade") -> Reals:
     """
     if not blade.exact.mapping.revolved:
         return axes_towards((-0.55, -0.75, 0.50), (0.0, 0.0, 1.0))
-    first, last = blade.exact.wall_line("hub", np.array([0.0, 1.0]))
+    first, last = blade.exact.wall_points("hub", np.array([0.0, 1.0]))
     run, rise = last - first
     if DISC_SLOPE * abs(rise) > abs(run):
-        aside = blade.exact.wall_line("shroud", np.array([0.0, 1.0]))[:, 0] - np.array([first[0], last[0]])
+        aside = blade.exact.wall_points("shroud", np.array([0.0, 1.0]))[:, 0] - np.array([first[0], last[0]])
         return axes_towards((0.74 if float(np.mean(aside)) > 0.0 else -0.74, 0.42, 0.52), (0.0, 0.0, 1.0))
     narrows = first[1] - last[1] > 0.15 * first[1]
     smaller, larger = (last, first) if narrows else (first, last)

@@ -71,7 +71,7 @@ def test_the_design_goes_through_all_sections_of_the_program(name, tmp_path):
     sections = reference(name)
     write_design(blade_of(sections), tmp_path / "blade.toml")
     exact = exact_sectioned_blade(read_design(tmp_path / "blade.toml"), checked=False)
-    found = np.stack(exact.stations(sections.places).points(PLACES), axis=1)
+    found = np.stack(exact.sections(sections.places).points(PLACES), axis=1)
     expected = np.array([section_points(sections, i, PLACES) for i in range(len(sections.places))])
     np.testing.assert_allclose(found, expected, rtol=0.0, atol=1e-9 * MM)
 
@@ -126,7 +126,7 @@ def test_sections_of_the_design_are_those_of_t_blade3s_formulas(changes, tmp_pat
     for found, places in zip(sections.flow.slopes, (witness.leading, witness.trailing), strict=True):
         assert found == pytest.approx(witness.slopes(places), abs=1e-12)
     exact = exact_sectioned_blade(blade_of(sections), checked=False)
-    found = np.stack(exact.stations(sections.places).points(PLACES), axis=1) / case.unit_length
+    found = np.stack(exact.sections(sections.places).points(PLACES), axis=1) / case.unit_length
     expected = np.array([witness.points(i, PLACES) for i in range(len(sections.places))])
     # a stacking point on a side or of the area is taken off polygons by the witness
     coarse = any(each.centroid or each.above for each in case.stackings)
@@ -153,7 +153,7 @@ def test_derivatives_go_through_a_counted_m(path, tmp_path):
     value, step = design.parameters()[path], 1e-5
 
     def points(changed):
-        stations = exact_sectioned_blade(design.changed(path, changed), checked=False).stations(
+        stations = exact_sectioned_blade(design.changed(path, changed), checked=False).sections(
             np.array([0.0, 0.3, 0.7, 1.0])
         )
         return np.stack(stations.points(PLACES))
@@ -279,7 +279,7 @@ def test_leading_edges_that_are_splines_become_the_familys_where_asked(tmp_path)
     design = blade_of(sections)
     assert 0.02 < design.section.leading_edge_spline.contact < 0.3
     exact = exact_sectioned_blade(design, checked=False)
-    points = np.stack(exact.stations(sections.places).points(PLACES), axis=1)
+    points = np.stack(exact.sections(sections.places).points(PLACES), axis=1)
     expected = np.array([section_points(sections, i, PLACES) for i in range(3)])
     np.testing.assert_allclose(points, expected, rtol=0.0, atol=1e-9 * MM)
 

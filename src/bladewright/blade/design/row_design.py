@@ -1,51 +1,129 @@
-"""What every design of a blade says of its row: around the machine axis, or side by side in a cascade."""
+"""What every design of a blade has: its row, around the machine axis or side by side in a cascade, and its build."""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from abc import abstractmethod
+from collections.abc import Iterable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, ClassVar, Literal
 
+import numpy as np
+
+from bladewright.designs import Design, Law, parameter
 from bladewright.errors import DesignError
 from bladewright.section import checks
+from bladewright.section.unified_limits import check_labels, check_range
 
 if TYPE_CHECKING:
-    from bladewright.blade.design.sectioned import SectionedBlade
-    from bladewright.blade.design.unified import UnifiedBlade
+    from bladewright.blade.exact.exact_blade import ExactBlade
+    from bladewright.blade.native.blade import Blade
+    from bladewright.blade.native.knots import Knots
+
+FIELDS_OF = {"annular": ("blade_count", "leading_edge_theta"), "linear": ("pitch", "leading_edge_y")}
+"""The fields that an arrangement alone has: how far apart blades stand, and where the leading edge does."""
 
 
-def check_arrangement(design: UnifiedBlade | SectionedBlade) -> None:
-    """Refuse what the other arrangement has; bring what this one has to numbers."""
-    put = object.__setattr__
-    own, other = ("annular", "linear") if design.arrangement == "annular" else ("linear", "annular")
-    fields_of = {"annular": ("blade_count", "leading_edge_theta"), "linear": ("pitch", "leading_edge_y")}
-    for name in fields_of[other]:
-        if getattr(design, name) is not None:
-            mine = fields_of[own][fields_of[other].index(name)]
-            raise DesignError(f"{name} is given, but arrangement is '{own}': give {mine}, or arrangement = '{other}'")
-    count, place = fields_of[own]
-    _check_place(design, place, fields_of[other][1])
-    if getattr(design, count) is None:
-        raise DesignError(f"{count} is missing: arrangement '{own}' needs it")
-    if own == "annular":
-        put(design, count, checks.integer(count, design.blade_count, 1, 10_000, "a whole number of blades is needed"))
-    else:
-        put(design, count, checks.number(count, design.pitch))
-        checks.between(count, design.pitch, 0.0, float("inf"), "the pitch must be positive")
+@dataclass(frozen=True, kw_only=True)
+class RowDesign(Design):
+    """Base of the designs of blades: the row that the blade stands in, its tolerance, and its labels.
 
+    A final subclass adds the parameters of its family, and says which exact blade they define.
+    """
 
-def _check_place(design: UnifiedBlade | SectionedBlade, place: str, other: str) -> None:
-    """Refuse two tangential positions; without any, the leading edge's is 0."""
-    stacking = getattr(design, "stacking", None)
-    if stacking is None:
-        given = getattr(design, place)
-        object.__setattr__(design, place, checks.law(place, 0.0 if given is None else given))
-        return
-    of = {"leading_edge_theta": "theta", "leading_edge_y": "y"}
-    if getattr(design, place) is not None:
-        raise DesignError(
-            f"{place} is given together with stacking, whose {of[place]} places the reference point: leave {place} "
-            f"out and give stacking.{of[place]}"
-        )
-    if getattr(stacking, of[other]) is not None:
-        raise DesignError(
-            f"stacking.{of[other]} is given, but arrangement is '{design.arrangement}': give stacking.{of[place]}"
-        )
+    dimension: ClassVar[int] = 3
+
+    name: str
+    """the part's name, used in files"""
+    length_unit: Literal["m", "cm", "mm", "um", "in", "ft"]
+    """unit of every length in the design"""
+    arrangement: Literal["annular", "linear"] = "annular"
+    """blades around the machine axis, or side by side in a cascade"""
+    blade_count: int | None = None
+    """number of blades of an annular row [-]"""
+    pitch: float | None = parameter("length", default=None)
+    """tangential distance of neighbours in a linear cascade [length]"""
+    leading_edge_theta: Law | None = parameter("deg", default=None)
+    """circumferential position of the leading edge, annular; 0 where neither it nor a stacking is given [deg]"""
+    leading_edge_y: Law | None = parameter("length", default=None)
+    """tangential position of the leading edge, linear; 0 where neither it nor a stacking is given [length]"""
+    tolerance: float = 1e-6
+    """largest distance of the native surfaces from the exact blade, of the chord [-]"""
+    description: str = ""
+    """one line for the header of CAD files"""
+    author: str = ""
+    """for the header of CAD files"""
+    organisation: str = ""
+    """for the header of CAD files"""
+
+    local_laws: ClassVar[tuple[str, ...]] = ()
+    """fields whose laws shape the exact section at v by their values at v alone"""
+    local_chordwise_laws: ClassVar[tuple[str, ...]] = ()
+    """the same of fields that hold control points along the chord, each a law"""
+
+    def __post_init__(self) -> None:
+        check_labels(self)
+        checks.choice("arrangement", self.arrangement, list(FIELDS_OF))
+        self._check_arrangement()
+        check_range(self, "tolerance", 1e-9, 1e-2)
+
+    @property
+    def ends(self) -> tuple[str, str]:
+        """Names of the blade's ends at v = 0 and v = 1: `hub` and `shroud`, or `tip` where there is a clearance."""
+        return "hub", "shroud"
+
+    @property
+    def metre(self) -> float:
+        """Metres in the design's unit of length."""
+        return checks.UNITS[self.length_unit]
+
+    @property
+    def spacing(self) -> Any:
+        """From one blade to the next: angle [rad], or distance along y [m] in a cascade; complex where `pitch` is."""
+        return 2.0 * np.pi / self.blade_count if self.blade_count else self.metre * np.asarray(self.pitch)
+
+    @abstractmethod
+    def exact_blade(self, knots: Knots | None = None) -> ExactBlade:
+        """The blade that the design defines, in metres and radians, which native surfaces interpolate.
+
+        `knots` are those that a build holds. Raises DesignError where there is no such blade.
+        """
+
+    @abstractmethod
+    def needs_own_search(self, paths: Iterable[str]) -> bool:
+        """Whether a real change of these parameters moves what is found by a search for one real design at a time."""
+
+    def build(self, knots: Knots | None = None) -> Blade:
+        """The native blade in metres; `knots=blade.knots` holds another build's knots and interpolation sites.
+
+        Raises DesignError where the shape is impossible or the tolerance cannot be reached within 200 x 100 poles.
+        """
+        from bladewright.blade.native.blade import native_blade
+
+        exact = self.exact_blade(knots)
+        exact.check()
+        return native_blade(exact, knots)
+
+    def _check_arrangement(self) -> None:
+        """Refuse what the other arrangement has; bring what this one has to numbers."""
+        own, other = ("annular", "linear") if self.arrangement == "annular" else ("linear", "annular")
+        for mine, theirs in zip(FIELDS_OF[own], FIELDS_OF[other], strict=True):
+            if getattr(self, theirs) is not None:
+                raise DesignError(
+                    f"{theirs} is given, but arrangement is '{own}': give {mine}, or arrangement = '{other}'"
+                )
+        count, place = FIELDS_OF[own]
+        self._check_position(place, FIELDS_OF[other][1])
+        if getattr(self, count) is None:
+            raise DesignError(f"{count} is missing: arrangement '{own}' needs it")
+        if own == "annular":
+            number = checks.integer(count, self.blade_count, 1, 10_000, "a whole number of blades is needed")
+            object.__setattr__(self, count, number)
+        else:
+            object.__setattr__(self, count, checks.number(count, self.pitch))
+            checks.between(count, self.pitch, 0.0, float("inf"), "the pitch must be positive")
+
+    def _check_position(self, place: str, other: str) -> None:
+        """Bring the leading edge's tangential position to a law: 0 where none is given."""
+        del other
+        given = getattr(self, place)
+        object.__setattr__(self, place, checks.law(place, 0.0 if given is None else given))

@@ -2,26 +2,26 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, ClassVar, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 from bladewright.blade.design.flow_path import FlowPath, increasing_spans
 from bladewright.blade.design.meridional_curve import Meridian, meridian_at
-from bladewright.blade.design.row_design import check_arrangement
+from bladewright.blade.design.row_design import RowDesign
 from bladewright.blade.design.stacking import Stacking
-from bladewright.designs import Design, Law, Part, parameter
+from bladewright.designs import Law, Part, parameter
 from bladewright.errors import DesignError
 from bladewright.section import checks
 from bladewright.section.laws import named_laws
-from bladewright.section.unified_limits import check_labels, check_range
 
 if TYPE_CHECKING:
-    from bladewright.blade.native.blade import Blade
+    from bladewright.blade.exact.sectioned import ExactSectionedBlade
     from bladewright.blade.native.knots import Knots
 
 
 @dataclass(frozen=True, kw_only=True)
-class SectionedBlade(Design):
+class SectionedBlade(RowDesign):
     """Base of the blades from sections; each has a final subclass that says of which family.
 
     At every v the family's section is laid on the stream surface of that span fraction, its chord line at the section's
@@ -33,22 +33,6 @@ class SectionedBlade(Design):
     is no `stacking`, moves along its stream line and around the axis.
     """
 
-    dimension: ClassVar[int] = 3
-
-    name: str
-    """the part's name, used in files"""
-    length_unit: Literal["m", "cm", "mm", "um", "in", "ft"]
-    """unit of every length in the design"""
-    arrangement: Literal["annular", "linear"] = "annular"
-    """blades around the machine axis, or side by side in a cascade"""
-    blade_count: int | None = None
-    """number of blades of an annular row [-]"""
-    pitch: float | None = parameter("length", default=None)
-    """tangential distance of neighbours in a linear cascade [length]"""
-    leading_edge_theta: Law | None = parameter("deg", default=None)
-    """circumferential position of the leading edge, annular; 0 where neither it nor `stacking` is given [deg]"""
-    leading_edge_y: Law | None = parameter("length", default=None)
-    """tangential position of the leading edge, linear; 0 where neither it nor `stacking` is given [length]"""
     plane: Literal["m'-theta", "m-r*theta", "x-y", "counted-m'-theta"] = "m'-theta"
     """the plane of each stream surface that sections are laid out in; in a cascade the first two are (m, y). The last
     takes m' as the points of hub, shroud and stream surfaces count it, whose spacing is "conformal", as in T-Blade3"""
@@ -78,22 +62,11 @@ class SectionedBlade(Design):
     section to 1e-9 of the chord, as at hub, shroud and the flow path's stream surfaces it is [-]"""
     section: Any
     """the family's parameters, each a law along the span"""
-    tolerance: float = 1e-6
-    """largest distance of the native surfaces from the exact blade, of the chord [-]"""
-    description: str = ""
-    """one line for the header of CAD files"""
-    author: str = ""
-    """for the header of CAD files"""
-    organisation: str = ""
-    """for the header of CAD files"""
 
     def __post_init__(self) -> None:
-        check_labels(self)
-        checks.choice("arrangement", self.arrangement, ["annular", "linear"])
+        super().__post_init__()
         own = ["counted-m'-theta"] if self.arrangement == "annular" else ["x-y"]
         checks.choice("plane", self.plane, ["m'-theta", "m-r*theta", *own])
-        check_arrangement(self)
-        check_range(self, "tolerance", 1e-9, 1e-2)
         if not isinstance(self.flow_path, FlowPath):
             raise DesignError(f"flow_path is {self.flow_path!r}: a FlowPath with hub and shroud is needed")
         self._check_placing()
@@ -156,16 +129,33 @@ class SectionedBlade(Design):
                 "(m', theta) of an annular row; give sweep"
             )
 
-    @property
-    def ends(self) -> tuple[str, str]:
-        """Names of the blade's ends at v = 0 and v = 1."""
-        return "hub", "shroud"
+    def _check_position(self, place: str, other: str) -> None:
+        """Refuse two tangential positions: a stacking places the reference point, in place of the leading edge."""
+        if self.stacking is None:
+            super()._check_position(place, other)
+            return
+        of = {"leading_edge_theta": "theta", "leading_edge_y": "y"}
+        if getattr(self, place) is not None:
+            raise DesignError(
+                f"{place} is given together with stacking, whose {of[place]} places the reference point: leave {place} "
+                f"out and give stacking.{of[place]}"
+            )
+        if getattr(self.stacking, of[other], None) is not None:
+            raise DesignError(
+                f"stacking.{of[other]} is given, but arrangement is '{self.arrangement}': give stacking.{of[place]}"
+            )
 
-    def build(self, knots: Knots | None = None) -> Blade:
-        """The native blade in metres; `knots=blade.knots` holds another build's knots and interpolation sites.
+    def exact_blade(self, knots: Knots | None = None) -> ExactSectionedBlade:
+        from bladewright.blade.exact.sectioned import exact_sectioned_blade
 
-        Raises DesignError where the shape is impossible or the tolerance cannot be reached within 200 x 100 poles.
+        del knots
+        return exact_sectioned_blade(self)
+
+    def needs_own_search(self, paths: Iterable[str]) -> bool:
+        """Where stream lines meet the edge curves is found for one flow path at a time.
+
+        Without edge curves, and on developable blades, the edges follow from the sections.
         """
-        from bladewright.blade.native.build import built_of_sections
-
-        return built_of_sections(self, knots)
+        if self.leading_edge is None or self.skinning == "developable":
+            return any(True for _ in paths)
+        return not all(path.startswith(("section.", "leading_edge_theta", "leading_edge_y", "pitch")) for path in paths)

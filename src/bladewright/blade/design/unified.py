@@ -2,24 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, ClassVar, Literal
 
 from bladewright.blade.design.flow_path import Channel
-from bladewright.blade.design.row_design import check_arrangement
-from bladewright.designs import ChordwiseLaw, Design, Law, parameter
+from bladewright.blade.design.row_design import RowDesign
+from bladewright.designs import ChordwiseLaw, Law, parameter
 from bladewright.errors import DesignError
 from bladewright.section import checks
-from bladewright.section.unified_limits import check_labels, check_laws, check_range, check_sampling
+from bladewright.section.unified_limits import ANGLES, RADII, TANGENTS, THICKNESSES, WEIGHTS, check_laws, check_sampling
 
 if TYPE_CHECKING:
-    from bladewright.blade.native.blade import Blade
+    from bladewright.blade.exact.unified import ExactUnifiedBlade
     from bladewright.blade.native.knots import Knots
 
 
 @dataclass(frozen=True, kw_only=True)
-class UnifiedBlade(Design):
+class UnifiedBlade(RowDesign):
     """A blade of the unified family, axial, radial or mixed, in an annulus or a linear cascade.
 
     Every law is a number, or the control points of a clamped uniform B-spline of degree min(n - 1, 3) along the span,
@@ -28,23 +28,8 @@ class UnifiedBlade(Design):
     Reference: Agromayor et al. 2021, sections 3 and 4.
     """
 
-    dimension: ClassVar[int] = 3
     reference_length: ClassVar[str] = "length"
 
-    name: str
-    """the part's name, used in files"""
-    length_unit: Literal["m", "cm", "mm", "um", "in", "ft"]
-    """unit of every length in the design"""
-    arrangement: Literal["annular", "linear"] = "annular"
-    """blades around the machine axis, or side by side in a cascade"""
-    blade_count: int | None = None
-    """number of blades of an annular row [-]"""
-    pitch: float | None = parameter("length", default=None)
-    """tangential distance of neighbours in a linear cascade [length]"""
-    leading_edge_theta: Law | None = parameter("deg", default=None)
-    """circumferential position of the leading edge, annular; 0 where not given [deg]"""
-    leading_edge_y: Law | None = parameter("length", default=None)
-    """tangential position of the leading edge, linear; 0 where not given [length]"""
     stagger: Law = parameter("deg")
     """atan(delta theta / delta m') of the camber's ends, from the meridional direction [deg]"""
     metal_angle_in: Law = parameter("deg")
@@ -79,24 +64,16 @@ class UnifiedBlade(Design):
     """places along the chord where the thickness laws are taken, edges apart [-]"""
     clustering: float = 1.0
     """spacing of the samples: 0 uniform, 1 cosine towards both edges [-]"""
-    tolerance: float = 1e-6
-    """largest distance of the native surfaces from the exact blade, of the chord [-]"""
-    description: str = ""
-    """one line for the header of CAD files"""
-    author: str = ""
-    """for the header of CAD files"""
-    organisation: str = ""
-    """for the header of CAD files"""
+
+    local_laws: ClassVar[tuple[str, ...]] = ("leading_edge_theta", "leading_edge_y", *ANGLES, *TANGENTS, *RADII)
+    local_chordwise_laws: ClassVar[tuple[str, ...]] = (*THICKNESSES, *WEIGHTS)
 
     def __post_init__(self) -> None:
-        check_labels(self)
-        checks.choice("arrangement", self.arrangement, ["annular", "linear"])
+        super().__post_init__()
         checks.choice("mapping", self.mapping, ["conformal", "paper"])
         check_laws(self)
-        check_arrangement(self)
         self._check_clearances()
         check_sampling(self)
-        check_range(self, "tolerance", 1e-9, 1e-2)
         if not isinstance(self.channel, Channel):
             raise DesignError(f"channel is {self.channel!r}: a Channel with leading_edge and trailing_edge is needed")
 
@@ -120,7 +97,6 @@ class UnifiedBlade(Design):
 
     @property
     def ends(self) -> tuple[str, str]:
-        """Names of the blade's ends at v = 0 and v = 1: `hub` and `shroud`, or `tip` where there is a clearance."""
         hub = "hub" if self.hub_clearance is None else "tip"
         return hub, "shroud" if self.tip_clearance is None else "tip"
 
@@ -129,11 +105,12 @@ class UnifiedBlade(Design):
         """Half-thickness laws along the chord of the `upper` and the `lower` side."""
         return {"upper": self.thickness_upper, "lower": self.thickness_lower}
 
-    def build(self, knots: Knots | None = None) -> Blade:
-        """The native blade in metres; `knots=blade.knots` holds another build's knots and interpolation sites.
+    def exact_blade(self, knots: Knots | None = None) -> ExactUnifiedBlade:
+        from bladewright.blade.exact.unified import exact_unified_blade
 
-        Raises DesignError where the shape is impossible or the tolerance cannot be reached within 200 x 100 poles.
-        """
-        from bladewright.blade.native.build import built
+        return exact_unified_blade(self, None if knots is None else knots.tip)
 
-        return built(self, knots)
+    def needs_own_search(self, paths: Iterable[str]) -> bool:
+        """Where a clearance surface lies is found for one channel at a time."""
+        cleared = self.ends != ("hub", "shroud")
+        return cleared and any(path.startswith("channel.") or "clearance" in path for path in paths)

@@ -10,11 +10,10 @@ in u. So the meridian starts on the leading- and ends on the trailing-edge curve
 """
 
 from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from bladewright.blade.design.unified import UnifiedBlade
-from bladewright.blade.exact.checks import check_folds
 from bladewright.blade.flow_path.channel import ChannelCurve, TransfiniteChannel
 from bladewright.blade.native.knots import DEGREE, clamped, refined
 from bladewright.errors import DesignError
@@ -23,6 +22,11 @@ from bladewright.numerics.roots import level_crossings
 from bladewright.nurbs.basis import Reals, basis, greville, knots_with_joints
 from bladewright.nurbs.fit import interpolated
 from bladewright.section.checks import UNITS
+from bladewright.section.crossing import PLACES, outlines_of
+
+if TYPE_CHECKING:
+    from bladewright.blade.design.unified import UnifiedBlade
+    from bladewright.blade.exact.unified import UnifiedSections
 
 REACHED = 1e-9
 """difference between stated and built distance from the wall, of the mean meridional chord, that is sought"""
@@ -70,7 +74,7 @@ class Clearance:
         return f"{distance / UNITS[self.unit]:.4g} {self.unit}"
 
 
-def clearance_of(design: UnifiedBlade) -> Clearance | None:
+def clearance_of(design: "UnifiedBlade") -> Clearance | None:
     """The clearance of a design, or None where its blade reaches from wall to wall."""
     for name, wall in (("tip_clearance", "shroud"), ("hub_clearance", "hub")):
         value = getattr(design, name)
@@ -89,7 +93,7 @@ def cleared(full: TransfiniteChannel, clearance: Clearance, knots: Reals | None 
     """
     real, asked = full.real(), clearance.real()
     if knots is None:
-        check_folds(real)
+        real.check_folds()
         _check_span(real, asked)
         knots = _knots(real, asked)
     sites = greville(knots, DEGREE)
@@ -119,6 +123,23 @@ def off_distance(full: TransfiniteChannel, clearance: Clearance, u: Reals, point
         gap = points - foot
         feet = feet + dot(gap, slope) / (dot(slope, slope) - dot(gap, bend))
     return np.abs(length(points - wall(feet)) - clearance.real().distance(u))  # real: a measured distance
+
+
+def check_clearance(clearance: Clearance, sections: "UnifiedSections", row: int) -> None:
+    """Refuse a clearance that ends on the nose of the blade, past the edge at which it is smaller.
+
+    `row` is the number of the section at the clearance.
+    """
+    outline = outlines_of(*sections.plane_points(PLACES))[..., [row], :, :]
+    u = np.real(sections.lines.rows([row]).u_at(outline[..., 0]))
+    for place, edge in ((float(np.min(u)), "leading"), (float(np.max(u)), "trailing")):
+        distance = float(clearance.real().distance(np.array([place]))[0])
+        if distance <= 0.0:
+            raise DesignError(
+                f"{clearance.name} is linear in u and falls to {clearance.said(distance)} at u = {place:.3f}, the nose "
+                f"past the {edge} edge: the blade would meet the {clearance.wall} there; bring its two values nearer "
+                "to each other"
+            )
 
 
 def _knots(full: TransfiniteChannel, clearance: Clearance) -> Reals:

@@ -2,12 +2,12 @@
 
 from dataclasses import dataclass
 from functools import cached_property, partial
-from typing import NamedTuple
+from typing import Literal, NamedTuple
 
 import numpy as np
 
 from bladewright.blade.exact.family_sections import FamilySections, FlowPathSections
-from bladewright.blade.flow_path.blade_streamlines import BladeStreamlines, blade_streamlines
+from bladewright.blade.flow_path.blade_streamlines import blade_streamlines
 from bladewright.blade.flow_path.meridional_curve import real_first
 from bladewright.blade.flow_path.stream_surface_map import DiscreteConformal, StreamSurfaceMap
 from bladewright.blade.flow_path.stream_surfaces import StreamSurfaces
@@ -161,49 +161,6 @@ def _check(v: Reals, begin: Reals, along: Reals, steps: Reals, t: Reals, extent:
 ENDS = np.array([0.0, 1.0])
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class Rulings:
-    """Parallel straight lines through the points of the hub's section."""
-
-    surfaces: StreamSurfaces
-    hub: FamilySections
-    """the section at the hub, of v (1,)"""
-    direction: Array
-    """(..., 3) from the hub's reference point to the shroud's [m]"""
-
-    def crossing(self, plane: Array, v: Reals) -> RulingCrossings:
-        """Where those through the plane points (..., 1, k, 2) of the hub cross the stream surfaces at v (m,)."""
-        u, _, _ = self.hub.on_lines(plane)
-        start = self.hub.in_space(plane)[..., 0, :, :]
-        near = real_first(self.hub.lines.t(u), 2)[0]
-        return ruling_crossings(self.surfaces, v, start, self.direction, near, revolved=self.hub.mapping.revolved)
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
-class DevelopedPlane:
-    """Sections (..., m) in their planes, as the rulings cut them out of their stream surfaces."""
-
-    rulings: Rulings
-    lines: BladeStreamlines
-
-    def points(self, s: Reals) -> tuple[Array, Array]:
-        """Points (..., m, len(s), 2) of the upper and the lower side."""
-        upper, lower = self.rulings.hub.plane.points(s)
-        both = self.of_hub(concatenated([upper, lower], axis=-2))
-        return both[..., : len(s), :], both[..., len(s) :, :]
-
-    def of_hub(self, plane: Array) -> Array:
-        """Points (..., m, k, 2) on the rulings of plane points (..., 1, k, 2) of the hub."""
-        return self.placed(self.rulings.crossing(plane, self.lines.v))
-
-    def placed(self, crossed: RulingCrossings) -> Array:
-        """Points (..., m, k, 2) of the planes."""
-        lines, mapping = self.lines, self.lines.mapping
-        u = (crossed.t - lines.leading[..., None]) / (lines.trailing - lines.leading)[..., None]
-        ordinate = mapping.start(tangential(mapping, crossed.point), radius(mapping, crossed.point), lines.lengths)
-        return np.stack(np.broadcast_arrays(lines.abscissa(u), ordinate), axis=-1)
-
-
 def radius(mapping: StreamSurfaceMap, point: Array) -> Array:
     """r of points (..., 3), z in a cascade."""
     return np.sqrt(point[..., 1] ** 2 + point[..., 2] ** 2) if mapping.revolved else point[..., 2]
@@ -225,52 +182,68 @@ class DevelopableSections(FlowPathSections):
     and thickness; of the shroud nothing is the design's but the place of its reference point.
     """
 
-    plane: DevelopedPlane
+    surfaces: StreamSurfaces
+    hub: FamilySections
+    """the section at the hub, of v (1,)"""
+    direction: Array
+    """(..., 3) of the straight lines, from the hub's reference point to the shroud's [m]"""
+
+    def plane_points(self, s: Reals) -> tuple[Array, Array]:
+        upper, lower = self.hub.plane_points(s)
+        both = self._plane_points_of(concatenated([upper, lower], axis=-2))
+        return both[..., : len(s), :], both[..., len(s) :, :]
+
+    def _plane_points_of(self, hub_points: Array) -> Array:
+        """Points (..., m, k, 2) of the planes where the rulings through plane points (..., 1, k, 2) of the hub go."""
+        crossed, lines, mapping = self._crossing(hub_points), self.lines, self.mapping
+        u = (crossed.t - lines.leading[..., None]) / (lines.trailing - lines.leading)[..., None]
+        ordinate = mapping.start(tangential(mapping, crossed.point), radius(mapping, crossed.point), lines.lengths)
+        return np.stack(np.broadcast_arrays(lines.abscissa(u), ordinate), axis=-1)
+
+    @property
+    def skinning(self) -> Literal["sections", "ruled", "developable"]:
+        return "developable"
 
     @property
     def kinds(self) -> tuple[str, str]:
-        return self._hub.kinds
+        return self.hub.kinds
 
     @property
     def back(self) -> float | None:
-        return self._hub.back
-
-    @property
-    def _hub(self) -> FamilySections:
-        return self.plane.rulings.hub
+        return self.hub.back
 
     def outlines(self) -> Reals:
-        upper, lower = (real_first(side, 3) for side in self.plane.points(FINE))
+        upper, lower = (real_first(side, 3) for side in self.plane_points(FINE))
         return concatenated([upper, lower[:, ::-1]], axis=-2)
 
     def camber(self, share: Reals) -> Array:
-        return self.plane.of_hub(self._hub.camber(share))
+        return self._plane_points_of(self.hub.camber(share))
 
     def camber_ends(self) -> tuple[Array, Array]:
-        first, last = (self._direction(end, along) for end, along in enumerate(self._hub.camber_ends()))
+        first, last = (self._direction(end, along) for end, along in enumerate(self.hub.camber_ends()))
         return first, last
 
     def points(self, s: Reals) -> tuple[Array, Array]:
-        upper, lower = (self._crossing(side).point for side in self._hub.plane.points(s))
+        upper, lower = (self._crossing(side).point for side in self.hub.plane_points(s))
         return upper, lower
 
     def leading_edge(self) -> EdgeDerivatives:
-        return self._row(self._hub.leading_edge(), self._edges[0])
+        return self._row(self.hub.leading_edge(), self._edges[0])
 
     def trailing_edge(self) -> EdgeDerivatives:
-        return self._row(self._hub.trailing_edge(), self._edges[1])
+        return self._row(self.hub.trailing_edge(), self._edges[1])
 
     def lower_edges(self) -> tuple[EdgeDerivatives | None, EdgeDerivatives | None]:
         first, last = (
             None if row is None else self._row(row, place)
-            for row, place in zip(self._hub.lower_edges(), self._edges[2:], strict=True)
+            for row, place in zip(self.hub.lower_edges(), self._edges[2:], strict=True)
         )
         return first, last
 
     def faces(self, w: Reals) -> dict[str, Array]:
-        upper, lower = self._hub.plane.points(ENDS)
+        upper, lower = self.hub.plane_points(ENDS)
         found = {}
-        for name in self._hub.faces(w):
+        for name in self.hub.faces(w):
             at = 0 if name == "leading_edge" else 1
             ends = upper[..., at, None, :], lower[..., at, None, :]
             found[name] = self._crossing(ends[0] + w[:, None] * (ends[1] - ends[0])).point
@@ -279,11 +252,11 @@ class DevelopableSections(FlowPathSections):
     @cached_property
     def _edges(self) -> list[RulingCrossings]:
         """Crossings of the rulings at the upper side's edges, then at the lower side's."""
-        upper, lower = self._hub.plane.points(ENDS)
+        upper, lower = self.hub.plane_points(ENDS)
         return [self._crossing(side[..., [end], :]) for side in (upper, lower) for end in (0, 1)]
 
     def _crossing(self, plane: Array) -> RulingCrossings:
-        return self.plane.rulings.crossing(plane, self.v)
+        return _hub_crossings(self.surfaces, self.hub, self.direction, plane, self.v)
 
     def _row(self, row: EdgeDerivatives, crossed: RulingCrossings) -> EdgeDerivatives:
         first, second = crossed.carried(row.first, row.second)
@@ -291,7 +264,7 @@ class DevelopableSections(FlowPathSections):
 
     def _direction(self, end: int, along: Array) -> Array:
         """Directions (..., m, 2) in the planes of one (..., 1, 2) of the hub's plane at an end of the camber line."""
-        hub, lines, mapping = self._hub, self.lines, self.mapping
+        hub, lines, mapping = self.hub, self.lines, self.mapping
         place = hub.camber(ENDS[[end]])
         none = np.zeros_like(along)
         u, _, _ = hub.on_lines(place)
@@ -317,11 +290,20 @@ def developable_sections(
 
     Raises DesignError where a ruling misses a stream surface.
     """
-    rulings = Rulings(surfaces=surfaces, hub=hub, direction=references[..., 1, :] - references[..., 0, :])
-    chord = hub.plane.placed(np.array([[[0.0, 0.0], [1.0, 0.0]]]))
-    t = rulings.crossing(chord, v).t
+    direction = references[..., 1, :] - references[..., 0, :]
+    chord = hub.placed(np.array([[[0.0, 0.0], [1.0, 0.0]]]))
+    t = _hub_crossings(surfaces, hub, direction, chord, v).t
     mapping = hub.mapping
-    lines = blade_streamlines(
-        surfaces, v, mapping, t[..., 0], t[..., 1], counted=isinstance(mapping, DiscreteConformal)
-    )
-    return DevelopableSections(v=v, lines=lines, plane=DevelopedPlane(rulings=rulings, lines=lines))
+    counted = isinstance(mapping, DiscreteConformal)
+    lines = blade_streamlines(surfaces, v, mapping, t[..., 0], t[..., 1], counted=counted)
+    return DevelopableSections(v=v, lines=lines, surfaces=surfaces, hub=hub, direction=direction)
+
+
+def _hub_crossings(
+    surfaces: StreamSurfaces, hub: FamilySections, direction: Array, plane: Array, v: Reals
+) -> RulingCrossings:
+    """Where the rulings through plane points (..., 1, k, 2) of the hub cross the stream surfaces at v (m,)."""
+    u, _, _ = hub.on_lines(plane)
+    start = hub.in_space(plane)[..., 0, :, :]
+    near = real_first(hub.lines.t(u), 2)[0]
+    return ruling_crossings(surfaces, v, start, direction, near, revolved=hub.mapping.revolved)

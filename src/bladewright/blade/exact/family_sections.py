@@ -1,6 +1,6 @@
 """Sections of a family at places along the span: staggered in their planes, and mapped on their stream surfaces."""
 
-from abc import ABC, abstractmethod
+from abc import ABC
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -22,9 +22,8 @@ class FlowPathSections(SectionStack, ABC):
 
     lines: BladeStreamlines
 
-    @abstractmethod
-    def outlines(self) -> Reals:
-        """Closed outlines (m, n, 2) in the sections' planes, of the real design, on which neighbours are judged."""
+    def check(self) -> None:
+        """Raise DesignError where the sides cannot be those of a blade."""
 
     @property
     def gathered(self) -> bool:
@@ -35,8 +34,11 @@ class FlowPathSections(SectionStack, ABC):
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class StaggeredSections:
-    """Sections (..., m) in their planes, the leading edge's end of the chord line at the abscissa 0."""
+class FamilySections(FlowPathSections):
+    """The exact sections (..., m) of a family at places v (m,) along the span.
+
+    In its plane a section's chord line begins at the abscissa 0.
+    """
 
     outline: Outline
     """the sections in chords, unstaggered"""
@@ -47,8 +49,7 @@ class StaggeredSections:
     start: Array
     """(..., m) ordinate of the leading edge"""
 
-    def points(self, s: Reals) -> tuple[Array, Array]:
-        """Points (..., m, len(s), 2) of the upper and the lower side."""
+    def plane_points(self, s: Reals) -> tuple[Array, Array]:
         upper, lower = self.outline.points(s)
         return self.placed(upper), self.placed(lower)
 
@@ -63,47 +64,38 @@ class StaggeredSections:
         a, b = vectors[..., 0], vectors[..., 1]
         return np.stack([a * along - b * across, a * across + b * along], axis=-1)
 
-
-@dataclass(frozen=True, kw_only=True, eq=False)
-class FamilySections(FlowPathSections):
-    """The exact sections of a family at places v (m,) along the span."""
-
-    v: Reals
-    lines: BladeStreamlines
-    plane: StaggeredSections
-
     @cached_property
     def kinds(self) -> tuple[str, str]:
         """How the sides meet at the leading and at the trailing edge: "round", "sharp" or "blunt"."""
-        return self.plane.outline.leading_edge.kind, self.plane.outline.trailing_edge.kind
+        return self.outline.leading_edge.kind, self.outline.trailing_edge.kind
 
     @property
     def back(self) -> float | None:
-        return self.plane.outline.back
+        return self.outline.back
 
     def camber(self, share: Reals) -> Array:
-        return self.plane.placed(self._camber_line.points(share))
+        return self.placed(self._camber_line.points(share))
 
     def camber_ends(self) -> tuple[Array, Array]:
         line = self._camber_line
-        first, last = (self.plane.turned(each[..., None, :])[..., 0, :] for each in (line.first, line.last))
+        first, last = (self.turned(each[..., None, :])[..., 0, :] for each in (line.first, line.last))
         return first, last
 
     @cached_property
     def _camber_line(self) -> SmoothCamber:
-        return smooth_camber(self.plane.outline)
+        return smooth_camber(self.outline)
 
     def outlines(self) -> Reals:
-        return real_first(self.plane.placed(closed_outlines(self.plane.outline)), 3)
+        return real_first(self.placed(closed_outlines(self.outline)), 3)
 
     def leading_edge(self) -> EdgeDerivatives:
-        return self._row(0, self.plane.outline.leading_edge.upper)
+        return self._row(0, self.outline.leading_edge.upper)
 
     def trailing_edge(self) -> EdgeDerivatives:
-        return self._row(1, self.plane.outline.trailing_edge.upper)
+        return self._row(1, self.outline.trailing_edge.upper)
 
     def lower_edges(self) -> tuple[EdgeDerivatives | None, EdgeDerivatives | None]:
-        outline = self.plane.outline
+        outline = self.outline
         first, last = (
             None if edge.kind == "round" else self._row(end, edge.lower)
             for end, edge in enumerate((outline.leading_edge, outline.trailing_edge))
@@ -112,16 +104,16 @@ class FamilySections(FlowPathSections):
 
     def faces(self, w: Reals) -> dict[str, Array]:
         """The faces of blunt edges; they are straight in the plane."""
-        outline, found = self.plane.outline, {}
+        outline, found = self.outline, {}
         for name, edge in (("leading_edge", outline.leading_edge), ("trailing_edge", outline.trailing_edge)):
             if edge.kind == "blunt":
                 upper, lower = (side.point[..., None, :] for side in (edge.upper, edge.lower))
-                found[name] = self.in_space(self.plane.placed(upper + w[:, None] * (lower - upper)))
+                found[name] = self.in_space(self.placed(upper + w[:, None] * (lower - upper)))
         return found
 
     def _row(self, end: int, start: EdgeDerivatives) -> EdgeDerivatives:
-        point = self.plane.placed(start.point[..., None, :])
-        first, second = (self.plane.turned(each[..., None, :])[..., 0, :] for each in (start.first, start.second))
+        point = self.placed(start.point[..., None, :])
+        first, second = (self.turned(each[..., None, :])[..., 0, :] for each in (start.first, start.second))
         u: Array = np.array([float(end)])
         if self.kinds[end] == "blunt":
             u = self.lines.u_at(point[..., 0])

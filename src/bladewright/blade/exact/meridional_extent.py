@@ -103,7 +103,7 @@ def flow_path_extent(surfaces: StreamSurfaces, survey: FlowPathSections) -> Flow
     """The course of a blade in a flow path, from its sections from end to end."""
     lines = survey.lines
     leading, trailing = (real_first(each, 1) for each in (lines.leading, lines.trailing))
-    abscissae = np.stack([real_first(side[..., 0], 2) for side in survey.plane.points(SIDES)])
+    abscissae = np.stack([real_first(side[..., 0], 2) for side in survey.plane_points(SIDES)])
     u = np.stack([np.min(abscissae, axis=(0, 2)), np.max(abscissae, axis=(0, 2))], axis=-1)
     noses = real_first(lines.t(lines.u_at(u)), 2)
     edges = float(np.mean(leading)), float(np.mean(trailing))

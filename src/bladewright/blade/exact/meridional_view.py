@@ -71,7 +71,7 @@ def channel_view(exact: "ExactUnifiedBlade") -> MeridionalView:
     apart = () if clearance is None else np.real(clearance.real().distance(inside[[0, -1]])).tolist()
     return MeridionalView(
         lines=MappingProxyType(lines),
-        stream_lines=tuple(np.real(exact.stations(STREAM_LINES).lines.position(u))),
+        stream_lines=tuple(np.real(exact.sections(STREAM_LINES).lines.position(u))),
         tip=tip,
         clearance=tuple(apart),
     )
@@ -86,7 +86,7 @@ def flow_path_view(exact: "ExactSectionedBlade") -> MeridionalView:
     drawn = {
         name: _line(getattr(path, name), np.real(surfaces.walls[name].values(v)), metre) for name in ("hub", "shroud")
     }
-    built = np.real(exact.stations(v).lines.position(np.array([0.0, 1.0])))
+    built = np.real(exact.sections(v).lines.position(np.array([0.0, 1.0])))
     shifted = any(law is not None for law in (design.sweep, design.lean, design.conformal_sweep))
     for end, name in enumerate(("leading_edge", "trailing_edge")):
         given, line = getattr(design, name), getattr(exact.place, name, None)

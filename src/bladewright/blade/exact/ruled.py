@@ -1,11 +1,11 @@
 """Ruled blades: straight lines in space between the hub's and the shroud's section, point by point."""
 
 from dataclasses import dataclass
+from typing import Literal
 
 import numpy as np
 
 from bladewright.blade.exact.family_sections import FamilySections, FlowPathSections
-from bladewright.blade.exact.section_stack import Plane
 from bladewright.blade.flow_path.meridional_curve import real_first
 from bladewright.errors import DesignError
 from bladewright.numerics.elementary import Array, cross, dot
@@ -27,11 +27,17 @@ class RuledSections(FlowPathSections):
     nearby. Voss et al. 2025, section 5; the ruled impeller of the freeform method, its section 3.3.
     """
 
-    plane: Plane
     rails: FamilySections
     """the sections at hub and shroud"""
     beside: FamilySections
     """the sections at v"""
+
+    def plane_points(self, s: Reals) -> tuple[Array, Array]:
+        return self.beside.plane_points(s)
+
+    @property
+    def skinning(self) -> Literal["sections", "ruled", "developable"]:
+        return "ruled"
 
     @property
     def kinds(self) -> tuple[str, str]:
@@ -74,6 +80,26 @@ class RuledSections(FlowPathSections):
         upper, lower = (self._mixed(each) * at_ends for each in normals)
         return self.points(s), (upper, lower)
 
+    def check(self) -> None:
+        """Refuse a ruled blade that is turned inside out: whose sides change places between hub and shroud.
+
+        By the sign of their distance across the surface midway between them.
+        """
+        upper, lower = (real_first(side, 3) for side in self.points(JUDGED))
+        middle = (upper + lower) / 2.0
+        along = np.gradient(middle, JUDGED, axis=1)
+        across = middle[-1] - middle[0]
+        sizes = dot(upper - lower, cross(along, np.broadcast_to(across, along.shape)))[:, 1:-1]
+        wrong = np.argwhere(sizes * sizes[:1] <= 0.0)
+        if len(wrong):
+            row, at = wrong[0]
+            raise DesignError(
+                f"skinning is 'ruled', and the straight lines between hub and shroud turn the blade inside out: its "
+                f"sides change places at v = {self.v[row]:.3f}, s = {JUDGED[at + 1]:.3f} (0 is the leading, 1 the "
+                "trailing edge), for the sections at hub and shroud are turned too far against each other; bring their "
+                "stagger and camber nearer to each other, make them thicker, or take skinning = 'sections'"
+            )
+
     def _mixed_row(self, row: EdgeDerivatives) -> EdgeDerivatives:
         shares = self._shares
         return EdgeDerivatives(*(np.asarray(np.einsum("mj,...jd->...md", shares, part)) for part in row))
@@ -88,25 +114,4 @@ class RuledSections(FlowPathSections):
 
 def ruled_sections(rails: FamilySections, beside: FamilySections) -> RuledSections:
     """The ruled blade between the sections at hub and shroud, at the places v of the sections beside."""
-    return RuledSections(v=beside.v, lines=beside.lines, plane=beside.plane, rails=rails, beside=beside)
-
-
-def check_ruled(stations: RuledSections) -> None:
-    """Refuse a ruled blade that is turned inside out: whose sides change places between hub and shroud.
-
-    By the sign of their distance across the surface midway between them.
-    """
-    upper, lower = (real_first(side, 3) for side in stations.points(JUDGED))
-    middle = (upper + lower) / 2.0
-    along = np.gradient(middle, JUDGED, axis=1)
-    across = middle[-1] - middle[0]
-    sizes = dot(upper - lower, cross(along, np.broadcast_to(across, along.shape)))[:, 1:-1]
-    wrong = np.argwhere(sizes * sizes[:1] <= 0.0)
-    if len(wrong):
-        row, at = wrong[0]
-        raise DesignError(
-            f"skinning is 'ruled', and the straight lines between hub and shroud turn the blade inside out: its sides "
-            f"change places at v = {stations.v[row]:.3f}, s = {JUDGED[at + 1]:.3f} (0 is the leading, 1 the trailing "
-            "edge), for the sections at hub and shroud are turned too far against each other; bring their stagger and "
-            "camber nearer to each other, make them thicker, or take skinning = 'sections'"
-        )
+    return RuledSections(v=beside.v, lines=beside.lines, rails=rails, beside=beside)

@@ -2,7 +2,7 @@
 
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
-from typing import Protocol, Self
+from typing import Literal, Protocol, Self
 
 import numpy as np
 
@@ -39,13 +39,6 @@ class Lines(Protocol):
         """Some of the stream lines, by their number along the span."""
 
 
-class Plane(Protocol):
-    """Sections (..., m) in their planes."""
-
-    def points(self, s: Reals) -> tuple[Array, Array]:
-        """Points (..., m, len(s), 2) of the upper and the lower side."""
-
-
 @dataclass(frozen=True, kw_only=True, eq=False)
 class SectionStack(ABC):
     """Sections at places along the span, in their planes and on their stream surfaces."""
@@ -54,8 +47,14 @@ class SectionStack(ABC):
     """(m,) places along the span"""
     lines: Lines
     """their stream lines"""
-    plane: Plane
-    """the sections in their planes"""
+
+    @abstractmethod
+    def plane_points(self, s: Reals) -> tuple[Array, Array]:
+        """Points (..., m, len(s), 2) of the upper and the lower side in their planes."""
+
+    @abstractmethod
+    def outlines(self) -> Reals:
+        """Closed outlines (m, n, 2) in their planes, of the real design, on which crossings are judged."""
 
     @abstractmethod
     def leading_edge(self) -> EdgeDerivatives:
@@ -101,10 +100,34 @@ class SectionStack(ABC):
         del w
         return {}
 
+    def metal_angle(self, end: int) -> Array | None:
+        """The metal angle (..., m) [rad] that the design gives the leading (0) or the trailing edge (1); None: none."""
+        del end
+        return None
+
+    def edge_radius(self, end: int) -> Array | None:
+        """The radius (..., m) [m] in the stream surface that the design gives an edge; None: none."""
+        del end
+        return None
+
+    @property
+    def skinning(self) -> Literal["sections", "ruled", "developable"]:
+        """What the curves of constant v are: sections on stream surfaces, or cut out of ruled or developable sides.
+
+        Those of ruled sides lie on no stream surface.
+        """
+        return "sections"
+
     @property
     def mapping(self) -> StreamSurfaceMap:
         """The sections' plane and its way to space."""
         return self.lines.mapping
+
+    def scale(self, abscissa: Array) -> Array:
+        """Metres in a unit of the plane at abscissae (k,) of the first section."""
+        u = self.lines.u_at(np.atleast_1d(abscissa)[None])
+        speed = np.sqrt(np.sum(self.lines.position(u, 1) ** 2, axis=-1))
+        return (speed / self.lines.densities(u)[0])[0]
 
     def on_lines(self, plane: Array) -> tuple[Array, Array, Array]:
         """u, (x, r) and theta or y (..., m, k) of plane points (..., m, k, 2)."""
@@ -120,12 +143,12 @@ class SectionStack(ABC):
 
     def points(self, s: Reals) -> tuple[Array, Array]:
         """Points (..., m, len(s), 3) in metres of the upper and the lower side."""
-        both = self.in_space(concatenated(self.plane.points(s), axis=-2))
+        both = self.in_space(concatenated(self.plane_points(s), axis=-2))
         return both[..., : len(s), :], both[..., len(s) :, :]
 
     def points_and_normals(self, s: Reals) -> tuple[tuple[Array, Array], tuple[Array, Array]]:
         """The same, with the unit normals of the stream surfaces there, towards the shroud."""
-        u, position, tangential = self.on_lines(concatenated(self.plane.points(s), axis=-2))
+        u, position, tangential = self.on_lines(concatenated(self.plane_points(s), axis=-2))
         both = self.mapping.in_space(position[..., 0], position[..., 1], tangential)
         slope = unit(self.lines.position(u, 1))
         if not self.mapping.revolved:

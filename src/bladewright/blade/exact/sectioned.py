@@ -3,35 +3,40 @@
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from bladewright.blade.design.sectioned import SectionedBlade
 from bladewright.blade.exact.chord_placement import chord_placement
 from bladewright.blade.exact.developable import developable_sections
-from bladewright.blade.exact.exact_blade import ExactBlade, WallMeridian
-from bladewright.blade.exact.family_sections import FamilySections, FlowPathSections, StaggeredSections
+from bladewright.blade.exact.exact_blade import MIDDLE, ExactBlade
+from bladewright.blade.exact.family_sections import FamilySections, FlowPathSections
 from bladewright.blade.exact.meridional_extent import FlowPathExtent, flow_path_extent
 from bladewright.blade.exact.meridional_view import MeridionalView, flow_path_view
-from bladewright.blade.exact.ruled import RuledSections, check_ruled, ruled_sections
+from bladewright.blade.exact.ruled import ruled_sections
 from bladewright.blade.exact.stacking_axis import StackingAxis, reference_points
 from bladewright.blade.exact.sweep_lean import shift_of, shifted_lines
 from bladewright.blade.exact.unified import SURVEY
 from bladewright.blade.flow_path.blade_streamlines import BladeStreamlines, PrescribedEdges, prescribed_edges
 from bladewright.blade.flow_path.location import curve_joints
-from bladewright.blade.flow_path.meridional_curve import real_first
+from bladewright.blade.flow_path.meridional_curve import MeridionalCurve, real_first
 from bladewright.blade.flow_path.stream_surface_map import DiscreteConformal, StreamSurfaceMap, plane_of
 from bladewright.blade.flow_path.stream_surfaces import StreamSurfaces, stream_surfaces
 from bladewright.blade.native.knots import DEGREE
 from bladewright.errors import DesignError
 from bladewright.numerics.elementary import Array, radians
 from bladewright.nurbs.basis import Reals
-from bladewright.section.checks import UNITS
+from bladewright.nurbs.curve import Curve
 from bladewright.section.crossing import check_outline
 from bladewright.section.laws import DEGREE as LAW_DEGREE
 from bladewright.section.laws import Span, inner_knots, laws_of
+from bladewright.section.native import knots_for, native_section
 from bladewright.section.outline import Outline
+from bladewright.section.section import Section
+from bladewright.section.smoothness import Smoothness, smoothness
+
+if TYPE_CHECKING:
+    from bladewright.blade.design.sectioned import SectionedBlade
 
 STEEP = np.radians(89.0)
 """largest angle of a chord line: beyond it its extent along the flow says nothing of the chord"""
@@ -44,7 +49,7 @@ Found = tuple[BladeStreamlines, Outline, Array, Array]
 """stream lines between the sections' edges, sections, their stagger and reference points"""
 
 
-def placed_sections(design: SectionedBlade, place: Place, mapping: StreamSurfaceMap, v: Reals) -> FamilySections:
+def placed_sections(design: "SectionedBlade", place: Place, mapping: StreamSurfaceMap, v: Reals) -> FamilySections:
     """Sections at v (m,); raises DesignError where there are none, or they do not fit in the flow path."""
     span = Span(v)
     if isinstance(place, PrescribedEdges):
@@ -63,11 +68,10 @@ def placed_sections(design: SectionedBlade, place: Place, mapping: StreamSurface
     radius = lines.position(lines.u_at(along[..., None]))[..., 0, 1]
     around = shift.tangential / radius if mapping.revolved else shift.tangential
     start = mapping.start(_tangential(design, span) + around, radius, lines.lengths) - across
-    plane = StaggeredSections(outline=outline, stagger=stagger, chord=chord, start=start)
-    return FamilySections(v=v, lines=lines, plane=plane)
+    return FamilySections(v=v, lines=lines, outline=outline, stagger=stagger, chord=chord, start=start)
 
 
-def family_sections(design: SectionedBlade, span: Span, lines: BladeStreamlines) -> tuple[Outline, Array]:
+def family_sections(design: "SectionedBlade", span: Span, lines: BladeStreamlines) -> tuple[Outline, Array]:
     """The family's sections in chords and their stagger (..., m) [rad] on stream lines."""
     part = design.section
     if lines.mapping.plane != "m'-theta":
@@ -80,7 +84,7 @@ def family_sections(design: SectionedBlade, span: Span, lines: BladeStreamlines)
     return part.on_stream_surfaces(span, meridional)
 
 
-def _stacked(design: SectionedBlade, place: StackingAxis, mapping: StreamSurfaceMap, span: Span) -> Found:
+def _stacked(design: "SectionedBlade", place: StackingAxis, mapping: StreamSurfaceMap, span: Span) -> Found:
     stacking, v = place.stacking, span.v
     chord = place.metre * span.values(0.0 if stacking.chord is None else stacking.chord)
     ruler = chord_placement(place.surfaces, v, mapping, place.t(v), chord)
@@ -130,7 +134,7 @@ def _settled(
     )
 
 
-def _tangential(design: SectionedBlade, span: Span) -> Array:
+def _tangential(design: "SectionedBlade", span: Span) -> Array:
     """theta [rad], or y [m] in a cascade, (..., m) of the reference points."""
     stacking, annular = design.stacking, design.arrangement == "annular"
     if stacking is None:
@@ -138,7 +142,7 @@ def _tangential(design: SectionedBlade, span: Span) -> Array:
     else:
         law = stacking.theta if annular else stacking.y
     values = span.values(0.0 if law is None else law)
-    return radians(values) if annular else UNITS[design.length_unit] * values
+    return radians(values) if annular else design.metre * values
 
 
 def _check_stagger(stagger: Array, v: Reals) -> None:
@@ -157,13 +161,15 @@ ENDS = np.array([0.0, 1.0])
 """hub and shroud"""
 SPANS = 8
 """knot spans along a side to begin with"""
+SECTION_TOLERANCE = 1e-10
+"""Distance of a family's native curves from the exact section, of the chord."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class ExactSectionedBlade(ExactBlade):
-    """The blade of sections that is meant, in metres and radians."""
+    """The blade that a design of sections defines, in metres and radians."""
 
-    design: SectionedBlade
+    design: "SectionedBlade"
     surfaces: StreamSurfaces
     place: Place
     """what puts the sections on their stream lines: edge curves, or reference points"""
@@ -171,31 +177,30 @@ class ExactSectionedBlade(ExactBlade):
     @cached_property
     def survey(self) -> FlowPathSections:
         """Stations from end to end on which the shape is judged."""
-        return self.stations(SURVEY)
+        return self.sections(SURVEY)
 
-    def stations(self, v: Reals) -> FlowPathSections:
+    def sections(self, v: Reals) -> FlowPathSections:
         """What the blade is at v (m,), as its skinning has it."""
         if self.design.skinning == "ruled":
-            return ruled_sections(self.rails, self.sections(v))
+            return ruled_sections(self.rails, self.design_sections(v))
         if self.design.skinning == "developable":
-            return developable_sections(self.surfaces, self.sections(ENDS[:1]), self.references, v)
-        return self.sections(v)
+            return developable_sections(self.surfaces, self.design_sections(ENDS[:1]), self.references, v)
+        return self.design_sections(v)
 
-    def sections(self, v: Reals) -> FamilySections:
+    def design_sections(self, v: Reals) -> FamilySections:
         """The design's sections at v (m,); raises DesignError where there are none, or they leave the flow path."""
         return placed_sections(self.design, self.place, self.mapping, v)
 
     @cached_property
     def rails(self) -> FamilySections:
         """The design's sections at hub and shroud."""
-        return self.sections(ENDS)
+        return self.design_sections(ENDS)
 
     @property
     def references(self) -> Array:
         """The reference points (..., 2, 3) of hub and shroud in space [m]."""
-        plane = self.rails.plane
-        points = reference_points(self.design.stacking, plane.outline, Span(ENDS))
-        return self.rails.in_space(plane.placed(points[..., None, :]))[..., 0, :]
+        points = reference_points(self.design.stacking, self.rails.outline, Span(ENDS))
+        return self.rails.in_space(self.rails.placed(points[..., None, :]))[..., 0, :]
 
     @property
     def given_spans(self) -> Reals:
@@ -207,14 +212,14 @@ class ExactSectionedBlade(ExactBlade):
     def section_spans(self) -> tuple[float, ...]:
         if self.design.skinning == "developable":
             return (0.0,)
-        spans = np.union1d(self.given_spans, [] if self.design.skinning == "ruled" else [0.5])
+        spans = np.union1d(self.given_spans, [] if self.design.skinning == "ruled" else [MIDDLE])
         return tuple(float(v) for v in spans)
 
-    def moved_to(self, design: SectionedBlade) -> "ExactSectionedBlade":
+    def moved_to(self, design: "SectionedBlade") -> "ExactSectionedBlade":
         return exact_sectioned_blade(design, checked=False)
 
     def breaks_along_u(self) -> Reals:
-        joints = self.rails.plane.outline.joints
+        joints = self.rails.outline.joints
         ends = np.array([0.0, *(joint.s for joint in joints), 1.0])
         counts = np.maximum(1 if len(ends) > 2 else 2, np.rint(SPANS * np.diff(ends)).astype(int))
         parts = [np.linspace(a, b, n + 1)[1:-1] for a, b, n in zip(ends[:-1], ends[1:], counts, strict=True)]
@@ -261,46 +266,80 @@ class ExactSectionedBlade(ExactBlade):
         meridian = place.stacking.line
         return [] if meridian is None else curve_joints(self.surfaces, meridian, place.line, v, place.meeting(v))
 
+    def check(self) -> None:
+        self.check_neighbours()
+
     @property
-    def meridians(self) -> StreamSurfaces:
+    def meridional_channel(self) -> StreamSurfaces:
         return self.surfaces
 
     @cached_property
     def meridional_extent(self) -> FlowPathExtent:
         return flow_path_extent(self.surfaces, self.survey)
 
-    def whole(self) -> "ExactSectionedBlade":
+    @cached_property
+    def meridional_view(self) -> MeridionalView:
+        """Hub, shroud, edge curves, given stream surfaces and stream lines in the meridional plane."""
+        return flow_path_view(self)
+
+    def without_clearance(self) -> "ExactSectionedBlade":
         return self
 
-    def end_wall(self, row: int) -> WallMeridian:
-        curve = self.surfaces.walls[("hub", "shroud")[row]].curve()
-        inner = curve.knots[(curve.knots > curve.knots[0]) & (curve.knots < curve.knots[-1])]
-        return WallMeridian(curve, inner)
+    def wall(self, name: str) -> MeridionalCurve:
+        return self.surfaces.walls[name]
 
-    def wall_places(self, u: Reals) -> Reals:
+    def end_wall(self, row: int) -> tuple[Curve, Reals]:
+        curve = self.wall(("hub", "shroud")[row]).curve()
+        return curve, curve.knots[(curve.knots > curve.knots[0]) & (curve.knots < curve.knots[-1])]
+
+    def wall_parameters(self, u: Reals) -> Reals:
         t = real_first(self.survey.lines.rows([0, -1]).t(u), 2)
         return np.stack([self.surfaces.wall_parameter(name, t[i]) for i, name in enumerate(("hub", "shroud"))])
 
-    @cached_property
-    def plan(self) -> MeridionalView:
-        """Walls, edges, stream lines and stream surfaces in the meridional plane."""
-        return flow_path_view(self)
-
-    def wall_line(self, name: str, u: Reals) -> Reals:
+    def wall_points(self, name: str, u: Reals) -> Reals:
         v = np.array([("hub", "shroud").index(name)], dtype=np.float64)
         lines = self.survey.lines.rows([0 if name == "hub" else -1])
         start, end = (float(real_first(t, 1)[0]) for t in (lines.leading, lines.trailing))
         t = np.unique(np.clip(start + (end - start) * u, self.surfaces.low, self.surfaces.high))
         return np.asarray(np.real(self.surfaces.real().position(v, t[None])[0]))
 
+    def _section(self, v: float) -> Section:
+        scale = self.sections(np.array([v])).scale
+        sections = self._own_section(v)
+        turn, chord, start = (np.ravel(each)[0] for each in (sections.stagger, sections.chord, sections.start))
+        return native_section(
+            sections.outline,
+            knots_for(sections.outline, SECTION_TOLERANCE),
+            turn=turn,
+            chord=chord,
+            shift=np.array([0.0, start]),
+            span=v,
+            plane=self.mapping.plane,
+            scale=scale,
+            meanline=self.design.section.meanline(Span(np.array([v]))),
+        )
 
-def exact_sectioned_blade(design: SectionedBlade, *, checked: bool = True) -> ExactSectionedBlade:
+    def smoothness(self, v: float) -> Smoothness:
+        return smoothness(self._own_section(v).outline)
+
+    def _own_section(self, v: float) -> FamilySections:
+        """The design's section at v; DesignError where the blade has none there."""
+        if self.design.skinning != "sections" and v not in self.section_spans:
+            where = "hub and shroud" if self.design.skinning == "ruled" else "the hub"
+            raise DesignError(
+                f"a section was asked at v = {v:g} of a blade whose skinning is '{self.design.skinning}': it has the "
+                f"design's sections at {where} alone; ask there, or take skinning = 'sections'"
+            )
+        return self.design_sections(np.array([v]))
+
+
+def exact_sectioned_blade(design: "SectionedBlade", *, checked: bool = True) -> ExactSectionedBlade:
     """The exact blade of a design of sections.
 
     Raises DesignError where its flow path folds, or edges and flow path do not meet, and where it is to be `checked`,
     for sections that cross themselves.
     """
-    metre, revolved = UNITS[design.length_unit], design.arrangement == "annular"
+    metre, revolved = design.metre, design.arrangement == "annular"
     mapping: StreamSurfaceMap = plane_of(design.plane, design.arrangement)
     edges = None
     if design.leading_edge is not None and design.trailing_edge is not None:
@@ -314,14 +353,13 @@ def exact_sectioned_blade(design: SectionedBlade, *, checked: bool = True) -> Ex
     )
     if checked:
         v = {"sections": SURVEY, "ruled": ENDS, "developable": ENDS[:1]}[design.skinning]
-        check_outline(exact.sections(v).plane.outline, [f" at v = {each:.3f}" for each in v])
-        if isinstance(exact.survey, RuledSections):
-            check_ruled(exact.survey)
+        check_outline(exact.design_sections(v).outline, [f" at v = {each:.3f}" for each in v])
+        exact.survey.check()
     return exact
 
 
-def _place(design: SectionedBlade, surfaces: StreamSurfaces, mapping: StreamSurfaceMap) -> Place:
-    metre, stacking = UNITS[design.length_unit], design.stacking
+def _place(design: "SectionedBlade", surfaces: StreamSurfaces, mapping: StreamSurfaceMap) -> Place:
+    metre, stacking = design.metre, design.stacking
     if design.leading_edge is not None and design.trailing_edge is not None:
         leading, trailing = (edge.line(metre) for edge in (design.leading_edge, design.trailing_edge))
         return prescribed_edges(surfaces, leading, trailing, counted=isinstance(mapping, DiscreteConformal))

@@ -2,30 +2,47 @@
 
 from dataclasses import dataclass, replace
 from functools import cached_property
+from types import MappingProxyType
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from bladewright.blade.design.unified import UnifiedBlade
-from bladewright.blade.exact.clearance import Clearance, clearance_of, cleared
-from bladewright.blade.exact.exact_blade import ExactBlade, WallMeridian
+from bladewright.blade.exact.clearance import Clearance, check_clearance, clearance_of, cleared, off_distance
+from bladewright.blade.exact.exact_blade import ExactBlade
 from bladewright.blade.exact.meridional_extent import ChannelExtent
 from bladewright.blade.exact.meridional_view import MeridionalView, channel_view
 from bladewright.blade.exact.section_stack import SectionStack
-from bladewright.blade.flow_path.channel import TransfiniteChannel, transfinite_channel
+from bladewright.blade.flow_path.channel import ChannelCurve, TransfiniteChannel, transfinite_channel
 from bladewright.blade.flow_path.meridional_curve import real_first
 from bladewright.blade.flow_path.stream_surface_map import StreamSurfaceMap, mapping_of
 from bladewright.blade.flow_path.streamlines import StreamLines, stream_lines
-from bladewright.blade.native.knots import breaks_along_u, breaks_along_v
+from bladewright.blade.native.knots import DEGREE
 from bladewright.errors import DesignError
 from bladewright.numerics.elementary import Array, concatenated, radians, unit
 from bladewright.nurbs.basis import Reals
+from bladewright.nurbs.curve import Curve
 from bladewright.nurbs.domain import extended
 from bladewright.section.camber import camber_line, camber_points
-from bladewright.section.checks import UNITS
-from bladewright.section.laws import Span
+from bladewright.section.crossing import PLACES, check_outlines, outlines_of
+from bladewright.section.laws import DEGREE as LAW_DEGREE
+from bladewright.section.laws import Span, inner_knots
 from bladewright.section.outline import EdgeDerivatives
+from bladewright.section.section import Section
+from bladewright.section.smoothness import Smoothness, smoothness
 from bladewright.section.unified_limits import check_edges
-from bladewright.section.unified_sides import PlaneSections, matched, plane_sections, sample_places, side
+from bladewright.section.unified_sides import DEGREE as SIDE_DEGREE
+from bladewright.section.unified_sides import (
+    PlaneSections,
+    camber_curve,
+    matched,
+    plane_sections,
+    sample_places,
+    side,
+    side_curve,
+)
+
+if TYPE_CHECKING:
+    from bladewright.blade.design.unified import UnifiedBlade
 
 _ENDS = np.array([0.0, 1.0])
 
@@ -34,17 +51,14 @@ _ENDS = np.array([0.0, 1.0])
 class UnifiedSections(SectionStack):
     """The exact blade's sections at places v (m,) along the span."""
 
-    v: Reals
     lines: StreamLines
     plane: PlaneSections
-    angle_in: Array
-    """(..., m) metal angle at the leading edge [rad]"""
-    angle_out: Array
-    """(..., m) metal angle at the trailing edge [rad]"""
-    curvature_in: Array
-    """(..., m) curvature of the leading edge in the plane"""
-    curvature_out: Array
-    """(..., m) curvature of the trailing edge in the plane"""
+    metal_angles: tuple[Array, Array]
+    """(..., m) at the leading and at the trailing edge [rad]"""
+    curvatures: tuple[Array, Array]
+    """(..., m) of the leading and the trailing edge in the plane"""
+    radii: tuple[Array, Array]
+    """(..., m) of the edges as the design gives them, of the meridional length [-]"""
 
     @property
     def kinds(self) -> tuple[str, str]:
@@ -53,6 +67,19 @@ class UnifiedSections(SectionStack):
     @property
     def gathered(self) -> bool:
         return False
+
+    def plane_points(self, s: Reals) -> tuple[Array, Array]:
+        return self.plane.points(s)
+
+    def outlines(self) -> Reals:
+        outlines = outlines_of(*self.plane_points(PLACES))
+        return np.real(outlines)[(0,) * (outlines.ndim - 3)]
+
+    def metal_angle(self, end: int) -> Array | None:
+        return self.metal_angles[end]
+
+    def edge_radius(self, end: int) -> Array | None:
+        return self.radii[end] * self.lines.lengths
 
     def camber(self, share: Reals) -> Array:
         return camber_points(self.plane.camber, share)
@@ -65,24 +92,24 @@ class UnifiedSections(SectionStack):
         return u
 
     def leading_edge(self) -> EdgeDerivatives:
-        """The leading edge in space."""
-        edge, turn = self.plane.leading_edge, self.angle_in
-        normal = np.stack([-np.sin(turn), np.cos(turn)], axis=-1)
-        bend = (self.curvature_in * edge.normal_speed**2)[..., None] * np.stack([np.cos(turn), np.sin(turn)], axis=-1)
-        first = edge.normal_speed[..., None] * normal
-        return self.row(_ENDS[:1], self.plane.camber[..., 0, :], first, bend + edge.tangential[..., None] * normal)
+        normal, speed, bend, along = self._edge(0)
+        return self.row(_ENDS[:1], self.plane.camber[..., 0, :], speed[..., None] * normal, bend + along * normal)
 
     def trailing_edge(self) -> EdgeDerivatives:
-        """The trailing edge in space."""
-        edge, turn = self.plane.trailing_edge, self.angle_out
+        normal, speed, bend, along = self._edge(1)
+        return self.row(_ENDS[1:], self.plane.camber[..., 3, :], -speed[..., None] * normal, along * normal - bend)
+
+    def _edge(self, end: int) -> tuple[Array, Array, Array, Array]:
+        """Normal of the camber line, speed along it, curvature times its square along the camber, tangential bend."""
+        edge, turn = (self.plane.leading_edge, self.plane.trailing_edge)[end], self.metal_angles[end]
         normal = np.stack([-np.sin(turn), np.cos(turn)], axis=-1)
-        bend = (self.curvature_out * edge.normal_speed**2)[..., None] * np.stack([np.cos(turn), np.sin(turn)], axis=-1)
-        first = -edge.normal_speed[..., None] * normal
-        return self.row(_ENDS[1:], self.plane.camber[..., 3, :], first, edge.tangential[..., None] * normal - bend)
+        curved = (self.curvatures[end] * edge.normal_speed**2)[..., None]
+        bend = curved * np.stack([np.cos(turn), np.sin(turn)], axis=-1)
+        return normal, edge.normal_speed, bend, edge.tangential[..., None]
 
 
 def unified_sections(
-    design: UnifiedBlade, places: Reals, lines: StreamLines, v: Reals, *, tentative: bool = False
+    design: "UnifiedBlade", places: Reals, lines: StreamLines, v: Reals, *, tentative: bool = False
 ) -> UnifiedSections:
     """The sections of a design on stream lines at v (m,), `places` the camber parameters of a side's control points.
 
@@ -91,13 +118,8 @@ def unified_sections(
     span = Span(v)
     angle_in, angle_out = (radians(span.values(law)) for law in (design.metal_angle_in, design.metal_angle_out))
     camber = _camber(design, span, lines, angle_in, angle_out)
-    curvatures = [
-        _edge_curvature(span.values(law), lines, turn, trailing=trailing)
-        for law, turn, trailing in (
-            (design.leading_edge_radius, angle_in, False),
-            (design.trailing_edge_radius, angle_out, True),
-        )
-    ]
+    radii = span.values(design.leading_edge_radius), span.values(design.trailing_edge_radius)
+    curvatures = [_edge_curvature(radii[end], lines, turn, end) for end, turn in enumerate((angle_in, angle_out))]
     inner = places[2:-2]
     radius = lines.position(lines.u_at(camber_points(camber, inner)[..., 0]))[..., 1]
     scale = lines.mapping.scale(radius, lines.lengths[..., None])
@@ -113,20 +135,19 @@ def unified_sections(
         v=v,
         lines=lines,
         plane=plane_sections(camber, *matched(*sides)),
-        angle_in=angle_in,
-        angle_out=angle_out,
-        curvature_in=curvatures[0],
-        curvature_out=curvatures[1],
+        metal_angles=(angle_in, angle_out),
+        curvatures=(curvatures[0], curvatures[1]),
+        radii=radii,
     )
 
 
-def _camber(design: UnifiedBlade, span: Span, lines: StreamLines, angle_in: Array, angle_out: Array) -> Array:
+def _camber(design: "UnifiedBlade", span: Span, lines: StreamLines, angle_in: Array, angle_out: Array) -> Array:
     """Control points (..., m, 4, 2) of the camber lines in their planes."""
     if lines.mapping.revolved:
         place = radians(span.values(0.0 if design.leading_edge_theta is None else design.leading_edge_theta))
     else:
         law = 0.0 if design.leading_edge_y is None else design.leading_edge_y
-        place = UNITS[design.length_unit] * span.values(law)
+        place = design.metre * span.values(law)
     radius = lines.position(_ENDS)[..., 0, 1]
     start, extent = np.broadcast_arrays(lines.mapping.start(place, radius, lines.lengths), lines.extents())
     stagger, tangent_in, tangent_out = (
@@ -135,12 +156,11 @@ def _camber(design: UnifiedBlade, span: Span, lines: StreamLines, angle_in: Arra
     return camber_line(start, extent, radians(stagger), angle_in, angle_out, tangent_in, tangent_out)
 
 
-def _edge_curvature(fraction: Array, lines: StreamLines, turn: Array, *, trailing: bool) -> Array:
+def _edge_curvature(fraction: Array, lines: StreamLines, turn: Array, end: int) -> Array:
     """Curvature (..., m) to set in the plane at an edge, from its radius as a fraction of the meridional length."""
-    end = 1 if trailing else 0
     radius = lines.position(_ENDS)[..., end, 1]
     climb = unit(lines.position(_ENDS, 1))[..., end, 1] * np.cos(turn)
-    return lines.mapping.edge_curvature(fraction, lines.lengths, radius, climb, trailing)
+    return lines.mapping.edge_curvature(fraction, lines.lengths, radius, climb, trailing=end == 1)
 
 
 SURVEY = np.array([0.0, 0.12, 0.25, 0.38, 0.5, 0.62, 0.75, 0.88, 1.0])
@@ -151,9 +171,9 @@ REACH = 0.6
 
 @dataclass(frozen=True, kw_only=True)
 class ExactUnifiedBlade(ExactBlade):
-    """The blade that is meant, in metres and radians: what the native surfaces interpolate and are measured against."""
+    """The blade that a unified design defines, in metres and radians."""
 
-    design: UnifiedBlade
+    design: "UnifiedBlade"
     channel: TransfiniteChannel
     """the blade's own, between its ends"""
     full_channel: TransfiniteChannel
@@ -171,37 +191,82 @@ class ExactUnifiedBlade(ExactBlade):
     tentative: bool = False
     """whether edge radii that the thickness cannot hold are let through, as on the way of a search"""
 
-    def moved_to(self, design: UnifiedBlade) -> "ExactUnifiedBlade":
-        return moved_exact_blade(self, design)
+    def moved_to(self, design: "UnifiedBlade") -> "ExactUnifiedBlade":
+        full, channel, clearance = _channels_of(design, self.tip_knots)
+        return replace(self, design=design, channel=channel, full_channel=full, clearance=clearance, surveyed=None)
+
+    def check(self) -> None:
+        self._check_channel()
+        self.check_sections()
+        if self.clearance is not None:
+            check_clearance(self.clearance, self.survey, self.design.ends.index("tip") * (len(self.survey.v) - 1))
+
+    def check_sections(self) -> None:
+        """Raise DesignError where sides cross or touch, or neighbouring blades intersect."""
+        check_outlines(self.survey.outlines(), [f"at v = {v:.3f}, " for v in self.survey.v])
+        self.check_neighbours()
+
+    def _check_channel(self) -> None:
+        """Refuse a channel that folds over, from nose to nose; the blade's own, too."""
+        self.full_channel.check_folds(self.before, self.after)
+        if self.clearance is not None:
+            try:
+                self.channel.check_folds(self.before, self.after)
+            except DesignError as error:
+                name = self.clearance.name
+                raise DesignError(
+                    f"{name} bounds the blade's own {error}; or lower {name}, or bring its two values nearer to each "
+                    "other"
+                ) from error
 
     def breaks_along_u(self) -> Reals:
-        return breaks_along_u(self)
+        """Inner knots of the sections' sides, twice each: the sides keep three derivatives there."""
+        spans = len(self.places) - SIDE_DEGREE
+        return np.repeat(np.linspace(0.0, 1.0, spans + 1)[1:-1], DEGREE - SIDE_DEGREE + 1)
 
     def breaks_along_v(self) -> Reals:
-        return breaks_along_v(self)
+        """Inner knots of the laws of evolution and of the channel's edges, as often as they lose derivatives."""
+        design = self.design
+        laws = [design.leading_edge_theta, design.leading_edge_y, design.stagger, design.metal_angle_in]
+        laws += [design.metal_angle_out, design.tangent_in, design.tangent_out]
+        laws += [design.leading_edge_radius, design.trailing_edge_radius]
+        laws += [*design.thickness_upper, *design.thickness_lower, *design.weights_upper, *design.weights_lower]
+        times: dict[float, int] = {}
+        for law in laws:
+            for knot in inner_knots(len(law)) if isinstance(law, tuple) else ():
+                times[round(float(knot), 12)] = DEGREE - LAW_DEGREE + 1
+        for edge in (self.channel.leading_edge, self.channel.trailing_edge):
+            for knot in edge.joints():
+                key = round(float(knot), 12)
+                if 0.0 < key < 1.0:
+                    times[key] = max(times.get(key, 0), DEGREE - edge.degree + 1)
+        return np.array([knot for knot in sorted(times) for _ in range(times[knot])])
 
-    def end_wall(self, row: int) -> WallMeridian:
+    @property
+    def meridional_channel(self) -> TransfiniteChannel:
+        return self.channel
+
+    def wall(self, name: str) -> ChannelCurve:
+        return self.channel.line(name)
+
+    def end_wall(self, row: int) -> tuple[Curve, Reals]:
         wall = ("hub", "shroud")[row]
-        inner = self.channel.line(wall).joints()
+        inner = self.wall(wall).joints()
         if self.design.ends[row] == "tip":
             # at a single knot the fitted meridian is smooth up to what it misses
             inner = inner[np.sum(inner[:, None] == inner, axis=0) > 1]
-        return WallMeridian(extended(self.channel.curve(wall), -self.before, 1.0 + self.after), inner)
+        return extended(self.channel.curve(wall), -self.before, 1.0 + self.after), inner
 
-    def wall_places(self, u: Reals) -> Reals:
+    def wall_parameters(self, u: Reals) -> Reals:
         return u
 
-    @cached_property
-    def plan(self) -> MeridionalView:
-        """Walls, edges and stream lines in the meridional plane."""
-        return channel_view(self)
-
-    def wall_line(self, name: str, u: Reals) -> Reals:
+    def wall_points(self, name: str, u: Reals) -> Reals:
         return np.real(self.full_channel.curve(name)(u))
 
-    @property
-    def meridians(self) -> TransfiniteChannel:
-        return self.channel
+    @cached_property
+    def meridional_view(self) -> MeridionalView:
+        """Walls, edges and stream lines in the meridional plane."""
+        return channel_view(self)
 
     @property
     def meridional_extent(self) -> ChannelExtent:
@@ -211,28 +276,48 @@ class ExactUnifiedBlade(ExactBlade):
             channel=self.channel, start=ends[0], end=ends[1], noses=ends, edges=(0.0, 1.0), length=length, unit=1.0
         )
 
-    def whole(self) -> "ExactUnifiedBlade":
+    def without_clearance(self) -> "ExactUnifiedBlade":
         gaps = [name for name in ("tip_clearance", "hub_clearance") if getattr(self.design, name) is not None]
         return exact_unified_blade(self.design.changed(dict.fromkeys(gaps))) if gaps else self
 
+    def clearance_error(self, u: Reals, points: Reals) -> Reals | None:
+        return None if self.clearance is None else off_distance(self.full_channel, self.clearance, u, points)
+
     @property
     def tip_knots(self) -> Reals | None:
-        """Knots of the meridian of the clearance surface, where there is one."""
         return None if self.clearance is None else self.channel.knots(self.clearance.wall)
+
+    def _section(self, v: float) -> Section:
+        sections = self.sections(np.array([v]))
+        plane = sections.plane
+        ends = plane.camber[0, [0, 3]]
+        return Section(
+            span=v,
+            plane=self.mapping.plane,
+            curves=MappingProxyType({"upper": side_curve(plane.upper[0]), "lower": side_curve(plane.lower[0])}),
+            camber=camber_curve(plane.camber[0]),
+            stagger=float(np.real(np.arctan((ends[1, 1] - ends[0, 1]) / (ends[1, 0] - ends[0, 0])))),
+            metal_angle_in=float(np.real(sections.metal_angles[0][0])),
+            metal_angle_out=float(np.real(sections.metal_angles[1][0])),
+            scale=sections.scale,
+        )
+
+    def smoothness(self, v: float) -> Smoothness:
+        return smoothness(self.section(v))
 
     @cached_property
     def survey(self) -> UnifiedSections:
         """Stations from end to end on which the shape is judged."""
-        return self.stations(SURVEY) if self.surveyed is None else self.surveyed
+        return self.sections(SURVEY) if self.surveyed is None else self.surveyed
 
-    def stations(self, v: Reals) -> UnifiedSections:
+    def sections(self, v: Reals) -> UnifiedSections:
         """Sections at v (m,); refuses an edge radius that the thickness cannot hold, unless it is tentative."""
         lines = stream_lines(self.channel, self.mapping, v, self.before, self.after)
         return unified_sections(self.design, self.places, lines, v, tentative=self.tentative)
 
 
 def exact_unified_blade(
-    design: UnifiedBlade, tip_knots: Reals | None = None, *, tentative: bool = False
+    design: "UnifiedBlade", tip_knots: Reals | None = None, *, tentative: bool = False
 ) -> ExactUnifiedBlade:
     """The exact blade of a design, its channel continued as far as the noses need.
 
@@ -261,16 +346,10 @@ def exact_unified_blade(
     )
 
 
-def moved_exact_blade(exact: ExactUnifiedBlade, design: UnifiedBlade) -> ExactUnifiedBlade:
-    """The exact blade of a design that is a small step away, its channel continued as far as that of `exact`."""
-    full, channel, clearance = _channels_of(design, exact.tip_knots)
-    return replace(exact, design=design, channel=channel, full_channel=full, clearance=clearance, surveyed=None)
-
-
 def _channels_of(
-    design: UnifiedBlade, tip_knots: Reals | None
+    design: "UnifiedBlade", tip_knots: Reals | None
 ) -> tuple[TransfiniteChannel, TransfiniteChannel, Clearance | None]:
-    full = transfinite_channel(design.channel, UNITS[design.length_unit])
+    full = transfinite_channel(design.channel, design.metre)
     clearance = clearance_of(design)
     return full, full if clearance is None else cleared(full, clearance, tip_knots), clearance
 

@@ -8,7 +8,8 @@ import numpy as np
 
 from bladewright.blade.design.flow_path import Channel
 from bladewright.designs import Points
-from bladewright.numerics.elementary import Array
+from bladewright.errors import DesignError
+from bladewright.numerics.elementary import Array, cross2
 from bladewright.nurbs.basis import Reals, basis, uniform_knots
 from bladewright.nurbs.curve import Curve
 from bladewright.section.laws import stacked
@@ -169,6 +170,28 @@ class TransfiniteChannel:
         total[..., 0, :] += start + centres[:, None] * (end - start)
         total[..., 1, :] += end - start
         return total
+
+    def check_folds(self, before: float = 0.0, after: float = 0.0) -> None:
+        """Refuse a map (u, v) -> (x, r) that is not one to one.
+
+        It is looked at from `before` the leading to `after` the trailing edge, in u.
+        """
+        u, v = np.linspace(-before, 1.0 + after, 41), np.linspace(0.0, 1.0, 21)
+        along, across = (np.real(part) for part in self.slopes(u, v))
+        jacobian = cross2(along, across)
+        size = np.median(np.sqrt(np.sum(along**2, axis=-1) * np.sum(across**2, axis=-1)))
+        share = jacobian / size
+        if np.all(share < 0.0):
+            raise DesignError(
+                "channel: its ends are swapped: with u from leading to trailing edge and v from hub to shroud it must "
+                "turn like x to r; exchange leading_edge with trailing_edge, or reverse the order from hub to shroud"
+            )
+        if np.min(share) <= 1e-4:
+            i, j = np.unravel_index(int(np.argmin(share)), share.shape)
+            raise DesignError(
+                f"channel: it folds over at u = {u[j]:.3f}, v = {v[i]:.3f} (Jacobian {share[i, j]:.3g} of its median, "
+                "it must be positive): move the control points of hub and shroud, or of the edges, apart there"
+            )
 
 
 @lru_cache(maxsize=64)

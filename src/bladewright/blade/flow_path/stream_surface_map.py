@@ -54,6 +54,8 @@ class StreamSurfaceMap(ABC):
     """the plane's coordinates by name"""
     keeps_ordinate: bool = True
     """whether neighbours stand one pitch apart in the plane's ordinate everywhere"""
+    keeps_angles: bool = True
+    """whether a built blade is promised the angles and edge radii that its sections have"""
 
     @abstractmethod
     def density(self, position: Array, slope: Array) -> Array:
@@ -164,6 +166,7 @@ class Paper(StreamSurfaceMap):
 
     plane = "u-y/L"
     keeps_ordinate = False
+    keeps_angles = False
 
     def __init__(self, *, revolved: bool) -> None:
         self.revolved = revolved

@@ -7,27 +7,34 @@ from dataclasses import dataclass
 from functools import cached_property
 from types import MappingProxyType
 from typing import TYPE_CHECKING, ClassVar, cast
+from warnings import warn
 
 import numpy as np
 
-from bladewright.blade.design.sectioned import SectionedBlade
-from bladewright.blade.design.unified import UnifiedBlade
 from bladewright.blade.exact.exact_blade import ExactBlade
-from bladewright.blade.native.end_faces import EDGES, cap, parted
-from bladewright.blade.native.knots import Knots
+from bladewright.blade.native.conformance import Conformance, conformance_of
+from bladewright.blade.native.end_faces import EDGES, cap, parted, trimmed_ends
+from bladewright.blade.native.interpolation import edge_faces, native_sides
+from bladewright.blade.native.knots import DEGREE, MOST_POLES, Knots
 from bladewright.blade.native.properties import blade_properties
-from bladewright.blade.native.refinement import ApproximationError, approximation_error
+from bladewright.blade.native.refinement import (
+    WALL_TOLERANCE,
+    ApproximationError,
+    approximation_error,
+    mean_chord,
+    refined_knots,
+)
 from bladewright.errors import DesignError
 from bladewright.numerics.elementary import Array
 from bladewright.nurbs.domain import extended, reparametrised
 from bladewright.nurbs.mass_properties import MassProperties, mass_properties
 from bladewright.nurbs.surface import Surface
 from bladewright.nurbs.trimmed import TrimmedSurface
+from bladewright.section.section import Section
+from bladewright.section.smoothness import Smoothness
 
 if TYPE_CHECKING:
-    from bladewright.blade.native.conformance import Conformance
-    from bladewright.section.section import Section
-    from bladewright.section.smoothness import Smoothness
+    from bladewright.blade.design.row_design import RowDesign
 
 Faces = Mapping[str, Surface | TrimmedSurface]
 """faces of a body by name"""
@@ -39,7 +46,7 @@ class Blade:
 
     dimension: ClassVar[int] = 3
 
-    design: UnifiedBlade | SectionedBlade
+    design: RowDesign
     surfaces: Faces
     """`upper` and `lower` (u from leading to trailing edge, v from end to end), `leading_edge` and `trailing_edge`
     where they are blunt (u from the upper to the lower side), and the two `design.ends`; metres"""
@@ -48,7 +55,7 @@ class Blade:
     chord: float
     """mean straight distance from leading to trailing edge [m]"""
     exact: ExactBlade
-    """the blade that is meant"""
+    """the blade that the design defines, which the surfaces interpolate"""
     moments: Callable[[], Array] | None = None
     """gives the moments of the volume, as `blade_moments` does, where they are known without quadrature"""
 
@@ -90,19 +97,25 @@ class Blade:
         return cast(Surface, self.surfaces["upper"]), cast(Surface, self.surfaces["lower"])
 
     @cached_property
-    def misfit(self) -> ApproximationError:
+    def approximation_error(self) -> ApproximationError:
         """Where and how far the sides are from the exact blade between the sites."""
         return approximation_error(self.exact, *self.sides)
 
     @property
+    def misfit(self) -> ApproximationError:
+        """The former name of `approximation_error`."""
+        warn("Blade.misfit is called approximation_error now", DeprecationWarning, stacklevel=2)
+        return self.approximation_error
+
+    @property
     def error(self) -> float:
         """Largest distance of the sides from the exact blade, of the chord."""
-        return self.misfit.distance / self.chord
+        return self.approximation_error.distance / self.chord
 
     @property
     def wall_error(self) -> float:
         """Largest distance of the blade's ends from hub, shroud or clearance surface, of the chord."""
-        return self.misfit.off_walls / self.chord
+        return self.approximation_error.off_walls / self.chord
 
     @cached_property
     def properties(self) -> MassProperties:
@@ -113,11 +126,15 @@ class Blade:
         return mass_properties([(self.surfaces[name], sign) for name, sign in self.orientations.items()])
 
     @cached_property
-    def promises(self) -> Conformance:
-        """What the built surfaces keep of what was asked: angles, radii, smooth edges, ends on the walls."""
-        from bladewright.blade.native.conformance import conformance_of
-
+    def conformance(self) -> Conformance:
+        """What the built surfaces keep of what the design asks for: angles, radii, smooth edges, ends on the walls."""
         return conformance_of(self)
+
+    @property
+    def promises(self) -> Conformance:
+        """The former name of `conformance`."""
+        warn("Blade.promises is called conformance now", DeprecationWarning, stacklevel=2)
+        return self.conformance
 
     @cached_property
     def sections(self) -> tuple[Section, ...]:
@@ -132,18 +149,14 @@ class Blade:
 
         Raises DesignError where v is outside.
         """
-        from bladewright.blade.exact.plane_sections import section_at
-
-        return section_at(self.exact, v)
+        return self.exact.section(v)
 
     def smoothness(self, v: float) -> Smoothness:
         """Curvature, its slope and their jumps along the exact section at v in [0, 1], in chords of its plane.
 
         Raises DesignError where v is outside.
         """
-        from bladewright.blade.exact.plane_sections import smoothness_at
-
-        return smoothness_at(self.exact, v)
+        return self.exact.smoothness(v)
 
     def extended(self, span: float) -> Blade:
         """The blade continued past hub and shroud by `span` of its own span at each end, for a later cut.
@@ -174,6 +187,46 @@ class Blade:
             chord=self.chord,
             exact=self.exact,
         )
+
+
+def native_blade(exact: ExactBlade, knots: Knots | None = None) -> Blade:
+    """The native blade of an exact one, at given knots or at knots refined until the design's tolerance holds."""
+    chord = mean_chord(exact)
+    held = knots is not None
+    knots = knots if knots is not None else refined_knots(exact, chord)
+    sections = exact.sections(knots.sites_v)
+    nets = native_sides(sections, knots)
+    sides = side_surface(nets[0], knots, DEGREE), side_surface(nets[1], knots, DEGREE)
+    edges = edge_faces(sections, *sides, knots)
+    ends = trimmed_ends(exact, *sides, chord, faces=edges)
+    surfaces: Faces = MappingProxyType({"upper": sides[0], "lower": sides[1], **edges, **ends})
+    blade = Blade(design=exact.design, surfaces=surfaces, knots=knots, chord=chord, exact=exact)
+    if not held:
+        _check_reached(blade)
+    return blade
+
+
+def _check_reached(blade: Blade) -> None:
+    tolerance, poles = blade.tolerance, blade.knots.poles
+    wall = min(WALL_TOLERANCE, tolerance)
+    error, off, worst = blade.error, blade.wall_error, blade.approximation_error
+    if error <= tolerance and off <= wall and poles[0] <= MOST_POLES[0] and poles[1] <= MOST_POLES[1]:
+        return
+    if error <= tolerance and off <= wall:
+        where = " and ".join(
+            name for name, own, most in zip(("chord", "span"), poles, MOST_POLES, strict=True) if own > most
+        )
+        raise DesignError(
+            f"tolerance is {tolerance:g} of the chord, which native surfaces hold with {poles[0]} x {poles[1]} poles a "
+            f"side, and at most {MOST_POLES[0]} x {MOST_POLES[1]} are allowed: give the laws along the {where} fewer "
+            "control points, and curves in (x, r) fewer points"
+        )
+    raise DesignError(
+        f"tolerance is {tolerance:g} of the chord: native surfaces reach {error:.2g} (ends {off:.2g} off the "
+        f"walls, {wall:g} allowed) with {poles[0]} x {poles[1]} poles a side, at most {MOST_POLES[0]} x "
+        f"{MOST_POLES[1]} are allowed; the worst place is u = {worst.u:.3f}, v = {worst.v:.3f}: raise "
+        "the tolerance, raise a very small edge radius, or smooth the laws there"
+    )
 
 
 def side_surface(net: np.ndarray, knots: Knots, degree: int) -> Surface:

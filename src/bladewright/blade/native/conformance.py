@@ -6,16 +6,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from bladewright.blade.exact.clearance import off_distance
-from bladewright.blade.exact.ruled import RuledSections
 from bladewright.blade.exact.section_stack import SectionStack
-from bladewright.blade.exact.unified import ExactUnifiedBlade, UnifiedSections
 from bladewright.blade.flow_path.meridional_curve import real_first
 from bladewright.blade.native.refinement import sections_limit
 from bladewright.numerics.elementary import Array, cross, cross2, degrees, dot, length, unit
 from bladewright.nurbs.basis import Reals
 from bladewright.nurbs.surface import Surface
-from bladewright.section.laws import Span
 
 if TYPE_CHECKING:
     from bladewright.blade.native.blade import Blade
@@ -137,28 +133,27 @@ def conformance_of(blade: "Blade") -> Conformance:
     spans = np.unique(upper.knots_v)
     inner = np.sort(np.concatenate([spans[:-1] + share * np.diff(spans) for share in (0.21, 0.53, 0.83)]))
     v = np.concatenate([[0.0], inner, [1.0]])
-    stations = blade.exact.stations(v)
+    sections = blade.exact.sections(v)
     angles, radii, planes, bends = [], [], [], []
-    for end, own in zip((0, 1), stations.lower_edges(), strict=True):
+    for end, own in zip((0, 1), sections.lower_edges(), strict=True):
         if own is not None:
             continue
         row = _edge(upper, lower, float(end), v)
-        turn, radius = _angle_and_radius(stations, row[0], end)
-        if isinstance(stations, UnifiedSections):
-            meant = stations.angle_out if end else stations.angle_in
-            angles.append(np.abs(degrees(turn - np.real(meant))))  # real: a measured angle
-            law = getattr(blade.design, ("leading_edge_radius", "trailing_edge_radius")[end])
-            asked = np.real(Span(v).values(law) * stations.lines.lengths)
-        else:
-            exact = stations.trailing_edge() if end else stations.leading_edge()
-            asked = _angle_and_radius(stations, dict(zip(_ALONG, map(_real_row, exact), strict=True)), end)[1]
+        turn, radius = _angle_and_radius(sections, row[0], end)
+        metal_angle, asked = sections.metal_angle(end), sections.edge_radius(end)
+        if metal_angle is not None:
+            angles.append(np.abs(degrees(turn - np.real(metal_angle))))  # real: a measured angle
+        if asked is None:
+            exact = sections.trailing_edge() if end else sections.leading_edge()
+            asked = _angle_and_radius(sections, dict(zip(_ALONG, map(_real_row, exact), strict=True)), end)[1]
+        asked = np.real(asked)
         if np.max(asked) < FLAT * blade.chord:
             radii.append(np.abs(radius / asked - 1.0))  # real: a measured radius
         plane, bend = _smoothness(row, 1.0 / blade.chord)
         planes.append(plane)
         bends.append(bend)
     walls = [np.max(angle[[0, -1]]) for angle in angles]
-    off, ends = _off_stream_surfaces(stations, upper, lower)
+    off, ends = _off_stream_surfaces(sections, upper, lower)
     tolerance = blade.design.tolerance
     figures = {
         "metal_angle_at_walls": _largest(walls),
@@ -168,8 +163,8 @@ def conformance_of(blade: "Blade") -> Conformance:
         "edge_curvatures": _largest(bends),
     }
     lost = {"metal_angle_at_walls", "metal_angle_between", "edge_radius"}
-    lost = lost if getattr(blade.design, "mapping", "conformal") == "paper" else set()
-    ruled = isinstance(stations, RuledSections)
+    lost = set() if sections.mapping.keeps_angles else lost
+    ruled = sections.skinning == "ruled"
     limits = {**LIMITS, "surface": tolerance} | ({} if ruled else {"stream_surfaces": tolerance})
     limits = {name: limit for name, limit in limits.items() if name not in lost and figures.get(name, 0.0) is not None}
     clearance = _off_clearance(blade)
@@ -178,11 +173,10 @@ def conformance_of(blade: "Blade") -> Conformance:
     if blade.knots.sections is not None:
         limits["sections"] = sections_limit(tolerance)
     twisted: dict[str, float] = {}
-    skinning = getattr(blade.design, "skinning", "sections")
-    if skinning != "sections":
+    if sections.skinning != "sections":
         twist = twist_of(blade.sides)
         twisted = {"twist": float(np.degrees(twist.angle)), "twist_at": twist.u, "flank_cut": twist.cut}
-        limits |= {"twist": DEVELOPED} if skinning == "developable" else {}
+        limits |= {"twist": DEVELOPED} if sections.skinning == "developable" else {}
     return Conformance(
         **figures,
         **twisted,
@@ -212,12 +206,12 @@ def _edge(upper: Surface, lower: Surface, end: float, v: Reals) -> list[dict[tup
     return [{order: np.real(side.grid(at, v, *order))[0] for order in orders} for side in (upper, lower)]
 
 
-def _angle_and_radius(stations: SectionStack, row: dict[tuple[int, int], Array], end: int) -> tuple[Reals, Reals]:
+def _angle_and_radius(sections: SectionStack, row: dict[tuple[int, int], Array], end: int) -> tuple[Reals, Reals]:
     """Camber angle [rad] and radius in the stream surface [m] of the upper side at an edge, (m,) each."""
     first, second, point = row[1, 0], row[2, 0], row[0, 0]
-    slope = unit(np.real(stations.lines.position(np.array([float(end)]), 1))[..., 0, :])
+    slope = unit(np.real(sections.lines.position(np.array([float(end)]), 1))[..., 0, :])
     slope = slope.reshape(-1, *slope.shape[-2:])[0]
-    if stations.mapping.revolved:
+    if sections.mapping.revolved:
         around = unit(point[:, 1:])
         zero = np.zeros(len(point))
         meridional = np.stack([slope[:, 0], slope[:, 1] * around[:, 0], slope[:, 1] * around[:, 1]], axis=-1)
@@ -258,29 +252,30 @@ def _off_sections(blade: "Blade") -> float | None:
         return None
     knots = np.unique(blade.sides[0].knots_u)
     u = np.sort(np.concatenate([knots[:-1] + share * np.diff(knots) for share in (0.21, 0.5, 0.83)]))
-    sides = zip(blade.sides, blade.exact.stations(spans).points(u), strict=True)
+    sides = zip(blade.sides, blade.exact.sections(spans).points(u), strict=True)
     misses = [np.real(side.grid(u, spans).swapaxes(0, 1) - points) for side, points in sides]
     return float(np.max(length(np.stack([miss.reshape(-1, *miss.shape[-2:]) for miss in misses])))) / blade.chord
 
 
 def _off_clearance(blade: "Blade") -> float | None:
     """Largest miss of the tip surface's distance from its wall between the edges, of the chord."""
-    exact = blade.exact
-    if not isinstance(exact, ExactUnifiedBlade) or exact.clearance is None:
+    if "tip" not in blade.design.ends:
         return None
+    exact = blade.exact
     u = np.linspace(0.0, 1.0, 401)
     x, y, z = np.moveaxis(np.real(blade.surfaces["tip"](u, np.full_like(u, 0.5))), -1, 0)
     points = np.stack([x, length(np.stack([y, z], axis=-1)) if exact.mapping.revolved else z], axis=-1)
-    return float(np.max(off_distance(exact.full_channel, exact.clearance, u, points))) / blade.chord
+    errors = exact.clearance_error(u, points)
+    return None if errors is None else float(np.max(errors)) / blade.chord
 
 
-def _off_stream_surfaces(stations: SectionStack, upper: Surface, lower: Surface) -> tuple[float, float]:
+def _off_stream_surfaces(sections: SectionStack, upper: Surface, lower: Surface) -> tuple[float, float]:
     """Largest distances [m] of curves of constant v, and of the ends among them, from their stream surfaces."""
     spans = np.unique(upper.knots_u)
     u = np.sort(np.concatenate([spans, (spans[1:] + spans[:-1]) / 2.0]))
     off = [
-        dot(np.real(side.grid(u, stations.v).swapaxes(0, 1) - points), np.real(normals))
-        for side, points, normals in zip((upper, lower), *stations.points_and_normals(u), strict=True)
+        dot(np.real(side.grid(u, sections.v).swapaxes(0, 1) - points), np.real(normals))
+        for side, points, normals in zip((upper, lower), *sections.points_and_normals(u), strict=True)
     ]
-    distances = np.max(np.abs(off), axis=(0, -1)).reshape(-1, len(stations.v))[0]  # real: measured distances
+    distances = np.max(np.abs(off), axis=(0, -1)).reshape(-1, len(sections.v))[0]  # real: measured distances
     return float(np.max(distances)), float(np.max(distances[[0, -1]]))

@@ -181,13 +181,13 @@ def trimmed_ends(
     """
     places = np.unique(upper.knots_u)
     stations = exact.survey
-    plane = concatenated(stations.plane.points(places), axis=-2)[..., [0, -1], :, :]
+    plane = concatenated(stations.plane_points(places), axis=-2)[..., [0, -1], :, :]
     lines = stations.lines.rows([0, -1])
     u = lines.u_at(plane[..., 0])
     across = lines.mapping.tangential(plane[..., 1], lines.position(u)[..., 1], lines.lengths[..., None])
     first = (0,) * (u.ndim - 2)
     u, across = np.real(u)[first], np.real(across)[first]
-    own = exact.wall_places(u)
+    own = exact.wall_parameters(u)
     ends = {}
     for wall, row in (("hub", 0), ("shroud", -1)):
         name, (meridian, inner) = exact.design.ends[row], exact.end_wall(row)

@@ -2,18 +2,11 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from bladewright.numerics.elementary import frozen
 from bladewright.nurbs.basis import Reals, greville
-from bladewright.section.laws import DEGREE as LAW_DEGREE
-from bladewright.section.laws import inner_knots
-from bladewright.section.unified_sides import DEGREE as SIDE_DEGREE
-
-if TYPE_CHECKING:
-    from bladewright.blade.exact.unified import ExactUnifiedBlade
 
 DEGREE = 5
 """degree of the native sides along u and v"""
@@ -72,31 +65,6 @@ def sites_through(knots: Reals, places: Reals | None) -> Reals:
             sites[i] = place
             moved.add(i)
     return sites
-
-
-def breaks_along_u(exact: "ExactUnifiedBlade") -> Reals:
-    """Inner knots of the sections' sides, twice each: the sides keep three derivatives there."""
-    spans = len(exact.places) - SIDE_DEGREE
-    return np.repeat(np.linspace(0.0, 1.0, spans + 1)[1:-1], DEGREE - SIDE_DEGREE + 1)
-
-
-def breaks_along_v(exact: "ExactUnifiedBlade") -> Reals:
-    """Inner knots of the laws of evolution and of the channel's edges, as often as they lose derivatives."""
-    design = exact.design
-    laws = [design.leading_edge_theta, design.leading_edge_y, design.stagger, design.metal_angle_in]
-    laws += [design.metal_angle_out, design.tangent_in, design.tangent_out]
-    laws += [design.leading_edge_radius, design.trailing_edge_radius]
-    laws += [*design.thickness_upper, *design.thickness_lower, *design.weights_upper, *design.weights_lower]
-    times: dict[float, int] = {}
-    for law in laws:
-        for knot in inner_knots(len(law)) if isinstance(law, tuple) else ():
-            times[round(float(knot), 12)] = DEGREE - LAW_DEGREE + 1
-    for edge in (exact.channel.leading_edge, exact.channel.trailing_edge):
-        for knot in edge.joints():
-            key = round(float(knot), 12)
-            if 0.0 < key < 1.0:
-                times[key] = max(times.get(key, 0), DEGREE - edge.degree + 1)
-    return np.array([knot for knot in sorted(times) for _ in range(times[knot])])
 
 
 def clamped(inner: Reals) -> Reals:

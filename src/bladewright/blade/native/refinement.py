@@ -60,7 +60,7 @@ class _LinesAlongU:
 
     def __init__(self, exact: ExactBlade, tolerance: float, chord: float, spans: Reals, slack: float) -> None:
         v = np.union1d(exact.survey.v, spans)
-        self.stations = exact.survey if len(v) == len(exact.survey.v) else exact.stations(v)
+        self.stations = exact.survey if len(v) == len(exact.survey.v) else exact.sections(v)
         # along v there is no error at these, so that most of their limit is left for u
         limit = min(SECTIONS_RESERVE * sections_limit(tolerance / chord) * chord, RESERVE * tolerance)
         self.tolerance = np.where(np.isin(v, spans), limit, RESERVE * tolerance)[:, None]
@@ -101,7 +101,7 @@ class _LinesAlongV:
     def __call__(self, knots: Reals, places: Reals) -> Reals:
         sites = sites_through(knots, self.through)
         both = np.concatenate([sites, places])
-        stations = self.exact.stations(both)
+        stations = self.exact.sections(both)
         matrix = basis(knots, DEGREE, sites)
         errors = [np.zeros(len(places))]
         for points in stations.points(self.s):
@@ -142,7 +142,7 @@ def approximation_error(exact: ExactBlade, upper: Surface, lower: Surface) -> Ap
     u, v = (_between(knots) for knots in (upper.knots_u, upper.knots_v))
     v = np.concatenate([[0.0], v, [1.0]])
     worst = ApproximationError(0.0, 0.0, 0.0, 0.0)
-    for surface, points, normals in zip((upper, lower), *exact.stations(v).points_and_normals(u), strict=True):
+    for surface, points, normals in zip((upper, lower), *exact.sections(v).points_and_normals(u), strict=True):
         miss = np.real(surface.grid(u, v).swapaxes(0, 1) - points)
         distance = length(miss)
         i, j = np.unravel_index(int(np.argmax(distance)), distance.shape)

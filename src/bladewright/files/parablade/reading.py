@@ -9,7 +9,6 @@ from pathlib import Path
 import numpy as np
 
 from bladewright.blade.design.unified import UnifiedBlade
-from bladewright.blade.exact.checks import check_sections
 from bladewright.blade.exact.unified import exact_unified_blade
 from bladewright.errors import DesignError, FileError
 from bladewright.files.imported import Imported, most_blades_apart
@@ -82,7 +81,7 @@ def _design_of(config: Config, name: str, chordwise: int | None) -> tuple[Unifie
         return blade, changed
     standing = most_blades_apart(
         int(blade.blade_count or 1),
-        lambda count: check_sections(exact_unified_blade(blade.changed("blade_count", count))),
+        lambda count: exact_unified_blade(blade.changed("blade_count", count)).check_sections(),
     )
     said = f"N_BLADES = {config.blades} has no effect in ParaBlade, and may be any number there"
     if standing != blade.blade_count:

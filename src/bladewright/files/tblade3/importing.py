@@ -10,7 +10,6 @@ from pathlib import Path
 import numpy as np
 
 from bladewright.blade.design.families import CurvatureMeanlineBlade
-from bladewright.blade.exact.checks import check_pitch
 from bladewright.blade.exact.sectioned import exact_sectioned_blade
 from bladewright.errors import DesignError, FileError
 from bladewright.files.imported import Imported, most_blades_apart
@@ -118,7 +117,7 @@ def _standing(design: CurvatureMeanlineBlade, file: str) -> int:
         exact = exact_sectioned_blade(design)
 
         def check(count: int) -> None:
-            check_pitch(replace(exact, design=design.changed("blade_count", count)))
+            replace(exact, design=design.changed("blade_count", count)).check()
 
         return most_blades_apart(int(design.blade_count or 1), check)
     except DesignError as error:

@@ -124,7 +124,7 @@ class BladeEnds:
 
 def _line(exact: Any, name: str) -> Any:
     """Hub or shroud of a channel, or of a flow path: points and derivatives by its own parameter."""
-    return exact.channel.line(name) if hasattr(exact, "channel") else exact.meridians.walls[name]
+    return exact.wall(name)
 
 
 def blade_ends_of(points: Reals, on: Footpoints, shape: ModelShape, rows: NDArray[np.bool_]) -> BladeEnds:

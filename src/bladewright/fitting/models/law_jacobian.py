@@ -13,7 +13,7 @@ import numpy as np
 from scipy.interpolate import BSpline
 
 from bladewright.blade.design.unified import UnifiedBlade
-from bladewright.blade.exact.unified import ExactUnifiedBlade, moved_exact_blade
+from bladewright.blade.exact.unified import ExactUnifiedBlade
 from bladewright.blade.flow_path.channel import ChannelCurve, TransfiniteChannel
 from bladewright.blade.native.interpolation import interpolated_along_u, lower_edges
 from bladewright.blade.native.knots import DEGREE, Knots
@@ -106,7 +106,7 @@ def _stepped(
     shifts = [step for step in steps if not isinstance(step, str)]
     for first in range(0, len(laws), AT_ONCE):
         part = laws[first : first + AT_ONCE]
-        yield part, moved_exact_blade(exact, stepped_design(exact.design, part))
+        yield part, exact.moved_to(stepped_design(exact.design, part))
     for first in range(0, len(shifts), AT_ONCE):
         some = shifts[first : first + AT_ONCE]
         channel = shifted_channel(exact.channel, [[step] for step in some])
@@ -115,7 +115,7 @@ def _stepped(
 
 def _along_u(other: ExactUnifiedBlade, knots: Knots, count: int) -> tuple[Array, Array]:
     """Derivatives (count, n_u, m, 3) of the sides' control points along u, in each section on its own."""
-    rates = skeleton_rates(other.stations(knots.sites_v), knots, count)
+    rates = skeleton_rates(other.sections(knots.sites_v), knots, count)
     skeleton = parted(rates, (True, True))
     upper = skeleton.leading_edge, skeleton.trailing_edge
     sides = (skeleton.upper, upper), (skeleton.lower, lower_edges(upper, skeleton.lower_edges))

@@ -39,7 +39,7 @@ class SectionedModel(Model):
 
     def _shape(self, design: Any) -> ModelShape:
         exact = exact_sectioned_blade(design, checked=False)
-        stations = exact.stations(self.knots.sites_v)
+        stations = exact.sections(self.knots.sites_v)
         sides = [side_surface(net, self.knots, DEGREE) for net in native_sides(stations, self.knots)]
         faces = edge_faces(stations, sides[0], sides[1], self.knots) if any(self.blunt) else {}
         upper, lower = closed_with(sides[0], sides[1], faces)

@@ -7,7 +7,7 @@ from typing import Any, final
 import numpy as np
 
 from bladewright.blade.design.unified import UnifiedBlade
-from bladewright.blade.exact.unified import SURVEY, ExactUnifiedBlade, exact_unified_blade, moved_exact_blade
+from bladewright.blade.exact.unified import SURVEY, ExactUnifiedBlade, exact_unified_blade
 from bladewright.blade.flow_path.channel import TransfiniteChannel
 from bladewright.blade.native.blade import Blade, side_surface
 from bladewright.blade.native.interpolation import native_sides
@@ -93,8 +93,8 @@ class BladeModel(Model):
 
     def _shape(self, design: Any) -> ModelShape:
         exact = exact_unified_blade(design, self.knots.tip, tentative=True)
-        upper, lower = native_sides(exact.stations(self.knots.sites_v), self.knots)
-        plane = exact.stations(RADIUS_STATIONS).plane
+        upper, lower = native_sides(exact.sections(self.knots.sites_v), self.knots)
+        plane = exact.sections(RADIUS_STATIONS).plane
         return ModelShape(
             design=design,
             sides=(side_surface(upper, self.knots, DEGREE), side_surface(lower, self.knots, DEGREE)),
@@ -127,8 +127,8 @@ class BladeModel(Model):
         parts = [next(law_shares(shape.design, paths[place], RADIUS_STATIONS)) for place in laws]
         steps = list(dict.fromkeys(step for step, _ in parts))
         plane = (
-            moved_exact_blade(shape.exact, stepped_design(shape.design, [str(step) for step in steps]))
-            .stations(RADIUS_STATIONS)
+            shape.exact.moved_to(stepped_design(shape.design, [str(step) for step in steps]))
+            .sections(RADIUS_STATIONS)
             .plane
         )
         rates = (
