@@ -150,9 +150,8 @@ class BladeModel(Model):
                 channel = shifted_channel(shape.exact.channel, [channel_shifts(shape.design, path) for path in some])
             else:
                 metre = 1.0
-                channel = moved_exact_blade(
-                    shape.exact, shape.design.changed(complex_steps(shape.design, some))
-                ).channel
+                moved = shape.exact.moved_to(shape.design.changed(complex_steps(shape.design, some)))
+                channel = moved.channel
             found[walls] = np.imag(_fold_margins(shape.exact, channel)) / STEP * metre
         return found
 
