@@ -71,7 +71,7 @@ def read_back(passage, folder):
             opened.ReadFile(str(folder / file))
             opened.TransferRoots()
             closed = closure(opened.OneShape())
-            gap = max(joint.gap for joint in closed.joints)
+            gap = max(joint.gap for joint in closed.edges)
             print(f"{file} {setting} = {value}", counts(opened.OneShape()), f"gap {gap:.1e} mm", closed.valid)
         Interface_Static.SetIVal_s(setting, SETTINGS[setting][0])
 

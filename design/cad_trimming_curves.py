@@ -41,7 +41,7 @@ def main():
                 "ascii",
             )
             opened = read_cad_file(path)
-            joints = closure(opened.shape).joints
+            joints = closure(opened.shape).edges
             sides = {k for k, name in opened.names.items() if name in {"upper", "lower"}}
             print(
                 f"{float(uncertainty):.0e} mm  {max(joint.gap for joint in joints):.1e} mm  "

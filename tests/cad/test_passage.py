@@ -43,18 +43,19 @@ def test_a_passage_has_the_edges_and_vertices_that_it_should(passages, kind):
     assert counts == COUNTS[kind]
     # Euler: a vane from wall to wall is a hole through the passage, one with a gap above its tip is none
     assert counts[0] - counts[1] + counts[2] == (2 if "gap" in kind else 0)
-    assert not found.collapsed
+    assert not found.degenerate_edges
 
 
 @pytest.mark.parametrize("kind", COUNTS)
 def test_a_passage_becomes_one_closed_valid_solid_whose_faces_meet_exactly(passages, kind):
     made = occ_solid(passages[kind])
     closed = closure(made.solid)
-    assert (closed.solids, closed.shells, closed.free, closed.crowded, closed.valid) == (1, 1, 0, 0, True)
-    assert len(closed.joints) == COUNTS[kind][1]
+    assert (closed.solids, closed.shells, closed.free_edges, closed.non_manifold_edges) == (1, 1, 0, 0)
+    assert closed.valid
+    assert len(closed.edges) == COUNTS[kind][1]
     assert list(made.faces) == list(passages[kind].surfaces)
     # trimming curves run with their edge's parameter, also where it is the blade's own
-    assert max(joint.gap for joint in closed.joints) < 1e-11
+    assert max(joint.gap for joint in closed.edges) < 1e-11
 
 
 def test_creased_faces_are_the_native_ones_pole_for_pole(vane):
@@ -86,7 +87,7 @@ def test_the_parameter_of_a_neighbour_may_have_any_scale(vane):
     scaled = replaced(vane, blade_upper=reparametrised(vane.surfaces["blade_upper"], -3.0, 5.0))
     closed = closure(occ_solid(scaled).solid)
     assert closed.valid
-    assert max(joint.gap for joint in closed.joints) < 1e-11
+    assert max(joint.gap for joint in closed.edges) < 1e-11
 
 
 def test_neighbours_with_the_same_poles_and_other_knots_are_refused(vane):

@@ -16,7 +16,7 @@ def test_points_lie_on_the_body_evenly_and_in_metres(rotor, tmp_path, ending, ne
     cad.write(rotor, path, samples=100, chordal_deviation=2e-4)
     points = cad.sample(path, 4000)
     assert points.shape == (4000, 3)
-    away = {name: NativeFace(face).target.closest(points * 1e3, 1.0)[1] for name, face in rotor.surfaces.items()}
+    away = {name: NativeFace(face).projection.closest(points * 1e3, 1.0)[1] for name, face in rotor.surfaces.items()}
     # ends lie off the wall by 4e-7 mm, and so may points next to them
     assert np.max(np.min(list(away.values()), axis=0)) <= max(near, 1e-6)
     owner = np.argmin(list(away.values()), axis=0)

@@ -24,8 +24,8 @@ def test_a_body_becomes_one_valid_closed_solid_of_its_own_faces(built):
     assert isinstance(solid, cadquery.Solid)
     assert len(solid.Faces()) == len(built.surfaces) <= 8
     closed = closure(solid.wrapped)
-    assert (closed.solids, closed.shells, closed.free, closed.crowded) == (1, 1, 0, 0)
-    assert all(len(joint.faces) == 2 for joint in closed.joints)
+    assert (closed.solids, closed.shells, closed.free_edges, closed.non_manifold_edges) == (1, 1, 0, 0)
+    assert all(len(joint.faces) == 2 for joint in closed.edges)
     assert BRepCheck_Analyzer(solid.wrapped).IsValid()
 
 
@@ -47,7 +47,7 @@ def test_untrimmed_faces_are_the_native_surfaces_pole_for_pole(built):
 
 def test_gaps_and_tolerances_keep_what_was_promised(built):
     limits = limits_of(built)
-    for joint in closure(occ_solid(built).solid).joints:
+    for joint in closure(occ_solid(built).solid).edges:
         sides = all(isinstance(list(built.surfaces.values())[k], Surface) for k in joint.faces)
         limit = limits["edge_mm" if sides else "end_mm"]
         assert joint.gap <= limit
@@ -76,10 +76,10 @@ def test_a_blade_may_stand_at_any_angle_around_the_axis(turn, rotor):
     turned = annular(turn=turn)
     closed = closure(occ_solid(turned).solid)
     assert closed.valid
-    assert closed.free == 0
+    assert closed.free_edges == 0
     # turning changes lengths by rounding only; the ends lie off the wall by 4e-7 mm
-    gap = max(joint.gap for joint in closure(occ_solid(rotor).solid).joints)
-    assert max(joint.gap for joint in closed.joints) == pytest.approx(gap, rel=1e-3)
+    gap = max(joint.gap for joint in closure(occ_solid(rotor).solid).edges)
+    assert max(joint.gap for joint in closed.edges) == pytest.approx(gap, rel=1e-3)
 
 
 def test_sides_that_do_not_share_their_edge_are_refused_by_name(rotor):

@@ -1,4 +1,4 @@
-"""Solids, CAD files and their round trips: the only room that loads OpenCASCADE."""
+"""Solids, CAD files and their round trips; nothing else in bladewright loads OpenCASCADE."""
 
 from bladewright.cad.cutting import CutPassage as CutPassage
 from bladewright.cad.cutting import cut_passage as cut_passage

@@ -1,4 +1,4 @@
-"""Whether the faces of a body close it: edges shared by two faces, and the true gaps between those."""
+"""Whether the faces of a body close it: every edge shared by two faces, and the true gap between these along it."""
 
 from dataclasses import dataclass
 
@@ -24,40 +24,44 @@ from bladewright.cad.reading import subshapes
 from bladewright.numerics.elementary import Array
 
 POINTS_PER_EDGE = 401
-"""points along an edge at which its gap is measured"""
+"""Points along an edge at which its gap is measured, both ends included. The gap oscillates within each knot span of
+the trimming curve, so that there must be several points in each; the number trades time for the gap's last digits."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class MeasuredEdge:
-    """An edge of the file with what was measured along it."""
+    """An edge of a shape with what was measured along it."""
 
     faces: tuple[int, ...]
-    """places of the faces that meet there, in the file's order"""
+    """indices of the faces that meet there, in the order of the file"""
     length: float
     """[mm]"""
     gap: float
-    """[mm] largest distance of the faces, and of the edge's own curve, at equal parameters"""
-    opening: float
-    """[mm] the same, its mean along the edge"""
+    """[mm] largest distance between the faces, or from the edge's own curve, at equal parameters"""
+    mean_gap: float
+    """[mm] mean of that distance along the edge"""
     tolerance: float
-    """[mm] of the edge"""
+    """[mm] tolerance of the edge in the file"""
     vertex_tolerance: float
-    """[mm] of its vertices"""
+    """[mm] larger tolerance of its two vertices"""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Closure:
-    """How a body closes."""
+    """How the faces of a shape close it."""
 
     solids: int
+    """number of solids"""
     shells: int
-    free: int
-    """edges that belong to one face only"""
-    crowded: int
-    """edges that belong to more than two faces, or to two that run the same way"""
+    """number of shells"""
+    free_edges: int
+    """number of edges that belong to one face only"""
+    non_manifold_edges: int
+    """number of edges that belong to more than two faces, or to two faces that run the same way along it"""
     valid: bool
-    """the kernel's own opinion"""
-    joints: tuple[MeasuredEdge, ...]
+    """whether OpenCASCADE's own check finds the shape valid"""
+    edges: tuple[MeasuredEdge, ...]
+    """all edges that have a length"""
 
 
 def closure(shape: TopoDS_Shape) -> Closure:
@@ -65,25 +69,25 @@ def closure(shape: TopoDS_Shape) -> Closure:
     faces = subshapes(shape, TopAbs_FACE)
     owners = TopTools_IndexedDataMapOfShapeListOfShape()
     TopExp.MapShapesAndAncestors_s(shape, TopAbs_EDGE, TopAbs_FACE, owners)
-    uses = _uses(shape)
-    joints, free, crowded = [], 0, 0
+    coedges = _coedge_counts(shape)
+    edges, free, non_manifold = [], 0, 0
     for index in range(1, owners.Extent() + 1):
         edge = TopoDS.Edge_s(owners.FindKey(index))
         if BRep_Tool.Degenerated_s(edge):
             continue
-        forward, backward = uses.get(index, (0, 0))
+        forward, backward = coedges.get(index, (0, 0))
         free += forward + backward < 2
-        crowded += forward + backward > 2 or (forward + backward == 2 and forward != backward)
+        non_manifold += forward + backward > 2 or (forward + backward == 2 and forward != backward)
         beside = [TopoDS.Face_s(face) for face in owners.FindFromIndex(index)]
         properties = GProp_GProps()
         BRepGProp.LinearProperties_s(edge, properties)
-        apart = _distances(edge, beside)
-        joints.append(
+        distances = _distances(edge, beside)
+        edges.append(
             MeasuredEdge(
                 faces=tuple(k for k, face in enumerate(faces) if any(face.IsSame(own) for own in beside)),
                 length=properties.Mass(),
-                gap=float(apart.max()),
-                opening=float(apart.mean()),
+                gap=float(distances.max()),
+                mean_gap=float(distances.mean()),
                 tolerance=BRep_Tool.Tolerance_s(edge),
                 vertex_tolerance=_vertex_tolerance(edge),
             )
@@ -91,15 +95,15 @@ def closure(shape: TopoDS_Shape) -> Closure:
     return Closure(
         solids=len(subshapes(shape, TopAbs_SOLID)),
         shells=len(subshapes(shape, TopAbs_SHELL)),
-        free=free,
-        crowded=crowded,
+        free_edges=free,
+        non_manifold_edges=non_manifold,
         valid=BRepCheck_Analyzer(shape).IsValid(),
-        joints=tuple(joints),
+        edges=tuple(edges),
     )
 
 
-def _uses(shape: TopoDS_Shape) -> dict[int, tuple[int, int]]:
-    """How often faces run along each edge forwards and backwards, by the edge's place in the map of edges."""
+def _coedge_counts(shape: TopoDS_Shape) -> dict[int, tuple[int, int]]:
+    """How many faces run forwards and how many backwards along each edge, by the edge's index in OpenCASCADE's map."""
     owners = TopTools_IndexedDataMapOfShapeListOfShape()
     TopExp.MapShapesAndAncestors_s(shape, TopAbs_EDGE, TopAbs_FACE, owners)
     counts: dict[int, tuple[int, int]] = {}
@@ -121,7 +125,7 @@ def _uses(shape: TopoDS_Shape) -> dict[int, tuple[int, int]]:
 
 
 def _distances(edge: TopoDS_Edge, beside: list[TopoDS_Face]) -> Array:
-    """(PLACES,) [mm] Largest distance of the faces' and the edge's own curves at equal parameters."""
+    """(POINTS_PER_EDGE,) [mm] Largest distance at equal parameters between the edge's curve and those on its faces."""
     own = BRepAdaptor_Curve(edge)
     curves = [own, *(BRepAdaptor_Curve(edge, face) for face in beside)]
     parameters = np.linspace(own.FirstParameter(), own.LastParameter(), POINTS_PER_EDGE).tolist()

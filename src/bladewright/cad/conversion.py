@@ -83,7 +83,7 @@ def _reals(values: Array) -> TColStd_Array1OfReal:
 
 
 def native_surface(geometry: Geom_BSplineSurface) -> Surface:
-    """A B-spline surface of the kernel, pole for pole, in its own unit (millimetres)."""
+    """A B-spline surface of OpenCASCADE, pole for pole, in its own unit (millimetres)."""
     count_u, count_v = geometry.NbUPoles(), geometry.NbVPoles()
     points = np.array([[geometry.Pole(i, j).Coord() for j in range(1, count_v + 1)] for i in range(1, count_u + 1)])
     weights = None
@@ -100,7 +100,7 @@ def native_surface(geometry: Geom_BSplineSurface) -> Surface:
 
 
 def native_curve(geometry: Geom_BSplineCurve) -> Curve:
-    """A B-spline curve of the kernel, pole for pole, in its own unit (millimetres)."""
+    """A B-spline curve of OpenCASCADE, pole for pole, in its own unit (millimetres)."""
     poles = (geometry.Pole(i) for i in range(1, geometry.NbPoles() + 1))
     weights = None
     if geometry.IsRational():
@@ -114,7 +114,7 @@ def native_curve(geometry: Geom_BSplineCurve) -> Curve:
 
 
 def knot_sequence(knot: object, multiplicity: object, count: int) -> Array:
-    """Knots, each as often as its multiplicity, from the kernel's two getters."""
+    """Knots, each as often as its multiplicity, from OpenCASCADE's two getters."""
     values = [knot(i) for i in range(1, count + 1)]  # type: ignore[operator]
     counts = [multiplicity(i) for i in range(1, count + 1)]  # type: ignore[operator]
     return np.repeat(np.array(values), counts)

@@ -24,47 +24,49 @@ from bladewright.nurbs.curve import Curve
 from bladewright.nurbs.domain import reversed as run_backwards
 from bladewright.nurbs.measure import area
 
-ON_BORDER = 1e-9
-"""Distance from the border of the parameter rectangle, of its size, below which a trimming curve lies on it."""
+ON_RECTANGLE = 1e-9
+"""Largest distance of a trimming curve from a side of the parameter rectangle, as a fraction of its size, at which it
+counts as that side. It allows for the rounding of the file; a face trimmed by so little differs by nothing that the
+limits of the round trip would show."""
 AREA_ERROR = 1e-10
-"""Relative error that the kernel's quadrature of a trimmed face aims at: design/cad_quadrature.py."""
+"""Relative error of OpenCASCADE's quadrature of a trimmed face (design/cad_quadrature.py)."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class FileFace:
-    """A face of the file."""
+    """A face of a CAD file."""
 
     region: Region
     outline: Array
     """(n, 3) [mm] points on its boundary"""
     area: float
-    """[mm^2] of a whole B-spline by quadrature on the poles that came back, of any other face by the kernel"""
+    """[mm^2] of an untrimmed B-spline surface by native quadrature on the file's poles, else by OpenCASCADE"""
     inside_out: bool
     """whether the face keeps the outside of its boundary"""
 
 
 def file_face(face: TopoDS_Face) -> FileFace:
-    """A face of a file, as it is trimmed there. Raises CadError where its boundary is no closed run."""
+    """A face of a file with its trimming loops. Raises CadError where a loop is not closed."""
     forward = TopoDS.Face_s(face.Oriented(TopAbs_FORWARD))
     geometry = BRep_Tool.Surface_s(forward)
-    chains = tuple(_chain(TopoDS.Wire_s(wire), forward) for wire in subshapes(forward, TopAbs_WIRE))
-    if not chains:
+    loops = tuple(_loop(TopoDS.Wire_s(wire), forward) for wire in subshapes(forward, TopAbs_WIRE))
+    if not loops:
         raise CadError("a face of the file has no boundary: it is not a face of a closed body")
-    points = np.concatenate([curve.control_points for curve in _all(chains)])
+    points = np.concatenate([curve.control_points for curve in _all(loops)])
     low, high = points.min(axis=0), points.max(axis=0)
-    carried = occ_evaluator(geometry, low, high)
-    turned = sum(_enclosed(chain) for chain in chains)
-    outline = carried.frame(
-        np.concatenate([curve(greville_spaced(curve.knots, curve.degree, 40)) for curve in _all(chains)])
+    evaluator = occ_evaluator(geometry, low, high)
+    turned = sum(_enclosed(loop) for loop in loops)
+    outline = evaluator.frame(
+        np.concatenate([curve(greville_spaced(curve.knots, curve.degree, 40)) for curve in _all(loops)])
     )[0]
-    if isinstance(carried, NurbsEvaluator):
-        surface = carried.surface
+    if isinstance(evaluator, NurbsEvaluator):
+        surface = evaluator.surface
         start = np.array([surface.knots_u[0], surface.knots_v[0]])
         end = np.array([surface.knots_u[-1], surface.knots_v[-1]])
         rectangle = float(np.prod(end - start))
-        if len(chains) == 1 and _on_border(chains[0], start, end) and abs(abs(turned) - rectangle) < 1e-6 * rectangle:
-            # the kernel's own quadrature stays 1e-8 off where a normal turns round within a span
-            region = Region(carrier=carried, chains=(), low=start, high=end)
+        if len(loops) == 1 and _on_rectangle(loops[0], start, end) and abs(abs(turned) - rectangle) < 1e-6 * rectangle:
+            # OpenCASCADE's quadrature stays 1e-8 off where the normal reverses within a knot span
+            region = Region(evaluator=evaluator, loops=(), low=start, high=end)
             return FileFace(region=region, outline=outline, area=float(area(surface)), inside_out=turned < 0.0)
         bounds = (start, end)
     else:
@@ -72,26 +74,26 @@ def file_face(face: TopoDS_Face) -> FileFace:
         bounds = (np.array([u_low, v_low]), np.array([u_high, v_high]))
     reach = 0.05 * (high - low)
     if turned < 0.0:
-        # all of the surface but what the boundary encloses, as far as the surface goes
+        # a loop that runs clockwise keeps the outside of what it encloses, up to the bounds of the surface
         low, high = np.maximum(bounds[0], low - 10.0 * (high - low)), np.minimum(bounds[1], high + 10.0 * (high - low))
-        carried = occ_evaluator(geometry, low, high)
-        chains = (*chains, _frame(low, high))
-    elif not carried.period:
+        evaluator = occ_evaluator(geometry, low, high)
+        loops = (*loops, _frame(low, high))
+    elif not evaluator.period:
         low, high = np.maximum(bounds[0], low - reach), np.minimum(bounds[1], high + reach)
     else:
         low = np.array([low[0] - reach[0], max(bounds[0][1], low[1] - reach[1])])
         high = np.array([high[0] + reach[0], min(bounds[1][1], high[1] + reach[1])])
     properties = GProp_GProps()
     BRepGProp.SurfaceProperties_s(face, properties, AREA_ERROR)
-    region = Region(carrier=carried, chains=chains, low=low, high=high)
+    region = Region(evaluator=evaluator, loops=loops, low=low, high=high)
     return FileFace(region=region, outline=outline, area=properties.Mass(), inside_out=turned < 0.0)
 
 
-def _all(chains: tuple[tuple[Curve, ...], ...]) -> list[Curve]:
-    return [curve for chain in chains for curve in chain]
+def _all(loops: tuple[tuple[Curve, ...], ...]) -> list[Curve]:
+    return [curve for loop in loops for curve in loop]
 
 
-def _chain(wire: object, face: TopoDS_Face) -> tuple[Curve, ...]:
+def _loop(wire: object, face: TopoDS_Face) -> tuple[Curve, ...]:
     walk = BRepTools_WireExplorer(wire, face)
     edges = []
     while walk.More():
@@ -107,11 +109,11 @@ def _chain(wire: object, face: TopoDS_Face) -> tuple[Curve, ...]:
             f"a boundary of the file has {count} edges, of which only {len(edges)} follow each other: the face is not "
             "closed; write the file again"
         )
-    return tuple(_trace(edge, face) for edge in edges)
+    return tuple(_pcurve(edge, face) for edge in edges)
 
 
-def _trace(edge: TopoDS_Edge, face: TopoDS_Face) -> Curve:
-    """The trimming curve of an edge, in the direction in which the face runs along it."""
+def _pcurve(edge: TopoDS_Edge, face: TopoDS_Face) -> Curve:
+    """The trimming curve of an edge, in the direction of the loop."""
     adaptor = BRepAdaptor_Curve2d(edge, face)
     cut = Geom2d_TrimmedCurve(adaptor.Curve(), adaptor.FirstParameter(), adaptor.LastParameter())
     spline: Geom2d_BSplineCurve = Geom2dConvert.CurveToBSplineCurve_s(cut)
@@ -126,19 +128,19 @@ def _trace(edge: TopoDS_Edge, face: TopoDS_Face) -> Curve:
     return run_backwards(curve) if edge.Orientation() == TopAbs_REVERSED else curve
 
 
-def _enclosed(chain: tuple[Curve, ...]) -> float:
-    """Area in the parameter plane that a chain encloses, positive where it runs counter-clockwise."""
-    points = np.concatenate([curve(greville_spaced(curve.knots, curve.degree, 401))[:-1] for curve in chain])
+def _enclosed(loop: tuple[Curve, ...]) -> float:
+    """Area that a loop encloses in the parameter plane, positive where the loop runs counter-clockwise."""
+    points = np.concatenate([curve(greville_spaced(curve.knots, curve.degree, 401))[:-1] for curve in loop])
     ahead = np.roll(points, -1, axis=0)
     return 0.5 * float(np.sum(points[:, 0] * ahead[:, 1] - ahead[:, 0] * points[:, 1]))
 
 
-def _on_border(chain: tuple[Curve, ...], low: Array, high: Array) -> bool:
+def _on_rectangle(loop: tuple[Curve, ...], low: Array, high: Array) -> bool:
     size = high - low
-    for curve in chain:
+    for curve in loop:
         net = (curve.control_points - low) / size
         borders = [np.max(np.abs(net[:, k] - end)) for k in (0, 1) for end in (0.0, 1.0)]
-        if min(borders) > ON_BORDER:
+        if min(borders) > ON_RECTANGLE:
             return False
     return True
 

@@ -7,17 +7,17 @@ from OCP.IGESControl import IGESControl_Controller
 from OCP.Interface import Interface_Static
 from OCP.TCollection import TCollection_HAsciiString
 
-from bladewright.cad.native_body import NativeBody
+from bladewright.cad.native_body import NativeBody, header_text
 from bladewright.cad.solids import CONFUSION, OccSolid
 from bladewright.cad.step import SYSTEM, document
 from bladewright.errors import CadError
 
 
 def write_iges(built: NativeBody, body: OccSolid, path: str, *, solid: bool) -> None:
-    """Write an IGES 5.3 file in millimetres. Raises CadError where the kernel refuses."""
+    """Write an IGES 5.3 file in millimetres. Raises CadError where OpenCASCADE fails."""
     IGESControl_Controller.Init_s()
     Interface_Static.SetCVal_s("write.iges.unit", "MM")
-    # 0, the kernel's default, writes faces and forgets that they close a solid
+    # mode 0, the default, writes the faces without the solid that they close
     Interface_Static.SetIVal_s("write.iges.brep.mode", 1 if solid else 0)
     Interface_Static.SetIVal_s("write.precision.mode", 2)
     Interface_Static.SetRVal_s("write.precision.val", max(CONFUSION, body.gap))
@@ -35,8 +35,8 @@ def write_iges(built: NativeBody, body: OccSolid, path: str, *, solid: bool) -> 
     head.SetSystemId(_text(SYSTEM))
     head.SetInterfaceVersion(_text(SYSTEM))
     head.SetReceiveName(_text(built.name))
-    head.SetAuthorName(_text(str(getattr(built, "author", "") or "")))
-    head.SetCompanyName(_text(str(getattr(built, "organisation", "") or "")))
+    head.SetAuthorName(_text(header_text(built, "author")))
+    head.SetCompanyName(_text(header_text(built, "organisation")))
     model.SetGlobalSection(head)
     writer.ComputeModel()
     if not writer.Write(os.fspath(path), False):
@@ -44,7 +44,7 @@ def write_iges(built: NativeBody, body: OccSolid, path: str, *, solid: bool) -> 
 
 
 def ascii_text(text: str) -> str:
-    """Text as IGES can hold it: ASCII, with a question mark for any other letter."""
+    """Text as IGES can hold it: ASCII, with a question mark for any other character."""
     return "".join(letter if letter.isascii() and letter.isprintable() else "?" for letter in text)
 
 

@@ -9,7 +9,7 @@ from OCP.Message import Message
 
 @contextmanager
 def quiet() -> Iterator[None]:
-    """A block in which the kernel's messages go nowhere; its printers are put back afterwards."""
+    """A context in which OpenCASCADE prints nothing, because standard output belongs to the JSON of the commands."""
     messenger = Message.DefaultMessenger_s()
     printers = list(messenger.Printers())
     for printer in printers:
@@ -22,7 +22,7 @@ def quiet() -> Iterator[None]:
 
 
 def occ_version() -> str:
-    """Version of the OpenCASCADE kernel, such as "7.9.3"."""
+    """Version of OpenCASCADE, such as "7.9.3"."""
     for package in ("cadquery-ocp", "cadquery-ocp-novtk"):
         try:
             return ".".join(version(package).split(".")[:3])

@@ -1,4 +1,4 @@
-"""Triangles: made of a solid, measured, and asked whether they close."""
+"""Triangle meshes of solids: their volume and area, whether they are closed, and distances from them."""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -19,9 +19,13 @@ from bladewright.errors import CadError
 from bladewright.numerics.elementary import Array
 
 ANGULAR_DEFLECTION = 0.35
-"""[rad] largest angle between neighbouring triangles' normals that the kernel aims at"""
+"""[rad] Largest angle between the normals of neighbouring triangles that OpenCASCADE aims at: 20 deg, so that an edge
+of the blade is round to the eye even where the chordal deviation would allow a few triangles."""
 NEIGHBOURS = 12
-"""triangles near a point that are tried for the nearest"""
+"""Triangles with the nearest centres that are tried for the nearest one to a point. Those that end up beyond the limit
+are searched again more widely, so that the number only trades time."""
+MERGED = 1e-6
+"""[mm] Nodes nearer than this are one: those on a shared edge come from its one curve, with other rounding."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -80,7 +84,7 @@ class TriangleMesh:
 
 
 def mesh_of_triangles(corners: Array, tolerance: float = 0.0) -> TriangleMesh:
-    """The mesh of loose triangles (m, 3, 3): equal vertices become one; triangles that collapse are left out."""
+    """The mesh of separate triangles (m, 3, 3): equal vertices are merged, and degenerate triangles left out."""
     points = corners.reshape(-1, 3)
     if tolerance:
         points = np.round(points / tolerance) * tolerance
@@ -91,7 +95,7 @@ def mesh_of_triangles(corners: Array, tolerance: float = 0.0) -> TriangleMesh:
 
 
 def triangulated(body: OccSolid, deflection: float) -> TriangleMesh:
-    """The kernel's triangles of a solid, aimed at a deflection [mm]."""
+    """OpenCASCADE's triangulation of a solid, with a chordal deviation [mm] that it only aims at."""
     BRepTools.Clean_s(body.solid)
     BRepMesh_IncrementalMesh(body.solid, deflection, False, ANGULAR_DEFLECTION, False)
     found = []
@@ -106,12 +110,11 @@ def triangulated(body: OccSolid, deflection: float) -> TriangleMesh:
             triangles = triangles[:, ::-1]
         found.append(points[triangles])
     BRepTools.Clean_s(body.solid)
-    # nodes on a shared edge come from its one curve; the last bits of their sums may differ
-    return mesh_of_triangles(np.concatenate(found), tolerance=1e-6)
+    return mesh_of_triangles(np.concatenate(found), tolerance=MERGED)
 
 
 class ClosestTriangle:
-    """The triangles of a mesh as something that points are brought to."""
+    """Distances of points from the nearest triangle of a mesh."""
 
     def __init__(self, mesh: TriangleMesh) -> None:
         self.mesh = mesh
@@ -121,7 +124,7 @@ class ClosestTriangle:
 
     @cached_property
     def _by_size(self) -> list[tuple[cKDTree, NDArray[np.int64]]]:
-        """Trees of the middles of pieces of about the same size, each with its pieces' triangles."""
+        """Search trees of the centres of pieces of about the same size, each with the triangles of its pieces."""
         longest = np.max(np.linalg.norm(np.roll(self.pieces, -1, axis=1) - self.pieces, axis=-1), axis=1)
         level = np.floor(np.log2(longest.max() / np.maximum(longest, 1e-300))).astype(np.int64)
         groups = [np.flatnonzero(level == each) for each in np.unique(level)]
@@ -130,8 +133,8 @@ class ClosestTriangle:
     def distance(self, points: Array, limit: float) -> Array:
         """Distances (n,) [mm] of points (n, 3).
 
-        Those above `limit` are sought among the nearest triangles of every size as well: where large and small ones
-        meet, the nearest middles are all of small ones.
+        Those above `limit` [mm] are searched again among the nearest triangles of every size: where large and small
+        triangles meet, the nearest centres are all of small ones.
         """
         away = self._among(points, self.tree, self.owner, NEIGHBOURS)
         doubtful = np.flatnonzero(away > limit)
@@ -147,7 +150,7 @@ class ClosestTriangle:
 
 
 def _split(corners: Array, size: float) -> tuple[Array, NDArray[np.int64]]:
-    """Triangles (k, 3, 3) with no side above `size`, and the triangle each is a part of."""
+    """The triangles split until no side is longer than `size`: pieces (k, 3, 3), and the triangle each belongs to."""
     owner = np.arange(len(corners))
     done, owners = [], []
     while len(corners):

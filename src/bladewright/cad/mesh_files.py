@@ -9,7 +9,7 @@ from xml.sax.saxutils import escape, quoteattr
 import numpy as np
 
 from bladewright.cad.mesh import TriangleMesh, mesh_of_triangles
-from bladewright.cad.native_body import NativeBody
+from bladewright.cad.native_body import NativeBody, header_text
 from bladewright.cad.reading import first_and_last_bytes
 from bladewright.cad.step import SYSTEM
 from bladewright.errors import CadError
@@ -24,14 +24,14 @@ def write_stl(mesh: TriangleMesh, path: str, *, name: str) -> None:
     records["corners"] = corners
     normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     records["normal"] = normals / np.maximum(np.linalg.norm(normals, axis=-1), 1e-30)[:, None]
-    # a header that began with "solid" would pass for ASCII
+    # a header that begins with "solid" would be taken for ASCII
     title = f"binary STL of {name} [mm] by {SYSTEM}".encode("ascii", "replace")[:80].ljust(80)
     with Path(path).open("wb") as file:
         file.write(title + np.uint32(len(records)).astype("<u4").tobytes() + records.tobytes())
 
 
 def read_stl(path: Path) -> TriangleMesh:
-    """The triangles of an STL file. Raises CadError where it is none, or not whole."""
+    """The triangles of an STL file, in its own unit, taken as mm. Raises CadError where it is none, or incomplete."""
     head, _ = first_and_last_bytes(path)
     data = path.read_bytes()
     count = int(np.frombuffer(data[80:84].ljust(4, b"\0"), dtype="<u4")[0])
@@ -74,13 +74,13 @@ RELATIONS = (
 
 def write_3mf(mesh: TriangleMesh, path: str, *, built: NativeBody) -> None:
     """Write a 3MF file."""
-    told = {
+    texts = {
         "Title": built.name,
-        "Designer": str(getattr(built, "author", "") or ""),
-        "Description": str(getattr(built, "description", "") or ""),
+        "Designer": header_text(built, "author"),
+        "Description": header_text(built, "description"),
         "Application": SYSTEM,
     }
-    metadata = "".join(f'<metadata name="{key}">{escape(text)}</metadata>' for key, text in told.items() if text)
+    metadata = "".join(f'<metadata name="{key}">{escape(text)}</metadata>' for key, text in texts.items() if text)
     vertices = "".join(f'<vertex x="{x:.9g}" y="{y:.9g}" z="{z:.9g}"/>' for x, y, z in mesh.vertices.tolist())
     triangles = "".join(f'<triangle v1="{a}" v2="{b}" v3="{c}"/>' for a, b, c in mesh.triangles.tolist())
     model = (
@@ -95,7 +95,7 @@ def write_3mf(mesh: TriangleMesh, path: str, *, built: NativeBody) -> None:
 
 
 def read_3mf(path: Path) -> tuple[TriangleMesh, str]:
-    """The triangles [mm] of a 3MF file and its unit. Raises CadError where it is none, or not whole."""
+    """The triangles [mm] of a 3MF file, and its unit. Raises CadError where it is none, or incomplete."""
     first_and_last_bytes(path)
     try:
         with zipfile.ZipFile(path) as package:

@@ -1,4 +1,4 @@
-"""What the CAD modules need to know of a body: its closing native surfaces, and which of their sides is outside."""
+"""What the CAD modules need of a body: named native surfaces that close it, and which of their sides is outside."""
 
 from collections.abc import Mapping
 from typing import Protocol
@@ -10,13 +10,14 @@ from bladewright.nurbs.surface import Surface
 from bladewright.nurbs.trimmed import TrimmedSurface
 
 MM = 1000.0
-"""Millimetres in a metre: everything built is in metres, every CAD file in millimetres."""
+"""[mm/m] Everything that is built is in metres, everything in OpenCASCADE and in CAD files in millimetres."""
 
 
 class MassProperties(Protocol):
-    """Properties of the body by quadrature on its native surfaces.
+    """Volume, area and centroid of a body, integrated over its native surfaces.
 
-    Where there are `areas` (k,) [m^2] of the faces, in the order of `Built.orientations`, they are not computed again.
+    They may have `areas` (k,) [m^2] of the faces, in the order of `ClosedBody.orientations`; without them, the areas
+    are integrated when they are needed.
     """
 
     @property
@@ -41,7 +42,7 @@ class NamedBody(Protocol):
 
 
 class CadProduct(NamedBody, Protocol):
-    """What a CAD file says of a body; `description`, `author` and `organisation` as well, where it has them."""
+    """A body with the data that the header of a CAD file states, and texts that `header_text` finds."""
 
     @property
     def properties(self) -> MassProperties:
@@ -61,11 +62,16 @@ class ClosedBody(NamedBody, Protocol):
 
 
 class NativeBody(ClosedBody, CadProduct, Protocol):
-    """A body of native surfaces that a file is measured against: a blade, a passage."""
+    """A body of native surfaces that is written to a file and that the file is measured against: a blade, a passage."""
+
+
+def header_text(body: NamedBody, field: str) -> str:
+    """A body's `description`, `author` or `organisation` for the header of a file; empty where it has none."""
+    return str(getattr(body, field, "") or "")
 
 
 def extent(built: ClosedBody) -> float:
-    """The largest side [m] of the box around all control points of untrimmed faces, or of all where there is none."""
+    """The longest side [m] of the box around the control points of all untrimmed faces (of all faces without any)."""
     faces = built.surfaces.values()
     nets = [face.control_points for face in faces if isinstance(face, Surface)]
     nets = nets or [face.surface.control_points for face in faces if isinstance(face, TrimmedSurface)]

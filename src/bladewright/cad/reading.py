@@ -30,13 +30,15 @@ FORMATS = {
     ".stl": "STL",
     ".3mf": "3MF",
 }
-"""File formats by the ending of the name."""
+"""File format by the ending of a file's name."""
 
 SEWING_TOLERANCE = 1e-4
-"""[mm] Distance up to which faces of an IGES file without solids are sewn; the gaps that remain are measured."""
+"""[mm] Largest gap across which the faces of an IGES file without solids are sewn together. It is above the gaps that
+the round trip allows, so that they are measured rather than refused, and far below the size of any edge."""
 
 LARGEST_FILE = 500_000_000
-"""[bytes] The largest file that is opened."""
+"""[bytes] Size above which a file is refused. A blade takes less than 1 MB (some 105 bytes of STEP a control point); a
+file of this size would keep OpenCASCADE busy for minutes and fill several GB of memory."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -48,28 +50,28 @@ class CadFile:
     schema: str
     unit: str
     """length unit that the file is written in"""
-    ours: bool
+    written_by_bladewright: bool
     """whether the file says that bladewright wrote it"""
     shape: TopoDS_Shape
     """[mm]"""
     names: dict[int, str]
-    """names of faces, by their place in `faces`"""
+    """names of the faces that have one, by index in `faces`"""
 
     @property
     def faces(self) -> list[TopoDS_Face]:
-        """All faces."""
+        """All faces, in the order of the file."""
         return [TopoDS.Face_s(face) for face in subshapes(self.shape, TopAbs_FACE)]
 
 
 def subshapes(shape: TopoDS_Shape, kind: object) -> list[TopoDS_Shape]:
-    """The distinct parts of a kind in a shape, in a fixed order."""
+    """The distinct parts of a shape of one type (faces, edges...), in a fixed order."""
     found = TopTools_IndexedMapOfShape()
     TopExp.MapShapes_s(shape, kind, found)
     return [found.FindKey(i) for i in range(1, found.Extent() + 1)]
 
 
 def format_of(path: Path) -> str:
-    """The format that the ending of a path means. Raises CadError for an ending that means none."""
+    """The format that the ending of a path stands for. Raises CadError for an unknown ending."""
     ending = path.suffix.lower()
     if ending not in FORMATS:
         raise CadError(f"{path} ends in {ending or 'nothing'!r}: CAD files end in {', '.join(FORMATS)}; rename it")
@@ -77,7 +79,7 @@ def format_of(path: Path) -> str:
 
 
 def read_cad_file(path: Path) -> CadFile:
-    """What a STEP, IGES or BREP file holds. Raises CadError where it is no such file, or not whole."""
+    """What a STEP, IGES or BREP file holds. Raises CadError where it is no such file, or an incomplete one."""
     kind = format_of(path)
     check_complete(path, kind)
     with quiet():
@@ -90,25 +92,27 @@ def read_cad_file(path: Path) -> CadFile:
 def check_complete(path: Path, kind: str) -> None:
     """Raise CadError unless the file exists, begins as its format does and ends as it should."""
     head, tail = first_and_last_bytes(path)
-    told = f"{path} is not a whole {kind} file"
+    problem = f"{path} is not a whole {kind} file"
     if kind == "STEP":
         if b"ISO-10303-21" not in head:
-            raise CadError(f"{told}: it does not begin with ISO-10303-21; {_guess(head)}")
+            raise CadError(f"{problem}: it does not begin with ISO-10303-21; {_likely_format(head)}")
         if b"END-ISO-10303-21" not in tail:
-            raise CadError(f"{told}: it breaks off before END-ISO-10303-21, so a part is missing; write it again")
+            raise CadError(f"{problem}: it breaks off before END-ISO-10303-21, so a part is missing; write it again")
     elif kind == "IGES":
         lines = [line for line in head.splitlines() if line.strip()]
         if not lines or len(lines[0]) < 73 or lines[0][72:73] not in {b"S", b"B", b"C"}:
-            raise CadError(f"{told}: it does not begin with a start section; {_guess(head)}")
+            raise CadError(f"{problem}: it does not begin with a start section; {_likely_format(head)}")
         last = [line for line in tail.splitlines() if line.strip()][-1]
         if last[72:73] != b"T":
-            raise CadError(f"{told}: it breaks off before its terminate section, so a part is missing; write it again")
+            raise CadError(
+                f"{problem}: it breaks off before its terminate section, so a part is missing; write it again"
+            )
     elif kind == "BREP" and b"DBRep_DrawableShape" not in head and b"CASCADE Topology" not in head:
-        raise CadError(f"{told}: it does not begin with OpenCASCADE's name; {_guess(head)}")
+        raise CadError(f"{problem}: it does not begin with OpenCASCADE's name; {_likely_format(head)}")
 
 
 def first_and_last_bytes(path: Path) -> tuple[bytes, bytes]:
-    """The first and the last 4096 bytes of a file. Raises CadError where it cannot be opened or is empty or huge."""
+    """The first and last 4096 bytes of a file. Raises CadError where it cannot be read, or is empty or too large."""
     if path.is_dir():
         raise CadError(f"{path} is a directory: name a file in it")
     try:
@@ -126,7 +130,7 @@ def first_and_last_bytes(path: Path) -> tuple[bytes, bytes]:
     return head, tail
 
 
-def _guess(head: bytes) -> str:
+def _likely_format(head: bytes) -> str:
     known = {
         b"\x89PNG": "a PNG picture",
         b"%PDF": "a PDF",
@@ -141,7 +145,7 @@ def _guess(head: bytes) -> str:
 
 def _step(path: Path) -> CadFile:
     reader = STEPControl_Reader()
-    # the kernel would replace the file's trimming curves by projections otherwise
+    # in other modes OpenCASCADE replaces the trimming curves of the file by projections
     Interface_Static.SetIVal_s("read.surfacecurve.mode", 0)
     if reader.ReadFile(str(path)) != IFSelect_RetDone:
         raise CadError(f"OpenCASCADE cannot read the STEP file {path}: its syntax is broken; write it again")
@@ -163,14 +167,14 @@ def _step(path: Path) -> CadFile:
         format="STEP",
         schema=_protocol(schema),
         unit=_unit([unit.ToCString() for unit in units]),
-        ours="bladewright" in header.OriginatingSystem().ToCString(),
+        written_by_bladewright="bladewright" in header.OriginatingSystem().ToCString(),
         shape=shape,
         names=names,
     )
 
 
 def step_plain(text: str) -> str:
-    r"""Text of which ISO 10303-21's \X2\ sequences are letters again."""
+    r"""Text with the \X2\ sequences of ISO 10303-21 decoded."""
     return re.sub(r"\\X2\\((?:[0-9A-Fa-f]{4})+)\\X0\\", lambda found: bytes.fromhex(found[1]).decode("utf-16-be"), text)
 
 
@@ -213,14 +217,14 @@ def _iges(path: Path) -> CadFile:
         format="IGES",
         schema=kind,
         unit={"MM": "mm", "M": "m", "IN": "in", "INCH": "in", "CM": "cm", "FT": "ft"}.get(unit.upper(), unit.lower()),
-        ours="bladewright" in sender,
+        written_by_bladewright="bladewright" in sender,
         shape=shape,
         names=names,
     )
 
 
 def _sewn(shape: TopoDS_Shape, names: dict[int, str]) -> tuple[TopoDS_Shape, dict[int, str]]:
-    """Faces without a solid, sewn as the CAD that reads such a file has to; a solid where they close up."""
+    """Faces sewn together, as any CAD system that reads such a file has to do; a solid where they close a volume."""
     sewing = BRepBuilderAPI_Sewing(SEWING_TOLERANCE)
     sewing.Add(shape)
     sewing.Perform()
@@ -243,4 +247,4 @@ def _brep(path: Path) -> CadFile:
     shape = TopoDS_Shape()
     if not BRepTools.Read_s(shape, str(path), BRep_Builder()):
         raise CadError(f"OpenCASCADE cannot read the BREP file {path}: it is broken or cut off; write it again")
-    return CadFile(path=path, format="BREP", schema="", unit="mm", ours=False, shape=shape, names={})
+    return CadFile(path=path, format="BREP", schema="", unit="mm", written_by_bladewright=False, shape=shape, names={})

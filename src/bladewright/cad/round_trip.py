@@ -3,12 +3,19 @@
 from dataclasses import dataclass
 from typing import Any
 
+from bladewright.cad.native_body import NamedBody
 from bladewright.numerics.elementary import Array
+
+
+def conformance_figures(body: NamedBody) -> dict[str, float] | None:
+    """How a blade's surfaces conform to its design (`Blade.conformance`); None for a body that does not state it."""
+    conformance: Any = getattr(body, "conformance", None)
+    return None if conformance is None else conformance.to_dict()
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Comparison:
-    """A quantity in the file and on the native surfaces."""
+    """A quantity of the CAD file beside that of the native surfaces."""
 
     cad: float
     native: float
@@ -25,7 +32,7 @@ class Comparison:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class FaceReport:
-    """One face, measured both ways."""
+    """The measurement of one face, from the native face to the file and back."""
 
     name: str
     samples: int
@@ -34,7 +41,7 @@ class FaceReport:
     mean_deviation: float
     """[mm]"""
     worst: tuple[float, float]
-    """native u and v of the largest deviation"""
+    """native u and v where the deviation is largest"""
     area: Comparison
     """[mm^2]"""
 
@@ -52,15 +59,15 @@ class FaceReport:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class EdgeReport:
-    """All edges."""
+    """The measurement of all edges."""
 
     count: int
     shortest: float
     """[mm]"""
     max_gap: float
-    """[mm] between faces, or a face and the edge's curve, at equal parameters"""
+    """[mm] largest distance between the faces at an edge, or from the edge's own curve, at equal parameters"""
     max_tolerance: float
-    """[mm] of edges and vertices"""
+    """[mm] largest tolerance of edges and vertices"""
 
     def to_dict(self) -> dict[str, Any]:
         """As in the round-trip report."""
@@ -74,7 +81,7 @@ class EdgeReport:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class RoundTrip:
-    """The report of a file against a built object; `failures` says what is wrong, where and by how much."""
+    """A CAD file measured against a blade or passage; `failures` says what misses a limit, where and by how much."""
 
     file: str
     format: str
@@ -95,11 +102,11 @@ class RoundTrip:
     centroid: tuple[Array, Array]
     """(3,) [mm] in the file, and native"""
     promises: dict[str, float] | None = None
-    """what the built object reaches, where it says so"""
+    """how the native surfaces themselves conform to the design, where the body states it"""
 
     @property
     def passed(self) -> bool:
-        """Whether every figure is within its limit, and one closed valid solid has every face."""
+        """Whether every figure is within its limit, and the file holds one closed, valid solid with every face."""
         return not self.failures
 
     @property

@@ -1,4 +1,4 @@
-"""Points of CAD files, for whoever wants a cloud of them."""
+"""Point clouds sampled from CAD files."""
 
 import os
 from pathlib import Path
@@ -18,9 +18,9 @@ from bladewright.numerics.elementary import Array
 
 
 def sample(path: str | os.PathLike[str], count: int = 10_000, *, seed: int = 0) -> Array:
-    """Points (count, 3) [m], evenly spread by area over all faces of a CAD file; the same for the same seed.
+    """Random points (count, 3) [m], uniform by area over all faces of a CAD file; the same for the same seed.
 
-    Raises CadError where the file cannot be opened as what its name says.
+    Raises CadError where the file is not of the format that its name states.
     """
     path = Path(path)
     if count < 1:
@@ -39,17 +39,17 @@ def sample(path: str | os.PathLike[str], count: int = 10_000, *, seed: int = 0) 
 
 
 def _of_region(region: Region, count: int, random: Generator) -> Array:
-    """Points (count, 3) [mm], evenly spread: candidates stay with a probability that grows with their area."""
+    """Points (count, 3) [mm], uniform by area: of uniform parameters, kept in proportion to their area elements."""
     low, high = region.low, region.high
-    if region.chains:
-        low, high = region.rim.uv.min(axis=0), region.rim.uv.max(axis=0)
+    if region.loops:
+        low, high = region.boundary.uv.min(axis=0), region.boundary.uv.max(axis=0)
     found, total, densest = [np.zeros((0, 3))], 0, 0.0
     while total < count:
         uv = low + random.random((max(4 * count, 4000), 2)) * (high - low)
         uv = uv[region.contains(uv)]
-        points, along, across = region.carrier.frame(uv)
+        points, along, across = region.evaluator.frame(uv)
         element = np.sqrt(np.sum(np.cross(along, across) ** 2, axis=-1))
-        # the densest place seen so far stands for the densest there is
+        # the largest area element so far stands for the largest of the face
         densest = max(densest, float(element.max(initial=0.0)))
         kept = points[random.random(len(points)) * densest < element]
         found.append(kept)

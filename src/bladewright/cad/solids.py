@@ -1,4 +1,4 @@
-"""Closed solids of native surfaces: shared edges, shared vertices, tolerances as large as the gaps that there are."""
+"""Closed solids of native surfaces: shared edges and vertices, and tolerances no larger than the measured gaps."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -36,31 +36,32 @@ if TYPE_CHECKING:
     import cadquery
 
 CONFUSION = 1e-7
-"""[mm] The kernel's own smallest tolerance."""
+"""[mm] OpenCASCADE's smallest tolerance (Precision::Confusion)."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class OccSolid:
-    """A solid of the kernel [mm] and its faces by name."""
+    """A solid of OpenCASCADE [mm], with its faces by name."""
 
     solid: TopoDS_Solid
     faces: dict[str, TopoDS_Face]
     gap: float
-    """[mm] largest tolerance that its edges need"""
+    """[mm] largest tolerance of its edges"""
 
 
 def solid(built: NativeBody) -> "cadquery.Solid":
-    """The closed solid of a built object, in millimetres: its untrimmed faces pole for pole, its walls exact.
+    """The closed solid of a blade or passage, in millimetres.
 
-    Raises CadError where the surfaces do not close up, or where OpenCASCADE finds the solid invalid.
+    Untrimmed faces have the native control points; trimmed faces lie on exact planes and surfaces of revolution.
+    Raises CadError where the surfaces do not close a volume, or where OpenCASCADE finds the solid invalid.
     """
-    import cadquery  # its own import takes as long as the kernel's, and files need the kernel alone
+    import cadquery  # as slow to import as OpenCASCADE itself, and not needed for files
 
     return cadquery.Solid(occ_solid(built).solid)
 
 
 class _ByIdentity:
-    """A built object, equal to itself only."""
+    """A key for the cache below: bodies are equal only where they are the same object."""
 
     def __init__(self, built: NativeBody) -> None:
         self.built = built
@@ -73,7 +74,7 @@ class _ByIdentity:
 
 
 def cached_occ_solid(built: NativeBody) -> OccSolid:
-    """The `body` of a built object, kept while the files of the same object are written one after another."""
+    """`occ_solid`, cached for the last body, whose files in several formats are written one after another."""
     return _cached(_ByIdentity(built))
 
 
@@ -83,18 +84,18 @@ def _cached(same: _ByIdentity) -> OccSolid:
 
 
 def occ_solid(built: ClosedBody) -> OccSolid:
-    """The same solid in the kernel's own type, with its faces by name."""
+    """The closed solid of a body as OpenCASCADE has it, with its faces by name; raises CadError as `solid` does."""
     for face in built.surfaces.values():
         millimetres(face.control_points if isinstance(face, Surface) else face.surface.control_points)
-    made = topology(built)
-    workshop = _SolidBuilder(built.surfaces, made)
+    parts = _SolidBuilder(built.surfaces, topology(built))
     faces = {}
     for name, face in built.surfaces.items():
         outwards = built.orientations[name] > 0
-        faces[name] = (
-            workshop.patch(name, face, outwards) if isinstance(face, Surface) else workshop.wall(name, face, outwards)
-        )
-    workshop.close_edges()
+        if isinstance(face, Surface):
+            faces[name] = parts.untrimmed_face(name, face, outwards)
+        else:
+            faces[name] = parts.trimmed_face(name, face, outwards)
+    parts.close_edges()
     builder = BRep_Builder()
     shell = TopoDS_Shell()
     builder.MakeShell(shell)
@@ -109,21 +110,21 @@ def occ_solid(built: ClosedBody) -> OccSolid:
             f"OpenCASCADE finds the solid of {built.name!r} invalid, though its faces share their edges: one crosses "
             "itself or another; look at the blade with `bladewright show`"
         )
-    return OccSolid(solid=whole, faces=faces, gap=max(workshop.gaps))
+    return OccSolid(solid=whole, faces=faces, gap=max(parts.gaps))
 
 
 class _SolidBuilder:
-    """Edges and vertices of the kernel, made once and handed to every face that meets there."""
+    """OpenCASCADE's vertices and edges, each made once, and the faces that share them."""
 
-    def __init__(self, surfaces: Mapping[str, Surface | TrimmedSurface], made: Topology) -> None:
-        self.surfaces, self.made = surfaces, made
+    def __init__(self, surfaces: Mapping[str, Surface | TrimmedSurface], topology: Topology) -> None:
+        self.surfaces, self.topology = surfaces, topology
         self.builder = BRep_Builder()
-        self.vertices = [TopoDS_Vertex() for _ in made.vertices]
-        self.tolerances = np.full(len(made.vertices), CONFUSION)
-        for vertex, point in zip(self.vertices, made.vertices, strict=True):
+        self.vertices = [TopoDS_Vertex() for _ in topology.vertices]
+        self.tolerances = np.full(len(topology.vertices), CONFUSION)
+        for vertex, point in zip(self.vertices, topology.vertices, strict=True):
             self.builder.MakeVertex(vertex, gp_Pnt(*(point * MM).tolist()), CONFUSION)
-        self.edges = [self._edge(edge) for edge in made.edges]
-        self.gaps = [CONFUSION for _ in made.edges]
+        self.edges = [self._edge(edge) for edge in topology.edges]
+        self.gaps = [CONFUSION for _ in topology.edges]
 
     def _edge(self, edge: Edge) -> TopoDS_Edge:
         made = TopoDS_Edge()
@@ -136,44 +137,44 @@ class _SolidBuilder:
         self.builder.Add(edge, self.vertices[start].Oriented(TopAbs_FORWARD))
         self.builder.Add(edge, self.vertices[end].Oriented(TopAbs_REVERSED))
 
-    def patch(self, name: str, surface: Surface, outwards: bool) -> TopoDS_Face:
-        """An untrimmed face, its wire run around the parameter rectangle."""
+    def untrimmed_face(self, name: str, surface: Surface, outwards: bool) -> TopoDS_Face:
+        """An untrimmed face, whose wire runs around the parameter rectangle."""
         face = TopoDS_Face()
         self.builder.MakeFace(face, space_surface(surface), CONFUSION)
         wire = self._wire()
         for side in range(4):
-            for index, use in self._along(name, side):
-                trace = _side_trace(surface, use, self.made.edges[index].curve)
-                self.builder.UpdateEdge(self.edges[index], trace, face, CONFUSION)
-                self._add(wire, self.edges[index], along=use.along)
-            for point in self.made.collapsed:
-                if (point.use.face, point.use.side) == (name, side):
-                    self._add(wire, self._degenerate(surface, point, face), along=point.use.along)
+            for index, coedge in self._along(name, side):
+                pcurve = _side_curve(surface, coedge, self.topology.edges[index].curve)
+                self.builder.UpdateEdge(self.edges[index], pcurve, face, CONFUSION)
+                self._add(wire, self.edges[index], along=coedge.along)
+            for point in self.topology.degenerate_edges:
+                if (point.coedge.face, point.coedge.side) == (name, side):
+                    self._add(wire, self._degenerate(surface, point, face), along=point.coedge.along)
         return self._closed(face, wire, outwards)
 
-    def wall(self, name: str, face: TrimmedSurface, outwards: bool) -> TopoDS_Face:
-        """A trimmed face, its wire run along the edges that its boundary follows."""
+    def trimmed_face(self, name: str, face: TrimmedSurface, outwards: bool) -> TopoDS_Face:
+        """A trimmed face, whose wire runs along the edges that its boundary follows."""
         chain = [
-            (index, self.made.edges[index], use)
+            (index, self.topology.edges[index], coedge)
             for side in range(len(face.boundary))
-            for index, use in self._along(name, side)
+            for index, coedge in self._along(name, side)
         ]
-        shape = trimmed_face(face, [(edge, use) for _, edge, use in chain])
+        shape = trimmed_face(face, [(edge, coedge) for _, edge, coedge in chain])
         made = TopoDS_Face()
         self.builder.MakeFace(made, shape.geometry, CONFUSION)
-        counter_clockwise = _turns_left(face) != shape.swapped
+        counter_clockwise = _counter_clockwise(face) != shape.reversed_normal
         wire = self._wire()
-        for (index, edge, use), trace in zip(chain, shape.traces, strict=True):
-            gap = _gap(edge, trace, shape.geometry)
-            # a hair more than the gap measured, for what lies between the samples
+        for (index, edge, coedge), pcurve in zip(chain, shape.pcurves, strict=True):
+            gap = _gap(edge, pcurve, shape.geometry)
+            # 5 % more than the measured gap, which may be larger between the samples
             self.gaps[index] = max(self.gaps[index], 1.05 * gap)
-            self.builder.UpdateEdge(self.edges[index], plane_curve(trace), made, self.gaps[index])
-            self._add(wire, self.edges[index], along=use.along == counter_clockwise)
-        return self._closed(made, wire, outwards != shape.swapped)
+            self.builder.UpdateEdge(self.edges[index], plane_curve(pcurve), made, self.gaps[index])
+            self._add(wire, self.edges[index], along=coedge.along == counter_clockwise)
+        return self._closed(made, wire, outwards != shape.reversed_normal)
 
     def close_edges(self) -> None:
-        """Give edges and vertices the tolerance that their gaps need."""
-        for edge, shape, gap in zip(self.made.edges, self.edges, self.gaps, strict=True):
+        """Set the tolerances of edges and vertices to the measured gaps."""
+        for edge, shape, gap in zip(self.topology.edges, self.edges, self.gaps, strict=True):
             self.builder.UpdateEdge(shape, gap)
             self.builder.SameRange(shape, True)
             self.builder.SameParameter(shape, True)
@@ -183,12 +184,12 @@ class _SolidBuilder:
             self.builder.UpdateVertex(vertex, tolerance)
 
     def _along(self, name: str, side: int) -> list[tuple[int, Coedge]]:
-        """The edges on a side of a face, by their place, in the order of the face's run along that side."""
+        """Indices and coedges of the edges on a side of a face, in the direction of its wire."""
         found = [
-            (index, use)
-            for index, edge in enumerate(self.made.edges)
-            for use in edge.uses
-            if (use.face, use.side) == (name, side)
+            (index, coedge)
+            for index, edge in enumerate(self.topology.edges)
+            for coedge in edge.coedges
+            if (coedge.face, coedge.side) == (name, side)
         ]
         trimmed = isinstance(self.surfaces[name], TrimmedSurface)
         return sorted(found, key=lambda each: each[1].span, reverse=not trimmed and side in {2, 3})
@@ -209,28 +210,28 @@ class _SolidBuilder:
     def _degenerate(self, surface: Surface, point: DegenerateEdge, face: TopoDS_Face) -> TopoDS_Edge:
         edge = TopoDS_Edge()
         self.builder.MakeEdge(edge)
-        self.builder.UpdateEdge(edge, _side_trace(surface, point.use, None), face, CONFUSION)
+        self.builder.UpdateEdge(edge, _side_curve(surface, point.coedge, None), face, CONFUSION)
         self._bound(edge, point.vertex, point.vertex)
         self.builder.Degenerated(edge, True)
-        self.builder.Range(edge, face, *point.use.span)
+        self.builder.Range(edge, face, *point.coedge.span)
         return edge
 
 
-def _side_trace(surface: Surface, use: Coedge, curve: Curve | None) -> Geom2d_Curve:
-    """The piece of a side of the parameter rectangle at the parameter of an edge's curve, or at its own."""
-    along_u = use.side in {0, 2}
+def _side_curve(surface: Surface, coedge: Coedge, curve: Curve | None) -> Geom2d_Curve:
+    """The pcurve of an edge on a side of the parameter rectangle, with the edge's parameter (`curve`) or its own."""
+    along_u = coedge.side in {0, 2}
     across = surface.knots_v if along_u else surface.knots_u
-    fixed = float(across[0] if use.side in {0, 3} else across[-1])
-    backwards = curve is not None and use.along != (use.side in {0, 1})
-    start, end = reversed(use.span) if backwards else use.span
-    first, last = use.span if curve is None else curve.domain
+    fixed = float(across[0] if coedge.side in {0, 3} else across[-1])
+    backwards = curve is not None and coedge.along != (coedge.side in {0, 1})
+    start, end = reversed(coedge.span) if backwards else coedge.span
+    first, last = coedge.span if curve is None else curve.domain
     slope = (end - start) / (last - first)
 
     def at(place: float) -> gp_Pnt2d:
         return gp_Pnt2d(place, fixed) if along_u else gp_Pnt2d(fixed, place)
 
     if abs(abs(slope) - 1.0) <= 1e-15:
-        # a line of the kernel has its length for a parameter
+        # OpenCASCADE parametrises a line by its length
         step = -1.0 if backwards else 1.0
         return Geom2d_Line(at(start - step * first), gp_Dir2d(step, 0.0) if along_u else gp_Dir2d(0.0, step))
     poles = TColgp_Array1OfPnt2d(1, 2)
@@ -239,17 +240,17 @@ def _side_trace(surface: Surface, use: Coedge, curve: Curve | None) -> Geom2d_Cu
     return Geom2d_BSplineCurve(poles, *occ_knots(np.array([first, first, last, last])), 1)
 
 
-def _turns_left(face: TrimmedSurface) -> bool:
+def _counter_clockwise(face: TrimmedSurface) -> bool:
     chain = np.concatenate([curve(np.linspace(curve.knots[0], curve.knots[-1], 401))[:-1] for curve in face.boundary])
     ahead = np.roll(chain, -1, axis=0)
     return bool(np.sum(chain[:, 0] * ahead[:, 1] - ahead[:, 0] * chain[:, 1]) > 0.0)
 
 
-def _gap(edge: Edge, trace: Curve, geometry: Geom_Surface) -> float:
-    """Largest distance [mm] of a trace on its wall from its edge at equal parameters."""
-    spans = np.unique(trace.knots)
-    # an interpolant's error waves inside each span, and beside a wall's joint the spans are short
+def _gap(edge: Edge, pcurve: Curve, geometry: Geom_Surface) -> float:
+    """Largest distance [mm] between an edge and its pcurve on a trimmed face, at equal parameters."""
+    spans = np.unique(pcurve.knots)
+    # the error of an interpolant oscillates within each knot span, and near a knot of the wall the spans are short
     w = np.concatenate([np.linspace(spans[0], spans[-1], 401), *np.linspace(spans[:-1], spans[1:], 11)[1:-1]])
-    on_wall = (geometry.Value(*uv) for uv in trace(w).tolist())
+    on_wall = (geometry.Value(*uv) for uv in pcurve(w).tolist())
     points = np.array([(p.X(), p.Y(), p.Z()) for p in on_wall])
     return float(np.sqrt(np.max(np.sum((points - edge.curve(w) * MM) ** 2, axis=-1))))

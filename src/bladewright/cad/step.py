@@ -18,33 +18,22 @@ from OCP.TDocStd import TDocStd_Document
 from OCP.XCAFDoc import XCAFDoc_Area, XCAFDoc_Centroid, XCAFDoc_DocumentTool, XCAFDoc_Volume
 
 from bladewright import __version__
-from bladewright.cad.native_body import MM, CadProduct
+from bladewright.cad.native_body import MM, CadProduct, header_text
 from bladewright.cad.solids import CONFUSION, OccSolid
 from bladewright.errors import CadError
 
-
-def document(name: str, body: OccSolid, names: dict[str, str]) -> tuple[TDocStd_Document, TDF_Label]:
-    """A document with the body's solid, and the solid's label; `names` are the texts by which the faces go."""
-    made = TDocStd_Document(TCollection_ExtendedString("XmlXCAF"))
-    shapes = XCAFDoc_DocumentTool.ShapeTool_s(made.Main())
-    label = shapes.AddShape(body.solid, False)
-    TDataStd_Name.Set_s(label, TCollection_ExtendedString(name))
-    for face, shape in body.faces.items():
-        TDataStd_Name.Set_s(shapes.AddSubShape(label, shape), TCollection_ExtendedString(names[face]))
-    return made, label
-
-
 Schema = Literal["AP242", "AP214", "AP203"]
+"""application protocols of STEP that can be written"""
 
 SCHEMAS: dict[str, str] = {"AP242": "AP242DIS", "AP214": "AP214IS", "AP203": "AP203"}
-"""Application protocols and what the kernel calls them."""
+"""Application protocols and OpenCASCADE's names for them."""
 
 SYSTEM = f"bladewright {__version__}"
 """Originating system in the headers of CAD files."""
 
 
 def write_step(built: CadProduct, body: OccSolid, path: str, *, schema: str) -> None:
-    """Write a STEP file in millimetres. Raises CadError where the kernel refuses."""
+    """Write a STEP file in millimetres. Raises CadError where OpenCASCADE fails."""
     if schema not in SCHEMAS:
         raise CadError(f"schema {schema!r} is not a STEP schema that can be written: choose AP242, AP214 or AP203")
     writer = STEPCAFControl_Writer()
@@ -53,8 +42,8 @@ def write_step(built: CadProduct, body: OccSolid, path: str, *, schema: str) -> 
     writer.SetPropsMode(True)
     writer.SetColorMode(False)
     writer.SetLayerMode(False)
-    # a reader that finds an edge further off a face than this replaces the trimming curve by a coarse one of its own:
-    # design/cad_trimming_curves.py
+    # where a reader finds an edge further off a face than this uncertainty, it replaces the trimming curve by a coarse
+    # one of its own (design/cad_trimming_curves.py)
     writer.ChangeWriter().SetTolerance(max(CONFUSION, body.gap))
     made, label = document(step_text(built.name), body, {name: step_text(name) for name in body.faces})
     properties = built.properties
@@ -65,9 +54,23 @@ def write_step(built: CadProduct, body: OccSolid, path: str, *, schema: str) -> 
         raise CadError(f"OpenCASCADE could not translate the solid of {built.name!r} to STEP")
     model = writer.ChangeWriter().Model()
     _name_solid(model, built)
-    _head(APIHeaderSection_MakeHeader(model), built)
+    _fill_header(APIHeaderSection_MakeHeader(model), built)
     if writer.Write(os.fspath(path)) != IFSelect_RetDone:
         raise CadError("OpenCASCADE could not write the STEP file: is there space left in that directory?")
+
+
+def document(name: str, body: OccSolid, names: dict[str, str]) -> tuple[TDocStd_Document, TDF_Label]:
+    """An XCAF document of one product, which the STEP and IGES writers take, and the label of its solid.
+
+    `names` are the names of the faces as the format can write them.
+    """
+    made = TDocStd_Document(TCollection_ExtendedString("XmlXCAF"))
+    shapes = XCAFDoc_DocumentTool.ShapeTool_s(made.Main())
+    label = shapes.AddShape(body.solid, False)
+    TDataStd_Name.Set_s(label, TCollection_ExtendedString(name))
+    for face, shape in body.faces.items():
+        TDataStd_Name.Set_s(shapes.AddSubShape(label, shape), TCollection_ExtendedString(names[face]))
+    return made, label
 
 
 def _settings(schema: str) -> None:
@@ -85,33 +88,29 @@ def _name_solid(model: object, built: CadProduct) -> None:
         if isinstance(entity, (StepShape_ManifoldSolidBrep, StepShape_ClosedShell)):
             entity.SetName(name)
         elif isinstance(entity, StepBasic_Product):
-            entity.SetDescription(TCollection_HAsciiString(step_text(_text(built, "description"))))
+            entity.SetDescription(TCollection_HAsciiString(step_text(header_text(built, "description"))))
         left.discard(type(entity))
-        # thousands of points follow
+        # what follows are thousands of points
         if not left:
             break
 
 
-def _head(header: APIHeaderSection_MakeHeader, built: CadProduct) -> None:
+def _fill_header(header: APIHeaderSection_MakeHeader, built: CadProduct) -> None:
     def one(value: str) -> Interface_HArray1OfHAsciiString:
         array = Interface_HArray1OfHAsciiString(1, 1)
         array.SetValue(1, TCollection_HAsciiString(step_text(value)))
         return array
 
     header.SetName(TCollection_HAsciiString(step_text(built.name)))
-    header.SetDescription(one(_text(built, "description")))
-    header.SetAuthor(one(_text(built, "author")))
-    header.SetOrganization(one(_text(built, "organisation")))
+    header.SetDescription(one(header_text(built, "description")))
+    header.SetAuthor(one(header_text(built, "author")))
+    header.SetOrganization(one(header_text(built, "organisation")))
     header.SetOriginatingSystem(TCollection_HAsciiString(SYSTEM))
     header.SetAuthorisation(TCollection_HAsciiString(""))
 
 
-def _text(built: CadProduct, field: str) -> str:
-    return str(getattr(built, field, "") or "")
-
-
 def step_text(text: str) -> str:
-    r"""Text as ISO 10303-21 writes what is not ASCII: \X2\, the UTF-16 code units in hexadecimal, \X0\."""
+    r"""Text as ISO 10303-21 encodes what is not ASCII: \X2\, the UTF-16 code units in hexadecimal, \X0\."""
     coded = []
     for letter in text:
         if letter.isascii() and letter.isprintable():

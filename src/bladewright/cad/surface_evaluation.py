@@ -22,15 +22,15 @@ from bladewright.nurbs.curve import Curve
 from bladewright.nurbs.surface import Surface
 
 Frame = tuple[Array, Array, Array]
-"""points (n, 3) [mm] and their derivatives by the two parameters"""
+"""points (n, 3) [mm] and their derivatives by the first and by the second parameter"""
 
 
 class SurfaceEvaluator(Protocol):
-    """An untrimmed surface in millimetres."""
+    """The untrimmed surface under a face, in millimetres."""
 
     @property
     def period(self) -> float:
-        """Of the first parameter, or zero."""
+        """Period of the first parameter; 0 where the surface is not periodic."""
 
     def frame(self, uv: Array) -> Frame:
         """Points and first derivatives at parameters (n, 2)."""
@@ -52,7 +52,7 @@ class NurbsEvaluator:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class RevolutionEvaluator:
-    """A curve turned about an axis: the parameters are the angle and the curve's own."""
+    """A surface of revolution: its parameters are the angle and the parameter of the curve that is turned."""
 
     curve: Curve
     origin: Array
@@ -89,7 +89,7 @@ class PlaneEvaluator:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class OccEvaluator:
-    """Any other surface, evaluated by the kernel point by point, which takes ten times as long."""
+    """Any other surface, evaluated point by point by OpenCASCADE, which takes ten times as long."""
 
     geometry: Geom_Surface
     period: float = 0.0
@@ -106,7 +106,7 @@ class OccEvaluator:
 
 
 def occ_evaluator(geometry: Geom_Surface, low: Array, high: Array) -> SurfaceEvaluator:
-    """The surface of a CAD face as something that evaluates fast; its parameters are needed from low (2,) to high."""
+    """The fastest evaluator for the surface of a CAD face, valid from parameters `low` (2,) to `high` (2,)."""
     while isinstance(geometry, Geom_RectangularTrimmedSurface):
         geometry = geometry.BasisSurface()
     if isinstance(geometry, Geom_BSplineSurface):
@@ -114,34 +114,34 @@ def occ_evaluator(geometry: Geom_Surface, low: Array, high: Array) -> SurfaceEva
             return OccEvaluator(geometry=geometry)
         return NurbsEvaluator(surface=native_surface(geometry))
     if isinstance(geometry, Geom_SurfaceOfRevolution):
-        line = Geom_TrimmedCurve(geometry.BasisCurve(), *_within(geometry.BasisCurve(), low[1], high[1]))
+        line = Geom_TrimmedCurve(geometry.BasisCurve(), *_extended_range(geometry.BasisCurve(), low[1], high[1]))
         axis = geometry.Axis()
         return RevolutionEvaluator(
             curve=native_curve(GeomConvert.CurveToBSplineCurve_s(line)),
-            origin=_triple(axis.Location()),
-            axis=_triple(axis.Direction()),
+            origin=_coordinates(axis.Location()),
+            axis=_coordinates(axis.Direction()),
         )
     if isinstance(geometry, Geom_Plane):
         frame = geometry.Position()
         return PlaneEvaluator(
-            origin=_triple(frame.Location()),
-            along=_triple(frame.XDirection()),
-            across=_triple(frame.YDirection()),
+            origin=_coordinates(frame.Location()),
+            along=_coordinates(frame.XDirection()),
+            across=_coordinates(frame.YDirection()),
         )
     return OccEvaluator(geometry=geometry, period=2.0 * np.pi if geometry.IsUPeriodic() else 0.0)
 
 
 def native_evaluator(surface: Surface) -> NurbsEvaluator:
-    """A native surface [m] in millimetres."""
+    """The evaluator of a native surface [m], in millimetres."""
     return NurbsEvaluator(surface=surface, scale=MM)
 
 
-def _within(curve: object, low: float, high: float) -> tuple[float, float]:
-    # a little more than the trimming asks for, so that Newton steps near the border stay on the curve
+def _extended_range(curve: object, low: float, high: float) -> tuple[float, float]:
+    # a little beyond the trimmed part, so that Newton steps near the boundary stay on the curve
     margin = 0.05 * (high - low)
     first, last = curve.FirstParameter(), curve.LastParameter()  # type: ignore[attr-defined]
     return max(low - margin, first), min(high + margin, last)
 
 
-def _triple(value: object) -> Array:
+def _coordinates(value: object) -> Array:
     return np.array([value.X(), value.Y(), value.Z()])  # type: ignore[attr-defined]

@@ -1,4 +1,4 @@
-"""Which faces of a body share which edges, found from their native boundary curves."""
+"""The edges that the faces of a body share, found from the native boundary curves."""
 
 from dataclasses import dataclass, replace
 from itertools import pairwise
@@ -13,12 +13,14 @@ from bladewright.nurbs.surface import Surface
 from bladewright.nurbs.trimmed import TrimmedSurface
 
 COINCIDENT = 1e-12
-"""Distance, as a fraction of the body's extent, up to which two control points are the same point."""
+"""Largest distance of equal points, as a fraction of the body's extent. Neighbours share their boundary control points
+to the last bit, so that this only allows for the rounding of one more operation, such as a turn by a pitch."""
 ON_BOUNDARY = 1e-6
-"""The same up to which a trimmed face's boundary runs along an edge; what is left is measured as the edge's gap."""
+"""Largest distance of a trimmed face's boundary from the edge that it runs along, as a fraction of the body's extent.
+It only decides which edge is meant: the distance itself is measured, and becomes the gap of the edge."""
 
 SAME_KNOT = 1e-12
-"""Difference of two knots, as a fraction of the edge's range, up to which they are the same."""
+"""Largest difference of equal knots, as a fraction of the edge's parameter range: rounding."""
 
 SIDES = ("v = 0", "u = 1", "v = 1", "u = 0")
 """The sides of an untrimmed face in the order of a counter-clockwise run around its parameter square."""
@@ -26,16 +28,16 @@ SIDES = ("v = 0", "u = 1", "v = 1", "u = 0")
 
 @dataclass(frozen=True, kw_only=True)
 class Coedge:
-    """One side of a face that lies on an edge."""
+    """The use of an edge by a face: which side of the face lies on it, and in which direction the face runs there."""
 
     face: str
     """name of the face"""
     side: int
     """index into SIDES, or into the boundary curves of a trimmed face"""
     along: bool
-    """whether the face's run along this side follows the edge's own parameter"""
+    """whether the boundary of the face runs in the direction of the edge's parameter"""
     span: tuple[float, float]
-    """where on the side the edge lies: the side's own parameters, or those of the boundary curve, smaller first"""
+    """parameters of the side, or of the boundary curve, between which the edge lies, the smaller one first"""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -43,18 +45,20 @@ class Edge:
     """An edge of the body: its space curve [m], and the faces that meet there."""
 
     curve: Curve
-    uses: tuple[Coedge, ...]
+    coedges: tuple[Coedge, ...]
     start: int
     """index of the vertex at the curve's first parameter"""
     end: int
+    """index of the vertex at the curve's last parameter"""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class DegenerateEdge:
-    """A side of a face, or a piece of it, that is a single point."""
+    """A side of a face, or a part of one, that degenerates to a point."""
 
-    use: Coedge
+    coedge: Coedge
     vertex: int
+    """index of the point"""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -62,7 +66,7 @@ class Topology:
     """Edges and vertices of a closed body."""
 
     edges: tuple[Edge, ...]
-    collapsed: tuple[DegenerateEdge, ...]
+    degenerate_edges: tuple[DegenerateEdge, ...]
     vertices: Array
     """(n, 3) [m]"""
 
@@ -70,13 +74,13 @@ class Topology:
 def topology(built: ClosedBody) -> Topology:
     """The edges that the faces of a body share, and the vertices where those meet.
 
-    A side of an untrimmed face that is no more than continuous at an inner knot is split there, and each piece is an
-    edge of its own. Untrimmed faces are neighbours where such pieces have the same control points, run either way, and
-    the same knots, up to a linear change of the parameter; a trimmed face is the neighbour of the edges that its
-    boundary follows. Raises CadError where an edge does not belong to exactly two faces.
+    A side of an untrimmed face is split where it has a corner (an inner knot of full multiplicity), and each piece is
+    an edge of its own. Untrimmed faces are neighbours where two such pieces have the same control points, in either
+    direction, and the same knots up to a linear change of the parameter. A trimmed face is a neighbour along the edges
+    that its boundary follows. Raises CadError where an edge does not belong to exactly two faces.
     """
     size = extent(built)
-    runs: list[tuple[Curve, list[Coedge]]] = []
+    edge_curves: list[tuple[Curve, list[Coedge]]] = []
     points: list[tuple[Array, Coedge]] = []
     for name, face in built.surfaces.items():
         if isinstance(face, Surface):
@@ -84,35 +88,35 @@ def topology(built: ClosedBody) -> Topology:
                 whole, along = side_curve(face, side)
                 flat = np.ptp(whole.control_points, axis=0).max() <= COINCIDENT * size
                 for curve in (whole,) if flat else smooth_pieces(whole):
-                    use = Coedge(face=name, side=side, along=along, span=curve.domain)
+                    coedge = Coedge(face=name, side=side, along=along, span=curve.domain)
                     net = curve.control_points
                     if np.ptp(net, axis=0).max() <= COINCIDENT * size:
-                        points.append((net[0], use))
+                        points.append((net[0], coedge))
                     else:
-                        _add_coedge(runs, curve, use, COINCIDENT * size)
+                        _add_coedge(edge_curves, curve, coedge, COINCIDENT * size)
     for name, face in built.surfaces.items():
         if isinstance(face, TrimmedSurface):
             for side, boundary in enumerate(face.boundary):
-                _add_trimmed_boundary(runs, face, boundary, name, side, ON_BOUNDARY * size)
-    _require_pairs(runs)
+                _add_trimmed_boundary(edge_curves, face, boundary, name, side, ON_BOUNDARY * size)
+    _require_pairs(edge_curves)
     vertices: list[Array] = []
     edges = tuple(
         Edge(
             curve=curve,
-            uses=tuple(uses),
+            coedges=tuple(coedges),
             start=_vertex(vertices, curve.control_points[0], COINCIDENT * size),
             end=_vertex(vertices, curve.control_points[-1], COINCIDENT * size),
         )
-        for curve, uses in runs
+        for curve, coedges in edge_curves
     )
-    collapsed = tuple(
-        DegenerateEdge(use=use, vertex=_vertex(vertices, point, COINCIDENT * size)) for point, use in points
+    degenerate_edges = tuple(
+        DegenerateEdge(coedge=coedge, vertex=_vertex(vertices, point, COINCIDENT * size)) for point, coedge in points
     )
-    return Topology(edges=edges, collapsed=collapsed, vertices=np.array(vertices))
+    return Topology(edges=edges, degenerate_edges=degenerate_edges, vertices=np.array(vertices))
 
 
 def side_curve(face: Surface, side: int) -> tuple[Curve, bool]:
-    """The boundary curve of an untrimmed face on one of SIDES, and whether the counter-clockwise run follows it."""
+    """The boundary curve of an untrimmed face on one of SIDES, and whether it runs counter-clockwise."""
     along_u = side in {0, 2}
     index = (slice(None), 0 if side == 0 else -1) if along_u else (0 if side == 3 else -1, slice(None))
     curve = Curve(
@@ -125,11 +129,11 @@ def side_curve(face: Surface, side: int) -> tuple[Curve, bool]:
 
 
 def smooth_pieces(curve: Curve) -> tuple[Curve, ...]:
-    """The parts of a curve between inner knots of full multiplicity, control point for control point."""
+    """The parts of a curve between its corners (inner knots of full multiplicity), with the same control points."""
     degree = curve.degree
     inner, counts = np.unique(curve.knots[degree + 1 : -degree - 1], return_counts=True)
     cuts = [curve.knots[0], *inner[counts == degree], curve.knots[-1]]
-    # the control point that a cut passes through stands before the first of its knots
+    # index of the control point that the curve passes through at a corner
     places = [0, *(int(np.searchsorted(curve.knots, cut)) - 1 for cut in cuts[1:-1]), len(curve.control_points) - 1]
     return tuple(
         Curve(
@@ -142,13 +146,13 @@ def smooth_pieces(curve: Curve) -> tuple[Curve, ...]:
     )
 
 
-def _add_coedge(runs: list[tuple[Curve, list[Coedge]]], curve: Curve, use: Coedge, tolerance: float) -> None:
-    for known, uses in runs:
+def _add_coedge(edge_curves: list[tuple[Curve, list[Coedge]]], curve: Curve, coedge: Coedge, tolerance: float) -> None:
+    for known, coedges in edge_curves:
         for backwards in (False, True):
             if _same(known, curve, tolerance, backwards=backwards):
-                uses.append(replace(use, along=use.along != backwards))
+                coedges.append(replace(coedge, along=coedge.along != backwards))
                 return
-    runs.append((curve, [use]))
+    edge_curves.append((curve, [coedge]))
 
 
 def _same(one: Curve, other: Curve, tolerance: float, *, backwards: bool) -> bool:
@@ -169,33 +173,33 @@ def _shares(knots: Array) -> Array:
 
 
 def _add_trimmed_boundary(
-    runs: list[tuple[Curve, list[Coedge]]],
+    edge_curves: list[tuple[Curve, list[Coedge]]],
     face: TrimmedSurface,
     boundary: Curve,
     name: str,
     side: int,
     tolerance: float,
 ) -> None:
-    """Give the boundary of a trimmed face to the edge that runs along it, or to several one behind another."""
+    """Add the boundary curve of a trimmed face to the edge that it follows, or to several edges one after another."""
     s = np.linspace(boundary.knots[0], boundary.knots[-1], 2001)
     trace = face.surface(*boundary(s).T)
     found, nearest = [], np.inf
-    for curve, uses in runs:
+    for curve, coedges in edge_curves:
         first, middle, last = curve(curve.knots[0] + np.array([0.0, 0.5, 1.0]) * (curve.knots[-1] - curve.knots[0]))
-        # a point of the edge lies at another parameter of the boundary: its distance is measured to the polyline
+        # edge and boundary have different parameters, so that distances are measured to the boundary as a polyline
         off = _to_polyline(middle, trace)
         for start, end in ((first, last), (last, first)):
             nearest = min(nearest, max(_distance(trace[0], start), _distance(trace[-1], end), off[0]))
         if max(off[0], *(_to_polyline(end, trace)[0] for end in (first, last))) <= tolerance:
-            found.append((off[1], uses, first, last))
+            found.append((off[1], coedges, first, last))
     place, reached = trace[0], boundary.knots[0]
-    for at, uses, first, last in sorted(found, key=lambda each: each[0]):
+    for at, coedges, first, last in sorted(found, key=lambda each: each[0]):
         along = _distance(place, first) <= _distance(place, last)
         start, end = (first, last) if along else (last, first)
         if _distance(place, start) > tolerance:
             break
         past = s[0] + (s[-1] - s[0]) * _to_polyline(end, trace, after=at)[1] / (len(s) - 1)
-        uses.append(Coedge(face=name, side=side, along=along, span=(float(reached), float(past))))
+        coedges.append(Coedge(face=name, side=side, along=along, span=(float(reached), float(past))))
         place, reached = end, past
     if not found or _distance(place, trace[-1]) > tolerance:
         raise CadError(
@@ -209,7 +213,7 @@ def _distance(a: Array, b: Array) -> float:
 
 
 def _to_polyline(point: Array, line: Array, after: float = 0.0) -> tuple[float, float]:
-    """Distance of a point from a polyline, and the place there, counted in its segments, not before `after`."""
+    """Distance of a point from a polyline, and where it is nearest, in segments from the start, not before `after`."""
     begin = int(after)
     start, step = line[begin:-1], np.diff(line[begin:], axis=0)
     share = np.clip(np.sum((point - start) * step, axis=-1) / np.sum(step * step, axis=-1), 0.0, 1.0)
@@ -226,15 +230,15 @@ def _vertex(vertices: list[Array], point: Array, tolerance: float) -> int:
     return len(vertices) - 1
 
 
-def _require_pairs(runs: list[tuple[Curve, list[Coedge]]]) -> None:
-    for curve, uses in runs:
-        where = " and ".join(f"{use.face!r} ({use.side})" for use in uses)
-        if len(uses) != 2:
+def _require_pairs(edge_curves: list[tuple[Curve, list[Coedge]]]) -> None:
+    for curve, coedges in edge_curves:
+        where = " and ".join(f"{coedge.face!r} ({coedge.side})" for coedge in coedges)
+        if len(coedges) != 2:
             raise CadError(
                 f"the edge from {curve.control_points[0]} to {curve.control_points[-1]} m belongs to {where}: an edge "
                 "of a closed body belongs to exactly two faces; give the neighbours the same boundary control points"
             )
-        if uses[0].face == uses[1].face:
+        if coedges[0].face == coedges[1].face:
             raise CadError(
-                f"face {uses[0].face!r} meets itself along an edge: split it there, so that each edge has two faces"
+                f"face {coedges[0].face!r} meets itself along an edge: split it there, so that each edge has two faces"
             )

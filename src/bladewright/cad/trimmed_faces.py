@@ -20,25 +20,27 @@ from bladewright.nurbs.revolution import Revolution
 from bladewright.nurbs.trimmed import TrimmedSurface
 
 Along = Callable[[Array], Array]
+"""a quantity along an edge, as a function of the edge's parameter"""
 
 PCURVE_TOLERANCE = 1e-10
-"""Distance, as a fraction of the edge's extent, that a trimming curve may add to what the edge lies off its wall."""
+"""Largest interpolation error of a trimming curve, as a fraction of the edge's extent. It adds to the distance of the
+edge from its wall, of which 1e-7 of the chord is allowed, and is far below it."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class TrimmedFace:
-    """A trimmed face for the kernel."""
+    """A trimmed face as OpenCASCADE holds it."""
 
     geometry: Geom_Surface
     """[mm]"""
-    traces: tuple[Curve, ...]
-    """trimming curves in the parameters of `geometry`, one for each boundary, each at its edge's own parameter"""
-    swapped: bool
-    """whether the geometry's normal is opposite to the native one"""
+    pcurves: tuple[Curve, ...]
+    """trimming curves in the parameters of `geometry`, one for each edge and with the parameter of that edge"""
+    reversed_normal: bool
+    """whether the normal of `geometry` is opposite to the native one"""
 
 
 def trimmed_face(face: TrimmedSurface, edges: list[tuple[Edge, Coedge]]) -> TrimmedFace:
-    """The kernel's surface of a trimmed face and the traces on it of its edges, given in the order of its boundary."""
+    """The surface of a trimmed face, and the pcurves of its edges, which are given in the order of its boundary."""
     if face.revolution is not None:
         return _revolved(face, face.revolution, edges)
     net = face.surface.control_points
@@ -52,7 +54,7 @@ def trimmed_face(face: TrimmedSurface, edges: list[tuple[Edge, Coedge]]) -> Trim
 def _plane(corner: Array, along: Array, normal: Array, edges: list[tuple[Edge, Coedge]]) -> TrimmedFace:
     axes = np.stack([along, np.cross(normal, along)])
     frame = gp_Ax3(gp_Pnt(*(corner * MM).tolist()), gp_Dir(*normal.tolist()), gp_Dir(*along.tolist()))
-    traces = tuple(
+    pcurves = tuple(
         Curve(
             control_points=(edge.curve.control_points - corner) @ axes.T * MM,
             knots=edge.curve.knots,
@@ -61,13 +63,13 @@ def _plane(corner: Array, along: Array, normal: Array, edges: list[tuple[Edge, C
         )
         for edge, _ in edges
     )
-    return TrimmedFace(geometry=Geom_Plane(frame), traces=traces, swapped=False)
+    return TrimmedFace(geometry=Geom_Plane(frame), pcurves=pcurves, reversed_normal=False)
 
 
 def _revolved(face: TrimmedSurface, revolution: Revolution, edges: list[tuple[Edge, Coedge]]) -> TrimmedFace:
     """A surface of revolution about -x, about which theta is right-handed.
 
-    The kernel's angle starts half a turn before the middle of the face, so that no trace comes near its seam.
+    OpenCASCADE's angle starts half a turn before the middle of the face, so that no pcurve comes near the seam.
     """
     line = revolution.meridian
     angles = [np.asarray(revolution.theta(boundary(_spread(boundary.knots, 201))[:, 1])) for boundary in face.boundary]
@@ -87,10 +89,10 @@ def _revolved(face: TrimmedSurface, revolution: Revolution, edges: list[tuple[Ed
     )
     axis = gp_Ax1(gp_Pnt(0.0, 0.0, 0.0), gp_Dir(-1.0, 0.0, 0.0))
 
-    def trace(edge: Edge, use: Coedge) -> Curve:
-        boundary = face.boundary[use.side]
-        s = np.linspace(*use.span, 201)
-        guides = boundary(s if use.along else s[::-1])
+    def pcurve(edge: Edge, coedge: Coedge) -> Curve:
+        boundary = face.boundary[coedge.side]
+        s = np.linspace(*coedge.span, 201)
+        guides = boundary(s if coedge.along else s[::-1])
         reference = np.asarray(revolution.theta(guides[:, 1]))
 
         def place(w: Array) -> Array:
@@ -102,26 +104,26 @@ def _revolved(face: TrimmedSurface, revolution: Revolution, edges: list[tuple[Ed
             meridional = np.stack([points[:, 0], np.sqrt(points[:, 1] ** 2 + points[:, 2] ** 2)], axis=-1)
             return np.stack([theta - start, _foot(line, meridional)], axis=-1)
 
-        def stretch(uv: Array) -> Array:
+        def scales(uv: Array) -> Array:
             tangent = line.derivative(uv[:, 1])
             return np.stack([line(uv[:, 1])[:, 1], np.sqrt(np.sum(tangent * tangent, axis=-1))], axis=-1)
 
-        return _interpolated(place, stretch, edge.curve, _joints(place, 1, line.knots, line.degree, edge.curve))
+        return _interpolated(place, scales, edge.curve, _joints(place, 1, line.knots, line.degree, edge.curve))
 
     return TrimmedFace(
         geometry=Geom_SurfaceOfRevolution(space_curve(meridian), axis),
-        traces=tuple(trace(edge, use) for edge, use in edges),
-        swapped=True,
+        pcurves=tuple(pcurve(edge, coedge) for edge, coedge in edges),
+        reversed_normal=True,
     )
 
 
 def _patch(face: TrimmedSurface, edges: list[tuple[Edge, Coedge]]) -> TrimmedFace:
-    """Any other wall: its own B-spline surface, with the feet of its edges."""
+    """Any other trimmed face: on its own B-spline surface, the edges projected to it."""
     surface = face.surface
 
-    def trace(edge: Edge, use: Coedge) -> Curve:
-        boundary = face.boundary[use.side]
-        guides = boundary(np.linspace(*use.span, 2001))
+    def pcurve(edge: Edge, coedge: Coedge) -> Curve:
+        boundary = face.boundary[coedge.side]
+        guides = boundary(np.linspace(*coedge.span, 2001))
         ahead = surface(*guides.T)
 
         def place(w: Array) -> Array:
@@ -137,15 +139,16 @@ def _patch(face: TrimmedSurface, edges: list[tuple[Edge, Coedge]]) -> TrimmedFac
                 uv = uv + np.stack([c * e - b * f, a * f - b * e], axis=-1) / (a * c - b * b)[:, None]
             return uv
 
-        def stretch(uv: Array) -> Array:
+        def scales(uv: Array) -> Array:
             u, v = uv.T
             tangents = (surface.derivative(u, v, 1, 0), surface.derivative(u, v, 0, 1))
             return np.stack([np.sqrt(np.sum(t * t, axis=-1)) for t in tangents], axis=-1)
 
         joints = _joints(place, 0, surface.knots_u, surface.degree_u, edge.curve)
-        return _interpolated(place, stretch, edge.curve, joints)
+        return _interpolated(place, scales, edge.curve, joints)
 
-    return TrimmedFace(geometry=space_surface(surface), traces=tuple(trace(e, u) for e, u in edges), swapped=False)
+    pcurves = tuple(pcurve(edge, coedge) for edge, coedge in edges)
+    return TrimmedFace(geometry=space_surface(surface), pcurves=pcurves, reversed_normal=False)
 
 
 def _spread(knots: Array, count: int) -> Array:
@@ -162,14 +165,14 @@ def _foot(line: Curve, points: Array) -> Array:
         slope = np.einsum("ij,ij->i", first, first) + np.einsum("ij,ij->i", miss, second)
         step = np.einsum("ij,ij->i", miss, first) / slope
         t = np.clip(t - step, line.knots[0], line.knots[-1])
-        # the next step would be its square
+        # Newton's method converges quadratically: the next step would be the square of this one
         if np.max(np.abs(step)) <= 1e-9 * (line.knots[-1] - line.knots[0]):
             break
     return t
 
 
 def _joints(place: Along, column: int, knots: Array, degree: int, along: Curve) -> list[tuple[float, int]]:
-    """Where an edge passes inner knots of its wall, with the derivatives of the trace that are continuous there."""
+    """Parameters at which an edge crosses inner knots of its wall, and the order of continuity of its pcurve there."""
     levels, counts = (found[1:-1] for found in np.unique(knots, return_counts=True))
     if len(levels) == 0:
         return []
@@ -182,10 +185,10 @@ def _joints(place: Along, column: int, knots: Array, degree: int, along: Curve) 
     ]
 
 
-def _interpolated(place: Along, stretch: Along, along: Curve, joints: list[tuple[float, int]]) -> Curve:
-    """A plane B-spline of degree 5 through `place(w)`, as smooth as the edge, its knots doubled until it follows.
+def _interpolated(place: Along, scales: Along, along: Curve, joints: list[tuple[float, int]]) -> Curve:
+    """A plane B-spline of at least degree 5 through `place(w)`, with the knots of the edge, halved until it is close.
 
-    `stretch` gives the metres that the two parameters are worth, `joints` the places where the trace is less smooth.
+    `scales` gives the metres per unit of the two parameters, `joints` where the pcurve is less smooth than the edge.
     """
     degree = max(5, along.degree)
     inner, counts = np.unique(along.knots[along.degree + 1 : -along.degree - 1], return_counts=True)
@@ -199,12 +202,12 @@ def _interpolated(place: Along, stretch: Along, along: Curve, joints: list[tuple
         added = (ends[:-1, None] + np.diff(ends)[:, None] * np.arange(1, division) / division).ravel()
         knots = np.sort(np.concatenate([np.repeat(ends[0], degree + 1), np.repeat(inner, counts), added,
                                         np.repeat(ends[-1], degree + 1)]))  # fmt: skip
-        # the mean of equal numbers may be past them by rounding
+        # by rounding, the mean of equal knots may lie beyond them
         sites = np.clip(greville(knots, degree), knots[0], knots[-1])
         spline = make_interp_spline(sites, place(sites), k=degree, t=knots)
         between = 0.5 * (sites[1:] + sites[:-1])
         exact = place(between)
-        miss = np.max(np.abs(spline(between) - exact) * stretch(exact))
+        miss = np.max(np.abs(spline(between) - exact) * scales(exact))
         if miss <= PCURVE_TOLERANCE * size:
             return Curve(control_points=spline.c, knots=knots, degree=degree)
     raise CadError(

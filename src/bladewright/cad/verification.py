@@ -1,8 +1,7 @@
-"""The measurement of a CAD file, from anywhere, against a built object."""
+"""A CAD file, whoever wrote it, measured against the native surfaces of a blade or passage."""
 
 import os
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 from OCP.BRepGProp import BRepGProp
@@ -12,33 +11,50 @@ from bladewright.cad.closure import Closure, closure
 from bladewright.cad.deviation import deviation, native_face
 from bladewright.cad.file_face import FileFace, file_face
 from bladewright.cad.kernel import quiet
+from bladewright.cad.mesh_verification import verify_mesh
 from bladewright.cad.native_body import MM, NativeBody, extent
 from bladewright.cad.reading import CadFile, format_of, read_cad_file
-from bladewright.cad.round_trip import Comparison, EdgeReport, FaceReport, RoundTrip
+from bladewright.cad.round_trip import Comparison, EdgeReport, FaceReport, RoundTrip, conformance_figures
 from bladewright.numerics.elementary import Array
 from bladewright.nurbs.surface import Surface
 from bladewright.nurbs.trimmed import TrimmedSurface
 
 SAMPLES = 10_000
-"""points on each face, each way"""
+"""Points on each face, native and of the file, at which distances are measured: a grid of 100 x 100 on an untrimmed
+face, spaced as its control points are, so that no displaced one is missed."""
 SAME_FACE = 0.01
-"""Distance of control points, of the body's extent, below which a face without a name is taken for a native one."""
+"""Largest displacement of a control point, as a fraction of the body's extent, at which a face without a name is taken
+for the nearest native face with the same knots. Generous, so that a face with a defect is reported under its name."""
 QUADRATURE = (1e-3, 1e-7, 1e-9, 1e-12)
-"""relative errors that the kernel's quadrature of volumes aims at in turn: design/cad_quadrature.py"""
+"""Relative errors of OpenCASCADE's volume quadrature, tried in turn (design/cad_quadrature.py)."""
 SAFE_SHARE = 0.2
-"""share of a limit within which the first quadrature will do"""
+"""Fraction of a limit: where volume and centroid agree within it, no finer quadrature is tried
+(design/cad_quadrature.py)."""
+SIDE_LIMIT = 1e-6
+"""[mm] Largest deviation of an untrimmed face, and largest gap of an edge between two of them. The control points
+return from a STEP file within 7e-12 mm and from an IGES file within 4e-10 mm (150 mm blade, OpenCASCADE 7.9), so that
+this is no limit on precision but on errors."""
+END_LIMIT = 1e-5
+"""[mm] Least limit for the deviation of trimmed faces and the gaps of their edges; larger bodies are allowed
+`END_LIMIT_PER_CHORD`."""
+END_LIMIT_PER_CHORD = 1e-7
+"""The same as a fraction of the chord: as far as the native ends may lie off the walls (docs/nomenclature.md)."""
+AREA_LIMIT = 1e-9
+"""Largest relative error of the area of an untrimmed face, integrated over the file's poles and over the native
+ones."""
+VOLUME_LIMIT = 1e-6
+"""Largest relative error of the volume, of the total area, and of the area of a trimmed face, which depends on edges
+that may be off by the gap; largest displacement of the centroid as a fraction of the body's extent."""
 
 
 def verify(path: str | os.PathLike[str], built: NativeBody, *, samples: int = SAMPLES) -> RoundTrip:
-    """The round trip of a CAD file: what it holds, and how far that is from a built object.
+    """The round trip of a CAD file: what it holds, and how far that lies from a blade or passage.
 
     STEP, IGES and BREP files are measured face by face, whoever wrote them and however their surfaces are parametrised;
-    STL and 3MF files triangle by triangle. Raises CadError where the file cannot be opened as what its name says.
+    STL and 3MF files triangle by triangle. Raises CadError where the file is not of the format that its name states.
     """
     path = Path(path)
     if format_of(path) in {"STL", "3MF"}:
-        from bladewright.cad.mesh_verification import verify_mesh
-
         return verify_mesh(path, built, samples=samples)
     opened = read_cad_file(path)
     with quiet():
@@ -46,37 +62,42 @@ def verify(path: str | os.PathLike[str], built: NativeBody, *, samples: int = SA
 
 
 def limits_of(built: NativeBody) -> dict[str, float]:
-    """Limits of the figures: millimetres for distances, fractions for areas and volume."""
+    """The limits of the round trip: distances in millimetres, relative errors of areas and volume."""
     chords = [_chord(face) for face in built.surfaces.values() if isinstance(face, TrimmedSurface)]
-    end = max([1e-5, *(1e-7 * chord * MM for chord in chords)])
-    return {"side_mm": 1e-6, "end_mm": end, "edge_mm": 1e-6, "face_area": 1e-9, "volume": 1e-6}
+    return {
+        "side_mm": SIDE_LIMIT,
+        "end_mm": max([END_LIMIT, *(END_LIMIT_PER_CHORD * chord * MM for chord in chords)]),
+        "edge_mm": SIDE_LIMIT,
+        "face_area": AREA_LIMIT,
+        "volume": VOLUME_LIMIT,
+    }
 
 
 def _chord(face: TrimmedSurface) -> float:
-    """[m] Distance of the ends of the first boundary curve."""
+    """Distance [m] between the ends of a trimmed face's first boundary curve."""
     ends = face.boundary[0].control_points[[0, -1]]
     start, end = face.surface(ends[:, 0], ends[:, 1])
     return float(np.sqrt(np.sum((end - start) ** 2)))
 
 
 class _Measurement:
-    """One file against one built object."""
+    """One file measured against one body."""
 
     def __init__(self, opened: CadFile, built: NativeBody, samples: int) -> None:
         self.opened, self.built, self.samples = opened, built, samples
         self.limits = limits_of(built)
-        self.meant = {name: native_face(face) for name, face in built.surfaces.items()}
+        self.native = {name: native_face(face) for name, face in built.surfaces.items()}
         self.returned = [file_face(face) for face in opened.faces]
-        self.named = {k: name for k, name in opened.names.items() if name in self.meant}
+        self.named = {k: name for k, name in opened.names.items() if name in self.native}
         self.names = self._names()
         self.failures: list[str] = []
 
     def report(self) -> RoundTrip:
-        """The whole round trip."""
+        """The report of the round trip."""
         self._check_names()
         faces = tuple(
             self._face(name, [face for k, face in enumerate(self.returned) if self.names[k] == name])
-            for name in self.meant
+            for name in self.native
             if name in self.names.values()
         )
         closed = closure(self.opened.shape)
@@ -86,7 +107,6 @@ class _Measurement:
         volume, centroid = self._whole()
         total = Comparison(cad=sum(face.area for face in self.returned), native=float(properties.area) * MM**2)
         self._check_whole(volume, total, centroid)
-        promises: Any = getattr(self.built, "conformance", None)
         return RoundTrip(
             file=self.opened.path.name,
             format=self.opened.format,
@@ -96,18 +116,18 @@ class _Measurement:
             limits=self.limits,
             solids=closed.solids,
             shells=closed.shells,
-            free_edges=closed.free,
+            free_edges=closed.free_edges,
             valid=closed.valid,
             faces=faces,
             edges=edges,
             volume=volume,
             area=total,
             centroid=centroid,
-            promises=None if promises is None else promises.to_dict(),
+            promises=conformance_figures(self.built),
         )
 
     def _whole(self) -> tuple[Comparison, tuple[Array, Array]]:
-        """Volume and centroid, of the file and native; a kernel that disagrees is asked for more digits."""
+        """Volume and centroid of the file and of the native body; the quadrature is refined where they disagree."""
         native = float(self.built.properties.volume) * MM**3, np.asarray(self.built.properties.centroid) * MM
         for bound in QUADRATURE:
             whole = GProp_GProps()
@@ -121,30 +141,33 @@ class _Measurement:
         return volume, (centroid, native[1])
 
     def _names(self) -> dict[int, str]:
-        """Names of all faces of the file: those it has, else those of the native faces they lie on."""
+        """The name of every face of the file: its own, or that of the native face that it lies on."""
         names = dict(self.named)
         near = SAME_FACE * extent(self.built) * MM
         for k, face in enumerate(self.returned):
             if k in names:
                 continue
             nearest = near
-            for name, meant in self.meant.items():
-                pair = meant.pole_for_pole(face.region)
-                # a pole that moved this far is not another face, but a bad one
+            for name, native in self.native.items():
+                pair = native.same_poles(face.region)
+                # with the same knots and a displaced control point it is this face, with a defect
                 moved = np.inf if pair is None else np.max(np.abs(pair[1].control_points - MM * pair[0].control_points))
                 if moved < nearest:
                     names[k], nearest = name, float(moved)
             if k not in names:
-                # the boundary says which face it is meant to be, even where the wrong side of it was kept
-                away = {name: meant.target.closest(face.outline, 0.0)[1].max() for name, meant in self.meant.items()}
-                names[k] = min(away, key=lambda name: float(away[name]))
+                # the boundary identifies a face even where the file keeps the wrong side of it
+                distances = {
+                    name: float(native.projection.closest(face.outline, 0.0)[1].max())
+                    for name, native in self.native.items()
+                }
+                names[k] = min(distances, key=distances.__getitem__)
         return names
 
     def _check_names(self) -> None:
-        missing = [name for name in self.meant if name not in self.names.values()]
+        missing = [name for name in self.native if name not in self.names.values()]
         if missing:
             self.failures.append(f"no face of the file is {' or '.join(missing)}")
-        if self.opened.format == "STEP" and self.opened.ours:
+        if self.opened.format == "STEP" and self.opened.written_by_bladewright:
             unnamed = [self.names[k] for k in range(len(self.returned)) if k not in self.named]
             self.failures += [f"face {name} has no name in the file" for name in unnamed]
 
@@ -152,7 +175,7 @@ class _Measurement:
         native = self.built.surfaces[name]
         untrimmed = isinstance(native, Surface)
         limit = self.limits["side_mm" if untrimmed else "end_mm"]
-        found = deviation(self.meant[name], [face.region for face in faces], self.samples, limit)
+        found = deviation(self.native[name], [face.region for face in faces], self.samples, limit)
         compared = Comparison(cad=sum(face.area for face in faces), native=self._area(name) * MM**2)
         trip = FaceReport(
             name=name,
@@ -169,7 +192,7 @@ class _Measurement:
                 f"face {name} is {found.largest:.3g} mm off at u = {found.worst[0]:.4g}, v = {found.worst[1]:.4g}: "
                 f"at most {limit:.3g} mm is allowed"
             )
-        # the area of a trimmed face follows its boundary, which may lie as far off as the gap
+        # the area of a trimmed face depends on its boundary, which may be off by the gap
         allowed = self.limits["face_area" if untrimmed else "volume"]
         if not compared.relative_error <= allowed:
             self.failures.append(
@@ -182,39 +205,39 @@ class _Measurement:
         areas = getattr(self.built.properties, "areas", None)
         if areas is not None:
             return float(areas[list(self.built.orientations).index(name)])
-        return self.meant[name].area
+        return self.native[name].area
 
     def _check_closure(self, closed: Closure) -> None:
         for count, what in ((closed.solids, "solid"), (closed.shells, "shell")):
             if count != 1:
                 self.failures.append(f"the file holds {count} {what}s: one closed body is one {what}")
-        if closed.free:
-            self.failures.append(f"{closed.free} edges belong to one face only: the body is open")
-        if closed.crowded:
-            self.failures.append(f"{closed.crowded} edges do not belong to two faces that run opposite ways")
+        if closed.free_edges:
+            self.failures.append(f"{closed.free_edges} edges belong to one face only: the body is open")
+        if closed.non_manifold_edges:
+            self.failures.append(f"{closed.non_manifold_edges} edges do not belong to two faces that run opposite ways")
         if not closed.valid:
             self.failures.append("OpenCASCADE finds the shape invalid")
 
     def _edges(self, closed: Closure) -> EdgeReport:
-        for joint in closed.joints:
-            names = sorted({self.names[k] for k in joint.faces})
+        for edge in closed.edges:
+            names = sorted({self.names[k] for k in edge.faces})
             sides = all(isinstance(self.built.surfaces[name], Surface) for name in names)
             limit = self.limits["edge_mm" if sides else "end_mm"]
-            where = f"the edge of {' and '.join(names)} ({joint.length:.4g} mm long)"
-            if not joint.gap <= limit:
-                self.failures.append(f"{where} has a gap of {joint.gap:.3g} mm: at most {limit:.3g} mm is allowed")
-            # a vertex between sides ends edges of the walls as well
-            tolerances = ((joint.tolerance, limit, "a"), (joint.vertex_tolerance, self.limits["end_mm"], "a vertex of"))
+            where = f"the edge of {' and '.join(names)} ({edge.length:.4g} mm long)"
+            if not edge.gap <= limit:
+                self.failures.append(f"{where} has a gap of {edge.gap:.3g} mm: at most {limit:.3g} mm is allowed")
+            # a vertex between sides is an end of edges on the walls too
+            tolerances = ((edge.tolerance, limit, "a"), (edge.vertex_tolerance, self.limits["end_mm"], "a vertex of"))
             self.failures += [
                 f"{where} has {what} tolerance of {tolerance:.3g} mm: at most {allowed:.3g} mm is allowed"
                 for tolerance, allowed, what in tolerances
                 if not tolerance <= allowed
             ]
         return EdgeReport(
-            count=len(closed.joints),
-            shortest=min((joint.length for joint in closed.joints), default=0.0),
-            max_gap=max((joint.gap for joint in closed.joints), default=0.0),
-            max_tolerance=max((max(joint.tolerance, joint.vertex_tolerance) for joint in closed.joints), default=0.0),
+            count=len(closed.edges),
+            shortest=min((edge.length for edge in closed.edges), default=0.0),
+            max_gap=max((edge.gap for edge in closed.edges), default=0.0),
+            max_tolerance=max((max(edge.tolerance, edge.vertex_tolerance) for edge in closed.edges), default=0.0),
         )
 
     def _check_whole(self, volume: Comparison, total: Comparison, centroid: tuple[Array, Array]) -> None:

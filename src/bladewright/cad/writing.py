@@ -1,4 +1,4 @@
-"""CAD files of built objects, each reopened from disk and measured before anyone relies on it."""
+"""Writing CAD files, each of which is read again from disk and measured before anyone relies on it."""
 
 import os
 from pathlib import Path
@@ -8,6 +8,7 @@ from OCP.BRepTools import BRepTools
 from bladewright.atomic_write import atomic_write
 from bladewright.cad.iges import write_iges
 from bladewright.cad.kernel import quiet
+from bladewright.cad.mesh_verification import write_mesh
 from bladewright.cad.native_body import NativeBody
 from bladewright.cad.reading import format_of
 from bladewright.cad.round_trip import RoundTrip
@@ -26,19 +27,17 @@ def write(
     chordal_deviation: float | None = None,
     samples: int = SAMPLES,
 ) -> RoundTrip:
-    """Write a built object to a CAD file, reopen it from disk and measure it; the round trip.
+    """Write a blade or passage to a CAD file, read it again from disk and measure it; returns the round trip.
 
-    The ending of `path` says what is written: .step and .stp in a `schema` of STEP; .iges and .igs with a manifold
-    solid (entity 186), or with trimmed surfaces (144) where `solid` is false; .brep; .stl and .3mf with triangles
-    within `chordal_deviation` [m] of the surfaces, by default 1e-4 of the body's extent. The file appears whole or not
-    at all. Raises CadError where it cannot be written or the surfaces do not close up; a file that was written but is
-    not what was meant stays there, and the round trip says what is wrong.
+    The ending of `path` decides the format: .step and .stp with the application protocol `schema`; .iges and .igs with
+    a manifold solid (entity 186), or with trimmed surfaces (entity 144) where `solid` is false; .brep; .stl and .3mf
+    with triangles within `chordal_deviation` [m] of the surfaces, by default 1e-4 of the body's extent. The file is
+    written completely or not at all. Raises CadError where it cannot be written or the surfaces do not close a volume.
+    A file that was written but misses a limit stays there; the round trip says which limit and by how much.
     """
     path = Path(path)
     kind = format_of(path)
     if kind in {"STL", "3MF"}:
-        from bladewright.cad.mesh_verification import write_mesh
-
         return write_mesh(built, path, chordal_deviation=chordal_deviation, samples=samples)
     with quiet():
         made = cached_occ_solid(built)
