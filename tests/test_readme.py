@@ -214,3 +214,14 @@ def test_links_lead_somewhere() -> None:
             found = path.parent / file if file else path
             assert found.exists(), f"{name_of(path)} links to {target}, which is not there"
             assert not anchor or anchor in _anchors(found), f"{name_of(path)}: {file} has no heading {anchor}"
+
+
+def test_files_and_folders_that_are_named_exist() -> None:
+    homes = [ROOT / each for each in ("src", "tests", "docs", "design", "examples", "benchmarks", "exports")]
+    there = {f"/{path.relative_to(ROOT)}" + "/" * path.is_dir() for home in homes for path in [home, *home.rglob("*")]}
+    gone = []
+    for path in TEXTS:
+        text = re.sub(r"```.*?```", "", path.read_text(encoding="utf-8"), flags=re.DOTALL)
+        named = set(re.findall(r"`((?:[\w.-]+/)*[\w.-]+\.pyi?|(?:[\w-]+/)+)(?:[ :][^`]*)?`", text)) - {"out/"}
+        gone += [(name_of(path), each) for each in sorted(named) if not any(one.endswith(f"/{each}") for one in there)]
+    assert not gone
