@@ -183,3 +183,9 @@ def test_held_knots_give_the_same_passage(rotor):
     again = passage(rotor.blade, knots=rotor.passage.knots)
     for name, face in rotor.passage.surfaces.items():
         np.testing.assert_array_equal(again.surfaces[name].control_points, face.control_points)
+
+
+def test_the_old_name_of_the_periodic_sector_warns(rotor):
+    with pytest.warns(DeprecationWarning, match="use Passage.periodic_sector"):
+        old = rotor.passage.sector
+    assert old is rotor.passage.periodic_sector

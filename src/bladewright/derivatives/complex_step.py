@@ -63,13 +63,13 @@ def side_tangents(blade: Blade, paths: Sequence[str]) -> Iterator[Nets]:
     """
     sources = [law_point(blade.design, path) for path in paths]
     steps = list(dict.fromkeys(source.step for source in sources))
-    rates = np.concatenate([_skeleton_rates_by(blade, steps[i : i + AT_ONCE]) for i in range(0, len(steps), AT_ONCE)])
+    rates = np.concatenate([_skeleton_rates(blade, steps[i : i + AT_ONCE]) for i in range(0, len(steps), AT_ONCE)])
     mirrored = [edge is None for edge in blade.exact.survey.lower_edges()]
     for first in range(0, len(paths), AT_ONCE):
         chunk = sources[first : first + AT_ONCE]
         factors = np.stack([source.factor(blade.knots.sites_v) for source in chunk])
         rows = rates[[steps.index(source.step) for source in chunk]] * factors[..., None]
-        yield sides_through(parted(rows, mirrored), blade.knots)
+        yield sides_through(skeleton_of_rows(rows, mirrored), blade.knots)
 
 
 def law_point(design: RowDesign, path: str) -> LawPoint:
@@ -84,7 +84,7 @@ def law_point(design: RowDesign, path: str) -> LawPoint:
     return LawPoint(path.rpartition("[")[0], int(places[-1]), len(law))
 
 
-def _skeleton_rates_by(blade: Blade, steps: Sequence[str]) -> Array:
+def _skeleton_rates(blade: Blade, steps: Sequence[str]) -> Array:
     """Derivatives (len(steps), m, k) of the skeleton by whole laws and single parameters, in a row for each section."""
     moved = blade.exact.moved_to(stepped_design(blade.design, steps))
     return skeleton_rates(moved.sections(blade.knots.sites_v), blade.knots, len(steps))
@@ -112,7 +112,7 @@ def skeleton_rates(stations: Any, knots: Knots, count: int) -> Array:
     return np.broadcast_to(np.imag(rows) / STEP, (count, *rows.shape[-2:]))
 
 
-def parted(rows: Array, mirrored: Sequence[bool]) -> Skeleton:
+def skeleton_of_rows(rows: Array, mirrored: Sequence[bool]) -> Skeleton:
     """The skeleton of such rows; `mirrored` says at which edges the lower side mirrors the upper's derivatives."""
     count = 2 + sum(not each for each in mirrored)
     edges, upper, lower = np.split(rows, [9 * count, (9 * count + rows.shape[-1]) // 2], axis=-1)

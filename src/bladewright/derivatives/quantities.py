@@ -80,7 +80,7 @@ def named_quantity(base: Any, name: str, more: Mapping[str, NamedQuantity] | Non
 
     Raises DerivativeError with the most similar name where there is none.
     """
-    known = {**(BLADE if hasattr(base, "surfaces") else SECTION), **(more or {})}
+    known = {**(BLADE if base.dimension == 3 else SECTION), **(more or {})}
     if name not in known:
         raise DerivativeError(unknown(f"the quantity '{name}'", name, list(known)))
     return known[name]

@@ -11,7 +11,6 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from bladewright.blade.native.blade import Blade
 from bladewright.derivatives.complex_step import STEP, stepped, varied, varied_nets
 from bladewright.derivatives.quantities import NamedQuantity
 from bladewright.derivatives.variables import Variables
@@ -115,7 +114,7 @@ class _Derivative(NamedTuple):
         """The quantity (k, ...) at offsets (k,) of the parameter, in units of its scale."""
         value = self.design.parameters()[self.path]
         changes = [{self.path: value + self.scale * offset} for offset in offsets]
-        if not (self.quantity.points and isinstance(self.base, Blade)):
+        if not (self.quantity.points and self.base.dimension == 3):
             return np.array([self.quantity.of(each) for each in varied(self.design, self.base, changes)])
         nets = [net.reshape(len(changes), -1, 3) for net in varied_nets(self.base, changes)]
         return np.concatenate(nets, axis=1)

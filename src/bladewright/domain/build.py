@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from types import MappingProxyType
-from typing import Any, cast
+from typing import cast
 
 import numpy as np
 
@@ -25,7 +25,6 @@ from bladewright.nurbs.refine import inserted
 from bladewright.nurbs.surface import Surface
 from bladewright.nurbs.trimmed import TrimmedSurface
 from bladewright.section.checks import UNITS, number
-from bladewright.section.section import Section
 
 TOLERANCE_SHARES = (0.5, 0.2, 0.08, 0.025)
 """Shares of the walls' tolerance that the knots of each direction may use, tried in turn until all directions together
@@ -55,7 +54,7 @@ def passage(
     Raises DesignError where a patch would fold, the channel cannot be continued so far, or the blade does not keep
     within its pitch. Agromayor et al. 2021, section 4.
     """
-    if isinstance(cast(Any, blade), Section):
+    if blade.dimension == 2:
         raise DesignError(
             "passage: a 2D section was given: use section_passage for its flow domain, or build prismatic(design) first"
         )

@@ -17,7 +17,7 @@ from bladewright.blade.exact.unified import ExactUnifiedBlade
 from bladewright.blade.flow_path.channel import ChannelCurve, TransfiniteChannel
 from bladewright.blade.native.interpolation import interpolated_along_u, lower_edges
 from bladewright.blade.native.knots import DEGREE, Knots
-from bladewright.derivatives.complex_step import STEP, law_point, parted, skeleton_rates, stepped_design
+from bladewright.derivatives.complex_step import STEP, law_point, skeleton_of_rows, skeleton_rates, stepped_design
 from bladewright.designs import Design
 from bladewright.fitting.matching.footpoints import Footpoints
 from bladewright.numerics.elementary import Array
@@ -116,7 +116,7 @@ def _stepped(
 def _along_u(other: ExactUnifiedBlade, knots: Knots, count: int) -> tuple[Array, Array]:
     """Derivatives (count, n_u, m, 3) of the sides' control points along u, in each section on its own."""
     rates = skeleton_rates(other.sections(knots.sites_v), knots, count)
-    skeleton = parted(rates, (True, True))
+    skeleton = skeleton_of_rows(rates, (True, True))
     upper = skeleton.leading_edge, skeleton.trailing_edge
     sides = (skeleton.upper, upper), (skeleton.lower, lower_edges(upper, skeleton.lower_edges))
     first, second = (interpolated_along_u(np.swapaxes(points, -3, -2), *edges, knots.u) for points, edges in sides)
