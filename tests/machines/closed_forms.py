@@ -42,7 +42,7 @@ class Blade:
     description: str = "a blade of closed formulas"
     author: str = "A. Author"
     organisation: str = "Institute of Blades"
-    promises: Promises = field(default_factory=Promises)
+    conformance: Promises = field(default_factory=Promises)
 
 
 def blade(name: str, surfaces: Mapping, orientations: Mapping[str, int]) -> Blade:

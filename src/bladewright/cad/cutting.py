@@ -101,7 +101,7 @@ class CutPassage:
 
 
 def cut_passage(passage: Cuttable, *, span: float = SPAN_EXTENSION) -> CutPassage:
-    """The passage cut by OpenCASCADE: its sector minus its blade, the latter extended by the fraction `span` of its span.
+    """The passage cut by OpenCASCADE: its sector minus its blade, extended by the fraction `span` of its span.
 
     The walls are exact surfaces of revolution, so that the volume shows how well the untrimmed patches of
     `Passage` follow them. Raises CadError where OpenCASCADE does not leave one closed, valid solid of named faces.
