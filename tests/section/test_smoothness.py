@@ -10,7 +10,7 @@ from bladewright.section.chebyshev_pieces import ChebyshevPieces, inverse
 from bladewright.section.curvature_meanline import CurvatureMeanline
 from bladewright.section.laws import Span
 from bladewright.section.outline import Outline
-from bladewright.section.smoothness import smoothness
+from bladewright.section.smoothness import outline_smoothness, smoothness
 from bladewright.section.thickness.modified_naca import ModifiedNaca
 from bladewright.section.thickness.quartic import QuarticSpline
 from bladewright.section.thickness.wennerstrom import Wennerstrom
@@ -86,7 +86,7 @@ def test_the_modified_naca_thickness_jumps_as_its_polynomials_say():
     powers = np.array([[at, at**2, at**3], [1.0, 2.0 * at, 3.0 * at**2], [0.0, 2.0, 6.0 * at]])
     right = [half - root * at**0.5, -0.5 * root * at**-0.5, 2.0 * second + 0.25 * root * at**-1.5]
     front = np.linalg.solve(powers, right)
-    upper = smoothness(outline_of(FLAT)).upper
+    upper = outline_smoothness(outline_of(FLAT)).upper
     assert (upper.jumps[0].place, upper.jumps[-1].place) == ("leading_edge", "trailing_edge")
     # rounding of third derivatives
     thickest, circle = (jump for jump in upper.jumps[1:-1] if jump.continuous != (True, True))
@@ -102,21 +102,23 @@ def test_the_modified_naca_thickness_jumps_as_its_polynomials_say():
 
 def test_a_curvature_meanline_is_smooth_whatever_the_thickness():
     for thickness in (NACA, QUARTIC, WENNERSTROM):
-        camber = smoothness(outline_of(replace(CAMBERED, thickness=thickness))).camber
+        camber = outline_smoothness(outline_of(replace(CAMBERED, thickness=thickness))).camber
         assert len(camber.jumps) == 3
         assert camber.continuous == (True, True)
         assert (camber.curvature_jump, camber.slope_jump) == (0.0, 0.0)
 
 
 def test_a_quartic_thickness_on_it_keeps_curvature_and_slope_around_the_leading_edge():
-    found = smoothness(outline_of(replace(CAMBERED, thickness=QUARTIC)))
+    found = outline_smoothness(outline_of(replace(CAMBERED, thickness=QUARTIC)))
     assert [line.continuous for line in found.lines] == [(True, True)] * 3
     assert found.upper.jumps[0].place == "leading_edge"
     assert len(found.lower.jumps) > 5
 
 
 def test_the_other_thickness_laws_are_not_as_smooth():
-    naca, wennerstrom = (smoothness(outline_of(replace(CAMBERED, thickness=law))) for law in (NACA, WENNERSTROM))
+    naca, wennerstrom = (
+        outline_smoothness(outline_of(replace(CAMBERED, thickness=law))) for law in (NACA, WENNERSTROM)
+    )
     assert joints_at(naca.lower, 0.43).continuous == (True, False)
     assert naca.lower.continuous == (False, False)
     assert joints_at(wennerstrom.upper, 0.46).continuous == (True, False)
@@ -124,13 +126,13 @@ def test_the_other_thickness_laws_are_not_as_smooth():
 
 
 def test_straight_ends_of_a_mixed_camber_line_are_found():
-    camber = smoothness(outline_of(EXAMPLES["mixed camber line"].part())).camber
+    camber = outline_smoothness(outline_of(EXAMPLES["mixed camber line"].part())).camber
     assert [jump.continuous for jump in camber.jumps] == [(False, False)] * 2
     assert camber.jumps[0].curvature[0] == 0.0
 
 
 def test_arcs_have_constant_curvature():
-    found = smoothness(outline_of(EXAMPLES["double-circular-arc-sharp"].part()))
+    found = outline_smoothness(outline_of(EXAMPLES["double-circular-arc-sharp"].part()))
     for line in found.lines:
         assert np.ptp(line.curvature) < 1e-9 * np.abs(line.curvature).max()  # rounding of second derivatives
         assert line.continuous == (True, True)
@@ -162,7 +164,7 @@ def test_a_native_section_without_an_outline_is_measured_on_its_curves():
 
 def test_a_section_of_a_family_is_measured_on_its_exact_outline():
     design = EXAMPLES["naca-2412"].design
-    found, exact = smoothness(design.build()).to_dict(), smoothness(outline_of(design.section)).to_dict()
+    found, exact = smoothness(design.build()).to_dict(), outline_smoothness(outline_of(design.section)).to_dict()
     assert found == exact
     assert json.loads(json.dumps(found)) == found
     assert found["camber"]["curvature_continuous"] is False

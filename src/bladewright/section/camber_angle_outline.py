@@ -15,7 +15,7 @@ from bladewright.nurbs.basis import Reals, basis, breaks, uniform_knots
 from bladewright.section.family import MeridionalFraction
 from bladewright.section.offset import merged_joints
 from bladewright.section.outline import Edge, EdgeDerivatives, Joint, Outline
-from bladewright.section.power_series import Series, composed, polynomial, sine_and_cosine, variable
+from bladewright.section.power_series import Series, composed, point_derivatives, polynomial, sine_and_cosine, variable
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -259,8 +259,7 @@ class CamberAngleOutline(Outline):
 
     def camber_derivatives(self, t: Reals, order: int) -> Array:
         """Points and derivatives by the fraction of m' (..., k, 2, order + 1) of the camber line, exact."""
-        pair = (each.derivatives() for each in self._laid(variable(t, order)))
-        return np.stack(np.broadcast_arrays(*pair), axis=-2)
+        return point_derivatives(*self._laid(variable(t, order)))
 
     def _sides(self, s: Reals, order: int) -> list[Array]:
         """Points and their derivatives by s, (..., k, 2, order + 1), of both sides."""
@@ -269,11 +268,8 @@ class CamberAngleOutline(Outline):
         # beta is smooth by x, but not at a knot that an edge touches: composed there from its own side
         turning = composed(self.line.turning(variable(x.value, order)), x) - self.line.stagger[..., None]
         sine, cosine = sine_and_cosine(turning)
-        sides = []
-        for sign in (1.0, -1.0):
-            pair = [(along - sine * height * sign).derivatives(), (across + cosine * height * sign).derivatives()]
-            sides.append(np.stack(np.broadcast_arrays(*pair), axis=-2))
-        return sides
+        off = sine * height, cosine * height
+        return [point_derivatives(along - off[0] * sign, across + off[1] * sign) for sign in (1.0, -1.0)]
 
     def _laid(self, x: Series) -> tuple[Series, Series]:
         """Camber points at x, turned and scaled so that the chord line runs from (0, 0) to (1, 0)."""

@@ -106,7 +106,9 @@ class CurvatureMeanline(SectionFamily):
         if self.camber == "mixed":
             stagger = 0.5 * (angle_in + angle_out)
             return MixedMeanline(angles=(angle_in - stagger, angle_out - stagger))
-        curvature = CurvatureIntegral(places=self._places("curvature", span), values=_values(self.curvature, span))
+        curvature = CurvatureIntegral(
+            places=self._places("curvature", span), values=span.control_values(self.curvature)
+        )
         camber = angle_out - angle_in
         scale, largest = camber_scale(curvature.totals, camber)
         if np.any(np.isnan(np.real(scale))):
@@ -164,14 +166,14 @@ class CurvatureMeanline(SectionFamily):
 
     def _multiplier(self, span: Span) -> ChordSpline:
         name = "thickness_multiplier"
-        return ChordSpline(places=self._places(name, span), values=_values(self.thickness_multiplier, span))
+        return ChordSpline(places=self._places(name, span), values=span.control_values(self.thickness_multiplier))
 
     def _places(self, name: str, span: Span) -> Array:
         """Chord fractions (..., m, n) of control points, from 0 to 1."""
         inner, count = getattr(self, f"{name}_places"), len(getattr(self, name))
         if not inner:
             return np.linspace(0.0, 1.0, count)[None]
-        middle = _values(inner, span)
+        middle = span.control_values(inner)
         ends = np.zeros_like(middle[..., :1])
         places = np.concatenate([ends, middle, ends + 1.0], axis=-1)
         falling = np.argwhere(backward(np.real(places)))
@@ -198,11 +200,6 @@ def _with_kinks(thickness: Thickness, kinks: Sequence[Breakpoint]) -> tuple[Thic
         ) from error
     known = {joint.s for joint in thickness.joints}
     return found, tuple(Joint(joint.s, 0) for joint in found.joints if joint.s not in known)
-
-
-def _values(laws: ChordwiseLaw, span: Span) -> Array:
-    """Values (..., m, n) of laws (n,), one a control point along the chord."""
-    return np.stack(np.broadcast_arrays(*[span.values(law) for law in laws]), axis=-1)
 
 
 @dataclass(frozen=True, kw_only=True)

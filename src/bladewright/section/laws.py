@@ -43,10 +43,13 @@ class Span:
             self._basis[len(leaves)] = law_basis(len(leaves), self.v)
         return stacked(leaves) @ self._basis[len(leaves)].T
 
+    def control_values(self, laws: ChordwiseLaw) -> Array:
+        """Values (..., m, n) of laws along the span (n,), one a control point along the chord."""
+        return np.stack(np.broadcast_arrays(*[self.values(law) for law in laws]), axis=-1)
+
     def chordwise(self, laws: ChordwiseLaw, u: Reals) -> Array:
         """Values (..., m, len(u)) at u along the chord of control points that are laws along the span."""
-        controls = np.stack(np.broadcast_arrays(*[self.values(law) for law in laws]), axis=-1)
-        return controls @ law_basis(len(laws), u).T
+        return self.control_values(laws) @ law_basis(len(laws), u).T
 
 
 def laws_of(part: Part) -> Iterator[Law]:

@@ -89,33 +89,41 @@ def side_knots_for(outline: Outline, tolerance: float) -> Reals:
     return _refined(_first([(joint.s, joint.derivatives) for joint in outline.joints]), off, tolerance)
 
 
-def _sides(outline: Outline, knots: Reals) -> tuple[Array, Array]:
-    """Control points (n, 2) of both sides."""
-    inner = greville(knots, DEGREE)[3:-3]
-    upper, lower = (_single(points) for points in outline.points(inner))
-    start, end = outline.leading_edge, outline.trailing_edge
-    return (
-        _interpolated(upper, inner, knots, start.upper, end.upper),
-        _interpolated(lower, inner, knots, start.lower, end.lower),
-    )
+def interpolated_along_u(lines: Array, start: EdgeDerivatives, end: EdgeDerivatives, knots_u: Reals) -> Array:
+    """Control points (..., n_u, m, d) of m curves of degree five through points, with their edges built in.
+
+    `lines` (..., n_u - 6, m, d) are the points at the inner Greville sites. The first and last three control points are
+    decided by point and two derivatives (..., m, d) at the edges.
+    """
+    sites = greville(knots_u, DEGREE)[3:-3]
+    first = _end_rows(start, 1.0, knots_u[DEGREE + 1], knots_u[DEGREE + 2])
+    last = _end_rows(end, -1.0, 1.0 - knots_u[-DEGREE - 2], 1.0 - knots_u[-DEGREE - 3])[::-1]
+    known = np.stack([*first, *last], axis=-3)
+    matrix = basis(knots_u, DEGREE, sites)
+    outer = np.concatenate([matrix[:, :3], matrix[:, -3:]], axis=1)
+    right = lines - (outer @ known.reshape(*known.shape[:-2], -1)).reshape(*known.shape[:-3], *lines.shape[-3:])
+    shape = right.shape
+    inner = solved(matrix[:, 3:-3], right.reshape(*shape[:-2], -1)).reshape(shape)
+    return concatenated([known[..., :3, :, :], inner, known[..., 3:, :, :]], axis=-3)
 
 
-def _interpolated(points: Array, sites: Reals, knots: Reals, start: EdgeDerivatives, end: EdgeDerivatives) -> Array:
-    """Control points (n, 2) through points (n - 6, 2) at the sites, with value and two derivatives at both ends."""
-    first = _end_rows(start, 1.0, knots[DEGREE + 1], knots[DEGREE + 2])
-    last = _end_rows(end, -1.0, 1.0 - knots[-DEGREE - 2], 1.0 - knots[-DEGREE - 3])[::-1]
-    matrix = basis(knots, DEGREE, sites)
-    known = np.stack([*first, *last])
-    right = points - np.concatenate([matrix[:, :3], matrix[:, -3:]], axis=1) @ known
-    return concatenated([known[:3], solved(matrix[:, 3:-3], right), known[3:]], axis=-2)
-
-
-def _end_rows(edge: EdgeDerivatives, sign: float, near: float, far: float) -> list[Array]:
+def _end_rows(row: EdgeDerivatives, sign: float, near: float, far: float) -> list[Array]:
     """The three control points at a clamped end, whose first two inner knots stand near and far from it."""
-    point, slope, bend = (_single(each[..., None, :])[0] for each in edge)
-    step = sign * slope * (near / DEGREE)
-    second = point + step
-    return [point, second, second + far * (bend * (near / (DEGREE * (DEGREE - 1))) + step / near)]
+    step = sign * row.first * (near / DEGREE)
+    second = row.point + step
+    third = second + far * (row.second * (near / (DEGREE * (DEGREE - 1))) + step / near)
+    return [row.point, second, third]
+
+
+def _sides(outline: Outline, knots: Reals) -> list[Array]:
+    """Control points (n, 2) of both sides."""
+    edges = outline.leading_edge, outline.trailing_edge
+    found = []
+    for points, name in zip(outline.points(greville(knots, DEGREE)[3:-3]), ("upper", "lower"), strict=True):
+        starts: list[EdgeDerivatives] = [getattr(edge, name) for edge in edges]
+        first, last = (EdgeDerivatives(*(each.reshape(1, 2) for each in start)) for start in starts)
+        found.append(interpolated_along_u(_single(points)[:, None], first, last, knots)[:, 0])
+    return found
 
 
 def _camber(outline: Outline, knots: Reals, places: Reals) -> Array:

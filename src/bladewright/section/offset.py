@@ -12,7 +12,7 @@ from bladewright.nurbs.basis import Reals
 from bladewright.section.chord_spline import ChordSpline
 from bladewright.section.meanline import Meanline
 from bladewright.section.outline import Edge, EdgeDerivatives, Joint, Outline
-from bladewright.section.power_series import Series, polynomial, variable
+from bladewright.section.power_series import Series, point_derivatives, polynomial, variable
 from bladewright.section.thickness.law import EdgeKind, Thickness
 
 APART = 1e-9
@@ -93,7 +93,7 @@ class OffsetOutline(Outline):
         if not self.has_exact_derivatives:
             return super().derivatives(s, order)
         upper, lower = self._series(s, order)
-        return _differentiated(*upper), _differentiated(*lower)
+        return point_derivatives(*upper), point_derivatives(*lower)
 
     @property
     def camber_breaks(self) -> Reals:
@@ -109,7 +109,7 @@ class OffsetOutline(Outline):
 
     def _edge(self, s: float, kind: EdgeKind) -> Edge:
         upper, lower = self._series(np.array([s]), 2)
-        starts = [EdgeDerivatives.of_side(_differentiated(*side)) for side in (upper, lower)]
+        starts = [EdgeDerivatives.of_side(point_derivatives(*side)) for side in (upper, lower)]
         return Edge(kind=kind, upper=starts[0], lower=starts[1])
 
     def _series(self, s: Reals, order: int) -> tuple[tuple[Series, Series], tuple[Series, Series]]:
@@ -162,8 +162,3 @@ def fixed_joints(thickness: Thickness, places: Array, derivatives: int) -> tuple
 
 def _stacked(x: Array, y: Array) -> Array:
     return np.stack(np.broadcast_arrays(x, y), axis=-1)
-
-
-def _differentiated(x: Series, y: Series) -> Array:
-    """Derivatives (..., k, 2, order + 1)."""
-    return np.stack(np.broadcast_arrays(x.derivatives(), y.derivatives()), axis=-2)

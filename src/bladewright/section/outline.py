@@ -1,10 +1,12 @@
 """What every family's section is, exactly: two sides from leading to trailing edge, many sections at once."""
 
 from abc import ABC, abstractmethod
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Literal, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from bladewright.numerics.elementary import Array
 from bladewright.nurbs.basis import Reals
@@ -148,3 +150,12 @@ class Outline(ABC):
 def _single(points: Array) -> Reals:
     """Real points (k, 2) of one section, (k, 2) or (1, k, 2)."""
     return np.asarray(np.real(points[0] if points.ndim == 3 else points), dtype=np.float64)
+
+
+def by_parts(parts: Sequence[tuple[NDArray[np.bool_], Array]], count: int) -> Array:
+    """Points (..., count, 2) from those of several parts of a side, each at a mask (count,)."""
+    shape = np.broadcast_shapes(*[points.shape[:-2] for _, points in parts])
+    found = np.empty((*shape, count, 2), dtype=np.result_type(*[points for _, points in parts]))
+    for here, points in parts:
+        found[..., here, :] = points
+    return found

@@ -210,3 +210,16 @@ def relative_logarithm(w: Array) -> Array:
         near, -0.5 + real * 2.0 / 3.0 - real * real * 0.75, (1.0 / (1.0 + wide) - np.log1p(wide) / wide) / wide
     )
     return value + 1j * np.imag(w) * growth
+
+
+def polynomial_points(coefficients: Array, t: Array) -> Array:
+    """Values (..., k, d) of polynomials with coefficients (..., n, d) at t (k,) or (..., k)."""
+    found = coefficients[..., -1:, :] + 0.0 * t[..., None]
+    for power in range(coefficients.shape[-2] - 2, -1, -1):
+        found = found * t[..., None] + coefficients[..., power : power + 1, :]
+    return found
+
+
+def point_derivatives(x: Series, y: Series) -> Array:
+    """Points and their derivatives (..., k, 2, order + 1) of two coordinates (..., k)."""
+    return np.stack(np.broadcast_arrays(x.derivatives(), y.derivatives()), axis=-2)

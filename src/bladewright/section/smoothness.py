@@ -131,19 +131,24 @@ class Smoothness:
         }
 
 
-def smoothness(shape: Outline | Section) -> Smoothness:
-    """The smoothness of one section: an outline of shape () or (1,), or a native section.
+def smoothness(section: Section) -> Smoothness:
+    """The smoothness of a native section, on its exact outline where it knows that, else on its own curves.
 
-    A section that knows its exact outline is measured on that, any other on its own curves, in chords of its plane.
+    Lengths are in chords of its plane.
     """
-    if isinstance(shape, Section):
-        return _of_curves(shape) if shape.outline is None else smoothness(shape.outline)
-    at = _places(shape.breaks)
-    sides = shape.derivatives(at, 3)
-    upper, lower = (_line(name, side, len(shape.breaks)) for name, side in zip(("upper", "lower"), sides, strict=True))
-    breaks_of_camber = shape.camber_breaks
-    camber = _line("camber", shape.camber_derivatives(_places(breaks_of_camber), 3), len(breaks_of_camber))
-    return _meeting(upper, lower, camber, (shape.leading_edge.kind, shape.trailing_edge.kind))
+    return _of_curves(section) if section.outline is None else outline_smoothness(section.outline)
+
+
+def outline_smoothness(outline: Outline) -> Smoothness:
+    """The smoothness of one section, an outline of shape () or (1,)."""
+    at = _places(outline.breaks)
+    sides = outline.derivatives(at, 3)
+    upper, lower = (
+        _line(name, side, len(outline.breaks)) for name, side in zip(("upper", "lower"), sides, strict=True)
+    )
+    breaks_of_camber = outline.camber_breaks
+    camber = _line("camber", outline.camber_derivatives(_places(breaks_of_camber), 3), len(breaks_of_camber))
+    return _meeting(upper, lower, camber, (outline.leading_edge.kind, outline.trailing_edge.kind))
 
 
 def _of_curves(section: Section) -> Smoothness:

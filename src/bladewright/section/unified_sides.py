@@ -10,6 +10,7 @@ from bladewright.numerics.elementary import Array, concatenated, dot
 from bladewright.nurbs.basis import Reals, basis, uniform_knots
 from bladewright.nurbs.curve import Curve
 from bladewright.section.camber import camber_points, camber_tangents, turned_left
+from bladewright.section.power_series import polynomial_points
 
 
 def sample_places(samples: int, clustering: float) -> Reals:
@@ -225,20 +226,13 @@ def _side_points(controls: Array, s: Reals, span: float, start: tuple[Array, Arr
     last = max(first, int(np.searchsorted(s, 1.0 - span, side="right")))
     knots = uniform_knots(controls.shape[-2], DEGREE)
     middle = basis(knots, DEGREE, s[first:last]) @ controls
-    at_start = _polynomial(
+    at_start = polynomial_points(
         _taylor_matrix(controls.shape[-2], from_end=False) @ controls, reparametrised(s[:first], *start, span)
     )
     distance = reparametrised(1.0 - s[last:], *end, span)
-    at_end = _polynomial(_taylor_matrix(controls.shape[-2], from_end=True) @ controls, distance)
+    at_end = polynomial_points(_taylor_matrix(controls.shape[-2], from_end=True) @ controls, distance)
     points = concatenated([at_start, middle, at_end], axis=-2)
     return points if points.shape[-1] == 2 else points[..., :2] / points[..., 2:]
-
-
-def _polynomial(series: Array, a: Array) -> Array:
-    value = np.broadcast_to(series[..., -1:, :], (*a.shape, series.shape[-1]))
-    for k in range(series.shape[-2] - 2, -1, -1):
-        value = value * a[..., None] + series[..., k : k + 1, :]
-    return value
 
 
 def camber_curve(control_points: Array) -> Curve:

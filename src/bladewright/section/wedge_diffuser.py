@@ -14,7 +14,7 @@ from bladewright.nurbs.basis import Reals
 from bladewright.section import checks
 from bladewright.section.family import SectionFamily
 from bladewright.section.laws import Span
-from bladewright.section.outline import Edge, EdgeDerivatives, Joint, Outline
+from bladewright.section.outline import Edge, EdgeDerivatives, Joint, Outline, by_parts
 from bladewright.section.planar import PlanarSection
 
 EDGE = 0.1
@@ -87,11 +87,7 @@ class WedgeOutline(Outline):
         if self.face is not None:
             height = self.face[..., None] * ((1.0 - s[last]) / (1.0 - FACE))
             parts.append((last, np.stack([1.0 + 0.0 * height, height], axis=-1)))
-        shape = np.broadcast_shapes(*[points.shape[:-2] for _, points in parts])
-        found = np.empty((*shape, len(s), 2), dtype=np.result_type(*[points for _, points in parts]))
-        for here, points in parts:
-            found[..., here, :] = points
-        return found
+        return by_parts(parts, len(s))
 
     def _leading(self, t: Reals) -> Array:
         turn = (np.pi / 2.0 - self.half_angle)[..., None] * t

@@ -33,7 +33,7 @@ from bladewright.section.laws import Span, inner_knots, laws_of
 from bladewright.section.native import knots_for, native_section
 from bladewright.section.outline import Outline
 from bladewright.section.section import Section
-from bladewright.section.smoothness import Smoothness, smoothness
+from bladewright.section.smoothness import Smoothness, outline_smoothness
 
 if TYPE_CHECKING:
     from bladewright.blade.design.sectioned import SectionedBlade
@@ -320,7 +320,7 @@ class ExactSectionedBlade(ExactBlade):
         )
 
     def smoothness(self, v: float) -> Smoothness:
-        return smoothness(self._own_section(v).outline)
+        return outline_smoothness(self._own_section(v).outline)
 
     def _own_section(self, v: float) -> FamilySections:
         """The design's section at v; DesignError where the blade has none there."""

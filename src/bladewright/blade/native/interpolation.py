@@ -13,8 +13,9 @@ from bladewright.blade.exact.section_stack import SectionStack
 from bladewright.blade.native.knots import DEGREE, Knots
 from bladewright.numerics.elementary import Array, concatenated
 from bladewright.numerics.solving import solved
-from bladewright.nurbs.basis import Reals, basis, greville
+from bladewright.nurbs.basis import basis
 from bladewright.nurbs.surface import Surface
+from bladewright.section.native import interpolated_along_u
 from bladewright.section.outline import EdgeDerivatives
 
 
@@ -67,28 +68,6 @@ def lower_edges(
     """The lower side at both edges: its own, or the upper side's mirrored."""
     first, last = (edge.mirrored() if own is None else own for edge, own in zip(upper, lower, strict=True))
     return first, last
-
-
-def interpolated_along_u(lines: Array, start: EdgeDerivatives, end: EdgeDerivatives, knots_u: Reals) -> Array:
-    """Control points (..., n_u, m, 3) of a side through points (..., n_u - 6, m, 3), with its edges built in."""
-    sites = greville(knots_u, DEGREE)[3:-3]
-    first = _end_rows(start, 1.0, knots_u[DEGREE + 1], knots_u[DEGREE + 2])
-    last = _end_rows(end, -1.0, 1.0 - knots_u[-DEGREE - 2], 1.0 - knots_u[-DEGREE - 3])[::-1]
-    known = np.stack([*first, *last], axis=-3)
-    matrix = basis(knots_u, DEGREE, sites)
-    outer = np.concatenate([matrix[:, :3], matrix[:, -3:]], axis=1)
-    right = lines - (outer @ known.reshape(*known.shape[:-2], -1)).reshape(*known.shape[:-3], *lines.shape[-3:])
-    shape = right.shape
-    inner = solved(matrix[:, 3:-3], right.reshape(*shape[:-2], -1)).reshape(shape)
-    return concatenated([known[..., :3, :, :], inner, known[..., 3:, :, :]], axis=-3)
-
-
-def _end_rows(row: EdgeDerivatives, sign: float, near: float, far: float) -> list[Array]:
-    """The three control points at a clamped end, whose first two inner knots stand near and far from it."""
-    step = sign * row.first * (near / DEGREE)
-    second = row.point + step
-    third = second + far * (row.second * (near / (DEGREE * (DEGREE - 1))) + step / near)
-    return [row.point, second, third]
 
 
 def edge_faces(stations: SectionStack, upper: Surface, lower: Surface, knots: Knots) -> dict[str, Surface]:

@@ -5,11 +5,12 @@ from typing import NamedTuple
 import numpy as np
 
 from bladewright.blade.exact.exact_blade import ExactBlade
-from bladewright.blade.native.interpolation import interpolated_along_u, lower_edges
+from bladewright.blade.native.interpolation import lower_edges
 from bladewright.blade.native.knots import DEGREE, MOST_POLES, Knots, clamped, refined, sites_through
 from bladewright.numerics.elementary import dot, length
 from bladewright.nurbs.basis import Reals, basis, greville
 from bladewright.nurbs.surface import Surface
+from bladewright.section.native import interpolated_along_u
 from bladewright.section.outline import EdgeDerivatives
 
 SECTIONS = 1e-9

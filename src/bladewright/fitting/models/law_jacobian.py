@@ -15,7 +15,7 @@ from scipy.interpolate import BSpline
 from bladewright.blade.design.unified import UnifiedBlade
 from bladewright.blade.exact.unified import ExactUnifiedBlade
 from bladewright.blade.flow_path.channel import ChannelCurve, TransfiniteChannel
-from bladewright.blade.native.interpolation import interpolated_along_u, lower_edges
+from bladewright.blade.native.interpolation import lower_edges
 from bladewright.blade.native.knots import DEGREE, Knots
 from bladewright.derivatives.complex_step import STEP, law_point, skeleton_of_rows, skeleton_rates, stepped_design
 from bladewright.designs import Design
@@ -23,6 +23,7 @@ from bladewright.fitting.matching.footpoints import Footpoints
 from bladewright.numerics.elementary import Array
 from bladewright.nurbs.basis import Reals, basis, uniform_knots
 from bladewright.section.checks import UNITS
+from bladewright.section.native import interpolated_along_u
 
 AT_ONCE = 40
 """complex steps in one rebuild; it bounds the memory."""

@@ -5,7 +5,6 @@ from typing import Any, final
 
 import numpy as np
 
-from bladewright.blade.native.interpolation import interpolated_along_u
 from bladewright.derivatives.complex_step import STEP
 from bladewright.fitting.models.blunt_edges import BluntEdges, closed_knots, closed_nets
 from bladewright.fitting.models.feasibility import infeasibility
@@ -15,7 +14,7 @@ from bladewright.nurbs.basis import Reals, greville
 from bladewright.nurbs.curve import Curve
 from bladewright.section.checks import UNITS
 from bladewright.section.laws import Span
-from bladewright.section.native import DEGREE, side_knots_for
+from bladewright.section.native import DEGREE, interpolated_along_u, side_knots_for
 from bladewright.section.outline import Edge, EdgeDerivatives
 from bladewright.section.planar import PlanarSection
 

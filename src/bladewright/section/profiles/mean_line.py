@@ -17,6 +17,7 @@ from bladewright.section.power_series import (
     Series,
     composed,
     differentiated,
+    point_derivatives,
     polynomial,
     relative_exponential,
     relative_logarithm,
@@ -170,11 +171,7 @@ class MeanLineOutline(Outline):
         half = self._half(place)
         across = half / (rise * rise + 1.0).sqrt()
         along = across * rise
-        sides = []
-        for sign in (1.0, -1.0):
-            pair = [(place.u - along * sign).derivatives(), (ordinate + across * sign).derivatives()]
-            sides.append(np.stack(np.broadcast_arrays(*pair), axis=-2))
-        return sides
+        return [point_derivatives(place.u - along * sign, ordinate + across * sign) for sign in (1.0, -1.0)]
 
     def points(self, s: Reals) -> tuple[Array, Array]:
         """Points (..., len(s), 2) of the upper and the lower side."""

@@ -9,7 +9,7 @@ import numpy as np
 
 from bladewright.designs import ChordwiseLaw, parameter
 from bladewright.errors import DesignError
-from bladewright.numerics.elementary import concatenated, dot
+from bladewright.numerics.elementary import dot
 from bladewright.section import checks
 from bladewright.section.laws import Span
 from bladewright.section.outline import Outline
@@ -54,9 +54,7 @@ class PointsProfile(Profile):
 
     def outline(self, span: Span) -> Outline:
         """The exact sections (..., m) at the places of the span, in chords, unstaggered."""
-        axes = [
-            concatenated([span.values(law)[..., None] for law in laws], -1) for laws in (self.abscissas, self.ordinates)
-        ]
+        axes = [span.control_values(laws) for laws in (self.abscissas, self.ordinates)]
         points = np.stack(np.broadcast_arrays(*axes), axis=-1)
         first = np.real(points).reshape(-1, *points.shape[-2:])[0]
         if np.all(first[0] == first[-1]):

@@ -10,7 +10,7 @@ from bladewright.numerics.roots import bracketed_root
 from bladewright.nurbs.basis import Reals
 from bladewright.section.offset import merged_joints
 from bladewright.section.outline import Edge, EdgeDerivatives, Joint, Outline
-from bladewright.section.power_series import Series, polynomial, variable
+from bladewright.section.power_series import Series, point_derivatives, polynomial, variable
 from bladewright.section.profiles.contour import Contour
 from bladewright.section.profiles.quintic_spline import QuinticSpline
 
@@ -91,8 +91,7 @@ class PointsOutline(Outline):
 
     def derivatives(self, s: Reals, order: int) -> tuple[Array, Array]:
         """Points and derivatives by s (..., k, 2, order + 1) of both sides, exact."""
-        pairs = ([each.derivatives() for each in self._laid(side, s, order)] for side in self._sides)
-        upper, lower = (np.stack(np.broadcast_arrays(*pair), axis=-2) for pair in pairs)
+        upper, lower = (point_derivatives(*self._laid(side, s, order)) for side in self._sides)
         return upper, lower
 
     def camber(self, s: Reals) -> Array:

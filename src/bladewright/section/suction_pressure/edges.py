@@ -8,6 +8,7 @@ import numpy as np
 from bladewright.numerics.elementary import Array, concatenated, dot
 from bladewright.nurbs.basis import Reals
 from bladewright.section.camber import turned_left
+from bladewright.section.power_series import polynomial_points
 
 Continuity = Literal["C1", "C2"]
 
@@ -101,39 +102,34 @@ def _speed(x: Array, y: Array, c: Array, s: Array, stretch: Array, continuity: C
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class EdgeCamber:
-    """The camber line of an edge by t in [0, 1]: from the nose in the edge's direction, then on to the sides' middle.
-
-    Its height over the edge's direction is a quartic of the way along it, so that it is as smooth by its length as it
-    looks, and continues the middle of the two sides to second order.
-    """
-
-    nose: Array
-    """(2,)"""
-    inward: Array
-    """(..., 2) unit vector"""
-    length: Array
-    """(...) along it to the middle of the two corners"""
-    fraction: Array
-    """(..., 5) of the powers of t: the way along"""
-    height: Array
-    """(..., 5) of the powers of that fraction"""
-
-    def points(self, t: Reals) -> Array:
-        """Points (..., k, 2) at t (k,)."""
-        fraction = powers_at(self.fraction[..., None], t)[..., 0]
-        height = powers_at(self.height[..., None], fraction)
-        inward = self.inward[..., None, :]
-        return self.nose + (self.length[..., None] * fraction)[..., None] * inward + height * turned_left(inward)
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
 class EdgeCurve:
-    """An edge by t, -1 where it meets the lower side, 0 at the nose, 1 where it meets the upper side."""
+    """An edge by t, -1 where it meets the lower side, 0 at the nose, 1 where it meets the upper side; its camber line.
+
+    The camber line, by t in [0, 1], leaves the nose in the edge's direction and continues the middle of the two sides
+    to second order. Its height over that direction is a quartic of the way along it, so that it has no kink where the
+    speed by t changes.
+    """
 
     coefficients: Array
     """(..., 5 or 7, 2) of the powers of t"""
-    camber: EdgeCamber
+    nose: Array
+    """(2,)"""
+    inward: Array
+    """(..., 2) unit vector of the edge's direction, from the nose into the blade"""
+    camber_length: Array
+    """(...) along it from the nose to the middle of the two corners"""
+    camber_fraction: Array
+    """(..., 5) of the powers of t: the fraction of that length"""
+    camber_height: Array
+    """(..., 5) of the powers of that fraction: the height over the direction"""
+
+    def camber(self, t: Reals) -> Array:
+        """Points (..., k, 2) of the camber line at t (k,)."""
+        fraction = polynomial_points(self.camber_fraction[..., None], t)[..., 0]
+        height = polynomial_points(self.camber_height[..., None], fraction)
+        inward = self.inward[..., None, :]
+        along = (self.camber_length[..., None] * fraction)[..., None]
+        return self.nose + along * inward + height * turned_left(inward)
 
 
 def edge_curve(points: EdgePoints, bend_upper: Array, bend_lower: Array, continuity: Continuity) -> EdgeCurve:
@@ -154,15 +150,15 @@ def edge_curve(points: EdgePoints, bend_upper: Array, bend_lower: Array, continu
         sixth = 0.125 * (even_2 - 5.0 * even_1 + 8.0 * even)
         fourth = 0.5 * (even_1 - 2.0 * even) - 2.0 * sixth
         powers = [nose, odd - third - fifth, even - fourth - sixth, third, fourth, fifth, sixth]
-    return EdgeCurve(coefficients=_stacked(powers), camber=_camber(points, even, even_1, even_2))
-
-
-def powers_at(coefficients: Array, t: Array) -> Array:
-    """Values (..., k, d) of polynomials with coefficients (..., n, d) at t (k,) or (..., k)."""
-    found = coefficients[..., -1:, :] + 0.0 * t[..., None]
-    for power in range(coefficients.shape[-2] - 2, -1, -1):
-        found = found * t[..., None] + coefficients[..., power : power + 1, :]
-    return found
+    length, fraction, height = _camber(points, even, even_1, even_2)
+    return EdgeCurve(
+        coefficients=_stacked(powers),
+        nose=points.nose,
+        inward=points.inward,
+        camber_length=length,
+        camber_fraction=fraction,
+        camber_height=height,
+    )
 
 
 def _halves(points: EdgePoints, bend_upper: Array, bend_lower: Array) -> tuple[tuple[Array, ...], tuple[Array, ...]]:
@@ -175,7 +171,8 @@ def _halves(points: EdgePoints, bend_upper: Array, bend_lower: Array) -> tuple[t
     return even, odd
 
 
-def _camber(points: EdgePoints, even: Array, even_1: Array, even_2: Array) -> EdgeCamber:
+def _camber(points: EdgePoints, even: Array, even_1: Array, even_2: Array) -> tuple[Array, Array, Array]:
+    """Length (...) and coefficients (..., 5) of fraction and height of an edge's camber line."""
     left = turned_left(points.inward)
     along, along_1, along_2 = (dot(each, points.inward) for each in (even, even_1, even_2))
     off, off_1, off_2 = (dot(each, left) for each in (even, even_1, even_2))
@@ -183,13 +180,7 @@ def _camber(points: EdgePoints, even: Array, even_1: Array, even_2: Array) -> Ed
     bend = (off_2 - slope * along_2) / along_1**2
     fraction = _flat_start(np.zeros_like(along), along_1 / along - 1.0, along_2 / along)
     fraction[..., 1] = 1.0
-    return EdgeCamber(
-        nose=points.nose,
-        inward=points.inward,
-        length=along,
-        fraction=fraction,
-        height=_flat_start(off, slope * along, bend * along**2),
-    )
+    return along, fraction, _flat_start(off, slope * along, bend * along**2)
 
 
 def _flat_start(value: Array, slope: Array, bend: Array) -> Array:

@@ -11,8 +11,9 @@ from bladewright.nurbs.bezier import bernstein
 from bladewright.nurbs.compatible import joined
 from bladewright.nurbs.curve import Curve
 from bladewright.nurbs.domain import reversed as backwards
-from bladewright.section.outline import Edge, EdgeDerivatives, Joint, Outline
-from bladewright.section.suction_pressure.edges import Continuity, EdgeCurve, powers_at
+from bladewright.section.outline import Edge, EdgeDerivatives, Joint, Outline, by_parts
+from bladewright.section.power_series import polynomial_points
+from bladewright.section.suction_pressure.edges import Continuity, EdgeCurve
 from bladewright.section.suction_pressure.side import DEGREE, Side
 
 EDGE = 0.1
@@ -55,11 +56,11 @@ class SuctionPressureOutline(Outline):
         for side, sign in ((self.upper, 1.0), (self.lower, -1.0)):
             first, middle, last = _parts(s)
             parts = [
-                (first, powers_at(self.edges[0].coefficients, sign * s[first] / EDGE)),
+                (first, polynomial_points(self.edges[0].coefficients, sign * s[first] / EDGE)),
                 (middle, side.points(_fractions(s[middle]))),
-                (last, powers_at(self.edges[1].coefficients, sign * (1.0 - s[last]) / EDGE)),
+                (last, polynomial_points(self.edges[1].coefficients, sign * (1.0 - s[last]) / EDGE)),
             ]
-            found.append(_put(parts, len(s)))
+            found.append(by_parts(parts, len(s)))
         return found[0], found[1]
 
     def camber(self, s: Reals) -> Array:
@@ -67,11 +68,11 @@ class SuctionPressureOutline(Outline):
         first, middle, last = _parts(s)
         w = _fractions(s[middle])
         parts = [
-            (first, self.edges[0].camber.points(s[first] / EDGE)),
+            (first, self.edges[0].camber(s[first] / EDGE)),
             (middle, 0.5 * (self.upper.points(w) + self.lower.points(w))),
-            (last, self.edges[1].camber.points((1.0 - s[last]) / EDGE)),
+            (last, self.edges[1].camber((1.0 - s[last]) / EDGE)),
         ]
-        return _put(parts, len(s))
+        return by_parts(parts, len(s))
 
 
 def _meeting(edge: EdgeCurve, direction: float) -> Edge:
@@ -89,15 +90,6 @@ def _parts(s: Reals) -> tuple[Mask, Mask, Mask]:
 
 def _fractions(s: Reals) -> Reals:
     return np.clip((s - EDGE) / (1.0 - 2.0 * EDGE), 0.0, 1.0)
-
-
-def _put(parts: list[tuple[Mask, Array]], count: int) -> Array:
-    """Points (..., count, 2) of parts at masks (count,)."""
-    shape = np.broadcast_shapes(*[points.shape[:-2] for _, points in parts])
-    found = np.empty((*shape, count, 2), dtype=np.result_type(*[points for _, points in parts]))
-    for here, points in parts:
-        found[..., here, :] = points
-    return found
 
 
 def closed_curve(outline: SuctionPressureOutline) -> Curve:
@@ -121,7 +113,7 @@ def _bezier(coefficients: Array) -> Curve:
     """The polynomial over t in [-1, 1] as a Bezier curve over [0, 1], by its values at Chebyshev places."""
     degree = len(coefficients) - 1
     places: Reals = 0.5 * (1.0 - np.cos(np.pi * np.arange(degree + 1) / degree))
-    points = powers_at(coefficients, 2.0 * places - 1.0)
+    points = polynomial_points(coefficients, 2.0 * places - 1.0)
     net = np.linalg.solve(bernstein(degree, places), points)
     net[0], net[-1] = points[0], points[-1]
     knots = np.repeat([0.0, 1.0], degree + 1)

@@ -221,13 +221,9 @@ def sides(part: SuctionPressure, span: Span, leading: EdgePoints, trailing: Edge
 
 def _numbers(span: Span, places: ChordwiseLaw, offsets: ChordwiseLaw, knots: Reals) -> tuple[Array, Array]:
     """Places and offsets (..., m, k)."""
-    values = _stacked(span, offsets)
-    at = _stacked(span, places) if places else np.broadcast_to(spread(knots), (len(span.v), len(offsets)))
+    values = span.control_values(offsets)
+    at = span.control_values(places) if places else np.broadcast_to(spread(knots), (len(span.v), len(offsets)))
     return at, values
-
-
-def _stacked(span: Span, laws: ChordwiseLaw) -> Array:
-    return np.stack(np.broadcast_arrays(*[span.values(law) for law in laws]), axis=-1)
 
 
 def _thickened(side: Side, places: Array, offsets: Array) -> Array:

@@ -7,7 +7,9 @@ import numpy as np
 
 from bladewright.numerics.elementary import Array, concatenated, dot, length
 from bladewright.nurbs.basis import Reals, basis, greville, uniform_knots
-from bladewright.section.suction_pressure.edges import Corner, powers_at
+from bladewright.section.outline import by_parts
+from bladewright.section.power_series import polynomial_points
+from bladewright.section.suction_pressure.edges import Corner
 
 DEGREE = 3
 
@@ -47,11 +49,7 @@ class Side:
             (middle, basis(self.knots, DEGREE, w[middle]) @ self.controls),
             (last, _paced(self.end, (1.0 - w[last]) / self.end.span)),
         ]
-        shape = np.broadcast_shapes(*[part.shape[:-2] for _, part in parts])
-        found = np.empty((*shape, len(w), 2), dtype=np.result_type(*[part for _, part in parts]))
-        for here, part in parts:
-            found[..., here, :] = part
-        return found
+        return by_parts(parts, len(w))
 
 
 def inner_count(free: int) -> int:
@@ -149,4 +147,4 @@ def pace(end: End, x: Reals, order: int = 0) -> Array:
 
 
 def _paced(end: End, x: Reals) -> Array:
-    return powers_at(end.taylor, pace(end, x))
+    return polynomial_points(end.taylor, pace(end, x))

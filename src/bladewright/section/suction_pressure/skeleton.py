@@ -8,7 +8,7 @@ from bladewright.errors import DesignError
 from bladewright.numerics.elementary import Array, concatenated, cross2, dot, unit
 from bladewright.nurbs.basis import Reals
 from bladewright.section.camber import turned_left
-from bladewright.section.suction_pressure.edges import powers_at
+from bladewright.section.power_series import polynomial_points
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -20,16 +20,18 @@ class Skeleton:
 
     def placed(self, fractions: Array, heights: Array) -> Array:
         """Points (..., k, 2) at heights (..., k) off the line, positive to its left, at fractions (..., k)."""
-        return powers_at(self.coefficients, fractions) + heights[..., None] * turned_left(self._tangents(fractions))
+        return polynomial_points(self.coefficients, fractions) + heights[..., None] * turned_left(
+            self._tangents(fractions)
+        )
 
     def places(self, points: Reals, fractions: Reals) -> tuple[Reals, Reals]:
         """Fractions and heights (k,) of real points (k, 2) off one line, the fractions nearest to those given."""
         found = np.array(fractions, dtype=np.float64)
         slope, bend = _derived(self.coefficients), _derived(_derived(self.coefficients))
         for _ in range(30):
-            along = powers_at(slope, found)
-            off = points - powers_at(self.coefficients, found)
-            step = dot(off, along) / (dot(along, along) - dot(off, powers_at(bend, found)))
+            along = polynomial_points(slope, found)
+            off = points - polynomial_points(self.coefficients, found)
+            step = dot(off, along) / (dot(along, along) - dot(off, polynomial_points(bend, found)))
             found = found + step
             if np.max(np.square(step)) < 1e-30:
                 break
@@ -38,7 +40,7 @@ class Skeleton:
                 "skeleton is 'pseudo': a control point lies so far off the pseudo skeleton line that it has no place "
                 "along it; refine the design nearer to the line, or use skeleton = 'chord'"
             )
-        off = points - powers_at(self.coefficients, found)
+        off = points - polynomial_points(self.coefficients, found)
         return found, cross2(self._tangents(found), off)
 
     def at(self, section: int) -> "Skeleton":
@@ -46,7 +48,7 @@ class Skeleton:
         return Skeleton(coefficients=np.real(self.coefficients[section]))
 
     def _tangents(self, fractions: Array) -> Array:
-        return unit(powers_at(_derived(self.coefficients), fractions))
+        return unit(polynomial_points(_derived(self.coefficients), fractions))
 
 
 def chord_line(shape: tuple[int, ...]) -> Skeleton:
