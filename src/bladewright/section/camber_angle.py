@@ -27,7 +27,8 @@ from bladewright.section.outline import Outline
 from bladewright.section.planar import PlanarSection
 
 NEAR = 0.0625
-"""default place of the control point next to an edge: of the m' of the section"""
+"""fraction of the section's m' between an edge and the control point next to it, where a design gives no places: it
+decides the shape near the edge only, and a design may give other places [-]"""
 
 
 @dataclass(frozen=True, kw_only=True)

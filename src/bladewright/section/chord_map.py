@@ -36,7 +36,8 @@ from bladewright.section.outline import Joint
 from bladewright.section.power_series import Series, hyperbolic_tangent, joined_series, sine_and_cosine, variable
 
 JOINT = 0.5
-"""s of the mean line's joint, where it has one"""
+"""s of the joint of a profile's mean line, where it has one: the middle, so that both pieces have equally many points
+[-]"""
 
 
 class ChordPlace(NamedTuple):

@@ -11,9 +11,11 @@ from bladewright.nurbs.basis import Reals
 from bladewright.section.outline import Outline
 
 PLACES = (1.0 - np.cos(np.pi * np.linspace(0.0, 1.0, 49))) / 2.0
-"""places along the sides at which outlines are judged, dense at the edges"""
+"""s of the points by which outlines of the unified family are judged, dense at the edges where the sides come close: 49
+a side keep the quadratic number of pairs small for many spans at once"""
 FINE = (1.0 - np.cos(np.pi * np.linspace(0.0, 1.0, 201))) / 2.0
-"""places at which the outlines of families are judged: where an offset side folds back, it does so in a small loop"""
+"""s of the points by which outlines of other families are judged: more, because an offset side that folds back does so
+in a small loop between points"""
 
 
 def outlines_of(upper: Reals, lower: Reals) -> Reals:

@@ -7,15 +7,19 @@ from bladewright.nurbs.basis import Reals, breaks
 from bladewright.section.section import Section
 
 PROMINENCE = 0.05
-"""by how much an extremum of the curvature must stand out: of the curvature there, or of the side's median if larger"""
+"""how much an extremum of the curvature must stand out, of the curvature there, or of the side's median where that is
+larger: what a designer would see in a plot, and far above rounding [-]"""
 FLAT = 0.02
-"""curvature times the side's length below which a side is straight"""
+"""curvature times the side's length below which a side counts as straight: it turns by about a degree over its length
+[-]"""
 EDGE = np.pi / 3.0
-"""turning from an edge within which the curvature has the edge's own maximum [rad]"""
+"""turning from an edge within which the largest curvature belongs to the edge: two thirds of the quarter turn that a
+side makes around a round edge [rad]"""
 NEAR = 0.2
-"""part of the side within which an edge's own maximum is, where the side turns by less"""
+"""part of the side's length within which the largest curvature belongs to the edge, where the side turns by less [-]"""
 PER_SPAN = 16
-"""samples in a knot span"""
+"""samples of the curvature in a knot span: the polynomials there are of degree four or five, and ten already give the
+same count"""
 
 
 def curvature_extrema(section: Section, name: str, *, per_span: int = PER_SPAN) -> int:

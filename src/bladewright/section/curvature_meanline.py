@@ -41,7 +41,7 @@ from bladewright.section.thickness.quartic import QuarticSpline
 from bladewright.section.thickness.wennerstrom import Wennerstrom
 
 GRID = np.linspace(0.0, 1.0, 9)
-"""places along the span at which it is seen whether a joint moves"""
+"""span fractions at which it is seen whether a joint moves: more places than a usual law has control points [-]"""
 
 
 @dataclass(frozen=True, kw_only=True)

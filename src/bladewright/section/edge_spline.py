@@ -26,13 +26,18 @@ from bladewright.section.laws import Span
 from bladewright.section.outline import Edge, EdgeDerivatives, Joint, Outline
 
 SEGMENTS = 5
+"""segments of the leading edge's spline: nine control points for the nine conditions at contacts and tip"""
 SAME = 1e-9
-"""difference by s below which a contact stands at a joint: the derivatives behind it count"""
-WINDOW, DEGREE = 0.05, 9
-"""how far behind the contact, by s, the polynomial reaches that the derivatives there are taken from where a section
-does not know them exactly, and its degree"""
+"""difference by s below which a contact stands at a joint, and the derivatives behind it count: above rounding [-]"""
+WINDOW = 0.05
+"""length by s behind the contact of the polynomial whose derivatives there are taken, where a section does not know
+them exactly: short enough for degree nine to follow the side, long enough for rounding to stay small in three
+derivatives [-]"""
+DEGREE = 9
+"""degree of that polynomial"""
 NARROW = 0.01
-"""how far it must reach at least"""
+"""length by s that this polynomial must have at least: on a fifth of the usual length the rounding of a third
+derivative is 125 times as large [-]"""
 
 
 @dataclass(frozen=True, kw_only=True)

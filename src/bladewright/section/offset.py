@@ -16,7 +16,7 @@ from bladewright.section.power_series import Series, point_derivatives, polynomi
 from bladewright.section.thickness.law import EdgeKind, Thickness
 
 APART = 1e-9
-"""distance by s below which two joints are one"""
+"""difference by s, or by the chord fraction, below which two joints are one: above rounding of a root [-]"""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

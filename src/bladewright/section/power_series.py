@@ -121,9 +121,10 @@ def joined_series(parts: Sequence[Series]) -> Series:
 
 
 NEAR = 0.2
-"""size of z up to which log(1 + z) / z is taken from its power series"""
+"""size of z up to which log(1 + z) / z is summed as a power series: beyond it the quotient loses less than a digit
+[-]"""
 TERMS = 26
-"""of that series: 0.2^26 is below 1e-18"""
+"""terms of that power series: 0.2^26 is below 1e-18"""
 
 
 def logarithm(at: Series) -> Series:

@@ -14,9 +14,10 @@ from bladewright.nurbs.curve import Curve
 from bladewright.section.outline import Outline
 
 STEP = 1e-30
-"""imaginary step that differentiates the scale"""
+"""imaginary step by the abscissa that differentiates the scale: so small that its square vanishes"""
 PER_SPAN = 12
-"""Gauss points in a knot span"""
+"""Gauss points in a knot span: chord, area and perimeter of the built-in examples are then within 3e-9, with 8 points
+within 1e-7 (design/section_constants.py)"""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

@@ -16,14 +16,15 @@ from bladewright.section.outline import Outline
 from bladewright.section.section import Section
 
 BESIDE = 1e-9
-"""distance by the parameter of the first place of a piece from its joint: above what joints may be off by"""
+"""distance by the parameter of the first place of a piece from its joint: above what joints may be off by [-]"""
 PER_PIECE = 48
-"""places on a piece, but for those close to its ends"""
+"""places on a piece besides those close to its ends: enough for the largest curvature and for plots"""
 SAME = 1e-6
-"""jump, of the larger value beside the joint, below which a quantity counts as continuous: above rounding"""
+"""jump of the curvature, of the larger value beside the joint, below which it counts as continuous: a hundred times the
+1e-8 that rounding leaves (design/section_constants.py) [-]"""
 STEADY = 1e-4
 """jump of the slope, of the square of the curvature beside the joint or of one chord's, below which it counts as
-continuous: above the rounding of third derivatives on arcs a hundredth of a chord long"""
+continuous: above the rounding of third derivatives on arcs a hundredth of a chord long [-]"""
 
 
 @dataclass(frozen=True, kw_only=True)

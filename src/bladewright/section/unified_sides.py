@@ -27,6 +27,7 @@ def sample_places(samples: int, clustering: float) -> Reals:
 
 
 DEGREE = 4
+"""degree of the sides (Agromayor et al. 2021)"""
 
 
 def advances(line: Array, places: Reals, thickness: Array, upper: bool) -> tuple[Array, Array]:

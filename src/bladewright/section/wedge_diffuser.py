@@ -18,11 +18,11 @@ from bladewright.section.outline import Edge, EdgeDerivatives, Joint, Outline, b
 from bladewright.section.planar import PlanarSection
 
 EDGE = 0.1
-"""part of s of the leading edge's arc to one side"""
+"""s that the leading edge's arc takes on each side: its curvature asks for more than its share of the parameter [-]"""
 CORNER = 0.85
-"""s at which the straight side ends and the trailing edge's arc begins"""
+"""s at which the straight side ends and the trailing edge's arc begins [-]"""
 FACE = 0.95
-"""s at which that arc ends, where there is a back face"""
+"""s at which that arc ends, where there is a back face [-]"""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

@@ -19,11 +19,13 @@ from bladewright.section.profiles.profile import PublishedProfile
 POLYNOMIAL = {1: 0.3048, 2: -0.0914, 4: -0.8614, 6: 2.1236, 8: -2.9163, 10: 1.9744, 12: -0.5231}
 """half thickness of a profile of nominally 0.2 chords: coefficients of the powers of sqrt(x)"""
 LARGEST = 0.1001319496141312
-"""the polynomial's maximum"""
+"""maximum of that polynomial, by which it is scaled to the thickness asked for [-]"""
 FORM = {power: value * 0.5 / LARGEST for power, value in POLYNOMIAL.items()}
+"""half thickness over the thickness: coefficients of the powers of sqrt(x)"""
 OWN_END = 0.1058603
-"""thickness that the polynomial has at x = 1, of the maximum thickness"""
+"""thickness that the polynomial has at x = 1, of the maximum thickness [-]"""
 BEND = 0.0914 / 0.3048
+"""-a2 / a1 of the form a1 sqrt(x) + a2 x + ... [-]"""
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -19,9 +19,10 @@ from bladewright.section.outline import Edge, EdgeDerivatives, Joint, Outline
 from bladewright.section.profiles.profile import THICKNESS, Profile
 
 EDGE = 0.12
-"""s at which a side leaves the circle of a round edge, from that edge"""
+"""s that a round edge's circle takes on each side: a short arc of large curvature asks for more than its share of the
+parameter [-]"""
 NOSE_SPEED = 0.75
-"""speed at a round edge, of a quarter of its circle over `EDGE`"""
+"""speed by s at the nose, of the mean around the edge: below 1 so that the speed grows towards the long side arc [-]"""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -213,7 +214,9 @@ class ArcOutline(Outline):
 
 
 RADIUS = (0.0, 0.1, "an edge radius must be above 0 and below 0.1 chords; leave it out for a sharp edge")
+"""limits of an edge radius [chords], both excluded, and what is said beyond them"""
 CAMBER = (-120.0, 120.0, "the camber angle must lie between -120 and 120 deg")
+"""limits of the camber angle [deg], both excluded, and what is said beyond them"""
 
 
 @dataclass(frozen=True, kw_only=True)

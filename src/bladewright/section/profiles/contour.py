@@ -10,9 +10,10 @@ from bladewright.numerics.elementary import cross2, dot
 from bladewright.nurbs.basis import Reals
 
 CORNER = 30.0
-"""turning [deg] from which a point may be a corner"""
+"""turning of a contour's polygon from which a point may be a corner: a smooth nose of six points or more turns by less
+at each [deg]"""
 ALONE = 0.1
-"""turning of a corner's neighbours on smooth sides, of its own, at most"""
+"""largest turning at the neighbours of a corner, of the corner's own: on a round nose neighbours turn alike [-]"""
 Indices = NDArray[np.intp]
 Kind = Literal["round", "sharp", "blunt"]
 

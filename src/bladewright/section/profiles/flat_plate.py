@@ -17,9 +17,11 @@ from bladewright.section.outline import Edge, EdgeDerivatives, Joint, Outline
 from bladewright.section.profiles.profile import THICKNESS, Profile
 
 EDGE = 0.15
-"""s at which a side leaves the ellipse of its edge, from that edge"""
+"""s that an edge's ellipse takes: a plate's edges are short, and their curvature asks for more than their share of the
+parameter [-]"""
 NOSE = 0.75
-"""angular speed of the ellipse's parameter at the edge, of its mean"""
+"""angular speed of the ellipse's parameter at the nose, of its mean: below 1 so that it grows towards the straight side
+[-]"""
 PlateEdge = Literal["round", "elliptic", "blunt"]
 
 

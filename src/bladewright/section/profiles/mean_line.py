@@ -81,9 +81,10 @@ class ChebyshevForm(ThicknessForm):
 TrailingEdge = Literal["sharp", "blunt", "round"]
 
 END_CLUSTERING = 0.9
-"""share of the steps of s drawn towards an edge that is small"""
+"""clustering of s at a round trailing edge, whose cap is a few half thicknesses of the trailing edge long [-]"""
 FAR = 0.99
-"""1 - x from which on a round trailing edge is not felt"""
+"""1 - x from which on the cap of a round trailing edge is left out: there x^n is below 0.01^20, n being 20 or more
+[-]"""
 
 
 class MeanLine(ABC):

@@ -20,9 +20,10 @@ from bladewright.section.profiles.naca4 import BEND, FORM, OWN_END
 from bladewright.section.profiles.profile import PublishedProfile
 
 ORDER = 24
-"""Gauss points on each piece of a mean line"""
+"""Gauss points on each piece of a mean line: its lift is then within 3e-13, with 8 points within 2e-9
+(design/section_constants.py)"""
 STEP = 1e-30
-"""imaginary step that differentiates the moment"""
+"""imaginary step that differentiates the moment by the joint: so small that its square vanishes [chords]"""
 
 
 @dataclass(frozen=True, kw_only=True)

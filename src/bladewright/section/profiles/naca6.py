@@ -18,12 +18,19 @@ from bladewright.section.profiles.mean_line import ChebyshevForm, MeanLine, Mean
 from bladewright.section.profiles.profile import PublishedProfile
 
 ROUNDING = 0.005
-"""distance e over which ln|u| is rounded to ln(u^2 + e^2) / 2: the mean line begins with its slope at 0.005 chords"""
+"""distance e over which ln|u| is rounded to ln(u^2 + e^2) / 2: the mean line begins with the slope that the published
+one has at 0.005 chords, where NACA Report 824 (1945) places the slope of the leading edge's radius [chords]"""
 SHARE = 0.08
-"""by how much of 1 - a the rounding at x = a, and of the term in 1 - x, is wider"""
-CLUSTERING, STRETCHING = 0.8, 3.5
-"""how the steps of s are drawn to the edges, where the mean line bends: towards a nose, and a sharp or blunt edge"""
+"""by how much of 1 - a the rounding at x = a, and of the term in 1 - x, is wider: a wider one takes fewer knots and
+lies farther from the published line, which has a kink in its load at a [-]"""
+CLUSTERING = 0.8
+"""clustering of s at the nose, where the mean line bends within 0.005 chords [-]"""
+STRETCHING = 3.5
+"""k of the hyperbolic tangent that clusters s at a sharp or blunt trailing edge, where the mean line bends as well
+[-]"""
 OWN_END = 0.01
+"""thickness of a blunt or round trailing edge where the design gives none, of the maximum thickness; the published
+coordinates (NACA Report 824, 1945) end in a point [-]"""
 FORMS: dict[str, tuple[tuple[float, ...], ...]] = {
     "63": (
         (1.028022, -0.329215, -0.277989, -0.083716, 0.00396, -0.008659, 0.017303, 0.004198, 0.015196, 0.002404,

@@ -20,7 +20,8 @@ FORM = (
 )  # fmt: skip
 """half thickness over the thickness: Chebyshev coefficients by degree; see design/six_series.py"""
 OWN_END = 0.03
-"""thickness of the trailing edge of compressor blades, 2 x 0.15 % of the chord at a thickness of 10 %"""
+"""thickness of the trailing edge of compressor blades, 2 x 0.15 % of the chord at a thickness of 10 %, of the maximum
+thickness (NACA RM L51G31, 1951) [-]"""
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -19,7 +19,7 @@ from bladewright.section.profiles.profile import Profile
 from bladewright.section.profiles.quintic_spline import DEGREE
 
 LEAST = 8
-"""points of a contour, at least"""
+"""fewest points of a contour: six for a quintic spline, and two more that its edges can be told from its sides"""
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -15,13 +15,21 @@ from bladewright.section.profiles.contour import Contour
 from bladewright.section.profiles.quintic_spline import QuinticSpline
 
 PACE = 0.5
-"""pace of s at the edges, of the mean of both sides"""
-STEPS, SETTLED = 40, 1e-8
-"""Newton steps to the ends of the chord line, at most, and the size of the last, of the longest that is taken"""
-CAMBER, MIDDLE, MIDDLES = 6, (0.15, 0.85), 43
-"""degree of the camber line less two, the s between which it is fitted, and at how many places"""
+"""speed of the spline's parameter by s at the edges, of the mean of both sides: half of it, because the curvature is
+largest there [-]"""
+STEPS = 40
+"""Newton steps to the ends of the chord line at most; they start at the farthest points, and few are taken"""
+SETTLED = 1e-8
+"""size of the last Newton step, of the longest that is allowed: its error is the square of that, below rounding [-]"""
+CAMBER = 6
+"""degree of the camber line less two: for an oval two degrees more come nearer to the middle of the sides by a sixth
+(design/section_constants.py), and leave the line less smooth for the passage's boundaries"""
+MIDDLE = (0.15, 0.85)
+"""s between which the camber line is fitted to the middle of the sides, which says nothing near a round edge [-]"""
+MIDDLES = 43
+"""places at which it is fitted, six for each coefficient"""
 APART = 1e-9
-"""distance by s below which a joint stands at the same place in all sections"""
+"""difference by s below which a joint stands at the same place in all sections: above rounding of a root [-]"""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

@@ -40,8 +40,9 @@ class Profile(SectionFamily, ABC):
 
 
 POWER = 8
-"""the power of sqrt(x) whose coefficient closes or opens the trailing edge"""
+"""power of sqrt(x) whose coefficient closes or opens the trailing edge: x^4, which hardly touches the front half"""
 THICKNESS = (0.0, 0.4, "thickness must be above 0 and below 0.4 chords")
+"""limits of the maximum thickness [chords], both excluded, and what is said beyond them"""
 
 
 @dataclass(frozen=True, kw_only=True)

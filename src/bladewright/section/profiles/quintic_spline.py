@@ -10,6 +10,7 @@ from bladewright.nurbs.basis import Reals
 from bladewright.section.power_series import Series, polynomial, variable
 
 DEGREE = 5
+"""degree of the spline: four continuous derivatives, so that curvature and its slope are smooth through the points"""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

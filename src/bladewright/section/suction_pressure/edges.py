@@ -13,7 +13,8 @@ from bladewright.section.power_series import polynomial_points
 Continuity = Literal["C1", "C2"]
 
 MAX_OPENING = {"C1": 1.2, "C2": 0.95}
-"""largest a / b tan(wedge / 2): beyond it no edge of the nose's radius of curvature reaches the sides"""
+"""largest a / b tan(wedge / 2) of a C1 and of a C2 edge: beyond it no edge of the nose's radius of curvature reaches
+the sides [-]"""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

@@ -17,9 +17,10 @@ from bladewright.section.suction_pressure.edges import Continuity, EdgeCurve
 from bladewright.section.suction_pressure.side import DEGREE, Side
 
 EDGE = 0.1
-"""part of s that each edge takes"""
+"""s that each edge takes: an edge is a few hundredths of the chord long, and its curvature asks for more than its share
+of the parameter [-]"""
 SHARE = EDGE / (1.0 - 2.0 * EDGE)
-"""part of s of an edge over that of a side"""
+"""s of an edge over that of a side [-]"""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

@@ -12,6 +12,7 @@ from bladewright.section.power_series import polynomial_points
 from bladewright.section.suction_pressure.edges import Corner
 
 DEGREE = 3
+"""degree of the sides (Voss et al. 2025, section 3)"""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

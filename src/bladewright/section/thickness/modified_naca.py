@@ -28,12 +28,16 @@ from bladewright.section.thickness.piecewise import (
 )
 
 RADIUS = 2.2038
-"""leading edge radius of index 6, in chords for a maximum thickness of one chord"""
+"""twice the leading edge radius of index 6 over the square of the maximum thickness, 2 x 1.1019 (Stack and von Doenhoff
+1934) [1/chord]"""
 SLOPES = (0.775, 2.51666667, -13.625, 35.83333333, -12.5)
 """slope at the trailing edge, downwards, of the maximum thickness: the polynomial in the place of the maximum through
 1, 1.17, 1.575, 2.325, 3.5 of the NACA series at 0.2, 0.3 ... 0.6, in T-Blade3's decimals (151/60 and 215/6)"""
-AT_MAXIMUM, AT_TRAILING_EDGE = 0.4, 0.99
-"""fixed coordinates of the joints: their places in a usual blade"""
+AT_MAXIMUM = 0.4
+"""sigma of the place of the maximum in the map u(s): its chord fraction in a usual blade, where the map is then the
+identity"""
+AT_TRAILING_EDGE = 0.99
+"""sigma of the place where the trailing edge's circle begins, chosen likewise [-]"""
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -17,7 +17,8 @@ Formula = Callable[[ChordPlace], Series]
 """half thickness at a place"""
 
 PLACES = np.linspace(0.0, 1.0, 97)[1:-1]
-"""where the half thickness is asked to be positive"""
+"""s at which the half thickness must be positive: 95 places for formulas of a few pieces, each without waves of its
+own"""
 
 
 class PiecewiseThickness(Thickness):

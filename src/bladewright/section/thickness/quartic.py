@@ -112,11 +112,13 @@ class UniformThickness(Thickness):
 
 
 SEGMENTS = 7
+"""segments of the spline from the leading to the trailing edge (Nemnem et al. 2014)"""
 CONTROLS = SEGMENTS + 4
+"""control points of one side, the first two mirrored"""
 CURVATURE = 0.04
-"""T-Blade3's second derivative of u at the leading edge"""
+"""second derivative of u by segments at the leading edge where the design gives none: that of T-Blade3 [chords]"""
 WEDGE = 2.5
-"""T-Blade3's angle of a side at a sharp trailing edge [deg]"""
+"""angle of a side from the chord line at a sharp trailing edge where the design gives none: that of T-Blade3 [deg]"""
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -28,10 +28,15 @@ from bladewright.section.thickness.piecewise import (
     ellipse,
 )
 
-AT_LEADING_EDGE, AT_MAXIMUM, AT_TRAILING_EDGE = 0.02, 0.4, 0.99
-"""fixed coordinates of the joints: their places in a usual blade"""
+AT_LEADING_EDGE = 0.02
+"""sigma of the end of the leading edge's ellipse in the map u(s): its chord fraction in a usual blade, where the map is
+then the identity"""
+AT_MAXIMUM = 0.4
+"""sigma of the place of the maximum, chosen likewise"""
+AT_TRAILING_EDGE = 0.99
+"""sigma of the start of the trailing edge's ellipse, chosen likewise"""
 RATIOS = {"leading_edge": 2.5, "trailing_edge": 1.0}
-"""axis ratios of T-Blade3"""
+"""axis along the chord over axis across of elliptic edges where the design gives none: those of T-Blade3 [-]"""
 
 EdgeShape = Literal["elliptic", "blunt", "sharp"]
 
