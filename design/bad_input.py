@@ -3,8 +3,9 @@
     python design/bad_input.py --share 0.05 --seed 1
     python design/bad_input.py --of designs --like wedge --share 1
 
-Design files are those of the built-in examples; T-Blade3's and ParaBlade's stand beside the repository. Each broken one
-must be taken, or refused in one paragraph that names it, within LIMIT seconds of processor time, without a warning.
+The design files are those of the built-in examples; the files of T-Blade3 and ParaBlade are beside the repository. Each
+broken one must be read, or refused in one paragraph that names it, within LIMIT seconds of processor time, without a
+warning.
 """
 
 import argparse

@@ -1,8 +1,8 @@
 """How OpenCASCADE cuts a blade out of its sector, and how well that agrees with the native passage.
 
-Three ways to take the extended blade from the sector between exact surfaces of revolution: the kernel's subtraction;
+Three ways to cut the extended blade from the sector between exact surfaces of revolution: the kernel's subtraction;
 division of both solids by each other, and the part that has the sector's outer faces; the same division, and the
-volumes that the divided faces close up. Relative difference of the volume from the native passage, OpenCASCADE 7.9.3:
+volumes that the divided faces enclose. Relative difference of the volume from the native passage, OpenCASCADE 7.9.3:
 
     example          subtraction    division    volumes of divided faces
     nasa-rotor-67    -3.4e-11       -3.4e-11    -3.4e-11
@@ -10,10 +10,10 @@ volumes that the divided faces close up. Relative difference of the volume from 
     vki-ls89         -1.7e-11       -1.7e-11    -1.7e-11
     fan-rotor        +2.3e-11       +2.3e-11    +2.3e-11
 
-Nevertheless the third is used. While the walls' meridians went through fewer places, and the sector's edges lay 2.7e-5
-mm off them, the kernel found all edges of the fan rotor and divided all faces, but took the blade's sides to lie
-outside of the sector: subtraction and division returned that whole, +3.8e-2, the volumes of the divided faces -7.1e-9.
-Making volumes asks for no such decision, and costs a second.
+Nevertheless the third is used. When the walls' meridians went through fewer points, and the sector's edges lay 2.7e-5
+mm off them, the kernel found all edges of the fan rotor and divided all faces, but decided that the blade's sides lie
+outside the sector: subtraction and division returned the whole sector, +3.8e-2, the volumes of the divided faces
+-7.1e-9. Making volumes needs no such decision, and costs a second.
 
     python design/cad_cutting.py
 """

@@ -1,4 +1,4 @@
-"""How well OpenCASCADE's quadrature knows areas and volumes, and what it costs.
+"""How accurate OpenCASCADE's quadrature of areas and volumes is, and what it costs.
 
 Without an error bound it takes a fixed number of Gauss points for each span of knots; with one it refines. Measured
 with OpenCASCADE 7.9.3 on the fan rotor, relative to the native quadrature:
@@ -9,15 +9,15 @@ with OpenCASCADE 7.9.3 on the fan rotor, relative to the native quadrature:
     1e-09    +1.5e-09 in 0.21 s   +2.7e-13 in 0.10 s
     1e-10    +1.5e-09 in 0.25 s   +2.7e-13 in 0.12 s
 
-The volumes differ by 1.5e-9 in truth: the native ends follow the sides, which lie as much off the wall. Without a bound
-the limit of 1e-6 on volumes would be missed by the measurement itself. The round trip asks for 1e-3 on volumes, which
-for a passage with creased faces gives 4e-10 in a third of the time of 1e-7, and for 1e-7, 1e-9 and 1e-12 where that
+The volumes truly differ by 1.5e-9: the native ends follow the sides, which lie that much off the wall. Without a bound
+the measurement itself would miss the limit of 1e-6 on volumes. The round trip sets a bound of 1e-3 on volumes, which
+for a passage with creased faces gives 4e-10 in a third of the time of 1e-7, and of 1e-7, 1e-9 and 1e-12 where that
 disagrees by more than a fifth of a limit: at 1e-7 the centroids of 3 of 400 random designs
 (random_designs.py, seeds 207, 294, 375) were 3e-6 to 1e-4 of the chord off, at 1e-10 5e-9 to 2e-7.
 
-Where the normal turns round within a span no bound helps: the areas of whole sides of seeds 88, 166, 209, 239 and 348
-stay 1e-9 to 7e-8 off, whatever is asked. So the area of an untrimmed side is taken by quadrature on the poles that came
-back; only trimmed faces are left to the kernel.
+Where the normal reverses within a knot span no bound helps: the areas of whole sides of seeds 88, 166, 209, 239 and 348
+stay 1e-9 to 7e-8 off with every bound. So the area of an untrimmed side is taken by quadrature on the poles that came
+back, and only trimmed faces are left to the kernel.
 
     python design/cad_quadrature.py
 """

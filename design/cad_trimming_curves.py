@@ -1,9 +1,9 @@
 """Which uncertainty a STEP file must state so that its trimming curves survive.
 
-The ends of a blade lie off their walls by what the native sides miss between their sites, some millionths of a
-millimetre. A reader that finds an edge further off a face than the file's uncertainty takes the trimming curve for
-wrong and puts a cubic approximation of its own in its place. Measured on the centrifugal impeller with OpenCASCADE
-7.9.3:
+The ends of a blade lie off their walls by the error of the native sides between their interpolation sites, some
+millionths of a millimetre. A reader that finds an edge further off a face than the file's uncertainty takes the
+trimming curve to be wrong and replaces it by a cubic approximation of its own. Measured on the centrifugal impeller
+with OpenCASCADE 7.9.3:
 
     uncertainty    largest gap after reading    largest edge tolerance    the same between sides
     1e-07 mm       1.1e-04 mm                   3.9e-06 mm                1e-07 mm

@@ -3,7 +3,8 @@
     python design/edge_parametrisation.py
 
 Recorded on 2026-11-21, least slope over alpha, sides alike and sides unlike (speeds x 0.8 or 1.25, rises x 0.6 or 1.5):
-BRAKE 10: 0.91, 0.68; 20: 0.84, 0.57; 40: 0.68, 0.16; 60: 0.52, -0.36 (not monotone). 20 slows the least with room.
+BRAKE 10: 0.91, 0.68; 20: 0.84, 0.57; 40: 0.68, 0.16; 60: 0.52, -0.36 (not monotone). 20 keeps the slope positive with a
+margin.
 """
 
 import numpy as np

@@ -1,4 +1,4 @@
-"""Clouds as outsiders bring them: made of the examples, varied in many ways, matched by the command line alone.
+"""Clouds as users bring them: made of the examples, varied in many ways, matched by the command line alone.
 
     python design/fit_clouds.py [NAME ...] [--list] [--directory DIR]
 
@@ -53,7 +53,7 @@ class Truth:
 
 @dataclass(frozen=True, kw_only=True)
 class Case:
-    """A cloud, and how the command line is told of it."""
+    """A cloud, and the options of the command line for it."""
 
     points: np.ndarray
     options: tuple[str, ...] = ()
@@ -115,7 +115,7 @@ def turned(points, axis, angle):
     return points @ Rotation.from_rotvec(angle * np.eye(3)[axis]).as_matrix().T
 
 
-def strewn(points, draw):
+def with_outliers(points, draw):
     """With 3 % of the points up to a twentieth of the extent off."""
     off = draw.random(len(points)) < 0.03
     return points + off[:, None] * draw.uniform(-0.05, 0.05, points.shape) * np.ptp(points)
@@ -150,7 +150,7 @@ VARIATIONS = {
     "rows": ((*SPACE, "ls89"), lambda of: Case(points=rows(of.sides))),
     "scattered": ((*SPACE, "ls89"), lambda of: Case(points=scattered(of.sides, 5000, of.draw))),
     "noise": ((*SPACE, "ls89"), lambda of: Case(points=noisy(rows(of.sides), of.draw))),
-    "outliers": ((*SPACE, "ls89"), lambda of: Case(points=strewn(noisy(rows(of.sides), of.draw), of.draw))),
+    "outliers": ((*SPACE, "ls89"), lambda of: Case(points=with_outliers(noisy(rows(of.sides), of.draw), of.draw))),
     "part": (
         SPACE,
         lambda of: Case(points=noisy(rows(of.sides, shown=(0, 1, 0.2, 0.8)), of.draw), shown=(0, 1, 0.2, 0.8)),
@@ -203,31 +203,31 @@ def shared(name, draw):
 
 
 def ran(path, unit, options, directory):
-    """Exit status, the JSON of the command, what it said on standard error, and seconds of processor time."""
+    """Exit status, the JSON of the command, what it printed on standard error, and seconds of processor time."""
     before = resource.getrusage(resource.RUSAGE_CHILDREN)
     command = [sys.executable, "-m", "bladewright", "fit", str(path), *(("--unit", unit) if unit else ()), *options]
     done = subprocess.run(
         [*command, "-o", str(directory / f"{path.stem}.toml"), "--json"], capture_output=True, text=True, check=False
     )
     after = resource.getrusage(resource.RUSAGE_CHILDREN)
-    said = json.loads(done.stdout) if done.stdout.strip() else {}
-    if "deviation" not in said:
+    report = json.loads(done.stdout) if done.stdout.strip() else {}
+    if "deviation" not in report:
         return done.returncode, {}, done.stderr.strip().replace("\n", " "), after.ru_utime - before.ru_utime
-    return done.returncode, said, "", after.ru_utime - before.ru_utime
+    return done.returncode, report, "", after.ru_utime - before.ru_utime
 
 
-def apart(case, sides, path, said):
+def apart(case, sides, path, report):
     """Mean and largest distance of the true sides from the found ones, and of those from the true, of the chord."""
     found = sides_of(read_design(path).build())
     draw = np.random.default_rng(7)
     there, back = scattered(sides, 8000, draw, case.shown), scattered(found, 8000, draw)
     if case.placed:
-        motion = said["motion"]
+        motion = report["motion"]
         rotation, translation = np.array(motion["rotation"]), np.array(motion["translation_m"])
         there = elsewhere(there) @ rotation.T + translation
         back = (((back - translation) @ rotation) - PLACED[1]) @ PLACED[0].as_matrix()
     return [
-        each(nearest_footpoints(points, onto, converged=1e-10).distances) / said["chord_m"]
+        each(nearest_footpoints(points, onto, converged=1e-10).distances) / report["chord_m"]
         for points, onto in ((there, found), (back, sides))
         for each in (np.mean, np.max)
     ]
@@ -240,16 +240,16 @@ def row(machine, name, directory):
     case = VARIATIONS[name][1](of)
     path = directory / f"{machine}-{name}.csv"
     np.savetxt(path, draw.permutation(case.points) / case.unit, delimiter=",", fmt="%.15g")
-    status, said, error, spent = ran(path, "mm", case.options, directory)
+    status, report, error, spent = ran(path, "mm", case.options, directory)
     start = f"| {machine} {name} | {len(case.points)} | {status} |"
-    if not said:
+    if not report:
         return f"{start} | | | | {spent:.0f} | {error} |"
-    away = apart(case, of.sides, path.with_suffix(".toml"), said)
+    away = apart(case, of.sides, path.with_suffix(".toml"), report)
     figures = " | ".join(f"{mean:.1e} / {most:.1e}" for mean, most in (away[:2], away[2:]))
-    own = said["deviation"]["all"]["of_chord"]["mean"]
+    own = report["deviation"]["all"]["of_chord"]["mean"]
     return (
-        f"{start} {said['parameters']} | {own:.1e} | {figures} | {spent:.0f} | "
-        f"{'; '.join(said['failures']) or '; '.join(said['notes'])} |"
+        f"{start} {report['parameters']} | {own:.1e} | {figures} | {spent:.0f} | "
+        f"{'; '.join(report['failures']) or '; '.join(report['notes'])} |"
     )
 
 
@@ -258,26 +258,27 @@ def shared_row(name, directory):
     some, points = shared(name, np.random.default_rng(5))
     path = directory / f"{name}-third.csv"
     np.savetxt(path, some * 1e3, delimiter=",", fmt="%.15g")
-    status, said, error, spent = ran(path, "mm", (), directory)
+    status, report, error, spent = ran(path, "mm", (), directory)
     start = f"| {name} third | {len(some)} | {status} |"
-    if not said:
+    if not report:
         return f"{start} | | | | {spent:.0f} | {error} |"
     away = (
-        nearest_footpoints(points, sides_of(read_design(path.with_suffix(".toml")).build())).distances / said["chord_m"]
+        nearest_footpoints(points, sides_of(read_design(path.with_suffix(".toml")).build())).distances
+        / report["chord_m"]
     )
-    own = said["deviation"]["all"]["of_chord"]["mean"]
+    own = report["deviation"]["all"]["of_chord"]["mean"]
     return (
-        f"{start} {said['parameters']} | {own:.1e} | {np.mean(away):.1e} / {np.max(away):.1e} | | {spent:.0f} | "
-        f"{'; '.join(said['failures']) or '; '.join(said['notes'])} |"
+        f"{start} {report['parameters']} | {own:.1e} | {np.mean(away):.1e} / {np.max(away):.1e} | | {spent:.0f} | "
+        f"{'; '.join(report['failures']) or '; '.join(report['notes'])} |"
     )
 
 
 if __name__ == "__main__":
-    asked = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    asked.add_argument("names", nargs="*")
-    asked.add_argument("--list", action="store_true")
-    asked.add_argument("--directory", type=Path, default=Path("fit-clouds"))
-    options = asked.parse_args()
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("names", nargs="*")
+    parser.add_argument("--list", action="store_true")
+    parser.add_argument("--directory", type=Path, default=Path("fit-clouds"))
+    options = parser.parse_args()
     cases = [(machine, name) for name, (machines, _) in VARIATIONS.items() for machine in machines]
     cases += [(each.stem, "third") for each in sorted(SHARED.glob("*.txt"))]
     wanted = [each for each in cases if not options.names or {*each, " ".join(each)} & {*options.names}]

@@ -74,10 +74,10 @@ if __name__ == "__main__":
     parser.add_argument("--parameters", type=int)
     parser.add_argument("--tolerance", action="store_true")
     given = parser.parse_args()
-    asked: dict[str, Any] = {"family": given.family, "parameters": given.parameters}
+    options: dict[str, Any] = {"family": given.family, "parameters": given.parameters}
     if given.tolerance:
-        asked["tolerance"] = TOLERANCE
+        options["tolerance"] = TOLERANCE
     print("| cloud | family | parameters | mean mm | max mm | max, of the chord | outliers | passed | s |")
     print("|---|---|---|---|---|---|---|---|---|")
     for each in given.names:
-        print(row(each, asked), flush=True)
+        print(row(each, options), flush=True)

@@ -1,12 +1,12 @@
-"""How often the 95 % intervals of fitted sections hold the true values.
+"""How often the 95 % intervals of fitted sections contain the true values.
 
     python design/fit_intervals.py [POINTS] [FIRST_SEED] [RUNS]
 
 Sections drawn about the built-in turbine section, sampled evenly in u with normal noise of 0.02 mm in x and y, are
 fitted with their structure given and nothing else. The linear theory's share is that of the same noise taken through
-the derivatives at the truth: where it holds 95 % and the fits do not, the problem is bent. The gain is by how much the
-sum of squares falls below that at the truth, in variances of the noise: as many as there are parameters, if the
-search ends at the minimum. The record is in design/fit_intervals.md.
+the derivatives at the truth: where that has 95 % inside and the fits have not, the problem is nonlinear. The gain is by
+how much the sum of squares falls below that at the truth, in variances of the noise: as many as there are parameters,
+if the search ends at the minimum. The record is in design/fit_intervals.md.
 """
 
 import os

@@ -4,10 +4,10 @@
     python design/fit_made.py blades [--given] [--random] [--seeds 0:8]
 
 A design is drawn at random, and 5,000 points on its surface: at random, and of blades 100 in a row at each end of each
-side, as meshes and measurements of sections have them (`--random`: none, so that nothing but the outermost points tells
-where the blade ends). `--given` tells the fit its structure, otherwise it is told nothing. Deviations are those of
-20,000 other points of the true surface from the found one, of the chord; seconds are of one processor. The results are
-recorded in design/fit_made.md.
+side, as meshes and measurements of sections have them (`--random`: none, so that only the outermost points show where
+the blade ends). `--given` gives the fit the structure of the design, otherwise it has the points alone. Deviations are
+those of 20,000 other points of the true surface from the found one, of the chord; seconds are of one processor. The
+results are recorded in design/fit_made.md.
 """
 
 import os
@@ -113,7 +113,7 @@ def points_of(built, count, draw):
 
 
 def cloud_of(built, seed, *, ends):
-    """The points that a fit sees, with rows at the ends of a blade where asked for, and those that measure it."""
+    """The points that a fit sees, with rows at the `ends` of a blade if wanted, and those that measure it."""
     draw = np.random.default_rng(1000 + seed)
     cloud, others = points_of(built, POINTS, draw), points_of(built, OTHERS, draw)
     if hasattr(built, "surfaces") and ends:
@@ -142,12 +142,12 @@ def row(kind, seed, *, given, ends):
 
 
 if __name__ == "__main__":
-    asked = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    asked.add_argument("kind", choices=("sections", "blades"))
-    asked.add_argument("--given", action="store_true")
-    asked.add_argument("--random", action="store_true")
-    asked.add_argument("--seeds", default="0:10")
-    options = asked.parse_args()
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("kind", choices=("sections", "blades"))
+    parser.add_argument("--given", action="store_true")
+    parser.add_argument("--random", action="store_true")
+    parser.add_argument("--seeds", default="0:10")
+    options = parser.parse_args()
     print("| design, seed | parameters | mean | max | passed | s |\n|---|---|---|---|---|---|")
     for each in range(*map(int, options.seeds.split(":"))):
         print(row(options.kind, each, given=options.given, ends=not options.random), flush=True)

@@ -11,7 +11,7 @@ from bladewright import cad
 from bladewright.files.examples import example_text, examples
 from bladewright.section.unified import UnifiedSection
 
-PROMISES = (
+FIGURES = (
     "metal_angle_at_walls",
     "metal_angle_between",
     "edge_radius",
@@ -39,7 +39,7 @@ def figures(trip):
 
 def main():
     """Measure every example and print the worst of each figure."""
-    worst = dict.fromkeys(PROMISES, (0.0, ""))
+    worst = dict.fromkeys(FIGURES, (0.0, ""))
     files = {kind: {} for kind in ("step", "igs")}
     with tempfile.TemporaryDirectory() as directory:
         for name in examples():
@@ -48,17 +48,17 @@ def main():
             design = bw.read_design(path)
             blade = (bw.prismatic(design) if isinstance(design, UnifiedSection) else design).build()
             assert blade.conformance.kept, name
-            for promise in PROMISES:
-                value = getattr(blade.conformance, promise)
-                # a family without metal angles promises none
-                worst[promise] = max(worst[promise], (0.0 if value is None else value, name))
+            for figure in FIGURES:
+                value = getattr(blade.conformance, figure)
+                # a family without metal angles has no such figure
+                worst[figure] = max(worst[figure], (0.0 if value is None else value, name))
             for kind, found in files.items():
                 trip = cad.write(blade, Path(directory) / f"{name}.{kind}")
                 assert trip.passed, (name, trip.failures)
                 for what, value in figures(trip).items():
                     found[what] = max(found.get(what, (0.0, "")), (value, name))
-    for promise, (value, name) in worst.items():
-        print(f"{promise:22} {value:.1e}   {name}")
+    for figure, (value, name) in worst.items():
+        print(f"{figure:22} {value:.1e}   {name}")
     for kind, found in files.items():
         for what, (value, name) in found.items():
             print(f"{kind:4} {what:17} {value:.1e}   {name}")

@@ -1,10 +1,10 @@
-"""How far the edges of Rotor 67's cloud lie from a smooth match, row by row, and whether one row tells of the next.
+"""How far the edges of Rotor 67's cloud lie from a smooth match, row by row, and whether one row predicts the next.
 
     python design/rotor_67_rows.py
 
 Needs ../shared/data/clouds. The design is the example nasa-rotor-67, a match with 107 parameters. The points of each of
 the 11 rows that lie beside an edge are moved along the chord and across it until they lie nearest to the design; the
-moves of a row are then foretold from those of the rows on both sides of it. Recorded in design/matches.md.
+moves of a row are then interpolated from those of the rows on both sides of it. Recorded in design/matches.md.
 """
 
 from pathlib import Path

@@ -16,7 +16,7 @@ print(
     f"edge {1e3 * thickness.min():.3f} to {1e3 * thickness.max():.3f} mm thick"
 )
 
-# the chord's middle stands on the cylinder; the face between its corners is a chord of it
+# the middle of the chord lies on the cylinder; the face between its corners is a chord of it
 assert np.max(np.abs(radius - 0.1)) < 1e-4
 assert np.max(np.abs(np.array(backsweep) + 40.0)) < 1e-3
 assert {"trailing_edge"} <= set(blade.surfaces)

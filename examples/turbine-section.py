@@ -17,5 +17,5 @@ throat = gaps.min()
 outlet = np.degrees(np.arccos(throat / pitch))
 print(f"throat {1e3 * throat:.3f} mm, throat / pitch {throat / pitch:.4f}: the gas leaves at {outlet:.2f} deg")
 
-# the throat stands across the flow, so arccos(throat / pitch) is the outlet angle: the metal angle, within 1 deg
+# the throat is normal to the flow, so arccos(throat / pitch) is the outlet angle: the metal angle, within 1 deg
 assert abs(outlet + design.metal_angle_out) < 1.0

@@ -10,7 +10,7 @@ section = blade.section(0.5)
 inlet, outlet = np.degrees([section.metal_angle_in, section.metal_angle_out])
 (x, y, z), (x_out, y_out, z_out) = (blade.surfaces["upper"](at, 0.5) for at in (0.0, 1.0))
 ratio = np.hypot(y_out, z_out) / np.hypot(y, z)
-# channels between the vanes, from edge to edge; the walls stand 16.27 and 17.16 mm apart there
+# channels between the vanes, from edge to edge; the walls are 16.27 and 17.16 mm apart there
 opening = ratio * np.cos(np.radians(outlet)) / np.cos(np.radians(inlet)) * (17.16 / 16.27)
 print(f"vane angles {inlet:.3f} and {outlet:.3f} deg at mid span, radius ratio {ratio:.4f}, area ratio {opening:.3f}")
 

@@ -15,7 +15,7 @@ ALONG = np.array([0.1, 0.3, 0.5, 0.7, 0.9])
 LEAST = np.outer([1.5, 3.2, 3.8, 3.2, 1.5], 1.0 - 0.68 * SPANS)
 """thickness [mm] at those places along the chord, falling to a third of itself at the tip"""
 LEAN, SWEEP = 0.5, 3.0
-"""how far a section's centroid may stand from the hub section's, around the axis [deg] and along it [mm]"""
+"""how far a section's centroid may lie from the hub section's, around the axis [deg] and along it [mm]"""
 NODES, WEIGHTS = np.polynomial.legendre.leggauss(16)
 
 
