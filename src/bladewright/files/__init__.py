@@ -1,1 +1,1 @@
-"""Design files and what surrounds them: reading, writing, schema, built-in examples; see each module."""
+"""Design files, their schema and examples, point clouds, SU2 surfaces, and the designs of other programs."""

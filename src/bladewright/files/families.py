@@ -1,4 +1,4 @@
-"""The families of designs that a file can hold: one entry each."""
+"""The design families that a file can hold: one entry for each."""
 
 from bladewright.blade.design.families import (
     CamberAngleBlade,
@@ -35,7 +35,7 @@ FAMILIES: dict[str, type[Design]] = {
 
 
 def family_of(design: Design) -> str:
-    """The `family` under which a design's file is written; FileError where its class has none."""
+    """The `family` that a design's file states; FileError where its class is not in `FAMILIES`."""
     for family, kind in FAMILIES.items():
         if type(design) is kind:
             return family

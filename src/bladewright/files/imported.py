@@ -13,9 +13,10 @@ from bladewright.errors import DesignError
 from bladewright.nurbs.basis import Reals
 
 AnyDesign = TypeVar("AnyDesign", bound=Design)
-"""the family that a program's designs belong to"""
+"""class of the designs that a program's files are read as"""
 DISTANCE_TOLERANCE = 1e-5
-"""of the blade's extent: how much nearer a place may be that is passed over while distances are measured"""
+"""Error, as a fraction of the blade's extent, that a measured distance may have because another point of the surface is
+nearer still. Distances are shown with two or three digits; less would cost time for nothing that is seen."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -24,20 +25,20 @@ class Imported(Generic[AnyDesign]):
 
     design: AnyDesign
     program: str
-    """whose file it is"""
+    """name of the other program"""
     kept: tuple[str, ...]
-    """what is as it was, each a sentence"""
+    """what the design has exactly as the other program has it, each a sentence"""
     changed: tuple[str, ...]
-    """what is not, each a sentence"""
+    """what it has otherwise, each a sentence"""
     notes: tuple[str, ...] = ()
-    """what else is to be known of the file, each a sentence"""
+    """remarks on the file, each a sentence"""
     points: Mapping[str, Reals]
-    """points (k, 2) or (k, 3) [m] of the other program's sides, by the side that they should lie on"""
+    """points (k, 2) or (k, 3) [m] of the other program's blade, by the side that they should lie on"""
     source: str = "its own sides"
-    """where the points are from"""
+    """where the points come from"""
 
     def distances(self, built: Any) -> Reals:
-        """Distances (n,) [m] of the other program's points from the sides of what the design builds."""
+        """Distances (n,) [m] of the other program's points from the sides of what this design builds."""
         from bladewright.nurbs.closest import closest_on_curve, closest_on_surface
 
         found = []
@@ -50,9 +51,10 @@ class Imported(Generic[AnyDesign]):
 
 
 def most_blades_apart(most: int, check: Callable[[int], None]) -> int:
-    """The largest number of blades, at most `most`, at which `check` does not refuse the design's blade_count.
+    """The largest number of blades, up to `most`, that do not intersect: that `check` does not refuse.
 
-    Raises DesignError where it refuses something else.
+    For files that state no number, or one without effect. Raises DesignError where `check` refuses something other than
+    the blade count.
     """
 
     def apart(count: int) -> bool:

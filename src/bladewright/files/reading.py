@@ -1,4 +1,4 @@
-"""Reading a design from its file."""
+"""Reading a design from a TOML file."""
 
 from __future__ import annotations
 
@@ -20,17 +20,17 @@ from bladewright.files.validation_messages import validation_message
 
 
 def read_design(path: str | PathLike[str]) -> Design:
-    """The design that a TOML file holds; its class follows from the file's `family`.
+    """The design in a TOML file; the `family` of the file decides its class.
 
     Raises FileError where the file cannot be read or is not TOML, and DesignError, naming file, parameter, value and
-    limit, where the file holds no possible design.
+    limit, where it is no possible design.
     """
     path = Path(path)
     return design_from(parsed(read_text(path), str(path)), str(path))
 
 
 def parsed(text: str, where: str) -> dict[str, Any]:
-    """The tables of a TOML text; FileError with the line where it is none."""
+    """The tables of a TOML text; FileError with the line where it is not valid TOML."""
     try:
         return tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:
@@ -56,7 +56,7 @@ def design_from(document: Mapping[str, Any], where: str) -> Design:
 
 @cache
 def adapter(kind: type[Design]) -> TypeAdapter[Design]:
-    """Pydantic's validator of a design class."""
+    """Pydantic's validator for a design class."""
     return TypeAdapter(kind)
 
 

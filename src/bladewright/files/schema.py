@@ -1,4 +1,4 @@
-"""The JSON Schema of design files, from the designs' own fields, units and docstrings."""
+"""The JSON Schema of design files, made from the fields, units and docstrings of the design classes."""
 
 from collections.abc import Iterator
 from dataclasses import fields, is_dataclass
@@ -16,7 +16,7 @@ _DIALECT = "https://json-schema.org/draft/2020-12/schema"
 
 
 def schema() -> dict[str, Any]:
-    """A JSON Schema (2020-12) whose `oneOf` has an entry for each `family`; units stand under the key `unit`."""
+    """A JSON Schema (2020-12) with an entry of `oneOf` for each `family`; units are under the key `unit`."""
     inputs = [(family, "validation", adapter(kind)) for family, kind in FAMILIES.items()]
     _, shared = TypeAdapter.json_schemas(inputs)  # type: ignore[arg-type]
     definitions: dict[str, Any] = shared["$defs"]
@@ -36,13 +36,13 @@ def schema() -> dict[str, Any]:
 
 
 def _refine(kind: type[Part], definitions: dict[str, Any], refined: set[type[Part]]) -> None:
-    """Add units, and take away what a TOML file cannot say: null; once for each part, however many designs have it."""
+    """Add units and remove null, which TOML does not have; once for each part, however many designs contain it."""
     if kind in refined:
         return
     refined.add(kind)
     properties = definitions[kind.__name__]["properties"]
     required = definitions[kind.__name__].setdefault("required", [])
-    hints, told_by = get_type_hints(kind), tags(kind)
+    hints, tag_fields = get_type_hints(kind), tags(kind)
     for each in fields(kind):
         entry = properties[each.name]
         entry.pop("title", None)
@@ -50,7 +50,7 @@ def _refine(kind: type[Part], definitions: dict[str, Any], refined: set[type[Par
             entry["description"] = words
         if "unit" in each.metadata:
             entry["unit"] = each.metadata["unit"]
-        if each.name in told_by:
+        if each.name in tag_fields:
             del entry["default"]
             required.insert(0, each.name)
         if entry.get("default", 0) is None:
@@ -62,7 +62,7 @@ def _refine(kind: type[Part], definitions: dict[str, Any], refined: set[type[Par
 
 
 def _parts_in(hint: Any) -> Iterator[type[Part]]:
-    """The parts that a field may hold, alone, in a choice or in a list."""
+    """The part classes that a field may hold: by itself, in a union or in a list."""
     if isinstance(hint, type) and is_dataclass(hint) and issubclass(hint, Part):
         yield hint
     for inner in get_args(hint):
@@ -70,7 +70,7 @@ def _parts_in(hint: Any) -> Iterator[type[Part]]:
 
 
 def _inherited(kind: type[Part], name: str) -> str | None:
-    """The description of a field that a base class has declared; pydantic reads those of the class itself."""
+    """The docstring of a field that a base class declares; pydantic reads those of the class itself only."""
     for base in kind.__mro__[1:]:
         if is_dataclass(base) and name in base.__annotations__:
             found: str | None = _properties(base)[name].get("description")
@@ -80,6 +80,6 @@ def _inherited(kind: type[Part], name: str) -> str | None:
 
 @cache
 def _properties(kind: type) -> dict[str, Any]:
-    """The properties of a class as pydantic describes them."""
+    """The schema of a class's fields as pydantic makes it."""
     found: dict[str, Any] = TypeAdapter(kind).json_schema()["properties"]
     return found

@@ -1,4 +1,4 @@
-"""Text files, read within a limit of size and only as UTF-8; files written whole or not at all."""
+"""Text files: read as UTF-8 within a limit of size, and written completely or not at all."""
 
 import os
 from pathlib import Path
@@ -7,7 +7,8 @@ from bladewright.atomic_write import atomic_write
 from bladewright.errors import FileError
 
 LARGEST = 1_000_000
-"""Bytes beyond which a text file is refused before it is read; a design takes a few thousand."""
+"""[bytes] Size above which a text file is refused before it is read. A design file takes a few thousand, the
+largest input file of T-Blade3 at hand 254,149."""
 
 _SIGNATURES = {
     b"\x89PNG": "a PNG picture",
@@ -15,23 +16,23 @@ _SIGNATURES = {
     b"\x1f\x8b": "a gzip archive",
     b"%PDF": "a PDF",
 }
-_WIDE = (b"\xff\xfe", b"\xfe\xff")
-_MARK = b"\xef\xbb\xbf"
+_UTF_16_MARKS = (b"\xff\xfe", b"\xfe\xff")
+_UTF_8_MARK = b"\xef\xbb\xbf"
 
 
 def read_text(path: Path) -> str:
-    """The text of a UTF-8 file of at most `LARGEST` bytes, its line ends kept, without a byte-order mark.
+    """The text of a UTF-8 file of at most `LARGEST` bytes, with its line ends, without a byte-order mark.
 
-    Raises FileError where there is no such file, it is a directory, too large, not text or not UTF-8.
+    Raises FileError where there is no such file, or where it is a directory, too large, not text or not UTF-8.
     """
     try:
         with path.open("rb") as stream:
             size = os.fstat(stream.fileno()).st_size
             data = stream.read(LARGEST + 1) if size <= LARGEST else b""
     except FileNotFoundError:
-        raise FileError(f"there is no file '{path}'{_near(path)}") from None
+        raise FileError(f"there is no file '{path}'{_suggestion(path)}") from None
     except IsADirectoryError:
-        raise FileError(f"'{path}' is a directory: name a file in it{_inside(path)}") from None
+        raise FileError(f"'{path}' is a directory: name a file in it{_designs_in(path)}") from None
     except (OSError, ValueError) as error:
         raise FileError(f"'{path}' cannot be read: {_reason(error)}") from error
     if max(size, len(data)) > LARGEST:
@@ -41,9 +42,9 @@ def read_text(path: Path) -> str:
 
 
 def write_text(path: Path, text: str) -> None:
-    """Write a text as UTF-8, its line ends kept: the file appears whole or not at all.
+    """Write a text as UTF-8 with its line ends, completely or not at all.
 
-    Raises FileError where it cannot be written, and leaves nothing behind.
+    Raises FileError where it cannot be written, and then leaves nothing behind.
     """
     with atomic_write(path) as unfinished:
         Path(unfinished).write_bytes(text.encode())
@@ -51,11 +52,11 @@ def write_text(path: Path, text: str) -> None:
 
 def _decoded(data: bytes, path: Path) -> str:
     what = next((what for start, what in _SIGNATURES.items() if data.startswith(start)), None)
-    if data.startswith(_WIDE):
+    if data.startswith(_UTF_16_MARKS):
         raise FileError(f"'{path}' is UTF-16 text: save it as UTF-8")
     if what or b"\0" in data:
         raise FileError(f"'{path}' is {what or 'a binary file'}: a design file is UTF-8 text")
-    data = data.removeprefix(_MARK)
+    data = data.removeprefix(_UTF_8_MARK)
     try:
         return data.decode("utf-8")
     except UnicodeDecodeError as error:
@@ -72,7 +73,7 @@ def _reason(error: OSError | ValueError) -> str:
     return str(error)
 
 
-def _near(path: Path) -> str:
+def _suggestion(path: Path) -> str:
     from difflib import get_close_matches
 
     try:
@@ -86,7 +87,7 @@ def _near(path: Path) -> str:
     return f"; design files there are {', '.join(designs[:5])}" if designs else ""
 
 
-def _inside(path: Path) -> str:
+def _designs_in(path: Path) -> str:
     try:
         names = sorted(each.name for each in path.glob("*.toml"))
     except OSError:

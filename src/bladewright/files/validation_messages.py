@@ -13,7 +13,7 @@ from pydantic_core import ErrorDetails
 from bladewright.designs import Design, Point, unknown
 from bladewright.section.tagged_unions import tags
 
-_WORDS = {
+_NEEDED = {
     float: "a number",
     bool: "true or false",
     int: "a whole number",
@@ -21,16 +21,17 @@ _WORDS = {
     Point: "a pair of numbers",
 }
 _RANKS = {"unexpected_keyword_argument": 0, "missing": 2}
+"""Order in which errors are reported: unknown keys, wrong values (1), missing keys."""
 
 
 def validation_message(error: ValidationError, document: Mapping[str, Any], kind: type[Design]) -> str:
-    """The first thing that is wrong, unknown keys before wrong values before missing keys, and how many more."""
+    """A paragraph on the first error (unknown keys before wrong values before missing keys), and how many more."""
     found: dict[str, tuple[int, int, str]] = {}
     for each in error.errors(include_url=False):
         place = _Place(each["loc"], document, kind)
         rank = _RANKS.get(each["type"], 1) if place.depth_in_list == 0 else 1
-        # Of the arms of a union, the one that reached deepest into the value is the one that was meant.
-        candidate = (rank, -len(place.path), _said(each, place))
+        # of the members of a union, the one that was intended is the one that reached deepest into the value
+        candidate = (rank, -len(place.path), _error_text(each, place))
         found[place.field] = min(found.get(place.field, candidate), candidate)
     first = min(found.values(), key=lambda item: item[0])
     more = len(found) - 1
@@ -38,7 +39,7 @@ def validation_message(error: ValidationError, document: Mapping[str, Any], kind
 
 
 def shown(value: Any) -> str:
-    """A value as a file would have it, shortened."""
+    """A value as a file has it, shortened."""
     if isinstance(value, float) and not math.isfinite(value):
         return str(value)
     text = json.dumps(value, default=str, ensure_ascii=False)
@@ -46,10 +47,10 @@ def shown(value: Any) -> str:
 
 
 def needed(annotation: Any) -> str:
-    """In words, what a field of this type takes."""
+    """What a field of this type needs, in words."""
     origin, inner = get_origin(annotation), get_args(annotation)
     if origin in (Union, UnionType):
-        parts = [own for _, own in _told(annotation)]
+        parts = [own for _, own in _tagged_parts(annotation)]
         if parts:
             return f"a table whose {next(iter(parts[0]))} is one of " + ", ".join(shown(*own.values()) for own in parts)
         return " or ".join(needed(each) for each in inner if each is not NoneType)
@@ -59,7 +60,7 @@ def needed(annotation: Any) -> str:
         return _needed_list(inner)
     if is_dataclass(annotation):
         return "a table of " + ", ".join(each.name for each in fields(annotation))
-    return _WORDS[annotation]
+    return _NEEDED[annotation]
 
 
 def _needed_list(entries: tuple[Any, ...]) -> str:
@@ -69,31 +70,31 @@ def _needed_list(entries: tuple[Any, ...]) -> str:
     return f"a list of {entry[2:]}s" if entry == "a number" else f"a list with, for each entry, {entry}"
 
 
-def _told(annotation: Any) -> list[tuple[type[Any], dict[str, Any]]]:
-    """The parts of a union of parts, and by which fields and values they are told."""
+def _tagged_parts(annotation: Any) -> list[tuple[type[Any], dict[str, Any]]]:
+    """The part classes of a union, and the field and value by which each is recognised."""
     if get_origin(annotation) not in (Union, UnionType):
         return []
     parts: list[Any] = [each for each in get_args(annotation) if is_dataclass(each)]
     return [(each, own) for each in parts if (own := tags(each))]
 
 
-def _arm(annotation: Any, step: int | str) -> type[Any] | None:
-    """The part of a union that a step names: by the value that tells it, or by its class where its keys tell it."""
-    arms = get_args(annotation) if get_origin(annotation) in (Union, UnionType) else ()
-    parts: list[Any] = [each for each in arms if is_dataclass(each)]
+def _union_member(annotation: Any, step: int | str) -> type[Any] | None:
+    """The part class of a union that a step of pydantic's path names: by its tag, or by its class where it has none."""
+    members = get_args(annotation) if get_origin(annotation) in (Union, UnionType) else ()
+    parts: list[Any] = [each for each in members if is_dataclass(each)]
     named = (each for each in parts if step in tags(each).values() or (not tags(each) and step == each.__name__))
     return next(named, None)
 
 
-def _given(annotation: Any) -> Any:
-    """The type of a part that may be left out, without what stands for its absence."""
+def _without_none(annotation: Any) -> Any:
+    """The type of an optional part without None."""
     arms = [each for each in get_args(annotation) if each is not NoneType]
     alone = get_origin(annotation) in (Union, UnionType) and len(arms) == 1 and is_dataclass(arms[0])
     return arms[0] if alone else annotation
 
 
 class _Place:
-    """Where in a file pydantic stopped: the dotted path, the field's type there, the table that holds it."""
+    """Where in a file pydantic found an error: the dotted path, the field's type and unit, and the table around it."""
 
     def __init__(self, loc: tuple[int | str, ...], document: Mapping[str, Any], kind: type[Design]) -> None:
         self.path = self.field = self.unit = ""
@@ -102,7 +103,7 @@ class _Place:
         self.depth_in_list = 0
         node: Any = document
         for step in loc:
-            part = _arm(self.annotation, step)
+            part = _union_member(self.annotation, step)
             if part is not None:
                 self.annotation, self.depth_in_list = part, 0
             elif isinstance(step, str) and self.depth_in_list == 0 and isinstance(node, Mapping):
@@ -117,7 +118,7 @@ class _Place:
             return
         self.names = [each.name for each in fields(self.annotation)]
         self.unit = next((each.metadata.get("unit", "") for each in fields(self.annotation) if each.name == name), "")
-        self.annotation = _given(get_type_hints(self.annotation).get(name))
+        self.annotation = _without_none(get_type_hints(self.annotation).get(name))
         self.path = self.field = f"{self.path}.{name}" if self.path else name
 
     def _index(self, index: int) -> None:
@@ -127,11 +128,12 @@ class _Place:
             self.annotation = float
             return
         self.path += f"[{index}]"
-        arms = get_args(self.annotation) if get_origin(self.annotation) in (Union, UnionType) else (self.annotation,)
-        self.annotation = next((get_args(arm)[0] for arm in arms if get_origin(arm) is tuple), float)
+        optional = get_origin(self.annotation) in (Union, UnionType)
+        members = get_args(self.annotation) if optional else (self.annotation,)
+        self.annotation = next((get_args(each)[0] for each in members if get_origin(each) is tuple), float)
 
 
-def _said(error: ErrorDetails, place: _Place) -> str:
+def _error_text(error: ErrorDetails, place: _Place) -> str:
     unit = f" [{place.unit}]" if place.unit else ""
     if error["type"] == "unexpected_keyword_argument":
         return unknown(place.path, place.path.rpartition(".")[2], place.names)
@@ -142,29 +144,30 @@ def _said(error: ErrorDetails, place: _Place) -> str:
     if error["type"].startswith("union_tag"):
         return _wrong_tag(error, place)
     value = shown(error["input"])
-    return f"{place.path or 'the file'} is {value}: {needed(place.annotation)}{unit} is needed{_nearest(error, place)}"
+    what = f"{place.path or 'the file'} is {value}: {needed(place.annotation)}{unit} is needed"
+    return what + _nearest_choice(error, place)
 
 
 def _wrong_tag(error: ErrorDetails, place: _Place) -> str:
-    parts, value = [own for _, own in _told(place.annotation)], error["input"]
+    parts, value = [own for _, own in _tagged_parts(place.annotation)], error["input"]
     if not parts or not isinstance(value, dict):
-        # what its keys tell apart, or what is no table at all
+        # parts that are recognised by their keys, or a value that is no table at all
         return f"{place.path} is {shown(value)}: {needed(place.annotation)} is needed"
     name, known = next(iter(parts[0])), [str(value) for own in parts for value in own.values()]
     given = value.get(name)
     choice = "one of " + ", ".join(shown(each) for each in known)
     if given is None:
         return f"{place.path}.{name} is missing: {choice} must be given"
-    return f"{place.path}.{name} is {shown(given)}: {choice} is needed{_meant(given, known)}"
+    return f"{place.path}.{name} is {shown(given)}: {choice} is needed{_suggestion(given, known)}"
 
 
-def _nearest(error: ErrorDetails, place: _Place) -> str:
+def _nearest_choice(error: ErrorDetails, place: _Place) -> str:
     if error["type"] != "literal_error" or not isinstance(error["input"], str):
         return ""
-    return _meant(error["input"], [str(each) for each in get_args(place.annotation)])
+    return _suggestion(error["input"], [str(each) for each in get_args(place.annotation)])
 
 
-def _meant(given: object, known: list[str]) -> str:
+def _suggestion(given: object, known: list[str]) -> str:
     from difflib import get_close_matches
 
     near = get_close_matches(str(given), known, n=1, cutoff=0.4)

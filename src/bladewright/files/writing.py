@@ -20,37 +20,39 @@ from bladewright.files.reading import design_from, parsed
 from bladewright.files.text import read_text, write_text
 from bladewright.section.tagged_unions import tags
 
-_WIDTH = 100
-"""Columns that a list may take before each entry gets its line."""
+LIST_WIDTH = 100
+"""Characters of a list above which each of its entries is written on a line of its own: one screen line."""
 
 
 def literal(value: Any, path: str) -> str:
-    """The TOML of a text, a number, a part or a (nested) tuple; DesignError where it is a complex number or a batch."""
+    """A text, number, part or nested tuple as TOML, exact to the last bit; DesignError for anything else."""
     if isinstance(value, bool | str):
         return tomlkit.item(value).as_string()
     if isinstance(value, int | float):
         return repr(value)
     if isinstance(value, Part):
-        held = {each.name: getattr(value, each.name) for each in fields(value)}
-        return "{" + ", ".join(f"{name} = {literal(item, f'{path}.{name}')}" for name, item in held.items()) + "}"
+        entries = (
+            f"{each.name} = {literal(getattr(value, each.name), f'{path}.{each.name}')}" for each in fields(value)
+        )
+        return "{" + ", ".join(entries) + "}"
     if not isinstance(value, tuple):
         raise DesignError(f"{path} is {value!r}: a file holds real numbers, texts and lists of them")
     items = [literal(item, f"{path}[{index}]") for index, item in enumerate(value)]
     line = f"[{', '.join(items)}]"
-    if len(line) <= _WIDTH:
+    if len(line) <= LIST_WIDTH:
         return line
     return "[\n" + "".join(f"  {item},\n" for item in items) + "]"
 
 
 def plain(value: Any) -> Any:
-    """A value with lists in the place of tuples and tables in that of parts, as TOML would return it."""
+    """A value as TOML returns it: lists for tuples, and dictionaries for parts."""
     if isinstance(value, Part):
         return {each.name: plain(getattr(value, each.name)) for each in fields(value)}
     return [plain(item) for item in value] if isinstance(value, tuple) else value
 
 
 def same(a: Any, b: Any) -> bool:
-    """Whether two plain values are one to the bit, a whole number standing for the same float."""
+    """Whether two plain values are equal to the last bit, where a whole number equals the same float."""
     if isinstance(a, list) and isinstance(b, list):
         return len(a) == len(b) and all(same(one, other) for one, other in zip(a, b, strict=True))
     if isinstance(a, dict) and isinstance(b, dict):
@@ -62,10 +64,10 @@ def same(a: Any, b: Any) -> bool:
 
 
 def write_design(design: Design, path: str | PathLike[str]) -> None:
-    """Write a design as TOML, so that reading it gives the same design to the bit.
+    """Write a design as TOML, so that reading the file gives the same design to the last bit.
 
-    Where the file already holds a design, only the values that differ are changed: comments and layout stay.
-    Raises FileError where the file cannot be written or holds something else, and DesignError where a leaf of the
+    Where the file already holds a design, only the values that differ are changed; comments and layout stay.
+    Raises FileError where the file cannot be written or holds something else, and DesignError where a parameter of the
     design is complex or a batch.
     """
     path = Path(path)
@@ -74,7 +76,7 @@ def write_design(design: Design, path: str | PathLike[str]) -> None:
 
 
 def text_of(design: Design) -> str:
-    """The text of a new design file; fields that have their default are left out, units stand in comments."""
+    """The text of a new design file, with units as comments and without the fields that have their default value."""
     length = _length_of(design)
     lines = [f'family = "{family_of(design)}"', *_lines(design, "", length, parameters=False), ""]
     lines += _lines(design, "", length, parameters=True)
@@ -82,7 +84,7 @@ def text_of(design: Design) -> str:
 
 
 def updated(design: Design, text: str, where: str) -> str:
-    """The text of a design file with this design's values; FileError where it holds no design."""
+    """The text of an existing design file with the values of this design; FileError where it holds no design."""
     try:
         document = parsed(text, where)
     except FileError as error:
@@ -102,13 +104,13 @@ def updated(design: Design, text: str, where: str) -> str:
         merged = tomlkit.dumps(tree)
         kept = repr(design_from(parsed(merged, where), where)) == repr(design)
     except (TOMLKitError, BladewrightError, IndexError, KeyError) as error:
-        raise FileError(_no_place(where)) from error
+        raise FileError(_unsuitable_layout(where)) from error
     if not kept:
-        raise FileError(_no_place(where))
+        raise FileError(_unsuitable_layout(where))
     return merged
 
 
-def _no_place(where: str) -> str:
+def _unsuitable_layout(where: str) -> str:
     return f"'{where}' exists with a layout that cannot take this design's values: name another file"
 
 
@@ -117,7 +119,7 @@ def _length_of(design: Design) -> str:
 
 
 def _tables(design: Part, path: str, length: str) -> list[str]:
-    """The tables of the parts of a design or part, each with those of its own parts behind it."""
+    """The lines of the tables of a design's parts, each followed by the tables of its own parts."""
     lines = []
     for each in fields(design):
         value, name = getattr(design, each.name), path + each.name
@@ -132,16 +134,16 @@ def _tables(design: Part, path: str, length: str) -> list[str]:
 
 
 def _is_parts(value: Any) -> bool:
-    """Whether it is a list of parts, which stands in tables of its own."""
+    """Whether a value is a list of parts, which is written as an array of tables."""
     return isinstance(value, tuple) and len(value) > 0 and all(isinstance(item, Part) for item in value)
 
 
 def _lines(design: Part, path: str, length: str, *, parameters: bool) -> list[str]:
-    lines, told_by = [], tags(type(design))
+    lines, tag_fields = [], tags(type(design))
     for each in fields(design):
         value = getattr(design, each.name)
         left_out = (
-            isinstance(value, Part) or _is_parts(value) or (_is_default(each, value) and each.name not in told_by)
+            isinstance(value, Part) or _is_parts(value) or (_is_default(each, value) and each.name not in tag_fields)
         )
         if ("unit" in each.metadata) == parameters and not left_out:
             unit = each.metadata.get("unit", "-").replace("length", length)
@@ -155,7 +157,7 @@ def _is_default(each: Any, value: Any) -> bool:
 
 
 def _merge(table: MutableMapping[str, Any], design: Part, before: Part | None, length: str) -> None:
-    told_by = tags(type(design))
+    tag_fields = tags(type(design))
     for each in fields(design):
         value, old = getattr(design, each.name), getattr(before, each.name, None)
         if isinstance(value, Part):
@@ -169,7 +171,7 @@ def _merge(table: MutableMapping[str, Any], design: Part, before: Part | None, l
                 table[each.name] = _rows(value, length)
         elif each.name in table:
             _put(table, each.name, value, each.name)
-        elif each.name in told_by or not (_is_default(each, value) or (before and same(plain(old), plain(value)))):
+        elif each.name in tag_fields or not (_is_default(each, value) or (before and same(plain(old), plain(value)))):
             table[each.name] = tomlkit.value(literal(value, each.name))
     for key in set(table) - {each.name for each in fields(design)} - {"family"}:
         del table[key]
@@ -187,7 +189,7 @@ def _rows(parts: tuple[Part, ...], length: str) -> AoT:
 
 
 def _put(holder: Any, key: str | int, value: Any, path: str) -> None:
-    """Change what stands at `key` of a table or an array, as little of it as the value needs."""
+    """Set the value at `key` of a table or an array, changing as little of its layout as possible."""
     there = holder[key]
     if same(_unwrapped(there), plain(value)):
         return
