@@ -6,6 +6,7 @@ from typing import Any, Literal
 from bladewright.section.checks import UNITS
 
 Unit = Literal["m", "cm", "mm", "um", "in", "ft"]
+Arrangement = Literal["annular", "linear"]
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -16,7 +17,7 @@ class DesignHeader:
     length_unit: Unit
     pitch: float | None = None
     """[m]"""
-    arrangement: Literal["annular", "linear"] | None = None
+    arrangement: Arrangement | None = None
     blade_count: int | None = None
 
     def row(self, like: Any = None) -> dict[str, Any]:

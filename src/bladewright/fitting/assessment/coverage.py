@@ -3,12 +3,10 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from bladewright.blade.design.unified import UnifiedBlade
 from bladewright.fitting.matching.blade_ends import END_PARAMETERS
 from bladewright.fitting.matching.footpoints import Footpoints, Side, footpoints_at
 from bladewright.fitting.matching.search import Match
 from bladewright.nurbs.basis import Reals
-from bladewright.section.unified import UnifiedSection
 
 ROW_SPREAD = 1e-4
 """spread of the points at an end, of the chord, from which they stand in no row; and of the cloud's noise
@@ -53,7 +51,7 @@ def uncovered_edges(found: Match) -> dict[str, tuple[float, float]]:
 
     A point on the arc is nearer to its middle than the other side is, which no point before it is.
     """
-    if not isinstance(found.design, UnifiedSection | UnifiedBlade):
+    if not found.model.rounded:
         return {}
     on, sides = found.state.footpoints, found.state.shape.sides
     unseen = {}
@@ -73,8 +71,8 @@ def uncovered_edges(found: Match) -> dict[str, tuple[float, float]]:
 
 
 def least_thickness(found: Match) -> float:
-    """The least over the span of the sections' largest thickness [m]; infinite for other families."""
-    if not isinstance(found.design, UnifiedSection | UnifiedBlade):
+    """The least over the span of the sections' largest thickness [m]; infinite for families with other edges."""
+    if not found.model.rounded:
         return np.inf
     return min(_thickness(found.state.shape.sides, v) for v in (0.1, 0.3, 0.5, 0.7, 0.9))
 

@@ -1,15 +1,13 @@
 """Whether a cloud is a blade around the machine axis or one of a linear cascade."""
 
-from typing import Literal
-
 import numpy as np
 
 from bladewright.fitting.clouds.isolated import without_isolated_points
 from bladewright.fitting.clouds.thinning import spread
+from bladewright.fitting.design_header import Arrangement
 from bladewright.fitting.initial_guess.hypotheses import machine_coordinates, ranked_outlines
 from bladewright.nurbs.basis import Reals
 
-Arrangement = Literal["annular", "linear"]
 DECIDING_POINTS = 600
 """points by which the two arrangements are compared; it bounds the time."""
 ANNULAR_AT_ONCE = 3e-3

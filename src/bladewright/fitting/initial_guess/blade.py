@@ -1,7 +1,7 @@
 """A first blade from points in space."""
 
 from itertools import product
-from typing import Any, Literal
+from typing import Any
 
 import numpy as np
 
@@ -11,7 +11,8 @@ from bladewright.designs import Point
 from bladewright.errors import DesignError, FitError
 from bladewright.fitting.clouds.isolated import without_isolated_points
 from bladewright.fitting.clouds.thinning import spread
-from bladewright.fitting.initial_guess.arrangement import Arrangement, found_arrangement
+from bladewright.fitting.design_header import Arrangement, Unit
+from bladewright.fitting.initial_guess.arrangement import found_arrangement
 from bladewright.fitting.initial_guess.channel import CHANNEL_CURVES, SPAN, RoughChannel, curve_counts
 from bladewright.fitting.initial_guess.feasibility import SHARPENINGS, simplified, with_sharper_edges
 from bladewright.fitting.initial_guess.hypotheses import machine_coordinates, ranked_outlines
@@ -40,7 +41,6 @@ from bladewright.section.checks import UNITS
 from bladewright.section.laws import law_basis
 from bladewright.section.unified_limits import ANGLES, RADII, TANGENTS, THICKNESSES
 
-Unit = Literal["m", "cm", "mm", "um", "in", "ft"]
 LAW_LIMITS = {
     **dict.fromkeys(ANGLES, (-89.0, 89.0)),
     **dict.fromkeys(TANGENTS, (0.01, 1.0)),

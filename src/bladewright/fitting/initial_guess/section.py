@@ -1,13 +1,13 @@
 """A first section from points in the plane."""
 
 from functools import partial
-from typing import Literal
 
 import numpy as np
 
 from bladewright.errors import DesignError, FitError
 from bladewright.fitting.clouds.isolated import without_isolated_points
 from bladewright.fitting.clouds.thinning import spread
+from bladewright.fitting.design_header import Unit
 from bladewright.fitting.initial_guess.camber import first_laws
 from bladewright.fitting.initial_guess.feasibility import SHARPENINGS, simplified, with_sharper_edges
 from bladewright.fitting.initial_guess.section_match import SectionMatch, matched_sections
@@ -29,7 +29,6 @@ from bladewright.nurbs.basis import Reals
 from bladewright.section.checks import UNITS
 from bladewright.section.unified import UnifiedSection
 
-Unit = Literal["m", "cm", "mm", "um", "in", "ft"]
 DRAWN_POINTS = 600
 """points that a first section is drawn through; it bounds the time."""
 

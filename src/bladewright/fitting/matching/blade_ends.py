@@ -94,7 +94,7 @@ class WallPoints:
         moving = [i for i, path in enumerate(paths) if path.startswith(("channel.", "flow_path.", "tip_", "hub_"))]
         if not moving or exact is None:
             return found
-        if isinstance(exact, ExactUnifiedBlade) and stands_on_channel(shape.design):
+        if stands_on_channel(shape.design):
             rows, metre = self.basis(exact, t), UNITS[shape.design.length_unit]
             for i in moving:
                 for curve, place, axis in channel_shifts(shape.design, paths[i]):

@@ -81,9 +81,7 @@ def _second_differences_of(line: Sequence[str]) -> Iterator[tuple[Terms, float]]
 
 
 def _thickness_differences(start: Design) -> Iterator[tuple[Terms, float]]:
-    if not hasattr(start, THICKNESSES[0]):
-        return
-    above, below = (paths_of(name, getattr(start, name)) for name in THICKNESSES)
+    above, below = (paths_of(name, getattr(start, name, None)) for name in THICKNESSES)
     if [len(row) for row in above] == [len(row) for row in below]:
         for pair in zip(chain(*above), chain(*below), strict=True):
             yield list(zip(pair, (1.0, -1.0), strict=True)), CAMBER_SPREAD

@@ -13,6 +13,7 @@ import numpy as np
 from scipy.linalg import LinAlgError, cho_factor, cho_solve
 
 from bladewright.errors import DesignError
+from bladewright.fitting.free_parameters import EDGES, WALLS
 from bladewright.fitting.matching.footpoints import footpoints_at, nearest_footpoints
 from bladewright.fitting.matching.residuals import PlacedCloud
 from bladewright.fitting.matching.scales import scales_of
@@ -27,13 +28,12 @@ from bladewright.fitting.model_selection.reshaping import (
     samples_of,
 )
 from bladewright.fitting.model_selection.structure import SPANWISE, Structure, structure_of
-from bladewright.fitting.models.law_jacobian import AXES, EDGES, LawJacobian, edge_basis, stands_on_channel
+from bladewright.fitting.models.law_jacobian import AXES, LawJacobian, edge_basis, stands_on_channel
 from bladewright.nurbs.basis import Reals
 from bladewright.section.checks import UNITS
 from bladewright.section.laws import law_basis
 from bladewright.section.unified_limits import THICKNESSES
 
-WALLS = ("hub", "shroud")
 STRUCTURE_LAWS = (*SPANWISE, "place", *THICKNESSES, *EDGES, *WALLS)
 """laws whose numbers of control points a structure states"""
 STEP_SHARES = (1.0, 0.3, 0.0)
@@ -255,11 +255,7 @@ class Forecast:
 def forecast_of(found: Match, widest: Structure) -> Forecast | None:
     """The forecast about a match; None for other kinds, or where the widest structure leaves it no shape."""
     problem, on = found.problem, found.state.footpoints
-    if (
-        found.state.shape.exact is None
-        or not hasattr(found.state.shape.exact, "before")
-        or not stands_on_channel(found.design)
-    ):
+    if not stands_on_channel(found.design):
         return None
     try:
         design: Any = reshaped(found.design, widest)

@@ -19,6 +19,7 @@ from bladewright.blade.native.interpolation import lower_edges
 from bladewright.blade.native.knots import DEGREE, Knots
 from bladewright.derivatives.complex_step import STEP, law_point, skeleton_of_rows, skeleton_rates, stepped_design
 from bladewright.designs import Design
+from bladewright.fitting.free_parameters import EDGES
 from bladewright.fitting.matching.footpoints import Footpoints
 from bladewright.numerics.elementary import Array
 from bladewright.nurbs.basis import Reals, basis, uniform_knots
@@ -29,7 +30,6 @@ AT_ONCE = 40
 """complex steps in one rebuild; it bounds the memory."""
 PRODUCT_SIZE = 4_000_000
 """numbers of one product; it bounds the memory."""
-EDGES = ("leading_edge", "trailing_edge")
 AXES = {"x": 0, "r": 1}
 
 ChannelShift = tuple[str, int | None, int]

@@ -44,6 +44,8 @@ class Model(ABC):
 
     chord: float
     """[m]"""
+    rounded: bool = False
+    """whether all sections end in rounded edges, whose arcs the two sides share"""
 
     def shape(self, design: Design) -> ModelShape:
         """The sides of a design; raises DesignError where there are none at all."""

@@ -46,6 +46,8 @@ SMALLEST_JACOBIAN = 0.02
 class SectionModel(Model):
     """Sections of the unified family."""
 
+    rounded = True
+
     def __init__(self, design: UnifiedSection) -> None:
         slope = np.cos(np.radians(design.stagger))
         self.chord = float(design.axial_chord * UNITS[design.length_unit] / slope)
@@ -83,6 +85,8 @@ class SectionModel(Model):
 @final
 class BladeModel(Model):
     """Blades of the unified family, at the knots that one of them needs."""
+
+    rounded = True
 
     def __init__(self, design: UnifiedBlade, tolerance: float | None = None) -> None:
         self.tolerance = design.tolerance if tolerance is None else tolerance

@@ -1,7 +1,6 @@
 """The machine's axes of a cloud without a design: from its prism in a cascade, from its two ends in an annulus."""
 
 from dataclasses import dataclass
-from typing import Literal
 
 import numpy as np
 
@@ -9,6 +8,7 @@ from bladewright.errors import FitError
 from bladewright.fitting.assessment.result import Motion
 from bladewright.fitting.clouds.isolated import has_neighbours
 from bladewright.fitting.clouds.thinning import drawn
+from bladewright.fitting.design_header import Arrangement
 from bladewright.fitting.registration.axis_of_revolution import EndPoints, RevolutionAxis, axis_of
 from bladewright.fitting.registration.end_planes import EndPlane, end_planes, first_axes
 from bladewright.fitting.registration.isomap import UnrolledSheet, unrolled_sheet
@@ -16,7 +16,6 @@ from bladewright.fitting.registration.prism import Prism, flat_ends, prism_of
 from bladewright.fitting.registration.rigid_motion import composed
 from bladewright.nurbs.basis import Reals
 
-Arrangement = Literal["annular", "linear"]
 AXES_POINTS = 50_000
 """points that are looked at; it bounds the time, and more say little new about where a blade lies."""
 PRISM_THICKNESS = 1e-3
