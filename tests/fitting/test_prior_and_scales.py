@@ -29,9 +29,9 @@ SIZE = scales_of(SECTION, PATHS, 0.035).size
 
 def rows(changes, start=SECTION):
     """The prior's rows for changed parameters, in the unit of the fields."""
-    prior = regularisation_of(start, PATHS, SIZE)
+    regularisation = regularisation_of(start, PATHS, SIZE)
     z = np.array([changes.get(path, 0.0) / size for path, size in zip(PATHS, SIZE, strict=True)])
-    return prior.matrix @ z - prior.rhs
+    return regularisation.matrix @ z - regularisation.rhs
 
 
 def even(above, below):
@@ -72,13 +72,13 @@ def test_the_rows_of_a_changed_design_are_those_of_a_start_there_but_for_nearnes
 
 def test_held_parameters_take_part_with_their_values():
     size = np.array([0.02])
-    prior = regularisation_of(SECTION, ("thickness_upper[1]",), size)
+    regularisation = regularisation_of(SECTION, ("thickness_upper[1]",), size)
     above, below = SECTION.thickness_upper, SECTION.thickness_lower
     bends = [above[i] - 2.0 * above[i + 1] + above[i + 2] for i in (0, 1)]
     expected = [*(np.array(bends) / BEND_SPREAD / size), (above[1] - below[1]) / CAMBER_SPREAD / size[0]]
-    np.testing.assert_allclose(-prior.rhs[1:], expected, rtol=1e-12)
+    np.testing.assert_allclose(-regularisation.rhs[1:], expected, rtol=1e-12)
     np.testing.assert_allclose(
-        prior.matrix[1:, 0], [-2.0 / BEND_SPREAD, 1.0 / BEND_SPREAD, 1.0 / CAMBER_SPREAD], rtol=1e-12
+        regularisation.matrix[1:, 0], [-2.0 / BEND_SPREAD, 1.0 / BEND_SPREAD, 1.0 / CAMBER_SPREAD], rtol=1e-12
     )
 
 

@@ -30,7 +30,11 @@ def test_a_given_structure_is_met_exactly_but_in_axes_that_a_start_shows(moved, 
     found = searched(task, STATOR, rounds=0)
     at = measured(points, built)
     said = failures_of(
-        np.abs(at.deviations), at.noise_estimate.inliers, at.regions, found, MatchTarget(structured=True, moved=moved)
+        np.abs(at.deviations),
+        at.noise_estimate.inliers,
+        at.regions,
+        found,
+        MatchTarget(structured=True, registered=moved),
     )
     assert len(said) == failures
     assert all("misfit of the given structure" in each for each in said)

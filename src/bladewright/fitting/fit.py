@@ -114,7 +114,7 @@ def fit(
         precision=None if weights is None else _weights(weights, len(points)),
     )
     structured = parameters is None and (start is not None or like is not None)
-    target = MatchTarget(tolerance=tolerance, parameters=parameters, structured=structured, moved=align)
+    target = MatchTarget(tolerance=tolerance, parameters=parameters, structured=structured, registered=align)
     header = DesignHeader(
         name=name, length_unit=length_unit, pitch=pitch, arrangement=arrangement, blade_count=blade_count
     )

@@ -31,6 +31,7 @@ LARGEST_OUTLIER_SHARE = 0.1
 LISTED_NAMES = 5
 """parameters that a note lists by name"""
 SIDES = ("upper", "lower")
+"""names of the sides, by their number in footpoints"""
 HALF_BLADE_WIDTH = 0.5
 """width of the blade where its points end, of its thickest, from which it is half a blade."""
 SHEET_THICKNESS = 3e-3
@@ -103,7 +104,7 @@ def _structure_not_met(found: Match, target: MatchTarget) -> str:
         return ""
     rms, noise = found.rms * found.model.chord, found.noise_estimate.noise
     # in axes that were found by a start no structure is met exactly
-    least = NEAR_ENOUGH[_points(found).shape[1]] if target.moved else EXACT_MISFIT
+    least = NEAR_ENOUGH[_points(found).shape[1]] if target.registered else EXACT_MISFIT
     if found.rms > least and rms > SYSTEMATIC_OVER_NOISE * noise:
         return (
             f"the misfit of the given structure is {1e3 * rms:.3g} mm rms, and the cloud's noise {1e3 * noise:.3g} mm: "

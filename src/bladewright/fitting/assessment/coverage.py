@@ -12,7 +12,7 @@ ROW_SPREAD = 1e-4
 """spread of the points at an end, of the chord, from which they stand in no row; and of the cloud's noise
 (`ROW_SPREAD_OF_NOISE`): a noisy row is a row."""
 ROW_SPREAD_OF_NOISE = 2.0
-"""the same, of the cloud's noise"""
+"""the same, of the cloud's noise: a noisy row is a row all the same."""
 GAP_OVER_SPREAD = 2.7
 """mean distance of evenly scattered values times their number, over their deviation by the median."""
 

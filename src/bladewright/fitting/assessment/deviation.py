@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from bladewright.nurbs.basis import Reals
 
 REGIONS = ("sides", "leading edge", "trailing edge", "ends")
-"""where a point of a cloud may lie"""
+"""regions of a blade in which a point of a cloud may lie"""
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -24,7 +24,7 @@ TEMPLATES = (
     CamberAngle(camber_angle=_ANGLES, half_thickness=_FEW, trailing_edge="blunt"),
     CamberAngle(camber_angle=_ANGLES, half_thickness=_FEW, trailing_edge="sharp"),
 )
-"""structures that are tried where none is given"""
+"""structures that are tried where none is given: one for each kind of trailing edge"""
 
 
 def templates(section: SampledSection, parameters: int | None) -> Sequence[CamberAngle]:  # noqa: ARG001 - the contract's

@@ -99,7 +99,7 @@ def _curvatures(section: SampledSection, places: Reals) -> Reals:
 def _thickness(section: SampledSection, like: CurvatureMeanline) -> Wennerstrom | ModifiedNaca | QuarticSpline:
     law = like.thickness
     maximum, at = section.thickest
-    # a thick nose may show the largest half thickness at the edge
+    # a thick leading edge may show the largest half thickness at the edge
     at = float(np.clip(at, 0.15, 0.8))
     # the thickness of an edge is that of the ellipse with the section's radius
     first, last = (

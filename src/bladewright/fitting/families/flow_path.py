@@ -33,7 +33,7 @@ EDGE_OVERREACH = 0.06
 """length by which an edge curve reaches past the walls, of its length; `EDGE_OVERREACH_LIKE` is how many times that
 where points of another curve say how far it reaches."""
 EDGE_OVERREACH_LIKE = 4.0
-"""how often that far, where the points of another curve say how far it reaches"""
+"""the same where the points of another curve say how far it reaches, in multiples"""
 OPPOSITE_CURVE = {"leading_edge": "trailing_edge", "trailing_edge": "leading_edge", "hub": "shroud", "shroud": "hub"}
 """the curve in whose place each stands when the flow comes from the other side"""
 CURVE_PLACES: Reals = np.linspace(0.0, 1.0, 201)

@@ -65,6 +65,7 @@ FAMILIES = {
         _family("profile", ProfileSection, profile),
     )
 }
+"""the families by name"""
 
 
 def family_of(design: Design) -> FitFamily | None:

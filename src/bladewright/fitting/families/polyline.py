@@ -13,7 +13,7 @@ class PolylineFootpoints:
     """The nearest places of m points on a polyline."""
 
     points: Reals
-    """(m, 2)"""
+    """(m, 2) the nearest places"""
     tangents: Reals
     """(m, 2) unit vectors along the line"""
     heights: Reals

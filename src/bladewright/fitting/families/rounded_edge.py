@@ -37,25 +37,27 @@ class RoundedEdge:
     """An edge's numbers, of the chord and relative to the chord line."""
 
     angle: float
-    """of the edge's direction [rad]"""
+    """direction of the edge from the chord line [rad]"""
     radius: float
+    """radius of curvature at the edge, of the chord"""
     stretch: float
+    """of the edge's ellipses along its direction; 1 is a circle"""
     skew: float
     """positive where the edge is longer on the upper side"""
     wedge: float
-    """[rad]"""
+    """angle between the sides where they leave the edge [rad]"""
 
 
 def edge_through(section: SampledSection, end: int, wedge: float, continuity: Continuity) -> RoundedEdge:
     """The leading (0) or trailing (1) edge of about this wedge angle [rad] whose sides are tangent to the section."""
-    nose = np.array([float(end), 0.0])
+    tip = np.array([float(end), 0.0])
     sides = [side if end == 0 else side[::-1] for side in (section.upper, section.lower)]
     radius = float(np.clip(section.radii[end], 8e-4, 0.15))
     angle = _normal_angle(sides, 0.5 * radius)
     first = np.array([angle, np.log(radius), 0.0, 0.0, wedge])
 
     def misses(unknowns: Reals) -> Reals:
-        at = _points(unknowns, nose, end, continuity)
+        at = _points(unknowns, tip, end, continuity)
         rows = []
         for side, corner in zip(sides, (at.upper, at.lower), strict=True):
             on = nearest_on(side, corner.point[None])
@@ -87,9 +89,9 @@ def edge_through(section: SampledSection, end: int, wedge: float, continuity: Co
     )
 
 
-def _points(unknowns: Reals, nose: Reals, end: int, continuity: Continuity) -> EdgePoints:
+def _points(unknowns: Reals, tip: Reals, end: int, continuity: Continuity) -> EdgePoints:
     return characteristic_points(
-        nose,
+        tip,
         np.asarray(unknowns[0]),
         inward=1.0 if end == 0 else -1.0,
         radius=np.exp(unknowns[1]),

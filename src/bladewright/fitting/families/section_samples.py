@@ -24,10 +24,11 @@ class InscribedCircles:
     """The largest circles inside an outline that touch at its points (n, 2)."""
 
     points: Reals
+    """(n, 2) points of the outline"""
     normals: Reals
-    """(n, 2) inward"""
+    """(n, 2) unit normals there, into the outline"""
     radii: Reals
-    """(n,)"""
+    """(n,) radii of the circles"""
     other: NDArray[np.intp]
     """(n,) the other point at which each circle touches"""
 
@@ -94,7 +95,7 @@ def _edge(circles: InscribedCircles, along: Reals, sign: float) -> int | None:
     cap = max(arcs, key=lambda arc: float(np.mean(sign * (circles.points[arc] @ along))))
     across = circles.normals[pair[0]] - circles.normals[pair[1]]
     middle = np.array([-across[1], across[0]])
-    # inward at an edge is away from it
+    # the inward normal at an edge points away from the edge
     middle = -sign * middle if middle @ along > 0.0 else sign * middle
     cosine = circles.normals[cap] @ (middle / np.sqrt(np.sum(middle**2)))
     best = np.flatnonzero(cosine > np.max(cosine) - COSINE_SLACK)
@@ -117,7 +118,7 @@ def _distance(a: Reals, b: Reals) -> float:
 SIDE_POINTS = 400
 """samples of each side"""
 PLACES: Reals = (1.0 - np.cos(np.pi * np.linspace(0.0, 1.0, 121)[1:-1])) / 2.0
-"""chord fractions of the mean line and the half thickness"""
+"""chord fractions of the mean line and the half thickness, denser towards the edges"""
 MEAN_LINE_POWERS = 5
 """coefficients of the polynomial that multiplies u (1 - u) in the mean line"""
 WEDGE_PLACE, WEDGE_STEP = (0.02, 0.06), 0.06
@@ -132,17 +133,17 @@ class SampledSection:
     """A section whose chord line runs from (0, 0) to (1, 0), the upper side on its left."""
 
     chord: float
-    """[m]"""
+    """distance from edge to edge [m]"""
     stagger: float
-    """[rad]"""
+    """angle of the chord line from the first axis [rad]"""
     start: Reals
     """(2,) the leading edge [m]"""
     upper: Reals
     """(n, 2) from leading to trailing edge"""
     lower: Reals
-    """(n, 2)"""
+    """(n, 2) likewise"""
     radii: tuple[float, float]
-    """of the leading and the trailing edge"""
+    """of the leading and the trailing edge, of the chord"""
 
     @cached_property
     def _line(self) -> tuple[Reals, Reals]:

@@ -37,13 +37,13 @@ PROMISING_RATIO = 3.0
 """ratio of misfits to the best within which a structure is searched on after its trial, in order of their misfits;
 `MOST_SEARCHED` at most."""
 MOST_SEARCHED = 4
-"""structures that are searched on"""
+"""structures that are searched on after their trials, at most"""
 KNOWN_MISFIT = 1e-9
 """misfit at which the structure is known, of the chord: no noise is so small."""
 TOLERANCES = (0.0, 1e-8, 1e-6)
 """tolerances of the native sides, of the chord, finest first: the first is taken that the design can be built with."""
 OUTLINE_COUNTS = (24, 32, 44, 60, 80)
-"""points of outlines that are tried in turn"""
+"""numbers of points of outlines that are tried in turn"""
 FEWEST_OUTLINE_POINTS, OUTLINE_SURPLUS = 12, 2
 """fewest points of an outline where a number of parameters is asked for, and by how many (`OUTLINE_SURPLUS`) its points
 are fewer than those: one coordinate is free of each point but two, and four numbers place the section."""

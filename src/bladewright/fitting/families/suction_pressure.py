@@ -136,7 +136,7 @@ def _wider(places: list[float]) -> tuple[float, ...]:
 
 
 def through(part: SuctionPressure, section: SampledSection) -> SuctionPressure:
-    """The part with control points of its sides that lie nearest to the section's, its edges as they are."""
+    """The part with its edges kept and with side control points nearest to the section's sides."""
     on, off = ("upper", "lower") if part.suction_side == "upper" else ("lower", "upper")
     found = part.changed(_side_through(part, getattr(section, on), "suction"))
     if part.pressure_heights:
@@ -158,7 +158,7 @@ def _side_through(part: SuctionPressure, line: Reals, name: str) -> dict[str, fl
     corners = [getattr(points, on) for points in characteristic(part, SINGLE_SECTION)]
     points, directions = (np.real([getattr(each, of)[0] for each in corners]) for of in ("point", "direction"))
     rows = basis(knots, DEGREE, SAMPLES)
-    # by tangent in, heights and tangent out: control points are linear in them
+    # columns by tangent in, heights and tangent out: the control points are linear in these
     moves = np.concatenate(
         [
             (rows[:, 1:2] * directions[0])[:, None],

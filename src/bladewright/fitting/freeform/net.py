@@ -27,6 +27,7 @@ TENSION = 0.01
 WEIGHT_REGULARISATION = 1e-10
 """cost of a unit of a weight's logarithm, in extents of the points: it holds weights without effect."""
 DIRECTIONS: tuple[Direction, Direction] = ("u", "v")
+"""names of the directions of a surface"""
 AT_ONCE = 100_000
 """points whose rows are built at a time; it bounds the memory."""
 GLOBAL_SEARCHES = 8
@@ -59,7 +60,7 @@ class Net:
 
     @cached_property
     def clamped(self) -> tuple[Reals, ...]:
-        """The knots of the shape."""
+        """The clamped knots of the shape."""
         if not self.closed:
             return self.knots
         period, degree = self.knots[0], self.degrees[0]
@@ -67,7 +68,7 @@ class Net:
 
     @cached_property
     def spread(self) -> Reals | None:
-        """Matrix from the control points of a closed curve to those of the clamped one."""
+        """(m, N) matrix from the control points of a closed curve to those of the clamped one; None for open shapes."""
         if not self.closed:
             return None
         period, degree, count = self.knots[0], self.degrees[0], len(self.points)
@@ -172,7 +173,7 @@ class Net:
         """The net nearest to points (m, d) at parameters (m, k), with a weight of its bending."""
         matrix = self.basis(parameters)
         normal = (matrix.T @ matrix).toarray() / len(points)
-        # a hair of every control point holds those that neither points nor bending determine
+        # a trace of the identity holds control points that neither points nor bending determine
         normal += stiffness * self.bending + 1e-14 * np.eye(len(normal))
         return replace(self, points=np.linalg.solve(normal, np.asarray(matrix.T @ points) / len(points)))
 

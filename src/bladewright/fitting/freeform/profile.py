@@ -179,7 +179,7 @@ def _start(points: Reals, camber: int, thickness: int, *, round_end: bool) -> tu
     line = low + s[:, None] * chord + (middle(s) * size)[:, None] * across
     empty = Net(knots=(uniform_knots(camber, DEGREE),), degrees=(DEGREE,), points=np.zeros((camber, 2)))
     net = empty.through(line, s[:, None], 1e-8).points
-    # an abscissa that turns back has no thickness over it
+    # a camber whose abscissa turns back has no thickness over it
     net[:, 0] = (
         np.linspace(line[:, 0].min(), line[:, 0].max(), camber) if (np.diff(net[:, 0]) <= 0.0).any() else net[:, 0]
     )

@@ -220,7 +220,7 @@ def _parameters(on: Patches, found: PatchPoints) -> Reals:
 
 def _normals(tangents: list[Reals], rows: NDArray[np.intp], dimension: int) -> Reals:
     """For each point the axis that is least along its tangents."""
-    lean = np.zeros((len(rows), dimension))
+    alignment = np.zeros((len(rows), dimension))
     for tangent in tangents:
-        lean = lean + tangent**2 / np.sum(tangent**2, axis=-1, keepdims=True)
-    return np.eye(dimension)[np.argmin(lean, axis=-1)]
+        alignment = alignment + tangent**2 / np.sum(tangent**2, axis=-1, keepdims=True)
+    return np.eye(dimension)[np.argmin(alignment, axis=-1)]

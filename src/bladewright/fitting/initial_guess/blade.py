@@ -165,8 +165,8 @@ def first_blade(
     wide = float(np.ptp(machine[:, 2]))
     best: tuple[float, UnifiedBlade] | None = None
     refusal = FitError("no blade was found near the points")
-    for outline, parting in product(outlines[:3], (True, False)):
-        found = _refined(outline, machine, structure, parting=parting)
+    for outline, hold_sides in product(outlines[:3], (True, False)):
+        found = _refined(outline, machine, structure, hold_sides=hold_sides)
         away = mean_distance(found, machine)
         if best is not None and away > best[0]:
             continue
@@ -186,10 +186,10 @@ def first_blade(
     return best[1]
 
 
-def _refined(rough: SectionsInChannel, machine: Reals, structure: Structure, *, parting: bool) -> SectionsInChannel:
+def _refined(rough: SectionsInChannel, machine: Reals, structure: Structure, *, hold_sides: bool) -> SectionsInChannel:
     """The blade between the ends of its own camber lines, with the numbers of control points that are asked for.
 
-    `parting` holds points to the side that they seem to belong to.
+    `hold_sides` holds points to the side that they seem to belong to.
     """
     count = 4 if len(machine) > 400 else 3
     found = rough
@@ -199,5 +199,5 @@ def _refined(rough: SectionsInChannel, machine: Reals, structure: Structure, *, 
         )
         channel = trimmed_channel(found, counts, machine, 0.05 if step == 0 else 0.15)
         shape = section_shape_in(channel, structure.chordwise, structure.samples, structure.clustering)
-        found = transferred_sections(machine, channel, found, shape, count, ends=step == 2, parting=parting)
+        found = transferred_sections(machine, channel, found, shape, count, ends=step == 2, hold_sides=hold_sides)
     return found

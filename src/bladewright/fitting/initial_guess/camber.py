@@ -43,25 +43,25 @@ class SideAssignment(NamedTuple):
     middle: Reals
     """(4 k,) coefficients of the middle across the chord, a Chebyshev series along it"""
     half: Reals
-    """(4 k,) of the half thickness"""
+    """(4 k,) coefficients of the half thickness, likewise"""
 
 
 def assigned_sides(
     shape: SectionShape,
     unwrapped: UnwrappedPoints,
     turn: Callable[[Reals], Reals],
-    lean: Reals,
+    stacking: Reals,
     count: int = SPAN_COUNT,
 ) -> SideAssignment:
     """The sides of points whose chord lies along the angle `turn` [rad] by place along the span.
 
-    `lean` (k,) is a law of the ordinate along which the sections are stacked, `count` the control points along the
+    `stacking` (k,) is a law of the ordinate along which the sections are stacked, `count` the control points along the
     span.
     """
     direction, unit = turn(unwrapped.v), shape.extent(unwrapped.v)
     cosine, sine = np.cos(direction), np.sin(direction)
     a = unwrapped.points[:, 0] / unit
-    b = (unwrapped.points[:, 1] - law_basis(len(lean), unwrapped.v) @ lean) / unit
+    b = (unwrapped.points[:, 1] - law_basis(len(stacking), unwrapped.v) @ stacking) / unit
     along, across = cosine * a + sine * b, -sine * a + cosine * b
     rows = law_basis(count, unwrapped.v)
     low, high = (
@@ -89,18 +89,18 @@ def assigned_sides(
 
 
 def first_laws(
-    shape: SectionShape, unwrapped: UnwrappedPoints, turn: Callable[[Reals], Reals], lean: Reals, count: int
+    shape: SectionShape, unwrapped: UnwrappedPoints, turn: Callable[[Reals], Reals], stacking: Reals, count: int
 ) -> Reals:
     """Laws (count, q) of sections through the middle between the sides, as `assigned_sides` finds them."""
-    found = assigned_sides(shape, unwrapped, turn, lean, count)
-    return _as_laws(shape, unwrapped, turn, lean, found.ends, np.stack([found.middle, found.half]))
+    found = assigned_sides(shape, unwrapped, turn, stacking, count)
+    return _as_laws(shape, unwrapped, turn, stacking, found.ends, np.stack([found.middle, found.half]))
 
 
 def _as_laws(
     shape: SectionShape,
     unwrapped: UnwrappedPoints,
     turn: Callable[[Reals], Reals],
-    lean: Reals,
+    stacking: Reals,
     ends: Reals,
     fields: Reals,
 ) -> Reals:
@@ -122,7 +122,7 @@ def _as_laws(
     extent = np.maximum(chord[:, 0], 0.02)
     numbers = np.zeros((len(at), shape.columns))
     numbers[:, START], numbers[:, EXTENT] = line[:, 0, 0], extent
-    numbers[:, PLACE] = line[:, 0, 1] * shape.extent(at) + law_basis(len(lean), at) @ lean
+    numbers[:, PLACE] = line[:, 0, 1] * shape.extent(at) + law_basis(len(stacking), at) @ stacking
     numbers[:, STAGGER] = np.clip(np.arctan2(chord[:, 1], extent), -STEEPEST_ANGLE, STEEPEST_ANGLE)
     for angle, tangent, vector in ((ANGLE_IN, TANGENT_IN, first), (ANGLE_OUT, TANGENT_OUT, last)):
         numbers[:, angle] = np.clip(
@@ -155,9 +155,9 @@ def _envelope(rows: Reals, along: Reals, v: Reals, sign: float, flat: bool) -> R
         if len(mask):
             index.append(mask[np.argsort(-sign * along[mask])[: max(1, len(mask) // 60)]])
     chosen = np.concatenate(index)
-    tame = 1e-3 * np.eye(rows.shape[1])
+    ridge = 1e-3 * np.eye(rows.shape[1])
     middle = float(np.mean(along[chosen]))
-    matrix = np.concatenate([rows[chosen], tame])
+    matrix = np.concatenate([rows[chosen], ridge])
     rhs = np.concatenate([along[chosen] - middle, np.zeros(rows.shape[1])])
     return np.linalg.lstsq(matrix, rhs, rcond=None)[0] + middle
 
@@ -170,10 +170,10 @@ def _even(t: Reals, unwrapped: UnwrappedPoints) -> Reals:
 
 def _ridged(matrix: Reals, rhs: Reals, weight: Reals) -> Reals:
     """Weighted least squares with a weak pull of all coefficients towards the mean."""
-    tame = 1e-3 * np.sqrt(np.sum(weight**2)) * np.eye(matrix.shape[1])
+    ridge = 1e-3 * np.sqrt(np.sum(weight**2)) * np.eye(matrix.shape[1])
     middle = float(np.mean(rhs))
-    rows = np.concatenate([matrix * weight[:, None], tame])
-    found = np.linalg.lstsq(rows, np.concatenate([(rhs - middle) * weight, np.zeros(len(tame))]), rcond=None)[0]
+    rows = np.concatenate([matrix * weight[:, None], ridge])
+    found = np.linalg.lstsq(rows, np.concatenate([(rhs - middle) * weight, np.zeros(len(ridge))]), rcond=None)[0]
     # the basis along the span sums to one: a constant is the same coefficient everywhere
     found[: matrix.shape[1] // 4] += middle
     return found

@@ -227,10 +227,10 @@ def _through(line: Reals, count: int, first: Reals, last: Reals) -> Reals:
     degree = min(count - 1, 5)
     rows = basis(uniform_knots(count, degree), degree, t)
     even = np.linspace(first, last, count)
-    tame = 1e-2 * np.diff(np.eye(count), n=2, axis=0)
-    matrix = np.concatenate([rows[:, 1:-1] / np.sqrt(len(t)), tame[:, 1:-1]])
+    bending = 1e-2 * np.diff(np.eye(count), n=2, axis=0)
+    matrix = np.concatenate([rows[:, 1:-1] / np.sqrt(len(t)), bending[:, 1:-1]])
     ends = np.stack([first, last])
-    rhs = np.concatenate([(places - rows[:, [0, -1]] @ ends) / np.sqrt(len(t)), -tame[:, [0, -1]] @ ends])
+    rhs = np.concatenate([(places - rows[:, [0, -1]] @ ends) / np.sqrt(len(t)), -bending[:, [0, -1]] @ ends])
     inner = np.linalg.lstsq(matrix, rhs, rcond=None)[0]
     return np.concatenate([even[:1], inner, even[-1:]])
 

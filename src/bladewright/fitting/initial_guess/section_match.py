@@ -32,7 +32,7 @@ class SectionMatch:
     laws: Reals
     """(k, q) control points along the span of each number of a section"""
     distances: Reals
-    """(n,) [m]"""
+    """(n,) of the points from the sections [m]"""
     mean: float
     """mean distance of the nearest 94 % of the points [m]"""
     s: Reals
@@ -93,11 +93,11 @@ def matched_sections(
     turns: int = 25,
     stiff: float = 1.0,
     ends: bool = False,
-    among: bool = False,
+    draw_in: bool = False,
 ) -> SectionMatch:
     """Laws near the given ones whose sections are near the points.
 
-    `ends` holds the ends of the camber lines at those of the stream lines; `among` draws in what overhangs the points.
+    `ends` holds the ends of the camber lines at those of the stream lines, `draw_in` draws in overhangs.
     """
     laws = within_limits(shape, unwrapped, laws)
     best: SectionMatch | None = None
@@ -117,7 +117,7 @@ def matched_sections(
         if turn == turns or (settled and smooth <= 1.01 * LEAST_SMOOTHING):
             break
         laws = within_limits(
-            shape, unwrapped, laws + _step(shape, unwrapped, laws, s, upper, weight, smooth, ends, among)
+            shape, unwrapped, laws + _step(shape, unwrapped, laws, s, upper, weight, smooth, ends, draw_in)
         )
         smooth = max(0.5 * smooth, LEAST_SMOOTHING)
     if best is None:
@@ -186,7 +186,7 @@ def _step(
     weight: Reals,
     smooth: float,
     ends: bool,
-    among: bool,
+    draw_in: bool,
 ) -> Reals:
     """The step of a damped least squares within the limits."""
     numbers = numbers_at(laws, unwrapped.v)
@@ -196,11 +196,11 @@ def _step(
     rows = law_basis(len(laws), unwrapped.v)
     slopes = (root[:, None] * footpoint.slopes)[:, :, None] * rows[:, None, :]
     matrix = slopes.reshape(len(s), -1)
-    for prior, rhs in (
+    for regularisation, rhs in (
         regularisation_rows(shape, unwrapped, laws, smooth),
-        *([overhang_rows(shape, unwrapped, laws)] if among else []),
+        *([overhang_rows(shape, unwrapped, laws)] if draw_in else []),
     ):
-        matrix, away = np.concatenate([matrix, prior]), np.concatenate([away, rhs])
+        matrix, away = np.concatenate([matrix, regularisation]), np.concatenate([away, rhs])
     flat = laws.T.reshape(-1)
     low, high, most = (np.repeat(a, len(laws)) for a in limits(shape, unwrapped, ends=ends))
     free = np.ones(len(flat), dtype=bool)

@@ -18,11 +18,11 @@ class UnwrappedPoints:
     """Points of a cloud in the planes of their sections."""
 
     points: Reals
-    """(n, 2)"""
+    """(n, 2) in the plane of the section at v"""
     v: Reals
-    """(n,) along the span"""
+    """(n,) place along the span"""
     size: Reals
-    """(n,) of one metre in the plane"""
+    """(n,) size of one metre in the plane"""
     chord: float
     """typical one [m]"""
     ratio: float
@@ -30,7 +30,7 @@ class UnwrappedPoints:
     flat: bool = False
     """whether all points belong to one section"""
     upper: NDArray[np.bool_] | None = None
-    """(n,) which side a point belongs to"""
+    """(n,) whether a point is on the upper side, where that was assigned"""
     sure: NDArray[np.bool_] | None = None
     """(n,) whether the side is certain"""
 
@@ -62,11 +62,11 @@ class SidePlaces(NamedTuple):
     """Places on sides, one for each point, and how they move with the numbers of their sections."""
 
     point: Reals
-    """(n, 2)"""
+    """(n, 2) the places"""
     normal: Reals
     """(n, 2) unit normals of the sides"""
     slopes: Reals
-    """(n, q) of the place along its normal by the numbers of its section"""
+    """(n, q) motion of the place along its normal by the numbers of its section"""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -78,7 +78,7 @@ class SectionShape:
     clustering: float
     scale: PlaneScale
     extent: SpanFunction
-    """extent of the stream lines in the plane"""
+    """extent of the stream lines in the plane, by place along the span"""
 
     @property
     def columns(self) -> int:

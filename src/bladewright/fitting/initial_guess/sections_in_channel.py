@@ -62,11 +62,11 @@ def first_sections(
     """Sections in a channel without a guess, with `count` control points of the laws along the span."""
     unwrapped = unwrapped_in(machine, channel)
     shape = section_shape_in(channel, chordwise, 16, 1.0)
-    turn, lean, chord = _direction(unwrapped)
+    turn, stacking, chord = _direction(unwrapped)
     unwrapped = replace(unwrapped, chord=chord, ratio=chord / unwrapped.chord)
-    known = assigned_sides(shape, unwrapped, turn, lean)
+    known = assigned_sides(shape, unwrapped, turn, stacking)
     unwrapped = replace(unwrapped, upper=known.upper, sure=known.sure)
-    match = matched_sections(shape, unwrapped, first_laws(shape, unwrapped, turn, lean, count), turns=turns)
+    match = matched_sections(shape, unwrapped, first_laws(shape, unwrapped, turn, stacking, count), turns=turns)
     return SectionsInChannel(channel=channel, shape=shape, unwrapped=unwrapped, match=match)
 
 
@@ -78,11 +78,11 @@ def transferred_sections(
     count: int,
     *,
     ends: bool,
-    parting: bool,
+    hold_sides: bool,
 ) -> SectionsInChannel:
     """Sections in another channel, from those found in the one before.
 
-    `parting` holds points to the side that they seem to belong to.
+    `hold_sides` holds points to the side that they seem to belong to.
     """
     old = numbers_at(before.match.laws, SPAN)
     numbers = np.zeros((len(SPAN), shape.columns))
@@ -97,18 +97,18 @@ def transferred_sections(
     laws = np.asarray(np.linalg.lstsq(law_basis(count, SPAN), numbers, rcond=None)[0])
     unwrapped = unwrapped_in(machine, channel)
     unwrapped = replace(unwrapped, chord=before.unwrapped.chord, ratio=before.unwrapped.chord / unwrapped.chord)
-    if parting:
-        turn, lean, _ = _direction(unwrapped)
-        known = assigned_sides(shape, unwrapped, turn, lean)
+    if hold_sides:
+        turn, stacking, _ = _direction(unwrapped)
+        known = assigned_sides(shape, unwrapped, turn, stacking)
         unwrapped = replace(unwrapped, upper=known.upper, sure=known.sure)
-    match = matched_sections(shape, unwrapped, laws, turns=10, stiff=0.3, ends=ends, among=True)
+    match = matched_sections(shape, unwrapped, laws, turns=10, stiff=0.3, ends=ends, draw_in=True)
     return SectionsInChannel(channel=channel, shape=shape, unwrapped=unwrapped, match=match)
 
 
 def _direction(unwrapped: UnwrappedPoints) -> tuple[Callable[[Reals], Reals], Reals, float]:
     """Angle of the chord by place along the span, law of the middle ordinate, and the typical chord [m]."""
     rows = law_basis(DIRECTION_COUNT, unwrapped.v) / unwrapped.size[:, None]
-    lean = np.asarray(np.linalg.lstsq(rows, unwrapped.points[:, 1] / unwrapped.size, rcond=None)[0])
+    stacking = np.asarray(np.linalg.lstsq(rows, unwrapped.points[:, 1] / unwrapped.size, rcond=None)[0])
     places, angles, chords = [], [], []
     for middle in np.linspace(0.0, 1.0, DIRECTION_BANDS):
         band = (unwrapped.v - middle) ** 2 < (1.5 / DIRECTION_BANDS) ** 2
@@ -128,7 +128,7 @@ def _direction(unwrapped: UnwrappedPoints) -> tuple[Callable[[Reals], Reals], Re
     def turn(v: Reals) -> Reals:
         return np.clip(law_basis(count, v) @ law, -np.radians(86.0), np.radians(86.0))
 
-    return turn, lean, float(np.median(chords))
+    return turn, stacking, float(np.median(chords))
 
 
 def mean_distance(found: SectionsInChannel, machine: Reals) -> float:
@@ -177,8 +177,8 @@ def _reached_span(
         chosen = np.array([rows[np.argmin(sign * v[rows])] for rows in index if len(rows)])
         wall = 0.0 if sign > 0.0 else 1.0
         away = np.clip(v[chosen] - wall, -0.15, 0.15)
-        tame = 0.3 * np.diff(np.eye(3), n=2, axis=0)
-        matrix = np.concatenate([law_basis(3, np.clip(u[chosen], 0.0, 1.0)), tame])
+        bending = 0.3 * np.diff(np.eye(3), n=2, axis=0)
+        matrix = np.concatenate([law_basis(3, np.clip(u[chosen], 0.0, 1.0)), bending])
         law = np.linalg.lstsq(matrix, np.concatenate([away, [0.0]]), rcond=None)[0]
         walls.append(lambda at, law=law, wall=wall: wall + law_basis(3, np.clip(at, 0.0, 1.0)) @ law)
     return walls[0], walls[1]

@@ -52,7 +52,7 @@ class WallPoints:
     name: str
     """of the wall: hub or shroud"""
     places: Reals
-    """(m, 2) in (x, r) [m]"""
+    """(m, 2) the points in (x, r) [m]"""
     spread: float
     """standard deviation of their distances from one curve: small where the cloud has a row there [m]"""
 
@@ -113,13 +113,13 @@ class WallPoints:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class BladeEnds:
-    """What a cloud says of the blade's ends."""
+    """What a cloud shows of the blade's ends."""
 
     walls: Mapping[str, WallPoints]
     on_end_face: NDArray[np.bool_]
     """(n,) whether a point lies on an end face, inside the blade's outline"""
     near: NDArray[np.intp]
-    """points that may lie past an end of the sides"""
+    """indices of the points that may lie past an end of the sides"""
 
 
 def _line(exact: Any, name: str) -> Any:

@@ -33,11 +33,11 @@ class EdgeOverhang:
     """Places along both edges, and beside each the nearest point of the cloud."""
 
     points: Reals
-    """(m, d) [m]"""
+    """(m, d) the nearest points of the cloud [m]"""
     u: Reals
     """(m,) of the edge: 0 or 1"""
     v: Reals
-    """(m,)"""
+    """(m,) of the places along the edges"""
     allowed: Reals
     """(m,) overhang that costs nothing [m]; infinite where the cloud does not show the edge"""
 

@@ -54,7 +54,7 @@ def _descended_on_curve(on: Patches, points: Reals, start: Reals, *, converged: 
         speed = np.einsum("md,md->m", first, first)
         bend = speed + 2.0 * np.einsum("md,md->m", miss, second)
         slope = np.einsum("md,md->m", miss, first)
-        # where the distance is not convex Gauss's bend descends
+        # where the distance is not convex, the Gauss-Newton second derivative still descends
         bend = np.where(bend > 0.0, bend, np.where(speed > 0.0, speed, 1.0))
         return np.einsum("md,md->m", miss, miss), slope / size, bend / size**2, size
 
@@ -87,6 +87,7 @@ def _powers(degree: int) -> Reals:
 
 
 Side = Curve | Surface
+"""one side of a section or of a blade"""
 OTHER_SIDE_RATIO = 2.0
 """the other side is tried too where its nearest sample is at most this many times further away than the nearest of all:
 the samples are only about so exact."""
@@ -118,7 +119,7 @@ class Footpoints:
     """(n,) 0 upper, 1 lower"""
     u: Reals
     v: Reals
-    """0 on curves"""
+    """(n,) parameter along the span; 0 on curves"""
     points: Reals
     """(n, d) the footpoints themselves"""
     normals: Reals

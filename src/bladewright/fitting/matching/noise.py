@@ -20,7 +20,7 @@ class NoiseEstimate:
     noise: float
     """standard deviation of what neighbours do not share, of a point of the mean weight [m]"""
     inliers: NDArray[np.bool_]
-    """(n,)"""
+    """(n,) whether a point takes part; the others are outliers"""
     correlation: float
     """share of the inliers' variance that neighbours have in common: 0 for pure noise, 1 for a misfit of the design"""
 
@@ -55,7 +55,7 @@ def noise_of(
     kept = kept if np.any(kept) else np.ones(len(points), dtype=bool)
     beside, height, own_weight = weights[index[kept]], heights[kept], weights[kept]
     total = np.sum(beside, axis=1)
-    # of variance one where the noise is
+    # scaled to the variance of the noise
     rest = (height - np.sum(beside * heights[index[kept]], axis=1) / total) / np.sqrt(1.0 / own_weight + 1.0 / total)
     variance, own = float(np.mean(own_weight * height**2)), float(np.mean(rest**2))
     correlation = float(np.clip(1.0 - own / variance, 0.0, 1.0)) if variance > 0.0 else 0.0

@@ -43,7 +43,7 @@ points."""
 LARGEST_GROUP, SMALL_GROUP = 0.05, 20
 """largest group of outliers, as a share of the points, but `SMALL_GROUP` points are always allowed."""
 END_BAND, WRONG_END_SHARE = 0.02, 0.2
-"""distance from an end of the blade, in v, within which points tell of it; where more than `WRONG_END_SHARE` of them
+"""distance from an end of the blade, in v, within which points show it; where more than `WRONG_END_SHARE` of them
 lie past the end, the end is wrong and not the points."""
 PAST_END_BY_CHANCE = 1
 """points level with the sides that may lie past an end by chance."""
@@ -77,7 +77,7 @@ class Neighbourhood:
     index: NDArray[np.intp]
     """(n, k) the nearest other points; the point itself where there are no others"""
     extent: float
-    """[m]"""
+    """largest extent of the cloud [m]"""
 
 
 def neighbourhood_of(points: Reals, on: Footpoints) -> Neighbourhood:
@@ -89,7 +89,7 @@ def neighbourhood_of(points: Reals, on: Footpoints) -> Neighbourhood:
     count = NEIGHBOURS[points.shape[1]]
     asked = min(count + 1, len(points))
     index = np.reshape(cKDTree(places).query(places, k=asked)[1], (len(points), asked))
-    # among points in one place a point is not always the first that is found
+    # of several points in one place, the point itself is not always found first
     own = index == np.arange(len(points))[:, None]
     index = np.where(own, index[:, :1], index)[:, 1:]
     return Neighbourhood(
@@ -123,15 +123,15 @@ def outliers_of(
     wrong = _short_of_ends(far & (past > least), np.abs(heights) <= np.maximum(least, LEVEL_SLOPE * past), on)
     beyond = (past > least) & ~wrong
     largest = min(max(SMALL_GROUP, int(LARGEST_GROUP * len(heights))), len(heights) // 5)
-    # what differs by more than the noise is no noise
+    # differences beyond the noise are a misfit
     noisy = misfit == 0.0 and noise > near
     slopes = np.zeros(len(heights)) if noisy else _slopes(heights, level, misfit, around)
     found = spikes | (far & (beyond | _cut_off(heights, level, beyond, slopes, largest, around)))
-    # what is past an end that is wrong lies off the surface by its height alone
+    # past an end that is wrong, only the signed distance from the sides counts
     off_surface = np.where(wrong, np.abs(heights), distances)
     steady = ~found & (off_surface > np.hypot(OUTLYING_NOISE * level, STEADY_MISFIT * misfit) + near)
     label = _groups(steady, steady, index)
-    # around an edge a few points are all that tells of a radius: it may be wrong alone
+    # an edge's radius is shown by few points and may be wrong by itself: these are no outliers
     found |= steady & (_sizes(label) <= largest) & ~np.isin(label, label[edge & steady])
     return found if np.mean(found) < LARGEST_OUTLIER_SHARE else np.zeros_like(found)
 

@@ -30,6 +30,7 @@ CAMBER_SPREAD = 0.3
 """spread of the difference of upper and lower thickness, in their scale: a camber line in the middle is preferred."""
 
 Terms = list[tuple[str, float]]
+"""paths of parameters and their factors in a row"""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -37,9 +38,17 @@ class Regularisation:
     """Rows `matrix @ z - rhs`, with z the scaled change of the parameters."""
 
     matrix: Reals
-    """(m, k)"""
+    """(m, k) rows by scaled parameters"""
     rhs: Reals
-    """(m,)"""
+    """(m,) what the rows should be"""
+
+    def scaled(self, factor: float) -> "Regularisation":
+        """The same with all rows multiplied by a factor."""
+        return Regularisation(matrix=self.matrix * factor, rhs=self.rhs * factor)
+
+    def residuals(self, z: Reals) -> Reals:
+        """The residuals (m,) of scaled changes (k,)."""
+        return self.matrix @ z - self.rhs
 
 
 def regularisation_of(start: Design, paths: Sequence[str], size: Reals) -> Regularisation:

@@ -18,7 +18,7 @@ from bladewright.fitting.models.model import Model, ModelShape
 from bladewright.nurbs.basis import Reals
 
 EDGE_SHARE = 0.05
-"""share of a cloud's points that tell of its edges: the rows that hold overhanging edges count as much as so many
+"""share of a cloud's points that show its edges: the rows that hold overhanging edges count as much as so many
 points."""
 USUAL_EDGE_HEIGHT = (0.8, 0.2)
 """usual height of the control point that sets an edge's radius, of the thickness beside it, and its spread. It is weak,
@@ -38,7 +38,7 @@ class CloudResiduals:
     """What is measured of a cloud against a shape: points, ends, walls and edge overhang, as residuals in chords."""
 
     points: Reals
-    """(n, d) [m]"""
+    """(n, d) of the cloud [m]"""
     roots: Reals
     """(n,) square roots of the points' weights"""
     model: Model
@@ -109,7 +109,7 @@ class CloudResiduals:
 
     @property
     def _of_edge(self) -> float:
-        """Weight of a place on an edge: together they count as the points that tell of an edge."""
+        """Weight of a place on an edge: together they count as the points that show an edge."""
         return float(np.sqrt(max(1.0, EDGE_SHARE * len(self.points) / max(1, len(self.overhang.u)))))
 
 
@@ -123,7 +123,7 @@ class MatchProblem(ConstrainedProblem):
         start: Design,
         paths: Sequence[str],
         scales: Scales,
-        prior: Regularisation,
+        regularisation: Regularisation,
         independent_share: float,
         hint: Footpoints,
         margin: float = 0.0,
@@ -131,14 +131,14 @@ class MatchProblem(ConstrainedProblem):
         self.cloud_residuals, self.model = cloud_residuals, cloud_residuals.model
         self.start, self.paths, self.scales, self.margin = start, tuple(paths), scales, margin
         self.noise = cloud_residuals.noise
-        self.trust = self.noise / float(np.sqrt(independent_share))
-        """what the spread of the noses is measured by: larger where points repeat each other"""
-        self.prior = Regularisation(matrix=prior.matrix * self.noise, rhs=prior.rhs * self.noise)
+        self.edge_height_noise = self.noise / float(np.sqrt(independent_share))
+        """noise by which edge heights are weighed: larger where points repeat each other"""
+        self.regularisation = regularisation.scaled(self.noise)
         self.first = self.values_of(start)
         self.evaluations, self._least = 0, np.inf
         self._hint = hint
         self.best = np.zeros(len(self.paths))
-        """of all that were asked"""
+        """the variables of least cost so far"""
         self._last: tuple[bytes, PlacedCloud | None] = (b"", None)
 
     @property
@@ -186,7 +186,7 @@ class MatchProblem(ConstrainedProblem):
         full = self._edge_height_weight(state.shape) * (
             np.ravel(state.shape.edge_radius_margins[1]) - USUAL_EDGE_HEIGHT[0]
         )
-        rows = np.concatenate([self.cloud_residuals.residuals(state), full, self.prior.matrix @ z - self.prior.rhs])
+        rows = np.concatenate([self.cloud_residuals.residuals(state), full, self.regularisation.residuals(z)])
         held = np.concatenate([np.ravel(state.shape.edge_radius_margins[0]) + self.margin, state.shape.constraints])
         cost = float(rows @ rows) * (1.0 + 1e3 * float(np.max(held, initial=0.0)))
         if cost < self._least:
@@ -204,8 +204,8 @@ class MatchProblem(ConstrainedProblem):
         rows = np.concatenate(
             [self.cloud_residuals.slopes(state, self.paths), self._edge_height_weight(state.shape) * full]
         )
-        return np.concatenate([rows * self.scales.size, self.prior.matrix]), held * self.scales.size
+        return np.concatenate([rows * self.scales.size, self.regularisation.matrix]), held * self.scales.size
 
     def _edge_height_weight(self, shape: ModelShape) -> float:
         stations = max(shape.edge_radius_margins[0].size / 4.0, 1.0)
-        return self.trust / (USUAL_EDGE_HEIGHT[1] * float(np.sqrt(stations)))
+        return self.edge_height_noise / (USUAL_EDGE_HEIGHT[1] * float(np.sqrt(stations)))

@@ -25,7 +25,9 @@ class ParameterRange(NamedTuple):
     size: float
     """a change that matters"""
     low: float = -np.inf
+    """lowest value"""
     high: float = np.inf
+    """highest value"""
 
 
 WEDGE_RANGE, ANGLE_RANGE = ParameterRange(3.0, 0.0, LARGEST_ANGLE), ParameterRange(5.0, -LARGEST_ANGLE, LARGEST_ANGLE)
@@ -92,9 +94,9 @@ class Scales:
     size: Reals
     """(k,) a change that matters: the unit of a search, and how far a first guess may be off"""
     low: Reals
-    """(k,)"""
+    """(k,) lowest values"""
     high: Reals
-    """(k,)"""
+    """(k,) highest values"""
 
 
 def scales_of(

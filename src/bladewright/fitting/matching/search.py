@@ -81,12 +81,13 @@ class Task:
     """What is sought: points, weights, free parameters and bounds."""
 
     points: Reals
-    """(n, d) [m]"""
+    """(n, d) of the cloud [m]"""
     weights: Reals
-    """(n,)"""
+    """(n,) of the points in the sum of squares, 1 on average"""
     free: Callable[[Design], tuple[str, ...]]
     """the free parameters of a design, whatever its structure"""
     bounds: Mapping[str, tuple[float, float]]
+    """lowest and highest values by pattern, in the units of the fields"""
     progress: Progress = lambda _: None
     """is handed a few words on what is done"""
     regularisation_factor: float = 1.0
@@ -98,7 +99,7 @@ class Task:
     allow_outliers: bool = True
     """whether points may be outliers"""
     best_so_far: BestSoFar = field(default_factory=BestSoFar)
-    """the nearest designs that searches have come to"""
+    """the nearest designs that searches have reached"""
 
     def part(self, rows: NDArray[np.intp]) -> "Task":
         """The same task with some of the points (m,)."""
@@ -130,7 +131,7 @@ class Match:
 
     @property
     def rows(self) -> NDArray[np.bool_]:
-        """(n,) the points that take part as points of the sides."""
+        """(n,) whether a point takes part as a point of the sides."""
         return self.noise_estimate.inliers & ~self.ends.on_end_face
 
     @property
@@ -222,7 +223,7 @@ def _prepared_round(
     ends = blade_ends_of(points, on, shape, noise_estimate.inliers)
     misfit = float(np.sqrt(np.mean(on.distances[noise_estimate.inliers & ~ends.on_end_face] ** 2))) / model.chord
     scales = scales_of(start, paths, model.chord, task.bounds)
-    prior = regularisation_of(start, paths, scales.size)
+    regularisation = regularisation_of(start, paths, scales.size)
     cloud_residuals = CloudResiduals(
         points=points,
         roots=np.sqrt(task.weights * (noise_estimate.inliers & ~ends.on_end_face)),
@@ -239,9 +240,7 @@ def _prepared_round(
         start=start,
         paths=paths,
         scales=scales,
-        prior=replace(
-            prior, matrix=task.regularisation_factor * prior.matrix, rhs=task.regularisation_factor * prior.rhs
-        ),
+        regularisation=regularisation.scaled(task.regularisation_factor),
         independent_share=noise_estimate.independent_share(len(paths)) / task.regularisation_factor**2,
         hint=on,
         margin=EDGE_RADIUS_MARGIN[points.shape[1]] * task.margin_factor,

@@ -41,6 +41,7 @@ STEP_SHARES = (1.0, 0.3, 0.0)
 COARSE_STEP = 1e-3
 """last step of the projections of these trials, in the parameters of a patch."""
 Counts = tuple[int, ...]
+"""numbers of control points on which the motion with a law depends"""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -68,7 +69,7 @@ class Forecast:
     """scales of the parameters by field"""
     held: frozenset[str]
     """radii of the channel's corners that are not free"""
-    still: frozenset[str]
+    fixed_laws: frozenset[str]
     """laws that are held"""
     noise: float
     found: Match
@@ -78,7 +79,7 @@ class Forecast:
 
     def names(self) -> Iterator[str]:
         """The laws that a structure determines and that are free."""
-        yield from (name for name in STRUCTURE_LAWS if name not in self.still)
+        yield from (name for name in STRUCTURE_LAWS if name not in self.fixed_laws)
 
     def prediction(self, structure: Structure, roots: Reals | None = None) -> Prediction:
         """What a structure, nowhere wider than the widest, leaves; rows are multiplied by `roots` (m,)."""
@@ -271,8 +272,8 @@ def forecast_of(found: Match, widest: Structure) -> Forecast | None:
     corners = {f"channel.{edge}[{end}].{label}" for edge, end in ends for label in AXES}
     was = {_same_corner(path, found.design, design) for path in free}
     held = frozenset(corners - was)
-    still = frozenset(name for name in STRUCTURE_LAWS if _is_held(found.design, name, free))
-    paths = [path for path in design.parameters() if _law_of(path) and _law_of(path) not in still]
+    fixed_laws = frozenset(name for name in STRUCTURE_LAWS if _is_held(found.design, name, free))
+    paths = [path for path in design.parameters() if _law_of(path) and _law_of(path) not in fixed_laws]
     scales = scales_of(design, paths, found.model.chord)
     sizes = {path.partition("[")[0]: float(size) for path, size in zip(paths, scales.size, strict=True)}
     return Forecast(
@@ -282,7 +283,7 @@ def forecast_of(found: Match, widest: Structure) -> Forecast | None:
         rows=cloud_residuals.residuals(state),
         sizes=sizes,
         held=held,
-        still=still,
+        fixed_laws=fixed_laws,
         noise=problem.noise,
         found=found,
         points=len(cloud_residuals.points),

@@ -30,12 +30,12 @@ is another turn."""
 FURTHER_ROUNDS = 20
 """rounds of the search for a given structure in a cloud that may be exact"""
 EDGE_BANDS, END_BAND = (0.03, 0.9), 0.02
-"""places in u before and after which points tell of the edges, and distance in v within which they tell of the ends
+"""places in u before and after which points show the edges, and distance in v within which they show the ends
 (`END_BAND`)"""
 NEARLY_EXACT = 1e-6
 """misfit of those points from which all points are used, of the chord."""
 EDGE_POINTS, OTHER_POINTS = 2500, 1000
-"""points with which an exact design is sought: of those that tell of edges and ends, and of all (`OTHER_POINTS`)."""
+"""points with which an exact design is sought: of those that show edges and ends, and of all (`OTHER_POINTS`)."""
 
 
 def matched_structure(few: Task, many: Task, first: Design, base: Structure | None, *, guessed: bool) -> Match:
@@ -106,7 +106,7 @@ def _exact_match(task: Task, found: Match, most: float) -> Match | None:
 
 
 def _informative_points(found: Match) -> NDArray[np.intp]:
-    """Points that tell of edges and ends, which few points of a cloud show, and some of all."""
+    """Points that show edges and ends, which few points of a cloud show, and some of all."""
     on = found.state.footpoints
     beside = (on.u < EDGE_BANDS[0]) | (on.u > EDGE_BANDS[1]) | (on.v < END_BAND) | (on.v > 1.0 - END_BAND)
     rows = np.flatnonzero(beside)

@@ -23,7 +23,7 @@ class MatchTarget:
     parameters: int | None = None
     structured: bool = False
     """whether the structure is given"""
-    moved: bool = False
+    registered: bool = False
     """whether the axes were found first, from a start that need not be this blade"""
 
     @property

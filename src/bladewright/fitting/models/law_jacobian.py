@@ -31,6 +31,7 @@ AT_ONCE = 40
 PRODUCT_SIZE = 4_000_000
 """numbers of one product; it bounds the memory."""
 AXES = {"x": 0, "r": 1}
+"""coordinates of a channel's control point"""
 
 ChannelShift = tuple[str, int | None, int]
 """a curve of the channel, the control point of it that moves (None: all of them, and no wall), and the axis, x or r"""
@@ -76,7 +77,7 @@ def law_shares(design: UnifiedBlade, path: str, sites: Reals) -> Iterator[tuple[
 
 
 def stands_on_channel(design: Design) -> bool:
-    """Whether a blade of the unified family stands on the channel's own hub and shroud, without a clearance."""
+    """Whether a blade is of the unified family and ends on the channel's own hub and shroud, without clearance."""
     return isinstance(design, UnifiedBlade) and design.tip_clearance is None and design.hub_clearance is None
 
 
@@ -115,7 +116,7 @@ def _stepped(
 
 
 def _along_u(other: ExactUnifiedBlade, knots: Knots, count: int) -> tuple[Array, Array]:
-    """Derivatives (count, n_u, m, 3) of the sides' control points along u, in each section on its own."""
+    """Derivatives (count, n_u, m, 3) of the sides' control points along u, for each section by itself."""
     rates = skeleton_rates(other.sections(knots.sites_v), knots, count)
     skeleton = skeleton_of_rows(rates, (True, True))
     upper = skeleton.leading_edge, skeleton.trailing_edge

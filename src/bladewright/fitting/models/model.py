@@ -43,7 +43,7 @@ class Model(ABC):
     """A kind of design as a search sees it."""
 
     chord: float
-    """[m]"""
+    """mean chord of the design [m]"""
     rounded: bool = False
     """whether all sections end in rounded edges, whose arcs the two sides share"""
 

@@ -95,8 +95,8 @@ def _cascade(cloud: Reals, prism: Prism) -> MachineAxes:
     if bulge < 0.0:
         rotation = rotation * np.array([[1.0], [-1.0], [-1.0]])
         moved = cloud @ rotation.T
-    nose = rotation @ (chord[0] @ frame)
-    origin = np.array([nose[0], nose[1], np.min(moved[:, 2])])
+    leading_edge = rotation @ (chord[0] @ frame)
+    origin = np.array([leading_edge[0], leading_edge[1], np.min(moved[:, 2])])
     return MachineAxes(
         motion=Motion(rotation=rotation, translation=-origin),
         arrangement="linear",

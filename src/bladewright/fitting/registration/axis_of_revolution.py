@@ -36,7 +36,7 @@ class EndPoints:
     """Points on one end of a blade."""
 
     points: Reals
-    """(n, 3)"""
+    """(n, 3) [m]"""
     along: Reals
     """(n,) place from edge to edge, 0 to 1"""
 
@@ -54,7 +54,7 @@ class RevolutionAxis:
     offset: float
     """standard deviation of the distance from the blade [m]"""
     score: float
-    """Bayesian information criterion, by the scatter's median"""
+    """Bayesian information criterion, by the median of the residuals"""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -158,7 +158,7 @@ def _first_line(end: EndPoints, motion: Motion, degree: int) -> _Line:
 def _equations(
     ends: tuple[EndPoints, EndPoints], motion: Motion, lines: list[_Line], width: float
 ) -> tuple[Reals, Reals, list[Reals]]:
-    """Weighted rows of the axis' four freedoms and the lines' coefficients, right sides, and each end's distances."""
+    """Weighted rows by the axis' four degrees of freedom and the lines' coefficients, right sides, and distances."""
     blocks, rights, offs = [], [], []
     size = len(lines[0].coefficients)
     for k, (end, line) in enumerate(zip(ends, lines, strict=True)):
@@ -168,16 +168,16 @@ def _equations(
         place = (abscissa - line.middle) / line.half
         vander = chebyshev.chebvander(place, size - 1)
         slope = chebyshev.chebval(place, chebyshev.chebder(line.coefficients)) / line.half
-        lean = 1.0 / np.sqrt(1.0 + slope**2)
-        off = (ordinate - vander @ line.coefficients) * lean
+        cosine = 1.0 / np.sqrt(1.0 + slope**2)
+        off = (ordinate - vander @ line.coefficients) * cosine
         radial = points[:, 1:] / flat[:, 1:]
         rates = np.einsum("kde,ne->nkd", GENERATORS[3][1:], points)
         rates = np.concatenate([rates, np.broadcast_to(np.eye(3)[1:], (len(points), 2, 3))], axis=1)
         moves = np.stack([rates[..., 0], np.einsum("nkd,nd->nk", rates[..., 1:], radial)])
         along, across = np.einsum("ab,bnk->ank", line.turn, moves)
         block = np.zeros((len(points), 4 + 2 * size))
-        block[:, :4] = (across - slope[:, None] * along) * lean[:, None]
-        block[:, 4 + k * size : 4 + (k + 1) * size] = -vander * lean[:, None]
+        block[:, :4] = (across - slope[:, None] * along) * cosine[:, None]
+        block[:, 4 + k * size : 4 + (k + 1) * size] = -vander * cosine[:, None]
         root = np.sqrt(tukey_weights(np.abs(off), width)) if np.isfinite(width) else np.ones(len(off))
         blocks.append(block * root[:, None])
         rights.append(-off * root)

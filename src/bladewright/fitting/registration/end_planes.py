@@ -33,8 +33,9 @@ class EndPlane:
     """The plane on a short piece of an end."""
 
     point: Reals
+    """(3,) mean of the points on the plane"""
     normal: Reals
-    """(3,) of the plane"""
+    """(3,) unit normal of the plane"""
     rows: NDArray[np.intp]
     """indices of the sheet's points on the plane"""
     along: Reals
@@ -71,11 +72,11 @@ def _end_plane(sheet: UnrolledSheet, rows: NDArray[np.intp], along: Reals, insid
     height, across = local @ frame[0], local @ frame[1:].T
     plane = np.array([float(np.quantile(height, 0.05)), 0.0, 0.0])
     design = np.concatenate([np.ones((len(height), 1)), across], axis=1)
-    tame = np.diag([0.0, 1.0, 1.0]) * TILT_DAMPING * spacing**2 * len(height)
+    damping = np.diag([0.0, 1.0, 1.0]) * TILT_DAMPING * spacing**2 * len(height)
     for width in spacing * np.geomspace(FIRST_WIDTH, LAST_WIDTH, NARROWINGS):
         off = height - design @ plane
         weight = np.where(off < 0.0, 1.0, tukey_weights(np.abs(off), width))
-        plane = np.linalg.solve((design.T * weight) @ design + tame, (design.T * weight) @ height)
+        plane = np.linalg.solve((design.T * weight) @ design + damping, (design.T * weight) @ height)
     off = height - design @ plane
     on = np.abs(off) < ON_PLANE * spacing
     if np.count_nonzero(on) < 4:

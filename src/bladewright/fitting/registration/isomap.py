@@ -36,13 +36,13 @@ class UnrolledSheet:
     """Points of a blade unrolled into a plane."""
 
     points: Reals
-    """(n, 3)"""
+    """(n, 3) the points that are unrolled"""
     flat: Reals
-    """(n, 2) unrolled"""
+    """(n, 2) the same, unrolled"""
     spacing: float
     """typical distance of evenly spread points among them [m]"""
     sides: tuple[Reals, ...]
-    """(m, 2) of each of the four sides, around the sheet, the way in the plane from corner to corner"""
+    """(m, 2) for each of the four sides, in order around the sheet, the path in the plane from corner to corner"""
 
     def along(self, side: int) -> tuple[Reals, Reals]:
         """Places (n,) in [0, 1] of all points along a side, and how far inside of it they are (n,) [m]."""

@@ -61,7 +61,7 @@ def _followed(cloud: Reals, direction: Reals) -> Prism:
         axes = np.linalg.eigh(np.einsum("nki,nkj->nij", local, local))[1]
         normal, along = axes[:, :, 0], np.einsum("nki,ni->nk", local, axes[:, :, 1])
         off = np.einsum("nki,ni->nk", local, normal)
-        # smoothing by a parabola: what it leaves of a point's distance and of its height
+        # what smoothing by a parabola leaves of a point's distance and height
         scale = np.maximum(np.max(np.abs(along), axis=1, keepdims=True), 1e-300)
         vander = np.stack([np.ones_like(along), along / scale, (along / scale) ** 2], axis=-1)
         normal_matrix = np.einsum("nki,nkj->nij", vander, vander) + 1e-12 * np.eye(3)

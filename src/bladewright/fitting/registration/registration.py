@@ -45,7 +45,7 @@ class Registration:
     systematic: float
     """part of it that neighbouring points have in common, which is not noise [m]"""
     share: float
-    """of the points that took part; the others are outliers"""
+    """share of the points that took part; the others are outliers"""
     undetermined: tuple[str, ...]
     """degrees of freedom that the points do not determine"""
     covariance: Reals
@@ -53,6 +53,7 @@ class Registration:
     same: bool
     """whether it may be this blade, by the systematic distance and the outliers"""
     notes: tuple[str, ...]
+    """what else there is to know, each a sentence"""
 
 
 def registration(points: Reals, design: "UnifiedBlade | UnifiedSection") -> Registration:
@@ -144,9 +145,10 @@ def _share(descent: RobustMotion) -> float:
 
 
 def _systematic(points: Reals, descent: RobustMotion) -> float:
-    """Root of the mean product of neighbours' signed distances [m]: of noise alone it is about 0.
+    """Root of the mean product of neighbours' signed distances [m]; of pure noise it is about 0.
 
-    Of nine tenths of the points, so that outliers have no part in it and a shape that fits in places does not pass.
+    Only the nearest nine tenths of the points count, so that outliers have no part in it; a shape that fits only in
+    places does not pass.
     """
     distances = descent.contact.distances
     taking = np.flatnonzero(distances <= np.quantile(distances, 0.9))

@@ -44,7 +44,7 @@ class RobustMotion:
 
     motion: Motion
     contact: Contact
-    """of the moved points"""
+    """contact of the moved points with the target"""
     weights: Reals
     """(n,) of the points in the last step, 0 for outliers"""
     undetermined: tuple[Reals, ...]
@@ -52,6 +52,7 @@ class RobustMotion:
     covariance: Reals
     """(k, k) of the degrees of freedom, [rad] and [m]"""
     settled: bool
+    """whether the last step was below `SETTLED_STEP`"""
 
 
 def robust_motion(
@@ -123,8 +124,8 @@ def _step(rows: Reals, right: Reals, pivot: Reals, moved: Reals, extent: float) 
     """Changes (k,) of the degrees of freedom that the rows determine, by least squares."""
     dimension = moved.shape[1]
     turns = len(GENERATORS[dimension])
-    reach = float(np.sqrt(np.max(np.sum((moved - pivot) ** 2, axis=1))))
-    scale = np.where(np.arange(rows.shape[1]) < turns, 1.0 / reach, 1.0)
+    radius = float(np.sqrt(np.max(np.sum((moved - pivot) ** 2, axis=1))))
+    scale = np.where(np.arange(rows.shape[1]) < turns, 1.0 / radius, 1.0)
     found = np.linalg.lstsq(rows * scale, right, rcond=WEAKEST_FREEDOM)[0]
     longest = float(np.sqrt(np.max(found**2)))
     shortened = LONGEST_STEP * extent / longest if longest > LONGEST_STEP * extent else 1.0
