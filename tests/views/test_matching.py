@@ -181,8 +181,8 @@ def test_the_extrema_that_are_counted_are_marked():
 def test_points_are_drawn_where_they_lie():
     fit = made("section")
     outline = outline_at(fit, 0.0)
-    feet, normals = outline.feet(fit, np.arange(len(fit.u)))
-    off = feet + normals * fit.deviations[:, None] * 1e3 - fit.cloud * 1e3
+    footpoints, normals = outline.footpoints(fit, np.arange(len(fit.u)))
+    off = footpoints + normals * fit.deviations[:, None] * 1e3 - fit.cloud * 1e3
     # the outline has 801 points, so that a point between is off by a part in 1e5 of the chord of 35 mm
     assert np.abs(off).max() < 1e-5 * 35.0
 
@@ -335,8 +335,8 @@ def test_points_on_a_blunt_edge_are_drawn_on_its_face():
     )
     outline = outline_at(fit, 0.0)
     assert outline.points.all()
-    feet, normals = outline.feet(fit, np.arange(4))
-    assert feet[2:] == pytest.approx(1e3 * face(u), abs=1e-9)
+    footpoints, normals = outline.footpoints(fit, np.arange(4))
+    assert footpoints[2:] == pytest.approx(1e3 * face(u), abs=1e-9)
     chord_line = section.camber.derivative(np.ones(1))[0]
     assert normals[2] == pytest.approx(chord_line / np.linalg.norm(chord_line), abs=1e-9)
     assert abscissae(fit, np.arange(4)).tolist() == [0.2, 0.9, 1.0, 1.0]

@@ -14,7 +14,7 @@ from bladewright.views.laws import panels_of
 from bladewright.views.meridional import built_edges
 from bladewright.views.picture import sheet
 from bladewright.views.sections import draw_edge, millimetres_per_unit, neighbour_outline, outline
-from bladewright.views.solid import blade_meshes, draw_solid
+from bladewright.views.solid import blade_surfaces, draw_solid
 from machines.sectioned import BLUNT, COMPRESSOR, DESIGNS, IMPELLER, STATOR, VANE
 from machines.sections import EXAMPLES
 
@@ -99,7 +99,7 @@ def test_a_wall_is_continued_past_the_edges_and_no_farther_than_it_reaches(name)
 
 
 def test_a_blunt_edge_is_a_face_of_the_drawn_blade(impeller):
-    meshes, _ = blade_meshes(impeller, (21, 9), (0.0, 0.0, 1.0))
+    meshes, _ = blade_surfaces(impeller, (21, 9), (0.0, 0.0, 1.0))
     face = next(mesh for mesh in meshes if mesh.points.shape == (5, 9, 3))
     v = np.linspace(0.0, 1.0, 9)
     for row, side in ((0, "upper"), (-1, "lower")):

@@ -19,18 +19,20 @@ if TYPE_CHECKING:
 
 
 Index = NDArray[np.intp]
+"""Indices (m,) of points of the cloud."""
 SIDES = ("upper", "lower")
 WORST_POINTS = 500
-"""points farthest off that are always drawn"""
+"""Points farthest from the blade that are always drawn, however many others are left out."""
 DEVIATION_COLOURS = LinearSegmentedColormap.from_list(
     "deviation", ["#0b3c66", "#2f7fb5", "#8fbfd9", "#f4f1ea", "#e9a582", "#c4553f", "#7a1526"]
 )
-"""inside the blade blue, outside red"""
+"""Colours of deviations: blue inside the blade, red outside."""
 ROUND_NUMBERS = (1.0, 1.2, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0)
+"""Round numbers of one decade, at which a scale of colours may end."""
 
 
 class DistanceStatistics(Protocol):
-    """Figures of some distances [m]."""
+    """Statistics of distances [m]."""
 
     @property
     def count(self) -> int: ...
@@ -45,7 +47,7 @@ class DistanceStatistics(Protocol):
 
 
 class FitResult(Protocol):
-    """A fit of a design to a cloud of n points, as `bladewright.fit` hands it back."""
+    """A fit of a design to a cloud of n points, as `bladewright.fit` returns it."""
 
     @property
     def design(self) -> Any: ...
@@ -88,14 +90,14 @@ class FitResult(Protocol):
 
 
 def on_sides(fit: FitResult) -> NDArray[np.bool_]:
-    """Whether each point (n,) lies nearest to a side, rather than to an end."""
+    """Whether the closest point of each point (n,) lies on a side, and not on an end."""
     return np.isin(fit.places, SIDES)
 
 
 def points_to_draw(fit: FitResult, among: NDArray[np.bool_], most: int) -> Index:
-    """Indices of at most about `most` points among a mask (n,), those far off last; the worst are always there.
+    """Indices of at most about `most` of the points of a mask (n,), in order of their deviation.
 
-    The rest is an even choice, the same one every time.
+    The `WORST_POINTS` are always among them; the others are a random choice, the same one every time.
     """
     index = np.flatnonzero(among)
     off = np.abs(fit.deviations[index])
@@ -108,12 +110,12 @@ def points_to_draw(fit: FitResult, among: NDArray[np.bool_], most: int) -> Index
 
 
 def deviations_mm(fit: FitResult, index: Index) -> Reals:
-    """Signed deviations of points [mm]."""
+    """Signed deviations (m,) of points [mm]."""
     return fit.deviations[index] * MILLIMETRES
 
 
 def colour_scale(fit: FitResult) -> Normalize:
-    """Colours of deviations [mm]: symmetric about 0, up to a round number that 99 of 100 inliers stay below."""
+    """Scale of the colours of deviations [mm]: symmetric about 0, up to a round number above 99 % of the inliers."""
     off = np.abs(fit.deviations[fit.inliers])
     most = float(np.percentile(off, 99.0)) * MILLIMETRES if len(off) else 0.0
     limit = rounded_up(most) if most > 0.0 else 1.0
@@ -127,7 +129,7 @@ def rounded_up(value: float) -> float:
 
 
 def cross_out(axes: Axes, abscissae: Reals, ordinates: Reals, few: int) -> None:
-    """Draws a cross for each outlier, smaller and fainter where there are more than a few: they must hide nothing."""
+    """Draw a cross for each outlier, smaller and fainter where there are more than `few`, so that they hide nothing."""
     share = min(1.0, few / max(len(abscissae), 1))
     size = max(6.0 * share**0.5, 1.4)
     style: dict[str, Any] = {"markersize": size, "markeredgewidth": 0.2 * size, "alpha": max(share**0.4, 0.08)}
@@ -135,58 +137,60 @@ def cross_out(axes: Axes, abscissae: Reals, ordinates: Reals, few: int) -> None:
 
 
 def count_of(number: int, what: str) -> str:
-    """A number with its thousands apart, and what it counts."""
+    """A number with separated thousands, and what it counts, in the singular or the plural."""
     return f"{number:,} {what}{'' if number == 1 else 's'}"
 
 
 OUTLINE_POINTS = 801
+"""Points of each side of an outline, between which points of the cloud are placed by linear interpolation."""
 BLUNT_FACES = ("leading_edge", "trailing_edge")
-"""faces of blunt edges"""
+"""Names of the faces of blunt edges."""
 BAND, WIDEST_BAND = 0.04, 0.16
-"""half height in v of the band whose points are drawn beside a section, and what it may grow to"""
+"""Half height in v of the band whose points are drawn beside a section, and the largest to which it is doubled while it
+holds too few points. A high band shows deviations of sections further away."""
 BAND_POINTS = 80
-"""points in a band"""
+"""Points in a band that are enough: a section of fewer has gaps that its deviations cannot be read across."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Outline:
-    """Both sides of a section at the parameters u of its blade [mm], with the points of the cloud that belong to it."""
+    """Both sides of a section [mm] at parameters u of the blade, and which points of the cloud are drawn beside it."""
 
     section: "Section"
     u: Reals
-    """(k,)"""
+    """(k,) parameters of both sides"""
     sides: dict[str, Reals]
-    """(k, 2) of `upper` and `lower`"""
+    """(k, 2) points of `upper` and `lower`"""
     outwards: dict[str, Reals]
-    """(k, 2) unit normals"""
+    """(k, 2) unit normals of `upper` and `lower`, out of the section"""
     points: NDArray[np.bool_]
-    """(n,) whether a point of the cloud is drawn beside it"""
+    """(n,) whether each point of the cloud is drawn beside the section"""
     band: float
-    """half height in v of the part of the blade that the points are from; 0 for a section"""
+    """half height in v of the band of the blade that the points are from; 0 for a section"""
 
     @property
     def closed(self) -> Reals:
-        """The outline (2 k, 2), upper side from leading to trailing edge, lower side back."""
+        """The closed outline (2 k, 2): the upper side from leading to trailing edge, then the lower side back."""
         return np.concatenate([self.sides["upper"], self.sides["lower"][::-1]])
 
     def moved(self, side: str, off: Reals | float) -> Reals:
-        """A side (k, 2), moved outwards [mm]."""
+        """A side (k, 2) offset outwards by `off` [mm]."""
         return self.sides[side] + self.outwards[side] * np.reshape(off, (-1, 1))
 
-    def feet(self, fit: FitResult, index: Index) -> tuple[Reals, Reals]:
-        """Places (m, 2) on the outline of the points' nearest ones, and the normals (m, 2) there."""
-        feet, normals = np.zeros((2, len(index), 2))
+    def footpoints(self, fit: FitResult, index: Index) -> tuple[Reals, Reals]:
+        """Footpoints (m, 2) of points of the cloud on the outline, and the normals (m, 2) there."""
+        footpoints, normals = np.zeros((2, len(index), 2))
         for name in SIDES:
             own = fit.places[index] == name
-            for table, found in ((self.sides, feet), (self.outwards, normals)):
+            for table, values in ((self.sides, footpoints), (self.outwards, normals)):
                 for axis in (0, 1):
-                    found[own, axis] = np.interp(fit.u[index[own]], self.u, table[name][:, axis])
+                    values[own, axis] = np.interp(fit.u[index[own]], self.u, table[name][:, axis])
         for end, name in enumerate(BLUNT_FACES):
             own = fit.places[index] == name
             upper, lower = (self.sides[side][-end] for side in SIDES)
-            feet[own] = upper + _across(fit, index[own], float(end))[:, None] * (lower - upper)
+            footpoints[own] = upper + _across(fit, index[own], float(end))[:, None] * (lower - upper)
             normals[own] = -self.inwards(trailing=bool(end))
-        return feet, normals
+        return footpoints, normals
 
     def inwards(self, *, trailing: bool) -> Reals:
         """Direction (2,) into the section from its leading or its trailing edge."""
@@ -226,7 +230,7 @@ def outline_at(fit: FitResult, v: float) -> Outline:
 
 
 def worst_span(fit: FitResult, region: str) -> float:
-    """v where an inlier of a region is farthest off; the middle of the cloud where the region has none."""
+    """v of the inlier of a region with the largest deviation; the middle of the cloud where there is no inlier."""
     index = np.flatnonzero(fit.inliers & on_sides(fit) & (fit.regions == region))
     if len(index):
         return float(np.clip(fit.v[index[np.argmax(np.abs(fit.deviations[index]))]], 0.0, 1.0))
@@ -234,14 +238,14 @@ def worst_span(fit: FitResult, region: str) -> float:
 
 
 def span_at_share(fit: FitResult, share: float) -> float:
-    """v at a share of the span that the cloud covers."""
+    """v at a fraction of the span that the cloud covers."""
     covered = fit.v[fit.inliers & on_sides(fit)]
     low, high = (float(covered.min()), float(covered.max())) if len(covered) else (0.0, 1.0)
     return float(np.clip(low + share * (high - low), 0.0, 1.0))
 
 
 def _across(fit: FitResult, index: Index, end: float) -> Reals:
-    """Shares (m,) of the way from the upper to the lower side at which points stand on the face of a blunt edge."""
+    """Fractions (m,) of the way from the upper to the lower side at which points lie on the face of a blunt edge."""
     if fit.cloud.shape[-1] == 3:
         upper, lower = (np.real(fit.built.surfaces[name](end, fit.v[index])) for name in SIDES)
     else:
@@ -251,11 +255,12 @@ def _across(fit: FitResult, index: Index, end: float) -> Reals:
 
 
 def _on_outline(fit: FitResult) -> NDArray[np.bool_]:
-    """Whether each point (n,) lies nearest to a side or to the face of a blunt edge."""
+    """Whether the closest point of each point (n,) lies on a side or on the face of a blunt edge."""
     return on_sides(fit) | np.isin(fit.places, BLUNT_FACES)
 
 
 def _near_span(fit: FitResult, v: float) -> tuple[NDArray[np.bool_], float]:
+    """Whether each point (n,) lies in the band about v, and the half height of the band."""
     sides, band = _on_outline(fit), BAND
     while True:
         near = sides & (np.abs(fit.v - v) <= band)

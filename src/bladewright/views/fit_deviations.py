@@ -30,15 +30,17 @@ from bladewright.views.sections import COORDINATES, edge_half_width, edge_size
 from bladewright.views.style import INK, MILLIMETRES, PALE, SOFT, label_axes
 
 MAP_POINTS = 20_000
-"""points up to which each is drawn on the map; of more, the mean of each cell"""
+"""Most points that are drawn on the map one by one; of more, the mean of each cell is drawn, as dots would cover each
+other."""
 CELL_POINTS = 10
-"""points in a cell of the map, in the mean, as long as there are no more than FINEST cells along the chord"""
+"""Points per cell of the map in the mean, which averages noise to about a third."""
 MAX_CELLS = 320
+"""Most cells along the outline of the map: more are smaller than what its panel shows."""
 ABSCISSA = "u:  trailing edge  ←  lower side  →  leading edge  ←  upper side  →  trailing edge"
 
 
 def draw_map(axes: Axes, fit: FitResult) -> None:
-    """Draws the signed deviations of a blade over u and v."""
+    """Draw the signed deviations of a blade over u and v."""
     scale = colour_scale(fit)
     axes.set_facecolor(PALE)
     axes.grid(visible=False)
@@ -47,22 +49,22 @@ def draw_map(axes: Axes, fit: FitResult) -> None:
     if total > MAP_POINTS:
         _draw_cells(axes, fit, np.flatnonzero(sides), scale)
         shown = points_to_draw(fit, sides, WORST_POINTS * 2)[-WORST_POINTS:]
-        told = f"mean in each cell of {count_of(total, 'point')}, the {WORST_POINTS} farthest as dots"
+        caption = f"mean in each cell of {count_of(total, 'point')}, the {WORST_POINTS} farthest as dots"
     else:
         shown = points_to_draw(fit, sides, MAP_POINTS)
-        told = f"{count_of(total, 'point')} on the sides"
+        caption = f"{count_of(total, 'point')} on the sides"
     size = float(np.clip(1.6e5 / max(total, 1), 5.0, 60.0)) if total <= MAP_POINTS else 7.0
     dots: dict[str, Any] = {"s": size, "cmap": DEVIATION_COLOURS, "norm": scale, "rasterized": True}
     places = abscissae(fit, shown), fit.v[shown]
     axes.scatter(*places, c=deviations_mm(fit, shown), linewidths=0.25, edgecolors=INK, **dots)
     outliers = np.flatnonzero(on_sides(fit) & ~fit.inliers)
-    told += _cross_map_outliers(axes, fit, outliers, fit.v[outliers])
+    caption += _cross_map_outliers(axes, fit, outliers, fit.v[outliers])
     others = int(np.count_nonzero(~on_sides(fit)))
     if others:
-        told += f"; {count_of(others, 'point')} on ends and blunt edges not shown"
+        caption += f"; {count_of(others, 'point')} on ends and blunt edges not shown"
     _label_map(axes)
     axes.set_ylim(-0.03, 1.03)
-    label_axes(axes, "Deviation from the blade", f"{ABSCISSA}\n{told}", "span v [-]")
+    label_axes(axes, "Deviation from the blade", f"{ABSCISSA}\n{caption}", "span v [-]")
     bar = axes.figure.colorbar(
         ScalarMappable(norm=scale, cmap=DEVIATION_COLOURS), ax=axes, extend="both", pad=0.012, aspect=28
     )
@@ -71,15 +73,15 @@ def draw_map(axes: Axes, fit: FitResult) -> None:
 
 
 def draw_outline_deviation(axes: Axes, fit: FitResult) -> None:
-    """Draws the signed deviations of a section over u, outliers at the border."""
+    """Draw the signed deviations of a section over u; outliers are held at the border of the panel."""
     scale = colour_scale(fit)
     total = int(np.count_nonzero(fit.inliers))
     shown = points_to_draw(fit, fit.inliers, MAP_POINTS)
     most = max(float(np.max(np.abs(fit.deviations[fit.inliers]), initial=0.0)), fit.tolerance or 0.0) * MILLIMETRES
     limit = 1.25 * (most if most > 0.0 else 1.0)
-    told = f"{count_of(total, 'point')}"
+    caption = f"{count_of(total, 'point')}"
     if len(shown) < total:
-        told += f", {len(shown):,} of them drawn with the {WORST_POINTS} farthest"
+        caption += f", {len(shown):,} of them drawn with the {WORST_POINTS} farthest"
     size = float(np.clip(2e4 / max(len(shown), 1), 4.0, 30.0))
     dots: dict[str, Any] = {"s": size, "cmap": DEVIATION_COLOURS, "norm": scale, "rasterized": len(shown) > 2000}
     values = deviations_mm(fit, shown)
@@ -87,27 +89,27 @@ def draw_outline_deviation(axes: Axes, fit: FitResult) -> None:
         abscissae(fit, shown), values, c=values, linewidths=0.35 if len(shown) < 2000 else 0.0, edgecolors=INK, **dots
     )
     outliers = np.flatnonzero(~fit.inliers)
-    held = np.clip(deviations_mm(fit, outliers), -0.95 * limit, 0.95 * limit)
-    told += _cross_map_outliers(axes, fit, outliers, held)
+    clipped = np.clip(deviations_mm(fit, outliers), -0.95 * limit, 0.95 * limit)
+    caption += _cross_map_outliers(axes, fit, outliers, clipped)
     axes.axhline(0.0, color=INK, linewidth=0.9)
     if fit.tolerance is not None:
         for sign in (-1.0, 1.0):
             axes.axhline(sign * fit.tolerance * MILLIMETRES, color=SOFT, linewidth=1.0, linestyle="--")
-        told += f"; dashed: the tolerance, {fit.tolerance * MILLIMETRES:.3g} mm"
+        caption += f"; dashed: the tolerance, {fit.tolerance * MILLIMETRES:.3g} mm"
     _label_map(axes)
     axes.set_ylim(-limit, limit)
-    label_axes(axes, "Deviation from the section", f"{ABSCISSA}\n{told}", "deviation, outside positive [mm]")
+    label_axes(axes, "Deviation from the section", f"{ABSCISSA}\n{caption}", "deviation, outside positive [mm]")
 
 
 def abscissae(fit: FitResult, index: Index) -> Reals:
-    """u of points on the upper side, -u of those on the lower; those on the face of a blunt edge stand at the edge."""
+    """u of points on the upper side, -u of those on the lower one; the face of a blunt edge is at the edge."""
     places = fit.places[index]
     u = np.where(places == "leading_edge", 0.0, np.where(places == "trailing_edge", 1.0, fit.u[index]))
     return np.where(places == "lower", -u, u)
 
 
 def _cross_map_outliers(axes: Axes, fit: FitResult, index: Index, ordinate: Reals) -> str:
-    """Crosses outliers, and says how many."""
+    """Draw crosses for the outliers; return the words that say how many they are."""
     if len(index) == 0:
         return ""
     cross_out(axes, abscissae(fit, index), ordinate, 200)
@@ -137,21 +139,26 @@ def _label_map(axes: Axes) -> None:
 
 
 INSIDE, OUTSIDE = "#2f7fb5", "#c4553f"
+"""Colours of deviations into and out of the section."""
 MARKER, SMALL_MARKER = 2.6, 1.2
+"""Sizes of the marks of few and of many points [points]."""
 TOLERANCE_SHARE = 0.4
-"""of the largest thickness, that the tolerance is drawn within"""
+"""Largest distance, in largest thicknesses of the section, at which the tolerance is drawn inside it: a line further
+inside would fold at the edges."""
 LEAST_EDGE_WINDOW = 0.01
-"""of the chord, the least half width of the picture of an edge"""
+"""Least half width of the close-up of an edge, in chords."""
 CROSSED_OUTLIERS = 60
-"""outliers beside a section up to which all are crossed"""
+"""Most outliers beside a section that are all crossed; of more, those beyond the panel are left out, as they would line
+its border."""
 SECTION_POINTS = 4000
-"""points drawn beside a section"""
+"""Most points drawn beside a section: more make the file large and add nothing that can be seen."""
 DRAWN_HEIGHT = 0.035
-"""of the chord, that the largest of 99 of 100 deviations is drawn with at most"""
+"""Largest height, in chords, with which deviations are drawn, but for the largest hundredth of them: the shape of the
+section stays clear."""
 
 
 def magnification(fit: FitResult) -> float:
-    """A round factor by which the deviations are seen beside a section."""
+    """A round factor by which deviations are magnified beside a section."""
     off = np.abs(fit.deviations[fit.inliers])
     most = float(np.percentile(off, 99.0)) if len(off) else 0.0
     if most <= 0.0:
@@ -163,60 +170,60 @@ def magnification(fit: FitResult) -> float:
 
 
 def draw_magnified(axes: Axes, fit: FitResult, outline: Outline, name: str) -> None:
-    """Draws a section with the deviations of the points near it magnified, outliers crossed.
+    """Draw a section with the deviations of the points near it magnified, and outliers crossed.
 
-    An outlier that is too far off stands 8 % of the chord away; where there are many, only those nearer are crossed.
+    Outliers further off are crossed at 8 % of the chord; where there are many, only those nearer are crossed.
     """
     factor = magnification(fit)
     axes.fill(*outline.closed.T, color=PALE, linewidth=0.0)
     _draw_tolerance(axes, fit, outline, factor)
     shown = points_to_draw(fit, outline.points & fit.inliers, SECTION_POINTS)
     off = deviations_mm(fit, shown)
-    feet, normals = outline.feet(fit, shown)
-    tops = feet + normals * (factor * off)[:, None]
+    footpoints, normals = outline.footpoints(fit, shown)
+    tips = footpoints + normals * (factor * off)[:, None]
     many = len(shown) > 1000
     for colour, own in ((INSIDE, off < 0.0), (OUTSIDE, off >= 0.0)):
-        lines = list(np.stack([feet[own], tops[own]], axis=1))
+        lines = list(np.stack([footpoints[own], tips[own]], axis=1))
         axes.add_collection(LineCollection(lines, colors=colour, linewidths=0.4 if many else 0.9, rasterized=many))
         size = SMALL_MARKER if many else MARKER
-        x, y = tops[own].T
+        x, y = tips[own].T
         axes.plot(
             x, y, color=colour, linestyle="none", marker="o", rasterized=many, markersize=size, markeredgewidth=0.0
         )
     axes.plot(*outline.closed.T, color=INK, linewidth=1.0)
     _cross_outliers(axes, fit, outline, factor, 0.08 * float(outline.section.chord) * MILLIMETRES)
     abscissa, ordinate = COORDINATES[outline.section.plane]
-    told = "" if fit.tolerance is None else f", dashed: the tolerance × {factor:g}"
-    label_axes(axes, f"{name}, deviations × {factor:g}", f"{abscissa}{told}", ordinate)
+    caption = "" if fit.tolerance is None else f", dashed: the tolerance × {factor:g}"
+    label_axes(axes, f"{name}, deviations × {factor:g}", f"{abscissa}{caption}", ordinate)
     axes.set_aspect("equal", adjustable="datalim")
     axes.margins(0.06)
 
 
 def draw_edge_points(axes: Axes, fit: FitResult, outline: Outline, *, trailing: bool, where: str) -> None:
-    """Draws the leading or the trailing edge of a section with the points there, as they are."""
+    """Draw a close-up of the leading or the trailing edge of a section, with the points there to scale."""
     section = outline.section
-    size, called = edge_size(section, trailing=trailing)
+    size, description = edge_size(section, trailing=trailing)
     end = -1 if trailing else 0
     tip = 0.5 * (outline.sides["upper"][end] + outline.sides["lower"][end])
     inwards = outline.inwards(trailing=trailing)
     chord = float(section.chord) * MILLIMETRES
     off = fit.by_region.get(f"{'trailing' if trailing else 'leading'} edge")
-    # a nose that came out far too sharp must not hide how far the points are
+    # Where the fitted edge is far too sharp, the panel must still show how far off the points are.
     least = max(LEAST_EDGE_WINDOW * chord, 1.5 * off.maximum * MILLIMETRES if off else 0.0)
-    reach = max(edge_half_width(section, size), least)
-    middle = tip + 0.6 * reach * inwards
+    half_width = max(edge_half_width(section, size), least)
+    middle = tip + 0.6 * half_width * inwards
     axes.fill(*outline.closed.T, color=PALE, linewidth=0.0)
     _draw_tolerance(axes, fit, outline, 1.0)
-    # how far along u the picture reaches
-    seen = [np.max(np.abs(side - middle), axis=-1) <= 1.2 * reach for side in outline.sides.values()]
+    # The range of u that the panel shows.
+    seen = [np.max(np.abs(side - middle), axis=-1) <= 1.2 * half_width for side in outline.sides.values()]
     span = float(np.max(np.abs(outline.u - float(trailing))[seen[0] | seen[1]]))
     near = np.zeros_like(outline.points)
     ahead = np.isin(fit.places, BLUNT_FACES) | (fit.u >= 1.0 - span if trailing else fit.u <= span)
     beside = np.flatnonzero(outline.points & fit.inliers & ahead)
-    near[beside[np.max(np.abs(_places(fit, outline, beside) - middle), axis=-1) <= 1.05 * reach]] = True
+    near[beside[np.max(np.abs(_places(fit, outline, beside) - middle), axis=-1) <= 1.05 * half_width]] = True
     shown = points_to_draw(fit, near, SECTION_POINTS)
     at = _places(fit, outline, shown)
-    # over the points where they would hide it
+    # Many points would hide the outline, so it is drawn over them.
     axes.plot(*outline.closed.T, color=INK, linewidth=1.2, zorder=3.5 if len(shown) > 1000 else 2.5)
     dot = float(np.clip(6e3 / max(len(shown), 1), 3.0, 26.0))
     axes.scatter(
@@ -232,20 +239,22 @@ def draw_edge_points(axes: Axes, fit: FitResult, outline: Outline, *, trailing: 
         rasterized=len(shown) > 1500,
     )
     _cross_outliers(axes, fit, outline, 1.0, np.inf)
-    axes.set_xlim(middle[0] - reach, middle[0] + reach)
-    axes.set_ylim(middle[1] - reach, middle[1] + reach)
+    axes.set_xlim(middle[0] - half_width, middle[0] + half_width)
+    axes.set_ylim(middle[1] - half_width, middle[1] + half_width)
     axes.set_aspect("equal", adjustable="box", anchor="N")
     edge = "Trailing" if trailing else "Leading"
     abscissa, ordinate = COORDINATES[section.plane]
-    told = f"{count_of(int(np.count_nonzero(near)), 'point')}, {called}"
-    label_axes(axes, f"{edge} edge{where}", f"{abscissa}\n{told if not where else 'its worst: ' + told}", ordinate)
+    caption = f"{count_of(int(np.count_nonzero(near)), 'point')}, {description}"
+    label_axes(
+        axes, f"{edge} edge{where}", f"{abscissa}\n{caption if not where else 'its worst: ' + caption}", ordinate
+    )
 
 
 def _draw_tolerance(axes: Axes, fit: FitResult, outline: Outline, factor: float) -> None:
     if fit.tolerance is None:
         return
     off = factor * fit.tolerance * MILLIMETRES
-    # inside a thin section the line would fold
+    # Inside a thin section the line would fold.
     inside = off < TOLERANCE_SHARE * outline.section.maximum_thickness[0] * MILLIMETRES
     for sign in (-1.0, 1.0) if inside else (1.0,):
         for side in SIDES:
@@ -253,9 +262,9 @@ def _draw_tolerance(axes: Axes, fit: FitResult, outline: Outline, factor: float)
 
 
 def _places(fit: FitResult, outline: Outline, index: Index) -> Reals:
-    """Where points (m, 2) lie beside the outline."""
-    feet, normals = outline.feet(fit, index)
-    return feet + normals * deviations_mm(fit, index)[:, None]
+    """Positions (m, 2) of points beside the outline."""
+    footpoints, normals = outline.footpoints(fit, index)
+    return footpoints + normals * deviations_mm(fit, index)[:, None]
 
 
 def _cross_outliers(axes: Axes, fit: FitResult, outline: Outline, factor: float, most: float) -> None:
@@ -264,8 +273,8 @@ def _cross_outliers(axes: Axes, fit: FitResult, outline: Outline, factor: float,
         return
     off = factor * deviations_mm(fit, index)
     if len(index) > CROSSED_OUTLIERS:
-        # held at the border they would draw a wall
+        # So many crosses at the border would look like a wall.
         index, off = index[np.abs(off) < most], off[np.abs(off) < most]
-    feet, normals = outline.feet(fit, index)
-    at: Reals = feet + normals * np.clip(off, -most, most)[:, None]
+    footpoints, normals = outline.footpoints(fit, index)
+    at: Reals = footpoints + normals * np.clip(off, -most, most)[:, None]
     cross_out(axes, at[:, 0], at[:, 1], CROSSED_OUTLIERS)

@@ -22,6 +22,7 @@ from bladewright.views.style import (
     MILLIMETRES,
     ORANGE,
     RED,
+    SHEET_DPI,
     SOFT,
     WALLS,
     drawing_style,
@@ -37,13 +38,13 @@ if TYPE_CHECKING:
 REGIONS = ("sides", "leading edge", "trailing edge", "ends")
 EDGE_COLOURS = {"leading edge": ORANGE, "trailing edge": GREEN}
 TABLE_COLUMNS = (0.415, 0.565, 0.715, 0.86, 1.0)
-"""right ends of the table's columns after the first"""
+"""Right ends of the columns of the table after the first, in widths of the panel."""
 FAILURE_LINES = 6
-"""of failures"""
+"""Most lines of failures under the table, which its panel has room for."""
 
 
 def draw_histogram(axes: Axes, fit: FitResult) -> None:
-    """Draws the distribution of the inliers' signed deviations, with the cloud's noise and the tolerance."""
+    """Draw the distribution of the inliers' signed deviations, with the noise of the cloud and the tolerance."""
     off = fit.deviations[fit.inliers] * MILLIMETRES
     most = float(np.max(np.abs(off), initial=0.0))
     tolerance = None if fit.tolerance is None else fit.tolerance * MILLIMETRES
@@ -72,14 +73,14 @@ def draw_histogram(axes: Axes, fit: FitResult) -> None:
             axes.axvline(sign * tolerance, color=INK, linewidth=1.1, linestyle="--")
         axes.plot([], [], color=INK, linewidth=1.1, linestyle="--", label=f"tolerance ± {tolerance:.3g} mm")
     axes.set_xlim(-limit, limit)
-    # noise far below the deviations has a needle of a bell
+    # Noise far below the deviations makes a narrow, high bell that is cut off.
     axes.set_ylim(0.0, 1.1 * min(max(axes.get_ylim()[1] / 1.05, tallest), 1.5 * tallest))
     label_axes(axes, "Distribution of the deviations", "deviation, outside positive [mm]", "part of the points [%]")
     legend_below(axes, 2)
 
 
 def draw_extrema(axes: Axes, fit: FitResult, sections: Sequence["Section"], ends: tuple[str, str] = WALLS) -> None:
-    """Draws the curvature of the sides along their arc, and marks the extrema that are counted."""
+    """Draw the curvature of the sides along their arc, and mark the extrema that are counted."""
     draw_curvature(axes, sections, ends)
     for section in sections:
         for name in SIDES:
@@ -93,12 +94,12 @@ def draw_extrema(axes: Axes, fit: FitResult, sections: Sequence["Section"], ends
 
 
 def draw_table(axes: Axes, fit: FitResult) -> None:
-    """Writes whether the fit passed, why not, and the distances by region."""
+    """Write the distances by region, whether the fit passed, and why not."""
     axes.axis("off")
     axes.set_xlim(0.0, 1.0)
     axes.set_ylim(0.0, 1.0)
     colour = GREEN if fit.passed else RED
-    verdict = ("Passed" if fit.passed else "Not passed") + (", interrupted" if fit.interrupted else "")
+    result = ("Passed" if fit.passed else "Not passed") + (", interrupted" if fit.interrupted else "")
     axes.set_title("Distances of the inliers [mm]")
     height, line = 0.98, 0.074
     for name, right in zip(("points", "mean", "rms", "99 %", "max"), TABLE_COLUMNS, strict=True):
@@ -117,14 +118,14 @@ def draw_table(axes: Axes, fit: FitResult) -> None:
             ink = RED if over else INK
             axes.text(right, height, cell, ha="right", va="top", fontsize=9.5, fontweight=weight, color=ink)
     height -= 1.6 * line
-    axes.text(0.0, height, verdict, va="top", fontsize=12.0, fontweight="bold", color=colour)
+    axes.text(0.0, height, result, va="top", fontsize=12.0, fontweight="bold", color=colour)
     asked = "no tolerance asked" if fit.tolerance is None else f"tolerance {fit.tolerance * MILLIMETRES:.3g} mm"
     axes.text(1.0, height, asked, ha="right", va="top", fontsize=10.0)
     height -= 1.15 * line
-    told = [piece for each in fit.failures for piece in wrap(shorten(each, 260, placeholder=" …"), 66)]
-    if not told:
-        told = [f"{count_of(len(fit.estimates), 'free parameter')}, rank {fit.rank}"]
-    for piece in told[:FAILURE_LINES] + (["…"] if len(told) > FAILURE_LINES else []):
+    lines = [piece for each in fit.failures for piece in wrap(shorten(each, 260, placeholder=" …"), 66)]
+    if not lines:
+        lines = [f"{count_of(len(fit.estimates), 'free parameter')}, rank {fit.rank}"]
+    for piece in lines[:FAILURE_LINES] + (["…"] if len(lines) > FAILURE_LINES else []):
         axes.text(0.0, height, piece, va="top", fontsize=9.0, parse_math=False)
         height -= 0.85 * line
 
@@ -133,24 +134,22 @@ def _beyond(fit: FitResult, of: Any) -> bool:
     return fit.tolerance is not None and of.maximum > fit.tolerance
 
 
-DOTS = 150
-"""to an inch of a PNG"""
 SPAN_SHARES = (0.08, 0.5, 0.92)
-"""of the span that the cloud covers, where sections are drawn"""
+"""Where sections are drawn, in fractions of the span that the cloud covers: near both ends and in the middle."""
 
 
 def fit_picture(fit: FitResult, path: str | Path) -> None:
-    """Draws a fit, as PNG, SVG or PDF by the suffix of `path`; the file appears whole or not at all.
+    """Draw a fit as PNG, SVG or PDF, by the ending of `path`; the file is written whole or not at all.
 
-    On it are the deviations on the unwrapped blade (of a section: along its outline), sections with the deviations
-    magnified, both edges close by, the distribution of the deviations, the curvature of the sides and the figures. Of
-    large clouds a part is drawn and the panel says so, but always the points farthest off, and on the map all outliers.
-    Raises FileError where the suffix is another or the path cannot be written.
+    It shows the deviations on the unwrapped blade (of a section: along its outline), sections with magnified
+    deviations, close-ups of both edges, the distribution of the deviations, the curvature of the sides and the figures.
+    Of large clouds a part is drawn, and the panel says so; the points farthest off are always drawn, and on the map all
+    outliers. Raises FileError where the ending is another or the path cannot be written.
     """
     checked_path(path)
     figure = fit_sheet(fit)
     with drawing_style():
-        write_figure(figure, path, DOTS)
+        write_figure(figure, path, SHEET_DPI)
 
 
 def fit_sheet(fit: FitResult) -> Figure:
@@ -201,7 +200,7 @@ def _section_sheet(fit: FitResult) -> Figure:
 
 def _header(fit: FitResult) -> list[str]:
     outliers = len(fit.inliers) - int(np.count_nonzero(fit.inliers))
-    said = [
+    header = [
         "passed" if fit.passed else "NOT PASSED",
         f"{count_of(len(fit.cloud), 'point')}, {count_of(outliers, 'outlier')}",
         f"mean {fit.deviation.mean * MILLIMETRES:.3g} mm, largest {fit.deviation.maximum * MILLIMETRES:.3g} mm",
@@ -210,8 +209,8 @@ def _header(fit: FitResult) -> list[str]:
         count_of(len(fit.estimates), "free parameter"),
     ]
     if fit.tolerance is not None:
-        said.insert(3, f"tolerance {fit.tolerance * MILLIMETRES:.3g} mm")
-    return said
+        header.insert(3, f"tolerance {fit.tolerance * MILLIMETRES:.3g} mm")
+    return header
 
 
 def _place(v: float, ends: tuple[str, str]) -> str:

@@ -8,7 +8,19 @@ from matplotlib.axes import Axes
 from bladewright.nurbs.basis import Reals
 from bladewright.nurbs.surface import Surface
 from bladewright.views.sections import cosine_spacing
-from bladewright.views.style import BLUE, GREEN, INK, MILLIMETRES, ORANGE, RED, SOFT, label_axes, legend_below
+from bladewright.views.style import (
+    BLUE,
+    GREEN,
+    GREY,
+    INK,
+    MILLIMETRES,
+    ORANGE,
+    RED,
+    SOFT,
+    VIOLET,
+    label_axes,
+    legend_below,
+)
 
 if TYPE_CHECKING:
     from bladewright.blade.exact.meridional_view import MeridionalView, ViewLine
@@ -16,54 +28,57 @@ if TYPE_CHECKING:
     from bladewright.domain.passage import Passage
 
 
-GIVEN = "#7a5ea8"
 CURVES = {"hub": BLUE, "shroud": ORANGE, "leading_edge": GREEN, "trailing_edge": RED}
+"""Colours of the walls and of the edges."""
+INLET, OUTLET = VIOLET, GREY
+"""Colours of the ends of a passage."""
 
 
 def draw_meridional(axes: Axes, blade: "Blade") -> None:
-    """Draws the plan in the (x, r) plane, or (x, z) of a cascade, equal lengths equal on both axes."""
-    exact, plan = blade.exact, blade.exact.meridional_view
-    noses = blade_outline(blade) * MILLIMETRES
-    axes.fill(*noses.T, color=INK, alpha=0.08, linewidth=0.0, label="blade")
-    axes.plot(*noses.T, color=INK, linewidth=0.7)
-    for index, line in enumerate(plan.stream_lines):
+    """Draw the meridional view of a blade in the (x, r) plane, or (x, z) in a cascade, to one scale on both axes."""
+    exact, view = blade.exact, blade.exact.meridional_view
+    covered = blade_outline(blade) * MILLIMETRES
+    axes.fill(*covered.T, color=INK, alpha=0.08, linewidth=0.0, label="blade")
+    axes.plot(*covered.T, color=INK, linewidth=0.7)
+    for index, line in enumerate(view.stream_lines):
         axes.plot(*(line * MILLIMETRES).T, color=SOFT, linewidth=0.6, label=None if index else "stream lines")
-    for index, line in enumerate(plan.quasi_orthogonals):
+    for index, line in enumerate(view.quasi_orthogonals):
         label = None if index else "quasi-orthogonals"
         axes.plot(*(line * MILLIMETRES).T, color=SOFT, linestyle=(0, (3, 2)), linewidth=0.9, label=label)
-    for index, surface in enumerate(plan.stream_surfaces):
-        _draw(axes, surface, GIVEN, None if index else "stream surfaces given")
-    for name, asked in plan.lines.items():
-        _draw(axes, asked, CURVES[name], name.replace("_", " "))
+    for index, surface in enumerate(view.stream_surfaces):
+        _draw(axes, surface, VIOLET, None if index else "stream surfaces given")
+    for name, curve in view.lines.items():
+        _draw(axes, curve, CURVES[name], name.replace("_", " "))
     for index, line in enumerate(built_edges(blade)):
         label = None if index else "edges as built"
         axes.plot(*(line * MILLIMETRES).T, color=INK, linestyle=(0, (1, 1.2)), linewidth=1.6, label=label)
-    draw_clearance(axes, plan)
+    draw_clearance(axes, view)
     label_axes(axes, "Meridional channel, given points", "x [mm]", "r [mm]" if exact.mapping.revolved else "z [mm]")
     axes.set_aspect("equal", adjustable="datalim")
     legend_below(axes, 3)
 
 
-def draw_clearance(axes: Axes, plan: "MeridionalView") -> None:
-    """Draws the clearance surface, where there is one."""
-    if plan.tip is None:
+def draw_clearance(axes: Axes, view: "MeridionalView") -> None:
+    """Draw the clearance surface where there is one."""
+    if view.tip is None:
         return
-    stated = " to ".join(dict.fromkeys(f"{each * MILLIMETRES:.3g}" for each in plan.clearance))
-    tip = plan.tip * MILLIMETRES
+    stated = " to ".join(dict.fromkeys(f"{each * MILLIMETRES:.3g}" for each in view.clearance))
+    tip = view.tip * MILLIMETRES
     axes.plot(*tip.T, color=INK, linestyle="--", linewidth=1.0, label=f"clearance {stated} mm")
 
 
 def built_edges(blade: "Blade") -> list[Reals]:
-    """Leading and trailing edge of the native sides (n, 2) in (x, r) [m]; both sides' where one is blunt."""
-    v, found = np.linspace(0.0, 1.0, 101), []
+    """Leading and trailing edge (n, 2) of the native sides in (x, r) [m]; of a blunt edge those of both sides."""
+    v, edges = np.linspace(0.0, 1.0, 101), []
     for end, name in ((0.0, "leading_edge"), (1.0, "trailing_edge")):
         for side in blade.sides if name in blade.surfaces else blade.sides[:1]:
             x, y, z = np.moveaxis(np.real(side.grid(np.array([end]), v))[0], -1, 0)
-            found.append(np.stack([x, np.sqrt(y * y + z * z) if blade.exact.mapping.revolved else z], axis=-1))
-    return found
+            edges.append(np.stack([x, np.sqrt(y * y + z * z) if blade.exact.mapping.revolved else z], axis=-1))
+    return edges
 
 
 def _draw(axes: Axes, line: "ViewLine", colour: str, label: str | None) -> None:
+    """Draw a curve with its continuations and the points that define it."""
     axes.plot(*(line.points * MILLIMETRES).T, color=colour, label=label)
     for part in line.beyond:
         axes.plot(*(part * MILLIMETRES).T, color=colour, linewidth=0.8)
@@ -73,23 +88,20 @@ def _draw(axes: Axes, line: "ViewLine", colour: str, label: str | None) -> None:
 
 
 def blade_outline(blade: "Blade") -> Reals:
-    """What the blade covers of the meridional plane: its closed outline (n, 2) of (x, r) [m], noses included."""
-    stations = blade.exact.sections(np.linspace(0.0, 1.0, 41))
-    u, position, _ = stations.on_lines(np.concatenate(stations.plane_points(cosine_spacing(101)), axis=-2))
+    """Closed outline (n, 2) in (x, r) [m] of the area that the blade covers, with what bulges past its edge curves."""
+    sections = blade.exact.sections(np.linspace(0.0, 1.0, 41))
+    u, position, _ = sections.on_lines(np.concatenate(sections.plane_points(cosine_spacing(101)), axis=-2))
     order = np.argsort(np.real(u), axis=-1)
     ends = np.take_along_axis(np.real(position), order[:, [0, -1], None], axis=1)
     hub, shroud = (np.real(position)[row, order[row]] for row in (0, -1))
     return np.concatenate([ends[:, 0], shroud, ends[::-1, 1], hub[::-1]])
 
 
-INLET, OUTLET = "#7a5ea8", "#4d4d4d"
-
-
 def draw_duct(axes: Axes, passage: "Passage") -> None:
-    """Draws the native duct in the (x, r) plane, or (x, z) of a cascade, equal lengths equal on both axes."""
+    """Draw the native duct in the (x, r) plane, or (x, z) in a cascade, to one scale on both axes."""
     blade = passage.blade
-    noses = blade_outline(blade) * MILLIMETRES
-    axes.fill(*noses.T, color=INK, alpha=0.08, linewidth=0.0, label="blade")
+    covered = blade_outline(blade) * MILLIMETRES
+    axes.fill(*covered.T, color=INK, alpha=0.08, linewidth=0.0, label="blade")
     periodic, across = cast(Surface, passage.whole["periodic_upper"]), np.linspace(0.0, 1.0, 101)
     u = np.unique(np.concatenate([np.linspace(0.0, 1.0, 401), 0.25 + 0.5 * cosine_spacing(201)]))
     for index, line in enumerate(np.swapaxes(_meridional(passage, periodic, u, np.linspace(0.1, 0.9, 9)), 0, 1)):
@@ -111,6 +123,6 @@ def draw_duct(axes: Axes, passage: "Passage") -> None:
 
 
 def _meridional(passage: "Passage", face: Surface, u: Reals, v: Reals) -> Reals:
-    """(x, r) or (x, z) (k, l, 2) [mm] of a native face at u (k,) and v (l,)."""
+    """Points (k, l, 2) in (x, r) or (x, z) [mm] of a native face at u (k,) and v (l,)."""
     x, y, z = np.moveaxis(np.real(face.grid(u, v)), -1, 0)
     return np.stack([x, np.sqrt(y * y + z * z) if passage.duct.revolved else z], axis=-1) * MILLIMETRES

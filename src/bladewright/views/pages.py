@@ -19,23 +19,30 @@ if TYPE_CHECKING:
 
 
 HEADER_LETTERS = 150
-"""letters of the sheet's first line"""
+"""Most characters in the first line of a sheet, name and description together: what fits a width of 16 inches."""
+
+HEADER_HEIGHT = 0.85
+"""Height kept clear for the header [inches]: two lines of text with their margins."""
+SUFFIXES = (".png", ".svg", ".pdf")
+"""Endings of the formats in which a picture can be written."""
+_UNDATED: dict[str, dict[str, Any]] = {".png": {}, ".svg": {"Date": None}, ".pdf": {"CreationDate": None}}
+"""Metadata without a date, so that the same figure gives the same bytes."""
 
 
 def rows(figure: Figure, *heights: float) -> Sequence[SubFigure]:
-    """A strip across the figure for each height, from the top down."""
+    """Strips across the figure with these relative heights, from the top down."""
     return list(np.atleast_1d(cast(Any, figure.subfigures(len(heights), 1, height_ratios=heights))))
 
 
 def columns(strip: SubFigure, *widths: float) -> Sequence[SubFigure]:
-    """A part of the strip for each width, from left to right."""
+    """Parts of a strip with these relative widths, from left to right."""
     return list(np.atleast_1d(cast(Any, strip.subfigures(1, len(widths), width_ratios=widths))))
 
 
 def draw_header(figure: Figure, name: str, description: str, figures: list[str]) -> None:
-    """Writes the head of a sheet, and keeps its place clear."""
+    """Write the header of a sheet, and keep the panels below it."""
     inch = 1.0 / figure.get_figheight()
-    rect = (0.0, 0.0, 1.0, 1.0 - 0.85 * inch)
+    rect = (0.0, 0.0, 1.0, 1.0 - HEADER_HEIGHT * inch)
     figure.set_layout_engine(ConstrainedLayoutEngine(w_pad=0.12, h_pad=0.10, rect=rect))
     place: dict[str, Any] = {"ha": "left", "va": "baseline"}
     name = shorten(name, HEADER_LETTERS // 3, placeholder=" …")
@@ -47,7 +54,7 @@ def draw_header(figure: Figure, name: str, description: str, figures: list[str])
 
 
 def with_fixed_layout(figure: Figure) -> Figure:
-    """The figure, its panels laid out for good: it would be laid out anew, twice, when it is written."""
+    """The figure with its panels laid out once; otherwise the layout engine runs twice when the figure is written."""
     FigureCanvasAgg(figure)
     engine = figure.get_layout_engine()
     if engine is not None:
@@ -56,12 +63,8 @@ def with_fixed_layout(figure: Figure) -> Figure:
     return figure
 
 
-SUFFIXES = (".png", ".svg", ".pdf")
-_UNDATED = {".png": {}, ".svg": {"Date": None}, ".pdf": {"CreationDate": None}}
-
-
 def checked_path(path: str | Path) -> Path:
-    """The path, if a picture can be written there; raises FileError where its suffix or its directory will not do."""
+    """The path, where a picture can be written to it; raises FileError where its ending or its directory is wrong."""
     path = Path(path)
     if path.suffix.lower() not in SUFFIXES:
         kind = f"ends in '{path.suffix}'" if path.suffix else "has no ending"
@@ -73,15 +76,15 @@ def checked_path(path: str | Path) -> Path:
     return path
 
 
-def write_figure(figure: "Figure", path: str | Path, dots: int) -> None:
-    """Writes a figure as PNG, SVG or PDF by the path's suffix, `dots` to an inch; raises FileError if that fails.
+def write_figure(figure: "Figure", path: str | Path, dpi: int) -> None:
+    """Write a figure as PNG, SVG or PDF by the path's ending, with `dpi` pixels per inch in a PNG.
 
-    The same figure gives the same bytes, whenever it is written.
+    The same figure gives the same bytes, whenever it is written. Raises FileError where it cannot be written.
     """
     path = checked_path(path)
     suffix = path.suffix.lower()
     picture = io.BytesIO()
     FigureCanvasAgg(figure)
-    figure.savefig(picture, format=suffix[1:], dpi=dots, metadata=_UNDATED[suffix])
+    figure.savefig(picture, format=suffix[1:], dpi=dpi, metadata=_UNDATED[suffix])
     with atomic_write(path) as unfinished:
         Path(unfinished).write_bytes(picture.getvalue())

@@ -16,21 +16,21 @@ from bladewright.views.style import CAMBER, INK, LOWER, MILLIMETRES, SOFT, UPPER
 from bladewright.views.walls import draw_least_jacobian, draw_wall
 
 if TYPE_CHECKING:
+    from bladewright.designs import Design
     from bladewright.domain.passage import Passage
     from bladewright.domain.section import SectionPassage
-    from bladewright.section.unified import UnifiedSection
 
 
 VIEW = (900, 760)
-"""of the view in space, at most [pixels]"""
+"""Largest width and height of the view in space [pixels]: what its panel of the sheet shows."""
 
 
 def passage_sheet(passage: "Passage") -> Figure:
-    """The figure of a 3D passage, not yet laid out."""
+    """The sheet of a 3D passage, before its layout."""
     figure = Figure(figsize=(16.0, 13.0))
     draw_header(figure, passage.name, passage.description, passage_header(passage))
     top, bottom = rows(figure, 6.0, 6.0)
-    # panels of their own: the legend of the duct would make the view lower
+    # Separate columns: in one row of panels the legend of the duct would make the view lower.
     body, duct, numbers = columns(top, 1.35, 1.0, 0.65)
     view = body.subplots()
     draw_passage_solid(view, passage, size=VIEW)
@@ -45,8 +45,8 @@ def passage_sheet(passage: "Passage") -> Figure:
     return figure
 
 
-def section_passage_sheet(design: "UnifiedSection | None", passage: "SectionPassage") -> Figure:
-    """The figure of a 2D section's passage, not yet laid out; the section's design gives it its name."""
+def section_passage_sheet(design: "Design | None", passage: "SectionPassage") -> Figure:
+    """The sheet of a 2D section's passage, before its layout; the design, where it is known, gives the name."""
     figure = Figure(figsize=(14.0, 10.5))
     name, description = (design.name, design.description) if design is not None else ("section", "")
     draw_header(figure, f"{name}-passage", description, section_header(passage))
@@ -58,7 +58,7 @@ def section_passage_sheet(design: "UnifiedSection | None", passage: "SectionPass
 
 
 def draw_section_passage(axes: Axes, passage: "SectionPassage") -> None:
-    """Draws the curves around a section [mm], its continued camber line and its neighbours."""
+    """Draw the curves around a section [mm], its continued camber line and its neighbours."""
     section = passage.section
     colour = span_colour(section.span)
     shape, pitch = outline(section), section_pitch(passage)
@@ -83,25 +83,25 @@ def draw_section_passage(axes: Axes, passage: "SectionPassage") -> None:
 
 
 def section_pitch(passage: "SectionPassage") -> float:
-    """Distance of neighbours [mm]."""
+    """Distance between neighbours [mm]."""
     return float(np.ptp(boundary(passage, "inlet")[:, 1]))
 
 
 def boundary(passage: "SectionPassage", name: str) -> Reals:
-    """Points (n, 2) [mm] of a curve that bounds a section's passage."""
+    """Points (n, 2) [mm] of a boundary curve of a section's passage."""
     curve = passage.curves[name]
     low, high = curve.domain
     return developed(passage.section, curve(low + (high - low) * np.linspace(0.0, 1.0, 601)))
 
 
 Rows = list[tuple[str, str]]
-"""names and values; a heading has no value"""
+"""Names and values of a table; a heading has no value."""
 ROWS = 24
-"""rows that a panel holds at least"""
+"""Fewest rows that the height of a panel is divided into, so that short tables are not spread over all of it."""
 
 
 def passage_header(passage: "Passage") -> list[str]:
-    """The key figures under a passage's name."""
+    """The key figures of a passage, for the header."""
     count = passage.blade.design.blade_count
     filled = "passages and blades fill the ring" if count else "passage and blade fill a pitch"
     return [
@@ -114,9 +114,9 @@ def passage_header(passage: "Passage") -> list[str]:
 
 
 def figures(passage: "Passage") -> Rows:
-    """Sizes, what is promised, extents, and the poles of every face."""
+    """Volumes, errors, extents, and the poles of every face."""
     count, size = passage.blade.design.blade_count, passage.knots.length * MILLIMETRES
-    found = [
+    table = [
         ("Volume", ""),
         ("passage", _cubic(passage.properties.volume)),
         ("blade", _cubic(passage.blade.properties.volume)),
@@ -131,12 +131,12 @@ def figures(passage: "Passage") -> Rows:
     ]
     for name, turn in zip(("inlet angle", "outlet angle"), passage.camber.turned, strict=True):
         if turn is not None:
-            found.append((name, f"{np.degrees(np.arctan(float(np.real(turn)))):.3g}°"))
-    return [*found, ("Poles", ""), *((_spaced(name), poles(passage, name)) for name in passage.whole)]
+            table.append((name, f"{np.degrees(np.arctan(float(np.real(turn)))):.3g}°"))
+    return [*table, ("Poles", ""), *((_spaced(name), poles(passage, name)) for name in passage.whole)]
 
 
 def poles(passage: "Passage", name: str) -> str:
-    """Poles of a face along u and v; of one that is split, those of its pieces."""
+    """Numbers of poles of a face along u and v; of a face that is split, those of its pieces."""
     pieces = [face for piece, face in passage.surfaces.items() if piece == name or piece.startswith(f"{name}_")]
     shapes = [(face.surface if isinstance(face, TrimmedSurface) else face).control_points.shape for face in pieces]
     along = " + ".join(str(shape[-3]) for shape in shapes)
@@ -144,7 +144,7 @@ def poles(passage: "Passage", name: str) -> str:
 
 
 def section_header(passage: "SectionPassage") -> list[str]:
-    """The key figures under the name of a section's passage."""
+    """The key figures of a section's passage, for the header."""
     ends = [float(np.real(passage.curves[name].control_points[0, 0])) for name in ("inlet", "outlet")]
     return [f"area {_square(passage.area)}", f"from x = {ends[0] * MILLIMETRES:.4g} to {ends[1] * MILLIMETRES:.4g} mm"]
 
@@ -157,7 +157,7 @@ def section_figures(passage: "SectionPassage") -> Rows:
 
 
 def draw_figures(axes: Axes, rows: Rows) -> None:
-    """Writes names and values under one another."""
+    """Write a table of names and values."""
     axes.set_axis_off()
     axes.set_ylim(max(len(rows), ROWS) - 0.5, -0.5)
     for line, (name, value) in enumerate(rows):
@@ -167,6 +167,7 @@ def draw_figures(axes: Axes, rows: Rows) -> None:
 
 
 def _least(passage: "Passage") -> float:
+    """The least Jacobian of the walls, as a fraction of the median of its patch."""
     return min(share for share, _, _ in passage.folds.values())
 
 
@@ -175,11 +176,11 @@ def _spaced(name: str) -> str:
 
 
 def _cubic(volume: np.ndarray) -> str:
-    """A volume [m^3] in words."""
+    """A volume [m^3] with a unit that suits its size."""
     cubic = float(np.real(volume)) * MILLIMETRES**3
     return f"{cubic:.5g} mm³" if cubic < 1e4 else f"{cubic / 1e3:.5g} cm³" if cubic < 1e8 else f"{cubic / 1e6:.5g} dm³"
 
 
 def _square(area: np.ndarray) -> str:
-    """An area [m^2] in words."""
+    """An area [m^2] as text."""
     return f"{float(np.real(area)) * MILLIMETRES**2:.5g} mm²"

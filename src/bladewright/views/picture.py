@@ -1,4 +1,4 @@
-"""The sheet of everything an engineer looks for on a design, and a picture of the blade alone."""
+"""The sheet of a blade or a section, and views of a blade or a passage alone."""
 
 from functools import partial
 from pathlib import Path
@@ -7,61 +7,56 @@ from typing import Any
 import numpy as np
 from matplotlib.figure import Figure
 
-from bladewright.blade.design.sectioned import SectionedBlade
-from bladewright.blade.design.unified import UnifiedBlade
+from bladewright.blade.design.row_design import RowDesign
 from bladewright.blade.exact.exact_blade import MIDDLE
 from bladewright.blade.native.blade import Blade
+from bladewright.designs import Design
 from bladewright.domain.passage import Passage
 from bladewright.domain.section import SectionPassage
 from bladewright.errors import DesignError
-from bladewright.section.planar import PlanarSection
 from bladewright.section.section import Section
 from bladewright.section.smoothness import smoothness
-from bladewright.section.unified import UnifiedSection
-from bladewright.views.distributions import draw_curvature, draw_smoothness
-from bladewright.views.laws import draw_laws, draw_thickness, draw_thickness_laws, panels_of
+from bladewright.views.distributions import draw_curvature, draw_smoothness, draw_thickness
+from bladewright.views.laws import draw_laws, draw_thickness_laws, panels_of
 from bladewright.views.meridional import draw_meridional
 from bladewright.views.pages import checked_path, draw_header, rows, with_fixed_layout, write_figure
 from bladewright.views.passage import passage_sheet, section_passage_sheet
 from bladewright.views.sections import draw_edge, draw_edges, draw_neighbour, draw_sections, pitch_of
 from bladewright.views.solid import draw_passage_solid, draw_solid
-from bladewright.views.style import MILLIMETRES, drawing_style, span_name
+from bladewright.views.style import MILLIMETRES, SHEET_DPI, VIEW_DPI, WALLS, drawing_style, span_name
 
-DOTS = 150
-"""to an inch of a PNG"""
-SPANS = (0.0, 0.25, 0.5, 0.75, 1.0)
-FEW_SPANS = (0.0, 0.5, 1.0)
+SPANS, FEW_SPANS = (0.0, 0.25, 0.5, 0.75, 1.0), (0.0, 0.5, 1.0)
+"""Span fractions of the sections drawn on top of each other, and of those in panels where more would hide each
+other."""
 PANELS_ACROSS = 6
-"""panels of laws beside each other"""
+"""Most panels of laws in a row: more would be too narrow for their legends."""
 PASSAGE_VIEW = (1250, 1000)
-"""of a passage that is drawn alone, at most [pixels]"""
+"""Largest width and height of a view of a passage alone [pixels]: what its figure of 10 x 8 inches shows."""
 Built = Blade | Section | Passage | SectionPassage
-BladeDesign = UnifiedBlade | SectionedBlade
-SectionDesign = UnifiedSection | PlanarSection
-Drawable = BladeDesign | SectionDesign | Built
+"""What a design builds, and the flow domain around it."""
 
 
-def picture(design: Drawable, path: str | Path, *, blade: Built | None = None) -> None:
-    """Draws a design, as PNG, SVG or PDF by the suffix of `path`: sections, curvature, channel, laws and a 3D view.
+def picture(design: Design | Built, path: str | Path, *, blade: Built | None = None) -> None:
+    """Draw a design as PNG, SVG or PDF, by the ending of `path`: sections, curvature, channel, laws and a 3D view.
 
-    `blade` is what the design builds, where that is at hand; `design` may be the built object itself (of a section
-    alone no laws are known, and none are drawn). Either may be a flow passage: then its duct, its walls unwrapped, its
-    figures and a 3D view are drawn. The file appears whole or not at all. Raises FileError where the suffix is another
-    or the path cannot be written, DesignError where the design cannot be built.
+    `blade` is what the design builds, where that is already known; `design` may also be the built object itself (the
+    laws of a section are then unknown and not drawn). Either may be a flow passage: its duct, its unwrapped walls, its
+    figures and a 3D view are drawn. The file is written whole or not at all. Raises FileError where the ending is
+    another or the path cannot be written, DesignError where the design cannot be built.
     """
     checked_path(path)
     figure = sheet(design, blade)
     with drawing_style():
-        write_figure(figure, path, DOTS)
+        write_figure(figure, path, SHEET_DPI)
 
 
-def blade_view(blade: Blade | BladeDesign, path: str | Path) -> None:
-    """Draws the blade in its row on the hub, shaded; as PNG, SVG or PDF by the suffix of `path`.
+def blade_view(blade: Blade | RowDesign, path: str | Path) -> None:
+    """Draw the blade in its row on the hub, shaded, as PNG, SVG or PDF by the ending of `path`.
 
-    Raises FileError where the suffix is another or the path cannot be written.
+    Raises FileError where the ending is another or the path cannot be written.
     """
     checked_path(path)
-    if not isinstance(blade, Blade | BladeDesign):
+    if not isinstance(blade, Blade | RowDesign):
         raise DesignError(
             f"a {type(blade).__name__} was given: only a blade has a 3D view; draw the one that "
             "prismatic(section, span) makes"
@@ -70,13 +65,13 @@ def blade_view(blade: Blade | BladeDesign, path: str | Path) -> None:
     with drawing_style():
         figure = Figure(figsize=(10.0, 8.0), layout="constrained")
         draw_solid(figure.add_subplot(), built, neighbours=None, width=1250)
-        write_figure(figure, path, 160)
+        write_figure(figure, path, VIEW_DPI)
 
 
 def passage_view(passage: Passage, path: str | Path) -> None:
-    """Draws a flow passage as a see-through body, the blade shaded in it; as PNG, SVG or PDF by the suffix of `path`.
+    """Draw a flow passage as a see-through body with the blade in it, as PNG, SVG or PDF by the ending of `path`.
 
-    Raises FileError where the suffix is another or the path cannot be written.
+    Raises FileError where the ending is another or the path cannot be written.
     """
     checked_path(path)
     if not isinstance(passage, Passage):
@@ -87,20 +82,23 @@ def passage_view(passage: Passage, path: str | Path) -> None:
     with drawing_style():
         figure = Figure(figsize=(10.0, 8.0), layout="constrained")
         draw_passage_solid(figure.add_subplot(), passage, size=PASSAGE_VIEW)
-        write_figure(figure, path, 160)
+        write_figure(figure, path, VIEW_DPI)
 
 
-def sheet(design: Drawable, blade: Built | None = None) -> Figure:
+def sheet(design: Design | Built, blade: Built | None = None) -> Figure:
     """The figure that `picture` writes."""
     built: Any = design if isinstance(design, Built) else (blade or design.build())
-    asked: Any = None if isinstance(design, Section | SectionPassage) else design
+    known = design if isinstance(design, Design) else None
     with drawing_style():
-        if isinstance(built, Passage):
-            figure = passage_sheet(built)
-        elif isinstance(built, SectionPassage):
-            figure = section_passage_sheet(asked, built)
-        else:
-            figure = _blade_sheet(built) if isinstance(built, Blade) else _section_sheet(asked, built)
+        match built:
+            case Passage():
+                figure = passage_sheet(built)
+            case SectionPassage():
+                figure = section_passage_sheet(known, built)
+            case Section():
+                figure = _section_sheet(known, built)
+            case _:
+                figure = _blade_sheet(built)
         return with_fixed_layout(figure)
 
 
@@ -111,13 +109,13 @@ def _blade_sheet(blade: Blade) -> Figure:
     pitch = pitch_of(blade, middle)
     panels = panels_of(blade.design)
     charts = [partial(draw_laws, panel=panel) for panel in panels]
-    if hasattr(blade.design, "thickness_upper"):
-        charts.append(partial(draw_thickness_laws, design=blade.design, sections=few, length_name="length"))
+    if blade.design.thickness_laws:
+        charts.append(partial(draw_thickness_laws, design=blade.design, sections=few, ends=blade.design.ends))
     strips = -(-len(charts) // PANELS_ACROSS)
     heights = [5.4, 4.6, 3.6, 4.4, *[4.4] * strips]
     figure = Figure(figsize=(16.0, sum(heights) + 0.9))
-    draw_header(figure, blade.name, blade.description, _blade_figures(blade, middle, pitch))
-    top, centre, near, smooth, *bottom = rows(figure, *heights)
+    draw_header(figure, blade.name, blade.description, _blade_header(blade, middle, pitch))
+    top, centre, edges, smooth, *bottom = rows(figure, *heights)
     axes = top.subplots(1, 3, width_ratios=[1.25, 1.0, 1.0])
     draw_solid(axes[0], blade, neighbours=2, width=760)
     axes[0].set_title("Blade with neighbours")
@@ -127,7 +125,7 @@ def _blade_sheet(blade: Blade) -> Figure:
     draw_meridional(axes[0], blade)
     draw_curvature(axes[1], few, blade.design.ends)
     draw_thickness(axes[2], sections, blade.design.ends)
-    draw_edges(near, few, blade.design.ends)
+    draw_edges(edges, few, blade.design.ends)
     draw_smoothness(smooth, {v: blade.smoothness(v) for v in blade.exact.shown_spans(FEW_SPANS)}, blade.design.ends)
     across = -(-len(charts) // strips)
     for index, strip in enumerate(bottom):
@@ -141,7 +139,7 @@ def _blade_sheet(blade: Blade) -> Figure:
     return figure
 
 
-def _section_sheet(design: SectionDesign | None, section: Section) -> Figure:
+def _section_sheet(design: Any, section: Section) -> Figure:
     from bladewright.section.checks import UNITS
 
     pitch = None
@@ -149,23 +147,23 @@ def _section_sheet(design: SectionDesign | None, section: Section) -> Figure:
         pitch = design.pitch * UNITS[design.length_unit] * MILLIMETRES
     figure = Figure(figsize=(16.0, 15.4))
     name, description = (design.name, design.description) if design is not None else ("section", "")
-    draw_header(figure, name, description, _section_figures(section, pitch))
+    draw_header(figure, name, description, _section_header(section, pitch))
     top, bottom, smooth = rows(figure, 6.0, 4.6, 4.4)
     axes = top.subplots(1, 3, width_ratios=[1.6, 1.0, 1.0])
     draw_neighbour(axes[0], section, pitch, "Section")
     draw_edge(axes[1], section, trailing=False)
     draw_edge(axes[2], section, trailing=True)
-    lawful = design is not None and hasattr(design, "thickness_upper")
-    axes = bottom.subplots(1, 3 if lawful else 2)
+    has_laws = design is not None and bool(design.thickness_laws)
+    axes = bottom.subplots(1, 3 if has_laws else 2)
     draw_curvature(axes[0], [section])
     draw_thickness(axes[1], [section])
-    if lawful:
-        draw_thickness_laws(axes[2], design, [section], "axial chord")
+    if has_laws:
+        draw_thickness_laws(axes[2], design, [section], WALLS)
     draw_smoothness(smooth, {section.span: smoothness(section)})
     return figure
 
 
-def _blade_figures(blade: Blade, middle: Section, pitch: float) -> list[str]:
+def _blade_header(blade: Blade, middle: Section, pitch: float) -> list[str]:
     columns, rows = blade.knots.poles
     count = blade.design.blade_count
     return [
@@ -179,13 +177,13 @@ def _blade_figures(blade: Blade, middle: Section, pitch: float) -> list[str]:
 
 
 def _span_title(section: Section, ends: tuple[str, str]) -> str:
-    """What the title of a section in the passage says of its place."""
+    """The title that says at which span fraction a section lies."""
     return "Mid span" if section.span == MIDDLE else span_name(section.span, ends).capitalize()
 
 
-def _section_figures(section: Section, pitch: float | None) -> list[str]:
+def _section_header(section: Section, pitch: float | None) -> list[str]:
     chord = section.chord * MILLIMETRES
-    figures = [
+    header = [
         f"chord {chord:.4g} mm",
         f"area {section.area * MILLIMETRES**2:.4g} mm²",
         f"perimeter {section.perimeter * MILLIMETRES:.4g} mm",
@@ -194,4 +192,4 @@ def _section_figures(section: Section, pitch: float | None) -> list[str]:
         ),
         f"poles {' and '.join(str(len(curve.control_points)) for curve in section.curves.values())}",
     ]
-    return [*figures, f"chord / pitch {chord / pitch:.3g}"] if pitch is not None else figures
+    return [*header, f"chord / pitch {chord / pitch:.3g}"] if pitch is not None else header

@@ -1,4 +1,4 @@
-"""Hidden surfaces by a depth buffer: shaded pictures of meshes, seen from infinitely far."""
+"""Shaded pictures of surfaces by a depth buffer, in parallel projection."""
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
@@ -11,61 +11,65 @@ from bladewright.numerics.elementary import cumulative_length
 from bladewright.nurbs.basis import Reals
 
 Pixels = NDArray[np.float32]
-
+"""Values of pixels or points in single precision, which is more than 8 bits a colour need."""
 STEP = 0.7
-"""largest distance of neighbouring points in pixels: up to half the root of two, no pixel is left out"""
+"""Largest distance between neighbouring points [pixels]. No pixel is missed up to half the root of two, the radius of a
+pixel's circumcircle."""
 TILE = 8
-"""cells a side of the pieces that a grid is filled in by"""
+"""Cells along each side of the tiles that a grid is filled by. Smaller tiles adapt better to steps of different size;
+larger ones need fewer calls."""
 LIGHTS = (((-0.45, 0.65, 0.60), 0.52), ((0.85, 0.25, 0.45), 0.20), ((0.0, 0.0, 1.0), 0.24))
-"""directions, in the viewer's right, up and towards, and strengths of the lamps"""
+"""Directions (the viewer's right, up and towards) and strengths of the lamps: the main light from the upper left, a
+fill light from the right and one from the viewer, so that no side is black. Chosen by eye."""
 AMBIENT, GLOSS, SHARPNESS = 0.36, 0.16, 28.0
+"""Light from everywhere, strength of highlights and their exponent in Blinn's model [-]. Chosen by eye."""
 HAZE = 0.30
-"""how far the farthest point fades to white"""
+"""Fraction by which the farthest point fades to white, which shows depth. Chosen by eye."""
 HOLLOW = 0.40
-"""how much darker a place gets that lies behind what surrounds it"""
+"""Largest fraction by which a place is darkened that lies behind its surroundings. Chosen by eye."""
 PANE = 0.14
-"""how much of what lies behind it a see-through mesh covers"""
+"""Opacity of a see-through surface [-]. Chosen by eye: more hides the blade, less hides the surface."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class ShadedGrid:
-    """A grid of points (m, n, 3) with normals (m, n, 3) of either sense, in one colour (red, green, blue)."""
+    """A surface in one colour (red, green, blue): points (m, n, 3) with normals (m, n, 3) of either sense."""
 
     points: Reals
     normals: Reals
     colour: tuple[float, float, float]
     side: int = 0
-    """+1 to draw it only where its normals point towards the viewer, -1 only where away, 0 everywhere"""
+    """+1 to draw it only where its normals point towards the viewer, -1 only where they point away, 0 everywhere"""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Polyline:
-    """A line through points (n, 3) in one colour, hidden where a mesh stands before it."""
+    """A line through points (n, 3) in one colour, hidden where a surface lies in front of it."""
 
     points: Reals
     colour: tuple[float, float, float]
     width: int = 1
-    """[pixels]"""
+    """width of the line [pixels]"""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Camera:
-    """A parallel projection: the rows of `axes` (3, 3) are the viewer's right, up and towards."""
+    """A parallel projection; the rows of `axes` (3, 3) are the viewer's right, up and towards."""
 
     axes: Reals
     corner: Reals
-    """(2,) right and up of the picture's lower left"""
+    """(2,) coordinates, right and up, of the lower left corner of the picture"""
     extent: Reals
-    """(2,) width and height of the picture, in the meshes' unit"""
+    """(2,) width and height of the picture, in the unit of the surfaces"""
 
     def seen(self, points: Reals) -> Reals:
-        """Points (..., 3) as right, up and towards."""
+        """Points (..., 3) in the coordinates right, up and towards."""
         seen: Reals = points @ self.axes.T
         return seen
 
 
 def axes_towards(eye: tuple[float, float, float], up: tuple[float, float, float]) -> Reals:
-    """Rows right, up and towards (3, 3) of a viewer in the direction `eye`."""
+    """The axes (3, 3) right, up and towards of a viewer in the direction `eye`."""
     towards = np.array(eye) / np.sqrt(np.sum(np.square(eye)))
     right = np.cross(up, towards)
     right = right / np.sqrt(right @ right)
@@ -73,7 +77,7 @@ def axes_towards(eye: tuple[float, float, float], up: tuple[float, float, float]
 
 
 def framing_camera(axes: Reals, points: Reals, margin: float = 0.03) -> Camera:
-    """A camera whose picture just holds points (n, 3)."""
+    """A camera whose picture just holds points (n, 3), with a margin in fractions of its longer side."""
     flat = points @ axes[:2].T
     low, high = flat.min(axis=0), flat.max(axis=0)
     border = margin * np.max(high - low)
@@ -81,8 +85,8 @@ def framing_camera(axes: Reals, points: Reals, margin: float = 0.03) -> Camera:
 
 
 def rendered(
-    meshes: list[ShadedGrid],
-    traces: list[Polyline],
+    surfaces: list[ShadedGrid],
+    lines: list[Polyline],
     camera: Camera,
     width: int,
     fineness: int = 2,
@@ -90,19 +94,19 @@ def rendered(
 ) -> Reals:
     """The picture (height, width, 4) in red, green, blue and opacity, its first row on top.
 
-    Every pixel is the mean of `fineness` x `fineness` finer ones. The meshes of `glass` hide nothing, and dim what lies
-    behind the nearest of them.
+    Every pixel is the mean of `fineness` x `fineness` smaller ones. The surfaces of `glass` hide nothing; the nearest
+    of them tints what lies behind it.
     """
     across = width * fineness
     unit = across / camera.extent[0]
     height = int(np.ceil(camera.extent[1] * unit / fineness)) * fineness
-    depth, normal, colour = _depth_buffer(meshes, camera, (height, across), unit)
+    depth, normal, colour = _depth_buffer(surfaces, camera, (height, across), unit)
     shaded = _shaded(depth, normal, colour, fineness)
     if glass:
         pane = _depth_buffer(glass, camera, (height, across), unit)
         _overlay_glass(shaded, _shaded(*pane, fineness), pane[0] > depth)
-    for trace in traces:
-        _draw_polyline(shaded, depth, trace, camera, unit)
+    for line in lines:
+        _draw_polyline(shaded, depth, line, camera, unit)
     blocks = shaded[::-1].reshape(height // fineness, fineness, width, fineness, 4)
     blocks[..., :3] *= blocks[..., 3:]
     picture = blocks.mean(axis=(1, 3), dtype=np.float64)
@@ -112,33 +116,33 @@ def rendered(
 
 
 def _depth_buffer(
-    meshes: Sequence[ShadedGrid], camera: Camera, size: tuple[int, int], unit: float
+    surfaces: Sequence[ShadedGrid], camera: Camera, size: tuple[int, int], unit: float
 ) -> tuple[Pixels, Pixels, Pixels]:
-    """Depth (height, width) of what is nearest, and its normals and colours (height width, 3)."""
+    """Depth (height, width) of the nearest points, with their normals and colours (height * width, 3)."""
     height, across = size
     depth = np.full(across * height, -np.inf, dtype=np.float32)
     normal = np.zeros((across * height, 3), dtype=np.float32)
     colour = np.ones((across * height, 3), dtype=np.float32)
-    for mesh in meshes:
-        seen = camera.seen(mesh.points)
+    for surface in surfaces:
+        seen = camera.seen(surface.points)
         seen[..., :2] = (seen[..., :2] - camera.corner) * unit
-        for points in _dense_tiles(np.concatenate([seen, camera.seen(mesh.normals)], axis=-1).astype(np.float32)):
+        for points in _dense_tiles(np.concatenate([seen, camera.seen(surface.normals)], axis=-1).astype(np.float32)):
             column, row = points[:, 0].astype(np.int32), points[:, 1].astype(np.int32)
             held = (points[:, 0] >= 0.0) & (points[:, 1] >= 0.0) & (column < across) & (row < height)
-            if mesh.side:
-                held &= mesh.side * points[:, 5] > 0.0
+            if surface.side:
+                held &= surface.side * points[:, 5] > 0.0
             pixel = np.where(held, row * across + column, 0)
             near = np.where(held, points[:, 2], -np.inf)
             np.maximum.at(depth, pixel, near)
             nearest = np.flatnonzero(held & (near >= depth[pixel]))
             normal[pixel[nearest]] = points[nearest, 3:]
-            colour[pixel[nearest]] = mesh.colour
+            colour[pixel[nearest]] = surface.colour
     return depth.reshape(height, across), normal, colour
 
 
-def _overlay_glass(picture: Pixels, pane: Pixels, before: NDArray[np.bool_]) -> None:
-    """Lay a shaded pane over the picture where it stands before it."""
-    cover = PANE * (pane[..., 3] * before)[..., None]
+def _overlay_glass(picture: Pixels, pane: Pixels, in_front: NDArray[np.bool_]) -> None:
+    """Blend a shaded see-through surface over the picture where it lies in front."""
+    cover = PANE * (pane[..., 3] * in_front)[..., None]
     behind = (1.0 - cover) * picture[..., 3:]
     total = cover + behind
     mixed = cover * pane[..., :3] + behind * picture[..., :3]
@@ -147,7 +151,7 @@ def _overlay_glass(picture: Pixels, pane: Pixels, before: NDArray[np.bool_]) -> 
 
 
 def _dense_tiles(grid: Pixels) -> Iterator[Pixels]:
-    """Points with normals (k, 6) of a grid (m, n, 6), tile by tile, filled in until no pixel is left out."""
+    """Points with normals (k, 6) of a grid (m, n, 6), tile by tile, interpolated until no pixel is missed."""
     for row in range(0, grid.shape[0] - 1, TILE):
         for column in range(0, grid.shape[1] - 1, TILE):
             tile = grid[row : row + TILE + 1, column : column + TILE + 1]
@@ -165,7 +169,7 @@ def _dense_tiles(grid: Pixels) -> Iterator[Pixels]:
 
 
 def _shaded(depth: Pixels, normal: Pixels, colour: Pixels, fineness: int) -> Pixels:
-    """Red, green, blue and opacity (height, width, 4) by lamps from two sides, haze and hollows."""
+    """Red, green, blue and opacity (height, width, 4) by Blinn's model, with haze and darkened hollows."""
     seen = np.isfinite(depth)
     picture = np.zeros((*depth.shape, 4), dtype=np.float32)
     if not seen.any():
@@ -192,18 +196,19 @@ def _shaded(depth: Pixels, normal: Pixels, colour: Pixels, fineness: int) -> Pix
     return picture
 
 
-def _draw_polyline(picture: Pixels, depth: Pixels, trace: Polyline, camera: Camera, unit: float) -> None:
-    seen = camera.seen(trace.points)
+def _draw_polyline(picture: Pixels, depth: Pixels, line: Polyline, camera: Camera, unit: float) -> None:
+    """Draw a line into the picture where it is nearer than the depth there, but for a bias of three line widths."""
+    seen = camera.seen(line.points)
     seen[:, :2] = (seen[:, :2] - camera.corner) * unit
     along = cumulative_length(seen[:, :2])
     at = np.linspace(0.0, along[-1], int(2.0 * along[-1]) + 2)
     right, up, towards = (np.interp(at, along, seen[:, i]) for i in range(3))
-    bias = 3.0 * trace.width / unit
-    reach = np.arange(trace.width) - (trace.width - 1) // 2
+    bias = 3.0 * line.width / unit
+    reach = np.arange(line.width) - (line.width - 1) // 2
     for across in reach:
         for above in reach:
             column, row = (right + across).astype(int), (up + above).astype(int)
             held = (column >= 0) & (row >= 0) & (column < depth.shape[1]) & (row < depth.shape[0])
             column, row, near = column[held], row[held], towards[held]
             ahead = near + bias > depth[row, column]
-            picture[row[ahead], column[ahead]] = (*trace.colour, 1.0)
+            picture[row[ahead], column[ahead]] = (*line.colour, 1.0)

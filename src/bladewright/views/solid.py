@@ -19,40 +19,51 @@ if TYPE_CHECKING:
     from bladewright.domain.passage import Passage
 
 
-BLADE = (0.16, 0.47, 0.68)
-NEIGHBOUR = (0.74, 0.78, 0.83)
-HUB = (0.70, 0.68, 0.64)
-EDGE = (0.05, 0.16, 0.26)
-FAINT = (0.55, 0.60, 0.65)
+BLADE, NEIGHBOUR, HUB = (0.16, 0.47, 0.68), (0.74, 0.78, 0.83), (0.70, 0.68, 0.64)
+"""Colours (red, green, blue) of the blade, of its neighbours and of the hub."""
+EDGE, FAINT = (0.05, 0.16, 0.26), (0.55, 0.60, 0.65)
+"""Colours of the main and of the auxiliary lines."""
 BORE_RADIUS = 0.8
-"""radius of the bore of a hub, of the hub's smallest radius"""
+"""Radius of the bore drawn in the hub of a whole row, in smallest radii of the hub. It only shows that the hub is a
+wheel; no design says it."""
 DISC_SLOPE = 0.2
-"""run of a hub along the axis, of its rise, below which it is a disc"""
+"""Axial extent of a hub, in radial extents, below which it is seen as a disc from the shroud's side: from upstream the
+blades would hide behind it."""
 GRID, COARSE = (121, 41), (57, 17)
-"""points along and across a side, of the blade and of its neighbours"""
+"""Points along and across a side of the blade, and of its neighbours, which are drawn many times."""
+WALL_COLOURS = {"hub": (0.88, 0.80, 0.66), "shroud": (0.88, 0.80, 0.66), "periodic": (0.80, 0.86, 0.92)}
+"""Colours of the inside of the faces, by the beginning of their names."""
+OPENING, GLASS = (0.78, 0.88, 0.80), (0.66, 0.80, 0.90)
+"""Colours of the inside of inlet and outlet, and of every face seen from outside."""
+PIECE_POINTS = 33
+"""Points along and across a smooth piece of a face."""
+NAME_PLACES = np.linspace(0.2, 0.8, 7)
+"""Parameters along and across a face at which its name may be written."""
+WALL_LINES = 6
+"""Lines of constant u, and lines of constant v, on a smooth piece of a wall."""
 
 
 def draw_solid(axes: Axes, blade: "Blade", *, neighbours: int | None, width: int) -> None:
-    """Draws the blade [mm] with `neighbours` on either side (None: the whole row) on the hub, `width` pixels wide."""
+    """Draw the blade with `neighbours` on either side (None: the whole row) on the hub [mm], `width` pixels wide."""
     turns = _positions(blade, neighbours)
-    meshes, traces = [], []
-    others = blade_meshes(blade, COARSE, NEIGHBOUR)
+    surfaces, polylines = [], []
+    neighbour = blade_surfaces(blade, COARSE, NEIGHBOUR)
     for turn in turns:
         own = turn == 0.0
-        parts, lines = blade_meshes(blade, GRID, BLADE) if own else others
-        meshes += [_placed(blade, mesh, turn) for mesh in parts]
-        traces += [
+        parts, lines = blade_surfaces(blade, GRID, BLADE) if own else neighbour
+        surfaces += [_placed(blade, surface, turn) for surface in parts]
+        polylines += [
             Polyline(points=_moved(blade, line, turn), colour=EDGE if own else FAINT, width=2 if own else 1)
             for line in lines
         ]
-    shown = np.concatenate([mesh.points.reshape(-1, 3) for mesh in meshes])
-    meshes += _hub(blade, turns)
-    camera = framing_camera(viewpoint(blade), np.concatenate([shown, meshes[-1].points.reshape(-1, 3)]))
-    show_rendering(axes, camera, rendered(meshes, traces, camera, width))
+    blades = np.concatenate([surface.points.reshape(-1, 3) for surface in surfaces])
+    surfaces += _hub(blade, turns)
+    camera = framing_camera(viewpoint(blade), np.concatenate([blades, surfaces[-1].points.reshape(-1, 3)]))
+    show_rendering(axes, camera, rendered(surfaces, polylines, camera, width))
 
 
 def show_rendering(axes: Axes, camera: Camera, rendering: Reals) -> None:
-    """Puts what a camera rendered on axes, with the directions of x, y and z and a scale under it."""
+    """Draw a rendered picture, with the directions of x, y and z and a scale bar under it."""
     left, low = camera.corner
     wide, high = camera.extent
     axes.imshow(rendering, extent=(left, left + wide, low, low + high), interpolation="antialiased")
@@ -61,7 +72,7 @@ def show_rendering(axes: Axes, camera: Camera, rendering: Reals) -> None:
 
 
 def _positions(blade: "Blade", neighbours: int | None) -> list[float]:
-    """Turns [rad], or shifts [mm] of a cascade, of the blades to draw; the blade itself is at 0."""
+    """Rotations [rad], or shifts in a cascade [mm], of the blades to draw; 0 is the blade itself."""
     from bladewright.section.checks import UNITS
 
     design = blade.design
@@ -75,69 +86,66 @@ def _positions(blade: "Blade", neighbours: int | None) -> list[float]:
 
 
 def _moved(blade: "Blade", points: Reals, turn: float) -> Reals:
-    """Points (..., 3) on the blade that stands at `turn`."""
+    """Points (..., 3) moved to the blade at rotation or shift `turn`."""
     if not blade.exact.mapping.revolved:
         return points + np.array([0.0, turn, 0.0])
     return _turned(points, turn)
 
 
 def _turned(points: Reals, turn: float) -> Reals:
+    """Points (..., 3) rotated about x by an increase of theta."""
     cosine, sine = np.cos(turn), np.sin(turn)
     x, y, z = np.moveaxis(points, -1, 0)
     return np.stack([x, y * cosine + z * sine, z * cosine - y * sine], axis=-1)
 
 
-def _placed(blade: "Blade", mesh: ShadedGrid, turn: float) -> ShadedGrid:
-    normals = _turned(mesh.normals, turn) if blade.exact.mapping.revolved else mesh.normals
-    return ShadedGrid(points=_moved(blade, mesh.points, turn), normals=normals, colour=mesh.colour)
+def _placed(blade: "Blade", surface: ShadedGrid, turn: float) -> ShadedGrid:
+    normals = _turned(surface.normals, turn) if blade.exact.mapping.revolved else surface.normals
+    return ShadedGrid(points=_moved(blade, surface.points, turn), normals=normals, colour=surface.colour)
 
 
-def blade_meshes(
+def blade_surfaces(
     blade: "Blade", size: tuple[int, int], colour: tuple[float, float, float]
 ) -> tuple[list[ShadedGrid], list[Reals]]:
-    """Sides and ends [mm] with their normals, and the lines between them."""
+    """Sides and ends of the blade [mm] with their normals, and the lines between them."""
     u, v = cosine_spacing(size[0]), np.linspace(0.0, 1.0, size[1])
-    meshes, rims = [], []
+    surfaces, rims = [], []
     for name in ("upper", "lower"):
-        side: Any = blade.surfaces[name]
-        points = MILLIMETRES * np.real(side.grid(u, v))
-        normals = np.cross(np.real(side.grid(u, v, 1, 0)), np.real(side.grid(u, v, 0, 1)))
-        size_of_normals = np.sqrt(np.sum(normals**2, axis=-1, keepdims=True))
-        meshes.append(ShadedGrid(points=points, normals=normals / np.maximum(size_of_normals, 1e-300), colour=colour))
+        points, normals = _sampled(blade.surfaces[name], u, v)
+        surfaces.append(ShadedGrid(points=points, normals=normals, colour=colour))
         rims.append(points)
-    blunt = [blade.surfaces[name] for name in ("leading_edge", "trailing_edge") if name in blade.surfaces]
-    meshes += [_face(face, v, colour) for face in blunt]
+    for name in ("leading_edge", "trailing_edge"):
+        if name in blade.surfaces:
+            points, normals = _sampled(blade.surfaces[name], np.linspace(0.0, 1.0, 5), v)
+            surfaces.append(ShadedGrid(points=points, normals=normals, colour=colour))
     lines = []
     for row in (-1,) if blade.exact.mapping.revolved and blade.design.ends[0] == "hub" else (0, -1):
         ends = np.stack([rim[:, row] for rim in rims], axis=1)
         across = rims[0][:, row] - rims[0][:, 1 if row == 0 else -2]
         normals = np.broadcast_to(across[:, None], ends.shape)
-        meshes.append(ShadedGrid(points=ends, normals=normals, colour=colour))
+        surfaces.append(ShadedGrid(points=ends, normals=normals, colour=colour))
         lines += [ends[:, 0], ends[:, 1]]
-    return meshes, lines
+    return surfaces, lines
 
 
-def _face(face: Any, v: Reals, colour: tuple[float, float, float]) -> ShadedGrid:
-    """The face of a blunt edge [mm]."""
-    w = np.linspace(0.0, 1.0, 5)
-    normals = np.cross(np.real(face.grid(w, v, 1, 0)), np.real(face.grid(w, v, 0, 1)))
+def _sampled(face: Any, u: Reals, v: Reals) -> tuple[Reals, Reals]:
+    """Points (m, n, 3) [mm] of a native face at u (m,) and v (n,), and its unit normals along dS/du x dS/dv."""
+    normals = np.cross(np.real(face.grid(u, v, 1, 0)), np.real(face.grid(u, v, 0, 1)))
     size = np.sqrt(np.sum(normals**2, axis=-1, keepdims=True))
-    return ShadedGrid(
-        points=MILLIMETRES * np.real(face.grid(w, v)), normals=normals / np.maximum(size, 1e-300), colour=colour
-    )
+    return MILLIMETRES * np.real(face.grid(u, v)), normals / np.maximum(size, 1e-300)
 
 
 def _hub(blade: "Blade", turns: list[float]) -> list[ShadedGrid]:
-    """The wall that the blades drawn stand on [mm], a little longer than they are; of a whole row with its bore."""
-    exact, low, high = blade.exact, *_hub_extent(blade)
+    """The hub under the blades that are drawn [mm], a little longer than they are; under a whole row with its bore."""
+    exact, low, high = blade.exact, *_hub_range(blade)
     wall = MILLIMETRES * exact.wall_points("hub", np.linspace(low, high, 61))
-    feet = MILLIMETRES * np.concatenate(
+    base = MILLIMETRES * np.concatenate(
         [np.real(blade.surfaces[name](cosine_spacing(41), 0.0)) for name in ("upper", "lower")]
     )
     if not exact.mapping.revolved:
-        room = 0.15 * float(np.ptp(feet[:, 1]))
-        reach = np.linspace(turns[0] + feet[:, 1].min() - room, turns[-1] + feet[:, 1].max() + room, 41)
-        return [_hub_mesh(np.stack(np.broadcast_arrays(wall[:, :1], reach, wall[:, 1:]), axis=-1))]
+        margin = 0.15 * float(np.ptp(base[:, 1]))
+        extent = np.linspace(turns[0] + base[:, 1].min() - margin, turns[-1] + base[:, 1].max() + margin, 41)
+        return [_hub_surface(np.stack(np.broadcast_arrays(wall[:, :1], extent, wall[:, 1:]), axis=-1))]
     wall = wall[wall[:, 1] > 0.0]
     whole = len(turns) == blade.design.blade_count
     if whole:
@@ -146,32 +154,32 @@ def _hub(blade: "Blade", turns: list[float]) -> list[ShadedGrid]:
         rim = [np.array([[x, radius], [x, bore]]) for x, radius in wall[[0, -1]]]
         profiles = [np.array([rim[0][1], rim[1][1]]), *rim, wall]
     else:
-        around, room = np.arctan2(feet[:, 1], feet[:, 2]), 0.5 * np.pi / (blade.design.blade_count or 1)
-        theta = np.linspace(turns[0] + around.min() - room, turns[-1] + around.max() + room, 181)
+        around, margin = np.arctan2(base[:, 1], base[:, 2]), 0.5 * np.pi / (blade.design.blade_count or 1)
+        theta = np.linspace(turns[0] + around.min() - margin, turns[-1] + around.max() + margin, 181)
         profiles = [wall]
-    meshes = []
+    surfaces = []
     for profile in profiles:
         x, radius = profile[:, :1], profile[:, 1:]
         grid = np.stack(np.broadcast_arrays(x, radius * np.sin(theta), radius * np.cos(theta)), axis=-1)
-        meshes.append(_hub_mesh(grid))
-    return meshes
+        surfaces.append(_hub_surface(grid))
+    return surfaces
 
 
-def _hub_extent(blade: "Blade") -> tuple[float, float]:
-    """From which to which u the hub is drawn: past the noses."""
+def _hub_range(blade: "Blade") -> tuple[float, float]:
+    """Range of u over which the hub is drawn: a little past both edges of the blade."""
     stations = blade.exact.sections(np.zeros(1))
     u = np.real(stations.on_lines(np.concatenate(stations.plane_points(cosine_spacing(41)), axis=-2))[0])
     return min(float(u.min()), 0.0) - 0.06, max(float(u.max()), 1.0) + 0.06
 
 
-def _hub_mesh(grid: Reals) -> ShadedGrid:
+def _hub_surface(grid: Reals) -> ShadedGrid:
     return ShadedGrid(points=grid, normals=np.cross(np.gradient(grid, axis=0), np.gradient(grid, axis=1)), colour=HUB)
 
 
 def viewpoint(blade: "Blade") -> Reals:
-    """Right, up and towards of a viewer who looks at the smaller end of the hub, or from upstream on an even one.
+    """The axes (3, 3) of a viewer: at the smaller end of the hub, or upstream of a cylindrical one.
 
-    A hub that is a disc is looked at from the shroud's side.
+    A hub that is a disc is seen from the shroud's side.
     """
     if not blade.exact.mapping.revolved:
         return axes_towards((-0.55, -0.75, 0.50), (0.0, 0.0, 1.0))
@@ -186,7 +194,7 @@ def viewpoint(blade: "Blade") -> Reals:
 
 
 def _scale(axes: Axes, camera: Camera) -> None:
-    """The directions of the axes and a scale, in a strip under the picture."""
+    """Draw the directions of the axes and a scale bar in a strip under the picture."""
     left, bottom = camera.corner
     size = float(np.max(camera.extent))
     step = size / 6.0
@@ -207,41 +215,33 @@ def _scale(axes: Axes, camera: Camera) -> None:
     axes.set_xlim(left, left + camera.extent[0])
 
 
-WALL_COLOURS = {"hub": (0.88, 0.80, 0.66), "shroud": (0.88, 0.80, 0.66), "periodic": (0.80, 0.86, 0.92)}
-OPENING = (0.78, 0.88, 0.80)
-GLASS = (0.66, 0.80, 0.90)
-PIECE_POINTS = 33
-"""points along and across a smooth piece of a face"""
-NAME_PLACES = np.linspace(0.2, 0.8, 7)
-"""places along and across a face where its name may stand"""
-WALL_LINES = 6
-"""lines of constant u, and of constant v, on a smooth piece of a wall"""
-
-
 def draw_passage_solid(axes: Axes, passage: "Passage", *, size: tuple[int, int]) -> None:
-    """Draws the passage [mm], at most `size` pixels wide and high: solid where it is seen from within, else glass."""
-    blade, rims = blade_meshes(passage.blade, GRID, BLADE)
-    solid, glass, traces = [], [], []
+    """Draw the passage [mm], at most `size` pixels wide and high: solid where seen from inside, else see-through."""
+    u = np.linspace(0.0, 1.0, PIECE_POINTS)
+    blade, rims = blade_surfaces(passage.blade, GRID, BLADE)
+    solid, glass, lines = [], [], []
     for name, sense in outer_faces(passage).items():
         colour = WALL_COLOURS.get(name.partition("_")[0], OPENING)
         for piece in pieces_of(name, cast(Surface, passage.whole[name]), passage.knots).values():
-            points, normals = _grid(piece, sense)
+            points, normals = _sampled(piece, u, u)
+            normals = sense * normals
             solid.append(ShadedGrid(points=points, normals=normals, colour=colour, side=-1))
             glass.append(ShadedGrid(points=points, normals=normals, colour=GLASS, side=1))
             if name.startswith("hub"):
-                traces += [Polyline(points=line, colour=FAINT) for line in _lines(points)]
-    traces += [Polyline(points=line, colour=EDGE) for line in _outer_edges(passage)]
-    traces += [Polyline(points=line, colour=EDGE, width=2) for line in rims]
-    camera = framing_camera(viewpoint(passage.blade), np.concatenate([mesh.points.reshape(-1, 3) for mesh in solid]))
+                lines += [Polyline(points=line, colour=FAINT) for line in _lines(points)]
+    lines += [Polyline(points=line, colour=EDGE) for line in _outer_edges(passage)]
+    lines += [Polyline(points=line, colour=EDGE, width=2) for line in rims]
+    outside = np.concatenate([surface.points.reshape(-1, 3) for surface in solid])
+    camera = framing_camera(viewpoint(passage.blade), outside)
     width = int(min(size[0], size[1] * camera.extent[0] / camera.extent[1]))
-    show_rendering(axes, camera, rendered([*solid, *blade], traces, camera, width, glass=glass))
-    shown = [np.concatenate([camera.seen(mesh.points).reshape(-1, 3)[:, :2] for mesh in blade])]
+    show_rendering(axes, camera, rendered([*solid, *blade], lines, camera, width, glass=glass))
+    occupied = [np.concatenate([camera.seen(surface.points).reshape(-1, 3)[:, :2] for surface in blade])]
     for name in ("inlet", "outlet"):
-        shown.append(_write_name(axes, camera, cast(Surface, passage.whole[name]), name, np.concatenate(shown)))
+        occupied.append(_write_name(axes, camera, cast(Surface, passage.whole[name]), name, np.concatenate(occupied)))
 
 
 def outer_faces(passage: "Passage") -> dict[str, int]:
-    """The faces but for the blade's, with +1 where dS/du x dS/dv points out of the passage, -1 elsewhere."""
+    """The faces without the blade's, with +1 where dS/du x dS/dv points out of the passage, and -1 elsewhere."""
     return {
         name: next(sense for face, sense in passage.orientations.items() if face.startswith(name))
         for name in passage.whole
@@ -249,22 +249,14 @@ def outer_faces(passage: "Passage") -> dict[str, int]:
     }
 
 
-def _grid(face: Surface, sense: int) -> tuple[Reals, Reals]:
-    """Points (m, n, 3) [mm] of a smooth face and its normals out of the passage."""
-    u = v = np.linspace(0.0, 1.0, PIECE_POINTS)
-    normals = sense * np.cross(np.real(face.grid(u, v, 1, 0)), np.real(face.grid(u, v, 0, 1)))
-    size = np.sqrt(np.sum(normals**2, axis=-1, keepdims=True))
-    return MILLIMETRES * np.real(face.grid(u, v)), normals / np.maximum(size, 1e-300)
-
-
 def _lines(points: Reals) -> list[Reals]:
-    """Lines along and across a grid."""
+    """Some lines along and across a grid of points."""
     at = np.linspace(0, PIECE_POINTS - 1, WALL_LINES).round().astype(int)
     return [*points[at], *np.swapaxes(points[:, at], 0, 1)]
 
 
 def _outer_edges(passage: "Passage") -> list[Reals]:
-    """Where outer faces meet [mm]: the edges of the periodic boundaries, of inlet and outlet."""
+    """Lines where outer faces meet [mm]: the edges of the periodic boundaries, of inlet and outlet."""
     u, ends = np.linspace(0.0, 1.0, 401), np.array([0.0, 1.0])
     lines: list[Reals] = []
     for name in ("periodic_upper", "periodic_lower", "inlet", "outlet"):
@@ -276,7 +268,7 @@ def _outer_edges(passage: "Passage") -> list[Reals]:
 
 
 def _write_name(axes: Axes, camera: Camera, face: Surface, name: str, clear: Reals) -> Reals:
-    """Writes a face's name on it, as far as can be from places (n, 2) in the picture; returns where (1, 2)."""
+    """Write a face's name on it, as far as possible from points (n, 2) of the picture; return its place (1, 2)."""
     points = MILLIMETRES * np.real(face.grid(NAME_PLACES, NAME_PLACES)).reshape(-1, 3)
     flat = camera.seen(points)[:, :2]
     apart = np.min(length(flat[:, None] - clear), axis=1)

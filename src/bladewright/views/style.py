@@ -1,4 +1,4 @@
-"""Colours, fonts and the manner of a panel, the same on every picture."""
+"""The style of all pictures: colours, fonts, lines and resolutions, and what every panel has."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -9,20 +9,30 @@ from matplotlib import rc_context
 from matplotlib.axes import Axes
 
 MILLIMETRES = 1e3
-"""millimetres in a metre"""
-INK = "#22303c"
-SOFT = "#8a97a3"
-PALE = "#e4e9ee"
-BLUE, ORANGE, GREEN, RED = "#1f6f9f", "#d9822b", "#3a8f5c", "#b23a48"
-SERIES = (BLUE, ORANGE, GREEN, RED, "#7a5ea8", "#4d4d4d")
+"""Millimetres in a metre: geometry is in metres, pictures are in millimetres."""
+SHEET_DPI, VIEW_DPI = 150, 160
+"""Pixels per inch of a sheet and of a single view as PNG: the smallest text, 9 points, is then about 19 pixels high."""
+INK, SOFT, PALE = "#22303c", "#8a97a3", "#e4e9ee"
+"""Colours of text and main lines, of auxiliary lines, and of grids and fills."""
+BLUE, ORANGE, GREEN, RED, VIOLET, GREY = "#1f6f9f", "#d9822b", "#3a8f5c", "#b23a48", "#7a5ea8", "#4d4d4d"
+SERIES = (BLUE, ORANGE, GREEN, RED, VIOLET, GREY)
+"""Colours of lines that are told apart by nothing else, in the order of use."""
 UPPER: Any = "-"
 LOWER: Any = (0, (4.0, 1.6))
-"""line styles of the two sides"""
+"""Line styles of the upper and the lower side."""
 CAMBER: Any = (0, (5.0, 2.0, 1.0, 2.0))
-"""line style of camber lines"""
+"""Line style of camber lines."""
+CONTROL_POINTS: dict[str, Any] = {
+    "linestyle": ":",
+    "linewidth": 0.7,
+    "markersize": 4.5,
+    "markerfacecolor": "white",
+}
+"""Style of the control polygons of laws: hollow marks on a dotted line."""
 WALLS = ("hub", "shroud")
-"""the ends of a blade that stands on both walls"""
+"""Names of the ends of a blade that stands on both walls."""
 _SPAN = np.array([[0.07, 0.25, 0.42], [0.12, 0.56, 0.55], [0.88, 0.44, 0.22]])
+"""Red, green and blue of the sections at hub, mid-span and shroud."""
 
 _STYLE: dict[str, Any] = {
     "font.family": "DejaVu Sans",
@@ -61,7 +71,7 @@ _STYLE: dict[str, Any] = {
 
 @contextmanager
 def drawing_style() -> Iterator[None]:
-    """The pictures' fonts and lines inside a `with` block; the caller's own settings afterwards."""
+    """Draw in this style inside a `with` block, and restore the caller's own settings afterwards."""
     with rc_context(cast(Any, _STYLE)):
         yield
 
@@ -73,17 +83,17 @@ def span_colour(v: float) -> tuple[float, float, float]:
 
 
 def span_name(v: float, ends: tuple[str, str] = WALLS) -> str:
-    """What a legend calls the section at v of a blade whose ends have these names."""
+    """The name in a legend of the section at v of a blade whose ends have these names."""
     return {0.0: ends[0], 1.0: ends[1]}.get(v, f"{100.0 * v:.3g} % span")
 
 
 def label_axes(axes: Axes, title: str, abscissa: str, ordinate: str) -> None:
-    """Names a panel and its axes."""
+    """Write the title of a panel and the names of its axes."""
     axes.set_title(title)
     axes.set_xlabel(abscissa)
     axes.set_ylabel(ordinate)
 
 
 def legend_below(axes: Axes, columns: int, **options: Any) -> None:
-    """A legend under the panel, where it covers no data."""
+    """Draw the legend under the panel, where it covers no data."""
     axes.legend(loc="upper left", bbox_to_anchor=(0.0, -0.15), ncols=columns, **options)

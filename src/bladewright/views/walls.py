@@ -32,29 +32,30 @@ if TYPE_CHECKING:
 
 
 HALVES = ("upper", "lower")
+"""The halves of a wall, above and below the blade."""
 
 
 def unwrapped_face(passage: "Passage", name: str, u: Reals, v: Reals) -> Reals:
     """Points (k, l, 2) at u (k,) and v (l,) of a wall's native half in its plane [mm]."""
     face, half = cast(Surface, passage.whole[name]), passage.walls[name]
-    aside = half.sign * float(np.real(half.half_pitch)) * np.broadcast_to(v, (len(u), len(v)))
-    return unwrapped(passage, name.partition("_")[0], np.real(face.grid(u, v)), aside)
+    offset = half.sign * float(np.real(half.half_pitch)) * np.broadcast_to(v, (len(u), len(v)))
+    return unwrapped(passage, name.partition("_")[0], np.real(face.grid(u, v)), offset)
 
 
 def blade_end_outline(passage: "Passage", wall: str) -> Reals:
-    """The closed outline (n, 2) in the wall's plane [mm] of the blade's end on or nearest to it."""
+    """Closed outline (n, 2) in the wall's plane [mm] of the blade's end at this wall."""
     end = np.array([0.0 if wall == "hub" else 1.0])
     sides = [cast(Surface, passage.whole[f"blade_{half}"]).grid(cosine_spacing(), end)[:, 0] for half in HALVES]
     return unwrapped(passage, wall, np.real(np.concatenate([sides[0], sides[1][::-1]])))
 
 
 def wall_pitch(passage: "Passage", wall: str) -> float:
-    """Distance of neighbours in the wall's plane [mm]."""
+    """Distance between neighbours in the wall's plane [mm]."""
     return 2.0 * float(np.real(passage.walls[f"{wall}_upper"].half_pitch)) * wall_scale(passage, wall)
 
 
 def wall_scale(passage: "Passage", wall: str) -> float:
-    """Millimetres in a unit of the wall's plane: the mean radius beside the blade, or a metre's in a cascade."""
+    """Millimetres in one unit of the wall's plane: the wall's mean radius beside the blade, or a metre in a cascade."""
     if not passage.duct.revolved:
         return MILLIMETRES
     line = passage.walls[f"{wall}_upper"].line
@@ -62,28 +63,28 @@ def wall_scale(passage: "Passage", wall: str) -> float:
 
 
 def wall_coordinates(passage: "Passage") -> tuple[str, str]:
-    """Names of the plane's axes."""
+    """Names of the axes of the plane."""
     return COORDINATES["m'-theta" if passage.duct.revolved else "m-y"]
 
 
-def unwrapped(passage: "Passage", wall: str, points: Reals, aside: Reals | float = 0.0) -> Reals:
-    """Points (..., 3) [m] on or near a wall in its plane (..., 2) [mm], by the nearest place of its meridian.
+def unwrapped(passage: "Passage", wall: str, points: Reals, offset: Reals | float = 0.0) -> Reals:
+    """Points (..., 3) [m] on or near a wall, in its plane (..., 2) [mm], by the closest point of its meridian.
 
-    `aside` (...) is how far, within half a turn, theta is from that of the continued camber line.
+    `offset` (...) is the expected theta relative to the continued camber line [rad], which decides between full turns.
     """
     x, y, z = np.moveaxis(points, -1, 0)
     revolved, line = passage.duct.revolved, passage.walls[f"{wall}_upper"].line
-    target = np.stack([x, np.sqrt(y * y + z * z) if revolved else z], axis=-1).reshape(-1, 2)
+    meridional = np.stack([x, np.sqrt(y * y + z * z) if revolved else z], axis=-1).reshape(-1, 2)
     places = np.linspace(passage.duct.low, passage.duct.high, 2001)
-    u = places[cKDTree(np.real(line.position(places))[0]).query(target)[1]]
+    u = places[cKDTree(np.real(line.position(places))[0]).query(meridional)[1]]
     for _ in range(3):
         slope = np.real(line.position(u, 1))[0]
-        u = u + dot(target - np.real(line.position(u))[0], slope) / dot(slope, slope)
+        u = u + dot(meridional - np.real(line.position(u))[0], slope) / dot(slope, slope)
     abscissa = np.real(line.abscissa(u))[0].reshape(points.shape[:-1])
     ordinate = y
     if revolved:
-        about = _camber_theta(passage, wall, abscissa) + aside
-        ordinate = about + np.mod(angle(y, z) - about + np.pi, 2.0 * np.pi) - np.pi
+        expected = _camber_theta(passage, wall, abscissa) + offset
+        ordinate = expected + np.mod(angle(y, z) - expected + np.pi, 2.0 * np.pi) - np.pi
     return np.asarray(np.stack([abscissa, ordinate], axis=-1) * wall_scale(passage, wall))
 
 
@@ -95,23 +96,27 @@ def _camber_theta(passage: "Passage", wall: str, abscissa: Reals) -> Reals:
 
 
 COLOURS = {"hub": BLUE, "shroud": ORANGE}
+"""Colours of the grid lines on each wall."""
 ALONG, ACROSS = (9, 17, 9), 9
-"""lines of constant u on the three pieces of a patch, and of constant v"""
+"""Lines of constant u before, beside and behind the blade, and lines of constant v: twice as many beside the blade,
+where the patch is twice as long in u."""
 LINE_POINTS = 65
-"""places along a line"""
+"""Points along a line."""
 MAX_ASPECT = 6.0
-"""height of a wall in its plane, in widths, above which lengths are not equal on both axes"""
+"""Height over width of a wall in its plane above which the two axes have different scales: the panel would otherwise
+show a thin strip."""
 CLOSE_UP = 0.03
-"""half width of the surroundings of the least Jacobian, of the chord"""
+"""Half width of the close-up of the least Jacobian, in chords."""
 CLOSE_UP_U = 0.2
-"""half width in u of what may be drawn there"""
+"""Half width in u of the part of a patch that the close-up may show; it must be more than the close-up needs."""
 CLOSE_UP_LINES = 25
-"""lines of constant u, and of constant v, to each side of the place"""
+"""Lines of constant u, and of constant v, on each side of that place."""
 MARK: dict[str, Any] = {"markersize": 6.0, "color": RED, "fillstyle": "none", "linestyle": "none"}
+"""Style of the marks at the least Jacobian."""
 
 
 def draw_wall(axes: Axes, passage: "Passage", wall: str) -> None:
-    """Draws the hub or the shroud in its plane [mm]: patches, blade, neighbours and periodic boundaries."""
+    """Draw the hub or the shroud in its plane [mm]: patches, blade, neighbours and periodic boundaries."""
     for half, style in zip(HALVES, (UPPER, LOWER), strict=True):
         name = f"{wall}_{half}"
         lines = LineCollection(patch_lines(passage, name), colors=COLOURS[wall], linewidths=0.5, alpha=0.55)
@@ -137,56 +142,58 @@ def draw_wall(axes: Axes, passage: "Passage", wall: str) -> None:
 
 
 def draw_least_jacobian(axes: Axes, passage: "Passage") -> None:
-    """Draws the surroundings of the place where a wall's Jacobian is least of all."""
+    """Draw a close-up of the place where the Jacobian of the walls is least."""
     name, (share, u, v) = min(passage.folds.items(), key=lambda fold: fold[1][0])
     wall = name.partition("_")[0]
     place = unwrapped_face(passage, name, np.array([u]), np.array([v]))[0, 0]
     shape = blade_end_outline(passage, wall)
-    reach = CLOSE_UP * _chord(shape)
+    half_width = CLOSE_UP * _chord(shape)
     for half in HALVES:
-        lines = patch_lines_near(passage, f"{wall}_{half}", place, u, reach)
+        lines = patch_lines_near(passage, f"{wall}_{half}", place, u, half_width)
         axes.add_collection(LineCollection(lines, colors=COLOURS[wall], linewidths=0.5, alpha=0.7), autolim=False)
     _draw_blade_end(axes, passage, wall, shape)
     axes.plot(*place, marker="o", label=f"{name.replace('_', ' ')}: {_jacobian_text(share, u, v)}", **MARK)
-    axes.set_xlim(place[0] - reach, place[0] + reach)
-    axes.set_ylim(place[1] - reach, place[1] + reach)
+    axes.set_xlim(place[0] - half_width, place[0] + half_width)
+    axes.set_ylim(place[1] - half_width, place[1] + half_width)
     axes.set_aspect("equal", adjustable="box", anchor="N")
     label_axes(axes, "Where the Jacobian is least", *wall_coordinates(passage))
     legend_below(axes, 1)
 
 
 def patch_lines(passage: "Passage", name: str) -> list[Reals]:
-    """Lines of constant u, then of constant v, of a wall's native half: each (n, 2) in its plane [mm]."""
+    """Lines of constant u, then of constant v, on a native half of a wall: each (n, 2) in its plane [mm]."""
     pieces = [np.linspace(*ends, count) for ends, count in zip(_pieces(), ALONG, strict=True)]
     across = unwrapped_face(passage, name, np.unique(np.concatenate(pieces)), np.linspace(0.0, 1.0, LINE_POINTS))
     along = unwrapped_face(passage, name, _stations_along(), np.linspace(0.0, 1.0, ACROSS))
     return [*across, *np.swapaxes(along, 0, 1)]
 
 
-def patch_lines_near(passage: "Passage", name: str, place: Reals, u: float, reach: float) -> list[Reals]:
-    """Lines as `patch_lines`, but within about `reach` of a place (2,) in the plane, which is near u.
+def patch_lines_near(passage: "Passage", name: str, place: Reals, u: float, half_width: float) -> list[Reals]:
+    """Lines as `patch_lines`, but within about `half_width` of a place (2,) in the plane, which is near u.
 
-    They are so chosen that they pass the place at equal distances.
+    They are chosen such that they pass the place at equal steps of the distance.
     """
     along = np.linspace(max(0.0, u - CLOSE_UP_U), min(1.0, u + CLOSE_UP_U), 4 * LINE_POINTS)
     across = np.linspace(0.0, 1.0, 2 * LINE_POINTS) ** 2
-    apart = length(unwrapped_face(passage, name, along, across) - place)
-    along, across = (_at_distances(each, apart.min(axis=axis), reach) for each, axis in ((along, 1), (across, 0)))
+    distances = length(unwrapped_face(passage, name, along, across) - place)
+    along, across = (
+        _at_equal_distances(each, distances.min(axis=axis), half_width) for each, axis in ((along, 1), (across, 0))
+    )
     edges = [edge for edge in BLADE_AT if along[0] < edge < along[-1]]
     fine = np.union1d(np.linspace(along[0], along[-1], 4 * LINE_POINTS), edges)
     lines = [*unwrapped_face(passage, name, along, np.linspace(across[0], across[-1], 2 * LINE_POINTS))]
     return [*lines, *np.swapaxes(unwrapped_face(passage, name, fine, across), 0, 1)]
 
 
-def _at_distances(parameter: Reals, distance: Reals, reach: float) -> Reals:
-    """Parameters, to both sides of the nearest, at equal steps of the distance."""
-    nearest, steps = int(np.argmin(distance)), 1.6 * reach * np.linspace(0.0, 1.0, CLOSE_UP_LINES)
+def _at_equal_distances(parameter: Reals, distance: Reals, half_width: float) -> Reals:
+    """Parameters on both sides of the nearest one, at equal steps of the distance."""
+    nearest, steps = int(np.argmin(distance)), 1.6 * half_width * np.linspace(0.0, 1.0, CLOSE_UP_LINES)
     sides = (slice(nearest, None, -1), slice(nearest, None))
     return np.unique([np.interp(steps, np.maximum.accumulate(distance[side]), parameter[side]) for side in sides])
 
 
 def _draw_blade_end(axes: Axes, passage: "Passage", wall: str, shape: Reals) -> None:
-    """The blade's foot; where it stands off the wall, the outline of its tip."""
+    """Draw the end of the blade on the wall; where it stands off the wall, the outline of its tip."""
     colour = span_colour(0.0 if wall == "hub" else 1.0)
     if passage.walls[f"{wall}_upper"].has_blade:
         axes.fill(*shape.T, color=colour, alpha=0.25, linewidth=0.0)
@@ -196,16 +203,17 @@ def _draw_blade_end(axes: Axes, passage: "Passage", wall: str, shape: Reals) -> 
 
 
 def _pieces() -> tuple[tuple[float, float], ...]:
+    """Ranges of u before, beside and behind the blade."""
     return tuple(pairwise((0.0, *BLADE_AT, 1.0)))
 
 
 def _stations_along() -> Reals:
-    """Places along the flow, dense towards the blade's edges."""
+    """Parameters u along the flow, dense towards the blade's edges."""
     return np.unique(np.concatenate([low + (high - low) * cosine_spacing(2 * LINE_POINTS) for low, high in _pieces()]))
 
 
 def _chord(shape: Reals) -> float:
-    """Length of a closed outline from its first point, the leading edge, to the farthest."""
+    """Distance of the point of a closed outline farthest from its first point, the leading edge."""
     return float(np.max(length(shape - shape[0])))
 
 
