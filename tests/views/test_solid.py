@@ -82,7 +82,7 @@ class Walls(NamedTuple):
     shroud: list
     mapping: SimpleNamespace = SimpleNamespace(revolved=True)
 
-    def wall_line(self, name, u):
+    def wall_points(self, name, u):
         ends = np.array(getattr(self, name), dtype=float)
         return ends[0] + u[:, None] * (ends[1] - ends[0])
 
