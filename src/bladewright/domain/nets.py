@@ -12,6 +12,9 @@ from bladewright.domain.walls import STRIPS, WallHalf, WallStrip, width_share
 from bladewright.numerics.elementary import Array, concatenated
 from bladewright.nurbs.basis import Reals, basis, greville
 
+_HALVES = (("upper", 1.0), ("lower", -1.0))
+"""The halves of walls, and to which side of the camber surface they lie."""
+
 
 class BladeNets(NamedTuple):
     """The blade's control nets (..., n_u, n_v, 3)."""
@@ -49,9 +52,6 @@ def native_nets(
     for name, end in (("inlet", 0), ("outlet", -1)):
         nets[name] = _open_end(camber, walls, nets, knots, end)
     return nets
-
-
-_HALVES = (("upper", 1.0), ("lower", -1.0))
 
 
 def _along(points: Mapping[str, Array], knots: PassageKnots, axis: int) -> Array:

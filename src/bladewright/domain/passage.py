@@ -57,9 +57,9 @@ class Passage:
     whole: Faces
     """walls' halves (u inlet to outlet, v from the blade to a periodic boundary), periodic boundaries (u inlet to
     outlet, v hub to shroud), inlet and outlet (u from the lower to the upper periodic boundary, v hub to shroud), the
-    blade's sides, and its tip where there is a gap; where an edge is blunt, its face as `blade_trailing_edge`, and the
-    strips of the walls downstream of it, `hub_wake` and `shroud_wake` (u along the flow, v from the lower to the upper
-    half), or `blade_leading_edge`, `hub_stagnation` and `shroud_stagnation`; metres"""
+    blade's sides, and its tip where there is a clearance; where an edge is blunt, its face as `blade_trailing_edge`,
+    and the strips of the walls downstream of it, `hub_wake` and `shroud_wake` (u along the flow, v from the lower to
+    the upper half), or `blade_leading_edge`, `hub_stagnation` and `shroud_stagnation`; metres"""
     knots: PassageKnots
     """as `passage(..., knots=...)` takes them, to hold them"""
     camber: CamberLines

@@ -1,1 +1,6 @@
-"""Floor 1: NURBS curves and surfaces of any dimension. Knows knots and control points, and no blades."""
+"""Floor 1: NURBS curves and surfaces of any degree and dimension. It knows knots and control points, and no blades.
+
+`basis`, `curve`, `surface` and `trimmed` evaluate; `refine`, `domain`, `compatible` and `transform` change the
+representation; `fit`, `skinning` and `revolution` construct; `closest`, `curvature`, `measure` and `mass_properties`
+ask questions.
+"""
