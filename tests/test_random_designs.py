@@ -8,7 +8,7 @@ from collections import Counter
 import pytest
 import random_designs
 
-COUNT = {"unified": 14, "sections": 8}
+COUNT = {"unified": 8, "sections": 5}
 
 
 @pytest.mark.parametrize("of", COUNT)

@@ -1,7 +1,5 @@
 """Blades that stand off a wall: the clearance surface against the design's own numbers, and what a build keeps."""
 
-from functools import cache
-
 import numpy as np
 import pytest
 from scipy.interpolate import BSpline
@@ -11,6 +9,7 @@ from bladewright.blade.design.flow_path import Channel
 from bladewright.blade.exact.unified import exact_unified_blade
 from bladewright.errors import DesignError
 from bladewright.nurbs.mass_properties import mass_properties
+from machines import COARSE, built
 from machines.unified import CASCADE, FAN, IMPELLER, INFLOW
 
 PRISM = CASCADE.changed(
@@ -33,14 +32,9 @@ CLEARED = {
 STEP = 1e-30
 
 
-@cache
-def built(name):
-    return CLEARED[name].build()
-
-
 @pytest.fixture(params=list(CLEARED))
 def cleared(request):
-    return built(request.param)
+    return built(CLEARED[request.param])
 
 
 def stated(design):
@@ -133,9 +127,9 @@ def test_the_laws_run_from_the_blades_one_end_to_its_other(cleared):
             assert np.degrees(getattr(section, name)) == pytest.approx(asked, abs=1e-10)
 
 
-@pytest.mark.parametrize("name", ["cantilevered stator", "cascade", "cantilevered cascade"])
+@pytest.mark.parametrize("name", ["cantilevered stator", "cascade"])
 def test_the_properties_agree_with_the_divergence_theorem_over_all_faces(name):
-    for blade in (built(name), built(name).extended(0.1)):
+    for blade in (built(CLEARED[name]), built(CLEARED[name]).extended(0.1)):
         own = blade.properties
         general = mass_properties([(blade.surfaces[face], sign) for face, sign in blade.orientations.items()])
         assert own.volume == pytest.approx(general.volume, rel=1e-7)
@@ -221,7 +215,8 @@ DIFFERENTIATED = {
 
 @pytest.mark.parametrize(("name", "path"), [(name, path) for name in DIFFERENTIATED for path in DIFFERENTIATED[name]])
 def test_the_complex_step_is_the_derivative_at_held_knots(name, path):
-    design, knots, value = CLEARED[name], built(name).knots, CLEARED[name].parameters()[path]
+    design = CLEARED[name].changed("tolerance", COARSE)
+    knots, value = built(design).knots, design.parameters()[path]
     step = 1e-3
     moved = design.changed(path, value + STEP * 1j).build(knots=knots)
     ahead, back = (design.changed(path, value + sign * step).build(knots=knots) for sign in (1, -1))
@@ -257,7 +252,7 @@ def test_a_batch_of_imaginary_steps_is_the_single_steps_one_by_one():
 @pytest.mark.parametrize("suffix", [".step", ".igs"])
 @pytest.mark.parametrize("name", ["impeller, open inlet and narrow outlet", "cantilevered cascade"])
 def test_a_cad_file_holds_the_tip_by_its_name_and_passes_its_round_trip(name, suffix, tmp_path):
-    blade = built(name)
+    blade = built(CLEARED[name])
     trip = cad.write(blade, tmp_path / f"blade{suffix}", samples=1000)
     assert trip.passed, trip.failures
     assert [face.name for face in trip.faces] == list(blade.surfaces)

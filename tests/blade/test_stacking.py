@@ -17,7 +17,7 @@ from bladewright.errors import DesignError
 from bladewright.numerics.elementary import length
 from bladewright.nurbs.surface import Surface
 from bladewright.section.laws import Span
-from machines import stacked
+from machines import built, stacked
 from machines.sectioned import COMPRESSOR, IMPELLER, VANE, through
 
 V = np.array([0.0, 0.21, 0.5, 0.77, 1.0])
@@ -166,9 +166,9 @@ def test_every_new_parameter_has_an_effect_and_the_derivative_of_differences(des
 
 @pytest.mark.parametrize("design", [stacked.AXIAL, stacked.RETURN, stacked.RULED], ids=lambda d: d.name)
 def test_stacked_and_ruled_solids_come_back_from_step_files(design, tmp_path):
-    blade = design.build()
+    blade = built(design)
     assert blade.conformance.kept, blade.conformance
-    trip = cad.write(blade, tmp_path / "blade.step")
+    trip = cad.write(blade, tmp_path / "blade.step", samples=900)
     assert trip.passed, trip.failures
     if design.skinning == "ruled":
         _check_rulings(blade, parallel=False)

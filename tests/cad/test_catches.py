@@ -47,7 +47,7 @@ def written(built, path):
         _write_format(built, occ_solid(built), str(path), format_of(path), schema="AP242", solid=True)
 
 
-def failing(path, built, samples=2500):
+def failing(path, built, samples=900):
     trip = cad.verify(path, built, samples=samples)
     assert not trip.passed
     assert trip.to_dict()["passed"] is False
@@ -61,12 +61,12 @@ def about(trip, *words):
 @pytest.mark.parametrize(
     ("ending", "side", "row", "column"),
     [
-        ("step", "upper", 20, 10),
-        ("igs", "upper", 20, 10),
-        ("brep", "upper", 20, 10),
+        ("step", "upper", 10, 10),
+        ("igs", "upper", 10, 10),
+        ("brep", "upper", 10, 10),
         ("step", "upper", 1, 2),
-        ("step", "upper", 20, 0),
-        ("step", "lower", 41, 19),
+        ("step", "upper", 10, 0),
+        ("step", "lower", 21, 19),
     ],
 )
 def test_a_moved_pole(rotor, tmp_path, ending, side, row, column):
@@ -83,16 +83,15 @@ def test_a_moved_pole(rotor, tmp_path, ending, side, row, column):
 
 @pytest.mark.parametrize("amount", [1e-8, 1e-6])
 def test_a_pole_moved_by_a_few_millionths_of_a_millimetre_is_measured(rotor, tmp_path, amount):
-    bent = replaced(rotor, upper=moved(rotor.surfaces["upper"], 20, 10, amount))
+    bent = replaced(rotor, upper=moved(rotor.surfaces["upper"], 10, 10, amount))
     written(bent, tmp_path / "bent.step")
-    trip = failing(tmp_path / "bent.step", rotor, samples=10_000)
+    trip = failing(tmp_path / "bent.step", rotor, samples=2500)
     largest = next(face for face in trip.faces if face.name == "upper").max_deviation
     # a pole of a bi-quintic spline carries at most 0.55 x 0.55 of the surface; this one, next to triple knots, 0.19
     assert 0.1 * amount * 1e3 < largest < 0.3 * amount * 1e3
 
 
-@pytest.mark.parametrize("ending", ["step", "brep"])
-@pytest.mark.parametrize("name", ["upper", "hub"])
+@pytest.mark.parametrize(("name", "ending"), [("upper", "step"), ("hub", "brep")])
 def test_a_missing_face(rotor, tmp_path, name, ending):
     faces = [face for label, face in occ_solid(rotor).faces.items() if label != name]
     path = tmp_path / f"open.{ending}"

@@ -5,20 +5,13 @@ import pytest
 
 import bladewright as bw
 from bladewright import cad
-from bladewright.blade.design.families import ProfileBlade
-from bladewright.blade.design.flow_path import FlowPath
-from bladewright.blade.design.meridional_curve import ThroughPoints
 from bladewright.cad.closure import closure
 from bladewright.cad.reading import read_cad_file
 from bladewright.errors import CadError
-from bladewright.files.examples import example_text
 from bladewright.nurbs.revolution import arc
-from bladewright.section.profiles.flat_plate import FlatPlate
+from machines import COARSE, built, example
 from machines.closed_form_sectors import Cuttable, sector, standing
-
-
-def through(*points):
-    return ThroughPoints(points=points)
+from machines.sectioned import PLATE
 
 
 @pytest.fixture(scope="module")
@@ -101,11 +94,9 @@ LONG = (
 
 
 @pytest.mark.parametrize("name", [*QUICK, *(pytest.param(name, marks=pytest.mark.slow) for name in LONG)])
-def test_patches_and_cut_enclose_the_same_volume(name, tmp_path):
+def test_patches_and_cut_enclose_the_same_volume(name):
     # the patches lie within 1e-7 of the chord of the exact walls
-    path = tmp_path / f"{name}.toml"
-    path.write_text(example_text(name))
-    passage = bw.passage(bw.read_design(path).build())
+    passage = bw.passage(built(example(name)))
     cut = cad.cut_passage(passage)
     native = float(passage.properties.volume)
     assert cut.properties.volume == pytest.approx(native, rel=1e-8)
@@ -114,18 +105,7 @@ def test_patches_and_cut_enclose_the_same_volume(name, tmp_path):
 
 def test_a_blade_with_faces_at_its_edges_is_cut_out_with_them():
     edges = ("leading_edge", "trailing_edge")
-    plate = ProfileBlade(
-        name="plate",
-        length_unit="mm",
-        arrangement="linear",
-        pitch=40.0,
-        flow_path=FlowPath(hub=through((-60, 0), (120, 0)), shroud=through((-60, 50), (120, 60))),
-        leading_edge=through((0, 0), (4, 60)),
-        trailing_edge=through((40, 0), (36, 60)),
-        tolerance=1e-4,
-        section=FlatPlate(thickness=0.08, stagger_angle=(20.0, 25.0), **dict.fromkeys(edges, "blunt")),
-    )
-    passage = bw.passage(plate.build())
+    passage = bw.passage(built(PLATE.changed("tolerance", COARSE)))
     cut = cad.cut_passage(passage)
     assert {f"blade_{edge}" for edge in edges} <= set(cut.body.faces)
     # the walls of a cascade are planes for both

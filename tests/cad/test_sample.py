@@ -7,6 +7,8 @@ from bladewright import cad
 from bladewright.cad.deviation import NativeFace
 from bladewright.errors import CadError
 
+COUNT = 800
+
 
 @pytest.mark.parametrize(
     ("ending", "near"), [("step", 1e-8), ("igs", 1e-6), ("brep", 1e-8), ("stl", 0.2), ("3mf", 0.2)]
@@ -14,8 +16,8 @@ from bladewright.errors import CadError
 def test_points_lie_on_the_body_evenly_and_in_metres(rotor, tmp_path, ending, near):
     path = tmp_path / f"rotor.{ending}"
     cad.write(rotor, path, samples=100, chordal_deviation=2e-4)
-    points = cad.sample(path, 4000)
-    assert points.shape == (4000, 3)
+    points = cad.sample(path, COUNT)
+    assert points.shape == (COUNT, 3)
     away = {name: NativeFace(face).projection.closest(points * 1e3, 1.0)[1] for name, face in rotor.surfaces.items()}
     # ends lie off the wall by 4e-7 mm, and so may points next to them
     assert np.max(np.min(list(away.values()), axis=0)) <= max(near, 1e-6)
@@ -23,7 +25,7 @@ def test_points_lie_on_the_body_evenly_and_in_metres(rotor, tmp_path, ending, ne
     for k in range(len(rotor.surfaces)):
         share = rotor.properties.areas[k] / rotor.properties.area
         # four standard deviations of a binomial draw
-        assert np.mean(owner == k) == pytest.approx(share, abs=4.0 * np.sqrt(share * (1.0 - share) / 4000))
+        assert np.mean(owner == k) == pytest.approx(share, abs=4.0 * np.sqrt(share * (1.0 - share) / COUNT))
 
 
 def test_points_spread_by_area_and_not_by_parameter(rotor, step):

@@ -12,6 +12,17 @@ from bladewright.cli import main
 from bladewright.files.examples import example_text
 
 
+@pytest.fixture(autouse=True, scope="session")
+def few_samples():
+    """Round trips in this process measure fewer points: how well they measure is asked in the tests of cad."""
+    from bladewright import cad
+
+    with pytest.MonkeyPatch.context() as patch:
+        for door in (cad.write, cad.verify):
+            patch.setitem(door.__kwdefaults__, "samples", 400)
+        yield
+
+
 @dataclass(frozen=True)
 class Run:
     status: int

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 import bladewright as bw
-from bladewright.files.examples import example_text
 from bladewright.files.reading import read_design
+from machines import COARSE, example
 
 
 def test_the_volume_s_derivatives_are_listed_with_their_units(run, vane_file):
@@ -38,7 +38,7 @@ def test_a_program_gets_si_units(run, vane_file):
 def cascade_file(tmp_path):
     """A blade whose passage folds nowhere."""
     path = tmp_path / "vki-ls89.toml"
-    path.write_text(example_text("vki-ls89"))
+    bw.write_design(example("vki-ls89").changed("tolerance", COARSE), path)
     return path
 
 

@@ -2,6 +2,7 @@
 
 import pytest
 
+from machines import built
 from machines.coarse import BLADES
 
 
@@ -12,4 +13,4 @@ def design(request):
 
 @pytest.fixture(scope="session")
 def blade(design):
-    return design.build()
+    return built(design)

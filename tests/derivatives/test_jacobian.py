@@ -9,6 +9,7 @@ from bladewright.blade.native.interpolation import native_sides
 from bladewright.derivatives import net_jacobian
 from bladewright.derivatives.complex_step import stepped
 from bladewright.numerics.quadrature import panels
+from machines import built
 from machines.coarse import CASCADE, CLEARED, RADIAL, ROTOR, SECTION
 
 STEP = 1e-30
@@ -21,13 +22,24 @@ def found(design, blade):
     return bw.net_jacobian(design, knots=blade.knots)
 
 
-def test_every_parameter_s_derivative_is_that_of_a_build_with_its_step_alone(design, blade, found):
-    assert found.paths == tuple(design.parameters())
-    for place, (path, value) in enumerate(design.parameters().items()):
-        exact = exact_unified_blade(design.changed(path, value + STEP * 1j), blade.knots.tip)
-        alone = np.imag(native_sides(exact.sections(blade.knots.sites_v), blade.knots)) / STEP
-        together = np.stack([found.nets["upper"][place], found.nets["lower"][place]])
-        assert together == pytest.approx(alone, abs=ROUNDING * np.abs(alone).max()), path
+def test_the_derivatives_are_those_of_a_build_with_the_step_alone(design, blade, found):
+    values = design.parameters()
+    assert found.paths == tuple(values)
+
+    def carried(steps):
+        moved = design.changed({path: values[path] + STEP * 1j * size for path, size in steps.items()})
+        exact = exact_unified_blade(moved, blade.knots.tip)
+        return np.imag(native_sides(exact.sections(blade.knots.sites_v), blade.knots)) / STEP
+
+    nets = np.stack([found.nets["upper"], found.nets["lower"]], axis=1)
+    for place in range(0, len(values), 9):
+        alone = carried({found.paths[place]: 1.0})
+        assert nets[place] == pytest.approx(alone, abs=ROUNDING * np.abs(alone).max()), found.paths[place]
+    # and all of them in one sum, each by a share of its own of what moves the nets alike
+    size = np.abs(nets).max(axis=(1, 2, 3, 4))
+    way = np.divide(np.random.default_rng(5).uniform(0.5, 1.0, len(size)), size, out=0.0 * size, where=size > 0.0)
+    together = carried(dict(zip(found.paths, way, strict=True)))
+    assert np.tensordot(way, nets, axes=1) == pytest.approx(together, abs=ROUNDING * np.sum(way * size))
 
 
 def test_points_are_linear_in_the_nets_and_grow_in_any_shape(design, blade, found):
@@ -55,7 +67,7 @@ def test_forward_and_reverse_agree_in_the_sum_of_products(found, at_once, monkey
 @pytest.mark.parametrize("design", [ROTOR, CLEARED, CASCADE], ids=lambda design: design.name)
 def test_the_walls_below_trimmed_ends_have_their_sum_of_products_too(design):
     ends = design.ends
-    blade = design.build()
+    blade = built(design)
     free = ["channel.*", "stagger[0]", *(["*_clearance*"] if design.tip_clearance else [])]
     found = bw.net_jacobian(design, names=ends, knots=blade.knots, free=free)
     random = np.random.default_rng(4)
@@ -70,7 +82,7 @@ def test_the_walls_below_trimmed_ends_have_their_sum_of_products_too(design):
 
 def test_a_wall_moves_with_the_channel_as_differences_of_it_say():
     design = ROTOR
-    blade = design.build()
+    blade = built(design)
     u, theta = np.array([0.2, 0.7]), np.array([0.05, -0.02])
 
     def at(value):
@@ -107,7 +119,7 @@ def test_a_rational_section_s_curves_have_theirs():
 
 def test_the_volume_s_gradient_is_the_pullback_of_its_normals():
     # dV = integral of n . dS over what moves: the walls keep their place when an angle or a thickness changes
-    blade = RADIAL.build()
+    blade = built(RADIAL)
     (u, along), (v, across) = (panels(np.unique(knots), 8) for knots in (blade.knots.u, blade.knots.v))
     bars = {}
     for name, side in zip(("upper", "lower"), blade.sides, strict=True):

@@ -1,7 +1,5 @@
 """Derivatives of a passage: its nets forward and in reverse, and its volume, which a blade takes from a fixed ring."""
 
-import tomllib
-
 import numpy as np
 import pytest
 
@@ -9,8 +7,7 @@ import bladewright as bw
 from bladewright.blade.native.properties import middle_of
 from bladewright.derivatives.enclosed_volume import enclosed_volume_rates
 from bladewright.errors import DerivativeError
-from bladewright.files.examples import example_text
-from bladewright.files.reading import design_from
+from machines import COARSE, built, example
 from machines.coarse import SECTION
 
 FREE = {"vki-ls89": ["stagger", "thickness_upper[2]", "pitch"], "fan-rotor": ["tip_clearance", "stagger[2]"]}
@@ -20,8 +17,8 @@ FREE = {"vki-ls89": ["stagger", "thickness_upper[2]", "pitch"], "fan-rotor": ["t
 def machine(request):
     """A design, its blade and passage, and the Jacobian of the passage's nets."""
     name = request.param
-    design = design_from(tomllib.loads(example_text(name)), name).changed("tolerance", 1e-4)
-    blade = design.build()
+    design = example(name).changed("tolerance", COARSE)
+    blade = built(design)
     passage = bw.passage(blade)
     found = bw.net_jacobian(design, free=FREE[name], knots=blade.knots, of=bw.passage)
     return design, blade, passage, found
@@ -59,8 +56,8 @@ def test_what_a_blade_gains_its_passage_loses(machine):
 
 def test_the_volume_from_the_nets_is_that_of_the_complex_step():
     name = "vki-ls89"
-    design = design_from(tomllib.loads(example_text(name)), name).changed("tolerance", 1e-4)
-    blade = design.build()
+    design = example(name).changed("tolerance", COARSE)
+    blade = built(design)
     passage = bw.passage(blade)
     found = bw.net_jacobian(design, free="pitch", knots=blade.knots, of=bw.passage)
     volume = float(passage.properties.volume)

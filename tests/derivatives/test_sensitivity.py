@@ -11,6 +11,7 @@ from bladewright.derivatives.complex_step import stepped, varied
 from bladewright.designs import unit_at
 from bladewright.errors import DerivativeError, DesignError
 from bladewright.nurbs.curvature import surface_curvature
+from machines import built
 from machines.coarse import CASCADE, CLEARED, ROTOR, SECTION
 
 U, V = np.linspace(0.0, 1.0, 7)[:, None], np.linspace(0.0, 1.0, 5)
@@ -56,7 +57,7 @@ def test_moving_the_whole_channel_along_the_axis_moves_every_point_with_it(desig
 
 
 def test_the_leading_edge_s_theta_turns_the_blade():
-    blade = ROTOR.build()
+    blade = built(ROTOR)
     found = bw.sensitivity(ROTOR, lambda blade: blade.surfaces["upper"](U, V), free="leading_edge_theta[*]")
     # y = r sin(theta), z = r cos(theta), and a law's basis functions sum to one
     point = blade.surfaces["upper"](U, V)
@@ -104,7 +105,7 @@ QUANTITIES = {
     ids=["wall", "corner", "turning"],
 )
 def test_any_quantity_has_the_derivative_that_differences_approach(design, path, step):
-    base = design.build()
+    base = built(design)
     for name, quantity in QUANTITIES.items():
         found = bw.sensitivity(design, quantity, free=[path], knots=base.knots)[path]
         expected = central(design, base, path, quantity, step)

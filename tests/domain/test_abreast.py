@@ -1,14 +1,12 @@
 """Periodic boundaries keep abreast of the blade's sides, so that cross-lines run across the flow."""
 
-from importlib import resources
-
 import numpy as np
 import pytest
 
 from bladewright.blade.exact.sectioned import exact_sectioned_blade
 from bladewright.domain.camber_correspondence import CamberCorrespondence
 from bladewright.domain.extents import end_camber_lines
-from bladewright.files.reading import read_design
+from machines import example
 
 NAMES = ("core-rotor", "backswept-impeller", "wedge-diffuser", "booster-stator", "vaned-diffuser")
 T = np.linspace(0.0, 1.0, 201)
@@ -16,7 +14,7 @@ T = np.linspace(0.0, 1.0, 201)
 
 @pytest.fixture(params=NAMES, scope="module")
 def ends(request):
-    design = read_design(resources.files("bladewright") / "examples" / f"{request.param}.toml")
+    design = example(request.param)
     return end_camber_lines(exact_sectioned_blade(design))
 
 

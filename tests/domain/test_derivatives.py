@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from bladewright.domain.build import passage
+from machines.passages import passage_case
 
 PARAMETERS = {
     "rotor": ["stagger[4]", "channel.shroud[0].r"],
@@ -24,9 +25,7 @@ def volume_and_poles(case, design):
 
 @pytest.mark.parametrize(("name", "path"), [(name, path) for name, paths in PARAMETERS.items() for path in paths])
 def test_volume_and_poles_follow_the_parameters(name, path):
-    from .conftest import made
-
-    case = made(name)
+    case = passage_case(name)
     design = case.blade.design
     value = design.parameters()[path]
     exact = np.imag(volume_and_poles(case, design.changed(path, value + 1e-30j))) / 1e-30

@@ -1,19 +1,17 @@
 """The flow domain about a 2D section."""
 
-from importlib import resources
-
 import numpy as np
 import pytest
 
 from bladewright.domain.build import passage
 from bladewright.domain.section import section_passage
 from bladewright.errors import DesignError
-from bladewright.files.reading import read_design
+from machines import built, example
 
 
 @pytest.fixture(scope="module")
 def section():
-    return read_design(resources.files("bladewright") / "examples" / "turbine-section.toml").build()
+    return built(example("turbine-section"))
 
 
 def test_the_area_is_pitch_times_extent_less_the_section(section):

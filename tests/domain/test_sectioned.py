@@ -1,56 +1,18 @@
 """Passages around blades from sections: what the others keep, and the strips of the walls past blunt edges."""
 
-from functools import cache
-from importlib import resources
-
 import numpy as np
 import pytest
 
-from bladewright.blade.design.families import ProfileBlade
-from bladewright.blade.design.flow_path import FlowPath
-from bladewright.blade.design.meridional_curve import ThroughPoints
 from bladewright.domain.build import passage
 from bladewright.domain.knots import BLADE_AT
 from bladewright.domain.walls import STRIPS
-from bladewright.files.reading import read_design
 from bladewright.nurbs.closest import closest_on_curve
-from bladewright.section.profiles.flat_plate import FlatPlate
-
-COARSE = 1e-4
-"""tolerance of the blades, of the chord: what passages keep does not depend on it"""
+from machines import COARSE, example
+from machines.passages import SECTIONED, passage_case
 
 
-def example(name):
-    return read_design(resources.files("bladewright") / "examples" / f"{name}.toml")
-
-
-def through(*points):
-    return ThroughPoints(points=points)
-
-
-PLATE = ProfileBlade(
-    name="plate",
-    length_unit="mm",
-    arrangement="linear",
-    pitch=40.0,
-    flow_path=FlowPath(hub=through((-60, 0), (120, 0)), shroud=through((-60, 50), (120, 60))),
-    leading_edge=through((0, 0), (4, 60)),
-    trailing_edge=through((40, 0), (36, 60)),
-    section=FlatPlate(thickness=0.08, leading_edge="blunt", trailing_edge="blunt", stagger_angle=(20.0, 25.0)),
-)
-SECTIONED = {
-    "axial rotor": (example("core-rotor"), {}),
-    "plate with faces at both edges": (PLATE, {"outlet_angle": -10.0, "downstream": 2.5}),
-    "vanes with sharp edges": (example("vaned-diffuser"), {"upstream": 0.4}),
-    "wedge diffuser": (example("wedge-diffuser"), {}),
-}
-"""design, and what is asked of the passage: every kind of edge, in axial, radial and linear machines"""
-
-
-@cache
 def made(name):
-    design, asked = SECTIONED[name]
-    return passage(design.changed("tolerance", COARSE).build(), **asked)
+    return passage_case(name).passage
 
 
 @pytest.fixture(params=list(SECTIONED))

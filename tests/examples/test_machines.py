@@ -1,30 +1,21 @@
 """The built-in machines: every one can be built, keeps its promises, and is the machine that its file says."""
 
-import tomllib
-from functools import cache
-
 import numpy as np
 import pytest
 
 from bladewright.blade.design.families import prismatic
-from bladewright.files.examples import example_text, examples
-from bladewright.files.reading import design_from
+from bladewright.files.examples import examples
 from bladewright.section.unified import UnifiedSection
+from machines import built, example
 
 NAMES = sorted(examples())
 REAL = ("aachen-stator", "nasa-rotor-67", "radial-turbine", "vki-ls89")
 OWN = tuple(name for name in NAMES if name not in REAL)
 
 
-@cache
-def design(name):
-    return design_from(tomllib.loads(example_text(name)), name)
-
-
-@cache
 def blade(name):
-    found = design(name)
-    return (prismatic(found) if isinstance(found, UnifiedSection) else found).build()
+    found = example(name)
+    return built(prismatic(found) if isinstance(found, UnifiedSection) else found)
 
 
 def edges(name, v):
@@ -57,13 +48,13 @@ def test_every_machine_holds_the_default_tolerance_with_a_moderate_number_of_pol
 
 @pytest.mark.parametrize("name", NAMES)
 def test_every_machine_is_named_as_its_file_and_described_in_a_line(name):
-    assert design(name).name == name
-    assert len(design(name).description) > 20
+    assert example(name).name == name
+    assert len(example(name).description) > 20
 
 
 @pytest.mark.parametrize("name", OWN)
 def test_a_machine_of_our_own_says_so(name):
-    assert "not a real one" in design(name).description
+    assert "not a real one" in example(name).description
 
 
 def test_the_propeller_stands_on_its_pitch_axis():

@@ -12,6 +12,7 @@ from bladewright.files.examples import example_text
 from bladewright.files.parablade import import_parablade
 from bladewright.files.reading import design_from
 from bladewright.files.tblade3 import import_tblade3
+from machines import example
 
 from .tblade3.inputs import SPANWISE, lines
 
@@ -114,7 +115,7 @@ def test_laws_that_ask_for_too_many_poles_are_refused_for_their_number(monkeypat
     from bladewright.blade.native import build
 
     monkeypatch.setattr(build, "MOST_POLES", (200, 5))
-    design = design_from(tomllib.loads(example_text("exhaust-strut")), "strut.toml")
+    design = example("exhaust-strut")
     with pytest.raises(DesignError, match="give the laws along the span fewer control points"):
         design.build()
 

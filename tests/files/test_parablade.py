@@ -14,6 +14,7 @@ from bladewright.files.parablade import import_parablade, read_parablade
 from bladewright.files.parablade.config import parsed
 from bladewright.files.parablade.sections import sections_at, side_basis
 from bladewright.nurbs.closest import closest_on_curve, closest_on_surface
+from machines import built as built_once
 
 _SPEC = spec_from_file_location("parablade_witness", Path(__file__).with_name("parablade.py"))
 _MODULE = module_from_spec(_SPEC)
@@ -131,7 +132,7 @@ def test_the_blade_that_is_matched_is_the_one_of_the_recipe(name):
 @pytest.mark.parametrize("name", [*MADE, *MATCHED])
 def test_the_built_sides_lie_where_the_recipe_puts_them(name, imported_once):
     imported = imported_once(name)
-    built, witness = imported.design.build(), Witness(text_of(name))
+    built, witness = built_once(imported.design), Witness(text_of(name))
     chord, most = float(np.real(built.chord)), []
     _, around = places(15)
     for side in ("upper", "lower"):
@@ -147,7 +148,7 @@ def test_the_built_sides_lie_where_the_recipe_puts_them(name, imported_once):
 @pytest.mark.parametrize("name", ["section", "blade", "LS89_2D"])
 def test_the_distance_that_is_reported_is_what_the_witness_finds(name, imported_once):
     imported = imported_once(name)
-    built = imported.design.build()
+    built = built_once(imported.design)
     # from more places, so a little larger at most
     assert np.max(imported.distances(built)) < 1.3 * MATCHED.get(name, 5e-4) * float(np.real(built.chord))
 

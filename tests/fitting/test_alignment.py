@@ -7,24 +7,18 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from bladewright.errors import FitError
-from bladewright.files.examples import example_text
-from bladewright.files.reading import design_from, parsed
 from bladewright.fitting.assessment.result import Motion
 from bladewright.fitting.registration.axes import found_axes
 from bladewright.fitting.registration.registration import registered, registration
 from bladewright.fitting.registration.rigid_motion import FREEDOMS, composed
 from bladewright.fitting.registration.robust_motion import robust_motion
 from bladewright.fitting.registration.target import target_of
-
-
-@cache
-def built(name):
-    return design_from(parsed(example_text(name), name), name).build()
+from machines import built, example
 
 
 @cache
 def target(name):
-    return target_of(built(name))
+    return target_of(built(example(name)))
 
 
 def cloud(name, count, *, span=(0.0, 1.0)):
@@ -32,13 +26,13 @@ def cloud(name, count, *, span=(0.0, 1.0)):
     random = np.random.default_rng(7)
     v = span[0] + (span[1] - span[0]) * random.random(count // 2)
     v[: count // 20] = np.where(random.random(count // 20) < 0.5, *span)
-    return np.concatenate([side(random.random(count // 2), v) for side in built(name).sides])
+    return np.concatenate([side(random.random(count // 2), v) for side in built(example(name)).sides])
 
 
 def rows(name, along, across):
     """A grid of points on both sides, rows at the ends among them."""
     u, v = (1.0 - np.cos(np.pi * np.linspace(0.0, 1.0, along))) / 2.0, np.linspace(0.0, 1.0, across)
-    return np.concatenate([side.grid(u, v).reshape(-1, 3) for side in built(name).sides])
+    return np.concatenate([side.grid(u, v).reshape(-1, 3) for side in built(example(name)).sides])
 
 
 def thrown(seed):
@@ -51,7 +45,7 @@ def test_points_of_the_design_itself_are_moved_back_within_a_billionth_of_the_ch
     points = cloud(name, 1200)
     found = registered(thrown(1)(points), target(name))
     # what was asked of noise-free points
-    assert np.abs(found.motion(thrown(1)(points)) - points).max() < 1e-9 * built(name).chord
+    assert np.abs(found.motion(thrown(1)(points)) - points).max() < 1e-9 * built(example(name)).chord
     assert found.same
     assert not found.undetermined
 
@@ -80,7 +74,7 @@ def test_a_mirrored_blade_is_told_from_the_design():
 
 
 def test_a_blade_of_another_stagger_is_told_from_the_design():
-    other = built("vki-ls89").design.changed("stagger", -50.0).build()
+    other = built(example("vki-ls89")).design.changed("stagger", -50.0).build()
     points = np.concatenate([side.grid(np.linspace(0.0, 1.0, 40), np.linspace(0.0, 1.0, 8)) for side in other.sides])
     found = registered(points.reshape(-1, 3), target("vki-ls89"))
     assert not found.same
@@ -95,7 +89,7 @@ def test_a_prism_without_its_ends_leaves_the_shift_along_the_span_undetermined()
 
 
 def test_a_section_is_found_in_its_plane():
-    design = design_from(parsed(example_text("turbine-section"), "vane"), "vane")
+    design = example("turbine-section")
     u = np.linspace(0.0, 1.0, 150)
     points = np.concatenate([curve(u) for curve in design.build().curves.values()])
     c, s = np.cos(2.0), np.sin(2.0)
@@ -123,7 +117,7 @@ def test_rows_at_both_ends_can_show_the_machine_axis():
     assert found.arrangement == "annular"
     # the blade's ends are on cylinders and cones within 1e-10 of the chord; the axis magnifies that 1e5 times
     assert np.hypot(*axis.rotation[1:, 0]) < 1e-4
-    assert np.hypot(*axis.translation[1:]) < 1e-4 * built("compressor-stator").chord
+    assert np.hypot(*axis.translation[1:]) < 1e-4 * built(example("compressor-stator")).chord
     assert axis.rotation[0, 0] > 0.0
 
 

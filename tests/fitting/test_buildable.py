@@ -4,14 +4,13 @@ import numpy as np
 import pytest
 
 from bladewright.errors import DesignError
-from bladewright.files.examples import example_text
-from bladewright.files.reading import design_from, parsed
 from bladewright.fitting.families import unified
 from bladewright.fitting.free_parameters import free_parameters_of
 from bladewright.fitting.matching.search import Task, searched
 from bladewright.section.unified import UnifiedSection
+from machines import example
 
-VANE: UnifiedSection = design_from(parsed(example_text("turbine-section"), "vane"), "vane")  # type: ignore[assignment]
+VANE: UnifiedSection = example("turbine-section")  # type: ignore[assignment]
 LEAST = VANE.tangent_in + 0.05
 
 

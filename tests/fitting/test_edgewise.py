@@ -5,13 +5,12 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from bladewright.files.examples import example_text
-from bladewright.files.reading import design_from, parsed
 from bladewright.fitting.model_selection.growth import EDGE_LAWS, edge_steps
 from bladewright.fitting.model_selection.steps import MOST_CURVE, MOST_SPAN
 from bladewright.fitting.model_selection.structure import structure_of
+from machines import example
 
-STATOR = design_from(parsed(example_text("compressor-stator"), "stator"), "stator")
+STATOR = example("compressor-stator")
 U = np.linspace(0.0, 1.0, 101)
 
 

@@ -6,14 +6,13 @@ import numpy as np
 import pytest
 
 from bladewright.files.clouds import read_cloud
-from bladewright.files.examples import example_text
-from bladewright.files.reading import design_from, parsed
 from bladewright.fitting.assessment.coverage import loose_ends
 from bladewright.fitting.fit import fit
 from bladewright.fitting.free_parameters import free_parameters_of
 from bladewright.fitting.matching.search import Task, searched
+from machines import example
 
-STATOR = design_from(parsed(example_text("aachen-stator"), "stator"), "stator")
+STATOR = example("aachen-stator")
 LS89 = Path(__file__).parents[3] / "shared" / "data" / "clouds" / "LS89_2D.txt"
 SPAN = 0.11
 """[m]"""

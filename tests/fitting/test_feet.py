@@ -5,15 +5,14 @@ from functools import cache
 import numpy as np
 import pytest
 
-from bladewright.files.examples import example_text
-from bladewright.files.reading import design_from, parsed
 from bladewright.fitting.matching.footpoints import footpoints_at, nearest_footpoints
 from bladewright.nurbs.closest import closest_on_curve, closest_on_surface
+from machines import example
 
 
 @cache
 def sides(name):
-    built = design_from(parsed(example_text(name), name), name).build()
+    built = example(name).build()
     return built.sides if hasattr(built, "sides") else (built.curves["upper"], built.curves["lower"])
 
 

@@ -11,19 +11,18 @@ from scipy.stats import chi2
 import bladewright as bw
 from bladewright.errors import FitError
 from bladewright.files.clouds import read_cloud
-from bladewright.files.examples import example_text
-from bladewright.files.reading import design_from, parsed
 from bladewright.fitting.fit import fit
 from bladewright.fitting.matching import search
 from bladewright.fitting.matching.footpoints import nearest_footpoints
 from bladewright.fitting.model_selection.reshaping import reshaped
 from bladewright.fitting.model_selection.structure import Structure
+from machines import example
 
 CLOUDS = Path(__file__).parents[3] / "shared" / "data" / "clouds"
 NOISE = 2e-5
 """[m]"""
-BASE = design_from(parsed(example_text("turbine-section"), "vane"), "vane")
-STATOR = design_from(parsed(example_text("compressor-stator"), "stator"), "stator")
+BASE = example("turbine-section")
+STATOR = example("compressor-stator")
 
 
 @cache

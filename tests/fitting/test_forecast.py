@@ -6,8 +6,6 @@ from functools import cache
 import numpy as np
 import pytest
 
-from bladewright.files.examples import example_text
-from bladewright.files.reading import design_from, parsed
 from bladewright.fitting.free_parameters import corner_radii, free_parameters_of
 from bladewright.fitting.matching.search import Task, searched
 from bladewright.fitting.model_selection.best_structure import best_match_of_size, best_structure, ranked_steps
@@ -17,19 +15,15 @@ from bladewright.fitting.model_selection.steps import steps_down, widest_reach
 from bladewright.fitting.model_selection.structure import structure_of
 from bladewright.fitting.model_selection.tolerance import reduced_blade
 from bladewright.fitting.models.model import Model
+from machines import built, example
 
 NAMES = ("aachen-stator", "compressor-stator")
 
 
 @cache
-def design(name):
-    return design_from(parsed(example_text(name), name), name)
-
-
-@cache
 def task(name, count=120):
     random = np.random.default_rng(2)
-    points = np.concatenate([side(*random.random((2, count))) for side in design(name).build().sides])
+    points = np.concatenate([side(*random.random((2, count))) for side in built(example(name)).sides])
     return Task(
         points=points, weights=np.ones(len(points)), free=free_parameters_of(None, None, started=True), bounds={}
     )
@@ -38,7 +32,7 @@ def task(name, count=120):
 @cache
 def met(name):
     """The match of a design's own points, before any search."""
-    return searched(task(name), design(name), rounds=0, noise=1e-3)
+    return searched(task(name), example(name), rounds=0, noise=1e-3)
 
 
 @cache
@@ -92,7 +86,7 @@ def test_laws_that_do_alike_are_foreseen_of_an_exact_cloud_too():
 
 
 def test_the_law_along_the_span_that_is_short_of_a_control_point_is_foreseen_to_gain_most():
-    base = design("aachen-stator")
+    base = example("aachen-stator")
     truth = replace(base, metal_angle_in=tuple(base.metal_angle_in + change for change in (-4.0, 4.0, -4.0, 4.0)))
     random = np.random.default_rng(2)
     points = np.concatenate([side(*random.random((2, 120))) for side in truth.build().sides])
@@ -123,9 +117,9 @@ def test_the_foreseen_design_has_the_structure_and_is_no_further_than_the_neares
 
 def test_radii_of_corners_that_are_held_stay_where_they_are():
     name = "aachen-stator"
-    corners = corner_radii(design(name))
+    corners = corner_radii(example(name))
     held = replace(task(name), free=free_parameters_of(None, corners, started=True))
-    found = searched(held, design(name), rounds=0, noise=1e-3)
+    found = searched(held, example(name), rounds=0, noise=1e-3)
     about = forecast_of(found, structure_of(found.design))
     assert len(about.held) == len(corners)
     own = structure_of(found.design)
@@ -144,7 +138,7 @@ def test_blades_with_a_clearance_have_no_forecast():
 
 def test_a_blade_within_a_tolerance_loses_the_control_points_that_it_does_not_need():
     name = "aachen-stator"
-    wide = reshaped(design(name), widest_reach(structure_of(design(name))))
+    wide = reshaped(example(name), widest_reach(structure_of(example(name))))
     found = searched(task(name), wide, rounds=1, noise=1e-4, min_reduction=1e-2)
     tolerance = max(1e-3 * found.model.chord, 1.2 * found.maximum)
     fewer = reduced_blade(task(name), found, tolerance)

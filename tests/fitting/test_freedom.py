@@ -3,11 +3,10 @@
 import pytest
 
 import bladewright as bw
-from bladewright.files.examples import example_text
-from bladewright.files.reading import design_from, parsed
 from bladewright.fitting.free_parameters import free_parameters_of
+from machines import example
 
-DESIGN = design_from(parsed(example_text("turbine-section"), "vane"), "vane")
+DESIGN = example("turbine-section")
 
 
 def test_all_is_free_but_what_a_cloud_of_one_blade_says_nothing_of():

@@ -1,24 +1,17 @@
 """Which law is given more control points."""
 
 from dataclasses import replace
-from functools import cache
 
 import numpy as np
 import pytest
 
-from bladewright.files.examples import example_text
-from bladewright.files.reading import design_from, parsed
 from bladewright.fitting.free_parameters import free_parameters_of
 from bladewright.fitting.matching.search import Task, searched
 from bladewright.fitting.model_selection import adaptation
 from bladewright.fitting.model_selection.steps import gains, steps_taken_together, steps_up, union_of
 from bladewright.fitting.model_selection.structure import parameter_count, structure_of
 from bladewright.section.laws import law_basis
-
-
-@cache
-def design(name):
-    return design_from(parsed(example_text(name), name), name)
+from machines import example
 
 
 def found(truth, start, *, rounds, count=150):
@@ -43,7 +36,7 @@ def nearest(values, count):
 
 @pytest.mark.parametrize("side", ["thickness_upper", "thickness_lower"])
 def test_the_side_that_is_short_of_a_control_point_is_ranked_first(side):
-    base, bump = design("turbine-section"), (0.045, 0.15, 0.22, 0.13, 0.1, 0.02)
+    base, bump = example("turbine-section"), (0.045, 0.15, 0.22, 0.13, 0.1, 0.02)
     match = found(replace(base, **{side: bump}), replace(base, **{side: nearest(bump, 5)}), rounds=0)
     ranked = gains(match)
     assert [len(step.fields) for _, step in ranked] == [1, 1]
@@ -55,7 +48,7 @@ def test_the_side_that_is_short_of_a_control_point_is_ranked_first(side):
     ("field", "values"), [("stagger", (18.0, 28.0, 16.0, 25.0)), ("metal_angle_in", (40.0, 52.0, 36.0, 48.0))]
 )
 def test_the_law_along_the_span_that_is_short_of_a_control_point_is_ranked_first(field, values):
-    base = design("compressor-stator")
+    base = example("compressor-stator")
     match = found(replace(base, **{field: values}), replace(base, **{field: nearest(values, 3)}), rounds=0)
     ranked = gains(match)
     assert ranked[0][1].fields == (field,)
@@ -66,7 +59,7 @@ def test_the_law_along_the_span_that_is_short_of_a_control_point_is_ranked_first
 
 def test_steps_add_the_parameters_that_they_state():
     for name in ("turbine-section", "compressor-stator"):
-        base = structure_of(design(name))
+        base = structure_of(example(name))
         steps = steps_up(base)
         assert len(steps) == (2 if name == "turbine-section" else len(base.span) + len(base.channel) + 2)
         for step in steps:
@@ -74,13 +67,13 @@ def test_steps_add_the_parameters_that_they_state():
 
 
 def test_joined_steps_are_all_taken():
-    base = structure_of(design("compressor-stator"))
+    base = structure_of(example("compressor-stator"))
     steps = [step for step in steps_up(base) if not step.fields[0].startswith("thickness")]
     assert parameter_count(union_of(base, steps)) - parameter_count(base) == sum(step.parameters for step in steps)
 
 
 def test_what_is_taken_is_worth_it_and_not_more_than_is_left():
-    steps = steps_up(structure_of(design("compressor-stator")))
+    steps = steps_up(structure_of(example("compressor-stator")))
     ranked = sorted(zip([1.0, 8.0, 0.1, 7.0], steps, strict=False), key=lambda pair: -pair[0] / pair[1].parameters)
     taken = steps_taken_together(ranked)
     assert taken[0] is ranked[0][1]
@@ -91,7 +84,7 @@ def test_what_is_taken_is_worth_it_and_not_more_than_is_left():
 
 
 def test_laws_that_are_held_do_not_grow():
-    base = design("turbine-section")
+    base = example("turbine-section")
     points = np.concatenate([base.build().curves[side](np.linspace(0.0, 1.0, 99)) for side in ("upper", "lower")])
     free = free_parameters_of(None, ("thickness_upper[*]",), started=True)
     match = searched(Task(points=points, weights=np.ones(198), free=free, bounds={}), base, rounds=0, noise=1e-3)
@@ -104,7 +97,7 @@ def test_laws_that_are_held_do_not_grow():
 )
 def test_a_match_grows_on_as_long_as_it_comes_much_nearer(monkeypatch, ratios, taken, interrupted):
     """Each growth leaves so much of the misfit; the last is interrupted, or there is no further one."""
-    base = design("turbine-section")
+    base = example("turbine-section")
     off = found(base, replace(base, stagger=base.stagger + 0.5), rounds=0)
     steps, later = iter(ratios), []
 
@@ -132,7 +125,7 @@ def test_a_match_grows_on_as_long_as_it_comes_much_nearer(monkeypatch, ratios, t
 
 
 def test_a_search_that_leaves_points_out_comes_no_nearer(monkeypatch):
-    base = design("turbine-section")
+    base = example("turbine-section")
     match = found(base, replace(base, stagger=base.stagger + 0.5), rounds=0)
     inliers = match.noise_estimate.inliers.copy()
     inliers[np.argsort(match.state.footpoints.distances)[-5:]] = False

@@ -5,16 +5,15 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from bladewright.files.examples import example_text
-from bladewright.files.reading import design_from, parsed
 from bladewright.fitting.initial_guess.channel import needed_counts
 from bladewright.fitting.initial_guess.hypotheses import machine_coordinates, pairings
 from bladewright.fitting.initial_guess.meridional_outline import alpha_boundary, corner_sets
+from machines import built, example
 
 
 def cloud(name, count=1000):
     """Points on the sides of an example in x, r and theta."""
-    blade, random = design_from(parsed(example_text(name), name), name).build(), np.random.default_rng(3)
+    blade, random = built(example(name)), np.random.default_rng(3)
     return machine_coordinates(
         np.concatenate([side(*random.random((2, count // 2))) for side in blade.sides]), "annular"
     ), blade

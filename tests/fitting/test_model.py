@@ -5,20 +5,19 @@ from functools import cache
 import numpy as np
 import pytest
 
-from bladewright.files.examples import example_text
-from bladewright.files.reading import design_from, parsed
 from bladewright.fitting.clouds.cloud import checked_cloud
 from bladewright.fitting.matching.footpoints import footpoints_at, nearest_footpoints
 from bladewright.fitting.matching.search import Task, searched
 from bladewright.fitting.models.model import model_of
 from bladewright.fitting.models.unified import _fold_margins
+from machines import example
 
 NAMES = ("turbine-section", "compressor-stator")
 
 
 @cache
 def made(name):
-    design = design_from(parsed(example_text(name), name), name)
+    design = example(name)
     return design, model_of(design)
 
 

@@ -5,10 +5,9 @@ from functools import cache
 import numpy as np
 import pytest
 
-from bladewright.files.examples import example_text
-from bladewright.files.reading import design_from, parsed
 from bladewright.fitting.matching.footpoints import nearest_footpoints
 from bladewright.fitting.matching.noise import noise_of
+from machines import example
 
 NOISE = 2e-5
 """[m]"""
@@ -17,16 +16,11 @@ CLEAR = 10.0 * NOISE
 
 
 @cache
-def design(example, name):
-    return design_from(parsed(example_text(example), name), name)
-
-
-@cache
 def sides(*, blade=False, stagger=0.0, radius=1.0):
     """Both sides of a vane as curves, or of a stator as surfaces; the vane's turned, its nose blunter."""
     if blade:
-        return tuple(design("compressor-stator", "stator").build().sides)
-    vane = design("turbine-section", "vane")
+        return tuple(example("compressor-stator").build().sides)
+    vane = example("turbine-section")
     changed = vane.changed(
         {"stagger": vane.stagger + stagger, "leading_edge_radius": vane.leading_edge_radius * radius}
     )

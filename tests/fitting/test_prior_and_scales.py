@@ -6,8 +6,6 @@ import numpy as np
 import pytest
 
 import bladewright as bw
-from bladewright.files.examples import example_text
-from bladewright.files.reading import design_from, parsed
 from bladewright.fitting.matching.regularisation import (
     BEND_SPREAD,
     CAMBER_SPREAD,
@@ -16,13 +14,9 @@ from bladewright.fitting.matching.regularisation import (
 )
 from bladewright.fitting.matching.scales import check_bounds, scales_of
 from bladewright.section.checks import UNITS
+from machines import example
 
-
-def design(name):
-    return design_from(parsed(example_text(name), name), name)
-
-
-SECTION = design("turbine-section")
+SECTION = example("turbine-section")
 PATHS = tuple(path for path in SECTION.parameters() if path not in ("pitch", "span"))
 SIZE = scales_of(SECTION, PATHS, 0.035).size
 
@@ -84,7 +78,7 @@ def test_held_parameters_take_part_with_their_values():
 
 @pytest.mark.parametrize("name", ["turbine-section", "compressor-stator", "radial-turbine", "vki-ls89"])
 def test_scales_are_positive_and_every_value_lies_within_them(name):
-    blade = design(name)
+    blade = example(name)
     paths = tuple(blade.parameters())
     scales = scales_of(blade, paths, float(blade.build().chord))
     values = np.array([blade.parameters()[path] for path in paths])

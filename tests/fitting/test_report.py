@@ -7,11 +7,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from bladewright.files.examples import example_text
-from bladewright.files.reading import design_from, parsed
 from bladewright.fitting.assessment.result import LISTED_OUTLIERS, Estimate, Fit, Motion, report, text
+from machines import example
 
-DESIGN = design_from(parsed(example_text("turbine-section"), "vane"), "vane")
+DESIGN = example("turbine-section")
 BUILT = DESIGN.build()
 CHORD = float(BUILT.chord)
 FIGURES = {"mean", "rms", "percentile_99", "maximum"}

@@ -6,8 +6,6 @@ import numpy as np
 import pytest
 
 import bladewright as bw
-from bladewright.files.examples import example_text
-from bladewright.files.reading import design_from, parsed
 from bladewright.fitting.model_selection.reshaping import reshaped
 from bladewright.fitting.model_selection.structure import (
     INITIAL_BLADES,
@@ -17,13 +15,14 @@ from bladewright.fitting.model_selection.structure import (
     structure_of,
 )
 from bladewright.section.laws import law_basis
+from machines import example
 
 NAMES = ("turbine-section", "compressor-stator", "radial-turbine", "vki-ls89")
 UNSEEN = ("pitch", "tip_clearance", "hub_clearance", "span", "fillet")
 
 
 def design(name):
-    found = design_from(parsed(example_text(name), name), name)
+    found = example(name)
     if not isinstance(found, bw.UnifiedBlade | bw.UnifiedSection):
         pytest.fail(f"{name} is not of the unified family")
     return found

@@ -5,8 +5,6 @@ from functools import cache
 
 import numpy as np
 
-from bladewright.files.examples import example_text
-from bladewright.files.reading import design_from, parsed
 from bladewright.fitting.free_parameters import corner_radii, free_parameters_of
 from bladewright.fitting.matching.search import Task, searched
 from bladewright.fitting.model_selection import tolerance as keeping
@@ -20,8 +18,9 @@ from bladewright.fitting.model_selection.reshaping import reshaped, with_feasibl
 from bladewright.fitting.model_selection.steps import intersection_of, losses, steps_down
 from bladewright.fitting.model_selection.structure import structure_of
 from bladewright.fitting.model_selection.tolerance import reduced, smoothed
+from machines import example
 
-BASE = design_from(parsed(example_text("turbine-section"), "vane"), "vane")
+BASE = example("turbine-section")
 MADE = replace(
     BASE, thickness_upper=(0.05, 0.13, 0.21, 0.16, 0.12, 0.05, 0.03), thickness_lower=(0.04, 0.07, 0.11, 0.05, 0.02)
 )
@@ -47,7 +46,7 @@ def test_control_points_that_a_tolerance_does_not_need_are_taken_away():
 
 
 def test_a_wall_may_lose_its_last_control_point_between_the_corners():
-    stator = design_from(parsed(example_text("compressor-stator"), "stator"), "stator")
+    stator = example("compressor-stator")
     structure = structure_of(stator)
     short = reshaped(stator, replace(structure, channel={**structure.channel, "hub": 3}))
     random = np.random.default_rng(4)
@@ -123,7 +122,7 @@ def test_thicknesses_lose_the_control_points_that_the_shape_does_not_need():
 
 
 def test_the_radii_of_the_corners_are_those_of_both_edges_at_both_walls():
-    stator = design_from(parsed(example_text("compressor-stator"), "stator"), "stator")
+    stator = example("compressor-stator")
     last = len(stator.channel.leading_edge) - 1
     assert len(corner_radii(stator)) == 4
     assert {"channel.leading_edge[0].r", f"channel.leading_edge[{last}].r"} < set(corner_radii(stator))

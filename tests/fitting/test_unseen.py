@@ -3,14 +3,13 @@
 import numpy as np
 import pytest
 
-from bladewright.files.examples import example_text
-from bladewright.files.reading import design_from, parsed
 from bladewright.fitting.assessment.coverage import uncovered_edges
 from bladewright.fitting.fit import fit
 from bladewright.fitting.free_parameters import free_parameters_of
 from bladewright.fitting.matching.search import Task, searched
+from machines import example
 
-DESIGNS = {name: design_from(parsed(example_text(name), name), name) for name in ("turbine-section", "aachen-stator")}
+DESIGNS = {name: example(name) for name in ("turbine-section", "aachen-stator")}
 
 
 def cloud(name, low, high):

@@ -3,15 +3,14 @@
 import numpy as np
 import pytest
 
-from bladewright.files.examples import example_text
-from bladewright.files.reading import design_from, parsed
 from bladewright.fitting.assessment.acceptance import failures_of
 from bladewright.fitting.assessment.measurement import measured
 from bladewright.fitting.free_parameters import free_parameters_of
 from bladewright.fitting.matching.search import Task, searched
 from bladewright.fitting.model_selection.stopping import MatchTarget
+from machines import example
 
-STATOR = design_from(parsed(example_text("aachen-stator"), "stator"), "stator")
+STATOR = example("aachen-stator")
 
 
 @pytest.mark.parametrize(("moved", "failures"), [(False, 1), (True, 0)])

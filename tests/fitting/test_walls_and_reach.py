@@ -6,21 +6,20 @@ import fit_made
 import numpy as np
 import pytest
 
-from bladewright.files.examples import example_text
-from bladewright.files.reading import design_from, parsed
 from bladewright.fitting.clouds.thinning import spread
 from bladewright.fitting.initial_guess.hypotheses import machine_coordinates, ranked_outlines
 from bladewright.fitting.matching.blade_ends import blade_ends_of
 from bladewright.fitting.matching.edge_overhang import edge_overhang_of
 from bladewright.fitting.matching.footpoints import footpoints_at, nearest_footpoints
 from bladewright.fitting.models.model import model_of
+from machines import example
 
 BLADE = "centrifugal-impeller"
 
 
 @cache
 def shape(name):
-    design = design_from(parsed(example_text(name), name), name)
+    design = example(name)
     model = model_of(design)
     return design, model, model.shape(design)
 

@@ -9,6 +9,9 @@ from functools import cache
 from bladewright.files.examples import example_text
 from bladewright.files.reading import design_from, parsed
 
+COARSE = 1e-4
+"""tolerance [of the chord] of blades in tests of what does not depend on it: they have a third of the control points"""
+
 
 @cache
 def example(name):
@@ -20,10 +23,3 @@ def example(name):
 def built(design):
     """What a design builds; the same object for every test that asks."""
     return design.build()
-
-
-@cache
-def built_example(name, tolerance=None):
-    """What a built-in design builds; at another tolerance [of the chord] where one is given."""
-    design = example(name)
-    return built(design if tolerance is None else design.changed("tolerance", tolerance))

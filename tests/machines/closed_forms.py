@@ -105,7 +105,7 @@ def shared(upper: Surface, lower: Surface) -> Surface:
     return Surface(control_points=net, knots_u=lower.knots_u, knots_v=lower.knots_v, degree_u=5, degree_v=5)
 
 
-def annular(*, name: str = "rotor", spans: int = 36, turn: float = 0.0) -> Blade:
+def annular(*, name: str = "rotor", spans: int = 16, turn: float = 0.0) -> Blade:
     """A blade of about 0.1 m between curved walls of revolution; `turn` rotates it about the machine axis."""
     hub, shroud = meridian(HUB), meridian(SHROUD)
 

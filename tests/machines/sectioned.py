@@ -13,6 +13,7 @@ from bladewright.blade.design.flow_path import FlowPath
 from bladewright.blade.design.meridional_curve import ControlPolygon, ThroughPoints
 from bladewright.section.camber_angle import CamberAngle
 from bladewright.section.curvature_meanline import CurvatureMeanline
+from bladewright.section.profiles.flat_plate import FlatPlate
 from bladewright.section.profiles.naca65 import Naca65
 from bladewright.section.suction_pressure.part import SuctionPressure
 from bladewright.section.thickness.modified_naca import ModifiedNaca
@@ -131,4 +132,15 @@ VANE = ProfileBlade(
     leading_edge_y=(0.0, 3.0),
     section=Naca65(thickness=(0.1, 0.08), lift_coefficient=(1.2, 0.8), stagger_angle=(30.0, 35.0)),
 )
+PLATE = ProfileBlade(
+    name="plate",
+    length_unit="mm",
+    arrangement="linear",
+    pitch=40.0,
+    flow_path=VANE.flow_path,
+    leading_edge=VANE.leading_edge,
+    trailing_edge=VANE.trailing_edge,
+    section=FlatPlate(thickness=0.08, leading_edge="blunt", trailing_edge="blunt", stagger_angle=(20.0, 25.0)),
+)
+"""with faces at both edges"""
 DESIGNS = {each.name: each for each in (COMPRESSOR, IMPELLER, DIFFUSER, STATOR, VANE)}

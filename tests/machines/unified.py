@@ -2,6 +2,9 @@
 
 from bladewright.blade.design.flow_path import Channel
 from bladewright.blade.design.unified import UnifiedBlade
+from bladewright.section.unified import UnifiedSection
+
+from . import COARSE
 
 COMMON = {
     "length_unit": "mm",
@@ -75,6 +78,44 @@ CASCADE = UnifiedBlade(
         trailing_edge=((60.0, 3.0), (58.0, 96.0)),
         hub=((20.0, 0.0), (40.0, 2.0)),
         shroud=((20.0, 100.0), (40.0, 97.0)),
+    ),
+)
+VANE = UnifiedSection(
+    name="vane",
+    length_unit="cm",
+    description="A prismatic turbine vane",
+    pitch=5.75,
+    axial_chord=3.6,
+    stagger=-52.0,
+    metal_angle_in=0.0,
+    metal_angle_out=-74.0,
+    tangent_in=0.6,
+    tangent_out=0.9,
+    leading_edge_radius=0.11,
+    trailing_edge_radius=0.02,
+    thickness_upper=(0.16, 0.26, 0.16, 0.05),
+    thickness_lower=(0.1, 0.12, 0.08, 0.03),
+    span=6.0,
+)
+DRAWN_IMPELLER = UnifiedBlade(
+    name="drawn-impeller",
+    tolerance=COARSE,
+    length_unit="mm",
+    blade_count=14,
+    stagger=(35.0, 45.0),
+    metal_angle_in=(32.0, 58.0),
+    metal_angle_out=40.0,
+    tangent_in=0.3,
+    tangent_out=0.3,
+    leading_edge_radius=0.005,
+    trailing_edge_radius=0.005,
+    thickness_upper=(0.015, (0.02, 0.012), 0.012),
+    thickness_lower=(0.015, (0.02, 0.012), 0.012),
+    channel=Channel(
+        leading_edge=((0, 20), (0, 50)),
+        trailing_edge=((45, 100), (37, 100)),
+        hub=((25, 20), (44, 45)),
+        shroud=((22, 52), (36, 66)),
     ),
 )
 DESIGNS = {design.name: design for design in (FAN, IMPELLER, INFLOW, CASCADE)}

@@ -7,13 +7,12 @@ import pytest
 from scipy.interpolate import make_interp_spline
 
 from bladewright.blade.native.extrema import extrema_of
-from bladewright.files.examples import example_text
-from bladewright.files.reading import design_from, parsed
 from bladewright.nurbs.curve import Curve
 from bladewright.nurbs.transform import translated
 from bladewright.section.curvature_extrema import curvature_extrema, turning_places, turning_points
 from bladewright.section.section import Section
 from bladewright.section.unified_sides import camber_curve
+from machines import built, example
 
 ARC = np.linspace(0.0, 1.0, 801)
 WIDTH = 0.03
@@ -103,7 +102,7 @@ def test_turning_points_are_those_that_stand_out():
 
 
 def test_a_blade_has_the_most_of_its_sections_an_odd_number():
-    blade = design_from(parsed(example_text("radial-turbine"), "turbine"), "turbine").build()
+    blade = built(example("radial-turbine"))
     spans = (0.0, 0.6, 1.0)
     each = [extrema_of(blade.section(v)) for v in spans]
     assert all(count % 2 == 1 for counts in each for count in counts.values())
@@ -112,5 +111,5 @@ def test_a_blade_has_the_most_of_its_sections_an_odd_number():
 
 @pytest.mark.parametrize("name", ["upper", "lower"])
 def test_four_hundred_and_four_thousand_samples_of_a_design_count_the_same(name):
-    section = design_from(parsed(example_text("turbine-section"), "vane"), "vane").build()
+    section = built(example("turbine-section"))
     assert curvature_extrema(section, name, per_span=20) == curvature_extrema(section, name, per_span=200)

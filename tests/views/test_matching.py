@@ -12,8 +12,6 @@ from matplotlib.figure import Figure
 
 from bladewright.blade.native.extrema import extrema_of
 from bladewright.errors import FileError
-from bladewright.files.examples import example_text
-from bladewright.files.reading import design_from, parsed
 from bladewright.fitting.assessment.result import Estimate, Fit
 from bladewright.numerics.elementary import angle
 from bladewright.views.fit_data import (
@@ -37,25 +35,22 @@ from bladewright.views.fit_deviations import (
 from bladewright.views.fit_sheet import draw_histogram, draw_table, fit_picture, fit_sheet
 from bladewright.views.sections import millimetres_per_unit
 from bladewright.views.style import drawing_style
+from machines import COARSE, built, example
 from machines.sections import EXAMPLES
 
-NAMES = {"section": "turbine-section", "annular": "fan-rotor", "linear": "vki-ls89"}
-_BUILT = {}
+DESIGNS = {
+    "section": example("turbine-section"),
+    "annular": example("fan-rotor").changed("tolerance", COARSE),
+    "linear": example("vki-ls89").changed("tolerance", COARSE),
+}
 _SHEETS = {}
-
-
-def built(kind):
-    if kind not in _BUILT:
-        name = NAMES[kind]
-        design = design_from(parsed(example_text(name), name), name)
-        _BUILT[kind] = design, design.build()
-    return _BUILT[kind]
 
 
 def made(kind, count=400, noise=1e-5, outliers=0.02, **changed):
     """A fit of points with a smooth deviation, noise and outliers; the cloud is where those deviations put it."""
     random = np.random.default_rng(2)
-    design, shape = built(kind)
+    design = DESIGNS[kind]
+    shape = built(design)
     u, v = (1.0 - np.cos(np.pi * random.random(count))) / 2.0, random.random(count) * (kind != "section")
     places = np.where(random.random(count) < 0.5, "upper", "lower")
     deviations = 1.5e-5 * np.sin(9.0 * u) * np.cos(4.0 * v) + noise * random.standard_normal(count)
@@ -101,7 +96,7 @@ def cloud_of(section, places, u, v, deviations):
 
 def sheet_of(kind):
     if kind not in _SHEETS:
-        fit = made(kind, extrema=extrema_of(built(kind)[1]))
+        fit = made(kind, extrema=extrema_of(built(DESIGNS[kind])))
         _SHEETS[kind] = fit, fit_sheet(fit)
         _SHEETS[kind][1].canvas.draw()
     return _SHEETS[kind]
@@ -320,7 +315,7 @@ def test_a_path_that_will_not_do_is_refused_before_anything_is_drawn(tmp_path):
 
 
 def test_points_on_a_blunt_edge_are_drawn_on_its_face():
-    section = EXAMPLES["naca-6409-blunt"].design.build()
+    section = built(EXAMPLES["naca-6409-blunt"].design)
     face, u = section.curves["trailing_edge"], np.array([0.25, 0.5])
     upper, off = np.array([0.2, 0.9]), np.array([1e-5, -1e-5, 2e-5, 0.0])
     places = np.array(["upper", "upper", "trailing_edge", "trailing_edge"])

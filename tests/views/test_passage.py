@@ -16,27 +16,25 @@ from bladewright.domain.build import passage
 from bladewright.domain.passage import Passage
 from bladewright.domain.section import section_passage
 from bladewright.errors import DesignError
-from bladewright.files.examples import example_text
-from bladewright.files.reading import design_from, parsed
 from bladewright.views.passage import boundary, figures, poles
 from bladewright.views.picture import sheet
 from bladewright.views.raster import Camera, ShadedGrid, rendered
 from bladewright.views.solid import draw_passage_solid, outer_faces, viewpoint
 from bladewright.views.walls import patch_lines, patch_lines_near, unwrapped, unwrapped_face, wall_scale
-
-from .conftest import IMPELLER
+from machines import COARSE, built, example
+from machines.unified import DRAWN_IMPELLER as IMPELLER
 
 EXACT = 1e-9
 """mm, of lines some 100 mm long: rounding of trigonometry and of a nearest place"""
 PASSAGES = {
-    "impeller": lambda: IMPELLER.changed({"tip_clearance": 0.5}),
-    "cascade": lambda: design_from(parsed(example_text("vki-ls89"), "vki-ls89"), "vki-ls89"),
+    "impeller": IMPELLER.changed("tip_clearance", 0.5),
+    "cascade": example("vki-ls89").changed("tolerance", COARSE),
 }
 
 
 @cache
 def _made(name):
-    return passage(PASSAGES[name]().build())
+    return passage(built(PASSAGES[name]))
 
 
 @pytest.fixture(scope="module", params=list(PASSAGES))

@@ -15,6 +15,7 @@ from bladewright.views.meridional import built_edges
 from bladewright.views.picture import sheet
 from bladewright.views.sections import draw_edge, millimetres_per_unit, neighbour_outline, outline
 from bladewright.views.solid import blade_surfaces, draw_solid
+from machines import built
 from machines.sectioned import BLUNT, COMPRESSOR, DESIGNS, IMPELLER, STATOR, VANE
 from machines.sections import EXAMPLES
 
@@ -26,7 +27,7 @@ ROUGH = 1e-4
 
 @pytest.fixture(scope="module")
 def impeller():
-    return replace(IMPELLER, tolerance=ROUGH).build()
+    return built(replace(IMPELLER, tolerance=ROUGH))
 
 
 @pytest.fixture(scope="module")
@@ -162,7 +163,7 @@ def test_neighbours_in_a_plane_of_lengths_stand_as_far_apart_as_their_radius_say
     ],
 )
 def test_an_edge_is_called_what_it_is(name, said):
-    section, axes = EXAMPLES[name].design.build(), Figure().add_subplot()
+    section, axes = built(EXAMPLES[name].design), Figure().add_subplot()
     draw_edge(axes, section, trailing=True)
     assert axes.get_title().startswith(said)
     low, high = axes.get_xlim()
@@ -183,14 +184,14 @@ def test_a_blunt_edge_of_an_impeller_is_drawn_as_wide_as_its_face_is(impeller):
 
 
 def test_the_thickness_at_a_blunt_edge_is_that_of_the_edge():
-    section = EXAMPLES["naca-6409-blunt"].design.build()
+    section = built(EXAMPLES["naca-6409-blunt"].design)
     face = section.curves["trailing_edge"].control_points
     assert section.thickness[1][-1] == pytest.approx(np.hypot(*(face[1] - face[0])))
     assert section.maximum_thickness[0] == pytest.approx(0.09 * section.chord, rel=1e-2)
 
 
 def test_smoothness_is_drawn_in_pieces_with_the_jumps_in_a_table():
-    found = smoothness(EXAMPLES["naca-2412"].design.build())
+    found = smoothness(built(EXAMPLES["naca-2412"].design))
     figure = Figure(layout="constrained")
     draw_smoothness(figure.subfigures(), {0.0: found})
     camber = figure.axes[1].get_lines()

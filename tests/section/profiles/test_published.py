@@ -2,7 +2,6 @@
 
 import numpy as np
 import pytest
-from scipy.optimize import brentq
 
 from bladewright.section.laws import Span
 from bladewright.section.power_series import Series
@@ -38,10 +37,10 @@ def ordinates(profile, x, name="upper"):
     """Ordinates in per cent at abscissas in per cent of a side that rises along the chord."""
     points = side(profile, name)
     # a cambered nose reaches ahead of the leading edge: the places wanted lie behind the foremost point
-    table = np.linspace(0.0, 1.0, 801)
-    first = table[np.argmin(points(table)[:, 0])]
-    found = [brentq(lambda s, at=at: points(s)[0, 0] - at / 100.0, first, 1.0, xtol=1e-14) for at in x]
-    return 100.0 * points(np.array(found))[:, 1]
+    table = points(np.linspace(0.0, 1.0, 4001))
+    table = 100.0 * table[np.argmin(table[:, 0]) :]
+    # chords between places a four-thousandth apart are off by less than 1e-6 of what they span
+    return np.interp(x, *table.T)
 
 
 def test_naca_0012_has_its_published_ordinates():
