@@ -39,3 +39,8 @@ def test_the_signature_of_a_public_name_fits_a_screen_and_shows_no_inner_types(n
 @pytest.mark.parametrize("name", CALLABLE)
 def test_every_public_name_has_a_docstring(name: str) -> None:
     assert inspect.getdoc(getattr(bladewright, name))
+
+
+def test_the_old_name_of_a_native_body_warns() -> None:
+    with pytest.warns(DeprecationWarning, match="NativeBody"):
+        assert bladewright.cad.Built is bladewright.cad.NativeBody

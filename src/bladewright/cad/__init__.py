@@ -1,5 +1,8 @@
 """Solids, CAD files and their round trips; nothing else in bladewright loads OpenCASCADE."""
 
+from typing import Any
+from warnings import warn
+
 from bladewright.cad.cutting import CutPassage as CutPassage
 from bladewright.cad.cutting import cut_passage as cut_passage
 from bladewright.cad.cutting import write_cut as write_cut
@@ -10,3 +13,10 @@ from bladewright.cad.sampling import sample as sample
 from bladewright.cad.solids import solid as solid
 from bladewright.cad.verification import verify as verify
 from bladewright.cad.writing import write as write
+
+
+def __getattr__(name: str) -> Any:
+    if name == "Built":
+        warn("bladewright.cad.Built is called NativeBody now", DeprecationWarning, stacklevel=2)
+        return NativeBody
+    raise AttributeError(f"module 'bladewright.cad' has no attribute '{name}'")
