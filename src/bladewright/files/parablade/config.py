@@ -29,11 +29,11 @@ class Config:
     sections: int
     annular: bool
     arcs: bool
-    """connecting arcs, rather than camber and thickness"""
+    """whether the sides are connecting arcs, rather than camber and thickness"""
     laws: Mapping[str, tuple[float, ...]]
     """control points of each law, hub to shroud; lengths in metres, angles in degrees"""
     notes: tuple[str, ...]
-    """lines that were not understood, each a sentence"""
+    """remarks on lines that ParaBlade ignores or reads otherwise, each a sentence"""
 
 
 def parsed(text: str, where: str) -> Config:
@@ -82,7 +82,7 @@ def parsed(text: str, where: str) -> Config:
 
 
 def _entries(text: str) -> tuple[dict[str, list[str]], list[str]]:
-    """Words by key as ParaBlade reads them, and what it passes over without a word."""
+    """The words of each key as ParaBlade reads them, and remarks on the lines that it ignores silently."""
     entries: dict[str, list[str]] = {}
     notes = []
     for place, line in enumerate(text.splitlines(), 1):

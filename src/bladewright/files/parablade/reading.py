@@ -19,8 +19,8 @@ from bladewright.files.text import read_text
 from bladewright.nurbs.basis import Reals
 from bladewright.section.unified import UnifiedSection
 
-_ALONG = (1.0 - np.cos(np.pi * (np.arange(60.0) + 0.5) / 60.0)) / 2.0
-_ACROSS = np.linspace(1.0 / 24.0, 23.0 / 24.0, 12)
+_CHORDWISE = (1.0 - np.cos(np.pi * (np.arange(60.0) + 0.5) / 60.0)) / 2.0
+_SPANWISE = np.linspace(1.0 / 24.0, 23.0 / 24.0, 12)
 
 
 def is_parablade(text: str) -> bool:
@@ -32,8 +32,9 @@ def is_parablade(text: str) -> bool:
 def read_parablade(path: str | os.PathLike[str]) -> UnifiedBlade | UnifiedSection:
     """The design of the unified family that comes nearest to the blade of a ParaBlade configuration.
 
-    A section where it has two dimensions, else a blade, annular or linear as it says. Raises FileError where the file
-    is no such configuration, or one of connecting arcs, and DesignError where the unified family has no such blade.
+    It is a section where the configuration has two dimensions, else an annular or linear blade. Raises FileError where
+    the file is no such configuration, or one of connecting arcs, and DesignError where the unified family has no such
+    blade.
     """
     return import_parablade(path).design
 
@@ -41,10 +42,10 @@ def read_parablade(path: str | os.PathLike[str]) -> UnifiedBlade | UnifiedSectio
 def import_parablade(
     path: str | os.PathLike[str], *, chordwise: int | None = None
 ) -> Imported[UnifiedBlade | UnifiedSection]:
-    """The same, with what was kept and changed, and points of ParaBlade's own blade to measure it with.
+    """The same design, with what was kept and changed, and points of ParaBlade's own blade to measure it with.
 
-    `chordwise` is the number of control points that the thickness laws are given along the chord; where not given it
-    is 8, or up to 16 where that brings the sides nearer.
+    `chordwise` is the number of control points of the thickness laws along the chord; without it 8, or up to 16 where
+    that brings the sides closer to ParaBlade's.
     """
     path = Path(path)
     config = parsed(read_text(path), f"'{path}'")
@@ -79,14 +80,14 @@ def _design_of(config: Config, name: str, chordwise: int | None) -> tuple[Unifie
             f"no pitch is in the file: {blade.pitch:.4g} mm is taken, one meridional length; set the true one"
         )
         return blade, changed
-    standing = most_blades_apart(
+    count = most_blades_apart(
         int(blade.blade_count or 1),
         lambda count: exact_unified_blade(blade.changed("blade_count", count)).check_sections(),
     )
     said = f"N_BLADES = {config.blades} has no effect in ParaBlade, and may be any number there"
-    if standing != blade.blade_count:
-        changed.append(f"{said}: so many blades intersect, and {standing} are taken; set the true number")
-        return blade.changed("blade_count", standing), changed
+    if count != blade.blade_count:
+        changed.append(f"{said}: so many blades intersect, and {count} are taken; set the true number")
+        return blade.changed("blade_count", count), changed
     changed.append(f"{said}: it is taken as it is; set the true one")
     return blade, changed
 
@@ -101,8 +102,8 @@ def _kept(config: Config) -> tuple[str, ...]:
 
 
 def _points(config: Config) -> dict[str, Reals]:
-    shape = sections_at(config, _ACROSS)
-    rows = side_basis(_ALONG)
+    sections = sections_at(config, _SPANWISE)
+    rows = side_basis(_CHORDWISE)
     width = 2 if config.dimensions == 2 else 3
-    sides = zip(("upper", "lower"), shape.sides, strict=True)
-    return {name: shape.points(rows @ controls).reshape(-1, width) for name, controls in sides}
+    sides = zip(("upper", "lower"), sections.sides, strict=True)
+    return {name: sections.points(rows @ controls).reshape(-1, width) for name, controls in sides}

@@ -1,4 +1,7 @@
-"""The sections of a ParaBlade configuration, as ParaBlade defines them and in the planes of the unified family."""
+"""ParaBlade's sections, as it defines them and normalised as those of the unified family are.
+
+Written from the published method (Agromayor et al. 2021) and from measurements of what ParaBlade evaluates.
+"""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -10,25 +13,31 @@ from bladewright.nurbs.basis import Reals, basis, uniform_knots
 from bladewright.section.camber import bernstein, camber_line, camber_points, camber_tangents, turned_left
 from bladewright.section.laws import law_basis
 
-THICKNESS_SAMPLES = 10
-"""places along the camber at which ParaBlade takes the thickness, edges among them"""
+THICKNESS_POINTS = 10
+"""Points of the camber line at which ParaBlade takes the thickness, the edges included (Agromayor et al. 2021)."""
 DEGREE = 3
-EXTENT_SAMPLES = 500
-"""places around a section from which ParaBlade takes its extent"""
+"""Degree of ParaBlade's sides (Agromayor et al. 2021)."""
+EXTENT_POINTS = 500
+"""Points around a section among which ParaBlade takes the smallest and largest abscissa; kept, since the channel is
+filled between these (its program, Agromayor et al. 2021)."""
 _TINY = 1e-12
+"""What ParaBlade adds to the extent against division by zero (its program, Agromayor et al. 2021)."""
 _STEP = 1e-3
-"""step of the central difference in ParaBlade's meridional length"""
+"""Step of the central difference by which ParaBlade integrates the meridional length (its program, Agromayor et al.
+2021)."""
+SIDE_STATIONS = (1.0 - np.cos(np.pi * np.linspace(0.0, 1.0, 121))) / 2.0
+"""Parameters of the sides at which they are fitted: cosine spacing, dense at the edges."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class ParaBladeSections:
-    """Sections at v (m,) along the span, in units of the meridional length."""
+    """ParaBlade's sections at span fractions v (m,), in units of the meridional length."""
 
     config: Config
     v: Reals
 
     def law(self, key: str, v: Reals | None = None) -> Reals:
-        """Values (m,) of a law."""
+        """Values (m,) of a law along the span."""
         points = np.array(self.config.laws[key])
         return law_basis(len(points), self.v if v is None else v) @ points
 
@@ -42,7 +51,7 @@ class ParaBladeSections:
     @cached_property
     def sides(self) -> tuple[Reals, Reals]:
         """Control points (m, 12, 2) of the upper and the lower side, cubic over uniform knots."""
-        u = np.linspace(0.0, 1.0, THICKNESS_SAMPLES)
+        u = np.linspace(0.0, 1.0, THICKNESS_POINTS)
         line, normals = camber_points(self.camber, u), turned_left(camber_tangents(self.camber, u))
         sides = []
         for keys, sign in ((UPPER, 1.0), (LOWER, -1.0)):
@@ -63,14 +72,14 @@ class ParaBladeSections:
     @cached_property
     def extents(self) -> tuple[Reals, Reals]:
         """Least and largest abscissa (m,) of the sections, as ParaBlade samples them."""
-        around = np.linspace(0.0, 1.0, EXTENT_SAMPLES)
+        around = np.linspace(0.0, 1.0, EXTENT_POINTS)
         upper = side_basis(2.0 * (1.0 - around[around >= 0.5])) @ self.sides[0][..., 0].T
         lower = side_basis(2.0 * around[around < 0.5]) @ self.sides[1][..., 0].T
         every = np.concatenate([upper, lower])
         return every.min(axis=0), every.max(axis=0)
 
     def channel_places(self, abscissae: Reals) -> Reals:
-        """u (m, k) along the channel of abscissae (m, k) of the sections: a section fills it from nose to nose."""
+        """Channel parameters u (m, k) of abscissae (m, k): ParaBlade's sections fill the channel from nose to nose."""
         low, high = (each[:, None] for each in self.extents)
         return (abscissae - low + _TINY) / (high - low + 2.0 * _TINY)
 
@@ -84,7 +93,7 @@ class ParaBladeSections:
         return np.sqrt(np.sum(slope**2, axis=-1)) @ weights * (high - low) / 2.0
 
     def meridional(self, u: Reals) -> Reals:
-        """(x, z) (m, k, 2) [m] at u (m, k): the channel's four curves in bilinear blending."""
+        """Meridional points (x, z) (m, k, 2) [m] at u (m, k), by transfinite interpolation of four curves."""
         u = np.clip(u, 0.0, 1.0)
         flat = u.ravel()
         parts = []
@@ -102,73 +111,71 @@ class ParaBladeSections:
             parts.append(point)
         return np.stack(parts, axis=-1)
 
-    def laid(self, plane: Reals) -> Reals:
-        """Meridional x, tangential y, radius or span z (m, k, 3) [m] of points (m, k, 2) of the sections' planes."""
+    def placed(self, plane: Reals) -> Reals:
+        """Axial x, tangential y and radius or span z (m, k, 3) [m] of points (m, k, 2) of the sections."""
         meridional = self.meridional(self.channel_places(plane[..., 0]))
         y = self.law("y_leading")[:, None] + plane[..., 1] * self.lengths[:, None]
         return np.stack([meridional[..., 0], y, meridional[..., 1]], axis=-1)
 
     def points(self, plane: Reals) -> Reals:
-        """Points in space (m, k, 3) [m], or of the mean section (k, 2) where there are two dimensions."""
-        laid = self.laid(plane)
+        """Points of the sections in space (m, k, 3) [m]; in two dimensions those of the mean section (k, 2) [m]."""
+        placed = self.placed(plane)
         if self.config.dimensions == 2:
-            return np.mean(laid[..., :2], axis=0)
+            return np.mean(placed[..., :2], axis=0)
         if not self.config.annular:
-            return laid
-        x, y, z = np.moveaxis(laid, -1, 0)
+            return placed
+        x, y, z = np.moveaxis(placed, -1, 0)
         return np.stack([x, z * np.sin(y / z), z * np.cos(y / z)], axis=-1)
 
 
 def side_basis(s: Reals) -> Reals:
-    """Basis functions (len(s), 12) of the sides."""
-    return basis(uniform_knots(THICKNESS_SAMPLES + 2, DEGREE), DEGREE, s)
+    """Basis functions (len(s), 12) of the sides at parameters s."""
+    return basis(uniform_knots(THICKNESS_POINTS + 2, DEGREE), DEGREE, s)
 
 
 def sections_at(config: Config, v: Reals) -> ParaBladeSections:
-    """The sections at places along the span; a design in two dimensions is the mean of those at both ends."""
+    """The sections at span fractions v; of a design in two dimensions, those at both ends, whose mean it is."""
     return ParaBladeSections(config=config, v=np.array([0.0, 1.0]) if config.dimensions == 2 else v)
 
 
-SIDE_PLACES = (1.0 - np.cos(np.pi * np.linspace(0.0, 1.0, 121))) / 2.0
-"""places along the sides at which they are matched, dense at the edges"""
-
-
 @dataclass(frozen=True, kw_only=True)
-class ParaBladePlanes:
-    """Sections at v (m,) whose camber lines run from (0, 0) to abscissa 1."""
+class NormalisedSections:
+    """Sections at v (m,) as the unified family has them: their camber lines run from (0, 0) to abscissa 1."""
 
     v: Reals
     camber: Reals
-    """(m, 4, 2) control points"""
+    """(m, 4, 2) control points of the camber lines"""
     upper: Reals
-    """(m, k, 2) points"""
+    """(m, k, 2) points of the upper side"""
     lower: Reals
-    """(m, k, 2) points"""
+    """(m, k, 2) points of the lower side"""
     radii: tuple[Reals, Reals]
-    """(m,) of curvature at leading and trailing edge"""
+    """(m,) radii of curvature at leading and trailing edge"""
 
 
-def scaled_sections(shape: ParaBladeSections, factors: Reals) -> ParaBladePlanes:
-    """Sections whose ordinates are multiplied by factors (m,)."""
+def scaled_sections(sections: ParaBladeSections, factors: Reals) -> NormalisedSections:
+    """ParaBlade's sections with their ordinates multiplied by factors (m,), one for each."""
     stretch = np.stack([np.ones_like(factors), factors], axis=-1)[:, None, :]
-    sides = [side * stretch for side in shape.sides]
-    return _unified_sections(shape.v, shape.camber * stretch, sides, [side_basis(SIDE_PLACES) @ side for side in sides])
+    sides = [side * stretch for side in sections.sides]
+    return _normalised_sections(
+        sections.v, sections.camber * stretch, sides, [side_basis(SIDE_STATIONS) @ side for side in sides]
+    )
 
 
-def mean_section(config: Config) -> tuple[ParaBladePlanes, Reals, float]:
-    """The one section of a design in two dimensions, its leading edge (2,) [m] and its axial chord [m]."""
-    shape = sections_at(config, np.zeros(1))
-    u = SIDE_PLACES
-    # the channel is straight but for odd files, and then the mean of both ends is a Bezier curve again
-    line = np.linalg.lstsq(bernstein(u), shape.points(camber_points(shape.camber, u)), rcond=None)[0]
+def mean_section(config: Config) -> tuple[NormalisedSections, Reals, float]:
+    """The section of a design in two dimensions, its leading edge (2,) [m] and its axial chord [m]."""
+    sections = sections_at(config, np.zeros(1))
+    u = SIDE_STATIONS
+    # in all but odd files the channel is straight, and then the mean of both camber lines is a Bezier curve too
+    line = np.linalg.lstsq(bernstein(u), sections.points(camber_points(sections.camber, u)), rcond=None)[0]
     start, extent = line[0], float(line[3, 0] - line[0, 0])
-    points = [(shape.points(side_basis(SIDE_PLACES) @ side) - start) / extent for side in shape.sides]
-    sides = [((shape.points(side) - start) / extent)[None] for side in shape.sides]
-    found = _unified_sections(np.zeros(1), (line - start)[None] / extent, sides, [each[None] for each in points])
+    points = [(sections.points(side_basis(SIDE_STATIONS) @ side) - start) / extent for side in sections.sides]
+    sides = [((sections.points(side) - start) / extent)[None] for side in sections.sides]
+    found = _normalised_sections(np.zeros(1), (line - start)[None] / extent, sides, [each[None] for each in points])
     return found, start, extent
 
 
-def _unified_sections(v: Reals, camber: Reals, sides: list[Reals], points: list[Reals]) -> ParaBladePlanes:
+def _normalised_sections(v: Reals, camber: Reals, sides: list[Reals], points: list[Reals]) -> NormalisedSections:
     radii = []
     for end in (0.0, 1.0):
         rows = [basis(uniform_knots(sides[0].shape[1], 3), 3, np.array([end]), order)[0] for order in (1, 2)]
@@ -178,4 +185,4 @@ def _unified_sections(v: Reals, camber: Reals, sides: list[Reals], points: list[
             turn = first[:, 0] * second[:, 1] - first[:, 1] * second[:, 0]
             bends.append(np.sqrt(turn**2) / np.sum(first**2, axis=-1) ** 1.5)
         radii.append(2.0 / (bends[0] + bends[1]))
-    return ParaBladePlanes(v=v, camber=camber, upper=points[0], lower=points[1], radii=(radii[0], radii[1]))
+    return NormalisedSections(v=v, camber=camber, upper=points[0], lower=points[1], radii=(radii[0], radii[1]))

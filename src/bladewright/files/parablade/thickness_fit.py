@@ -1,4 +1,4 @@
-"""Thickness laws of the unified family fitted to the sides of sections with the same camber line."""
+"""Thickness laws of the unified family, fitted to the sides of sections that have the same camber line."""
 
 import numpy as np
 
@@ -9,14 +9,19 @@ from bladewright.section.laws import law_basis
 from bladewright.section.unified_sides import DEGREE, advances, edge_height, side
 
 LEAST_THICKNESS = 1e-5
-"""smallest thickness control point"""
+"""Smallest control point of a thickness law, as a fraction of the meridional length: a blade must not have thickness
+0."""
 START_THICKNESS = 0.05
-"""thickness that the rounds begin with"""
+"""Thickness, as a fraction of the meridional length, with which the fit starts: that of a usual blade."""
 ROUNDS = 5
+"""Gauss-Newton steps of the fit, each with new footpoints. More cost time for every import; whether they were enough
+shows in the distance that is left, which is reported."""
 LARGEST_STEP = 0.02
-"""of a side's parameter, on the way to the nearest place"""
+"""Largest step of a side's parameter towards a footpoint, 15 points of the global search at mid-chord: a footpoint near
+an edge must not jump to beyond it."""
 EDGE_MARGIN = 1.3
-"""thickness control point next to an edge over the height that the edge's radius needs, as the law falls off from it"""
+"""Ratio of the control point next to an edge to the height that the edge radius needs there: between its control points
+the law may be lower."""
 _DENSE = (1.0 - np.cos(np.pi * np.linspace(0.0, 1.0, 1201))) / 2.0
 
 
@@ -30,11 +35,12 @@ def fitted_thickness(
     *,
     upper: bool,
 ) -> tuple[Reals, float]:
-    """Control points (chordwise, spanwise) of a thickness law, by bounded least squares of the normal distances.
+    """Control points (chordwise, spanwise) of a thickness law, and the largest distance that is left.
 
-    `camber` (m, 4, 2), `radii` (m,) and `target` points (m, k, 2) at v (m,); `least` (chordwise, spanwise) the
-    smallest control points; `places` the camber parameters of a side's control points. Given back is also
-    the largest distance that is left. Raises DesignError where the camber turns too fast for the sides.
+    They minimise the squares of the normal distances from the `target` points (m, k, 2) of the side, with `least`
+    (chordwise, spanwise) as lower bounds. `camber` (m, 4, 2) and `radii` (m,) are those of the sections at v (m,);
+    `places` are the camber parameters of a side's control points. Raises DesignError where the camber turns too fast
+    for the sides.
     """
     from scipy.optimize import lsq_linear
 
@@ -44,7 +50,7 @@ def fitted_thickness(
     law, feet = np.maximum(START_THICKNESS, least), np.zeros(0)
     for turn in range(ROUNDS + 1):
         controls, rates = _side(camber, radii, across @ law.T @ along.T, places, normals, upper)
-        # steps from nearby may end on the far side of an edge, which the last turn must not believe
+        # footpoints that follow from earlier ones may end beyond an edge: the first and the last search is global
         near = _closest_sampled(controls, target) if turn in (0, ROUNDS) else feet
         feet = _closest_refined(controls, target, near)
         (rows, points), (_, slopes) = (_evaluated(controls, feet, order) for order in (0, 1))
@@ -56,7 +62,7 @@ def fitted_thickness(
         by_law = np.einsum("mkc,mkcp->mkp", rows, directed) @ along
         normal_matrix = sum(np.kron(each.T @ each, np.outer(a, a)) for each, a in zip(by_law, across, strict=True))
         right = sum(np.kron(each.T @ r, a) for each, r, a in zip(by_law, rest, across, strict=True))
-        # a triangle of the normal equations stands for all rows; the ridge is far below what the points tell
+        # the Cholesky factor replaces all rows of the problem; the ridge only keeps it positive definite
         triangle = np.linalg.cholesky(normal_matrix + 1e-12 * np.trace(normal_matrix) * np.eye(law.size)).T
         low = (least - law).ravel() - 1e-12
         wanted = np.linalg.solve(triangle.T, right)
@@ -66,18 +72,18 @@ def fitted_thickness(
 
 
 def least_thickness(count: int, spanwise: int, radii: tuple[Reals, Reals], v: Reals, places: Reals) -> Reals:
-    """Smallest control points (count, spanwise) of a thickness law, so that its ends can hold radii (m,) at v (m,)."""
+    """Least control points (count, spanwise) of a thickness law with which its ends can hold radii (m,) at v (m,)."""
     least = np.full((count, spanwise), LEAST_THICKNESS)
     shares = law_basis(spanwise, v)
     for row, values in ((0, radii[0]), (-1, radii[1])):
-        # the advance of the first sample is about its place
+        # the advance of the first sample along the camber is about its camber parameter
         height = edge_height(places[2] * np.ones(len(v)), 1.0 / values)
         least[row] = EDGE_MARGIN * np.max(np.where(shares > 0.3, height[:, None], 0.0), axis=0)
     return np.maximum(least, LEAST_THICKNESS)
 
 
 def largest_edge_radii(camber: Reals, thickness: tuple[Reals, Reals], places: Reals) -> tuple[Reals, Reals]:
-    """Largest radii (m,) of both edges that thicknesses (m, k) at the inner places can hold on both sides."""
+    """Largest radii (m,) of both edges that the thicknesses (m, k) of both sides at the inner places can hold."""
     found = []
     for end in (0, 1):
         most = []
@@ -93,7 +99,7 @@ def largest_edge_radii(camber: Reals, thickness: tuple[Reals, Reals], places: Re
 def _side(
     camber: Reals, radii: tuple[Reals, Reals], values: Reals, places: Reals, normals: Reals, upper: bool
 ) -> tuple[Reals, Reals]:
-    """Control points (m, n, 2) of sides, and their derivatives (m, n, p, 2) by the thicknesses at the p samples."""
+    """Control points (m, n, 2) of a side, and their derivatives (m, n, p, 2) by the thicknesses at the p samples."""
     if min(float(np.min(each)) for each in advances(camber, places, values, upper)) <= 0.0:
         name = "upper" if upper else "lower"
         raise DesignError(f"next to an edge the {name} side leaves the blade outwards: the camber turns too fast there")
@@ -114,14 +120,14 @@ def _side(
 
 
 def _evaluated(controls: Reals, s: Reals, order: int) -> tuple[Reals, Reals]:
-    """Basis functions (m, k, n) or their derivatives at s (m, k), and what they make of control points (m, n, 2)."""
+    """Basis functions (m, k, n) at s (m, k) or their derivatives, and the sums with control points (m, n, 2)."""
     count = controls.shape[1]
     rows = basis(uniform_knots(count, DEGREE), DEGREE, s.ravel(), order).reshape(*s.shape, count)
     return rows, rows @ controls
 
 
 def _closest_sampled(controls: Reals, points: Reals) -> Reals:
-    """Parameters (m, k) of the places of sides that are nearest to points (m, k, 2), among many."""
+    """Parameters (m, k) of the footpoints of points (m, k, 2), the nearest of 1201 points of each side."""
     from scipy.spatial import cKDTree
 
     curves = basis(uniform_knots(controls.shape[1], DEGREE), DEGREE, _DENSE) @ controls
@@ -129,7 +135,7 @@ def _closest_sampled(controls: Reals, points: Reals) -> Reals:
 
 
 def _closest_refined(controls: Reals, points: Reals, feet: Reals) -> Reals:
-    """The same from parameters nearby, by two steps of Gauss and Newton."""
+    """Parameters (m, k) of the footpoints, by two Gauss-Newton steps from `feet` (m, k)."""
     for _ in range(2):
         (_, at), (_, slope) = (_evaluated(controls, feet, order) for order in (0, 1))
         step = np.sum((points - at) * slope, axis=-1) / np.sum(slope**2, axis=-1)

@@ -1,4 +1,9 @@
-"""From a ParaBlade configuration to the design of the unified family that comes nearest to its blade."""
+"""From a ParaBlade configuration to the design of the unified family that comes nearest to its blade.
+
+ParaBlade's sections fill the channel from nose to nose, those of the unified family from the beginning of the camber
+line to its end. So the channel is cut at the ends of the camber lines. Where the cut is at the same u along the span,
+its transfinite interpolation keeps its form.
+"""
 
 from typing import Any
 
@@ -9,7 +14,7 @@ from bladewright.blade.design.unified import UnifiedBlade
 from bladewright.blade.flow_path.channel import transfinite_channel
 from bladewright.designs import Law, Point
 from bladewright.files.parablade.config import Config
-from bladewright.files.parablade.sections import ParaBladePlanes, ParaBladeSections, mean_section, scaled_sections
+from bladewright.files.parablade.sections import NormalisedSections, ParaBladeSections, mean_section, scaled_sections
 from bladewright.files.parablade.thickness_fit import fitted_thickness, largest_edge_radii, least_thickness
 from bladewright.nurbs.basis import Reals
 from bladewright.section.laws import law_basis
@@ -17,21 +22,52 @@ from bladewright.section.unified import UnifiedSection
 from bladewright.section.unified_sides import sample_places
 
 MOST_CHANNEL_POINTS = 12
-"""most control points of a curve"""
+"""Most control points of a curve of the channel. A curve of more would follow the cut's last details, and could no
+longer be changed by hand; the distance that is left is reported."""
 CHANNEL_TOLERANCE = 2e-5
-"""distance of a curve from the one that is meant, of the channel's size, at which no more control points are added"""
-_ALONG = (1.0 - np.cos(np.pi * np.linspace(0.0, 1.0, 101))) / 2.0
+"""Distance of a channel curve from ParaBlade's, as a fraction of the channel's size, at which no more control points
+are added: 2 micrometres on 100 mm, well below what is machined."""
+UNIT = 1e-3
+"""[m] A millimetre, in which imported designs have their lengths."""
+SAMPLES = 16
+"""Points along the chord at which the imported design applies its thickness: more than ParaBlade's 10, so that the
+quartic sides of the unified family can follow its cubic ones."""
+SPAN_STATIONS = (1.0 - np.cos(np.pi * np.linspace(0.0, 1.0, 13))) / 2.0
+"""Span fractions at which the sections are fitted: cosine spacing, more than ParaBlade's laws usually have control
+points."""
+CHORDWISE_COUNTS = (8, 10, 12, 14, 16)
+"""Numbers of control points of a thickness law that are tried in turn. ParaBlade's own law has 8, with the edge radii
+at its ends; more than there are samples could not be determined."""
+SIDE_TOLERANCE = 5e-4
+"""Distance of the sides from ParaBlade's, as a fraction of the meridional length, at which no more control points are
+added. The distance that is reached is reported."""
+ANGLE_TOLERANCE = 0.02
+"""[deg] Deviation of an angle's law from ParaBlade's at which no more control points are added: well below a difference
+that matters to the flow."""
+TANGENT_TOLERANCE = 2e-3
+"""Relative deviation of a tangent length's law at which no more control points are added; looser than for angles, since
+a tangent's length moves the camber line less than its direction does."""
+EXTRA_CONTROL_POINTS = 3
+"""Most control points that a law is given beyond ParaBlade's, so that the import stays a design of few parameters."""
+RADIUS_REDUCTION = 0.95
+"""Factor by which the edge radius is reduced, repeatedly, where the thickness next to the edge cannot hold
+ParaBlade's."""
+
+Laws = dict[str, Any]
+"""fields of a design by name"""
+
+_CHANNEL_STATIONS = (1.0 - np.cos(np.pi * np.linspace(0.0, 1.0, 101))) / 2.0
 
 
 def channel_between_edges(config: Config, unit: float) -> tuple[Channel, float]:
-    """The channel in a unit of `unit` metres, and the largest distance [m] of its curves from those that are meant."""
-    shape = ParaBladeSections(config=config, v=_ALONG)
-    places = shape.channel_places(np.broadcast_to([0.0, 1.0], (len(_ALONG), 2)))
-    edges = shape.meridional(places)
+    """The channel between the ends of the camber lines, in units of `unit` metres, and its largest error [m]."""
+    sections = ParaBladeSections(config=config, v=_CHANNEL_STATIONS)
+    places = sections.channel_places(np.broadcast_to([0.0, 1.0], (len(_CHANNEL_STATIONS), 2)))
+    edges = sections.meridional(places)
     walls = []
     for end in (0, -1):
-        at = ParaBladeSections(config=config, v=_ALONG[[end]])
-        walls.append(at.meridional((places[end, 0] + _ALONG * (places[end, 1] - places[end, 0]))[None])[0])
+        at = ParaBladeSections(config=config, v=_CHANNEL_STATIONS[[end]])
+        walls.append(at.meridional((places[end, 0] + _CHANNEL_STATIONS * (places[end, 1] - places[end, 0]))[None])[0])
     size = float(np.max(np.ptp(np.concatenate([edges.reshape(-1, 2), *walls]), axis=0)))
     curves, worst = {}, 0.0
     for name, points, axes in (
@@ -57,9 +93,9 @@ def meridional_lengths(channel: Channel, unit: float, v: Reals) -> Reals:
 
 
 def _fitted_curve(points: Reals, count: int, close: float) -> tuple[Reals, float]:
-    """Control points of the spline that is nearest to points (101, 2) at their parameters, its ends on theirs."""
+    """Control points of the spline that fits points (101, 2) with least squares and passes through both ends."""
     while True:
-        rows = law_basis(count, _ALONG)
+        rows = law_basis(count, _CHANNEL_STATIONS)
         ends = rows[:, [0, -1]] @ points[[0, -1]]
         inner = np.linalg.lstsq(rows[:, 1:-1], points - ends, rcond=None)[0] if count > 2 else np.empty((0, 2))
         controls = np.concatenate([points[:1], inner, points[-1:]])
@@ -69,31 +105,10 @@ def _fitted_curve(points: Reals, count: int, close: float) -> tuple[Reals, float
         count += 1
 
 
-UNIT = 1e-3
-"""metres in a design's millimetre"""
-SAMPLES = 16
-STATIONS = (1.0 - np.cos(np.pi * np.linspace(0.0, 1.0, 13))) / 2.0
-"""places along the span at which the sections are matched"""
-CHORDWISE = (8, 10, 12, 14, 16)
-"""numbers of control points of a thickness law that are tried: ParaBlade's own has 8, the edge radii at its ends"""
-SIDE_TOLERANCE = 5e-4
-"""distance of the sides, of the meridional length, at which no more control points are added"""
-ANGLE_TOLERANCE = 0.02
-"""deviation of a law [deg] at which no more control points are added"""
-TANGENT_TOLERANCE = 2e-3
-"""deviation of a law of tangents, of itself, at which no more control points are added"""
-EXTRA_CONTROL_POINTS = 3
-"""control points that a law may be given beyond ParaBlade's"""
-RADIUS_REDUCTION = 0.95
-"""part of the largest radius that an edge is given where its thickness cannot hold ParaBlade's"""
-
-Laws = dict[str, Any]
-
-
 def section_of(config: Config, name: str, chordwise: int | None) -> tuple[UnifiedSection, list[str]]:
     """The section of a configuration in two dimensions, and what was changed, each a sentence."""
-    planes, start, extent = mean_section(config)
-    laws, notes = _laws(config, planes, chordwise)
+    normalised, start, extent = mean_section(config)
+    laws, notes = _laws(config, normalised, chordwise)
     design = UnifiedSection(
         name=name,
         length_unit="mm",
@@ -109,23 +124,23 @@ def section_of(config: Config, name: str, chordwise: int | None) -> tuple[Unifie
 def blade_of(config: Config, name: str, chordwise: int | None) -> tuple[UnifiedBlade, list[str]]:
     """The blade of a configuration in three dimensions, and what was changed, each a sentence."""
     channel, off = channel_between_edges(config, UNIT)
-    shape = ParaBladeSections(config=config, v=STATIONS)
-    lengths = meridional_lengths(channel, UNIT, STATIONS)
-    laws, notes = _laws(config, scaled_sections(shape, shape.lengths / lengths), chordwise)
+    sections = ParaBladeSections(config=config, v=SPAN_STATIONS)
+    lengths = meridional_lengths(channel, UNIT, SPAN_STATIONS)
+    laws, notes = _laws(config, scaled_sections(sections, sections.lengths / lengths), chordwise)
     notes.insert(
         0,
         "the channel is cut where the camber lines begin and end, as ParaBlade's is filled from nose to nose; its "
         f"curves lie within {off * 1e3:.2g} mm of those",
     )
-    y = shape.law("y_leading")
+    y = sections.law("y_leading")
     count = len(config.laws["y_leading"])
     if config.annular:
-        at = shape.channel_places(np.zeros((len(STATIONS), 1)))
-        radius = shape.meridional(at)[:, 0, 1]
-        place, _ = _law(np.degrees(y / radius), STATIONS, count, ANGLE_TOLERANCE / 10.0)
+        at = sections.channel_places(np.zeros((len(SPAN_STATIONS), 1)))
+        radius = sections.meridional(at)[:, 0, 1]
+        place, _ = _law(np.degrees(y / radius), SPAN_STATIONS, count, ANGLE_TOLERANCE / 10.0)
         own: Laws = {"leading_edge_theta": place}
     else:
-        place, _ = _law(y / UNIT, STATIONS, count, float(np.max(lengths)) / UNIT * SIDE_TOLERANCE)
+        place, _ = _law(y / UNIT, SPAN_STATIONS, count, float(np.max(lengths)) / UNIT * SIDE_TOLERANCE)
         own = {"leading_edge_y": place}
     design = UnifiedBlade(
         name=name,
@@ -142,10 +157,10 @@ def blade_of(config: Config, name: str, chordwise: int | None) -> tuple[UnifiedB
     return design, notes
 
 
-def _laws(config: Config, planes: ParaBladePlanes, wanted: int | None) -> tuple[Laws, list[str]]:
-    """Angles, tangents, radii and thicknesses of sections, and what was changed."""
+def _laws(config: Config, normalised: NormalisedSections, wanted: int | None) -> tuple[Laws, list[str]]:
+    """Laws of angles, tangent lengths, edge radii and thicknesses, and what was changed, each a sentence."""
     notes: list[str] = []
-    line, v = planes.camber, planes.v
+    line, v = normalised.camber, normalised.v
     first, last = line[:, 1] - line[:, 0], line[:, 3] - line[:, 2]
     found: Laws = {}
     for name, key, values, close in (
@@ -165,12 +180,12 @@ def _laws(config: Config, planes: ParaBladePlanes, wanted: int | None) -> tuple[
     places = sample_places(SAMPLES, 1.0)
     spans = {side_name: _spanwise(config, side_name) for side_name in ("upper", "lower")}
     thickness: dict[str, Reals] = {}
-    for chordwise in CHORDWISE if wanted is None else (wanted,):
+    for chordwise in CHORDWISE_COUNTS if wanted is None else (wanted,):
         off = 0.0
-        for side_name, target in (("upper", planes.upper), ("lower", planes.lower)):
+        for side_name, target in (("upper", normalised.upper), ("lower", normalised.lower)):
             upper = side_name == "upper"
-            least = least_thickness(chordwise, spans[side_name], planes.radii, v, places)
-            law, distance = fitted_thickness(line, planes.radii, target, least, v, places, upper=upper)
+            least = least_thickness(chordwise, spans[side_name], normalised.radii, v, places)
+            law, distance = fitted_thickness(line, normalised.radii, target, least, v, places, upper=upper)
             thickness[side_name] = law
             off = max(off, distance)
         if off <= SIDE_TOLERANCE:
@@ -181,26 +196,30 @@ def _laws(config: Config, planes: ParaBladePlanes, wanted: int | None) -> tuple[
     )
     for side_name, law in thickness.items():
         found[f"thickness_{side_name}"] = tuple(_plain(row) for row in law)
-    found.update(_radii(config, planes, thickness, places, notes))
+    found.update(_radii(config, normalised, thickness, places, notes))
     return found, notes
 
 
 def _radii(
-    config: Config, planes: ParaBladePlanes, thickness: dict[str, Reals], places: Reals, notes: list[str]
+    config: Config, normalised: NormalisedSections, thickness: dict[str, Reals], places: Reals, notes: list[str]
 ) -> Laws:
-    """Laws of the edge radii, lowered where the thickness cannot hold them."""
-    fine = np.linspace(0.0, 1.0, 101) if len(planes.v) > 1 else planes.v
-    camber = _interpolated(planes.camber, planes.v, fine)
+    """Laws of the edge radii, reduced where the thickness next to the edge cannot hold them."""
+    fine = np.linspace(0.0, 1.0, 101) if len(normalised.v) > 1 else normalised.v
+    camber = _interpolated(normalised.camber, normalised.v, fine)
     inner = places[2:-2]
     values = [law_basis(law.shape[1], fine) @ law.T @ law_basis(law.shape[0], inner).T for law in thickness.values()]
     most = largest_edge_radii(camber, (values[0], values[1]), places)
     found: Laws = {}
     for name, key, radii, limit in zip(
-        ("leading_edge_radius", "trailing_edge_radius"), ("radius_in", "radius_out"), planes.radii, most, strict=True
+        ("leading_edge_radius", "trailing_edge_radius"),
+        ("radius_in", "radius_out"),
+        normalised.radii,
+        most,
+        strict=True,
     ):
         count = len(config.laws[key])
         rows = law_basis(count, fine)
-        wanted = _interpolated(radii, planes.v, fine)
+        wanted = _interpolated(radii, normalised.v, fine)
         law = np.linalg.lstsq(rows, wanted, rcond=None)[0]
         law = np.clip(law, 0.8 * np.min(radii), 0.999)
         changed = False
@@ -218,7 +237,7 @@ def _radii(
 
 
 def _law(values: Reals, v: Reals, count: int, close: float) -> tuple[Law, int]:
-    """Control points of a law through values (m,), and how many: more than `count` where it is not close otherwise."""
+    """Control points of a law fitted to values (m,), and their number: `count`, or more where it deviates too much."""
     if len(v) == 1:
         return float(values[0]), 1
     for number in range(count, count + EXTRA_CONTROL_POINTS + 1):
