@@ -148,7 +148,7 @@ def unsolved(*_: Any) -> Any:
 def main() -> None:
     """All figures."""
     shapes, sections = outlines(), dict(examples())
-    counts = [{"NODES": n, "MOST_NODES": n} for n in (20, 40, 80, 160, 320, 640)]
+    counts = [{"NODES": n, "MAX_NODES": n} for n in (20, 40, 80, 160, 320, 640)]
     differences("arc length", arc_length, counts, arc_figures)
     differences("arc length", arc_length, [{"STEPS": n} for n in (2, 4, 6, 12)], arc_figures)
     differences("camber angle", camber_angle_outline, [{"ORDER": n} for n in (8, 12, 16, 48)], turning_figures)

@@ -10,7 +10,7 @@ from bladewright.nurbs.curvature import curvature
 from bladewright.nurbs.curve import Curve
 from bladewright.section.laws import Span
 from bladewright.section.suction_pressure.outline import EDGE, closed_curve
-from bladewright.section.suction_pressure.part import characteristic
+from bladewright.section.suction_pressure.part import edge_points
 from machines.suction_pressure import FAN_TIP, STATOR, TURBINE, section
 
 from .one_sided import one_sided
@@ -42,7 +42,7 @@ def direction(degrees):
 def test_the_characteristic_points_are_where_the_ellipses_have_the_sides_directions(part):
     for edge, points, angle, sign in zip(
         ("leading_edge", "trailing_edge"),
-        characteristic(part, SPAN),
+        edge_points(part, SPAN),
         (part.metal_angle_in - part.stagger_angle, part.metal_angle_out - part.stagger_angle),
         (1.0, -1.0),
         strict=True,
@@ -69,12 +69,12 @@ def test_a_circle_with_parallel_sides_leaves_its_diameter_beside_the_middle():
     part = STATOR.changed(
         {"leading_edge_stretch": 1.0, "leading_edge_skew": 0.0, "leading_edge_wedge": 0.0, "stagger_angle": 42.0}
     )
-    corner = characteristic(part, SPAN)[0].upper
+    corner = edge_points(part, SPAN)[0].upper
     assert corner.point[0] == pytest.approx([0.006, 0.006], abs=1e-17)
 
 
 def test_the_sides_run_from_corner_to_corner_in_their_directions(part):
-    leading, trailing = characteristic(part, SPAN)
+    leading, trailing = edge_points(part, SPAN)
     outline = part.outline(SPAN)
     for name in ("upper", "lower"):
         curve = spline(getattr(outline, name))

@@ -11,7 +11,7 @@ from bladewright.nurbs.basis import Reals
 NODES = 40
 """Chebyshev points on each piece to begin with: with them alone arc lengths and their inverse are within 3e-6 of the
 whole (design/section_constants.py)"""
-MOST_NODES = 320
+MAX_NODES = 320
 """Chebyshev points on each piece at most: 80 are within 3e-8, and more gain nothing (design/section_constants.py)"""
 RESOLVED = 1e-10
 """size of the last four coefficients of the speed, of the largest, above which the points are doubled [-]"""
@@ -34,7 +34,7 @@ class ArcLength:
         self._ends = np.array(ends)
         count = NODES
         self._speed = self._speeds(line, count)
-        while count < MOST_NODES and np.max(magnitude(self._speed[:, -4:])) > RESOLVED * np.max(magnitude(self._speed)):
+        while count < MAX_NODES and np.max(magnitude(self._speed[:, -4:])) > RESOLVED * np.max(magnitude(self._speed)):
             count *= 2
             self._speed = self._speeds(line, count)
         self._risen = np.stack([chebyshev.chebint(each, lbnd=-1) for each in self._speed])

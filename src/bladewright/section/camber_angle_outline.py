@@ -247,7 +247,7 @@ class CamberAngleOutline(Outline):
     def camber(self, s: Reals) -> Array:
         """Points (..., len(s), 2) of the camber line."""
         x, _ = self._thickness(s, 0)
-        return np.stack(np.broadcast_arrays(*(each.value for each in self._laid(x))), axis=-1)
+        return np.stack(np.broadcast_arrays(*(each.value for each in self._in_chords(x))), axis=-1)
 
     @property
     def has_exact_derivatives(self) -> bool:
@@ -266,19 +266,19 @@ class CamberAngleOutline(Outline):
 
     def camber_derivatives(self, t: Reals, order: int) -> Array:
         """Points and derivatives by the fraction of m' (..., k, 2, order + 1) of the camber line, exact."""
-        return point_derivatives(*self._laid(variable(t, order)))
+        return point_derivatives(*self._in_chords(variable(t, order)))
 
     def _sides(self, s: Reals, order: int) -> list[Array]:
         """Points and their derivatives by s, (..., k, 2, order + 1), of both sides."""
         x, height = self._thickness(s, order)
-        along, across = self._laid(x)
+        along, across = self._in_chords(x)
         # beta is smooth by x, but not at a knot that an edge touches: composed there from its own side
         turning = composed(self.line.turning(variable(x.value, order)), x) - self.line.stagger[..., None]
         sine, cosine = sine_and_cosine(turning)
         off = sine * height, cosine * height
         return [point_derivatives(along - off[0] * sign, across + off[1] * sign) for sign in (1.0, -1.0)]
 
-    def _laid(self, x: Series) -> tuple[Series, Series]:
+    def _in_chords(self, x: Series) -> tuple[Series, Series]:
         """Camber points at x, turned and scaled so that the chord line runs from (0, 0) to (1, 0)."""
         total = self.line.total[..., None]
         rise = self.line.rise(x)

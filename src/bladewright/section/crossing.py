@@ -78,10 +78,10 @@ def _folding(outlines: Reals) -> tuple[int, int] | None:
 def self_crossings(outlines: Reals) -> tuple[int, int] | None:
     """Outline and segment of the first of closed outlines (k, n, 2) that crosses itself; None where none does."""
     count = outlines.shape[1]
-    parted = _parted(outlines, outlines)
+    separated = _separated(outlines, outlines)
     index = np.arange(count)
     gap = (index[:, None] - index) % count
-    crossed = parted & np.swapaxes(parted, 1, 2) & (gap > 1) & (gap < count - 1) & _overlapping(outlines)
+    crossed = separated & np.swapaxes(separated, 1, 2) & (gap > 1) & (gap < count - 1) & _overlapping(outlines)
     found = np.argwhere(np.any(crossed, axis=2))
     return (int(found[0, 0]), int(found[0, 1])) if len(found) else None
 
@@ -92,7 +92,7 @@ def touching(outlines: Reals, pitch: float) -> int | None:
     if len(high) == 0:
         return None
     near, far = outlines[high], outlines[high] + np.array([0.0, pitch])
-    crossed = _parted(near, far) & np.swapaxes(_parted(far, near), 1, 2)
+    crossed = _separated(near, far) & np.swapaxes(_separated(far, near), 1, 2)
     found = np.flatnonzero(np.any(crossed, axis=(1, 2)))
     return int(high[found[0]]) if len(found) else None
 
@@ -106,7 +106,7 @@ def _overlapping(outlines: Reals) -> NDArray[np.bool_]:
     return both & np.swapaxes(both, 1, 2)
 
 
-def _parted(lines: Reals, points: Reals) -> NDArray[np.bool_]:
+def _separated(lines: Reals, points: Reals) -> NDArray[np.bool_]:
     """Mask (k, n, m) of the segments of `points` that the line through each segment of `lines` parts."""
     along = np.roll(lines, -1, axis=1) - lines
     turns = along[:, :, :1] * points[:, None, :, 1] - along[:, :, 1:] * points[:, None, :, 0]

@@ -59,13 +59,13 @@ class CurvatureMeanline(SectionFamily):
     curvature_places: ChordwiseLaw = parameter("-", default=())
     """chord fractions of the inner control points of the second derivative; none: evenly spaced [-]"""
     thickness: Annotated[Wennerstrom | ModifiedNaca | QuarticSpline, ByField("law")]
-    """thickness law, told by its `law`"""
+    """thickness law, chosen by its `law`"""
     thickness_multiplier: ChordwiseLaw = parameter("-", default=())
-    """control points of what the half thickness grows by, of itself, leading to trailing edge; none: 0 [-]"""
+    """control points of the fraction by which the half thickness grows, leading to trailing edge; none: 0 [-]"""
     thickness_multiplier_places: ChordwiseLaw = parameter("-", default=())
     """chord fractions of the inner control points of the multiplier; none: evenly spaced [-]"""
     leading_edge_spline: EdgeSpline | None = None
-    """a quartic B-spline in the place of the thickness's leading edge, with droop and elongation; none: as it is"""
+    """a quartic B-spline in place of the leading edge, with droop and elongation; none: the thickness law's own"""
 
     def __post_init__(self) -> None:
         for name in ("metal_angle_in", "metal_angle_out"):
@@ -73,14 +73,14 @@ class CurvatureMeanline(SectionFamily):
             what = "an angle must lie between -90 and 90 deg"
             checks.between(name, getattr(self, name), -90.0, 90.0, what)
         checks.choice("camber", self.camber, ["curvature", "mixed"])
-        self._keep_spline("curvature", 2)
-        self._keep_spline("thickness_multiplier", 3)
+        self._check_spline("curvature", 2)
+        self._check_spline("thickness_multiplier", 3)
         if (self.camber == "curvature") != (len(self.curvature) > 0):
             given = "given" if self.curvature else "not given"
             cure = "leave it out, or set camber to curvature" if self.curvature else "give it, or set camber to mixed"
             raise DesignError(f"curvature is {given}, but camber is {self.camber}: {cure}")
 
-    def _keep_spline(self, name: str, least: int) -> None:
+    def _check_spline(self, name: str, least: int) -> None:
         """Bring control points and their places to tuples of laws; refuse numbers that do not fit."""
         places = f"{name}_places"
         for each in (name, places):
@@ -128,7 +128,7 @@ class CurvatureMeanline(SectionFamily):
         return whole if self.leading_edge_spline is None else self.leading_edge_spline.applied(whole, span)
 
     def unsplined(self, span: Span) -> OffsetOutline:
-        """The same without leading_edge_spline, in chords of their own."""
+        """The sections without leading_edge_spline, in chords of their own."""
         meanline, thickness = self.meanline(span), self.thickness.at(span)
         kinks: tuple[Joint, ...] = ()
         if meanline.kinks:
@@ -137,7 +137,7 @@ class CurvatureMeanline(SectionFamily):
             meanline=meanline,
             thickness=thickness,
             multiplier=self._multiplier(span) if self.thickness_multiplier else None,
-            further=lambda: (*kinks, *self._steady_joints()),
+            other_joints=lambda: (*kinks, *self._steady_joints()),
         )
 
     def _steady_joints(self) -> list[Joint]:

@@ -15,7 +15,7 @@ DEGREE = 3
 
 
 def stacked(leaves: Any) -> Array:
-    """Numbers, some of which may be batches (...), as one array (..., n)."""
+    """Numbers, some of which may be batches (...), stacked as one array (..., n)."""
     if not any(isinstance(leaf, np.ndarray) for leaf in leaves):
         return np.array(leaves)
     return np.stack(np.broadcast_arrays(*[np.asarray(leaf) for leaf in leaves]), axis=-1)
@@ -30,7 +30,7 @@ def law_basis(count: int, v: Reals) -> Reals:
 
 
 class Span:
-    """Laws taken at fixed places v (m,) along the span; the basis of each number of control points is kept."""
+    """Evaluates laws at fixed span fractions v (m,); keeps the basis functions of each number of control points."""
 
     def __init__(self, v: Reals) -> None:
         self.v = v
@@ -58,7 +58,7 @@ def laws_of(part: Part) -> Iterator[Law]:
 
 
 def named_laws(part: Part) -> Iterator[tuple[str, Law]]:
-    """The same with the path of each in the part."""
+    """The laws of evolution among the parameters of a part, each with its path in the part."""
     hints = get_type_hints(type(part))
     for each in fields(part):
         value = getattr(part, each.name)
@@ -74,5 +74,5 @@ def named_laws(part: Part) -> Iterator[tuple[str, Law]]:
 
 
 def inner_knots(count: int) -> Reals:
-    """Places of a law's inner knots, where it is twice differentiable only."""
+    """Inner knots of a law of `count` control points, where it is only twice differentiable."""
     return np.unique(uniform_knots(count, min(count - 1, DEGREE))[1:-1])[1:-1] if count > 1 else np.empty(0)

@@ -20,7 +20,7 @@ from bladewright.section.section import Section
 DEGREE = 5
 """degree of the native curves: the lowest whose single span, of six control points, meets point and two derivatives at
 both of its ends"""
-MOST_POLES = 400
+MAX_POLES = 400
 """poles of a curve above which a section is refused: the built-in examples and families need 16 to 189 at the default
 tolerance (design/section_constants.py), so more mean a corner that no joint states"""
 SHARES = (0.1, 0.3, 0.5, 0.7, 0.9)
@@ -76,7 +76,7 @@ def knots_for(outline: Outline, tolerance: float) -> SectionKnots:
 
     lengths = arc.lengths(np.array([s for s, _ in joints]))
     camber = _refined(
-        _first([(float(w), each[1]) for w, each in zip(lengths, joints, strict=True)]), off_camber, tolerance
+        _initial_knots([(float(w), each[1]) for w, each in zip(lengths, joints, strict=True)]), off_camber, tolerance
     )
     return SectionKnots(sides=sides, camber=camber, camber_places=arc.places(greville(camber, DEGREE)))
 
@@ -89,7 +89,7 @@ def side_knots_for(outline: Outline, tolerance: float) -> Reals:
         exact = (_single(points) for points in outline.points(s))
         return np.max([_distance(matrix @ _sides(outline, knots)[i], each) for i, each in enumerate(exact)], axis=0)
 
-    return _refined(_first([(joint.s, joint.derivatives) for joint in outline.joints]), off, tolerance)
+    return _refined(_initial_knots([(joint.s, joint.derivatives) for joint in outline.joints]), off, tolerance)
 
 
 def interpolated_along_u(lines: Array, start: EdgeDerivatives, end: EdgeDerivatives, knots_u: Reals) -> Array:
@@ -134,7 +134,7 @@ def _camber(outline: Outline, knots: Reals, places: Reals) -> Array:
     return solved(basis(knots, DEGREE, greville(knots, DEGREE)), _single(outline.camber(places)))
 
 
-def _first(joints: list[tuple[float, int]]) -> Reals:
+def _initial_knots(joints: list[tuple[float, int]]) -> Reals:
     """Knots to begin with: about eight spans, and the joints as often as they lose derivatives."""
     ends = np.array([0.0, *(place for place, _ in joints), 1.0])
     # an end's three control points and the other's must not be the same ones
@@ -144,21 +144,21 @@ def _first(joints: list[tuple[float, int]]) -> Reals:
     return knots_with_joints(knots, DEGREE, joints)
 
 
-def _refined(knots: Reals, miss: Callable[[Reals, Reals], Reals], tolerance: float) -> Reals:
+def _refined(knots: Reals, error: Callable[[Reals, Reals], Reals], tolerance: float) -> Reals:
     """Knots whose spans are cut, in as many pieces as the order of convergence predicts, until none misses."""
     before = np.inf
     while True:
         ends = breaks(knots)
         places = (ends[:-1, None] + np.diff(ends)[:, None] * np.array(SHARES)).ravel()
-        worst = np.max(miss(knots, places).reshape(len(ends) - 1, -1), axis=1)
+        worst = np.max(error(knots, places).reshape(len(ends) - 1, -1), axis=1)
         reached, poles = float(np.max(worst)), len(knots) - DEGREE - 1
         if reached <= tolerance:
             return knots
-        if poles > MOST_POLES or (reached > 0.9 * before and reached < 1e-12):
+        if poles > MAX_POLES or (reached > 0.9 * before and reached < 1e-12):
             place = float(places[int(np.argmax(worst)) * len(SHARES) + len(SHARES) // 2])
             raise DesignError(
                 f"tolerance is {tolerance:g} of the chord: the native curves of the section reach {reached:.2g} with "
-                f"{poles} poles, at most {MOST_POLES} are allowed, the worst place is s = {place:.3f}: raise the "
+                f"{poles} poles, at most {MAX_POLES} are allowed, the worst place is s = {place:.3f}: raise the "
                 "tolerance, or make the section smoother there"
             )
         before = reached

@@ -1,4 +1,4 @@
-"""Sections laid on a meanline: a half thickness to both sides, normal to it."""
+"""Sections on a meanline: a half thickness to both sides, normal to it."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -29,8 +29,8 @@ class OffsetOutline(Outline):
     meanline: Meanline
     thickness: Thickness
     multiplier: ChordSpline | None = None
-    """what the half thickness grows by, of itself"""
-    further: Callable[[], Sequence[Joint]] = tuple
+    """by what fraction the half thickness grows along the chord; None: not at all"""
+    other_joints: Callable[[], Sequence[Joint]] = tuple
     """joints of meanline and multiplier, where they stand at the same s in all sections; found when asked for"""
 
     @cached_property
@@ -43,7 +43,7 @@ class OffsetOutline(Outline):
 
     @cached_property
     def joints(self) -> tuple[Joint, ...]:
-        return merged_joints([*self.thickness.joints, *self.further()])
+        return merged_joints([*self.thickness.joints, *self.other_joints()])
 
     def points(self, s: Reals) -> tuple[Array, Array]:
         order = np.argsort(s, kind="stable")
@@ -142,7 +142,7 @@ def merged_joints(joints: Sequence[Joint]) -> tuple[Joint, ...]:
 
 
 def fixed_joints(thickness: Thickness, places: Array, derivatives: int) -> tuple[Joint, ...]:
-    """Joints at chord fractions (..., m, j) of sections, those of them that stand at the same s in all sections."""
+    """The joints at chord fractions (..., m, j) that stand at the same s in all sections."""
     if places.shape[-1] == 0:
         return ()
     rows = np.real(places).reshape(-1, places.shape[-1])

@@ -1,4 +1,4 @@
-"""What every family's section is, exactly: two sides from leading to trailing edge, many sections at once."""
+"""The contract of every family's sections: exact points and derivatives of two sides, for many sections at once."""
 
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
@@ -35,7 +35,7 @@ class EdgeDerivatives(NamedTuple):
 
 @dataclass(frozen=True, kw_only=True)
 class Edge:
-    """How the two sides of an outline meet at an edge."""
+    """How the two sides of an outline meet at an edge, with point and derivatives of each."""
 
     kind: Literal["round", "sharp", "blunt"]
     """round: opposite first and equal second derivatives; sharp: one point; blunt: two points and a straight face"""
@@ -49,39 +49,40 @@ class Edge:
 
 
 class Joint(NamedTuple):
-    """Where both sides lose derivatives."""
+    """A place where derivatives of the sides by s are not continuous."""
 
     s: float
     derivatives: int
-    """how many of them by s are continuous there"""
+    """how many of them are continuous there: 0 at a corner, 1 where the curvature jumps"""
 
 
 class Outline(ABC):
     """Sections (...) in chords: the chord line runs from (0, 0) to (1, 0), the upper side lies on its left.
 
-    Both sides are functions of one parameter s, 0 at the leading and 1 at the trailing edge, smooth between the joints
-    and up to the edges: where an edge is round, the upper side continued to -s is the lower side. What the numbers of a
-    section decide may be complex; s, joints and kinds of edges are real, and the same for all sections.
+    Both sides are functions of one parameter s, 0 at the leading and 1 at the trailing edge. They are smooth between
+    the joints and up to the edges; at a round edge the upper side continued to -s is the lower side. Points may be
+    complex, as the parameters of a design are while it is differentiated; s, joints and kinds of edges are real, and
+    the same for all sections.
     """
 
     @property
     @abstractmethod
     def leading_edge(self) -> Edge:
-        """The meeting at s = 0."""
+        """How the sides meet at s = 0."""
 
     @property
     @abstractmethod
     def trailing_edge(self) -> Edge:
-        """The meeting at s = 1, its derivatives by s as well."""
+        """How the sides meet at s = 1; derivatives are by s here as well."""
 
     @property
     @abstractmethod
     def joints(self) -> tuple[Joint, ...]:
-        """Places inside (0, 1), increasing."""
+        """The joints inside (0, 1), increasing."""
 
     @property
     def back(self) -> float | None:
-        """The s from which both sides are one straight back face, square to the chord line at a round trailing edge."""
+        """The s from which on both sides run along a straight back face across the chord line; None without one."""
         return None
 
     @abstractmethod
@@ -94,7 +95,7 @@ class Outline(ABC):
 
     @property
     def breaks(self) -> Reals:
-        """Places s (j,) inside (0, 1) of a single section where a side is not analytic; `joints` hold for all."""
+        """s (j,) inside (0, 1) at which a side of a single section is not analytic; `joints` hold for all sections."""
         return np.array([joint.s for joint in self.joints])
 
     @property
@@ -103,9 +104,9 @@ class Outline(ABC):
         return False
 
     def derivatives(self, s: Reals, order: int) -> tuple[Array, Array]:
-        """Points and derivatives by s (k, 2, order + 1) of both sides of a single section at s (k,), beside the breaks.
+        """Points and derivatives by s (k, 2, order + 1) of both sides of a single section at s (k,) off the breaks.
 
-        Unless a family knows them in closed form, those of Chebyshev series on the pieces.
+        Unless a family knows them in closed form, they are those of Chebyshev series on the pieces.
         """
         from bladewright.section.chebyshev_pieces import ChebyshevPieces
 
@@ -117,19 +118,19 @@ class Outline(ABC):
 
     @property
     def camber_breaks(self) -> Reals:
-        """Places t (j,) inside (0, 1) of a single section where the camber line is not analytic."""
-        return self._abscissae(self.breaks) if self._stands_still else self.breaks
+        """t (j,) inside (0, 1) at which the camber line of a single section is not analytic."""
+        return self._abscissae(self.breaks) if self._has_no_speed_at_an_edge else self.breaks
 
     def camber_derivatives(self, t: Reals, order: int) -> Array:
         """Points and derivatives by t (k, 2, order + 1) of a single section's camber line at t (k,) in [0, 1].
 
-        t is a parameter in which the line has a speed everywhere: s, or where it has none by s at an edge the abscissa,
-        where a family says nothing else.
+        t is a parameter by which the line has a speed everywhere: s, or the abscissa where the line has no speed by s
+        at an edge. Families in closed form choose their own.
         """
         from bladewright.section.chebyshev_pieces import ChebyshevPieces, inverse
 
         ends = np.array([0.0, *self.breaks, 1.0])
-        if not self._stands_still:
+        if not self._has_no_speed_at_an_edge:
             return ChebyshevPieces(lambda s: _single(self.camber(s)), ends).derivatives(t, order)
         place = inverse(self._abscissae, ends)
 
@@ -142,8 +143,8 @@ class Outline(ABC):
         return _single(self.camber(s))[:, 0] if len(s) else s
 
     @property
-    def _stands_still(self) -> bool:
-        """Whether the camber line has no speed by s at an edge, as of a half thickness that is odd there."""
+    def _has_no_speed_at_an_edge(self) -> bool:
+        """Whether the camber line has no speed by s at an edge: u is even in s at a round one."""
         near = self._abscissae(np.array([STEP, 1.0 - STEP]))
         return bool(min(near[0], 1.0 - near[1]) < STEP**1.5)
 

@@ -1,4 +1,4 @@
-"""2D designs of the families that are one part: the part's section laid in the plane (x, y)."""
+"""2D designs of the families from sections: one section in the plane (x, y), x axial and y tangential."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from bladewright.section.unified_limits import check_labels
 
 @dataclass(frozen=True, kw_only=True)
 class PlanarSection(Design):
-    """Base of the 2D designs that hold a family's part; each has a final subclass that says of which family."""
+    """Base of the 2D designs, one final class a family: the family's parameters, and where the section lies."""
 
     dimension: ClassVar[int] = 2
 
@@ -94,7 +94,7 @@ class PlanarSection(Design):
 
 
 def _check_plain(part: Part, path: str) -> None:
-    """Refuse laws along the span, which a single section has no use for."""
+    """Refuse laws along the span: a single section has none."""
     hints = get_type_hints(type(part))
     for each in fields(part):
         name, value = each.name, getattr(part, each.name)

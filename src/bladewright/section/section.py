@@ -1,4 +1,4 @@
-"""One section as native curves, and the properties it has where it lies."""
+"""One section as native curves, and its properties in the plane or on the stream surface where it lies."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
@@ -51,9 +51,9 @@ class Section:
     edges: tuple[str, str] = ("round", "round")
     """how the sides meet at the leading and at the trailing edge: "round", "sharp" or "blunt" """
     knots: Any = None
-    """what a build at held knots takes, where the family has such knots"""
+    """the knots that a build can be asked to hold; None for the unified family, whose knots are fixed"""
     meanline: Callable[[Array], tuple[Array, Array, Array]] | None = None
-    """v and its first two derivatives by u along the chord, in chords, where the section is laid on a meanline"""
+    """v and its first two derivatives by u along the chord, in chords, where the section stands on a meanline"""
 
     outline: Outline | None = None
     """the exact section in chords, unstaggered, where the family has one"""

@@ -70,7 +70,7 @@ def check_edges(
     weights: Array | None,
     span: Span,
 ) -> None:
-    """Refuse edges that cannot be rounded: outward thickness, a radius too large for the thickness beside it.
+    """Refuse edges that cannot be rounded: a side that leaves the edge outwards, a radius too large for the thickness.
 
     `line` (..., m, 4, 2) camber lines at the places of `span`; `thickness` (..., m, k) at the inner `places`;
     `curvatures` at leading and trailing edge (..., m); `weights` (..., m, n) or None.

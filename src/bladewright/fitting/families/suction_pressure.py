@@ -13,8 +13,8 @@ from bladewright.fitting.families.rounded_edge import edge_through
 from bladewright.fitting.families.section_samples import SampledSection
 from bladewright.fitting.models.planar import SINGLE_SECTION
 from bladewright.nurbs.basis import Reals, basis
-from bladewright.section.suction_pressure.part import SuctionPressure, characteristic, skeleton_of
-from bladewright.section.suction_pressure.side import DEGREE, side_knots, spread
+from bladewright.section.suction_pressure.part import SuctionPressure, edge_points, skeleton_of
+from bladewright.section.suction_pressure.side import DEGREE, default_places, side_knots
 
 HEIGHTS = 2
 """free control points of each side to begin with"""
@@ -121,7 +121,7 @@ def extensions(part: SuctionPressure, section: SampledSection) -> Sequence[Sucti
     for name in ("suction", "pressure"):
         count = len(getattr(part, f"{name}_heights"))
         if count and not getattr(part, f"{name}_places"):
-            places = spread(side_knots(count, getattr(part, f"{name}_knots"))).tolist()
+            places = default_places(side_knots(count, getattr(part, f"{name}_knots"))).tolist()
             found.append(part.changed({f"{name}_places": tuple(places)}))
     return found
 
@@ -142,7 +142,7 @@ def through(part: SuctionPressure, section: SampledSection) -> SuctionPressure:
     if part.pressure_heights:
         return found.changed(_side_through(found, getattr(section, off), "pressure"))
     count = len(part.pressure_thickness)
-    places = _numbers(part.pressure_places) or spread(side_knots(count, part.pressure_knots)).tolist()
+    places = _numbers(part.pressure_places) or default_places(side_knots(count, part.pressure_knots)).tolist()
     return replace(found, pressure_thickness=tuple(max(2.0 * section.half_at(each), 1e-3) for each in places))
 
 
@@ -150,12 +150,12 @@ def _side_through(part: SuctionPressure, line: Reals, name: str) -> dict[str, fl
     """Tangents and heights of a side by least squares of its distances from a line of points (n, 2)."""
     count = len(getattr(part, f"{name}_heights"))
     knots = side_knots(count, getattr(part, f"{name}_knots"))
-    places = np.array(_numbers(getattr(part, f"{name}_places")) or spread(knots).tolist())
+    places = np.array(_numbers(getattr(part, f"{name}_places")) or default_places(knots).tolist())
     low, high = (
         skeleton_of(part, SINGLE_SECTION).placed(places[None], np.full((1, count), each))[0] for each in (0.0, 1.0)
     )
     on = "upper" if (name == "suction") == (part.suction_side == "upper") else "lower"
-    corners = [getattr(points, on) for points in characteristic(part, SINGLE_SECTION)]
+    corners = [getattr(points, on) for points in edge_points(part, SINGLE_SECTION)]
     points, directions = (np.real([getattr(each, of)[0] for each in corners]) for of in ("point", "direction"))
     rows = basis(knots, DEGREE, SAMPLES)
     # columns by tangent in, heights and tangent out: the control points are linear in these

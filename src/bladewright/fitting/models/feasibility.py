@@ -11,11 +11,11 @@ from bladewright.numerics.elementary import Array, radians
 from bladewright.section.laws import Span
 from bladewright.section.suction_pressure.edges import MAX_OPENING, opening
 from bladewright.section.suction_pressure.limits import CHECKED_AT
-from bladewright.section.suction_pressure.part import SuctionPressure, characteristic, sides
-from bladewright.section.suction_pressure.side import pace
+from bladewright.section.suction_pressure.part import SuctionPressure, edge_points, sides
+from bladewright.section.suction_pressure.side import reparametrised
 
 SLOWEST_PACE = 0.003
-"""smallest pace of a side beside an edge, of its pace further on; at 0 the family refuses the side."""
+"""smallest speed of a side's own parameter by s beside an edge, of its mean speed; at 0 the family refuses the side."""
 OPENING_MARGIN = 0.003
 """smallest distance of an edge's opening from the largest one that the family allows."""
 
@@ -27,10 +27,10 @@ def infeasibility(part: Any, span: Span) -> Array:
     """
     if not isinstance(part, SuctionPressure):
         return np.zeros(0)
-    edges = characteristic(part, span)
+    edges = edge_points(part, span)
     rows = [_opening_excess(part, edge, span) for edge in ("leading_edge", "trailing_edge")]
     for side in sides(part, span, *edges):
-        rows += [SLOWEST_PACE - pace(end, CHECKED_AT, 1) for end in (side.start, side.end)]
+        rows += [SLOWEST_PACE - reparametrised(end, CHECKED_AT, 1) for end in (side.start, side.end)]
     shape = np.broadcast_shapes(*[each.shape[:-2] for each in rows])
     return np.concatenate([np.broadcast_to(each, (*shape, *each.shape[-2:])).reshape(*shape, -1) for each in rows], -1)
 

@@ -22,7 +22,7 @@ LARGEST = 0.1001319496141312
 """maximum of that polynomial, by which it is scaled to the thickness asked for [-]"""
 FORM = {power: value * 0.5 / LARGEST for power, value in POLYNOMIAL.items()}
 """half thickness over the thickness: coefficients of the powers of sqrt(x)"""
-OWN_END = 0.1058603
+END_THICKNESS = 0.1058603
 """thickness that the polynomial has at x = 1, of the maximum thickness [-]"""
 BEND = 0.0914 / 0.3048
 """-a2 / a1 of the form a1 sqrt(x) + a2 x + ... [-]"""
@@ -47,7 +47,7 @@ class C4(PublishedProfile):
         """The exact sections (..., m) at the places of the span, in chords, unstaggered."""
         return MeanLineOutline(
             mean_line=ArcLine(angle=radians(span.values(self.camber_angle))[..., None]),
-            thickness=PowerForm(coefficients=self.closed(span, FORM, OWN_END), bend=BEND),
+            thickness=PowerForm(coefficients=self.form_coefficients(span, FORM, END_THICKNESS), bend=BEND),
             end=self.trailing_edge,
         )
 

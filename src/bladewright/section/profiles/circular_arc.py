@@ -313,10 +313,10 @@ def mean_line(front_turning: Array, rear_turning: Array, transition: Array) -> t
     # the way to the end, mirrored: it turns the chord line onto the axis
     cosine, sine = (second.end[..., k] / chord for k in (0, 1))
 
-    def laid(arc: Arc) -> Arc:
+    def in_chords(arc: Arc) -> Arc:
         start, direction = (
             cosine[..., None] * each - sine[..., None] * turned_left(each) for each in (arc.start, arc.direction)
         )
         return Arc(start=start / chord[..., None], direction=direction, length=arc.length / chord, turning=arc.turning)
 
-    return laid(first), laid(second)
+    return in_chords(first), in_chords(second)

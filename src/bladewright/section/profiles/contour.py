@@ -9,10 +9,10 @@ from bladewright.errors import DesignError
 from bladewright.numerics.elementary import cross2, dot
 from bladewright.nurbs.basis import Reals
 
-CORNER = 30.0
+MIN_CORNER_TURNING = 30.0
 """turning of a contour's polygon from which a point may be a corner: a smooth nose of six points or more turns by less
 at each [deg]"""
-ALONE = 0.1
+MAX_NEIGHBOUR_TURNING = 0.1
 """largest turning at the neighbours of a corner, of the corner's own: on a round nose neighbours turn alike [-]"""
 Indices = NDArray[np.intp]
 Kind = Literal["round", "sharp", "blunt"]
@@ -83,10 +83,10 @@ def _corners(points: Reals) -> Indices:
     size = np.abs(turning)  # real: angles
     before, after = np.roll(size, 1), np.roll(size, -1)
     # at a blunt edge the other corner is no smooth neighbour: both are judged together, by the neighbours outside
-    paired = (size >= CORNER) & (np.maximum(before, after) >= CORNER)
+    paired = (size >= MIN_CORNER_TURNING) & (np.maximum(before, after) >= MIN_CORNER_TURNING)
     whole = np.where(paired, size + np.maximum(before, after), size)
     beside = np.where(paired, np.minimum(before, after), np.maximum(before, after))
-    return np.flatnonzero((size >= CORNER) & (beside <= ALONE * whole))
+    return np.flatnonzero((size >= MIN_CORNER_TURNING) & (beside <= MAX_NEIGHBOUR_TURNING * whole))
 
 
 def _misplaced(index: int, point: Reals) -> DesignError:

@@ -20,7 +20,7 @@ AnyProfile = Annotated[
     Naca4 | Naca5 | Naca6 | Naca65 | C4 | DoubleCircularArc | MultipleCircularArc | FlatPlate | PointsProfile,
     ByField("kind"),
 ]
-"""One of the kinds, told apart by `kind`."""
+"""One of the kinds of profiles, chosen by `kind`."""
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -21,7 +21,7 @@ from bladewright.section.profiles.profile import PublishedProfile
 FORM = {1: 1.4845, 2: -0.6300, 4: -1.7580, 6: 1.4215, 8: -0.5075}
 """half thickness over the thickness: coefficients of the powers of sqrt(x) (NACA Report 460, 1933), shared with the
 five-digit profiles"""
-OWN_END = 0.021
+END_THICKNESS = 0.021
 """thickness of the published trailing edge, of the maximum thickness (NACA Report 460, 1933) [-]"""
 BEND = 0.6300 / 1.4845
 """-a2 / a1 of the form a1 sqrt(x) + a2 x + ... [-]"""
@@ -64,7 +64,7 @@ class Naca4(PublishedProfile):
             line = FourDigitLine(camber=camber, joint=position)
         return MeanLineOutline(
             mean_line=line,
-            thickness=PowerForm(coefficients=self.closed(span, FORM, OWN_END), bend=BEND),
+            thickness=PowerForm(coefficients=self.form_coefficients(span, FORM, END_THICKNESS), bend=BEND),
             end=self.trailing_edge,
         )
 

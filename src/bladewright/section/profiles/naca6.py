@@ -28,7 +28,7 @@ CLUSTERING = 0.8
 STRETCHING = 3.5
 """k of the hyperbolic tangent that clusters s at a sharp or blunt trailing edge, where the mean line bends as well
 [-]"""
-OWN_END = 0.01
+END_THICKNESS = 0.01
 """thickness of a blunt or round trailing edge where the design gives none, of the maximum thickness; the published
 coordinates (NACA Report 824, 1945) end in a point [-]"""
 FORMS: dict[str, tuple[tuple[float, ...], ...]] = {
@@ -106,7 +106,7 @@ class Naca6(PublishedProfile):
             mean_line=LoadedLine(lift=lift, load=load),
             thickness=ChebyshevForm(
                 coefficients=[thickness * row for row in rows],
-                end=0.5 * thickness * self.end_share(span, OWN_END),
+                end=0.5 * thickness * self.trailing_edge_share(span, END_THICKNESS),
             ),
             end=self.trailing_edge,
             clustering=clustering(self.trailing_edge),

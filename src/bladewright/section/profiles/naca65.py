@@ -19,7 +19,7 @@ FORM = (
     0.002064, 0.005601,
 )  # fmt: skip
 """half thickness over the thickness: Chebyshev coefficients by degree; see design/six_series.py"""
-OWN_END = 0.03
+END_THICKNESS = 0.03
 """thickness of the trailing edge of compressor blades, 2 x 0.15 % of the chord at a thickness of 10 %, of the maximum
 thickness (NACA RM L51G31, 1951) [-]"""
 
@@ -48,7 +48,7 @@ class Naca65(PublishedProfile):
             mean_line=LoadedLine(lift=lift, load=np.ones((1, 1))),
             thickness=ChebyshevForm(
                 coefficients=[thickness * each for each in FORM],
-                end=0.5 * thickness * self.end_share(span, OWN_END),
+                end=0.5 * thickness * self.trailing_edge_share(span, END_THICKNESS),
             ),
             end=self.trailing_edge,
             clustering=clustering(self.trailing_edge),

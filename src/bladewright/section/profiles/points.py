@@ -18,7 +18,7 @@ from bladewright.section.profiles.points_outline import PointsOutline
 from bladewright.section.profiles.profile import Profile
 from bladewright.section.profiles.quintic_spline import DEGREE
 
-LEAST = 8
+MIN_POINTS = 8
 """fewest points of a contour: six for a quintic spline, and two more that its edges can be told from its sides"""
 
 
@@ -49,8 +49,10 @@ class PointsProfile(Profile):
             raise DesignError(
                 f"abscissas has {len(self.abscissas)} entries and ordinates {len(self.ordinates)}: give each point both"
             )
-        if len(self.abscissas) < LEAST:
-            raise DesignError(f"abscissas has {len(self.abscissas)} entries: a contour needs at least {LEAST} points")
+        if len(self.abscissas) < MIN_POINTS:
+            raise DesignError(
+                f"abscissas has {len(self.abscissas)} entries: a contour needs at least {MIN_POINTS} points"
+            )
 
     def outline(self, span: Span) -> Outline:
         """The exact sections (..., m) at the places of the span, in chords, unstaggered."""

@@ -88,7 +88,7 @@ class PointsOutline(Outline):
     def points(self, s: Reals) -> tuple[Array, Array]:
         """Points (..., len(s), 2) of the upper and the lower side."""
         upper, lower = (
-            np.stack(np.broadcast_arrays(*(each.value for each in self._laid(side, s, 0))), axis=-1)
+            np.stack(np.broadcast_arrays(*(each.value for each in self._in_chords(side, s, 0))), axis=-1)
             for side in self._sides
         )
         return upper, lower
@@ -99,7 +99,7 @@ class PointsOutline(Outline):
 
     def derivatives(self, s: Reals, order: int) -> tuple[Array, Array]:
         """Points and derivatives by s (..., k, 2, order + 1) of both sides, exact."""
-        upper, lower = (point_derivatives(*self._laid(side, s, order)) for side in self._sides)
+        upper, lower = (point_derivatives(*self._in_chords(side, s, order)) for side in self._sides)
         return upper, lower
 
     def camber(self, s: Reals) -> Array:
@@ -220,7 +220,7 @@ class PointsOutline(Outline):
             tips.append(0.5 * (found[0] + found[1]))
         return tips[0], tips[1] - tips[0]
 
-    def _laid(self, side: SplineSide, s: Reals, order: int) -> tuple[Series, Series]:
+    def _in_chords(self, side: SplineSide, s: Reals, order: int) -> tuple[Series, Series]:
         x, y = side.spline.at(side.parameter(variable(s, order), self._pace))
         start, way = self._chord
         square = dot(way, way)[..., None]

@@ -73,18 +73,18 @@ class PublishedProfile(Profile):
         what = "the trailing edge must be thicker than 0.002 and thinner than 0.5 of the maximum thickness"
         checks.between("trailing_edge_thickness", self.trailing_edge_thickness, 0.002, 0.5, what)
 
-    def closed(self, span: Span, form: Mapping[int, float | Array], own: float) -> list[Array]:
+    def form_coefficients(self, span: Span, form: Mapping[int, float | Array], own: float) -> list[Array]:
         """Coefficients (..., m, 1) of the powers of sqrt(x), from the first on, of the half thickness.
 
         `form` holds those over the thickness. To that of x^4 is added what makes the thickness at x = 1 the one asked
         for; `own` is the published one, of the maximum thickness.
         """
         held = dict(form)
-        held[POWER] = held.get(POWER, 0.0) + 0.5 * self.end_share(span, own) - sum(form.values())
+        held[POWER] = held.get(POWER, 0.0) + 0.5 * self.trailing_edge_share(span, own) - sum(form.values())
         thickness = span.values(self.thickness)[..., None]
         return [thickness * held.get(k, 0.0) for k in range(1, max(held) + 1)]
 
-    def end_share(self, span: Span, own: float) -> Array:
+    def trailing_edge_share(self, span: Span, own: float) -> Array:
         """Thickness at the trailing edge (..., m, 1), of the maximum thickness."""
         if self.trailing_edge == "sharp":
             return np.zeros((len(span.v), 1))

@@ -11,7 +11,7 @@ from bladewright.nurbs.basis import Reals
 from bladewright.section import checks
 from bladewright.section.laws import Span
 from bladewright.section.suction_pressure.edges import MAX_OPENING, Continuity, EdgePoints, opening
-from bladewright.section.suction_pressure.side import DEGREE, End, Side, pace
+from bladewright.section.suction_pressure.side import DEGREE, Side, SideEnd, reparametrised
 
 ANGLES = ("stagger_angle", "metal_angle_in", "metal_angle_out")
 EDGES = ("leading_edge", "trailing_edge")
@@ -121,8 +121,8 @@ def check_opening(edge: str, continuity: Continuity, stretch: Array, skew: Array
         )
 
 
-def check_room(leading: EdgePoints, trailing: EdgePoints, span: Span) -> None:
-    """Refuse edges that take the whole chord."""
+def check_chord_left(leading: EdgePoints, trailing: EdgePoints, span: Span) -> None:
+    """Refuse edges that leave nothing of the chord to a side."""
     for name in ("upper", "lower"):
         ahead = np.real(getattr(trailing, name).point - getattr(leading, name).point)[..., 0]
         if np.any(ahead <= 0.0):
@@ -133,14 +133,15 @@ def check_room(leading: EdgePoints, trailing: EdgePoints, span: Span) -> None:
             )
 
 
-def check_pace(name: str, side: Side, span: Span) -> None:
-    """Refuse a control point on a tangent so near to its corner that the side cannot take over the edge's speed.
+def check_reparametrisation(name: str, side: Side, span: Span) -> None:
+    """Refuse a control point on a tangent so near to its corner that the side cannot continue the edge's speed.
 
-    With c = reach slope, which the reach leaves alone, and the distance d to the next control point, the rise is about
-    -c^2 d / reach^3, and the pace is monotone up to a rise of about sqrt(72 slope) and a slope of about 2.5.
+    `reach` is the distance from the corner to that control point, c = reach slope, which does not depend on the reach,
+    and d the distance to the next control point. Then the rise is about -c^2 d / reach^3, and the parameter is monotone
+    up to a rise of about sqrt(72 slope) and a slope of about 2.5.
     """
     for end, edge, which in ((side.start, "leading_edge", "in"), (side.end, "trailing_edge", "out")):
-        slope = np.min(np.real(pace(end, CHECKED_AT, 1)), axis=-1)
+        slope = np.min(np.real(reparametrised(end, CHECKED_AT, 1)), axis=-1)
         if np.any(slope <= 0.0):
             at = _worst(-slope)
             reach, slope_there, next_step = (
@@ -156,7 +157,7 @@ def check_pace(name: str, side: Side, span: Span) -> None:
 
 
 def check_crossing(upper: Side, lower: Side, span: Span, *, suction_side: str, by_thickness: bool) -> None:
-    """Refuse sides of which the upper is not on the left of the lower; for the message, what was given of them."""
+    """Refuse sides of which the upper is not on the left of the lower; the keywords are for the message."""
     one, other = (np.real(side.points(CHECKED_AT)) for side in (upper, lower))
     across, middle = one - other, 0.5 * (one + other)
     parted = cross2(np.diff(middle, axis=-2), 0.5 * (across[..., 1:, :] + across[..., :-1, :]))
@@ -172,7 +173,7 @@ def check_crossing(upper: Side, lower: Side, span: Span, *, suction_side: str, b
         )
 
 
-def _next_step(end: End) -> Array:
+def _next_step(end: SideEnd) -> Array:
     """Distance (...) from a side's second control point to its third."""
     first, second = end.taylor[..., 1, :], end.taylor[..., 2, :]
     return length(2.0 * second + 2.0 * first) / DEGREE

@@ -25,7 +25,7 @@ SHARE = EDGE / (1.0 - 2.0 * EDGE)
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class SuctionPressureOutline(Outline):
-    """Half an edge, a side, half an edge: with C2 edges both sides are twice differentiable by s at every joint."""
+    """Sections of two edges and two sides; with C2 edges each side is twice differentiable by s where it joins them."""
 
     edges: tuple[EdgeCurve, EdgeCurve]
     """leading and trailing"""
@@ -35,12 +35,12 @@ class SuctionPressureOutline(Outline):
 
     @property
     def leading_edge(self) -> Edge:
-        """One polynomial across the nose, so a round edge."""
+        """Round: one polynomial across the nose."""
         return _meeting(self.edges[0], 1.0)
 
     @property
     def trailing_edge(self) -> Edge:
-        """As the leading edge, by s."""
+        """Round, as the leading edge."""
         return _meeting(self.edges[1], -1.0)
 
     @property
@@ -65,7 +65,7 @@ class SuctionPressureOutline(Outline):
         return found[0], found[1]
 
     def camber(self, s: Reals) -> Array:
-        """The middle between the sides at equal s; in the edges' parts it goes on to the noses in their directions."""
+        """The middle between the sides at equal s, which the edges' camber lines continue to the noses."""
         first, middle, last = _parts(s)
         w = _fractions(s[middle])
         parts = [

@@ -19,17 +19,23 @@ from bladewright.section.family import SectionFamily
 from bladewright.section.laws import Span
 from bladewright.section.planar import PlanarSection
 from bladewright.section.suction_pressure.edges import Corner, EdgePoints, characteristic_points, edge_curve
-from bladewright.section.suction_pressure.limits import check_crossing, check_opening, check_pace, check_room, checked
+from bladewright.section.suction_pressure.limits import (
+    check_chord_left,
+    check_crossing,
+    check_opening,
+    check_reparametrisation,
+    checked,
+)
 from bladewright.section.suction_pressure.outline import SHARE, SuctionPressureOutline
 from bladewright.section.suction_pressure.side import (
     DEGREE,
     Side,
-    controls_of,
+    continuing_edges,
+    control_points,
+    default_places,
     interpolated_free,
-    parametrised,
     side_knots,
-    spread,
-    values_at,
+    spline_points,
 )
 from bladewright.section.suction_pressure.skeleton import Skeleton, chord_line, pseudo_line
 
@@ -38,9 +44,10 @@ from bladewright.section.suction_pressure.skeleton import Skeleton, chord_line, 
 class SuctionPressure(SectionFamily):
     """A section whose suction and pressure side are cubic B-splines between two rounded edges.
 
-    Lengths are fractions of the chord. Each side runs from corner to corner: its first and its last free control point
-    lie on the tangents there, which the edges' angles and wedges give, the others at places along the chord line or the
-    pseudo skeleton line and heights off it. Reference: Voss et al. 2025, sections 3 and 3.1, Figs. 2 to 5.
+    Lengths are fractions of the chord. Each side runs from the corner where it leaves the leading edge to the corner
+    where it meets the trailing edge. Its second and its last but one control point lie on the tangents there, which
+    follow from the edges' angles and wedges. The others stand at places along a skeleton line, the chord line or a
+    pseudo skeleton line, and at heights off it. Reference: Voss et al. 2025, sections 3 and 3.1, Figs. 2 to 5.
     """
 
     stagger_angle: Law = parameter("deg")
@@ -72,17 +79,17 @@ class SuctionPressure(SectionFamily):
     suction_heights: ChordwiseLaw = parameter("-")
     """heights of the suction side's free control points between the tangents, one at least, of the chord [-]"""
     suction_places: ChordwiseLaw = parameter("-", default=())
-    """their places along the skeleton, 0 to 1; none: spread by the knots [-]"""
+    """their places along the skeleton, 0 to 1; none: at the Greville abscissae of the knots [-]"""
     pressure_tangent_in: Law | None = parameter("-", default=None)
-    """as suction_tangent_in; none: the pressure side leaves its corner as fast as the suction side does [-]"""
+    """as suction_tangent_in; none: such that both sides have the same speed by their parameters there [-]"""
     pressure_tangent_out: Law | None = parameter("-", default=None)
-    """as suction_tangent_out; none: the pressure side reaches its corner as fast as the suction side does [-]"""
+    """as suction_tangent_out; none: such that both sides have the same speed by their parameters there [-]"""
     pressure_heights: ChordwiseLaw = parameter("-", default=())
-    """heights of the pressure side's free control points between the tangents: a pressure side of its own [-]"""
+    """heights of the pressure side's free control points between the tangents, of the chord [-]"""
     pressure_thickness: ChordwiseLaw = parameter("-", default=())
     """in place of heights: distances of the pressure side from the suction side, normal to it, of the chord [-]"""
     pressure_places: ChordwiseLaw = parameter("-", default=())
-    """places along the skeleton of the heights, or along the suction side of the thicknesses; none: spread [-]"""
+    """places along the skeleton of the heights, or along the suction side of the thicknesses; none: as above [-]"""
     suction_side: Literal["upper", "lower"] = "upper"
     """the side that is the suction side, upper towards larger theta"""
     edges: Literal["C1", "C2"] = "C2"
@@ -109,16 +116,16 @@ class SuctionPressure(SectionFamily):
     def refined(
         self, knots: int | Sequence[float], *, side: Literal["suction", "pressure", "both"] = "both"
     ) -> SuctionPressure:
-        """The same section with further control points: so many new knots a side, or knots at given places in (0, 1).
+        """The same section with more control points: so many new knots on each side, or knots at places in (0, 1).
 
-        Raises DesignError for laws along the span, and for a pressure side by a thickness: refine the suction side
-        alone, or take `independent()` first.
+        Raises DesignError for laws along the span, and for a pressure side that is given by a thickness: refine the
+        suction side alone, or take `independent()` first.
         """
         return self.changed(refined(self, knots, side))
 
     def independent(self) -> SuctionPressure:
-        """The same section, its pressure side by heights of its own; raises DesignError for laws along the span."""
-        return self.changed(freed(self))
+        """The same section with its pressure side given by heights; raises DesignError for laws along the span."""
+        return self.changed(_independent_fields(self))
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -130,14 +137,17 @@ class SuctionPressureSection(PlanarSection):
 
 
 def assembled(part: SuctionPressure, span: Span) -> SuctionPressureOutline:
-    """The outline of sections (..., m); raises DesignError where edges or sides do not fit."""
-    leading, trailing = characteristic(part, span)
-    check_room(leading, trailing, span)
+    """The outline of sections (..., m): characteristic points, suction side, pressure side, edges.
+
+    Raises DesignError where edges or sides do not fit.
+    """
+    leading, trailing = edge_points(part, span)
+    check_chord_left(leading, trailing, span)
     suction, pressure = sides(part, span, leading, trailing)
     upper, lower = (suction, pressure) if part.suction_side == "upper" else (pressure, suction)
     names = ("suction", "pressure") if part.suction_side == "upper" else ("pressure", "suction")
     for name, side in zip(names, (upper, lower), strict=True):
-        check_pace(name, side, span)
+        check_reparametrisation(name, side, span)
     curves = [
         edge_curve(points, one.bend, other.bend, part.edges)
         for points, one, other in ((leading, upper.start, lower.start), (trailing, upper.end, lower.end))
@@ -153,7 +163,7 @@ def camber_angles(part: SuctionPressure, span: Span) -> tuple[Array, Array]:
     return radians(span.values(part.metal_angle_in) - turn), radians(span.values(part.metal_angle_out) - turn)
 
 
-def characteristic(part: SuctionPressure, span: Span) -> tuple[EdgePoints, EdgePoints]:
+def edge_points(part: SuctionPressure, span: Span) -> tuple[EdgePoints, EdgePoints]:
     """The characteristic points of the leading and the trailing edge."""
     found = []
     suction = 1.0 if part.suction_side == "upper" else -1.0
@@ -180,7 +190,7 @@ def characteristic(part: SuctionPressure, span: Span) -> tuple[EdgePoints, EdgeP
 
 
 def skeleton_of(part: SuctionPressure, span: Span) -> Skeleton:
-    """The line of places and heights."""
+    """The skeleton line of places and heights."""
     return pseudo_line(*camber_angles(part, span)) if part.skeleton == "pseudo" else chord_line((len(span.v),))
 
 
@@ -193,8 +203,8 @@ def sides(part: SuctionPressure, span: Span, leading: EdgePoints, trailing: Edge
     knots = side_knots(len(part.suction_heights), part.suction_knots)
     free = skeleton.placed(*_numbers(span, part.suction_places, part.suction_heights, knots))
     tangents = span.values(part.suction_tangent_in), span.values(part.suction_tangent_out)
-    controls = controls_of(*ends, *tangents, free)
-    suction = parametrised(controls, knots, *ends, SHARE)
+    controls = control_points(*ends, *tangents, free)
+    suction = continuing_edges(controls, knots, *ends, SHARE)
 
     offsets = part.pressure_thickness or part.pressure_heights
     knots = side_knots(len(offsets), part.pressure_knots)
@@ -216,26 +226,26 @@ def sides(part: SuctionPressure, span: Span, leading: EdgePoints, trailing: Edge
         free = interpolated_free(*other, tangents, through, knots)
     else:
         free = skeleton.placed(places, numbers)
-    return suction, parametrised(controls_of(*other, *tangents, free), knots, *other, SHARE)
+    return suction, continuing_edges(control_points(*other, *tangents, free), knots, *other, SHARE)
 
 
 def _numbers(span: Span, places: ChordwiseLaw, offsets: ChordwiseLaw, knots: Reals) -> tuple[Array, Array]:
     """Places and offsets (..., m, k)."""
     values = span.control_values(offsets)
-    at = span.control_values(places) if places else np.broadcast_to(spread(knots), (len(span.v), len(offsets)))
+    at = span.control_values(places) if places else np.broadcast_to(default_places(knots), (len(span.v), len(offsets)))
     return at, values
 
 
 def _thickened(side: Side, places: Array, offsets: Array) -> Array:
     """Points (..., m, k, 2) at offsets from the side to its left, at its own parameters (..., m, k)."""
-    tangent = values_at(side.controls, side.knots, places, 1)
-    return values_at(side.controls, side.knots, places) + offsets[..., None] * turned_left(
+    tangent = spline_points(side.controls, side.knots, places, 1)
+    return spline_points(side.controls, side.knots, places) + offsets[..., None] * turned_left(
         tangent / length(tangent)[..., None]
     )
 
 
 def refined(part: SuctionPressure, knots: int | Sequence[float], side: str) -> dict[str, Any]:
-    """The fields that change when a side, or `both`, gets further knots and keeps its shape."""
+    """The fields that change when a side, or `both`, gets more knots and keeps its shape."""
     if side not in ("suction", "pressure", "both"):
         raise DesignError(f"side is {side!r}: it must be one of suction, pressure, both")
     if part.pressure_thickness and side != "suction":
@@ -251,8 +261,8 @@ def refined(part: SuctionPressure, knots: int | Sequence[float], side: str) -> d
     return found
 
 
-def freed(part: SuctionPressure) -> dict[str, Any]:
-    """The fields that change when the pressure side gets heights of its own and keeps its shape."""
+def _independent_fields(part: SuctionPressure) -> dict[str, Any]:
+    """The fields that change when the pressure side is given by heights and keeps its shape."""
     if part.pressure_heights:
         return {}
     return {"pressure_thickness": (), **_fields(part, "pressure", _curve(_sides(part)[1]))}
@@ -269,7 +279,7 @@ def _sides(part: SuctionPressure) -> tuple[Side, Side]:
         if np.iscomplexobj(value):
             raise DesignError(f"{path} is {value}: only a real section is refined")
     span = Span(np.zeros(1))
-    return sides(part, span, *characteristic(part, span))
+    return sides(part, span, *edge_points(part, span))
 
 
 def _depth(name: str) -> int:
@@ -281,7 +291,7 @@ def _curve(side: Side) -> Curve:
 
 
 def _new(knots: Reals, asked: int | Sequence[float]) -> list[float]:
-    """The knots asked for, or so many, each in the middle of the then longest knot span."""
+    """The knots asked for, or so many, each in the middle of what is then the longest knot span."""
     if not isinstance(asked, int):
         return [float(each) for each in asked]
     if asked < 1:
@@ -297,7 +307,7 @@ def _new(knots: Reals, asked: int | Sequence[float]) -> list[float]:
 def _fields(part: SuctionPressure, name: str, curve: Curve) -> dict[str, Any]:
     controls = curve.control_points
     inner = curve.knots[DEGREE + 1 : -DEGREE - 1]
-    places, heights = skeleton_of(part, Span(np.zeros(1))).at(0).places(controls[2:-2], spread(curve.knots))
+    places, heights = skeleton_of(part, Span(np.zeros(1))).at(0).places(controls[2:-2], default_places(curve.knots))
     ends = length(controls[1] - controls[0]), length(controls[-2] - controls[-1])
     return {
         f"{name}_heights": tuple(float(each) for each in heights),

@@ -1,4 +1,4 @@
-"""A side between its two corners: a clamped cubic B-spline that leaves the edges in given directions."""
+"""A side between its two corners: a clamped cubic B-spline whose parametrisation continues that of the edges."""
 
 from dataclasses import dataclass
 from math import factorial
@@ -16,46 +16,41 @@ DEGREE = 3
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class End:
-    """A side next to a corner, seen from the corner."""
+class SideEnd:
+    """A side's first knot span at a corner, seen from the corner."""
 
     taylor: Array
     """(..., 4, 2) coefficients of its polynomial by the fraction of the knot span"""
     span: float
     """length of the knot span next to the corner"""
     slope: Array
-    """(...) first derivative of the side's own parameter by the section's, at the corner, in fractions of the span"""
+    """(...) first derivative of the side's own parameter by the section's at the corner, in fractions of the span"""
     rise: Array
-    """(...) second derivative"""
+    """(...) second derivative likewise"""
     bend: Array
     """(..., 2) curvature vector times the edge's speed squared"""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Side:
-    """A side by w in [0, 1] from the leading to the trailing edge, parametrised to continue both edges."""
+    """A side by w in [0, 1] from the leading to the trailing edge, twice differentiable where it joins the edges."""
 
     controls: Array
     """(..., n, 2)"""
     knots: Reals
-    start: End
-    end: End
+    start: SideEnd
+    end: SideEnd
 
     def points(self, w: Reals) -> Array:
         """Points (..., len(w), 2)."""
         first, last = w < self.start.span, w > 1.0 - self.end.span
         middle = ~first & ~last
         parts = [
-            (first, _paced(self.start, w[first] / self.start.span)),
+            (first, _points_beside_edge(self.start, w[first] / self.start.span)),
             (middle, basis(self.knots, DEGREE, w[middle]) @ self.controls),
-            (last, _paced(self.end, (1.0 - w[last]) / self.end.span)),
+            (last, _points_beside_edge(self.end, (1.0 - w[last]) / self.end.span)),
         ]
         return by_parts(parts, len(w))
-
-
-def inner_count(free: int) -> int:
-    """Number of inner knots of a side with so many free control points between those on the tangents."""
-    return free + 4 - DEGREE - 1
 
 
 def side_knots(free: int, inner: tuple[float, ...]) -> Reals:
@@ -65,12 +60,12 @@ def side_knots(free: int, inner: tuple[float, ...]) -> Reals:
     return np.array([0.0] * (DEGREE + 1) + list(inner) + [1.0] * (DEGREE + 1))
 
 
-def spread(knots: Reals) -> Reals:
+def default_places(knots: Reals) -> Reals:
     """Default places (free,) of the free control points: their Greville abscissae."""
     return greville(knots, DEGREE)[2:-2]
 
 
-def controls_of(start: Corner, end: Corner, tangent_in: Array, tangent_out: Array, free: Array) -> Array:
+def control_points(start: Corner, end: Corner, tangent_in: Array, tangent_out: Array, free: Array) -> Array:
     """Control points (..., n, 2): corner, one on its tangent, the free ones, one on the other tangent, corner."""
     ends = [
         start.point,
@@ -83,14 +78,14 @@ def controls_of(start: Corner, end: Corner, tangent_in: Array, tangent_out: Arra
 
 
 def interpolated_free(start: Corner, end: Corner, tangents: tuple[Array, Array], points: Array, knots: Reals) -> Array:
-    """Free control points (..., n - 4, 2) of the side that passes through points (..., n - 4, 2) at `spread`."""
-    matrix = basis(knots, DEGREE, spread(knots))
+    """Free control points (..., n - 4, 2) of the side through points (..., n - 4, 2) at the default places."""
+    matrix = basis(knots, DEGREE, default_places(knots))
     none = np.zeros_like(points)
-    fixed = controls_of(start, end, *tangents, none)
+    fixed = control_points(start, end, *tangents, none)
     return np.asarray(np.linalg.inv(matrix[:, 2:-2]) @ (points - matrix @ fixed))
 
 
-def values_at(controls: Array, knots: Reals, w: Array, order: int = 0) -> Array:
+def spline_points(controls: Array, knots: Reals, w: Array, order: int = 0) -> Array:
     """Derivatives (..., k, 2) of the B-spline at parameters w (..., k) that may be complex and differ by section."""
     real, step = np.real(w), 1j * np.imag(w) if np.iscomplexobj(w) else None
     count = controls.shape[-2]
@@ -106,8 +101,8 @@ def values_at(controls: Array, knots: Reals, w: Array, order: int = 0) -> Array:
     return found
 
 
-def parametrised(controls: Array, knots: Reals, start: Corner, end: Corner, share: float) -> Side:
-    """The side whose parametrisation continues the edges' to second order.
+def continuing_edges(controls: Array, knots: Reals, start: Corner, end: Corner, share: float) -> Side:
+    """The side with the parametrisation that continues the edges' to second order.
 
     `share` is the part of s that an edge takes, over the part of a side.
     """
@@ -116,7 +111,7 @@ def parametrised(controls: Array, knots: Reals, start: Corner, end: Corner, shar
     return Side(controls=controls, knots=knots, start=ends[0], end=ends[1])
 
 
-def _end(controls: Array, knots: Reals, corner: Corner, width: float, sign: float, share: float) -> End:
+def _end(controls: Array, knots: Reals, corner: Corner, width: float, sign: float, share: float) -> SideEnd:
     at = np.array([0.0 if sign > 0.0 else 1.0])
     rows = [basis(knots, DEGREE, at, order) * ((sign * width) ** order / factorial(order)) for order in range(4)]
     taylor = np.concatenate(rows) @ controls
@@ -125,7 +120,7 @@ def _end(controls: Array, knots: Reals, corner: Corner, width: float, sign: floa
     along = dot(second, corner.direction)
     slope = corner.speed * (width / share) / speed
     across = second - along[..., None] * corner.direction
-    return End(
+    return SideEnd(
         taylor=taylor,
         span=width,
         slope=slope,
@@ -134,8 +129,8 @@ def _end(controls: Array, knots: Reals, corner: Corner, width: float, sign: floa
     )
 
 
-def pace(end: End, x: Reals, order: int = 0) -> Array:
-    """The side's own fraction of the knot span (..., len(x)), or its slope, at fractions x of the section's parameter.
+def reparametrised(end: SideEnd, x: Reals, order: int = 0) -> Array:
+    """The side's own parameter (..., len(x)) in the knot span, or its slope, at fractions x of the section's there.
 
     x - (1 - slope) x (1 - x)^3 (1 + 3 x) + rise x^2 (1 - x)^3 / 2: with value 0, first derivative `slope` and second
     `rise` at the corner, and no change of value and two derivatives at the span's other end.
@@ -147,5 +142,5 @@ def pace(end: End, x: Reals, order: int = 0) -> Array:
     return 1.0 - slower * (y**2 * (1.0 + 5.0 * x) * (1.0 - 3.0 * x)) + rise * (0.5 * x * y**2 * (2.0 - 5.0 * x))
 
 
-def _paced(end: End, x: Reals) -> Array:
-    return polynomial_points(end.taylor, pace(end, x))
+def _points_beside_edge(end: SideEnd, x: Reals) -> Array:
+    return polynomial_points(end.taylor, reparametrised(end, x))

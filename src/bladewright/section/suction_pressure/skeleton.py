@@ -1,4 +1,4 @@
-"""The line from which the heights of free control points are counted: the chord line, or a pseudo skeleton line."""
+"""The line off which the heights of free control points are measured: the chord line, or a pseudo skeleton line."""
 
 from dataclasses import dataclass
 
@@ -13,7 +13,7 @@ from bladewright.section.power_series import polynomial_points
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Skeleton:
-    """A polynomial line from (0, 0) at fraction 0 to (1, 0) at fraction 1, that goes on beyond."""
+    """A polynomial line from (0, 0) at fraction 0 to (1, 0) at fraction 1, which continues beyond both."""
 
     coefficients: Array
     """(..., 4, 2) of the powers of the fraction"""
@@ -25,7 +25,7 @@ class Skeleton:
         )
 
     def places(self, points: Reals, fractions: Reals) -> tuple[Reals, Reals]:
-        """Fractions and heights (k,) of real points (k, 2) off one line, the fractions nearest to those given."""
+        """Fractions and heights (k,) of real points (k, 2) off one line, by Newton's method from fractions (k,)."""
         found = np.array(fractions, dtype=np.float64)
         slope, bend = _derived(self.coefficients), _derived(_derived(self.coefficients))
         for _ in range(30):
@@ -44,7 +44,7 @@ class Skeleton:
         return found, cross2(self._tangents(found), off)
 
     def at(self, section: int) -> "Skeleton":
-        """The line of one section, of real sections (m,)."""
+        """The line of one of the real sections (m,)."""
         return Skeleton(coefficients=np.real(self.coefficients[section]))
 
     def _tangents(self, fractions: Array) -> Array:
@@ -60,9 +60,9 @@ def chord_line(shape: tuple[int, ...]) -> Skeleton:
 def pseudo_line(angle_in: Array, angle_out: Array) -> Skeleton:
     """The cubic with the angles (...) [rad] of both edges against the chord line.
 
-    Its arms are those with which a cubic comes nearest to an arc of a circle of the same turning, so that the fraction
-    is close to that of the arc length; without turning it is the chord line. After Voss et al. 2025, section 3.1, who
-    say only that it is made from the edge angles.
+    Its arms are those with which a cubic Bezier curve approximates a circular arc of the same turning, so that the
+    fraction is close to that of the arc length; without turning it is the chord line. Voss et al. 2025, section 3.1,
+    say only that the line is made from the edge angles.
     """
     arm = 1.0 / (3.0 * np.cos(0.25 * (angle_in - angle_out)) ** 2)
     first = arm[..., None] * np.stack([np.cos(angle_in), np.sin(angle_in)], axis=-1)

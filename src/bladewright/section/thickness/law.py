@@ -95,14 +95,14 @@ class ThicknessLaw(Part, ABC):
         Raises DesignError where parameters contradict each other.
         """
 
-    def _kept(self, name: str, low: float, high: float, what: str) -> None:
+    def _checked(self, name: str, low: float, high: float, what: str) -> None:
         """Keep a field as plain numbers, all within (low, high); raises DesignError with the cure."""
         path = f"{self.path}.{name}"
         law = checks.law(path, getattr(self, name))
         checks.between(path, law, low, high, what)
         object.__setattr__(self, name, law)
 
-    def _demand(self, met: Array, span: Span, name: str, value: Array, cure: str) -> None:
+    def _require(self, met: Array, span: Span, name: str, value: Array, cure: str) -> None:
         """Refuse the values (..., m) of a field at the first place along the span where a condition is not met."""
         if np.all(met):
             return

@@ -65,9 +65,11 @@ class ModifiedNaca(ThicknessLaw):
         checks.choice(f"{self.path}.law", self.law, ["modified-naca"])
         checks.choice(f"{self.path}.trailing_edge", self.trailing_edge, ["circular", "blunt", "sharp"])
         inf = float("inf")
-        self._kept("leading_edge_index", 0.0, 12.0, "it must be between 0 and 12; 6 is the radius of the NACA series")
-        self._kept("maximum_thickness", 0.0, 1.0, "it must be between 0 and 1 chord")
-        self._kept("maximum_thickness_at", 0.05, 0.95, "the maximum must stand between 0.05 and 0.95 of the chord")
+        self._checked(
+            "leading_edge_index", 0.0, 12.0, "it must be between 0 and 12; 6 is the radius of the NACA series"
+        )
+        self._checked("maximum_thickness", 0.0, 1.0, "it must be between 0 and 1 chord")
+        self._checked("maximum_thickness_at", 0.05, 0.95, "the maximum must stand between 0.05 and 0.95 of the chord")
         sharp = self.trailing_edge == "sharp"
         if (self.trailing_edge_thickness is None) != sharp:
             cure = "leave it out" if sharp else "give it, or set trailing_edge to sharp"
@@ -75,15 +77,17 @@ class ModifiedNaca(ThicknessLaw):
             message = f"{self.path}.trailing_edge_thickness is {given} for a {self.trailing_edge} trailing edge: {cure}"
             raise DesignError(message)
         if not sharp:
-            self._kept("trailing_edge_thickness", 0.0, 1.0, "it must be positive; set trailing_edge to sharp for none")
+            self._checked(
+                "trailing_edge_thickness", 0.0, 1.0, "it must be positive; set trailing_edge to sharp for none"
+            )
         if self.trailing_edge_slope is not None and self.trailing_edge_slope_factor is not None:
             names = f"{self.path}.trailing_edge_slope and trailing_edge_slope_factor"
             raise DesignError(f"{names} are both given: they say the same; leave one out")
         if self.trailing_edge_slope is not None:
             what = "the blade must not grow thicker towards the edge: negative, or 0"
-            self._kept("trailing_edge_slope", -inf, 1e-300, what)
+            self._checked("trailing_edge_slope", -inf, 1e-300, what)
         if self.trailing_edge_slope_factor is not None:
-            self._kept("trailing_edge_slope_factor", 0.0, inf, "it must be positive")
+            self._checked("trailing_edge_slope_factor", 0.0, inf, "it must be positive")
 
     def slope(self, span: Span) -> Array:
         """d(half thickness)/du (..., m) at the trailing edge."""
@@ -102,19 +106,19 @@ class ModifiedNaca(ThicknessLaw):
         if self.trailing_edge_thickness is not None:
             end = 0.5 * span.values(self.trailing_edge_thickness)
             cure = "it must be below the maximum thickness; lower it or raise maximum_thickness"
-            self._demand(np.real(end) < np.real(maximum), span, "trailing_edge_thickness", 2.0 * end, cure)
+            self._require(np.real(end) < np.real(maximum), span, "trailing_edge_thickness", 2.0 * end, cure)
         breaks = [Breakpoint(at, 1.0 - at, 2, AT_MAXIMUM)]
         pieces: list[Formula] = []
         if self.trailing_edge == "circular":
             steepness = np.sqrt(1.0 + slope**2)
             edge, radius = end / (steepness - slope), end * steepness
             cure = "the maximum must stand before the trailing edge's circle; move it forward or thin the trailing edge"
-            self._demand(np.real(at + edge) < 1.0, span, "maximum_thickness_at", at, cure)
+            self._require(np.real(at + edge) < 1.0, span, "maximum_thickness_at", at, cure)
             breaks.append(Breakpoint(1.0 - edge, edge, 1, AT_TRAILING_EDGE))
             pieces.append(ellipse(radius, radius, leading=False))
         rear, curvature = _rear(maximum, at, end, edge, slope)
         cure = "the rear would bulge instead; move it forward, thin the trailing edge or give it a flatter slope"
-        self._demand(np.real(curvature) < 0.0, span, "maximum_thickness_at", at, cure)
+        self._require(np.real(curvature) < 0.0, span, "maximum_thickness_at", at, cure)
         front, bend = _front(maximum, at, curvature, span.values(self.leading_edge_index))
         kind: EdgeKind = "round" if self.trailing_edge == "circular" else self.trailing_edge
         chord_map = ChordMap(breaks, leading_round=True, trailing_round=kind == "round", bend=bend)

@@ -151,11 +151,11 @@ class QuarticSpline(ThicknessLaw):
     def __post_init__(self) -> None:
         checks.choice(f"{self.path}.law", self.law, ["quartic-spline"])
         checks.choice(f"{self.path}.trailing_edge", self.trailing_edge, ["closed", "sharp"])
-        self._kept("maximum_thickness", 0.0, 1.0, "it must be between 0 and 1 chord")
-        self._kept("maximum_thickness_at", 0.05, 0.95, "the maximum must stand between 0.05 and 0.95 of the chord")
-        self._kept("leading_edge_thickness", 0.0, 1.0, "it must be positive")
-        self._kept("trailing_edge_thickness", 0.0, 1.0, "it must be positive")
-        self._kept("leading_edge_curvature", 0.0, float("inf"), "it must be positive")
+        self._checked("maximum_thickness", 0.0, 1.0, "it must be between 0 and 1 chord")
+        self._checked("maximum_thickness_at", 0.05, 0.95, "the maximum must stand between 0.05 and 0.95 of the chord")
+        self._checked("leading_edge_thickness", 0.0, 1.0, "it must be positive")
+        self._checked("trailing_edge_thickness", 0.0, 1.0, "it must be positive")
+        self._checked("leading_edge_curvature", 0.0, float("inf"), "it must be positive")
         closed = self.trailing_edge == "closed"
         name, other = ("trailing_edge_curvature", "trailing_edge_wedge_angle")[:: 1 if closed else -1]
         if getattr(self, other) is not None:
@@ -165,9 +165,9 @@ class QuarticSpline(ThicknessLaw):
         if getattr(self, name) is None:
             object.__setattr__(self, name, 0.0 if closed else WEDGE)
         elif closed:
-            self._kept(name, -1e-300, float("inf"), "it must not be negative")
+            self._checked(name, -1e-300, float("inf"), "it must not be negative")
         else:
-            self._kept(name, 0.0, 90.0, "it must be between 0 and 90 deg")
+            self._checked(name, 0.0, 90.0, "it must be between 0 and 90 deg")
 
     def control_points(self, span: Span) -> tuple[Array, Array]:
         """Control points (..., m, 11) of one side, chord fractions and half thicknesses, leading to trailing edge."""
@@ -178,13 +178,13 @@ class QuarticSpline(ThicknessLaw):
         for name, value in (("leading", leading), ("trailing", trailing)):
             cure = "it must be below the maximum thickness; lower it or raise maximum_thickness"
             met = np.real(value) < np.real(maximum)
-            self._demand(met, span, f"{name}_edge_thickness", 2.0 * value, cure)
+            self._require(met, span, f"{name}_edge_thickness", 2.0 * value, cure)
         zero, one = np.zeros(1), np.ones(1)
         curvature = span.values(self.leading_edge_curvature)
         if self.trailing_edge_wedge_angle is not None:
             last = 1.0 - trailing / np.tan(radians(span.values(self.trailing_edge_wedge_angle)))
             cure = "the wedge must begin behind the maximum; widen trailing_edge_wedge_angle or thin the trailing edge"
-            self._demand(np.real(last) > np.real(at), span, "trailing_edge_thickness", 2.0 * trailing, cure)
+            self._require(np.real(last) > np.real(at), span, "trailing_edge_thickness", 2.0 * trailing, cure)
             edge = [zero, last]
         else:
             edge = [zero, -span.values(0.0 if self.trailing_edge_curvature is None else self.trailing_edge_curvature)]

@@ -81,10 +81,10 @@ class Wennerstrom(ThicknessLaw):
     def __post_init__(self) -> None:
         checks.choice(f"{self.path}.law", self.law, ["wennerstrom"])
         checks.choice(f"{self.path}.straight_end", self.straight_end, ["farther", "leading", "trailing"])
-        self._kept("maximum_thickness", 0.0, 1.0, "it must be between 0 and 1 chord")
-        self._kept("maximum_thickness_at", 0.05, 0.95, "the maximum must stand between 0.05 and 0.95 of the chord")
+        self._checked("maximum_thickness", 0.0, 1.0, "it must be between 0 and 1 chord")
+        self._checked("maximum_thickness_at", 0.05, 0.95, "the maximum must stand between 0.05 and 0.95 of the chord")
         for name in ("leading_edge", "trailing_edge"):
-            self._keep_edge(name)
+            self._check_edge(name)
         if self.straight_end == "farther" and not same_law(self.leading_edge_thickness, self.trailing_edge_thickness):
             before = [bool(np.any(np.real(leaf) < 0.5)) for leaf in leaves_of(self.maximum_thickness_at)]
             behind = [bool(np.any(np.real(leaf) >= 0.5)) for leaf in leaves_of(self.maximum_thickness_at)]
@@ -94,7 +94,7 @@ class Wennerstrom(ThicknessLaw):
                     f"the shape would jump where it passes 0.5; set straight_end to leading or trailing"
                 )
 
-    def _keep_edge(self, name: str) -> None:
+    def _check_edge(self, name: str) -> None:
         shape, thickness, ratio = (f"{self.path}.{name}{part}" for part in ("", "_thickness", "_ratio"))
         kind = checks.choice(shape, getattr(self, name), ["elliptic", "blunt", "sharp"])
         given = getattr(self, f"{name}_thickness") is not None
@@ -102,14 +102,14 @@ class Wennerstrom(ThicknessLaw):
             cure = "leave it out" if given else f"give it, or set {name} to sharp"
             raise DesignError(f"{thickness} is {'given' if given else 'not given'}, but {shape} is {kind}: {cure}")
         if given:
-            self._kept(f"{name}_thickness", 0.0, 1.0, f"it must be positive; set {name} to sharp for none")
+            self._checked(f"{name}_thickness", 0.0, 1.0, f"it must be positive; set {name} to sharp for none")
         if getattr(self, f"{name}_ratio") is None:
             if kind == "elliptic":
                 object.__setattr__(self, f"{name}_ratio", RATIOS[name])
         elif kind != "elliptic":
             raise DesignError(f"{ratio} is given, but {shape} is {kind}: leave it out, or set {name} to elliptic")
         else:
-            self._kept(f"{name}_ratio", 0.0, 100.0, "it must be positive, and 100 at most; 1 is a circle")
+            self._checked(f"{name}_ratio", 0.0, 100.0, "it must be positive, and 100 at most; 1 is a circle")
 
     def at(self, span: Span) -> Thickness:
         maximum, at = 0.5 * span.values(self.maximum_thickness), span.values(self.maximum_thickness_at)
@@ -123,9 +123,9 @@ class Wennerstrom(ThicknessLaw):
         names = ("leading_edge", "trailing_edge")
         for name, drop, slope, end in zip(names, drops, slopes, ends, strict=True):
             cure = "the thickness must grow from there to the maximum; lower it or raise maximum_thickness"
-            self._demand(np.real(drop) > 0.0, span, f"{name}_thickness", 2.0 * end, cure)
+            self._require(np.real(drop) > 0.0, span, f"{name}_thickness", 2.0 * end, cure)
             cure = f"the thickness would not grow from the {name} to the maximum; set straight_end to farther"
-            self._demand(np.real(slope) > 0.0, span, "maximum_thickness_at", at, cure)
+            self._require(np.real(slope) > 0.0, span, "maximum_thickness_at", at, cure)
         front, rear = (self._end(name, span, e, slope) for name, e, slope in zip(names, ends, slopes, strict=True))
         chord = 1.0 + front.length + rear.length
         middle = (front.length + at) / chord
