@@ -1,6 +1,6 @@
 """The sheet of a flow passage: its body, duct, unwrapped walls and figures; of a 2D section, its curves."""
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -16,7 +16,6 @@ from bladewright.views.style import CAMBER, INK, LOWER, MILLIMETRES, SOFT, UPPER
 from bladewright.views.walls import draw_least_jacobian, draw_wall
 
 if TYPE_CHECKING:
-    from bladewright.designs import Design
     from bladewright.domain.passage import Passage
     from bladewright.domain.section import SectionPassage
 
@@ -45,7 +44,7 @@ def passage_sheet(passage: "Passage") -> Figure:
     return figure
 
 
-def section_passage_sheet(design: "Design | None", passage: "SectionPassage") -> Figure:
+def section_passage_sheet(design: Any, passage: "SectionPassage") -> Figure:
     """The sheet of a 2D section's passage, before its layout; the design, where it is known, gives the name."""
     figure = Figure(figsize=(14.0, 10.5))
     name, description = (design.name, design.description) if design is not None else ("section", "")
