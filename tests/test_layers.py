@@ -11,6 +11,8 @@ import pytest
 from scipy.sparse.csgraph import connected_components
 
 import bladewright
+from bladewright.designs import Design
+from bladewright.files.families import FAMILIES as IN_FILES
 
 PACKAGE = Path(bladewright.__file__).parent
 HEAVY = ("OCP", "cadquery", "gmsh", "matplotlib", "numba", "pydantic", "scipy")
@@ -93,6 +95,11 @@ def circles(texts: dict[str, str]) -> list[list[str]]:
     return [members for members in parts if len(members) > 1]
 
 
+def test_no_modules_import_each_other_in_a_circle() -> None:
+    found = circles({module_name(source): source.read_text() for source in SOURCES})
+    assert not found, "\n".join(map(", ".join, found))
+
+
 def test_a_circle_is_seen_though_its_imports_are_late() -> None:
     texts = {
         "house.one": "from house.two import door\n",
@@ -103,3 +110,38 @@ def test_a_circle_is_seen_though_its_imports_are_late() -> None:
         "house.six": "import house.five\n",
     }
     assert circles(texts) == [["house.one", "house.three", "house.two"]]
+
+
+FOREIGN = {"cad", "cli", "files", "atomic_write.py"}
+"""what asks the objects of other libraries, and of results that it prints, for what they have"""
+
+
+def final_designs(kind: type) -> set[str]:
+    """Names of the classes under a class that have none under them."""
+    below = kind.__subclasses__()
+    return set().union(*map(final_designs, below)) if below else {kind.__name__}
+
+
+def kinds_asked(text: str, kinds: set[str], *, attributes: bool) -> Iterator[str]:
+    """Calls that ask an object for one of the kinds, or for whether it has an attribute."""
+    for node in ast.walk(ast.parse(text)):
+        if isinstance(node, ast.Call) and isinstance(node.func, ast.Name):
+            named = {each.id for part in node.args[1:] for each in ast.walk(part) if isinstance(each, ast.Name)}
+            if (node.func.id == "isinstance" and named & kinds) or (node.func.id == "hasattr" and attributes):
+                yield f"line {node.lineno}: {ast.unparse(node)}"
+
+
+def test_designs_answer_for_themselves_and_are_not_asked_for_their_kind() -> None:
+    # fitting searches in the unified family and in the others by different ways, and does ask
+    kinds, found = final_designs(Design), []
+    assert kinds >= {kind.__name__ for kind in IN_FILES.values()}
+    for source in SOURCES:
+        room = source.relative_to(PACKAGE).parts[0]
+        asked = kinds_asked(source.read_text(), set() if room == "fitting" else kinds, attributes=room not in FOREIGN)
+        found += [f"{module_name(source)}, {each}" for each in asked]
+    assert not found, "\n".join(found)
+
+
+def test_asking_a_design_for_its_kind_is_seen() -> None:
+    text = "if isinstance(design, UnifiedBlade | Other) or hasattr(built, 'camber') or isinstance(design, Design): pass"
+    assert len(list(kinds_asked(text, {"UnifiedBlade"}, attributes=True))) == 2
