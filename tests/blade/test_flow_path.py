@@ -8,7 +8,6 @@ from scipy.interpolate import CubicSpline
 
 from bladewright.blade.design.flow_path import FlowPath
 from bladewright.blade.design.meridional_curve import ControlPolygon, StraightsAndArcs, ThroughPoints
-from bladewright.blade.flow_path.quasi_orthogonals import measured_curve
 from bladewright.blade.flow_path.stream_surfaces import stream_surfaces
 from bladewright.errors import DesignError
 from machines.flow_paths import BEND, GIVEN, IMPELLER, MACHINES, bend, cornered, on, through
@@ -106,9 +105,9 @@ def test_a_meridian_carries_an_imaginary_step_of_every_parameter(curve):
     if isinstance(curve, StraightsAndArcs):
         # its parameter is held where pieces join; fractions of the length say where a point of the shape goes
         def points(of):
-            return measured_curve(of.line(1.0)).position(PLACES)
+            return of.line(1.0).at_fraction(PLACES)
 
-        joints = np.ravel(measured_curve(curve.line(1.0)).fractions(curve.line(1.0).breaks))
+        joints = np.ravel(curve.line(1.0).fraction_at(curve.line(1.0).breaks))
     else:
 
         def points(of):

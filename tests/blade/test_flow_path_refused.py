@@ -4,8 +4,6 @@ import numpy as np
 import pytest
 
 from bladewright.blade.design.flow_path import FlowPath
-from bladewright.blade.flow_path.blade_streamlines import prescribed_edges
-from bladewright.blade.flow_path.location import located
 from bladewright.blade.flow_path.stream_surface_map import Conformal, DiscreteConformal
 from bladewright.blade.flow_path.stream_surfaces import stream_surfaces
 from bladewright.errors import DesignError
@@ -60,19 +58,9 @@ REFUSED = {
         lambda: UNEVEN.changed({"leading_edge": UNEVEN.trailing_edge, "trailing_edge": UNEVEN.leading_edge}).surfaces(),
         "leading_edge and trailing_edge cross, or are swapped",
     ),
-    "point past the end": (
-        lambda: CYLINDER.bladed().lines(V, Conformal()).nearest(np.full((len(V), 2), 2.5)),
-        r"the point \(x, r\) = \(2.5, 2.5\) m has no nearest point on the stream line at v = 0: .* downstream end",
-    ),
-    "point outside": (
-        lambda: located(CYLINDER.surfaces(), np.array([[0.5, 2.3]])),
-        r"the point \(x, r\) = \(0.5, 2.3\) m lies 0.3 m outside the flow path",
-    ),
     "v outside": (lambda: CYLINDER.bladed().lines(np.array([1.1]), Conformal()), "asked at v = 1.1"),
     "not counted": (
-        lambda: prescribed_edges(
-            CYLINDER.surfaces(), *(e.line(1.0) for e in (CYLINDER.leading_edge, CYLINDER.trailing_edge)), counted=True
-        ).lines(V, DiscreteConformal()),
+        lambda: CYLINDER.bladed().lines(V, DiscreteConformal()),
         "needs all of them given by points with spacing 'conformal'",
     ),
     "uneven": (

@@ -5,12 +5,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
+from scipy.optimize import brentq
 
 from bladewright import cad
 from bladewright.blade.design.flow_path import FlowPath
 from bladewright.blade.exact.orthogonal_trajectory import orthogonal_trajectory
+from bladewright.blade.exact.placement import centroid, reference_points
 from bladewright.blade.exact.sectioned import exact_sectioned_blade
-from bladewright.blade.exact.stacking_axis import centroid, reference_points
 from bladewright.blade.flow_path.stream_surfaces import stream_surfaces
 from bladewright.blade.native.conformance import twist_of
 from bladewright.errors import DesignError
@@ -102,6 +103,20 @@ def test_the_line_of_least_distance_is_that_of_another_solver():
     assert found.t(V) == pytest.approx(other.y[0], abs=1e-12)
 
 
+def meridional_length(lines, points):
+    """From the leading edge to points (m, 2) on the stream lines."""
+    found = []
+    for i, point in enumerate(points):
+        own = lines.rows([i])
+
+        def ahead(u, own=own, point=point):
+            at = np.array([u])
+            return np.dot(own.position(at)[0, 0] - point, own.position(at, 1)[0, 0])
+
+        found.append(own.meridional(np.array([brentq(ahead, -0.5, 1.5, xtol=1e-15)]))[0, 0])
+    return np.array(found)
+
+
 @pytest.mark.parametrize("design", [stacked.AXIAL, stacked.LINE, stacked.RETURN, stacked.CASCADE, stacked.BESIDE])
 def test_sweep_and_lean_are_shifts_by_their_lengths_of_sections_that_stay_as_they_are(design):
     before, turned, still = reference(unshifted(design))
@@ -117,7 +132,7 @@ def test_sweep_and_lean_are_shifts_by_their_lengths_of_sections_that_stay_as_the
     around = (moved - turned) * (after[:, 1] if design.arrangement == "annular" else 1.0)
     assert around == pytest.approx(lean, abs=1e-14)
     if design.conformal_sweep is None:
-        ends = [still.lines.meridional(still.lines.nearest(each)[:, None])[:, 0] for each in (before, after)]
+        ends = [meridional_length(still.lines, each) for each in (before, after)]
         assert ends[1] - ends[0] == pytest.approx(sweep, abs=1e-12)
 
 

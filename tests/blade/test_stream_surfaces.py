@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from bladewright.blade.design.flow_path import FlowPath
-from bladewright.blade.flow_path.blade_streamlines import prescribed_edges
-from bladewright.blade.flow_path.location import in_plane, located
+from bladewright.blade.exact.prescribed_edges import PrescribedEdges
+from bladewright.blade.flow_path.quasi_orthogonals import fractions_at
 from bladewright.blade.flow_path.stream_surface_map import (
     Cascade,
     Conformal,
@@ -87,7 +87,7 @@ def test_a_walls_own_parameter_belongs_to_its_t(machine):
     surfaces = machine.surfaces()
     t = np.linspace(surfaces.low, surfaces.high, 33)
     for v, name in ((0.0, "hub"), (1.0, "shroud")):
-        points = surfaces.walls[name].values(surfaces.wall_parameter(name, t))
+        points = surfaces.wall(name).values(surfaces.wall_parameter(name, t))
         np.testing.assert_allclose(points, surfaces.position(np.array([v]), t[None])[0], atol=5e-15)
 
 
@@ -95,13 +95,13 @@ def test_a_walls_own_parameter_belongs_to_its_t(machine):
 def test_quasi_orthogonals_join_equal_fractions_of_the_lengths(machine):
     surfaces = machine.surfaces()
     pairs = np.array([(0.0, 0.0), *machine.path.quasi_orthogonals, (1.0, 1.0)])
-    for match, measure, fractions in zip(
-        (surfaces.matches[0], surfaces.matches[-1]), (surfaces.measures[0], surfaces.measures[-1]), pairs.T, strict=True
+    for match, curve, fractions in zip(
+        (surfaces.matches[0], surfaces.matches[-1]), (surfaces.curves[0], surfaces.curves[-1]), pairs.T, strict=True
     ):
-        np.testing.assert_allclose(match.fractions(pairs.mean(axis=1)), fractions, atol=1e-15)
-        t = np.linspace(0.0, 1.0, 9)
-        # the fraction of the measure is found again at the point
-        np.testing.assert_allclose(measure.fractions(measure.own(match.fractions(t))), match.fractions(t), atol=1e-14)
+        np.testing.assert_allclose(fractions_at(match, pairs.mean(axis=1)), fractions, atol=1e-15)
+        t = fractions_at(match, np.linspace(0.0, 1.0, 9))
+        # the fraction of the length is found again at the point
+        np.testing.assert_allclose(curve.fraction_at(curve.parameter_at(t)), t, atol=1e-14)
 
 
 @each_machine
@@ -124,18 +124,10 @@ def test_plane_points_go_to_space_and_back(machine, mapping):
     position = lines.position(lines.u_at(plane[..., 0]))
     tangential = mapping.tangential(plane[..., 1], position[..., 1], lines.lengths[..., None])
     points = mapping.in_space(position[..., 0], position[..., 1], tangential)
-    # in_plane counts the abscissa from t = 0
-    whole = stream_lines(
-        lines.stretch.surfaces, mapping, V, -lines.stretch.surfaces.low, lines.stretch.surfaces.high - 1.0
-    )
-    at_edge = whole.abscissa(lines.leading[:, None])
-    found = in_plane(machine.surfaces(), mapping, points.reshape(-1, 3))
-    scale = float(np.max(lines.extents()))
-    np.testing.assert_allclose(
-        found.v.reshape(plane.shape[:2]), np.broadcast_to(V[:, None], plane.shape[:2]), atol=1e-12
-    )
-    np.testing.assert_allclose(found.abscissa.reshape(plane.shape[:2]) - at_edge, plane[..., 0], atol=1e-12 * scale)
-    np.testing.assert_allclose(found.ordinate.reshape(plane.shape[:2]), plane[..., 1], atol=1e-12)
+    radius = np.hypot(points[..., 1], points[..., 2])
+    np.testing.assert_allclose(np.stack([points[..., 0], radius], axis=-1), lines.position(u), rtol=1e-12, atol=1e-13)
+    theta = np.arctan2(points[..., 1], points[..., 2])
+    np.testing.assert_allclose(mapping.start(theta, radius, lines.lengths[..., None]), ordinate, rtol=1e-12)
 
 
 @pytest.mark.parametrize("mapping", [Cascade(), Projected()], ids=["m-y", "x-y"])
@@ -148,10 +140,7 @@ def test_planes_of_a_cascade_go_to_space_and_back(mapping):
     if mapping.plane == "x-y":
         leading = lines.position(np.array([0.0]))[..., 0]
         np.testing.assert_allclose(points[..., 0] - leading, plane[..., 0], atol=1e-14)
-    found = in_plane(machine.surfaces(revolved=False), mapping, points.reshape(-1, 3))
-    np.testing.assert_allclose(found.v, np.repeat(V, 5), atol=1e-12)
-    steps = np.diff(found.abscissa.reshape(len(V), 5), axis=1)
-    np.testing.assert_allclose(steps, np.diff(plane[..., 0], axis=1), atol=1e-12)
+    np.testing.assert_allclose(points[..., 1], plane[..., 1], rtol=0.0)
 
 
 def test_a_plane_is_known_by_its_name():
@@ -188,38 +177,15 @@ def test_edges_lie_on_their_curves_and_on_the_stream_lines(machine):
     np.testing.assert_allclose(lines.t(np.array([0.0]))[:, 0], bladed.edges(V)[0], atol=1e-15)
 
 
-def test_the_nearest_point_on_a_bend_is_on_the_ray_through_it():
-    lines = BEND.bladed().lines(V, Conformal())
-    target = np.broadcast_to([1.3, 1.9], (len(V), 2))
-    found = lines.position(lines.nearest(target)[:, None])[:, 0]
-    ray = np.array([1.3, -1.1]) / np.hypot(1.3, 1.1)
-    np.testing.assert_allclose(found, [0.0, 3.0] + (2.0 - V)[:, None] * ray, atol=1e-14)
-
-
-@each_machine
-def test_points_are_located_where_they_were_taken(machine):
-    surfaces = machine.surfaces()
-    rng = np.random.default_rng(7)
-    t, v = rng.uniform(surfaces.low, surfaces.high, 40), rng.uniform(0.0, 1.0, 40)
-    t[:2], v[2:4] = (surfaces.low, surfaces.high), (0.0, 1.0)
-    found = located(surfaces, surfaces.at(t, v)[0])
-    np.testing.assert_allclose(found.t, t, atol=1e-12 * (surfaces.high - surfaces.low))
-    np.testing.assert_allclose(found.v, v, atol=1e-12)
-
-
-def quantities(machine, mapping, abscissa, target):
-    """What a blade takes from its flow path, at fixed v and u and at fixed places in plane and space, (..., k)."""
+def quantities(machine, mapping, abscissa):
+    """What a blade takes from its flow path, at fixed v and u and at fixed places in the plane, (..., k)."""
     bladed = machine.bladed()
     lines = bladed.lines(V[1:4], mapping)
-    targets = np.broadcast_to(target, (3, 2))
-    x, radius = target
-    point = np.array([[x, radius * np.sin(0.2), radius * np.cos(0.2)]])
     parts = [
         lines.position(np.array([0.0, 0.37, 1.0])), lines.position(np.array([1.0]), 1),
-        lines.position(lines.u_at(abscissa[:, None])), lines.nearest(targets), lines.extents(), lines.lengths,
-        *in_plane(bladed.surfaces, mapping, point)[:2],
+        lines.position(lines.u_at(abscissa[:, None])), lines.extents(), lines.lengths, *bladed.edges(V[1:4]),
     ]  # fmt: skip
-    batch = np.broadcast_shapes(*[part.shape[:1] for part in parts[5:6] if part.ndim > 1])
+    batch = np.broadcast_shapes(*[part.shape[:1] for part in parts[4:5] if part.ndim > 1])
     return np.concatenate(
         [np.broadcast_to(part, (*batch, *part.shape[len(batch) :])).reshape(*batch, -1) for part in parts], axis=-1
     )
@@ -227,7 +193,7 @@ def quantities(machine, mapping, abscissa, target):
 
 def fixed_places(machine, mapping):
     lines = machine.bladed().lines(V[1:4], mapping)
-    return 0.31 * lines.extents(), lines.position(np.array([0.4]))[1, 0] * [1.0, 1.001]
+    return 0.31 * lines.extents()
 
 
 def moved(machine, change):
@@ -247,7 +213,7 @@ def test_everything_carries_an_imaginary_step_of_every_parameter(name, mapping):
     places = fixed_places(machine, mapping)
     count = len(machine.parameters())
     # all parameters at once: each a batch with the step in its own member
-    jacobian = np.imag(quantities(moved(machine, 1e-30j * np.eye(count)), mapping, *places)) / 1e-30
+    jacobian = np.imag(quantities(moved(machine, 1e-30j * np.eye(count)), mapping, places)) / 1e-30
     if machine not in (CYLINDER, CONE, DISC):
         # points on a straight line may move along it without effect
         for path, row in zip(machine.parameters(), jacobian, strict=True):
@@ -257,7 +223,7 @@ def test_everything_carries_an_imaginary_step_of_every_parameter(name, mapping):
     for _ in range(2):
         way = rng.uniform(-1.0, 1.0, count)
         step = 2e-6 * size
-        up, down = (quantities(moved(machine, sign * step * way), mapping, *places) for sign in (1.0, -1.0))
+        up, down = (quantities(moved(machine, sign * step * way), mapping, places) for sign in (1.0, -1.0))
         scale = np.max(np.abs(way @ jacobian))
         # central differences: the square of the step times third derivatives, and rounding over the step
         np.testing.assert_allclose(way @ jacobian, (up - down) / (2.0 * step), rtol=1e-6, atol=1e-8 * scale)
@@ -266,9 +232,9 @@ def test_everything_carries_an_imaginary_step_of_every_parameter(name, mapping):
 def test_a_batch_of_flow_paths_is_its_members():
     places = fixed_places(IMPELLER, Conformal())
     values = IMPELLER.parameters()["path.hub.control_points[2].r"] + 1e-30j * np.arange(3)
-    both = quantities(IMPELLER.changed("path.hub.control_points[2].r", values), Conformal(), *places)
+    both = quantities(IMPELLER.changed("path.hub.control_points[2].r", values), Conformal(), places)
     for i, value in enumerate(values):
-        one = quantities(IMPELLER.changed("path.hub.control_points[2].r", value), Conformal(), *places)
+        one = quantities(IMPELLER.changed("path.hub.control_points[2].r", value), Conformal(), places)
         np.testing.assert_allclose(both[i].real, one.real, rtol=1e-14)
         np.testing.assert_allclose(both[i].imag, np.imag(one), rtol=1e-11, atol=1e-42)
 
@@ -307,7 +273,9 @@ def test_edges_and_their_m_are_those_of_tblade3(name):
     path, edges, counted, meetings = of_tblade3(name)
     surfaces = stream_surfaces(path, 1.0, tuple(edges))
     v = surfaces.spans
-    t = np.stack(prescribed_edges(surfaces, *(edge.line(1.0) for edge in edges)).edges(v), axis=-1)
+    leading, trailing = (edge.line(1.0) for edge in edges)
+    place = PrescribedEdges(surfaces=surfaces, leading_edge=leading, trailing_edge=trailing)
+    t = np.stack(place.edges(v), axis=-1)
     first, rate = surfaces.counted(v)
     np.testing.assert_allclose(first[:, None] + rate[:, None] * t, counted, rtol=0.0, atol=ROOTS)
     np.testing.assert_allclose(surfaces.position(v, t), meetings, rtol=0.0, atol=ROOTS)
@@ -317,8 +285,7 @@ def test_edges_and_their_m_are_those_of_tblade3(name):
 
 
 def test_the_plane_of_a_counted_m_is_linear_between_the_edges():
-    edges = [edge.line(1.0) for edge in (GIVEN.leading_edge, GIVEN.trailing_edge)]
-    lines = prescribed_edges(GIVEN.surfaces(), *edges, counted=True).lines(V, DiscreteConformal())
+    lines = GIVEN.bladed().lines(V, DiscreteConformal())
     u = np.linspace(-0.1, 1.1, 13)
     np.testing.assert_allclose(lines.abscissa(u), lines.extents()[:, None] * u, atol=1e-15)
     np.testing.assert_allclose(lines.u_at(lines.abscissa(u)), np.broadcast_to(u, (len(V), 13)), atol=1e-14)

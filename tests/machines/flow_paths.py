@@ -6,7 +6,7 @@ import numpy as np
 
 from bladewright.blade.design.flow_path import FlowPath
 from bladewright.blade.design.meridional_curve import ControlPolygon, StraightsAndArcs, ThroughPoints
-from bladewright.blade.flow_path.blade_streamlines import prescribed_edges
+from bladewright.blade.exact.prescribed_edges import PrescribedEdges
 from bladewright.blade.flow_path.stream_surfaces import stream_surfaces
 from bladewright.designs import Part
 
@@ -24,7 +24,7 @@ class Machine(Part):
 
     def bladed(self, **options):
         edges = self.leading_edge.line(1.0), self.trailing_edge.line(1.0)
-        return prescribed_edges(self.surfaces(**options), *edges)
+        return PrescribedEdges(surfaces=self.surfaces(**options), leading_edge=edges[0], trailing_edge=edges[1])
 
 
 def through(*points, **options):

@@ -5,7 +5,7 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import Annotated, Literal
+from typing import Annotated, ClassVar, Literal
 
 import numpy as np
 
@@ -18,8 +18,16 @@ from bladewright.section.laws import stacked
 from bladewright.section.tagged_unions import ByKey
 
 
-class _Curve(Part, ABC):
-    """What every kind of meridian answers."""
+class MeridianDesign(Part, ABC):
+    """Base of the kinds of meridians."""
+
+    polygon: ClassVar[bool]
+    """whether the given points are control points or corners, and do not lie on the curve"""
+
+    @property
+    @abstractmethod
+    def given(self) -> Points:
+        """The points that the curve is given by."""
 
     @abstractmethod
     def line(self, metre: float) -> MeridionalCurve:
@@ -27,8 +35,10 @@ class _Curve(Part, ABC):
 
 
 @dataclass(frozen=True, kw_only=True)
-class ThroughPoints(_Curve):
+class ThroughPoints(MeridianDesign):
     """The cubic spline with two continuous derivatives through points in (x, r)."""
+
+    polygon: ClassVar[bool] = False
 
     points: Points = parameter("length")
     """points on the curve, two or more, no two in a row the same [length]"""
@@ -50,13 +60,19 @@ class ThroughPoints(_Curve):
                         "radius, which must be positive; move the point off the axis, or take spacing 'length'"
                     )
 
+    @property
+    def given(self) -> Points:
+        return self.points
+
     def line(self, metre: float) -> MeridionalCurve:
         return spline_through(_array(self.points, metre), conformal=self.spacing == "conformal", ends=self.ends)
 
 
 @dataclass(frozen=True, kw_only=True)
-class ControlPolygon(_Curve):
+class ControlPolygon(MeridianDesign):
     """The clamped uniform B-spline on control points in (x, r)."""
+
+    polygon: ClassVar[bool] = True
 
     control_points: Points = parameter("length")
     """control points, two or more, no two in a row the same [length]"""
@@ -67,18 +83,24 @@ class ControlPolygon(_Curve):
         object.__setattr__(self, "control_points", _apart("control_points", self.control_points))
         checks.integer("degree", self.degree, 1, 5, "a whole number is needed")
 
+    @property
+    def given(self) -> Points:
+        return self.control_points
+
     def line(self, metre: float) -> MeridionalCurve:
         points = _array(self.control_points, metre)
         return spline_on(points, min(len(self.control_points) - 1, self.degree))
 
 
 @dataclass(frozen=True, kw_only=True)
-class StraightsAndArcs(_Curve):
+class StraightsAndArcs(MeridianDesign):
     """Straight pieces between corners in (x, r), each inner corner rounded by an arc that is tangent to both.
 
     An arc may use up the straight pieces beside it: a quarter bend is three corners and one radius. A corner whose
     radius is 0 stays one, and the curve has a joint without a continuous direction there.
     """
+
+    polygon: ClassVar[bool] = True
 
     corners: Points = parameter("length")
     """first point, inner corners and last point, no two in a row the same [length]"""
@@ -101,6 +123,10 @@ class StraightsAndArcs(_Curve):
             checks.between(f"radii[{i}]", radius, 0.0, np.inf, "a radius must not be negative", closed=True)
         object.__setattr__(self, "radii", radii)
 
+    @property
+    def given(self) -> Points:
+        return self.corners
+
     def line(self, metre: float) -> MeridionalCurve:
         radii = metre * stacked(self.radii) if self.radii else np.zeros(0)
         return rounded_corners(_array(self.corners, metre), radii, metre)
@@ -108,13 +134,11 @@ class StraightsAndArcs(_Curve):
 
 Meridian = Annotated[ThroughPoints | ControlPolygon | StraightsAndArcs, ByKey()]
 """A curve in (x, r) of any kind: which one follows from what is given."""
-MERIDIANS = (ThroughPoints, ControlPolygon, StraightsAndArcs)
-"""The kinds of meridians."""
 
 
 def meridian_at(path: str, value: object) -> Meridian:
     """The value where it is a meridian, or a refusal."""
-    if isinstance(value, MERIDIANS):
+    if isinstance(value, ThroughPoints | ControlPolygon | StraightsAndArcs):
         return value
     raise DesignError(
         f"{path} is {value!r}: a curve in (x, r) is needed: its points, its control_points, or its corners with radii"

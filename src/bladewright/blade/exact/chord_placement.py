@@ -7,7 +7,7 @@ import numpy as np
 
 from bladewright.blade.flow_path.blade_streamlines import BladeStreamlines, blade_streamlines
 from bladewright.blade.flow_path.meridional_curve import real_first
-from bladewright.blade.flow_path.stream_surface_map import DiscreteConformal, StreamSurfaceMap, TrueLengths
+from bladewright.blade.flow_path.stream_surface_map import StreamSurfaceMap, TrueLengths
 from bladewright.blade.flow_path.stream_surfaces import StreamSurfaces
 from bladewright.errors import DesignError
 from bladewright.numerics.elementary import Array, concatenated, length
@@ -85,8 +85,7 @@ def chord_placement(
     """The ruler around reference points at t (..., m) for sections of a chord (..., m) [m]."""
     at = real_first(t, 1)
     unit = real_first(chord, 1) / length(real_first(surfaces.position(v, at[:, None], 1), 3)[:, 0])
-    counted = isinstance(mapping, DiscreteConformal)
-    lines = blade_streamlines(surfaces, v, mapping, t, t + unit, counted=counted, before=REACH, after=REACH)
+    lines = blade_streamlines(surfaces, v, mapping, t, t + unit, before=REACH, after=REACH)
     return ChordPlacement(lines=lines, surfaces=surfaces, at=at)
 
 

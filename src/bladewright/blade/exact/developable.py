@@ -9,7 +9,7 @@ import numpy as np
 from bladewright.blade.exact.family_sections import FamilySections, FlowPathSections
 from bladewright.blade.flow_path.blade_streamlines import blade_streamlines
 from bladewright.blade.flow_path.meridional_curve import real_first
-from bladewright.blade.flow_path.stream_surface_map import DiscreteConformal, StreamSurfaceMap
+from bladewright.blade.flow_path.stream_surface_map import StreamSurfaceMap
 from bladewright.blade.flow_path.stream_surfaces import StreamSurfaces
 from bladewright.errors import DesignError
 from bladewright.numerics.elementary import Array, angle, concatenated, dot
@@ -294,8 +294,7 @@ def developable_sections(
     chord = hub.placed(np.array([[[0.0, 0.0], [1.0, 0.0]]]))
     t = _hub_crossings(surfaces, hub, direction, chord, v).t
     mapping = hub.mapping
-    counted = isinstance(mapping, DiscreteConformal)
-    lines = blade_streamlines(surfaces, v, mapping, t[..., 0], t[..., 1], counted=counted)
+    lines = blade_streamlines(surfaces, v, mapping, t[..., 0], t[..., 1])
     return DevelopableSections(v=v, lines=lines, surfaces=surfaces, hub=hub, direction=direction)
 
 

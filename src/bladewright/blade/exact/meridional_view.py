@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from bladewright.blade.design.meridional_curve import ControlPolygon, Meridian, StraightsAndArcs, ThroughPoints
+from bladewright.blade.design.meridional_curve import Meridian
+from bladewright.blade.flow_path.quasi_orthogonals import parameters_at
 from bladewright.nurbs.basis import Reals
 from bladewright.section.checks import UNITS
 
@@ -84,37 +85,32 @@ def flow_path_view(exact: "ExactSectionedBlade") -> MeridionalView:
     t = np.linspace(surfaces.low, surfaces.high, COUNT)
     v = np.linspace(0.0, 1.0, COUNT)
     drawn = {
-        name: _line(getattr(path, name), np.real(surfaces.walls[name].values(v)), metre) for name in ("hub", "shroud")
+        name: _line(getattr(path, name), np.real(surfaces.wall(name).values(v)), metre) for name in ("hub", "shroud")
     }
     built = np.real(exact.sections(v).lines.position(np.array([0.0, 1.0])))
     shifted = any(law is not None for law in (design.sweep, design.lean, design.conformal_sweep))
     for end, name in enumerate(("leading_edge", "trailing_edge")):
-        given, line = getattr(design, name), getattr(exact.place, name, None)
+        given, line = getattr(design, name), exact.placement.edge_curves[end]
         drawn[name] = (
             ViewLine(points=built[:, end], given=np.empty((0, 2)), polygon=False)
             if shifted or given is None or line is None
             else _line(given, np.real(line.values(v)), metre)
         )
-    given = zip(path.stream_surfaces, surfaces.measures[1:-1], strict=True)
+    given = zip(path.stream_surfaces, surfaces.curves[1:-1], strict=True)
     on_hub = np.array([float(np.real(pair[0])) for pair in path.quasi_orthogonals])
-    joined = surfaces.grid(surfaces.matches[0].places(on_hub, surfaces.low, surfaces.high), v)[0] if len(on_hub) else ()
+    joined = (
+        surfaces.grid(parameters_at(surfaces.matches[0], on_hub, surfaces.low, surfaces.high), v)[0]
+        if len(on_hub)
+        else ()
+    )
     return MeridionalView(
         lines=MappingProxyType(drawn),
         stream_lines=tuple(np.real(surfaces.position(STREAM_LINES, np.tile(t, (len(STREAM_LINES), 1))))),
-        stream_surfaces=tuple(_line(meridian, np.real(each.line.values(v)), metre) for meridian, each in given),
+        stream_surfaces=tuple(_line(meridian, np.real(each.values(v)), metre) for meridian, each in given),
         quasi_orthogonals=tuple(np.real(joined)),
     )
 
 
 def _line(meridian: Meridian, points: Reals, metre: float) -> ViewLine:
-    name, polygon = _GIVEN[type(meridian)]
-    given = metre * np.array([[np.real(point.x), np.real(point.r)] for point in getattr(meridian, name)])
-    return ViewLine(points=points, given=given, polygon=polygon)
-
-
-_GIVEN: dict[type, tuple[str, bool]] = {
-    ThroughPoints: ("points", False),
-    ControlPolygon: ("control_points", True),
-    StraightsAndArcs: ("corners", True),
-}
-"""the field of a meridian's points, and whether they are a polygon"""
+    given = metre * np.array([[np.real(point.x), np.real(point.r)] for point in meridian.given])
+    return ViewLine(points=points, given=given, polygon=meridian.polygon)

@@ -1,26 +1,24 @@
 """The exact blade of sections: for every v the family's section, on its stream surface, where the design places it."""
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from bladewright.blade.exact.chord_placement import chord_placement
 from bladewright.blade.exact.developable import developable_sections
 from bladewright.blade.exact.exact_blade import MIDDLE, ExactBlade
 from bladewright.blade.exact.family_sections import FamilySections, FlowPathSections
 from bladewright.blade.exact.meridional_extent import FlowPathExtent, flow_path_extent
 from bladewright.blade.exact.meridional_view import MeridionalView, flow_path_view
+from bladewright.blade.exact.placement import Placement, reference_points
+from bladewright.blade.exact.prescribed_edges import PrescribedEdges
 from bladewright.blade.exact.ruled import ruled_sections
-from bladewright.blade.exact.stacking_axis import StackingAxis, reference_points
-from bladewright.blade.exact.sweep_lean import shift_of, shifted_lines
+from bladewright.blade.exact.stacking_axis import StackingAxis
+from bladewright.blade.exact.sweep_lean import shifted_lines, shifts
 from bladewright.blade.exact.unified import SURVEY
-from bladewright.blade.flow_path.blade_streamlines import BladeStreamlines, PrescribedEdges, prescribed_edges
-from bladewright.blade.flow_path.location import curve_joints
 from bladewright.blade.flow_path.meridional_curve import MeridionalCurve, real_first
-from bladewright.blade.flow_path.stream_surface_map import DiscreteConformal, StreamSurfaceMap, plane_of
+from bladewright.blade.flow_path.stream_surface_map import StreamSurfaceMap, plane_of
 from bladewright.blade.flow_path.stream_surfaces import StreamSurfaces, stream_surfaces
 from bladewright.blade.native.knots import DEGREE
 from bladewright.errors import DesignError
@@ -31,107 +29,29 @@ from bladewright.section.crossing import check_outline
 from bladewright.section.laws import DEGREE as LAW_DEGREE
 from bladewright.section.laws import Span, inner_knots, laws_of
 from bladewright.section.native import knots_for, native_section
-from bladewright.section.outline import Outline
 from bladewright.section.section import Section
 from bladewright.section.smoothness import Smoothness, outline_smoothness
 
 if TYPE_CHECKING:
     from bladewright.blade.design.sectioned import SectionedBlade
 
-STEEP = np.radians(89.0)
-"""largest angle of a chord line: beyond it its extent along the flow says nothing of the chord"""
-ROUNDS = 60
-"""tries in which a chord line's angle and its place, where each depends on the other, settle; mostly five do"""
 
-Place = PrescribedEdges | StackingAxis
-"""what puts sections on their stream lines: edge curves, or reference points"""
-Found = tuple[BladeStreamlines, Outline, Array, Array]
-"""stream lines between the sections' edges, sections, their stagger and reference points"""
-
-
-def placed_sections(design: "SectionedBlade", place: Place, mapping: StreamSurfaceMap, v: Reals) -> FamilySections:
-    """Sections at v (m,); raises DesignError where there are none, or they do not fit in the flow path."""
+def placed_sections(
+    design: "SectionedBlade", placement: Placement, mapping: StreamSurfaceMap, v: Reals
+) -> FamilySections:
+    """Sections at v (m,) with sweep and lean; raises DesignError where they do not fit in the flow path."""
     span = Span(v)
-    if isinstance(place, PrescribedEdges):
-        lines = place.lines(v, mapping)
-        outline, stagger = family_sections(design, span, lines)
-        _check_stagger(stagger, v)
-        reference = reference_points(design.stacking, outline, span)
-    else:
-        lines, outline, stagger, reference = _stacked(design, place, mapping, span)
+    lines, outline, stagger, reference = placement.placed(design, mapping, span)
     chord = lines.extents() / np.cos(stagger)
     turned = np.cos(stagger), np.sin(stagger)
     along = chord * (reference[..., 0] * turned[0] - reference[..., 1] * turned[1])
     across = chord * (reference[..., 0] * turned[1] + reference[..., 1] * turned[0])
-    shift = shift_of(design, span, stagger)
-    lines = shifted_lines(place.surfaces, lines, along, shift)
+    meridional, conformal, tangential = shifts(design, span, stagger)
+    lines = shifted_lines(placement.surfaces, lines, along, meridional, conformal)
     radius = lines.position(lines.u_at(along[..., None]))[..., 0, 1]
-    around = shift.tangential / radius if mapping.revolved else shift.tangential
+    around = tangential / radius if mapping.revolved else tangential
     start = mapping.start(_tangential(design, span) + around, radius, lines.lengths) - across
     return FamilySections(v=v, lines=lines, outline=outline, stagger=stagger, chord=chord, start=start)
-
-
-def family_sections(design: "SectionedBlade", span: Span, lines: BladeStreamlines) -> tuple[Outline, Array]:
-    """The family's sections in chords and their stagger (..., m) [rad] on stream lines."""
-    part = design.section
-    if lines.mapping.plane != "m'-theta":
-        return part.outline(span), part.stagger(span)
-
-    def meridional(fractions: Reals) -> Array:
-        u = lines.u_at(lines.extents()[..., None] * fractions)
-        return lines.meridional(u) / lines.lengths[..., None]
-
-    return part.on_stream_surfaces(span, meridional)
-
-
-def _stacked(design: "SectionedBlade", place: StackingAxis, mapping: StreamSurfaceMap, span: Span) -> Found:
-    stacking, v = place.stacking, span.v
-    chord = place.metre * span.values(0.0 if stacking.chord is None else stacking.chord)
-    ruler = chord_placement(place.surfaces, v, mapping, place.t(v), chord)
-
-    def laid(outline: Outline, stagger: Array) -> Found:
-        _check_stagger(stagger, v)
-        reference = reference_points(stacking, outline, span)
-        share = reference[..., 0] - reference[..., 1] * np.tan(stagger)
-        lines = ruler.between(share, chord * np.cos(stagger))
-        return lines, outline, stagger, reference
-
-    part = design.section
-    outline, stagger = part.outline(span), part.stagger(span)
-    if not (part.depends_on_stream_surface and mapping.plane == "m'-theta"):
-        return laid(outline, stagger)
-
-    def again(lines: BladeStreamlines) -> tuple[Outline, Array]:
-        return family_sections(design, span, lines)
-
-    return _settled(laid, again, outline, stagger)
-
-
-def _settled(
-    laid: Callable[[Outline, Array], Found],
-    again: Callable[[BladeStreamlines], tuple[Outline, Array]],
-    outline: Outline,
-    stagger: Array,
-) -> Found:
-    """Sections whose stagger follows from the stream lines that they are laid on, by the secant method."""
-    weight: Any = -1.0
-    before: tuple[Reals, Reals] | None = None
-    for _ in range(ROUNDS):
-        outline, found = again(laid(outline, stagger)[0])
-        off = found - stagger
-        real, carried = np.real(off), np.max(np.square(np.imag(found)), initial=0.0)
-        if np.max(np.square(real)) < 1e-26 and np.max(np.square(np.imag(off)), initial=0.0) <= 1e-24 * carried:
-            return laid(outline, found)
-        if before is not None:
-            moved, turned = np.real(stagger) - before[0], real - before[1]
-            with np.errstate(all="ignore"):
-                weight = np.where(np.square(turned) > 1e-16, moved / turned, weight)
-        before = np.real(stagger), real
-        stagger = stagger - weight * off
-    raise DesignError(
-        "stacking: the sections' chord lines turn with the place that their chord gives them, and do not settle: "
-        "give leading_edge and trailing_edge, which say where the sections begin and end"
-    )
 
 
 def _tangential(design: "SectionedBlade", span: Span) -> Array:
@@ -143,18 +63,6 @@ def _tangential(design: "SectionedBlade", span: Span) -> Array:
         law = stacking.theta if annular else stacking.y
     values = span.values(0.0 if law is None else law)
     return radians(values) if annular else design.metre * values
-
-
-def _check_stagger(stagger: Array, v: Reals) -> None:
-    real = np.real(stagger).reshape(-1, len(v))
-    steep = np.argwhere(real**2 >= STEEP**2)
-    if len(steep):
-        row, at = steep[0]
-        raise DesignError(
-            f"section: its chord line stands at {np.degrees(real[row, at]):.4g} deg at v = {v[at]:.3f}: it must keep "
-            "below 89 deg to both sides, for beyond it the extent along the flow says nothing of the chord; lower the "
-            "stagger angle there"
-        )
 
 
 ENDS = np.array([0.0, 1.0])
@@ -171,7 +79,7 @@ class ExactSectionedBlade(ExactBlade):
 
     design: "SectionedBlade"
     surfaces: StreamSurfaces
-    place: Place
+    placement: Placement
     """what puts the sections on their stream lines: edge curves, or reference points"""
 
     @cached_property
@@ -189,7 +97,7 @@ class ExactSectionedBlade(ExactBlade):
 
     def design_sections(self, v: Reals) -> FamilySections:
         """The design's sections at v (m,); raises DesignError where there are none, or they leave the flow path."""
-        return placed_sections(self.design, self.place, self.mapping, v)
+        return placed_sections(self.design, self.placement, self.mapping, v)
 
     @cached_property
     def rails(self) -> FamilySections:
@@ -245,26 +153,9 @@ class ExactSectionedBlade(ExactBlade):
                 needed(float(knot), LAW_DEGREE - 1)
         for place in self.surfaces.span_joints():
             needed(float(place), 2)
-        for place, smooth in self._joints_across():
+        for place, smooth in self.placement.span_joints():
             needed(place, smooth)
         return np.array([knot for knot in sorted(times) for _ in range(times[knot])])
-
-    def _joints_across(self) -> list[tuple[float, int]]:
-        """v at which the lines that sections stand on lose derivatives, and how many they keep there."""
-        design, place, v = self.design, self.place, np.linspace(0.0, 1.0, 17)
-        if isinstance(place, PrescribedEdges):
-            edges = (design.leading_edge, place.leading_edge), (design.trailing_edge, place.trailing_edge)
-            return [
-                joint
-                for (edge, line), meeting in zip(edges, place.meetings(v), strict=True)
-                if edge is not None
-                for joint in curve_joints(self.surfaces, edge, line, v, meeting)
-            ]
-        if place.stacking.onwards == "least-distance":
-            # stream lines keep one derivative at least, and the line across them one more
-            return [(float(joint), 2) for joint in place.path.joints]
-        meridian = place.stacking.line
-        return [] if meridian is None else curve_joints(self.surfaces, meridian, place.line, v, place.meeting(v))
 
     def check(self) -> None:
         self.check_neighbours()
@@ -286,7 +177,7 @@ class ExactSectionedBlade(ExactBlade):
         return self
 
     def wall(self, name: str) -> MeridionalCurve:
-        return self.surfaces.walls[name]
+        return self.surfaces.wall(name)
 
     def end_wall(self, row: int) -> tuple[Curve, Reals]:
         curve = self.wall(("hub", "shroud")[row]).curve()
@@ -349,7 +240,7 @@ def exact_sectioned_blade(design: "SectionedBlade", *, checked: bool = True) -> 
     except DesignError as error:
         raise DesignError(f"flow_path: {error}") from error
     exact = ExactSectionedBlade(
-        design=design, mapping=mapping, surfaces=surfaces, place=_place(design, surfaces, mapping)
+        design=design, mapping=mapping, surfaces=surfaces, placement=_placement(design, surfaces)
     )
     if checked:
         v = {"sections": SURVEY, "ruled": ENDS, "developable": ENDS[:1]}[design.skinning]
@@ -358,11 +249,10 @@ def exact_sectioned_blade(design: "SectionedBlade", *, checked: bool = True) -> 
     return exact
 
 
-def _place(design: "SectionedBlade", surfaces: StreamSurfaces, mapping: StreamSurfaceMap) -> Place:
-    metre, stacking = design.metre, design.stacking
+def _placement(design: "SectionedBlade", surfaces: StreamSurfaces) -> Placement:
     if design.leading_edge is not None and design.trailing_edge is not None:
-        leading, trailing = (edge.line(metre) for edge in (design.leading_edge, design.trailing_edge))
-        return prescribed_edges(surfaces, leading, trailing, counted=isinstance(mapping, DiscreteConformal))
-    if stacking is None:
+        leading, trailing = (edge.line(design.metre) for edge in (design.leading_edge, design.trailing_edge))
+        return PrescribedEdges(surfaces=surfaces, leading_edge=leading, trailing_edge=trailing)
+    if design.stacking is None:
         raise DesignError("leading_edge, trailing_edge and stacking are missing: nothing says where the sections stand")
-    return StackingAxis(surfaces=surfaces, stacking=stacking, metre=metre)
+    return StackingAxis(surfaces=surfaces, stacking=design.stacking, metre=design.metre)

@@ -1,114 +1,75 @@
-"""Stacking without edge curves: the sections' reference points, and where they stand in the flow path."""
+"""Stacking without edge curves: where the sections' reference points stand in the flow path."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property, partial
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from bladewright.blade.design.stacking import HUB_PLACES, Stacking
+from bladewright.blade.exact.chord_placement import chord_placement
 from bladewright.blade.exact.orthogonal_trajectory import OrthogonalTrajectory, orthogonal_trajectory
-from bladewright.blade.flow_path.blade_streamlines import blade_streamlines, labels
-from bladewright.blade.flow_path.intersections import Intersection, intersections
+from bladewright.blade.exact.placement import Placed, Placement, check_stagger, family_sections, reference_points
+from bladewright.blade.flow_path.blade_streamlines import BladeStreamlines, blade_streamlines, labels
+from bladewright.blade.flow_path.intersections import curve_joints, intersections
 from bladewright.blade.flow_path.meridional_curve import MeridionalCurve, real_first, spline_on
-from bladewright.blade.flow_path.stream_surface_map import Cascade
-from bladewright.blade.flow_path.stream_surfaces import StreamSurfaces
+from bladewright.blade.flow_path.stream_surface_map import Cascade, StreamSurfaceMap
 from bladewright.errors import DesignError
-from bladewright.numerics.elementary import Array, concatenated
-from bladewright.numerics.quadrature import converged_quadrature, gauss, panels
+from bladewright.numerics.elementary import Array
 from bladewright.nurbs.basis import Reals
 from bladewright.section.laws import Span
 from bladewright.section.outline import Outline
 
-PIECES = 6
-"""pieces in equal steps that a side is cut into besides its joints"""
-
-
-def reference_points(stacking: Stacking | None, outline: Outline, span: Span) -> Array:
-    """Points (..., m, 2) of the sections in chords, unstaggered; the leading edge where there is no stacking."""
-    which = "leading-edge" if stacking is None else stacking.reference
-    if which == "centroid":
-        return centroid(outline)
-    ends = {"leading-edge": 0.0, "trailing-edge": 1.0}
-    along = np.full(len(span.v), ends[which]) if which in ends else _fraction(stacking, span)
-    return np.stack([along, np.zeros_like(along)], axis=-1)
-
-
-def _fraction(stacking: Stacking | None, span: Span) -> Array:
-    law = None if stacking is None else stacking.chord_fraction
-    return span.values(0.0 if law is None else law)
-
-
-def centroid(outline: Outline) -> Array:
-    """Centres of area (..., 2) of sections in their planes, in chords, by Green's theorem and Gauss quadrature.
-
-    Each side is the polynomial through the Gauss points of a panel, whose order is raised until the centre moves by
-    less than 1e-13.
-    """
-    return converged_quadrature(lambda order: _centroid(outline, order))
-
-
-def _centroid(outline: Outline, order: int) -> Array:
-    breaks = np.unique([*np.linspace(0.0, 1.0, PIECES + 1), *(joint.s for joint in outline.joints)])
-    s, weights = panels(breaks, order)
-    slopes = _slopes(order)
-    widths = np.diff(breaks)[:, None, None]
-    upper, lower = outline.points(s)
-    area: Array = np.zeros(())
-    first: Array = np.zeros(())
-    second: Array = np.zeros(())
-    for side, sign in ((upper, 1.0), (lower, -1.0)):
-        pieces = side.reshape(*side.shape[:-2], len(breaks) - 1, order, 2)
-        rates = ((slopes @ pieces) / widths).reshape(side.shape)
-        x, y = side[..., 0], side[..., 1]
-        area = area + sign * np.sum(weights * (x * rates[..., 1] - y * rates[..., 0]), axis=-1) / 2.0
-        first = first + sign * np.sum(weights * x**2 * rates[..., 1], axis=-1) / 2.0
-        second = second - sign * np.sum(weights * y**2 * rates[..., 0], axis=-1) / 2.0
-    for start, end in _faces(outline):
-        a, b = np.moveaxis(start, -1, 0), np.moveaxis(end, -1, 0)
-        step = b - a
-        area = area + (a[0] * b[1] - a[1] * b[0]) / 2.0
-        first = first + step[1] * (a[0] ** 2 + a[0] * b[0] + b[0] ** 2) / 6.0
-        second = second - step[0] * (a[1] ** 2 + a[1] * b[1] + b[1] ** 2) / 6.0
-    return concatenated([(first / area)[..., None], (second / area)[..., None]], axis=-1)
-
-
-def _faces(outline: Outline) -> list[tuple[Array, Array]]:
-    """Ends (..., 2) of the straight faces of blunt edges, round the section as the upper side runs."""
-    first, last = outline.leading_edge, outline.trailing_edge
-    found = [(last.upper.point, last.lower.point)] if last.kind == "blunt" else []
-    return found + ([(first.lower.point, first.upper.point)] if first.kind == "blunt" else [])
-
-
-def _slopes(order: int) -> Reals:
-    """Derivatives (order, order) at Gauss points of [0, 1] of the polynomial through values there, barycentric."""
-    nodes = gauss(order)[0]
-    apart = nodes[:, None] - nodes + np.eye(order)
-    shares = 1.0 / np.prod(4.0 * apart, axis=1)
-    matrix = shares / shares[:, None] / apart
-    np.fill_diagonal(matrix, 0.0)
-    np.fill_diagonal(matrix, -np.sum(matrix, axis=1))
-    return matrix
-
+if TYPE_CHECKING:
+    from bladewright.blade.design.sectioned import SectionedBlade
 
 WIDER = 0.1
 """share of the flow path by which a line of equal x or r reaches past it"""
+ROUNDS = 60
+"""tries in which a chord line's angle and its place, where each depends on the other, settle; mostly five do"""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class StackingAxis:
+class StackingAxis(Placement):
     """The reference points of a stacking without edge curves, in a flow path."""
 
-    surfaces: StreamSurfaces
     stacking: Stacking
     metre: float
     """metres in the design's unit of length"""
 
+    def placed(self, design: "SectionedBlade", mapping: StreamSurfaceMap, span: Span) -> Placed:
+        stacking, v, part = self.stacking, span.v, design.section
+        chord = self.metre * span.values(0.0 if stacking.chord is None else stacking.chord)
+        around = chord_placement(self.surfaces, v, mapping, self.t(v), chord)
+
+        def on_lines(outline: Outline, stagger: Array) -> Placed:
+            check_stagger(stagger, v)
+            reference = reference_points(stacking, outline, span)
+            share = reference[..., 0] - reference[..., 1] * np.tan(stagger)
+            lines = around.between(share, chord * np.cos(stagger))
+            return lines, outline, stagger, reference
+
+        outline, stagger = part.outline(span), part.stagger(span)
+        if not (part.depends_on_stream_surface and mapping.plane == "m'-theta"):
+            return on_lines(outline, stagger)
+        return _settled(on_lines, partial(family_sections, design, span), outline, stagger)
+
+    def span_joints(self) -> list[tuple[float, int]]:
+        if self.stacking.onwards == "least-distance":
+            # stream lines keep one derivative at least, and the line across them one more
+            return [(float(joint), 2) for joint in self.path.joints]
+        if self.stacking.line is None:
+            return []
+        v = np.linspace(0.0, 1.0, 17)
+        return curve_joints(self.surfaces, self.line, v, self.intersections(v))
+
     def t(self, v: Reals) -> Array:
         """t (..., m) of the reference points at v (m,); raises DesignError where there is none, or more than one."""
-        return self.path.t(v) if self.stacking.onwards == "least-distance" else self.meeting(v).t
+        return self.path.t(v) if self.stacking.onwards == "least-distance" else self.intersections(v)[0]
 
-    def meeting(self, v: Reals) -> Intersection:
-        """Where the stream lines at v (m,) meet the stacking line."""
+    def intersections(self, v: Reals) -> tuple[Array, Array]:
+        """Where the stream lines at v (m,) meet the stacking line: t, and the line's parameter."""
         name = "stacking.line" if self.stacking.line is not None else f"stacking.{self.given}"
         try:
             return intersections(partial(self.surfaces.position, v), self.surfaces.extent, self.line, name, labels(v))
@@ -152,7 +113,7 @@ class StackingAxis:
             return self._by_length(at)
         line = self._straight(self.given[-1], self._value)
         position = partial(self.surfaces.position, at)
-        return intersections(position, self.surfaces.extent, line, f"stacking.{self.given}", ["of the hub"]).t[..., 0]
+        return intersections(position, self.surfaces.extent, line, f"stacking.{self.given}", ["of the hub"])[0][..., 0]
 
     @property
     def _value(self) -> Array:
@@ -181,3 +142,30 @@ class StackingAxis:
         held = value[..., None] * np.ones(2)
         pair = (held, np.broadcast_to(across, held.shape))
         return spline_on(np.stack(pair if axis == "x" else pair[::-1], axis=-1), 1)
+
+
+def _settled(
+    on_lines: Callable[[Outline, Array], Placed],
+    again: Callable[[BladeStreamlines], tuple[Outline, Array]],
+    outline: Outline,
+    stagger: Array,
+) -> Placed:
+    """Sections whose stagger follows from the stream lines that they are laid on, by the secant method."""
+    weight: Any = -1.0
+    before: tuple[Reals, Reals] | None = None
+    for _ in range(ROUNDS):
+        outline, found = again(on_lines(outline, stagger)[0])
+        off = found - stagger
+        real, carried = np.real(off), np.max(np.square(np.imag(found)), initial=0.0)
+        if np.max(np.square(real)) < 1e-26 and np.max(np.square(np.imag(off)), initial=0.0) <= 1e-24 * carried:
+            return on_lines(outline, found)
+        if before is not None:
+            moved, turned = np.real(stagger) - before[0], real - before[1]
+            with np.errstate(all="ignore"):
+                weight = np.where(np.square(turned) > 1e-16, moved / turned, weight)
+        before = np.real(stagger), real
+        stagger = stagger - weight * off
+    raise DesignError(
+        "stacking: the sections' chord lines turn with the place that their chord gives them, and do not settle: "
+        "give leading_edge and trailing_edge, which say where the sections begin and end"
+    )

@@ -1,14 +1,12 @@
 """Stream lines of a flow path by u: 0 on the blade's leading and 1 on its trailing edge, and on past them."""
 
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property, partial
+from functools import cached_property
 
 import numpy as np
 
-from bladewright.blade.flow_path.intersections import Intersection, intersections, nearest_parameters
-from bladewright.blade.flow_path.meridional_curve import MeridionalCurve, real_first
-from bladewright.blade.flow_path.stream_surface_map import Cascade, DiscreteConformal, StreamSurfaceMap
+from bladewright.blade.flow_path.meridional_curve import real_first
+from bladewright.blade.flow_path.stream_surface_map import Cascade, StreamSurfaceMap
 from bladewright.blade.flow_path.stream_surfaces import StreamSurfaces
 from bladewright.blade.flow_path.streamlines import StreamLines, stream_lines
 from bladewright.errors import DesignError
@@ -24,7 +22,6 @@ class DiscreteConformalLines:
     places on them alone.
     """
 
-    mapping: StreamSurfaceMap
     surfaces: StreamSurfaces
     v: Reals
     """(m,) span fractions"""
@@ -60,69 +57,60 @@ class DiscreteConformalLines:
 
     def rows(self, which: list[int]) -> "DiscreteConformalLines":
         """Some of the stream lines, by their number along the span."""
-        return DiscreteConformalLines(
-            mapping=self.mapping, surfaces=self.surfaces, v=self.v[which], low=self.low, high=self.high
-        )
+        return DiscreteConformalLines(surfaces=self.surfaces, v=self.v[which], low=self.low, high=self.high)
 
     def real(self) -> "DiscreteConformalLines":
         """The same without imaginary parts and batch."""
-        return DiscreteConformalLines(
-            mapping=self.mapping, surfaces=self.surfaces.real(), v=self.v, low=self.low, high=self.high
-        )
+        return DiscreteConformalLines(surfaces=self.surfaces.real(), v=self.v, low=self.low, high=self.high)
 
 
-ROOM = 1e-9
+ROUNDING = 1e-9
 """share of the stretch by which a section may reach past it: rounding"""
 BESIDE = 1.0
 """how far, in u, stream lines are laid out past the edges where the flow path reaches so far"""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Stretch:
-    """The part of a flow path around a blade, over [0, 1]; it is `Channelled`."""
-
-    surfaces: StreamSurfaces
-    low: float
-    """t at 0"""
-    high: float
-    """t at 1"""
-
-    def joints(self) -> Reals:
-        """Where the polynomials of stream lines end."""
-        own = (np.concatenate([self.surfaces.joints(), [0.0, 1.0]]) - self.low) / (self.high - self.low)
-        return np.sort(own[(own > ROOM) & (own < 1.0 - ROOM)])
-
-    def stream_polynomials(self, v: Array, centres: Reals) -> Array:
-        """Coefficients (..., len(v), len(centres), k, 2) of (x, r) in powers of the parameter less each centre."""
-        width = self.high - self.low
-        powers = self.surfaces.stream_polynomials(v, self.low + width * centres)
-        return powers * (width ** np.arange(powers.shape[-2]))[:, None]
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
 class BladeStreamlines:
     """Stream lines (..., m) of a flow path; they answer as `StreamLines` do, u linear in t between the edges."""
 
-    stretch: Stretch
+    surfaces: StreamSurfaces
+    low: float
+    """t at which the stretch of the flow path around the blade begins"""
+    high: float
+    """t at which it ends"""
     v: Reals
     """(m,) span fractions"""
-    lines: StreamLines | DiscreteConformalLines
-    """the same by the parameter of the stretch"""
+    mapping: StreamSurfaceMap
+    """the sections' plane"""
     leading: Array
     """(..., m) t on the leading edge"""
     trailing: Array
     """(..., m) t on the trailing edge"""
     rate: Array | None = None
-    """(..., m) increase of m' over the stretch, where it is counted in equal steps; none elsewhere"""
+    """(..., m) increase of a discrete m' over the stretch; none in other planes"""
 
-    @property
-    def mapping(self) -> StreamSurfaceMap:
-        """The sections' plane."""
-        return self.lines.mapping
+    @cached_property
+    def lines(self) -> StreamLines | DiscreteConformalLines:
+        """The same stream lines by the share of the stretch, from 0 to 1."""
+        if self.rate is None:
+            return stream_lines(self, self.mapping, self.v, 0.0, 0.0)
+        return DiscreteConformalLines(surfaces=self.surfaces, v=self.v, low=self.low, high=self.high)
+
+    def joints(self) -> Reals:
+        """Shares of the stretch at which the polynomials of stream lines end."""
+        own = (np.concatenate([self.surfaces.joints(), [0.0, 1.0]]) - self.low) / (self.high - self.low)
+        return np.sort(own[(own > ROUNDING) & (own < 1.0 - ROUNDING)])
+
+    def stream_polynomials(self, v: Array, centres: Reals) -> Array:
+        """Coefficients (..., len(v), len(centres), k, 2) of (x, r) in powers of the share less each centre."""
+        width = self.high - self.low
+        powers = self.surfaces.stream_polynomials(v, self.low + width * centres)
+        return powers * (width ** np.arange(powers.shape[-2]))[:, None]
 
     def t(self, u: Array) -> Array:
         """t (..., m, k) on the flow path at u (..., m, k) or (k,)."""
-        return self.stretch.low + (self.stretch.high - self.stretch.low) * self._own(u)
+        return self.low + (self.high - self.low) * self._own(u)
 
     def position(self, u: Array, order: int = 0) -> Array:
         """(x, r) or derivatives by u (..., m, k, 2) at u (..., m, k) or (k,)."""
@@ -160,14 +148,14 @@ class BladeStreamlines:
 
     def real(self) -> "BladeStreamlines":
         """The same without imaginary parts and batch."""
-        return replace(
+        found = replace(
             self,
-            stretch=replace(self.stretch, surfaces=self.stretch.surfaces.real()),
-            lines=self.lines.real(),
+            surfaces=self.surfaces.real(),
             leading=real_first(self.leading, 1),
             trailing=real_first(self.trailing, 1),
             rate=None if self.rate is None else real_first(self.rate, 1),
         )
+        return _known(found, lines=self.lines.real())
 
     @cached_property
     def lengths(self) -> Array:
@@ -191,44 +179,32 @@ class BladeStreamlines:
 
     @cached_property
     def _by_length(self) -> StreamLines:
-        return stream_lines(self.stretch, Cascade(), self.v, 0.0, 0.0)
+        return stream_lines(self, Cascade(), self.v, 0.0, 0.0)
 
     def between(self, leading: Array, trailing: Array) -> "BladeStreamlines":
         """The same stream lines by u from 0 at t = `leading` to 1 at t = `trailing`, (..., m) each."""
-        found = replace(self, leading=leading, trailing=trailing)
-        # it does not depend on where u counts from
-        found.__dict__["_by_length"] = self._by_length
-        return found
+        return _known(replace(self, leading=leading, trailing=trailing), lines=self.lines, _by_length=self._by_length)
 
     def rows(self, which: list[int]) -> "BladeStreamlines":
         """Some of the stream lines, by their number along the span."""
-        return replace(
+        found = replace(
             self,
             v=self.v[which],
-            lines=self.lines.rows(which),
             leading=self.leading[..., which],
             trailing=self.trailing[..., which],
             rate=None if self.rate is None else self.rate[..., which],
         )
-
-    def nearest(self, targets: Array) -> Array:
-        """u (..., m) at least distance from points (x, r) (..., m, 2), one for each stream line.
-
-        All of the flow path is searched. Raises DesignError where the nearest point is an end of it.
-        """
-        surfaces = self.stretch.surfaces
-        found = nearest_parameters(partial(surfaces.position, self.v), surfaces.extent, targets, labels(self.v))
-        return (found - self.leading) / (self.trailing - self.leading)
+        return _known(found, lines=self.lines.rows(which))
 
     @property
     def _start(self) -> Array:
         """The stretch's parameter on the leading edge."""
-        return (self.leading - self.stretch.low) / (self.stretch.high - self.stretch.low)
+        return (self.leading - self.low) / (self.high - self.low)
 
     @property
     def _speed(self) -> Array:
         """Its increase by u."""
-        return (self.trailing - self.leading) / (self.stretch.high - self.stretch.low)
+        return (self.trailing - self.leading) / (self.high - self.low)
 
     @cached_property
     def _origin(self) -> Array:
@@ -242,15 +218,15 @@ class BladeStreamlines:
     def _check(self, share: Reals) -> None:
         """Refuse shares of the stretch (..., m, k) outside of it."""
         past = np.maximum(-share, share - 1.0)
-        if np.max(past, initial=-1.0) <= ROOM:
+        if np.max(past, initial=-1.0) <= ROUNDING:
             return
         worst = np.unravel_index(int(np.argmax(past)), past.shape)
         row, downstream = int(worst[-2]), bool(share[worst] > 1.0)
-        surfaces, v = self.stretch.surfaces, self.v[row]
+        surfaces, v = self.surfaces, self.v[row]
         end = "downstream" if downstream else "upstream"
-        room = ROOM * (surfaces.high - surfaces.low)
-        if surfaces.high - self.stretch.high > room if downstream else self.stretch.low - surfaces.low > room:
-            edge, far = (self.trailing, self.stretch.high) if downstream else (self.leading, self.stretch.low)
+        room = ROUNDING * (surfaces.high - surfaces.low)
+        if surfaces.high - self.high > room if downstream else self.low - surfaces.low > room:
+            edge, far = (self.trailing, self.high) if downstream else (self.leading, self.low)
             beside = (far - edge) / (self.trailing - self.leading)
             share_of = 100.0 * float(np.max(np.square(real_first(beside, 1)[row])) ** 0.5)
             raise DesignError(
@@ -265,55 +241,6 @@ class BladeStreamlines:
         )
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class PrescribedEdges:
-    """A flow path with the leading- and trailing-edge curves of a blade in it."""
-
-    surfaces: StreamSurfaces
-    leading_edge: MeridionalCurve
-    trailing_edge: MeridionalCurve
-    counted: bool = False
-    """whether m' is counted as `spacing` "conformal" does, instead of exact"""
-
-    def edges(self, v: Reals) -> tuple[Array, Array]:
-        """t (..., m) where the stream lines at v (m,) meet the leading and the trailing edge.
-
-        Raises DesignError where they do not meet, or not in this order.
-        """
-        leading, trailing = (meeting.t for meeting in self.meetings(v))
-        return leading, trailing
-
-    def meetings(self, v: Reals) -> list[Intersection]:
-        """Where the stream lines at v (m,) meet the leading and the trailing edge."""
-        new = np.array([each for each in np.unique(v) if each not in self._met])
-        if len(new):
-            self._met.update(zip(new, zip(*map(_each, self._sought(new)), strict=True), strict=True))
-        return [_together([self._met[each][edge] for each in v]) for edge in (0, 1)]
-
-    @cached_property
-    def _met(self) -> dict[float, tuple[Intersection, ...]]:
-        """Meetings with both edges by v: sections, their edges and their joints ask at many of the same places."""
-        return {}
-
-    def _sought(self, v: Reals) -> list[Intersection]:
-        position = partial(self.surfaces.position, v)
-        return [
-            intersections(position, self.surfaces.extent, edge, name, labels(v))
-            for edge, name in ((self.leading_edge, "leading_edge"), (self.trailing_edge, "trailing_edge"))
-        ]
-
-    def lines(self, v: Reals, mapping: StreamSurfaceMap) -> BladeStreamlines:
-        """Stream lines at v (m,) by u between the edges."""
-        return blade_streamlines(self.surfaces, v, mapping, *self.edges(v), counted=self.counted)
-
-
-def prescribed_edges(
-    surfaces: StreamSurfaces, leading_edge: MeridionalCurve, trailing_edge: MeridionalCurve, *, counted: bool = False
-) -> PrescribedEdges:
-    """The flow path with a blade's edge curves in it."""
-    return PrescribedEdges(surfaces=surfaces, leading_edge=leading_edge, trailing_edge=trailing_edge, counted=counted)
-
-
 def blade_streamlines(
     surfaces: StreamSurfaces,
     v: Reals,
@@ -321,14 +248,13 @@ def blade_streamlines(
     leading: Array,
     trailing: Array,
     *,
-    counted: bool = False,
     before: float = BESIDE,
     after: float = BESIDE,
 ) -> BladeStreamlines:
     """Stream lines at v (m,) by u, 0 at t = `leading` and 1 at t = `trailing`, (..., m) each, in a plane.
 
-    They go on by `before` and `after` in u where the flow path does. Where m' is `counted`, the mapping is `Counted`
-    whatever is given. Raises DesignError where a trailing edge is not downstream of its leading edge.
+    They go on by `before` and `after` in u where the flow path does. Raises DesignError where a trailing edge is not
+    downstream of its leading edge.
     """
     leading, trailing = np.broadcast_arrays(leading, trailing)
     start, end = real_first(leading, 1), real_first(trailing, 1)
@@ -340,29 +266,29 @@ def blade_streamlines(
         )
     low = max(surfaces.low, float(np.min(start - before * (end - start))))
     high = min(surfaces.high, float(np.max(end + after * (end - start))))
-    stretch = Stretch(surfaces=surfaces.along(v), low=low, high=high)
-    rate = surfaces.counted(v)[1] * (high - low) if counted else None
-    lines: StreamLines | DiscreteConformalLines
-    if counted:
-        lines = DiscreteConformalLines(mapping=DiscreteConformal(), surfaces=stretch.surfaces, v=v, low=low, high=high)
-    else:
-        lines = stream_lines(stretch, mapping, v, 0.0, 0.0)
-    return BladeStreamlines(stretch=stretch, v=v, lines=lines, leading=leading, trailing=trailing, rate=rate)
+    found = BladeStreamlines(
+        surfaces=surfaces.along(v),
+        low=low,
+        high=high,
+        v=v,
+        mapping=mapping,
+        leading=leading,
+        trailing=trailing,
+        rate=surfaces.counted(v)[1] * (high - low) if mapping.discrete else None,
+    )
+    # at once, so that stream lines which cannot be are refused here
+    return _known(found, lines=found.lines)
+
+
+def _known(own: BladeStreamlines, **found: StreamLines | DiscreteConformalLines) -> BladeStreamlines:
+    """Stream lines with cached properties that are known from others."""
+    own.__dict__.update(found)
+    return own
 
 
 def labels(v: Reals) -> list[str]:
     """What stream lines are called in messages."""
     return [f"at v = {each:.4g}" for each in v]
-
-
-def _each(meeting: Intersection) -> list[Intersection]:
-    """The meetings (...) of each stream line."""
-    return [Intersection(meeting.t[..., i], meeting.q[..., i]) for i in range(meeting.t.shape[-1])]
-
-
-def _together(meetings: Sequence[Intersection]) -> Intersection:
-    """Meetings (..., m) of m stream lines."""
-    return Intersection(*(np.stack(each, axis=-1) for each in zip(*meetings, strict=True)))
 
 
 def _gauss() -> tuple[Reals, Reals]:

@@ -1,14 +1,17 @@
-"""Where stream lines meet an edge curve, and where they come nearest to a point."""
+"""Where stream lines meet an edge curve, and where along the span that curve loses derivatives."""
 
 from collections.abc import Callable
-from typing import NamedTuple
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from bladewright.blade.flow_path.meridional_curve import MeridionalCurve, real_first
 from bladewright.errors import DesignError
-from bladewright.numerics.elementary import Array, cross2, dot, length
+from bladewright.numerics.elementary import Array, cross2, length
 from bladewright.nurbs.basis import Reals
+
+if TYPE_CHECKING:
+    from bladewright.blade.flow_path.stream_surfaces import StreamSurfaces
 
 REACH = 0.05
 """share of an edge curve by which it is continued past its ends to meet a wall that it was drawn short of"""
@@ -16,6 +19,8 @@ SAMPLES = 65
 """places on a stream line, and on an edge curve, between which meetings are looked for"""
 STEPS = 40
 """Newton's steps after which no meeting is expected any more; mostly four do"""
+NEWTON = 6
+"""Newton's steps from an interpolated place to the span fraction of a joint"""
 SAME = 1e-7
 """meetings nearer than this, in the edge curve's parameter, are one"""
 
@@ -23,20 +28,12 @@ Position = Callable[[Reals, int], Array]
 """points (..., m, k, 2) of m stream lines at t (m, k), or their derivatives of an order"""
 
 
-class Intersection(NamedTuple):
-    """Where stream lines meet an edge curve."""
-
-    t: Array
-    """(..., m) on the stream lines"""
-    q: Array
-    """(..., m) own parameter on the edge curve"""
-
-
 def intersections(
     position: Position, extent: tuple[float, float], edge: MeridionalCurve, name: str, labels: list[str]
-) -> Intersection:
-    """The meetings of m stream lines, t from extent[0] to extent[1], with an edge curve, to rounding.
+) -> tuple[Array, Array]:
+    """Where m stream lines, t from extent[0] to extent[1], meet an edge curve, to rounding.
 
+    Returns t (..., m) on the stream lines, and the edge curve's own parameter (..., m).
     `name` is the edge curve's in what is refused, and `labels` (m,) the stream lines'. Raises DesignError where they do
     not meet, the edge curve continued by REACH of itself at both ends, or meet more than once.
     """
@@ -61,51 +58,32 @@ def intersections(
     miss, along = point - edge.values(own), edge.values(own, 1)
     # one more of Newton's steps, in complex numbers, is the derivative of the meeting
     turn = cross2(slope, along)
-    return Intersection(at - cross2(miss, along) / turn, own - cross2(miss, slope) / turn)
+    return at - cross2(miss, along) / turn, own - cross2(miss, slope) / turn
 
 
-def nearest_parameters(position: Position, extent: tuple[float, float], targets: Array, labels: list[str]) -> Array:
-    """t (..., m) of the points at least distance from targets (..., m, 2), one on each of m stream lines.
+def curve_joints(
+    surfaces: "StreamSurfaces", curve: MeridionalCurve, v: Reals, met: tuple[Array, Array]
+) -> list[tuple[float, int]]:
+    """v at which an edge curve or stacking line loses derivatives, and how many it keeps there.
 
-    t is sought from extent[0] to extent[1]. Raises DesignError where the nearest point is an end of the stream line.
+    `met` is where the stream lines at increasing v (m,), from 0 to 1, meet it: t, and its own parameter.
     """
-    low, high = extent
-    t = np.linspace(low, high, SAMPLES)
-    aims = real_first(targets, 2)
-    rows = real_first(position(np.broadcast_to(t, (len(labels), SAMPLES)), 0), 3)
-    at = t[np.argmin(length(rows - aims[:, None, :]), axis=1)]
-    step = t[1] - t[0]
-    left, right = np.maximum(at - step, low), np.minimum(at + step, high)
-    for _ in range(STEPS):
-        miss, slope, bend = _around(position, at, aims)
-        value, rate = dot(miss, slope), dot(slope, slope) + dot(miss, bend)
-        left, right = np.where(value < 0.0, at, left), np.where(value < 0.0, right, at)
-        with np.errstate(all="ignore"):
-            newton = at - value / rate
-        inside = (rate > 0.0) & (newton >= left) & (newton <= right)
-        after = np.where(inside, newton, 0.5 * (left + right))
-        settled = np.max(np.square(after - at)) < 1e-30 * (high - low) ** 2
-        at = after
-        if settled:
-            break
-    miss, slope, _ = _around(position, at, aims)
-    tilted = np.square(dot(miss, slope)) > 1e-16 * dot(slope, slope) * (dot(miss, miss) + 1e-12 * dot(slope, slope))
-    if np.any(tilted):
-        i = int(np.argmax(tilted))
-        end = "upstream" if at[i] < 0.5 * (low + high) else "downstream"
-        raise DesignError(
-            f"the point (x, r) = ({aims[i, 0]:.6g}, {aims[i, 1]:.6g}) m has no nearest point on the stream line "
-            f"{labels[i]}: it stands past the {end} end of the flow path; lengthen hub and shroud there, or move the "
-            "point"
-        )
-    point, slope, bend = (position(at[:, None], order)[..., 0, :] for order in range(3))
-    miss = point - targets
-    return at - dot(miss, slope) / (dot(slope, slope) + dot(miss, bend))
-
-
-def _around(position: Position, at: Reals, aims: Reals) -> tuple[Reals, Reals, Reals]:
-    point, slope, bend = (real_first(position(at[:, None], order), 3)[:, 0, :] for order in range(3))
-    return point - aims, slope, bend
+    levels, smooth = curve.smoothness()
+    if len(levels) == 0:
+        return []
+    t, q = (real_first(each, 1) for each in met)
+    if q[0] > q[-1]:
+        t, q, v = t[::-1], q[::-1], v[::-1]
+    inside = (levels > q[0]) & (levels < q[-1])
+    at = np.interp(levels[inside], q, v)
+    own = np.interp(levels[inside], q, t)
+    target = real_first(curve.values(levels[inside]), 2)
+    for _ in range(NEWTON):
+        point, along, across = (real_first(each, 2) for each in surfaces.at(own, at))
+        turn, miss = cross2(along, across), target - point
+        own = np.clip(own + cross2(miss, across) / turn, surfaces.low, surfaces.high)
+        at = np.clip(at + cross2(along, miss) / turn, 0.0, 1.0)
+    return list(zip(at.tolist(), smooth[inside].tolist(), strict=True))
 
 
 def _starts(rows: Reals, curve: Reals, t: Reals, q: Reals) -> tuple[Reals, Reals]:

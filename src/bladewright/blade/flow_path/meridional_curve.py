@@ -1,15 +1,37 @@
 """Native curves in (x, r): splines through points or on control points, and straight pieces with rounded corners."""
 
 from dataclasses import dataclass
+from functools import cached_property
 from math import comb, factorial, perm
 from typing import Literal
 
 import numpy as np
+from numpy.typing import NDArray
 
+from bladewright.blade.flow_path.stream_surface_map import Cascade
+from bladewright.blade.flow_path.streamlines import StreamLines, stream_lines
 from bladewright.errors import DesignError
 from bladewright.numerics.elementary import Array, cross2, dot, length, unit
 from bladewright.nurbs.basis import Reals, basis, uniform_knots
 from bladewright.nurbs.curve import Curve
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class PiecewisePolynomial:
+    """Polynomials of one real parameter, each over its piece; past an end the first and the last go on."""
+
+    breaks: Reals
+    """(p + 1,) ends of the pieces"""
+    powers: Array
+    """(..., p, k, d) coefficients in powers of the parameter less the middle of the piece"""
+
+    def values(self, at: Reals, order: int = 0) -> Array:
+        """Values, or derivatives (..., m, d), at real places (m,) of the parameter."""
+        return piecewise(self.powers, self.breaks, at, order)
+
+    def around(self, centres: Reals) -> Array:
+        """Coefficients (..., c, k, d) in powers of the parameter less each of the centres (c,)."""
+        return shifted(self.powers, self.breaks, centres)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -33,6 +55,9 @@ class MeridionalCurve:
     counted: Array | None = None
     """(...) the sum of chords over mean radii, where the parameter counts it in equal steps; none elsewhere"""
 
+    point_ends: Literal["smooth", "released"] | None = None
+    """how the cubic spline through given points ends; None: a curve of another kind"""
+
     @property
     def degree(self) -> int:
         """Degree of the B-spline."""
@@ -42,6 +67,16 @@ class MeridionalCurve:
         """Where the curve loses derivatives."""
         return self.breaks[1:-1]
 
+    def smoothness(self) -> tuple[Reals, NDArray[np.intp]]:
+        """Own parameters (n,) at which the curve loses derivatives, and how many it keeps there (n,)."""
+        levels, counts = np.unique(self.knots[self.degree + 1 : -self.degree - 1], return_counts=True)
+        if self.point_ends is None:
+            return levels, self.degree - counts
+        # one cubic goes over the first two intervals, and one over the last two
+        levels = levels[1:-1] if self.point_ends == "smooth" else levels
+        # it keeps two derivatives, though its knots, which move with the points, would let it lose one
+        return levels, np.full(len(levels), 2)
+
     def values(self, at: Reals, order: int = 0) -> Array:
         """Points, or derivatives (..., m, 2), at real places (m,) of the parameter; past an end its piece goes on."""
         return piecewise(self.powers, self.breaks, at, order)
@@ -50,6 +85,34 @@ class MeridionalCurve:
         """Coefficients (..., len(v), len(centres), k, 2) of the powers of the parameter less each centre."""
         found = shifted(self.powers, self.breaks, centres)[..., None, :, :, :]
         return np.broadcast_to(found, (*found.shape[:-4], len(v), *found.shape[-3:]))
+
+    @cached_property
+    def by_length(self) -> StreamLines | None:
+        """The curve by its length; none where its own parameter counts the sum of chords over mean radii."""
+        return stream_lines(self, Cascade(), np.zeros(1), 0.0, 0.0) if self.counted is None else None
+
+    def parameter_at(self, fraction: Array) -> Array:
+        """The own parameter (..., k) at fractions (..., k) of the length, or of what the parameter counts."""
+        if self.by_length is None:
+            return fraction
+        whole = self.by_length.extents()[..., 0]
+        return self.by_length.u_at((fraction * whole[..., None])[..., None, :])[..., 0, :]
+
+    def fraction_at(self, own: Array) -> Array:
+        """Fractions (..., k) of the length, or of what the parameter counts, at own parameters (..., k) or (k,)."""
+        if self.by_length is None or own.shape[-1] == 0:
+            return own
+        return self.by_length.abscissa(own[..., None, :])[..., 0, :] / self.by_length.extents()
+
+    def at_fraction(self, fraction: Array) -> Array:
+        """(x, r) (..., k, 2) at fractions (..., k) of the length, or of what the parameter counts."""
+        own = self.parameter_at(fraction)
+        if self.by_length is not None:
+            return self.by_length.position(own[..., None, :])[..., 0, :, :]
+        real = real_first(own, 1)
+        away = own - real
+        value, slope = self.values(real), self.values(real, 1)
+        return value + away[..., None] * slope if np.iscomplexobj(away) else value
 
     def curve(self) -> Curve:
         """The same as a native curve over its own parameter."""
@@ -110,7 +173,9 @@ def spline_through(
     powers = binomials(middles - sites[..., :-1], 4) @ powers
     # two derivatives are continuous, but only one of their change as the places of the points move
     net, knots = joined_net(powers, breaks, np.ones(len(breaks) - 2, dtype=int))
-    return MeridionalCurve(breaks=breaks, powers=powers, net=net, knots=knots, counted=total if conformal else None)
+    return MeridionalCurve(
+        breaks=breaks, powers=powers, net=net, knots=knots, counted=total if conformal else None, point_ends=ends
+    )
 
 
 def cubic_pieces(steps: Array, values: Array, ends: str = "smooth") -> tuple[Array, Array]:

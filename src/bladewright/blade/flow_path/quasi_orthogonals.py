@@ -1,14 +1,17 @@
 """Meridians brought to one common parameter t, in which points of different ones belong together."""
 
-from dataclasses import dataclass
 from functools import cache
 
 import numpy as np
 from numpy.polynomial import chebyshev
 
-from bladewright.blade.flow_path.meridional_curve import MeridionalCurve, binomials, cubic_pieces, piecewise, real_first
-from bladewright.blade.flow_path.stream_surface_map import Cascade
-from bladewright.blade.flow_path.streamlines import StreamLines, stream_lines
+from bladewright.blade.flow_path.meridional_curve import (
+    MeridionalCurve,
+    PiecewisePolynomial,
+    binomials,
+    cubic_pieces,
+    real_first,
+)
 from bladewright.errors import DesignError
 from bladewright.numerics.elementary import Array
 from bladewright.numerics.roots import level_crossings
@@ -23,82 +26,31 @@ SETTLED = 1e-15
 HALVINGS = 8
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class MeasuredCurve:
-    """A meridian with the measure along it: its length, or the sum of chords over radii where it counts that."""
-
-    line: MeridionalCurve
-    lines: StreamLines | None
-    """the line by its length; none where its own parameter is the measure"""
-
-    @property
-    def whole(self) -> Array:
-        """(...) the measure of all of it: metres, or as m'."""
-        return self.line.counted if self.lines is None else self.lines.extents()[..., 0]  # type: ignore[return-value]
-
-    def own(self, fraction: Array) -> Array:
-        """The own parameter (..., k) at fractions (..., k) of the measure."""
-        if self.lines is None:
-            return fraction
-        return self.lines.u_at((fraction * self.whole[..., None])[..., None, :])[..., 0, :]
-
-    def fractions(self, own: Array) -> Array:
-        """Fractions (..., k) of the measure at own parameters (..., k) or (k,)."""
-        if self.lines is None or own.shape[-1] == 0:
-            return own
-        return self.lines.abscissa(own[..., None, :])[..., 0, :] / self.whole[..., None]
-
-    def position(self, fraction: Array) -> Array:
-        """(x, r) (..., k, 2) at fractions (..., k) of the measure."""
-        own = self.own(fraction)
-        if self.lines is not None:
-            return self.lines.position(own[..., None, :])[..., 0, :, :]
-        real = real_first(own, 1)
-        away = own - real
-        value, slope = self.line.values(real), self.line.values(real, 1)
-        return value + away[..., None] * slope if np.iscomplexobj(away) else value
+def fractions_at(match: PiecewisePolynomial, t: Reals) -> Array:
+    """Fractions (..., k) of a curve at real t (k,); past the ends the pieces go on."""
+    return match.values(t)[..., 0]
 
 
-def measured_curve(line: MeridionalCurve) -> MeasuredCurve:
-    """A meridian with its measure."""
-    if line.counted is not None:
-        return MeasuredCurve(line=line, lines=None)
-    return MeasuredCurve(line=line, lines=stream_lines(line, Cascade(), np.zeros(1), 0.0, 0.0))
+def parameters_at(match: PiecewisePolynomial, levels: Reals, low: float, high: float) -> Reals:
+    """The t between `low` and `high` at which real fractions (k,) of a curve are passed."""
+    if len(match.breaks) == 2 and match.powers.shape[-2] == 2:
+        middle, slope = real_first(match.powers, 3)[0, :, 0]
+        return np.asarray((levels - middle) / slope + 0.5 * (match.breaks[0] + match.breaks[1]))
+    t = np.linspace(low, high, 513)
+
+    def fractions(at: Reals) -> Reals:
+        return real_first(fractions_at(match, at), 1)
+
+    return level_crossings(fractions, t, fractions(t), levels)
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class Match:
-    """The fraction of a line's measure as a function of t: one straight piece, or a smooth curve of cubics."""
-
-    breaks: Reals
-    """(q + 1,) ends of the pieces in t"""
-    powers: Array
-    """(..., q, k, 1) coefficients in powers of t less the middle of the piece"""
-
-    def fractions(self, t: Reals) -> Array:
-        """Fractions (..., k) at real t (k,); past the ends the pieces go on."""
-        return piecewise(self.powers, self.breaks, t)[..., 0]
-
-    def places(self, levels: Reals, low: float, high: float) -> Reals:
-        """t at which real fractions (k,) are passed."""
-        if len(self.breaks) == 2 and self.powers.shape[-2] == 2:
-            middle, slope = real_first(self.powers, 3)[0, :, 0]
-            return np.asarray((levels - middle) / slope + 0.5 * (self.breaks[0] + self.breaks[1]))
-        t = np.linspace(low, high, 513)
-
-        def fractions(at: Reals) -> Reals:
-            return real_first(self.fractions(at), 1)
-
-        return level_crossings(fractions, t, fractions(t), levels)
-
-
-def straight_match(start: Array, end: Array) -> Match:
+def straight_match(start: Array, end: Array) -> PiecewisePolynomial:
     """Fractions from `start` (...) at t = 0 to `end` (...) at t = 1, and on past them."""
     pair = np.stack(np.broadcast_arrays((start + end) / 2.0, end - start), axis=-1)
-    return Match(breaks=np.array([0.0, 1.0]), powers=pair[..., None, :, None])
+    return PiecewisePolynomial(breaks=np.array([0.0, 1.0]), powers=pair[..., None, :, None])
 
 
-def curved_matches(pairs: Array) -> tuple[Match, Match]:
+def curved_matches(pairs: Array) -> tuple[PiecewisePolynomial, PiecewisePolynomial]:
     """Matches of hub and shroud whose fractions meet in pairs (..., n, 2), with 0 and 1 added; t is their mean.
 
     Raises DesignError where a curve through the fractions does not increase.
@@ -110,10 +62,10 @@ def curved_matches(pairs: Array) -> tuple[Match, Match]:
     sites, powers = cubic_pieces(np.diff(means), all_pairs)
     t = real_first(means, 1)
     powers = binomials((t[:-1] + t[1:]) / 2.0 - sites[..., :-1], 4) @ powers
-    found = [Match(breaks=t, powers=powers[..., k : k + 1]) for k in (0, 1)]
+    found = [PiecewisePolynomial(breaks=t, powers=powers[..., k : k + 1]) for k in (0, 1)]
     for match, name in zip(found, ("hub", "shroud"), strict=True):
         at = np.linspace(0.0, 1.0, 513)
-        steps = np.diff(real_first(match.fractions(at), 1))
+        steps = np.diff(real_first(fractions_at(match, at), 1))
         if np.min(steps) <= 0.0:
             near = int(np.argmin(np.abs(t[1:-1] - at[int(np.argmin(steps))])))  # real: places
             raise DesignError(
@@ -123,34 +75,20 @@ def curved_matches(pairs: Array) -> tuple[Match, Match]:
     return found[0], found[1]
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class MatchedLine:
-    """A line as polynomials of t."""
-
-    breaks: Reals
-    """(p + 1,) ends of the panels in t"""
-    powers: Array
-    """(..., p, k, 2) coefficients of (x, r) in powers of t less the middle of the panel"""
-
-    def values(self, t: Reals, order: int = 0) -> Array:
-        """Points, or derivatives by t (..., m, 2), at real t (m,)."""
-        return piecewise(self.powers, self.breaks, t, order)
-
-
-def matched_line(along: MeasuredCurve, match: Match, low: float, high: float) -> MatchedLine:
-    """A line as polynomials of t from `low` to `high`, to rounding: panels are halved until the series settle."""
-    levels = real_first(along.fractions(along.line.joints()), 1)
-    own = np.sort(np.concatenate([match.places(levels, low, high), match.breaks[1:-1]]))
+def matched_curve(curve: MeridionalCurve, match: PiecewisePolynomial, low: float, high: float) -> PiecewisePolynomial:
+    """(x, r) of a curve by t from `low` to `high`, to rounding: panels are halved until the series settle."""
+    levels = real_first(curve.fraction_at(curve.joints()), 1)
+    own = np.sort(np.concatenate([parameters_at(match, levels, low, high), match.breaks[1:-1]]))
     ends = np.concatenate([[low], distinct(own, low, high), [high]])
-    count = FEW if along.lines is None and match.powers.shape[-2] == 2 else NODES
-    powers, tail = _fitted(along, match, ends, count)
+    count = FEW if curve.counted is not None and match.powers.shape[-2] == 2 else NODES
+    powers, tail = _fitted(curve, match, ends, count)
     for _ in range(0 if count == FEW else HALVINGS):
         poor = tail > SETTLED
         if not np.any(poor):
             break
         ends = np.sort(np.concatenate([ends, ((ends[:-1] + ends[1:]) / 2.0)[poor]]))
-        powers, tail = _fitted(along, match, ends, count)
-    return MatchedLine(breaks=ends, powers=powers)
+        powers, tail = _fitted(curve, match, ends, count)
+    return PiecewisePolynomial(breaks=ends, powers=powers)
 
 
 def distinct(places: Reals, low: float, high: float) -> Reals:
@@ -160,12 +98,12 @@ def distinct(places: Reals, low: float, high: float) -> Reals:
     return inside[np.concatenate([[True], np.diff(inside) > room])] if len(inside) else inside
 
 
-def _fitted(along: MeasuredCurve, match: Match, ends: Reals, count: int) -> tuple[Array, Reals]:
+def _fitted(curve: MeridionalCurve, match: PiecewisePolynomial, ends: Reals, count: int) -> tuple[Array, Reals]:
     """Powers (..., p, count, 2) on each panel, and what their last terms are of the line's extent."""
     places, to_series, to_powers = _rules(count)
     middles, halves = (ends[:-1] + ends[1:]) / 2.0, np.diff(ends) / 2.0
     t = (middles[:, None] + halves[:, None] * places).ravel()
-    points = along.position(match.fractions(t))
+    points = curve.at_fraction(fractions_at(match, t))
     points = points.reshape(*points.shape[:-2], len(middles), count, 2)
     series = to_series @ points
     real = real_first(series, 3)

@@ -54,6 +54,8 @@ class StreamSurfaceMap(ABC):
     """the plane's coordinates by name"""
     keeps_ordinate: bool = True
     """whether neighbours stand one pitch apart in the plane's ordinate everywhere"""
+    discrete: bool = False
+    """whether its m' is counted, chord by chord, by the points of hub, shroud and stream surfaces"""
     keeps_angles: bool = True
     """whether a built blade is promised the angles and edge radii that its sections have"""
 
@@ -260,6 +262,8 @@ class DiscreteConformal(Conformal):
     It is that of T-Blade3; it differs from the conformal one by what the sum of chords over radii misses. Its abscissa
     is t, to be multiplied by the increase of m'.
     """
+
+    discrete = True
 
     def density(self, position: Array, slope: Array) -> Array:
         del slope

@@ -9,15 +9,12 @@ from scipy.interpolate import BSpline, make_interp_spline
 from bladewright.blade.design.flow_path import FlowPath
 from bladewright.blade.design.meridional_curve import Meridian
 from bladewright.blade.flow_path.intersections import intersections
-from bladewright.blade.flow_path.meridional_curve import MeridionalCurve, real_first, shifted
+from bladewright.blade.flow_path.meridional_curve import MeridionalCurve, PiecewisePolynomial, real_first
 from bladewright.blade.flow_path.quasi_orthogonals import (
-    Match,
-    MatchedLine,
-    MeasuredCurve,
     curved_matches,
     distinct,
-    matched_line,
-    measured_curve,
+    fractions_at,
+    matched_curve,
     straight_match,
 )
 from bladewright.errors import DesignError
@@ -40,7 +37,7 @@ class StreamSurfaces:
     It is `Channelled`: `stream_lines(surfaces, mapping, v, -low, high - 1)` gives its stream lines, t in place of u.
     """
 
-    matched: tuple[MatchedLine, ...]
+    matched: tuple[PiecewisePolynomial, ...]
     """hub, given stream surfaces, shroud by t"""
     spans: Reals
     """(j,) their span fractions"""
@@ -48,14 +45,16 @@ class StreamSurfaces:
     """t at which the flow path starts: 0, or less where t counts from a leading edge"""
     high: float
     """t at which it ends: 1, or more where t counts to a trailing edge"""
-    walls: dict[str, MeridionalCurve]
-    """hub and shroud by their own parameters"""
-    measures: tuple[MeasuredCurve, ...]
-    """hub, given stream surfaces, shroud by their measure"""
-    matches: tuple[Match, ...]
-    """fraction of each measure by t"""
+    curves: tuple[MeridionalCurve, ...]
+    """hub, given stream surfaces, shroud by their own parameters"""
+    matches: tuple[PiecewisePolynomial, ...]
+    """by t the fraction of each one's length, or of what its parameter counts"""
     chosen: tuple[int, ...] | None = None
     """the only lines whose joints count, where just some places along the span are asked for"""
+
+    def wall(self, name: str) -> MeridionalCurve:
+        """Hub or shroud by its own parameter."""
+        return self.curves[0 if name == "hub" else -1]
 
     @property
     def extent(self) -> tuple[float, float]:
@@ -107,7 +106,7 @@ class StreamSurfaces:
         for j, each in enumerate(self.matched):
             if not np.any(shares[:, j]):
                 continue
-            part = shares[:, j, None, None, None] * shifted(each.powers, each.breaks, centres)[..., None, :, :, :]
+            part = shares[:, j, None, None, None] * each.around(centres)[..., None, :, :, :]
             room = [(0, 0)] * (part.ndim - 2) + [(0, count - part.shape[-2]), (0, 0)]
             total = total + np.pad(part, room)
         return total
@@ -156,7 +155,7 @@ class StreamSurfaces:
 
         Raises DesignError where a line counts its length instead.
         """
-        wholes = [each.line.counted for each in self.measures]
+        wholes = [each.counted for each in self.curves]
         if any(whole is None for whole in wholes):
             raise DesignError(
                 "hub, shroud or stream_surfaces: m' was asked as the points' spacing counts it, which needs all of "
@@ -165,14 +164,14 @@ class StreamSurfaces:
         shares, ends = self.shares(v), np.array([0.0, 1.0])
         total: Array = np.zeros(())
         for j, whole in enumerate(wholes):
-            both = np.asarray(whole)[..., None] * self.matches[j].fractions(ends)
+            both = np.asarray(whole)[..., None] * fractions_at(self.matches[j], ends)
             total = total + both[..., None, :] * shares[:, j, None]
         return total[..., 0], total[..., 1] - total[..., 0]
 
     def wall_parameter(self, name: str, t: Reals) -> Reals:
         """Own parameters (k,) of the hub's or shroud's curve at real t (k,), of the real design."""
         j = 0 if name == "hub" else -1
-        return real_first(self.measures[j].own(self.matches[j].fractions(t)), 1)
+        return real_first(self.curves[j].parameter_at(fractions_at(self.matches[j], t)), 1)
 
     @cached_property
     def _cardinals(self) -> BSpline:
@@ -189,11 +188,11 @@ def stream_surfaces(
     DesignError where the stream lines fold over, or an edge does not meet one that is given. Matched at the edges, they
     end where they start to fold well before or behind the blade, as lines do that start or end at odds.
     """
-    curves = [path.hub, *path.stream_surfaces, path.shroud]
+    designs = [path.hub, *path.stream_surfaces, path.shroud]
     names = ["hub", *(f"stream_surfaces[{i}]" for i in range(len(path.stream_surfaces))), "shroud"]
-    along = [measured_curve(curve.line(metre)) for curve in curves]
-    starts: list[Array] = [np.asarray(0.0)] * len(along)
-    ends: list[Array] = [np.asarray(1.0)] * len(along)
+    curves = [each.line(metre) for each in designs]
+    starts: list[Array] = [np.asarray(0.0)] * len(curves)
+    ends: list[Array] = [np.asarray(1.0)] * len(curves)
     low, high = 0.0, 1.0
     if path.matched == "edges":
         if edges is None:
@@ -203,19 +202,18 @@ def stream_surfaces(
             )
         for into, edge, what in ((starts, edges[0], "leading_edge"), (ends, edges[1], "trailing_edge")):
             line = edge.line(metre)
-            into[:] = [_meets(each, line, what, name) for each, name in zip(along, names, strict=True)]
+            into[:] = [_meets(each, line, what, name) for each, name in zip(curves, names, strict=True)]
         low, high = _common(starts, ends)
     if path.quasi_orthogonals:
         matches = list(curved_matches(_pairs(path)))
     else:
         matches = [straight_match(start, end) for start, end in zip(starts, ends, strict=True)]
     surfaces = StreamSurfaces(
-        matched=tuple(matched_line(each, match, low, high) for each, match in zip(along, matches, strict=True)),
+        matched=tuple(matched_curve(each, match, low, high) for each, match in zip(curves, matches, strict=True)),
         spans=np.array(path.spans),
         low=low,
         high=high,
-        walls={"hub": along[0].line, "shroud": along[-1].line},
-        measures=tuple(along),
+        curves=tuple(curves),
         matches=tuple(matches),
     )
     if path.matched == "edges":
@@ -281,15 +279,14 @@ def _unfolded(surfaces: StreamSurfaces) -> StreamSurfaces:
     return replace(surfaces, low=min(low, -KEPT), high=max(high, 1.0 + KEPT)) if len(folded) else surfaces
 
 
-def _meets(along: MeasuredCurve, edge: MeridionalCurve, what: str, name: str) -> Array:
-    """The fraction (...) of a line's measure at which an edge curve crosses it."""
-    line = along.line
+def _meets(curve: MeridionalCurve, edge: MeridionalCurve, what: str, name: str) -> Array:
+    """The fraction (...) of a curve at which an edge curve crosses it."""
 
     def position(t: Reals, order: int) -> Array:
-        return line.values(t[0], order)[..., None, :, :]
+        return curve.values(t[0], order)[..., None, :, :]
 
-    place = intersections(position, (0.0, 1.0), edge, what, [f"of the {name}"]).t
-    return along.fractions(place)[..., 0]
+    place = intersections(position, (0.0, 1.0), edge, what, [f"of the {name}"])[0]
+    return curve.fraction_at(place)[..., 0]
 
 
 def _common(starts: list[Array], ends: list[Array]) -> tuple[float, float]:
