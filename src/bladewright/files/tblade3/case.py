@@ -1,4 +1,4 @@
-"""A T-Blade3 case: what its input files say, as it stands there."""
+"""A T-Blade3 case: what its input files state."""
 
 from dataclasses import dataclass
 from typing import Literal

@@ -16,7 +16,7 @@ _NAMES = {"curvature": "the curvature", "thickness": "the thickness multiplier",
 def read_sectionwise(
     lines: Lines, count: int, *, curvature: bool, multiplier: bool, leading_edge: bool
 ) -> dict[str, Any]:
-    """Fields of a case from the file, for so many sections; what is not asked for may be missing."""
+    """The fields of a case that are given section by section; tables that the case does not need may be missing."""
     lines.text("the name of the case")
     needed = [kind for kind, asked in zip(_ORDER, (curvature, multiplier, leading_edge), strict=True) if asked]
     found: dict[str, Any] = {}
@@ -45,7 +45,7 @@ def read_sectionwise(
 
 
 def _kind(title: str, last: str) -> str:
-    """What a table holds: its title says so, or else its place."""
+    """What a table holds: as its title says, or else as its position does."""
     named = [kind for kind in _ORDER if kind in title.lower()]
     place = _ORDER.index(last) + 1 if last in _ORDER else 0
     return named[0] if named else _ORDER[min(place, len(_ORDER) - 1)]
@@ -80,7 +80,10 @@ _CURVATURE = "the control points of the curvature"
 
 
 def read_spanwise(lines: Lines, *, naca: bool, multiplier: bool, leading_edge: bool) -> dict[str, Any]:
-    """Fields of a case from the file, of the current or the older format; what is not asked for may be missing."""
+    """The fields of a case that are given along the span; tables that the case does not need may be missing.
+
+    The file may have the current or the older format.
+    """
     lines.texts(5, "the five lines of the head")
     found: dict[str, Any] = {"meanlines": _meanlines(lines)}
     if naca:
@@ -92,7 +95,7 @@ def read_spanwise(lines: Lines, *, naca: bool, multiplier: bool, leading_edge: b
             found["leading_edges"] = _spanwise_leading_edges(lines)
             leading_edge = False
             continue
-        multipliers = _multipliers(lines, asked=multiplier)
+        multipliers = _multipliers(lines, needed=multiplier)
         if multipliers:
             found["multipliers"] = multipliers
             multiplier = False
@@ -106,9 +109,9 @@ def read_spanwise(lines: Lines, *, naca: bool, multiplier: bool, leading_edge: b
 
 
 def _head(lines: Lines, what: str) -> tuple[int, int, str]:
-    """Number of rows, the number beside it, and the header, in which every name is a word of small letters."""
-    rows, beside = lines.integers(2, f"the numbers of rows and columns of {what}", least=2)
-    return rows, beside, lines.text(f"the header of {what}").lower()
+    """The number of rows, the number after it, and the header in lower case."""
+    rows, second = lines.integers(2, f"the numbers of rows and columns of {what}", least=2)
+    return rows, second, lines.text(f"the header of {what}").lower()
 
 
 def _meanlines(lines: Lines) -> Meanlines:
@@ -157,14 +160,14 @@ def _naca(lines: Lines) -> NacaThickness:
     )
 
 
-def _multipliers(lines: Lines, *, asked: bool) -> Multipliers | None:
-    """The older format's table of a thickness multiplier; None where it is not asked for, or is the current format's.
+def _multipliers(lines: Lines, *, needed: bool) -> Multipliers | None:
+    """The older format's table of a thickness multiplier; None where the case needs none, or in the current format.
 
-    One that is not asked for may hold anything, as in files that never had another.
+    A table that the case does not need may hold anything.
     """
     what = "the control points of the thickness multiplier"
     count, points, header = _head(lines, what)
-    if not asked:
+    if not needed:
         lines.rows(count, 1, what)
         return None
     if "le_radius" in header.split():
@@ -174,7 +177,7 @@ def _multipliers(lines: Lines, *, asked: bool) -> Multipliers | None:
         raise lines.error(f"the number of {what} is {points}: at least 3 are needed", lines.place - 1)
     inner = points - 2
     numbers = [fortran_number(word) for word in list_directed_items(lines.peek())]
-    # the table of some versions ends with the multiplier at the trailing edge, which is 0 in those of others
+    # in some versions the table ends with the multiplier at the trailing edge; in the others that is 0
     last = len(numbers) >= 2 + 2 * inner and numbers[1 + 2 * inner] is not None
     spans, places, values = [], [], []
     for span, *row in lines.table(count, 1 + 2 * inner + last, f"{what} (span, {inner} places u, {inner} values)"):

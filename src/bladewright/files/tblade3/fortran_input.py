@@ -7,15 +7,15 @@ from pathlib import Path
 from bladewright.errors import FileError
 
 END = 1e-6
-"""deviation of the ends of a table from 0 and 1 that is taken for rounding"""
+"""Largest deviation of the first and last span of a table from 0 and 1: the rounding of six digits."""
 _NUMBER = re.compile(r"([+-]?(?:\d+\.?\d*|\.\d+))(?:[eEdDqQ]([+-]?\d+)|([+-]\d+))?")
 _REPEATED = re.compile(r"([1-9]\d{0,2})\*(.*)")
 
 
 def list_directed_items(line: str) -> list[str | None]:
-    """The values of a line: divided by blanks or commas, `3*0.5` three times, None between two commas, none past a '/'.
+    """The values of a line: separated by blanks or commas, `3*0.5` for three of them, None for an empty one.
 
-    A value may stand in quotes, which then may hold what divides others.
+    A '/' ends the values. A value in quotes may contain separators.
     """
     found: list[str | None] = []
     after_comma = True
@@ -39,7 +39,7 @@ def list_directed_items(line: str) -> list[str | None]:
 
 
 def fortran_number(word: str | None) -> float | None:
-    """The number that Fortran reads in a word, such as 1.5D-3, .5 or 1.5-3, or None where it reads none."""
+    """The number that Fortran reads from a word, such as 1.5D-3, .5 or 1.5-3; None where it is no number."""
     match = _NUMBER.fullmatch(word or "")
     if not match:
         return None
@@ -48,11 +48,11 @@ def fortran_number(word: str | None) -> float | None:
 
 
 class Lines:
-    """The lines of a file, and the next one to be read; every complaint is a FileError that names file and line."""
+    """The lines of a file, read one after another; every error is a FileError that names file and line."""
 
     def __init__(self, text: str, path: Path) -> None:
         self.path = path
-        # the line ends of Fortran and of editors alone: a form feed is a blank
+        # only these end a line, as in Fortran: a form feed is a blank
         self._lines = re.split(r"\r\n|\n|\r", text)
         if not self._lines[-1]:
             self._lines.pop()
@@ -60,7 +60,7 @@ class Lines:
 
     @property
     def place(self) -> int:
-        """Number of the line read last, from 1."""
+        """Number of the last line read, from 1."""
         return self._next
 
     @property
@@ -69,33 +69,33 @@ class Lines:
         return not any(line.strip() for line in self._lines[self._next :])
 
     def error(self, message: str, place: int | None = None) -> FileError:
-        """A complaint about the line read last, or another one."""
+        """An error in the last line read, or in line number `place`."""
         return FileError(f"'{self.path}', line {self.place if place is None else place}: {message}")
 
     def text(self, what: str) -> str:
-        """The next line, whatever it holds."""
+        """The next line, whatever it contains; `what` it should be is for the message where the file ends."""
         if self._next >= len(self._lines):
             raise self._cut_short(what)
         self._next += 1
         return self._lines[self._next - 1]
 
     def texts(self, count: int, what: str) -> str:
-        """The last of so many lines."""
+        """The last of the next `count` lines."""
         for _ in range(count - 1):
             self.text(what)
         return self.text(what)
 
     def peek(self) -> str:
-        """The next line, which stays the next; empty at the end."""
+        """The next line, without reading it; empty at the end of the file."""
         return self._lines[self._next] if self._next < len(self._lines) else ""
 
     def skip_blank(self) -> None:
-        """Pass over blank lines."""
+        """Skip blank lines."""
         while self._next < len(self._lines) and not self.peek().strip():
             self._next += 1
 
     def skip_words(self, what: str) -> str:
-        """Pass over lines up to the next that begins with a number; the lines passed over, joined."""
+        """Skip the lines before the next one that begins with a number; returns them, joined."""
         passed = []
         while not (found := list_directed_items(self.peek())) or fortran_number(found[0]) is None:
             passed.append(self.text(what))
@@ -107,9 +107,9 @@ class Lines:
         return [word or "" for word in list_directed_items(self.text(what))]
 
     def numbers(self, count: int, what: str, *, most: int | None = None) -> tuple[float, ...]:
-        """The next `count` numbers, or up to `most` where the line has more; what else the line holds is ignored.
+        """The next `count` numbers, or up to `most` where the line has more; the rest of the line is ignored.
 
-        They stand on one line that is not blank, or fill several.
+        They are on one line that is not blank, or fill several.
         """
         self.skip_blank()
         line = self.text(f"{what} ({_counted(count)})")
@@ -139,7 +139,7 @@ class Lines:
         return tuple(values)
 
     def integers(self, count: int, what: str, *, least: int | None = None) -> tuple[int, ...]:
-        """The same of whole numbers, the first at least `least`."""
+        """The next `count` whole numbers, the first of them at least `least`."""
         values = self.numbers(count, what)
         for value in values:
             if value != round(value):
@@ -153,13 +153,13 @@ class Lines:
         return self.integers(1, what, least=least)[0]
 
     def rows(self, count: int, width: int, what: str) -> list[tuple[float, ...]]:
-        """So many lines of so many numbers."""
+        """The next `count` lines of `width` numbers each."""
         return [self.numbers(width, f"row {row} of {count} of {what}") for row in range(1, count + 1)]
 
     def table(
         self, count: int, width: int, what: str, first: str = "span", *, equal: bool = False
     ) -> list[tuple[float, ...]]:
-        """The same, the first number of each line increasing from 0 to 1; two inner ones may be `equal`."""
+        """The next lines, the first number of which increases from 0 to 1; two inner ones may be `equal`."""
         found: list[tuple[float, ...]] = []
         for row in range(1, count + 1):
             found.append(self.numbers(width, f"row {row} of {count} of {what}"))

@@ -1,4 +1,4 @@
-"""A T-Blade3 case as a design, with what was kept and changed, and points of T-Blade3's blade to measure it with."""
+"""Importing a T-Blade3 case as a design, with what was kept and changed, and points to measure it with."""
 
 from __future__ import annotations
 
@@ -20,11 +20,17 @@ from bladewright.files.tblade3.translation import CaseSections, blade_of, case_s
 from bladewright.nurbs.basis import Reals
 from bladewright.section.laws import Span
 
+MOST_POINTS = 1500
+"""About the number of points with which the built sides are compared: more cost time in every import, and tell the
+mean and the largest distance in more digits than are shown."""
+_STATIONS = (1.0 - np.cos(np.pi * np.linspace(0.0, 1.0, POINTS_PER_SIDE))) / 2.0
+
 
 def section_points(sections: CaseSections, index: int, places: Reals) -> tuple[Reals, Reals]:
-    """Points (k, 3) [m] of a section's upper and lower side at the outline's s (k,).
+    """Points (k, 3) [m] of a section's upper and lower side at the outline's s (k,), by T-Blade3's formulas.
 
-    They are laid on the case's own stream line at its own m' and theta; neither laws nor stream surfaces have a part.
+    They lie on the case's own stream line at its own m' and theta; neither the laws along the span nor the stream
+    surfaces of the design are used.
     """
     outline = sections.numbers.of(index).outline(Span(np.zeros(1)))
     upper, lower = (point_in_space(sections, index, np.real(side)[0]) for side in outline.points(places))
@@ -32,7 +38,7 @@ def section_points(sections: CaseSections, index: int, places: Reals) -> tuple[R
 
 
 def point_in_space(sections: CaseSections, index: int, chords: Reals) -> Reals:
-    """Points (k, 3) [m] in space of points (k, 2) of a section in chords."""
+    """Points in space (k, 3) [m] of points (k, 2) of a section in chords."""
     turn, chord = sections.stagger[index], sections.chords[index]
     along = chord * (chords[:, 0] * np.cos(turn) - chords[:, 1] * np.sin(turn))
     across = chord * (chords[:, 0] * np.sin(turn) + chords[:, 1] * np.cos(turn))
@@ -43,9 +49,9 @@ def point_in_space(sections: CaseSections, index: int, chords: Reals) -> Reals:
 
 
 def written_points(case: TBlade3Case) -> Reals | None:
-    """Points (m, n, 3) [m] of the sections as T-Blade3 wrote them beside the case's file, or None where it did not.
+    """Points (m, n, 3) [m] of the sections in the file that T-Blade3 wrote next to the case; None where there is none.
 
-    Each section runs from the trailing edge along the upper side, and back along the lower.
+    Each section runs from the trailing edge along the upper side, and back along the lower side.
     """
     path = Path(case.file).with_name(f"blade3d.{case.name}.dat")
     try:
@@ -59,21 +65,16 @@ def written_points(case: TBlade3Case) -> Reals | None:
     return found * case.unit_length / case.scale
 
 
-MOST_POINTS = 1500
-"""points that the built sides are measured with, about"""
-_ALONG = (1.0 - np.cos(np.pi * np.linspace(0.0, 1.0, POINTS_PER_SIDE))) / 2.0
-
-
 def import_tblade3(
     path: str | os.PathLike[str], *, edge_spline: bool = False, true_stagger: bool = False
 ) -> Imported[CurvatureMeanlineBlade]:
-    """The blade of T-Blade3's main input file `3dbgbinput.R.dat` and the file of control points beside it.
+    """The blade of T-Blade3's main input file `3dbgbinput.R.dat` and the file of control points next to it.
 
-    At every section of the case the design's section is T-Blade3's to rounding; between them, where T-Blade3 says
-    nothing, every number is a cubic spline. A leading edge that is a spline is refused, or with `edge_spline` becomes
-    the family's own. True sweep and lean are T-Blade3's, with its wrong stagger, or with
-    `true_stagger` right ones. Raises FileError, naming the file, where it is none of T-Blade3's, or asks for what the
-    curvature-meanline family does not have.
+    At every section of the case the design's section is T-Blade3's to rounding; between sections, where T-Blade3
+    defines nothing, every parameter is a cubic spline. A leading edge spline is refused, or with `edge_spline` becomes
+    the family's own. True sweep and lean use T-Blade3's wrong stagger, or with `true_stagger` the right one. Raises
+    FileError, naming the file, where it is none of T-Blade3's, or asks for what the curvature-meanline family does not
+    have.
     """
     case = read_tblade3(path)
     try:
@@ -92,13 +93,13 @@ def _translated(case: TBlade3Case, *, edge_spline: bool, true_stagger: bool) -> 
         )
     sections = case_sections(case, true_stagger=true_stagger)
     design, changed = blade_of(sections), list(_changed(sections))
-    standing = _standing(design, case.file)
-    if standing != case.blade_count:
+    count = _count_apart(design, case.file)
+    if count != case.blade_count:
         changed.append(
-            f"{case.blade_count} blades would intersect, of which T-Blade3 says nothing: {standing} are taken; set the "
+            f"{case.blade_count} blades would intersect, of which T-Blade3 says nothing: {count} are taken; set the "
             "true number"
         )
-        design = design.changed("blade_count", standing)
+        design = design.changed("blade_count", count)
     points, source = _points(sections)
     return Imported(
         design=design,
@@ -111,8 +112,8 @@ def _translated(case: TBlade3Case, *, edge_spline: bool, true_stagger: bool) -> 
     )
 
 
-def _standing(design: CurvatureMeanlineBlade, file: str) -> int:
-    """How many of the case's blades do not intersect; raises FileError where its sections make no blade."""
+def _count_apart(design: CurvatureMeanlineBlade, file: str) -> int:
+    """The number of the case's blades that do not intersect; raises FileError where its sections make no blade."""
     try:
         exact = exact_sectioned_blade(design)
 
@@ -130,7 +131,7 @@ def _points(sections: CaseSections) -> tuple[dict[str, Reals], str]:
         sides = {"upper": written[:, :POINTS_PER_SIDE], "lower": written[:, POINTS_PER_SIDE - 1 :]}
         source = f"blade3d.{sections.case.name}.dat"
     else:
-        both = [section_points(sections, i, _ALONG) for i in range(len(sections.places))]
+        both = [section_points(sections, i, _STATIONS) for i in range(len(sections.places))]
         sides = {name: np.stack([pair[k] for pair in both]) for k, name in enumerate(("upper", "lower"))}
         source = "its formulas" if sections.numbers.edges is None else "its formulas with these leading edges"
     every = max(1, 2 * POINTS_PER_SIDE * len(sections.places) // MOST_POINTS)

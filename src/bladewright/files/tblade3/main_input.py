@@ -7,6 +7,7 @@ from typing import Any
 from bladewright.files.tblade3.case import CENTROID, Point, SectionRow, SpanLaw, stacking_of
 from bladewright.files.tblade3.fortran_input import Lines, fortran_number, list_directed_items
 
+# what the values of T-Blade3's switches stand for
 ANGLES = {0: "axial", 1: "radial", 2: "axial-radial", 3: "radial-axial", 4: "wing"}
 ANGLE_SPLINES = ("inletspline", "outletspline", "inoutspline", "inci_dev_spline")
 THICKNESSES = {0: "wennerstrom", 1: "quartic", 2: "quartic-sharp", 5: "naca"}
@@ -14,6 +15,11 @@ LEADING_EDGES = {0: "elliptic", 1: "spline"}
 CHORDS = {0: "meridional", 1: "given", 2: "multiplied"}
 CLUSTERINGS = {0: "uniform", 1: "sine", 2: "exponential", 3: "hyperbolic", 4: "elliptic"}
 ON = {0: False, 1: True}
+_SECTION_COLUMNS = (
+    *("in_beta", "out_beta", "mach", "chord", "thickness", "incidence", "deviation", "secondary_flow_angle"),
+)
+_TYPE_COLUMNS = ("stack_u", "stack_v", "thickest", "leading_thickness", "trailing_thickness")
+_GRID_COLUMNS = ("jcells", "eta_ofst", "bggrid")
 _REMOVED = (
     "was removed from T-Blade3, whose current version stops at it: "
     "give one of {known}, or write the points of its sections with the old version and fit a design to them"
@@ -21,7 +27,7 @@ _REMOVED = (
 
 
 def read_head(lines: Lines, notes: list[str]) -> dict[str, Any]:
-    """Fields of a case up to the table of sections, whose title is the line read last."""
+    """The fields of a case up to the table of sections, whose title is the last line that is read."""
     found: dict[str, Any] = {"title": lines.text("the title").strip()}
     found["name"] = next(iter(lines.words("the name of the case")), "")
     lines.text("the title of the blade row")
@@ -168,32 +174,24 @@ def _known(
     raise lines.error(f"{what} is '{said}': it must be one of {numbers}")
 
 
-read_switch = _switch
-
-
-_ANGLES = ("in_beta", "out_beta", "mach", "chord", "thickness", "incidence", "deviation", "secondary_flow_angle")
-_SHAPES = ("stack_u", "stack_v", "thickest", "leading_thickness", "trailing_thickness")
-_GRID = ("jcells", "eta_ofst", "bggrid")
-
-
 def read_tables(lines: Lines, count: int, notes: list[str], *, early: bool) -> dict[str, Any]:
-    """Fields of a case from the table of sections on, for so many streamlines.
+    """The fields of a case from the table of sections on, for `count` streamlines.
 
-    An `early` file has switches of true sweep and lean beside the numbers of their control points.
+    An `early` file has the switches of true sweep and lean next to the numbers of their control points.
     """
     found: dict[str, Any] = {}
     lines.text("the header of the sectionwise properties")
     angles = lines.rows(count, 9, "the sectionwise properties")
     found |= _edge_curves(lines)
     lines.texts(6, "the titles of the stacking")
-    found["radial_stacking"] = radial = read_switch(lines, "the switch of variable radial stacking", ON)
+    found["radial_stacking"] = radial = _switch(lines, "the switch of variable radial stacking", ON)
     shapes, found["grid_columns"] = _shapes(lines, count, radial=radial)
     found["sections"] = tuple(
         SectionRow(
             label=int(row[0]),
             type=kind,
-            **dict(zip(_ANGLES, row[1:], strict=True)),
-            **dict(zip(_SHAPES, shape, strict=True)),
+            **dict(zip(_SECTION_COLUMNS, row[1:], strict=True)),
+            **dict(zip(_TYPE_COLUMNS, shape, strict=True)),
         )
         for row, (kind, shape) in zip(angles, shapes, strict=True)
     )
@@ -231,9 +229,9 @@ def _edge_curves(lines: Lines) -> dict[str, tuple[Point, ...]]:
 
 
 def _shapes(lines: Lines, count: int, *, radial: bool) -> tuple[list[tuple[str, tuple[float, ...]]], bool]:
-    """Kind and numbers of each section, and whether columns of a grid follow them."""
+    """Type and numbers of each section, and whether columns of a grid follow them."""
     header = lines.text("the header of the types of section").lower()
-    grid = any(name in header for name in _GRID)
+    grid = any(name in header for name in _GRID_COLUMNS)
     found = []
     for row in range(1, count + 1):
         what = f"row {row} of {count} of the types of section"
@@ -284,9 +282,9 @@ def _count(lines: Lines, name: str, notes: list[str], *, one_digit: bool = False
 
 
 def _shift(lines: Lines, name: str, notes: list[str], *, early: bool) -> tuple[bool, SpanLaw]:
-    """Sweep or lean, and whether it is a true one as an early file says it.
+    """Sweep or lean as a law, and whether an early file states that it is a true one.
 
-    There a digit in column 15 of the line of the count says so, and that the values stand in the third column.
+    There a digit in column 15 of the line with the count says so, and the values are in the third column.
     """
     lines.texts(2, f"the title of the control points of {name}")
     switch = lines.peek()[14:15].strip() if early else ""
@@ -313,7 +311,7 @@ def _law(lines: Lines, name: str, notes: list[str]) -> SpanLaw:
 
 
 def _thicknesses(lines: Lines) -> dict[str, SpanLaw | None]:
-    """The laws of tm/c and u_max: the header says which there are, and in which order."""
+    """The laws of tm/c and u_max; the header states which of them there are, and in which order."""
     name = "the control points of tm/c"
     lines.texts(2, f"the title of {name}")
     rows = lines.integer(f"the number of {name}", least=2)

@@ -1,4 +1,4 @@
-"""Reading a T-Blade3 case: its main input file, and the file of control points beside it."""
+"""Reading a T-Blade3 case: its main input file, and the file of control points in the same directory."""
 
 import os
 from dataclasses import replace
@@ -14,7 +14,9 @@ from bladewright.files.tblade3.remarks import notes_of, unsupported_of, unused_o
 from bladewright.files.text import read_text
 
 MAIN = "3dbgbinput"
+"""Name of the main input file, before the suffix of the blade row."""
 COMPANIONS = ("spancontrolinputs", "controlinputs")
+"""Names of the files of control points, along the span and section by section."""
 _TITLES = (
     *("blade row", "blade scaling factor", "sectionwise properties", "airfoil camber", "airfoil thickness"),
     *("control points for sweep", "control points for lean", "streamline data", "x_s"),
@@ -28,11 +30,11 @@ def is_tblade3(text: str) -> bool:
 
 
 def read_tblade3(path: str | os.PathLike[str]) -> TBlade3Case:
-    """The case of a main input file `3dbgbinput.R.dat` and of the file of control points that it needs beside it.
+    """The case of a main input file `3dbgbinput.R.dat` and of the file of control points in the same directory.
 
-    That is `spancontrolinputs.R.dat` where the camber switch says `spanwise_spline`, else `controlinputs.R.dat` where
-    camber, thickness, its multiplier or the leading edge need one. Raises FileError, naming file and line, where one is
-    missing, cut short, or says what T-Blade3 does not know or no longer does.
+    The latter is `spancontrolinputs.R.dat` where the camber switch says `spanwise_spline`, else `controlinputs.R.dat`
+    where camber, thickness multiplier or leading edge need one. Raises FileError, naming file and line, where one is
+    missing or cut short, or asks for what T-Blade3 does not know or no longer has.
     """
     path = Path(path)
     for name in COMPANIONS:
@@ -64,42 +66,42 @@ def read_tblade3(path: str | os.PathLike[str]) -> TBlade3Case:
 
 
 def _control_points(path: Path, found: dict[str, Any], count: int) -> tuple[dict[str, Any], Path | None]:
-    asked = {"multiplier": found["thickness_multiplier"], "leading_edge": found["leading_edge"] == "spline"}
+    needed = {"multiplier": found["thickness_multiplier"], "leading_edge": found["leading_edge"] == "spline"}
     naca = found["thickness"] == "naca"
     if naca and not found["spanwise"]:
         raise FileError(
             f"'{path}' has the thickness switch 5 without 'spanwise_spline' behind the camber switch: that thickness "
             f"is read from '{COMPANIONS[0]}.{_suffix(path)}.dat' only; write the word on line 14"
         )
-    if naca and asked["leading_edge"]:
+    if naca and needed["leading_edge"]:
         raise FileError(
             f"'{path}' has the leading-edge switch 1 with the thickness switch 5: its file has no table of "
             "leading edges, which are those of the thickness itself; set the leading-edge switch, line 20, to 0"
         )
     if naca:
-        asked["multiplier"] = False
+        needed["multiplier"] = False
     if found["spanwise"]:
-        companion = _beside(path, COMPANIONS[0], "the camber switch says 'spanwise_spline'")
-        return read_spanwise(Lines(read_text(companion), companion), naca=naca, **asked), companion
-    asked["curvature"] = found["curvature_camber"]
-    if not any(asked.values()):
+        companion = _companion(path, COMPANIONS[0], "the camber switch says 'spanwise_spline'")
+        return read_spanwise(Lines(read_text(companion), companion), naca=naca, **needed), companion
+    needed["curvature"] = found["curvature_camber"]
+    if not any(needed.values()):
         return {}, None
     reasons = {
         "curvature": "the camber is defined by its curvature",
         "multiplier": "the thickness has a multiplier",
         "leading_edge": "the leading edge is a spline",
     }
-    companion = _beside(path, COMPANIONS[1], next(reasons[each] for each in reasons if asked[each]))
-    return read_sectionwise(Lines(read_text(companion), companion), count, **asked), companion
+    companion = _companion(path, COMPANIONS[1], next(reasons[each] for each in reasons if needed[each]))
+    return read_sectionwise(Lines(read_text(companion), companion), count, **needed), companion
 
 
 def _suffix(path: Path) -> str:
-    """What stands between the last two dots of a file's name."""
+    """The part of a file's name between its last two dots."""
     return path.stem.rpartition(".")[2] if "." in path.stem else ""
 
 
-def _beside(path: Path, kind: str, reason: str) -> Path:
-    """The file of a kind beside the main one, its name told by that of the main one."""
+def _companion(path: Path, kind: str, reason: str) -> Path:
+    """The file of control points of a kind that belongs to a main input file, found by the suffix of its name."""
     suffix = _suffix(path)
     if not suffix:
         raise FileError(

@@ -1,4 +1,4 @@
-"""What a case says without effect, beyond its records, or otherwise than T-Blade3 does it: sentences for a report."""
+"""Remarks on a case: what has no effect, what is not supported, and where T-Blade3 does not do what its files say."""
 
 from collections.abc import Iterator
 
@@ -13,7 +13,7 @@ _KINDS = {
 
 
 def unused_of(case: TBlade3Case, *, grid: bool) -> tuple[str, ...]:
-    """What stands in the files without effect on the blade; `grid` where the sections have columns of a grid."""
+    """What in the files has no effect on the blade, each a sentence; `grid` where sections have columns of a grid."""
     return (*_unused_columns(case, grid=grid), *_unused_tables(case))
 
 
@@ -75,7 +75,7 @@ def _unused_tables(case: TBlade3Case) -> Iterator[str]:
 
 
 def unsupported_of(case: TBlade3Case) -> tuple[str, ...]:
-    """What T-Blade3 would make of the files beyond a blade of meanlines and thicknesses."""
+    """What T-Blade3 would make of the files that is no blade of meanlines and thicknesses, each a sentence."""
     return tuple(_unsupported(case))
 
 
@@ -105,14 +105,14 @@ def _unsupported(case: TBlade3Case) -> Iterator[str]:
 
 
 def _kind(word: str) -> str:
-    """In words, what T-Blade3 makes of a type of section."""
+    """What T-Blade3 makes of a type of section, in words."""
     if word.isdigit() and len(word) == 4:
         return f"the four-digit profile NACA {word}"
     return _KINDS.get(word, "which T-Blade3 takes for the name of a file with the points of a profile")
 
 
 def notes_of(case: TBlade3Case) -> tuple[str, ...]:
-    """Where T-Blade3 itself fails on a case, or does something else than it says."""
+    """Where T-Blade3 itself fails on a case, or does something other than its files say, each a sentence."""
     return tuple(_notes(case))
 
 

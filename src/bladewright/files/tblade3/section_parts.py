@@ -1,4 +1,10 @@
-"""The sections of a T-Blade3 case as curvature-meanline sections, one by one or as laws along the span."""
+"""The sections of a T-Blade3 case as curvature-meanline sections, one by one or as laws along the span.
+
+The laws take T-Blade3's values at its sections, to rounding. The sections stand at those span fractions at which a
+cubic spline through them has the knots of a law with as many control points: so the law through all sections is their
+cubic spline with not-a-knot ends, whatever their spans are. The span fraction of such a design counts sections; it is
+not their radius.
+"""
 
 from dataclasses import dataclass, replace
 from typing import Any, NamedTuple
@@ -20,18 +26,27 @@ from bladewright.section.thickness.quartic import QuarticSpline
 from bladewright.section.thickness.wennerstrom import Wennerstrom
 
 LAW_TOLERANCE = 1e-13
-"""deviation of a law from its values, of the largest, that is rounding"""
+"""Deviation of a law from its values, as a fraction of the largest, that counts as rounding: some hundred times the
+precision of a double, for the solution of a linear system of some ten equations."""
 
 ROUNDING = 1e-15
-"""control points smaller than this, of the largest value, are 0"""
+"""Control points smaller than this fraction of the largest value are set to 0: a few times the precision of a
+double."""
+NEAREST_CONTACT, FARTHEST_CONTACT = 0.021, 0.49
+"""Least and largest s of the contact of a leading edge spline, just within the limits 0.02 and 0.5 of the family."""
+BISECTIONS = 60
+"""Bisections for the s of a contact: more than the 53 bits of a double."""
+CAMBERED = np.radians(1.0)
+"""[rad] Camber below which the scale of a meanline's second derivative is a quotient of small numbers, and is not used
+to relate one section to another."""
 
 
 def section_places(spans: Reals, *further: Reals) -> Reals:
-    """Span fractions (m,) of a design at which the sections with given spans (m,) stand, from 0 to 1.
+    """Span fractions (m,) of the design for sections with given spans (m,), from 0 to 1.
 
-    `further` are other measures (m,) of the same sections, such as their distances at another edge. The second and the
-    last section but one stand as near to the ends as any measure has them: a cubic spline through sections that stand
-    nearer to each other than their places say would swing, and their stream surfaces fold over.
+    `further` are other measures (m,) of the same sections, such as their distances along the other edge. The second and
+    the last section but one are put as near to the ends as the smallest measure has them: through sections that are
+    closer together than their span fractions say, a cubic spline would overshoot and stream surfaces would cross.
     """
     count = len(spans)
     rising = bool(np.all(np.diff(spans) > 0.0))
@@ -41,12 +56,12 @@ def section_places(spans: Reals, *further: Reals) -> Reals:
     measures = [each for each in (spans, *further) if np.all(np.diff(each) > 0.0)]
     first = min([(each[1] - each[0]) / (each[2] - each[0]) for each in measures], default=0.5)
     last = min([(each[-1] - each[-2]) / (each[-1] - each[-3]) for each in measures], default=0.5)
-    beside = first * knots[1], 1.0 - last * (1.0 - knots[-2])
-    return np.concatenate([[0.0, beside[0]], knots[1:-1], [beside[1], 1.0]])
+    second, last_but_one = first * knots[1], 1.0 - last * (1.0 - knots[-2])
+    return np.concatenate([[0.0, second], knots[1:-1], [last_but_one, 1.0]])
 
 
 def law_through(values: Reals, places: Reals) -> Law:
-    """The law with the fewest control points that has values (m,) at places (m,) to rounding: m at most."""
+    """The law with the fewest control points, at most m, that has values (m,) at span fractions (m,) to rounding."""
     scale = max(float(np.max(np.abs(values))), 1e-300)
     if np.ptp(values) <= LAW_TOLERANCE * scale:
         return float(values[len(values) // 2])
@@ -59,37 +74,34 @@ def law_through(values: Reals, places: Reals) -> Law:
 
 
 def _plain(controls: Reals, scale: float) -> Law:
-    """Control points, rounding about 0 left out: it may have the sign that a number must not have."""
+    """Control points, set to 0 where they are rounding errors, whose sign a parameter might not allow."""
     return tuple(0.0 if abs(each) < ROUNDING * scale else float(each) for each in controls)
 
 
 def laws_through(values: Reals, places: Reals) -> ChordwiseLaw:
-    """The same of values (m, k): k laws, one a control point along the chord."""
+    """Laws through values (m, k): k of them, one for each control point along the chord."""
     return tuple(law_through(column, places) for column in values.T)
 
 
-NEAREST_CONTACT, FARTHEST_CONTACT = 0.021, 0.49
-"""nearest and farthest contact that the family has"""
-BISECTIONS = 60
-"""bisections of a contact's place"""
-
-
 class TranslatedEdges(NamedTuple):
-    """Edges (m,) of the sections as the family has them."""
+    """The leading edge splines of m sections as the curvature-meanline family has them."""
 
     contact: float
+    """s of the contact with the sides, the same for all sections"""
     elongation: Reals
+    """(m,)"""
     droop: Reals
+    """(m,)"""
 
 
 def translated_edges(parts: list[CurvatureMeanline], table: Reals) -> TranslatedEdges:
-    """The edges of sections that have none yet, from T-Blade3's 13 numbers (m, 13) of each.
+    """The leading edge splines of sections that have none yet, from T-Blade3's 13 numbers of each (m, 13).
 
-    The contact stands where the thickness, without its multiplier, reaches the edge's; all sections share the mean of
-    their places s. Ahead of the contact by (1 + ee) half thicknesses is T-Blade3's tip, s (1 + ee) of them to the side.
+    The contact is where the thickness, without its multiplier, reaches that of the edge; all sections share the mean of
+    these s. T-Blade3's tip lies (1 + ee) half thicknesses ahead of the contact, and droop (1 + ee) of them to the side.
     """
     contact = float(np.mean([_contact(part, 0.5 * row[0]) for part, row in zip(parts, table, strict=True)]))
-    # joints close behind it would hide what the sides do there
+    # the contact moves to a joint close downstream, so that the spline does not continue a piece that ends there
     for joint in sorted({each.s for part in parts for each in part.unsplined(Span(np.zeros(1))).joints}):
         contact = joint if contact < joint < contact + NARROW else contact
     elongation = []
@@ -99,12 +111,12 @@ def translated_edges(parts: list[CurvatureMeanline], table: Reals) -> Translated
         half = 0.5 * float(np.sqrt(np.sum((upper - lower) ** 2)))
         reach = float(np.sqrt(np.sum((0.5 * (upper + lower)) ** 2)))
         elongation.append(1.0 + row[3] - reach / half)
-    # droop is counted towards the lower side, T-Blade3's deflection towards the upper
+    # the family's droop is positive towards the lower side, T-Blade3's deflection towards the upper
     return TranslatedEdges(contact, np.array(elongation), -table[:, 2] * (1.0 + table[:, 3]))
 
 
 def _contact(part: CurvatureMeanline, half: float) -> float:
-    """The s at which the half thickness without multiplier first reaches a value."""
+    """The smallest s at which the half thickness without its multiplier reaches a value."""
     thickness = part.thickness.at(Span(np.zeros(1)))
     s = np.linspace(0.0, FARTHEST_CONTACT, 257)
     reached = np.flatnonzero(np.real(thickness.half(s))[0] >= half)
@@ -118,24 +130,21 @@ def _contact(part: CurvatureMeanline, half: float) -> float:
     return float(np.clip(high, NEAREST_CONTACT, FARTHEST_CONTACT))
 
 
-CAMBERED = np.radians(1.0)
-"""camber below which a meanline's own scale of its second derivative says little"""
-
-
 @dataclass(frozen=True, kw_only=True, eq=False)
 class SectionParameters:
-    """Numbers of the m sections of a case by their fields in the family, each array (m,) or, chordwise, (m, k)."""
+    """The parameters of the m sections of a case by name of field: arrays (m,), or (m, k) along the chord."""
 
     section: dict[str, Any]
-    """fields of the section; an array is one number a section"""
+    """fields of the section; what is no array is the same for all sections"""
     thickness: dict[str, Any]
-    """fields of the thickness"""
+    """fields of the thickness law"""
     law: type[ThicknessLaw]
+    """class of the thickness law"""
     edges: TranslatedEdges | None = None
-    """leading edges that are splines"""
+    """leading edge splines"""
 
     def of(self, index: int) -> CurvatureMeanline:
-        """The part of one section, holding numbers; raises DesignError, naming the section, where it has none."""
+        """One section with its numbers; raises DesignError, naming the section, where they make none."""
 
         def one(value: Any) -> Any:
             if not isinstance(value, np.ndarray):
@@ -148,7 +157,7 @@ class SectionParameters:
             raise DesignError(f"section {index + 1}: {error}") from error
 
     def along(self, places: Reals) -> CurvatureMeanline:
-        """The part of all sections, its laws along the span going through their numbers at places (m,)."""
+        """All sections as one, with laws along the span through their numbers at span fractions (m,)."""
 
         def law(value: Any) -> Any:
             if not isinstance(value, np.ndarray):
@@ -171,15 +180,15 @@ class SectionParameters:
 
 
 def section_parameters(case: TBlade3Case, values: SectionValues, angles: MetalAngles) -> SectionParameters:
-    """The numbers of a case's sections. Raises FileError for what the family does not have."""
+    """The parameters of a case's sections. Raises FileError for what the family does not have."""
     section: dict[str, Any] = {}
     if values.meanlines is None:
         section["camber"] = "mixed"
-        inlet, end = _angles(angles)
+        inlet, end = _mixed_meanline_angles(angles)
     else:
         curves = _same(case, values.meanlines, "the curvature")
         places, curvature = curves[..., 0], curves[..., 1]
-        inlet, end, scale = _turned(case, angles, places, curvature)
+        inlet, end, scale = _curved_meanline_angles(case, angles, places, curvature)
         if case.meanlines is not None and case.meanlines.span is None:
             curvature = _scaled(curvature, scale, end - inlet)
         section["curvature"] = curvature
@@ -197,8 +206,8 @@ def section_parameters(case: TBlade3Case, values: SectionValues, angles: MetalAn
     return replace(found, edges=translated_edges(alone, values.leading_edges))
 
 
-def _angles(angles: MetalAngles) -> tuple[Reals, Reals]:
-    """Metal angles (m,) [rad] of mixed camber lines: a wing's, or as they are given."""
+def _mixed_meanline_angles(angles: MetalAngles) -> tuple[Reals, Reals]:
+    """Metal angles (m,) [rad] at inlet and exit of mixed camber lines: as given, or those of a wing."""
     if angles.inlet is not None and angles.exit is not None:
         return angles.inlet, angles.exit
     # half of the turning lies on each side of the chord line
@@ -206,8 +215,10 @@ def _angles(angles: MetalAngles) -> tuple[Reals, Reals]:
     return twist - 0.5 * camber, twist + 0.5 * camber
 
 
-def _turned(case: TBlade3Case, angles: MetalAngles, places: Reals, curvature: Reals) -> tuple[Reals, Reals, Reals]:
-    """Metal angles (m,) [rad] at inlet and exit, and the scale (m,) of the second derivative."""
+def _curved_meanline_angles(
+    case: TBlade3Case, angles: MetalAngles, places: Reals, curvature: Reals
+) -> tuple[Reals, Reals, Reals]:
+    """Metal angles (m,) [rad] at inlet and exit of meanlines by curvature, and the scale (m,) of the curvature."""
     camber = np.asarray(angles.camber)
     integral = CurvatureIntegral(places=places, values=curvature)
     scale, largest = (np.real(each) for each in camber_scale(integral.totals, camber))
@@ -227,9 +238,9 @@ def _turned(case: TBlade3Case, angles: MetalAngles, places: Reals, curvature: Re
 
 
 def _scaled(curvature: Reals, scale: Reals, camber: Reals) -> Reals:
-    """Second derivatives as they are instead of as they stand in the file, where that says how they vary with span.
+    """Second derivatives of the meanlines, multiplied by their scale where control points are given section by section.
 
-    Values that were given section by section need not have one scale, and what lies between would turn on that.
+    Such control points need not be of one scale, but what lies between two sections would depend on it.
     """
     if np.ptp(curvature, axis=0).max() == 0.0:
         return curvature
@@ -238,7 +249,7 @@ def _scaled(curvature: Reals, scale: Reals, camber: Reals) -> Reals:
 
 
 def _same(case: TBlade3Case, curves: tuple[Reals, ...], what: str) -> Reals:
-    """Control points (m, k, 2) of sections with equal numbers of them."""
+    """Control points (m, k, 2) of all sections; FileError where their numbers differ."""
     counts = [len(curve) for curve in curves]
     if len(set(counts)) > 1:
         odd = next(i for i, count in enumerate(counts) if count != counts[0])
@@ -279,7 +290,7 @@ def _none(thickness: Reals) -> bool:
 
 
 def _straight_end(case: TBlade3Case, values: SectionValues) -> str:
-    """The end of Wennerstrom's body without curvature: that farther from the maximum, in all sections the same one."""
+    """The end of Wennerstrom's thickness without curvature, farther from the maximum; the same in all sections."""
     before = values.thickest < 0.5
     if np.all(before) or not np.any(before):
         return "trailing" if before[0] else "leading"

@@ -11,25 +11,26 @@ from bladewright.files.tblade3.case import LeadingEdges, Meanlines, Multipliers,
 from bladewright.nurbs.basis import Reals
 
 BISECTIONS = 80
-"""bisections of a segment's parameter: more than the digits of a number ask for"""
+"""Bisections for the parameter of a spline at a span: more than the 53 bits of a double."""
 _BASIS = np.array([[1.0, 4.0, 1.0, 0.0], [-3.0, 0.0, 3.0, 0.0], [3.0, -6.0, 3.0, 0.0], [-1.0, 3.0, -3.0, 1.0]]) / 6.0
-"""powers of t times control points, of a segment of a uniform cubic B-spline"""
+"""Coefficients of a segment of a uniform cubic B-spline: power of t by control point."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class SpanSpline:
     """The uniform cubic B-spline of points (span, values), as a function of the span.
 
-    Its control points are `span` (n,), increasing, and `values` (n,) or (n, k), continued at both ends by one point
-    P0 = 2 P1 - P2, which brings the curve through the first and the last and takes its second derivative there; n - 1
-    segments. Span and values are evaluated at one parameter, as span = f(t) is inverted (Nemnem et al. 2014, eq. 6).
+    Its control points are `span` (n,), increasing, and `values` (n,) or (n, k). At both ends it has one more point
+    P0 = 2 P1 - P2, so that the curve passes through the first and the last point without second derivative; there are
+    n - 1 segments. A value is evaluated at the parameter t at which span(t) is the span that is asked for (Nemnem et
+    al. 2014, eq. 6).
     """
 
     span: Reals
     values: Reals
 
     def __call__(self, span: ArrayLike) -> Reals:
-        """Values (m,) or (m, k) at spans (m,); those beyond the ends are taken at the ends."""
+        """Values (m,) or (m, k) at spans (m,); beyond the ends, the values at the ends."""
         at = np.clip(np.asarray(span, dtype=np.float64), self.span[0], self.span[-1])
         # span and value of each segment's polynomial, (n - 1, 4) and (n - 1, 4, ...)
         places, values = _polynomials(self.span), _polynomials(self.values)
@@ -42,7 +43,7 @@ class SpanSpline:
 
 
 def _polynomials(points: Reals) -> Reals:
-    """Coefficients (n - 1, 4, ...) of the powers of t in [0, 1] in each segment of the spline of points (n, ...)."""
+    """Coefficients (n - 1, 4, ...) of the powers of t in [0, 1] of each segment of the spline of points (n, ...)."""
     points = np.asarray(points, dtype=np.float64)
     extended = np.concatenate([2.0 * points[:1] - points[1:2], points, 2.0 * points[-1:] - points[-2:-1]])
     windows = np.stack([extended[k : k + len(points) - 1] for k in range(4)], axis=1)
@@ -72,9 +73,9 @@ class SectionValues:
     span: Reals
     """(m,) from 0 to 1"""
     chord_multiplier: Reals
-    """(m,), 1 where the chord switch asks for none"""
+    """(m,) factor of the chord; 1 without a chord multiplier"""
     chord: Reals | None
-    """(m,) chords in m', where the chord switch gives them instead of the edges on the streamlines"""
+    """(m,) chords in m', where the chord switch gives them; None where they follow from the edges"""
     sweep: Reals
     """(m,) shift along the streamline, in m'"""
     lean: Reals
@@ -86,7 +87,7 @@ class SectionValues:
     angle_out: Reals
     """(m,) metal angle at the exit [deg], deviation included; a wing's total camber"""
     stagger: Reals | None
-    """(m,) stagger [deg], where the file gives it in place of an inlet angle"""
+    """(m,) stagger [deg], where the file gives it instead of an inlet angle"""
     meanlines: tuple[Reals, ...] | None
     """for each section control points (k, 2) of the second derivative: u, value; None for straight ends and a cubic"""
     leading_index: Reals | None
@@ -151,7 +152,7 @@ def section_values(case: TBlade3Case, span: ArrayLike) -> SectionValues:
 
 
 def _angles(case: TBlade3Case, at: Reals) -> tuple[Reals, Reals]:
-    """Metal angles [deg] at inlet and exit: flow angles less incidence and deviation, in the sense of the turning."""
+    """Metal angles [deg] at inlet and exit: flow angles minus incidence and deviation, in the direction of turning."""
     angle_in, angle_out = _column(case, "in_beta"), _column(case, "out_beta")
     incidence, deviation = _column(case, "incidence"), _column(case, "deviation")
     if case.angle_spline == "inci_dev_spline":
@@ -223,23 +224,23 @@ def _column(case: TBlade3Case, name: str) -> Reals:
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class MetalAngles:
-    """Angles of the m sections [rad] in the plane (m', theta): of the meanline's ends, or what stands for them."""
+    """Angles of the m sections [rad] in the plane (m', theta)."""
 
     inlet: Reals | None
     """(m,) metal angle at the leading edge; None where the stagger is given"""
     exit: Reals | None
     """(m,) metal angle at the trailing edge; None where the stagger is given"""
     camber: Reals | None
-    """(m,) total camber, exit less inlet; None where the file gives staggers in place of inlet angles"""
+    """(m,) total camber, exit minus inlet; None where the file gives staggers instead of inlet angles"""
     stagger: Reals | None
-    """(m,) stagger, of a wing and where the file gives it; else it follows from the meanline"""
+    """(m,) stagger of a wing, or given by the file; None where it follows from the meanline"""
 
 
 def metal_angles(case: TBlade3Case, values: SectionValues, phi_in: ArrayLike, phi_out: ArrayLike) -> MetalAngles:
-    """The sections' angles, given the slopes phi = atan(dr/dx) (m,) [rad] of their streamlines at both edges.
+    """The angles of the sections, given the slopes phi = atan(dr/dx) (m,) [rad] of their streamlines at both edges.
 
-    beta_z, in a plane of constant radius, and beta_r, in one of constant x, belong to the same direction on the stream
-    surface as beta: tan(beta) = tan(beta_z) cos(phi) = tan(beta_r) sin(phi). A wing's angles are taken as they are.
+    The axial angle beta_z, at constant radius, and the radial angle beta_r, at constant x, give the angle beta on the
+    stream surface: tan(beta) = tan(beta_z) cos(phi) = tan(beta_r) sin(phi). A wing's angles are used as they are.
     """
     if values.stagger is not None:
         return MetalAngles(inlet=None, exit=None, camber=None, stagger=np.radians(values.stagger))
@@ -252,7 +253,7 @@ def metal_angles(case: TBlade3Case, values: SectionValues, phi_in: ArrayLike, ph
 
 
 def on_stream_surface(angle: ArrayLike, phi: ArrayLike, *, radial: bool) -> Reals:
-    """Angle [rad] in the plane (m', theta) of angles beta_z or, radial, beta_r [deg], at the slope phi [rad]."""
+    """Angle beta [rad] on the stream surface of an angle beta_z or, `radial`, beta_r [deg], at the slope phi [rad]."""
     part = np.sin(phi) if radial else np.cos(phi)
     found: Reals = np.arctan(np.tan(np.radians(angle)) * part)
     return found

@@ -1,4 +1,4 @@
-"""Where T-Blade3's stacking puts the sections of a case around the axis."""
+"""The stacking points of T-Blade3's sections."""
 
 import numpy as np
 
@@ -11,17 +11,18 @@ from bladewright.section.laws import Span
 from bladewright.section.outline import Outline
 
 POINTS_PER_SIDE = 121
-"""points that T-Blade3 gives a side, both ends among them"""
+"""Points that T-Blade3 writes for each side of a section, both ends included."""
 POLYGON_STATIONS = (1.0 - np.cos(np.pi * np.linspace(0.0, 1.0, 2001))) / 2.0
-"""places along the sides between which the centre of area is that of polygons: exact to 1e-7 chords"""
+"""Parameters along the sides of the polygon whose centroid stands for that of the exact section; it is exact to 1e-7
+chords."""
 REFINEMENTS = 8
-"""times that a place is sought among 64 parts of where it was found before: to rounding"""
+"""Times that an interval is divided into 64 parts in search of an abscissa: 64^-8 is below rounding."""
 
 
 def chord_stations(case: TBlade3Case) -> Reals | None:
-    """The chord fractions (121,) at which T-Blade3 computes a section's sides; None where they are not known here.
+    """The chord fractions (121,) at which T-Blade3 computes a section's sides; None for other clusterings.
 
-    Uniform, or with steps in proportion to sin^p(pi i / 121), i = 1 to 120.
+    They are uniform, or have steps in proportion to sin^p(pi i / 121), i = 1 to 120.
     """
     if case.leading_edge == "spline":
         return None
@@ -34,13 +35,12 @@ def chord_stations(case: TBlade3Case) -> Reals | None:
 
 
 def stacking_point(part: CurvatureMeanline, stacking: Stacking, stations: Reals | None = None) -> Reals:
-    """The stacking point (2,) of a section in chords, its leading edge at (0, 0), its chord line along the first axis.
+    """The stacking point (2,) of a section in chords, from the leading edge, along and across the chord line.
 
-    At `stations` (k,) the section is the polygon that T-Blade3 takes it for, else it is exact.
-
-    Where a leading edge is a spline, that is the section's chord line without it, which T-Blade3 goes on to count from.
-    Along the chord it is a share of the upper side's end; across, on the chord line, or from the mean of both sides
-    towards one of them; or it is the centre of area. `part` holds numbers, not laws.
+    It is the centroid of the area; or a fraction of the chord along, and across either the chord line itself or a
+    fraction of the way from the mean of both sides to one of them. With `stations` (k,) the section is the polygon for
+    which T-Blade3 takes it, else it is exact. Where the leading edge is a spline, the chord line is that of the section
+    without it, as in T-Blade3. `part` holds numbers, not laws.
     """
     sides = _Sides(part)
     polygons = None
@@ -48,7 +48,7 @@ def stacking_point(part: CurvatureMeanline, stacking: Stacking, stations: Reals 
         outline = part.unsplined(Span(np.zeros(1)))
         polygons = tuple(np.real(side)[0] for side in outline.at(stations, outline.half_at(stations)))
     if stacking.centroid:
-        return _centre(*sides(POLYGON_STATIONS)) if polygons is None else _middle(*polygons)
+        return _exact_centroid(*sides(POLYGON_STATIONS)) if polygons is None else _polygon_centroid(*polygons)
     along = float(sides(np.ones(1))[0][0, 0]) * stacking.along
     if stacking.above == 0.0:
         return np.array([along, 0.0])
@@ -62,7 +62,7 @@ def stacking_point(part: CurvatureMeanline, stacking: Stacking, stations: Reals 
 
 
 class _Sides:
-    """Points (k, 2) of a section's sides in chords of the section without a leading edge that is a spline."""
+    """Points (k, 2) of a section's sides, in chords of the section without its leading edge spline."""
 
     def __init__(self, part: CurvatureMeanline) -> None:
         self._outline = part.outline(Span(np.zeros(1)))
@@ -83,7 +83,7 @@ def unturned(outline: Outline, points: Reals) -> Reals:
 
 
 def _ordinate(sides: "_Sides", along: float, side: int) -> float:
-    """Ordinate of a side where its abscissa first passes a value, or at its end."""
+    """Ordinate of a side where its abscissa first reaches a value, or at the nearer end."""
     s = np.linspace(0.0, 1.0, 513)
     x = sides(s)[side][:, 0]
     past = np.flatnonzero((x[:-1] <= along) & (along <= x[1:]))
@@ -99,7 +99,7 @@ def _ordinate(sides: "_Sides", along: float, side: int) -> float:
 
 
 def _on_polygon(side: Reals, along: float) -> float:
-    """Ordinate of the first part of a polygon (k, 2) that passes an abscissa, or of the first part continued."""
+    """Ordinate of a polygon (k, 2) where it first reaches an abscissa, or of its first segment extended."""
     x = side[:, 0]
     past = np.flatnonzero((x[:-1] <= along) & (along <= x[1:]))
     i = int(past[0]) if len(past) else 0
@@ -107,8 +107,8 @@ def _on_polygon(side: Reals, along: float) -> float:
     return float(side[i, 1] + share * (side[i + 1, 1] - side[i, 1]))
 
 
-def _middle(upper: Reals, lower: Reals) -> Reals:
-    """The centre of area by the middles of a polygon's edges, as T-Blade3 has it: sums of x y dx and y y dx / 2."""
+def _polygon_centroid(upper: Reals, lower: Reals) -> Reals:
+    """The centroid as T-Blade3 computes it, by the midpoints of a polygon's edges: sums of x y dx and y y dx / 2."""
     around = np.concatenate([upper[::-1], lower[1:]])
     following = np.roll(around, -1, axis=0)
     x, y = (0.5 * (around + following)).T
@@ -117,8 +117,8 @@ def _middle(upper: Reals, lower: Reals) -> Reals:
     return found
 
 
-def _centre(upper: Reals, lower: Reals) -> Reals:
-    """The same to rounding of a fine polygon."""
+def _exact_centroid(upper: Reals, lower: Reals) -> Reals:
+    """The exact centroid of a fine polygon."""
     around = np.concatenate([upper, lower[::-1]])
     following = np.roll(around, -1, axis=0)
     areas = cross2(around, following)

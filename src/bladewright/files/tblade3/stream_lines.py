@@ -15,15 +15,16 @@ from bladewright.files.tblade3.section_values import section_spans
 from bladewright.nurbs.basis import Reals
 
 NEAR_AXIS = 1e-5
-"""radius, of the scale, below which T-Blade3 takes a point of a stream line for one on the axis"""
+"""Radius, in T-Blade3's lengths without dimension, below which a point of a stream line lies on the axis: T-Blade3's
+own constant."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class CaseStreamLines:
-    """The m stream lines of a case, offsets included, and the edges' places on them by m'.
+    """The m stream lines of a case, with their offsets, and m' of the blade's edges on them.
 
-    m' is counted from a line's first point on, the chords over the mean radii of their ends; x and r are cubic splines
-    of it, without second derivative at the first and without third at the last point.
+    m' is counted from the first point of a line: each chord divided by the mean radius of its ends. x and r are cubic
+    splines of m', with second derivative 0 at the first point and third derivative 0 at the last.
     """
 
     meridians: tuple[ThroughPoints, ...]
@@ -37,7 +38,7 @@ class CaseStreamLines:
     trailing: Reals
     """(m,) m' at the trailing edge"""
     dropped: int = 0
-    """points that an offset would put past the axis, and that are left out"""
+    """number of points that an offset would move beyond the axis, and that are left out"""
 
     @cached_property
     def totals(self) -> Reals:
@@ -45,7 +46,7 @@ class CaseStreamLines:
         return np.array([_counted(line) for line in self.lines])
 
     def at(self, places: Reals, order: int = 0) -> Reals:
-        """(x, r) [m] (m, 2) at m' (m,) on each line, or derivatives by m'; past a line's ends its spline goes on."""
+        """(x, r) [m] (m, 2) at m' (m,), one on each line, or derivatives by m'; its ends are continued."""
         found = [
             np.real(line.values(np.array([place / total]), order)[0]) / total**order
             for line, place, total in zip(self.lines, places, self.totals, strict=True)
@@ -64,17 +65,17 @@ class CaseStreamLines:
 
     @property
     def distances(self) -> tuple[Reals, Reals]:
-        """(m,) of the sections from the first one, along the leading and along the trailing edge [m]."""
+        """Distances (m,) [m] of the sections from the first one, along the leading and along the trailing edge."""
         steps = [np.diff(self.at(places), axis=0) for places in (self.leading, self.trailing)]
         lead, trail = (np.append(0.0, np.cumsum(np.sqrt(np.sum(each**2, axis=-1)))) for each in steps)
         return lead, trail
 
     @cached_property
     def spans(self) -> Reals:
-        """(m,) spans of the sections: by the radius of their leading edges, or by x in a radial machine.
+        """(m,) spans of the sections, measured by the radius of their leading edges, or by x in a radial machine.
 
-        For T-Blade3, a machine is radial whose last stream line is somewhere as steep as 45 degrees, and whose first
-        and last line start at one radius.
+        T-Blade3 takes a machine as radial where the last stream line is somewhere steeper than 45 degrees, and the
+        first and the last line start at the same radius.
         """
         first, last = self.meridians[0].points[0], self.meridians[-1].points[0]
         line = self.lines[-1]
@@ -114,7 +115,7 @@ def case_stream_lines(case: TBlade3Case) -> CaseStreamLines:
 
 def _stream_line(case: TBlade3Case, index: int) -> ThroughPoints:
     first, *others = case.streamlines[index]
-    # a point near the axis takes the place of the first
+    # a point near the axis replaces the first point
     first = next((point for point in reversed(others) if point[1] < NEAR_AXIS), first)
     kept = [first, *(point for point in others if point[1] >= NEAR_AXIS)]
     return _through(case, f"streamline {index + 1}", [(x * case.scale, r * case.scale) for x, r in kept], "conformal")

@@ -1,4 +1,4 @@
-"""From a T-Blade3 case to the blade of sections on curvature meanlines that has its sections."""
+"""From a T-Blade3 case to the curvature-meanline blade that has its sections."""
 
 import re
 from dataclasses import dataclass, replace
@@ -20,10 +20,11 @@ from bladewright.nurbs.basis import Reals
 from bladewright.section.edge_spline import SplinedOutline
 from bladewright.section.laws import Span
 
-FEW = 4
-"""sections up to which an edge curve that is not shifted stays as the case gives it, to shape what is between them"""
-BELOW = 1e-9
-"""share of a stream line by which a section may reach past its end: rounding"""
+FEW_SECTIONS = 4
+"""Number of sections up to which an edge that is not shifted keeps the curve that the case gives, since a
+curve through so few points says little of its shape between them."""
+BEYOND = 1e-9
+"""Largest fraction of a stream line by which a section may extend beyond its end: rounding."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -35,29 +36,29 @@ class CaseSections:
     values: SectionValues
     numbers: SectionParameters
     true_stagger: bool = False
-    """whether true sweep and lean take the section's stagger, instead of what T-Blade3 takes for it"""
+    """whether true sweep and lean use the stagger of the section, instead of what T-Blade3 uses"""
 
     @cached_property
     def places(self) -> Reals:
-        """(m,) span fractions of the design at which the sections stand, falling where they are `reversed`."""
+        """(m,) span fractions of the sections in the design, decreasing where they are `reversed`."""
         places = section_places(self.flow.spans, *self.flow.distances)
         return 1.0 - places if self.reversed else places
 
     @cached_property
     def reversed(self) -> bool:
-        """Whether the last section lies to the right of the first, seen along the flow: it is the design's hub then."""
+        """Whether the last section is the design's hub: it lies to the right of the first, seen along the flow."""
         edge = self.flow.at(self.flow.leading)
         across, along = edge[-1] - edge[0], np.sum(self.flow.at(self.flow.leading, 1), axis=0)
         return bool(along[0] * across[1] - along[1] * across[0] < 0.0)
 
     @property
     def order(self) -> list[int]:
-        """The sections' numbers from the design's hub to its shroud."""
+        """Indices of the sections from hub to shroud of the design."""
         return [int(i) for i in np.argsort(self.places)]
 
     @cached_property
-    def _turns(self) -> Reals:
-        """(m, 2) stagger [rad] of the sections without a leading edge that is a spline, and with it."""
+    def _staggers(self) -> Reals:
+        """(m, 2) stagger [rad] of the sections without and with their leading edge spline."""
         one = Span(np.zeros(1))
         parts = [self.numbers.of(i) for i in range(len(self.places))]
         both = [(replace(part, leading_edge_spline=None), part) for part in parts]
@@ -65,7 +66,7 @@ class CaseSections:
 
     @cached_property
     def tips(self) -> Reals:
-        """(m, 2) where the leading edges stand, in T-Blade3's chords: (0, 0) but where they are splines."""
+        """(m, 2) positions of the leading edges, in T-Blade3's chords: (0, 0) unless they are splines."""
         if self.numbers.edges is None:
             return np.zeros((len(self.places), 2))
         outlines = [self.numbers.of(i).outline(Span(np.zeros(1))) for i in range(len(self.places))]
@@ -73,8 +74,8 @@ class CaseSections:
 
     @property
     def stagger(self) -> Reals:
-        """(m,) of the chord lines from tip to trailing edge [rad]."""
-        return self._turns[:, 1]
+        """(m,) stagger [rad] of the chord lines from the leading edge's tip to the trailing edge."""
+        return self._staggers[:, 1]
 
     @cached_property
     def own_chords(self) -> Reals:
@@ -82,7 +83,7 @@ class CaseSections:
         if self.values.chord is not None:
             return self.values.chord
         extents = (self.flow.trailing - self.flow.leading) * self.values.chord_multiplier
-        return extents / np.cos(self._turns[:, 0])
+        return extents / np.cos(self._staggers[:, 0])
 
     @cached_property
     def chords(self) -> Reals:
@@ -105,7 +106,7 @@ class CaseSections:
         """
         case, sweep, lean = self.case, self.values.sweep, self.values.lean
         if self.true_stagger:
-            stagger = self._turns[:, 0]
+            stagger = self._staggers[:, 0]
         else:
             stagger = 0.0 * sweep if case.chord == "meridional" else self.values.angle_in
         along, across = np.abs(np.cos(stagger)), np.abs(np.sin(stagger))
@@ -129,14 +130,14 @@ class CaseSections:
         """(m,) of the leading edges [rad]: of what stacking, lean and the turn of the blade make."""
         found = []
         stations = chord_stations(self.case)
-        for i, (turn, stacking) in enumerate(zip(self._turns[:, 0], self.case.stackings, strict=True)):
+        for i, (turn, stacking) in enumerate(zip(self._staggers[:, 0], self.case.stackings, strict=True)):
             along, across = self.tips[i] - stacking_point(self.numbers.of(i), stacking, stations)
             found.append(self.own_chords[i] * (along * np.sin(turn) + across * np.cos(turn)))
         return np.array(found) + self.shifts[1] + self.values.theta_offset
 
 
 def case_sections(case: TBlade3Case, *, true_stagger: bool = False) -> CaseSections:
-    """The sections of a case. Raises FileError where they are none of the family's, or leave their stream lines."""
+    """The sections of a case. Raises FileError where the family has no such, or they leave their stream lines."""
     refused = [text for text in case.unsupported if "inflation" not in text]
     if refused:
         raise FileError(f"'{case.file}': {refused[0]}")
@@ -155,7 +156,7 @@ def case_sections(case: TBlade3Case, *, true_stagger: bool = False) -> CaseSecti
 
 
 def blade_of(sections: CaseSections) -> CurvatureMeanlineBlade:
-    """The design that has the sections of a case, each at its place; raises FileError where the family has no such."""
+    """The design with the sections of a case; raises FileError where the family has no such blade."""
     case, flow, places = sections.case, sections.flow, sections.places
     hub, *between, shroud = (flow.meridians[i] for i in sections.order)
     try:
@@ -183,15 +184,15 @@ def blade_of(sections: CaseSections) -> CurvatureMeanlineBlade:
 
 
 def name_of(case: TBlade3Case) -> str:
-    """A name for files: that of the case, and its row."""
+    """A file name for the design: the name of the case and its row."""
     word = re.sub(r"[^\w.+-]+", "-", case.name).strip("-.") or "blade"
     return f"{word}-{case.suffix}" if case.suffix and not word.endswith(f"-{case.suffix}") else word
 
 
 def _edge(sections: CaseSections, given: ThroughPoints, before: Reals, after: Reals) -> ThroughPoints:
-    """An edge curve: as it is given, or through the points at which the sections' ends lie on their stream lines."""
+    """An edge curve: as given, or through the points at which the ends of the sections lie on their stream lines."""
     case = sections.case
-    if len(before) <= FEW and np.array_equal(before, after):
+    if len(before) <= FEW_SECTIONS and np.array_equal(before, after):
         return given
     metre = case.unit_length / case.scale
     points = sections.flow.at(after)[sections.order] / metre
@@ -199,7 +200,7 @@ def _edge(sections: CaseSections, given: ThroughPoints, before: Reals, after: Re
 
 
 def _check_directions(sections: CaseSections) -> None:
-    """Refuse angles beta_r that change their sign with the lean of the stream lines."""
+    """Raise FileError where angles beta_r would change sign because the stream lines slope to different sides."""
     case = sections.case
     for which, end, phi in zip(("in", "out"), (0, -1), sections.flow.slopes, strict=True):
         turned = np.flatnonzero(np.sign(phi) != np.sign(phi[0]))
@@ -214,7 +215,7 @@ def _check_directions(sections: CaseSections) -> None:
 
 def _check_within(sections: CaseSections) -> None:
     for which, places in (("leading", sections.leading), ("trailing", sections.trailing)):
-        past = np.flatnonzero((places < -BELOW) | (places > sections.flow.totals * (1.0 + BELOW)))
+        past = np.flatnonzero((places < -BEYOND) | (places > sections.flow.totals * (1.0 + BEYOND)))
         if len(past):
             i = int(past[0])
             raise FileError(
