@@ -17,6 +17,24 @@ from bladewright.section.offset import merged_joints
 from bladewright.section.outline import Edge, EdgeDerivatives, Joint, Outline
 from bladewright.section.power_series import Series, composed, point_derivatives, polynomial, sine_and_cosine, variable
 
+ORDER = 16
+"""Gauss points on each panel of the integral of tan(beta): the angle of the chord line is then exact to rounding for
+beta from -80 to 80 deg, with 12 points within 3e-12 (design/section_constants.py)"""
+CUTS = 6
+"""panels between two knots of beta: as many keep 16 points exact to rounding, 4 leave 2e-13
+(design/section_constants.py)"""
+NODES = 12
+"""Chebyshev points in each cell on which fractions of the meridional length are interpolated: 8 are within 2e-15 for a
+radius that grows smoothly, and 12 leave room for channels that bend (design/section_constants.py)"""
+CELLS = 16
+"""equal cells along m' for that interpolation, so that a bend of the channel spoils one of them only"""
+APART = 1e-9
+"""difference by s below which a joint stands at the same place in all sections: above rounding of a root, below any
+movement that a design shows [-]"""
+STEEPEST = 6.0
+"""largest h'' / (2 h') times the width of a piece beside a round edge, h the half thickness, for which s is bent the
+other way: the bent parameter is monotone up to 7.3, and at this limit its slope stays above 0.18 [-]"""
+
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class SplinePieces:
@@ -60,19 +78,6 @@ class SplinePieces:
             wide = [np.broadcast_to(each, (*shape, each.shape[-1])) for each in self._powers]
             taken = [np.take_along_axis(each, index, axis=-1) for each in wide]
         return polynomial(taken, at - self.ends[piece])
-
-
-ORDER = 16
-"""Gauss points on each panel of the integral of tan(beta): the angle of the chord line is then exact to rounding for
-beta from -80 to 80 deg, with 12 points within 3e-12 (design/section_constants.py)"""
-CUTS = 6
-"""panels between two knots of beta: as many keep 16 points exact to rounding, 4 leave 2e-13
-(design/section_constants.py)"""
-NODES = 12
-"""Chebyshev points in each cell on which fractions of the meridional length are interpolated: 8 are within 2e-15 for a
-radius that grows smoothly, and 12 leave room for channels that bend (design/section_constants.py)"""
-CELLS = 16
-"""equal cells along m' for that interpolation, so that a bend of the channel spoils one of them only"""
 
 
 class LengthFraction:
@@ -190,14 +195,6 @@ class CamberByAngle:
         rates = np.tan(turning)
         parts: Array = rates.reshape(*rates.shape[:-1], -1, ORDER) @ weight
         return parts * width
-
-
-APART = 1e-9
-"""difference by s below which a joint stands at the same place in all sections: above rounding of a root, below any
-movement that a design shows [-]"""
-STEEPEST = 6.0
-"""largest h'' / (2 h') times the width of a piece beside a round edge, h the half thickness, for which s is bent the
-other way: the bent parameter is monotone up to 7.3, and at this limit its slope stays above 0.18 [-]"""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

@@ -9,6 +9,9 @@ import numpy as np
 from bladewright.designs import ChordwiseLaw, Law, Point, Points
 from bladewright.errors import DesignError
 
+UNITS = {"m": 1.0, "cm": 1e-2, "mm": 1e-3, "um": 1e-6, "in": 0.0254, "ft": 0.3048}
+"""Metres in one unit of length."""
+
 
 def number(path: str, value: Any) -> Any:
     """The value as a finite float, complex number or numeric array (a batch), or a refusal."""
@@ -98,7 +101,3 @@ def text(path: str, value: Any) -> str:
     if not isinstance(value, str) or not value.isprintable():
         raise DesignError(f"{path} is {value!r}: a text of one line of printable characters is needed")
     return value
-
-
-UNITS = {"m": 1.0, "cm": 1e-2, "mm": 1e-3, "um": 1e-6, "in": 0.0254, "ft": 0.3048}
-"""Metres in one unit of length."""

@@ -65,7 +65,7 @@ class ChordPlace(NamedTuple):
 
 
 class Breakpoint(NamedTuple):
-    """Where a law is less smooth."""
+    """A joint of a thickness law or a meanline, before the map gives it its s."""
 
     u: Array
     """chord fraction (..., m)"""
@@ -96,9 +96,9 @@ class _RationalPiece:
 
 
 class ChordMap:
-    """The map u(s) of sections (..., m) with given breaks, one or more and increasing, and round edges or not.
+    """The map u(s) of sections (..., m) with one breakpoint or more, increasing, between edges that are round or not.
 
-    Two breaks of two derivatives must not be neighbours.
+    Two breakpoints with two continuous derivatives must not be neighbours.
     """
 
     def __init__(

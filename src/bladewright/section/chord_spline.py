@@ -14,6 +14,10 @@ from bladewright.section.power_series import polynomial as composed
 NEWTON = 12
 """Newton steps before the bracketed search takes over: 6 suffice for control points unevenly placed
 (design/section_constants.py)"""
+QUARTIC = np.array(
+    [[1, 11, 11, 1, 0], [-4, -12, 12, 4, 0], [6, -6, -6, 6, 0], [-4, 12, -12, 4, 0], [1, -4, 6, -4, 1]]
+) / np.array(24.0)
+"""row k: coefficients of t^k, 0 <= t <= 1, from a segment's five control points"""
 
 
 def by_abscissa(powers: Array, values: Array) -> tuple[Array, Array, Array]:
@@ -96,12 +100,6 @@ def _unbatched(values: Reals, rank: int) -> Reals:
     while values.ndim > rank and np.array_equal(values, np.broadcast_to(values[:1], values.shape)):
         values = values[0]
     return values
-
-
-QUARTIC = np.array(
-    [[1, 11, 11, 1, 0], [-4, -12, 12, 4, 0], [6, -6, -6, 6, 0], [-4, 12, -12, 4, 0], [1, -4, 6, -4, 1]]
-) / np.array(24.0)
-"""row k: coefficients of t^k, 0 <= t <= 1, from a segment's five control points"""
 
 
 def segments(controls: Array) -> Array:

@@ -66,7 +66,7 @@ def check_outline(outline: Outline, where: Sequence[str]) -> None:
 
 
 def _folding(outlines: Reals) -> tuple[int, int] | None:
-    """Outline and point of the first place where one turns by more than a right angle, edges apart."""
+    """Outline and point of the first place where one turns by more than a right angle, but for the edges."""
     ahead = np.roll(outlines, -1, axis=1) - outlines
     back = np.sum(ahead * np.roll(ahead, 1, axis=1), axis=-1) < 0.0
     edges = [0, len(FINE) - 1, len(FINE) % outlines.shape[1], -1]
@@ -98,7 +98,7 @@ def touching(outlines: Reals, pitch: float) -> int | None:
 
 
 def _overlapping(outlines: Reals) -> NDArray[np.bool_]:
-    """Mask (k, n, n) of segments whose extents overlap: those of one straight line part each other by rounding."""
+    """Mask (k, n, n) of segments whose extents overlap; segments of one straight line would cross by rounding alone."""
     after = np.roll(outlines, -1, axis=1)
     low, high = np.minimum(outlines, after), np.maximum(outlines, after)
     beside = [low[:, :, None, axis] <= high[:, None, :, axis] for axis in (0, 1)]
@@ -107,7 +107,7 @@ def _overlapping(outlines: Reals) -> NDArray[np.bool_]:
 
 
 def _separated(lines: Reals, points: Reals) -> NDArray[np.bool_]:
-    """Mask (k, n, m) of the segments of `points` that the line through each segment of `lines` parts."""
+    """Mask (k, n, m) of the segments of `points` whose ends the line through each segment of `lines` separates."""
     along = np.roll(lines, -1, axis=1) - lines
     turns = along[:, :, :1] * points[:, None, :, 1] - along[:, :, 1:] * points[:, None, :, 0]
     above = turns > (along[..., 0] * lines[..., 1] - along[..., 1] * lines[..., 0])[:, :, None]

@@ -21,6 +21,11 @@ def stacked(leaves: Any) -> Array:
     return np.stack(np.broadcast_arrays(*[np.asarray(leaf) for leaf in leaves]), axis=-1)
 
 
+def law_points(law: Law) -> tuple[Any, ...]:
+    """The control points of a law: a constant has one."""
+    return law if isinstance(law, tuple) else (law,)
+
+
 def law_basis(count: int, v: Reals) -> Reals:
     """Values (len(v), count) of the basis functions of a law with `count` control points."""
     if count == 1:
@@ -38,7 +43,7 @@ class Span:
 
     def values(self, law: Law) -> Array:
         """The law's values (..., m)."""
-        leaves = law if isinstance(law, tuple) else (law,)
+        leaves = law_points(law)
         if len(leaves) not in self._basis:
             self._basis[len(leaves)] = law_basis(len(leaves), self.v)
         return stacked(leaves) @ self._basis[len(leaves)].T

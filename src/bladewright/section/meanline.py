@@ -67,7 +67,8 @@ class Meanline(ABC):
 def backward(places: Reals) -> NDArray[np.bool_]:
     """Which steps (..., n - 1) of control points' places (..., n) keep u(t) of their spline from rising.
 
-    A step may be none between two inner places; at an end, or beside another one, u'(t) would be zero at a joint.
+    A step may be zero between two inner places, but not at an end nor beside another such step: there u'(t) would be
+    zero at a joint.
     """
     steps = np.diff(places, axis=-1)
     still = steps == 0.0

@@ -30,7 +30,7 @@ SHARES = (0.1, 0.3, 0.5, 0.7, 0.9)
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class SectionKnots:
-    """What stays as it is while a section is differentiated: knots and interpolation sites of its curves."""
+    """Knots and interpolation sites of a section's curves, which are held while it is differentiated."""
 
     sides: Reals
     """clamped knots over [0, 1] of both sides, by s"""
@@ -135,7 +135,7 @@ def _camber(outline: Outline, knots: Reals, places: Reals) -> Array:
 
 
 def _initial_knots(joints: list[tuple[float, int]]) -> Reals:
-    """Knots to begin with: about eight spans, and the joints as often as they lose derivatives."""
+    """Initial knots: about eight spans, each joint as often as its lost derivatives ask for."""
     ends = np.array([0.0, *(place for place, _ in joints), 1.0])
     # an end's three control points and the other's must not be the same ones
     counts = np.maximum(1 if len(ends) > 2 else 2, np.rint(8.0 * np.diff(ends)).astype(int))
@@ -145,7 +145,7 @@ def _initial_knots(joints: list[tuple[float, int]]) -> Reals:
 
 
 def _refined(knots: Reals, error: Callable[[Reals, Reals], Reals], tolerance: float) -> Reals:
-    """Knots whose spans are cut, in as many pieces as the order of convergence predicts, until none misses."""
+    """Knots refined until the error is within the tolerance; spans are split as the order of convergence predicts."""
     before = np.inf
     while True:
         ends = breaks(knots)
@@ -191,7 +191,7 @@ def native_section(
     scale: Callable[[Array], Array],
     meanline: Meanline | None,
 ) -> Section:
-    """The section of an outline of shape () or (1,), staggered by `turn` (), `chord` () long, its edge at `shift` (2,).
+    """The section of an outline of shape () or (1,), turned by `turn` (), `chord` () long and moved by `shift` (2,).
 
     `plane`, `scale` and `meanline` are the section's own.
     """

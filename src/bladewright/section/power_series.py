@@ -7,6 +7,12 @@ import numpy as np
 
 from bladewright.numerics.elementary import Array
 
+NEAR = 0.2
+"""size of z up to which log(1 + z) / z is summed as a power series: beyond it the quotient loses less than a digit
+[-]"""
+TERMS = 26
+"""terms of that power series: 0.2^26 is below 1e-18"""
+
 
 class Series:
     """Power series c0 + c1 x + ... + cn x^n of many quantities at once, their coefficients (n + 1 arrays) of one shape.
@@ -118,13 +124,6 @@ def joined_series(parts: Sequence[Series]) -> Series:
         return np.broadcast_to(part.coefficients[k], (*rest, count))
 
     return Series([np.concatenate([row(part, k) for part in parts], axis=-1) for k in orders])
-
-
-NEAR = 0.2
-"""size of z up to which log(1 + z) / z is summed as a power series: beyond it the quotient loses less than a digit
-[-]"""
-TERMS = 26
-"""terms of that power series: 0.2^26 is below 1e-18"""
 
 
 def logarithm(at: Series) -> Series:

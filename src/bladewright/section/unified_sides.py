@@ -1,4 +1,13 @@
-"""The sides of the unified section: quartic B-splines around the camber line, with edge radii by construction."""
+"""The sides of the unified section: quartic B-splines around the camber line, with edge radii by construction.
+
+At an edge both sides have its radius of curvature, but different speeds. Inside the knot span next to the edge a side's
+own parameter a therefore becomes a polynomial of the section's parameter s,
+
+    a(s) = s + (alpha - 1) h p(s / h) + beta h^2 q(s / h),    p(x) = x (1 - x)^4 (1 + 4 x),    q(x) = x^2 (1 - x)^4 / 2,
+
+with a' = alpha and a'' = beta at the edge, and value and three derivatives unchanged at the span's other end h. alpha
+and beta are such that the two sides have opposite first and equal second derivatives at the edge.
+"""
 
 from dataclasses import dataclass
 from functools import lru_cache
@@ -12,6 +21,16 @@ from bladewright.nurbs.curve import Curve
 from bladewright.section.camber import camber_points, camber_tangents, turned_left
 from bladewright.section.power_series import polynomial_points
 
+DEGREE = 4
+"""degree of the sides (Agromayor et al. 2021)"""
+BRAKE = 20.0
+"""square of the rise (second derivative over first, in knot spans) from which the sides are slowed at an edge
+
+With alpha = (1 + rise^2 / BRAKE)^(-1/3) and beta h = -rise alpha^2 the parametrisation is monotone for every rise: its
+slope stays above 0.56 alpha, also where the sides' speeds differ by a quarter and their rises by half
+(design/edge_parametrisation.py).
+"""
+
 
 def sample_places(samples: int, clustering: float) -> Reals:
     """Camber parameters (samples + 5,) of a side's control points, of which the inner `samples` carry thickness.
@@ -24,10 +43,6 @@ def sample_places(samples: int, clustering: float) -> Reals:
     inner = (1.0 - clustering) * uniform + clustering * cosine
     inner[-1] = 1.0
     return np.concatenate([[0.0], inner, [1.0]])
-
-
-DEGREE = 4
-"""degree of the sides (Agromayor et al. 2021)"""
 
 
 def advances(line: Array, places: Reals, thickness: Array, upper: bool) -> tuple[Array, Array]:
@@ -88,15 +103,6 @@ def _thickened(line: Array, places: Reals, thickness: Array, upper: bool) -> Arr
     inner = places[2:-2]
     normals = turned_left(camber_tangents(line, inner)) * (1.0 if upper else -1.0)
     return camber_points(line, inner) + thickness[..., None] * normals
-
-
-BRAKE = 20.0
-"""square of the rise (second derivative over first, in knot spans) from which the sides are slowed at an edge
-
-With alpha = (1 + rise^2 / BRAKE)^(-1/3) and beta h = -rise alpha^2 the parametrisation is monotone for every rise: its
-slope stays above 0.56 alpha, also where the sides' speeds differ by a quarter and their rises by half
-(design/edge_parametrisation.py).
-"""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -186,7 +192,7 @@ def plane_sections(camber: Array, upper: Array, lower: Array) -> PlaneSections:
 
 
 def matched(upper: Array, lower: Array) -> tuple[Array, Array]:
-    """Both sides' control points homogeneous where one of them is."""
+    """Both sides' control points, made homogeneous where those of one side are."""
     if upper.shape[-1] == lower.shape[-1]:
         return upper, lower
     sides = [np.concatenate([c, np.ones_like(c[..., :1])], axis=-1) if c.shape[-1] == 2 else c for c in (upper, lower)]

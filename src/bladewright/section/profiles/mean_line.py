@@ -24,6 +24,12 @@ from bladewright.section.power_series import (
     variable,
 )
 
+END_CLUSTERING = 0.9
+"""clustering of s at a round trailing edge, whose cap is a few half thicknesses of the trailing edge long [-]"""
+FAR = 0.99
+"""1 - x from which on the cap of a round trailing edge is left out: there x^n is below 0.01^20, n being 20 or more
+[-]"""
+
 
 class ThicknessForm(ABC):
     """Half thicknesses T(x) = a1 sqrt(x) + a2 x + ... of sections (...), in chords."""
@@ -80,12 +86,6 @@ class ChebyshevForm(ThicknessForm):
 
 TrailingEdge = Literal["sharp", "blunt", "round"]
 
-END_CLUSTERING = 0.9
-"""clustering of s at a round trailing edge, whose cap is a few half thicknesses of the trailing edge long [-]"""
-FAR = 0.99
-"""1 - x from which on the cap of a round trailing edge is left out: there x^n is below 0.01^20, n being 20 or more
-[-]"""
-
 
 class MeanLine(ABC):
     """Mean lines y(x) of sections (...): 0 at x = 0 and at x = 1, in chords."""
@@ -112,9 +112,9 @@ class MeanLineOutline(Outline):
     thickness: ThicknessForm
     end: TrailingEdge
     clustering: float = 0.0
-    """share of the steps of s drawn towards the leading edge"""
+    """clustering of s at the leading edge, 0 (none) to below 1 [-]"""
     stretching: float = 0.0
-    """how the steps crowd at a sharp or blunt trailing edge"""
+    """k of the hyperbolic tangent that clusters s at a sharp or blunt trailing edge; 0: none [-]"""
 
     @cached_property
     def _chord_map(self) -> ClusteredChordMap:

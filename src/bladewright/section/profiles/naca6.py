@@ -115,7 +115,7 @@ class Naca6(PublishedProfile):
 
 
 def clustering(end: TrailingEdge) -> float:
-    """Share of the steps drawn towards the nose, more where crowding at the trailing edge thins them out."""
+    """Clustering of s at the nose, more where stretching at a sharp or blunt trailing edge thins the steps there."""
     return CLUSTERING if end == "round" else 1.0 - (1.0 - CLUSTERING) / STRETCHING
 
 

@@ -14,7 +14,7 @@ from bladewright.section.power_series import Series, point_derivatives, polynomi
 from bladewright.section.profiles.contour import Contour
 from bladewright.section.profiles.quintic_spline import QuinticSpline
 
-PACE = 0.5
+EDGE_SPEED = 0.5
 """speed of the spline's parameter by s at the edges, of the mean of both sides: half of it, because the curvature is
 largest there [-]"""
 STEPS = 40
@@ -42,10 +42,10 @@ class SplineSide:
     end: Array
     """parameter (...) at the trailing edge"""
 
-    def parameter(self, s: Series, pace: Array) -> Series:
-        """The spline's parameter at s (k,): at both ends with a pace (...) and without a second derivative."""
+    def parameter(self, s: Series, edge_speed: Array) -> Series:
+        """The spline's parameter at s (k,): with the speed `edge_speed` (...) and no second derivative at both ends."""
         way = (self.end - self.start)[..., None]
-        own = np.where(np.real(way) < 0.0, -1.0, 1.0) * pace[..., None]
+        own = np.where(np.real(way) < 0.0, -1.0, 1.0) * edge_speed[..., None]
         eased = polynomial(
             [np.zeros(()), np.zeros(()), np.zeros(()), np.array(10.0), np.array(-15.0), np.array(6.0)], s
         )
@@ -75,14 +75,14 @@ class PointsOutline(Outline):
         found = []
         for side in self._sides:
             lengths = [np.real(side.start)[..., None], np.real(side.end)[..., None]]
-            knots, pace = side.spline.breaks, np.real(self._pace)
+            knots, edge_speed = side.spline.breaks, np.real(self._edge_speed)
             whole = np.real(side.spline.sites)[..., -1:] if side.spline.closed else 0.0
             for shift in (-1.0, 0.0, 1.0) if side.spline.closed else (0.0,):
                 places = knots + shift * whole
                 low, high = np.minimum(*lengths), np.maximum(*lengths)
                 inside = np.all((places > low) & (places < high), axis=tuple(range(places.ndim - 1)))
                 if np.any(inside):
-                    found += self._joints_of(side, places[..., inside], pace)
+                    found += self._joints_of(side, places[..., inside], edge_speed)
         return merged_joints(found)
 
     def points(self, s: Reals) -> tuple[Array, Array]:
@@ -204,9 +204,9 @@ class PointsOutline(Outline):
         return leading, trailing
 
     @cached_property
-    def _pace(self) -> Array:
+    def _edge_speed(self) -> Array:
         ways = [side.end - side.start for side in self._sides]
-        return 0.5 * PACE * (magnitude(ways[0]) + magnitude(ways[1]))
+        return 0.5 * EDGE_SPEED * (magnitude(ways[0]) + magnitude(ways[1]))
 
     @cached_property
     def _chord(self) -> tuple[Array, Array]:
@@ -221,16 +221,16 @@ class PointsOutline(Outline):
         return tips[0], tips[1] - tips[0]
 
     def _in_chords(self, side: SplineSide, s: Reals, order: int) -> tuple[Series, Series]:
-        x, y = side.spline.at(side.parameter(variable(s, order), self._pace))
+        x, y = side.spline.at(side.parameter(variable(s, order), self._edge_speed))
         start, way = self._chord
         square = dot(way, way)[..., None]
         off = x - start[..., 0, None], y - start[..., 1, None]
         cosine, sine = way[..., 0, None] / square, way[..., 1, None] / square
         return off[0] * cosine + off[1] * sine, off[1] * cosine - off[0] * sine
 
-    def _joints_of(self, side: SplineSide, places: Reals, pace: Reals) -> list[Joint]:
+    def _joints_of(self, side: SplineSide, places: Reals, edge_speed: Reals) -> list[Joint]:
         def off(s: Array) -> tuple[Array, Array]:
-            found = side.parameter(variable(s, 1), pace)
+            found = side.parameter(variable(s, 1), edge_speed)
             return np.real(found.value) - places, np.real(found.coefficients[1])
 
         s = bracketed_root(off, np.zeros(places.shape), np.ones(places.shape))

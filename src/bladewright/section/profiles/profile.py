@@ -17,6 +17,11 @@ from bladewright.section.family import SectionFamily
 from bladewright.section.laws import Span
 from bladewright.section.profiles.mean_line import TrailingEdge
 
+POWER = 8
+"""power of sqrt(x) whose coefficient closes or opens the trailing edge: x^4, which hardly touches the front half"""
+THICKNESS = (0.0, 0.4, "thickness must be above 0 and below 0.4 chords")
+"""limits of the maximum thickness [chords], both excluded, and what is said beyond them"""
+
 
 @dataclass(frozen=True, kw_only=True)
 class Profile(SectionFamily, ABC):
@@ -37,12 +42,6 @@ class Profile(SectionFamily, ABC):
     def stagger(self, span: Span) -> Array:
         """Angles (..., m) of the chord lines [rad]."""
         return radians(span.values(self.stagger_angle))
-
-
-POWER = 8
-"""power of sqrt(x) whose coefficient closes or opens the trailing edge: x^4, which hardly touches the front half"""
-THICKNESS = (0.0, 0.4, "thickness must be above 0 and below 0.4 chords")
-"""limits of the maximum thickness [chords], both excluded, and what is said beyond them"""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -73,20 +72,20 @@ class PublishedProfile(Profile):
         what = "the trailing edge must be thicker than 0.002 and thinner than 0.5 of the maximum thickness"
         checks.between("trailing_edge_thickness", self.trailing_edge_thickness, 0.002, 0.5, what)
 
-    def form_coefficients(self, span: Span, form: Mapping[int, float | Array], own: float) -> list[Array]:
+    def form_coefficients(self, span: Span, form: Mapping[int, float | Array], published: float) -> list[Array]:
         """Coefficients (..., m, 1) of the powers of sqrt(x), from the first on, of the half thickness.
 
         `form` holds those over the thickness. To that of x^4 is added what makes the thickness at x = 1 the one asked
-        for; `own` is the published one, of the maximum thickness.
+        for; `published` is that of the published form, of the maximum thickness.
         """
         held = dict(form)
-        held[POWER] = held.get(POWER, 0.0) + 0.5 * self.trailing_edge_share(span, own) - sum(form.values())
+        held[POWER] = held.get(POWER, 0.0) + 0.5 * self.trailing_edge_share(span, published) - sum(form.values())
         thickness = span.values(self.thickness)[..., None]
         return [thickness * held.get(k, 0.0) for k in range(1, max(held) + 1)]
 
-    def trailing_edge_share(self, span: Span, own: float) -> Array:
+    def trailing_edge_share(self, span: Span, published: float) -> Array:
         """Thickness at the trailing edge (..., m, 1), of the maximum thickness."""
         if self.trailing_edge == "sharp":
             return np.zeros((len(span.v), 1))
         given = self.trailing_edge_thickness
-        return np.full((len(span.v), 1), own) if given is None else span.values(given)[..., None]
+        return np.full((len(span.v), 1), published) if given is None else span.values(given)[..., None]

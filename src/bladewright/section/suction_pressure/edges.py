@@ -1,4 +1,9 @@
-"""The edges of a section by suction and pressure side: characteristic points, and one polynomial through them."""
+"""The edges of a section by suction and pressure side: characteristic points, and one polynomial through them.
+
+An edge is modelled on two quarters of ellipses about a common nose, with the semi-axis b = `radius` across the edge's
+direction and a (1 + skew), a (1 - skew) along it, a / b = `stretch`. Each side leaves its quarter where the ellipse has
+the side's direction, half the wedge angle off the edge's. Reference: Voss et al. 2025, section 3 and Fig. 3.
+"""
 
 from dataclasses import dataclass
 from typing import Literal

@@ -25,6 +25,9 @@ RANGES = {
 stretch [-], skew [-], wedge [deg]"""
 TANGENTS = ("suction_tangent_in", "suction_tangent_out", "pressure_tangent_in", "pressure_tangent_out")
 POINTS = ("suction_heights", "suction_places", "pressure_heights", "pressure_thickness", "pressure_places")
+CHECKED_AT = np.linspace(0.0, 1.0, 65)
+"""fractions of the sides, and of the knot spans beside the edges, at which sides are compared and parametrisations
+checked"""
 
 
 def checked(given: Mapping[str, Any]) -> dict[str, Any]:
@@ -99,11 +102,6 @@ def _knots(name: str, value: Any, count: int, of: str) -> tuple[float, ...]:
     if not (np.diff([0.0, *knots, 1.0]) > 1e-9).all():
         raise DesignError(f"{name} is {list(knots)}: inner knots must increase, above 0 and below 1; sort them")
     return knots
-
-
-CHECKED_AT = np.linspace(0.0, 1.0, 65)
-"""fractions of the sides, and of the knot spans beside the edges, at which sides are compared and parametrisations
-checked"""
 
 
 def check_opening(edge: str, continuity: Continuity, stretch: Array, skew: Array, wedge: Array, span: Span) -> None:

@@ -21,7 +21,7 @@ from bladewright.numerics.elementary import Array
 from bladewright.nurbs.basis import Reals
 from bladewright.section import checks
 from bladewright.section.chord_map import Breakpoint
-from bladewright.section.laws import Span
+from bladewright.section.laws import Span, law_points
 from bladewright.section.outline import Joint
 from bladewright.section.power_series import Series
 
@@ -121,6 +121,4 @@ def same_law(first: Law | None, second: Law | None) -> bool:
 
 def leaves_of(law: Law | None) -> tuple[Any, ...]:
     """The numbers of a law, none of none."""
-    if law is None:
-        return ()
-    return law if isinstance(law, tuple) else (law,)
+    return () if law is None else law_points(law)

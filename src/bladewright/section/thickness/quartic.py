@@ -1,4 +1,10 @@
-"""The quartic B-spline thickness of 18 control points, closed around both edges."""
+"""The quartic B-spline thickness of 18 control points, closed around both edges.
+
+One uniform quartic B-spline of 14 segments runs from the trailing edge along one side to the leading edge and back
+along the other. The sides mirror each other, so eleven control points a side suffice, the first two mirrored. The
+segments are the natural parameter, s = segment / 7, and three derivatives are continuous everywhere.
+Reference: Nemnem et al. 2014, ASAT-16-142-PP, "Airfoil thickness distributions"; the conditions as in T-Blade3.
+"""
 
 from __future__ import annotations
 
@@ -22,6 +28,15 @@ from bladewright.section.outline import Joint
 from bladewright.section.power_series import Series, joined_series, polynomial, variable
 from bladewright.section.thickness.law import EdgeKind, Thickness, ThicknessLaw
 from bladewright.section.thickness.piecewise import check_positive
+
+SEGMENTS = 7
+"""segments of the spline from the leading to the trailing edge (Nemnem et al. 2014)"""
+CONTROLS = SEGMENTS + 4
+"""control points of one side, the first two mirrored"""
+CURVATURE = 0.04
+"""second derivative of u by segments at the leading edge where the design gives none: that of T-Blade3 [chords]"""
+WEDGE = 2.5
+"""angle of a side from the chord line at a sharp trailing edge where the design gives none: that of T-Blade3 [deg]"""
 
 
 def value_at(coefficients: Array, tau: Array) -> tuple[Array, Array]:
@@ -109,16 +124,6 @@ class UniformThickness(Thickness):
                 f"put the maximum near 0.3 of the chord, where this law works, or take another law"
             )
         check_positive(self, path, span)
-
-
-SEGMENTS = 7
-"""segments of the spline from the leading to the trailing edge (Nemnem et al. 2014)"""
-CONTROLS = SEGMENTS + 4
-"""control points of one side, the first two mirrored"""
-CURVATURE = 0.04
-"""second derivative of u by segments at the leading edge where the design gives none: that of T-Blade3 [chords]"""
-WEDGE = 2.5
-"""angle of a side from the chord line at a sharp trailing edge where the design gives none: that of T-Blade3 [deg]"""
 
 
 @dataclass(frozen=True, kw_only=True)
