@@ -37,5 +37,5 @@ def test_it_goes_on_all_the_way_and_leaves_the_edges_as_stated(ends):
     assert way(np.array([0.0, 1.0])) == pytest.approx([0.0, 1.0], abs=1e-14)
     assert np.min(np.diff(way(T))) > 0.0
     # round edges as slowly as asked, and others as the sides that meet there
-    for slope, kind in zip(way.slopes, ends.stations.kinds, strict=True):
+    for slope, kind in zip(way.slopes, ends.stations.edge_kinds, strict=True):
         assert (slope == pytest.approx(0.35)) == (kind == "round")

@@ -19,7 +19,7 @@ import numpy as np
 from bladewright.blade.design.row_design import RowDesign
 from bladewright.blade.native.blade import Blade
 from bladewright.blade.native.end_faces import trimmed_ends
-from bladewright.blade.native.interpolation import Skeleton, native_sides, sides_through, skeleton_of
+from bladewright.blade.native.interpolation import InterpolationData, interpolation_data, native_sides, sides_through
 from bladewright.blade.native.knots import Knots
 from bladewright.blade.native.properties import blade_moments, middle_of, moment_gradient
 from bladewright.blade.native.refinement import mean_chord
@@ -106,14 +106,14 @@ def stepped_design(design: RowDesign, steps: Sequence[str]) -> Any:
 
 def skeleton_rates(stations: Any, knots: Knots, count: int) -> Array:
     """Derivatives (count, m, k) of the skeleton of stations that carry `count` steps, in a row for each section."""
-    skeleton = skeleton_of(stations, knots)
+    skeleton = interpolation_data(stations, knots)
     sides = [side.reshape(*side.shape[:-2], -1) for side in (skeleton.upper, skeleton.lower)]
     edges = [skeleton.leading_edge, skeleton.trailing_edge, *skeleton.lower_edges]
     rows = concatenated([part for edge in edges if edge is not None for part in edge] + sides, axis=-1)
     return np.broadcast_to(np.imag(rows) / STEP, (count, *rows.shape[-2:]))
 
 
-def skeleton_of_rows(rows: Array, mirrored: Sequence[bool]) -> Skeleton:
+def skeleton_of_rows(rows: Array, mirrored: Sequence[bool]) -> InterpolationData:
     """The skeleton of such rows; `mirrored` says at which edges the lower side mirrors the upper's derivatives."""
     count = 2 + sum(not each for each in mirrored)
     edges, upper, lower = np.split(rows, [9 * count, (9 * count + rows.shape[-1]) // 2], axis=-1)
@@ -122,7 +122,7 @@ def skeleton_of_rows(rows: Array, mirrored: Sequence[bool]) -> Skeleton:
     own = iter(found[2:])
     first, last = (None if each else next(own) for each in mirrored)
     sides = [side.reshape(*side.shape[:-1], -1, 3) for side in (upper, lower)]
-    return Skeleton(found[0], found[1], sides[0], sides[1], (first, last))
+    return InterpolationData(found[0], found[1], sides[0], sides[1], (first, last))
 
 
 Face = Surface | TrimmedSurface

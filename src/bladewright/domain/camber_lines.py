@@ -73,7 +73,7 @@ class CamberLines:
     @property
     def blunt(self) -> tuple[bool, bool]:
         """Whether a face lies between the sides' ends at the leading, and at the trailing edge: a back face counts."""
-        first, last = (kind == "blunt" for kind in self.stations.kinds)
+        first, last = (kind == "blunt" for kind in self.stations.edge_kinds)
         return first, last or self.stations.back is not None
 
     def side(self, t: Reals, sign: int) -> Array:
@@ -99,7 +99,7 @@ class CamberLines:
         """The correspondence that suits all stations, for the real design: see `camber_correspondence`."""
         camber = _abscissae(self.in_plane(self.stations.camber(CAMBER_SHARES)))
         sides = 0.5 * (_abscissae(self.side(SIDE_SHARES, 1)) + _abscissae(self.side(SIDE_SHARES, -1)))
-        first, last = (kind == "round" for kind in self.stations.kinds)
+        first, last = (kind == "round" for kind in self.stations.edge_kinds)
         return fitted_correspondence(camber, sides, (first, last), edge_slope)
 
 

@@ -114,7 +114,7 @@ def _bulges(camber: CamberLines, half_pitch: Array, cross_lines: CrossLines, edg
     density = np.real(camber.lines.densities(u)[0])
     half = float(np.real(half_pitch).flat[0])
     size = np.max([edge_skew(direction[:, 1], half, each, edge, cross_lines.skew) for each in (1, -1)], axis=0)
-    if camber.stations.kinds[edge] != "round":
+    if camber.stations.edge_kinds[edge] != "round":
         size = 0.0 * size
     bulge = cross_lines.bulge * np.array(departures(camber, half)) * size * direction[:, 0]
     reach = BULGE_MARGIN * bulge / density.reshape(-1, 2)[0]

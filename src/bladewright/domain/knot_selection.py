@@ -49,7 +49,7 @@ def unfolded_walls(
     """
     exact = spec.exact
     tried: list[tuple[LeastJacobian, PassageKnots, Mapping[str, WallHalf]]] = []
-    for cross_lines in CROSS_LINES_GATHERED if exact.survey.gathered else CROSS_LINES:
+    for cross_lines in CROSS_LINES_GATHERED if exact.survey.clustered else CROSS_LINES:
         try:
             start = _without_knots(
                 spec, cross_lines, extents(exact, spec.half_pitch, cross_lines, upstream, downstream)

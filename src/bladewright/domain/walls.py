@@ -145,7 +145,7 @@ class WallHalf(WallPatch):
 
     def _edge_skew(self, edge: int) -> Array:
         direction = self.camber.direction(edge)[..., self.row, :]
-        if self.camber.stations.kinds[edge] != "round":
+        if self.camber.stations.edge_kinds[edge] != "round":
             return np.zeros_like(direction)[..., None, :]
         size = edge_skew(direction[..., 1], self.half_pitch, self.sign, edge, self.cross_lines.skew)
         reach = (1.0 if edge else -1.0) * size

@@ -69,7 +69,7 @@ class Clearance:
         leading, trailing = (np.asarray(np.real(np.ravel(value)[0])) for value in (self.leading, self.trailing))
         return replace(self, leading=leading, trailing=trailing)
 
-    def said(self, distance: float) -> str:
+    def in_unit(self, distance: float) -> str:
         """A distance [m] in the design's unit."""
         return f"{distance / UNITS[self.unit]:.4g} {self.unit}"
 
@@ -136,8 +136,8 @@ def check_clearance(clearance: Clearance, sections: "UnifiedSections", row: int)
         distance = float(clearance.real().distance(np.array([place]))[0])
         if distance <= 0.0:
             raise DesignError(
-                f"{clearance.name} is linear in u and falls to {clearance.said(distance)} at u = {place:.3f}, the nose "
-                f"past the {edge} edge: the blade would meet the {clearance.wall} there; bring its two values nearer "
+                f"{clearance.name} is linear in u and falls to {clearance.in_unit(distance)} at u = {place:.3f}, the "
+                f"nose past the {edge} edge: the blade would meet the {clearance.wall} there; bring its two values nearer "
                 "to each other"
             )
 
@@ -230,9 +230,9 @@ def _check_span(full: TransfiniteChannel, clearance: Clearance) -> None:
     worst = int(np.argmax(share))
     if share[worst] >= 1.0:
         raise DesignError(
-            f"{clearance.name} is {clearance.said(clearance.distance(u)[worst])} at u = {u[worst]:.3f}, where the "
-            f"{other} is {clearance.said(span[worst])} from the {clearance.wall}: a clearance must be smaller than the "
-            f"span everywhere; lower {clearance.name}"
+            f"{clearance.name} is {clearance.in_unit(clearance.distance(u)[worst])} at u = {u[worst]:.3f}, where the "
+            f"{other} is {clearance.in_unit(span[worst])} from the {clearance.wall}: a clearance must be smaller than "
+            f"the span everywhere; lower {clearance.name}"
         )
 
 
@@ -240,9 +240,9 @@ def _cusp(full: TransfiniteChannel, clearance: Clearance) -> str:
     u = np.linspace(-0.05, 1.05, 111)
     bend = _bend(full, clearance, u)
     worst = int(np.argmax(bend * clearance.distance(u)))
-    radius = clearance.said(1.0 / float(bend[worst])) if bend[worst] > 0.0 else "without limit"
+    radius = clearance.in_unit(1.0 / float(bend[worst])) if bend[worst] > 0.0 else "without limit"
     return (
-        f"{clearance.name} is {clearance.said(clearance.distance(u)[worst])} at u = {u[worst]:.3f}, where the "
+        f"{clearance.name} is {clearance.in_unit(clearance.distance(u)[worst])} at u = {u[worst]:.3f}, where the "
         f"{clearance.wall}'s radius of curvature towards the blade is {radius}: the surface at that distance folds "
         f"over near there; lower {clearance.name}, or smooth channel.{clearance.wall}"
     )

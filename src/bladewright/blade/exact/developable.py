@@ -205,8 +205,8 @@ class DevelopableSections(FlowPathSections):
         return "developable"
 
     @property
-    def kinds(self) -> tuple[str, str]:
-        return self.hub.kinds
+    def edge_kinds(self) -> tuple[str, str]:
+        return self.hub.edge_kinds
 
     @property
     def back(self) -> float | None:

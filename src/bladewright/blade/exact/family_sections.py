@@ -26,7 +26,7 @@ class FlowPathSections(SectionStack, ABC):
         """Raise DesignError where the sides cannot be those of a blade."""
 
     @property
-    def gathered(self) -> bool:
+    def clustered(self) -> bool:
         return True
 
     def channel_parameter(self, u: Array) -> Array:
@@ -65,7 +65,7 @@ class FamilySections(FlowPathSections):
         return np.stack([a * along - b * across, a * across + b * along], axis=-1)
 
     @cached_property
-    def kinds(self) -> tuple[str, str]:
+    def edge_kinds(self) -> tuple[str, str]:
         """How the sides meet at the leading and at the trailing edge: "round", "sharp" or "blunt"."""
         return self.outline.leading_edge.kind, self.outline.trailing_edge.kind
 
@@ -115,6 +115,6 @@ class FamilySections(FlowPathSections):
         point = self.placed(start.point[..., None, :])
         first, second = (self.turned(each[..., None, :])[..., 0, :] for each in (start.first, start.second))
         u: Array = np.array([float(end)])
-        if self.kinds[end] == "blunt":
+        if self.edge_kinds[end] == "blunt":
             u = self.lines.u_at(point[..., 0])
         return self.row(u, point[..., 0, :], first, second)

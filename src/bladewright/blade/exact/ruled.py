@@ -40,8 +40,8 @@ class RuledSections(FlowPathSections):
         return "ruled"
 
     @property
-    def kinds(self) -> tuple[str, str]:
-        return self.rails.kinds
+    def edge_kinds(self) -> tuple[str, str]:
+        return self.rails.edge_kinds
 
     @property
     def back(self) -> float | None:

@@ -66,7 +66,7 @@ class SectionStack(ABC):
 
     @property
     @abstractmethod
-    def kinds(self) -> tuple[str, str]:
+    def edge_kinds(self) -> tuple[str, str]:
         """How the sides meet at the leading and at the trailing edge: "round", "sharp" or "blunt"."""
 
     @property
@@ -76,7 +76,7 @@ class SectionStack(ABC):
 
     @property
     @abstractmethod
-    def gathered(self) -> bool:
+    def clustered(self) -> bool:
         """Whether s is gathered at edges: whether sides leave them slower than camber lines do."""
 
     @abstractmethod

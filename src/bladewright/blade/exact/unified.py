@@ -61,11 +61,11 @@ class UnifiedSections(SectionStack):
     """(..., m) of the edges as the design gives them, of the meridional length [-]"""
 
     @property
-    def kinds(self) -> tuple[str, str]:
+    def edge_kinds(self) -> tuple[str, str]:
         return "round", "round"
 
     @property
-    def gathered(self) -> bool:
+    def clustered(self) -> bool:
         return False
 
     def plane_points(self, s: Reals) -> tuple[Array, Array]:
@@ -186,14 +186,14 @@ class ExactUnifiedBlade(ExactBlade):
     """how far, in u, stream lines are continued past the leading edge"""
     after: float
     """how far, in u, stream lines are continued past the trailing edge"""
-    surveyed: UnifiedSections | None = None
+    known_survey: UnifiedSections | None = None
     """the survey, where it is at hand"""
     tentative: bool = False
     """whether edge radii that the thickness cannot hold are let through, as on the way of a search"""
 
     def moved_to(self, design: "UnifiedBlade") -> "ExactUnifiedBlade":
         full, channel, clearance = _channels_of(design, self.tip_knots)
-        return replace(self, design=design, channel=channel, full_channel=full, clearance=clearance, surveyed=None)
+        return replace(self, design=design, channel=channel, full_channel=full, clearance=clearance, known_survey=None)
 
     def check(self) -> None:
         self._check_channel()
@@ -308,7 +308,7 @@ class ExactUnifiedBlade(ExactBlade):
     @cached_property
     def survey(self) -> UnifiedSections:
         """Stations from end to end on which the shape is judged."""
-        return self.sections(SURVEY) if self.surveyed is None else self.surveyed
+        return self.sections(SURVEY) if self.known_survey is None else self.known_survey
 
     def sections(self, v: Reals) -> UnifiedSections:
         """Sections at v (m,); refuses an edge radius that the thickness cannot hold, unless it is tentative."""
@@ -341,7 +341,7 @@ def exact_unified_blade(
         places=places,
         before=before,
         after=after,
-        surveyed=survey,
+        known_survey=survey,
         tentative=tentative,
     )
 

@@ -100,14 +100,14 @@ class StreamLines:
         u = lines.u_at(real)
         moved = -np.imag(abscissa)
         if np.iscomplexobj(self.series):
-            moved = moved + lines.gathered(u, np.imag(self.series), np.imag(self.starts))
+            moved = moved + lines.batched_abscissa(u, np.imag(self.series), np.imag(self.starts))
         return u - 1j * moved / lines.rate(u)
 
     def rate(self, u: Array) -> Array:
         """da/du (..., m, k) at u (..., m, k), by its series."""
         return self._by_panel(u, self._panel_rate)
 
-    def gathered(self, u: Reals, series: Reals, starts: Reals) -> Reals:
+    def batched_abscissa(self, u: Reals, series: Reals, starts: Reals) -> Reals:
         """The abscissa (..., m, k) at u (m, k) that a batch of series (..., m, p, n) and starts (..., m, p + 1) gives.
 
         All of them stand at the same u, so each stream line is one product with Chebyshev polynomials.

@@ -19,16 +19,16 @@ from bladewright.section.native import interpolated_along_u
 from bladewright.section.outline import EdgeDerivatives
 
 
-def native_sides(stations: SectionStack, knots: Knots) -> tuple[Array, Array]:
-    """Control nets (..., n_u, n_v, 3) of the upper and the lower side from stations at `knots.sites_v`.
+def native_sides(sections: SectionStack, knots: Knots) -> tuple[Array, Array]:
+    """Control nets (..., n_u, n_v, 3) of the upper and the lower side from sections at `knots.sites_v`.
 
     Across each edge the sides share the row P0, the rows P0 + D and P0 - D and the row of second derivatives E, so
     that curvature is continuous there for every v.
     """
-    return sides_through(skeleton_of(stations, knots), knots)
+    return sides_through(interpolation_data(sections, knots), knots)
 
 
-class Skeleton(NamedTuple):
+class InterpolationData(NamedTuple):
     """What the native sides interpolate at their sites along the span (m,): the nets are linear in it."""
 
     leading_edge: EdgeDerivatives
@@ -41,13 +41,13 @@ class Skeleton(NamedTuple):
     """the lower side at both edges where it does not mirror the upper one"""
 
 
-def skeleton_of(stations: SectionStack, knots: Knots) -> Skeleton:
-    """The skeleton of stations at `knots.sites_v`."""
-    edges = stations.leading_edge(), stations.trailing_edge()
-    return Skeleton(*edges, *stations.points(knots.sites_u), stations.lower_edges())
+def interpolation_data(sections: SectionStack, knots: Knots) -> InterpolationData:
+    """The skeleton of sections at `knots.sites_v`."""
+    edges = sections.leading_edge(), sections.trailing_edge()
+    return InterpolationData(*edges, *sections.points(knots.sites_u), sections.lower_edges())
 
 
-def sides_through(skeleton: Skeleton, knots: Knots) -> tuple[Array, Array]:
+def sides_through(skeleton: InterpolationData, knots: Knots) -> tuple[Array, Array]:
     """Control nets (..., n_u, n_v, 3) of the upper and the lower side that interpolate a skeleton."""
     matrix = basis(knots.v, DEGREE, knots.sites_v)
     own = [skeleton.leading_edge, skeleton.trailing_edge, *(row for row in skeleton.lower_edges if row is not None)]
@@ -70,8 +70,8 @@ def lower_edges(
     return first, last
 
 
-def edge_faces(stations: SectionStack, upper: Surface, lower: Surface, knots: Knots) -> dict[str, Surface]:
-    """The faces by name, from stations at `knots.sites_v`; u from the upper to the lower side, v along the span.
+def edge_faces(sections: SectionStack, upper: Surface, lower: Surface, knots: Knots) -> dict[str, Surface]:
+    """The faces by name, from sections at `knots.sites_v`; u from the upper to the lower side, v along the span.
 
     They have the control points of both sides' edges. A face is one polynomial of degree 5 along u: it is as short as
     the edge is thick, so its arc about the axis is below rounding from that.
@@ -81,7 +81,7 @@ def edge_faces(stations: SectionStack, upper: Surface, lower: Surface, knots: Kn
     w = np.arange(1, DEGREE) / DEGREE
     along = basis(clamped, DEGREE, w)
     found = {}
-    for name, points in stations.faces(w).items():
+    for name, points in sections.faces(w).items():
         at = 0 if name == "leading_edge" else -1
         rows = solved(matrix, points.reshape(*points.shape[:-2], -1)).reshape(points.shape)
         ends = np.stack([side.control_points[at] for side in (upper, lower)])

@@ -1,5 +1,6 @@
 """How far native sides are from the exact blade, and the knots that bring them within the tolerance."""
 
+from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
@@ -14,120 +15,135 @@ from bladewright.section.native import interpolated_along_u
 from bladewright.section.outline import EdgeDerivatives
 
 SECTIONS = 1e-9
-"""distance of the sides' curves of constant v from the sections that are given, of the chord"""
+"""Largest distance of the sides' curves of constant v from the sections that a design gives [chords]. A
+thousandth of the default tolerance, so that given sections count as exact; looser would save poles along u."""
 SECTIONS_SHARE = 1e-3
-"""the same as a share of the tolerance, where that is coarser"""
+"""The same limit as a share of the tolerance, where that is coarser: a rough blade need not pay for exact sections."""
 WALL_TOLERANCE = 1e-7
-"""distance of the blade's ends from hub and shroud, of the chord"""
-SAME = 1e-9
-"""span fractions nearer than this are one"""
+"""Largest distance of the blade's ends from hub and shroud [chords], as `docs/nomenclature.md` promises: the sides are
+to meet the end faces within what CAD takes for closed; tighter costs poles."""
+SAME_SPAN = 1e-9
+"""Span fractions nearer than this are one: far above rounding, far below the distance of any two sections."""
 RESERVE = 0.4
-"""share of a tolerance that one direction may use while knots are sought"""
+"""Share of a tolerance that the error along u, or along v, may use while knots are chosen: the two add up, and some is
+left for places between those that are looked at."""
 SECTIONS_RESERVE = 0.8
-"""the same of the limit of sections that are given"""
+"""The same of the limit of given sections: along v they are interpolated, so nearly all of it is left for u."""
+FIRST_ALLOWED, SECOND_ALLOWED = 5e-5, 2e-4
+"""Largest relative errors along v of the edges' first and second derivatives by s. A first derivative off by so much
+turns by 0.003 deg at most, where 0.01 deg are promised; a second one moves the radius by a fifth of its limit."""
+MOST_LINES = 24
+"""About how many lines of constant u are looked at for the knots along v: more cost time, fewer may pass over a place
+that needs a knot; the error of the built sides is measured on other lines."""
+BETWEEN_KNOTS = (0.31, 0.74)
+"""Places in a knot span at which the error of the built sides is measured: other ones than knots are chosen by."""
 
 
 def mean_chord(exact: ExactBlade) -> float:
     """Mean straight distance from leading to trailing edge along the span [m]."""
-    stations = exact.survey
-    return float(np.mean(np.real(length(stations.trailing_edge().point - stations.leading_edge().point))))
+    sections = exact.survey
+    return float(np.mean(np.real(length(sections.trailing_edge().point - sections.leading_edge().point))))
 
 
 def refined_knots(exact: ExactBlade, chord: float, *, slack: float = 1.0) -> Knots:
     """Knots with which the native sides meet the design's tolerance, and their ends lie on the walls.
 
-    What is promised besides, of walls and of the edges' angles and radii, may be missed by `slack` times as much.
+    The limits beside the tolerance, of walls and of the edges' angles and radii, may be missed by
+    `slack` times as much.
     """
     tolerance, spans = exact.design.tolerance * chord, exact.given_spans
-    starts = clamped(exact.breaks_along_u()), exact.breaks_along_v()
-    along_u = refined(starts[0], _LinesAlongU(exact, tolerance, chord, spans, slack), MOST_POLES[0])
+    start_u, start_v = clamped(exact.breaks_along_u()), exact.breaks_along_v()
+    along_u = refined(start_u, _error_along_u(exact, tolerance, chord, spans, slack), MOST_POLES[0])
     if len(spans) and len(along_u) - DEGREE - 1 > MOST_POLES[0]:
         spans = spans[:0]
-        along_u = refined(starts[0], _LinesAlongU(exact, tolerance, chord, spans, slack), MOST_POLES[0])
-    # a knot at each makes sure of a site nearby
-    own = [v for v in spans if 0.0 < v < 1.0 and np.min(np.square(starts[1] - v), initial=1.0) > SAME**2]
-    lines = _LinesAlongV(exact, tolerance, along_u, spans, slack)
-    along_v = refined(clamped(np.concatenate([starts[1], own])), lines, MOST_POLES[1])
+        along_u = refined(start_u, _error_along_u(exact, tolerance, chord, spans, slack), MOST_POLES[0])
+    # a knot at each given section makes sure of an interpolation site nearby
+    own = [v for v in spans if 0.0 < v < 1.0 and np.min(np.square(start_v - v), initial=1.0) > SAME_SPAN**2]
+    along_v = refined(
+        clamped(np.concatenate([start_v, own])), _error_along_v(exact, tolerance, along_u, spans, slack), MOST_POLES[1]
+    )
     return Knots(u=along_u, v=along_v, tip=exact.tip_knots, sections=spans if len(spans) else None)
 
 
 def sections_limit(tolerance: float) -> float:
-    """Largest distance of curves of constant v from the sections that are given, of the chord, by the tolerance."""
+    """Largest distance [chords] of curves of constant v from the sections that are given, by the tolerance [chords]."""
     return max(SECTIONS, SECTIONS_SHARE * tolerance)
 
 
-class _LinesAlongU:
-    """Error over tolerance along sections of the exact blade that are interpolated in u alone."""
+def _error_along_u(
+    exact: ExactBlade, tolerance: float, chord: float, spans: Reals, slack: float
+) -> Callable[[Reals, Reals], Reals]:
+    """The error over what is allowed at places along u, by the knots, where sections are interpolated in u alone."""
+    v = np.union1d(exact.survey.v, spans)
+    sections = exact.survey if len(v) == len(exact.survey.v) else exact.sections(v)
+    # along v there is no error at given sections, so that most of their limit is left for u
+    limit = min(SECTIONS_RESERVE * sections_limit(tolerance / chord) * chord, RESERVE * tolerance)
+    allowed = np.where(np.isin(v, spans), limit, RESERVE * tolerance)[:, None]
+    wall_allowed = RESERVE * min(slack * WALL_TOLERANCE * chord, tolerance)
+    upper = sections.leading_edge(), sections.trailing_edge()
+    edges_of_sides = upper, lower_edges(upper, sections.lower_edges())
 
-    def __init__(self, exact: ExactBlade, tolerance: float, chord: float, spans: Reals, slack: float) -> None:
-        v = np.union1d(exact.survey.v, spans)
-        self.stations = exact.survey if len(v) == len(exact.survey.v) else exact.sections(v)
-        # along v there is no error at these, so that most of their limit is left for u
-        limit = min(SECTIONS_RESERVE * sections_limit(tolerance / chord) * chord, RESERVE * tolerance)
-        self.tolerance = np.where(np.isin(v, spans), limit, RESERVE * tolerance)[:, None]
-        self.wall_tolerance = RESERVE * min(slack * WALL_TOLERANCE * chord, tolerance)
-        upper = self.stations.leading_edge(), self.stations.trailing_edge()
-        self.edges = upper, lower_edges(upper, self.stations.lower_edges())
-
-    def __call__(self, knots: Reals, places: Reals) -> Reals:
+    def error(knots: Reals, places: Reals) -> Reals:
         sites = greville(knots, DEGREE)[3:-3]
         both = np.concatenate([sites, places])
         order = np.argsort(both)
         back = np.argsort(order)
         worst = np.zeros(len(places))
-        sides = zip(*self.stations.points_and_normals(both[order]), strict=True)
-        for side, edges in zip(sides, self.edges, strict=True):
+        sides = zip(*sections.points_and_normals(both[order]), strict=True)
+        for side, edges in zip(sides, edges_of_sides, strict=True):
             points, normals = side[0][:, back], side[1][:, back]
             lines = np.swapaxes(points[:, : len(sites)], 0, 1)
             net = interpolated_along_u(lines, *edges, knots)
             native = np.tensordot(basis(knots, DEGREE, places), net, axes=1).swapaxes(0, 1)
-            error = native - points[:, len(sites) :]
-            worst = np.maximum(worst, np.max(length(error) / self.tolerance, axis=0))
-            off = dot(error, normals[:, len(sites) :])[[0, -1]]
-            gap = np.max(np.abs(off), axis=0)  # real: knots come from the real design
-            worst = np.maximum(worst, gap / self.wall_tolerance)
+            off = native - points[:, len(sites) :]
+            worst = np.maximum(worst, np.max(length(off) / allowed, axis=0))
+            off_wall = dot(off, normals[:, len(sites) :])[[0, -1]]
+            gap = np.max(np.abs(off_wall), axis=0)  # real: knots come from the real design
+            worst = np.maximum(worst, gap / wall_allowed)
         return worst
 
+    return error
 
-class _LinesAlongV:
-    """Error over tolerance along lines of constant u that are interpolated in v alone."""
 
-    def __init__(self, exact: ExactBlade, tolerance: float, knots_u: Reals, through: Reals, slack: float) -> None:
-        self.exact, self.through, self.slack = exact, through, slack
-        self.tolerance = RESERVE * tolerance
-        spans = np.unique(knots_u)
-        step = max(1, (len(spans) - 1) // 24)
-        self.s = np.concatenate([[0.0], (spans[:-1:step] + spans[1::step]) / 2.0, [1.0]])
+def _error_along_v(
+    exact: ExactBlade, tolerance: float, knots_u: Reals, through: Reals, slack: float
+) -> Callable[[Reals, Reals], Reals]:
+    """The error over what is allowed at places along v, by the knots, where lines of constant u are interpolated."""
+    spans = np.unique(knots_u)
+    step = max(1, (len(spans) - 1) // MOST_LINES)
+    s = np.concatenate([[0.0], (spans[:-1:step] + spans[1::step]) / 2.0, [1.0]])
 
-    def __call__(self, knots: Reals, places: Reals) -> Reals:
-        sites = sites_through(knots, self.through)
+    def error(knots: Reals, places: Reals) -> Reals:
+        sites = sites_through(knots, through)
         both = np.concatenate([sites, places])
-        stations = self.exact.sections(both)
+        sections = exact.sections(both)
         matrix = basis(knots, DEGREE, sites)
         errors = [np.zeros(len(places))]
-        for points in stations.points(self.s):
+        for points in sections.points(s):
             flat = points.reshape(len(both), -1)
             native = basis(knots, DEGREE, places) @ np.linalg.solve(matrix, flat[: len(sites)])
             miss = (native - flat[len(sites) :]).reshape(len(places), -1, 3)
-            errors.append(np.max(length(miss), axis=1) / self.tolerance)
-        rows = [stations.leading_edge(), stations.trailing_edge(), *stations.lower_edges()]
-        errors += [self._edge_miss(row, matrix, knots, places) / self.slack for row in rows if row is not None]
+            errors.append(np.max(length(miss), axis=1) / (RESERVE * tolerance))
+        edges = [sections.leading_edge(), sections.trailing_edge(), *sections.lower_edges()]
+        errors += [_edge_error(edge, matrix, knots, places) / slack for edge in edges if edge is not None]
         return np.max(errors, axis=0)
 
-    @staticmethod
-    def _edge_miss(row: EdgeDerivatives, matrix: Reals, knots: Reals, places: Reals) -> Reals:
-        """Relative error of the edges' derivatives, which carry angle and radius, over what the promises allow."""
-        count = len(matrix)
-        at = basis(knots, DEGREE, places)
-        result = np.zeros(len(places))
-        for part, allowed in ((row.first, 5e-5), (row.second, 2e-4)):
-            error = length(at @ np.linalg.solve(matrix, part[:count]) - part[count:])
-            result = np.maximum(result, error / length(part[count:]) / allowed)
-        return result
+    return error
+
+
+def _edge_error(edge: EdgeDerivatives, matrix: Reals, knots: Reals, places: Reals) -> Reals:
+    """Relative error of an edge's derivatives, which carry its angle and radius, over what is allowed."""
+    count = len(matrix)
+    at = basis(knots, DEGREE, places)
+    result = np.zeros(len(places))
+    for part, allowed in ((edge.first, FIRST_ALLOWED), (edge.second, SECOND_ALLOWED)):
+        error = length(at @ np.linalg.solve(matrix, part[:count]) - part[count:])
+        result = np.maximum(result, error / length(part[count:]) / allowed)
+    return result
 
 
 class ApproximationError(NamedTuple):
-    """How far native sides are from the exact blade between their sites, at equal parameters."""
+    """How far native sides are from the exact blade between their interpolation sites, at equal parameters."""
 
     distance: float
     """largest distance [m]"""
@@ -157,4 +173,4 @@ def approximation_error(exact: ExactBlade, upper: Surface, lower: Surface) -> Ap
 
 def _between(knots: Reals) -> Reals:
     spans = np.unique(knots)
-    return np.sort(np.concatenate([spans[:-1] + share * np.diff(spans) for share in (0.31, 0.74)]))
+    return np.sort(np.concatenate([spans[:-1] + share * np.diff(spans) for share in BETWEEN_KNOTS]))

@@ -112,7 +112,7 @@ def _stepped(
     for first in range(0, len(shifts), AT_ONCE):
         some = shifts[first : first + AT_ONCE]
         channel = shifted_channel(exact.channel, [[step] for step in some])
-        yield some, replace(exact, channel=channel, full_channel=channel, surveyed=None)
+        yield some, replace(exact, channel=channel, full_channel=channel, known_survey=None)
 
 
 def _along_u(other: ExactUnifiedBlade, knots: Knots, count: int) -> tuple[Array, Array]:

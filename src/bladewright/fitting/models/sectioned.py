@@ -34,7 +34,7 @@ class SectionedModel(Model):
         exact = exact_sectioned_blade(own, checked=False)
         self.chord = mean_chord(exact)
         self.knots: Knots = refined_knots(exact, self.chord)
-        kinds = exact.survey.kinds
+        kinds = exact.survey.edge_kinds
         self.blunt: BluntEdges = kinds[0] == "blunt", kinds[1] == "blunt"
 
     def _shape(self, design: Any) -> ModelShape:
