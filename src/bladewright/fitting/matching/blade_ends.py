@@ -2,12 +2,12 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
+from bladewright.blade.exact.exact_blade import ExactBlade
 from bladewright.blade.exact.unified import ExactUnifiedBlade
 from bladewright.derivatives.complex_step import STEP
 from bladewright.fitting.matching.footpoints import Footpoints, footpoints_at
@@ -56,9 +56,9 @@ class WallPoints:
     spread: float
     """standard deviation of their distances from one curve: small where the cloud has a row there [m]"""
 
-    def misses(self, exact: Any) -> tuple[Reals, Reals, Reals]:
+    def misses(self, exact: ExactBlade) -> tuple[Reals, Reals, Reals]:
         """Nearest parameters, unit normals and misses (m,), (m, 2), (m, 2) on the channel's curve, continued."""
-        line = _line(exact, self.name)
+        line = exact.wall(self.name)
         if len(self.places) == 0:
             return np.empty(0), self.places, self.places
         t = np.linspace(-0.05, 1.05, 400)
@@ -73,11 +73,11 @@ class WallPoints:
         normal = np.stack([-first[:, 1], first[:, 0]], axis=-1) / np.sqrt(np.sum(first**2, axis=-1))[:, None]
         return t, normal, self.places - value
 
-    def distances(self, exact: Any) -> Reals:
+    def distances(self, exact: ExactBlade) -> Reals:
         """Signed distances (m,) from the curve [m]."""
         return self.located(exact)[1]
 
-    def located(self, exact: Any) -> tuple[Reals, Reals]:
+    def located(self, exact: ExactBlade) -> tuple[Reals, Reals]:
         """Nearest parameters and signed distances (m,) from the curve [m]."""
         t, normal, miss = self.misses(exact)
         return t, np.asarray(np.sum(normal * miss, axis=-1))
@@ -106,7 +106,7 @@ class WallPoints:
         changed = shape.design.changed(
             {paths[i]: values[paths[i]] + kick for i, kick in zip(moving, kicks, strict=True)}
         )
-        rows = np.imag(_line(exact.moved_to(changed), self.name).values(t)) / STEP
+        rows = np.imag(exact.moved_to(changed).wall(self.name).values(t)) / STEP
         found[:, moving] = np.moveaxis(np.broadcast_to(rows, (len(moving), len(t), 2)), 0, 1)
         return found
 
@@ -120,11 +120,6 @@ class BladeEnds:
     """(n,) whether a point lies on an end face, inside the blade's outline"""
     near: NDArray[np.intp]
     """indices of the points that may lie past an end of the sides"""
-
-
-def _line(exact: Any, name: str) -> Any:
-    """Hub or shroud of a channel, or of a flow path: points and derivatives by its own parameter."""
-    return exact.wall(name)
 
 
 def blade_ends_of(points: Reals, on: Footpoints, shape: ModelShape, rows: NDArray[np.bool_]) -> BladeEnds:
