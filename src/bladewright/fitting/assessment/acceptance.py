@@ -155,9 +155,11 @@ def _one_sided(found: Match) -> str:
 
 def _bare_side(found: Match) -> str:
     """The side of a blade that has hardly a point between its edges, if one has."""
-    on = found.state.footpoints
-    between = found.rows & (on.u > BETWEEN_EDGES) & (on.u < 1.0 - BETWEEN_EDGES)
-    shares = {name: np.mean(on.side[between] == side) if np.any(between) else 1.0 for side, name in enumerate(SIDES)}
+    footpoints = found.state.footpoints
+    between = found.rows & (footpoints.u > BETWEEN_EDGES) & (footpoints.u < 1.0 - BETWEEN_EDGES)
+    shares = {
+        name: np.mean(footpoints.side[between] == side) if np.any(between) else 1.0 for side, name in enumerate(SIDES)
+    }
     return next((name for name, share in shares.items() if share < BARE_SIDE_SHARE), "")
 
 

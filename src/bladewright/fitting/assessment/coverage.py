@@ -53,13 +53,13 @@ def uncovered_edges(found: Match) -> dict[str, tuple[float, float]]:
     """
     if not found.model.rounded:
         return {}
-    on, sides = found.state.footpoints, found.state.shape.sides
+    footpoints, sides = found.state.footpoints, found.state.shape.sides
     unseen = {}
     for name, end in EDGE_PARAMETERS.items():
-        nearest = _nearest(on, found.rows, end)
+        nearest = _nearest(footpoints, found.rows, end)
         if len(nearest) == 0:
             continue
-        side, u, v = on.side[nearest], on.u[nearest], on.v[nearest]
+        side, u, v = footpoints.side[nearest], footpoints.u[nearest], footpoints.v[nearest]
         here, tip, across = (
             _places(sides, *at) for at in ((side, u, v), (side, np.full(len(u), end), v), (1 - side, u, v))
         )
@@ -77,10 +77,10 @@ def least_thickness(found: Match) -> float:
     return min(_thickness(found.state.shape.sides, v) for v in (0.1, 0.3, 0.5, 0.7, 0.9))
 
 
-def _nearest(on: Footpoints, rows: NDArray[np.bool_], end: float) -> NDArray[np.intp]:
+def _nearest(footpoints: Footpoints, rows: NDArray[np.bool_], end: float) -> NDArray[np.intp]:
     """For each side and part of the span the point that is nearest to an edge."""
-    away = np.where(rows, np.abs(on.u - end), np.inf)
-    part = np.minimum((SPAN_PARTS * on.v).astype(int), SPAN_PARTS - 1) + SPAN_PARTS * on.side
+    away = np.where(rows, np.abs(footpoints.u - end), np.inf)
+    part = np.minimum((SPAN_PARTS * footpoints.v).astype(int), SPAN_PARTS - 1) + SPAN_PARTS * footpoints.side
     found = [np.flatnonzero(part == each)[np.argmin(away[part == each])] for each in np.unique(part)]
     return np.array([each for each in found if np.isfinite(away[each])], dtype=np.intp)
 

@@ -31,7 +31,7 @@ class Measurement:
     """Where the n points of a cloud lie on what was built."""
 
     places: NDArray[np.str_]
-    on: Footpoints
+    footpoints: Footpoints
     deviations: Reals
     regions: NDArray[np.str_]
     noise_estimate: NoiseEstimate
@@ -46,52 +46,61 @@ def measured(points: Reals, built: Blade | Section, precision: Reals | None = No
     """
     sides = sides_of(built)
     exact = built.exact if isinstance(built, Blade) else None
-    on = _nearest(points, sides)
-    noise_estimate = noise_of(points, on, precision)
+    footpoints = _nearest(points, sides)
+    noise_estimate = noise_of(points, footpoints, precision)
     shape = ModelShape(design=None, sides=sides, edge_radius_margins=np.zeros(0), exact=exact)
-    ends = blade_ends_of(points, on, shape, noise_estimate.inliers)
+    ends = blade_ends_of(points, footpoints, shape, noise_estimate.inliers)
     # points of end faces, few and far inside the sides, are outliers to these
     faced = ~noise_estimate.inliers
     if np.any(faced):
-        faced &= blade_ends_of(points, on, shape, np.ones(len(points), dtype=bool)).on_end_face
-    deviations = np.where(on.heights < 0.0, -1.0, 1.0) * on.distances
-    places = np.array(["upper", "lower"], dtype="<U13")[on.side]
-    edge = np.where(on.u < EDGE_REGION, "leading edge", np.where(on.u > 1.0 - EDGE_REGION, "trailing edge", "sides"))
+        faced &= blade_ends_of(points, footpoints, shape, np.ones(len(points), dtype=bool)).on_end_face
+    deviations = np.where(footpoints.heights < 0.0, -1.0, 1.0) * footpoints.distances
+    places = np.array(["upper", "lower"], dtype="<U13")[footpoints.side]
+    edge = np.where(
+        footpoints.u < EDGE_REGION, "leading edge", np.where(footpoints.u > 1.0 - EDGE_REGION, "trailing edge", "sides")
+    )
     edges = edges_of(built)
     if "blunt" in edges:
-        on, faces = on_sides(on, edges)
+        footpoints, faces = on_sides(footpoints, edges)
         for side, name in ((-1, "leading_edge"), (1, "trailing_edge")):
             places = np.where(faces == side, name, places)
-    past = np.any(on.beyond != 0.0, axis=1) & (np.abs(np.sum(on.miss * on.beyond, axis=1)) > np.abs(on.heights))
+    past = np.any(footpoints.beyond != 0.0, axis=1) & (
+        np.abs(np.sum(footpoints.miss * footpoints.beyond, axis=1)) > np.abs(footpoints.heights)
+    )
     regions = np.where(past, "ends", edge).astype(f"<U{max(map(len, REGIONS))}")
     if exact is not None and np.any(ends.on_end_face | faced):
-        _place_on_end_faces(points, ends.on_end_face | faced, built, deviations, places, regions, on)
+        _place_on_end_faces(points, ends.on_end_face | faced, built, deviations, places, regions, footpoints)
     return Measurement(
-        places=places, on=on, deviations=deviations, regions=regions, noise_estimate=noise_estimate, faced=faced
+        places=places,
+        footpoints=footpoints,
+        deviations=deviations,
+        regions=regions,
+        noise_estimate=noise_estimate,
+        faced=faced,
     )
 
 
 def _nearest(points: Reals, sides: Sequence[Side]) -> Footpoints:
     """The footpoints of points (n, d), those on the blade to rounding."""
-    on = nearest_footpoints(points, sides, converged=LAST_STEP)
-    exact = np.flatnonzero(on.distances < ON_BLADE * float(np.ptp(points, axis=0).max()))
+    footpoints = nearest_footpoints(points, sides, converged=LAST_STEP)
+    exact = np.flatnonzero(footpoints.distances < ON_BLADE * float(np.ptp(points, axis=0).max()))
     if len(exact) == 0:
-        return on
-    again = nearest_footpoints(points[exact], sides, on.part(exact), converged=LAST_STEP_EXACT)
-    parts = {each.name: np.array(getattr(on, each.name)) for each in fields(Footpoints)}
+        return footpoints
+    again = nearest_footpoints(points[exact], sides, footpoints.part(exact), converged=LAST_STEP_EXACT)
+    parts = {each.name: np.array(getattr(footpoints, each.name)) for each in fields(Footpoints)}
     for name, values in parts.items():
         values[exact] = getattr(again, name)
     return Footpoints(**parts)
 
 
 def _place_on_end_faces(
-    points: Reals, on_end_face: Any, built: Any, deviations: Reals, places: Any, regions: Any, on: Footpoints
+    points: Reals, on_end_face: Any, built: Any, deviations: Reals, places: Any, regions: Any, footpoints: Footpoints
 ) -> None:
     """Gives points on end faces the place, the region and the distance from there."""
     exact = built.exact
     radius = np.sqrt(points[:, 1] ** 2 + points[:, 2] ** 2) if exact.mapping.revolved else points[:, 2]
     for (name, end), face in zip(END_PARAMETERS.items(), built.design.ends, strict=True):
-        rows = np.flatnonzero(on_end_face & (np.abs(on.v - end) < 0.5))
+        rows = np.flatnonzero(on_end_face & (np.abs(footpoints.v - end) < 0.5))
         if len(rows) == 0:
             continue
         wall = WallPoints(name=name, places=np.stack([points[rows, 0], radius[rows]], axis=-1), spread=0.0)

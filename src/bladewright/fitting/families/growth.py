@@ -54,11 +54,14 @@ def predicted_gains(
 
 def _residuals_of(found: Match, design: Design, paths: tuple[str, ...]) -> tuple[Reals, Reals]:
     """Residuals of a design at the footpoints of a match, and their derivatives by scaled parameters."""
-    cloud_residuals, on = found.problem.cloud_residuals, found.state.footpoints
+    cloud_residuals, footpoints = found.problem.cloud_residuals, found.state.footpoints
     shape = cloud_residuals.model.shape(design)
     if not shape.finite:
         raise DesignError("a law with another number of control points left no shape: take another one")
-    state = PlacedCloud(shape=shape, footpoints=footpoints_at(cloud_residuals.points, shape.sides, on.side, on.u, on.v))
+    state = PlacedCloud(
+        shape=shape,
+        footpoints=footpoints_at(cloud_residuals.points, shape.sides, footpoints.side, footpoints.u, footpoints.v),
+    )
     slopes = cloud_residuals.slopes(state, paths) * scales_of(design, paths, found.model.chord).size
     return cloud_residuals.residuals(state), slopes
 

@@ -92,10 +92,10 @@ def nearer_projections(footpoints: Projections, others: Projections, rows: NDArr
 
 def sampled_parameters(shape: Curve | Surface, points: Reals) -> Reals:
     """Parameters (n, k) of those of many places on a shape that are nearest to points (n, d)."""
-    on = patches(shape)
-    samples = sampled(on, *SAMPLES[isinstance(shape, Curve)])
+    pieces = patches(shape)
+    samples = sampled(pieces, *SAMPLES[isinstance(shape, Curve)])
     index = cKDTree(samples.points).query(points)[1]
-    low, high = on.low[samples.patch[index]], on.high[samples.patch[index]]
+    low, high = pieces.low[samples.patch[index]], pieces.high[samples.patch[index]]
     return (low + samples.local[index] * (high - low))[:, : 1 if isinstance(shape, Curve) else 2]
 
 
@@ -104,11 +104,11 @@ def certified_parameters(shape: Curve | Surface, points: Reals, footpoints: Proj
 
     Those of the given projections stay where the search has nothing nearer.
     """
-    on = patches(shape)
+    pieces = patches(shape)
     extent = float(np.ptp(shape.control_points.reshape(-1, points.shape[1]), axis=0).max())
-    found = nearest(on, points, max(TOLERANCE * extent, CERTIFIED_SHARE * float(footpoints.distances.max())))
+    found = nearest(pieces, points, max(TOLERANCE * extent, CERTIFIED_SHARE * float(footpoints.distances.max())))
     nearer = np.sqrt(found.square) < footpoints.distances * (1.0 - CERTIFIED_SHARE) - TOLERANCE * extent
-    parameters = _parameters(on, found)[:, : footpoints.parameters.shape[1]]
+    parameters = _parameters(pieces, found)[:, : footpoints.parameters.shape[1]]
     return np.where(nearer[:, None], parameters, footpoints.parameters)
 
 
@@ -202,19 +202,21 @@ def _descended_on_curve(curve: Curve, points: Reals, start: Reals, *, closed: bo
 
 
 def _descended_on_surface(surface: Surface, points: Reals, near: Reals) -> Reals:
-    on = patches(surface)
+    pieces = patches(surface)
     place = [
-        np.clip(np.searchsorted(breaks(knots), near[:, k], side="right") - 1, 0, on.shape[k] - 1)
+        np.clip(np.searchsorted(breaks(knots), near[:, k], side="right") - 1, 0, pieces.shape[k] - 1)
         for k, knots in enumerate((surface.knots_u, surface.knots_v))
     ]
-    patch = place[0] * on.shape[1] + place[1]
-    local = np.clip((near - on.low[patch]) / (on.high - on.low)[patch], 0.0, 1.0)
+    patch = place[0] * pieces.shape[1] + place[1]
+    local = np.clip((near - pieces.low[patch]) / (pieces.high - pieces.low)[patch], 0.0, 1.0)
     parts = np.array_split(np.arange(len(points)), max(1, -(-len(points) // AT_ONCE)))
-    return np.concatenate([_parameters(on, polished(on, points[part], patch[part], local[part])) for part in parts])
+    return np.concatenate(
+        [_parameters(pieces, polished(pieces, points[part], patch[part], local[part])) for part in parts]
+    )
 
 
-def _parameters(on: Patches, found: PatchPoints) -> Reals:
-    low, high = on.low[found.patch], on.high[found.patch]
+def _parameters(pieces: Patches, found: PatchPoints) -> Reals:
+    low, high = pieces.low[found.patch], pieces.high[found.patch]
     return np.where(found.local >= 1.0, high, low + found.local * (high - low))
 
 

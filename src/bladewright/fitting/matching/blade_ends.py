@@ -122,7 +122,7 @@ class BladeEnds:
     """indices of the points that may lie past an end of the sides"""
 
 
-def blade_ends_of(points: Reals, on: Footpoints, shape: ModelShape, rows: NDArray[np.bool_]) -> BladeEnds:
+def blade_ends_of(points: Reals, footpoints: Footpoints, shape: ModelShape, rows: NDArray[np.bool_]) -> BladeEnds:
     """The ends as points (n, d) show them, of those in `rows` (n,)."""
     on_end_face = np.zeros(len(points), dtype=bool)
     exact = shape.exact
@@ -130,21 +130,21 @@ def blade_ends_of(points: Reals, on: Footpoints, shape: ModelShape, rows: NDArra
         return BladeEnds(walls={}, on_end_face=on_end_face, near=np.empty(0, dtype=np.intp))
     radius = np.sqrt(points[:, 1] ** 2 + points[:, 2] ** 2) if exact.mapping.revolved else points[:, 2]
     places = np.stack([points[:, 0], radius], axis=-1)
-    usual = DEVIATION_OVER_MEDIAN * float(np.median(on.distances[rows]))
+    usual = DEVIATION_OVER_MEDIAN * float(np.median(footpoints.distances[rows]))
     walls = {}
     for name, end in END_PARAMETERS.items():
-        inside = np.flatnonzero((np.abs(on.v - end) < FACE_BAND) & (on.heights < -FACE_DEPTH * usual))
+        inside = np.flatnonzero((np.abs(footpoints.v - end) < FACE_BAND) & (footpoints.heights < -FACE_DEPTH * usual))
         off = WallPoints(name=name, places=places[inside], spread=0.0).distances(exact)
-        share = np.abs(off) / -on.heights[inside]
+        share = np.abs(off) / -footpoints.heights[inside]
         # points of a solid's end faces are outliers to its sides; so are stray points, which stand in no row
         apart = ~rows[inside] & (share < FACE_NEARER_WALL)
         dense = np.count_nonzero(apart) >= FACE_OUTLIERS and float(np.median(share[apart])) < FACE_OUTLIERS_NEARER_WALL
         face = inside[(share < FACE_NEARER_WALL) & (rows[inside] | dense)]
         # beside an edge that is not yet found, points lie a little inside too
-        if np.max(-on.heights[face], initial=0.0) > DEEPEST_FACE_POINT * _half_thickness(shape, end):
+        if np.max(-footpoints.heights[face], initial=0.0) > DEEPEST_FACE_POINT * _half_thickness(shape, end):
             on_end_face[face] = True
-        row = rows & (np.abs(on.v - end) < ROW_BAND) & ~on_end_face
-        chosen = np.flatnonzero(row | (on_end_face & (np.abs(on.v - end) < FACE_BAND)))
+        row = rows & (np.abs(footpoints.v - end) < ROW_BAND) & ~on_end_face
+        chosen = np.flatnonzero(row | (on_end_face & (np.abs(footpoints.v - end) < FACE_BAND)))
         if len(chosen) < FEWEST_ROW_POINTS:
             continue
         wall = WallPoints(name=name, places=places[chosen], spread=0.0)
@@ -153,7 +153,7 @@ def blade_ends_of(points: Reals, on: Footpoints, shape: ModelShape, rows: NDArra
         # points of the sides beside the row would pull the end inwards
         chosen = chosen[aside <= ROW_WIDTH * max(spread, ROW_LEAST_WIDTH * float(np.ptp(places)))]
         walls[name] = WallPoints(name=name, places=places[chosen], spread=spread)
-    near = np.flatnonzero(((on.v < PAST_END_BAND) | (on.v > 1.0 - PAST_END_BAND)) & ~on_end_face)
+    near = np.flatnonzero(((footpoints.v < PAST_END_BAND) | (footpoints.v > 1.0 - PAST_END_BAND)) & ~on_end_face)
     return BladeEnds(walls=walls, on_end_face=on_end_face, near=near)
 
 

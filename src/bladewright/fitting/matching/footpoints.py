@@ -28,16 +28,16 @@ LONGEST_STEP = 2.0
 predicted them."""
 
 
-def _descended_on_curve(on: Patches, points: Reals, start: Reals, *, converged: float) -> tuple[Reals, Reals]:
+def _descended_on_curve(pieces: Patches, points: Reals, start: Reals, *, converged: float) -> tuple[Reals, Reals]:
     """Parameters (n,) where descents from a start (n,) end, and squared distances (n,) there.
 
     `converged` is the last step, of the width of a piece. Points (n, d) pass from piece to piece.
     """
-    degree = on.degrees[0]
-    coefficients = np.einsum("ij,kjd->ikd", _powers(degree), on.nets[:, :, 0, :-1])
-    low = on.low[:, 0]
-    width = on.high[:, 0] - low
-    ends = low[0], on.high[-1, 0]
+    degree = pieces.degrees[0]
+    coefficients = np.einsum("ij,kjd->ikd", _powers(degree), pieces.nets[:, :, 0, :-1])
+    low = pieces.low[:, 0]
+    width = pieces.high[:, 0] - low
+    ends = low[0], pieces.high[-1, 0]
 
     def model(at: Reals, targets: Reals) -> tuple[Reals, Reals, Reals, Reals]:
         """Squared distance, half its slope and bend by the parameter, and the width of the piece, (m,) each."""
@@ -160,14 +160,14 @@ def nearest_footpoints(
     moved little since, it starts there. `converged` is the last step in the parameters of a patch: signed distances of
     points off the sides are exact to its square, distances of points on them to itself.
     """
-    on = _ring(sides)
+    pieces = _ring(sides)
     best, around, v = np.full(len(points), np.inf), np.zeros(len(points)), np.zeros(len(points))
-    for rows, patch, local in _starts(points, on) if hint is None else _hinted(on, hint):
+    for rows, patch, local in _starts(points, pieces) if hint is None else _hinted(pieces, hint):
         if len(rows) == 0:
             continue
         for part in np.array_split(np.arange(len(rows)), max(1, -(-len(rows) // AT_ONCE))):
             where = rows[part]
-            square, *place = _descended(on, points[where], patch[part], local[part], converged)
+            square, *place = _descended(pieces, points[where], patch[part], local[part], converged)
             nearer = square < best[where]
             where = where[nearer]
             best[where] = square[nearer]
@@ -178,33 +178,36 @@ def nearest_footpoints(
         rows = np.union1d(rows, np.flatnonzero(found.u > 1.0 - EDGE_BAND))
     if len(rows) == 0:
         return found
-    square, *place = _descended(on, points[rows], *on.at(-around[rows], v[rows]), converged)
+    square, *place = _descended(pieces, points[rows], *pieces.at(-around[rows], v[rows]), converged)
     nearer = square < best[rows]
     around[rows[nearer]], v[rows[nearer]] = place[0][nearer], place[1][nearer]
     return footpoints_at(points, sides, (around < 0.0).astype(np.intp), np.abs(around), v) if np.any(nearer) else found
 
 
-def _deep_inside(on: Footpoints, points: Reals, sides: Sequence[Side]) -> NDArray[np.intp]:
+def _deep_inside(footpoints: Footpoints, points: Reals, sides: Sequence[Side]) -> NDArray[np.intp]:
     """The points so deep inside a blade that their nearest place may lie on its other side."""
-    heights = on.heights
+    heights = footpoints.heights
     rows = np.flatnonzero(heights < -DEEP_EXTENT * float(np.max(np.ptp(points, axis=0))))
     if len(rows) == 0:
         return rows
-    across = footpoints_at(points[rows], sides, 1 - on.side[rows], on.u[rows], on.v[rows]).points - on.points[rows]
+    across = (
+        footpoints_at(points[rows], sides, 1 - footpoints.side[rows], footpoints.u[rows], footpoints.v[rows]).points
+        - footpoints.points[rows]
+    )
     return rows[heights[rows] < -DEEP_SHARE * np.sqrt(np.sum(across**2, axis=-1))]
 
 
 def _descended(
-    on: Patches, points: Reals, patch: NDArray[np.intp], local: Reals, converged: float
+    pieces: Patches, points: Reals, patch: NDArray[np.intp], local: Reals, converged: float
 ) -> tuple[Reals, Reals, Reals]:
     """Squared distances (m,) where descents from places on patches end, and both parameters there."""
-    if not (on.degrees[1] or on.rational):
-        low = on.low[patch, 0]
-        start = low + local[:, 0] * (on.high[patch, 0] - low)
-        around, square = _descended_on_curve(on, points, start, converged=converged)
+    if not (pieces.degrees[1] or pieces.rational):
+        low = pieces.low[patch, 0]
+        start = low + local[:, 0] * (pieces.high[patch, 0] - low)
+        around, square = _descended_on_curve(pieces, points, start, converged=converged)
         return square, around, np.zeros(len(points))
-    found = polished(on, points, patch, local, converged=converged)
-    return found.square, *_parameters(on, found)
+    found = polished(pieces, points, patch, local, converged=converged)
+    return found.square, *_parameters(pieces, found)
 
 
 Start = tuple[NDArray[np.intp], NDArray[np.intp], Reals]
@@ -227,19 +230,19 @@ def _ring(sides: Sequence[Side]) -> Patches:
     )
 
 
-def _starts(points: Reals, on: Patches) -> list[Start]:
+def _starts(points: Reals, pieces: Patches) -> list[Start]:
     """Starts at the nearest sample, and at the nearest on the other side where that is not much further away."""
-    samples = sampled(on, *(SAMPLES if on.degrees[1] else CURVE_SAMPLES))
-    if on.degrees[1]:
-        around = 0.5 * np.abs(on.low[:, 0] + on.high[:, 0])
+    samples = sampled(pieces, *(SAMPLES if pieces.degrees[1] else CURVE_SAMPLES))
+    if pieces.degrees[1]:
+        around = 0.5 * np.abs(pieces.low[:, 0] + pieces.high[:, 0])
         beside = np.flatnonzero((around < EDGE_PATCHES[0]) | (around > EDGE_PATCHES[1]))
-        more = sampled(replace(on, nets=on.nets[beside]), *EDGE_SAMPLES)
+        more = sampled(replace(pieces, nets=pieces.nets[beside]), *EDGE_SAMPLES)
         samples = Samples(
             points=np.concatenate([samples.points, more.points]),
             patch=np.concatenate([samples.patch, beside[more.patch]]),
             local=np.concatenate([samples.local, more.local]),
         )
-    lower = on.low[samples.patch, 0] < 0.0
+    lower = pieces.low[samples.patch, 0] < 0.0
     halves = np.flatnonzero(lower), np.flatnonzero(~lower)
     nearest = [cKDTree(samples.points[half]).query(points) for half in halves]
     found = []
@@ -250,11 +253,11 @@ def _starts(points: Reals, on: Patches) -> list[Start]:
     return found
 
 
-def _hinted(on: Patches, hint: Footpoints) -> list[Start]:
+def _hinted(pieces: Patches, hint: Footpoints) -> list[Start]:
     """Starts at known footpoints, and beside a trailing edge on the other side too."""
     around = np.where(hint.side == 0, hint.u, -hint.u)
     every, beside = np.arange(len(around)), np.flatnonzero(hint.u > 1.0 - EDGE_BAND)
-    return [(every, *on.at(around, hint.v)), (beside, *on.at(-around[beside], hint.v[beside]))]
+    return [(every, *pieces.at(around, hint.v)), (beside, *pieces.at(-around[beside], hint.v[beside]))]
 
 
 def footpoints_at(points: Reals, sides: Sequence[Side], side: NDArray[np.intp], u: Reals, v: Reals) -> Footpoints:
@@ -277,8 +280,8 @@ def footpoints_at(points: Reals, sides: Sequence[Side], side: NDArray[np.intp], 
     return Footpoints(side=side, u=u, v=v, points=at, normals=normals, beyond=beyond, miss=points - at)
 
 
-def _parameters(on: Patches, found: PatchPoints) -> tuple[Reals, Reals]:
-    low, high = on.low[found.patch], on.high[found.patch]
+def _parameters(pieces: Patches, found: PatchPoints) -> tuple[Reals, Reals]:
+    low, high = pieces.low[found.patch], pieces.high[found.patch]
     place = np.where(found.local >= 1.0, high, low + found.local * (high - low))
     return place[:, 0], place[:, 1]
 

@@ -34,7 +34,7 @@ class NoiseEstimate:
 
 
 def noise_of(
-    points: Reals, on: Footpoints, weights: Reals | None = None, *, allow_outliers: bool = True
+    points: Reals, footpoints: Footpoints, weights: Reals | None = None, *, allow_outliers: bool = True
 ) -> NoiseEstimate:
     """The noise estimate of points (n, d) about their footpoints; unless `allow_outliers`, every point is an inlier.
 
@@ -42,14 +42,14 @@ def noise_of(
     outlier where it lies further off than every inlier.
     """
     if weights is not None and not np.all(weights > 0.0):
-        return _noise_of_weighted(points, on, weights, allow_outliers=allow_outliers)
+        return _noise_of_weighted(points, footpoints, weights, allow_outliers=allow_outliers)
     weights = np.ones(len(points)) if weights is None else weights / np.mean(weights)
-    heights, distances = on.heights, on.distances
-    around = neighbourhood_of(points, on)
+    heights, distances = footpoints.heights, footpoints.distances
+    around = neighbourhood_of(points, footpoints)
     inliers = np.ones(len(points), dtype=bool)
     if allow_outliers:
-        past = np.sqrt(np.sum((on.miss - heights[:, None] * on.normals) ** 2, axis=-1))
-        inliers = ~outliers_of(heights, past, distances, weights, on, around)
+        past = np.sqrt(np.sum((footpoints.miss - heights[:, None] * footpoints.normals) ** 2, axis=-1))
+        inliers = ~outliers_of(heights, past, distances, weights, footpoints, around)
     index = around.index
     kept = inliers & inliers[index].all(axis=1)
     kept = kept if np.any(kept) else np.ones(len(points), dtype=bool)
@@ -64,13 +64,13 @@ def noise_of(
     )
 
 
-def _noise_of_weighted(points: Reals, on: Footpoints, weights: Reals, *, allow_outliers: bool) -> NoiseEstimate:
+def _noise_of_weighted(points: Reals, footpoints: Footpoints, weights: Reals, *, allow_outliers: bool) -> NoiseEstimate:
     """The noise estimate of the points that have a weight, and which of the others are inliers."""
     rows = weights > 0.0
-    part = on.part(rows)
+    part = footpoints.part(rows)
     found = noise_of(points[rows], part, weights[rows], allow_outliers=allow_outliers)
     inliers = np.ones(len(points), dtype=bool)
     inliers[rows] = found.inliers
     if allow_outliers:
-        inliers[~rows] = on.distances[~rows] <= np.max(part.distances[found.inliers])
+        inliers[~rows] = footpoints.distances[~rows] <= np.max(part.distances[found.inliers])
     return replace(found, inliers=inliers)

@@ -80,12 +80,12 @@ class Neighbourhood:
     """largest extent of the cloud [m]"""
 
 
-def neighbourhood_of(points: Reals, on: Footpoints) -> Neighbourhood:
+def neighbourhood_of(points: Reals, footpoints: Footpoints) -> Neighbourhood:
     """The neighbours of points (n, d) with known footpoints."""
     extent = float(np.ptp(points, axis=0).max())
-    inward = np.minimum(np.minimum(on.u, 1.0 - on.u) / EDGE_BAND, 1.0)
-    lifted = np.where(on.side == 0, 1.0, -1.0) * SIDES_APART * extent * inward
-    places = np.column_stack([on.points, lifted])
+    inward = np.minimum(np.minimum(footpoints.u, 1.0 - footpoints.u) / EDGE_BAND, 1.0)
+    lifted = np.where(footpoints.side == 0, 1.0, -1.0) * SIDES_APART * extent * inward
+    places = np.column_stack([footpoints.points, lifted])
     count = NEIGHBOURS[points.shape[1]]
     asked = min(count + 1, len(points))
     index = np.reshape(cKDTree(places).query(places, k=asked)[1], (len(points), asked))
@@ -98,7 +98,7 @@ def neighbourhood_of(points: Reals, on: Footpoints) -> Neighbourhood:
 
 
 def outliers_of(
-    heights: Reals, past: Reals, distances: Reals, weights: Reals, on: Footpoints, around: Neighbourhood
+    heights: Reals, past: Reals, distances: Reals, weights: Reals, footpoints: Footpoints, around: Neighbourhood
 ) -> NDArray[np.bool_]:
     """Which of n points are outliers, by their signed distances, their way past the ends and their distances [m].
 
@@ -113,14 +113,14 @@ def outliers_of(
     chance = 1.0 + CHANCE_EXCESS / np.sqrt(len(heights))
     misfit = float(np.sqrt(max(usual**2 - (chance * noise) ** 2, 0.0)))
     level = np.maximum(noise, _local_noise(off, around)) / roots
-    edge = (on.u < EDGE_BAND) | (on.u > 1.0 - EDGE_BAND)
+    edge = (footpoints.u < EDGE_BAND) | (footpoints.u > 1.0 - EDGE_BAND)
     near = ALWAYS_INLIER * around.extent
     least = np.hypot(OUTLYING_NOISE * level, np.where(edge, OUTLYING_MISFIT_AT_EDGES, OUTLYING_MISFIT) * misfit) + near
     spikes = _spikes(heights, OUTLYING_NOISE * level + near, around)
     far = (distances > least) | spikes
     if not np.any(far):
         return far
-    wrong = _short_of_ends(far & (past > least), np.abs(heights) <= np.maximum(least, LEVEL_SLOPE * past), on)
+    wrong = _short_of_ends(far & (past > least), np.abs(heights) <= np.maximum(least, LEVEL_SLOPE * past), footpoints)
     beyond = (past > least) & ~wrong
     largest = min(max(SMALL_GROUP, int(LARGEST_GROUP * len(heights))), len(heights) // 5)
     # differences beyond the noise are a misfit
@@ -149,13 +149,13 @@ def _spikes(heights: Reals, least: Reals, around: Neighbourhood) -> NDArray[np.b
     return np.asarray(np.all(steep, axis=1) & level)
 
 
-def _short_of_ends(past: NDArray[np.bool_], level: NDArray[np.bool_], on: Footpoints) -> NDArray[np.bool_]:
+def _short_of_ends(past: NDArray[np.bool_], level: NDArray[np.bool_], footpoints: Footpoints) -> NDArray[np.bool_]:
     """Whether points (n,) are at an end of the blade that so many are past that it is the end which is wrong.
 
     It is wrong too where most of the points past it are `level` with the sides that go on there.
     """
     wrong = np.zeros(len(past), dtype=bool)
-    for beside in (on.v < END_BAND, on.v > 1.0 - END_BAND):
+    for beside in (footpoints.v < END_BAND, footpoints.v > 1.0 - END_BAND):
         there, onwards = int(np.count_nonzero(past & beside)), int(np.count_nonzero(past & level & beside))
         if there > WRONG_END_SHARE * np.count_nonzero(beside) or onwards > max(PAST_END_BY_CHANCE, there // 2):
             wrong |= beside

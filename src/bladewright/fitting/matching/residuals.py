@@ -51,9 +51,9 @@ class CloudResiduals:
 
     def residuals(self, state: PlacedCloud) -> Reals:
         """All residuals (m,); those of the points (n,) along their normals come first."""
-        on, chord = state.footpoints, self.model.chord
-        rows = [self.roots * on.heights / chord]
-        rows.append((self.roots * np.sum(on.miss * on.beyond, axis=-1))[self.ends.near] / chord)
+        footpoints, chord = state.footpoints, self.model.chord
+        rows = [self.roots * footpoints.heights / chord]
+        rows.append((self.roots * np.sum(footpoints.miss * footpoints.beyond, axis=-1))[self.ends.near] / chord)
         exact = state.shape.exact
         if exact is not None:
             rows += [self._of_wall(wall) * wall.distances(exact) / chord for wall in self.ends.walls.values()]
@@ -76,9 +76,9 @@ class CloudResiduals:
     def jacobian(self, state: PlacedCloud, paths: Sequence[str]) -> LawJacobian:
         """How the residuals (m,) of a blade of the unified family move with whole laws and channel points."""
         shape, chord = state.shape, self.model.chord
-        on, directions = self.places(state)
-        jacobian = law_jacobian(shape.exact, self.model.knots, on, directions / chord, paths)  # type: ignore[attr-defined]
-        count, before = len(jacobian.sites), len(on.u) - len(self.overhang.u)
+        footpoints, directions = self.places(state)
+        jacobian = law_jacobian(shape.exact, self.model.knots, footpoints, directions / chord, paths)  # type: ignore[attr-defined]
+        count, before = len(jacobian.sites), len(footpoints.u) - len(self.overhang.u)
         misses = {name: (wall, *wall.misses(shape.exact)) for name, wall in self.ends.walls.items()}
         moves = {}
         for step, rows in jacobian.moves.items():
@@ -96,11 +96,11 @@ class CloudResiduals:
 
         First those of the points, then those of points past an end, and last those of the edges' overhang.
         """
-        on, near = state.footpoints, self.ends.near
+        footpoints, near = state.footpoints, self.ends.near
         edges = self.overhang.edges(state.shape.sides)
-        directions = [-self.roots[:, None] * on.normals, -(self.roots[:, None] * on.beyond)[near]]
+        directions = [-self.roots[:, None] * footpoints.normals, -(self.roots[:, None] * footpoints.beyond)[near]]
         directions.append(edges.normals * (self._of_edge * (self.overhang.excess(edges) > 0.0))[:, None])
-        return concatenated([on, on.part(near), edges]), np.concatenate(directions)
+        return concatenated([footpoints, footpoints.part(near), edges]), np.concatenate(directions)
 
     def _of_wall(self, wall: WallPoints) -> float:
         """Weight of a wall's places: one where they stand in a row, less where they scatter."""

@@ -218,10 +218,12 @@ def _prepared_round(
         raise FitError(f"the start design has no shape ({error}); give another start, or none") from error
     if not shape.finite:
         raise FitError("the start design has no shape near its edges: give another start, or none")
-    on = nearest_footpoints(points, shape.sides)
-    noise_estimate = noise_of(points, on, task.precision, allow_outliers=task.allow_outliers)
-    ends = blade_ends_of(points, on, shape, noise_estimate.inliers)
-    misfit = float(np.sqrt(np.mean(on.distances[noise_estimate.inliers & ~ends.on_end_face] ** 2))) / model.chord
+    footpoints = nearest_footpoints(points, shape.sides)
+    noise_estimate = noise_of(points, footpoints, task.precision, allow_outliers=task.allow_outliers)
+    ends = blade_ends_of(points, footpoints, shape, noise_estimate.inliers)
+    misfit = (
+        float(np.sqrt(np.mean(footpoints.distances[noise_estimate.inliers & ~ends.on_end_face] ** 2))) / model.chord
+    )
     scales = scales_of(start, paths, model.chord, task.bounds)
     regularisation = regularisation_of(start, paths, scales.size)
     cloud_residuals = CloudResiduals(
@@ -242,13 +244,13 @@ def _prepared_round(
         scales=scales,
         regularisation=regularisation.scaled(task.regularisation_factor),
         independent_share=noise_estimate.independent_share(len(paths)) / task.regularisation_factor**2,
-        hint=on,
+        hint=footpoints,
         margin=EDGE_RADIUS_MARGIN[points.shape[1]] * task.margin_factor,
     )
     return Match(
         design=design,
         problem=problem,
-        state=PlacedCloud(shape=shape, footpoints=on),
+        state=PlacedCloud(shape=shape, footpoints=footpoints),
         noise_estimate=noise_estimate,
         ends=ends,
         damping=FIRST_DAMPING if before is None else before.damping,

@@ -177,14 +177,14 @@ def _grown_further(several: Task, many: Task, found: Match, target: MatchTarget)
 
 def _nearly_within_tolerance(found: Match, target: MatchTarget) -> bool:
     """Whether all but a few points of a blade keep a tolerance: reweighting these may be enough."""
-    on = found.state.footpoints
+    footpoints = found.state.footpoints
     if (
         target.tolerance is None
-        or on.points.shape[1] == 2
+        or footpoints.points.shape[1] == 2
         or found.rms * found.model.chord > NEARLY_WITHIN[0] * target.tolerance
     ):
         return False
-    return bool(np.mean(on.distances[found.rows] > target.tolerance) < NEARLY_WITHIN[1])
+    return bool(np.mean(footpoints.distances[found.rows] > target.tolerance) < NEARLY_WITHIN[1])
 
 
 def _thickness_shared_out(task: Task, found: Match) -> Match:

@@ -103,7 +103,7 @@ class Forecast:
         return float(rows @ rows)
 
     def _state(self, design: Any) -> PlacedCloud | None:
-        cloud_residuals, on = self.found.problem.cloud_residuals, self.found.state.footpoints
+        cloud_residuals, footpoints = self.found.problem.cloud_residuals, self.found.state.footpoints
         try:
             shape = cloud_residuals.model.shape(design)
         except DesignError:
@@ -111,7 +111,8 @@ class Forecast:
         if not shape.finite:
             return None
         return PlacedCloud(
-            shape=shape, footpoints=nearest_footpoints(cloud_residuals.points, shape.sides, on, converged=COARSE_STEP)
+            shape=shape,
+            footpoints=nearest_footpoints(cloud_residuals.points, shape.sides, footpoints, converged=COARSE_STEP),
         )
 
     def _on_the_way(self, structure: Structure, prediction: Prediction, share: float) -> Any:
@@ -255,7 +256,7 @@ class Forecast:
 
 def forecast_of(found: Match, widest: Structure) -> Forecast | None:
     """The forecast about a match; None for other kinds, or where the widest structure leaves it no shape."""
-    problem, on = found.problem, found.state.footpoints
+    problem, footpoints = found.problem, found.state.footpoints
     if not stands_on_channel(found.design):
         return None
     try:
@@ -266,7 +267,10 @@ def forecast_of(found: Match, widest: Structure) -> Forecast | None:
     if not shape.finite:
         return None
     cloud_residuals = problem.cloud_residuals
-    state = PlacedCloud(shape=shape, footpoints=footpoints_at(cloud_residuals.points, shape.sides, on.side, on.u, on.v))
+    state = PlacedCloud(
+        shape=shape,
+        footpoints=footpoints_at(cloud_residuals.points, shape.sides, footpoints.side, footpoints.u, footpoints.v),
+    )
     free = set(problem.paths)
     ends = [(edge, end) for edge in EDGES for end in (0, len(getattr(design.channel, edge)) - 1)]
     corners = {f"channel.{edge}[{end}].{label}" for edge, end in ends for label in AXES}

@@ -107,10 +107,15 @@ def _exact_match(task: Task, found: Match, most: float) -> Match | None:
 
 def _informative_points(found: Match) -> NDArray[np.intp]:
     """Points that show edges and ends, which few points of a cloud show, and some of all."""
-    on = found.state.footpoints
-    beside = (on.u < EDGE_BANDS[0]) | (on.u > EDGE_BANDS[1]) | (on.v < END_BAND) | (on.v > 1.0 - END_BAND)
+    footpoints = found.state.footpoints
+    beside = (
+        (footpoints.u < EDGE_BANDS[0])
+        | (footpoints.u > EDGE_BANDS[1])
+        | (footpoints.v < END_BAND)
+        | (footpoints.v > 1.0 - END_BAND)
+    )
     rows = np.flatnonzero(beside)
-    return np.union1d(rows[drawn(len(rows), EDGE_POINTS)], drawn(len(on.u), OTHER_POINTS))
+    return np.union1d(rows[drawn(len(rows), EDGE_POINTS)], drawn(len(footpoints.u), OTHER_POINTS))
 
 
 def has_systematic_misfit(found: Match, most: float = np.inf) -> bool:

@@ -49,13 +49,13 @@ def edge_steps(found: Match, tolerance: float) -> list[StructureStep]:
     The rows of a cloud may differ from each other at their edges: no single law is predicted to gain much there, but
     all laws of an edge together do.
     """
-    on, rows = found.state.footpoints, found.rows
-    beyond = rows & (on.distances > tolerance)
+    footpoints, rows = found.state.footpoints, found.rows
+    beyond = rows & (footpoints.distances > tolerance)
     structure = structure_of(found.design)
     if not structure.channel or not np.any(beyond) or np.mean(beyond[rows]) > FEW_BEYOND:
         return []
     steps = []
-    for edge, beside in (("leading_edge", on.u < EDGE_BAND), ("trailing_edge", on.u > 1.0 - EDGE_BAND)):
+    for edge, beside in (("leading_edge", footpoints.u < EDGE_BAND), ("trailing_edge", footpoints.u > 1.0 - EDGE_BAND)):
         if np.mean(beside[beyond]) < GATHERED_AT_EDGE:
             continue
         counts = {name: _half_more(structure.span[name], MOST_SPAN) for name in EDGE_LAWS[edge]}

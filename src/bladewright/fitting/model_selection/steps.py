@@ -231,11 +231,14 @@ def _residuals_after(found: Match, step: StructureStep) -> tuple[Reals, Reals]:
     """Residuals after a step at the present footpoints, and their derivatives by its law's parameters."""
     other = reshaped(found.design, step.structure)
     paths = tuple(path for path in other.parameters() if path.startswith(step.fields))
-    cloud_residuals, on = found.problem.cloud_residuals, found.state.footpoints
+    cloud_residuals, footpoints = found.problem.cloud_residuals, found.state.footpoints
     shape = cloud_residuals.model.shape(other)
     if not shape.finite:
         raise DesignError("a law with another number of control points left no shape: take another one")
-    state = PlacedCloud(shape=shape, footpoints=footpoints_at(cloud_residuals.points, shape.sides, on.side, on.u, on.v))
+    state = PlacedCloud(
+        shape=shape,
+        footpoints=footpoints_at(cloud_residuals.points, shape.sides, footpoints.side, footpoints.u, footpoints.v),
+    )
     rows = cloud_residuals.residuals(state)
     if not paths:
         # a wall with no control points but its corners

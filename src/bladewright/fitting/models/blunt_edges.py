@@ -114,8 +114,8 @@ def blunt_edges_of(edges: Sequence[str]) -> BluntEdges:
     return edges[0] == "blunt", edges[1] == "blunt"
 
 
-def on_sides(on: Footpoints, edges: Sequence[str]) -> tuple[Footpoints, NDArray[np.intp]]:
+def on_sides(footpoints: Footpoints, edges: Sequence[str]) -> tuple[Footpoints, NDArray[np.intp]]:
     """Footpoints by the sides' own parameters, and -1 for those on the leading face, 1 on the trailing face, 0 else."""
     low, high = side_bounds(blunt_edges_of(edges))
-    faces = np.where(on.u < low, -1, np.where(on.u > high, 1, 0))
-    return replace(on, u=np.clip((on.u - low) / (high - low), 0.0, 1.0)), faces
+    faces = np.where(footpoints.u < low, -1, np.where(footpoints.u > high, 1, 0))
+    return replace(footpoints, u=np.clip((footpoints.u - low) / (high - low), 0.0, 1.0)), faces

@@ -88,15 +88,17 @@ def edge_basis(count: int, degree: int, v: Reals) -> Reals:
 
 
 def law_jacobian(
-    exact: ExactUnifiedBlade, knots: Knots, on: Footpoints, directions: Reals, paths: Sequence[str]
+    exact: ExactUnifiedBlade, knots: Knots, footpoints: Footpoints, directions: Reals, paths: Sequence[str]
 ) -> LawJacobian:
     """How places move along directions (n, 3) with what the parameters at `paths` consist of; knots are held."""
     design, sites = exact.design, knots.sites_v
     steps = list(dict.fromkeys(step for path in paths for step, _ in law_shares(design, path, sites)))
-    across = basis(knots.v, DEGREE, on.v) @ np.linalg.inv(basis(knots.v, DEGREE, sites))
+    across = basis(knots.v, DEGREE, footpoints.v) @ np.linalg.inv(basis(knots.v, DEGREE, sites))
     moves: dict[str | ChannelShift, Reals] = {}
     for some, other in _stepped(exact, steps):
-        moves |= dict(zip(some, _motion(_along_u(other, knots, len(some)), knots, on, directions, across), strict=True))
+        moves |= dict(
+            zip(some, _motion(_along_u(other, knots, len(some)), knots, footpoints, directions, across), strict=True)
+        )
     return LawJacobian(design=design, sites=sites, moves=moves)
 
 
@@ -125,17 +127,19 @@ def _along_u(other: ExactUnifiedBlade, knots: Knots, count: int) -> tuple[Array,
     return first, second
 
 
-def _motion(lines: tuple[Array, Array], knots: Knots, on: Footpoints, directions: Reals, across: Reals) -> Reals:
+def _motion(
+    lines: tuple[Array, Array], knots: Knots, footpoints: Footpoints, directions: Reals, across: Reals
+) -> Reals:
     """(k, n, m) motion of the places along their directions."""
     steps, _, sites, _ = lines[0].shape
-    found = np.zeros((steps, len(on.u), sites))
+    found = np.zeros((steps, len(footpoints.u), sites))
     for number, side in enumerate(lines):
-        rows = np.flatnonzero(on.side == number)
+        rows = np.flatnonzero(footpoints.side == number)
         flat = np.moveaxis(side, 1, 0).reshape(side.shape[1], -1)
         for part in np.array_split(rows, max(1, -(-len(rows) * flat.shape[1] // PRODUCT_SIZE))):
             if len(part) == 0:
                 continue
-            matrix = BSpline.design_matrix(np.clip(on.u[part], 0.0, 1.0), knots.u, DEGREE)
+            matrix = BSpline.design_matrix(np.clip(footpoints.u[part], 0.0, 1.0), knots.u, DEGREE)
             places = (matrix @ flat).reshape(len(part), steps, sites, 3)
             along = np.matmul(places, directions[part, None, :, None])[..., 0]
             found[:, part] = np.moveaxis(along * across[part, None], 1, 0)

@@ -69,9 +69,9 @@ class Model(ABC):
         """Derivatives (k, c) of `shape.constraints`."""
         return np.zeros((len(paths), len(shape.constraints)))
 
-    def along(self, shape: ModelShape, on: Footpoints, directions: Reals, paths: Sequence[str]) -> Reals:
+    def along(self, shape: ModelShape, footpoints: Footpoints, directions: Reals, paths: Sequence[str]) -> Reals:
         """Derivatives (n, k) of the footpoints along directions (n, d), at held surface parameters."""
-        return np.einsum("nkd,nd->nk", self.rates(shape, on, self.tangents(shape, paths)), directions)
+        return np.einsum("nkd,nd->nk", self.rates(shape, footpoints, self.tangents(shape, paths)), directions)
 
     @staticmethod
     def rates(shape: ModelShape, footpoints: Footpoints, tangents: tuple[Reals, Reals]) -> Reals:

@@ -120,9 +120,9 @@ class BladeModel(Model):
         upper, lower = (np.concatenate([pair[side] for pair in pairs]) for side in (0, 1))
         return upper, lower
 
-    def along(self, shape: ModelShape, on: Footpoints, directions: Reals, paths: Sequence[str]) -> Reals:
+    def along(self, shape: ModelShape, footpoints: Footpoints, directions: Reals, paths: Sequence[str]) -> Reals:
         """From the motion with whole laws."""
-        return law_jacobian(shape.exact, self.knots, on, directions, paths).columns(paths)
+        return law_jacobian(shape.exact, self.knots, footpoints, directions, paths).columns(paths)
 
     def edge_radius_margin_rates(self, shape: ModelShape, paths: Sequence[str]) -> Reals:
         """By the laws only: by the channel they vanish but for the walls' slopes, which are left out."""

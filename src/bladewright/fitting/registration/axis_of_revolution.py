@@ -190,8 +190,8 @@ def _axis(
 ) -> RevolutionAxis | None:
     """The axis with its figures; None where an end has too few points on its surface."""
     rows, right, offs = _equations(ends, motion, lines, width)
-    on = [np.abs(off) < width for off in offs]
-    if min(np.count_nonzero(each) for each in on) < FEWEST_END_POINTS:
+    inside = [np.abs(off) < width for off in offs]
+    if min(np.count_nonzero(each) for each in inside) < FEWEST_END_POINTS:
         return None
     extent = _extent(ends)
     scale = np.ones(rows.shape[1])
@@ -203,7 +203,7 @@ def _axis(
     covariance = (spread * half @ half.T)[:4, :4]
     return RevolutionAxis(
         motion=motion,
-        rms=float(np.sqrt(np.mean(np.concatenate([off[each] for off, each in zip(offs, on, strict=True)]) ** 2))),
+        rms=float(np.sqrt(np.mean(np.concatenate([off[each] for off, each in zip(offs, inside, strict=True)]) ** 2))),
         direction=float(np.sqrt(np.linalg.eigvalsh(covariance[:2, :2])[-1])) / extent,
         offset=float(np.sqrt(np.linalg.eigvalsh(covariance[2:, 2:])[-1])),
         score=len(rows) * 2.0 * float(np.log(width)) + 2 * (degree + 1) * float(np.log(len(rows))),

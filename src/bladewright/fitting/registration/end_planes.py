@@ -78,15 +78,15 @@ def _end_plane(sheet: UnrolledSheet, rows: NDArray[np.intp], along: Reals, insid
         weight = np.where(off < 0.0, 1.0, tukey_weights(np.abs(off), width))
         plane = np.linalg.solve((design.T * weight) @ design + damping, (design.T * weight) @ height)
     off = height - design @ plane
-    on = np.abs(off) < ON_PLANE * spacing
-    if np.count_nonzero(on) < 4:
+    on_plane = np.abs(off) < ON_PLANE * spacing
+    if np.count_nonzero(on_plane) < 4:
         return None
     normal = frame[0] - plane[1] * frame[1] - plane[2] * frame[2]
     return EndPlane(
-        point=points[on].mean(axis=0),
+        point=points[on_plane].mean(axis=0),
         normal=normal / np.sqrt(np.sum(normal**2)),
-        rows=rows[on],
-        along=along[on],
+        rows=rows[on_plane],
+        along=along[on_plane],
     )
 
 
