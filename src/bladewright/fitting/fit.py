@@ -183,10 +183,10 @@ def _check_call(
         raise FitError(f"parameters is {count!r}: a whole number from {least} to 2000 is needed")
 
 
-def _built(found: Match) -> Any:
+def _built(match: Match) -> Any:
     """What a design of a family that is one part builds."""
     try:
-        return found.design.build()
+        return match.design.build()
     except DesignError as error:
         raise FitError(
             f"the nearest design cannot be built ({error}); give a start design, or bounds that keep off it"
@@ -205,15 +205,15 @@ def _weights(weights: ArrayLike | None, count: int) -> Reals:
 
 
 def _reported(
-    found: Match, built: Any, points: Reals, task: Task, target: MatchTarget, notes: tuple[str, ...], motion: Any
+    match: Match, built: Any, points: Reals, task: Task, target: MatchTarget, notes: tuple[str, ...], motion: Any
 ) -> Fit:
     task.progress("measuring")
     measurement = measured(points, built, task.precision)
-    statistics = parameter_estimates(found)
+    statistics = parameter_estimates(match)
     inliers = measurement.noise_estimate.inliers
     distances, faced = np.abs(measurement.deviations), int(np.count_nonzero(measurement.faced))
     return Fit(
-        design=found.design,
+        design=match.design,
         built=built,
         cloud=points,
         places=measurement.places,
@@ -229,9 +229,9 @@ def _reported(
         noise=measurement.noise_estimate.noise,
         extrema=extrema_of(built),
         tolerance=target.tolerance,
-        failures=failures_of(distances, inliers, measurement.regions, found, target, faced=faced),
-        notes=notes_of(notes, statistics, distances, inliers, found, target, faced=faced),
-        evaluations=found.evaluations,
+        failures=failures_of(distances, inliers, measurement.regions, match, target, faced=faced),
+        notes=notes_of(notes, statistics, distances, inliers, match, target, faced=faced),
+        evaluations=match.evaluations,
         motion=motion,
-        interrupted=found.interrupted,
+        interrupted=match.interrupted,
     )

@@ -48,16 +48,16 @@ def failures_of(
     distances: Reals,
     inliers: NDArray[np.bool_],
     regions: NDArray[np.str_],
-    found: Match,
+    match: Match,
     target: MatchTarget,
     *,
     faced: int = 0,
 ) -> tuple[str, ...]:
     """Why a match does not pass, each a sentence; `faced` is the number of outliers on end faces."""
     failures = []
-    chord = found.model.chord
+    chord = match.model.chord
     kept = distances[inliers]
-    if found.interrupted:
+    if match.interrupted:
         failures.append("the search was interrupted: this is the best design so far")
     off = len(distances) - len(kept) - faced
     if off > LARGEST_OUTLIER_SHARE * len(distances):
@@ -78,40 +78,40 @@ def failures_of(
                     f"the {word} deviation is {1e3 * value:.4g} mm, {100 * value / chord:.2g} % of the chord, and "
                     f"{100 * limit:.2g} % are allowed where no tolerance is stated: give more parameters"
                 )
-    failures += filter(None, (_structure_not_met(found, target), _too_few_points(found, target)))
-    one_sided = _one_sided(found)
+    failures += filter(None, (_structure_not_met(match, target), _too_few_points(match, target)))
+    one_sided = _one_sided(match)
     if one_sided:
         failures.append(f"{one_sided}: is it one side of a blade alone? Give points of both")
     failures += [
         f"no point lies around the {name}, where the blade is still {1e3 * wide:.3g} mm wide, {share:.0%} of its "
         "thickest: is it half a blade? Give the points of the whole"
-        for name, (wide, share) in uncovered_edges(found).items()
+        for name, (wide, share) in uncovered_edges(match).items()
         if share > HALF_BLADE_WIDTH
     ]
-    loose = loose_ends(found)
-    if loose and target.structured and target.tolerance is None and not found.interrupted and found.rms < EXACT_MISFIT:
+    loose = loose_ends(match)
+    if loose and target.structured and target.tolerance is None and not match.interrupted and match.rms < EXACT_MISFIT:
         failures.append(
             f"the sides are met exactly, but {_loose_ends_message(loose)}; state the tolerance that is enough"
         )
-    if shape_not_found(distances, inliers, found, target) and not _near_enough(found):
-        failures.append(_shape_not_found_message(found))
+    if shape_not_found(distances, inliers, match, target) and not _near_enough(match):
+        failures.append(_shape_not_found_message(match))
     return tuple(failures)
 
 
-def _structure_not_met(found: Match, target: MatchTarget) -> str:
+def _structure_not_met(match: Match, target: MatchTarget) -> str:
     """Why a given structure is not met, if it is not."""
     if not target.structured or target.tolerance is not None:
         return ""
-    rms, noise = found.rms * found.model.chord, found.noise_estimate.noise
+    rms, noise = match.rms * match.model.chord, match.noise_estimate.noise
     # in axes that were found by a start no structure is met exactly
-    least = NEAR_ENOUGH[_points(found).shape[1]] if target.registered else EXACT_MISFIT
-    if found.rms > least and rms > SYSTEMATIC_OVER_NOISE * noise:
+    least = NEAR_ENOUGH[_points(match).shape[1]] if target.registered else EXACT_MISFIT
+    if match.rms > least and rms > SYSTEMATIC_OVER_NOISE * noise:
         return (
             f"the misfit of the given structure is {1e3 * rms:.3g} mm rms, and the cloud's noise {1e3 * noise:.3g} mm: "
             "the structure does not hold this blade, or a better design was not found; state a tolerance, or another "
             "structure"
         )
-    if least < found.rms < FINEST_NOISE and not is_rounded(_points(found)):
+    if least < match.rms < FINEST_NOISE and not is_rounded(_points(match)):
         return (
             f"the misfit of the given structure is {1e3 * rms:.3g} mm rms, too much for an exact cloud and too little "
             "for the noise of another: the exact design was not found; state the tolerance that is enough"
@@ -119,10 +119,10 @@ def _structure_not_met(found: Match, target: MatchTarget) -> str:
     return ""
 
 
-def _too_few_points(found: Match, target: MatchTarget) -> str:
+def _too_few_points(match: Match, target: MatchTarget) -> str:
     """Why points are too few for a blade where nothing is asked for, if they are."""
-    shown, count = int(np.count_nonzero(found.rows)), len(found.problem.paths)
-    if not target.open or _points(found).shape[1] == 2 or shown >= FEWEST_POINTS_PER_PARAMETER * count:
+    shown, count = int(np.count_nonzero(match.rows)), len(match.problem.paths)
+    if not target.open or _points(match).shape[1] == 2 or shown >= FEWEST_POINTS_PER_PARAMETER * count:
         return ""
     return (
         f"{shown} points are too few for the {count} parameters of this blade: give more points, or a number of "
@@ -130,53 +130,53 @@ def _too_few_points(found: Match, target: MatchTarget) -> str:
     )
 
 
-def shape_not_found(distances: Reals, inliers: NDArray[np.bool_], found: Match, target: MatchTarget) -> bool:
+def shape_not_found(distances: Reals, inliers: NDArray[np.bool_], match: Match, target: MatchTarget) -> bool:
     """Whether nothing was asked for, and the misfit is not as small as the noise allows."""
-    enough = ENOUGH_DEVIATION[_points(found).shape[1]] * found.model.chord
+    enough = ENOUGH_DEVIATION[_points(match).shape[1]] * match.model.chord
     largest = float(np.max(distances[inliers]))
     return (
         target.open
-        and not found.interrupted
+        and not match.interrupted
         and largest > 2.0 * enough
-        and found.noise_estimate.correlation > SHAPE_CORRELATION
+        and match.noise_estimate.correlation > SHAPE_CORRELATION
     )
 
 
-def _one_sided(found: Match) -> str:
+def _one_sided(match: Match) -> str:
     """Why the points must be those of one side only, if anything shows it."""
-    bare = _bare_side(found)
+    bare = _bare_side(match)
     if bare:
         return f"hardly a point lies on the {bare} side"
-    thin = least_thickness(found)
-    if thin < SHEET_THICKNESS * found.model.chord:
+    thin = least_thickness(match)
+    if thin < SHEET_THICKNESS * match.model.chord:
         return f"the blade is a sheet, no more than {1e3 * thin:.3g} mm thick at a place of its span"
     return ""
 
 
-def _bare_side(found: Match) -> str:
+def _bare_side(match: Match) -> str:
     """The side of a blade that has hardly a point between its edges, if one has."""
-    footpoints = found.state.footpoints
-    between = found.rows & (footpoints.u > BETWEEN_EDGES) & (footpoints.u < 1.0 - BETWEEN_EDGES)
+    footpoints = match.state.footpoints
+    between = match.rows & (footpoints.u > BETWEEN_EDGES) & (footpoints.u < 1.0 - BETWEEN_EDGES)
     shares = {
         name: np.mean(footpoints.side[between] == side) if np.any(between) else 1.0 for side, name in enumerate(SIDES)
     }
     return next((name for name, share in shares.items() if share < BARE_SIDE_SHARE), "")
 
 
-def _points(found: Match) -> Reals:
-    return np.asarray(found.problem.cloud_residuals.points)
+def _points(match: Match) -> Reals:
+    return np.asarray(match.problem.cloud_residuals.points)
 
 
-def _gross(distances: Reals, inliers: NDArray[np.bool_], found: Match) -> bool:
-    return bool(np.mean(distances[inliers]) > GROSS_DEVIATION[0] * found.model.chord)
+def _gross(distances: Reals, inliers: NDArray[np.bool_], match: Match) -> bool:
+    return bool(np.mean(distances[inliers]) > GROSS_DEVIATION[0] * match.model.chord)
 
 
-def _near_enough(found: Match) -> bool:
-    return found.rms <= NEAR_ENOUGH[_points(found).shape[1]]
+def _near_enough(match: Match) -> bool:
+    return match.rms <= NEAR_ENOUGH[_points(match).shape[1]]
 
 
-def _shape_not_found_message(found: Match) -> str:
-    rms, noise = 1e3 * found.rms * found.model.chord, 1e3 * found.noise_estimate.noise
+def _shape_not_found_message(match: Match) -> str:
+    rms, noise = 1e3 * match.rms * match.model.chord, 1e3 * match.noise_estimate.noise
     return (
         f"the shape is not found: deviations go on from point to point, {rms:.3g} mm rms where the cloud's own noise "
         f"is {noise:.3g} mm; state the tolerance that is enough, a number of parameters, or a start"
@@ -193,7 +193,7 @@ def notes_of(
     statistics: ParameterEstimates,
     distances: Reals,
     inliers: NDArray[np.bool_],
-    found: Match,
+    match: Match,
     target: MatchTarget,
     *,
     faced: int = 0,
@@ -204,16 +204,16 @@ def notes_of(
         said.append(
             f"{faced} of {np.count_nonzero(~inliers)} outliers lie on the end faces: the sides are met without them"
         )
-    if shape_not_found(distances, inliers, found, target) and _near_enough(found):
-        said.append(f"near enough to make, but {_shape_not_found_message(found)}")
-    if _points(found).shape[1] == 3 and _gross(distances, inliers, found):
+    if shape_not_found(distances, inliers, match, target) and _near_enough(match):
+        said.append(f"near enough to make, but {_shape_not_found_message(match)}")
+    if _points(match).shape[1] == 3 and _gross(distances, inliers, match):
         said.append(f"a blade in other axes is met no nearer than this: {AXES_HINT}")
     said += [
         f"no point lies around the {name}: where it ends and how round it is are guessed"
-        for name, (_, share) in uncovered_edges(found).items()
+        for name, (_, share) in uncovered_edges(match).items()
         if share <= HALF_BLADE_WIDTH
     ]
-    loose = loose_ends(found)
+    loose = loose_ends(match)
     if loose:
         said.append(_loose_ends_message(loose))
     unknown = [each.path for each in statistics.estimates if not each.identified]

@@ -17,21 +17,21 @@ GAP_OVER_SPREAD = 2.7
 """mean distance of evenly scattered values times their number, over their deviation by the median."""
 
 
-def loose_ends(found: Match) -> dict[str, float]:
+def loose_ends(match: Match) -> dict[str, float]:
     """The ends of a blade that no row of points shows, and how far apart the points are there [m].
 
     Empty for sections, and where the channel is held. The sides of a blade that goes on a little further are the same,
     so that without a row only its outermost points tell where it ends.
     """
-    if found.state.shape.exact is None or not any(path.startswith("channel.") for path in found.problem.paths):
+    if match.state.shape.exact is None or not any(path.startswith("channel.") for path in match.problem.paths):
         return {}
-    chord, walls = found.model.chord, found.ends.walls
+    chord, walls = match.model.chord, match.ends.walls
     loose = {}
     for name in END_PARAMETERS:
         wall = walls.get(name)
         if wall is None:
             loose[name] = chord
-        elif wall.spread > max(ROW_SPREAD * chord, ROW_SPREAD_OF_NOISE * found.noise_estimate.noise):
+        elif wall.spread > max(ROW_SPREAD * chord, ROW_SPREAD_OF_NOISE * match.noise_estimate.noise):
             loose[name] = GAP_OVER_SPREAD * wall.spread / len(wall.places)
     return loose
 
@@ -46,17 +46,17 @@ THICKNESS_SAMPLES = 25
 """places along a section among which it is thickest"""
 
 
-def uncovered_edges(found: Match) -> dict[str, tuple[float, float]]:
+def uncovered_edges(match: Match) -> dict[str, tuple[float, float]]:
     """Rounded edges without a point on their arc: the blade's width where the points end [m], and of its thickest.
 
     A point on the arc is nearer to its middle than the other side is, which no point before it is.
     """
-    if not found.model.rounded:
+    if not match.model.rounded:
         return {}
-    footpoints, sides = found.state.footpoints, found.state.shape.sides
+    footpoints, sides = match.state.footpoints, match.state.shape.sides
     unseen = {}
     for name, end in EDGE_PARAMETERS.items():
-        nearest = _nearest(footpoints, found.rows, end)
+        nearest = _nearest(footpoints, match.rows, end)
         if len(nearest) == 0:
             continue
         side, u, v = footpoints.side[nearest], footpoints.u[nearest], footpoints.v[nearest]
@@ -70,11 +70,11 @@ def uncovered_edges(found: Match) -> dict[str, tuple[float, float]]:
     return unseen
 
 
-def least_thickness(found: Match) -> float:
+def least_thickness(match: Match) -> float:
     """The least over the span of the sections' largest thickness [m]; infinite for families with other edges."""
-    if not found.model.rounded:
+    if not match.model.rounded:
         return np.inf
-    return min(_thickness(found.state.shape.sides, v) for v in (0.1, 0.3, 0.5, 0.7, 0.9))
+    return min(_thickness(match.state.shape.sides, v) for v in (0.1, 0.3, 0.5, 0.7, 0.9))
 
 
 def _nearest(footpoints: Footpoints, rows: NDArray[np.bool_], end: float) -> NDArray[np.intp]:

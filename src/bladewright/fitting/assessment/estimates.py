@@ -34,7 +34,7 @@ class ParameterEstimates:
     condition: float
 
 
-def parameter_estimates(found: Match) -> ParameterEstimates:
+def parameter_estimates(match: Match) -> ParameterEstimates:
     """From the derivatives of the residuals where a search ended, without the regularisation.
 
     The points' distances are taken as independent normal errors, with variances inverse to the given weights; where
@@ -42,17 +42,17 @@ def parameter_estimates(found: Match) -> ParameterEstimates:
     that takes no error away. References: Bates and Watts 1988, section 2.3 (linear approximation); Seber and Wild 1989,
     section 2.1.4 (weights that are not the inverse variances).
     """
-    problem = found.problem
+    problem = match.problem
     size = problem.scales.size
-    rows = problem.cloud_residuals.residuals(found.state)
-    slopes = problem.cloud_residuals.slopes(found.state, problem.paths) * size
+    rows = problem.cloud_residuals.residuals(match.state)
+    slopes = problem.cloud_residuals.slopes(match.state, problem.paths) * size
     excess = _excess_weights(problem.cloud_residuals, len(rows))
     points = len(problem.cloud_residuals.points)
     count = int(np.count_nonzero(problem.cloud_residuals.roots))
     left = max(count - len(problem.paths), 1)
     variance = float(np.sum(rows[:points] ** 2 / excess[:points])) / left
-    if found.noise_estimate.correlation > INDEPENDENT_CORRELATION:
-        variance /= found.noise_estimate.independent_share(len(problem.paths))
+    if match.noise_estimate.correlation > INDEPENDENT_CORRELATION:
+        variance /= match.noise_estimate.independent_share(len(problem.paths))
     across, values, turns = np.linalg.svd(slopes, full_matrices=False)
     largest = float(values[0])
     known = values > 1e-13 * largest
@@ -65,7 +65,7 @@ def parameter_estimates(found: Match) -> ParameterEstimates:
     deviations[np.any(np.abs(turns[~known]) > NULL_DIRECTION_SHARE, axis=0)] = np.inf
     covariance = scaled * np.outer(size, size)
     factor = float(student.ppf(0.5 + CONFIDENCE / 2.0, left))
-    values_now = problem.values_of(found.design)
+    values_now = problem.values_of(match.design)
     low, high = problem.scales.low, problem.scales.high
     estimates = []
     for i, path in enumerate(problem.paths):

@@ -21,19 +21,19 @@ PredictedGain = tuple[float, int, Design]
 
 
 def predicted_gains(
-    task: Task, found: Match, designs: Iterable[Design], emphasis: Reals | None = None
+    task: Task, match: Match, designs: Iterable[Design], emphasis: Reals | None = None
 ) -> list[PredictedGain]:
     """Designs with more control points than a match's, best predicted gain for each parameter first.
 
     The gains are linear predictions, without a search. `emphasis` (n,) are further weights of the points. Designs
     without a shape, or that gain nothing, are left out.
     """
-    cloud_residuals, paths = found.problem.cloud_residuals, found.problem.paths
-    values = found.design.parameters()
-    rows = cloud_residuals.residuals(found.state)
-    slopes = cloud_residuals.slopes(found.state, paths) * found.problem.scales.size
+    cloud_residuals, paths = match.problem.cloud_residuals, match.problem.paths
+    values = match.design.parameters()
+    rows = cloud_residuals.residuals(match.state)
+    slopes = cloud_residuals.slopes(match.state, paths) * match.problem.scales.size
     roots = row_factors(emphasis, len(rows))
-    before = predicted_rest(slopes, rows, roots, found.problem.noise)
+    before = predicted_rest(slopes, rows, roots, match.problem.noise)
     ranked: list[PredictedGain] = []
     for design in designs:
         try:
@@ -41,20 +41,20 @@ def predicted_gains(
             fresh = design.parameters()
             own = tuple(path for path in free if values.get(path) != fresh[path])
             kept = [i for i, path in enumerate(paths) if path in fresh and path not in own]
-            rows, columns = _residuals_of(found, design, own)
+            rows, columns = _residuals_of(match, design, own)
         except (DesignError, FitError):
             continue
         wider = np.concatenate([slopes[:, kept], columns], axis=1)
-        gain = before - predicted_rest(wider, rows, roots, found.problem.noise)
+        gain = before - predicted_rest(wider, rows, roots, match.problem.noise)
         more = len(free) - len(paths)
         if gain > 0.0 and more > 0:
             ranked.append((gain / more, more, design))
     return sorted(ranked, key=lambda each: -each[0])
 
 
-def _residuals_of(found: Match, design: Design, paths: tuple[str, ...]) -> tuple[Reals, Reals]:
+def _residuals_of(match: Match, design: Design, paths: tuple[str, ...]) -> tuple[Reals, Reals]:
     """Residuals of a design at the footpoints of a match, and their derivatives by scaled parameters."""
-    cloud_residuals, footpoints = found.problem.cloud_residuals, found.state.footpoints
+    cloud_residuals, footpoints = match.problem.cloud_residuals, match.state.footpoints
     shape = cloud_residuals.model.shape(design)
     if not shape.finite:
         raise DesignError("a law with another number of control points left no shape: take another one")
@@ -62,7 +62,7 @@ def _residuals_of(found: Match, design: Design, paths: tuple[str, ...]) -> tuple
         shape=shape,
         footpoints=footpoints_at(cloud_residuals.points, shape.sides, footpoints.side, footpoints.u, footpoints.v),
     )
-    slopes = cloud_residuals.slopes(state, paths) * scales_of(design, paths, found.model.chord).size
+    slopes = cloud_residuals.slopes(state, paths) * scales_of(design, paths, match.model.chord).size
     return cloud_residuals.residuals(state), slopes
 
 
@@ -80,42 +80,42 @@ GrowthStep = Callable[[Task, Match, MatchTarget, int], Iterator[Match]]
 
 
 def grown_to_target(
-    task: Task, found: Match, target: MatchTarget, wider: GrowthStep, *, coarse: float
+    task: Task, match: Match, target: MatchTarget, wider: GrowthStep, *, coarse: float
 ) -> tuple[Match, str]:
     """A match with as many control points as the target needs, or why there are no more.
 
     A step that brings the design no nearer is taken back, and another is tried. What is grown can be built, with native
     sides of the `coarse` tolerance.
     """
-    best, idle, back = found, 0, 0
+    best, idle, back = match, 0, 0
     for _ in range(MOST_GROWTHS):
-        short, reason = needs_more(found, target, task)
-        if not short or found.interrupted:
+        short, reason = needs_more(match, target, task)
+        if not short or match.interrupted:
             met = not short and not reason
-            return found if met or found.rms <= best.rms or target.parameters is not None else best, reason
+            return match if met or match.rms <= best.rms or target.parameters is not None else best, reason
         tried = [
-            each for each in wider(task, found, target, back) if _allowed(each, target) and can_be_built(each, coarse)
+            each for each in wider(task, match, target, back) if _allowed(each, target) and can_be_built(each, coarse)
         ]
         if not tried and not back:
             return best, "no control point can be added to the design that leaves it one that can be built"
         fresh = min(tried, key=lambda each: each.rms, default=None)
-        if fresh is None or (fresh.rms > found.rms and fresh.maximum > found.maximum):
+        if fresh is None or (fresh.rms > match.rms and fresh.maximum > match.maximum):
             if back < PATIENCE and not (fresh is not None and fresh.interrupted):
                 back += 1
                 continue
             if fresh is None or target.parameters is None:
                 return best, FUTILE_REASON
-        found, back = fresh, 0
-        idle = idle + 1 if found.rms > WORTHWHILE_RATIO * best.rms else 0
-        best = found if found.rms < WORTHWHILE_RATIO * best.rms or target.parameters is not None else best
+        match, back = fresh, 0
+        idle = idle + 1 if match.rms > WORTHWHILE_RATIO * best.rms else 0
+        best = match if match.rms < WORTHWHILE_RATIO * best.rms or target.parameters is not None else best
         if target.open and idle > PATIENCE:
             return best, FUTILE_REASON
     return best, f"control points were added {MOST_GROWTHS} times, and no more are"
 
 
-def can_be_built(found: Match, tolerance: float) -> bool:
+def can_be_built(match: Match, tolerance: float) -> bool:
     """Whether the design can be built with a tolerance, that is, its sections do not cross themselves."""
-    design: Any = found.design
+    design: Any = match.design
     try:
         replace(design, tolerance=max(design.tolerance, tolerance)).build()
     except DesignError:
@@ -123,5 +123,5 @@ def can_be_built(found: Match, tolerance: float) -> bool:
     return True
 
 
-def _allowed(found: Match, target: MatchTarget) -> bool:
-    return target.parameters is None or len(found.problem.paths) <= target.parameters
+def _allowed(match: Match, target: MatchTarget) -> bool:
+    return target.parameters is None or len(match.problem.paths) <= target.parameters

@@ -70,22 +70,22 @@ def law_extensions(design: Any, kind: FitFamily) -> list[LawExtension]:
 
 
 def extended_blade(
-    task: Task, found: Match, target: MatchTarget, back: int, *, kind: FitFamily, enough: float = EXACT_MISFIT
+    task: Task, match: Match, target: MatchTarget, back: int, *, kind: FitFamily, enough: float = EXACT_MISFIT
 ) -> Iterator[Match]:
     """The match with those laws extended that are predicted to gain most, several at once.
 
     Where that was taken back `back` times, the law that comes after so many better ones is extended, alone.
     """
-    room = None if target.parameters is None else target.parameters - len(found.problem.paths)
+    room = None if target.parameters is None else target.parameters - len(match.problem.paths)
     named: dict[str, tuple[LawExtension, Any]] = {}
-    for widening in law_extensions(found.design, kind):
+    for widening in law_extensions(match.design, kind):
         try:
-            named[widening.law] = widening, widening.applied(found.design)
+            named[widening.law] = widening, widening.applied(match.design)
         except DesignError:
             continue
-    ranked = predicted_gains(task, found, [design for _, design in named.values()], tolerance_weights(found, target))
+    ranked = predicted_gains(task, match, [design for _, design in named.values()], tolerance_weights(match, target))
     of = {id(design): widening for widening, design in named.values()}
-    design: Any = found.design
+    design: Any = match.design
     taken = 0
     for gain, more, each in ranked[back:]:
         if taken and (back or gain < WORTH_OF_BEST * ranked[0][0] or taken >= AT_ONCE):
@@ -102,11 +102,11 @@ def extended_blade(
         return
     try:
         fresh = searched(
-            task, design, rounds=EXTENSION_ROUNDS, noise=found.rms, min_reduction=ROUGH_REDUCTION, enough=enough
+            task, design, rounds=EXTENSION_ROUNDS, noise=match.rms, min_reduction=ROUGH_REDUCTION, enough=enough
         )
     except FitError:
         return
-    yield replace(fresh, evaluations=fresh.evaluations + found.evaluations)
+    yield replace(fresh, evaluations=fresh.evaluations + match.evaluations)
 
 
 def _along_span(design: Any, name: str) -> Any:

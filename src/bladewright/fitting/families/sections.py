@@ -82,25 +82,25 @@ def matched_section(
 
 
 def _through_points(
-    task: Task, found: Match, target: MatchTarget, through_points: Callable[[int], Any], made: Callable[[Any], Design]
+    task: Task, match: Match, target: MatchTarget, through_points: Callable[[int], Any], made: Callable[[Any], Design]
 ) -> tuple[Match, str]:
     """A match by points of the outline where no other meets the target, by as few as do."""
     asked = 0 if target.parameters is None else target.parameters - OUTLINE_SURPLUS
     for count in (asked,) if asked >= FEWEST_OUTLINE_POINTS else OUTLINE_COUNTS:
-        short, reason = needs_more(found, target, task)
-        near = target.open and found.maximum < GROSS_DEVIATION[1] * found.model.chord
-        if not short or near or found.interrupted:
-            return found, reason
+        short, reason = needs_more(match, target, task)
+        near = target.open and match.maximum < GROSS_DEVIATION[1] * match.model.chord
+        if not short or near or match.interrupted:
+            return match, reason
         try:
             fresh = searched(task, made(through_points(count)), rounds=QUICK_ROUNDS)
         except (DesignError, FitError):
             continue
-        fresh = replace(fresh, evaluations=fresh.evaluations + found.evaluations)
+        fresh = replace(fresh, evaluations=fresh.evaluations + match.evaluations)
         within = target.parameters is None or len(fresh.problem.paths) <= target.parameters
-        if within and fresh.rms < found.rms and _is_buildable(fresh):
-            found = fresh
-    met = target.parameters is not None or not needs_more(found, target, task)[0]
-    return found, "" if met else "no outline of points comes nearer"
+        if within and fresh.rms < match.rms and _is_buildable(fresh):
+            match = fresh
+    met = target.parameters is not None or not needs_more(match, target, task)[0]
+    return match, "" if met else "no outline of points comes nearer"
 
 
 def section_samples(built: Section) -> SampledSection:
@@ -187,43 +187,43 @@ def best_trial(
     return found
 
 
-def _is_buildable(found: Match) -> bool:
-    return can_be_built(found, TOLERANCES[-1])
+def _is_buildable(match: Match) -> bool:
+    return can_be_built(match, TOLERANCES[-1])
 
 
-def _wider(task: Task, found: Match, target: MatchTarget, back: int, *, kind: FitFamily) -> Iterator[Match]:
+def _wider(task: Task, match: Match, target: MatchTarget, back: int, *, kind: FitFamily) -> Iterator[Match]:
     """Matches with one control point more, of the laws predicted to gain most, or of the next ones after a failure."""
-    design: Any = found.design
+    design: Any = match.design
     try:
         # an intermediate section that crosses itself has sides all the same
-        sides: Any = found.state.shape.sides
+        sides: Any = match.state.shape.sides
         parts = kind.extensions(design.section, sampled_section(sides[0], sides[1], (0.0, 0.0)))
     except DesignError:
         return
     designs = [replace(design, section=part) for part in parts]
-    for _, _, wider in predicted_gains(task, found, designs, tolerance_weights(found, target))[back * LAWS_TRIED :][
+    for _, _, wider in predicted_gains(task, match, designs, tolerance_weights(match, target))[back * LAWS_TRIED :][
         :LAWS_TRIED
     ]:
         try:
             fresh = searched(task, wider, rounds=QUICK_ROUNDS)
         except (DesignError, FitError):
             continue
-        yield replace(fresh, evaluations=fresh.evaluations + found.evaluations)
+        yield replace(fresh, evaluations=fresh.evaluations + match.evaluations)
 
 
-def _searched_thoroughly(task: Task, found: Match) -> Match:
-    fresh = searched(task, found.design)
-    better = fresh if np.isfinite(fresh.rms) else found
-    return replace(better, evaluations=found.evaluations + fresh.evaluations)
+def _searched_thoroughly(task: Task, match: Match) -> Match:
+    fresh = searched(task, match.design)
+    better = fresh if np.isfinite(fresh.rms) else match
+    return replace(better, evaluations=match.evaluations + fresh.evaluations)
 
 
-def _buildable_tolerance(found: Match) -> Match:
+def _buildable_tolerance(match: Match) -> Match:
     """The match with the finest tolerance of its native sides with which it can be built: edges may turn fast."""
     for tolerance in TOLERANCES:
-        if can_be_built(found, tolerance):
-            design: Any = found.design
-            return replace(found, design=replace(design, tolerance=max(design.tolerance, tolerance)))
-    return found
+        if can_be_built(match, tolerance):
+            design: Any = match.design
+            return replace(match, design=replace(design, tolerance=max(design.tolerance, tolerance)))
+    return match
 
 
 def thinned_task(task: Task, count: int) -> Task:

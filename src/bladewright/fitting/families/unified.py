@@ -99,7 +99,7 @@ def _first_design(task: Task, structure: Structure | None, like: Design | None, 
     return first_blade(some, structure=structure, name=header.name, length_unit=header.length_unit, **row)
 
 
-def _buildable(task: Task, found: Match, *, fewer: bool) -> tuple[Match, Any, str]:
+def _buildable(task: Task, match: Match, *, fewer: bool) -> tuple[Match, Any, str]:
     """What the found design builds, and a note where it is not the nearest one.
 
     Where that is refused, a design is taken that keeps further from what is refused; with `fewer`, at last one whose
@@ -108,26 +108,26 @@ def _buildable(task: Task, found: Match, *, fewer: bool) -> tuple[Match, Any, st
     refusal = ""
     for margin_factor in (0.0, 1.0, 30.0, 1000.0):
         if margin_factor:
-            min_reduction = FINAL_REDUCTION if found.rms > KNOWN_MISFIT else MIN_REDUCTION
-            found = searched(
-                replace(task, margin_factor=margin_factor), found.design, rounds=2, min_reduction=min_reduction
+            min_reduction = FINAL_REDUCTION if match.rms > KNOWN_MISFIT else MIN_REDUCTION
+            match = searched(
+                replace(task, margin_factor=margin_factor), match.design, rounds=2, min_reduction=min_reduction
             )
         try:
-            return found, found.design.build(), ""
+            return match, match.design.build(), ""
         except DesignError as error:
             refusal = str(error)
-    structure = structure_of(found.design)
+    structure = structure_of(match.design)
     few = task.part(drawn(len(task.points), REDUCED_POINTS))
     straight = replace(few, bounds={**STRAIGHT_CAMBER, **task.bounds})
-    for share in FEWER_SHARES if fewer and not found.interrupted else ():
+    for share in FEWER_SHARES if fewer and not match.interrupted else ():
         upper, lower = (max(FEWEST_THICKNESSES, round(share * count)) for count in structure.chordwise)
-        design = with_feasible_edges(reshaped(found.design, replace(structure, chordwise=(upper, lower))))
+        design = with_feasible_edges(reshaped(match.design, replace(structure, chordwise=(upper, lower))))
         try:
             other = searched(straight, design, noise=REDUCED_NOISE, min_reduction=ROUGH_REDUCTION)
             built = other.design.build()
         except (DesignError, FitError):
             continue
-        return other, built, REDUCED_NOTE.format(len(other.problem.paths), len(found.problem.paths))
+        return other, built, REDUCED_NOTE.format(len(other.problem.paths), len(match.problem.paths))
     raise FitError(
         f"the nearest design cannot be built ({refusal}); give a start design, or other numbers of parameters"
     )

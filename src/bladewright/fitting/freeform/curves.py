@@ -146,12 +146,12 @@ def noise_along(u: Reals, misses: Reals) -> float:
     return float(np.sqrt(np.mean(square) / (misses.shape[1] - 1)))
 
 
-def _further_knots(found: StagedMatch, target: NetTarget, options: FitOptions, limit: float) -> tuple[Net | None, str]:
+def _further_knots(match: StagedMatch, target: NetTarget, options: FitOptions, limit: float) -> tuple[Net | None, str]:
     """A knot in each span that is too far off for other reasons than noise, or why there is none."""
     extent = options.extent
-    net, footpoints = found.match.net, found.match.footpoints
+    net, footpoints = match.match.net, match.match.footpoints
     u, distances = footpoints.parameters[:, 0], footpoints.distances
-    misses = footpoints.points - target.points[found.inliers]
+    misses = footpoints.points - target.points[match.inliers]
     codimension = misses.shape[1] - 1
     noise = noise_along(u, misses)
     ends = breaks(net.knots[0])
@@ -169,7 +169,7 @@ def _further_knots(found: StagedMatch, target: NetTarget, options: FitOptions, l
         middle = u[here][order][np.searchsorted(square, 0.5 * square[-1])]
         knot = float(np.clip(middle, low + 0.25 * (high - low), high - 0.25 * (high - low)))
         fewest = min(np.sum(u[here] < knot), np.sum(u[here] > knot))
-        unknowns = len(found.singular_values) + len(knots) * (codimension + 2)
+        unknowns = len(match.singular_values) + len(knots) * (codimension + 2)
         if fewest < 2 or unknowns >= codimension * len(u):
             sparse += 1
         else:
@@ -182,17 +182,17 @@ def _further_knots(found: StagedMatch, target: NetTarget, options: FitOptions, l
     return None, f"{worst}: noise of a standard deviation of about {noise * extent:.3g} stops further knots"
 
 
-def _systematic(found: StagedMatch, target: NetTarget) -> bool:
+def _systematic(match: StagedMatch, target: NetTarget) -> bool:
     """Whether the distances are more than noise."""
-    footpoints = found.match.footpoints
-    noise = noise_along(footpoints.parameters[:, 0], footpoints.points - target.points[found.inliers])
+    footpoints = match.match.footpoints
+    noise = noise_along(footpoints.parameters[:, 0], footpoints.points - target.points[match.inliers])
     return float(np.sqrt(np.mean(footpoints.distances**2))) > SYSTEMATIC_RATIO * noise
 
 
-def _cost(found: StagedMatch, power: float, notes: tuple[str, ...]) -> tuple[bool, int, float]:
+def _cost(match: StagedMatch, power: float, notes: tuple[str, ...]) -> tuple[bool, int, float]:
     """What is less for a better match: within its tolerance, of fewer control points, at lower distances."""
-    distances = found.match.footpoints.distances
-    return bool(notes), len(found.match.net.points), float(np.mean((distances / 1e-3) ** power))
+    distances = match.match.footpoints.distances
+    return bool(notes), len(match.match.net.points), float(np.mean((distances / 1e-3) ** power))
 
 
 def _empty(

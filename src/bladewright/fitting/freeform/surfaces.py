@@ -288,10 +288,10 @@ def _noise(parameters: Reals, signed: Reals) -> float:
     return float(np.sqrt(np.mean(off**2) / (1.0 + 1.0 / count)))
 
 
-def _further_knots(found: StagedMatch, target: NetTarget, options: FitOptions, limit: float) -> tuple[Net | None, str]:
+def _further_knots(match: StagedMatch, target: NetTarget, options: FitOptions, limit: float) -> tuple[Net | None, str]:
     """Further knots in strips too far off for other reasons than noise, along the direction that gains more."""
-    net, footpoints = found.match.net, found.match.footpoints
-    points = target.points[found.inliers]
+    net, footpoints = match.match.net, match.match.footpoints
+    points = target.points[match.inliers]
     shape = net.surface
     signed = np.sum((footpoints.points - points) * shape.normal(*footpoints.parameters.T), axis=-1)
     noise = _noise(footpoints.parameters, signed)
@@ -317,7 +317,7 @@ def _further_knots(found: StagedMatch, target: NetTarget, options: FitOptions, l
         if len(more.points) > len(points) // 2:
             sparse = True
             continue
-        chosen = NetTarget(points=points, weights=target.weights[found.inliers])
+        chosen = NetTarget(points=points, weights=target.weights[match.inliers])
         quadratic = quadratic_of(more, chosen, footpoints, Penalty())
         damping = 1e-9 * np.trace(quadratic.curvature) / len(quadratic.gradient) * np.eye(len(quadratic.gradient))
         gain = float(quadratic.gradient @ np.linalg.solve(quadratic.curvature + damping, quadratic.gradient))

@@ -258,11 +258,11 @@ def _prepared_round(
     )
 
 
-def _descended_round(found: Match, min_reduction: float) -> Match:
+def _descended_round(match: Match, min_reduction: float) -> Match:
     """What a descent from a prepared design finds."""
-    problem, interrupted, converged = found.problem, False, False
-    first = problem.vector(found.design)
-    z, damping = first, found.damping
+    problem, interrupted, converged = match.problem, False, False
+    first = problem.vector(match.design)
+    z, damping = first, match.damping
     try:
         descent = constrained_minimum(
             problem, first, steps=EVALUATIONS_PER_ROUND, damping=damping, min_reduction=min_reduction
@@ -270,13 +270,13 @@ def _descended_round(found: Match, min_reduction: float) -> Match:
         z, damping, converged = descent.z, descent.damping, descent.converged
     except KeyboardInterrupt:
         z, interrupted = problem.best, True
-    state = problem.state(z) or found.state
+    state = problem.state(z) or match.state
     return replace(
-        found,
+        match,
         design=state.shape.design,
         state=state,
         damping=damping,
-        evaluations=found.evaluations + problem.evaluations,
+        evaluations=match.evaluations + problem.evaluations,
         converged=converged,
         interrupted=interrupted,
     )

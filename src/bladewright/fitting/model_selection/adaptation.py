@@ -116,119 +116,119 @@ def selected_match(
 
 
 def _match_for_target(
-    task: Task, several: Task, found: Match, target: MatchTarget, base: Structure | None, *, guessed: bool
+    task: Task, several: Task, match: Match, target: MatchTarget, base: Structure | None, *, guessed: bool
 ) -> tuple[Match, str]:
     """A match with as many control points as the target asks for, by forecasts or growth, or why not."""
-    solid = guessed and task.points.shape[1] == 3 and stands_on_channel(found.design) and not found.interrupted
+    solid = guessed and task.points.shape[1] == 3 and stands_on_channel(match.design) and not match.interrupted
     if solid and target.parameters is not None:
-        chosen = best_match_of_size(task, found, target.parameters)
+        chosen = best_match_of_size(task, match, target.parameters)
         if chosen is not None:
             return chosen, ""
     if solid and target.tolerance is not None:
-        if found.rms * found.model.chord > target.tolerance:
-            found = best_match_of_size(task, found, len(found.problem.paths)) or found
-        if found.rms * found.model.chord < COMPACT_RMS * target.tolerance:
-            found = smallest_match(task, found, COMPACT_RMS * target.tolerance) or found
-        if not found.interrupted:
+        if match.rms * match.model.chord > target.tolerance:
+            match = best_match_of_size(task, match, len(match.problem.paths)) or match
+        if match.rms * match.model.chord < COMPACT_RMS * target.tolerance:
+            match = smallest_match(task, match, COMPACT_RMS * target.tolerance) or match
+        if not match.interrupted:
             task = several
-            measured = searched(task, found.design, rounds=0)
-            found = replace(measured, evaluations=measured.evaluations + found.evaluations)
+            measured = searched(task, match.design, rounds=0)
+            match = replace(measured, evaluations=measured.evaluations + match.evaluations)
     elif solid:
         # forecasts are linear: they are truer the nearer a match is
-        found = searched(task, found.design, noise=found.rms, min_reduction=ROUGH_REDUCTION)
-        found = best_match_of_size(task, found, len(found.problem.paths)) or found
-    elif base is not None and not found.interrupted and _has_spare_parameters(found, target):
-        found = reduced_to(task, found, base)
-    return _grown_to_target(task, found, target)
+        match = searched(task, match.design, noise=match.rms, min_reduction=ROUGH_REDUCTION)
+        match = best_match_of_size(task, match, len(match.problem.paths)) or match
+    elif base is not None and not match.interrupted and _has_spare_parameters(match, target):
+        match = reduced_to(task, match, base)
+    return _grown_to_target(task, match, target)
 
 
-def _grown_to_target(task: Task, found: Match, target: MatchTarget) -> tuple[Match, str]:
+def _grown_to_target(task: Task, match: Match, target: MatchTarget) -> tuple[Match, str]:
     """A match with as many control points as the target asks for, or why there are no more."""
     reason = ""
     for _ in range(MOST_GROWTHS):
-        if found.interrupted:
-            return found, ""
-        short, reason = needs_more(found, target, task)
-        if not short or _nearly_within_tolerance(found, target):
+        if match.interrupted:
+            return match, ""
+        short, reason = needs_more(match, target, task)
+        if not short or _nearly_within_tolerance(match, target):
             break
-        before = found.rms
-        found, grew = grown_match(task, found, target)
+        before = match.rms
+        match, grew = grown_match(task, match, target)
         if not grew:
-            found, grew = with_grown_thickness(task, found, target)
-        if not grew or gained_little(task, found, target, before):
+            match, grew = with_grown_thickness(task, match, target)
+        if not grew or gained_little(task, match, target, before):
             break
     if target.parameters is not None and task.points.shape[1] == 2:
-        found = _thickness_shared_out(task, found)
-    return found, reason
+        match = _thickness_shared_out(task, match)
+    return match, reason
 
 
-def _grown_further(several: Task, many: Task, found: Match, target: MatchTarget) -> Match:
+def _grown_further(several: Task, many: Task, match: Match, target: MatchTarget) -> Match:
     """A match that grows on after it settled at a systematic misfit: the nearer it is, the truer are forecasts."""
-    while has_systematic_misfit(found):
-        more, grew = grown_match(several, found, target)
+    while has_systematic_misfit(match):
+        more, grew = grown_match(several, match, target)
         if not grew:
             break
         fresh = more if more.interrupted else searched(many, more.design)
-        if fresh.misfit > GROWTH_GAIN * found.misfit:
-            return replace(found, interrupted=fresh.interrupted)
-        found = fresh
-    return found
+        if fresh.misfit > GROWTH_GAIN * match.misfit:
+            return replace(match, interrupted=fresh.interrupted)
+        match = fresh
+    return match
 
 
-def _nearly_within_tolerance(found: Match, target: MatchTarget) -> bool:
+def _nearly_within_tolerance(match: Match, target: MatchTarget) -> bool:
     """Whether all but a few points of a blade keep a tolerance: reweighting these may be enough."""
-    footpoints = found.state.footpoints
+    footpoints = match.state.footpoints
     if (
         target.tolerance is None
         or footpoints.points.shape[1] == 2
-        or found.rms * found.model.chord > NEARLY_WITHIN[0] * target.tolerance
+        or match.rms * match.model.chord > NEARLY_WITHIN[0] * target.tolerance
     ):
         return False
-    return bool(np.mean(footpoints.distances[found.rows] > target.tolerance) < NEARLY_WITHIN[1])
+    return bool(np.mean(footpoints.distances[match.rows] > target.tolerance) < NEARLY_WITHIN[1])
 
 
-def _thickness_shared_out(task: Task, found: Match) -> Match:
+def _thickness_shared_out(task: Task, match: Match) -> Match:
     """The best of the ways to share a section's thickness control points between its sides."""
     for way in (1, -1):
-        while not found.interrupted:
-            structure = structure_of(found.design)
+        while not match.interrupted:
+            structure = structure_of(match.design)
             upper, lower = structure.chordwise[0] + way, structure.chordwise[1] - way
             if min(upper, lower) < FEWEST_THICKNESSES:
                 break
-            design = with_feasible_edges(reshaped(found.design, replace(structure, chordwise=(upper, lower))))
-            other = searched(task, design, rounds=QUICK_ROUNDS + 1, noise=found.rms, min_reduction=ROUGH_REDUCTION)
-            evaluations = found.evaluations + other.evaluations
-            if not (other.rms < found.rms or other.interrupted):
-                found = replace(found, evaluations=evaluations)
+            design = with_feasible_edges(reshaped(match.design, replace(structure, chordwise=(upper, lower))))
+            other = searched(task, design, rounds=QUICK_ROUNDS + 1, noise=match.rms, min_reduction=ROUGH_REDUCTION)
+            evaluations = match.evaluations + other.evaluations
+            if not (other.rms < match.rms or other.interrupted):
+                match = replace(match, evaluations=evaluations)
                 break
-            found = replace(other, evaluations=evaluations)
-    return found
+            match = replace(other, evaluations=evaluations)
+    return match
 
 
-def _restarted(task: Task, found: Match) -> Match:
+def _restarted(task: Task, match: Match) -> Match:
     """The better of a match and of one searched again from it with little trust: an edge may be in a wrong place."""
-    if found.interrupted or found.rms < RESTART_NOISE * FINEST_RESTART:
-        return found
-    other = searched(task, found.design, noise=RESTART_NOISE)
+    if match.interrupted or match.rms < RESTART_NOISE * FINEST_RESTART:
+        return match
+    other = searched(task, match.design, noise=RESTART_NOISE)
     # over all points: a match that takes more of them for outliers is no nearer (design/matches.md)
-    nearer = other if other.mean_distance < found.mean_distance and other.rms < found.rms else found
-    evaluations = found.evaluations + other.evaluations
+    nearer = other if other.mean_distance < match.mean_distance and other.rms < match.rms else match
+    evaluations = match.evaluations + other.evaluations
     return replace(nearer, evaluations=evaluations, interrupted=other.interrupted)
 
 
-def _refused(found: Match) -> bool:
+def _refused(match: Match) -> bool:
     """Whether a design that searches allow is refused when it is built: its edge radii need a larger margin."""
     try:
-        found.design.build()
+        match.design.build()
     except DesignError:
         return True
     return False
 
 
-def _ends_in_rows(found: Match) -> bool:
+def _ends_in_rows(match: Match) -> bool:
     """Whether rows of points show where hub and shroud are."""
-    walls = found.ends.walls
-    return len(walls) == 2 and all(wall.spread < ROW_SPREAD * found.model.chord for wall in walls.values())
+    walls = match.ends.walls
+    return len(walls) == 2 and all(wall.spread < ROW_SPREAD * match.model.chord for wall in walls.values())
 
 
 def _with_corners_held(task: Task) -> Task:
@@ -236,8 +236,8 @@ def _with_corners_held(task: Task) -> Task:
     return replace(task, free=lambda design: tuple(p for p in task.free(design) if p not in corner_radii(design)))
 
 
-def _has_spare_parameters(found: Match, target: MatchTarget) -> bool:
+def _has_spare_parameters(match: Match, target: MatchTarget) -> bool:
     """Whether a first design has more parameters than its cloud may need, or than are asked for."""
-    if target.tolerance is not None and found.rms * found.model.chord > target.tolerance:
+    if target.tolerance is not None and match.rms * match.model.chord > target.tolerance:
         return False
-    return target.parameters is None or len(found.problem.paths) > target.parameters
+    return target.parameters is None or len(match.problem.paths) > target.parameters

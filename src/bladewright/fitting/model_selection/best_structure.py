@@ -31,51 +31,51 @@ STAGES = 4
 """searches, each with the structure that the forecast about the last one prefers."""
 
 
-def best_match_of_size(task: Task, found: Match, most: int) -> Match | None:
+def best_match_of_size(task: Task, match: Match, most: int) -> Match | None:
     """The match with at most so many free parameters that forecasts lead to; None without forecasts."""
-    best = found if len(found.problem.paths) <= most else None
+    best = match if len(match.problem.paths) <= most else None
     for stage in range(STAGES):
-        now = structure_of(found.design)
-        forecast = forecast_of(found, widest_reach(now))
+        now = structure_of(match.design)
+        forecast = forecast_of(match, widest_reach(now))
         if forecast is None:
             return best if stage else None
-        structure = best_structure(forecast, now, most - _parameters_outside(found, forecast))
+        structure = best_structure(forecast, now, most - _parameters_outside(match, forecast))
         if structure == now and best is not None:
             break
         try:
             start = forecast.designed(structure, forecast.prediction(structure))
-            fresh = searched(task, start, rounds=1, noise=found.rms, min_reduction=ROUGH_REDUCTION)
+            fresh = searched(task, start, rounds=1, noise=match.rms, min_reduction=ROUGH_REDUCTION)
         except FitError:
             break
-        fresh = replace(fresh, evaluations=fresh.evaluations + found.evaluations)
+        fresh = replace(fresh, evaluations=fresh.evaluations + match.evaluations)
         if best is not None and not fresh.misfit < best.misfit:
             break
-        best = found = fresh
-        if found.interrupted:
+        best = match = fresh
+        if match.interrupted:
             break
     return best
 
 
-def smallest_match(task: Task, found: Match, rms: float) -> Match | None:
+def smallest_match(task: Task, match: Match, rms: float) -> Match | None:
     """The match of fewest parameters predicted to leave a root mean square [m]; None without forecasts."""
-    structure = structure_of(found.design)
-    forecast = forecast_of(found, structure)
+    structure = structure_of(match.design)
+    forecast = forecast_of(match, structure)
     if forecast is None:
         return None
     count = forecast.prediction(structure).parameters
     while count > FEWEST_PARAMETERS:
         structure = _reduced(forecast, structure, int(REDUCTION * count), None)
         predicted = forecast.prediction(structure)
-        left = float(np.sqrt(np.mean(predicted.rows[: forecast.points] ** 2))) * found.model.chord
+        left = float(np.sqrt(np.mean(predicted.rows[: forecast.points] ** 2))) * match.model.chord
         if left > rms or predicted.parameters == count:
             break
         count = predicted.parameters
-    return best_match_of_size(task, found, count + _parameters_outside(found, forecast))
+    return best_match_of_size(task, match, count + _parameters_outside(match, forecast))
 
 
-def _parameters_outside(found: Match, forecast: Forecast) -> int:
+def _parameters_outside(match: Match, forecast: Forecast) -> int:
     """Free parameters that do not depend on the structure."""
-    return len(found.problem.paths) - forecast.prediction(structure_of(found.design)).parameters
+    return len(match.problem.paths) - forecast.prediction(structure_of(match.design)).parameters
 
 
 def best_structure(forecast: Forecast, structure: Structure, most: int, roots: Reals | None = None) -> Structure:

@@ -72,7 +72,7 @@ class Forecast:
     fixed_laws: frozenset[str]
     """laws that are held"""
     noise: float
-    found: Match
+    match: Match
     points: int
     """number of rows of points, which come first"""
     _known: dict[tuple[str, Counts], tuple[Reals, Reals]] = field(default_factory=dict)
@@ -99,11 +99,11 @@ class Forecast:
         state = self._state(design)
         if state is None:
             return np.inf
-        rows = self.found.problem.cloud_residuals.residuals(state)
+        rows = self.match.problem.cloud_residuals.residuals(state)
         return float(rows @ rows)
 
     def _state(self, design: Any) -> PlacedCloud | None:
-        cloud_residuals, footpoints = self.found.problem.cloud_residuals, self.found.state.footpoints
+        cloud_residuals, footpoints = self.match.problem.cloud_residuals, self.match.state.footpoints
         try:
             shape = cloud_residuals.model.shape(design)
         except DesignError:
@@ -120,7 +120,7 @@ class Forecast:
         nearest = reshaped(self.design, structure)
         values = nearest.parameters()
         paths = [path for name in self.names() for path in self._paths(name, structure)]
-        scales = scales_of(nearest, paths, self.found.model.chord)
+        scales = scales_of(nearest, paths, self.match.model.chord)
         now = np.array([float(values[path]) for path in paths])
         sizes = np.array([self.sizes[path.partition("[")[0]] for path in paths])
         fresh = np.clip(now + share * sizes * prediction.step, scales.low, scales.high)
@@ -254,14 +254,14 @@ class Forecast:
         return np.stack([np.sum(each, axis=1) for each in moves], axis=1)
 
 
-def forecast_of(found: Match, widest: Structure) -> Forecast | None:
+def forecast_of(match: Match, widest: Structure) -> Forecast | None:
     """The forecast about a match; None for other kinds, or where the widest structure leaves it no shape."""
-    problem, footpoints = found.problem, found.state.footpoints
-    if not stands_on_channel(found.design):
+    problem, footpoints = match.problem, match.state.footpoints
+    if not stands_on_channel(match.design):
         return None
     try:
-        design: Any = reshaped(found.design, widest)
-        shape = found.model.shape(design)
+        design: Any = reshaped(match.design, widest)
+        shape = match.model.shape(design)
     except DesignError:
         return None
     if not shape.finite:
@@ -274,11 +274,11 @@ def forecast_of(found: Match, widest: Structure) -> Forecast | None:
     free = set(problem.paths)
     ends = [(edge, end) for edge in EDGES for end in (0, len(getattr(design.channel, edge)) - 1)]
     corners = {f"channel.{edge}[{end}].{label}" for edge, end in ends for label in AXES}
-    was = {_same_corner(path, found.design, design) for path in free}
+    was = {_same_corner(path, match.design, design) for path in free}
     held = frozenset(corners - was)
-    fixed_laws = frozenset(name for name in STRUCTURE_LAWS if _is_held(found.design, name, free))
+    fixed_laws = frozenset(name for name in STRUCTURE_LAWS if _is_held(match.design, name, free))
     paths = [path for path in design.parameters() if _law_of(path) and _law_of(path) not in fixed_laws]
-    scales = scales_of(design, paths, found.model.chord)
+    scales = scales_of(design, paths, match.model.chord)
     sizes = {path.partition("[")[0]: float(size) for path, size in zip(paths, scales.size, strict=True)}
     return Forecast(
         design=design,
@@ -289,7 +289,7 @@ def forecast_of(found: Match, widest: Structure) -> Forecast | None:
         held=held,
         fixed_laws=fixed_laws,
         noise=problem.noise,
-        found=found,
+        match=match,
         points=len(cloud_residuals.points),
     )
 

@@ -60,54 +60,54 @@ def matched_structure(few: Task, many: Task, first: Design, base: Structure | No
     return _weakly_regularised(many, found)
 
 
-def _exact_or_nearest(task: Task, found: Match) -> Match:
+def _exact_or_nearest(task: Task, match: Match) -> Match:
     """The match with all points, or the exact design, sought in turns with and without apparent outliers.
 
     Where one search stands still the other may go on: a wrong footpoint stops the first, a short edge the second.
     """
     most = QUIET_SHARE
     for _ in range(EXACT_TURNS):
-        exact = _exact_match(task, found, most)
+        exact = _exact_match(task, match, most)
         if exact is not None and (exact.rms < KNOWN_MISFIT or exact.interrupted):
             return exact
         before = np.inf if exact is None else exact.rms
-        start = exact or found
-        found = searched(task, start.design)
-        found = replace(found, evaluations=start.evaluations + found.evaluations)
+        start = exact or match
+        match = searched(task, start.design)
+        match = replace(match, evaluations=start.evaluations + match.evaluations)
         if (
-            found.interrupted
-            or found.rms < KNOWN_MISFIT
-            or found.rms > EXACT_GAIN * before
+            match.interrupted
+            or match.rms < KNOWN_MISFIT
+            or match.rms > EXACT_GAIN * before
             or (exact is None and most > QUIET_SHARE)
         ):
             break
         most = CLEAR_SHARE
-    return found
+    return match
 
 
-def _exact_match(task: Task, found: Match, most: float) -> Match | None:
+def _exact_match(task: Task, match: Match, most: float) -> Match | None:
     """The exact design near one, or that one where none is nearer; None where the cloud is not exact.
 
     Such a cloud has no outliers, but edges and ends that are not yet found look like some. `most` is the largest share
     of the misfit that is noise.
     """
-    every = searched(task, found.design, rounds=0)
+    every = searched(task, match.design, rounds=0)
     if not has_systematic_misfit(every, most):
         return None
     exact_task = replace(task, allow_outliers=False)
     exact = searched(
-        exact_task.part(_informative_points(every)), found.design, noise=GUESS_NOISE, rounds=FURTHER_ROUNDS
+        exact_task.part(_informative_points(every)), match.design, noise=GUESS_NOISE, rounds=FURTHER_ROUNDS
     )
-    evaluations = found.evaluations + exact.evaluations
+    evaluations = match.evaluations + exact.evaluations
     if exact.rms < NEARLY_EXACT and not exact.interrupted:
         exact = searched(exact_task, exact.design)
         evaluations += exact.evaluations
-    return replace(exact if exact.interrupted or exact.rms < every.rms else found, evaluations=evaluations)
+    return replace(exact if exact.interrupted or exact.rms < every.rms else match, evaluations=evaluations)
 
 
-def _informative_points(found: Match) -> NDArray[np.intp]:
+def _informative_points(match: Match) -> NDArray[np.intp]:
     """Points that show edges and ends, which few points of a cloud show, and some of all."""
-    footpoints = found.state.footpoints
+    footpoints = match.state.footpoints
     beside = (
         (footpoints.u < EDGE_BANDS[0])
         | (footpoints.u > EDGE_BANDS[1])
@@ -118,29 +118,29 @@ def _informative_points(found: Match) -> NDArray[np.intp]:
     return np.union1d(rows[drawn(len(rows), EDGE_POINTS)], drawn(len(footpoints.u), OTHER_POINTS))
 
 
-def has_systematic_misfit(found: Match, most: float = np.inf) -> bool:
+def has_systematic_misfit(match: Match, most: float = np.inf) -> bool:
     """Whether a search ended at a misfit that is not noise, of which noise is at most the share `most`."""
-    quiet = found.noise_estimate.noise < most * found.rms * found.model.chord
-    return quiet and found.noise_estimate.correlation > NOISE_CORRELATION and not found.interrupted
+    quiet = match.noise_estimate.noise < most * match.rms * match.model.chord
+    return quiet and match.noise_estimate.correlation > NOISE_CORRELATION and not match.interrupted
 
 
-def reduced_to(task: Task, found: Match, base: Structure) -> Match:
+def reduced_to(task: Task, match: Match, base: Structure) -> Match:
     """A match with the structure to grow from, or the one before where its laws leave no shape so."""
     try:
         return searched(
             task,
-            reshaped(found.design, base),
+            reshaped(match.design, base),
             noise=GUESS_NOISE,
             rounds=2 * QUICK_ROUNDS,
             min_reduction=ROUGH_REDUCTION,
         )
     except FitError:
-        return found
+        return match
 
 
-def _weakly_regularised(task: Task, found: Match) -> Match:
+def _weakly_regularised(task: Task, match: Match) -> Match:
     """A match whose misfit is noise, regularised so weakly that what points determine is not shifted."""
-    if found.interrupted or found.noise_estimate.correlation > NOISE_CORRELATION:
-        return found
-    weak = searched(replace(task, regularisation_factor=WEAK_REGULARISATION), found.design, rounds=2)
-    return replace(weak, evaluations=found.evaluations + weak.evaluations)
+    if match.interrupted or match.noise_estimate.correlation > NOISE_CORRELATION:
+        return match
+    weak = searched(replace(task, regularisation_factor=WEAK_REGULARISATION), match.design, rounds=2)
+    return replace(weak, evaluations=match.evaluations + weak.evaluations)

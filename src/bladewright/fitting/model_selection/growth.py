@@ -43,15 +43,15 @@ EDGE_LAWS = {
 """laws along the span that place an edge and round it, besides its curve in the channel"""
 
 
-def edge_steps(found: Match, tolerance: float) -> list[StructureStep]:
+def edge_steps(match: Match, tolerance: float) -> list[StructureStep]:
     """The steps, by half as many control points again, of the edges that stay beyond a tolerance [m].
 
     The rows of a cloud may differ from each other at their edges: no single law is predicted to gain much there, but
     all laws of an edge together do.
     """
-    footpoints, rows = found.state.footpoints, found.rows
+    footpoints, rows = match.state.footpoints, match.rows
     beyond = rows & (footpoints.distances > tolerance)
-    structure = structure_of(found.design)
+    structure = structure_of(match.design)
     if not structure.channel or not np.any(beyond) or np.mean(beyond[rows]) > FEW_BEYOND:
         return []
     steps = []
@@ -86,41 +86,41 @@ LITTLE_GAIN = {2: 0.75, 3: 0.9}
 """ratio of distances, by dimension, above which a match that is near enough grows no more."""
 
 
-def with_grown_thickness(task: Task, found: Match, target: MatchTarget) -> tuple[Match, bool]:
+def with_grown_thickness(task: Task, match: Match, target: MatchTarget) -> tuple[Match, bool]:
     """A section with more control points of both thicknesses, and whether it is nearer.
 
     Where thicknesses lie on their bounds, as at a sharp edge, the gain of growth cannot be predicted linearly: the step
     predicted for the fewer ones leads out of the bounds.
     """
-    structure = structure_of(found.design) if task.points.shape[1] == 2 else None
-    if structure is None or not target.open or found.rms < FAR_SECTION:
-        return found, False
-    evaluations = found.evaluations
+    structure = structure_of(match.design) if task.points.shape[1] == 2 else None
+    if structure is None or not target.open or match.rms < FAR_SECTION:
+        return match, False
+    evaluations = match.evaluations
     for _ in range(THICKNESS_GROWTHS):
         steps = [step for step in steps_up(structure) if set(step.fields) <= set(THICKNESSES)]
-        if not steps or not any(path.startswith(THICKNESSES) for path in found.problem.paths):
+        if not steps or not any(path.startswith(THICKNESSES) for path in match.problem.paths):
             break
         structure = union_of(structure, steps)
         try:
             fresh = searched(
                 task,
-                with_feasible_edges(reshaped(found.design, structure)),
+                with_feasible_edges(reshaped(match.design, structure)),
                 rounds=2,
-                noise=found.rms,
+                noise=match.rms,
                 min_reduction=ROUGH_REDUCTION,
             )
         except FitError:
             break
         evaluations += fresh.evaluations
-        if fresh.interrupted or fresh.rms < NEARER_RATIO * found.rms:
+        if fresh.interrupted or fresh.rms < NEARER_RATIO * match.rms:
             return replace(fresh, evaluations=evaluations), True
-    return replace(found, evaluations=evaluations), False
+    return replace(match, evaluations=evaluations), False
 
 
-def gained_little(task: Task, found: Match, target: MatchTarget, before: float) -> bool:
+def gained_little(task: Task, match: Match, target: MatchTarget, before: float) -> bool:
     """Whether a match is near enough, and growth from a distance `before`, of the chord, gained little."""
     dimension = task.points.shape[1]
-    return target.open and LITTLE_GAIN[dimension] * before < found.rms < NEAR_ENOUGH[dimension]
+    return target.open and LITTLE_GAIN[dimension] * before < match.rms < NEAR_ENOUGH[dimension]
 
 
 WORTHWHILE_GAIN = 0.02
@@ -137,77 +137,77 @@ FAR_OF_TOLERANCE = 0.4
 """root mean square distance, of the tolerance, that is far from it."""
 
 
-def grown_match(task: Task, found: Match, target: MatchTarget) -> tuple[Match, bool]:
+def grown_match(task: Task, match: Match, target: MatchTarget) -> tuple[Match, bool]:
     """The match with the control points predicted to gain most, and whether there were any."""
-    emphasis = tolerance_weights(found, target)
+    emphasis = tolerance_weights(match, target)
     sharpened = task
     if emphasis is not None:
         weights = task.weights * emphasis
         sharpened = replace(task, weights=weights * (np.sum(task.weights) / np.sum(weights)))
-    for design in _candidates(task, found, target, emphasis):
+    for design in _candidates(task, match, target, emphasis):
         try:
             start = design if task.points.shape[1] == 3 else with_feasible_edges(design)
-            fresh = searched(sharpened, start, rounds=1, noise=found.rms, min_reduction=ROUGH_REDUCTION)
+            fresh = searched(sharpened, start, rounds=1, noise=match.rms, min_reduction=ROUGH_REDUCTION)
         except FitError:
             continue
-        return replace(fresh, evaluations=fresh.evaluations + found.evaluations), True
-    return found, False
+        return replace(fresh, evaluations=fresh.evaluations + match.evaluations), True
+    return match, False
 
 
-def _candidates(task: Task, found: Match, target: MatchTarget, emphasis: Reals | None) -> Iterator[Design]:
+def _candidates(task: Task, match: Match, target: MatchTarget, emphasis: Reals | None) -> Iterator[Design]:
     """Designs with more control points; the next one is for where the one before has no shape."""
     forecast = None
-    if task.points.shape[1] == 3 and target.parameters is None and stands_on_channel(found.design):
-        forecast = forecast_of(found, widest_reach(structure_of(found.design)))
+    if task.points.shape[1] == 3 and target.parameters is None and stands_on_channel(match.design):
+        forecast = forecast_of(match, widest_reach(structure_of(match.design)))
     if forecast is not None:
         task.progress("structure")
-        design = _predicted_design(forecast, found, target, emphasis)
+        design = _predicted_design(forecast, match, target, emphasis)
         if design is not None:
             yield design
         elif target.open:
             return
-    stepped = _stepwise_design(found, target, emphasis)
+    stepped = _stepwise_design(match, target, emphasis)
     if stepped is not None:
         yield stepped
 
 
-def _least_added(found: Match, target: MatchTarget) -> int:
+def _least_added(match: Match, target: MatchTarget) -> int:
     """Parameters that are added at least."""
-    count = len(found.problem.paths)
+    count = len(match.problem.paths)
     if target.parameters is not None:
         return (target.parameters - count) // SHARE_ADDED
-    far = target.tolerance is not None and found.rms * found.model.chord > FAR_OF_TOLERANCE * target.tolerance
+    far = target.tolerance is not None and match.rms * match.model.chord > FAR_OF_TOLERANCE * target.tolerance
     return count // (SHARE_ADDED if far else SHARE_ADDED_NEAR) if count >= MANY_PARAMETERS else 0
 
 
-def _predicted_design(forecast: Forecast, found: Match, target: MatchTarget, emphasis: Reals | None) -> Design | None:
+def _predicted_design(forecast: Forecast, match: Match, target: MatchTarget, emphasis: Reals | None) -> Design | None:
     """The design with more control points that a forecast prefers; None where none are worthwhile."""
-    now = structure_of(found.design)
+    now = structure_of(match.design)
     roots = None if emphasis is None else row_factors(emphasis, len(forecast.rows))
     count = forecast.prediction(now).parameters
     structure = best_structure(
-        forecast, now, count + max(_least_added(found, target), count // SHARE_ADDED_NEAR), roots
+        forecast, now, count + max(_least_added(match, target), count // SHARE_ADDED_NEAR), roots
     )
     if target.tolerance is not None:
-        steps = [StructureStep(fields=(), structure=structure, parameters=0), *edge_steps(found, target.tolerance)]
+        steps = [StructureStep(fields=(), structure=structure, parameters=0), *edge_steps(match, target.tolerance)]
         structure = union_of(structure, steps) if len(steps) > 1 else structure
     predicted = forecast.prediction(structure, roots)
-    worth = WORTHWHILE_GAIN if found.rms > NEAR_MISFIT else WORTHWHILE_GAIN_NEAR
+    worth = WORTHWHILE_GAIN if match.rms > NEAR_MISFIT else WORTHWHILE_GAIN_NEAR
     if structure == now or (target.open and predicted.cost > (1.0 - worth) * forecast.prediction(now).cost):
         return None
     return forecast.designed(structure, predicted)
 
 
-def _stepwise_design(found: Match, target: MatchTarget, emphasis: Reals | None) -> Design | None:
+def _stepwise_design(match: Match, target: MatchTarget, emphasis: Reals | None) -> Design | None:
     """The design with the control points predicted to gain most; None where there are none."""
-    ranked = gains(found, emphasis)
-    left = None if target.parameters is None else target.parameters - len(found.problem.paths)
-    steps = steps_taken_together(ranked, left, _least_added(found, target))
+    ranked = gains(match, emphasis)
+    left = None if target.parameters is None else target.parameters - len(match.problem.paths)
+    steps = steps_taken_together(ranked, left, _least_added(match, target))
     if target.tolerance is not None:
-        steps += edge_steps(found, target.tolerance)
+        steps += edge_steps(match, target.tolerance)
     if not steps:
         return None
-    total = float(np.sum(found.problem.cloud_residuals.residuals(found.state) ** 2))
+    total = float(np.sum(match.problem.cloud_residuals.residuals(match.state) ** 2))
     if target.parameters is None and emphasis is None and sum(gain for gain, _ in ranked[:3]) < WORTHWHILE_GAIN * total:
         return None
-    return reshaped(found.design, union_of(structure_of(found.design), steps))
+    return reshaped(match.design, union_of(structure_of(match.design), steps))

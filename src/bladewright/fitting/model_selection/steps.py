@@ -134,11 +134,11 @@ def intersection_of(steps: Sequence[StructureStep]) -> Structure:
     return replace(structures[0], chordwise=(chordwise[0], chordwise[1]), span=span, channel=channel)
 
 
-def tolerance_weights(found: Match, target: MatchTarget) -> Reals | None:
+def tolerance_weights(match: Match, target: MatchTarget) -> Reals | None:
     """Further weights (n,) by which distant points count more; none where no tolerance is asked for."""
     if target.tolerance is None:
         return None
-    return np.clip((found.state.footpoints.distances / target.tolerance) ** 2, *WEIGHT_RANGE)
+    return np.clip((match.state.footpoints.distances / target.tolerance) ** 2, *WEIGHT_RANGE)
 
 
 def row_factors(emphasis: Reals | None, count: int) -> Reals:
@@ -149,47 +149,47 @@ def row_factors(emphasis: Reals | None, count: int) -> Reals:
     return roots
 
 
-def gains(found: Match, emphasis: Reals | None = None) -> list[tuple[float, StructureStep]]:
+def gains(match: Match, emphasis: Reals | None = None) -> list[tuple[float, StructureStep]]:
     """What each step is predicted to take off the sum of squares, best for each parameter first.
 
     Predictions are linear. `emphasis` (n,) are further weights of the points. Laws that are held do not grow.
     """
-    problem = found.problem
-    rows = problem.cloud_residuals.residuals(found.state)
-    slopes = problem.cloud_residuals.slopes(found.state, problem.paths) * problem.scales.size
+    problem = match.problem
+    rows = problem.cloud_residuals.residuals(match.state)
+    slopes = problem.cloud_residuals.slopes(match.state, problem.paths) * problem.scales.size
     roots = row_factors(emphasis, len(rows))
     before = predicted_rest(slopes, rows, roots, problem.noise)
     result = [
         (before - predicted_rest(wider, rows, roots, problem.noise), step)
-        for step, _, wider in _predicted_systems(found, slopes, steps_up(structure_of(found.design)))
+        for step, _, wider in _predicted_systems(match, slopes, steps_up(structure_of(match.design)))
     ]
     return sorted(result, key=lambda pair: -pair[0] / pair[1].parameters)
 
 
-def losses(found: Match) -> list[tuple[float, StructureStep]]:
+def losses(match: Match) -> list[tuple[float, StructureStep]]:
     """What each step down is predicted to leave of the sum of squares, least for each parameter first."""
-    problem = found.problem
-    slopes = problem.cloud_residuals.slopes(found.state, problem.paths) * problem.scales.size
+    problem = match.problem
+    slopes = problem.cloud_residuals.slopes(match.state, problem.paths) * problem.scales.size
     roots = np.ones(len(slopes))
     result = [
         (predicted_rest(narrower, rows, roots, problem.noise), step)
-        for step, rows, narrower in _predicted_systems(found, slopes, steps_down(structure_of(found.design)))
+        for step, rows, narrower in _predicted_systems(match, slopes, steps_down(structure_of(match.design)))
     ]
     return sorted(result, key=lambda pair: pair[0] / pair[1].parameters)
 
 
 def _predicted_systems(
-    found: Match, slopes: Reals, steps: Sequence[StructureStep]
+    match: Match, slopes: Reals, steps: Sequence[StructureStep]
 ) -> Iterator[tuple[StructureStep, Reals, Reals]]:
     """The steps of free laws, with the residuals after each and their derivatives (m, k)."""
-    paths = found.problem.paths
+    paths = match.problem.paths
     for step in steps:
-        own = [path for path in found.design.parameters() if path.startswith(step.fields)]
+        own = [path for path in match.design.parameters() if path.startswith(step.fields)]
         if not set(own) <= set(paths):
             continue
         kept = [i for i, path in enumerate(paths) if path not in own]
         try:
-            rows, columns = _residuals_after(found, step)
+            rows, columns = _residuals_after(match, step)
         except DesignError:
             continue
         yield step, rows, np.concatenate([slopes[:, kept], columns], axis=1)
@@ -227,11 +227,11 @@ def steps_taken_together(
     return taken
 
 
-def _residuals_after(found: Match, step: StructureStep) -> tuple[Reals, Reals]:
+def _residuals_after(match: Match, step: StructureStep) -> tuple[Reals, Reals]:
     """Residuals after a step at the present footpoints, and their derivatives by its law's parameters."""
-    other = reshaped(found.design, step.structure)
+    other = reshaped(match.design, step.structure)
     paths = tuple(path for path in other.parameters() if path.startswith(step.fields))
-    cloud_residuals, footpoints = found.problem.cloud_residuals, found.state.footpoints
+    cloud_residuals, footpoints = match.problem.cloud_residuals, match.state.footpoints
     shape = cloud_residuals.model.shape(other)
     if not shape.finite:
         raise DesignError("a law with another number of control points left no shape: take another one")
@@ -243,4 +243,4 @@ def _residuals_after(found: Match, step: StructureStep) -> tuple[Reals, Reals]:
     if not paths:
         # a wall with no control points but its corners
         return rows, np.zeros((len(rows), 0))
-    return rows, cloud_residuals.slopes(state, paths) * scales_of(other, paths, found.model.chord).size
+    return rows, cloud_residuals.slopes(state, paths) * scales_of(other, paths, match.model.chord).size

@@ -32,17 +32,17 @@ class MatchTarget:
         return self.tolerance is None and self.parameters is None and not self.structured
 
 
-def needs_more(found: Match, target: MatchTarget, task: Task) -> tuple[bool, str]:
+def needs_more(match: Match, target: MatchTarget, task: Task) -> tuple[bool, str]:
     """Whether more control points are wanted; if not and the target is not met, why."""
-    count = len(found.problem.paths)
+    count = len(match.problem.paths)
     dimension = task.points.shape[1]
     if target.parameters is not None:
         return count < target.parameters, ""
-    limit = target.tolerance if target.tolerance is not None else ENOUGH_DEVIATION[dimension] * found.model.chord
-    if found.maximum <= limit:
+    limit = target.tolerance if target.tolerance is not None else ENOUGH_DEVIATION[dimension] * match.model.chord
+    if match.maximum <= limit:
         return False, ""
-    noise = found.noise_estimate.noise
-    if found.noise_estimate.correlation < NOISE_CORRELATION:
+    noise = match.noise_estimate.noise
+    if match.noise_estimate.correlation < NOISE_CORRELATION:
         return (
             False,
             f"what is left is the cloud's own noise, {1e3 * noise:.2g} mm: more control points would follow it",

@@ -51,37 +51,37 @@ class _SmallerStructure:
     """(n,) of the points, relative to those before"""
 
 
-def reduced_blade(task: Task, found: Match, tolerance: float) -> Match | None:
+def reduced_blade(task: Task, match: Match, tolerance: float) -> Match | None:
     """A match of fewer parameters within a tolerance; None where there are no forecasts."""
     failed, further = 0, FIRST_SHARE
     weights = np.ones(len(task.points))
-    while failed < MOST_FAILURES and not found.interrupted:
-        forecast = forecast_of(found, structure_of(found.design))
+    while failed < MOST_FAILURES and not match.interrupted:
+        forecast = forecast_of(match, structure_of(match.design))
         if forecast is None:
             return None
-        plans = _smaller_structures(forecast, found, tolerance)
+        plans = _smaller_structures(forecast, match, tolerance)
         if not plans:
             break
         number = int(np.ceil(further * len(plans)))
         start = forecast.designed(plans[number - 1].structure, plans[number - 1].prediction)
-        fresh = _match_of_prediction(task, found, start, weights * plans[number - 1].weights, tolerance)
+        fresh = _match_of_prediction(task, match, start, weights * plans[number - 1].weights, tolerance)
         if fresh is None:
             failed, further = failed + 1, 0.5 * further
             continue
-        found, further = fresh, min(1.0, 1.5 * further)
-        weights = _weights_of_match(found, task)
-    return found
+        match, further = fresh, min(1.0, 1.5 * further)
+        weights = _weights_of_match(match, task)
+    return match
 
 
-def _weights_of_match(found: Match, task: Task) -> Reals:
+def _weights_of_match(match: Match, task: Task) -> Reals:
     """The weights (n,) with which a match was found, relative to those of its task."""
-    own = found.problem.cloud_residuals.roots**2 / np.where(task.weights > 0.0, task.weights, 1.0)
+    own = match.problem.cloud_residuals.roots**2 / np.where(task.weights > 0.0, task.weights, 1.0)
     return np.where(own > 0.0, own, 1.0)
 
 
-def _match_of_prediction(task: Task, found: Match, start: Design, weights: Reals, tolerance: float) -> Match | None:
+def _match_of_prediction(task: Task, match: Match, start: Design, weights: Reals, tolerance: float) -> Match | None:
     """The match of a predicted design, where it keeps the tolerance."""
-    evaluations, most = found.evaluations, HOPELESS_DEVIATION * tolerance
+    evaluations, most = match.evaluations, HOPELESS_DEVIATION * tolerance
     for _ in range(REWEIGHTINGS):
         weights = weights * len(weights) / np.sum(weights)
         try:
@@ -89,7 +89,7 @@ def _match_of_prediction(task: Task, found: Match, start: Design, weights: Reals
                 replace(task, weights=task.weights * weights),
                 start,
                 rounds=1,
-                noise=found.rms,
+                noise=match.rms,
                 min_reduction=ROUGH_REDUCTION,
             )
         except FitError:
@@ -109,11 +109,11 @@ def _weight_factors(distances: Reals, tolerance: float) -> Reals:
     return np.clip(distances / (WEIGHTED_DEVIATION * tolerance), *WEIGHT_CHANGE)
 
 
-def _smaller_structures(forecast: Forecast, found: Match, tolerance: float) -> list[_SmallerStructure]:
+def _smaller_structures(forecast: Forecast, match: Match, tolerance: float) -> list[_SmallerStructure]:
     """Structures of fewer and fewer parameters that are predicted to keep a tolerance."""
-    count, roots = forecast.points, found.problem.cloud_residuals.roots
+    count, roots = forecast.points, match.problem.cloud_residuals.roots
     inside = roots > 0.0
-    structure, weights = structure_of(found.design), np.ones(count)
+    structure, weights = structure_of(match.design), np.ones(count)
     names = set(forecast.names())
     plans: list[_SmallerStructure] = []
     tried = forecast.prediction(structure)
@@ -130,7 +130,7 @@ def _smaller_structures(forecast: Forecast, found: Match, tolerance: float) -> l
         for attempt in range(2):
             tried = forecast.prediction(structure, row_factors(weights, len(forecast.rows)))
             heights = np.zeros(count)
-            heights[inside] = np.abs(tried.rows[:count][inside] / roots[inside]) * found.model.chord
+            heights[inside] = np.abs(tried.rows[:count][inside] / roots[inside]) * match.model.chord
             kept = float(np.max(heights)) <= TRUSTED_DEVIATION * tolerance
             if kept or attempt:
                 break
@@ -168,72 +168,72 @@ PLAIN_EXTREMA = 4
 """extrema of a side's curvature that a plain section has"""
 
 
-def match_within_tolerance(task: Task, found: Match, target: MatchTarget, tolerance: float) -> Match:
+def match_within_tolerance(task: Task, match: Match, target: MatchTarget, tolerance: float) -> Match:
     """The match that keeps a tolerance, where growth brings it there, with as few parameters as keep it."""
-    found = _within_everywhere(task, found, target, tolerance)
-    return smoothed(task, reduced(task, found, tolerance), tolerance)
+    match = _within_everywhere(task, match, target, tolerance)
+    return smoothed(task, reduced(task, match, tolerance), tolerance)
 
 
-def _within_everywhere(task: Task, found: Match, target: MatchTarget, tolerance: float) -> Match:
+def _within_everywhere(task: Task, match: Match, target: MatchTarget, tolerance: float) -> Match:
     """A match that keeps a tolerance at the points of a thorough search too, where growth brings it there."""
-    found = _within(task, found, tolerance)
+    match = _within(task, match, tolerance)
     for _ in range(LATER_GROWTHS):
-        if found.maximum <= tolerance or found.interrupted:
+        if match.maximum <= tolerance or match.interrupted:
             break
-        found, grew = grown_match(task, found, target)
+        match, grew = grown_match(task, match, target)
         if not grew:
             break
-        found = _within(task, found, tolerance)
-    return found
+        match = _within(task, match, tolerance)
+    return match
 
 
-def _within(task: Task, found: Match, tolerance: float) -> Match:
+def _within(task: Task, match: Match, tolerance: float) -> Match:
     """A match whose largest deviations are weighted more, where that brings them within the tolerance."""
-    best, weights = found, task.weights
+    best, weights = match, task.weights
     for _ in range(WEIGHTED_SEARCHES):
         if best.maximum <= tolerance or best.interrupted:
             break
-        distances = found.state.footpoints.distances
+        distances = match.state.footpoints.distances
         weights = weights * np.clip((distances / tolerance) ** 2, 0.3, 4.0)
         weights = weights * (np.sum(task.weights) / np.sum(weights))
         rounds = SEARCH_ROUNDS if task.points.shape[1] == 2 else 1
-        found = searched(
-            replace(task, weights=weights), found.design, rounds=rounds, min_reduction=_min_reduction(task)
+        match = searched(
+            replace(task, weights=weights), match.design, rounds=rounds, min_reduction=_min_reduction(task)
         )
-        best = found if found.maximum < best.maximum else best
+        best = match if match.maximum < best.maximum else best
     return best
 
 
-def reduced(task: Task, found: Match, tolerance: float) -> Match:
+def reduced(task: Task, match: Match, tolerance: float) -> Match:
     """A match within a tolerance without the control points that it does not need."""
-    if task.points.shape[1] == 3 and found.maximum <= tolerance:
-        fewer_still = reduced_blade(task, found, tolerance)
+    if task.points.shape[1] == 3 and match.maximum <= tolerance:
+        fewer_still = reduced_blade(task, match, tolerance)
         if fewer_still is not None:
             return fewer_still
     most, least_at_once = LAWS_AT_ONCE[task.points.shape[1]]
     at_once = most
-    while at_once >= least_at_once and found.maximum <= tolerance and not found.interrupted:
-        steps = [step for _, step in losses(found)[:at_once]]
-        fewer = _without(task, found, steps) if steps else None
+    while at_once >= least_at_once and match.maximum <= tolerance and not match.interrupted:
+        steps = [step for _, step in losses(match)[:at_once]]
+        fewer = _without(task, match, steps) if steps else None
         if fewer is not None and fewer.maximum <= tolerance and not fewer.interrupted:
-            found = fewer
+            match = fewer
         else:
             at_once = min(at_once, len(steps)) // 2
-    return found
+    return match
 
 
-def _without(task: Task, found: Match, steps: Sequence[StructureStep]) -> Match | None:
+def _without(task: Task, match: Match, steps: Sequence[StructureStep]) -> Match | None:
     try:
         fresh = searched(
             task,
-            reshaped(found.design, intersection_of(steps)),
+            reshaped(match.design, intersection_of(steps)),
             rounds=SEARCH_ROUNDS,
-            noise=found.rms,
+            noise=match.rms,
             min_reduction=_min_reduction(task),
         )
     except FitError:
         return None
-    return replace(fresh, evaluations=fresh.evaluations + found.evaluations)
+    return replace(fresh, evaluations=fresh.evaluations + match.evaluations)
 
 
 def _min_reduction(task: Task) -> float:
@@ -241,25 +241,25 @@ def _min_reduction(task: Task) -> float:
     return MIN_REDUCTION if task.points.shape[1] == 2 else ROUGH_REDUCTION
 
 
-def smoothed(task: Task, found: Match, tolerance: float) -> Match:
+def smoothed(task: Task, match: Match, tolerance: float) -> Match:
     """A match within a tolerance whose sides' curvature has fewer extrema, where a smoother one has."""
-    waves = _curvature_extrema(found)
+    waves = _curvature_extrema(match)
     for strength in SMOOTHING:
-        if waves is None or waves <= PLAIN_EXTREMA or found.interrupted or found.maximum > tolerance:
+        if waves is None or waves <= PLAIN_EXTREMA or match.interrupted or match.maximum > tolerance:
             break
         fresh = searched(
-            replace(task, regularisation_factor=strength * task.regularisation_factor), found.design, rounds=1
+            replace(task, regularisation_factor=strength * task.regularisation_factor), match.design, rounds=1
         )
         fewer = _curvature_extrema(fresh)
         if fresh.maximum > tolerance or fewer is None or fewer > waves:
             break
-        found, waves = replace(fresh, evaluations=fresh.evaluations + found.evaluations), fewer
-    return found
+        match, waves = replace(fresh, evaluations=fresh.evaluations + match.evaluations), fewer
+    return match
 
 
-def _curvature_extrema(found: Match) -> int | None:
+def _curvature_extrema(match: Match) -> int | None:
     """Extrema of the curvature of the side that has most; None where the design cannot be built."""
     try:
-        return max(extrema_of(found.design.build()).values())
+        return max(extrema_of(match.design.build()).values())
     except DesignError:
         return None
