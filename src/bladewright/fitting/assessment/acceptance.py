@@ -35,10 +35,11 @@ SIDES = ("upper", "lower")
 HALF_BLADE_WIDTH = 0.5
 """width of the blade where its points end, of its thickest, from which it is half a blade."""
 SHEET_THICKNESS = 3e-3
-"""thickness, of the chord, below which no blade is; two sides are so near to each other where both pass through the
-points of one."""
+"""thickness, of the chord, below which no blade is. Two sides laid through one side of Aachen's stator were 0.2 % of
+the chord apart; the thinnest example, an impeller, has 1.3 %."""
 FEWEST_POINTS_PER_PARAMETER = 1.5
-"""points for each parameter of a blade without which they do not determine a shape, where nothing is asked for."""
+"""points for each parameter of a blade that it needs where nothing is asked for: a hundred scattered points had passed
+with 88 parameters (design/fit_clouds.md)."""
 BARE_SIDE_SHARE, BETWEEN_EDGES = 0.1, 0.1
 """share of the points between the edges below which a side is not shown; `BETWEEN_EDGES` is where the edges end, in
 u."""

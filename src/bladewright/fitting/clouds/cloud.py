@@ -27,7 +27,8 @@ FEWEST_POINTS = {2: 24, 3: 100}
 FLATTEST = 1e-5
 """thickness, of its extent, below which a cloud lies on a line or a plane."""
 LARGEST, SMALLEST = 20.0, 5e-3
-"""extents of a blade [m] beyond which the cloud's unit is suspected: larger than `LARGEST`, smaller than `SMALLEST`."""
+"""extents of a blade [m] beyond which the cloud's unit is suspected: larger than `LARGEST`, smaller than `SMALLEST`; a
+blade of 4 inches read as millimetres is below 5 mm (design/fit_clouds.md)."""
 SHEET_SAMPLE = 3000
 """points by which a cloud of one side only is recognised; it bounds the time."""
 THINNEST_BLADE = 1.3e-3

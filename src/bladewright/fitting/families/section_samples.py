@@ -123,7 +123,7 @@ MEAN_LINE_POWERS = 5
 """coefficients of the polynomial that multiplies u (1 - u) in the mean line"""
 WEDGE_PLACE, WEDGE_STEP = (0.02, 0.06), 0.06
 """range of the distance behind an edge at which its wedge angle is measured, and the length over which it is
-(`WEDGE_STEP`), of the chord"""
+(`WEDGE_STEP`), of the chord. Further back, at 6 to 16 %, lies the thickest place of LS89."""
 MEAN_LINE_TURNS = 6
 """fixed-point iterations that bring the mean line to the middle of the sides"""
 

@@ -1,8 +1,10 @@
 """Least squares under inequalities: Levenberg's damped steps, each the solution of the linearised problem.
 
 A penalty alone would stop a search at the kink where an inequality begins to hold; a step that knows the linearised
-inequality slides along it. References: Lawson and Hanson 1974, chapter 23 (least distance programming by non-negative
-least squares); Nielsen 1999 (damping).
+inequality slides along it. Where the last step gained little, the next one follows the second derivative of the
+residuals along it: trials of exact sections then converge that had stalled in a curved valley (design/fit_made.md).
+References: Lawson and Hanson 1974, chapter 23 (least distance programming by non-negative least squares); Nielsen 1999
+(damping); Transtrum and Sethna 2012 (second derivative).
 """
 
 from abc import ABC, abstractmethod
@@ -35,7 +37,8 @@ EXPECTED_REST = 0.05
 """share of what a good step predicted that the next one is expected to predict at least, even where the step kept all
 of it."""
 LARGEST_BEND = 0.4
-"""largest change of a step by the second derivative, of the step. Beyond it the second-order model is not trusted."""
+"""largest change of a step by the second derivative, of the step; beyond it the second-order model is not trusted
+(Transtrum and Sethna 2012)."""
 ACTIVE_SET_CHANGES = 20
 """changes of the set of active inequalities in one step at most; a step that needs more is given up."""
 MIN_REDUCTION = 1e-6

@@ -104,7 +104,8 @@ SAMPLES = (6, 5)
 wrong hump."""
 EDGE_PATCHES, EDGE_SAMPLES = (0.05, 0.9), (4, 17)
 """u before and after which a patch is sampled more densely (`EDGE_PATCHES`), and its samples along and across
-(`EDGE_SAMPLES`): along the span samples must be as close to each other as the two sides are beside an edge."""
+(`EDGE_SAMPLES`). Along the span samples must be as close to each other as the two sides are beside an edge: with fewer,
+three of 5,000 points of a mixed-flow pump were projected onto the wrong side."""
 CURVE_SAMPLES = (24, 1)
 """samples along a piece of a curve from which descents start; on curves they are cheap."""
 AT_ONCE = 20_000

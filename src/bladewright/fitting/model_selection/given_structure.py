@@ -23,7 +23,7 @@ WEAK_REGULARISATION = 0.1
 """factor of the regularisation where a match is only improved."""
 QUIET_SHARE, CLEAR_SHARE = 0.1, 0.5
 """share of the misfit that is noise up to which a cloud may be exact, after a quick search (`QUIET_SHARE`) and after a
-thorough one (`CLEAR_SHARE`)."""
+thorough one (`CLEAR_SHARE`). In noisier clouds no exact design is searched, which saves time (design/fit_made.md)."""
 EXACT_TURNS, EXACT_GAIN = 3, 0.5
 """turns in which an exact design is sought; `EXACT_GAIN` is the ratio of the misfits of two searches from which there
 is another turn."""
@@ -35,7 +35,9 @@ EDGE_BANDS, END_BAND = (0.03, 0.9), 0.02
 NEARLY_EXACT = 1e-6
 """misfit of those points from which all points are used, of the chord."""
 EDGE_POINTS, OTHER_POINTS = 2500, 1000
-"""points with which an exact design is sought: of those that show edges and ends, and of all (`OTHER_POINTS`)."""
+"""points with which an exact design is sought: of those that show edges and ends, and of all (`OTHER_POINTS`). A
+thousand points of Rotor 67 without most of its trailing edge left that edge 4e-3 of the chord too long
+(design/fit_made.md)."""
 
 
 def matched_structure(few: Task, many: Task, first: Design, base: Structure | None, *, guessed: bool) -> Match:

@@ -74,7 +74,7 @@ def _half_more(count: int, most: int) -> int:
 
 FAR_SECTION = 5e-5
 """root mean square distance, of the chord, above which a section is tried with more control points though no gain is
-predicted."""
+predicted: at sharp edges, where thicknesses lie on their bounds, growth had stopped 7.5e-4 of the chord off."""
 THICKNESS_GROWTHS = 3
 """times that both thicknesses grow before this is given up"""
 NEARER_RATIO = 0.9

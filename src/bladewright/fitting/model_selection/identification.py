@@ -21,7 +21,7 @@ TURNING_RATIO = 0.6
 """turning from one edge to the chord, of that from the chord to the other edge, by which one edge predicts the
 other."""
 STRAIGHT_CAMBER = {"tangent_*": (0.12, 1.0)}
-"""bounds while a guess is far off: shorter tangents let the camber reach an edge by a hook."""
+"""bounds while a guess is far off: shorter tangents let the camber reach an edge by a hook (design/fit_made.md)."""
 
 
 def trial_cambers(design: UnifiedSection, free: Callable[[Design], tuple[str, ...]]) -> list[UnifiedSection]:
@@ -47,8 +47,8 @@ def trial_cambers(design: UnifiedSection, free: Callable[[Design], tuple[str, ..
 
 
 TRIAL_COUNTS = ((7, 7), (6, 6), (7, 6), (6, 7))
-"""control points of both thicknesses that are tried: laws of 7 contain those of 3, 4 and 5, laws of 6 those of 3 and
-4."""
+"""control points of both thicknesses that are tried: laws of 7 contain those of 3, 4 and 5, laws of 6 those of 3 and 4
+(design/fit_made.md)."""
 FEWEST_THICKNESSES = 3
 """control points of a thickness at least"""
 TRIAL_POINTS = 1200
@@ -60,7 +60,8 @@ TRIAL_ROUNDS, FURTHER_ROUNDS = 6, 10
 PROMISING_MISFIT = 3e-6
 """misfit from which a trial goes on, of the chord"""
 KNOWN_MISFIT = 1e-9
-"""misfit at which the section is known, of the chord: rounding of its points."""
+"""misfit at which the section is known, of the chord. A limit of 1e-10 would have refused sections that are found
+within 1e-9 (design/fit_made.md)."""
 SAME_THICKNESS = 1e-6
 """relative difference by which a thickness with fewer control points may differ and still be the same."""
 

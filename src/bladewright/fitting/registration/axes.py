@@ -31,8 +31,8 @@ DIRECTION_LIMIT = 0.2 * np.pi / 180.0
 OFFSET_LIMIT = 0.01
 """largest standard deviation of the axis' distance, of the blade's extent; a less certain axis is refused."""
 REVOLUTION_LIMIT = 2e-6
-"""largest distance of the ends from surfaces of revolution, of the blade's extent. It lets no noise pass: where the
-search stops short of the axis, it does so at 1e-5 and more, with small standard deviations."""
+"""largest distance of the ends from surfaces of revolution, of the blade's extent. The ends of a fan lie 6e-7 off its
+true axis and 5e-6 off axes eight degrees away, so that no noise may pass (design/fit_clouds.md)."""
 AMBIGUITY_RATIO = 5.0
 """ratio by which the ends must lie further off any other axis; otherwise the axis is ambiguous."""
 OTHER_AXIS_COSINE = np.cos(2.0 * np.pi / 180.0)
