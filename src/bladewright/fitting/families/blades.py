@@ -36,7 +36,7 @@ QUICK_POINTS, THOROUGH_POINTS = 1000, 12_000
 parameters better."""
 ENOUGH_MISFIT = 2.0
 """misfit below which a blade whose structure is not given is found, of the tolerance of its native sides: these miss
-the design about so much themselves. A wedge diffuser took 35 s for 126 s with it (design/fit_families.md)."""
+the design about so much themselves (design/fit_families.md)."""
 COARSE_TOLERANCE = 1e-3
 """tolerance of the native sides of intermediate blades, of the chord."""
 WALLS_HELD_NOTE = "hub and shroud are held as they are given"
