@@ -14,7 +14,7 @@ from bladewright.fitting.families.law_extension import law_extensions
 from bladewright.fitting.families.polyline import nearest_on
 from bladewright.fitting.families.profile import starts, through_points
 from bladewright.fitting.families.rounded_edge import edge_through
-from bladewright.fitting.families.sections import _maker, _through_points, section_samples
+from bladewright.fitting.families.sections import _design_maker, _through_points, section_samples
 from bladewright.fitting.families.suction_pressure import templates
 from bladewright.fitting.free_parameters import FreeParameters
 from bladewright.fitting.matching.search import Task, searched
@@ -85,7 +85,7 @@ def test_an_outline_of_points_follows_what_no_profile_of_a_kind_does():
     samples = section_samples(built)
     points = np.concatenate([side(np.random.default_rng(4).random(150)) for side in built.curves.values()])
     task = Task(points=points, weights=np.ones(len(points)), free=FreeParameters(), bounds={})
-    made = _maker(FAMILIES["profile"], samples, DesignHeader(name="found", length_unit="mm"), task)
+    made = _design_maker(FAMILIES["profile"], samples, DesignHeader(name="found", length_unit="mm"), task)
     found = searched(task, made(starts(samples, FlatPlate(thickness=0.06))[0]), rounds=1)
     outline, reason = _through_points(task, found, MatchTarget(parameters=26), partial(through_points, samples), made)
     assert len(outline.problem.paths) == 26

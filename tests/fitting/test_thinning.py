@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.spatial import cKDTree
 
-from bladewright.fitting.clouds.thinning import drawn, spread
+from bladewright.fitting.clouds.thinning import even_subset, random_subset
 
 
 def uneven(seed, count=4000, dimension=3):
@@ -18,24 +18,24 @@ def uneven(seed, count=4000, dimension=3):
 @pytest.mark.parametrize("dimension", [2, 3])
 def test_points_are_fewer_and_in_order(most, dimension):
     points = uneven(0, dimension=dimension)
-    for rows in (drawn(len(points), most), spread(points, most)):
+    for rows in (random_subset(len(points), most), even_subset(points, most)):
         assert 0 < len(rows) <= min(most, len(points))
         assert np.all(np.diff(rows) > 0)
-    assert len(drawn(len(points), most)) == min(most, len(points))
+    assert len(random_subset(len(points), most)) == min(most, len(points))
 
 
 def test_all_points_are_kept_where_they_are_few_enough():
     points = uneven(0, count=100)
-    assert np.array_equal(drawn(100, 100), np.arange(100))
-    assert np.array_equal(spread(points, 100), np.arange(100))
+    assert np.array_equal(random_subset(100, 100), np.arange(100))
+    assert np.array_equal(even_subset(points, 100), np.arange(100))
 
 
 @pytest.mark.parametrize("seed", range(3))
 def test_what_is_spread_is_as_dense_everywhere_and_as_near_to_all(seed):
     points = uneven(seed)
-    rows = spread(points, 300)
+    rows = even_subset(points, 300)
     # half of those drawn lie in the dense corner, where one cell of the grid holds it
-    assert np.mean(points[drawn(len(points), 300)].max(axis=1) < 0.01) > 0.4
+    assert np.mean(points[random_subset(len(points), 300)].max(axis=1) < 0.01) > 0.4
     assert np.mean(points[rows].max(axis=1) < 0.01) < 0.02
     # the diagonal of a cell, of which there are at most 300 in the cube
     assert cKDTree(points[rows]).query(points)[0].max() < np.sqrt(3.0) / 5.0
@@ -45,11 +45,11 @@ def test_what_is_spread_is_as_dense_everywhere_and_as_near_to_all(seed):
 def test_what_is_spread_does_not_depend_on_the_order_nor_the_place_of_the_points(seed):
     points = uneven(seed)
     order = np.random.default_rng(seed).permutation(len(points))
-    plain, mixed = points[spread(points, 200)], points[order][spread(points[order], 200)]
+    plain, mixed = points[even_subset(points, 200)], points[order][even_subset(points[order], 200)]
     assert {tuple(each) for each in plain} == {tuple(each) for each in mixed}
     # of an exact power of two: no rounding
-    assert np.array_equal(spread(points, 200), spread(4.0 * points, 200))
+    assert np.array_equal(even_subset(points, 200), even_subset(4.0 * points, 200))
 
 
 def test_points_in_one_place_are_one():
-    assert len(spread(np.ones((50, 2)), 10)) == 1
+    assert len(even_subset(np.ones((50, 2)), 10)) == 1

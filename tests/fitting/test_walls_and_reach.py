@@ -6,7 +6,7 @@ import fit_made
 import numpy as np
 import pytest
 
-from bladewright.fitting.clouds.thinning import spread
+from bladewright.fitting.clouds.thinning import even_subset
 from bladewright.fitting.initial_guess.hypotheses import machine_coordinates, ranked_outlines
 from bladewright.fitting.matching.blade_ends import blade_ends_of
 from bladewright.fitting.matching.edge_overhang import edge_overhang_of
@@ -205,6 +205,6 @@ def test_a_true_edge_costs_nothing_in_an_exact_cloud_whose_points_happen_to_lie_
 def test_points_of_a_blade_do_not_lie_off_it_where_its_first_channel_does_not_follow_them():
     _, points = made(10)
     points = np.unique(points, axis=0)
-    machine = machine_coordinates(points[spread(points, 1200)], "annular")
+    machine = machine_coordinates(points[even_subset(points, 1200)], "annular")
     kept, _ = ranked_outlines(machine, revolved=True)
     assert len(kept) == len(machine)

@@ -210,12 +210,12 @@ def text(fit: Fit) -> str:
     if fit.tolerance is not None:
         limits.insert(0, f"tolerance {_mm(fit.tolerance)} mm")
     lines.append(f"  {', '.join(limits)}, chord {_mm(_chord_of(fit), 6)} mm")
-    lines += [f"  {line}" for line in (_said_of_outliers(fit), _said_of_motion(fit)) if line]
+    lines += [f"  {line}" for line in (_outliers_line(fit), _motion_line(fit)) if line]
     waves = ", ".join(f"{count} on the {name} side" for name, count in fit.extrema.items())
     lines.append(f"  extrema of curvature: {waves}")
     lines.append(
-        f"  {_counted(len(fit.estimates), 'free parameter')}, rank {fit.rank}, condition {fit.condition:.2g}, "
-        f"{_counted(fit.evaluations, 'evaluation')}"
+        f"  {_number_of(len(fit.estimates), 'free parameter')}, rank {fit.rank}, condition {fit.condition:.2g}, "
+        f"{_number_of(fit.evaluations, 'evaluation')}"
     )
     lines += _parameters(fit)
     lines += [f"  note: {note}" for note in fit.notes]
@@ -324,19 +324,19 @@ def _table(fit: Fit) -> list[str]:
     ]
 
 
-def _said_of_outliers(fit: Fit) -> str:
+def _outliers_line(fit: Fit) -> str:
     count, total = len(fit.outliers), len(fit.cloud)
     if count == 0:
-        return f"{_counted(total, 'point')}, no outliers"
+        return f"{_number_of(total, 'point')}, no outliers"
     share = f"{100.0 * count / total:.2g} %"
     shown = ", ".join(str(i) for i in fit.outliers[:8])
     return (
-        f"{_counted(total, 'point')}, {_counted(count, 'outlier')} ({share}) up to "
+        f"{_number_of(total, 'point')}, {_number_of(count, 'outlier')} ({share}) up to "
         f"{_mm(float(np.max(fit.distances[fit.outliers])))} mm away: number {shown}{', ...' if count > 8 else ''}"
     )
 
 
-def _said_of_motion(fit: Fit) -> str:
+def _motion_line(fit: Fit) -> str:
     if fit.motion is None:
         return ""
     turn, shift = np.asarray(fit.motion.rotation), np.asarray(fit.motion.translation)
@@ -377,5 +377,5 @@ def _mm(metres: float, digits: int = 3) -> str:
     return f"{metres * MILLIMETRES:.{digits}g}"
 
 
-def _counted(count: int, what: str) -> str:
+def _number_of(count: int, what: str) -> str:
     return f"{count} {what}{'' if count == 1 else 's'}"

@@ -11,7 +11,7 @@ TRIALS = 9
 """grids that are tried: halvings of the interval in which the right cell size lies"""
 
 
-def drawn(count: int, most: int) -> NDArray[np.intp]:
+def random_subset(count: int, most: int) -> NDArray[np.intp]:
     """Indices, in order, of at most `most` of `count` points, drawn at random but always the same.
 
     What is drawn is as dense and as noisy as the cloud itself.
@@ -21,7 +21,7 @@ def drawn(count: int, most: int) -> NDArray[np.intp]:
     return np.sort(np.random.default_rng(0).choice(count, most, replace=False))
 
 
-def spread(points: Reals, most: int) -> NDArray[np.intp]:
+def even_subset(points: Reals, most: int) -> NDArray[np.intp]:
     """Indices, in order, of at most `most` of points (n, d): the middle one of each cell of a grid.
 
     The grid is the finest one with so few occupied cells. The order of the points does not matter.

@@ -10,7 +10,7 @@ import numpy as np
 from bladewright.designs import Design
 from bladewright.errors import DesignError, FitError
 from bladewright.fitting.assessment.acceptance import GROSS_DEVIATION
-from bladewright.fitting.clouds.thinning import drawn
+from bladewright.fitting.clouds.thinning import random_subset
 from bladewright.fitting.design_header import DesignHeader
 from bladewright.fitting.families.growth import can_be_built, grown_to_target, predicted_gains
 from bladewright.fitting.families.kinds import FitFamily
@@ -70,13 +70,13 @@ def matched_section(
         rough = thinned_task(task, TRIAL_POINTS)
         parts = kind.templates(section, target.parameters) if like is None else [like.section]
         starts = [start for part in parts for start in starts_of(kind, section, part)]
-        found = best_trial(rough, few, _maker(kind, section, header, task), starts)
+        found = best_trial(rough, few, _design_maker(kind, section, header, task), starts)
     reason = ""
     if not (target.structured or found.interrupted):
         found, reason = grown_to_target(few, found, target, partial(_wider, kind=kind), coarse=TOLERANCES[-1])
         if kind.through_points is not None and section is not None:
             found, reason = _through_points(
-                few, found, target, partial(kind.through_points, section), _maker(kind, section, header, task)
+                few, found, target, partial(kind.through_points, section), _design_maker(kind, section, header, task)
             )
     return _buildable_tolerance(found if found.interrupted else _searched_thoroughly(many, found)), reason
 
@@ -118,7 +118,9 @@ def _closed_section(task: Task, header: DesignHeader) -> SampledSection:
         raise FitError(f"no closed section was found near the points ({error}); give a start design") from error
 
 
-def _maker(kind: FitFamily, section: SampledSection, header: DesignHeader, task: Task) -> Callable[[Any], Design]:
+def _design_maker(
+    kind: FitFamily, section: SampledSection, header: DesignHeader, task: Task
+) -> Callable[[Any], Design]:
     """The design that a part begins as."""
     metre = UNITS[header.length_unit]
 
@@ -228,7 +230,7 @@ def _buildable_tolerance(match: Match) -> Match:
 
 def thinned_task(task: Task, count: int) -> Task:
     """A task with at most so many of its points."""
-    rows = drawn(len(task.points), count)
+    rows = random_subset(len(task.points), count)
     if len(rows) == len(task.points):
         return task
     precision = None if task.precision is None else task.precision[rows]

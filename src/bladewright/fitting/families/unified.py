@@ -6,7 +6,7 @@ from typing import Any
 from bladewright.blade.design.unified import UnifiedBlade
 from bladewright.designs import Design
 from bladewright.errors import DesignError, FitError
-from bladewright.fitting.clouds.thinning import drawn
+from bladewright.fitting.clouds.thinning import random_subset
 from bladewright.fitting.design_header import DesignHeader
 from bladewright.fitting.free_parameters import FreeParameters
 from bladewright.fitting.initial_guess.blade import AXES_HINT, first_blade
@@ -89,7 +89,7 @@ def _with_held_values(task: Task, guessed: Design, *, started: bool) -> Design:
 
 def _first_design(task: Task, structure: Structure | None, like: Design | None, header: DesignHeader) -> Design:
     """The first design from the points alone; what `like` says of the row counts where nothing else does."""
-    some = task.points[drawn(len(task.points), THOROUGH_POINTS)]
+    some = task.points[random_subset(len(task.points), THOROUGH_POINTS)]
     if task.points.shape[1] == 2:
         lengths: dict[str, Any] = {}
         if structure is not None:
@@ -117,7 +117,7 @@ def _buildable(task: Task, match: Match, *, fewer: bool) -> tuple[Match, Any, st
         except DesignError as error:
             refusal = str(error)
     structure = structure_of(match.design)
-    few = task.part(drawn(len(task.points), REDUCED_POINTS))
+    few = task.part(random_subset(len(task.points), REDUCED_POINTS))
     straight = replace(few, bounds={**STRAIGHT_CAMBER, **task.bounds})
     for share in FEWER_SHARES if fewer and not match.interrupted else ():
         upper, lower = (max(FEWEST_THICKNESSES, round(share * count)) for count in structure.chordwise)

@@ -15,7 +15,7 @@ from bladewright.fitting.freeform.net import Net, NetTarget, periodic
 from bladewright.fitting.freeform.options import FreeformFit, checked_logs, checked_options, checked_points
 from bladewright.fitting.freeform.ordering import sites_along
 from bladewright.fitting.freeform.projection import certified_parameters, nearer_projections, projected
-from bladewright.fitting.freeform.stages import FitOptions, StagedMatch, match_within_tolerance
+from bladewright.fitting.freeform.stages import FitOptions, StagedMatch, staged_match_within
 from bladewright.nurbs.basis import Reals, breaks, checked_knots, uniform_knots
 from bladewright.nurbs.curve import Curve
 
@@ -95,10 +95,10 @@ def fit_curve(
             net = replace(net, held="corners", points=np.concatenate([pair[:1], inner, pair[1:]]))
     target = NetTarget(points=scaled, weights=np.ones(len(scaled)), held=held)
     _check_numbers(net, scaled, weights_free=options.weights_free)
-    found, notes = match_within_tolerance(net, target, options, _further_knots, warm=start is not None)
+    found, notes = staged_match_within(net, target, options, _further_knots, warm=start is not None)
     if start is None and _systematic(found, target):
         # a stiff first curve cuts the corners of a bent one; a soft one from the same start ends elsewhere
-        other = match_within_tolerance(net, target, options, _further_knots, warm=True)
+        other = staged_match_within(net, target, options, _further_knots, warm=True)
         found, notes = min((found, notes), other, key=lambda each: _cost(each[0], power, notes=each[1]))
     net = found.match.net
     shape = net.curve

@@ -75,7 +75,7 @@ KnotSource = Callable[[StagedMatch, NetTarget, FitOptions, float], tuple[Net | N
 """gives a net with further knots, or None and the reason"""
 
 
-def match_within_tolerance(
+def staged_match_within(
     net: Net, target: NetTarget, options: FitOptions, further: KnotSource, *, warm: bool
 ) -> tuple[StagedMatch, tuple[str, ...]]:
     """The match within a largest distance, where there is one, and why it is not reached otherwise.
@@ -105,12 +105,12 @@ def staged_match(net: Net, target: NetTarget, options: FitOptions, *, warm: bool
     if options.robust:
         net, inliers, total = _without_outliers(net, target, options, warm=warm)
         target = target_rows(target, inliers)
-    match = _softened(net, target, options, None, last=2 if warm else None)
+    match = _match_by_stiffnesses(net, target, options, None, last=2 if warm else None)
     total += match.evaluations
     if options.weights_free and not net.weighted:
         options.report("free weights")
         freed = replace(match.net, weighted=True, log_weights=match.net.log_weights)
-        match = _softened(freed, target, options, match.footpoints.parameters, last=2)
+        match = _match_by_stiffnesses(freed, target, options, match.footpoints.parameters, last=2)
         total += match.evaluations
     if options.power != 2.0:
         options.report(f"power {options.power:g}")
@@ -133,7 +133,7 @@ def target_rows(target: NetTarget, rows: NDArray[np.bool_]) -> NetTarget:
     return NetTarget(points=target.points[rows], weights=target.weights[rows], held=held)
 
 
-def _softened(
+def _match_by_stiffnesses(
     net: Net, target: NetTarget, options: FitOptions, near: Reals | None, *, last: int | None = None
 ) -> NetMatch:
     tried: list[NetMatch] = []

@@ -16,7 +16,7 @@ from bladewright.fitting.freeform.least_squares import Penalty
 from bladewright.fitting.freeform.net import DIRECTIONS, Net, NetTarget, quadratic_of
 from bladewright.fitting.freeform.options import FreeformFit, checked_logs, checked_options, checked_points
 from bladewright.fitting.freeform.projection import nearer_projections, projected
-from bladewright.fitting.freeform.stages import FitOptions, StagedMatch, match_within_tolerance
+from bladewright.fitting.freeform.stages import FitOptions, StagedMatch, staged_match_within
 from bladewright.numerics.elementary import cross2
 from bladewright.nurbs.basis import Reals, breaks, checked_knots, uniform_knots
 from bladewright.nurbs.domain import extended, reparametrised
@@ -111,7 +111,7 @@ def fit_surface(
         net = _of_surface(_widened(net.surface))
     net = replace(net, held=HELD_BY_BOUNDARY[boundary])
     _check_numbers(net, scaled, weights_free=options.weights_free)
-    found, notes = match_within_tolerance(
+    found, notes = staged_match_within(
         net, NetTarget(points=scaled, weights=np.ones(len(scaled))), options, _further_knots, warm=start is not None
     )
     shape, near = found.match.net.surface, found.match.footpoints.parameters

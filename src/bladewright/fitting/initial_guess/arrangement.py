@@ -3,7 +3,7 @@
 import numpy as np
 
 from bladewright.fitting.clouds.isolated import without_isolated_points
-from bladewright.fitting.clouds.thinning import spread
+from bladewright.fitting.clouds.thinning import even_subset
 from bladewright.fitting.design_header import Arrangement
 from bladewright.fitting.initial_guess.hypotheses import machine_coordinates, ranked_outlines
 from bladewright.nurbs.basis import Reals
@@ -44,7 +44,7 @@ def found_arrangement(points: Reals) -> Arrangement:
     if rows is not None:
         return rows
     some = without_isolated_points(np.unique(points, axis=0))
-    some = some[spread(some, DECIDING_POINTS)]
+    some = some[even_subset(some, DECIDING_POINTS)]
     away: list[float] = []
     for name in ("annular", "linear"):
         _, found = ranked_outlines(machine_coordinates(some, name), revolved=name == "annular")

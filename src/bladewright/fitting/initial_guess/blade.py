@@ -10,7 +10,7 @@ from bladewright.blade.design.unified import UnifiedBlade
 from bladewright.designs import Point
 from bladewright.errors import DesignError, FitError
 from bladewright.fitting.clouds.isolated import without_isolated_points
-from bladewright.fitting.clouds.thinning import spread
+from bladewright.fitting.clouds.thinning import even_subset
 from bladewright.fitting.design_header import Arrangement, Unit
 from bladewright.fitting.initial_guess.arrangement import found_arrangement
 from bladewright.fitting.initial_guess.channel import CHANNEL_CURVES, SPAN, RoughChannel, curve_counts
@@ -158,7 +158,7 @@ def first_blade(
     apart. Raises FitError where no blade that can be built lies near the points.
     """
     points = without_isolated_points(np.unique(np.asarray(points, dtype=np.float64), axis=0))
-    points = points[spread(points, DRAWN_POINTS)]
+    points = points[even_subset(points, DRAWN_POINTS)]
     structure = structure or Structure()
     arrangement = arrangement or found_arrangement(points)
     machine, outlines = ranked_outlines(machine_coordinates(points, arrangement), revolved=arrangement == "annular")

@@ -72,10 +72,10 @@ def assigned_sides(
     t = np.clip((along - start) / np.maximum(end - start, 1e-9), 0.0, 1.0)
     even = _even(t, unwrapped)
     vander = (chebyshev.chebvander(2.0 * t - 1.0, 3)[:, :, None] * rows[:, None, :]).reshape(len(t), -1)
-    upper = across > vander @ _ridged(vander, across, even)
+    upper = across > vander @ _ridge_regression(vander, across, even)
     middle, half = np.zeros(vander.shape[1]), np.zeros(vander.shape[1])
     for _ in range(6):
-        both = [_ridged(vander[mask], across[mask], even[mask]) for mask in (upper, ~upper) if np.any(mask)]
+        both = [_ridge_regression(vander[mask], across[mask], even[mask]) for mask in (upper, ~upper) if np.any(mask)]
         if len(both) < 2:
             break
         middle, half = (both[0] + both[1]) / 2.0, (both[0] - both[1]) / 2.0
@@ -168,7 +168,7 @@ def _even(t: Reals, unwrapped: UnwrappedPoints) -> Reals:
     return np.asarray(1.0 / np.sqrt(np.bincount(bins)[bins]))
 
 
-def _ridged(matrix: Reals, rhs: Reals, weight: Reals) -> Reals:
+def _ridge_regression(matrix: Reals, rhs: Reals, weight: Reals) -> Reals:
     """Weighted least squares with a weak pull of all coefficients towards the mean."""
     ridge = 1e-3 * np.sqrt(np.sum(weight**2)) * np.eye(matrix.shape[1])
     middle = float(np.mean(rhs))

@@ -50,27 +50,27 @@ def machine_coordinates(points: Reals, arrangement: str) -> Reals:
 
 def ranked_outlines(machine: Reals, *, revolved: bool) -> tuple[Reals, list[SectionsInChannel]]:
     """The points that count, and the blades for each choice of walls and edges, the nearest first."""
-    found = _likely(machine, revolved=revolved)
+    found = _likely_outlines(machine, revolved=revolved)
     best = found[0]
     distances = nearest_places(best.shape, unwrapped_in(machine, best.channel), best.match.laws)[2]
     kept = distances < 5.0 * np.median(distances) + 0.03 * best.unwrapped.chord
     if np.mean(kept) < 0.995:
-        other = _likely(machine[kept], revolved=revolved)
+        other = _likely_outlines(machine[kept], revolved=revolved)
         if other[0].match.mean / other[0].unwrapped.chord < NEARER_RATIO * best.match.mean / best.unwrapped.chord:
             return machine[kept], other
     return machine, found
 
 
-def _likely(machine: Reals, *, revolved: bool) -> list[SectionsInChannel]:
+def _likely_outlines(machine: Reals, *, revolved: bool) -> list[SectionsInChannel]:
     """The blades for each likely choice of walls and edges, the nearest first."""
     few = machine[np.random.default_rng(1).permutation(len(machine))[:DECIDING_POINTS]]
     tried = []
     for pieces in corner_sets(alpha_boundary(machine[:, :2])):
         for turn in pairings(machine, pieces, revolved=revolved):
             named = _named(pieces, turn)
-            found = _tried(few, named, revolved=revolved)
+            found = _sections_of_outline(few, named, revolved=revolved)
             if _radial(named) and _rounder_at_end(found):
-                found = _tried(few, _reversed(named), revolved=revolved)
+                found = _sections_of_outline(few, _reversed(named), revolved=revolved)
             tried.append(found)
         away = sorted(mean_distance(found, few) for found in tried)
         if away[0] < min([CLEAR_DISTANCE * tried[0].unwrapped.chord, *(each / 3.0 for each in away[1:2])]):
@@ -122,7 +122,7 @@ def _named(pieces: list[Reals], turn: int) -> dict[str, Reals]:
     return {"hub": hub, "trailing_edge": trailing, "shroud": shroud[::-1], "leading_edge": leading[::-1]}
 
 
-def _tried(few: Reals, named: dict[str, Reals], *, revolved: bool) -> SectionsInChannel:
+def _sections_of_outline(few: Reals, named: dict[str, Reals], *, revolved: bool) -> SectionsInChannel:
     """The sections found in the channel of one outline."""
     channel = rough_channel(named, needed_counts(named, MOST_CURVE_POINTS, len(few)), revolved=revolved)
     return first_sections(few, channel, (4, 4), 3, turns=10)

@@ -6,7 +6,7 @@ import numpy as np
 
 from bladewright.errors import DesignError, FitError
 from bladewright.fitting.clouds.isolated import without_isolated_points
-from bladewright.fitting.clouds.thinning import spread
+from bladewright.fitting.clouds.thinning import even_subset
 from bladewright.fitting.design_header import Unit
 from bladewright.fitting.initial_guess.camber import first_laws
 from bladewright.fitting.initial_guess.feasibility import SHARPENINGS, simplified, with_sharper_edges
@@ -48,7 +48,7 @@ def first_section(
     be built lies near the points.
     """
     points = without_isolated_points(np.unique(np.asarray(points, dtype=np.float64), axis=0))
-    points = points[spread(points, DRAWN_POINTS)]
+    points = points[even_subset(points, DRAWN_POINTS)]
     middle = np.mean(points, axis=0)
     axis, chord = longest_chord(points)
     one = np.ones(len(points))

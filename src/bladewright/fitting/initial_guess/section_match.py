@@ -154,7 +154,7 @@ def _with_thin_edges(shape: SectionShape, unwrapped: UnwrappedPoints, laws: Real
     at = section_stations(unwrapped)
     numbers = numbers_at(laws, at)
     for side, upper in ((shape.upper, True), (shape.lower, False)):
-        room = shape.rooms(numbers, at, upper)
+        room = shape.thickness_limits(numbers, at, upper)
         for column, most in ((side.start, room[0]), (side.stop - 1, room[1])):
             share = float(np.min(0.8 * most / numbers[:, column]))
             laws[:, column] = np.maximum(laws[:, column] * min(1.0, share), 0.2 * THINNEST_SECTION * unwrapped.ratio)

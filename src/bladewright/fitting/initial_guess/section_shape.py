@@ -138,7 +138,7 @@ class SectionShape:
         ]  # fmt: skip
         return np.concatenate(columns, axis=1), unit_in, unit_out, scale
 
-    def rooms(self, numbers: Reals, v: Reals, upper: bool) -> tuple[Reals, Reals]:
+    def thickness_limits(self, numbers: Reals, v: Reals, upper: bool) -> tuple[Reals, Reals]:
         """Half thickness (n,) [m] beside both edges from which on a side leaves the edge sideways."""
         line = self.camber(numbers, v)
         at = self.places[[0, 2, -3, -1]]

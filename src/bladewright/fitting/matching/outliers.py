@@ -13,7 +13,7 @@ from scipy.sparse import csr_array
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
-from bladewright.fitting.clouds.thinning import spread
+from bladewright.fitting.clouds.thinning import even_subset
 from bladewright.fitting.matching.footpoints import Footpoints
 from bladewright.nurbs.basis import Reals
 
@@ -165,7 +165,7 @@ def _short_of_ends(past: NDArray[np.bool_], level: NDArray[np.bool_], footpoints
 
 def _local_noise(off: Reals, around: Neighbourhood) -> Reals:
     """The standard deviation of the noise (n,) around each point."""
-    sites = spread(around.places, LOCAL_SITES)
+    sites = even_subset(around.places, LOCAL_SITES)
     _, near = cKDTree(around.places).query(around.places[sites], k=min(LOCAL_POINTS, len(off)))
     noise = DEVIATION_OVER_QUARTILE * np.quantile(off[near.reshape(len(sites), -1)], 0.25, axis=1)
     return np.asarray(noise[cKDTree(around.places[sites]).query(around.places)[1]])

@@ -7,7 +7,7 @@ import numpy as np
 from bladewright.designs import Design
 from bladewright.errors import DesignError
 from bladewright.fitting.clouds.cloud import is_rounded
-from bladewright.fitting.clouds.thinning import drawn
+from bladewright.fitting.clouds.thinning import random_subset
 from bladewright.fitting.free_parameters import corner_radii
 from bladewright.fitting.matching.constrained_least_squares import MIN_REDUCTION
 from bladewright.fitting.matching.search import MOST_ROUNDS, ROUGH_REDUCTION, Match, Task, searched
@@ -70,8 +70,8 @@ def selected_match(
     `first` is a first design, a guess or a start; `base` the structure from which to grow, where it is not that of
     `first`.
     """
-    few = task.part(drawn(len(task.points), QUICK_POINTS[task.points.shape[1]]))
-    several, many = (task.part(drawn(len(task.points), most)) for most in (TOLERANCE_POINTS, THOROUGH_POINTS))
+    few = task.part(random_subset(len(task.points), QUICK_POINTS[task.points.shape[1]]))
+    several, many = (task.part(random_subset(len(task.points), most)) for most in (TOLERANCE_POINTS, THOROUGH_POINTS))
     noise = GUESS_NOISE if guessed else None
     if target.structured and target.tolerance is None:
         return matched_structure(few, many, first, base, guessed=guessed), ""

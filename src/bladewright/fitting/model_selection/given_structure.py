@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from bladewright.designs import Design
 from bladewright.errors import FitError
-from bladewright.fitting.clouds.thinning import drawn
+from bladewright.fitting.clouds.thinning import random_subset
 from bladewright.fitting.matching.search import MOST_ROUNDS, ROUGH_REDUCTION, Match, Task, searched
 from bladewright.fitting.model_selection.identification import KNOWN_MISFIT, nearest_trial
 from bladewright.fitting.model_selection.reshaping import reshaped
@@ -117,7 +117,7 @@ def _informative_points(match: Match) -> NDArray[np.intp]:
         | (footpoints.v > 1.0 - END_BAND)
     )
     rows = np.flatnonzero(beside)
-    return np.union1d(rows[drawn(len(rows), EDGE_POINTS)], drawn(len(footpoints.u), OTHER_POINTS))
+    return np.union1d(rows[random_subset(len(rows), EDGE_POINTS)], random_subset(len(footpoints.u), OTHER_POINTS))
 
 
 def has_systematic_misfit(match: Match, most: float = np.inf) -> bool:

@@ -58,8 +58,8 @@ def edge_steps(match: Match, tolerance: float) -> list[StructureStep]:
     for edge, beside in (("leading_edge", footpoints.u < EDGE_BAND), ("trailing_edge", footpoints.u > 1.0 - EDGE_BAND)):
         if np.mean(beside[beyond]) < GATHERED_AT_EDGE:
             continue
-        counts = {name: _half_more(structure.span[name], MOST_SPAN) for name in EDGE_LAWS[edge]}
-        curve = _half_more(structure.channel[edge], MOST_CURVE)
+        counts = {name: _half_as_many_again(structure.span[name], MOST_SPAN) for name in EDGE_LAWS[edge]}
+        curve = _half_as_many_again(structure.channel[edge], MOST_CURVE)
         added = sum(count - structure.span[name] for name, count in counts.items())
         added += 2 * (curve - structure.channel[edge])
         if added:
@@ -68,7 +68,7 @@ def edge_steps(match: Match, tolerance: float) -> list[StructureStep]:
     return steps
 
 
-def _half_more(count: int, most: int) -> int:
+def _half_as_many_again(count: int, most: int) -> int:
     return max(count, min(most, count + max(1, count // 2)))
 
 

@@ -7,7 +7,7 @@ import numpy as np
 from bladewright.errors import FitError
 from bladewright.fitting.assessment.result import Motion
 from bladewright.fitting.clouds.isolated import has_neighbours
-from bladewright.fitting.clouds.thinning import drawn
+from bladewright.fitting.clouds.thinning import random_subset
 from bladewright.fitting.design_header import Arrangement
 from bladewright.fitting.registration.axis_of_revolution import EndPoints, RevolutionAxis, axis_of
 from bladewright.fitting.registration.end_planes import EndPlane, end_planes, first_axes
@@ -62,7 +62,7 @@ def found_axes(points: Reals, *, arrangement: Arrangement | None = None) -> Mach
     if cloud.ndim != 2 or cloud.shape[1] != 3:
         raise FitError(f"axes were asked of a cloud of shape {cloud.shape}: give points (n, 3)")
     cloud = cloud[np.isfinite(cloud).all(axis=1)]
-    cloud = cloud[drawn(len(cloud), AXES_POINTS)]
+    cloud = cloud[random_subset(len(cloud), AXES_POINTS)]
     cloud = cloud[has_neighbours(cloud)]
     if len(cloud) < 100:
         raise FitError(f"axes were asked of {len(cloud)} points: at least 100 are needed; give --start, or the axes")
@@ -167,7 +167,7 @@ def _ends(
             return None
         rows, first = np.unique(np.concatenate([piece.rows for piece in pieces]), return_index=True)
         along = np.concatenate([piece.along for piece in pieces])[first]
-        some = drawn(len(rows), count)
+        some = random_subset(len(rows), count)
         found.append(EndPoints(points=sheet.points[rows[some]], along=along[some]))
     return found[0], found[1]
 

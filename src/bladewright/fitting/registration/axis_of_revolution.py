@@ -79,14 +79,14 @@ def axis_of(
     back = Motion(rotation=np.eye(3), translation=np.array([-centre[0], 0.0, 0.0]))
     best: RevolutionAxis | None = None
     for degree in degrees:
-        motion, lines, width = _settled(ends, composed(back, start), degree, steps)
+        motion, lines, width = _axis_and_lines(ends, composed(back, start), degree, steps)
         axis = _axis(ends, motion, lines, width, degree)
         if axis is not None and (best is None or axis.score < best.score):
             best = axis
     return best
 
 
-def _settled(
+def _axis_and_lines(
     ends: tuple[EndPoints, EndPoints], motion: Motion, degree: int, steps: int
 ) -> tuple[Motion, list[_Line], float]:
     """Axis and lines where the steps end, and the width of the weights that the residuals need."""

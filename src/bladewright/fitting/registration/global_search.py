@@ -12,7 +12,7 @@ from scipy.spatial.transform import Rotation
 
 from bladewright.fitting.assessment.result import Motion
 from bladewright.fitting.clouds.isolated import has_neighbours
-from bladewright.fitting.clouds.thinning import drawn, spread
+from bladewright.fitting.clouds.thinning import even_subset, random_subset
 from bladewright.fitting.registration.rigid_motion import GENERATORS, rotation_by
 from bladewright.nurbs.basis import Reals
 
@@ -38,9 +38,9 @@ def found_motions(cloud: Reals, samples: Reals, normals: Reals, *, everywhere: b
     They start from the principal axes of both or, `everywhere`, from turns all over the space of rotations.
     """
     dimension = cloud.shape[1]
-    cloud = cloud[drawn(len(cloud), 20_000)]
+    cloud = cloud[random_subset(len(cloud), 20_000)]
     cloud = cloud[has_neighbours(cloud)]
-    cloud = cloud[spread(cloud, 8 * SEARCH_POINTS[dimension])]
+    cloud = cloud[even_subset(cloud, 8 * SEARCH_POINTS[dimension])]
     pivot, centre = np.mean(cloud, axis=0), np.mean(samples, axis=0)
     axes, goals = _axes(cloud - pivot), _axes(samples - centre)
     if everywhere:
@@ -52,7 +52,7 @@ def found_motions(cloud: Reals, samples: Reals, normals: Reals, *, everywhere: b
     lags = np.ptp((cloud - pivot) @ axes, axis=0) < 0.9 * extents
     steps = [(-START_SHIFT, 0.0, START_SHIFT) if lag and not everywhere else (0.0,) for lag in lags[:2]]
     shifts = np.array([goals[:, :2] @ (np.array(step) * extents[:2]) for step in product(*steps)])
-    points = (cloud - pivot)[drawn(len(cloud), SEARCH_POINTS[dimension])]
+    points = (cloud - pivot)[random_subset(len(cloud), SEARCH_POINTS[dimension])]
     rotations = np.repeat(turns, len(shifts), axis=0)
     places = centre + np.tile(shifts, (len(turns), 1))
     rotations, places, scores = _descended(points, samples, normals, rotations, places)

@@ -13,7 +13,7 @@ from scipy.sparse import csr_array
 from scipy.sparse.csgraph import connected_components, dijkstra
 from scipy.spatial import ConvexHull, cKDTree
 
-from bladewright.fitting.clouds.thinning import spread
+from bladewright.fitting.clouds.thinning import even_subset
 from bladewright.numerics.elementary import cumulative_length
 from bladewright.nurbs.basis import Reals
 
@@ -60,7 +60,7 @@ class UnrolledSheet:
 
 def unrolled_sheet(points: Reals) -> UnrolledSheet:
     """The sheet of points (n, 3) that are spread over a blade's sides."""
-    even = points[spread(points, GRAPH_POINTS)]
+    even = points[even_subset(points, GRAPH_POINTS)]
     graph = _graph(even)
     label = connected_components(graph, directed=False)[1]
     most = np.flatnonzero(label == np.argmax(np.bincount(label)))
@@ -92,7 +92,7 @@ def _graph(points: Reals) -> csr_array:
 
 def _scaled_coordinates(graph: csr_array, points: Reals) -> Reals:
     """Coordinates (n, 2) whose distances are nearest to the path lengths through the graph."""
-    marks = spread(points, LANDMARKS)
+    marks = even_subset(points, LANDMARKS)
     square = dijkstra(graph, directed=False, indices=marks) ** 2
     own = square[:, marks]
     mean = own.mean(axis=0)

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.spatial import cKDTree
 
-from bladewright.fitting.clouds.thinning import drawn
+from bladewright.fitting.clouds.thinning import random_subset
 from bladewright.fitting.registration.robust_motion import tukey_weights
 from bladewright.nurbs.basis import Reals
 
@@ -40,7 +40,7 @@ class Prism:
 
 def prism_of(points: Reals) -> Prism:
     """The direction in which the projection of points (n, 3) is thinnest."""
-    cloud = points[drawn(len(points), PRISM_POINTS)]
+    cloud = points[random_subset(len(points), PRISM_POINTS)]
     cloud = cloud - np.median(cloud, axis=0)
     directions = _hemisphere(TRIAL_DIRECTIONS)
     cell = float(np.max(np.ptp(cloud, axis=0))) / GRID_CELLS

@@ -8,7 +8,7 @@ from scipy.spatial import cKDTree
 
 from bladewright.errors import FitError
 from bladewright.fitting.assessment.result import Motion
-from bladewright.fitting.clouds.thinning import drawn
+from bladewright.fitting.clouds.thinning import random_subset
 from bladewright.fitting.registration.global_search import TARGET_SAMPLES, found_motions
 from bladewright.fitting.registration.rigid_motion import FREEDOMS, PLANE_FREEDOMS
 from bladewright.fitting.registration.robust_motion import RobustMotion, robust_motion
@@ -70,7 +70,7 @@ def registered(points: Reals, target: RegistrationTarget) -> Registration:
     """As `registration`, onto a target."""
     cloud = _checked(points, target)
     samples, normals = target.evenly(TARGET_SAMPLES[cloud.shape[1]])
-    few = cloud[drawn(len(cloud), SEARCH_POINTS)]
+    few = cloud[random_subset(len(cloud), SEARCH_POINTS)]
     best: tuple[float, RobustMotion] | None = None
     for everywhere in (False, True):
         for motion in found_motions(cloud, samples, normals, everywhere=everywhere):
@@ -84,7 +84,7 @@ def registered(points: Reals, target: RegistrationTarget) -> Registration:
             break
     if best is None:
         raise FitError(f"no motion of the {len(points)} points was found; are they of a blade?")
-    some = cloud[drawn(len(cloud), DECIDING_POINTS)]
+    some = cloud[random_subset(len(cloud), DECIDING_POINTS)]
     return _reported(cloud, target, robust_motion(target, some, best[1].motion, width=FINAL_WIDTH))
 
 
@@ -104,7 +104,7 @@ def _checked(points: Reals, target: RegistrationTarget) -> Reals:
 def _reported(cloud: Reals, target: RegistrationTarget, descent: RobustMotion) -> Registration:
     """The registration of a descent, with its figures and notes."""
     dimension = cloud.shape[1]
-    cloud = cloud[drawn(len(cloud), DECIDING_POINTS)]
+    cloud = cloud[random_subset(len(cloud), DECIDING_POINTS)]
     distances, taking = descent.contact.distances, descent.weights > 0.0
     rms = float(np.sqrt(np.mean(distances[taking] ** 2))) if taking.any() else float("inf")
     systematic, share = _systematic(cloud, descent), _share(descent)

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
 from bladewright.blade.native.blade import Blade
-from bladewright.fitting.clouds.thinning import spread
+from bladewright.fitting.clouds.thinning import even_subset
 from bladewright.fitting.matching.footpoints import CURVE_SAMPLES, SAMPLES, Side, footpoints_at
 from bladewright.nurbs.basis import Reals
 from bladewright.nurbs.bezier import Patches, Samples, patches, sampled
@@ -163,11 +163,11 @@ class RegistrationTarget:
             v = np.linspace(0.0, 1.0, SPANWISE_SAMPLES if isinstance(side, Surface) else 1)
             u, v = (each.ravel() for each in np.meshgrid(u, v, indexing="ij"))
             points = side(u, v) if isinstance(side, Surface) else side(u)
-            rows = spread(points, count // 2)
+            rows = even_subset(points, count // 2)
             at = footpoints_at(points[rows], self.sides, np.full(len(rows), k, dtype=np.intp), u[rows], v[rows])
             found.append((at.points, at.normals))
         for end, samples in zip(self.ends, self.end_samples, strict=True):
-            rows = spread(samples[:, 2:], max(16, count // 20))
+            rows = even_subset(samples[:, 2:], max(16, count // 20))
             found.append((samples[rows, 2:], end.normal(samples[rows, 0], samples[rows, 1])))
         return np.concatenate([points for points, _ in found]), np.concatenate([normals for _, normals in found])
 
