@@ -73,8 +73,8 @@ BLADE_OF: dict[type[PlanarSection], type[SectionedBlade]] = {
 """The blade of the same family, by the 2D design."""
 
 
-WIDE = 1e3
-"""pitch of a section that has none, in axial chords"""
+WIDE_PITCH = 1e3
+"""Pitch of a section that has none, in axial chords: so wide that neighbours never meet."""
 
 
 @overload
@@ -119,7 +119,7 @@ def prismatic(section: UnifiedSection | PlanarSection, span: float | None = None
     return UnifiedBlade(
         **same,
         arrangement="linear",
-        pitch=WIDE * section.axial_chord if section.pitch is None else section.pitch,
+        pitch=WIDE_PITCH * section.axial_chord if section.pitch is None else section.pitch,
         channel=Channel(
             leading_edge=(Point(start, 0.0), Point(start, height)), trailing_edge=(Point(end, 0.0), Point(end, height))
         ),
@@ -144,7 +144,7 @@ def _of_family(section: PlanarSection, height: float) -> SectionedBlade:
         name=section.name,
         length_unit=section.length_unit,
         arrangement="linear",
-        pitch=WIDE * section.chord if section.pitch is None else section.pitch,
+        pitch=WIDE_PITCH * section.chord if section.pitch is None else section.pitch,
         leading_edge_y=section.leading_edge_y,
         flow_path=FlowPath(hub=hub, shroud=shroud),
         leading_edge=line((start, 0.0), (start, height)),

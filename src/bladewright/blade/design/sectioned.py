@@ -24,9 +24,9 @@ if TYPE_CHECKING:
 class SectionedBlade(RowDesign):
     """Base of the blades from sections; each has a final subclass that says of which family.
 
-    At every v the family's section is laid on the stream surface of that span fraction, its chord line at the section's
-    stagger. Either the leading- and the trailing-edge curve say from where to where it reaches, or `stacking` says how
-    long it is and where its reference point stands. Every number of the section is a law: a constant, or the control
+    At every v the family's section lies on the stream surface of that span fraction, its chord line at the section's
+    stagger. Either the leading- and the trailing-edge curve say where it begins and ends, or `stacking` says how
+    long it is and where its reference point lies. Every number of the section is a law: a constant, or the control
     points of a clamped uniform B-spline of degree min(n - 1, 3) along the span.
 
     `sweep` and `lean` then shift each section as it is, in its plane: its reference point, the leading edge where there
@@ -34,7 +34,7 @@ class SectionedBlade(RowDesign):
     """
 
     plane: Literal["m'-theta", "m-r*theta", "x-y", "counted-m'-theta"] = "m'-theta"
-    """the plane of each stream surface that sections are laid out in; in a cascade the first two are (m, y). The last
+    """the plane of each stream surface in which sections are given; in a cascade the first two are (m, y). The last
     takes m' as the points of hub, shroud and stream surfaces count it, whose spacing is "conformal", as in T-Blade3"""
     flow_path: FlowPath
     """hub, shroud and stream surfaces"""
@@ -43,7 +43,7 @@ class SectionedBlade(RowDesign):
     trailing_edge: Meridian | None = None
     """the trailing edge in (x, r), from hub to shroud or past them"""
     stacking: Stacking | None = None
-    """the sections' reference point, and where it stands; without edge curves the chord as well"""
+    """the sections' reference point and its position; without edge curves the chord as well"""
     sweep: Law | None = parameter("length", default=None)
     """shift of each section after stacking, downstream, in one of `shift_directions` [length]"""
     lean: Law | None = parameter("length", default=None)
@@ -76,7 +76,7 @@ class SectionedBlade(RowDesign):
         object.__setattr__(self, "section_spans", increasing_spans("section_spans", self.section_spans))
 
     def _check_skinning(self) -> None:
-        """Laws that have no part in the blade: those between hub and shroud, or of the shroud."""
+        """Refuse laws that have no effect on ruled or developable sides."""
         checks.choice("skinning", self.skinning, ["sections", "ruled", "developable"])
         if self.skinning == "sections":
             return
@@ -99,7 +99,7 @@ class SectionedBlade(RowDesign):
                 )
 
     def _check_placing(self) -> None:
-        """What says where the sections stand: edge curves, stacking, and shifts."""
+        """Check what positions the sections: edge curves, stacking, and shifts."""
         edges = [name for name in ("leading_edge", "trailing_edge") if getattr(self, name) is not None]
         for name in edges:
             meridian_at(name, getattr(self, name))

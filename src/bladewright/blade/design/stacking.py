@@ -1,4 +1,4 @@
-"""Stacking by reference point, as a design: where on each stream surface a point of the section is to stand."""
+"""Stacking by reference point, as a design: the position of one point of each section on its stream surface."""
 
 from __future__ import annotations
 
@@ -11,14 +11,15 @@ from bladewright.errors import DesignError
 from bladewright.section import checks
 
 HUB_PLACES = ("hub_x", "hub_r", "hub_m")
+"""The fields of which one may give the hub's reference point."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class Stacking(Part):
-    """The reference point of each section, and where it stands.
+    """The reference point of each section, and its position.
 
     Alone it takes `chord` and one of `line`, `hub_x`, `hub_r` and `hub_m`. Beside prescribed edge curves, which give
-    chord and meridional place, it says where the section stands around the axis and no more. Voss et al. 2025,
+    chord and meridional place, it gives the section's position around the axis alone. Voss et al. 2025,
     sections 4.1 and 4.2.
     """
 
@@ -80,7 +81,7 @@ class Stacking(Part):
         return any(getattr(self, name) is not None for name in HUB_PLACES)
 
     def check_beside(self, *, edges: bool) -> None:
-        """Refuse what stands in the way of prescribed edge curves, or is missing without them."""
+        """Refuse what contradicts prescribed edge curves, or is missing without them."""
         given = [name for name in ("chord", "line", *HUB_PLACES) if getattr(self, name) is not None]
         if edges and given:
             raise DesignError(

@@ -59,7 +59,7 @@ class UnifiedBlade(RowDesign):
     channel: Channel
     """the meridional channel, from wall to wall"""
     mapping: Literal["conformal", "paper"] = "conformal"
-    """sections laid in the plane (m', theta), or the mapping of Agromayor et al. 2021, eq. 28"""
+    """sections in the plane (m', theta), or the mapping of Agromayor et al. 2021, eq. 28"""
     samples: int = 16
     """places along the chord where the thickness laws are taken, edges apart [-]"""
     clustering: float = 1.0

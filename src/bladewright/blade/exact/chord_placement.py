@@ -14,13 +14,14 @@ from bladewright.numerics.elementary import Array, concatenated, length
 from bladewright.nurbs.basis import Reals
 
 REACH = 4.0
-"""chords around the reference point within which the edges are looked for"""
+"""Chords around the reference point within which the edges are looked for, where the flow path reaches so far:
+chords are measured along stream lines that may widen."""
 ROUNDING = 1e-12
-"""share of the room in the flow path that is left to rounding"""
+"""Share of the flow path's room that is left for rounding."""
 STEPS = 40
-"""Newton's steps; mostly five do"""
-SETTLED = 1e-8
-"""a step this small leaves an error of its square: rounding"""
+"""Newton steps; mostly five suffice."""
+CONVERGED = 1e-8
+"""Relative Newton step at which the iteration ends: the error left is its square, which is rounding."""
 _START = np.zeros(1)
 
 
@@ -99,13 +100,16 @@ def _length(ruler: BladeStreamlines, share: Array, extent: Array) -> tuple[Array
 
 
 def _solved(ruler: BladeStreamlines, share: Reals, asked: Reals, most: Reals) -> Reals:
-    """Real extents in the plane (m,), up to `most`, of sections `asked` long: by Newton's method, for length grows."""
+    """Real extents in the plane (m,), up to `most`, of sections `asked` long, by Newton's method.
+
+    Length grows with the extent.
+    """
     speed, density = length(ruler.position(_START, 1))[:, 0], ruler.densities(_START)[0][:, 0]
     found = np.minimum(asked * density / speed, 0.9 * most)
     for _ in range(STEPS):
         there, slope = _length(ruler, share, found)
         after = np.clip(found - (there - asked) / slope, 0.1 * found, 0.5 * (found + most))
         step, found = after - found, after
-        if np.max(np.square(step / found)) < SETTLED**2:
+        if np.max(np.square(step / found)) < CONVERGED**2:
             break
     return found

@@ -29,20 +29,23 @@ if TYPE_CHECKING:
     from bladewright.blade.exact.unified import UnifiedSections
 
 REACHED = 1e-9
-"""difference between stated and built distance from the wall, of the mean meridional chord, that is sought"""
+"""Difference between the stated distance from the wall and that of the fitted meridian, of the mean meridional
+chord, to which knots are refined: rounding, with a margin."""
 ALLOWED = 1e-8
-"""the same above which a design is refused"""
-MOST = 60
-"""control points of the meridian up to which it is refined"""
+"""The same difference above which a design is refused; it is what `docs/nomenclature.md` promises of a clearance."""
+MOST_POLES = 60
+"""Control points of the fitted meridian up to which knots are added; a wall that needs more is not smooth enough to
+keep a clearance from."""
 _SHARES = np.array([0.03, 0.09, 0.2, 0.35, 0.5, 0.65, 0.8, 0.91, 0.97])
-"""places in a span: beside much shorter spans the miss is largest next to an end"""
+"""Places in a knot span at which the difference is looked at, denser towards the ends: beside much shorter spans it
+is largest there."""
 STEPS = 30
-"""Newton's steps after which no meeting point is expected any more; mostly four do"""
+"""Newton steps after which no point at the distance is expected any more; mostly four suffice."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Clearance:
-    """How far the end of a blade stands off a wall."""
+    """The distance of a blade's end from a wall."""
 
     name: str
     """the design's field"""
@@ -137,8 +140,8 @@ def check_clearance(clearance: Clearance, sections: "UnifiedSections", row: int)
         if distance <= 0.0:
             raise DesignError(
                 f"{clearance.name} is linear in u and falls to {clearance.in_unit(distance)} at u = {place:.3f}, the "
-                f"nose past the {edge} edge: the blade would meet the {clearance.wall} there; bring its two values nearer "
-                "to each other"
+                f"nose past the {edge} edge: the blade would meet the {clearance.wall} there; bring its two values "
+                "nearer to each other"
             )
 
 
@@ -159,7 +162,7 @@ def _knots(full: TransfiniteChannel, clearance: Clearance) -> Reals:
     def miss(knots: Reals, places: Reals) -> Reals:
         return worst(knots)[np.searchsorted(np.unique(knots), places) - 1] / REACHED
 
-    knots = refined(start, miss, MOST)
+    knots = refined(start, miss, MOST_POLES)
     off = float(np.max(worst(knots)))
     if off > ALLOWED:
         raise DesignError(
@@ -171,7 +174,7 @@ def _knots(full: TransfiniteChannel, clearance: Clearance) -> Reals:
 
 
 def _passed(full: TransfiniteChannel, clearance: Clearance) -> list[tuple[float, int]]:
-    """Where the foot passes inner knots of its wall, each with the derivatives that are continuous there."""
+    """u where the nearest point passes inner knots of the wall, each with the derivatives continuous there."""
     wall = full.line(clearance.wall)
     levels = np.unique(wall.joints())
     if not len(levels):
@@ -182,7 +185,7 @@ def _passed(full: TransfiniteChannel, clearance: Clearance) -> list[tuple[float,
 
 
 def _met(full: TransfiniteChannel, clearance: Clearance, u: Reals) -> tuple[Reals, Reals]:
-    """Places w and feet f (m,) of the points at the stated distance from the wall, by Newton's method."""
+    """Span places w and wall parameters f (m,) of the points at the stated distance, by Newton's method."""
     hub, shroud = full.hub.values(u), full.shroud.values(u)
     share = clearance.distance(u) / length(shroud - hub)
     places, feet = share if clearance.wall == "hub" else 1.0 - share, u

@@ -18,9 +18,9 @@ from bladewright.section.crossing import FINE
 from bladewright.section.outline import EdgeDerivatives
 
 STEPS = 60
-"""Newton's steps after which no crossing is expected; mostly five do"""
-LONGEST = 0.5
-"""largest step in t, of the flow path, and in shares of a line"""
+"""Newton steps after which no crossing is expected any more; mostly five suffice."""
+LONGEST_STEP = 0.5
+"""Largest Newton step, as a share of the flow path in t and of the straight line: longer ones leave the flow path."""
 
 
 class Rate(NamedTuple):
@@ -83,8 +83,8 @@ def ruling_crossings(
         place, slope = (real_first(position(t, k), 3) for k in (0, 1))
         miss = _miss(place, point, revolved=revolved)
         by_share, by_t = _solved(_matrix(place, slope, point, along, revolved=revolved), miss)
-        share = share + np.clip(by_share, -LONGEST, LONGEST)
-        t = np.clip(t + np.clip(by_t, -LONGEST * (high - low), LONGEST * (high - low)), low, high)
+        share = share + np.clip(by_share, -LONGEST_STEP, LONGEST_STEP)
+        t = np.clip(t + np.clip(by_t, -LONGEST_STEP * (high - low), LONGEST_STEP * (high - low)), low, high)
         if np.max(np.square(by_share)) < 1e-28:
             break
     _check(v, begin, along, by_share, t, (low, high))

@@ -1,4 +1,4 @@
-"""How far upstream and downstream of a blade's edges a place of its channel or flow path lies."""
+"""Where a blade's edges lie along its channel or flow path, and how far upstream or downstream other places are."""
 
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
@@ -35,7 +35,7 @@ class MeridionalExtent(ABC):
 
     @abstractmethod
     def extent(self, past: int, u: float) -> float:
-        """How far u lies upstream of the leading (0), or downstream of the trailing edge (1), in mean lengths."""
+        """How far u is upstream of the leading (0), or downstream of the trailing edge (1), in mean lengths."""
 
     @abstractmethod
     def place(self, past: int, extent: float) -> float:
@@ -53,11 +53,11 @@ class ChannelExtent(MeridionalExtent):
         return 1.0 + extent if past else -extent
 
 
-SIDES = np.sin(0.5 * np.pi * np.linspace(0.0, 1.0, 65)) ** 2
-"""places along the sides between which a blade's least and greatest t are looked for"""
+SIDE_PLACES = np.sin(0.5 * np.pi * np.linspace(0.0, 1.0, 65)) ** 2
+"""Parameters along the sides among which a blade's least and greatest t are looked for, denser at the edges."""
 
 SAME = 1e-9
-"""extent, in mean lengths, by which a place and an end of the flow path may differ by rounding"""
+"""Extent, in mean meridional lengths, by which a place and an end of the flow path may differ by rounding."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -100,10 +100,10 @@ class FlowPathExtent(MeridionalExtent):
 
 
 def flow_path_extent(surfaces: StreamSurfaces, survey: FlowPathSections) -> FlowPathExtent:
-    """The course of a blade in a flow path, from its sections from end to end."""
+    """The extent of a blade in a flow path, by its sections from hub to shroud."""
     lines = survey.lines
     leading, trailing = (real_first(each, 1) for each in (lines.leading, lines.trailing))
-    abscissae = np.stack([real_first(side[..., 0], 2) for side in survey.plane_points(SIDES)])
+    abscissae = np.stack([real_first(side[..., 0], 2) for side in survey.plane_points(SIDE_PLACES)])
     u = np.stack([np.min(abscissae, axis=(0, 2)), np.max(abscissae, axis=(0, 2))], axis=-1)
     noses = real_first(lines.t(lines.u_at(u)), 2)
     edges = float(np.mean(leading)), float(np.mean(trailing))

@@ -1,4 +1,4 @@
-"""The meridional plan of a blade: every line that a design or its build has in (x, r), or in (x, z) of a cascade."""
+"""The meridional view of a blade: every line that a design or its build has in (x, r), or in (x, z) of a cascade."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -17,19 +17,19 @@ if TYPE_CHECKING:
     from bladewright.blade.exact.unified import ExactUnifiedBlade
 
 COUNT = 201
-"""points of a line"""
+"""Points of a drawn curve."""
 STREAM_LINES = np.linspace(0.1, 0.9, 9)
-"""span fractions of the stream lines"""
+"""Span fractions of the stream lines that are drawn."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class ViewLine:
-    """A curve as it was asked for."""
+    """A curve as the design gives it."""
 
     points: Reals
     """(n, 2) [m]"""
     beyond: tuple[Reals, ...] = ()
-    """(n, 2) its continuations past the blade, which nobody asked for [m]"""
+    """(n, 2) its continuations past the blade, which the design does not give [m]"""
     given: Reals
     """(k, 2) the points that the design gives [m]"""
     polygon: bool
@@ -55,7 +55,7 @@ class MeridionalView:
 
 
 def channel_view(exact: "ExactUnifiedBlade") -> MeridionalView:
-    """The plan of a blade in a channel of four curves."""
+    """The view of a blade in a channel of four curves."""
     inside, u = np.linspace(0.0, 1.0, COUNT), np.linspace(-exact.before, 1.0 + exact.after, COUNT)
     lines = {}
     for name in ("hub", "shroud", "leading_edge", "trailing_edge"):
@@ -79,7 +79,7 @@ def channel_view(exact: "ExactUnifiedBlade") -> MeridionalView:
 
 
 def flow_path_view(exact: "ExactSectionedBlade") -> MeridionalView:
-    """The plan of a blade in a flow path; edges that no curves are given for, or that are shifted, are those built."""
+    """The view of a blade in a flow path; edges without a given curve, or shifted ones, are shown as they are built."""
     design, surfaces = exact.design, exact.surfaces.real()
     path, metre = design.flow_path, UNITS[design.length_unit]
     t = np.linspace(surfaces.low, surfaces.high, COUNT)

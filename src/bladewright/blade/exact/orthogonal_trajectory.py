@@ -12,15 +12,16 @@ from bladewright.numerics.elementary import Array, dot
 from bladewright.nurbs.basis import Reals
 
 NODES = 24
-"""Chebyshev places of a piece"""
+"""Chebyshev nodes at which the differential equation holds, on each piece of the span."""
 PIECES = 8
-"""pieces in equal steps of v to begin with"""
+"""Pieces of the span to begin with, before those that end at joints of the stream lines: so short that the
+polynomial through the nodes is exact to rounding on smooth flow paths."""
 STEPS = 30
-"""Newton's steps for a piece; mostly five do"""
-APART = 1e-9
-"""span fraction within which a joint of the stream lines lies at the end of a piece"""
-ROOM = 1e-9
-"""share of the flow path past its ends that is rounding"""
+"""Newton steps on a piece; mostly five suffice."""
+SAME = 1e-9
+"""Span fraction within which a joint of the stream lines counts as the end of a piece: rounding."""
+ROUNDING = 1e-9
+"""Share of the flow path by which the trajectory may run past its ends, as rounding makes it."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -61,7 +62,7 @@ def orthogonal_trajectory(surfaces: StreamSurfaces, start: Array) -> OrthogonalT
             places = _solved(real, float(real_first(at, 0)), low, high)
             _check(surfaces, places, low, high)
             met = _first_met(places, levels, low, high)
-            if met is None or high - met < APART:
+            if met is None or high - met < SAME:
                 break
             high = met
             joints.append(met)
@@ -69,7 +70,7 @@ def orthogonal_trajectory(surfaces: StreamSurfaces, start: Array) -> OrthogonalT
         pieces.append(values @ _TO_SERIES.T)
         at = values[..., -1]
         ends.append(high)
-        pending = [high, *(end for end in pending if end > high + APART)]
+        pending = [high, *(end for end in pending if end > high + SAME)]
     return OrthogonalTrajectory(
         ends=np.array(ends), series=np.stack(pieces, axis=-2), joints=np.array([j for j in joints if j in ends])
     )
@@ -119,12 +120,12 @@ def _first_met(places: Reals, levels: Reals, low: float, high: float) -> float |
         roots = chebyshev.chebroots(np.concatenate([[series[0] - level], series[1:]]))
         near = np.real(roots[np.abs(np.imag(roots)) < 1e-9])  # real: places are the real design's
         inside = low + (high - low) * (1.0 + near) / 2.0
-        found += [v for v in inside if low + APART < v <= high]
+        found += [v for v in inside if low + SAME < v <= high]
     return float(min(found)) if found else None
 
 
 def _check(surfaces: StreamSurfaces, places: Reals, low: float, high: float) -> None:
-    room = ROOM * (surfaces.high - surfaces.low)
+    room = ROUNDING * (surfaces.high - surfaces.low)
     past = np.maximum(surfaces.low - places, places - surfaces.high)
     if np.max(past) <= room:
         return

@@ -24,7 +24,8 @@ if TYPE_CHECKING:
 STEEP = np.radians(89.0)
 """Largest angle of a chord line [rad]: beyond it, its extent along the flow says nothing of the chord."""
 PIECES = 6
-"""pieces in equal steps that a side is cut into besides its joints"""
+"""Equal pieces that a side is cut into for quadrature, besides its joints; the order is then raised until the
+centroid converges."""
 
 Placed = tuple[BladeStreamlines, Outline, Array, Array]
 """Stream lines by u between the sections' edges, the sections in chords, their stagger (..., m) [rad], and their

@@ -79,5 +79,5 @@ class PrescribedEdges(Placement):
 
     @cached_property
     def _met(self) -> dict[float, list[tuple[Array, Array]]]:
-        """Intersections with both edges by v: sections, edges and joints are asked for at many of the same places."""
+        """Intersections with both edges by v: sections, edges and joints need them at many of the same v."""
         return {}

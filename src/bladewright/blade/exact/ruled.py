@@ -13,8 +13,8 @@ from bladewright.nurbs.basis import Reals
 from bladewright.section.outline import EdgeDerivatives
 
 ENDS = np.array([0.0, 1.0])
-JUDGED = np.linspace(0.0, 1.0, 41)
-"""places along the sides at which they must keep to their sides of each other"""
+CHECKED = np.linspace(0.0, 1.0, 41)
+"""Parameters along the sides at which the upper side must stay on its side of the lower one."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -23,8 +23,8 @@ class RuledSections(FlowPathSections):
 
     A line joins points of equal s of the same side, and native sides are linear along v, so that their lines are
     straight to rounding. What is given up: between the ends the curves are not the design's sections, and lie on no
-    stream surface; there `lines`, `plane` and camber are those of the sections that the design has at v, which stand
-    nearby. Voss et al. 2025, section 5; the ruled impeller of the freeform method, its section 3.3.
+    stream surface; there `lines`, plane points and camber are those of the sections that the design has at v,
+    which are nearby. Voss et al. 2025, section 5; the ruled impeller of the freeform method, its section 3.3.
     """
 
     rails: FamilySections
@@ -85,9 +85,9 @@ class RuledSections(FlowPathSections):
 
         By the sign of their distance across the surface midway between them.
         """
-        upper, lower = (real_first(side, 3) for side in self.points(JUDGED))
+        upper, lower = (real_first(side, 3) for side in self.points(CHECKED))
         middle = (upper + lower) / 2.0
-        along = np.gradient(middle, JUDGED, axis=1)
+        along = np.gradient(middle, CHECKED, axis=1)
         across = middle[-1] - middle[0]
         sizes = dot(upper - lower, cross(along, np.broadcast_to(across, along.shape)))[:, 1:-1]
         wrong = np.argwhere(sizes * sizes[:1] <= 0.0)
@@ -95,7 +95,7 @@ class RuledSections(FlowPathSections):
             row, at = wrong[0]
             raise DesignError(
                 f"skinning is 'ruled', and the straight lines between hub and shroud turn the blade inside out: its "
-                f"sides change places at v = {self.v[row]:.3f}, s = {JUDGED[at + 1]:.3f} (0 is the leading, 1 the "
+                f"sides change places at v = {self.v[row]:.3f}, s = {CHECKED[at + 1]:.3f} (0 is the leading, 1 the "
                 "trailing edge), for the sections at hub and shroud are turned too far against each other; bring their "
                 "stagger and camber nearer to each other, make them thicker, or take skinning = 'sections'"
             )

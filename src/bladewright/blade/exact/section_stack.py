@@ -1,4 +1,4 @@
-"""Sections laid on their stream surfaces: from their planes to points, normals and edges in space."""
+"""Sections on their stream surfaces: from points of their planes to points, normals and edges in space."""
 
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
@@ -54,7 +54,7 @@ class SectionStack(ABC):
 
     @abstractmethod
     def outlines(self) -> Reals:
-        """Closed outlines (m, n, 2) in their planes, of the real design, on which crossings are judged."""
+        """Closed polygons (m, n, 2) in their planes, of the real design, by which crossings are found."""
 
     @abstractmethod
     def leading_edge(self) -> EdgeDerivatives:
@@ -77,7 +77,7 @@ class SectionStack(ABC):
     @property
     @abstractmethod
     def clustered(self) -> bool:
-        """Whether s is gathered at edges: whether sides leave them slower than camber lines do."""
+        """Whether s is denser at the edges: whether sides leave them slower than camber lines do."""
 
     @abstractmethod
     def camber(self, share: Reals) -> Array:
@@ -85,11 +85,11 @@ class SectionStack(ABC):
 
     @abstractmethod
     def camber_ends(self) -> tuple[Array, Array]:
-        """The directions (..., m, 2) of the camber lines at both edges, downstream, of any length."""
+        """Vectors (..., m, 2) along the camber lines at both edges, downstream; their lengths mean nothing."""
 
     @abstractmethod
     def channel_parameter(self, u: Array) -> Array:
-        """The parameter of the exact blade's `course` at u (..., m, k) or (k,)."""
+        """The parameter of the exact blade's channel or flow path at u (..., m, k) or (k,)."""
 
     def lower_edges(self) -> tuple[EdgeDerivatives | None, EdgeDerivatives | None]:
         """The lower side at both edges in space; None where the edge is round: the upper side's `mirrored`."""

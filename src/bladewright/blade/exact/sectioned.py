@@ -68,7 +68,7 @@ def _tangential(design: "SectionedBlade", span: Span) -> Array:
 ENDS = np.array([0.0, 1.0])
 """hub and shroud"""
 SPANS = 8
-"""knot spans along a side to begin with"""
+"""Knot spans along a side to begin with; refinement adds where the tolerance needs more."""
 SECTION_TOLERANCE = 1e-10
 """Distance of a family's native curves from the exact section, of the chord."""
 
@@ -84,11 +84,11 @@ class ExactSectionedBlade(ExactBlade):
 
     @cached_property
     def survey(self) -> FlowPathSections:
-        """Stations from end to end on which the shape is judged."""
+        """Sections from end to end on which the shape is judged."""
         return self.sections(SURVEY)
 
     def sections(self, v: Reals) -> FlowPathSections:
-        """What the blade is at v (m,), as its skinning has it."""
+        """The blade's sections at v (m,), as its skinning makes them."""
         if self.design.skinning == "ruled":
             return ruled_sections(self.rails, self.design_sections(v))
         if self.design.skinning == "developable":

@@ -1,4 +1,4 @@
-"""Stacking without edge curves: where the sections' reference points stand in the flow path."""
+"""Stacking without edge curves: the positions of the sections' reference points in the flow path."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -24,10 +24,12 @@ from bladewright.section.outline import Outline
 if TYPE_CHECKING:
     from bladewright.blade.design.sectioned import SectionedBlade
 
-WIDER = 0.1
-"""share of the flow path by which a line of equal x or r reaches past it"""
+OVERHANG = 0.1
+"""How far a line of equal x, or equal r, reaches past the flow path, as a share of it: so that it meets hub and
+shroud."""
 ROUNDS = 60
-"""tries in which a chord line's angle and its place, where each depends on the other, settle; mostly five do"""
+"""Rounds in which a chord line's angle and its place, which depend on each other, must converge; mostly five
+suffice."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -137,7 +139,7 @@ class StackingAxis(Placement):
         real = self.surfaces.real()
         grid = real.grid(np.linspace(*real.extent, 33), np.linspace(0.0, 1.0, 17))[0].reshape(-1, 2)
         other = grid[:, 1 if axis == "x" else 0]
-        room = WIDER * (float(np.max(other)) - float(np.min(other)))
+        room = OVERHANG * (float(np.max(other)) - float(np.min(other)))
         across = np.array([np.min(other) - room, np.max(other) + room])
         held = value[..., None] * np.ones(2)
         pair = (held, np.broadcast_to(across, held.shape))
@@ -150,7 +152,7 @@ def _settled(
     outline: Outline,
     stagger: Array,
 ) -> Placed:
-    """Sections whose stagger follows from the stream lines that they are laid on, by the secant method."""
+    """Sections whose stagger depends on the stream lines between their edges, by the secant method."""
     weight: Any = -1.0
     before: tuple[Reals, Reals] | None = None
     for _ in range(ROUNDS):

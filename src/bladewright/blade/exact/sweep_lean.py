@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 
 def shifts(design: "SectionedBlade", span: Span, stagger: Array) -> tuple[Array | None, Array | None, Array]:
-    """How far the reference points of sections that stand at a stagger (..., m) [rad] are moved, (..., m) each.
+    """How far the reference points of sections with a stagger (..., m) [rad] are moved, (..., m) each.
 
     Along the stream line [m], further along it as an increase of the abscissa, and around the axis, an arc at the
     radius after the shift [m], or along y in a cascade; None: not at all.
@@ -64,7 +64,7 @@ def shifted_lines(
 def _long_enough(
     surfaces: StreamSurfaces, lines: BladeStreamlines, meridional: Array | None, conformal: Array | None
 ) -> BladeStreamlines:
-    """The same stream lines, laid out as far as the shifts may need."""
+    """The same stream lines, as far past the edges as the shifts may need."""
     shares = []
     if meridional is not None:
         shares.append(real_first(meridional / lines.lengths, 1))

@@ -164,9 +164,11 @@ def _edge_curvature(fraction: Array, lines: StreamLines, turn: Array, end: int) 
 
 
 SURVEY = np.array([0.0, 0.12, 0.25, 0.38, 0.5, 0.62, 0.75, 0.88, 1.0])
-"""places along the span of the survey"""
-REACH = 0.6
-"""how far, in u, the channel may be continued for a nose"""
+"""Span fractions of the sections on which the shape is judged: ends, middle, and uneven places between, so that
+waves of laws show."""
+LONGEST_NOSE = 0.6
+"""Largest meridional extent, in u, of a rounded edge past the channel's edge curve: the channel's polynomials are
+continued so far, and bend away beyond."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -183,13 +185,13 @@ class ExactUnifiedBlade(ExactBlade):
     places: Reals
     """camber parameters of a side's control points"""
     before: float
-    """how far, in u, stream lines are continued past the leading edge"""
+    """how far stream lines are continued upstream of the leading edge, in u"""
     after: float
-    """how far, in u, stream lines are continued past the trailing edge"""
+    """how far stream lines are continued downstream of the trailing edge, in u"""
     known_survey: UnifiedSections | None = None
-    """the survey, where it is at hand"""
+    """the survey, where it is known already"""
     tentative: bool = False
-    """whether edge radii that the thickness cannot hold are let through, as on the way of a search"""
+    """whether edge radii that the thickness cannot hold are allowed, as in the midst of a search"""
 
     def moved_to(self, design: "UnifiedBlade") -> "ExactUnifiedBlade":
         full, channel, clearance = _channels_of(design, self.tip_knots)
@@ -307,7 +309,7 @@ class ExactUnifiedBlade(ExactBlade):
 
     @cached_property
     def survey(self) -> UnifiedSections:
-        """Stations from end to end on which the shape is judged."""
+        """Sections from end to end on which the shape is judged."""
         return self.sections(SURVEY) if self.known_survey is None else self.known_survey
 
     def sections(self, v: Reals) -> UnifiedSections:
@@ -319,9 +321,9 @@ class ExactUnifiedBlade(ExactBlade):
 def exact_unified_blade(
     design: "UnifiedBlade", tip_knots: Reals | None = None, *, tentative: bool = False
 ) -> ExactUnifiedBlade:
-    """The exact blade of a design, its channel continued as far as the noses need.
+    """The exact blade of a design, its channel continued as far as its rounded edges need.
 
-    `tip_knots` hold the knots of the meridian of a clearance surface; `tentative` lets through edge radii that the
+    `tip_knots` hold the knots of the meridian of a clearance surface; `tentative` allows edge radii that the
     thickness cannot hold. Raises DesignError where there is no such blade.
     """
     mapping = mapping_of(design.mapping, design.arrangement)
@@ -355,7 +357,7 @@ def _channels_of(
 
 
 def _reaches(stations: UnifiedSections) -> list[float]:
-    """How far in u the noses stand outside the channel, bounded by the sides' control points, with a margin."""
+    """How far, in u, the rounded edges reach past the channel's edge curves: by the control points, with a margin."""
     hull = concatenated([stations.plane.upper, stations.plane.lower], axis=-2)
     abscissae = np.real(hull[..., 0] / hull[..., 2] if hull.shape[-1] == 3 else hull[..., 0])
     lines, at = stations.lines, np.array([0.0, 1.0])
@@ -364,10 +366,10 @@ def _reaches(stations: UnifiedSections) -> list[float]:
     after = (np.max(abscissae, axis=-1) - np.real(lines.extents())) / densities[..., 1]
     reaches = [1.3 * float(np.max(past, initial=0.0)) + 0.01 for past in (before, after)]
     for value, edge in zip(reaches, ("leading", "trailing"), strict=True):
-        if value > REACH:
+        if value > LONGEST_NOSE:
             raise DesignError(
                 f"thickness_upper or thickness_lower: the nose at the {edge} edge stands {value:.2f} of the meridional "
-                f"length outside the channel, more than {REACH}: lower the thickness next to the edge, its radius or "
-                "the metal angle there"
+                f"length outside the channel, more than {LONGEST_NOSE}: lower the thickness next to the edge, its "
+                "radius or the metal angle there"
             )
     return reaches

@@ -65,9 +65,10 @@ class DiscreteConformalLines:
 
 
 ROUNDING = 1e-9
-"""share of the stretch by which a section may reach past it: rounding"""
+"""Share of the stretch by which a section may reach past it, as rounding makes it."""
 BESIDE = 1.0
-"""how far, in u, stream lines are laid out past the edges where the flow path reaches so far"""
+"""How far stream lines go on past the edges, in meridional extents of the blade, where the flow path reaches so far.
+A section whose rounded edge stands farther out is refused."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -141,7 +142,7 @@ class BladeStreamlines:
         return self.abscissa(np.array([1.0]))[..., 0]
 
     def reach(self) -> tuple[Reals, Reals]:
-        """Least and greatest abscissa (m,) that the stream lines are laid out to."""
+        """Least and greatest abscissa (m,) to which the stream lines are known."""
         ends = self.lines.starts[..., [0, -1]] - self._origin[..., None]
         ends = real_first(ends if self.rate is None else ends * self.rate[..., None], 2)
         return ends[:, 0], ends[:, 1]

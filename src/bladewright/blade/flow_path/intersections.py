@@ -13,16 +13,18 @@ from bladewright.nurbs.basis import Reals
 if TYPE_CHECKING:
     from bladewright.blade.flow_path.stream_surfaces import StreamSurfaces
 
-REACH = 0.05
-"""share of an edge curve by which it is continued past its ends to meet a wall that it was drawn short of"""
+EXTENSION = 0.05
+"""How far an edge curve is continued past each end, as a share of its parameter, to meet a wall that it was drawn
+short of. A longer one would let curves meet walls that they were not meant for."""
 SAMPLES = 65
-"""places on a stream line, and on an edge curve, between which meetings are looked for"""
+"""Points on a stream line, and on an edge curve, from whose polygons the intersections start: two intersections
+between neighbouring points may be missed."""
 STEPS = 40
-"""Newton's steps after which no meeting is expected any more; mostly four do"""
-NEWTON = 6
-"""Newton's steps from an interpolated place to the span fraction of a joint"""
+"""Newton steps after which no intersection is expected any more; mostly four suffice."""
+JOINT_STEPS = 6
+"""Newton steps from an interpolated point to the span fraction of a joint."""
 SAME = 1e-7
-"""meetings nearer than this, in the edge curve's parameter, are one"""
+"""Intersections nearer than this in the edge curve's parameter are one: far above rounding, far below any two."""
 
 Position = Callable[[Reals, int], Array]
 """points (..., m, k, 2) of m stream lines at t (m, k), or their derivatives of an order"""
@@ -35,9 +37,9 @@ def intersections(
 
     Returns t (..., m) on the stream lines, and the edge curve's own parameter (..., m).
     `name` is the edge curve's in what is refused, and `labels` (m,) the stream lines'. Raises DesignError where they do
-    not meet, the edge curve continued by REACH of itself at both ends, or meet more than once.
+    not meet, the edge curve continued by EXTENSION of itself at both ends, or meet more than once.
     """
-    t, q = np.linspace(*extent, SAMPLES), np.linspace(-REACH, 1.0 + REACH, SAMPLES)
+    t, q = np.linspace(*extent, SAMPLES), np.linspace(-EXTENSION, 1.0 + EXTENSION, SAMPLES)
     rows = real_first(position(np.broadcast_to(t, (len(labels), SAMPLES)), 0), 3)
     curve = real_first(edge.values(q), 2)
     at, own, met = _refined(position, edge, *_starts(rows, curve, t, q), extent)
@@ -78,7 +80,7 @@ def curve_joints(
     at = np.interp(levels[inside], q, v)
     own = np.interp(levels[inside], q, t)
     target = real_first(curve.values(levels[inside]), 2)
-    for _ in range(NEWTON):
+    for _ in range(JOINT_STEPS):
         point, along, across = (real_first(each, 2) for each in surfaces.at(own, at))
         turn, miss = cross2(along, across), target - point
         own = np.clip(own + cross2(miss, across) / turn, surfaces.low, surfaces.high)
@@ -126,7 +128,7 @@ def _refined(
         at, own = at_next, own_next
         if np.max(moved) < 1e-26:
             break
-    met = (moved < 1e-18) & (turn != 0.0) & (own >= -REACH - SAME) & (own <= 1.0 + REACH + SAME)
+    met = (moved < 1e-18) & (turn != 0.0) & (own >= -EXTENSION - SAME) & (own <= 1.0 + EXTENSION + SAME)
     room = 1e-9 * (high - low)
     return at, own, met & (at >= low - room) & (at <= high + room) & (np.square(steps[0]) < 1e-16 * (high - low) ** 2)
 
@@ -146,7 +148,7 @@ def _missed(name: str, label: str, row: Reals, curve: Reals) -> str:
     end = {0: "starts", len(row) - 1: "ends"}.get(int(j))
     where, cure = f"the stream line {end} at (x, r) = {_pair(row[j])} m", "lengthen hub and shroud there"
     if end is None:
-        where = f"the curve, continued by {100.0 * REACH:g}% of itself, ends at {_pair(curve[k])} m"
+        where = f"the curve, continued by {100.0 * EXTENSION:g}% of itself, ends at {_pair(curve[k])} m"
         cure = "lengthen the curve to hub and shroud"
     return (
         f"{name} does not meet the stream line {label}: they pass {distance[j, k]:.4g} m apart, where {where}; {cure}, "

@@ -265,11 +265,11 @@ def real_first(values: Array, axes: int) -> Reals:
 
 
 ARC = np.pi / 8.0
-"""largest angle of a piece of an arc [rad]"""
+"""Largest angle of one polynomial piece of an arc [rad]."""
 ARC_DEGREE = 11
-"""degree of a piece of an arc: the series of sine and cosine leaves 1e-17 of the radius"""
-ROOM = 1e-9
-"""share of a straight piece by which arcs may overlap on it: rounding"""
+"""Degree of such a piece: the truncated series of sine and cosine are off by 1e-17 of the radius at its ends."""
+ROUNDING = 1e-9
+"""Share of a straight piece by which the arcs on it may overlap, as rounding makes them."""
 
 
 def rounded_corners(points: Array, radii: Array, metre: float = 1.0) -> MeridionalCurve:
@@ -295,15 +295,15 @@ def rounded_corners(points: Array, radii: Array, metre: float = 1.0) -> Meridion
     pieces, lengths, smooth = [], [], []
     whole = float(np.sum(real_first(sides, 1)))
     for i in range(sides.shape[-1]):
-        if float(real_first(straight, 1)[i]) > ROOM * whole:
+        if float(real_first(straight, 1)[i]) > ROUNDING * whole:
             middle = starts[..., i, :] + 0.5 * straight[..., i, None] * along[..., i, :]
             pieces.append([middle, straight[..., i, None] * along[..., i, :]])
             lengths.append(straight[..., i])
             smooth.append(1)
         if i == sides.shape[-1] - 1:
             continue
-        if float(real_first(cut, 1)[i]) <= ROOM * whole:
-            smooth[-1] = int(float(real_first(turn, 1)[i]) ** 2 < ROOM**2)
+        if float(real_first(cut, 1)[i]) <= ROUNDING * whole:
+            smooth[-1] = int(float(real_first(turn, 1)[i]) ** 2 < ROUNDING**2)
             continue
         angle = 2.0 * np.arctan(half[..., i])
         end = points[..., i + 1, :] - cut[..., i, None] * along[..., i, :]
@@ -347,7 +347,7 @@ def _arc(start: Array, along: Array, radius: Array, angle: Array) -> list[list[A
 
 def _parts(angle: Array) -> int:
     size = float(real_first(angle, 0))
-    return max(1, int(np.ceil(max(size, -size) / ARC - ROOM)))
+    return max(1, int(np.ceil(max(size, -size) / ARC - ROUNDING)))
 
 
 def _padded(piece: list[Array], width: float, degree: int) -> Array:
@@ -372,7 +372,7 @@ def _check_room(sides: Reals, cut: Reals, metre: float) -> None:
     ends = np.concatenate([[0.0], cut, [0.0]])
     needed = ends[:-1] + ends[1:]
     for i, (asked, there) in enumerate(zip(needed, sides, strict=True)):
-        if asked > there * (1.0 + ROOM):
+        if asked > there * (1.0 + ROUNDING):
             beside = " and ".join(f"radii[{k - 1}]" for k in (i, i + 1) if 0 < k < len(ends) - 1)
             raise DesignError(
                 f"{beside}: the arcs take {asked / metre:.6g} of the straight piece between corners[{i}] and "

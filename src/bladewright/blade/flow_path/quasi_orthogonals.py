@@ -18,11 +18,12 @@ from bladewright.numerics.roots import level_crossings
 from bladewright.nurbs.basis import Reals
 
 NODES = 16
-"""Chebyshev nodes of a line on a panel, where its length is not linear in its own parameter"""
-FEW = 5
-"""the same where it is: the pieces are cubics"""
-SETTLED = 1e-15
-"""last terms of the series, of the line's extent, below which panels are not halved any more"""
+"""Chebyshev nodes of a curve on a panel, where its length is not linear in its own parameter. Panels are halved
+until the series ends in rounding."""
+FEW_NODES = 5
+"""The same where it is linear: the pieces are cubics, which four nodes hold exactly."""
+CONVERGED = 1e-15
+"""Last terms of the series, as a share of the curve's extent, below which a panel is not halved any more: rounding."""
 HALVINGS = 8
 
 
@@ -80,10 +81,10 @@ def matched_curve(curve: MeridionalCurve, match: PiecewisePolynomial, low: float
     levels = real_first(curve.fraction_at(curve.joints()), 1)
     own = np.sort(np.concatenate([parameters_at(match, levels, low, high), match.breaks[1:-1]]))
     ends = np.concatenate([[low], distinct(own, low, high), [high]])
-    count = FEW if curve.counted is not None and match.powers.shape[-2] == 2 else NODES
+    count = FEW_NODES if curve.counted is not None and match.powers.shape[-2] == 2 else NODES
     powers, tail = _fitted(curve, match, ends, count)
-    for _ in range(0 if count == FEW else HALVINGS):
-        poor = tail > SETTLED
+    for _ in range(0 if count == FEW_NODES else HALVINGS):
+        poor = tail > CONVERGED
         if not np.any(poor):
             break
         ends = np.sort(np.concatenate([ends, ((ends[:-1] + ends[1:]) / 2.0)[poor]]))

@@ -49,11 +49,11 @@ class StreamSurfaceMap(ABC):
     """The plane of a family of sections, and the way from it to space."""
 
     revolved: bool
-    """whether blades stand around the machine axis"""
+    """whether blades are arranged around the machine axis"""
     plane: str
     """the plane's coordinates by name"""
     keeps_ordinate: bool = True
-    """whether neighbours stand one pitch apart in the plane's ordinate everywhere"""
+    """whether neighbouring blades are one pitch apart in the plane's ordinate everywhere"""
     discrete: bool = False
     """whether its m' is counted, chord by chord, by the points of hub, shroud and stream surfaces"""
     keeps_angles: bool = True

@@ -1,4 +1,4 @@
-"""Native stream surfaces of a flow path: hub, shroud and what lies between them, in one parameter t along the flow."""
+"""Native stream surfaces of a flow path: hub, shroud and the surfaces between them, by a parameter t along the flow."""
 
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -23,18 +23,21 @@ from bladewright.nurbs.basis import Reals
 from bladewright.section.laws import stacked
 
 SAME = 1e-12
-"""span fractions nearer than this are the same"""
+"""Span fractions nearer than this are the same: rounding."""
 FOLDED = 1e-4
-"""share of its median below which the Jacobian of the map (t, v) -> (x, r) is taken for a fold"""
+"""Jacobian of the map (t, v) -> (x, r), as a share of its median, below which the surfaces count as folded. It is
+positive so that cells thinner than the grid on which it is looked for are refused too."""
 KEPT = 0.1
-"""how far before and behind the blade, in t, surfaces matched at its edges must not fold; they end where they do"""
+"""How far before and behind the blade, in t, surfaces that are matched at its edges must not fold: a tenth of the
+blade, for its rounded edges. Beyond, the flow path ends where they fold."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class StreamSurfaces:
     """The map (t, v) -> (x, r) in metres of a flow path: v from 0 at the hub to 1 at the shroud.
 
-    It is `Channelled`: `stream_lines(surfaces, mapping, v, -low, high - 1)` gives its stream lines, t in place of u.
+    It is a `MeridionalChannel`: `stream_lines(surfaces, mapping, v, -low, high - 1)` gives its stream lines,
+    t in place of u.
     """
 
     matched: tuple[PiecewisePolynomial, ...]
@@ -50,7 +53,7 @@ class StreamSurfaces:
     matches: tuple[PiecewisePolynomial, ...]
     """by t the fraction of each one's length, or of what its parameter counts"""
     chosen: tuple[int, ...] | None = None
-    """the only lines whose joints count, where just some places along the span are asked for"""
+    """the only curves whose joints count, where just some span fractions are of interest; none: all"""
 
     def wall(self, name: str) -> MeridionalCurve:
         """Hub or shroud by its own parameter."""

@@ -1,4 +1,4 @@
-"""Stream lines of the channel: position, meridional length and conformal length along u, and their inverse."""
+"""Stream lines as polynomials on panels of u: position, length or m' along them, and the inverse of these."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -16,17 +16,20 @@ from bladewright.numerics.elementary import Array, length
 from bladewright.nurbs.basis import Reals
 
 NODES = 24
-"""Chebyshev nodes of the density on a panel"""
-GUESS = 22
-"""Chebyshev places of the inverse that Newton starts from: one step from there mostly does"""
-MANY = 5
-"""panels from which on each point fetches its panel's coefficients, instead of one panel after the other"""
+"""Chebyshev nodes of the density da/du on a panel. Panels are halved until the series ends in rounding, so more
+nodes mean fewer and dearer panels."""
+INVERSE_NODES = 22
+"""Chebyshev nodes of the inverse u(a) on a panel, from which Newton's method starts: so many that one step mostly
+suffices."""
+MANY_PANELS = 5
+"""Number of panels from which on all points are evaluated at once with the coefficients of their panels, instead of
+panel after panel. It trades memory for calls and changes no result."""
 CONVERGED = 3e-8
-"""a Newton step this small leaves an error of its square: rounding"""
+"""Newton step in u at which the iteration ends: the error left is its square, which is rounding."""
 
 
 class MeridionalChannel(Protocol):
-    """A channel whose stream lines are piecewise polynomials of u."""
+    """A channel or flow path whose stream lines are piecewise polynomials of one parameter u."""
 
     def joints(self) -> Reals:
         """Where a stream line loses derivatives."""
@@ -110,7 +113,7 @@ class StreamLines:
     def batched_abscissa(self, u: Reals, series: Reals, starts: Reals) -> Reals:
         """The abscissa (..., m, k) at u (m, k) that a batch of series (..., m, p, n) and starts (..., m, p + 1) gives.
 
-        All of them stand at the same u, so each stream line is one product with Chebyshev polynomials.
+        All are evaluated at the same u, so that each stream line is one product with Chebyshev polynomials.
         """
         index, count = self._panel_index(u), series.shape[-1]
         own = chebyshev.chebvander(self._local(index, u), count - 1)
@@ -143,7 +146,7 @@ class StreamLines:
 
     @cached_property
     def _rough_inverse(self) -> Reals:
-        """Chebyshev series (m, p, GUESS) of u by abscissa on each panel, through places found by Newton from a line."""
+        """Chebyshev series (m, p, INVERSE_NODES) of u by the abscissa on each panel, by a few Newton steps."""
         extent = np.diff(self.starts)[..., None]
         local = _GUESS_PLACES
         for _ in range(4):
@@ -256,12 +259,12 @@ def _on_panels(
 
 
 def _patched(index: Array, values: Array, on_panel: Callable[[Panel, Array], Array]) -> Array:
-    """The panels' functions put together; a panel is asked only for the columns in which it has points."""
+    """The functions of the panels at points of each; a panel is evaluated only in the columns where it has points."""
     counts = np.bincount(index.ravel())
     main = int(np.argmax(counts))
     if counts[main] == index.size:
         return on_panel(main, values)
-    if np.count_nonzero(counts) >= MANY:
+    if np.count_nonzero(counts) >= MANY_PANELS:
         return on_panel(index, values)
     result = np.array(on_panel(main, values))
     for panel in np.flatnonzero(counts):
@@ -319,5 +322,5 @@ def _integration() -> Reals:
 _NODE_PLACES = np.cos(np.pi * (np.arange(NODES) + 0.5) / NODES)
 _TO_SERIES = np.linalg.inv(chebyshev.chebvander(_NODE_PLACES, NODES - 1))
 _INTEGRATED = _integration()
-_GUESS_PLACES = np.cos(np.pi * (np.arange(GUESS) + 0.5) / GUESS)
-_GUESS_SERIES = np.linalg.inv(chebyshev.chebvander(_GUESS_PLACES, GUESS - 1))
+_GUESS_PLACES = np.cos(np.pi * (np.arange(INVERSE_NODES) + 0.5) / INVERSE_NODES)
+_GUESS_SERIES = np.linalg.inv(chebyshev.chebvander(_GUESS_PLACES, INVERSE_NODES - 1))

@@ -1,4 +1,4 @@
-"""The native blade: named surfaces in metres, with what was asked of them and what they reach."""
+"""The native blade: named surfaces in metres, how they are built, and how well they hold what the design asks for."""
 
 from __future__ import annotations
 

@@ -67,11 +67,11 @@ class Conformance:
 
     metal_angle_at_walls: float | None
     """of the camber's angle at both edges from the metal angle, at hub and shroud; none for sections of families, whose
-    camber need not stand upright on the nose [deg]"""
+    camber need not be normal to the rounded edge [deg]"""
     metal_angle_between: float | None
     """the same at every span between [deg]"""
     edge_radius: float | None
-    """of the radius of round edges in the stream surface from the radius asked for, or from the exact section's,
+    """of the radius of round edges in the stream surface from the design's, or from the exact section's,
     relative; none where no edge is round [-]"""
     edge_tangent_planes: float | None
     """angle between the sides' tangent planes across round edges [rad]"""
@@ -117,15 +117,16 @@ LIMITS = {
     "walls": 1e-7,
 }
 FLAT = 100.0
-"""radius in chords from which on an edge is taken for flat, as the back face of a wedge diffuser's vane is"""
+"""Radius [chords] from which on an edge counts as flat, as the back face of a wedge diffuser's vane is: its radius
+is not compared."""
 CLEARANCE = 1e-8
-"""limit of the clearance's miss"""
+"""Largest error of the clearance [chords], as `docs/nomenclature.md` promises."""
 DEVELOPED = 1e-6
-"""limit of the twist of developable blades [deg]"""
+"""Largest twist of developable sides [deg]: rounding, with a margin."""
 
 
 def conformance_of(blade: "Blade") -> Conformance:
-    """The promises of a blade, measured at hub and shroud and at three places in each of the surface's knot spans.
+    """The conformance of a blade, measured at hub and shroud and at three places in each of the surface's knot spans.
 
     The mapping of the paper keeps neither angles nor radii: its limits are those of the edges and the walls only.
     """

@@ -22,7 +22,8 @@ from bladewright.nurbs.surface import Surface
 from bladewright.nurbs.trimmed import TrimmedSurface
 
 FOLLOWED = 1e-9
-"""distance of an outline's image from the curve it follows, of the chord, besides what that lies off the wall"""
+"""Largest distance [chords] of the image of an end's outline from the side's edge, beyond what that edge lies off
+the wall: a hundredth of what ends may be off their walls."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -77,7 +78,7 @@ class WallCurve:
         self.across, self._places, self._u = across, places, u
 
     def __call__(self, s: Reals) -> tuple[Array, Array]:
-        """u and theta or y (len(s),) of the feet of the end's points on the wall's meridian."""
+        """u and theta, or y (len(s),), of the points of the wall's meridian nearest to the end's points."""
         points = self.end(s)
         if self.revolved:
             radius = length(points[..., 1:])

@@ -21,19 +21,19 @@ from bladewright.nurbs.revolution import Revolution
 from bladewright.nurbs.surface import Surface
 from bladewright.nurbs.trimmed import TrimmedSurface
 
-POINTS = 10
-"""Gauss points in a knot span of a side: exact to degree 19"""
+SIDE_POINTS = 10
+"""Gauss points in a knot span of a side: exact for polynomials to degree 19."""
 STEP = 1e-30
-"""imaginary step of a point"""
-ALL = 10
-"""moments: 1, x, y, z, xx, yy, zz, xy, yz, zx"""
+"""Complex step of a point [m]: its square vanishes, so that the derivative is exact to rounding."""
+MOMENTS = 10
+"""Number of moments: of 1, x, y, z, xx, yy, zz, xy, yz, zx."""
 Density = Callable[[Array, Array], Array]
 
 
-def side_moments(side: Surface, middle: float, *, revolved: bool, count: int = ALL) -> Array:
+def side_moments(side: Surface, middle: float, *, revolved: bool, count: int = MOMENTS) -> Array:
     """Integrals (count,) of 1, x, y, z, xx, yy, zz, xy, yz, zx that a side gives a volume, along its own normal.
 
-    `middle` is the theta, or y in a cascade, at which the field vanishes: amid the blade, so that
+    `middle` is the theta, or y in a cascade, at which the field vanishes: in the middle of the blade, so that
     what passes through the gap between sides and walls stays small. Control points may be complex.
     """
     u, v, weight = _places(side)
@@ -47,7 +47,7 @@ def area_vector(side: Surface) -> Array:
     return np.einsum("uv,uvk->k", weight, np.cross(side.grid(u, v, 1, 0), side.grid(u, v, 0, 1)))
 
 
-def moment_gradient(side: Surface, middle: float, *, revolved: bool, count: int = ALL) -> Reals:
+def moment_gradient(side: Surface, middle: float, *, revolved: bool, count: int = MOMENTS) -> Reals:
     """Derivatives (count, n_u, n_v, 3) of the first of a side's moments by its real control points.
 
     The density f(S, n) is linear in n = S_u x S_v, so that its change is
@@ -74,7 +74,7 @@ def moment_gradient(side: Surface, middle: float, *, revolved: bool, count: int 
 
 
 def _places(side: Surface) -> tuple[Reals, Reals, Reals]:
-    (u, along), (v, across) = (panels(breaks(knots), POINTS) for knots in (side.knots_u, side.knots_v))
+    (u, along), (v, across) = (panels(breaks(knots), SIDE_POINTS) for knots in (side.knots_u, side.knots_v))
     return u, v, along[:, None] * across
 
 
@@ -111,8 +111,8 @@ def _along_y(point: Array, normal: Array, middle: float, count: int) -> Array:
     return np.stack(primitives[:count], axis=-1) * normal[..., 1, None]
 
 
-ALONG = 12
-"""Gauss points in a knot span of an outline"""
+OUTLINE_POINTS = 12
+"""Gauss points in a knot span of the outline of an end."""
 Faces = Mapping[str, Surface | TrimmedSurface]
 
 
@@ -151,7 +151,7 @@ def blade_moments(surfaces: Faces, outward: Mapping[str, int], *, revolved: bool
 
 
 def middle_of(surfaces: Faces) -> float:
-    """theta, or y in a cascade, amid the first of the ends."""
+    """theta, or y in a cascade, in the middle of the first of the ends."""
     return _middle(next(face for face in surfaces.values() if isinstance(face, TrimmedSurface)))
 
 
@@ -174,7 +174,7 @@ def _end(end: TrimmedSurface) -> tuple[Array, Array]:
     size: Array = np.zeros(())
     vector: Array = np.zeros(3)
     for curve in end.boundary:
-        s, weight = panels(breaks(curve.knots), ALONG)
+        s, weight = panels(breaks(curve.knots), OUTLINE_POINTS)
         uv, slope = curve(s), curve.derivative(s)
         point = end.surface(uv[:, 0], uv[:, 1])
         along, across = (

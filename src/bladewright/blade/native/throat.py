@@ -24,17 +24,18 @@ from bladewright.nurbs.surface import Surface
 from bladewright.section.checks import UNITS
 
 PER_SPAN = 4
-"""places of the throat in a knot span along v"""
+"""Gauss points in a knot span along v, at which the throat is located."""
 SAMPLES = (1.0 - np.cos(np.pi * np.linspace(0.0, 1.0, 97))) / 2.0
-"""places along a side from which the closest pair is sought"""
+"""Parameters along a side among which the closest pair of points is first looked for, denser towards the edges."""
 NEARBY = np.linspace(-1.0, 1.0, 9)
-"""places about the closest pair so far, in units of a window that shrinks"""
+"""Candidates about the closest pair so far, in units of a window that shrinks."""
 WINDOW, SHRINKING, WINDOWS = 0.05, 0.4, 14
-"""first half width of the window in s, the factor from one to the next, and how many there are"""
+"""Half width of the first window in s, the factor from one window to the next, and how many there are: the last is
+3e-7 wide, from where Newton's method converges."""
 ROUNDING = 1e-12
-"""relative rounding of a distance"""
+"""Relative rounding of a distance."""
 STEPS = 8
-"""Newton's steps after that"""
+"""Newton steps after the last window."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
