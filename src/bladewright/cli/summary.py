@@ -15,7 +15,9 @@ the distance of its walls from hub and shroud, in chords, which is what a blade 
 SMOOTHNESS_SPANS = (0.0, 0.5, 1.0)
 """Span fractions at which smoothness is reported."""
 LINE_NAMES = {"upper": "upper side", "lower": "lower side", "camber": "camber line"}
+"""What the lines of a section are called in the table."""
 QUANTITY_NAMES = {"curvature": "curvature", "slope": "its slope"}
+"""What is compared at the joints of a line, and its words in the table."""
 _MILLIMETRES = {
     "volume": ("mm3", 1e9),
     "area": ("mm2", 1e6),

@@ -17,6 +17,18 @@ CONTENT_FILE = "arrays.npz"
 """Name of the file in which the process leaves the content of the mesh file."""
 STEP_PREFIX = "@step "
 """Beginning of the lines of output in which the process names its step."""
+WORKER = "bladewright.meshing.worker"
+"""The module that is run in the process."""
+MISSING = (
+    "gmsh is not installed, which meshes the passage: install it with pip install 'bladewright[mesh]', or give the "
+    "STEP file of `bladewright build --body passage` to another mesher"
+)
+"""The message where gmsh is not installed."""
+QUOTED_LINES = 12
+"""Last lines of gmsh's output that an error quotes where the process ended without an answer: enough for gmsh's own
+error and the steps before it, and still one paragraph."""
+Listener = Callable[[str], object]
+"""Is called with one line of text."""
 
 
 class Message:
@@ -88,19 +100,6 @@ class Answer(Message):
     """nodes before the file was written"""
     tetrahedra: int = 0
     """tetrahedra before the file was written"""
-
-
-WORKER = "bladewright.meshing.worker"
-MISSING = (
-    "gmsh is not installed, which meshes the passage: install it with pip install 'bladewright[mesh]', or give the "
-    "STEP file of `bladewright build --body passage` to another mesher"
-)
-QUOTED_LINES = 12
-"""Last lines of gmsh's output that an error quotes where the process ended without an answer: enough for gmsh's own
-error and the steps before it, and still one paragraph."""
-
-Listener = Callable[[str], object]
-"""Is called with one line of text."""
 
 
 def check_installed() -> None:

@@ -12,6 +12,13 @@ from bladewright.meshing.lazy_gmsh import gmsh
 from bladewright.meshing.names import GROUP_PREFIX
 from bladewright.meshing.quality import Indices
 
+Lines = Iterator[str]
+"""Lines of a file of gmsh's own format, version 4.1."""
+Content = dict[str, Any]
+"""`nodes` (n, 3) in the file's unit, `tetrahedra` (k, 4), and for each group of faces `group NAME` (m, 3)."""
+TRIANGLE, TETRAHEDRON = 5, 10
+"""Numbers of the element types in SU2 files, which are those of VTK."""
+
 
 def write_mesh(path: Path, scale: float) -> None:
     """Write gmsh's current mesh in the format that the path's ending names, with lengths multiplied by `scale`.
@@ -40,10 +47,6 @@ def _name_entities() -> None:
     for dimension, group in gmsh.model.getPhysicalGroups():
         for entity in gmsh.model.getEntitiesForPhysicalGroup(dimension, group):
             gmsh.model.setEntityName(dimension, entity, gmsh.model.getPhysicalName(dimension, group))
-
-
-Lines = Iterator[str]
-"""Lines of a file of gmsh's own format, version 4.1."""
 
 
 def rescaled(lines: Lines, scale: float) -> Lines:
@@ -106,12 +109,6 @@ def _scaled(line: str, first: int, last: int, scale: float) -> str:
     words = line.split()
     words[first:last] = [repr(float(word) * scale) for word in words[first:last]]
     return " ".join(words) + "\n"
-
-
-Content = dict[str, Any]
-"""`nodes` (n, 3) in the file's unit, `tetrahedra` (k, 4), and for each group of faces `group NAME` (m, 3)."""
-TRIANGLE, TETRAHEDRON = 5, 10
-"""Numbers of the element types in SU2 files, which are those of VTK."""
 
 
 def read_mesh(path: Path) -> Content:

@@ -14,7 +14,7 @@ from bladewright.nurbs.trimmed import TrimmedSurface
 
 MISMATCH = 1e-9
 """Largest distance of a node from its partner's image, in pitches: nodes are moved to the image itself, so that only
-the rounding of the file's digits is left."""
+the rounding of the file's digits is left, 1e-15 in the examples of design/meshes.md."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

@@ -16,6 +16,22 @@ from bladewright.nurbs.trimmed import TrimmedSurface
 
 WALLS = ("hub", "shroud")
 """Beginnings of the names of the faces between which a tip gap may lie."""
+DEFAULT_TETRAHEDRA = 150_000
+"""Expected tetrahedra where no size is given: enough to look at a passage or to try a solver, and made in
+9 to 69 s for every built-in example (design/meshes.md)."""
+MAX_TETRAHEDRA = 5_000_000
+"""Expected tetrahedra above which a size is refused: a mistyped size is then a message at once, and not a run of
+hours."""
+TETRAHEDRA_PER_CUBE = 3.6
+"""Tetrahedra in a cube with the edge of the size asked for [-], the mean over the examples in design/meshes.py."""
+GROWTH = 0.3
+"""Increase of the element size over the distance from a source [-]. A smaller value makes smoother meshes with more
+elements; 0.3 corresponds to neighbours about 1.3 times as large."""
+SMALLEST_OF_SIZE = 0.1
+"""Smallest size, in sizes of the open passage, where none is given. A lower value resolves tighter edges and narrower
+gaps; the number of elements along them grows with its reciprocal."""
+ELEMENTS_PER_TURN = 12.0
+"""Elements on a full circle of an edge's radius where no number is given [-]: one for every 30 degrees of turning."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -104,24 +120,6 @@ def _area(rim: Reals) -> float:
     """Area [m^2] within a closed polygon of points (n, 3)."""
     ahead = np.roll(rim, -1, axis=0)
     return 0.5 * float(length(np.cross(rim, ahead).sum(axis=0)))
-
-
-DEFAULT_TETRAHEDRA = 150_000
-"""Expected tetrahedra where no size is given: enough to look at a passage or to try a solver, few enough to wait
-for."""
-MAX_TETRAHEDRA = 5_000_000
-"""Expected tetrahedra above which a size is refused: a mistyped size is then a message at once, and not a run of
-hours."""
-TETRAHEDRA_PER_CUBE = 3.6
-"""Tetrahedra in a cube with the edge of the size asked for [-], the mean over the examples in design/meshes.py."""
-GROWTH = 0.3
-"""Increase of the element size over the distance from a source [-]. A smaller value makes smoother meshes with more
-elements; 0.3 corresponds to neighbours about 1.3 times as large."""
-SMALLEST_OF_SIZE = 0.1
-"""Smallest size, in sizes of the open passage, where none is given. A lower value resolves tighter edges and narrower
-gaps; the number of elements along them grows with its reciprocal."""
-ELEMENTS_PER_TURN = 12.0
-"""Elements on a full circle of an edge's radius where no number is given [-]: one for every 30 degrees of turning."""
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -21,6 +21,7 @@ if TYPE_CHECKING:
 Index = NDArray[np.intp]
 """Indices (m,) of points of the cloud."""
 SIDES = ("upper", "lower")
+"""Names of the sides of a section or a blade."""
 WORST_POINTS = 500
 """Points farthest from the blade that are always drawn, however many others are left out."""
 DEVIATION_COLOURS = LinearSegmentedColormap.from_list(
@@ -29,6 +30,15 @@ DEVIATION_COLOURS = LinearSegmentedColormap.from_list(
 """Colours of deviations: blue inside the blade, red outside."""
 ROUND_NUMBERS = (1.0, 1.2, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0)
 """Round numbers of one decade, at which a scale of colours may end."""
+OUTLINE_POINTS = 801
+"""Points of each side of an outline, between which points of the cloud are placed by linear interpolation."""
+BLUNT_FACES = ("leading_edge", "trailing_edge")
+"""Names of the faces of blunt edges."""
+BAND, WIDEST_BAND = 0.04, 0.16
+"""Half height in v of the band whose points are drawn beside a section, and the largest to which it is doubled while it
+holds too few points. A high band shows deviations of sections further away."""
+BAND_POINTS = 80
+"""Points in a band that are enough: a section of fewer has gaps that its deviations cannot be read across."""
 
 
 class DistanceStatistics(Protocol):
@@ -139,17 +149,6 @@ def cross_out(axes: Axes, abscissae: Reals, ordinates: Reals, few: int) -> None:
 def count_of(number: int, what: str) -> str:
     """A number with separated thousands, and what it counts, in the singular or the plural."""
     return f"{number:,} {what}{'' if number == 1 else 's'}"
-
-
-OUTLINE_POINTS = 801
-"""Points of each side of an outline, between which points of the cloud are placed by linear interpolation."""
-BLUNT_FACES = ("leading_edge", "trailing_edge")
-"""Names of the faces of blunt edges."""
-BAND, WIDEST_BAND = 0.04, 0.16
-"""Half height in v of the band whose points are drawn beside a section, and the largest to which it is doubled while it
-holds too few points. A high band shows deviations of sections further away."""
-BAND_POINTS = 80
-"""Points in a band that are enough: a section of fewer has gaps that its deviations cannot be read across."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

@@ -37,6 +37,23 @@ CELL_POINTS = 10
 MAX_CELLS = 320
 """Most cells along the outline of the map: more are smaller than what its panel shows."""
 ABSCISSA = "u:  trailing edge  ←  lower side  →  leading edge  ←  upper side  →  trailing edge"
+INSIDE, OUTSIDE = "#2f7fb5", "#c4553f"
+"""Colours of deviations into and out of the section."""
+MARKER, SMALL_MARKER = 2.6, 1.2
+"""Sizes of the marks of few and of many points [points]."""
+TOLERANCE_SHARE = 0.4
+"""Largest distance, in largest thicknesses of the section, at which the tolerance is drawn inside it: a line further
+inside would fold at the edges."""
+LEAST_EDGE_WINDOW = 0.01
+"""Least half width of the close-up of an edge, in chords."""
+CROSSED_OUTLIERS = 60
+"""Most outliers beside a section that are all crossed; of more, those beyond the panel are left out, as they would line
+its border."""
+SECTION_POINTS = 4000
+"""Most points drawn beside a section: more make the file large and add nothing that can be seen."""
+DRAWN_HEIGHT = 0.035
+"""Largest height, in chords, with which deviations are drawn, but for the largest hundredth of them: the shape of the
+section stays clear."""
 
 
 def draw_map(axes: Axes, fit: FitResult) -> None:
@@ -136,25 +153,6 @@ def _label_map(axes: Axes) -> None:
     axes.axvline(0.0, color=SOFT, linewidth=0.9, zorder=0.9)
     axes.xaxis.set_major_locator(FixedLocator(np.linspace(-1.0, 1.0, 11).tolist()))
     axes.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{abs(value):g}"))
-
-
-INSIDE, OUTSIDE = "#2f7fb5", "#c4553f"
-"""Colours of deviations into and out of the section."""
-MARKER, SMALL_MARKER = 2.6, 1.2
-"""Sizes of the marks of few and of many points [points]."""
-TOLERANCE_SHARE = 0.4
-"""Largest distance, in largest thicknesses of the section, at which the tolerance is drawn inside it: a line further
-inside would fold at the edges."""
-LEAST_EDGE_WINDOW = 0.01
-"""Least half width of the close-up of an edge, in chords."""
-CROSSED_OUTLIERS = 60
-"""Most outliers beside a section that are all crossed; of more, those beyond the panel are left out, as they would line
-its border."""
-SECTION_POINTS = 4000
-"""Most points drawn beside a section: more make the file large and add nothing that can be seen."""
-DRAWN_HEIGHT = 0.035
-"""Largest height, in chords, with which deviations are drawn, but for the largest hundredth of them: the shape of the
-section stays clear."""
 
 
 def magnification(fit: FitResult) -> float:

@@ -36,11 +36,94 @@ if TYPE_CHECKING:
 
 
 REGIONS = ("sides", "leading edge", "trailing edge", "ends")
+"""Regions of the blade in the table of distances."""
 EDGE_COLOURS = {"leading edge": ORANGE, "trailing edge": GREEN}
+"""Colours of the histograms of the regions at the edges."""
 TABLE_COLUMNS = (0.415, 0.565, 0.715, 0.86, 1.0)
 """Right ends of the columns of the table after the first, in widths of the panel."""
 FAILURE_LINES = 6
 """Most lines of failures under the table, which its panel has room for."""
+SPAN_SHARES = (0.08, 0.5, 0.92)
+"""Where sections are drawn, in fractions of the span that the cloud covers: near both ends and in the middle."""
+
+
+def fit_picture(fit: FitResult, path: str | Path) -> None:
+    """Draw a fit as PNG, SVG or PDF, by the ending of `path`; the file is written whole or not at all.
+
+    It shows the deviations on the unwrapped blade (of a section: along its outline), sections with magnified
+    deviations, close-ups of both edges, the distribution of the deviations, the curvature of the sides and the figures.
+    Of large clouds a part is drawn, and the panel says so; the points farthest off are always drawn, and on the map all
+    outliers. Raises FileError where the ending is another or the path cannot be written.
+    """
+    checked_path(path)
+    figure = fit_sheet(fit)
+    with drawing_style():
+        write_figure(figure, path, SHEET_DPI)
+
+
+def fit_sheet(fit: FitResult) -> Figure:
+    """The figure that `fit_picture` writes."""
+    with drawing_style():
+        return with_fixed_layout(_blade_sheet(fit) if fit.cloud.shape[-1] == 3 else _section_sheet(fit))
+
+
+def _blade_sheet(fit: FitResult) -> Figure:
+    blade = fit.built
+    figure = Figure(figsize=(16.0, 15.0))
+    draw_header(figure, fit.design.name, fit.design.description, _header(fit))
+    top, centre, bottom = rows(figure, 4.5, 4.4, 5.0)
+    axes = top.subplots(1, 2, width_ratios=[2.1, 1.0])
+    draw_map(axes[0], fit)
+    draw_table(axes[1], fit)
+    outlines = [outline_at(fit, span_at_share(fit, share)) for share in SPAN_SHARES]
+    for place, outline in zip(centre.subplots(1, 3), outlines, strict=True):
+        name = _place(outline.section.span, blade.design.ends)
+        draw_magnified(place, fit, outline, f"{name[:1].upper()}{name[1:]} ± {100.0 * outline.band:.2g} %")
+    axes = bottom.subplots(1, 4, width_ratios=[1.0, 1.0, 1.1, 1.3])
+    for place, region in zip(axes, ("leading edge", "trailing edge"), strict=False):
+        outline = outline_at(fit, worst_span(fit, region))
+        where = f", {_place(outline.section.span, blade.design.ends)}"
+        draw_edge_points(place, fit, outline, trailing=region == "trailing edge", where=where)
+    draw_histogram(axes[2], fit)
+    draw_extrema(axes[3], fit, [blade.section(v) for v in (0.0, 0.5, 1.0)], blade.design.ends)
+    return figure
+
+
+def _section_sheet(fit: FitResult) -> Figure:
+    figure = Figure(figsize=(16.0, 14.0))
+    draw_header(figure, fit.design.name, fit.design.description, _header(fit))
+    top, centre, bottom = rows(figure, 3.8, 5.4, 4.6)
+    axes = top.subplots(1, 2, width_ratios=[2.1, 1.0])
+    draw_outline_deviation(axes[0], fit)
+    draw_table(axes[1], fit)
+    outline = outline_at(fit, 0.0)
+    axes = centre.subplots(1, 3, width_ratios=[1.5, 1.0, 1.0])
+    draw_magnified(axes[0], fit, outline, "Section")
+    draw_edge_points(axes[1], fit, outline, trailing=False, where="")
+    draw_edge_points(axes[2], fit, outline, trailing=True, where="")
+    axes = bottom.subplots(1, 2)
+    draw_histogram(axes[0], fit)
+    draw_extrema(axes[1], fit, [fit.built])
+    return figure
+
+
+def _header(fit: FitResult) -> list[str]:
+    outliers = len(fit.inliers) - int(np.count_nonzero(fit.inliers))
+    header = [
+        "passed" if fit.passed else "NOT PASSED",
+        f"{count_of(len(fit.cloud), 'point')}, {count_of(outliers, 'outlier')}",
+        f"mean {fit.deviation.mean * MILLIMETRES:.3g} mm, largest {fit.deviation.maximum * MILLIMETRES:.3g} mm",
+        f"noise {fit.noise * MILLIMETRES:.2g} mm",
+        f"chord {float(np.real(fit.built.chord)) * MILLIMETRES:.4g} mm",
+        count_of(len(fit.estimates), "free parameter"),
+    ]
+    if fit.tolerance is not None:
+        header.insert(3, f"tolerance {fit.tolerance * MILLIMETRES:.3g} mm")
+    return header
+
+
+def _place(v: float, ends: tuple[str, str]) -> str:
+    return span_name(v if v in {0.0, 1.0} else round(v, 2), ends)
 
 
 def draw_histogram(axes: Axes, fit: FitResult) -> None:
@@ -132,86 +215,3 @@ def draw_table(axes: Axes, fit: FitResult) -> None:
 
 def _beyond(fit: FitResult, of: Any) -> bool:
     return fit.tolerance is not None and of.maximum > fit.tolerance
-
-
-SPAN_SHARES = (0.08, 0.5, 0.92)
-"""Where sections are drawn, in fractions of the span that the cloud covers: near both ends and in the middle."""
-
-
-def fit_picture(fit: FitResult, path: str | Path) -> None:
-    """Draw a fit as PNG, SVG or PDF, by the ending of `path`; the file is written whole or not at all.
-
-    It shows the deviations on the unwrapped blade (of a section: along its outline), sections with magnified
-    deviations, close-ups of both edges, the distribution of the deviations, the curvature of the sides and the figures.
-    Of large clouds a part is drawn, and the panel says so; the points farthest off are always drawn, and on the map all
-    outliers. Raises FileError where the ending is another or the path cannot be written.
-    """
-    checked_path(path)
-    figure = fit_sheet(fit)
-    with drawing_style():
-        write_figure(figure, path, SHEET_DPI)
-
-
-def fit_sheet(fit: FitResult) -> Figure:
-    """The figure that `fit_picture` writes."""
-    with drawing_style():
-        return with_fixed_layout(_blade_sheet(fit) if fit.cloud.shape[-1] == 3 else _section_sheet(fit))
-
-
-def _blade_sheet(fit: FitResult) -> Figure:
-    blade = fit.built
-    figure = Figure(figsize=(16.0, 15.0))
-    draw_header(figure, fit.design.name, fit.design.description, _header(fit))
-    top, centre, bottom = rows(figure, 4.5, 4.4, 5.0)
-    axes = top.subplots(1, 2, width_ratios=[2.1, 1.0])
-    draw_map(axes[0], fit)
-    draw_table(axes[1], fit)
-    outlines = [outline_at(fit, span_at_share(fit, share)) for share in SPAN_SHARES]
-    for place, outline in zip(centre.subplots(1, 3), outlines, strict=True):
-        name = _place(outline.section.span, blade.design.ends)
-        draw_magnified(place, fit, outline, f"{name[:1].upper()}{name[1:]} ± {100.0 * outline.band:.2g} %")
-    axes = bottom.subplots(1, 4, width_ratios=[1.0, 1.0, 1.1, 1.3])
-    for place, region in zip(axes, ("leading edge", "trailing edge"), strict=False):
-        outline = outline_at(fit, worst_span(fit, region))
-        where = f", {_place(outline.section.span, blade.design.ends)}"
-        draw_edge_points(place, fit, outline, trailing=region == "trailing edge", where=where)
-    draw_histogram(axes[2], fit)
-    draw_extrema(axes[3], fit, [blade.section(v) for v in (0.0, 0.5, 1.0)], blade.design.ends)
-    return figure
-
-
-def _section_sheet(fit: FitResult) -> Figure:
-    figure = Figure(figsize=(16.0, 14.0))
-    draw_header(figure, fit.design.name, fit.design.description, _header(fit))
-    top, centre, bottom = rows(figure, 3.8, 5.4, 4.6)
-    axes = top.subplots(1, 2, width_ratios=[2.1, 1.0])
-    draw_outline_deviation(axes[0], fit)
-    draw_table(axes[1], fit)
-    outline = outline_at(fit, 0.0)
-    axes = centre.subplots(1, 3, width_ratios=[1.5, 1.0, 1.0])
-    draw_magnified(axes[0], fit, outline, "Section")
-    draw_edge_points(axes[1], fit, outline, trailing=False, where="")
-    draw_edge_points(axes[2], fit, outline, trailing=True, where="")
-    axes = bottom.subplots(1, 2)
-    draw_histogram(axes[0], fit)
-    draw_extrema(axes[1], fit, [fit.built])
-    return figure
-
-
-def _header(fit: FitResult) -> list[str]:
-    outliers = len(fit.inliers) - int(np.count_nonzero(fit.inliers))
-    header = [
-        "passed" if fit.passed else "NOT PASSED",
-        f"{count_of(len(fit.cloud), 'point')}, {count_of(outliers, 'outlier')}",
-        f"mean {fit.deviation.mean * MILLIMETRES:.3g} mm, largest {fit.deviation.maximum * MILLIMETRES:.3g} mm",
-        f"noise {fit.noise * MILLIMETRES:.2g} mm",
-        f"chord {float(np.real(fit.built.chord)) * MILLIMETRES:.4g} mm",
-        count_of(len(fit.estimates), "free parameter"),
-    ]
-    if fit.tolerance is not None:
-        header.insert(3, f"tolerance {fit.tolerance * MILLIMETRES:.3g} mm")
-    return header
-
-
-def _place(v: float, ends: tuple[str, str]) -> str:
-    return span_name(v if v in {0.0, 1.0} else round(v, 2), ends)

@@ -24,6 +24,10 @@ from bladewright.views.style import (
 if TYPE_CHECKING:
     from bladewright.section.section import Section
 
+MAX_CONTROL_POINTS = 16
+"""Most control points along the chord of a row of laws that gets a panel. A legend of more covers other panels; such
+rows are the points of a given profile, which say nothing as laws."""
+
 
 def control_places(count: int) -> Reals:
     """Greville abscissae (count,) of a law's control points in [0, 1]; a constant stands in the middle."""
@@ -45,11 +49,6 @@ def draw_thickness_laws(axes: Axes, design: Design, sections: Sequence["Section"
     axes.set_xlim(-0.03, 1.03)
     label_axes(axes, "Half thickness along the chord", CAMBER_LABEL, f"half thickness [% of {design.reference_length}]")
     sides_legend(axes, [section.span for section in sections], ends)
-
-
-MAX_CONTROL_POINTS = 16
-"""Most control points along the chord of a row of laws that gets a panel. A legend of more covers other panels; such
-rows are the points of a given profile, which say nothing as laws."""
 
 
 class Panel(NamedTuple):
@@ -87,6 +86,7 @@ _KINDS = (
 )
 """Kinds of laws; the first that a law belongs to is taken."""
 _REST = _Kind("Further parameters", "value [-]", 1.0, lambda *_: True)
+"""The kind of a law that belongs to no other."""
 
 
 class _Row(NamedTuple):

@@ -22,6 +22,10 @@ if TYPE_CHECKING:
 
 VIEW = (900, 760)
 """Largest width and height of the view in space [pixels]: what its panel of the sheet shows."""
+Rows = list[tuple[str, str]]
+"""Names and values of a table; a heading has no value."""
+ROWS = 24
+"""Fewest rows that the height of a panel is divided into, so that short tables are not spread over all of it."""
 
 
 def passage_sheet(passage: "Passage") -> Figure:
@@ -91,12 +95,6 @@ def boundary(passage: "SectionPassage", name: str) -> Reals:
     curve = passage.curves[name]
     low, high = curve.domain
     return developed(passage.section, curve(low + (high - low) * np.linspace(0.0, 1.0, 601)))
-
-
-Rows = list[tuple[str, str]]
-"""Names and values of a table; a heading has no value."""
-ROWS = 24
-"""Fewest rows that the height of a panel is divided into, so that short tables are not spread over all of it."""
 
 
 def passage_header(passage: "Passage") -> list[str]:

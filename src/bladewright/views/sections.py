@@ -42,6 +42,16 @@ COORDINATES = {
 nearly so."""
 ISOLATED_PITCH = 4.0
 """Pitch in chords from which on a neighbour is not drawn: the section would shrink to a line beside it."""
+EDGE_WINDOW_RADII, EDGE_WINDOW_CHORDS = 5.0, 0.15
+"""Half width of the close-up of an edge, in edge radii and in chords, whichever is less: the edge's circle takes a
+fifth of the panel, and the other edge stays outside."""
+FLAT_EDGE_RADIUS = 100.0
+"""Radius in chords from which on an edge is called flat: its circle cannot be told from a straight line."""
+SHARP_EDGE_SIZE = 0.01
+"""Length in chords that sets the close-up of a sharp edge, which has no radius."""
+AT_EDGE = {"m'-theta": (r"$m'\,r_e$ [mm]", r"$\theta\,r_e$ [mm]")}
+"""Names of the axes of close-ups, where they differ from `COORDINATES`: lengths are true at the edge, at the radius
+r_e."""
 
 
 def cosine_spacing(count: int = 201) -> Reals:
@@ -142,18 +152,6 @@ def narrowest_gap(shape: Reals, neighbour: Reals) -> Reals:
     apart = length(shape[:, None] - neighbour[None])
     first, second = np.unravel_index(int(np.argmin(apart)), apart.shape)
     return np.stack([shape[first], neighbour[second]])
-
-
-EDGE_WINDOW_RADII, EDGE_WINDOW_CHORDS = 5.0, 0.15
-"""Half width of the close-up of an edge, in edge radii and in chords, whichever is less: the edge's circle takes a
-fifth of the panel, and the other edge stays outside."""
-FLAT_EDGE_RADIUS = 100.0
-"""Radius in chords from which on an edge is called flat: its circle cannot be told from a straight line."""
-SHARP_EDGE_SIZE = 0.01
-"""Length in chords that sets the close-up of a sharp edge, which has no radius."""
-AT_EDGE = {"m'-theta": (r"$m'\,r_e$ [mm]", r"$\theta\,r_e$ [mm]")}
-"""Names of the axes of close-ups, where they differ from `COORDINATES`: lengths are true at the edge, at the radius
-r_e."""
 
 
 def draw_edges(strip: "SubFigure", sections: Sequence["Section"], ends: tuple[str, str]) -> None:

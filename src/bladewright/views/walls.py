@@ -33,6 +33,24 @@ if TYPE_CHECKING:
 
 HALVES = ("upper", "lower")
 """The halves of a wall, above and below the blade."""
+COLOURS = {"hub": BLUE, "shroud": ORANGE}
+"""Colours of the grid lines on each wall."""
+ALONG, ACROSS = (9, 17, 9), 9
+"""Lines of constant u before, beside and behind the blade, and lines of constant v: twice as many beside the blade,
+where the patch is twice as long in u."""
+LINE_POINTS = 65
+"""Points along a line."""
+MAX_ASPECT = 6.0
+"""Height over width of a wall in its plane above which the two axes have different scales: the panel would otherwise
+show a thin strip."""
+CLOSE_UP = 0.03
+"""Half width of the close-up of the least Jacobian, in chords."""
+CLOSE_UP_U = 0.2
+"""Half width in u of the part of a patch that the close-up may show; it must be more than the close-up needs."""
+CLOSE_UP_LINES = 25
+"""Lines of constant u, and of constant v, on each side of that place."""
+MARK: dict[str, Any] = {"markersize": 6.0, "color": RED, "fillstyle": "none", "linestyle": "none"}
+"""Style of the marks at the least Jacobian."""
 
 
 def unwrapped_face(passage: "Passage", name: str, u: Reals, v: Reals) -> Reals:
@@ -93,26 +111,6 @@ def _camber_theta(passage: "Passage", wall: str, abscissa: Reals) -> Reals:
     row, t = passage.walls[f"{wall}_upper"].row, np.linspace(0.0, 1.0, 101)
     line = np.concatenate([np.real(passage.camber.points(piece, t))[row] for piece in PIECES])
     return np.asarray(np.interp(abscissa, line[:, 0], line[:, 1]))
-
-
-COLOURS = {"hub": BLUE, "shroud": ORANGE}
-"""Colours of the grid lines on each wall."""
-ALONG, ACROSS = (9, 17, 9), 9
-"""Lines of constant u before, beside and behind the blade, and lines of constant v: twice as many beside the blade,
-where the patch is twice as long in u."""
-LINE_POINTS = 65
-"""Points along a line."""
-MAX_ASPECT = 6.0
-"""Height over width of a wall in its plane above which the two axes have different scales: the panel would otherwise
-show a thin strip."""
-CLOSE_UP = 0.03
-"""Half width of the close-up of the least Jacobian, in chords."""
-CLOSE_UP_U = 0.2
-"""Half width in u of the part of a patch that the close-up may show; it must be more than the close-up needs."""
-CLOSE_UP_LINES = 25
-"""Lines of constant u, and of constant v, on each side of that place."""
-MARK: dict[str, Any] = {"markersize": 6.0, "color": RED, "fillstyle": "none", "linestyle": "none"}
-"""Style of the marks at the least Jacobian."""
 
 
 def draw_wall(axes: Axes, passage: "Passage", wall: str) -> None:
