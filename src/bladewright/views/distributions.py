@@ -29,11 +29,10 @@ from bladewright.views.style import (
 if TYPE_CHECKING:
     from bladewright.section.section import Section
 
-ARC_LABEL, CAMBER_LABEL = (
-    "part of the arc, leading to trailing edge [-]",
-    "along the camber, leading to trailing edge [-]",
-)
-"""Names of the abscissae along a side and along the camber line."""
+ARC_LABEL = "part of the arc, leading to trailing edge [-]"
+"""Name of the abscissa along a side."""
+CAMBER_LABEL = "along the camber, leading to trailing edge [-]"
+"""Name of the abscissa along the camber line."""
 EDGE_SHARE = 0.05
 """Fraction of the arc length at either end that does not set the scale of an axis: values at the edges are far larger
 than between them."""
