@@ -25,7 +25,8 @@ NEIGHBOURS = 12
 """Triangles with the nearest centres that are tried for the nearest one to a point. Those that end up beyond the limit
 are searched again more widely, so that the number only trades time."""
 MERGED = 1e-6
-"""[mm] Nodes nearer than this are one: those on a shared edge come from its one curve, with other rounding."""
+"""[mm] Grid to which nodes are rounded before equal ones are merged: on a shared edge both faces have the same nodes,
+up to rounding errors of the curve."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -67,7 +68,7 @@ class TriangleMesh:
 
     @property
     def open_edges(self) -> int:
-        """Edges that are not run once each way."""
+        """Number of edges that are not shared by two triangles that run opposite ways along them."""
         size = len(self.vertices)
         run = self.edges[:, 0] * size + self.edges[:, 1]
         back = self.edges[:, 1] * size + self.edges[:, 0]
@@ -76,7 +77,7 @@ class TriangleMesh:
 
     @property
     def shells(self) -> int:
-        """Connected pieces."""
+        """Number of connected pieces."""
         size = len(self.vertices)
         graph = coo_array((np.ones(len(self.edges)), self.edges.T), shape=(size, size))
         _, labels = connected_components(graph, directed=False)

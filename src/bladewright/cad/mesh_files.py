@@ -1,4 +1,4 @@
-"""STL and 3MF files of triangles."""
+"""STL and 3MF files of triangles: STL, whose unit is taken to be the millimetre, and 3MF, which states its unit."""
 
 import re
 import zipfile
@@ -15,6 +15,7 @@ from bladewright.cad.step import SYSTEM
 from bladewright.errors import CadError
 
 RECORD = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
+"""A triangle of a binary STL file."""
 
 
 def write_stl(mesh: TriangleMesh, path: str, *, name: str) -> None:
@@ -56,7 +57,7 @@ def read_stl(path: Path) -> TriangleMesh:
 CORE = "http://schemas.microsoft.com/3dmanufacturing/core/2015/02"
 MODEL = "3D/3dmodel.model"
 UNITS = {"micron": 1e-3, "millimeter": 1.0, "centimeter": 10.0, "inch": 25.4, "foot": 304.8, "meter": 1000.0}
-"""Millimetres in the units that the format knows."""
+"""Millimetres in each unit of the format."""
 
 TYPES = (
     '<?xml version="1.0" encoding="UTF-8"?>\n'
@@ -99,7 +100,7 @@ def read_3mf(path: Path) -> tuple[TriangleMesh, str]:
     first_and_last_bytes(path)
     try:
         with zipfile.ZipFile(path) as package:
-            # expat itself refuses entities that multiply
+            # the XML parser itself refuses entities that expand exponentially
             root = ET.fromstring(package.read(MODEL))  # noqa: S314
         unit = root.get("unit", "millimeter")
         corners = []

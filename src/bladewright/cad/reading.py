@@ -37,8 +37,8 @@ SEWING_TOLERANCE = 1e-4
 the round trip allows, so that they are measured rather than refused, and far below the size of any edge."""
 
 LARGEST_FILE = 500_000_000
-"""[bytes] Size above which a file is refused. A blade takes less than 1 MB (some 105 bytes of STEP a control point); a
-file of this size would keep OpenCASCADE busy for minutes and fill several GB of memory."""
+"""[bytes] Size above which a file is refused. A blade takes about half a megabyte (105 bytes of STEP a control point,
+44 x 48 of them on a side); the limit keeps OpenCASCADE from being handed whole assemblies by mistake."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -47,13 +47,15 @@ class CadFile:
 
     path: Path
     format: str
+    """STEP, IGES or BREP"""
     schema: str
+    """application protocol of a STEP file, kind of entities of an IGES file"""
     unit: str
     """length unit that the file is written in"""
     written_by_bladewright: bool
     """whether the file says that bladewright wrote it"""
     shape: TopoDS_Shape
-    """[mm]"""
+    """everything in the file [mm]"""
     names: dict[int, str]
     """names of the faces that have one, by index in `faces`"""
 

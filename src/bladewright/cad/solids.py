@@ -1,4 +1,4 @@
-"""Closed solids of native surfaces: shared edges and vertices, and tolerances no larger than the measured gaps."""
+"""Closed solids of native surfaces, with shared edges and vertices, whose tolerances are the measured gaps."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass

@@ -46,23 +46,23 @@ def write_surface_points(points: SurfacePoints, path: str | Path) -> Path:
     written, and then leaves neither behind.
     """
     path = Path(path)
-    beside = places_path(path)
+    places_file = places_path(path)
     rows = [[repr(float(each)) for each in row] for row in points.points]
     moved = ["\t".join([str(number), *row]) for number, row in zip(points.ids, rows, strict=True)]
     places = [",".join(("PointID", "surface", "u", "v", *AXES[: points.points.shape[1]]))]
     for number, name, u, v, row in zip(points.ids, points.names, points.u, points.v, rows, strict=True):
         places.append(",".join([str(number), name, repr(float(u)), repr(float(v)), *row]))
-    fresh = not beside.exists()
+    fresh = not places_file.exists()
     try:
         with ExitStack() as stack:
-            for file, lines in ((path, moved), (beside, places)):
+            for file, lines in ((path, moved), (places_file, places)):
                 unfinished = stack.enter_context(atomic_write(file))
                 Path(unfinished).write_text("\n".join([*lines, ""]), encoding="utf-8")
     except FileError:
         if fresh:
-            beside.unlink(missing_ok=True)
+            places_file.unlink(missing_ok=True)
         raise
-    return beside
+    return places_file
 
 
 def places_path(path: Path) -> Path:
@@ -75,18 +75,18 @@ def read_surface_points(path: str | Path) -> SurfacePoints:
 
     Raises FileError where `PATH.places.csv` is missing or is not what was written.
     """
-    beside = places_path(Path(path))
-    header, rows = read_csv(beside)
+    places_file = places_path(Path(path))
+    header, rows = read_csv(places_file)
     axes = AXES[: len(header) - 4]
-    number, name, u, v, *places = column_indices(beside, header, ("PointID", "surface", "u", "v", *axes))
-    ids = _whole_numbers(beside, column_values(beside, rows, number))
-    _check_unique(beside, ids)
+    number, name, u, v, *places = column_indices(places_file, header, ("PointID", "surface", "u", "v", *axes))
+    ids = _whole_numbers(places_file, column_values(places_file, rows, number))
+    _check_unique(places_file, ids)
     return SurfacePoints(
         ids=ids,
         names=tuple(row[name].strip() for row in rows),
-        u=column_values(beside, rows, u),
-        v=column_values(beside, rows, v),
-        points=np.stack([column_values(beside, rows, place) for place in places], axis=-1),
+        u=column_values(places_file, rows, u),
+        v=column_values(places_file, rows, v),
+        points=np.stack([column_values(places_file, rows, place) for place in places], axis=-1),
     )
 
 

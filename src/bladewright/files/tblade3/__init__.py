@@ -1,4 +1,4 @@
-"""Cases of the program T-Blade3 (Siddappaji et al. 2012), read as they stand and evaluated by its own rules."""
+"""Cases of the program T-Blade3 (Siddappaji et al. 2012), read and evaluated by its own rules, and imported."""
 
 from bladewright.files.tblade3.case import TBlade3Case as TBlade3Case
 from bladewright.files.tblade3.importing import import_tblade3 as import_tblade3

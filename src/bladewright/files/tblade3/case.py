@@ -1,4 +1,7 @@
-"""A T-Blade3 case: what its input files state."""
+"""A T-Blade3 case: what its input files state.
+
+Lengths are without dimension, in units of the scale (`TBlade3Case.unit_length`); angles are in degrees.
+"""
 
 from dataclasses import dataclass
 from typing import Literal
@@ -12,16 +15,21 @@ Thickness = Literal["wennerstrom", "quartic", "quartic-sharp", "naca"]
 
 @dataclass(frozen=True, kw_only=True)
 class SpanLaw:
-    """Control points along the span of a quantity's spline."""
+    """Control points of a quantity's spline along the span."""
 
     span: Row
     """increasing from 0 to 1"""
     values: Row
 
+    @property
+    def has_effect(self) -> bool:
+        """Whether any value differs from 0."""
+        return any(self.values)
+
 
 @dataclass(frozen=True, kw_only=True)
 class SectionRow:
-    """A section's line in the two tables of sections."""
+    """The rows of a section in the two tables of sections."""
 
     label: int
     in_beta: float
@@ -32,7 +40,7 @@ class SectionRow:
     """relative inlet Mach number"""
     chord: float
     thickness: float
-    """largest thickness, of the chord"""
+    """largest thickness, as a fraction of the chord"""
     incidence: float
     """[deg]"""
     deviation: float
@@ -40,17 +48,17 @@ class SectionRow:
     secondary_flow_angle: float
     """[deg]"""
     type: str
-    """`sect1`, meanline and thickness, or another kind of section"""
+    """`sect1` for a meanline with a thickness, or another type of section"""
     stack_u: float
-    """stacking point along the chord [% of the chord], 200 the centroid"""
+    """stacking point along the chord [% of the chord]; 200 for the centroid"""
     stack_v: float
-    """stacking point from the meanline to a side [% of the half thickness]"""
+    """stacking point from the meanline towards a side [% of the half thickness]"""
     thickest: float
-    """place of the largest thickness (umxthk), of the chord"""
+    """position of the largest thickness (umxthk), as a fraction of the chord"""
     leading_thickness: float
-    """thickness at the leading edge (lethk), of the chord"""
+    """thickness at the leading edge (lethk), as a fraction of the chord"""
     trailing_thickness: float
-    """thickness at the trailing edge (tethk), of the chord"""
+    """thickness at the trailing edge (tethk), as a fraction of the chord"""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -58,11 +66,11 @@ class Stacking:
     """The point of a section that lies on the stacking axis."""
 
     centroid: bool
-    """the centre of area, instead of what follows"""
+    """whether it is the centroid of the section, whatever the other fields are"""
     along: float
-    """of the chord, 0 the leading and 1 the trailing edge"""
+    """fraction of the chord, from the leading edge (0) to the trailing edge (1)"""
     above: float
-    """from the meanline to the upper (1) or lower (-1) side; at 0 the point lies on the chord line"""
+    """fraction of the way from the meanline to the upper (1) or lower (-1) side; at 0 it lies on the chord line"""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -72,9 +80,9 @@ class Meanlines:
     span: Row | None
     """span of each row (n,); None where there is one row for each section"""
     u: Table
-    """chordwise places (n, k) from 0 to 1; k may differ from section to section"""
+    """chord fractions (n, k) from 0 to 1; k may differ between sections"""
     curvature: Table
-    """values (n, k), of which only the proportions count"""
+    """values (n, k), of which only the ratios matter"""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -94,11 +102,11 @@ class NacaThickness:
     leading_index: Row
     """index I of the leading edge's radius"""
     thickest: Row
-    """u_max, place of the largest thickness, of the chord"""
+    """u_max, position of the largest thickness, as a fraction of the chord"""
     thickness: Row
-    """t_max, largest thickness, of the chord"""
+    """t_max, largest thickness, as a fraction of the chord"""
     trailing_thickness: Row
-    """t_TE, thickness at the trailing edge, of the chord"""
+    """t_TE, thickness at the trailing edge, as a fraction of the chord"""
     trailing_slope: Row | None
     """slope of the half thickness at the trailing edge, or its factor K; None where it follows from u_max"""
     slope_normalised: bool
@@ -128,7 +136,7 @@ LEADING_EDGE = (
 
 @dataclass(frozen=True, kw_only=True)
 class TBlade3Case:
-    """Everything that T-Blade3's files say of a blade."""
+    """Everything that T-Blade3's files state of a blade."""
 
     file: str
     companion: str | None
@@ -137,21 +145,21 @@ class TBlade3Case:
     name: str
     row: int
     suffix: str
-    """what stands between the last two dots of the file's name"""
+    """part of the file's name between its last two dots"""
     blade_count: int
     unit: Literal["mm", "cm", "m"]
     scale: float
-    """[unit] for each length of 1"""
+    """[unit] length that 1 in the file stands for"""
     theta_offset: float
-    """turn of the whole blade [deg]"""
+    """rotation of the whole blade about the axis [deg]"""
     angles: Angles
-    """in which plane in_beta and out_beta are measured"""
+    """plane in which in_beta and out_beta are measured"""
     angle_spline: Literal["", "inletspline", "outletspline", "inoutspline", "inci_dev_spline"]
-    """what the tables in_beta* and out_beta* are for"""
+    """what the tables in_beta* and out_beta* give"""
     curvature_camber: bool
-    """a meanline by its curvature, instead of straight ends and a cubic between them"""
+    """whether the meanline is given by its curvature, instead of straight ends with a cubic between them"""
     spanwise: bool
-    """control points as splines along the span, instead of section by section"""
+    """whether control points are splines along the span, instead of section by section"""
     thickness: Thickness
     thickness_multiplier: bool
     leading_edge: Literal["elliptic", "spline"]
@@ -200,20 +208,20 @@ class TBlade3Case:
     multipliers: Multipliers | None
     leading_edges: LeadingEdges | None
     unused: tuple[str, ...] = ()
-    """what stands in the files without effect on the blade, each a sentence"""
+    """what in the files has no effect on the blade, each a sentence"""
     unsupported: tuple[str, ...] = ()
-    """what T-Blade3 would make of the files beyond blades of these records, each a sentence"""
+    """what T-Blade3 would make of the files that is no blade of such sections, each a sentence"""
     notes: tuple[str, ...] = ()
-    """where T-Blade3 itself fails, or does something else than its files say, each a sentence"""
+    """where T-Blade3 itself fails, or does something other than its files say, each a sentence"""
 
     @property
     def unit_length(self) -> float:
-        """Metres for each length of 1."""
+        """Length [m] that 1 in the file stands for."""
         return self.scale * {"mm": 1e-3, "cm": 1e-2, "m": 1.0}[self.unit]
 
     @property
     def staggers_given(self) -> bool:
-        """Whether the table in_beta* gives staggers, as an inlet angle of 999 asks for."""
+        """Whether the table in_beta* gives staggers, which an inlet angle of 999 switches on."""
         return self.sections[0].in_beta == STAGGER_GIVEN
 
     @property
@@ -228,10 +236,12 @@ class TBlade3Case:
 
 
 STAGGER_GIVEN = 999.0
+"""Inlet angle of the first section by which a file states that it gives staggers (T-Blade3's own code)."""
 CENTROID = 200
+"""Stacking point along the chord that stands for the centroid (T-Blade3's own code)."""
 
 
 def stacking_of(code: int) -> Stacking:
-    """The stacking point of a code uuuvvv, its sign that of vvv; uuu = 200 is the centroid."""
+    """The stacking point of a code uuuvvv, whose sign is that of vvv; uuu = 200 stands for the centroid."""
     along, above = divmod(abs(code), 1000)
     return Stacking(centroid=along == CENTROID, along=along / 100.0, above=(above if code >= 0 else -above) / 100.0)

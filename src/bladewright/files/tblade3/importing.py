@@ -13,7 +13,7 @@ from bladewright.blade.design.families import CurvatureMeanlineBlade
 from bladewright.blade.exact.sectioned import exact_sectioned_blade
 from bladewright.errors import DesignError, FileError
 from bladewright.files.imported import Imported, most_blades_apart
-from bladewright.files.tblade3.case import SpanLaw, TBlade3Case
+from bladewright.files.tblade3.case import TBlade3Case
 from bladewright.files.tblade3.reading import read_tblade3
 from bladewright.files.tblade3.stacking import POINTS_PER_SIDE, chord_stations
 from bladewright.files.tblade3.translation import CaseSections, blade_of, case_sections
@@ -180,7 +180,7 @@ def _changed(sections: CaseSections) -> Iterator[str]:
         )
     if case.angles == "wing":
         yield "twist and total camber of the wing are given as metal angles"
-    if (case.true_sweep or case.true_lean) and (_matters(case.sweep) or _matters(case.lean)):
+    if (case.true_sweep or case.true_lean) and (case.sweep.has_effect or case.lean.has_effect):
         if sections.true_stagger:
             yield "true lean and sweep follow the stagger of each section, which T-Blade3's do not"
         else:
@@ -195,7 +195,3 @@ def _changed(sections: CaseSections) -> Iterator[str]:
             f"({case.clustering}) is not followed, so that theta may differ by some 1e-5 of the chord"
         )
     yield from (text for text in case.unsupported if "inflation" in text)
-
-
-def _matters(law: SpanLaw) -> bool:
-    return any(law.values)

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator
 
-from bladewright.files.tblade3.case import STAGGER_GIVEN, SpanLaw, TBlade3Case
+from bladewright.files.tblade3.case import STAGGER_GIVEN, TBlade3Case
 
 _KINDS = {
     "crcle": "a circle",
@@ -56,7 +56,7 @@ def _unused_tables(case: TBlade3Case) -> Iterator[str]:
         ("tm/c", case.thickness_multipliers, thickness),
         ("u_max", case.thickest, thickness),
     ):
-        if law and not used and _matters(law):
+        if law and not used and law.has_effect:
             yield f"the table {name} has no effect with these switches"
     if case.meanlines and not case.curvature_camber:
         yield "the control points of the curvature have no effect with camber switch 0"
@@ -125,7 +125,7 @@ def _notes(case: TBlade3Case) -> Iterator[str]:
         yield "T-Blade3 1.3.1 crashes on thickness 0 and on camber 0; version 1.2.5 builds them"
     if not case.spanwise and case.companion:
         yield "T-Blade3 1.3.1 crashes on control points section by section; version 1.2.5 reads them"
-    if (case.true_sweep or case.true_lean) and (_matters(case.sweep) or _matters(case.lean)):
+    if (case.true_sweep or case.true_lean) and (case.sweep.has_effect or case.lean.has_effect):
         yield (
             "T-Blade3 takes true lean and sweep with the wrong stagger (the metal angle's degrees as radians, or 0), "
             "and has no switch for the true one, which --true-stagger takes"
@@ -137,7 +137,3 @@ def _notes(case: TBlade3Case) -> Iterator[str]:
         )
     if case.clustering == "elliptic" and case.thickness != "naca":
         yield "clustering 4 works with thickness 5 only"
-
-
-def _matters(law: SpanLaw) -> bool:
-    return any(law.values)
