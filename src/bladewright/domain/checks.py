@@ -21,7 +21,8 @@ SIDES = np.concatenate([np.linspace(0.0, 0.05, 25)[:-1], np.linspace(0.05, 0.95,
 """Shares of a side at which its distance from the periodic boundaries is taken: closer at the edges, where it turns."""
 AMPLE_JACOBIAN = 0.06
 """Least Jacobian of a wall's half, over its median, above which no other way of cross-lines is tried: the passages of
-design/passages.md have 0.02 to 0.45."""
+design/passages.md have 0.02 to 0.45, and with twice as much passages take longer to build and are hardly further from
+folding (design/passage_constants.md)."""
 EVEN = np.linspace(0.0, 1.0, 31)
 """Shares of inlet and outlet piece at which the Jacobian is sampled."""
 BESIDE_BLADE = np.unique(np.concatenate([np.linspace(0.0, 1.0, 61), 0.1 * EVEN**2, 1.0 - 0.1 * EVEN**2]))

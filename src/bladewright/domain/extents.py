@@ -18,17 +18,20 @@ USUAL = 0.5
 """Extent, in mean meridional lengths of the blade, where none is given and the pitch needs no more: half a blade."""
 STEP = 0.25
 """Extents that the pitch needs are rounded up to multiples of this, in mean meridional lengths, so that most small
-changes of a design leave them as they are."""
+changes of a design leave them as they are. Half or twice as much is the same for design/passage_constants.md, whose
+machines need less than USUAL."""
 MAX_EXTENT = 20.0
 """Extent, in mean meridional lengths (axial chords in 2D), above which a duct is refused: it is a slip of the pen, and
 takes many knots."""
 BULGE_MARGIN = 1.25
-"""Least extent over the bulge of cross-lines at an edge: with 1 the last cross-line would touch inlet or outlet."""
+"""Least extent over the bulge of cross-lines at an edge: with 1 the last cross-line would touch inlet or outlet. It
+decides only where the pitch needs more than USUAL: none of design/passage_constants.md."""
 CLEARANCE = 0.05
-"""Least distance from the blade's foremost or rearmost point to inlet or outlet, in mean meridional lengths."""
+"""Least distance from the blade's foremost or rearmost point to inlet or outlet, in mean meridional lengths. It
+decides only in ducts that must be short (design/passage_constants.md)."""
 LIMIT_SHARE = 0.8
 """Share of the extent at which the duct folds or meets the axis that a usual extent may take: cells near it are
-thin."""
+thin. With 0.6 or 0.95 the worst wall is as far from folding (design/passage_constants.md)."""
 
 
 def extents(

@@ -29,7 +29,8 @@ EDGE_FACES = ("leading_edge", "trailing_edge")
 """Names of the faces of blunt edges."""
 WIDE_PITCH = 4.0
 """Half pitch, in meridional lengths of the blade, at which the departure of cross-lines is halved: a wide passage need
-not skew them by a part of its whole width."""
+not skew them by a part of its whole width. With 2 walls come nearer to folding (0.010 of the median instead of 0.018),
+with 8 passages have 1.4 % more control points (design/passage_constants.md)."""
 
 
 class CrossLines(NamedTuple):
