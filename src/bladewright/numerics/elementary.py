@@ -49,6 +49,11 @@ def cross2(a: Array, b: Array) -> Array:
     return a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0]
 
 
+def turned_left(vectors: Array) -> Array:
+    """Plane vectors (..., 2) turned by +90 deg: the tangent of a camber line becomes its normal to the upper side."""
+    return np.stack([-vectors[..., 1], vectors[..., 0]], axis=-1)
+
+
 def magnitude(values: Array) -> Array:
     """|values| for real or complex values with a nonzero real part: the sign of the real part times the value."""
     return np.where(np.real(values) < 0.0, -values, values)

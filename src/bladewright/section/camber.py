@@ -46,8 +46,3 @@ def camber_tangents(line: Array, u: Reals) -> Array:
     w = 1.0 - u
     quadratic = np.stack([w**2, 2 * u * w, u**2], axis=-1)
     return unit(quadratic @ (line[..., 1:, :] - line[..., :-1, :]))
-
-
-def turned_left(vectors: Array) -> Array:
-    """Vectors (..., 2) turned by +90 deg: the camber's normals towards the upper side."""
-    return np.stack([-vectors[..., 1], vectors[..., 0]], axis=-1)

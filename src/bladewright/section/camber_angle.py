@@ -38,7 +38,7 @@ class CamberAngle(SectionFamily):
     beta(m) is a B-spline of degree 3, or one less than its number of control points, on uniform knots over the
     meridional length; theta = integral of tan(beta) / r dm. The half thickness is a NURBS of degree 3 on uniform knots
     in the plane of place (fraction of the section's m') and height, normal to the camber line. It begins on the camber
-    at the leading edge, where the first value stands at the same place: the nose is round, and the sides join with
+    at the leading edge, where the first value is at the same place: the nose is round, and the sides join with
     equal curvature.
     """
 
@@ -49,11 +49,11 @@ class CamberAngle(SectionFamily):
     half_thickness: ChordwiseLaw = parameter("-")
     """control points of the half thickness, leading to trailing edge, of the chord [-]"""
     thickness_places: ChordwiseLaw = parameter("-", default=())
-    """places of those control points that do not stand at an edge, of the section's m'; none: 1/16, then equal [-]"""
+    """places of those control points that are not at an edge, of the section's m'; none: 1/16, then equal [-]"""
     thickness_weights: ChordwiseLaw = parameter("-", default=())
     """weights of the control points of the half thickness; none: 1 each [-]"""
     trailing_edge: Literal["round", "blunt", "sharp"] = "round"
-    """round: the last half thickness stands at the edge and closes as at the nose; blunt: it is cut off there;
+    """round: the last half thickness is at the edge and closes as at the nose; blunt: it is cut off there;
     sharp: the thickness runs out to nothing behind it"""
 
     def __post_init__(self) -> None:
@@ -84,7 +84,7 @@ class CamberAngle(SectionFamily):
 
     @property
     def _inner(self) -> int:
-        """How many values of the half thickness do not stand at an edge."""
+        """How many values of the half thickness are not at an edge."""
         return len(self.half_thickness) - (1 if self.trailing_edge == "sharp" else 2)
 
     def outline(self, span: Span, meridional: MeridionalFraction | None = None) -> CamberAngleOutline:

@@ -29,7 +29,7 @@ radius that grows smoothly, and 12 leave room for channels that bend (design/sec
 CELLS = 16
 """equal cells along m' for that interpolation, so that a bend of the channel spoils one of them only"""
 APART = 1e-9
-"""difference by s below which a joint stands at the same place in all sections: above rounding of a root, below any
+"""difference by s below which a joint is at the same place in all sections: above rounding of a root, below any
 movement that a design shows [-]"""
 STEEPEST = 6.0
 """largest h'' / (2 h') times the width of a piece beside a round edge, h the half thickness, for which s is bent the
@@ -226,7 +226,7 @@ class CamberAngleOutline(Outline):
 
     @cached_property
     def joints(self) -> tuple[Joint, ...]:
-        """Knots of the thickness, and those of the camber angle that stand at the same s in all sections."""
+        """Knots of the thickness, and those of the camber angle that are at the same s in all sections."""
         found = [Joint(float(each), 2) for each in self.places.ends[1:-1]]
         knots = self.line.knots
         count = knots.shape[-1]
@@ -323,7 +323,7 @@ class CamberAngleOutline(Outline):
         return bend
 
     def _where(self, x: Reals) -> Reals:
-        """s (...) at which real fractions (...) of m' stand."""
+        """s (...) of real fractions (...) of m'."""
         shape = np.broadcast_shapes(x.shape, self.places.controls.shape[:-1], self._bends[0].shape)
         own = np.arange(int(np.prod(shape)))
 

@@ -1,17 +1,17 @@
-"""The parameter s of a section on its chord: the map u(s) to the chord fraction, by which joints stand at fixed s.
+"""The parameter s of a section on its chord: the map u(s) to the chord fraction, by which joints are at fixed s.
 
 Near a round edge a half thickness grows as the root of the distance from it. Both maps make that root an odd analytic
 function of s about the edge, so that a side and its other side are one smooth curve there; at a sharp or blunt edge u
 has a slope by s.
 
 Thickness laws in pieces (`ChordMap`). Their joints (the place of the maximum, where an edge's ellipse ends) move with
-the parameters and along the span, but those of an outline stand at the same s in all sections. So u = R(sigma(s)):
+the parameters and along the span, but those of an outline are at the same s in all sections. So u = R(sigma(s)):
 
 * sigma(s) is fixed: (1 - cos pi s) / 2 between two round edges, 1 - cos(pi s / 2) or sin(pi s / 2) where only one edge
   is round, s where none is.
 * R is a rational function on each piece between joints, quadratic over quadratic, that rises whatever the joints
   (Delbourgo and Gregory 1983): through (sigma_j, u_j), with as many continuous derivatives as the law has there, one or
-  two. It is the identity where the joints stand at their usual places, and analytic in every parameter; it has joints
+  two. It is the identity where the joints are at their usual places, and analytic in every parameter; it has joints
   only where the law has.
 
 A law that begins as sqrt(u) + b u is not odd about its leading edge: seen from the other side the second term has the
@@ -74,7 +74,7 @@ class Breakpoint(NamedTuple):
     derivatives: int
     """how many are continuous: 1 or 2"""
     sigma: float
-    """where it stands in the fixed coordinate"""
+    """its fixed coordinate"""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -241,7 +241,7 @@ class ClusteredChordMap:
     bend: float
     """-a1 / a0 of a thickness a0 sqrt(x) + a1 x + ...: with it the thickness has no second derivative at s = 0"""
     joint: Array | None
-    """x (..., 1) that stands at s = `JOINT`"""
+    """x (..., 1) of the mean line's joint, which is at s = `JOINT`"""
 
     def at(self, s: Reals, order: int) -> ChordPlace:
         """Places at s (k,) with their derivatives up to an order."""

@@ -141,7 +141,7 @@ class CurvatureMeanline(SectionFamily):
         )
 
     def _steady_joints(self) -> list[Joint]:
-        """Joints of the splines along the chord that stand at the same s all along the span."""
+        """Joints of the splines along the chord that are at the same s all along the span."""
         span = Span(GRID)
         thickness, found = self.thickness.at(span), list[Joint]()
         if self.curvature:

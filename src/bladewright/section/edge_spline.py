@@ -28,7 +28,7 @@ from bladewright.section.outline import Edge, EdgeDerivatives, Joint, Outline
 SEGMENTS = 5
 """segments of the leading edge's spline: nine control points for the nine conditions at contacts and tip"""
 SAME = 1e-9
-"""difference by s below which a contact stands at a joint, and the derivatives behind it count: above rounding [-]"""
+"""difference by s below which a contact is at a joint, and the derivatives behind it count: above rounding [-]"""
 WINDOW = 0.05
 """length by s behind the contact of the polynomial whose derivatives there are taken, where a section does not know
 them exactly: short enough for degree nine to follow the side, long enough for rounding to stay small in three
@@ -50,9 +50,9 @@ class EdgeSpline(Part):
     contact: float = 0.15
     """where the spline meets the sides: the outline's s, 0 at the leading edge; 0.15 is about 0.05 of the chord"""
     elongation: Law = parameter("-", default=0.0)
-    """how far the tip stands ahead of the section's own, of half the distance between the contacts [-]"""
+    """how far the tip lies ahead of the section's own, of half the distance between the contacts [-]"""
     droop: Law = parameter("-", default=0.0)
-    """how far the tip stands towards the lower side, of half the distance between the contacts [-]"""
+    """how far the tip lies towards the lower side, of half the distance between the contacts [-]"""
 
     def __post_init__(self) -> None:
         contact = checks.number(f"{self.path}.contact", self.contact)
@@ -154,7 +154,7 @@ class SplinedOutline(Outline):
 
     def points(self, s: Reals) -> tuple[Array, Array]:
         inside = s < self.contact
-        # beyond the contact the outline, within it the spline; each is asked everywhere it is defined
+        # beyond the contact the outline, within it the spline; each is evaluated where it is defined
         sides = self.outline.points(np.maximum(s, self.contact))
         near = np.minimum(s, self.contact)
         found = (

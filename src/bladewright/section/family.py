@@ -39,5 +39,5 @@ class SectionFamily(Part, ABC):
         return self.outline(span), self.stagger(span)
 
     def meanline(self, span: Span) -> Meanline | None:  # noqa: ARG002 - only some families have one
-        """The meanlines (..., m) on which the sections stand; None where the family has none in closed form."""
+        """The meanlines (..., m) on which the sections are built; None where the family has none in closed form."""
         return None

@@ -74,7 +74,7 @@ def named_laws(part: Part) -> Iterator[tuple[str, Law]]:
         elif float in get_args(hints[each.name]) or not isinstance(value, tuple):
             yield each.name, value
         else:
-            # a list of numbers is a row of laws where one number could not stand for it
+            # a list of numbers is a row of laws unless one number could be given instead
             yield from ((f"{each.name}[{i}]", law) for i, law in enumerate(value))
 
 

@@ -30,7 +30,7 @@ SHARES = (0.1, 0.3, 0.5, 0.7, 0.9)
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class SectionKnots:
-    """Knots and interpolation sites of a section's curves, which are held while it is differentiated."""
+    """Knots and interpolation sites of a section's curves, held fixed while it is differentiated."""
 
     sides: Reals
     """clamped knots over [0, 1] of both sides, by s"""
@@ -111,7 +111,7 @@ def interpolated_along_u(lines: Array, start: EdgeDerivatives, end: EdgeDerivati
 
 
 def _end_rows(row: EdgeDerivatives, sign: float, near: float, far: float) -> list[Array]:
-    """The three control points at a clamped end, whose first two inner knots stand near and far from it."""
+    """The three control points at a clamped end, whose first two inner knots are `near` and `far` from it."""
     step = sign * row.first * (near / DEGREE)
     second = row.point + step
     third = second + far * (row.second * (near / (DEGREE * (DEGREE - 1))) + step / near)

@@ -31,7 +31,7 @@ class OffsetOutline(Outline):
     multiplier: ChordSpline | None = None
     """by what fraction the half thickness grows along the chord; None: not at all"""
     other_joints: Callable[[], Sequence[Joint]] = tuple
-    """joints of meanline and multiplier, where they stand at the same s in all sections; found when asked for"""
+    """joints of meanline and multiplier, where they are at the same s in all sections; found on first use"""
 
     @cached_property
     def leading_edge(self) -> Edge:
@@ -142,7 +142,7 @@ def merged_joints(joints: Sequence[Joint]) -> tuple[Joint, ...]:
 
 
 def fixed_joints(thickness: Thickness, places: Array, derivatives: int) -> tuple[Joint, ...]:
-    """The joints at chord fractions (..., m, j) that stand at the same s in all sections."""
+    """The joints at chord fractions (..., m, j) that are at the same s in all sections."""
     if places.shape[-1] == 0:
         return ()
     rows = np.real(places).reshape(-1, places.shape[-1])

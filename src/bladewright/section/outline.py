@@ -12,8 +12,8 @@ from bladewright.numerics.elementary import Array
 from bladewright.nurbs.basis import Reals
 
 STEP = 1e-4
-"""distance by s from an edge at which a camber line with a speed there is told from one without: it has gone less than
-STEP^1.5 if its abscissa starts as s^2 [-]"""
+"""distance by s from an edge at which a camber line with a speed there is distinguished from one without: it has gone
+less than STEP^1.5 if its abscissa starts as s^2 [-]"""
 
 
 class EdgeDerivatives(NamedTuple):

@@ -51,9 +51,9 @@ class Section:
     edges: tuple[str, str] = ("round", "round")
     """how the sides meet at the leading and at the trailing edge: "round", "sharp" or "blunt" """
     knots: Any = None
-    """the knots that a build can be asked to hold; None for the unified family, whose knots are fixed"""
+    """the knots that a build can hold; None for the unified family, whose knots are fixed"""
     meanline: Callable[[Array], tuple[Array, Array, Array]] | None = None
-    """v and its first two derivatives by u along the chord, in chords, where the section stands on a meanline"""
+    """v and its first two derivatives by u along the chord, in chords, where the section is built on a meanline"""
 
     outline: Outline | None = None
     """the exact section in chords, unstaggered, where the family has one"""
@@ -120,7 +120,7 @@ class Section:
 
     @cached_property
     def maximum_thickness(self) -> tuple[float, float]:
-        """Largest thickness across the camber [m], and the camber parameter where it stands."""
+        """Largest thickness across the camber [m], and the camber parameter where it is."""
         u, thickness = self.thickness
         i = int(np.argmax(thickness))
         if i in (0, len(u) - 1):

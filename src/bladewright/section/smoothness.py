@@ -71,7 +71,7 @@ class SmoothLine:
     name: str
     """"upper", "lower" or "camber" """
     arc: Reals
-    """(n,) part of the arc; each joint stands twice [-]"""
+    """(n,) part of the arc; each joint occurs twice [-]"""
     curvature: Reals
     """(n,) positive where the line turns to the left [1 / chord]"""
     slope: Reals

@@ -81,7 +81,7 @@ class UnifiedSection(Design):
     span: float | None = parameter("length", default=None)
     """height of the prismatic blade that the section becomes as a solid; none: a section only [length]"""
     samples: int = 16
-    """places along the chord where the thickness laws are taken, edges apart [-]"""
+    """number of places along the chord where the thickness laws are evaluated, edges excluded [-]"""
     clustering: float = 1.0
     """spacing of the samples: 0 uniform, 1 cosine towards both edges [-]"""
     description: str = ""

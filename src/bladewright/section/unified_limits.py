@@ -73,7 +73,7 @@ def check_edges(
     """Refuse edges that cannot be rounded: a side that leaves the edge outwards, a radius too large for the thickness.
 
     A side can have the edge's radius where its control points rise from the edge: the one that sets the radius must not
-    stand higher above the camber than the next one, which carries the thickness, or the side would bulge beyond the
+    lie higher above the camber than the next one, which carries the thickness, or the side would bulge beyond the
     thickness asked for.
 
     `line` (..., m, 4, 2) camber lines at the places of `span`; `thickness` (..., m, k) at the inner `places`;

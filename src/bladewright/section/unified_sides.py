@@ -15,10 +15,10 @@ from math import factorial
 
 import numpy as np
 
-from bladewright.numerics.elementary import Array, concatenated, dot
+from bladewright.numerics.elementary import Array, concatenated, dot, turned_left
 from bladewright.nurbs.basis import Reals, basis, uniform_knots
 from bladewright.nurbs.curve import Curve
-from bladewright.section.camber import camber_points, camber_tangents, turned_left
+from bladewright.section.camber import camber_points, camber_tangents
 from bladewright.section.power_series import polynomial_points
 
 DEGREE = 4
@@ -35,7 +35,7 @@ slope stays above 0.56 alpha, also where the sides' speeds differ by a quarter a
 def sample_places(samples: int, clustering: float) -> Reals:
     """Camber parameters (samples + 5,) of a side's control points, of which the inner `samples` carry thickness.
 
-    Two control points stand at each edge: the edge itself and the one that sets its radius (Agromayor et al. 2021,
+    Two control points belong to each edge: the edge itself and the one that sets its radius (Agromayor et al. 2021,
     eq. 14). Between them the places are uniform for clustering 0 and cosine-spaced for 1.
     """
     uniform = np.linspace(0.0, 1.0, samples + 2)
@@ -46,7 +46,7 @@ def sample_places(samples: int, clustering: float) -> Reals:
 
 
 def advances(line: Array, places: Reals, thickness: Array, upper: bool) -> tuple[Array, Array]:
-    """How far the third control point from each edge stands inside the blade, along the edge's camber tangent (...).
+    """How far the third control point from each edge lies inside the blade, along the edge's camber tangent (...).
 
     Both must be positive, or no edge radius can be set: the side would leave the edge outwards.
     """

@@ -133,7 +133,7 @@ def monotone(t: Reals, slope_in: Array, slope_out: Array) -> Array:
 class WedgeDiffuser(SectionFamily):
     """A vane with straight sides, a circular leading edge and circular trailing-edge corners, all in touch.
 
-    With a wedge angle the vane is a triangle with three rounded corners: a back face stands across the chord line at
+    With a wedge angle the vane is a triangle with three rounded corners: a back face lies across the chord line at
     the trailing edge. Without one it is what both circles make it: the sides touch the circles of both edges, and the
     wedge angle follows. Reference: Voss et al. 2025, section 3.2.
     """

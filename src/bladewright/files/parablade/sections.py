@@ -9,8 +9,9 @@ from functools import cached_property
 import numpy as np
 
 from bladewright.files.parablade.config import LOWER, UPPER, Config
+from bladewright.numerics.elementary import turned_left
 from bladewright.nurbs.basis import Reals, basis, uniform_knots
-from bladewright.section.camber import bernstein, camber_line, camber_points, camber_tangents, turned_left
+from bladewright.section.camber import bernstein, camber_line, camber_points, camber_tangents
 from bladewright.section.laws import law_basis
 
 THICKNESS_POINTS = 10

@@ -3,8 +3,9 @@
 import numpy as np
 
 from bladewright.errors import DesignError
+from bladewright.numerics.elementary import turned_left
 from bladewright.nurbs.basis import Reals, basis, uniform_knots
-from bladewright.section.camber import camber_tangents, turned_left
+from bladewright.section.camber import camber_tangents
 from bladewright.section.laws import law_basis
 from bladewright.section.unified_sides import DEGREE, advances, edge_height, side
 

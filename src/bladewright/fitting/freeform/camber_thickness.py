@@ -5,10 +5,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from bladewright.numerics.elementary import length
+from bladewright.numerics.elementary import length, turned_left
 from bladewright.nurbs.basis import Reals
 from bladewright.nurbs.curve import Curve
-from bladewright.section.camber import turned_left
 
 THIRD_ABSCISSA = 0.0625
 """abscissa of the third control point of the thickness, of the chord (the source's section 4.2)"""

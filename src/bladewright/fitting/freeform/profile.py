@@ -24,10 +24,9 @@ from bladewright.fitting.freeform.options import FreeformFit, checked_options, c
 from bladewright.fitting.freeform.profile_objective import DEGREE, SIDE_SAMPLES, ProfileObjective
 from bladewright.fitting.freeform.projection import Projections, newton_descent
 from bladewright.fitting.freeform.stages import FitOptions
-from bladewright.numerics.elementary import length
+from bladewright.numerics.elementary import length, turned_left
 from bladewright.nurbs.basis import Reals, uniform_knots
 from bladewright.nurbs.curve import Curve
-from bladewright.section.camber import turned_left
 
 STIFFNESSES = (1e-3, 1e-5, 1e-7, 1e-9)
 """weights of the bending of camber and thickness, in extents of the points squared, in turn"""

@@ -16,9 +16,8 @@ from bladewright.fitting.freeform.least_squares import (
 )
 from bladewright.fitting.freeform.net import WEIGHT_REGULARISATION, Net
 from bladewright.fitting.freeform.projection import Projections, newton_descent, with_frames
-from bladewright.numerics.elementary import length
+from bladewright.numerics.elementary import length, turned_left
 from bladewright.nurbs.basis import Reals, basis
-from bladewright.section.camber import turned_left
 
 DEGREE = 3
 """degree of camber and thickness"""

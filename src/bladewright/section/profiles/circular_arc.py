@@ -10,10 +10,9 @@ import numpy as np
 
 from bladewright.designs import Law, parameter
 from bladewright.errors import DesignError
-from bladewright.numerics.elementary import Array, angle, cross2, dot, length, radians
+from bladewright.numerics.elementary import Array, angle, cross2, dot, length, radians, turned_left
 from bladewright.nurbs.basis import Reals
 from bladewright.section import checks
-from bladewright.section.camber import turned_left
 from bladewright.section.laws import Span
 from bladewright.section.outline import Edge, EdgeDerivatives, Joint, Outline
 from bladewright.section.profiles.profile import THICKNESS, Profile
@@ -99,7 +98,7 @@ class ArcOutline(Outline):
 
     @property
     def joints(self) -> tuple[Joint, ...]:
-        """Where arcs meet: tangent, with a jump of curvature."""
+        """Where arcs meet, with a jump of curvature."""
         return tuple(Joint(place, 1) for place in self._breaks[1:-1])
 
     @property
@@ -302,7 +301,7 @@ class MultipleCircularArc(CircularArcProfile):
 
 
 def mean_line(front_turning: Array, rear_turning: Array, transition: Array) -> tuple[Arc, Arc]:
-    """Two tangent arcs from (0, 0) to (1, 0) that turn by given angles (...) [rad], their lengths split as asked."""
+    """Two tangent arcs from (0, 0) to (1, 0) that turn by given angles (...) [rad] and meet at the transition."""
     share, front_turning, rear_turning = np.broadcast_arrays(transition, front_turning, rear_turning)
     ahead = np.stack([np.ones_like(share), np.zeros_like(share)], axis=-1)
     first = Arc(start=0.0 * ahead, direction=ahead, length=share, turning=front_turning)

@@ -134,7 +134,7 @@ class MeanLineOutline(Outline):
         return half * place.rest_root * composed(self._cap(place.rest), place.rest).sqrt()
 
     def _cap(self, rest: Series) -> Series:
-        """(1 - x^n) / (1 - x) and its derivatives by 1 - x: half the thickness there, as far as they are asked for."""
+        """(1 - x^n) / (1 - x) and its derivatives by 1 - x: half the thickness there, up to the order of `rest`."""
         power = 2.0 / self.thickness.end * self._steepness
         w = rest.value
         # so far from the edge x^n vanishes, and its logarithm may not be taken at x = 0
@@ -192,7 +192,7 @@ class MeanLineOutline(Outline):
 
     @property
     def trailing_edge(self) -> Edge:
-        """Sharp, blunt or round, as asked."""
+        """Sharp, blunt or round, as the design says."""
         return self._edge(1.0, self.end)
 
     @property

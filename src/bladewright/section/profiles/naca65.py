@@ -28,9 +28,9 @@ thickness (NACA RM L51G31, 1951) [-]"""
 class Naca65(PublishedProfile):
     """A NACA 65-series compressor profile: 65-(12)10 has lift coefficient 1.2 and thickness 0.10.
 
-    On the mean line of uniform load (a = 1), rounded over 0.005 chords at the edges where its slope is infinite, stands
-    the form 65-010 scaled to the thickness: a polynomial of degree 12 times sqrt(x) (1 - x) that meets the published
-    ordinates within 9e-5 chords at a thickness of 0.1.
+    The form 65-010, scaled to the thickness, is laid off the mean line of uniform load (a = 1), which is rounded over
+    0.005 chords at the edges, where its slope would be infinite. The form is a polynomial of degree 12 times
+    sqrt(x) (1 - x) that meets the published ordinates within 9e-5 chords at a thickness of 0.1.
     """
 
     LIMITS: ClassVar = {"lift_coefficient": (-3.0, 3.0, "a lift coefficient must lie between -3 and 3")}

@@ -13,8 +13,7 @@ from bladewright.numerics.elementary import dot
 from bladewright.section import checks
 from bladewright.section.laws import Span
 from bladewright.section.outline import Outline
-from bladewright.section.profiles.contour import contour
-from bladewright.section.profiles.points_outline import PointsOutline
+from bladewright.section.profiles.points_outline import PointsOutline, contour
 from bladewright.section.profiles.profile import Profile
 from bladewright.section.profiles.quintic_spline import DEGREE
 

@@ -10,9 +10,8 @@ from typing import Literal
 
 import numpy as np
 
-from bladewright.numerics.elementary import Array, concatenated, dot
+from bladewright.numerics.elementary import Array, concatenated, dot, turned_left
 from bladewright.nurbs.basis import Reals
-from bladewright.section.camber import turned_left
 from bladewright.section.power_series import polynomial_points
 
 Continuity = Literal["C1", "C2"]

@@ -85,7 +85,7 @@ def _check_counts(found: dict[str, Any]) -> None:
         if count == "pressure_thickness":
             checks.between(places, found[places], 0.0, 1.0, "a place on the suction side must lie between 0 and 1")
         else:
-            # past the edges the skeleton goes on, and refined control points may stand there
+            # the skeleton continues beyond the edges, and refined control points may lie there
             checks.between(places, found[places], -0.5, 1.5, "a place along the skeleton must lie between -0.5 and 1.5")
 
 

@@ -10,11 +10,10 @@ import numpy as np
 
 from bladewright.designs import ChordwiseLaw, Law, parameter
 from bladewright.errors import DesignError
-from bladewright.numerics.elementary import Array, length, radians
+from bladewright.numerics.elementary import Array, length, radians, turned_left
 from bladewright.nurbs.basis import Reals
 from bladewright.nurbs.curve import Curve
 from bladewright.nurbs.refine import inserted
-from bladewright.section.camber import turned_left
 from bladewright.section.family import SectionFamily
 from bladewright.section.laws import Span
 from bladewright.section.planar import PlanarSection
@@ -30,14 +29,16 @@ from bladewright.section.suction_pressure.outline import SHARE, SuctionPressureO
 from bladewright.section.suction_pressure.side import (
     DEGREE,
     Side,
+    Skeleton,
+    chord_line,
     continuing_edges,
     control_points,
     default_places,
     interpolated_free,
+    pseudo_line,
     side_knots,
     spline_points,
 )
-from bladewright.section.suction_pressure.skeleton import Skeleton, chord_line, pseudo_line
 
 
 @dataclass(frozen=True, kw_only=True)

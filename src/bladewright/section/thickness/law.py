@@ -57,7 +57,7 @@ class Thickness(ABC):
 
     @abstractmethod
     def with_breakpoints(self, further: Sequence[Breakpoint]) -> Thickness:
-        """The same thickness with further joints at fixed s, those of a meanline that it stands on.
+        """The same thickness with further joints at fixed s, those of a meanline.
 
         Raises DesignError for a thickness in one piece, and ValueError where the breakpoints do not stand in the order
         of their fixed coordinates in every section.

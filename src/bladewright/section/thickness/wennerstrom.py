@@ -45,7 +45,7 @@ class _End(NamedTuple):
     """What is added outside an end of the body, in chords of the body (..., m)."""
 
     length: Array
-    """how far the tip stands outside"""
+    """how far the tip lies outside"""
     semi_axis: Array
     height: Array
 
