@@ -48,7 +48,7 @@ def _parse_name(_: click.Context, __: click.Parameter, text: str | None) -> str 
 
 def _parse_bounds(_: click.Context, __: click.Parameter, pairs: Sequence[str]) -> dict[str, tuple[float, float]]:
     """Read the lowest and the highest value by pattern; one that is left out is infinite."""
-    found = {}
+    bounds = {}
     for pair in pairs:
         path, sign, text = pair.rpartition("=")
         low, comma, high = text.partition(",")
@@ -58,13 +58,13 @@ def _parse_bounds(_: click.Context, __: click.Parameter, pairs: Sequence[str]) -
             limits = math.nan, math.nan
         if not (sign and comma and path.strip()) or not limits[0] <= limits[1]:
             raise click.BadParameter(f"'{pair}' is not PATH=LOW,HIGH: write it like --bound 'stagger[*]=-60,-40'")
-        found[path.strip()] = limits
-    return found
+        bounds[path.strip()] = limits
+    return bounds
 
 
 def _parse_fixed(_: click.Context, __: click.Parameter, words: Sequence[str]) -> dict[str, float | None]:
     """Read values by path; None stands for the value of the start design."""
-    found: dict[str, float | None] = {}
+    values: dict[str, float | None] = {}
     for word in words:
         path, sign, text = word.partition("=")
         try:
@@ -73,8 +73,8 @@ def _parse_fixed(_: click.Context, __: click.Parameter, words: Sequence[str]) ->
             value = math.nan
         if not path.strip() or (value is not None and not math.isfinite(value)):
             raise click.BadParameter(f"'{word}' is not PATH or PATH=VALUE: write it like --fix stagger[1]=-52")
-        found[path.strip()] = value
-    return found
+        values[path.strip()] = value
+    return values
 
 
 @click.command(short_help="A cloud of points to a design.")

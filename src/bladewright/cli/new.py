@@ -20,10 +20,10 @@ def new(example: str | None, output: Path | None, force: bool) -> Outcome:
     from bladewright.files.text import write_text
 
     if example is None:
-        found = examples()
-        width = max(map(len, found), default=0)
-        text = "\n".join(f"{name:<{width}}  {line}".rstrip() for name, line in found.items())
-        return Outcome(data={"examples": found}, text=text)
+        known = examples()
+        width = max(map(len, known), default=0)
+        text = "\n".join(f"{name:<{width}}  {line}".rstrip() for name, line in known.items())
+        return Outcome(data={"examples": known}, text=text)
     text = example_text(example)
     file = output or Path(f"{example}.toml")
     if file.is_file() and not force:

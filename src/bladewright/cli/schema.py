@@ -17,9 +17,9 @@ def schema(output: Path | None) -> Outcome:
     from bladewright.files.schema import schema as of_design_files
     from bladewright.files.text import write_text
 
-    found = of_design_files()
-    text = json.dumps(found, indent=2)
+    document = of_design_files()
+    text = json.dumps(document, indent=2)
     if output is None:
-        return Outcome(data=found, text=text)
+        return Outcome(data=document, text=text)
     write_text(output, text + "\n")
     return Outcome(data={"file": str(output)}, text=f"wrote {output}")

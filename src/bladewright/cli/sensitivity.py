@@ -105,11 +105,11 @@ def _one_task(
     if (given[0] is None) != (given[1] is None):
         raise click.UsageError("--from and --points-file belong together: a sensitivity, and the points that it is of")
     tasks = {"--check": check, "--write-points": write_points is not None, "--from": given[0] is not None}
-    asked = [name for name, wanted in tasks.items() if wanted]
-    if len(asked) > 1:
-        raise click.UsageError(f"{' and '.join(asked)} are different tasks: call the program once for each")
-    if of is not None and asked and asked != ["--check"]:
-        raise click.UsageError(f"--of chooses a quantity, which {asked[0]} does not take")
+    chosen_tasks = [name for name, wanted in tasks.items() if wanted]
+    if len(chosen_tasks) > 1:
+        raise click.UsageError(f"{' and '.join(chosen_tasks)} are different tasks: call the program once for each")
+    if of is not None and chosen_tasks and chosen_tasks != ["--check"]:
+        raise click.UsageError(f"--of chooses a quantity, which {chosen_tasks[0]} does not take")
 
 
 def _derivatives(call: Call, design: Any, built: Any, of: str | None, free: Sequence[str]) -> Outcome:
@@ -131,8 +131,8 @@ def _derivatives(call: Call, design: Any, built: Any, of: str | None, free: Sequ
     if quantity.points:
         rates = {path: np.asarray(size_of(rate, quantity)) for path, rate in rates.items()}
     value = None if quantity.points else np.real(np.asarray(quantity.of(built)))
-    unit, shown = _units(quantity.power)
-    units = {path: unit + _by(design, path) for path in paths}
+    unit, table_unit, factor = _units(quantity.power)
+    units = {path: unit + _per_parameter(design, path) for path in paths}
     data = {
         "name": design.name,
         "quantity": quantity.name,
@@ -143,8 +143,8 @@ def _derivatives(call: Call, design: Any, built: Any, of: str | None, free: Sequ
     }
     head = f"{data['name']}: {quantity.name}"
     head += ", root mean square over the control points" if quantity.points else ""
-    head += f" {_figures(value, shown[1])} {shown[0]}" if value is not None else ""
-    rows = [(path, _figures(rate, shown[1]), shown[0] + _by(design, path)) for path, rate in rates.items()]
+    head += f" {_figures(value, factor)} {table_unit}" if value is not None else ""
+    rows = [(path, _figures(rate, factor), table_unit + _per_parameter(design, path)) for path, rate in rates.items()]
     return Outcome(data=data, text=_table(head, rows))
 
 
@@ -194,10 +194,10 @@ def _write_points(built: Any, path: Path, points: tuple[int, int]) -> Outcome:
     from bladewright.derivatives.surface_points import surface_points
     from bladewright.files.su2 import write_surface_points
 
-    found = surface_points(built, along=points[0], across=points[1])
-    beside = write_surface_points(found, path)
-    data = {"points": len(found.ids), "file": str(path), "places": str(beside)}
-    return Outcome(data=data, text=f"wrote {len(found.ids)} points to {path}, and where they lie to {beside}")
+    surface = surface_points(built, along=points[0], across=points[1])
+    places = write_surface_points(surface, path)
+    data = {"points": len(surface.ids), "file": str(path), "places": str(places)}
+    return Outcome(data=data, text=f"wrote {len(surface.ids)} points to {path}, and where they lie to {places}")
 
 
 def _pull_back(design: Any, built: Any, free: Sequence[str], sensitivity: Path, points_file: Path) -> Outcome:
@@ -209,7 +209,7 @@ def _pull_back(design: Any, built: Any, free: Sequence[str], sensitivity: Path, 
     check_same_design(points_file, points, points.on(built))
     bars = points.bars(read_surface_sensitivity(sensitivity, points))
     rates = pullback(design, bars, free=list(free) or None, knots=built.knots)
-    units = {path: f"1{_by(design, path)}" for path in rates}
+    units = {path: f"1{_per_parameter(design, path)}" for path in rates}
     name = design.name
     data = {"name": name, "quantity": "objective", "points": len(points.ids), "derivatives": rates, "units": units}
     rows = [(path, f"{rate:.6g}", units[path]) for path, rate in rates.items()]
@@ -235,9 +235,9 @@ class _PassageVolume:
     def __call__(self, blade: Any) -> Any:
         from bladewright.domain.build import passage
 
-        found = passage(blade, knots=self.knots)
-        self.knots = found.knots
-        return found.properties.volume
+        passage_around = passage(blade, knots=self.knots)
+        self.knots = passage_around.knots
+        return passage_around.properties.volume
 
 
 def _rates(design: Any, built: Any, quantity: "NamedQuantity", paths: Sequence[str]) -> dict[str, Any] | None:
@@ -254,10 +254,10 @@ def _rates(design: Any, built: Any, quantity: "NamedQuantity", paths: Sequence[s
     from bladewright.errors import DerivativeError
 
     body = passage(built)
-    found = net_jacobian(design, free=list(paths), knots=built.knots, of=passage)
+    jacobian = net_jacobian(design, free=list(paths), knots=built.knots, of=passage)
     volume, revolved = float(body.properties.volume), built.exact.mapping.revolved
     try:
-        rates = enclosed_volume_rates(found, body.orientations, volume, middle_of(built.surfaces), revolved=revolved)
+        rates = enclosed_volume_rates(jacobian, body.orientations, volume, middle_of(built.surfaces), revolved=revolved)
     except DerivativeError:
         return None
     return dict(rates)
@@ -287,13 +287,13 @@ def _verdict(study: "StepStudy") -> tuple[str, str]:
     return f"{study.best:.1e}  {np.min(study.floor):.1e}", "FAILED" if study.failure else ""
 
 
-def _units(power: int) -> tuple[str, tuple[str, float]]:
+def _units(power: int) -> tuple[str, str, float]:
     """The SI unit of the JSON figures, and the unit of the table with its factor."""
     raised = "" if power == 1 else str(power)
-    return f"m{raised}", (f"mm{raised}", 1e3**power)
+    return f"m{raised}", f"mm{raised}", 1e3**power
 
 
-def _by(design: Any, path: str) -> str:
+def _per_parameter(design: Any, path: str) -> str:
     """What is appended to the unit of a quantity to make the unit of its derivative."""
     unit = unit_at(design, path)
     return {"length": f"/{design.length_unit}", "-": ""}.get(str(unit), f"/{unit}")

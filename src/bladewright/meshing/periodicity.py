@@ -61,10 +61,10 @@ def periodicity(faces: Faces) -> Periodicity:
         cosine = np.sum(lower[:, 1:] * upper[:, 1:])
         sine = np.sum(lower[:, 1] * upper[:, 2] - lower[:, 2] * upper[:, 1])
         motion = Periodicity(angle=float(np.arctan2(sine, cosine)), translation=np.zeros(3), pitch=pitch)
-    off = float(length(motion.moved(lower) - upper).max())
-    if off > MISMATCH * pitch:
+    error = float(length(motion.moved(lower) - upper).max())
+    if error > MISMATCH * pitch:
         raise MeshError(
-            f"the periodic boundaries are {off / pitch:.2g} of the pitch off any rotation about x or translation: at "
+            f"the periodic boundaries are {error / pitch:.2g} of the pitch off any rotation about x or translation: at "
             f"most {MISMATCH:g} is allowed; build the passage with bladewright.passage"
         )
     return motion

@@ -79,28 +79,28 @@ class MeshReport:
     @property
     def failures(self) -> tuple[str, ...]:
         """A line for each check that failed."""
-        found = []
+        messages = []
         if self.inverted:
-            found.append(
+            messages.append(
                 f"{self.inverted} of {self.tetrahedra} tetrahedra are inverted or flat, the worst minSICN is "
                 f"{self.min_sicn.worst:.3g}: choose another size"
             )
         if self.loose:
-            found.append(f"{self.loose} facets on the boundary do not match a named face")
-        found += [
+            messages.append(f"{self.loose} facets on the boundary do not match a named face")
+        messages += [
             f"{face.name}: nodes lie up to {face.max_deviation_mm:.3g} mm off the native surface, at most "
             f"{self.deviation_limit_mm:.3g} mm is allowed"
             for face in self.faces
             if not face.max_deviation_mm <= self.deviation_limit_mm
         ]
         if not self.periodic_mismatch <= MISMATCH:
-            found.append(
+            messages.append(
                 f"periodic nodes are {self.periodic_mismatch:.3g} of the pitch off their partners, at most "
                 f"{MISMATCH:g} is allowed"
             )
         elif not self.periodic_triangles:
-            found.append("the triangles of the periodic boundaries are not partners, though their nodes are")
-        return tuple(found)
+            messages.append("the triangles of the periodic boundaries are not partners, though their nodes are")
+        return tuple(messages)
 
     @property
     def passed(self) -> bool:

@@ -196,14 +196,14 @@ def sizes(
         sources=size_sources(passage, curvature),
         smallest=smallest,
     )
-    given = model.size_for(DEFAULT_TETRAHEDRA) if size is None else size
-    found = model.sizes(given)
-    if found.expected > MAX_TETRAHEDRA:
+    used_size = model.size_for(DEFAULT_TETRAHEDRA) if size is None else size
+    result = model.sizes(used_size)
+    if result.expected > MAX_TETRAHEDRA:
         raise MeshError(
-            f"size is {given:.3g} of the chord{'' if smallest is None else f', smallest {smallest:g}'}: about "
-            f"{found.expected:,} tetrahedra are expected, and at most {MAX_TETRAHEDRA:,} are made; {_cure(model)}"
+            f"size is {used_size:.3g} of the chord{'' if smallest is None else f', smallest {smallest:g}'}: about "
+            f"{result.expected:,} tetrahedra are expected, and at most {MAX_TETRAHEDRA:,} are made; {_cure(model)}"
         )
-    return found
+    return result
 
 
 def check_sizes(*, size: float | None, smallest: float | None, curvature: float) -> None:

@@ -144,11 +144,11 @@ def _quality(values: Reals) -> Quality:
 
 def _face(name: str, triangles: Indices, nodes: Reals, passage: Passage) -> FaceMesh:
     points = nodes[np.unique(triangles)]
-    off = deviations(passage.surfaces, name, points, deviation_limit(float(np.real(passage.blade.chord))))
+    distances = deviations(passage.surfaces, name, points, deviation_limit(float(np.real(passage.blade.chord))))
     return FaceMesh(
         name=name,
         triangles=len(triangles),
         nodes=len(points),
-        max_deviation_mm=float(off.max()) / MM,
-        mean_deviation_mm=float(off.mean()) / MM,
+        max_deviation_mm=float(distances.max()) / MM,
+        mean_deviation_mm=float(distances.mean()) / MM,
     )

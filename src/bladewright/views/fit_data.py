@@ -110,13 +110,13 @@ def points_to_draw(fit: FitResult, among: NDArray[np.bool_], most: int) -> Index
     The `WORST_POINTS` are always among them; the others are a random choice, the same one every time.
     """
     index = np.flatnonzero(among)
-    off = np.abs(fit.deviations[index])
+    size = np.abs(fit.deviations[index])
     if len(index) > most:
-        order = np.argpartition(off, -min(WORST_POINTS, most // 2))
-        near, far = np.split(order, [len(order) - min(WORST_POINTS, most // 2)])
-        chosen = np.random.default_rng(0).choice(near, most - len(far), replace=False)
-        index, off = index[np.append(chosen, far)], off[np.append(chosen, far)]
-    return index[np.argsort(off, kind="stable")]
+        order = np.argpartition(size, -min(WORST_POINTS, most // 2))
+        others, worst = np.split(order, [len(order) - min(WORST_POINTS, most // 2)])
+        chosen = np.random.default_rng(0).choice(others, most - len(worst), replace=False)
+        index, size = index[np.append(chosen, worst)], size[np.append(chosen, worst)]
+    return index[np.argsort(size, kind="stable")]
 
 
 def deviations_mm(fit: FitResult, index: Index) -> Reals:
@@ -126,8 +126,8 @@ def deviations_mm(fit: FitResult, index: Index) -> Reals:
 
 def colour_scale(fit: FitResult) -> Normalize:
     """Scale of the colours of deviations [mm]: symmetric about 0, up to a round number above 99 % of the inliers."""
-    off = np.abs(fit.deviations[fit.inliers])
-    most = float(np.percentile(off, 99.0)) * MILLIMETRES if len(off) else 0.0
+    size = np.abs(fit.deviations[fit.inliers])
+    most = float(np.percentile(size, 99.0)) * MILLIMETRES if len(size) else 0.0
     limit = rounded_up(most) if most > 0.0 else 1.0
     return Normalize(-limit, limit, clip=True)
 
@@ -217,13 +217,13 @@ def outline_at(fit: FitResult, v: float) -> Outline:
         tangent = np.gradient(sides[name], u, axis=0, edge_order=2)
         tangent /= length(tangent)[:, None]
         outwards[name] = sign * np.stack([-tangent[:, 1], tangent[:, 0]], axis=-1)
-    near, band = _near_span(fit, v) if solid else (_on_outline(fit), 0.0)
+    drawn, band = _near_span(fit, v) if solid else (_on_outline(fit), 0.0)
     return Outline(
         section=section,
         u=u,
         sides={name: points * size for name, points in sides.items()},
         outwards=outwards,
-        points=near,
+        points=drawn,
         band=band,
     )
 
@@ -262,7 +262,7 @@ def _near_span(fit: FitResult, v: float) -> tuple[NDArray[np.bool_], float]:
     """Whether each point (n,) lies in the band about v, and the half height of the band."""
     sides, band = _on_outline(fit), BAND
     while True:
-        near = sides & (np.abs(fit.v - v) <= band)
-        if np.count_nonzero(near) >= BAND_POINTS or band >= WIDEST_BAND:
-            return near, band
+        inside = sides & (np.abs(fit.v - v) <= band)
+        if np.count_nonzero(inside) >= BAND_POINTS or band >= WIDEST_BAND:
+            return inside, band
         band *= 2.0

@@ -65,15 +65,15 @@ def draw_map(axes: Axes, fit: FitResult) -> None:
     total = int(np.count_nonzero(sides))
     if total > MAP_POINTS:
         _draw_cells(axes, fit, np.flatnonzero(sides), scale)
-        shown = points_to_draw(fit, sides, WORST_POINTS * 2)[-WORST_POINTS:]
+        drawn = points_to_draw(fit, sides, WORST_POINTS * 2)[-WORST_POINTS:]
         caption = f"mean in each cell of {count_of(total, 'point')}, the {WORST_POINTS} farthest as dots"
     else:
-        shown = points_to_draw(fit, sides, MAP_POINTS)
+        drawn = points_to_draw(fit, sides, MAP_POINTS)
         caption = f"{count_of(total, 'point')} on the sides"
     size = float(np.clip(1.6e5 / max(total, 1), 5.0, 60.0)) if total <= MAP_POINTS else 7.0
     dots: dict[str, Any] = {"s": size, "cmap": DEVIATION_COLOURS, "norm": scale, "rasterized": True}
-    places = abscissae(fit, shown), fit.v[shown]
-    axes.scatter(*places, c=deviations_mm(fit, shown), linewidths=0.25, edgecolors=INK, **dots)
+    places = abscissae(fit, drawn), fit.v[drawn]
+    axes.scatter(*places, c=deviations_mm(fit, drawn), linewidths=0.25, edgecolors=INK, **dots)
     outliers = np.flatnonzero(on_sides(fit) & ~fit.inliers)
     caption += _cross_map_outliers(axes, fit, outliers, fit.v[outliers])
     others = int(np.count_nonzero(~on_sides(fit)))
@@ -93,17 +93,17 @@ def draw_outline_deviation(axes: Axes, fit: FitResult) -> None:
     """Draw the signed deviations of a section over u; outliers are held at the border of the panel."""
     scale = colour_scale(fit)
     total = int(np.count_nonzero(fit.inliers))
-    shown = points_to_draw(fit, fit.inliers, MAP_POINTS)
+    drawn = points_to_draw(fit, fit.inliers, MAP_POINTS)
     most = max(float(np.max(np.abs(fit.deviations[fit.inliers]), initial=0.0)), fit.tolerance or 0.0) * MILLIMETRES
     limit = 1.25 * (most if most > 0.0 else 1.0)
     caption = f"{count_of(total, 'point')}"
-    if len(shown) < total:
-        caption += f", {len(shown):,} of them drawn with the {WORST_POINTS} farthest"
-    size = float(np.clip(2e4 / max(len(shown), 1), 4.0, 30.0))
-    dots: dict[str, Any] = {"s": size, "cmap": DEVIATION_COLOURS, "norm": scale, "rasterized": len(shown) > 2000}
-    values = deviations_mm(fit, shown)
+    if len(drawn) < total:
+        caption += f", {len(drawn):,} of them drawn with the {WORST_POINTS} farthest"
+    size = float(np.clip(2e4 / max(len(drawn), 1), 4.0, 30.0))
+    dots: dict[str, Any] = {"s": size, "cmap": DEVIATION_COLOURS, "norm": scale, "rasterized": len(drawn) > 2000}
+    values = deviations_mm(fit, drawn)
     axes.scatter(
-        abscissae(fit, shown), values, c=values, linewidths=0.35 if len(shown) < 2000 else 0.0, edgecolors=INK, **dots
+        abscissae(fit, drawn), values, c=values, linewidths=0.35 if len(drawn) < 2000 else 0.0, edgecolors=INK, **dots
     )
     outliers = np.flatnonzero(~fit.inliers)
     clipped = np.clip(deviations_mm(fit, outliers), -0.95 * limit, 0.95 * limit)
@@ -157,8 +157,8 @@ def _label_map(axes: Axes) -> None:
 
 def magnification(fit: FitResult) -> float:
     """A round factor by which deviations are magnified beside a section."""
-    off = np.abs(fit.deviations[fit.inliers])
-    most = float(np.percentile(off, 99.0)) if len(off) else 0.0
+    size = np.abs(fit.deviations[fit.inliers])
+    most = float(np.percentile(size, 99.0)) if len(size) else 0.0
     if most <= 0.0:
         return 1.0
     factor = DRAWN_HEIGHT * float(np.real(fit.built.chord)) / most
@@ -175,16 +175,16 @@ def draw_magnified(axes: Axes, fit: FitResult, outline: Outline, name: str) -> N
     factor = magnification(fit)
     axes.fill(*outline.closed.T, color=PALE, linewidth=0.0)
     _draw_tolerance(axes, fit, outline, factor)
-    shown = points_to_draw(fit, outline.points & fit.inliers, SECTION_POINTS)
-    off = deviations_mm(fit, shown)
-    footpoints, normals = outline.footpoints(fit, shown)
-    tips = footpoints + normals * (factor * off)[:, None]
-    many = len(shown) > 1000
-    for colour, own in ((INSIDE, off < 0.0), (OUTSIDE, off >= 0.0)):
-        lines = list(np.stack([footpoints[own], tips[own]], axis=1))
+    drawn = points_to_draw(fit, outline.points & fit.inliers, SECTION_POINTS)
+    deviation = deviations_mm(fit, drawn)
+    footpoints, normals = outline.footpoints(fit, drawn)
+    tips = footpoints + normals * (factor * deviation)[:, None]
+    many = len(drawn) > 1000
+    for colour, part in ((INSIDE, deviation < 0.0), (OUTSIDE, deviation >= 0.0)):
+        lines = list(np.stack([footpoints[part], tips[part]], axis=1))
         axes.add_collection(LineCollection(lines, colors=colour, linewidths=0.4 if many else 0.9, rasterized=many))
         size = SMALL_MARKER if many else MARKER
-        x, y = tips[own].T
+        x, y = tips[part].T
         axes.plot(
             x, y, color=colour, linestyle="none", marker="o", rasterized=many, markersize=size, markeredgewidth=0.0
         )
@@ -205,36 +205,36 @@ def draw_edge_points(axes: Axes, fit: FitResult, outline: Outline, *, trailing: 
     tip = 0.5 * (outline.sides["upper"][end] + outline.sides["lower"][end])
     inwards = outline.inwards(trailing=trailing)
     chord = float(section.chord) * MILLIMETRES
-    off = fit.by_region.get(f"{'trailing' if trailing else 'leading'} edge")
+    region = fit.by_region.get(f"{'trailing' if trailing else 'leading'} edge")
     # Where the fitted edge is far too sharp, the panel must still show how far off the points are.
-    least = max(LEAST_EDGE_WINDOW * chord, 1.5 * off.maximum * MILLIMETRES if off else 0.0)
+    least = max(LEAST_EDGE_WINDOW * chord, 1.5 * region.maximum * MILLIMETRES if region else 0.0)
     half_width = max(edge_half_width(section, size), least)
     middle = tip + 0.6 * half_width * inwards
     axes.fill(*outline.closed.T, color=PALE, linewidth=0.0)
     _draw_tolerance(axes, fit, outline, 1.0)
     # The range of u that the panel shows.
-    seen = [np.max(np.abs(side - middle), axis=-1) <= 1.2 * half_width for side in outline.sides.values()]
-    span = float(np.max(np.abs(outline.u - float(trailing))[seen[0] | seen[1]]))
-    near = np.zeros_like(outline.points)
+    in_panel = [np.max(np.abs(side - middle), axis=-1) <= 1.2 * half_width for side in outline.sides.values()]
+    span = float(np.max(np.abs(outline.u - float(trailing))[in_panel[0] | in_panel[1]]))
+    visible = np.zeros_like(outline.points)
     ahead = np.isin(fit.places, BLUNT_FACES) | (fit.u >= 1.0 - span if trailing else fit.u <= span)
-    beside = np.flatnonzero(outline.points & fit.inliers & ahead)
-    near[beside[np.max(np.abs(_places(fit, outline, beside) - middle), axis=-1) <= 1.05 * half_width]] = True
-    shown = points_to_draw(fit, near, SECTION_POINTS)
-    at = _places(fit, outline, shown)
+    candidates = np.flatnonzero(outline.points & fit.inliers & ahead)
+    visible[candidates[np.max(np.abs(_places(fit, outline, candidates) - middle), axis=-1) <= 1.05 * half_width]] = True
+    drawn = points_to_draw(fit, visible, SECTION_POINTS)
+    positions = _places(fit, outline, drawn)
     # Many points would hide the outline, so it is drawn over them.
-    axes.plot(*outline.closed.T, color=INK, linewidth=1.2, zorder=3.5 if len(shown) > 1000 else 2.5)
-    dot = float(np.clip(6e3 / max(len(shown), 1), 3.0, 26.0))
+    axes.plot(*outline.closed.T, color=INK, linewidth=1.2, zorder=3.5 if len(drawn) > 1000 else 2.5)
+    dot = float(np.clip(6e3 / max(len(drawn), 1), 3.0, 26.0))
     axes.scatter(
-        at[:, 0],
-        at[:, 1],
+        positions[:, 0],
+        positions[:, 1],
         s=dot,
-        c=deviations_mm(fit, shown),
+        c=deviations_mm(fit, drawn),
         cmap=DEVIATION_COLOURS,
         norm=colour_scale(fit),
-        linewidths=0.4 if len(shown) < 1000 else 0.0,
+        linewidths=0.4 if len(drawn) < 1000 else 0.0,
         edgecolors=INK,
         zorder=3.0,
-        rasterized=len(shown) > 1500,
+        rasterized=len(drawn) > 1500,
     )
     _cross_outliers(axes, fit, outline, 1.0, np.inf)
     axes.set_xlim(middle[0] - half_width, middle[0] + half_width)
@@ -242,7 +242,7 @@ def draw_edge_points(axes: Axes, fit: FitResult, outline: Outline, *, trailing: 
     axes.set_aspect("equal", adjustable="box", anchor="N")
     edge = "Trailing" if trailing else "Leading"
     abscissa, ordinate = COORDINATES[section.plane]
-    caption = f"{count_of(int(np.count_nonzero(near)), 'point')}, {description}"
+    caption = f"{count_of(int(np.count_nonzero(visible)), 'point')}, {description}"
     label_axes(
         axes, f"{edge} edge{where}", f"{abscissa}\n{caption if not where else 'its worst: ' + caption}", ordinate
     )
@@ -251,12 +251,12 @@ def draw_edge_points(axes: Axes, fit: FitResult, outline: Outline, *, trailing: 
 def _draw_tolerance(axes: Axes, fit: FitResult, outline: Outline, factor: float) -> None:
     if fit.tolerance is None:
         return
-    off = factor * fit.tolerance * MILLIMETRES
+    offset = factor * fit.tolerance * MILLIMETRES
     # Inside a thin section the line would fold.
-    inside = off < TOLERANCE_SHARE * outline.section.maximum_thickness[0] * MILLIMETRES
+    inside = offset < TOLERANCE_SHARE * outline.section.maximum_thickness[0] * MILLIMETRES
     for sign in (-1.0, 1.0) if inside else (1.0,):
         for side in SIDES:
-            axes.plot(*outline.moved(side, sign * off).T, color=SOFT, linewidth=0.8, linestyle="--")
+            axes.plot(*outline.moved(side, sign * offset).T, color=SOFT, linewidth=0.8, linestyle="--")
 
 
 def _places(fit: FitResult, outline: Outline, index: Index) -> Reals:
@@ -269,10 +269,10 @@ def _cross_outliers(axes: Axes, fit: FitResult, outline: Outline, factor: float,
     index = np.flatnonzero(outline.points & ~fit.inliers)
     if len(index) == 0:
         return
-    off = factor * deviations_mm(fit, index)
+    deviation = factor * deviations_mm(fit, index)
     if len(index) > CROSSED_OUTLIERS:
         # So many crosses at the border would look like a wall.
-        index, off = index[np.abs(off) < most], off[np.abs(off) < most]
+        index, deviation = index[np.abs(deviation) < most], deviation[np.abs(deviation) < most]
     footpoints, normals = outline.footpoints(fit, index)
-    at: Reals = footpoints + normals * np.clip(off, -most, most)[:, None]
-    cross_out(axes, at[:, 0], at[:, 1], CROSSED_OUTLIERS)
+    positions: Reals = footpoints + normals * np.clip(deviation, -most, most)[:, None]
+    cross_out(axes, positions[:, 0], positions[:, 1], CROSSED_OUTLIERS)

@@ -128,26 +128,26 @@ def _place(v: float, ends: tuple[str, str]) -> str:
 
 def draw_histogram(axes: Axes, fit: FitResult) -> None:
     """Draw the distribution of the inliers' signed deviations, with the noise of the cloud and the tolerance."""
-    off = fit.deviations[fit.inliers] * MILLIMETRES
-    most = float(np.max(np.abs(off), initial=0.0))
+    deviation = fit.deviations[fit.inliers] * MILLIMETRES
+    most = float(np.max(np.abs(deviation), initial=0.0))
     tolerance = None if fit.tolerance is None else fit.tolerance * MILLIMETRES
-    seen = most if tolerance is None or tolerance > 4.0 * most > 0.0 else max(most, tolerance)
-    limit = 1.12 * (seen if seen > 0.0 else 1.0)
-    bins = np.linspace(-limit, limit, 1 + 2 * int(np.clip(np.sqrt(len(off)) / 2.0, 10, 60)))
-    weights = np.full(len(off), 100.0 / max(len(off), 1))
-    axes.hist(off, list(bins), weights=weights, color=BLUE, alpha=0.30, label="all inliers")
+    largest = most if tolerance is None or tolerance > 4.0 * most > 0.0 else max(most, tolerance)
+    limit = 1.12 * (largest if largest > 0.0 else 1.0)
+    bins = np.linspace(-limit, limit, 1 + 2 * int(np.clip(np.sqrt(len(deviation)) / 2.0, 10, 60)))
+    weights = np.full(len(deviation), 100.0 / max(len(deviation), 1))
+    axes.hist(deviation, list(bins), weights=weights, color=BLUE, alpha=0.30, label="all inliers")
     for name, colour in EDGE_COLOURS.items():
-        own = off[fit.regions[fit.inliers] == name]
-        if len(own):
-            shares = np.full(len(own), 100.0 / len(own))
-            axes.hist(own, list(bins), weights=shares, histtype="step", color=colour, linewidth=1.3, label=name)
+        part = deviation[fit.regions[fit.inliers] == name]
+        if len(part):
+            shares = np.full(len(part), 100.0 / len(part))
+            axes.hist(part, list(bins), weights=shares, histtype="step", color=colour, linewidth=1.3, label=name)
     tallest = max(axes.get_ylim()[1] / 1.05, 1e-9)
     sigma = fit.noise * MILLIMETRES
     width = bins[1] - bins[0]
     if np.isfinite(sigma) and sigma > width / 3.0:
-        at = np.linspace(-limit, limit, 401)
-        bell = 100.0 * width / (sigma * np.sqrt(2.0 * np.pi)) * np.exp(-0.5 * (at / sigma) ** 2)
-        axes.plot(at, bell, color=RED, linewidth=1.3, label=f"noise, σ = {sigma:.3g} mm")
+        abscissa = np.linspace(-limit, limit, 401)
+        bell = 100.0 * width / (sigma * np.sqrt(2.0 * np.pi)) * np.exp(-0.5 * (abscissa / sigma) ** 2)
+        axes.plot(abscissa, bell, color=RED, linewidth=1.3, label=f"noise, σ = {sigma:.3g} mm")
     else:
         axes.plot([], [], color=RED, label=f"noise, σ = {sigma:.2g} mm")
     axes.axvline(0.0, color=SOFT, linewidth=0.8)
@@ -169,9 +169,9 @@ def draw_extrema(axes: Axes, fit: FitResult, sections: Sequence["Section"], ends
         for name in SIDES:
             arc, curvature = side_curvature(section, name)
             u = turning_places(section, name)
-            marks = [np.interp(u, cosine_spacing(len(arc)), values) for values in (arc, curvature)]
+            places = [np.interp(u, cosine_spacing(len(arc)), values) for values in (arc, curvature)]
             style: dict[str, Any] = {"marker": "o" if name == "upper" else "s", "markersize": 5.0, "zorder": 4.0}
-            axes.plot(*marks, linestyle="none", markerfacecolor="white", markeredgecolor=RED, **style)
+            axes.plot(*places, linestyle="none", markerfacecolor="white", markeredgecolor=RED, **style)
     counts = ", ".join(f"{fit.extrema[name]} {name}" for name in SIDES if name in fit.extrema)
     axes.set_title(f"Curvature, extrema: {counts}")
 
