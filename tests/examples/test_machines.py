@@ -120,7 +120,7 @@ def test_the_pump_leaves_at_about_45_deg_and_raises_the_angular_momentum():
     (_, radius_in, _), (_, radius_out, _) = edges("mixed-flow-pump", v)
     assert np.all(radius_out > 1.3 * radius_in)
     # the blade turns the relative flow towards the meridional direction
-    assert np.all(np.real(stations.angle_out) > np.real(stations.metal_angles[0]))
+    assert np.all(np.real(stations.metal_angles[1]) > np.real(stations.metal_angles[0]))
 
 
 def test_the_stator_takes_the_swirl_of_the_rotor_before_it_and_hangs_from_the_casing():

@@ -112,9 +112,7 @@ def test_what_becomes_of_broken_input_is_told_apart(tried, kind):
 
 
 def test_laws_that_ask_for_too_many_poles_are_refused_for_their_number(monkeypatch):
-    from bladewright.blade.native import build
-
-    monkeypatch.setattr(build, "MOST_POLES", (200, 5))
+    monkeypatch.setattr("bladewright.blade.native.blade.MOST_POLES", (200, 5))
     design = example("exhaust-strut")
     with pytest.raises(DesignError, match="give the laws along the span fewer control points"):
         design.build()

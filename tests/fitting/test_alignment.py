@@ -75,7 +75,7 @@ def test_a_mirrored_blade_is_told_from_the_design():
 
 def test_a_blade_of_another_stagger_is_told_from_the_design():
     other = built(example("vki-ls89")).design.changed("stagger", -50.0).build()
-    points = np.concatenate([side.grid(np.linspace(0.0, 1.0, 40), np.linspace(0.0, 1.0, 8)) for side in other.sides])
+    points = np.concatenate([side.grid(np.linspace(0.0, 1.0, 20), np.linspace(0.0, 1.0, 6)) for side in other.sides])
     found = registered(points.reshape(-1, 3), target("vki-ls89"))
     assert not found.same
     assert "another blade" in " ".join(found.notes)
@@ -98,7 +98,7 @@ def test_a_section_is_found_in_its_plane():
     assert np.abs(back(away(points)) - points).max() < 1e-9 * 0.03
 
 
-@pytest.mark.parametrize("points", ["strewn", "rows"])
+@pytest.mark.parametrize("points", ["strewn", pytest.param("rows", marks=pytest.mark.slow)])
 def test_a_prism_shows_the_span_of_its_cascade(points):
     given = cloud("vki-ls89", 4000) if points == "strewn" else rows("vki-ls89", 60, 30)
     found = found_axes(thrown(6)(given))

@@ -88,7 +88,7 @@ def test_a_sections_samples_are_those_of_the_part_it_is_made_of(name):
 
 @pytest.mark.parametrize("name", STARTED)
 def test_a_section_is_found_again_from_a_start_that_is_off(name):
-    found = fit(cloud(name), start=shaken(MEMBERS[name]))
+    found = fit(cloud(name, 60), start=shaken(MEMBERS[name]))
     assert type(found.design) is type(MEMBERS[name])
     # the tolerance of a section's native curves is 1e-10 of its chord
     assert found.maximum < 1e-9 * found.built.chord
@@ -98,7 +98,7 @@ def test_a_section_is_found_again_from_a_start_that_is_off(name):
 @pytest.mark.parametrize("name", LIKE)
 def test_a_section_is_found_again_when_its_structure_is_given(name):
     design = MEMBERS[name]
-    found = fit(cloud(name), family=family_of(design).name, like=design)
+    found = fit(cloud(name, 60), family=family_of(design).name, like=design)
     assert found.maximum < 1e-9 * found.built.chord
     assert found.passed
     truth = design.parameters()

@@ -8,7 +8,6 @@ import pytest
 
 from bladewright.errors import DesignError
 from bladewright.fitting.design_header import DesignHeader
-from bladewright.fitting.families.flow_path import LEAST_RADIUS, _share_off_axis
 from bladewright.fitting.families.kinds import FAMILIES, family_of
 from bladewright.fitting.families.law_extension import law_extensions
 from bladewright.fitting.families.polyline import nearest_on
@@ -110,8 +109,3 @@ def test_the_nearest_places_on_a_line_of_points_have_its_tangents_and_sides():
     assert found.points == pytest.approx(np.array([[0.5, 0.0], [1.0, 0.5], [-1.0, 0.0]]))
     assert found.heights == pytest.approx([0.2, -0.3, -0.5])
     assert found.normals[1] == pytest.approx([-1.0, 0.0])
-
-
-def test_a_wall_that_leads_towards_the_axis_is_lengthened_as_far_as_keeps_off_it():
-    assert _share_off_axis(1.0, 0.5) == 1.0
-    assert _share_off_axis(1.0, -10.0) * 10.0 * 0.8 == pytest.approx(LEAST_RADIUS)

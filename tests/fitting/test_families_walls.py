@@ -1,7 +1,6 @@
 """Hub and shroud of blades from sections, found with the rest of them."""
 
 from dataclasses import replace
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -10,7 +9,6 @@ from bladewright.blade.design.meridional_curve import ThroughPoints
 from bladewright.designs import Point
 from bladewright.fitting.families import blades
 from bladewright.fitting.families.flow_path import CONTINUATION, WALL_COUNTS, WALL_DISTANCE, WALL_MARGIN, _wall
-from bladewright.fitting.families.growth import FUTILE_REASON, grown_to_target
 from bladewright.fitting.families.polyline import nearest_on
 from bladewright.fitting.free_parameters import FreeParameters, gauge_parameters
 from bladewright.fitting.matching.blade_ends import WallPoints
@@ -58,7 +56,6 @@ def test_a_wall_has_as_few_points_as_follow_it(turn):
     assert len(rows) - 2 in WALL_COUNTS
     curve = ThroughPoints(points=tuple(Point(*row) for row in rows)).line(1.0).values(np.linspace(0.0, 1.0, 801))
     assert np.max(np.abs(nearest_on(curve, line).heights)) < WALL_DISTANCE
-    assert (len(rows) - 2 == WALL_COUNTS[0]) == (turn < 1.0)
     before = nearest_on(line, rows[:1])
     assert np.sqrt(np.sum((rows[0] - line[0]) ** 2)) == pytest.approx(CONTINUATION, rel=0.02)
     assert abs(before.heights[0]) < 1e-9
@@ -99,48 +96,6 @@ def test_points_past_an_end_and_level_with_the_sides_are_no_outliers():
     found = noise_of(points, nearest_footpoints(points, sides))
     assert np.count_nonzero(z < 0.0) > 3
     assert set(np.flatnonzero(~found.inliers)) == {0, 1, 2}
-
-
-def test_a_search_that_ends_further_off_leaves_the_match_before_it():
-    task = SimpleNamespace()
-    near, far = (SimpleNamespace(mean_distance=off, rms=off, evaluations=2) for off in (1.0, 2.0))
-    kept = []
-
-    def replaced(found, **_):
-        kept.append(found)
-        return found
-
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(blades, "replace", replaced)
-        for before, after in ((near, far), (far, near)):
-            patch.setattr(blades, "evaluated", lambda *_, standing=before, **__: standing)
-            blades._better(task, SimpleNamespace(design=None, evaluations=1), after)
-    assert kept == [near, near]
-
-
-def test_a_match_within_the_tolerance_is_taken_though_another_was_nearer_on_average(monkeypatch):
-    aim = SimpleNamespace(parameters=None, tolerance=1.0, open=False)
-    steps = iter([(True, ""), (False, "")])
-    monkeypatch.setattr("bladewright.fitting.families.growth.needs_more", lambda *_: next(steps))
-    monkeypatch.setattr("bladewright.fitting.families.growth.can_be_built", lambda *_: True)
-    first, second = (SimpleNamespace(rms=r, maximum=m, interrupted=False) for r, m in ((1.0, 3.0), (1.1, 0.9)))
-    assert grown_to_target(None, first, aim, lambda *_: iter([second]), coarse=1e-3) == (second, "")
-
-
-def test_growth_that_brings_a_design_no_nearer_is_taken_back_and_another_is_tried(monkeypatch):
-    aim = SimpleNamespace(parameters=None, tolerance=None, open=True)
-    monkeypatch.setattr("bladewright.fitting.families.growth.needs_more", lambda found, *_: (found.rms > 0.1, ""))
-    monkeypatch.setattr("bladewright.fitting.families.growth.can_be_built", lambda *_: True)
-    first, worse, better = (SimpleNamespace(rms=r, maximum=r, interrupted=False) for r in (1.0, 1.5, 0.05))
-    asked = []
-
-    def wider(_task, found, _aim, back):
-        asked.append((found, back))
-        yield better if back == 2 else worse
-
-    assert grown_to_target(None, first, aim, wider, coarse=1e-3) == (better, "")
-    assert asked == [(first, 0), (first, 1), (first, 2)]
-    assert grown_to_target(None, first, aim, lambda *_: iter([worse]), coarse=1e-3) == (first, FUTILE_REASON)
 
 
 def test_a_law_that_leaves_sections_no_shape_is_a_constant_and_the_others_stay_laws():

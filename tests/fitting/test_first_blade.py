@@ -1,24 +1,19 @@
 """First blades from points in space."""
 
-from importlib import resources
-
 import numpy as np
 import pytest
 
 from bladewright.blade.design.unified import UnifiedBlade
 from bladewright.blade.native.blade import Blade
-from bladewright.files.reading import read_design
 from bladewright.fitting.initial_guess.arrangement import found_arrangement
 from bladewright.fitting.initial_guess.blade import first_blade
 from bladewright.fitting.model_selection.structure import structure_of
 from bladewright.nurbs.closest import closest_on_surface
+from machines import COARSE, built, example
 
 
 def _truth(name: str) -> Blade:
-    with resources.as_file(resources.files("bladewright") / "examples" / f"{name}.toml") as path:
-        built = read_design(path).build()
-    assert isinstance(built, Blade)
-    return built
+    return built(example(name).changed("tolerance", COARSE))
 
 
 def _cloud(blade: Blade, count: int, low: float = 0.0, high: float = 1.0) -> np.ndarray:
@@ -29,7 +24,7 @@ def _cloud(blade: Blade, count: int, low: float = 0.0, high: float = 1.0) -> np.
 
 
 def _share(design: UnifiedBlade, points: np.ndarray) -> float:
-    blade = design.build()
+    blade = design.changed("tolerance", COARSE).build()
     on = [closest_on_surface(blade.surfaces[name], points[:150], tolerance=1e-5) for name in ("upper", "lower")]
     return float(np.mean(np.min([each.distances for each in on], axis=0)) / blade.chord)
 

@@ -7,7 +7,6 @@ import pytest
 
 from bladewright.fitting.free_parameters import free_parameters_of
 from bladewright.fitting.matching.search import Task, searched
-from bladewright.fitting.model_selection import adaptation
 from bladewright.fitting.model_selection.steps import gains, steps_taken_together, steps_up, union_of
 from bladewright.fitting.model_selection.structure import parameter_count, structure_of
 from bladewright.section.laws import law_basis
@@ -89,49 +88,3 @@ def test_laws_that_are_held_do_not_grow():
     free = free_parameters_of(None, ("thickness_upper[*]",), started=True)
     match = searched(Task(points=points, weights=np.ones(198), free=free, bounds={}), base, rounds=0, noise=1e-3)
     assert [step.fields for _, step in gains(match)] == [("thickness_lower",)]
-
-
-@pytest.mark.parametrize(
-    ("ratios", "taken", "interrupted"),
-    [((0.5, 0.5, 0.9), 2, False), ((0.9,), 0, False), ((0.5, 0.9), 1, True), ((), 0, False)],
-)
-def test_a_match_grows_on_as_long_as_it_comes_much_nearer(monkeypatch, ratios, taken, interrupted):
-    """Each growth leaves so much of the misfit; the last is interrupted, or there is no further one."""
-    base = example("turbine-section")
-    off = found(base, replace(base, stagger=base.stagger + 0.5), rounds=0)
-    steps, later = iter(ratios), []
-
-    def nearer(match, ratio):
-        footpoints = match.state.footpoints
-        shrunk = replace(
-            footpoints, points=footpoints.points + (1.0 - ratio) * footpoints.miss, miss=ratio * footpoints.miss
-        )
-        return replace(match, state=replace(match.state, footpoints=shrunk))
-
-    def grown(_, match, __):
-        ratio = next(steps, None)
-        if ratio is None:
-            return match, False
-        later.append(replace(nearer(match, ratio), interrupted=interrupted and ratio == ratios[-1]))
-        return later[-1], True
-
-    monkeypatch.setattr(adaptation, "grown_match", grown)
-    monkeypatch.setattr(adaptation, "searched", lambda *_, **__: later[-1])
-    monkeypatch.setattr(adaptation, "has_systematic_misfit", lambda match: not match.interrupted)
-    kept = adaptation._grown_further(None, None, off, None)
-    assert kept.state is [off, *later][taken].state
-    assert kept.interrupted == interrupted
-    assert next(steps, None) is None
-
-
-def test_a_search_that_leaves_points_out_comes_no_nearer(monkeypatch):
-    base = example("turbine-section")
-    match = found(base, replace(base, stagger=base.stagger + 0.5), rounds=0)
-    inliers = match.noise_estimate.inliers.copy()
-    inliers[np.argsort(match.state.footpoints.distances)[-5:]] = False
-    fewer = replace(match, noise_estimate=replace(match.noise_estimate, inliers=inliers))
-    assert fewer.rms < match.rms
-    monkeypatch.setattr(adaptation, "searched", lambda *_, **__: fewer)
-    kept = adaptation._restarted(None, match)
-    assert np.all(kept.noise_estimate.inliers == match.noise_estimate.inliers)
-    assert kept.evaluations == 2 * match.evaluations
