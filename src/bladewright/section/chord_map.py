@@ -274,7 +274,7 @@ class ClusteredChordMap:
         return hyperbolic_tangent(phase * (2.0 / np.pi * self.stretching)) * (0.5 * np.pi / np.tanh(self.stretching))
 
     def _ratio(self, joint: Array) -> Array:
-        """What brings the joint to its s: a projective map of x."""
+        """Ratio of the projective map of x that brings the joint to its s."""
         middle = float(self._phase(np.array([JOINT]), 0).value[0])
         at = np.sin(middle) ** 2 if self.round_end else 1.0 - np.cos(middle)
         root = np.sqrt(joint)

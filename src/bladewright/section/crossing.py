@@ -24,7 +24,7 @@ def outlines_of(upper: Reals, lower: Reals) -> Reals:
 
 
 def check_outlines(outlines: Reals, where: Sequence[str]) -> None:
-    """Refuse closed outlines (k, n, 2) of sides at `PLACES` that cross themselves; `where` (k,) each is, in words."""
+    """Refuse closed outlines (k, n, 2) of sides at `PLACES` that cross themselves; `where` (k,) says in words which each is."""
     found = self_crossings(outlines)
     if found is not None:
         section, segment = found
@@ -37,9 +37,9 @@ def check_outlines(outlines: Reals, where: Sequence[str]) -> None:
 
 
 def closed_outlines(outline: Outline) -> Reals:
-    """Closed real outlines (m, n, 2) of sections at `FINE`; both points of a blunt trailing edge, of a leading as well.
+    """Closed real outlines (m, n, 2) of sections at `FINE`, along the upper side and back along the lower side.
 
-    From the upper side's leading edge over the trailing edge to the lower side's; what is one point occurs once.
+    A point that both sides share occurs once; of a blunt edge both points occur.
     """
     upper, lower = (np.real(side).reshape(-1, *side.shape[-2:]) for side in outline.points(FINE))
     upper, lower = np.broadcast_arrays(upper, lower)
@@ -50,7 +50,7 @@ def closed_outlines(outline: Outline) -> Reals:
 
 
 def check_outline(outline: Outline, where: Sequence[str]) -> None:
-    """Refuse sections (m,) of a family that cross themselves or fold back; `where` (m,) each is, in words."""
+    """Refuse sections (m,) of a family that cross themselves or fold back; `where` (m,) says which each is."""
     outlines = closed_outlines(outline)
     for kind, found in (("crosses itself", self_crossings(outlines)), ("folds back on itself", _folding(outlines))):
         if found is None:

@@ -1,6 +1,6 @@
-"""A leading edge that is one quartic B-spline, set into any section, with droop and elongation.
+"""A leading edge of one quartic B-spline in place of a section's own, with droop and elongation.
 
-What the section has at its leading edge is taken away up to a contact on each side. One uniform quartic B-spline of
+The section's leading edge is removed up to a contact on each side. One uniform quartic B-spline of
 nine control points closes the gap: at both contacts it has the sides' point and first three derivatives by s, so
 curvature and its slope are continuous there, and it passes the tip in the middle of the third of its five segments.
 That is nine conditions for nine control points. Reference: Nemnem et al. 2014, ASAT-16-142-PP, "Leading edge option",

@@ -1,4 +1,4 @@
-"""A smooth camber line of any outline, a polynomial over the chord line that leaves both edges as the noses point."""
+"""A smooth camber line of any outline: a polynomial over the chord line with the directions of both edges."""
 
 from dataclasses import dataclass
 
@@ -25,7 +25,7 @@ class SmoothCamber:
     slopes: tuple[Array, Array]
     """(...) at both edges"""
     terms: Array
-    """(..., TERMS) what x^2 (1 - x)^2 times Chebyshev polynomials of 2 x - 1 are multiplied by"""
+    """(..., TERMS) coefficients of x^2 (1 - x)^2 times Chebyshev polynomials of 2 x - 1"""
 
     def points(self, x: Reals) -> Array:
         """Points (..., k, 2) at chord fractions x (k,)."""
@@ -44,24 +44,24 @@ class SmoothCamber:
 
 
 def smooth_camber(outline: Outline) -> SmoothCamber:
-    """The camber lines of sections: as their own between the edges, and smooth."""
+    """Smooth camber lines of sections, close to their own between the edges."""
     slopes = _slope(outline.leading_edge), _slope(outline.trailing_edge)
     own = outline.camber(SITES)
     x, height = own[..., 0], own[..., 1]
     rows = _rows(x)
-    miss = height - _cubic(slopes, x)
+    off = height - _cubic(slopes, x)
     across = np.swapaxes(rows, -1, -2)
-    terms = np.linalg.solve(across @ rows, across @ miss[..., None])[..., 0]
+    terms = np.linalg.solve(across @ rows, across @ off[..., None])[..., 0]
     return SmoothCamber(slopes=slopes, terms=terms)
 
 
 def _slope(edge: Edge) -> Array:
-    """Slope (...) of the direction in which an edge points: square to a round nose, amid the sides elsewhere."""
+    """Slope (...) of the direction in which an edge points: normal to a round nose, between the two sides elsewhere."""
     if edge.kind == "round":
         along = edge.upper.first
         return -along[..., 0] / along[..., 1]
-    amid = unit(edge.upper.first) + unit(edge.lower.first)
-    return amid[..., 1] / amid[..., 0]
+    middle = unit(edge.upper.first) + unit(edge.lower.first)
+    return middle[..., 1] / middle[..., 0]
 
 
 def _cubic(slopes: tuple[Array, Array], x: Array) -> Array:

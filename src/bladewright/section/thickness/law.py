@@ -96,7 +96,7 @@ class ThicknessLaw(Part, ABC):
         """
 
     def _checked(self, name: str, low: float, high: float, what: str) -> None:
-        """Keep a field as plain numbers, all within (low, high); raises DesignError with the cure."""
+        """Check that the numbers of a field are within (low, high), and keep them as a law; `what` is the cure."""
         path = f"{self.path}.{name}"
         law = checks.law(path, getattr(self, name))
         checks.between(path, law, low, high, what)
