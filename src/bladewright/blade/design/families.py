@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import singledispatch
 from typing import Any, overload
 
 import numpy as np
@@ -89,8 +90,17 @@ def prismatic(section: UnifiedSection | PlanarSection, span: float | None = None
     height = section.span if span is None else span
     if height is None:
         raise DesignError("span is missing: a section becomes a solid by its height; set span in the design")
-    if isinstance(section, PlanarSection):
-        return _of_family(section, height)
+    return _drawn(section, height)
+
+
+@singledispatch
+def _drawn(section: Any, height: float) -> Any:
+    """The blade of a kind of 2D design between two planes."""
+    raise TypeError(f"a {type(section).__name__} is no 2D section (height {height:g})")
+
+
+@_drawn.register
+def _of_unified(section: UnifiedSection, height: float) -> UnifiedBlade:
     start, end = section.leading_edge_x, section.leading_edge_x + section.axial_chord
     same = {
         name: getattr(section, name)
@@ -126,6 +136,7 @@ def prismatic(section: UnifiedSection | PlanarSection, span: float | None = None
     )
 
 
+@_drawn.register
 def _of_family(section: PlanarSection, height: float) -> SectionedBlade:
     """The same of a section of a family: hub and shroud are straight, and reach a chord past both edges."""
     stagger = section.section.stagger(Span(np.zeros(1)))[..., 0]

@@ -7,7 +7,7 @@ import numpy as np
 
 from bladewright.blade.flow_path.blade_streamlines import BladeStreamlines, blade_streamlines
 from bladewright.blade.flow_path.meridional_curve import real_first
-from bladewright.blade.flow_path.stream_surface_map import StreamSurfaceMap, TrueLengths
+from bladewright.blade.flow_path.stream_surface_map import StreamSurfaceMap
 from bladewright.blade.flow_path.stream_surfaces import StreamSurfaces
 from bladewright.errors import DesignError
 from bladewright.numerics.elementary import Array, concatenated, length
@@ -52,7 +52,7 @@ class ChordPlacement:
         low, high = real.reach()
         with np.errstate(divide="ignore"):
             most = np.minimum(-low / np.maximum(own, 0.0), high / np.maximum(1.0 - own, 0.0)) * (1.0 - ROUNDING)
-        if isinstance(self.lines.mapping, TrueLengths):
+        if self.lines.mapping.true_lengths:
             self._check(asked, most)
             return extent
         self._check(asked, _length(real, own, most)[0])

@@ -54,6 +54,8 @@ class StreamSurfaceMap(ABC):
     """the plane's coordinates by name"""
     keeps_ordinate: bool = True
     """whether neighbouring blades are one pitch apart in the plane's ordinate everywhere"""
+    true_lengths: bool = False
+    """whether the abscissa is a length along the stream line, or along x"""
     discrete: bool = False
     """whether its m' is counted, chord by chord, by the points of hub, shroud and stream surfaces"""
     keeps_angles: bool = True
@@ -136,6 +138,8 @@ class Conformal(StreamSurfaceMap):
 
 class TrueLengths(StreamSurfaceMap, ABC):
     """A plane whose abscissa is the meridional length."""
+
+    true_lengths = True
 
     def density(self, position: Array, slope: Array) -> Array:
         del position

@@ -14,7 +14,7 @@ def extrema_of(built: Blade | Section, spans: Sequence[float] = SPANS) -> dict[s
     """The number of extrema of the curvature of each side, {"upper": n, "lower": n}.
 
     Of a blade it is the most that any of its sections has; `spans` are their v. What counts as an extremum follows from
-    `section.extrema.curvature_extrema`.
+    `curvature_extrema`.
     """
-    sections = [built] if isinstance(built, Section) else [built.section(v) for v in spans]
+    sections = [built] if built.dimension == 2 else [built.section(v) for v in spans]
     return {name: max(curvature_extrema(each, name) for each in sections) for name in ("upper", "lower")}
