@@ -8,7 +8,7 @@ from types import MappingProxyType
 import numpy as np
 
 from bladewright.blade.native.blade import Faces
-from bladewright.blade.native.end_faces import WallCurve, WallSurface, followed
+from bladewright.blade.native.end_faces import Near, WallSurface, followed
 from bladewright.domain.duct import Duct
 from bladewright.domain.knots import BLADE_AT
 from bladewright.errors import DesignError
@@ -84,7 +84,7 @@ def _wall(faces: Mapping[str, Surface], duct: Duct, row: int, name: str, chord: 
         )
         for edge in _wall_curves(faces[face], row, np.array(at), meridian, duct)
     ]
-    across = np.concatenate([edge.across for edge in edges])
+    across = np.concatenate([near[2] for _, near in edges])
     margin = ANGULAR_OVERHANG * float(np.ptp(across))
     if duct.revolved and float(np.ptp(across)) + 2.0 * margin >= 2.0 * np.pi:
         raise DesignError(
@@ -99,7 +99,7 @@ def _wall(faces: Mapping[str, Surface], duct: Duct, row: int, name: str, chord: 
         low=float(across.min()) - margin,
         high=float(across.max()) + margin,
     )
-    curves = [followed(wall, edge, chord) for edge in edges]
+    curves = [followed(wall, *edge, chord) for edge in edges]
     first, last = (len(BLADE_AT) + 2 + len(cuts[1])), len(cuts[0]) + 1
     ahead, back = curves[:first], [run_back(curve) for curve in curves[first:][::-1]]
     # the upper boundary and the inlet run against their own sense: outlet to inlet, then upper to lower
@@ -107,19 +107,17 @@ def _wall(faces: Mapping[str, Surface], duct: Duct, row: int, name: str, chord: 
     return TrimmedSurface(surface=wall.surface, boundary=boundary, revolution=wall.revolution)
 
 
-def _wall_curves(face: Surface, row: int, at: Reals, meridian: Curve, duct: Duct) -> list[WallCurve]:
+def _wall_curves(face: Surface, row: int, at: Reals, meridian: Curve, duct: Duct) -> list[tuple[Curve, Near]]:
     edge = Curve(control_points=np.real(face.control_points[:, row]), knots=face.knots_u, degree=face.degree_u)
     return [_wall_curve(piece, meridian, duct) for piece in split(edge, at)]
 
 
-def _wall_curve(edge: Curve, meridian: Curve, duct: Duct) -> WallCurve:
+def _wall_curve(edge: Curve, meridian: Curve, duct: Duct) -> tuple[Curve, Near]:
     places = np.linspace(*edge.domain, PLACES)
     points = edge(places)
     radius = np.sqrt(points[:, 1] ** 2 + points[:, 2] ** 2) if duct.revolved else points[:, 2]
     across = np.unwrap(angle(points[:, 1], points[:, 2])) if duct.revolved else points[:, 1]
-    return WallCurve(
-        edge, meridian, duct.revolved, places, _nearest(meridian, np.stack([points[:, 0], radius], 1)), across
-    )
+    return edge, (places, _nearest(meridian, np.stack([points[:, 0], radius], 1)), across)
 
 
 def _nearest(meridian: Curve, points: Array) -> Reals:

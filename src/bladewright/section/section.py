@@ -1,6 +1,6 @@
 """One section as native curves, and its properties in the plane or on the stream surface where it lies."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, ClassVar
@@ -57,6 +57,10 @@ class Section:
 
     outline: Outline | None = None
     """the exact section in chords, unstaggered, where the family has one"""
+
+    def sections_at(self, spans: Sequence[float]) -> list["Section"]:  # noqa: ARG002 - a blade has one for each
+        """The section alone, where a blade answers with one for each of the span fractions."""
+        return [self]
 
     @cached_property
     def chord(self) -> Array:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from types import MappingProxyType
@@ -143,6 +143,10 @@ class Blade:
         Ruled blades have those at hub and shroud, developable ones that at the hub.
         """
         return tuple(self.section(v) for v in self.exact.section_spans)
+
+    def sections_at(self, spans: Sequence[float]) -> list[Section]:
+        """The exact sections at span fractions."""
+        return [self.section(v) for v in spans]
 
     def section(self, v: float) -> Section:
         """The exact section at v in [0, 1], in its plane, with the properties it has on its stream surface.

@@ -1,6 +1,6 @@
 """The ends of a blade: trimmed pieces of hub, shroud or clearance surface, and caps past them."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -24,6 +24,9 @@ from bladewright.nurbs.trimmed import TrimmedSurface
 FOLLOWED = 1e-9
 """Largest distance [chords] of the image of an end's outline from the side's edge, beyond what that edge lies off
 the wall: a hundredth of what ends may be off their walls."""
+
+MARGIN = 0.05
+"""How far a wall reaches past the blade's end, as a share of its width, so that the end's outline lies inside."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -69,47 +72,9 @@ class WallSurface:
         )
 
 
-class WallCurve:
-    """A curve in space on its wall: the meridian's u and theta, or y in a cascade, by the curve's parameter."""
-
-    def __init__(self, end: Curve, meridian: Curve, revolved: bool, places: Reals, u: Reals, across: Reals) -> None:
-        """`u` and `across` (k,) are near the curve's own at increasing `places` (k,), linear between."""
-        self.end, self.meridian, self.revolved = end, meridian, revolved
-        self.across, self._places, self._u = across, places, u
-
-    def __call__(self, s: Reals) -> tuple[Array, Array]:
-        """u and theta, or y (len(s),), of the points of the wall's meridian nearest to the end's points."""
-        points = self.end(s)
-        if self.revolved:
-            radius = length(points[..., 1:])
-            across = angle(points[..., 1], points[..., 2])
-            near = np.interp(s, self._places, self.across)
-            across = across + 2.0 * np.pi * np.round((near - np.real(across)) / (2.0 * np.pi))
-        else:
-            radius, across = points[..., 2], points[..., 1]
-        target = np.stack([points[..., 0], radius], axis=-1)
-        u = np.interp(s, self._places, self._u)
-        # the second brings rounding, without which the derivative would be as far off as the first left the place
-        for _ in range(2):
-            u = u + _foot_step(self.meridian, u, np.real(target))
-        return u + _foot_step(self.meridian, u, target), across
-
-    def joints(self, wall: WallSurface) -> list[tuple[float, int]]:
-        """Where the curve passes inner places of the wall, each with the derivatives that the wall's parameters keep.
-
-        Between rational arcs, which are symmetric, that is one.
-        """
-
-        def passed(which: int, values: Reals, levels: Reals) -> list[float]:
-            return list(map(float, level_crossings(lambda s: np.real(self(s)[which]), self._places, values, levels)))
-
-        levels, counts = np.unique(wall.inner, return_counts=True)
-        own = [
-            (place, self.meridian.degree - int(times))
-            for times in np.unique(counts)
-            for place in passed(0, self._u, levels[counts == times])
-        ]
-        return [*own, *((place, 1) for place in passed(1, self.across, wall.seams))]
+Near = tuple[Reals, Reals, Reals]
+"""Increasing parameters (k,) of a curve on a wall; and near the curve there the meridian's u, and theta, or y in a
+cascade, (k,) each. Between them both are taken as linear."""
 
 
 def _foot_step(meridian: Curve, u: Reals, target: Array) -> Array:
@@ -118,32 +83,76 @@ def _foot_step(meridian: Curve, u: Reals, target: Array) -> Array:
     return dot(miss, slope) / (dot(slope, slope) - dot(miss, bend))
 
 
-def followed(wall: WallSurface, trace: WallCurve, chord: float, knots: Reals | None = None) -> Curve:
-    """A plane B-spline that the wall maps on the traced curve, as smooth as that, its knots cut until it follows.
+def followed(wall: WallSurface, curve: Curve, near: Near, chord: float, knots: Reals | None = None) -> Curve:
+    """A plane B-spline that the wall maps on a curve in space, as smooth as that, its knots cut until it follows.
 
     Or on given knots, as they are. Raises DesignError where it does not come within FOLLOWED of the chord.
     """
-    end = trace.end
+
+    def exact(s: Reals) -> Array:
+        return wall.parameters(*_nearest_on_wall(wall, curve, near, s))
+
     if knots is not None:
-        sites = greville(knots, end.degree)
-        return interpolated(wall.parameters(*trace(sites)), sites, degree=end.degree, knots=knots)
-    own = knots_with_joints(end.knots, end.degree, trace.joints(wall))
+        sites = greville(knots, curve.degree)
+        return interpolated(exact(sites), sites, degree=curve.degree, knots=knots)
+    own = knots_with_joints(curve.knots, curve.degree, _joints(wall, curve, near))
     spans = np.unique(own)
     for pieces in (2, 3, 4, 6, 8):
         added = [spans[:-1] + np.diff(spans) * k / pieces for k in range(1, pieces)]
         knots = np.sort(np.concatenate([own, *added]))
-        sites = greville(knots, end.degree)
-        curve = interpolated(wall.parameters(*trace(sites)), sites, degree=end.degree, knots=knots)
+        sites = greville(knots, curve.degree)
+        found = interpolated(exact(sites), sites, degree=curve.degree, knots=knots)
         between = (sites[1:] + sites[:-1]) / 2.0
-        exact, found = np.real(wall.parameters(*trace(between))), np.real(curve(between))
-        miss = length((found - exact) * wall.stretch(exact))
+        wanted, reached = np.real(exact(between)), np.real(found(between))
+        miss = length((reached - wanted) * wall.stretch(wanted))
         if np.max(miss) < FOLLOWED * chord:
-            return curve
+            return found
     raise DesignError(
         f"channel: an end of the blade cannot be followed on its wall within {FOLLOWED:g} of the chord, "
         f"{np.max(miss) / chord:.2g} is reached: smooth the wall by a higher channel.degree or fewer inner control "
         "points, or lower the tolerance"
     )
+
+
+def _nearest_on_wall(wall: WallSurface, curve: Curve, near: Near, s: Reals) -> tuple[Array, Array]:
+    """The meridian's u, and theta or y, (len(s),), of the wall's points nearest to the curve's at s."""
+    places, near_u, near_across = near
+    points = curve(s)
+    if wall.revolved:
+        radius = length(points[..., 1:])
+        across = angle(points[..., 1], points[..., 2])
+        about = np.interp(s, places, near_across)
+        across = across + 2.0 * np.pi * np.round((about - np.real(across)) / (2.0 * np.pi))
+    else:
+        radius, across = points[..., 2], points[..., 1]
+    target = np.stack([points[..., 0], radius], axis=-1)
+    u = np.interp(s, places, near_u)
+    # the second brings rounding, without which the derivative would be as far off as the first left the place
+    for _ in range(2):
+        u = u + _foot_step(wall.meridian, u, np.real(target))
+    return u + _foot_step(wall.meridian, u, target), across
+
+
+def _joints(wall: WallSurface, curve: Curve, near: Near) -> list[tuple[float, int]]:
+    """Where the curve passes inner knots and seams of the wall, and how many derivatives the parameters keep there.
+
+    Between rational arcs, which are symmetric, that is one.
+    """
+    places, near_u, near_across = near
+
+    def passed(which: int, values: Reals, levels: Reals) -> list[float]:
+        def at(s: Reals) -> Reals:
+            return np.real(_nearest_on_wall(wall, curve, near, s)[which])
+
+        return list(map(float, level_crossings(at, places, values, levels)))
+
+    levels, counts = np.unique(wall.inner, return_counts=True)
+    own = [
+        (place, wall.meridian.degree - int(times))
+        for times in np.unique(counts)
+        for place in passed(0, near_u, levels[counts == times])
+    ]
+    return [*own, *((place, 1) for place in passed(1, near_across, wall.seams))]
 
 
 def _real(curve: Curve) -> Curve:
@@ -181,9 +190,9 @@ def trimmed_ends(
     a full turn around the axis.
     """
     places = np.unique(upper.knots_u)
-    stations = exact.survey
-    plane = concatenated(stations.plane_points(places), axis=-2)[..., [0, -1], :, :]
-    lines = stations.lines.rows([0, -1])
+    sections = exact.survey
+    plane = concatenated(sections.plane_points(places), axis=-2)[..., [0, -1], :, :]
+    lines = sections.lines.rows([0, -1])
     u = lines.u_at(plane[..., 0])
     across = lines.mapping.tangential(plane[..., 1], lines.position(u)[..., 1], lines.lengths[..., None])
     first = (0,) * (u.ndim - 2)
@@ -192,35 +201,33 @@ def trimmed_ends(
     ends = {}
     for wall, row in (("hub", 0), ("shroud", -1)):
         name, (meridian, inner) = exact.design.ends[row], exact.end_wall(row)
-        traces = [
-            WallCurve(_end(side, row), meridian, exact.mapping.revolved, places, own[row, part], across[row, part])
+        outline = [
+            (_end(side, row), (places, own[row, part], across[row, part]))
             for side, part in ((upper, slice(None, len(places))), (lower, slice(len(places), None)))
         ]
         blunt = {}
         for edge, face in ({} if faces is None else faces).items():
             at = 0 if edge == "leading_edge" else len(places) - 1
             both, two = [at, len(places) + at], np.array([0.0, 1.0])
-            blunt[edge] = WallCurve(
-                _end(face, row), meridian, exact.mapping.revolved, two, own[row, both], across[row, both]
-            )
-        ends[name] = _trimmed(traces, blunt, inner, wall, chord, None if like is None else like[name])
+            blunt[edge] = _end(face, row), (two, own[row, both], across[row, both])
+        known = None if like is None else like[name]
+        revolved = exact.mapping.revolved
+        low, high = _stretch(across[row], wall, revolved=revolved) if known is None else _stretch_of(known)
+        surface = WallSurface(meridian=meridian, inner=inner, revolved=revolved, low=low, high=high)
+        ends[name] = _trimmed(surface, outline, blunt, chord, known)
     return ends
 
 
 def _trimmed(
-    traces: list[WallCurve],
-    blunt: Mapping[str, WallCurve],
-    inner: Reals,
-    name: str,
+    wall: WallSurface,
+    outline: Sequence[tuple[Curve, Near]],
+    blunt: Mapping[str, tuple[Curve, Near]],
     chord: float,
     like: TrimmedSurface | None,
 ) -> TrimmedSurface:
-    first = traces[0]
-    low, high = _stretch(traces, name) if like is None else _stretch_of(like)
-    wall = WallSurface(meridian=first.meridian, inner=inner, revolved=first.revolved, low=low, high=high)
     held = [None, None] if like is None else [reversed_(like.boundary[1]).knots, like.boundary[0].knots]
-    upper, lower = (followed(wall, trace, chord, knots) for trace, knots in zip(traces, held, strict=True))
-    faces = {edge: followed(wall, trace, chord) for edge, trace in blunt.items()}
+    upper, lower = (followed(wall, *curve, chord, knots) for curve, knots in zip(outline, held, strict=True))
+    faces = {edge: followed(wall, *curve, chord) for edge, curve in blunt.items()}
     chain = [lower]
     chain += [reversed_(faces["trailing_edge"])] if "trailing_edge" in faces else []
     chain += [reversed_(upper)]
@@ -228,11 +235,11 @@ def _trimmed(
     return TrimmedSurface(surface=wall.surface, boundary=tuple(chain), revolution=wall.revolution)
 
 
-def _stretch(traces: list[WallCurve], name: str) -> tuple[float, float]:
-    """Where the wall starts and ends in theta, or y in a cascade: with some room about the blade's end."""
-    low, high = min(float(trace.across.min()) for trace in traces), max(float(trace.across.max()) for trace in traces)
-    room = 0.05 * (high - low)
-    if traces[0].revolved and high - low + 2.0 * room >= 2.0 * np.pi:
+def _stretch(across: Reals, name: str, *, revolved: bool) -> tuple[float, float]:
+    """Where the wall starts and ends in theta, or y in a cascade: with a margin about the blade's end."""
+    low, high = float(across.min()), float(across.max())
+    room = MARGIN * (high - low)
+    if revolved and high - low + 2.0 * room >= 2.0 * np.pi:
         raise DesignError(
             f"stagger: the blade winds {np.degrees(high - low):.0f} deg around the axis at the {name}: its end "
             "must be one trimmed face of less than 327 deg; lower the stagger there"

@@ -16,5 +16,5 @@ def extrema_of(built: Blade | Section, spans: Sequence[float] = SPANS) -> dict[s
     Of a blade it is the most that any of its sections has; `spans` are their v. What counts as an extremum follows from
     `curvature_extrema`.
     """
-    sections = [built] if built.dimension == 2 else [built.section(v) for v in spans]
+    sections = built.sections_at(spans)
     return {name: max(curvature_extrema(each, name) for each in sections) for name in ("upper", "lower")}

@@ -25,11 +25,12 @@ def native_sides(sections: SectionStack, knots: Knots) -> tuple[Array, Array]:
     Across each edge the sides share the row P0, the rows P0 + D and P0 - D and the row of second derivatives E, so
     that curvature is continuous there for every v.
     """
-    return sides_through(interpolation_data(sections, knots), knots)
+    edges = sections.leading_edge(), sections.trailing_edge()
+    return _sides(edges, sections.lower_edges(), sections.points(knots.sites_u), knots)
 
 
 class InterpolationData(NamedTuple):
-    """What the native sides interpolate at their sites along the span (m,): the nets are linear in it."""
+    """What native sides interpolate at their sites along the span (m,), for derivatives: the nets are linear in it."""
 
     leading_edge: EdgeDerivatives
     trailing_edge: EdgeDerivatives
@@ -42,23 +43,33 @@ class InterpolationData(NamedTuple):
 
 
 def interpolation_data(sections: SectionStack, knots: Knots) -> InterpolationData:
-    """The skeleton of sections at `knots.sites_v`."""
+    """What the sides interpolate of sections at `knots.sites_v`."""
     edges = sections.leading_edge(), sections.trailing_edge()
     return InterpolationData(*edges, *sections.points(knots.sites_u), sections.lower_edges())
 
 
-def sides_through(skeleton: InterpolationData, knots: Knots) -> tuple[Array, Array]:
-    """Control nets (..., n_u, n_v, 3) of the upper and the lower side that interpolate a skeleton."""
+def sides_through(data: InterpolationData, knots: Knots) -> tuple[Array, Array]:
+    """Control nets (..., n_u, n_v, 3) of the upper and the lower side that interpolate given data."""
+    return _sides((data.leading_edge, data.trailing_edge), data.lower_edges, (data.upper, data.lower), knots)
+
+
+def _sides(
+    edges: tuple[EdgeDerivatives, EdgeDerivatives],
+    own_lower: Sequence[EdgeDerivatives | None],
+    points_of_sides: tuple[Array, Array],
+    knots: Knots,
+) -> tuple[Array, Array]:
+    """The nets through the points of both sides and the upper side's edges; the lower side's where it has its own."""
     matrix = basis(knots.v, DEGREE, knots.sites_v)
-    own = [skeleton.leading_edge, skeleton.trailing_edge, *(row for row in skeleton.lower_edges if row is not None)]
-    ends = solved(matrix, concatenated([part for row in own for part in row], axis=-1))
-    parts = iter(np.split(ends, 3 * len(own), axis=-1))
+    given = [*edges, *(edge for edge in own_lower if edge is not None)]
+    ends = solved(matrix, concatenated([part for edge in given for part in edge], axis=-1))
+    parts = iter(np.split(ends, 3 * len(given), axis=-1))
     upper = EdgeDerivatives(*islice(parts, 3)), EdgeDerivatives(*islice(parts, 3))
-    lower = [None if row is None else EdgeDerivatives(*islice(parts, 3)) for row in skeleton.lower_edges]
+    lower = [None if edge is None else EdgeDerivatives(*islice(parts, 3)) for edge in own_lower]
     sides = []
-    for points, edges in ((skeleton.upper, upper), (skeleton.lower, lower_edges(upper, lower))):
+    for points, at_edges in zip(points_of_sides, (upper, lower_edges(upper, lower)), strict=True):
         rows = solved(matrix, points.reshape(*points.shape[:-2], -1)).reshape(points.shape)
-        sides.append(interpolated_along_u(np.swapaxes(rows, -3, -2), *edges, knots.u))
+        sides.append(interpolated_along_u(np.swapaxes(rows, -3, -2), *at_edges, knots.u))
     return sides[0], sides[1]
 
 
