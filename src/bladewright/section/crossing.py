@@ -24,7 +24,7 @@ def outlines_of(upper: Reals, lower: Reals) -> Reals:
 
 
 def check_outlines(outlines: Reals, where: Sequence[str]) -> None:
-    """Refuse closed outlines (k, n, 2) of sides at `PLACES` that cross themselves; `where` (k,) says in words which each is."""
+    """Refuse closed outlines (k, n, 2) of sides at `PLACES` that cross themselves; `where` (k,) names each."""
     found = self_crossings(outlines)
     if found is not None:
         section, segment = found
