@@ -17,7 +17,7 @@ from bladewright.fitting.families.kinds import FitFamily
 from bladewright.fitting.families.law_extension import extended_blade
 from bladewright.fitting.families.laws import counts_of, nearest_law, part_along_span, with_mean_laws
 from bladewright.fitting.families.section_samples import SampledSection, reversed_flow, sampled_section
-from bladewright.fitting.families.sections import best_trial, starts_of, thinned_task
+from bladewright.fitting.families.sections import best_trial, starts_of
 from bladewright.fitting.free_parameters import EDGES, FreeParameters, gauge_parameters
 from bladewright.fitting.initial_guess.blade import first_blade
 from bladewright.fitting.matching.constrained_least_squares import MIN_REDUCTION
@@ -66,7 +66,7 @@ def matched_blade(
     `start` and `like` are blades of the family, or None. Raises FitError where no blade of the family has a shape near
     the points.
     """
-    many, few = thinned_task(task, THOROUGH_POINTS), thinned_task(task, QUICK_POINTS)
+    many, few = task.thinned(THOROUGH_POINTS), task.thinned(QUICK_POINTS)
     first, own = start, start is None and like is None
     if own and isinstance(task.free, FreeParameters):
         many, few = (replace(each, free=replace(task.free, walls=True)) for each in (many, few))

@@ -10,7 +10,6 @@ import numpy as np
 from bladewright.designs import Design
 from bladewright.errors import DesignError, FitError
 from bladewright.fitting.assessment.acceptance import GROSS_DEVIATION
-from bladewright.fitting.clouds.thinning import random_subset
 from bladewright.fitting.design_header import DesignHeader
 from bladewright.fitting.families.growth import can_be_built, grown_to_target, predicted_gains
 from bladewright.fitting.families.kinds import FitFamily
@@ -59,15 +58,15 @@ def matched_section(
     `start` and `like` are sections of the family, or None. Raises FitError where no structure of the family has a shape
     near the points.
     """
-    many = thinned_task(task, THOROUGH_POINTS)
-    few = thinned_task(task, QUICK_POINTS)
+    many = task.thinned(THOROUGH_POINTS)
+    few = task.thinned(QUICK_POINTS)
     section = None
     if start is not None and like is None:
         check_bounds(start, task.free(start), task.bounds)
         found = searched(few, start)
     else:
         section = _closed_section(few, header) if start is None else section_samples(start.build())
-        rough = thinned_task(task, TRIAL_POINTS)
+        rough = task.thinned(TRIAL_POINTS)
         parts = kind.templates(section, target.parameters) if like is None else [like.section]
         starts = [start for part in parts for start in starts_of(kind, section, part)]
         found = best_trial(rough, few, _design_maker(kind, section, header, task), starts)
@@ -226,12 +225,3 @@ def _buildable_tolerance(match: Match) -> Match:
             design: Any = match.design
             return replace(match, design=replace(design, tolerance=max(design.tolerance, tolerance)))
     return match
-
-
-def thinned_task(task: Task, count: int) -> Task:
-    """A task with at most so many of its points."""
-    rows = random_subset(len(task.points), count)
-    if len(rows) == len(task.points):
-        return task
-    precision = None if task.precision is None else task.precision[rows]
-    return replace(task, points=task.points[rows], weights=task.weights[rows], precision=precision)

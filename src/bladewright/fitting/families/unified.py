@@ -6,7 +6,6 @@ from typing import Any
 from bladewright.blade.design.unified import UnifiedBlade
 from bladewright.designs import Design
 from bladewright.errors import DesignError, FitError
-from bladewright.fitting.clouds.thinning import random_subset
 from bladewright.fitting.design_header import DesignHeader
 from bladewright.fitting.free_parameters import FreeParameters
 from bladewright.fitting.initial_guess.blade import AXES_HINT, first_blade
@@ -43,7 +42,7 @@ def matched_unified(
 
     Raises FitError where no design is found near the points, or the nearest one cannot be built.
     """
-    solid, wanted = task.points.shape[1] == 3, None if like is None else structure_of(like)
+    solid, wanted = task.dimension == 3, None if like is None else structure_of(like)
     keeps_structure = solid and wanted is not None and start is None and target.structured and target.tolerance is None
     task.progress("first design")
     if start is not None:
@@ -60,7 +59,7 @@ def matched_unified(
     check_bounds(first, task.free(first), task.bounds)
     base = None
     if start is None and (solid or wanted is None):
-        base = wanted or initial_structure(task.points.shape[1], target.parameters)
+        base = wanted or initial_structure(task.dimension, target.parameters)
     try:
         found, reason = selected_match(task, first, target, base=base, guessed=start is None)
         if keeps_structure and found.rms > KNOWN_MISFIT and has_systematic_misfit(found, CLEAR_SHARE):
@@ -89,8 +88,8 @@ def _with_held_values(task: Task, guessed: Design, *, started: bool) -> Design:
 
 def _first_design(task: Task, structure: Structure | None, like: Design | None, header: DesignHeader) -> Design:
     """The first design from the points alone; what `like` says of the row counts where nothing else does."""
-    some = task.points[random_subset(len(task.points), THOROUGH_POINTS)]
-    if task.points.shape[1] == 2:
+    some = task.thinned(THOROUGH_POINTS).points
+    if task.dimension == 2:
         lengths: dict[str, Any] = {}
         if structure is not None:
             lengths = {name: getattr(structure, name) for name in ("chordwise", "samples", "clustering")}
@@ -117,7 +116,7 @@ def _buildable(task: Task, match: Match, *, fewer: bool) -> tuple[Match, Any, st
         except DesignError as error:
             refusal = str(error)
     structure = structure_of(match.design)
-    few = task.part(random_subset(len(task.points), REDUCED_POINTS))
+    few = task.thinned(REDUCED_POINTS)
     straight = replace(few, bounds={**STRAIGHT_CAMBER, **task.bounds})
     for share in FEWER_SHARES if fewer and not match.interrupted else ():
         upper, lower = (max(FEWEST_THICKNESSES, round(share * count)) for count in structure.chordwise)

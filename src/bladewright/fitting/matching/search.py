@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from bladewright.designs import Design
 from bladewright.errors import DesignError, FitError
+from bladewright.fitting.clouds.thinning import random_subset
 from bladewright.fitting.matching.blade_ends import BladeEnds, blade_ends_of
 from bladewright.fitting.matching.constrained_least_squares import FIRST_DAMPING, MIN_REDUCTION, constrained_minimum
 from bladewright.fitting.matching.edge_overhang import edge_overhang_of
@@ -101,6 +102,15 @@ class Task:
     """whether points may be outliers"""
     best_so_far: BestSoFar = field(default_factory=BestSoFar)
     """the nearest designs that searches have reached"""
+
+    @property
+    def dimension(self) -> int:
+        """2 for a cloud of a section, 3 for one of a blade."""
+        return int(self.points.shape[1])
+
+    def thinned(self, most: int) -> "Task":
+        """The same task with at most so many of its points, drawn at random but always the same."""
+        return self.part(random_subset(len(self.points), most))
 
     def part(self, rows: NDArray[np.intp]) -> "Task":
         """The same task with some of the points (m,)."""

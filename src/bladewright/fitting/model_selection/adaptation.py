@@ -7,7 +7,6 @@ import numpy as np
 from bladewright.designs import Design
 from bladewright.errors import DesignError
 from bladewright.fitting.clouds.cloud import is_rounded
-from bladewright.fitting.clouds.thinning import random_subset
 from bladewright.fitting.free_parameters import corner_radii
 from bladewright.fitting.matching.constrained_least_squares import MIN_REDUCTION
 from bladewright.fitting.matching.search import MOST_ROUNDS, ROUGH_REDUCTION, Match, Task, searched
@@ -70,8 +69,8 @@ def selected_match(
     `first` is a first design, a guess or a start; `base` the structure from which to grow, where it is not that of
     `first`.
     """
-    few = task.part(random_subset(len(task.points), QUICK_POINTS[task.points.shape[1]]))
-    several, many = (task.part(random_subset(len(task.points), most)) for most in (TOLERANCE_POINTS, THOROUGH_POINTS))
+    few = task.thinned(QUICK_POINTS[task.dimension])
+    several, many = (task.thinned(most) for most in (TOLERANCE_POINTS, THOROUGH_POINTS))
     noise = GUESS_NOISE if guessed else None
     if target.structured and target.tolerance is None:
         return matched_structure(few, many, first, base, guessed=guessed), ""
@@ -99,13 +98,13 @@ def selected_match(
     if found.interrupted:
         return found, reason
     rounds = MOST_ROUNDS
-    if task.points.shape[1] == 3 and not target.open:
+    if task.dimension == 3 and not target.open:
         # growth to a tolerance has weighted points by their distances, as the search that follows will
         rounds = QUICK_ROUNDS if target.tolerance is None else 0
-    if task.points.shape[1] == 3 and not target.open and _refused(found):
+    if task.dimension == 3 and not target.open and _refused(found):
         many = replace(many, margin_factor=REFUSED_MARGIN * many.margin_factor)
     found = searched(many, found.design, rounds=rounds, min_reduction=MIN_REDUCTION if target.open else FINAL_REDUCTION)
-    if guessed and task.points.shape[1] == 2:
+    if guessed and task.dimension == 2:
         found = _restarted(many, found)
     elif guessed and target.open:
         found = _grown_further(several, many, found, target)
@@ -119,7 +118,7 @@ def _match_for_target(
     task: Task, several: Task, match: Match, target: MatchTarget, base: Structure | None, *, guessed: bool
 ) -> tuple[Match, str]:
     """A match with as many control points as the target asks for, by forecasts or growth, or why not."""
-    solid = guessed and task.points.shape[1] == 3 and stands_on_channel(match.design) and not match.interrupted
+    solid = guessed and task.dimension == 3 and stands_on_channel(match.design) and not match.interrupted
     if solid and target.parameters is not None:
         chosen = best_match_of_size(task, match, target.parameters)
         if chosen is not None:
@@ -157,7 +156,7 @@ def _grown_to_target(task: Task, match: Match, target: MatchTarget) -> tuple[Mat
             match, grew = with_grown_thickness(task, match, target)
         if not grew or gained_little(task, match, target, before):
             break
-    if target.parameters is not None and task.points.shape[1] == 2:
+    if target.parameters is not None and task.dimension == 2:
         match = _thickness_shared_out(task, match)
     return match, reason
 

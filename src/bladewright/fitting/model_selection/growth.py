@@ -92,7 +92,7 @@ def with_grown_thickness(task: Task, match: Match, target: MatchTarget) -> tuple
     Where thicknesses lie on their bounds, as at a sharp edge, the gain of growth cannot be predicted linearly: the step
     predicted for the fewer ones leads out of the bounds.
     """
-    structure = structure_of(match.design) if task.points.shape[1] == 2 else None
+    structure = structure_of(match.design) if task.dimension == 2 else None
     if structure is None or not target.open or match.rms < FAR_SECTION:
         return match, False
     evaluations = match.evaluations
@@ -119,7 +119,7 @@ def with_grown_thickness(task: Task, match: Match, target: MatchTarget) -> tuple
 
 def gained_little(task: Task, match: Match, target: MatchTarget, before: float) -> bool:
     """Whether a match is near enough, and growth from a distance `before`, of the chord, gained little."""
-    dimension = task.points.shape[1]
+    dimension = task.dimension
     return target.open and LITTLE_GAIN[dimension] * before < match.rms < NEAR_ENOUGH[dimension]
 
 
@@ -146,7 +146,7 @@ def grown_match(task: Task, match: Match, target: MatchTarget) -> tuple[Match, b
         sharpened = replace(task, weights=weights * (np.sum(task.weights) / np.sum(weights)))
     for design in _candidates(task, match, target, emphasis):
         try:
-            start = design if task.points.shape[1] == 3 else with_feasible_edges(design)
+            start = design if task.dimension == 3 else with_feasible_edges(design)
             fresh = searched(sharpened, start, rounds=1, noise=match.rms, min_reduction=ROUGH_REDUCTION)
         except FitError:
             continue
@@ -157,7 +157,7 @@ def grown_match(task: Task, match: Match, target: MatchTarget) -> tuple[Match, b
 def _candidates(task: Task, match: Match, target: MatchTarget, emphasis: Reals | None) -> Iterator[Design]:
     """Designs with more control points; the next one is for where the one before has no shape."""
     forecast = None
-    if task.points.shape[1] == 3 and target.parameters is None and stands_on_channel(match.design):
+    if task.dimension == 3 and target.parameters is None and stands_on_channel(match.design):
         forecast = forecast_of(match, widest_reach(structure_of(match.design)))
     if forecast is not None:
         task.progress("structure")

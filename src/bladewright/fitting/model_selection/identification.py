@@ -8,7 +8,6 @@ import numpy as np
 from bladewright.derivatives.patterns import matching
 from bladewright.designs import Design
 from bladewright.errors import DesignError, FitError
-from bladewright.fitting.clouds.thinning import random_subset
 from bladewright.fitting.matching.search import Match, Task, searched
 from bladewright.fitting.model_selection.reshaping import reshaped, with_feasible_edges
 from bladewright.fitting.model_selection.structure import Structure, structure_of
@@ -79,7 +78,7 @@ def identified_section(task: Task, first: UnifiedSection) -> Match | None:
 
 def nearest_trial(task: Task, first: UnifiedSection, structures: Sequence[Structure]) -> Match | None:
     """The nearest match from several first cambers in each of some structures; the first one that is exact."""
-    few = task.part(random_subset(len(task.points), TRIAL_POINTS))
+    few = task.thinned(TRIAL_POINTS)
     best: Match | None = None
     evaluations = 0
     for bounded, start in _starts(few, first, structures):

@@ -35,7 +35,7 @@ class MatchTarget:
 def needs_more(match: Match, target: MatchTarget, task: Task) -> tuple[bool, str]:
     """Whether more control points are wanted; if not and the target is not met, why."""
     count = len(match.problem.paths)
-    dimension = task.points.shape[1]
+    dimension = task.dimension
     if target.parameters is not None:
         return count < target.parameters, ""
     limit = target.tolerance if target.tolerance is not None else ENOUGH_DEVIATION[dimension] * match.model.chord

@@ -196,7 +196,7 @@ def _within(task: Task, match: Match, tolerance: float) -> Match:
         distances = match.state.footpoints.distances
         weights = weights * np.clip((distances / tolerance) ** 2, 0.3, 4.0)
         weights = weights * (np.sum(task.weights) / np.sum(weights))
-        rounds = SEARCH_ROUNDS if task.points.shape[1] == 2 else 1
+        rounds = SEARCH_ROUNDS if task.dimension == 2 else 1
         match = searched(
             replace(task, weights=weights), match.design, rounds=rounds, min_reduction=_min_reduction(task)
         )
@@ -206,11 +206,11 @@ def _within(task: Task, match: Match, tolerance: float) -> Match:
 
 def reduced(task: Task, match: Match, tolerance: float) -> Match:
     """A match within a tolerance without the control points that it does not need."""
-    if task.points.shape[1] == 3 and match.maximum <= tolerance:
+    if task.dimension == 3 and match.maximum <= tolerance:
         fewer_still = reduced_blade(task, match, tolerance)
         if fewer_still is not None:
             return fewer_still
-    most, least_at_once = LAWS_AT_ONCE[task.points.shape[1]]
+    most, least_at_once = LAWS_AT_ONCE[task.dimension]
     at_once = most
     while at_once >= least_at_once and match.maximum <= tolerance and not match.interrupted:
         steps = [step for _, step in losses(match)[:at_once]]
@@ -238,7 +238,7 @@ def _without(task: Task, match: Match, steps: Sequence[StructureStep]) -> Match 
 
 def _min_reduction(task: Task) -> float:
     """The relative reduction that a step must predict: searches of blades are dear."""
-    return MIN_REDUCTION if task.points.shape[1] == 2 else ROUGH_REDUCTION
+    return MIN_REDUCTION if task.dimension == 2 else ROUGH_REDUCTION
 
 
 def smoothed(task: Task, match: Match, tolerance: float) -> Match:
