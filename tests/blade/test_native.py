@@ -206,3 +206,9 @@ def test_sections_have_the_areas_that_make_up_the_volume_of_a_cascade():
     blade = straight.build()
     areas = [blade.section((place + 1.0) / 2.0).area for place in v]
     assert blade.properties.volume == pytest.approx(90e-3 * np.dot(w, areas) / 2.0, rel=1e-7)
+
+
+@pytest.mark.parametrize(("former", "name"), [("promises", "conformance"), ("misfit", "approximation_error")])
+def test_former_names_of_a_blade_still_work_and_warn(blade, former, name):
+    with pytest.warns(DeprecationWarning, match=f"Blade.{former} is called {name} now"):
+        assert getattr(blade, former) is getattr(blade, name)

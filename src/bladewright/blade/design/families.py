@@ -23,6 +23,9 @@ from bladewright.section.suction_pressure.part import SuctionPressure, SuctionPr
 from bladewright.section.unified import UnifiedSection
 from bladewright.section.wedge_diffuser import WedgeDiffuser, WedgeDiffuserSection
 
+WIDE_PITCH = 1e3
+"""Pitch of a section that has none, in axial chords: so wide that neighbours never meet."""
+
 
 @dataclass(frozen=True, kw_only=True)
 class CurvatureMeanlineBlade(SectionedBlade):
@@ -72,10 +75,6 @@ BLADE_OF: dict[type[PlanarSection], type[SectionedBlade]] = {
     ProfileSection: ProfileBlade,
 }
 """The blade of the same family, by the 2D design."""
-
-
-WIDE_PITCH = 1e3
-"""Pitch of a section that has none, in axial chords: so wide that neighbours never meet."""
 
 
 @overload

@@ -30,10 +30,10 @@ class ChordPlacement:
     """Stream lines at v (m,) around reference points, on which the edges of sections of given chords are found."""
 
     lines: BladeStreamlines
-    """u counts from the reference points, in about a chord"""
+    """u is 0 at the reference points, and 1 about a chord downstream"""
     surfaces: StreamSurfaces
     at: Reals
-    """(m,) t of the reference points"""
+    """(m,) t of the reference points in the flow path"""
 
     def between(self, share: Array, extent: Array) -> BladeStreamlines:
         """Stream lines by u between the edges of the sections.

@@ -23,8 +23,11 @@ LONGEST_STEP = 0.5
 """Largest Newton step, as a share of the flow path in t and of the straight line: longer ones leave the flow path."""
 
 
+ENDS = np.array([0.0, 1.0])
+
+
 class Rate(NamedTuple):
-    """How a crossing moves with its line's start."""
+    """Derivative of a crossing of a straight line with a stream surface, as the line's start moves."""
 
     point: Array
     """(..., m, 3)"""
@@ -156,9 +159,6 @@ def _check(v: Reals, begin: Reals, along: Reals, steps: Reals, t: Reals, extent:
         "hub's to the shroud's reference point; let them stand steeper on the walls by lean, sweep or stacking, "
         "lengthen hub and shroud, or take skinning = 'ruled'"
     )
-
-
-ENDS = np.array([0.0, 1.0])
 
 
 def radius(mapping: StreamSurfaceMap, point: Array) -> Array:

@@ -14,16 +14,21 @@ from bladewright.blade.flow_path.streamlines import MeridionalChannel, StreamLin
 from bladewright.numerics.roots import bracketed_root
 from bladewright.nurbs.basis import Reals
 
+SIDE_PLACES = np.sin(0.5 * np.pi * np.linspace(0.0, 1.0, 65)) ** 2
+"""Parameters along the sides among which a blade's least and greatest t are looked for, denser at the edges."""
+SAME = 1e-9
+"""Extent, in mean meridional lengths, by which a place and an end of the flow path may differ by rounding."""
+
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class MeridionalExtent(ABC):
-    """A channel by its parameter u, which the leading and the trailing edge need not meet at 0 and 1."""
+    """Where a blade lies along its channel, by the channel's parameter u: its edges need not be at 0 and 1."""
 
     channel: MeridionalChannel
     start: float
-    """u down to which stream lines keep to the channel; straight beyond"""
+    """u at which the channel starts: upstream of it, stream lines are continued straight"""
     end: float
-    """u up to which they do"""
+    """u at which it ends"""
     noses: tuple[float, float]
     """least and greatest u of the blade"""
     edges: tuple[float, float]
@@ -31,7 +36,7 @@ class MeridionalExtent(ABC):
     length: float
     """mean meridional length of the blade [m]"""
     unit: float
-    """how much of u one such length takes; on hub and shroud exactly, where the channel has ended"""
+    """increase of u over that length"""
 
     @abstractmethod
     def extent(self, past: int, u: float) -> float:
@@ -39,25 +44,18 @@ class MeridionalExtent(ABC):
 
     @abstractmethod
     def place(self, past: int, extent: float) -> float:
-        """The u that lies so far past an edge, as `extent` counts it."""
+        """The inverse of `extent`: u at an extent upstream of the leading, or downstream of the trailing edge."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class ChannelExtent(MeridionalExtent):
-    """The channel of the unified family: u is 0 on the leading and 1 on the trailing edge, and counts extents."""
+    """In the channel of the unified family: u is 0 on the leading and 1 on the trailing edge, and measures extents."""
 
     def extent(self, past: int, u: float) -> float:
         return u - 1.0 if past else -u
 
     def place(self, past: int, extent: float) -> float:
         return 1.0 + extent if past else -extent
-
-
-SIDE_PLACES = np.sin(0.5 * np.pi * np.linspace(0.0, 1.0, 65)) ** 2
-"""Parameters along the sides among which a blade's least and greatest t are looked for, denser at the edges."""
-
-SAME = 1e-9
-"""Extent, in mean meridional lengths, by which a place and an end of the flow path may differ by rounding."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

@@ -36,6 +36,14 @@ if TYPE_CHECKING:
     from bladewright.blade.design.sectioned import SectionedBlade
 
 
+ENDS = np.array([0.0, 1.0])
+"""Span fractions of hub and shroud."""
+SPANS = 8
+"""Knot spans along a side to begin with; refinement adds where the tolerance needs more."""
+SECTION_TOLERANCE = 1e-10
+"""Distance of a family's native curves from the exact section, of the chord."""
+
+
 def placed_sections(
     design: "SectionedBlade", placement: Placement, mapping: StreamSurfaceMap, v: Reals
 ) -> FamilySections:
@@ -63,14 +71,6 @@ def _tangential(design: "SectionedBlade", span: Span) -> Array:
         law = stacking.theta if annular else stacking.y
     values = span.values(0.0 if law is None else law)
     return radians(values) if annular else design.metre * values
-
-
-ENDS = np.array([0.0, 1.0])
-"""hub and shroud"""
-SPANS = 8
-"""Knot spans along a side to begin with; refinement adds where the tolerance needs more."""
-SECTION_TOLERANCE = 1e-10
-"""Distance of a family's native curves from the exact section, of the chord."""
 
 
 @dataclass(frozen=True, kw_only=True)

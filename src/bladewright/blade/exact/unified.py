@@ -47,6 +47,14 @@ if TYPE_CHECKING:
 _ENDS = np.array([0.0, 1.0])
 
 
+SURVEY = np.array([0.0, 0.12, 0.25, 0.38, 0.5, 0.62, 0.75, 0.88, 1.0])
+"""Span fractions of the sections on which the shape is judged: ends, middle, and uneven places between, so that
+waves of laws show."""
+LONGEST_NOSE = 0.6
+"""Largest meridional extent, in u, of a rounded edge past the channel's edge curve: the channel's polynomials are
+continued so far, and bend away beyond."""
+
+
 @dataclass(frozen=True, kw_only=True, eq=False)
 class UnifiedSections(SectionStack):
     """The exact blade's sections at places v (m,) along the span."""
@@ -161,14 +169,6 @@ def _edge_curvature(fraction: Array, lines: StreamLines, turn: Array, end: int) 
     radius = lines.position(_ENDS)[..., end, 1]
     climb = unit(lines.position(_ENDS, 1))[..., end, 1] * np.cos(turn)
     return lines.mapping.edge_curvature(fraction, lines.lengths, radius, climb, trailing=end == 1)
-
-
-SURVEY = np.array([0.0, 0.12, 0.25, 0.38, 0.5, 0.62, 0.75, 0.88, 1.0])
-"""Span fractions of the sections on which the shape is judged: ends, middle, and uneven places between, so that
-waves of laws show."""
-LONGEST_NOSE = 0.6
-"""Largest meridional extent, in u, of a rounded edge past the channel's edge curve: the channel's polynomials are
-continued so far, and bend away beyond."""
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -13,13 +13,19 @@ from bladewright.errors import DesignError
 from bladewright.numerics.elementary import Array, length
 from bladewright.nurbs.basis import Reals
 
+ROUNDING = 1e-9
+"""Share of the stretch by which a section may reach past it, as rounding makes it."""
+BESIDE = 1.0
+"""How far stream lines go on past the edges, in meridional extents of the blade, where the flow path reaches so far.
+A section whose rounded edge stands farther out is refused."""
+
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class DiscreteConformalLines:
     """Stream lines (..., m) over [0, 1] of a stretch of a flow path; they answer as `StreamLines` do.
 
-    Stream lines through hundreds of points, as flow solvers give them, have as many joints each; a blade asks for
-    places on them alone.
+    Their abscissa is the discrete m' of the points of hub, shroud and stream surfaces, as in T-Blade3, and linear in
+    the parameter. So no length is integrated, which saves time where stream lines go through hundreds of points.
     """
 
     surfaces: StreamSurfaces
@@ -62,13 +68,6 @@ class DiscreteConformalLines:
     def real(self) -> "DiscreteConformalLines":
         """The same without imaginary parts and batch."""
         return DiscreteConformalLines(surfaces=self.surfaces.real(), v=self.v, low=self.low, high=self.high)
-
-
-ROUNDING = 1e-9
-"""Share of the stretch by which a section may reach past it, as rounding makes it."""
-BESIDE = 1.0
-"""How far stream lines go on past the edges, in meridional extents of the blade, where the flow path reaches so far.
-A section whose rounded edge stands farther out is refused."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

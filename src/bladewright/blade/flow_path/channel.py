@@ -24,7 +24,7 @@ class ChannelCurve:
     knots: Reals
     """(n + degree + 1,) clamped over [0, 1]"""
     start: Array | None = None
-    """(...) own parameter where an edge of the channel starts, as the blade's end stands off the wall; none: 0"""
+    """(...) own parameter where an edge of the channel starts, where the blade has a clearance there; none: 0"""
     end: Array | None = None
     """(...) own parameter where it ends; none: 1"""
 

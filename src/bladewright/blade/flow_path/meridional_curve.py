@@ -15,6 +15,13 @@ from bladewright.numerics.elementary import Array, cross2, dot, length, unit
 from bladewright.nurbs.basis import Reals, basis, uniform_knots
 from bladewright.nurbs.curve import Curve
 
+ARC = np.pi / 8.0
+"""Largest angle of one polynomial piece of an arc [rad]."""
+ARC_DEGREE = 11
+"""Degree of such a piece: the truncated series of sine and cosine are off by 1e-17 of the radius at its ends."""
+ROUNDING = 1e-9
+"""Share of a straight piece by which the arcs on it may overlap, as rounding makes them."""
+
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class PiecewisePolynomial:
@@ -262,14 +269,6 @@ def joined_net(powers: Array, breaks: Reals, smooth: Reals) -> tuple[Array, Real
 def real_first(values: Array, axes: int) -> Reals:
     """Real parts of the first of a batch, as a copy; `axes` is what one of the batch has."""
     return np.array(np.real(values[(0,) * (np.ndim(values) - axes)]), dtype=np.float64)
-
-
-ARC = np.pi / 8.0
-"""Largest angle of one polynomial piece of an arc [rad]."""
-ARC_DEGREE = 11
-"""Degree of such a piece: the truncated series of sine and cosine are off by 1e-17 of the radius at its ends."""
-ROUNDING = 1e-9
-"""Share of a straight piece by which the arcs on it may overlap, as rounding makes them."""
 
 
 def rounded_corners(points: Array, radii: Array, metre: float = 1.0) -> MeridionalCurve:

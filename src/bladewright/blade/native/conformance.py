@@ -22,6 +22,23 @@ SHARES = np.array([0.0, 0.25, 0.5, 0.75])
 """places in each knot span along a side"""
 
 
+LIMITS = {
+    "metal_angle_at_walls": 1e-6,
+    "metal_angle_between": 1e-2,
+    "edge_radius": 1e-3,
+    "edge_tangent_planes": 1e-9,
+    "edge_curvatures": 1e-6,
+    "walls": 1e-7,
+}
+FLAT = 100.0
+"""Radius [chords] from which on an edge counts as flat, as the back face of a wedge diffuser's vane is: its radius
+is not compared."""
+CLEARANCE = 1e-8
+"""Largest error of the clearance [chords], as `docs/nomenclature.md` promises."""
+DEVELOPED = 1e-6
+"""Largest twist of developable sides [deg]: rounding, with a margin."""
+
+
 @dataclass(frozen=True, kw_only=True)
 class Twist:
     """The largest turn of a side's normal along one of its straight lines, from v = 0 to v = 1."""
@@ -106,23 +123,6 @@ class Conformance:
     def to_dict(self) -> dict[str, object]:
         """All figures, their limits and whether they are kept, for JSON."""
         return {**asdict(self), "kept": self.kept}
-
-
-LIMITS = {
-    "metal_angle_at_walls": 1e-6,
-    "metal_angle_between": 1e-2,
-    "edge_radius": 1e-3,
-    "edge_tangent_planes": 1e-9,
-    "edge_curvatures": 1e-6,
-    "walls": 1e-7,
-}
-FLAT = 100.0
-"""Radius [chords] from which on an edge counts as flat, as the back face of a wedge diffuser's vane is: its radius
-is not compared."""
-CLEARANCE = 1e-8
-"""Largest error of the clearance [chords], as `docs/nomenclature.md` promises."""
-DEVELOPED = 1e-6
-"""Largest twist of developable sides [deg]: rounding, with a margin."""
 
 
 def conformance_of(blade: "Blade") -> Conformance:

@@ -29,6 +29,9 @@ MARGIN = 0.05
 """How far a wall reaches past the blade's end, as a share of its width, so that the end's outline lies inside."""
 
 
+EDGES = ("leading_edge", "trailing_edge")
+
+
 @dataclass(frozen=True, kw_only=True, eq=False)
 class WallSurface:
     """A meridian turned about the x axis over theta from `low` to `high`, or drawn along y in a cascade."""
@@ -257,9 +260,6 @@ def _stretch_of(end: TrimmedSurface) -> tuple[float, float]:
 
 def _end(side: Surface, row: int) -> Curve:
     return Curve(control_points=side.control_points[:, row], knots=side.knots_u, degree=side.degree_u)
-
-
-EDGES = ("leading_edge", "trailing_edge")
 
 
 def cap(upper: Surface, lower: Surface, faces: Mapping[str, Surface], back: float | None, row: int) -> Surface:

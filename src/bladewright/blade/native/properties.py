@@ -30,6 +30,10 @@ MOMENTS = 10
 Density = Callable[[Array, Array], Array]
 
 
+OUTLINE_POINTS = 12
+"""Gauss points in a knot span of the outline of an end."""
+
+
 def side_moments(side: Surface, middle: float, *, revolved: bool, count: int = MOMENTS) -> Array:
     """Integrals (count,) of 1, x, y, z, xx, yy, zz, xy, yz, zx that a side gives a volume, along its own normal.
 
@@ -111,8 +115,6 @@ def _along_y(point: Array, normal: Array, middle: float, count: int) -> Array:
     return np.stack(primitives[:count], axis=-1) * normal[..., 1, None]
 
 
-OUTLINE_POINTS = 12
-"""Gauss points in a knot span of the outline of an end."""
 Faces = Mapping[str, Surface | TrimmedSurface]
 
 

@@ -51,7 +51,7 @@ class Throat:
     places: tuple[Array, Array]
     """where these lie on the outlines (m,): on the lower side at u = s up to s = 1, then on the upper at u = 2 - s"""
     area: Array
-    """() of the gap, as the flow along the blades sees it, from one end of the blade to the other [m^2]"""
+    """() of the gap, normal to the flow along the blades, from one end of the blade to the other [m^2]"""
 
 
 def throat(blade: Blade) -> Throat:
@@ -102,7 +102,7 @@ class _Row:
         return self._moved(self.own(s, v, ds, dv), point=ds + dv == 0)
 
     def newton_step(self, own: Array, other: Array, v: Reals) -> tuple[Array, Array]:
-        """What to take from s (m,) on both outlines, in Newton's way to the least |Q - P|^2."""
+        """Newton steps, to be subtracted from s (m,) on both outlines, towards the least |Q - P|^2."""
         across = self.neighbour(other, v) - self.own(own, v)
         first, second = self.own(own, v, 1), self.neighbour(other, v, 1)
         slope = -dot(across, first), dot(across, second)
