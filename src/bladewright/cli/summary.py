@@ -5,7 +5,6 @@ from dataclasses import fields, is_dataclass
 from typing import Any
 
 from bladewright.cli.outcome import jsonable
-from bladewright.designs import Design
 
 Rows = list[tuple[str, str]]
 """Names and values of a table."""
@@ -34,13 +33,13 @@ _MILLIMETRES = {
 """Unit in which a property is printed, and its factor from metres."""
 
 
-def summary_data(design: Design, built: Any) -> dict[str, Any]:
+def summary_data(design: Any, built: Any) -> dict[str, Any]:
     """Name, size [m], error, properties [m], promises and poles of the blade, section or passage of a design."""
     from bladewright.files.families import family_of
 
     entities = "surfaces" if built.dimension == 3 else "curves"
     data = {
-        "name": getattr(design, "name", ""),
+        "name": design.name,
         "family": family_of(design),
         "parameters": len(design.parameters()),
         "chord_m": getattr(built, "chord", None),

@@ -22,7 +22,7 @@ LIGHTS = (((-0.45, 0.65, 0.60), 0.52), ((0.85, 0.25, 0.45), 0.20), ((0.0, 0.0, 1
 """Directions (the viewer's right, up and towards) and strengths of the lamps: the main light from the upper left, a
 fill light from the right and one from the viewer, so that no side is black. Chosen by eye."""
 AMBIENT, GLOSS, SHARPNESS = 0.36, 0.16, 28.0
-"""Light from everywhere, strength of highlights and their exponent in Blinn's model [-]. Chosen by eye."""
+"""Light from everywhere, strength of highlights and their exponent in Blinn's model (1977) [-]. Chosen by eye."""
 HAZE = 0.30
 """Fraction by which the farthest point fades to white, which shows depth. Chosen by eye."""
 HOLLOW = 0.40
@@ -169,12 +169,12 @@ def _dense_tiles(grid: Pixels) -> Iterator[Pixels]:
 
 
 def _shaded(depth: Pixels, normal: Pixels, colour: Pixels, fineness: int) -> Pixels:
-    """Red, green, blue and opacity (height, width, 4) by Blinn's model, with haze and darkened hollows."""
-    seen = np.isfinite(depth)
+    """Red, green, blue and opacity (height, width, 4) by Blinn's model (1977), with haze and darkened hollows."""
+    covered = np.isfinite(depth)
     picture = np.zeros((*depth.shape, 4), dtype=np.float32)
-    if not seen.any():
+    if not covered.any():
         return picture
-    towards = normal[seen.ravel()]
+    towards = normal[covered.ravel()]
     towards /= np.maximum(np.sqrt(np.sum(towards**2, axis=-1, keepdims=True)), 1e-12)
     towards *= np.where(towards[:, 2:] < 0.0, -1.0, 1.0)
     light = np.full(len(towards), AMBIENT, dtype=np.float32)
@@ -184,15 +184,15 @@ def _shaded(depth: Pixels, normal: Pixels, colour: Pixels, fineness: int) -> Pix
         half = lamp + np.array([0.0, 0.0, 1.0])
         light += strength * np.maximum(towards @ lamp, 0.0)
         shine += strength * np.maximum(towards @ (half / np.sqrt(half @ half)), 0.0) ** SHARPNESS
-    near, far = depth[seen].max(), depth[seen].min()
-    reach = max(float(near - far), 1e-30)
-    filled = np.where(seen, depth, far)
+    near, far = depth[covered].max(), depth[covered].min()
+    depth_range = max(float(near - far), 1e-30)
+    filled = np.where(covered, depth, far)
     hollow = gaussian_filter(filled, 0.008 * max(depth.shape) / fineness * 2.0) - filled
-    light *= 1.0 - HOLLOW * np.clip(4.0 * hollow[seen] / reach, 0.0, 1.0)
-    base = colour[seen.ravel()] * light[:, None] + GLOSS * shine[:, None]
-    haze = HAZE * ((near - depth[seen]) / reach)[:, None]
-    picture[seen, :3] = np.clip(base, 0.0, 1.0) * (1.0 - haze) + haze
-    picture[seen, 3] = 1.0
+    light *= 1.0 - HOLLOW * np.clip(4.0 * hollow[covered] / depth_range, 0.0, 1.0)
+    base = colour[covered.ravel()] * light[:, None] + GLOSS * shine[:, None]
+    haze = HAZE * ((near - depth[covered]) / depth_range)[:, None]
+    picture[covered, :3] = np.clip(base, 0.0, 1.0) * (1.0 - haze) + haze
+    picture[covered, 3] = 1.0
     return picture
 
 
