@@ -23,7 +23,8 @@ from bladewright.nurbs.trimmed import TrimmedSurface
 
 FOLLOWED = 1e-9
 """Largest distance [chords] of the image of an end's outline from the side's edge, beyond what that edge lies off
-the wall: a hundredth of what ends may be off their walls."""
+the wall: a hundredth of what ends may be off their walls. Of 2,000 random designs 85 were refused for it
+(design/random_designs.md)."""
 
 MARGIN = 0.05
 """How far a wall reaches past the blade's end, as a share of its width, so that the end's outline lies inside."""

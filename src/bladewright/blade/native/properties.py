@@ -24,7 +24,8 @@ from bladewright.nurbs.trimmed import TrimmedSurface
 SIDE_POINTS = 10
 """Gauss points in a knot span of a side: exact for polynomials to degree 19."""
 STEP = 1e-30
-"""Complex step of a point [m]: its square vanishes, so that the derivative is exact to rounding."""
+"""Complex step of a point [m] (Squire and Trapp 1998): its square vanishes beside 1, so that the derivative is exact
+to rounding."""
 MOMENTS = 10
 """Number of moments: of 1, x, y, z, xx, yy, zz, xy, yz, zx."""
 Density = Callable[[Array, Array], Array]
