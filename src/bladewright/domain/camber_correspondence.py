@@ -27,8 +27,8 @@ SIDE_SHARES = np.concatenate([[EDGE_STEP], SITES, [1.0 - EDGE_STEP]])
 CAMBER_SHARES = np.linspace(0.0, 1.0, 801)
 """Shares of the camber line whose abscissae are needed, and at which the correspondence must increase."""
 LEAST_SLOPE = 0.2
-"""Least slope of a correspondence, over its mean of 1: a periodic boundary that nearly stops asks for knots itself.
-A quarter of it or twice as much changes control points by 0.2 % (design/passage_constants.md)."""
+"""Least slope of a correspondence, over its mean of 1: a periodic boundary that nearly stops asks for knots itself. A
+quarter of it or twice as much changes control points by 0.2 % (design/passage_constants.md)."""
 ATTENUATIONS = (1.0, 0.8, 0.6, 0.4, 0.2)
 """Factors by which the terms are tried in turn, until the slope is nowhere too small."""
 

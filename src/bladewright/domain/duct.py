@@ -22,11 +22,11 @@ from bladewright.nurbs.basis import Reals, basis, greville
 from bladewright.nurbs.curve import Curve
 
 WALL_DEGREE = 7
-"""Degree of a wall's meridian as a B-spline: high, so that few spans reach MERIDIAN_TOLERANCE. With 5 or
-9 nothing else changes (design/passage_constants.md)."""
+"""Degree of a wall's meridian as a B-spline: high, so that few spans reach MERIDIAN_TOLERANCE. With 5 or 9 nothing else
+changes (design/passage_constants.md)."""
 MERIDIAN_TOLERANCE = 1e-12
-"""Largest distance of that B-spline from the stream line, in units of its length: a few thousand roundings. With
-1e-13 or 1e-10 no figure of design/passage_constants.md changes."""
+"""Largest distance of that B-spline from the stream line, in units of its length: a few thousand roundings. With 1e-13
+or 1e-10 no figure of design/passage_constants.md changes."""
 MERIDIAN_SPANS = (24, 48, 96, 192, 384)
 """Numbers of its spans that are tried in turn."""
 BEND = 0.08
@@ -41,8 +41,8 @@ LIMIT_SPANS, LIMIT_LINES = 40, 33
 """Steps of an extent, and stream lines, at which it is checked whether the duct folds over or meets the axis. Half or
 twice as many change control points by 0.1 % (design/passage_constants.md)."""
 LEAST_SINE = 1e-4
-"""Jacobian of the duct, over the median product of the lengths of its sides, below which it folds over. Ten
-times as much or as little decides nothing in design/passage_constants.md."""
+"""Jacobian of the duct, over the median product of the lengths of its sides, below which it folds over. Ten times as
+much or as little decides nothing in design/passage_constants.md."""
 OUTLINE_POINTS = 16
 """Gauss points on each polynomial piece of the duct's outline: exact for r^2 dx up to degree 31."""
 

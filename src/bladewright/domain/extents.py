@@ -27,11 +27,11 @@ BULGE_MARGIN = 1.25
 """Least extent over the bulge of cross-lines at an edge: with 1 the last cross-line would touch inlet or outlet. It
 decides only where the pitch needs more than USUAL: none of design/passage_constants.md."""
 CLEARANCE = 0.05
-"""Least distance from the blade's foremost or rearmost point to inlet or outlet, in mean meridional lengths. It
-decides only in ducts that must be short (design/passage_constants.md)."""
+"""Least distance from the blade's foremost or rearmost point to inlet or outlet, in mean meridional lengths. It decides
+only in ducts that must be short (design/passage_constants.md)."""
 LIMIT_SHARE = 0.8
-"""Share of the extent at which the duct folds or meets the axis that a usual extent may take: cells near it are
-thin. With 0.6 or 0.95 the worst wall is as far from folding (design/passage_constants.md)."""
+"""Share of the extent at which the duct folds or meets the axis that a usual extent may take: cells near it are thin.
+With 0.6 or 0.95 the worst wall is as far from folding (design/passage_constants.md)."""
 
 
 def extents(

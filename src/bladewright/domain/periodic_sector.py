@@ -22,14 +22,14 @@ from bladewright.nurbs.surface import Surface
 from bladewright.nurbs.trimmed import TrimmedSurface
 
 PLACES = 65
-"""Points of an edge whose parameters on the wall are found by search; between them they are interpolated and
-polished, so that half or twice as many give the same volume (design/passage_constants.md)."""
+"""Points of an edge whose parameters on the wall are found by search; between them they are interpolated and polished,
+so that half or twice as many give the same volume (design/passage_constants.md)."""
 MERIDIAN_POINTS = 2001
 """Points of the wall's meridian among which that search looks for the nearest: a quarter of them, or four times as
 many, give the same volume (design/passage_constants.md)."""
 OVERHANG = 0.02
-"""How far the untrimmed walls reach past inlet and outlet, in mean meridional lengths: trimming needs a margin.
-A tenth of it, or ten times as much, gives the same volume (design/passage_constants.md)."""
+"""How far the untrimmed walls reach past inlet and outlet, in mean meridional lengths: trimming needs a margin. A tenth
+of it, or ten times as much, gives the same volume (design/passage_constants.md)."""
 ANGULAR_OVERHANG = 0.05
 """The same in theta (y in a cascade), as a share of the sector's width."""
 OUTWARD = MappingProxyType(

@@ -11,8 +11,9 @@ from bladewright.errors import GeometryError
 from bladewright.numerics.elementary import Reals as Reals  # noqa: PLC0414 - exported for the rooms above
 
 MAX_CACHED = 400
-"""Parameters up to which a matrix of basis functions is cached. Builds at held knots ask for the same matrices again:
-without the cache one of Rotor 67 took 45 ms, with it 36. Larger matrices would fill the memory."""
+"""Parameters up to which a matrix of basis functions is cached. Builds at held knots ask for the same matrices again,
+and larger ones would fill the memory. A build of Rotor 67 gains less than can be measured beside other work
+(design/nurbs_constants.md)."""
 JOINT_TOLERANCE = 1e-9
 """Distance from a joint, in units of the knots' range, below which a knot is moved onto the joint: joints are computed,
 and a knot so near is the same one but for rounding."""

@@ -15,15 +15,18 @@ from bladewright.nurbs.curve import Curve
 from bladewright.nurbs.surface import Surface
 
 PER_PATCH = 6
-"""Gauss points each way on a patch of `area`: where six do not suffice a patch is quartered."""
+"""Gauss points each way on a patch of `area`: where they do not suffice a patch is quartered. With 4 a pinched side of
+Rotor 67 takes three times as long, with 9 a little less (design/nurbs_constants.md)."""
 ROUNDING = 1e-13
 """Difference between a patch and its quarters, in units of the whole area, below which `area` accepts them: the
-rounding of a sum over a thousand points."""
+rounding of a sum over a thousand points. With 1e-10 a pinched side is 3e-14 off instead of 6e-16, with 1e-15 it takes
+twice the time (design/nurbs_constants.md)."""
 MAX_QUARTERINGS = 24
-"""Quarterings of a patch: what then remains of it is 4e-15 of its area."""
+"""Quarterings of a patch: what then remains of it is 4e-15 of its area. No side in design/nurbs_constants.md needs more
+than 4."""
 MAX_PATCHES = 20_000
 """Patches that are quartered at once, which bounds time and memory: only where the normal vanishes along a whole line
-would there be more."""
+would there be more. A tenth suffices in design/nurbs_constants.md."""
 _QUARTERS = np.array([[0.0, 0.0], [0.0, 1.0], [1.0, 0.0], [1.0, 1.0]])
 
 Density = Callable[[Array, Array, Array], Array]
