@@ -121,7 +121,7 @@ def test_control_points_are_added_until_the_tolerance_is_kept():
 def test_growth_ends_at_the_noise():
     points = contour(profile(round_end=False), 30)[0]
     noisy = points + 2e-3 * np.random.default_rng(2).normal(size=points.shape)
-    found = bw.fit_profile(noisy, ends=CAMBER[[0, -1]], tolerance=5e-4)
+    found = bw.fit_profile(noisy, camber=4, thickness=5, ends=CAMBER[[0, -1]], tolerance=5e-4)
     assert not found.passed
     assert "noise" in found.notes[-1]
 

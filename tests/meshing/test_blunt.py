@@ -1,33 +1,28 @@
 """A passage past blunt edges: its STEP file comes back, and its mesh has groups of the faces and strips there."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 import bladewright as bw
 from bladewright import cad, meshing
-from bladewright.blade.design.families import ProfileBlade
 from bladewright.blade.design.flow_path import FlowPath
-from bladewright.blade.design.meridional_curve import ThroughPoints
 from bladewright.meshing.sizes import sizes
-from bladewright.section.profiles.flat_plate import FlatPlate
-
-
-def through(*points):
-    return ThroughPoints(points=points)
+from machines import COARSE
+from machines.sectioned import PLATE, through
 
 
 @pytest.fixture(scope="module")
 def passage():
-    plate = ProfileBlade(
-        name="plate",
-        length_unit="mm",
-        arrangement="linear",
+    plate = replace(
+        PLATE,
         pitch=30.0,
         flow_path=FlowPath(hub=through((-60, 0), (120, 0)), shroud=through((-60, 25), (120, 25))),
         leading_edge=through((0, 0), (0, 25)),
         trailing_edge=through((40, 0), (40, 25)),
-        tolerance=1e-4,
-        section=FlatPlate(thickness=0.12, leading_edge="blunt", trailing_edge="blunt", stagger_angle=20.0),
+        tolerance=COARSE,
+        section=replace(PLATE.section, thickness=0.12, stagger_angle=20.0),
     )
     return bw.passage(plate.build())
 
