@@ -64,13 +64,13 @@ def side_tangents(blade: Blade, paths: Sequence[str]) -> Iterator[Nets]:
     """
     sources = [law_point(blade.design, path) for path in paths]
     steps = list(dict.fromkeys(source.step for source in sources))
-    rates = np.concatenate([_skeleton_rates(blade, steps[i : i + AT_ONCE]) for i in range(0, len(steps), AT_ONCE)])
+    rates = np.concatenate([_rates_of_steps(blade, steps[i : i + AT_ONCE]) for i in range(0, len(steps), AT_ONCE)])
     mirrored = [edge is None for edge in blade.exact.survey.lower_edges()]
     for first in range(0, len(paths), AT_ONCE):
         chunk = sources[first : first + AT_ONCE]
         factors = np.stack([source.factor(blade.knots.sites_v) for source in chunk])
         rows = rates[[steps.index(source.step) for source in chunk]] * factors[..., None]
-        yield sides_through(skeleton_of_rows(rows, mirrored), blade.knots)
+        yield sides_through(data_from_rates(rows, mirrored), blade.knots)
 
 
 def law_point(design: RowDesign, path: str) -> LawPoint:
@@ -85,10 +85,10 @@ def law_point(design: RowDesign, path: str) -> LawPoint:
     return LawPoint(path.rpartition("[")[0], int(places[-1]), len(law))
 
 
-def _skeleton_rates(blade: Blade, steps: Sequence[str]) -> Array:
-    """Derivatives (len(steps), m, k) of the skeleton by whole laws and single parameters, in a row for each section."""
+def _rates_of_steps(blade: Blade, steps: Sequence[str]) -> Array:
+    """Derivatives (len(steps), m, k) of the interpolation data by whole laws and single parameters, a row a section."""
     moved = blade.exact.moved_to(stepped_design(blade.design, steps))
-    return skeleton_rates(moved.sections(blade.knots.sites_v), blade.knots, len(steps))
+    return interpolation_rates(moved.sections(blade.knots.sites_v), blade.knots, len(steps))
 
 
 def stepped_design(design: RowDesign, steps: Sequence[str]) -> Any:
@@ -104,17 +104,17 @@ def stepped_design(design: RowDesign, steps: Sequence[str]) -> Any:
     return design.changed(changes)
 
 
-def skeleton_rates(stations: Any, knots: Knots, count: int) -> Array:
-    """Derivatives (count, m, k) of the skeleton of stations that carry `count` steps, in a row for each section."""
-    skeleton = interpolation_data(stations, knots)
-    sides = [side.reshape(*side.shape[:-2], -1) for side in (skeleton.upper, skeleton.lower)]
-    edges = [skeleton.leading_edge, skeleton.trailing_edge, *skeleton.lower_edges]
+def interpolation_rates(sections: Any, knots: Knots, count: int) -> Array:
+    """Derivatives (count, m, k) of the interpolation data of sections that carry `count` steps, a row a section."""
+    data = interpolation_data(sections, knots)
+    sides = [side.reshape(*side.shape[:-2], -1) for side in (data.upper, data.lower)]
+    edges = [data.leading_edge, data.trailing_edge, *data.lower_edges]
     rows = concatenated([part for edge in edges if edge is not None for part in edge] + sides, axis=-1)
     return np.broadcast_to(np.imag(rows) / STEP, (count, *rows.shape[-2:]))
 
 
-def skeleton_of_rows(rows: Array, mirrored: Sequence[bool]) -> InterpolationData:
-    """The skeleton of such rows; `mirrored` says at which edges the lower side mirrors the upper's derivatives."""
+def data_from_rates(rows: Array, mirrored: Sequence[bool]) -> InterpolationData:
+    """Interpolation data from such rows; `mirrored` tells at which edges the lower side mirrors the upper's."""
     count = 2 + sum(not each for each in mirrored)
     edges, upper, lower = np.split(rows, [9 * count, (9 * count + rows.shape[-1]) // 2], axis=-1)
     parts = iter(np.split(edges, 3 * count, axis=-1))
@@ -178,8 +178,8 @@ def varied_nets(blade: Blade, changes: Sequence[Mapping[str, complex]]) -> Nets:
     """Nets (k, n_u, n_v, 3) of the upper and the lower side after each of k changes, at the blade's knots."""
     if len(changes) > 1 and any(_needs_search(blade, each) for each in changes):
         # a clearance surface, and the edges' intersections with stream lines, are found for one real channel at a time
-        alone = [varied_nets(blade, [each]) for each in changes]
-        return np.concatenate([nets[0] for nets in alone]), np.concatenate([nets[1] for nets in alone])
+        single = [varied_nets(blade, [each]) for each in changes]
+        return np.concatenate([nets[0] for nets in single]), np.concatenate([nets[1] for nets in single])
     values = blade.design.parameters()
     paths = dict.fromkeys(path for each in changes for path in each)
     batch = {path: np.array([each.get(path, values[path]) for each in changes]) for path in paths}

@@ -144,27 +144,29 @@ class _Derivative(NamedTuple):
 def _step_study(derivative: _Derivative, steps: Reals, imaginary: Reals) -> StepStudy:
     path, quantity, size = derivative.path, derivative.quantity, size_of(derivative.exact, derivative.quantity)
     none: Reals = np.empty(0)
-    bare = StepStudy(path=path, size=size, scale=derivative.scale, steps=none, errors=none, imaginary=none, floor=none)
+    unmeasured = StepStudy(
+        path=path, size=size, scale=derivative.scale, steps=none, errors=none, imaginary=none, floor=none
+    )
     if not np.isfinite(size):
-        return replace(bare, failure=f"{path}: the derivative of the {quantity.name} is not finite")
+        return replace(unmeasured, failure=f"{path}: the derivative of the {quantity.name} is not finite")
     if size * derivative.scale <= NO_EFFECT * derivative.whole:
-        idle = f"{path} has no effect on the {quantity.name}"
+        no_effect = f"{path} has no effect on the {quantity.name}"
         if quantity.points and path not in ELSEWHERE:
-            return replace(bare, failure=idle)
-        return replace(bare, note=f"{idle}: it {ELSEWHERE[path]}" if path in ELSEWHERE else idle)
+            return replace(unmeasured, failure=no_effect)
+        return replace(unmeasured, note=f"{no_effect}: it {ELSEWHERE[path]}" if path in ELSEWHERE else no_effect)
     carried = np.imag(derivative.values(1j * imaginary))
     kept, errors = derivative.differences(steps)
     floor = derivative.errors(carried / _aligned(imaginary, carried))
-    sweep = replace(bare, steps=kept, errors=errors, imaginary=imaginary, floor=floor)
-    if sweep.best <= LIMIT:
-        return sweep
+    study = replace(unmeasured, steps=kept, errors=errors, imaginary=imaginary, floor=floor)
+    if study.best <= LIMIT:
+        return study
     reason = (
-        f"{path}: the closest difference of the {quantity.name} is {sweep.best:.2g} of the derivative away, "
+        f"{path}: the closest difference of the {quantity.name} is {study.best:.2g} of the derivative away, "
         f"at most {LIMIT:g} is allowed"
         if len(kept)
         else f"{path}: the design cannot be built beside its value, so that its derivative cannot be checked"
     )
-    return replace(sweep, failure=reason)
+    return replace(study, failure=reason)
 
 
 def _aligned(steps: Reals, values: Array) -> Reals:

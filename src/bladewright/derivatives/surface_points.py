@@ -109,9 +109,9 @@ def placed_points(
     further than `near` times the extent of all off the surfaces.
     """
     numbers, given = np.asarray(ids, dtype=np.int64), np.asarray(points, dtype=np.float64)
-    twice = np.flatnonzero(np.bincount(np.unique(numbers, return_inverse=True)[1]) > 1)
-    if len(twice):
-        raise DerivativeError(f"the number {np.unique(numbers)[twice[0]]} is given to more than one point")
+    repeated = np.flatnonzero(np.bincount(np.unique(numbers, return_inverse=True)[1]) > 1)
+    if len(repeated):
+        raise DerivativeError(f"the number {np.unique(numbers)[repeated[0]]} is given to more than one point")
     best = np.full(len(given), np.inf)
     u, v, face = np.zeros(len(given)), np.zeros(len(given)), np.zeros(len(given), dtype=np.intp)
     reached = np.empty_like(given)

@@ -49,16 +49,16 @@ def level_crossings(
 
     `values` (m,) are the function's at increasing `places` (m,); two crossings between neighbouring places are missed.
     """
-    at, asked = np.asarray(places, dtype=np.float64), np.atleast_1d(np.asarray(levels, dtype=np.float64))
-    off = np.asarray(values, dtype=np.float64) - asked[:, None]
-    row, first = np.nonzero(off[:, :-1] * off[:, 1:] < 0.0)
-    found = at[np.nonzero(off == 0.0)[1]]
+    at, targets = np.asarray(places, dtype=np.float64), np.atleast_1d(np.asarray(levels, dtype=np.float64))
+    difference = np.asarray(values, dtype=np.float64) - targets[:, None]
+    row, first = np.nonzero(difference[:, :-1] * difference[:, 1:] < 0.0)
+    found = at[np.nonzero(difference == 0.0)[1]]
     if len(first):
         from scipy.optimize import elementwise
 
         bracket, exact = (at[first], at[first + 1]), {"xatol": 0.0, "xrtol": EPSILON, "fatol": 0.0, "frtol": 0.0}
         roots = elementwise.find_root(
-            lambda x, level: function(x) - level, bracket, args=(asked[row],), tolerances=exact, maxiter=STEPS
+            lambda x, level: function(x) - level, bracket, args=(targets[row],), tolerances=exact, maxiter=STEPS
         )
         found = np.concatenate([roots.x, found])
     return np.sort(found)

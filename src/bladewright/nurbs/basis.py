@@ -124,7 +124,7 @@ def knots_with_joints(knots: Reals, degree: int, joints: Iterable[tuple[float, i
     for place, smooth in joints:
         if not start + near < place < end - near:
             continue
-        beside = np.square(knots - place) < near**2
-        times = max(int(np.sum(beside)), degree - smooth)
-        knots = np.sort(np.concatenate([knots[~beside], np.full(min(times, degree), place)]))
+        at_joint = np.square(knots - place) < near**2
+        times = max(int(np.sum(at_joint)), degree - smooth)
+        knots = np.sort(np.concatenate([knots[~at_joint], np.full(min(times, degree), place)]))
     return knots

@@ -118,9 +118,9 @@ def _distance_model(nets: Reals, queries: Reals, local: Reals) -> tuple[Reals, R
 
 def _step(gradient: Reals, hessian: Reals, metric: Reals, damping: Reals, local: Reals) -> Reals:
     """The Newton step, or the Gauss-Newton step where the Hessian is not convex, in the parameters free to move."""
-    held = ((local <= 0.0) & (gradient >= 0.0)) | ((local >= 1.0) & (gradient <= 0.0))
-    held |= np.einsum("maa->ma", metric) <= 1e-300
-    free = ~held
+    fixed = ((local <= 0.0) & (gradient >= 0.0)) | ((local >= 1.0) & (gradient <= 0.0))
+    fixed |= np.einsum("maa->ma", metric) <= 1e-300
+    free = ~fixed
     both = free[:, :, None] & free[:, None, :]
     floor = 1e-14 * np.einsum("maa->m", metric)[:, None]
     eye = np.eye(2, dtype=bool)
@@ -237,11 +237,11 @@ class _Search:
         _, sample = self.samples.query(queries)
         best = polished(self.on, queries, self.sample_patch[sample], self.sample_local[sample])
         best = PatchPoints(patch=best.patch, local=best.local, square=best.square.copy())
-        reach = np.sqrt(best.square)
+        best_distance = np.sqrt(best.square)
         distance = np.sqrt(np.maximum(0.0, _square_distances(queries, self.centres)))
         # the margin covers the rounding of a difference of squares
         margin = 1e-7 * (self.radii + length(self.centres).max() + length(queries)[:, None])
-        query, patch = np.nonzero(distance - self.radii < reach[:, None] + np.minimum(margin, self.radii))
+        query, patch = np.nonzero(distance - self.radii < best_distance[:, None] + np.minimum(margin, self.radii))
         coefficients = self.forms.shape[2] * self.forms.shape[3]
         limit = max(1, BLOCK // coefficients)
         waiting: list[_Boxes] = []

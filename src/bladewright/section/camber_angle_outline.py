@@ -97,11 +97,11 @@ class LengthFraction:
         index = np.broadcast_to(cell, (*shape, cell.shape[-1]))
         table = np.broadcast_to(self._powers, (*shape, *self._powers.shape[-2:]))
         rows = np.take_along_axis(table, index[..., None], axis=-2)
-        twice = (place * float(CELLS) - cell - 0.5) * 4.0
+        doubled = (place * float(CELLS) - cell - 0.5) * 4.0
         later, value = place * 0.0, place * 0.0 + rows[..., -1]
         for k in range(NODES - 2, 0, -1):
-            value, later = twice * value - later + rows[..., k], value
-        return twice * 0.5 * value - later + rows[..., 0]
+            value, later = doubled * value - later + rows[..., k], value
+        return doubled * 0.5 * value - later + rows[..., 0]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -145,13 +145,13 @@ class CamberByAngle:
             return np.broadcast_to(inner, (*self.angle.controls.shape[:-1], len(inner)))
         fraction = self.fraction
 
-        def off(x: Array) -> tuple[Array, Array]:
+        def residual(x: Array) -> tuple[Array, Array]:
             found = fraction.at(variable(x, 1))
             return np.real(found.value) - inner, np.real(found.coefficients[1])
 
         count = fraction.at(Series([np.zeros(1)])).value.shape[:-1]
         ends = [np.full((*count, len(inner)), end) for end in (0.0, 1.0)]
-        return bracketed_root(off, *ends)
+        return bracketed_root(residual, *ends)
 
     @cached_property
     def _ends(self) -> Reals:
@@ -272,8 +272,8 @@ class CamberAngleOutline(Outline):
         # beta is smooth by x, but not at a knot that an edge touches: composed there from its own side
         turning = composed(self.line.turning(variable(x.value, order)), x) - self.line.stagger[..., None]
         sine, cosine = sine_and_cosine(turning)
-        off = sine * height, cosine * height
-        return [point_derivatives(along - off[0] * sign, across + off[1] * sign) for sign in (1.0, -1.0)]
+        offset = sine * height, cosine * height
+        return [point_derivatives(along - offset[0] * sign, across + offset[1] * sign) for sign in (1.0, -1.0)]
 
     def _in_chords(self, x: Series) -> tuple[Series, Series]:
         """Camber points at x, turned and scaled so that the chord line runs from (0, 0) to (1, 0)."""
@@ -301,8 +301,8 @@ class CamberAngleOutline(Outline):
             return found
         near = (1.0 - at) * (1.0 / width)
         rest = 1.0 - near
-        there = np.where(piece == len(self.places.ends) - 2, 1.0, 0.0)
-        return found + near * near * rest * rest * rest * (last[..., None] * width) * there
+        in_last_piece = np.where(piece == len(self.places.ends) - 2, 1.0, 0.0)
+        return found + near * near * rest * rest * rest * (last[..., None] * width) * in_last_piece
 
     @cached_property
     def _bends(self) -> tuple[Array, Array | None]:
@@ -327,13 +327,13 @@ class CamberAngleOutline(Outline):
         shape = np.broadcast_shapes(x.shape, self.places.controls.shape[:-1], self._bends[0].shape)
         own = np.arange(int(np.prod(shape)))
 
-        def off(s: Array) -> tuple[Array, Array]:
+        def residual(s: Array) -> tuple[Array, Array]:
             found, _ = self._thickness(s, 1)
             rows = [np.broadcast_to(np.real(each), (*shape, len(s))).reshape(-1, len(s)) for each in found.coefficients]
             # each section at its own s
             return rows[0][own, own] - np.broadcast_to(x, shape).ravel(), rows[1][own, own]
 
-        return bracketed_root(off, np.zeros(len(own)), np.ones(len(own))).reshape(shape)
+        return bracketed_root(residual, np.zeros(len(own)), np.ones(len(own))).reshape(shape)
 
     def _edge(self, s: float, kind: Literal["sharp", "blunt", "round"]) -> Edge:
         upper, lower = (EdgeDerivatives.of_side(side) for side in self._sides(np.array([s]), 2))

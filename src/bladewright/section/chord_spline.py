@@ -28,18 +28,18 @@ def by_abscissa(powers: Array, values: Array) -> tuple[Array, Array, Array]:
     complex step do, are solved once.
     """
     real = _unbatched(np.real(powers[..., 0]), 3)
-    asked = _unbatched(np.real(values), 2)
-    segment = np.sum(asked[..., None] >= real[..., None, 1:, 0], axis=-1)
+    wanted = _unbatched(np.real(values), 2)
+    segment = np.sum(wanted[..., None] >= real[..., None, 1:, 0], axis=-1)
     shape = np.broadcast_shapes(real.shape[:-2], segment.shape[:-1])
     segment = np.broadcast_to(segment, (*shape, segment.shape[-1]))
     own = np.broadcast_to(real, (*shape, *real.shape[-2:]))
-    t = _parameter(np.take_along_axis(own, segment[..., None], axis=-2), asked)
+    t = _parameter(np.take_along_axis(own, segment[..., None], axis=-2), wanted)
     found = [_summed(_monomials(t, segment, powers.shape[-3:-1], order), powers) for order in range(3)]
     if not (np.iscomplexobj(powers) or np.iscomplexobj(values)):
         return found[0], found[1], found[2]
     # the parameter's imaginary part, and by it those of all coordinates, to first order
-    off = np.imag(found[0][..., :1] - np.asarray(values)[..., None])
-    step = -1j * off / np.real(found[1][..., :1])
+    difference = np.imag(found[0][..., :1] - np.asarray(values)[..., None])
+    step = -1j * difference / np.real(found[1][..., :1])
     third = _summed(_monomials(t, segment, powers.shape[-3:-1], 3), np.real(powers))
     rates = [*(np.real(each) for each in found[1:]), third]
     carried = [each + step * rate for each, rate in zip(found, rates, strict=True)]
@@ -68,8 +68,8 @@ def _parameter(powers: Reals, values: Reals) -> Reals:
         change, t = after - t, after
         if np.all(change**2 < 1e-28):
             return t
-    rest = np.zeros_like(t)
-    return bracketed_root(lambda t: (polynomial(powers, t) - values, polynomial(slopes, t)), rest, rest + 1.0)
+    zeros = np.zeros_like(t)
+    return bracketed_root(lambda t: (polynomial(powers, t) - values, polynomial(slopes, t)), zeros, zeros + 1.0)
 
 
 def _monomials(t: Reals, segment: Array, shape: tuple[int, int], order: int) -> Reals:

@@ -67,11 +67,11 @@ def check_outline(outline: Outline, where: Sequence[str]) -> None:
 
 def _folding(outlines: Reals) -> tuple[int, int] | None:
     """Outline and point of the first place where one turns by more than a right angle, but for the edges."""
-    ahead = np.roll(outlines, -1, axis=1) - outlines
-    back = np.sum(ahead * np.roll(ahead, 1, axis=1), axis=-1) < 0.0
+    steps = np.roll(outlines, -1, axis=1) - outlines
+    turned_back = np.sum(steps * np.roll(steps, 1, axis=1), axis=-1) < 0.0
     edges = [0, len(FINE) - 1, len(FINE) % outlines.shape[1], -1]
-    back[:, edges] = False
-    found = np.argwhere(back)
+    turned_back[:, edges] = False
+    found = np.argwhere(turned_back)
     return (int(found[0, 0]), int(found[0, 1])) if len(found) else None
 
 
@@ -101,8 +101,8 @@ def _overlapping(outlines: Reals) -> NDArray[np.bool_]:
     """Mask (k, n, n) of segments whose extents overlap; segments of one straight line would cross by rounding alone."""
     after = np.roll(outlines, -1, axis=1)
     low, high = np.minimum(outlines, after), np.maximum(outlines, after)
-    beside = [low[:, :, None, axis] <= high[:, None, :, axis] for axis in (0, 1)]
-    both = beside[0] & beside[1]
+    overlap = [low[:, :, None, axis] <= high[:, None, :, axis] for axis in (0, 1)]
+    both = overlap[0] & overlap[1]
     return both & np.swapaxes(both, 1, 2)
 
 

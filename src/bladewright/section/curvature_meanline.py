@@ -112,10 +112,10 @@ class CurvatureMeanline(SectionFamily):
         camber = angle_out - angle_in
         scale, largest = camber_scale(curvature.totals, camber)
         if np.any(np.isnan(np.real(scale))):
-            missed, asked, most = np.broadcast_arrays(np.isnan(np.real(scale)), np.real(camber), largest)
+            missed, wanted, most = np.broadcast_arrays(np.isnan(np.real(scale)), np.real(camber), largest)
             first = tuple(np.argwhere(missed)[0])
             raise DesignError(
-                f"metal_angle_out less metal_angle_in is {degrees(asked[first]):.4g} deg at span fraction "
+                f"metal_angle_out less metal_angle_in is {degrees(wanted[first]):.4g} deg at span fraction "
                 f"{span.v[first[-1]]:.4g}: a meanline of this curvature can turn by {degrees(most[first]):.4g} deg at "
                 "most, for its second derivative is zero, or changes sign and turns back what it has turned; lower the "
                 "difference of the angles, or give more of the control points of curvature the same sign"

@@ -110,12 +110,12 @@ class SplinedOutline(Outline):
         upper, lower = (each[..., 0, :] for each in self._at_contact)
         old = self.outline.leading_edge.upper.point
         middle = 0.5 * (upper + lower)
-        ahead = unit(old - middle)
-        left = np.stack([-ahead[..., 1], ahead[..., 0]], axis=-1)
+        along = unit(old - middle)
+        left = np.stack([-along[..., 1], along[..., 0]], axis=-1)
         across = upper - lower
         half = 0.5 * np.sqrt(np.sum(across * across, axis=-1))
         # seen ahead, the upper side is on the right
-        return old + half[..., None] * (self.elongation[..., None] * ahead + self.droop[..., None] * left)
+        return old + half[..., None] * (self.elongation[..., None] * along + self.droop[..., None] * left)
 
     @property
     def turned(self) -> Array:
@@ -195,13 +195,13 @@ class SplinedOutline(Outline):
             upper, lower = (np.swapaxes(each[..., 0, :, :], -1, -2) for each in sides)
             return upper, lower
         after = [place for place in joints if place > contact + SAME]
-        reach = min([WINDOW, 1.0 - contact, *(place - contact for place in after)])
-        if reach < NARROW:
+        window = min([WINDOW, 1.0 - contact, *(place - contact for place in after)])
+        if window < NARROW:
             raise DesignError(
-                f"contact is {contact:g}: the section is not smooth at s = {contact + reach:.4g}, too near behind it; "
+                f"contact is {contact:g}: the section is not smooth at s = {contact + window:.4g}, too near behind it; "
                 "move the contact beyond"
             )
-        places, weights = _differences(reach)
+        places, weights = _differences(window)
         upper, lower = (weights @ side for side in outline.points(contact + places))
         return upper, lower
 
@@ -239,9 +239,9 @@ def _conditions() -> Reals:
     return matrix
 
 
-def _differences(reach: float) -> tuple[Reals, Reals]:
+def _differences(window: float) -> tuple[Reals, Reals]:
     """Places (n,) in [0, reach] and the weights (4, n) of value and three derivatives at 0 of the polynomial there."""
     nodes = 0.5 * (1.0 - np.cos(np.pi * np.arange(DEGREE + 1) / DEGREE))
     powers = np.linalg.inv(np.vander(nodes, increasing=True))[:4]
-    scale = np.array([factorial(k) / reach**k for k in range(4)])
-    return nodes * reach, powers * scale[:, None]
+    scale = np.array([factorial(k) / window**k for k in range(4)])
+    return nodes * window, powers * scale[:, None]

@@ -181,8 +181,8 @@ def camber_scale(totals: tuple[Array, Array], camber: Array) -> tuple[Array, Rea
     square = linear**2 + 4.0 * product * sine**2
     inflected = np.real(product) < 0.0
     with np.errstate(invalid="ignore", divide="ignore"):
-        reach = np.arctan(np.sqrt(np.real(first) ** 2 / (-4.0 * np.real(product))))
-        largest = np.where(inflected, reach, np.where(np.real(first) == 0.0, 0.0, np.pi))
+        to_inflection = np.arctan(np.sqrt(np.real(first) ** 2 / (-4.0 * np.real(product))))
+        largest = np.where(inflected, to_inflection, np.where(np.real(first) == 0.0, 0.0, np.pi))
         none = inflected & ((np.real(square) < 0.0) | (np.real(cosine) <= 0.0)) | (np.real(first) == 0.0)
         side = np.where(np.real(first) < 0.0, -1.0, 1.0)
         root = side * np.sqrt(np.where(none, 1.0, square))

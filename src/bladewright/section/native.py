@@ -70,13 +70,13 @@ def knots_for(outline: Outline, tolerance: float) -> SectionKnots:
     sides = side_knots_for(outline, tolerance)
     arc = ArcLength(lambda s: np.real(_single(outline.camber(s))), [0.0, *(s for s, _ in joints), 1.0])
 
-    def off_camber(knots: Reals, w: Reals) -> Reals:
+    def camber_error(knots: Reals, w: Reals) -> Reals:
         controls = _camber(outline, knots, arc.places(greville(knots, DEGREE)))
         return _distance(basis(knots, DEGREE, w) @ controls, _single(outline.camber(arc.places(w))))
 
     lengths = arc.lengths(np.array([s for s, _ in joints]))
     camber = _refined(
-        _initial_knots([(float(w), each[1]) for w, each in zip(lengths, joints, strict=True)]), off_camber, tolerance
+        _initial_knots([(float(w), each[1]) for w, each in zip(lengths, joints, strict=True)]), camber_error, tolerance
     )
     return SectionKnots(sides=sides, camber=camber, camber_places=arc.places(greville(camber, DEGREE)))
 
@@ -84,12 +84,12 @@ def knots_for(outline: Outline, tolerance: float) -> SectionKnots:
 def side_knots_for(outline: Outline, tolerance: float) -> Reals:
     """The knots of both sides alone on which they reach the tolerance; raises as `native_curves` does."""
 
-    def off(knots: Reals, s: Reals) -> Reals:
+    def side_error(knots: Reals, s: Reals) -> Reals:
         matrix = basis(knots, DEGREE, s)
         exact = (_single(points) for points in outline.points(s))
         return np.max([_distance(matrix @ _sides(outline, knots)[i], each) for i, each in enumerate(exact)], axis=0)
 
-    return _refined(_initial_knots([(joint.s, joint.derivatives) for joint in outline.joints]), off, tolerance)
+    return _refined(_initial_knots([(joint.s, joint.derivatives) for joint in outline.joints]), side_error, tolerance)
 
 
 def interpolated_along_u(lines: Array, start: EdgeDerivatives, end: EdgeDerivatives, knots_u: Reals) -> Array:
@@ -175,8 +175,8 @@ def _single(points: Array) -> Array:
 
 
 def _distance(a: Array, b: Array) -> Reals:
-    off: Reals = np.real(a) - np.real(b)
-    return np.sqrt(dot(off, off))
+    difference: Reals = np.real(a) - np.real(b)
+    return np.sqrt(dot(difference, difference))
 
 
 def native_section(

@@ -158,6 +158,6 @@ def by_parts(parts: Sequence[tuple[NDArray[np.bool_], Array]], count: int) -> Ar
     """Points (..., count, 2) from those of several parts of a side, each at a mask (count,)."""
     shape = np.broadcast_shapes(*[points.shape[:-2] for _, points in parts])
     found = np.empty((*shape, count, 2), dtype=np.result_type(*[points for _, points in parts]))
-    for here, points in parts:
-        found[..., here, :] = points
+    for inside, points in parts:
+        found[..., inside, :] = points
     return found

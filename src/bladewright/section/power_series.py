@@ -187,8 +187,8 @@ def relative_log_series(at: Series) -> Series:
 def relative_exponential(z: Array) -> Array:
     """(exp(z) - 1) / z, also at zero; an imaginary part to first order."""
     real = np.real(z)
-    apart = np.where(real == 0.0, 1.0, real)
-    value = np.where(real == 0.0, 1.0, np.expm1(apart) / apart)
+    nonzero = np.where(real == 0.0, 1.0, real)
+    value = np.where(real == 0.0, 1.0, np.expm1(nonzero) / nonzero)
     if not np.iscomplexobj(z):
         return value
     near = real * real < 1e-6
@@ -200,8 +200,8 @@ def relative_exponential(z: Array) -> Array:
 def relative_logarithm(w: Array) -> Array:
     """log(1 + w) / w for real parts above -1, also at zero; an imaginary part to first order."""
     real = np.real(w)
-    apart = np.where(real == 0.0, 1.0, real)
-    value = np.where(real == 0.0, 1.0, np.log1p(apart) / apart)
+    nonzero = np.where(real == 0.0, 1.0, real)
+    value = np.where(real == 0.0, 1.0, np.log1p(nonzero) / nonzero)
     if not np.iscomplexobj(w):
         return value
     near = real * real < 1e-6

@@ -139,9 +139,9 @@ class Section:
         u = np.linspace(0.0, 1.0, 401)
         point = np.real(self.camber(u))
         along = point[-1] - point[0]
-        off = cross2(np.broadcast_to(along, point.shape), point - point[0]) / length(along)
-        i = int(np.argmax(off * off))
-        return float(off[i] * np.real(self.scale(point[i : i + 1, 0]))[0])
+        height = cross2(np.broadcast_to(along, point.shape), point - point[0]) / length(along)
+        i = int(np.argmax(height * height))
+        return float(height[i] * np.real(self.scale(point[i : i + 1, 0]))[0])
 
     @cached_property
     def edge_radii(self) -> tuple[float, float]:
@@ -194,13 +194,13 @@ def _ray_lengths(curve: Curve, origins: Reals, directions: Reals) -> Reals:
     u = np.linspace(0.0, 1.0, 801)
     points = np.real(curve(u))
     offset = points[None] - origins[:, None]
-    beside = cross2(directions[:, None], offset)
+    cross_products = cross2(directions[:, None], offset)
     ahead = dot(directions[:, None], offset) > 0.0
-    crossing = (beside[:, :-1] * beside[:, 1:] <= 0.0) & (ahead[:, :-1] | ahead[:, 1:])
+    crossing = (cross_products[:, :-1] * cross_products[:, 1:] <= 0.0) & (ahead[:, :-1] | ahead[:, 1:])
     height = np.where(crossing, dot(directions[:, None], offset)[:, :-1], np.inf)
     index = np.argmin(height, axis=1)
     low, high = u[index], u[index + 1]
-    sign = np.sign(beside[np.arange(len(index)), index])  # real: a search on real sections
+    sign = np.sign(cross_products[np.arange(len(index)), index])  # real: a search on real sections
     for _ in range(48):
         middle = (low + high) / 2.0
         value = cross2(directions, np.real(curve(middle)) - origins)

@@ -49,9 +49,9 @@ def smooth_camber(outline: Outline) -> SmoothCamber:
     own = outline.camber(SITES)
     x, height = own[..., 0], own[..., 1]
     rows = _rows(x)
-    off = height - _cubic(slopes, x)
+    residual = height - _cubic(slopes, x)
     across = np.swapaxes(rows, -1, -2)
-    terms = np.linalg.solve(across @ rows, across @ off[..., None])[..., 0]
+    terms = np.linalg.solve(across @ rows, across @ residual[..., None])[..., 0]
     return SmoothCamber(slopes=slopes, terms=terms)
 
 

@@ -51,7 +51,7 @@ class Jump:
         return float(np.max(np.ptp(self.slope)))
 
     @property
-    def apart(self) -> tuple[bool, bool]:
+    def discontinuous(self) -> tuple[bool, bool]:
         """Whether curvature and slope differ on both sides by more than rounding."""
         bend = _largest(np.array([1.0, *self.curvature]))
         rounding = max(SAME * _largest(np.array(self.slope)), STEADY * bend * bend)
@@ -60,7 +60,7 @@ class Jump:
     @property
     def continuous(self) -> tuple[bool, bool]:
         """Whether curvature and slope are continuous; where the curvature jumps there is no slope either."""
-        bend, slope = self.apart
+        bend, slope = self.discontinuous
         return not bend, not (bend or slope)
 
 
@@ -82,12 +82,12 @@ class SmoothLine:
     @property
     def curvature_jump(self) -> float:
         """Largest jump of the curvature, of its largest value on the line; those within rounding are none [-]."""
-        return _share([jump.of_curvature for jump in self.jumps if jump.apart[0]], self.curvature)
+        return _share([jump.of_curvature for jump in self.jumps if jump.discontinuous[0]], self.curvature)
 
     @property
     def slope_jump(self) -> float:
         """Largest jump of the slope, of its largest value on the line; those within rounding are none [-]."""
-        return _share([jump.of_slope for jump in self.jumps if jump.apart[1]], self.slope)
+        return _share([jump.of_slope for jump in self.jumps if jump.discontinuous[1]], self.slope)
 
     @property
     def continuous(self) -> tuple[bool, bool]:
@@ -192,13 +192,13 @@ def _line(name: str, derivatives: Array, joints: int) -> SmoothLine:
     arc = cumulative_length(point)
     arc = arc / arc[-1]
 
-    def beside(values: Reals, behind: int) -> tuple[float, float]:
+    def one_sided(values: Reals, behind: int) -> tuple[float, float]:
         """Values of both pieces at a joint, in front of the place `behind`, in line with those close to it."""
         before = 2.0 * values[behind - 1] - values[behind - 2]
         return float(before), float(2.0 * values[behind] - values[behind + 1])
 
     jumps = tuple(
-        Jump(place="joint", at=float(arc[k]), curvature=beside(curvature, k), slope=beside(slope, k))
+        Jump(place="joint", at=float(arc[k]), curvature=one_sided(curvature, k), slope=one_sided(slope, k))
         for k in range(PER_PIECE + 4, (joints + 1) * (PER_PIECE + 4), PER_PIECE + 4)
     )
     return SmoothLine(name=name, arc=arc, curvature=curvature, slope=slope, jumps=jumps)

@@ -102,10 +102,10 @@ def check_edges(
             ends = np.real(weights if i == 0 else weights[..., ::-1])
             ratio = ends[..., 0] * ends[..., 2] / ends[..., 1] ** 2
         height = np.real(edge_height(advance, curvature, ratio))
-        beside = np.real(thickness[..., 0 if i == 0 else -1])
-        where = _first(height > beside)
+        next_thickness = np.real(thickness[..., 0 if i == 0 else -1])
+        where = _first(height > next_thickness)
         if where is not None:
-            largest = _at(radius, where) * (_at(beside, where) / _at(height, where)) ** 2
+            largest = _at(radius, where) * (_at(next_thickness, where) / _at(height, where)) ** 2
             raise DesignError(
                 f"{edge}_edge_radius is {_at(radius, where):.4g} at v = {span.v[where[-1]]:.3f}: the thickness of the "
                 f"{name} side next to it can hold at most {largest:.4g}; lower {edge}_edge_radius or raise {entry}"

@@ -108,8 +108,8 @@ class WedgeOutline(Outline):
             slope = (self.face / (1.0 - FACE)) * width / (self.trailing_radius * whole)
             share = monotone(t, slope, 1.0 + 0.0 * slope)
         turn, radius = whole[..., None] * share, self.trailing_radius[..., None]
-        ahead = 1.0 - 2.0 * radius * np.sin(0.5 * turn) ** 2
-        return np.stack([ahead, face[..., None] + radius * np.sin(turn)], axis=-1)
+        along = 1.0 - 2.0 * radius * np.sin(0.5 * turn) ** 2
+        return np.stack([along, face[..., None] + radius * np.sin(turn)], axis=-1)
 
     def _side(self, t: Reals) -> Array:
         start, end = self._leading(np.ones(1)), self._trailing(np.array([CORNER]))

@@ -17,7 +17,7 @@ from bladewright.blade.exact.unified import ExactUnifiedBlade
 from bladewright.blade.flow_path.channel import ChannelCurve, TransfiniteChannel
 from bladewright.blade.native.interpolation import lower_edges
 from bladewright.blade.native.knots import DEGREE, Knots
-from bladewright.derivatives.complex_step import STEP, law_point, skeleton_of_rows, skeleton_rates, stepped_design
+from bladewright.derivatives.complex_step import STEP, data_from_rates, interpolation_rates, law_point, stepped_design
 from bladewright.designs import Design
 from bladewright.fitting.free_parameters import EDGES
 from bladewright.fitting.matching.footpoints import Footpoints
@@ -119,10 +119,10 @@ def _stepped(
 
 def _along_u(other: ExactUnifiedBlade, knots: Knots, count: int) -> tuple[Array, Array]:
     """Derivatives (count, n_u, m, 3) of the sides' control points along u, for each section by itself."""
-    rates = skeleton_rates(other.sections(knots.sites_v), knots, count)
-    skeleton = skeleton_of_rows(rates, (True, True))
-    upper = skeleton.leading_edge, skeleton.trailing_edge
-    sides = (skeleton.upper, upper), (skeleton.lower, lower_edges(upper, skeleton.lower_edges))
+    rates = interpolation_rates(other.sections(knots.sites_v), knots, count)
+    data = data_from_rates(rates, (True, True))
+    upper = data.leading_edge, data.trailing_edge
+    sides = (data.upper, upper), (data.lower, lower_edges(upper, data.lower_edges))
     first, second = (interpolated_along_u(np.swapaxes(points, -3, -2), *edges, knots.u) for points, edges in sides)
     return first, second
 

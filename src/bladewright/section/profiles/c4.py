@@ -13,7 +13,7 @@ from bladewright.numerics.elementary import Array, radians
 from bladewright.section.laws import Span
 from bladewright.section.outline import Outline
 from bladewright.section.power_series import Series
-from bladewright.section.profiles.mean_line import MeanLine, MeanLineOutline, PowerForm
+from bladewright.section.profiles.mean_line import MeanLineOutline, PowerForm, ProfileMeanLine
 from bladewright.section.profiles.profile import PublishedProfile
 
 POLYNOMIAL = {1: 0.3048, 2: -0.0914, 4: -0.8614, 6: 2.1236, 8: -2.9163, 10: 1.9744, 12: -0.5231}
@@ -53,7 +53,7 @@ class C4(PublishedProfile):
 
 
 @dataclass(frozen=True, kw_only=True)
-class ArcLine(MeanLine):
+class ArcLine(ProfileMeanLine):
     """A circular arc, above the chord line where its angle is positive."""
 
     angle: Array
@@ -62,5 +62,5 @@ class ArcLine(MeanLine):
     def ordinate(self, x: Series, aft: NDArray[np.bool_]) -> Series:  # noqa: ARG002 - one piece
         """k x (1 - x) / (cos(angle / 2) + sqrt(1 - k^2 (x - 1/2)^2)), k = 2 sin(angle / 2) the curvature."""
         curvature = 2.0 * np.sin(0.5 * self.angle)
-        off = (x - 0.5) * curvature
-        return x * (1.0 - x) * curvature / ((1.0 - off * off).sqrt() + np.cos(0.5 * self.angle))
+        from_middle = (x - 0.5) * curvature
+        return x * (1.0 - x) * curvature / ((1.0 - from_middle * from_middle).sqrt() + np.cos(0.5 * self.angle))

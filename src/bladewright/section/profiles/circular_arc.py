@@ -44,10 +44,10 @@ class Arc:
     def points(self, share: Array) -> Array:
         """Points (..., k, 2) at shares (..., k) of the length."""
         half = 0.5 * share * self.turning[..., None]
-        reach = share * self.length[..., None] * _sinc(half)
+        distance = share * self.length[..., None] * _sinc(half)
         forward, left = self.direction[..., None, :], turned_left(self.direction)[..., None, :]
         along = np.cos(half)[..., None] * forward + np.sin(half)[..., None] * left
-        return self.start[..., None, :] + reach[..., None] * along
+        return self.start[..., None, :] + distance[..., None] * along
 
     @property
     def end(self) -> Array:
@@ -69,8 +69,8 @@ def _sinc(z: Array) -> Array:
     """sin(z) / z, also at zero."""
     square = z * z
     small = np.real(square) < 1e-8
-    apart = np.where(small, 1.0, z)
-    return np.where(small, 1.0 - square / 6.0, np.sin(apart) / apart)
+    nonzero = np.where(small, 1.0, z)
+    return np.where(small, 1.0 - square / 6.0, np.sin(nonzero) / nonzero)
 
 
 def arc_between(start: Array, end: Array, direction: Array, end_direction: Array) -> Arc:
@@ -113,9 +113,9 @@ class ArcOutline(Outline):
 
     def camber(self, s: Reals) -> Array:
         """Points (..., len(s), 2) of the mean line."""
-        ahead = s <= 0.5
-        share = np.where(ahead, 2.0 * s, 2.0 * s - 1.0)
-        return np.where(ahead[:, None], self.front.points(share), self.rear.points(share))
+        in_front = s <= 0.5
+        share = np.where(in_front, 2.0 * s, 2.0 * s - 1.0)
+        return np.where(in_front[:, None], self.front.points(share), self.rear.points(share))
 
     def points(self, s: Reals) -> tuple[Array, Array]:
         """Points (..., len(s), 2) of the upper and the lower side."""
@@ -124,9 +124,9 @@ class ArcOutline(Outline):
 
     @cached_property
     def _breaks(self) -> list[float]:
-        ahead = [] if self.radii[0] is None else [EDGE]
-        behind = [] if self.radii[1] is None else [1.0 - EDGE]
-        return [0.0, *ahead, 0.5, *behind, 1.0]
+        front = [] if self.radii[0] is None else [EDGE]
+        rear = [] if self.radii[1] is None else [1.0 - EDGE]
+        return [0.0, *front, 0.5, *rear, 1.0]
 
     @cached_property
     def _arcs(self) -> tuple[list[Arc], list[Arc]]:
@@ -135,31 +135,35 @@ class ArcOutline(Outline):
         sides = []
         for sign in (1.0, -1.0):
             normal = sign * turned_left(tangent)
-            apart = middle + 0.5 * self.thickness[..., None] * normal
-            ahead = self._to_edge(apart, normal, sign, 0)
-            sides.append([*ahead, *self._to_edge(apart, normal, sign, 1)])
+            side_point = middle + 0.5 * self.thickness[..., None] * normal
+            front = self._to_edge(side_point, normal, sign, 0)
+            sides.append([*front, *self._to_edge(side_point, normal, sign, 1)])
         return sides[0], sides[1]
 
-    def _to_edge(self, apart: Array, normal: Array, sign: float, end: int) -> list[Arc]:
+    def _to_edge(self, side_point: Array, normal: Array, sign: float, end: int) -> list[Arc]:
         """The arcs between the transition's point of a side and an edge, in the order of s."""
         radius = self.radii[end]
         tip = self.rear.end if end else self.front.start
         outward = self.rear.end_direction if end else -self.front.direction
         size = np.zeros(()) if radius is None else radius
         centre = tip - size[..., None] * outward
-        off = centre - apart
-        curvature = 2.0 * (dot(normal, off) + size) / (size**2 - dot(off, off))
-        contact = (curvature[..., None] * off + normal) / (1.0 - curvature * size)[..., None]
+        offset = centre - side_point
+        curvature = 2.0 * (dot(normal, offset) + size) / (size**2 - dot(offset, offset))
+        contact = (curvature[..., None] * offset + normal) / (1.0 - curvature * size)[..., None]
         touched = centre + size[..., None] * contact
         # the outward normal turned back is the tangent towards the trailing edge
-        along, there = (-sign * turned_left(each) for each in (normal, contact))
-        arc = arc_between(apart, touched, along, there) if end else arc_between(touched, apart, there, along)
+        along, edge_direction = (-sign * turned_left(each) for each in (normal, contact))
+        arc = (
+            arc_between(side_point, touched, along, edge_direction)
+            if end
+            else arc_between(touched, side_point, edge_direction, along)
+        )
         if radius is None:
             return [arc]
         rounding = angle(cross2(outward, contact), dot(outward, contact))
         nose = Arc(
             start=touched if end else tip + 0.0 * touched,
-            direction=there if end else -sign * turned_left(outward),
+            direction=edge_direction if end else -sign * turned_left(outward),
             length=-sign * radius * rounding if end == 0 else sign * radius * rounding,
             turning=-rounding if end else rounding,
         )
@@ -171,18 +175,18 @@ class ArcOutline(Outline):
         shape = np.broadcast_shapes(*[arc.start.shape[:-1] for arc in arcs], *[arc.length.shape for arc in arcs])
         found = np.zeros((*shape, len(s), 2), dtype=np.result_type(*[arc.length for arc in arcs]))
         for i, arc in enumerate(arcs):
-            here = piece == i
+            on_arc = piece == i
             step = ends[i + 1] - ends[i]
-            share = (s[here] - ends[i]) / step
+            share = (s[on_arc] - ends[i]) / step
             start, end = (speeds[k][..., None] * step / arc.length[..., None] for k in (i, i + 1))
             if i == 0 and self.radii[0] is not None:
-                way = start * share + (1.0 - start) * share**3
+                fraction = start * share + (1.0 - start) * share**3
             elif i == len(arcs) - 1 and self.radii[1] is not None:
-                way = 1.0 - end * (1.0 - share) - (1.0 - end) * (1.0 - share) ** 3
+                fraction = 1.0 - end * (1.0 - share) - (1.0 - end) * (1.0 - share) ** 3
             else:
                 rest = 1.0 - share
-                way = share * (start * rest**2 - end * share * rest + share * (3.0 - 2.0 * share))
-            found[..., here, :] = arc.points(way)
+                fraction = share * (start * rest**2 - end * share * rest + share * (3.0 - 2.0 * share))
+            found[..., on_arc, :] = arc.points(fraction)
         return found
 
     def _speeds(self, arcs: list[Arc]) -> list[Array]:

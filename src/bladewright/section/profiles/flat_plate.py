@@ -52,8 +52,8 @@ class FlatPlate(Profile):
             elliptic, ratio = getattr(self, edge) == "elliptic", getattr(self, name)
             if elliptic != (ratio is not None):
                 cure = "give it, 3 for instance" if elliptic else "leave it out, or make the edge elliptic"
-                said = "missing" if elliptic else "given"
-                raise DesignError(f"{name} is {said} and {edge} is {getattr(self, edge)!r}: {cure}")
+                state = "missing" if elliptic else "given"
+                raise DesignError(f"{name} is {state} and {edge} is {getattr(self, edge)!r}: {cure}")
             if ratio is not None:
                 object.__setattr__(self, name, checks.law(name, ratio))
                 checks.between(name, getattr(self, name), 0.1, 20.0, "it must lie above 0.1 and below 20")
@@ -112,14 +112,16 @@ class PlateOutline(Outline):
         share = (s[middle] - first) / step
         rise = [(each * step)[..., None] for each in speeds]
         rest = 1.0 - share
-        way = share * (rise[0] * rest**2 - rise[1] * share * rest + straight[..., None] * share * (3.0 - 2.0 * share))
-        along[..., middle] = start[..., None] + way
-        for here, size, other in ((s < first, start, False), (s > last, end, True)):
-            angle = _angle((1.0 - s[here] if other else s[here]) / EDGE)
+        position = share * (
+            rise[0] * rest**2 - rise[1] * share * rest + straight[..., None] * share * (3.0 - 2.0 * share)
+        )
+        along[..., middle] = start[..., None] + position
+        for on_edge, size, trailing in ((s < first, start, False), (s > last, end, True)):
+            angle = _angle((1.0 - s[on_edge] if trailing else s[on_edge]) / EDGE)
             # 1 - cos without cancellation
-            off = size[..., None] * 2.0 * np.sin(0.5 * angle) ** 2
-            along[..., here] = 1.0 - off if other else off
-            across[..., here] = self.half[..., None] * np.sin(angle)
+            from_edge = size[..., None] * 2.0 * np.sin(0.5 * angle) ** 2
+            along[..., on_edge] = 1.0 - from_edge if trailing else from_edge
+            across[..., on_edge] = self.half[..., None] * np.sin(angle)
         upper, lower = (np.stack([along, sign * across], axis=-1) for sign in (1.0, -1.0))
         return upper, lower
 

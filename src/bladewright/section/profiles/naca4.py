@@ -15,7 +15,7 @@ from bladewright.section import checks
 from bladewright.section.laws import Span
 from bladewright.section.outline import Outline
 from bladewright.section.power_series import Series
-from bladewright.section.profiles.mean_line import MeanLine, MeanLineOutline, PowerForm
+from bladewright.section.profiles.mean_line import MeanLineOutline, PowerForm, ProfileMeanLine
 from bladewright.section.profiles.profile import PublishedProfile
 
 FORM = {1: 1.4845, 2: -0.6300, 4: -1.7580, 6: 1.4215, 8: -0.5075}
@@ -58,7 +58,7 @@ class Naca4(PublishedProfile):
 
     def outline(self, span: Span) -> Outline:
         """The exact sections (..., m) at the places of the span, in chords, unstaggered."""
-        line: MeanLine = ChordLine(count=len(span.v))
+        line: ProfileMeanLine = ChordLine(count=len(span.v))
         if self.camber is not None and self.camber_position is not None:
             camber, position = (span.values(law)[..., None] for law in (self.camber, self.camber_position))
             line = FourDigitLine(camber=camber, joint=position)
@@ -70,7 +70,7 @@ class Naca4(PublishedProfile):
 
 
 @dataclass(frozen=True, kw_only=True)
-class ChordLine(MeanLine):
+class ChordLine(ProfileMeanLine):
     """The mean line of symmetric profiles."""
 
     count: int
@@ -82,7 +82,7 @@ class ChordLine(MeanLine):
 
 
 @dataclass(frozen=True, kw_only=True)
-class FourDigitLine(MeanLine):
+class FourDigitLine(ProfileMeanLine):
     """Two parabolas that meet at the largest camber."""
 
     camber: Array

@@ -15,7 +15,7 @@ from bladewright.numerics.quadrature import gauss
 from bladewright.section.laws import Span
 from bladewright.section.outline import Outline
 from bladewright.section.power_series import Series
-from bladewright.section.profiles.mean_line import MeanLine, MeanLineOutline, PowerForm
+from bladewright.section.profiles.mean_line import MeanLineOutline, PowerForm, ProfileMeanLine
 from bladewright.section.profiles.naca4 import BEND, END_THICKNESS, FORM
 from bladewright.section.profiles.profile import PublishedProfile
 
@@ -64,7 +64,7 @@ class Naca5(PublishedProfile):
 
 
 @dataclass(frozen=True, kw_only=True)
-class FiveDigitLine(MeanLine):
+class FiveDigitLine(ProfileMeanLine):
     """k1 / 6 ((x - r)^3 - q (1 - r)^3 x - r^3 x + r^3), and q (x - r)^3 for the first term behind r."""
 
     factor: Array

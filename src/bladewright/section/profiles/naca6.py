@@ -14,7 +14,7 @@ from bladewright.section import checks
 from bladewright.section.laws import Span
 from bladewright.section.outline import Outline
 from bladewright.section.power_series import Series, logarithm, relative_log_series
-from bladewright.section.profiles.mean_line import ChebyshevForm, MeanLine, MeanLineOutline, TrailingEdge
+from bladewright.section.profiles.mean_line import ChebyshevForm, MeanLineOutline, ProfileMeanLine, TrailingEdge
 from bladewright.section.profiles.profile import PublishedProfile
 
 ROUNDING = 0.005
@@ -120,7 +120,7 @@ def clustering(end: TrailingEdge) -> float:
 
 
 @dataclass(frozen=True, kw_only=True)
-class LoadedLine(MeanLine):
+class LoadedLine(ProfileMeanLine):
     """The mean line whose load is uniform up to a and falls linearly to nothing at the trailing edge."""
 
     lift: Array

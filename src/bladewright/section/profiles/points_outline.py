@@ -65,8 +65,8 @@ def contour(points: Reals) -> Contour:
     if np.sum(cross2(points, ahead)) < 0.0:
         order = order[::-1]
     placed = points[order]
-    apart = placed[:, None] - placed
-    first, second = np.unravel_index(np.argmax(dot(apart, apart)), apart.shape[:2])
+    differences = placed[:, None] - placed
+    first, second = np.unravel_index(np.argmax(dot(differences, differences)), differences.shape[:2])
     le, te = (int(first), int(second)) if placed[first, 0] < placed[second, 0] else (int(second), int(first))
     corners = [int(i) for i in _corners(placed)]
     chord = placed[te] - placed[le]
@@ -108,8 +108,8 @@ def _corners(points: Reals) -> Indices:
     # at a blunt edge the other corner is no smooth neighbour: both are judged together, by the neighbours outside
     paired = (size >= MIN_CORNER_TURNING) & (np.maximum(before, after) >= MIN_CORNER_TURNING)
     whole = np.where(paired, size + np.maximum(before, after), size)
-    beside = np.where(paired, np.minimum(before, after), np.maximum(before, after))
-    return np.flatnonzero((size >= MIN_CORNER_TURNING) & (beside <= MAX_NEIGHBOUR_TURNING * whole))
+    neighbours = np.where(paired, np.minimum(before, after), np.maximum(before, after))
+    return np.flatnonzero((size >= MIN_CORNER_TURNING) & (neighbours <= MAX_NEIGHBOUR_TURNING * whole))
 
 
 def _misplaced(index: int, point: Reals) -> DesignError:
@@ -257,8 +257,8 @@ class PointsOutline(Outline):
         for _ in range(STEPS):
             x, y = (each.coefficients for each in spline.at(variable(t[..., None], 2)))
             point, first, second = (np.stack([x[k][..., 0], y[k][..., 0]], axis=-1) * (1, 1, 2)[k] for k in range(3))
-            off = point - tip
-            step = -dot(off, first) / (dot(first, first) + dot(off, second))
+            difference = point - tip
+            step = -dot(difference, first) / (dot(first, first) + dot(difference, second))
             t = t + np.where(magnitude(np.real(step)) > limit, np.copysign(limit, np.real(step)), step)
             if np.all(magnitude(np.real(step)) <= SETTLED * limit):
                 break
@@ -274,9 +274,9 @@ class PointsOutline(Outline):
                 x, y = (each.coefficients for each in spline.at(variable(t[..., None], 2)))
                 rows.append([np.stack([x[k][..., 0], y[k][..., 0]], axis=-1) * (1, 1, 2)[k] for k in range(3)])
             (a, da, dda), (b, db, ddb) = rows
-            off = a - b
-            values = dot(off, da), -dot(off, db)
-            own = dot(da, da) + dot(off, dda), dot(db, db) - dot(off, ddb)
+            difference = a - b
+            values = dot(difference, da), -dot(difference, db)
+            own = dot(da, da) + dot(difference, dda), dot(db, db) - dot(difference, ddb)
             both = -dot(da, db)
             determinant = own[0] * own[1] - both * both
             steps = (
@@ -312,16 +312,16 @@ class PointsOutline(Outline):
         x, y = side.spline.at(side.parameter(variable(s, order), self._edge_speed))
         start, way = self._chord
         square = dot(way, way)[..., None]
-        off = x - start[..., 0, None], y - start[..., 1, None]
+        difference = x - start[..., 0, None], y - start[..., 1, None]
         cosine, sine = way[..., 0, None] / square, way[..., 1, None] / square
-        return off[0] * cosine + off[1] * sine, off[1] * cosine - off[0] * sine
+        return difference[0] * cosine + difference[1] * sine, difference[1] * cosine - difference[0] * sine
 
     def _joints_of(self, side: SplineSide, places: Reals, edge_speed: Reals) -> list[Joint]:
-        def off(s: Array) -> tuple[Array, Array]:
+        def difference(s: Array) -> tuple[Array, Array]:
             found = side.parameter(variable(s, 1), edge_speed)
             return np.real(found.value) - places, np.real(found.coefficients[1])
 
-        s = bracketed_root(off, np.zeros(places.shape), np.ones(places.shape))
+        s = bracketed_root(difference, np.zeros(places.shape), np.ones(places.shape))
         rows = s.reshape(-1, s.shape[-1])
         return [Joint(float(row[0]), 4) for row in rows.T if np.ptp(row) <= APART]
 

@@ -78,10 +78,12 @@ class PublishedProfile(Profile):
         `form` holds those over the thickness. To that of x^4 is added what makes the thickness at x = 1 the one asked
         for; `published` is that of the published form, of the maximum thickness.
         """
-        held = dict(form)
-        held[POWER] = held.get(POWER, 0.0) + 0.5 * self.trailing_edge_share(span, published) - sum(form.values())
+        coefficients = dict(form)
+        coefficients[POWER] = (
+            coefficients.get(POWER, 0.0) + 0.5 * self.trailing_edge_share(span, published) - sum(form.values())
+        )
         thickness = span.values(self.thickness)[..., None]
-        return [thickness * held.get(k, 0.0) for k in range(1, max(held) + 1)]
+        return [thickness * coefficients.get(k, 0.0) for k in range(1, max(coefficients) + 1)]
 
     def trailing_edge_share(self, span: Span, published: float) -> Array:
         """Thickness at the trailing edge (..., m, 1), of the maximum thickness."""

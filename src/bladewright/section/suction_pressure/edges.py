@@ -180,12 +180,12 @@ def _camber(points: EdgePoints, even: Array, even_1: Array, even_2: Array) -> tu
     """Length (...) and coefficients (..., 5) of fraction and height of an edge's camber line."""
     left = turned_left(points.inward)
     along, along_1, along_2 = (dot(each, points.inward) for each in (even, even_1, even_2))
-    off, off_1, off_2 = (dot(each, left) for each in (even, even_1, even_2))
-    slope = off_1 / along_1
-    bend = (off_2 - slope * along_2) / along_1**2
+    across, across_1, across_2 = (dot(each, left) for each in (even, even_1, even_2))
+    slope = across_1 / along_1
+    bend = (across_2 - slope * along_2) / along_1**2
     fraction = _flat_start(np.zeros_like(along), along_1 / along - 1.0, along_2 / along)
     fraction[..., 1] = 1.0
-    return along, fraction, _flat_start(off, slope * along, bend * along**2)
+    return along, fraction, _flat_start(across, slope * along, bend * along**2)
 
 
 def _flat_start(value: Array, slope: Array, bend: Array) -> Array:

@@ -142,13 +142,13 @@ def check_reparametrisation(name: str, side: Side, span: Span) -> None:
         slope = np.min(np.real(reparametrised(end, CHECKED_AT, 1)), axis=-1)
         if np.any(slope <= 0.0):
             at = _worst(-slope)
-            reach, slope_there, next_step = (
+            distance, slope_there, next_step = (
                 float(np.broadcast_to(np.real(each), slope.shape)[at])
                 for each in (length(end.taylor[..., 1, :]) / DEGREE, end.slope, _next_step(end))
             )
-            least = 1.2 * max(reach * slope_there / 2.5, ((reach * slope_there) ** 1.5 * next_step / 8.5) ** 0.4)
+            least = 1.2 * max(distance * slope_there / 2.5, ((distance * slope_there) ** 1.5 * next_step / 8.5) ** 0.4)
             raise DesignError(
-                f"{name}_tangent_{which} is {reach:.3g}{_where(at, span)}: too short for the {edge}_radius, the "
+                f"{name}_tangent_{which} is {distance:.3g}{_where(at, span)}: too short for the {edge}_radius, the "
                 f"{name} side would turn back where it joins the edge; make it about {least:.2g} or more, or lower "
                 f"{edge}_radius"
             )

@@ -198,9 +198,9 @@ def skeleton_of(part: SuctionPressure, span: Span) -> Skeleton:
 def sides(part: SuctionPressure, span: Span, leading: EdgePoints, trailing: EdgePoints) -> tuple[Side, Side]:
     """The suction and the pressure side."""
     skeleton = skeleton_of(part, span)
-    on, off = ("upper", "lower") if part.suction_side == "upper" else ("lower", "upper")
-    ends: tuple[Corner, Corner] = getattr(leading, on), getattr(trailing, on)
-    other: tuple[Corner, Corner] = getattr(leading, off), getattr(trailing, off)
+    suction_name, pressure_name = ("upper", "lower") if part.suction_side == "upper" else ("lower", "upper")
+    ends: tuple[Corner, Corner] = getattr(leading, suction_name), getattr(trailing, suction_name)
+    other: tuple[Corner, Corner] = getattr(leading, pressure_name), getattr(trailing, pressure_name)
     knots = side_knots(len(part.suction_heights), part.suction_knots)
     free = skeleton.placed(*_numbers(span, part.suction_places, part.suction_heights, knots))
     tangents = span.values(part.suction_tangent_in), span.values(part.suction_tangent_out)
@@ -222,7 +222,7 @@ def sides(part: SuctionPressure, span: Span, leading: EdgePoints, trailing: Edge
     ]
     tangents = tangents_of[0], tangents_of[1]
     if part.pressure_thickness:
-        inside = -1.0 if on == "upper" else 1.0
+        inside = -1.0 if suction_name == "upper" else 1.0
         through = _thickened(suction, places, inside * numbers)
         free = interpolated_free(*other, tangents, through, knots)
     else:
@@ -291,14 +291,14 @@ def _curve(side: Side) -> Curve:
     return Curve(control_points=side.controls[0], knots=side.knots, degree=DEGREE)
 
 
-def _new(knots: Reals, asked: int | Sequence[float]) -> list[float]:
+def _new(knots: Reals, wanted: int | Sequence[float]) -> list[float]:
     """The knots asked for, or so many, each in the middle of what is then the longest knot span."""
-    if not isinstance(asked, int):
-        return [float(each) for each in asked]
-    if asked < 1:
-        raise DesignError(f"{asked} further knots were asked for: at least 1 is needed")
+    if not isinstance(wanted, int):
+        return [float(each) for each in wanted]
+    if wanted < 1:
+        raise DesignError(f"{wanted} further knots were asked for: at least 1 is needed")
     found: list[float] = []
-    for _ in range(asked):
+    for _ in range(wanted):
         ends = np.unique([*knots, *found])
         widest = int(np.argmax(np.diff(ends) > np.max(np.diff(ends)) * (1.0 - 1e-9)))
         found.append(float(0.5 * (ends[widest] + ends[widest + 1])))

@@ -169,8 +169,8 @@ class Skeleton:
         slope, bend = _derived(self.coefficients), _derived(_derived(self.coefficients))
         for _ in range(30):
             along = polynomial_points(slope, found)
-            off = points - polynomial_points(self.coefficients, found)
-            step = dot(off, along) / (dot(along, along) - dot(off, polynomial_points(bend, found)))
+            offset = points - polynomial_points(self.coefficients, found)
+            step = dot(offset, along) / (dot(along, along) - dot(offset, polynomial_points(bend, found)))
             found = found + step
             if np.max(np.square(step)) < 1e-30:
                 break
@@ -179,8 +179,8 @@ class Skeleton:
                 "skeleton is 'pseudo': a control point lies so far off the pseudo skeleton line that it has no place "
                 "along it; refine the design nearer to the line, or use skeleton = 'chord'"
             )
-        off = points - polynomial_points(self.coefficients, found)
-        return found, cross2(self._tangents(found), off)
+        offset = points - polynomial_points(self.coefficients, found)
+        return found, cross2(self._tangents(found), offset)
 
     def at(self, section: int) -> "Skeleton":
         """The line of one of the real sections (m,)."""
