@@ -56,13 +56,13 @@ class CamberLines:
         edge = 0 if piece == "inlet" else 1
         start = self.edge_points(edge, sign)
         end = np.array([self.duct.high if edge else self.duct.low])
-        reach = self.lines.abscissa(end) - start[..., 0]
+        extent = self.lines.abscissa(end) - start[..., 0]
         share = t if edge else 1.0 - t
         slope, turn = self.slopes[edge][..., None], self.turned[edge]
         rise = slope * share
         if turn is not None:
             rise = rise + (turn - slope) * share**3 / 3.0
-        return np.stack([start[..., 0] + reach * share, start[..., 1] + reach * rise], axis=-1)
+        return np.stack([start[..., 0] + extent * share, start[..., 1] + extent * rise], axis=-1)
 
     def edge_points(self, edge: int, sign: int = 0) -> Array:
         """Ends (..., m, 1, 2) of camber lines at an edge; where it is blunt, of the upper (+1) or lower side (-1)."""

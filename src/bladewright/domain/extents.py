@@ -68,8 +68,8 @@ def shortest_duct(exact: ExactBlade) -> Duct:
         edges=extent.edges,
         length=extent.length,
         unit=extent.unit,
-        low=extent.noses[0],
-        high=extent.noses[1],
+        low=extent.blade_range[0],
+        high=extent.blade_range[1],
         revolved=exact.mapping.revolved,
     )
 
@@ -105,7 +105,7 @@ def _needed(exact: ExactBlade, ends: CamberLines, half_pitch: Array, cross_lines
     """The least extent: past the bulge of the cross-lines, and past the blade's foremost or rearmost point."""
     extent = exact.meridional_extent
     sign = 1.0 if edge else -1.0
-    nose = extent.noses[edge] + sign * CLEARANCE * extent.unit
+    nose = extent.blade_range[edge] + sign * CLEARANCE * extent.unit
     places = _bulges(ends, half_pitch, cross_lines, edge)
     return extent.extent(edge, float(np.max([nose, *places]) if edge else np.min([nose, *places])))
 
@@ -120,5 +120,5 @@ def _bulges(camber: CamberLines, half_pitch: Array, cross_lines: CrossLines, edg
     if camber.stations.edge_kinds[edge] != "round":
         size = 0.0 * size
     bulge = cross_lines.bulge * np.array(departures(camber, half)) * size * direction[:, 0]
-    reach = BULGE_MARGIN * bulge / density.reshape(-1, 2)[0]
-    return np.asarray(u[:, 0] + (reach if edge else -reach))
+    extension = BULGE_MARGIN * bulge / density.reshape(-1, 2)[0]
+    return np.asarray(u[:, 0] + (extension if edge else -extension))

@@ -127,8 +127,8 @@ def knots_across(walls: Mapping[str, WallHalf], tolerance: float) -> Reals:
         for wall in walls.values():
             for piece in PIECES:
                 points, normals = (np.real(part) for part in wall.in_space(piece, ALONG, v))
-                off = _distances(matrix, np.swapaxes(points, 0, 1), np.swapaxes(normals, 0, 1))
-                worst = np.maximum(worst, np.max(off, axis=1) / tolerance)
+                distances = _distances(matrix, np.swapaxes(points, 0, 1), np.swapaxes(normals, 0, 1))
+                worst = np.maximum(worst, np.max(distances, axis=1) / tolerance)
         return worst
 
     return refined(clamped(np.linspace(0.0, 1.0, 4)[1:-1]), error, MAX_POLES)
@@ -163,11 +163,11 @@ def knots_span(camber_at: Callable[[Reals], CamberLines], inner: Reals, toleranc
             position = np.real(camber.lines.position(camber.lines.u_at(plane[..., 0])))
             x, radius, tangential = position[:, 0, 0], position[:, 0, 1], plane[:, 0, 1]
             points = mapping.in_space(x, radius, tangential)
-            off = matrix @ points[:count] - points[count:]
+            differences = matrix @ points[:count] - points[count:]
             if mapping.revolved:
                 outwards = mapping.in_space(0.0 * x, 1.0 + 0.0 * x, tangential)[count:]
-                off = np.stack([off[:, 0], dot(off, outwards)], axis=-1)
-            worst = np.maximum(worst, length(off) / tolerance)
+                differences = np.stack([differences[:, 0], dot(differences, outwards)], axis=-1)
+            worst = np.maximum(worst, length(differences) / tolerance)
         return worst
 
     spans = np.unique(np.concatenate([SPAN_KNOTS, inner]))

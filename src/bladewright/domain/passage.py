@@ -185,8 +185,8 @@ class Passage:
         for piece, start, end in self._pieces():
             t = _between(getattr(self.knots, piece), (0.31, 0.74))
             points, normals = (np.real(part) for part in wall.in_space(piece, t, v))
-            off = dot(np.real(face.grid(start + (end - start) * t, v)) - points, normals)
-            worst = max(worst, float(np.max(np.abs(off))))  # real: a measured distance
+            distances = dot(np.real(face.grid(start + (end - start) * t, v)) - points, normals)
+            worst = max(worst, float(np.max(np.abs(distances))))  # real: a measured distance
         return worst
 
     def _strip_distance(self, name: str, strip: WallStrip) -> float:

@@ -149,8 +149,8 @@ class WallHalf(WallPatch):
         if self.camber.stations.edge_kinds[edge] != "round":
             return np.zeros_like(direction)[..., None, :]
         size = edge_skew(direction[..., 1], self.half_pitch, self.sign, edge, self.cross_lines.skew)
-        reach = (1.0 if edge else -1.0) * size
-        return reach[..., None, None] * direction[..., None, :]
+        magnitude = (1.0 if edge else -1.0) * size
+        return magnitude[..., None, None] * direction[..., None, :]
 
 
 def wall_halves(

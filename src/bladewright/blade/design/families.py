@@ -143,13 +143,13 @@ def _of_family(section: PlanarSection, height: float) -> SectionedBlade:
     end = start + section.chord * np.cos(stagger)
     if np.ndim(end) == 0:
         end = end.item()
-    reach = float(np.real(np.ravel(section.chord)[0]))
+    extension = float(np.real(np.ravel(section.chord)[0]))
     x = [float(np.real(np.ravel(each)[0])) for each in (start, end)]
 
     def line(*ends: tuple[Any, float]) -> ThroughPoints:
         return ThroughPoints(points=tuple(Point(*each) for each in ends))
 
-    hub, shroud = (line((x[0] - reach, z), (x[1] + reach, z)) for z in (0.0, height))
+    hub, shroud = (line((x[0] - extension, z), (x[1] + extension, z)) for z in (0.0, height))
     return BLADE_OF[type(section)](
         name=section.name,
         length_unit=section.length_unit,

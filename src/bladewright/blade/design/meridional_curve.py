@@ -149,8 +149,8 @@ def _apart(path: str, value: object) -> Points:
     """At least two points, no two in a row the same."""
     points = checks.points(path, value, 2)
     for i, (before, after) in enumerate(pairwise(points)):
-        apart = (np.real(after.x) - np.real(before.x)) ** 2 + (np.real(after.r) - np.real(before.r)) ** 2
-        if not np.all(apart > 0.0):
+        square = (np.real(after.x) - np.real(before.x)) ** 2 + (np.real(after.r) - np.real(before.r)) ** 2
+        if not np.all(square > 0.0):
             raise DesignError(
                 f"{path}[{i}] and {path}[{i + 1}] are the same point, "
                 f"({float(np.ravel(np.real(after.x))[0]):g}, {float(np.ravel(np.real(after.r))[0]):g}): a curve cannot "

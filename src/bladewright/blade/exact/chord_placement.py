@@ -48,15 +48,15 @@ class ChordPlacement:
         return self.lines.between(t[..., 0], t[..., 1])
 
     def _in_plane(self, share: Array, extent: Array) -> Array:
-        asked, own, real = real_first(extent, 1), real_first(share, 1), self._real
+        wanted, own, real = real_first(extent, 1), real_first(share, 1), self._real
         low, high = real.reach()
         with np.errstate(divide="ignore"):
             most = np.minimum(-low / np.maximum(own, 0.0), high / np.maximum(1.0 - own, 0.0)) * (1.0 - ROUNDING)
         if self.lines.mapping.true_lengths:
-            self._check(asked, most)
+            self._check(wanted, most)
             return extent
-        self._check(asked, _length(real, own, most)[0])
-        found = _solved(real, own, asked, most)
+        self._check(wanted, _length(real, own, most)[0])
+        found = _solved(real, own, wanted, most)
         if not (np.iscomplexobj(self.lines.leading) or np.iscomplexobj(share) or np.iscomplexobj(extent)):
             return found
         there, slope = _length(self.lines, share, found)
@@ -99,16 +99,16 @@ def _length(ruler: BladeStreamlines, share: Array, extent: Array) -> tuple[Array
     return along[..., 1] - along[..., 0], np.sum(shares * slope, axis=-1)
 
 
-def _solved(ruler: BladeStreamlines, share: Reals, asked: Reals, most: Reals) -> Reals:
+def _solved(ruler: BladeStreamlines, share: Reals, wanted: Reals, most: Reals) -> Reals:
     """Real extents in the plane (m,), up to `most`, of sections `asked` long, by Newton's method.
 
     Length grows with the extent.
     """
     speed, density = length(ruler.position(_START, 1))[:, 0], ruler.densities(_START)[0][:, 0]
-    found = np.minimum(asked * density / speed, 0.9 * most)
+    found = np.minimum(wanted * density / speed, 0.9 * most)
     for _ in range(STEPS):
         there, slope = _length(ruler, share, found)
-        after = np.clip(found - (there - asked) / slope, 0.1 * found, 0.5 * (found + most))
+        after = np.clip(found - (there - wanted) / slope, 0.1 * found, 0.5 * (found + most))
         step, found = after - found, after
         if np.max(np.square(step / found)) < CONVERGED**2:
             break

@@ -94,14 +94,14 @@ def cleared(full: TransfiniteChannel, clearance: Clearance, knots: Reals | None 
     Its edges are the full channel's, up to the meridian. `knots` hold those of the meridian; without, they are refined
     until it keeps its distance. Raises DesignError where the channel has no such surface.
     """
-    real, asked = full.real(), clearance.real()
+    real, real_clearance = full.real(), clearance.real()
     if knots is None:
         real.check_folds()
-        _check_span(real, asked)
-        knots = _knots(real, asked)
+        _check_span(real, real_clearance)
+        knots = _knots(real, real_clearance)
     sites = greville(knots, DEGREE)
-    places, feet = _met(real, asked, sites)
-    miss, across, along = _miss(full, clearance, sites, places, feet)
+    places, foot_u = _met(real, real_clearance, sites)
+    miss, across, along = _miss(full, clearance, sites, places, foot_u)
     # one more of Newton's steps, in complex numbers, is the derivative of the meeting point
     step = cross2(miss, along) / cross2(across, along)
     points = full.at(sites, places)[0] - step[..., None] * across
@@ -120,12 +120,12 @@ def cleared(full: TransfiniteChannel, clearance: Clearance, knots: Reals | None 
 
 def off_distance(full: TransfiniteChannel, clearance: Clearance, u: Reals, points: Reals) -> Reals:
     """Differences (m,) [m] between the distances of points (x, r) (m, 2) from the wall and those stated at u (m,)."""
-    wall, feet = full.real().curve(clearance.wall), u
+    wall, foot_u = full.real().curve(clearance.wall), u
     for _ in range(8):
-        foot, slope, bend = wall.derivatives(feet, 2)
+        foot, slope, bend = wall.derivatives(foot_u, 2)
         gap = points - foot
-        feet = feet + dot(gap, slope) / (dot(slope, slope) - dot(gap, bend))
-    return np.abs(length(points - wall(feet)) - clearance.real().distance(u))  # real: a measured distance
+        foot_u = foot_u + dot(gap, slope) / (dot(slope, slope) - dot(gap, bend))
+    return np.abs(length(points - wall(foot_u)) - clearance.real().distance(u))  # real: a measured distance
 
 
 def check_clearance(clearance: Clearance, sections: "UnifiedSections", row: int) -> None:
@@ -163,10 +163,10 @@ def _knots(full: TransfiniteChannel, clearance: Clearance) -> Reals:
         return worst(knots)[np.searchsorted(np.unique(knots), places) - 1] / REACHED
 
     knots = refined(start, miss, MOST_POLES)
-    off = float(np.max(worst(knots)))
-    if off > ALLOWED:
+    gap = float(np.max(worst(knots)))
+    if gap > ALLOWED:
         raise DesignError(
-            f"{clearance.name}: the surface at that distance from the {clearance.wall} is met within {off:.2g} of the "
+            f"{clearance.name}: the surface at that distance from the {clearance.wall} is met within {gap:.2g} of the "
             f"meridional chord with {len(knots) - DEGREE - 1} control points, {ALLOWED:g} is allowed: lower "
             f"{clearance.name}, or smooth channel.{clearance.wall}"
         )
@@ -180,28 +180,28 @@ def _passed(full: TransfiniteChannel, clearance: Clearance) -> list[tuple[float,
     if not len(levels):
         return []
     u = np.linspace(0.0, 1.0, 101)
-    feet = level_crossings(lambda at: _met(full, clearance, at)[1], u, _met(full, clearance, u)[1], levels)
-    return [(float(place), wall.degree - 1) for place in feet]
+    foot_u = level_crossings(lambda at: _met(full, clearance, at)[1], u, _met(full, clearance, u)[1], levels)
+    return [(float(place), wall.degree - 1) for place in foot_u]
 
 
 def _met(full: TransfiniteChannel, clearance: Clearance, u: Reals) -> tuple[Reals, Reals]:
     """Span places w and wall parameters f (m,) of the points at the stated distance, by Newton's method."""
     hub, shroud = full.hub.values(u), full.shroud.values(u)
     share = clearance.distance(u) / length(shroud - hub)
-    places, feet = share if clearance.wall == "hub" else 1.0 - share, u
+    places, foot_u = share if clearance.wall == "hub" else 1.0 - share, u
     for _ in range(STEPS):
-        miss, across, along = _miss(full, clearance, u, places, feet)
+        miss, across, along = _miss(full, clearance, u, places, foot_u)
         area = cross2(across, along)
         with np.errstate(all="ignore"):
             steps = cross2(miss, along) / area, cross2(across, miss) / area
-        places, feet = places - steps[0], feet - steps[1]
+        places, foot_u = places - steps[0], foot_u - steps[1]
         size = float(np.max(np.square(steps)))
         if not size < 1.0:
             break
         # a step this small leaves an error of its square
         if size < 1e-16:
-            if np.all((places > 0.0) & (places < 1.0) & (_bend(full, clearance, feet) * clearance.distance(u) < 1.0)):
-                return places, feet
+            if np.all((places > 0.0) & (places < 1.0) & (_bend(full, clearance, foot_u) * clearance.distance(u) < 1.0)):
+                return places, foot_u
             break
     raise DesignError(_cusp(full, clearance))
 
@@ -217,9 +217,9 @@ def _miss(full: TransfiniteChannel, clearance: Clearance, u: Reals, w: Reals, f:
     return point - foot - away * normal, across, slope * (away * curvature - 1.0)
 
 
-def _bend(full: TransfiniteChannel, clearance: Clearance, feet: Reals) -> Reals:
+def _bend(full: TransfiniteChannel, clearance: Clearance, foot_u: Reals) -> Reals:
     """Curvature (m,) of the wall towards the channel [1/m]."""
-    slope, bend = (full.line(clearance.wall).values(feet, order) for order in (1, 2))
+    slope, bend = (full.line(clearance.wall).values(foot_u, order) for order in (1, 2))
     return clearance.inward * cross2(slope, bend) / length(slope) ** 3
 
 

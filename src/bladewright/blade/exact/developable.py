@@ -85,21 +85,21 @@ def ruling_crossings(
         point = begin + share[..., None] * along
         place, slope = (real_first(position(t, k), 3) for k in (0, 1))
         miss = _miss(place, point, revolved=revolved)
-        by_share, by_t = _solved(_matrix(place, slope, point, along, revolved=revolved), miss)
-        share = share + np.clip(by_share, -LONGEST_STEP, LONGEST_STEP)
-        t = np.clip(t + np.clip(by_t, -LONGEST_STEP * (high - low), LONGEST_STEP * (high - low)), low, high)
-        if np.max(np.square(by_share)) < 1e-28:
+        share_step, t_step = _solved(_matrix(place, slope, point, along, revolved=revolved), miss)
+        share = share + np.clip(share_step, -LONGEST_STEP, LONGEST_STEP)
+        t = np.clip(t + np.clip(t_step, -LONGEST_STEP * (high - low), LONGEST_STEP * (high - low)), low, high)
+        if np.max(np.square(share_step)) < 1e-28:
             break
-    _check(v, begin, along, by_share, t, (low, high))
+    _check(v, begin, along, share_step, t, (low, high))
     if not (np.iscomplexobj(start) or np.iscomplexobj(direction) or np.iscomplexobj(position(t, 0))):
         return RulingCrossings(surfaces=surfaces, v=v, direction=direction, point=point, t=t, revolved=revolved)
     point = start[..., None, :, :] + share[..., None] * direction[..., None, None, :]
     place, slope = position(t, 0), position(t, 1)
     miss = _miss(place, point, revolved=revolved)
-    by_share, by_t = _solved(_matrix(place, slope, point, direction[..., None, None, :], revolved=revolved), miss)
-    moved = share + by_share
+    share_step, t_step = _solved(_matrix(place, slope, point, direction[..., None, None, :], revolved=revolved), miss)
+    moved = share + share_step
     point = start[..., None, :, :] + moved[..., None] * direction[..., None, None, :]
-    return RulingCrossings(surfaces=surfaces, v=v, direction=direction, point=point, t=t + by_t, revolved=revolved)
+    return RulingCrossings(surfaces=surfaces, v=v, direction=direction, point=point, t=t + t_step, revolved=revolved)
 
 
 def at_complex(position: partial[Array], t: Array, order: int) -> Array:
@@ -146,10 +146,10 @@ def _solved(matrix: tuple[Array, Array], miss: Array) -> tuple[Array, Array]:
 
 
 def _check(v: Reals, begin: Reals, along: Reals, steps: Reals, t: Reals, extent: tuple[float, float]) -> None:
-    lost = ~(np.square(steps) < 1e-18)
-    if not np.any(lost):
+    not_met = ~(np.square(steps) < 1e-18)
+    if not np.any(not_met):
         return
-    row, at = np.argwhere(lost)[0]
+    row, at = np.argwhere(not_met)[0]
     where = ", ".join(f"{each:.5g}" for each in begin[at])
     run = ", ".join(f"{each:.4g}" for each in along)
     past = "past the end of the flow path" if t[row, at] in extent else "nowhere"

@@ -29,7 +29,7 @@ class MeridionalExtent(ABC):
     """u at which the channel starts: upstream of it, stream lines are continued straight"""
     end: float
     """u at which it ends"""
-    noses: tuple[float, float]
+    blade_range: tuple[float, float]
     """least and greatest u of the blade"""
     edges: tuple[float, float]
     """mean u of the leading and of the trailing edge"""
@@ -103,13 +103,13 @@ def flow_path_extent(surfaces: StreamSurfaces, survey: FlowPathSections) -> Flow
     leading, trailing = (real_first(each, 1) for each in (lines.leading, lines.trailing))
     abscissae = np.stack([real_first(side[..., 0], 2) for side in survey.plane_points(SIDE_PLACES)])
     u = np.stack([np.min(abscissae, axis=(0, 2)), np.max(abscissae, axis=(0, 2))], axis=-1)
-    noses = real_first(lines.t(lines.u_at(u)), 2)
+    blade_range = real_first(lines.t(lines.u_at(u)), 2)
     edges = float(np.mean(leading)), float(np.mean(trailing))
     return FlowPathExtent(
         channel=surfaces,
         start=surfaces.low,
         end=surfaces.high,
-        noses=(min(float(np.min(noses)), edges[0]), max(float(np.max(noses)), edges[1])),
+        blade_range=(min(float(np.min(blade_range)), edges[0]), max(float(np.max(blade_range)), edges[1])),
         edges=edges,
         length=float(np.mean(real_first(lines.lengths, 1))),
         unit=edges[1] - edges[0],

@@ -69,12 +69,12 @@ def channel_view(exact: "ExactUnifiedBlade") -> MeridionalView:
         )
     clearance = exact.clearance
     tip = None if clearance is None else np.real(exact.channel.curve(clearance.wall)(inside))
-    apart = () if clearance is None else np.real(clearance.real().distance(inside[[0, -1]])).tolist()
+    clearances = () if clearance is None else np.real(clearance.real().distance(inside[[0, -1]])).tolist()
     return MeridionalView(
         lines=MappingProxyType(lines),
         stream_lines=tuple(np.real(exact.sections(STREAM_LINES).lines.position(u))),
         tip=tip,
-        clearance=tuple(apart),
+        clearance=tuple(clearances),
     )
 
 

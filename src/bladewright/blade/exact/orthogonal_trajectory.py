@@ -125,11 +125,11 @@ def _first_met(places: Reals, levels: Reals, low: float, high: float) -> float |
 
 
 def _check(surfaces: StreamSurfaces, places: Reals, low: float, high: float) -> None:
-    room = ROUNDING * (surfaces.high - surfaces.low)
+    margin = ROUNDING * (surfaces.high - surfaces.low)
     past = np.maximum(surfaces.low - places, places - surfaces.high)
-    if np.max(past) <= room:
+    if np.max(past) <= margin:
         return
-    i = int(np.argmax(past > room))
+    i = int(np.argmax(past > margin))
     end = "upstream" if places[i] < surfaces.low else "downstream"
     raise DesignError(
         f"stacking.onwards is 'least-distance', and the line from the hub's reference point that crosses the stream "

@@ -140,9 +140,9 @@ def _faces(outline: Outline) -> list[tuple[Array, Array]]:
 def _slopes(order: int) -> Reals:
     """Derivatives (order, order) at Gauss points of [0, 1] of the polynomial through values there, barycentric."""
     nodes = gauss(order)[0]
-    apart = nodes[:, None] - nodes + np.eye(order)
-    shares = 1.0 / np.prod(4.0 * apart, axis=1)
-    matrix = shares / shares[:, None] / apart
+    differences = nodes[:, None] - nodes + np.eye(order)
+    shares = 1.0 / np.prod(4.0 * differences, axis=1)
+    matrix = shares / shares[:, None] / differences
     np.fill_diagonal(matrix, 0.0)
     np.fill_diagonal(matrix, -np.sum(matrix, axis=1))
     return matrix

@@ -12,7 +12,7 @@ from bladewright.nurbs.basis import Reals
 from bladewright.section.outline import EdgeDerivatives
 
 
-class Lines(Protocol):
+class SectionStreamLines(Protocol):
     """Stream lines (..., m) by u, 0 at the leading and 1 at the trailing edge."""
 
     @property
@@ -45,7 +45,7 @@ class SectionStack(ABC):
 
     v: Reals
     """(m,) places along the span"""
-    lines: Lines
+    lines: SectionStreamLines
     """their stream lines"""
 
     @abstractmethod

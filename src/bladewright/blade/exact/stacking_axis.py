@@ -126,11 +126,11 @@ class StackingAxis(Placement):
         whole = blade_streamlines(
             self.surfaces, at, Cascade(), np.array([low]), np.array([high]), before=0.0, after=0.0
         )
-        asked, there = float(real_first(self._value, 0)), float(real_first(whole.lengths, 1)[0])
-        if not 0.0 < asked < there:
+        stated, hub_length = float(real_first(self._value, 0)), float(real_first(whole.lengths, 1)[0])
+        if not 0.0 < stated < hub_length:
             raise DesignError(
-                f"stacking.hub_m is {asked / self.metre:g}: the hub is {there / self.metre:.6g} long from its start to "
-                "its end, and the reference point must lie between; give a place on the hub, or lengthen it"
+                f"stacking.hub_m is {stated / self.metre:g}: the hub is {hub_length / self.metre:.6g} long from its "
+                "start to its end, and the reference point must lie between; give a place on the hub, or lengthen it"
             )
         return whole.t(whole.u_at(self._value[..., None, None]))[..., 0, 0]
 
@@ -139,10 +139,10 @@ class StackingAxis(Placement):
         real = self.surfaces.real()
         grid = real.grid(np.linspace(*real.extent, 33), np.linspace(0.0, 1.0, 17))[0].reshape(-1, 2)
         other = grid[:, 1 if axis == "x" else 0]
-        room = OVERHANG * (float(np.max(other)) - float(np.min(other)))
-        across = np.array([np.min(other) - room, np.max(other) + room])
-        held = value[..., None] * np.ones(2)
-        pair = (held, np.broadcast_to(across, held.shape))
+        margin = OVERHANG * (float(np.max(other)) - float(np.min(other)))
+        across = np.array([np.min(other) - margin, np.max(other) + margin])
+        constant = value[..., None] * np.ones(2)
+        pair = (constant, np.broadcast_to(across, constant.shape))
         return spline_on(np.stack(pair if axis == "x" else pair[::-1], axis=-1), 1)
 
 
@@ -157,16 +157,16 @@ def _settled(
     before: tuple[Reals, Reals] | None = None
     for _ in range(ROUNDS):
         outline, found = again(on_lines(outline, stagger)[0])
-        off = found - stagger
-        real, carried = np.real(off), np.max(np.square(np.imag(found)), initial=0.0)
-        if np.max(np.square(real)) < 1e-26 and np.max(np.square(np.imag(off)), initial=0.0) <= 1e-24 * carried:
+        difference = found - stagger
+        real, carried = np.real(difference), np.max(np.square(np.imag(found)), initial=0.0)
+        if np.max(np.square(real)) < 1e-26 and np.max(np.square(np.imag(difference)), initial=0.0) <= 1e-24 * carried:
             return on_lines(outline, found)
         if before is not None:
             moved, turned = np.real(stagger) - before[0], real - before[1]
             with np.errstate(all="ignore"):
                 weight = np.where(np.square(turned) > 1e-16, moved / turned, weight)
         before = np.real(stagger), real
-        stagger = stagger - weight * off
+        stagger = stagger - weight * difference
     raise DesignError(
         "stacking: the sections' chord lines turn with the place that their chord gives them, and do not settle: "
         "give leading_edge and trailing_edge, which say where the sections begin and end"

@@ -275,7 +275,13 @@ class ExactUnifiedBlade(ExactBlade):
         ends = -self.before, 1.0 + self.after
         length = float(np.mean(real_first(self.survey.lines.lengths, 1)))
         return ChannelExtent(
-            channel=self.channel, start=ends[0], end=ends[1], noses=ends, edges=(0.0, 1.0), length=length, unit=1.0
+            channel=self.channel,
+            start=ends[0],
+            end=ends[1],
+            blade_range=ends,
+            edges=(0.0, 1.0),
+            length=length,
+            unit=1.0,
         )
 
     def without_clearance(self) -> "ExactUnifiedBlade":

@@ -224,8 +224,8 @@ class BladeStreamlines:
         row, downstream = int(worst[-2]), bool(share[worst] > 1.0)
         surfaces, v = self.surfaces, self.v[row]
         end = "downstream" if downstream else "upstream"
-        room = ROUNDING * (surfaces.high - surfaces.low)
-        if surfaces.high - self.high > room if downstream else self.low - surfaces.low > room:
+        margin = ROUNDING * (surfaces.high - surfaces.low)
+        if surfaces.high - self.high > margin if downstream else self.low - surfaces.low > margin:
             edge, far = (self.trailing, self.high) if downstream else (self.leading, self.low)
             beside = (far - edge) / (self.trailing - self.leading)
             share_of = 100.0 * float(np.max(np.square(real_first(beside, 1)[row])) ** 0.5)

@@ -108,10 +108,6 @@ class TransfiniteChannel:
         """Knots of one of the four curves over its own parameter."""
         return self.line(name).knots
 
-    def degree_of(self, name: str) -> int:
-        """Degree of one of the four curves."""
-        return self.line(name).degree
-
     def curve(self, name: str) -> Curve:
         """One of the four curves as a native curve in (x, r), an edge whole where the channel has a piece of it."""
         return self.line(name).curve()

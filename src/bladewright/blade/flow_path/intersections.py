@@ -129,8 +129,12 @@ def _refined(
         if np.max(moved) < 1e-26:
             break
     met = (moved < 1e-18) & (turn != 0.0) & (own >= -EXTENSION - SAME) & (own <= 1.0 + EXTENSION + SAME)
-    room = 1e-9 * (high - low)
-    return at, own, met & (at >= low - room) & (at <= high + room) & (np.square(steps[0]) < 1e-16 * (high - low) ** 2)
+    margin = 1e-9 * (high - low)
+    return (
+        at,
+        own,
+        met & (at >= low - margin) & (at <= high + margin) & (np.square(steps[0]) < 1e-16 * (high - low) ** 2),
+    )
 
 
 def _apart(at: Reals, own: Reals) -> list[tuple[float, float]]:

@@ -370,10 +370,10 @@ def _check_room(sides: Reals, cut: Reals, metre: float) -> None:
     """Refuse arcs that need more of a straight piece than there is."""
     ends = np.concatenate([[0.0], cut, [0.0]])
     needed = ends[:-1] + ends[1:]
-    for i, (asked, there) in enumerate(zip(needed, sides, strict=True)):
-        if asked > there * (1.0 + ROUNDING):
+    for i, (taken, given) in enumerate(zip(needed, sides, strict=True)):
+        if taken > given * (1.0 + ROUNDING):
             beside = " and ".join(f"radii[{k - 1}]" for k in (i, i + 1) if 0 < k < len(ends) - 1)
             raise DesignError(
-                f"{beside}: the arcs take {asked / metre:.6g} of the straight piece between corners[{i}] and "
-                f"corners[{i + 1}], which is {there / metre:.6g} long; take smaller radii, or move the corners apart"
+                f"{beside}: the arcs take {taken / metre:.6g} of the straight piece between corners[{i}] and "
+                f"corners[{i + 1}], which is {given / metre:.6g} long; take smaller radii, or move the corners apart"
             )

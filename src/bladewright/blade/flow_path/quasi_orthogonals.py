@@ -94,9 +94,9 @@ def matched_curve(curve: MeridionalCurve, match: PiecewisePolynomial, low: float
 
 def distinct(places: Reals, low: float, high: float) -> Reals:
     """Increasing places inside (low, high), those that differ by rounding taken once."""
-    room = 1e-12 * (high - low)
-    inside = np.sort(places[(places > low + room) & (places < high - room)])
-    return inside[np.concatenate([[True], np.diff(inside) > room])] if len(inside) else inside
+    margin = 1e-12 * (high - low)
+    inside = np.sort(places[(places > low + margin) & (places < high - margin)])
+    return inside[np.concatenate([[True], np.diff(inside) > margin])] if len(inside) else inside
 
 
 def _fitted(curve: MeridionalCurve, match: PiecewisePolynomial, ends: Reals, count: int) -> tuple[Array, Reals]:

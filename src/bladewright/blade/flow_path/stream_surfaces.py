@@ -110,8 +110,8 @@ class StreamSurfaces:
             if not np.any(shares[:, j]):
                 continue
             part = shares[:, j, None, None, None] * each.around(centres)[..., None, :, :, :]
-            room = [(0, 0)] * (part.ndim - 2) + [(0, count - part.shape[-2]), (0, 0)]
-            total = total + np.pad(part, room)
+            padding = [(0, 0)] * (part.ndim - 2) + [(0, count - part.shape[-2]), (0, 0)]
+            total = total + np.pad(part, padding)
         return total
 
     def at(self, t: Reals, v: Reals) -> tuple[Array, Array, Array]:

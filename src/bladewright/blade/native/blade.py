@@ -196,7 +196,7 @@ class Blade:
 def native_blade(exact: ExactBlade, knots: Knots | None = None) -> Blade:
     """The native blade of an exact one, at given knots or at knots refined until the design's tolerance holds."""
     chord = mean_chord(exact)
-    held = knots is not None
+    given = knots is not None
     knots = knots if knots is not None else refined_knots(exact, chord)
     sections = exact.sections(knots.sites_v)
     nets = native_sides(sections, knots)
@@ -205,7 +205,7 @@ def native_blade(exact: ExactBlade, knots: Knots | None = None) -> Blade:
     ends = trimmed_ends(exact, *sides, chord, faces=edges)
     surfaces: Faces = MappingProxyType({"upper": sides[0], "lower": sides[1], **edges, **ends})
     blade = Blade(design=exact.design, surfaces=surfaces, knots=knots, chord=chord, exact=exact)
-    if not held:
+    if not given:
         _check_reached(blade)
     return blade
 
@@ -213,10 +213,10 @@ def native_blade(exact: ExactBlade, knots: Knots | None = None) -> Blade:
 def _check_reached(blade: Blade) -> None:
     tolerance, poles = blade.tolerance, blade.knots.poles
     wall = min(WALL_TOLERANCE, tolerance)
-    error, off, worst = blade.error, blade.wall_error, blade.approximation_error
-    if error <= tolerance and off <= wall and poles[0] <= MOST_POLES[0] and poles[1] <= MOST_POLES[1]:
+    error, wall_error, worst = blade.error, blade.wall_error, blade.approximation_error
+    if error <= tolerance and wall_error <= wall and poles[0] <= MOST_POLES[0] and poles[1] <= MOST_POLES[1]:
         return
-    if error <= tolerance and off <= wall:
+    if error <= tolerance and wall_error <= wall:
         where = " and ".join(
             name for name, own, most in zip(("chord", "span"), poles, MOST_POLES, strict=True) if own > most
         )
@@ -226,7 +226,7 @@ def _check_reached(blade: Blade) -> None:
             "control points, and curves in (x, r) fewer points"
         )
     raise DesignError(
-        f"tolerance is {tolerance:g} of the chord: native surfaces reach {error:.2g} (ends {off:.2g} off the "
+        f"tolerance is {tolerance:g} of the chord: native surfaces reach {error:.2g} (ends {wall_error:.2g} off the "
         f"walls, {wall:g} allowed) with {poles[0]} x {poles[1]} poles a side, at most {MOST_POLES[0]} x "
         f"{MOST_POLES[1]} are allowed; the worst place is u = {worst.u:.3f}, v = {worst.v:.3f}: raise "
         "the tolerance, raise a very small edge radius, or smooth the laws there"

@@ -141,20 +141,20 @@ def conformance_of(blade: "Blade") -> Conformance:
             continue
         row = _edge(upper, lower, float(end), v)
         turn, radius = _angle_and_radius(sections, row[0], end)
-        metal_angle, asked = sections.metal_angle(end), sections.edge_radius(end)
+        metal_angle, expected_radius = sections.metal_angle(end), sections.edge_radius(end)
         if metal_angle is not None:
             angles.append(np.abs(degrees(turn - np.real(metal_angle))))  # real: a measured angle
-        if asked is None:
+        if expected_radius is None:
             exact = sections.trailing_edge() if end else sections.leading_edge()
-            asked = _angle_and_radius(sections, dict(zip(_ALONG, map(_real_row, exact), strict=True)), end)[1]
-        asked = np.real(asked)
-        if np.max(asked) < FLAT * blade.chord:
-            radii.append(np.abs(radius / asked - 1.0))  # real: a measured radius
+            expected_radius = _angle_and_radius(sections, dict(zip(_ALONG, map(_real_row, exact), strict=True)), end)[1]
+        expected_radius = np.real(expected_radius)
+        if np.max(expected_radius) < FLAT * blade.chord:
+            radii.append(np.abs(radius / expected_radius - 1.0))  # real: a measured radius
         plane, bend = _smoothness(row, 1.0 / blade.chord)
         planes.append(plane)
         bends.append(bend)
     walls = [np.max(angle[[0, -1]]) for angle in angles]
-    off, ends = _off_stream_surfaces(sections, upper, lower)
+    distance, ends = _off_stream_surfaces(sections, upper, lower)
     tolerance = blade.design.tolerance
     figures = {
         "metal_angle_at_walls": _largest(walls),
@@ -163,11 +163,13 @@ def conformance_of(blade: "Blade") -> Conformance:
         "edge_tangent_planes": _largest(planes),
         "edge_curvatures": _largest(bends),
     }
-    lost = {"metal_angle_at_walls", "metal_angle_between", "edge_radius"}
-    lost = set() if sections.mapping.keeps_angles else lost
+    not_kept = {"metal_angle_at_walls", "metal_angle_between", "edge_radius"}
+    not_kept = set() if sections.mapping.keeps_angles else not_kept
     ruled = sections.skinning == "ruled"
     limits = {**LIMITS, "surface": tolerance} | ({} if ruled else {"stream_surfaces": tolerance})
-    limits = {name: limit for name, limit in limits.items() if name not in lost and figures.get(name, 0.0) is not None}
+    limits = {
+        name: limit for name, limit in limits.items() if name not in not_kept and figures.get(name, 0.0) is not None
+    }
     clearance = _off_clearance(blade)
     if clearance is not None:
         limits["clearance"] = CLEARANCE
@@ -181,7 +183,7 @@ def conformance_of(blade: "Blade") -> Conformance:
     return Conformance(
         **figures,
         **twisted,
-        stream_surfaces=None if ruled else off / blade.chord,
+        stream_surfaces=None if ruled else distance / blade.chord,
         walls=max(ends / blade.chord, blade.wall_error),
         surface=blade.error,
         limits=limits,
@@ -274,9 +276,9 @@ def _off_stream_surfaces(sections: SectionStack, upper: Surface, lower: Surface)
     """Largest distances [m] of curves of constant v, and of the ends among them, from their stream surfaces."""
     spans = np.unique(upper.knots_u)
     u = np.sort(np.concatenate([spans, (spans[1:] + spans[:-1]) / 2.0]))
-    off = [
+    offsets = [
         dot(np.real(side.grid(u, sections.v).swapaxes(0, 1) - points), np.real(normals))
         for side, points, normals in zip((upper, lower), *sections.points_and_normals(u), strict=True)
     ]
-    distances = np.max(np.abs(off), axis=(0, -1)).reshape(-1, len(sections.v))[0]  # real: measured distances
+    distances = np.max(np.abs(offsets), axis=(0, -1)).reshape(-1, len(sections.v))[0]  # real: measured distances
     return float(np.max(distances)), float(np.max(distances[[0, -1]]))

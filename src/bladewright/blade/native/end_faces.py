@@ -232,23 +232,23 @@ def _trimmed(
     held = [None, None] if like is None else [reversed_(like.boundary[1]).knots, like.boundary[0].knots]
     upper, lower = (followed(wall, *curve, chord, knots) for curve, knots in zip(outline, held, strict=True))
     faces = {edge: followed(wall, *curve, chord) for edge, curve in blunt.items()}
-    chain = [lower]
-    chain += [reversed_(faces["trailing_edge"])] if "trailing_edge" in faces else []
-    chain += [reversed_(upper)]
-    chain += [faces["leading_edge"]] if "leading_edge" in faces else []
-    return TrimmedSurface(surface=wall.surface, boundary=tuple(chain), revolution=wall.revolution)
+    boundary = [lower]
+    boundary += [reversed_(faces["trailing_edge"])] if "trailing_edge" in faces else []
+    boundary += [reversed_(upper)]
+    boundary += [faces["leading_edge"]] if "leading_edge" in faces else []
+    return TrimmedSurface(surface=wall.surface, boundary=tuple(boundary), revolution=wall.revolution)
 
 
 def _stretch(across: Reals, name: str, *, revolved: bool) -> tuple[float, float]:
     """Where the wall starts and ends in theta, or y in a cascade: with a margin about the blade's end."""
     low, high = float(across.min()), float(across.max())
-    room = MARGIN * (high - low)
-    if revolved and high - low + 2.0 * room >= 2.0 * np.pi:
+    margin = MARGIN * (high - low)
+    if revolved and high - low + 2.0 * margin >= 2.0 * np.pi:
         raise DesignError(
             f"stagger: the blade winds {np.degrees(high - low):.0f} deg around the axis at the {name}: its end "
             "must be one trimmed face of less than 327 deg; lower the stagger there"
         )
-    return low - room, high + room
+    return low - margin, high + margin
 
 
 def _stretch_of(end: TrimmedSurface) -> tuple[float, float]:

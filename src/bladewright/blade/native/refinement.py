@@ -164,10 +164,10 @@ def approximation_error(exact: ExactBlade, upper: Surface, lower: Surface) -> Ap
         distance = length(miss)
         i, j = np.unravel_index(int(np.argmax(distance)), distance.shape)
         ends = dot(miss, np.real(normals))[[0, -1]]
-        off = max(worst.off_walls, float(np.max(np.abs(ends))))  # real: a measured distance
+        wall_distance = max(worst.off_walls, float(np.max(np.abs(ends))))  # real: a measured distance
         if distance[i, j] > worst.distance:
-            worst = ApproximationError(float(distance[i, j]), off, float(u[j]), float(v[i]))
-        worst = worst._replace(off_walls=off)
+            worst = ApproximationError(float(distance[i, j]), wall_distance, float(u[j]), float(v[i]))
+        worst = worst._replace(off_walls=wall_distance)
     return worst
 
 

@@ -163,10 +163,10 @@ def _closest(
         steps = row.newton_step(own, other, v)
         own, other = own - steps[0], other - steps[1]
     found = length(row.neighbour(other, v) - row.own(own, v))
-    lost = ~(found <= (1.0 + ROUNDING) * least)
-    if lost.any():
+    missing = ~(found <= (1.0 + ROUNDING) * least)
+    if missing.any():
         raise DesignError(
-            f"the throat cannot be located at v = {v[lost][0]:.3f}: neighbouring blades run side by side there, so "
+            f"the throat cannot be located at v = {v[missing][0]:.3f}: neighbouring blades run side by side there, so "
             "that no pair of points is the closest; change the turning or the thickness there a little"
         )
     own.setflags(write=False)
@@ -187,7 +187,7 @@ def _closest_of(row: _Row, v: Reals, own: Reals, other: Reals) -> tuple[Reals, R
     starts, stops = (which(s.ravel(), at).reshape(*s.shape, 3) for which, s in ((row.own, own), (row.neighbour, other)))
     found = np.empty((2, len(v)))
     for place in range(len(v)):
-        apart = stops[None, :, place] - starts[:, None, place]
-        i, j = np.unravel_index(int(np.argmin(dot(apart, apart))), apart.shape[:2])
+        gap = stops[None, :, place] - starts[:, None, place]
+        i, j = np.unravel_index(int(np.argmin(dot(gap, gap))), gap.shape[:2])
         found[:, place] = own[i, place], other[j, place]
     return found[0], found[1]
