@@ -100,7 +100,7 @@ def _dot(a: Array, b: Array) -> Array:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Deviation:
+class FaceDeviation:
     """Distances between a native face and the faces of a file that stand for it."""
 
     largest: float
@@ -173,7 +173,7 @@ def _turned(surface: Surface) -> Iterator[Surface]:
             yield run_backwards(along_u, "v")
 
 
-def deviation(native: NativeFace, regions: list[Region], count: int, limit: float) -> Deviation:
+def deviation(native: NativeFace, regions: list[Region], count: int, limit: float) -> FaceDeviation:
     """Distances between a native face and the faces of the file that stand for it, at `count` samples each way.
 
     Where the file has the same control points and knots, points at equal parameters are compared: an upper bound of the
@@ -200,12 +200,12 @@ def deviation(native: NativeFace, regions: list[Region], count: int, limit: floa
         every.append(distance)
         if distance[worst] > largest:
             largest, place = float(distance[worst]), footpoints[worst]
-    return Deviation(
+    return FaceDeviation(
         largest=largest, mean=float(np.mean(np.concatenate(every))), worst=(float(place[0]), float(place[1]))
     )
 
 
-def _at_equal_parameters(surface: Surface, other: Surface, count: int) -> Deviation:
+def _at_equal_parameters(surface: Surface, other: Surface, count: int) -> FaceDeviation:
     lines = int(np.sqrt(count))
     u, v = (
         greville_spaced(surface.knots_u, surface.degree_u, lines),
@@ -214,6 +214,6 @@ def _at_equal_parameters(surface: Surface, other: Surface, count: int) -> Deviat
     difference = MM * surface.grid(u, v) - other.grid(u, v)
     distance = np.sqrt(np.sum(difference * difference, axis=-1))
     worst = np.unravel_index(np.argmax(distance), distance.shape)
-    return Deviation(
+    return FaceDeviation(
         largest=float(distance[worst]), mean=float(distance.mean()), worst=(float(u[worst[0]]), float(v[worst[1]]))
     )

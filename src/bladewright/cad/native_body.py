@@ -13,7 +13,7 @@ MM = 1000.0
 """[mm/m] Everything that is built is in metres, everything in OpenCASCADE and in CAD files in millimetres."""
 
 
-class MassProperties(Protocol):
+class BodyProperties(Protocol):
     """Volume, area and centroid of a body, integrated over its native surfaces.
 
     They may have `areas` (k,) [m^2] of the faces, in the order of `ClosedBody.orientations`; without them, the areas
@@ -45,7 +45,7 @@ class CadProduct(NamedBody, Protocol):
     """A body with the data that the header of a CAD file states, and texts that `header_text` finds."""
 
     @property
-    def properties(self) -> MassProperties:
+    def properties(self) -> BodyProperties:
         """Volume, area and centroid."""
 
 

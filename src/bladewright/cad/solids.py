@@ -25,7 +25,7 @@ from OCP.TopoDS import (
 
 from bladewright.cad.conversion import millimetres, occ_knots, plane_curve, space_curve, space_surface
 from bladewright.cad.native_body import MM, ClosedBody, NativeBody
-from bladewright.cad.topology import Coedge, DegenerateEdge, Edge, Topology, topology
+from bladewright.cad.topology import BodyEdge, Coedge, DegenerateEdge, Topology, topology
 from bladewright.cad.trimmed_faces import trimmed_face
 from bladewright.errors import CadError
 from bladewright.nurbs.curve import Curve
@@ -126,7 +126,7 @@ class _SolidBuilder:
         self.edges = [self._edge(edge) for edge in topology.edges]
         self.gaps = [CONFUSION for _ in topology.edges]
 
-    def _edge(self, edge: Edge) -> TopoDS_Edge:
+    def _edge(self, edge: BodyEdge) -> TopoDS_Edge:
         made = TopoDS_Edge()
         self.builder.MakeEdge(made, space_curve(edge.curve), CONFUSION)
         self._bound(made, edge.start, edge.end)
@@ -246,7 +246,7 @@ def _counter_clockwise(face: TrimmedSurface) -> bool:
     return bool(np.sum(chain[:, 0] * ahead[:, 1] - ahead[:, 0] * chain[:, 1]) > 0.0)
 
 
-def _gap(edge: Edge, pcurve: Curve, geometry: Geom_Surface) -> float:
+def _gap(edge: BodyEdge, pcurve: Curve, geometry: Geom_Surface) -> float:
     """Largest distance [mm] between an edge and its pcurve on a trimmed face, at equal parameters."""
     spans = np.unique(pcurve.knots)
     # the error of an interpolant oscillates within each knot span, and near a knot of the wall the spans are short

@@ -41,7 +41,7 @@ class Coedge:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Edge:
+class BodyEdge:
     """An edge of the body: its space curve [m], and the faces that meet there."""
 
     curve: Curve
@@ -65,7 +65,7 @@ class DegenerateEdge:
 class Topology:
     """Edges and vertices of a closed body."""
 
-    edges: tuple[Edge, ...]
+    edges: tuple[BodyEdge, ...]
     degenerate_edges: tuple[DegenerateEdge, ...]
     vertices: Array
     """(n, 3) [m]"""
@@ -101,7 +101,7 @@ def topology(built: ClosedBody) -> Topology:
     _require_pairs(edge_curves)
     vertices: list[Array] = []
     edges = tuple(
-        Edge(
+        BodyEdge(
             curve=curve,
             coedges=tuple(coedges),
             start=_vertex(vertices, curve.control_points[0], COINCIDENT * size),

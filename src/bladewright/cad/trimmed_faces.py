@@ -10,7 +10,7 @@ from scipy.interpolate import make_interp_spline
 
 from bladewright.cad.conversion import space_curve, space_surface
 from bladewright.cad.native_body import MM
-from bladewright.cad.topology import Coedge, Edge
+from bladewright.cad.topology import BodyEdge, Coedge
 from bladewright.errors import CadError
 from bladewright.numerics.elementary import Array, unit
 from bladewright.numerics.roots import level_crossings
@@ -39,7 +39,7 @@ class TrimmedFace:
     """whether the normal of `geometry` is opposite to the native one"""
 
 
-def trimmed_face(face: TrimmedSurface, edges: list[tuple[Edge, Coedge]]) -> TrimmedFace:
+def trimmed_face(face: TrimmedSurface, edges: list[tuple[BodyEdge, Coedge]]) -> TrimmedFace:
     """The surface of a trimmed face, and the pcurves of its edges, which are given in the order of its boundary."""
     if face.revolution is not None:
         return _revolved(face, face.revolution, edges)
@@ -51,7 +51,7 @@ def trimmed_face(face: TrimmedSurface, edges: list[tuple[Edge, Coedge]]) -> Trim
     return _patch(face, edges)
 
 
-def _plane(corner: Array, along: Array, normal: Array, edges: list[tuple[Edge, Coedge]]) -> TrimmedFace:
+def _plane(corner: Array, along: Array, normal: Array, edges: list[tuple[BodyEdge, Coedge]]) -> TrimmedFace:
     axes = np.stack([along, np.cross(normal, along)])
     frame = gp_Ax3(gp_Pnt(*(corner * MM).tolist()), gp_Dir(*normal.tolist()), gp_Dir(*along.tolist()))
     pcurves = tuple(
@@ -66,7 +66,7 @@ def _plane(corner: Array, along: Array, normal: Array, edges: list[tuple[Edge, C
     return TrimmedFace(geometry=Geom_Plane(frame), pcurves=pcurves, reversed_normal=False)
 
 
-def _revolved(face: TrimmedSurface, revolution: Revolution, edges: list[tuple[Edge, Coedge]]) -> TrimmedFace:
+def _revolved(face: TrimmedSurface, revolution: Revolution, edges: list[tuple[BodyEdge, Coedge]]) -> TrimmedFace:
     """A surface of revolution about -x, about which theta is right-handed.
 
     OpenCASCADE's angle starts half a turn before the middle of the face, so that no pcurve comes near the seam.
@@ -89,7 +89,7 @@ def _revolved(face: TrimmedSurface, revolution: Revolution, edges: list[tuple[Ed
     )
     axis = gp_Ax1(gp_Pnt(0.0, 0.0, 0.0), gp_Dir(-1.0, 0.0, 0.0))
 
-    def pcurve(edge: Edge, coedge: Coedge) -> Curve:
+    def pcurve(edge: BodyEdge, coedge: Coedge) -> Curve:
         boundary = face.boundary[coedge.side]
         s = np.linspace(*coedge.span, 201)
         guides = boundary(s if coedge.along else s[::-1])
@@ -117,11 +117,11 @@ def _revolved(face: TrimmedSurface, revolution: Revolution, edges: list[tuple[Ed
     )
 
 
-def _patch(face: TrimmedSurface, edges: list[tuple[Edge, Coedge]]) -> TrimmedFace:
+def _patch(face: TrimmedSurface, edges: list[tuple[BodyEdge, Coedge]]) -> TrimmedFace:
     """Any other trimmed face: on its own B-spline surface, the edges projected to it."""
     surface = face.surface
 
-    def pcurve(edge: Edge, coedge: Coedge) -> Curve:
+    def pcurve(edge: BodyEdge, coedge: Coedge) -> Curve:
         boundary = face.boundary[coedge.side]
         guides = boundary(np.linspace(*coedge.span, 2001))
         ahead = surface(*guides.T)

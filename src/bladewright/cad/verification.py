@@ -58,7 +58,7 @@ def verify(path: str | os.PathLike[str], built: NativeBody, *, samples: int = SA
         return verify_mesh(path, built, samples=samples)
     opened = read_cad_file(path)
     with quiet():
-        return _Measurement(opened, built, samples).report()
+        return _FileComparison(opened, built, samples).report()
 
 
 def limits_of(built: NativeBody) -> dict[str, float]:
@@ -80,7 +80,7 @@ def _chord(face: TrimmedSurface) -> float:
     return float(np.sqrt(np.sum((end - start) ** 2)))
 
 
-class _Measurement:
+class _FileComparison:
     """One file measured against one body."""
 
     def __init__(self, opened: CadFile, built: NativeBody, samples: int) -> None:

@@ -152,7 +152,7 @@ def count_of(number: int, what: str) -> str:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Outline:
+class DrawnSection:
     """Both sides of a section [mm] at parameters u of the blade, and which points of the cloud are drawn beside it."""
 
     section: "Section"
@@ -200,7 +200,7 @@ class Outline:
         return np.asarray(-slope if trailing else slope)
 
 
-def outline_at(fit: FitResult, v: float) -> Outline:
+def outline_at(fit: FitResult, v: float) -> DrawnSection:
     """The outline at v in [0, 1] of a blade, or the outline of a section."""
     u = cosine_spacing(OUTLINE_POINTS)
     solid = fit.cloud.shape[-1] == 3
@@ -218,7 +218,7 @@ def outline_at(fit: FitResult, v: float) -> Outline:
         tangent /= length(tangent)[:, None]
         outwards[name] = sign * np.stack([-tangent[:, 1], tangent[:, 0]], axis=-1)
     drawn, band = _near_span(fit, v) if solid else (_on_outline(fit), 0.0)
-    return Outline(
+    return DrawnSection(
         section=section,
         u=u,
         sides={name: points * size for name, points in sides.items()},

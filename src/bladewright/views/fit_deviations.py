@@ -16,9 +16,9 @@ from bladewright.views.fit_data import (
     ROUND_NUMBERS,
     SIDES,
     WORST_POINTS,
+    DrawnSection,
     FitResult,
     Index,
-    Outline,
     colour_scale,
     count_of,
     cross_out,
@@ -167,7 +167,7 @@ def magnification(fit: FitResult) -> float:
     return max(1.0, float(max(each for each in steps if each * decade <= factor * (1.0 + 1e-9)) * decade))
 
 
-def draw_magnified(axes: Axes, fit: FitResult, outline: Outline, name: str) -> None:
+def draw_magnified(axes: Axes, fit: FitResult, outline: DrawnSection, name: str) -> None:
     """Draw a section with the deviations of the points near it magnified, and outliers crossed.
 
     Outliers further off are crossed at 8 % of the chord; where there are many, only those nearer are crossed.
@@ -197,7 +197,7 @@ def draw_magnified(axes: Axes, fit: FitResult, outline: Outline, name: str) -> N
     axes.margins(0.06)
 
 
-def draw_edge_points(axes: Axes, fit: FitResult, outline: Outline, *, trailing: bool, where: str) -> None:
+def draw_edge_points(axes: Axes, fit: FitResult, outline: DrawnSection, *, trailing: bool, where: str) -> None:
     """Draw a close-up of the leading or the trailing edge of a section, with the points there to scale."""
     section = outline.section
     size, description = edge_size(section, trailing=trailing)
@@ -248,7 +248,7 @@ def draw_edge_points(axes: Axes, fit: FitResult, outline: Outline, *, trailing: 
     )
 
 
-def _draw_tolerance(axes: Axes, fit: FitResult, outline: Outline, factor: float) -> None:
+def _draw_tolerance(axes: Axes, fit: FitResult, outline: DrawnSection, factor: float) -> None:
     if fit.tolerance is None:
         return
     offset = factor * fit.tolerance * MILLIMETRES
@@ -259,13 +259,13 @@ def _draw_tolerance(axes: Axes, fit: FitResult, outline: Outline, factor: float)
             axes.plot(*outline.moved(side, sign * offset).T, color=SOFT, linewidth=0.8, linestyle="--")
 
 
-def _places(fit: FitResult, outline: Outline, index: Index) -> Reals:
+def _places(fit: FitResult, outline: DrawnSection, index: Index) -> Reals:
     """Positions (m, 2) of points beside the outline."""
     footpoints, normals = outline.footpoints(fit, index)
     return footpoints + normals * deviations_mm(fit, index)[:, None]
 
 
-def _cross_outliers(axes: Axes, fit: FitResult, outline: Outline, factor: float, most: float) -> None:
+def _cross_outliers(axes: Axes, fit: FitResult, outline: DrawnSection, factor: float, most: float) -> None:
     index = np.flatnonzero(outline.points & ~fit.inliers)
     if len(index) == 0:
         return

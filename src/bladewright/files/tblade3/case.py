@@ -62,7 +62,7 @@ class SectionRow:
 
 
 @dataclass(frozen=True, kw_only=True)
-class Stacking:
+class CaseStacking:
     """The point of a section that lies on the stacking axis."""
 
     centroid: bool
@@ -225,12 +225,12 @@ class TBlade3Case:
         return self.sections[0].in_beta == STAGGER_GIVEN
 
     @property
-    def stackings(self) -> tuple[Stacking, ...]:
+    def stackings(self) -> tuple[CaseStacking, ...]:
         """The stacking point of each section."""
         if not self.radial_stacking:
             return (stacking_of(self.stacking_code),) * len(self.sections)
         return tuple(
-            Stacking(centroid=row.stack_u == CENTROID, along=row.stack_u / 100.0, above=row.stack_v / 100.0)
+            CaseStacking(centroid=row.stack_u == CENTROID, along=row.stack_u / 100.0, above=row.stack_v / 100.0)
             for row in self.sections
         )
 
@@ -241,7 +241,7 @@ CENTROID = 200
 """Stacking point along the chord that stands for the centroid (T-Blade3's own code)."""
 
 
-def stacking_of(code: int) -> Stacking:
+def stacking_of(code: int) -> CaseStacking:
     """The stacking point of a code uuuvvv, whose sign is that of vvv; uuu = 200 stands for the centroid."""
     along, above = divmod(abs(code), 1000)
-    return Stacking(centroid=along == CENTROID, along=along / 100.0, above=(above if code >= 0 else -above) / 100.0)
+    return CaseStacking(centroid=along == CENTROID, along=along / 100.0, above=(above if code >= 0 else -above) / 100.0)

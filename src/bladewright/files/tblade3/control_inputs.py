@@ -6,7 +6,7 @@ import numpy as np
 
 from bladewright.errors import FileError
 from bladewright.files.tblade3.case import LEADING_EDGE, LeadingEdges, Meanlines, Multipliers, NacaThickness, Table
-from bladewright.files.tblade3.fortran_input import Lines, fortran_number, list_directed_items
+from bladewright.files.tblade3.fortran_input import InputLines, fortran_number, list_directed_items
 from bladewright.section.meanline import backward
 
 _ORDER = ("curvature", "thickness", "leading")
@@ -14,7 +14,7 @@ _NAMES = {"curvature": "the curvature", "thickness": "the thickness multiplier",
 
 
 def read_sectionwise(
-    lines: Lines, count: int, *, curvature: bool, multiplier: bool, leading_edge: bool
+    lines: InputLines, count: int, *, curvature: bool, multiplier: bool, leading_edge: bool
 ) -> dict[str, Any]:
     """The fields of a case that are given section by section; tables that the case does not need may be missing."""
     lines.text("the name of the case")
@@ -51,7 +51,7 @@ def _kind(title: str, last: str) -> str:
     return named[0] if named else _ORDER[min(place, len(_ORDER) - 1)]
 
 
-def _sections(lines: Lines, count: int, what: str) -> tuple[Table, Table]:
+def _sections(lines: InputLines, count: int, what: str) -> tuple[Table, Table]:
     places, values = [], []
     for section in range(1, count + 1):
         name = f"the control points of {what} of section {section} of {count}"
@@ -64,7 +64,7 @@ def _sections(lines: Lines, count: int, what: str) -> tuple[Table, Table]:
     return tuple(places), tuple(values)
 
 
-def _sectionwise_leading_edges(lines: Lines, count: int) -> LeadingEdges:
+def _sectionwise_leading_edges(lines: InputLines, count: int) -> LeadingEdges:
     lines.text("the header of the leading edge")
     degree, segments = lines.integers(2, "degree and number of segments of the leading edge", least=3)
     rows = []
@@ -79,7 +79,7 @@ _SLOPES = {"dy_dx_te": False, "dy_dx_norm": True}
 _CURVATURE = "the control points of the curvature"
 
 
-def read_spanwise(lines: Lines, *, naca: bool, multiplier: bool, leading_edge: bool) -> dict[str, Any]:
+def read_spanwise(lines: InputLines, *, naca: bool, multiplier: bool, leading_edge: bool) -> dict[str, Any]:
     """The fields of a case that are given along the span; tables that the case does not need may be missing.
 
     The file may have the current or the older format.
@@ -108,13 +108,13 @@ def read_spanwise(lines: Lines, *, naca: bool, multiplier: bool, leading_edge: b
     return found
 
 
-def _head(lines: Lines, what: str) -> tuple[int, int, str]:
+def _head(lines: InputLines, what: str) -> tuple[int, int, str]:
     """The number of rows, the number after it, and the header in lower case."""
     rows, second = lines.integers(2, f"the numbers of rows and columns of {what}", least=2)
     return rows, second, lines.text(f"the header of {what}").lower()
 
 
-def _meanlines(lines: Lines) -> Meanlines:
+def _meanlines(lines: InputLines) -> Meanlines:
     count, points, header = _head(lines, _CURVATURE)
     if points < 3:
         raise lines.error(
@@ -131,7 +131,7 @@ def _meanlines(lines: Lines) -> Meanlines:
     return Meanlines(span=tuple(spans), u=tuple(places), curvature=tuple(values))
 
 
-def _naca(lines: Lines) -> NacaThickness:
+def _naca(lines: InputLines) -> NacaThickness:
     what = "the control points of the thickness"
     if lines.ended:
         raise FileError(
@@ -160,7 +160,7 @@ def _naca(lines: Lines) -> NacaThickness:
     )
 
 
-def _multipliers(lines: Lines, *, needed: bool) -> Multipliers | None:
+def _multipliers(lines: InputLines, *, needed: bool) -> Multipliers | None:
     """The older format's table of a thickness multiplier; None where the case needs none, or in the current format.
 
     A table that the case does not need may hold anything.
@@ -188,7 +188,7 @@ def _multipliers(lines: Lines, *, needed: bool) -> Multipliers | None:
     return Multipliers(span=tuple(spans), u=tuple(places), values=tuple(values))
 
 
-def _spanwise_leading_edges(lines: Lines) -> LeadingEdges:
+def _spanwise_leading_edges(lines: InputLines) -> LeadingEdges:
     what = "the control points of the leading edge"
     degree, segments = lines.integers(2, "degree and number of segments of the leading edge", least=3)
     lines.skip_words(f"the numbers of rows and columns of {what}")
@@ -202,7 +202,7 @@ def _spanwise_leading_edges(lines: Lines) -> LeadingEdges:
     )
 
 
-def _check_places(lines: Lines, spans: list[float], places: Table | list[tuple[float, ...]], what: str) -> None:
+def _check_places(lines: InputLines, spans: list[float], places: Table | list[tuple[float, ...]], what: str) -> None:
     for span, row in zip(spans, places, strict=True):
         wrong = np.flatnonzero(backward(np.array(row)))
         if len(wrong):

@@ -47,7 +47,7 @@ def fortran_number(word: str | None) -> float | None:
     return value if math.isfinite(value) else None
 
 
-class Lines:
+class InputLines:
     """The lines of a file, read one after another; every error is a FileError that names file and line."""
 
     def __init__(self, text: str, path: Path) -> None:

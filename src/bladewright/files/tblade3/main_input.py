@@ -5,7 +5,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from bladewright.files.tblade3.case import CENTROID, Point, SectionRow, SpanLaw, stacking_of
-from bladewright.files.tblade3.fortran_input import Lines, fortran_number, list_directed_items
+from bladewright.files.tblade3.fortran_input import InputLines, fortran_number, list_directed_items
 
 # what the values of T-Blade3's switches stand for
 ANGLES = {0: "axial", 1: "radial", 2: "axial-radial", 3: "radial-axial", 4: "wing"}
@@ -26,7 +26,7 @@ _REMOVED = (
 )
 
 
-def read_head(lines: Lines, notes: list[str]) -> dict[str, Any]:
+def read_head(lines: InputLines, notes: list[str]) -> dict[str, Any]:
     """The fields of a case up to the table of sections, whose title is the last line that is read."""
     found: dict[str, Any] = {"title": lines.text("the title").strip()}
     found["name"] = next(iter(lines.words("the name of the case")), "")
@@ -80,7 +80,7 @@ def _is_table(title: str) -> bool:
     return "sectionwise" in title.lower()
 
 
-def _unit(lines: Lines, notes: list[str]) -> str:
+def _unit(lines: InputLines, notes: list[str]) -> str:
     title = lines.text("the title of the scaling factor, with its unit")
     mark = title[23:25].ljust(2)
     unit = {"mm": "mm", "cm": "cm", "m)": "m", "m ": "m"}.get(mark)
@@ -98,7 +98,7 @@ def _unit(lines: Lines, notes: list[str]) -> str:
     return unit
 
 
-def _angles(lines: Lines, notes: list[str]) -> tuple[str, str]:
+def _angles(lines: InputLines, notes: list[str]) -> tuple[str, str]:
     line = lines.text("the angle switch")
     digits = {int(each) for each in line if each in "01234"}
     if len(digits) != 1:
@@ -116,7 +116,7 @@ def _angles(lines: Lines, notes: list[str]) -> tuple[str, str]:
     return ANGLES[digits.pop()], spline
 
 
-def _camber(lines: Lines) -> tuple[bool, bool]:
+def _camber(lines: InputLines) -> tuple[bool, bool]:
     words = lines.words("the camber switch")
     camber = _known(lines, "the camber switch", words, ON)
     if len(words) > 1:
@@ -133,7 +133,7 @@ def _camber(lines: Lines) -> tuple[bool, bool]:
     return camber, False
 
 
-def _thickness(lines: Lines, notes: list[str]) -> str:
+def _thickness(lines: InputLines, notes: list[str]) -> str:
     what = "the thickness switch"
     removed = dict.fromkeys((3, 4), "a thickness of the kind {value} " + _REMOVED)
     words = lines.words(what)
@@ -149,7 +149,7 @@ def _thickness(lines: Lines, notes: list[str]) -> str:
     return thickness
 
 
-def _clustering(lines: Lines) -> dict[str, Any]:
+def _clustering(lines: InputLines) -> dict[str, Any]:
     words = lines.words("the clustering switch")
     return {
         "clustering": _known(lines, "the clustering switch", words, CLUSTERINGS),
@@ -157,12 +157,12 @@ def _clustering(lines: Lines) -> dict[str, Any]:
     }
 
 
-def _switch(lines: Lines, what: str, known: Mapping[int, Any], removed: Mapping[int, str] | None = None) -> Any:
+def _switch(lines: InputLines, what: str, known: Mapping[int, Any], removed: Mapping[int, str] | None = None) -> Any:
     return _known(lines, what, lines.words(what), known, removed)
 
 
 def _known(
-    lines: Lines, what: str, words: list[str], known: Mapping[int, Any], removed: Mapping[int, str] | None = None
+    lines: InputLines, what: str, words: list[str], known: Mapping[int, Any], removed: Mapping[int, str] | None = None
 ) -> Any:
     numbers = ", ".join(map(str, known))
     value = fortran_number(words[0]) if words else None
@@ -174,7 +174,7 @@ def _known(
     raise lines.error(f"{what} is '{said}': it must be one of {numbers}")
 
 
-def read_tables(lines: Lines, count: int, notes: list[str], *, early: bool) -> dict[str, Any]:
+def read_tables(lines: InputLines, count: int, notes: list[str], *, early: bool) -> dict[str, Any]:
     """The fields of a case from the table of sections on, for `count` streamlines.
 
     An `early` file has the switches of true sweep and lean next to the numbers of their control points.
@@ -217,7 +217,7 @@ def read_tables(lines: Lines, count: int, notes: list[str], *, early: bool) -> d
     return found
 
 
-def _edge_curves(lines: Lines) -> dict[str, tuple[Point, ...]]:
+def _edge_curves(lines: InputLines) -> dict[str, tuple[Point, ...]]:
     lines.texts(3, "the titles of the leading- and trailing-edge curves")
     rows = lines.integer("the number of points of the leading- and trailing-edge curves", least=2)
     lines.text("the header of the leading- and trailing-edge curves")
@@ -228,7 +228,7 @@ def _edge_curves(lines: Lines) -> dict[str, tuple[Point, ...]]:
     return {"leading_curve": tuple(leading), "trailing_curve": tuple(trailing)}
 
 
-def _shapes(lines: Lines, count: int, *, radial: bool) -> tuple[list[tuple[str, tuple[float, ...]]], bool]:
+def _shapes(lines: InputLines, count: int, *, radial: bool) -> tuple[list[tuple[str, tuple[float, ...]]], bool]:
     """Type and numbers of each section, and whether columns of a grid follow them."""
     header = lines.text("the header of the types of section").lower()
     grid = any(name in header for name in _GRID_COLUMNS)
@@ -253,7 +253,7 @@ def _shapes(lines: Lines, count: int, *, radial: bool) -> tuple[list[tuple[str, 
     return found, grid
 
 
-def _stacking_code(lines: Lines, *, radial: bool) -> int:
+def _stacking_code(lines: InputLines, *, radial: bool) -> int:
     code = lines.integer("the code of the stacking axis")
     stacking = stacking_of(code)
     if not radial and not (stacking.along <= 1.0 or stacking.centroid):
@@ -269,7 +269,7 @@ def _stacking_code(lines: Lines, *, radial: bool) -> int:
     return code
 
 
-def _count(lines: Lines, name: str, notes: list[str], *, one_digit: bool = False) -> int:
+def _count(lines: InputLines, name: str, notes: list[str], *, one_digit: bool = False) -> int:
     line = lines.peek()
     rows = lines.integer(f"the number of control points of {name}", least=2)
     digit = line[11:12]
@@ -281,7 +281,7 @@ def _count(lines: Lines, name: str, notes: list[str], *, one_digit: bool = False
     return rows
 
 
-def _shift(lines: Lines, name: str, notes: list[str], *, early: bool) -> tuple[bool, SpanLaw]:
+def _shift(lines: InputLines, name: str, notes: list[str], *, early: bool) -> tuple[bool, SpanLaw]:
     """Sweep or lean as a law, and whether an early file states that it is a true one.
 
     There a digit in column 15 of the line with the count says so, and the values are in the third column.
@@ -302,7 +302,7 @@ def _shift(lines: Lines, name: str, notes: list[str], *, early: bool) -> tuple[b
     return switch == "1", SpanLaw(span=span, values=values[-1])
 
 
-def _law(lines: Lines, name: str, notes: list[str]) -> SpanLaw:
+def _law(lines: InputLines, name: str, notes: list[str]) -> SpanLaw:
     lines.texts(2, f"the title of the control points of {name}")
     rows = _count(lines, name, notes)
     lines.text(f"the header of the control points of {name}")
@@ -310,7 +310,7 @@ def _law(lines: Lines, name: str, notes: list[str]) -> SpanLaw:
     return SpanLaw(span=span, values=values)
 
 
-def _thicknesses(lines: Lines) -> dict[str, SpanLaw | None]:
+def _thicknesses(lines: InputLines) -> dict[str, SpanLaw | None]:
     """The laws of tm/c and u_max; the header states which of them there are, and in which order."""
     name = "the control points of tm/c"
     lines.texts(2, f"the title of {name}")
@@ -330,7 +330,7 @@ def _thicknesses(lines: Lines) -> dict[str, SpanLaw | None]:
     return found
 
 
-def _streamlines(lines: Lines, count: int) -> tuple[tuple[Point, ...], ...]:
+def _streamlines(lines: InputLines, count: int) -> tuple[tuple[Point, ...], ...]:
     while (list_directed_items(lines.text("the streamlines, below a line that begins with x_s")) or [None])[0] != "x_s":
         pass
     found = []

@@ -8,7 +8,7 @@ from typing import Any
 from bladewright.errors import FileError
 from bladewright.files.tblade3.case import TBlade3Case
 from bladewright.files.tblade3.control_inputs import read_sectionwise, read_spanwise
-from bladewright.files.tblade3.fortran_input import Lines
+from bladewright.files.tblade3.fortran_input import InputLines
 from bladewright.files.tblade3.main_input import read_head, read_tables
 from bladewright.files.tblade3.remarks import notes_of, unsupported_of, unused_of
 from bladewright.files.text import read_text
@@ -44,7 +44,7 @@ def read_tblade3(path: str | os.PathLike[str]) -> TBlade3Case:
                 f"'{path.with_name(f'3dbgbinput.{_suffix(path)}.dat')}'"
             )
     notes: list[str] = []
-    lines = Lines(read_text(path), path)
+    lines = InputLines(read_text(path), path)
     found = read_head(lines, notes)
     count = found.pop("streamline_count")
     found |= read_tables(lines, count, notes, early=found.pop("early"))
@@ -82,7 +82,7 @@ def _control_points(path: Path, found: dict[str, Any], count: int) -> tuple[dict
         needed["multiplier"] = False
     if found["spanwise"]:
         companion = _companion(path, COMPANIONS[0], "the camber switch says 'spanwise_spline'")
-        return read_spanwise(Lines(read_text(companion), companion), naca=naca, **needed), companion
+        return read_spanwise(InputLines(read_text(companion), companion), naca=naca, **needed), companion
     needed["curvature"] = found["curvature_camber"]
     if not any(needed.values()):
         return {}, None
@@ -92,7 +92,7 @@ def _control_points(path: Path, found: dict[str, Any], count: int) -> tuple[dict
         "leading_edge": "the leading edge is a spline",
     }
     companion = _companion(path, COMPANIONS[1], next(reasons[each] for each in reasons if needed[each]))
-    return read_sectionwise(Lines(read_text(companion), companion), count, **needed), companion
+    return read_sectionwise(InputLines(read_text(companion), companion), count, **needed), companion
 
 
 def _suffix(path: Path) -> str:

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from bladewright.files.tblade3.case import Stacking, TBlade3Case
+from bladewright.files.tblade3.case import CaseStacking, TBlade3Case
 from bladewright.numerics.elementary import cross2
 from bladewright.nurbs.basis import Reals
 from bladewright.section.curvature_meanline import CurvatureMeanline
@@ -34,7 +34,7 @@ def chord_stations(case: TBlade3Case) -> Reals | None:
     return None
 
 
-def stacking_point(part: CurvatureMeanline, stacking: Stacking, stations: Reals | None = None) -> Reals:
+def stacking_point(part: CurvatureMeanline, stacking: CaseStacking, stations: Reals | None = None) -> Reals:
     """The stacking point (2,) of a section in chords, from the leading edge, along and across the chord line.
 
     It is the centroid of the area; or a fraction of the chord along, and across either the chord line itself or a

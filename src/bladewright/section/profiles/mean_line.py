@@ -87,7 +87,7 @@ class ChebyshevForm(ThicknessForm):
 TrailingEdge = Literal["sharp", "blunt", "round"]
 
 
-class MeanLine(ABC):
+class ProfileMeanLine(ABC):
     """Mean lines y(x) of sections (...): 0 at x = 0 and at x = 1, in chords."""
 
     joint: Array | None = None
@@ -108,7 +108,7 @@ class MeanLineOutline(Outline):
     nose of the radius T(1), below the blunt profile by more than 1e-3 of itself only over the last 3 T(1) of the chord.
     """
 
-    mean_line: MeanLine
+    mean_line: ProfileMeanLine
     thickness: ThicknessForm
     end: TrailingEdge
     clustering: float = 0.0
@@ -145,11 +145,11 @@ class MeanLineOutline(Outline):
         if rest.order == 0:
             return Series([value])
         at_edge = np.real(w) == 0.0
-        apart = np.where(at_edge, 1.0, w)
+        nonzero = np.where(at_edge, 1.0, w)
         left = np.where(far, 0.0, np.exp(-power * near * log))
-        first = np.where(at_edge, -0.5 * power * (power - 1.0), (power * left / (1.0 - near) - value) / apart)
+        first = np.where(at_edge, -0.5 * power * (power - 1.0), (power * left / (1.0 - near) - value) / nonzero)
         bend = -power * (power - 1.0) * left / (1.0 - near) ** 2
-        second = np.where(at_edge, power * (power - 1.0) * (power - 2.0) / 3.0, (bend - 2.0 * first) / apart)
+        second = np.where(at_edge, power * (power - 1.0) * (power - 2.0) / 3.0, (bend - 2.0 * first) / nonzero)
         return Series([value, first, 0.5 * second])
 
     @cached_property
