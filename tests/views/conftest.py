@@ -1,9 +1,12 @@
 """A design of every kind that is drawn, what it builds and the sheet of it."""
 
+from importlib import import_module
+
 import pytest
 
 from bladewright.blade.design.families import prismatic
 from bladewright.views.picture import sheet
+from bladewright.views.solid import draw_solid
 from machines import COARSE, built, example
 from machines.unified import DRAWN_IMPELLER as IMPELLER
 from machines.unified import VANE
@@ -17,6 +20,11 @@ DESIGNS = {
 BLADES = ("fan", "impeller", "cascade")
 
 
+def small_solid(axes, blade, *, neighbours, **_):
+    """The view in space, of a sheet, on few pixels: what it shows is asked in test_solid.py and test_raster.py."""
+    draw_solid(axes, blade, neighbours=neighbours, width=200)
+
+
 class Drawn:
     """A design, what it builds and its sheet, each made once."""
 
@@ -24,7 +32,10 @@ class Drawn:
         self.name = name
         self.design = DESIGNS[name]
         self.built = built(self.design)
-        self.figure = sheet(self.design, self.built)
+        with pytest.MonkeyPatch.context() as small:
+            # pixels of the view in space are counted in test_files.py alone
+            small.setattr(import_module("bladewright.views.picture"), "draw_solid", small_solid)
+            self.figure = sheet(self.design, self.built)
         self.figure.canvas.draw()
 
     def panel(self, title):

@@ -1,6 +1,7 @@
 """Blades from sections on the sheet: flow path, blunt edges, laws of any family, smoothness."""
 
 from dataclasses import replace
+from importlib import import_module
 
 import numpy as np
 import pytest
@@ -19,6 +20,7 @@ from machines import built
 from machines.sectioned import BLUNT, COMPRESSOR, DESIGNS, IMPELLER, STATOR, VANE
 from machines.sections import EXAMPLES
 
+from .conftest import small_solid
 from .test_sheet import texts_of
 
 ROUGH = 1e-4
@@ -32,7 +34,9 @@ def impeller():
 
 @pytest.fixture(scope="module")
 def drawn(impeller):
-    figure = sheet(impeller)
+    with pytest.MonkeyPatch.context() as small:
+        small.setattr(import_module("bladewright.views.picture"), "draw_solid", small_solid)
+        figure = sheet(impeller)
     figure.canvas.draw()
     return figure
 
