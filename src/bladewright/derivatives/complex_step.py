@@ -114,7 +114,7 @@ def interpolation_rates(sections: Any, knots: Knots, count: int) -> Array:
 
 
 def data_from_rates(rows: Array, mirrored: Sequence[bool]) -> InterpolationData:
-    """Interpolation data from such rows; `mirrored` tells at which edges the lower side mirrors the upper's."""
+    """Interpolation data from such rows; `mirrored` tells at which edges the lower side mirrors the upper one."""
     count = 2 + sum(not each for each in mirrored)
     edges, upper, lower = np.split(rows, [9 * count, (9 * count + rows.shape[-1]) // 2], axis=-1)
     parts = iter(np.split(edges, 3 * count, axis=-1))

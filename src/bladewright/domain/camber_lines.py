@@ -1,7 +1,7 @@
 """Camber lines from inlet to outlet: the sections' own, continued up- and downstream.
 
 A continuation keeps the slope d theta / dm' of the camber line at its end, or turns to a stated one as the square of
-the way: theta = theta_0 + reach (slope t + (turned - slope) t^3 / 3), with t from 0 at the edge to 1 at inlet or
+the way: theta = theta_0 + extent (slope t + (turned - slope) t^3 / 3), with t from 0 at the edge to 1 at inlet or
 outlet.
 """
 

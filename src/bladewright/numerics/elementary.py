@@ -1,4 +1,4 @@
-"""Elementary functions that are analytic, so that a complex step passes through them unharmed."""
+"""Elementary functions that are analytic, so that a complex step keeps its imaginary part."""
 
 from collections.abc import Sequence
 from typing import Any

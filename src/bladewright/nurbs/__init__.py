@@ -1,4 +1,4 @@
-"""Floor 1: NURBS curves and surfaces of any degree and dimension. It knows knots and control points, and no blades.
+"""Floor 1: NURBS curves and surfaces of any degree and dimension. Knots and control points; nothing about blades.
 
 `basis`, `curve`, `surface` and `trimmed` evaluate; `refine`, `domain`, `compatible` and `transform` change the
 representation; `fit`, `skinning` and `revolution` construct; `closest`, `curvature`, `measure` and `mass_properties`

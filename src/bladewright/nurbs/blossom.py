@@ -38,7 +38,7 @@ def knot_change(knots: Reals, degree: int, target: Reals) -> Reals:
 
 
 def elevation(knots: Reals, degree: int) -> tuple[Reals, Reals]:
-    """The knots of degree + 1 on which the same splines stand, and the matrix (n_target, n) to their control points.
+    """The knots on which the same splines have degree + 1, and the matrix (n_target, n) to their control points.
 
     A control point of the higher degree is the mean of the blossoms that each leave out one of its knots (Ramshaw 1989,
     section 8).

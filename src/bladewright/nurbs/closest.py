@@ -20,7 +20,7 @@ takes the same time (design/nurbs_constants.md)."""
 STATIONARY = 1e-7
 """Largest cosine of the angle between the distance and a tangent for which the point counts as a perpendicular foot,
 whose parameter moves with the data; at an end or a kink it stays. It must exceed what the search leaves of the cosine
-(about the root of rounding) and lie below any kink worth the name."""
+(about the root of rounding) and lie below the angle of any kink that matters."""
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -1,1 +1,1 @@
-"""Floor 2: one blade section in its plane. Knows camber, thickness and edges, and no third dimension."""
+"""Floor 2: one blade section in its plane. Camber, thickness and edges; nothing about the third dimension."""

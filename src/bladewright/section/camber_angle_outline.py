@@ -28,7 +28,7 @@ NODES = 12
 radius that grows smoothly, and 12 leave room for channels that bend (design/section_constants.py)"""
 CELLS = 16
 """equal cells along m' for that interpolation, so that a bend of the channel spoils one of them only"""
-APART = 1e-9
+SAME_PLACE = 1e-9
 """difference by s below which a joint is at the same place in all sections: above rounding of a root, below any
 movement that a design shows [-]"""
 STEEPEST = 6.0
@@ -232,7 +232,7 @@ class CamberAngleOutline(Outline):
         count = knots.shape[-1]
         for j in range(count):
             s = self._where(knots[..., j])
-            if np.ptp(s) <= APART:
+            if np.ptp(s) <= SAME_PLACE:
                 found.append(Joint(float(np.mean(s)), 2))
         return merged_joints(found)
 

@@ -7,8 +7,8 @@ from bladewright.nurbs.basis import Reals, breaks
 from bladewright.section.section import Section
 
 PROMINENCE = 0.05
-"""how much an extremum of the curvature must stand out, of the curvature there, or of the side's median where that is
-larger: what a designer would see in a plot, and far above rounding [-]"""
+"""prominence that an extremum of the curvature must have, as a fraction of the curvature there, or of the
+side's median where that is larger: what a designer would see in a plot, and far above rounding [-]"""
 FLAT = 0.02
 """curvature times the side's length below which a side counts as straight: it turns by about a degree over its length
 [-]"""

@@ -30,7 +30,7 @@ SEGMENTS = 5
 SAME = 1e-9
 """difference by s below which a contact is at a joint, and the derivatives behind it count: above rounding [-]"""
 WINDOW = 0.05
-"""length by s behind the contact of the polynomial whose derivatives there are taken, where a section does not know
+"""length by s behind the contact of the polynomial whose derivatives there are taken, where a section does not give
 them exactly: short enough for degree nine to follow the side, long enough for rounding to stay small in three
 derivatives [-]"""
 DEGREE = 9

@@ -20,7 +20,7 @@ MeridionalFraction = Callable[[Reals], Array]
 class SectionFamily(Part, ABC):
     """Base of the families: their parameters, each a law of evolution along the span.
 
-    A family knows nothing of the blade: the same part is a 2D design, a prismatic blade and a blade in a flow path.
+    A family does not depend on the blade: the same part is a 2D design, a prismatic blade and a blade in a flow path.
     """
 
     depends_on_stream_surface: ClassVar[bool] = False

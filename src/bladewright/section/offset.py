@@ -15,7 +15,7 @@ from bladewright.section.outline import Edge, EdgeDerivatives, Joint, Outline
 from bladewright.section.power_series import Series, point_derivatives, polynomial, variable
 from bladewright.section.thickness.law import EdgeKind, Thickness
 
-APART = 1e-9
+SAME_PLACE = 1e-9
 """difference by s, or by the chord fraction, below which two joints are one: above rounding of a root [-]"""
 
 
@@ -132,9 +132,9 @@ def merged_joints(joints: Sequence[Joint]) -> tuple[Joint, ...]:
     """Joints in order; of several at one place the least smooth, those at an edge left out."""
     found: list[Joint] = []
     for each in sorted(joints):
-        if not APART < each.s < 1.0 - APART:
+        if not SAME_PLACE < each.s < 1.0 - SAME_PLACE:
             continue
-        if found and each.s - found[-1].s < APART:
+        if found and each.s - found[-1].s < SAME_PLACE:
             found[-1] = Joint(found[-1].s, min(found[-1].derivatives, each.derivatives))
         else:
             found.append(each)
@@ -146,7 +146,7 @@ def fixed_joints(thickness: Thickness, places: Array, derivatives: int) -> tuple
     if places.shape[-1] == 0:
         return ()
     rows = np.real(places).reshape(-1, places.shape[-1])
-    rows = rows[:, np.ptp(rows, axis=0) <= APART]
+    rows = rows[:, np.ptp(rows, axis=0) <= SAME_PLACE]
     if rows.shape[-1] == 0:
         return ()
     table = np.linspace(0.0, 1.0, 129)
@@ -154,9 +154,9 @@ def fixed_joints(thickness: Thickness, places: Array, derivatives: int) -> tuple
     s = np.interp(rows[0], first, table)
     for _ in range(8):
         value, slope = (np.real(each).reshape(-1, len(s))[0] for each in thickness.series(s, 1)[0].coefficients)
-        s = np.clip(s - (value - rows[0]) / np.maximum(slope, APART), 0.0, 1.0)
+        s = np.clip(s - (value - rows[0]) / np.maximum(slope, SAME_PLACE), 0.0, 1.0)
     u = np.real(thickness.u(s)).reshape(-1, len(s))
-    same = np.all(np.square(u - rows[0]) < APART**2, axis=0)
+    same = np.all(np.square(u - rows[0]) < SAME_PLACE**2, axis=0)
     return tuple(Joint(float(each), derivatives) for each in s[same])
 
 

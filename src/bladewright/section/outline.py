@@ -106,7 +106,7 @@ class Outline(ABC):
     def derivatives(self, s: Reals, order: int) -> tuple[Array, Array]:
         """Points and derivatives by s (k, 2, order + 1) of both sides of a single section at s (k,) off the breaks.
 
-        Unless a family knows them in closed form, they are those of Chebyshev series on the pieces.
+        Unless a family has them in closed form, they are those of Chebyshev series on the pieces.
         """
         from bladewright.section.chebyshev_pieces import ChebyshevPieces
 

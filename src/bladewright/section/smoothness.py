@@ -15,7 +15,7 @@ from bladewright.nurbs.curve import Curve
 from bladewright.section.outline import Outline
 from bladewright.section.section import Section
 
-BESIDE = 1e-9
+JOINT_OFFSET = 1e-9
 """distance by the parameter of the first place of a piece from its joint: above what joints may be off by [-]"""
 PER_PIECE = 48
 """places on a piece besides those close to its ends: enough for the largest curvature and for plots"""
@@ -133,7 +133,7 @@ class Smoothness:
 
 
 def smoothness(section: Section) -> Smoothness:
-    """The smoothness of a native section, on its exact outline where it knows that, else on its own curves.
+    """The smoothness of a native section, on its exact outline where it has one, else on its own curves.
 
     Lengths are in chords of its plane.
     """
@@ -172,7 +172,7 @@ def _of_curves(section: Section) -> Smoothness:
 def _places(joints: Reals) -> Reals:
     """Parameters on the pieces between joints (j,) in [0, 1], `PER_PIECE` of each and two close to either end."""
     inner = (1.0 - np.cos(np.pi * np.linspace(0.0, 1.0, PER_PIECE + 2)[1:-1])) / 2.0
-    close = BESIDE * np.array([1.0, 2.0])
+    close = JOINT_OFFSET * np.array([1.0, 2.0])
     found = [
         np.concatenate([low + close, low + (high - low) * inner, high - close[::-1]])
         for low, high in pairwise([0.0, *joints, 1.0])

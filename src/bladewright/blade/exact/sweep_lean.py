@@ -4,7 +4,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from bladewright.blade.flow_path.blade_streamlines import BESIDE, BladeStreamlines, blade_streamlines
+from bladewright.blade.flow_path.blade_streamlines import OVERRUN, BladeStreamlines, blade_streamlines
 from bladewright.blade.flow_path.meridional_curve import real_first
 from bladewright.blade.flow_path.stream_surfaces import StreamSurfaces
 from bladewright.numerics.elementary import Array
@@ -71,7 +71,7 @@ def _long_enough(
     if conformal is not None:
         shares.append(real_first(conformal / lines.extents(), 1))
     # where the stream line widens, a length is more of u than its share
-    far = BESIDE + 3.0 * float(sum(np.sqrt(np.max(np.square(each))) for each in shares))
+    far = OVERRUN + 3.0 * float(sum(np.sqrt(np.max(np.square(each))) for each in shares))
     return blade_streamlines(
         surfaces,
         lines.v,

@@ -15,7 +15,7 @@ from bladewright.nurbs.basis import Reals
 
 ROUNDING = 1e-9
 """Share of the stretch by which a section may reach past it, as rounding makes it."""
-BESIDE = 1.0
+OVERRUN = 1.0
 """How far stream lines go on past the edges, in meridional extents of the blade, where the flow path reaches so far.
 A section whose rounded edge stands farther out is refused."""
 
@@ -248,8 +248,8 @@ def blade_streamlines(
     leading: Array,
     trailing: Array,
     *,
-    before: float = BESIDE,
-    after: float = BESIDE,
+    before: float = OVERRUN,
+    after: float = OVERRUN,
 ) -> BladeStreamlines:
     """Stream lines at v (m,) by u, 0 at t = `leading` and 1 at t = `trailing`, (..., m) each, in a plane.
 

@@ -23,7 +23,7 @@ FINEST_NOISE = 1e-6
 """misfit of a given structure, of the chord, below which it cannot be the noise of a measured cloud."""
 SHAPE_CORRELATION = 0.5
 """share of the misfit that neighbours have in common from which it is the shape's, where nothing is asked for."""
-NEAR_ENOUGH = {2: 5e-5, 3: 1e-4}
+ACCEPTED_MISFIT = {2: 5e-5, 3: 1e-4}
 """root mean square misfit, of the chord and by dimension, that is near enough where nothing is asked for: less than a
 blade can be made to."""
 LARGEST_OUTLIER_SHARE = 0.1
@@ -40,7 +40,7 @@ the chord apart; the thinnest example, an impeller, has 1.3 %."""
 FEWEST_POINTS_PER_PARAMETER = 1.5
 """points for each parameter of a blade that it needs where nothing is asked for: a hundred scattered points had passed
 with 88 parameters (design/fit_clouds.md)."""
-BARE_SIDE_SHARE, BETWEEN_EDGES = 0.1, 0.1
+MIN_SIDE_SHARE, BETWEEN_EDGES = 0.1, 0.1
 """share of the points between the edges below which a side is not shown; `BETWEEN_EDGES` is where the edges end, in
 u."""
 
@@ -105,7 +105,7 @@ def _structure_not_met(match: Match, target: MatchTarget) -> str:
         return ""
     rms, noise = match.rms * match.model.chord, match.noise_estimate.noise
     # in axes that were found by a start no structure is met exactly
-    least = NEAR_ENOUGH[_points(match).shape[1]] if target.registered else EXACT_MISFIT
+    least = ACCEPTED_MISFIT[_points(match).shape[1]] if target.registered else EXACT_MISFIT
     if match.rms > least and rms > SYSTEMATIC_OVER_NOISE * noise:
         return (
             f"the misfit of the given structure is {1e3 * rms:.3g} mm rms, and the cloud's noise {1e3 * noise:.3g} mm: "
@@ -161,7 +161,7 @@ def _bare_side(match: Match) -> str:
     shares = {
         name: np.mean(footpoints.side[between] == side) if np.any(between) else 1.0 for side, name in enumerate(SIDES)
     }
-    return next((name for name, share in shares.items() if share < BARE_SIDE_SHARE), "")
+    return next((name for name, share in shares.items() if share < MIN_SIDE_SHARE), "")
 
 
 def _points(match: Match) -> Reals:
@@ -173,7 +173,7 @@ def _gross(distances: Reals, inliers: NDArray[np.bool_], match: Match) -> bool:
 
 
 def _near_enough(match: Match) -> bool:
-    return match.rms <= NEAR_ENOUGH[_points(match).shape[1]]
+    return match.rms <= ACCEPTED_MISFIT[_points(match).shape[1]]
 
 
 def _shape_not_found_message(match: Match) -> str:

@@ -23,7 +23,7 @@ LEAST_CURVATURE = 0.1
 """smallest control point of the second derivative to begin with, of the largest."""
 FREE_PLACES_FROM = 2
 """control points of the second derivative up to which they have no places of their own"""
-BENT_BACK = 0.7
+REFLEX_RATIO = 0.7
 """ratio of a mean line's turning to its total bending below which it clearly bends back."""
 _EVEN = (1.0,) * CURVATURES
 _LAWS = (
@@ -92,7 +92,7 @@ def _curvatures(section: SampledSection, places: Reals) -> Reals:
     even = np.maximum(bends, LEAST_CURVATURE * np.max(bends))
     total = np.trapezoid(bends, places)
     # a line that bends back turns less than it bends
-    back = 0.0 < total < BENT_BACK * np.trapezoid(np.abs(bends), places)
+    back = 0.0 < total < REFLEX_RATIO * np.trapezoid(np.abs(bends), places)
     return np.asarray(bends / np.max(np.abs(bends)) if back else even / np.max(even))
 
 

@@ -30,9 +30,9 @@ GROWN_SPANS: Reals = np.linspace(0.0, 1.0, MOST_SPAN + 1)
 """places along the span at which sections are extended along the chord one by one"""
 PLACES: Reals = (1.0 - np.cos(np.pi * np.linspace(0.0, 1.0, 201))) / 2.0
 """chord fractions of the samples of a section"""
-WORTH_OF_BEST = 0.4
+MIN_GAIN_OF_BEST = 0.4
 """gain for each parameter, of the best, from which a law is extended together with it."""
-AT_ONCE = 4
+MOST_TOGETHER = 4
 """laws that are extended together at most"""
 EXTENSION_ROUNDS = 2
 """rounds of the search after an extension"""
@@ -88,7 +88,7 @@ def extended_blade(
     design: Any = match.design
     taken = 0
     for gain, more, each in ranked[back:]:
-        if taken and (back or gain < WORTH_OF_BEST * ranked[0][0] or taken >= AT_ONCE):
+        if taken and (back or gain < MIN_GAIN_OF_BEST * ranked[0][0] or taken >= MOST_TOGETHER):
             break
         if room is not None and more > room:
             continue

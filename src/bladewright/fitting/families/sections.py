@@ -37,7 +37,7 @@ PROMISING_RATIO = 3.0
 `MOST_SEARCHED` at most."""
 MOST_SEARCHED = 4
 """structures that are searched on after their trials, at most"""
-KNOWN_MISFIT = 1e-9
+IDENTIFIED_MISFIT = 1e-9
 """misfit at which the structure is known, of the chord: no noise is so small."""
 TOLERANCES = (0.0, 1e-8, 1e-6)
 """tolerances of the native sides, of the chord, finest first: the first is taken that the design can be built with."""
@@ -182,7 +182,7 @@ def best_trial(
             or not can_be_built(found, TOLERANCES[-1])
         ):
             found = fresh
-        if found.rms < KNOWN_MISFIT or found.interrupted:
+        if found.rms < IDENTIFIED_MISFIT or found.interrupted:
             break
     assert found is not None  # noqa: S101 - one was tried at least
     return found

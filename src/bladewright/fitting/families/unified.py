@@ -14,8 +14,8 @@ from bladewright.fitting.matching.constrained_least_squares import MIN_REDUCTION
 from bladewright.fitting.matching.scales import check_bounds
 from bladewright.fitting.matching.search import ROUGH_REDUCTION, Match, Task, searched
 from bladewright.fitting.model_selection.adaptation import FINAL_REDUCTION, THOROUGH_POINTS, selected_match
-from bladewright.fitting.model_selection.given_structure import CLEAR_SHARE, has_systematic_misfit
-from bladewright.fitting.model_selection.identification import FEWEST_THICKNESSES, KNOWN_MISFIT, STRAIGHT_CAMBER
+from bladewright.fitting.model_selection.given_structure import THOROUGH_NOISE_SHARE, has_systematic_misfit
+from bladewright.fitting.model_selection.identification import FEWEST_THICKNESSES, IDENTIFIED_MISFIT, STRAIGHT_CAMBER
 from bladewright.fitting.model_selection.reshaping import reshaped, with_feasible_edges
 from bladewright.fitting.model_selection.stopping import MatchTarget
 from bladewright.fitting.model_selection.structure import (
@@ -62,7 +62,7 @@ def matched_unified(
         base = wanted or initial_structure(task.dimension, target.parameters)
     try:
         found, reason = selected_match(task, first, target, base=base, guessed=start is None)
-        if keeps_structure and found.rms > KNOWN_MISFIT and has_systematic_misfit(found, CLEAR_SHARE):
+        if keeps_structure and found.rms > IDENTIFIED_MISFIT and has_systematic_misfit(found, THOROUGH_NOISE_SHARE):
             # a first design with freer laws leads to another minimum of the same structure
             freer = _with_held_values(
                 task, _first_design(task, first_blade_structure(None), like, header), started=False
@@ -107,7 +107,7 @@ def _buildable(task: Task, match: Match, *, fewer: bool) -> tuple[Match, Any, st
     refusal = ""
     for margin_factor in (0.0, 1.0, 30.0, 1000.0):
         if margin_factor:
-            min_reduction = FINAL_REDUCTION if match.rms > KNOWN_MISFIT else MIN_REDUCTION
+            min_reduction = FINAL_REDUCTION if match.rms > IDENTIFIED_MISFIT else MIN_REDUCTION
             match = searched(
                 replace(task, margin_factor=margin_factor), match.design, rounds=2, min_reduction=min_reduction
             )

@@ -138,7 +138,7 @@ def _as_channel(channel: RoughChannel, metre: float) -> Channel:
 
 DRAWN_POINTS = 1200
 """points that a first blade is drawn through; it bounds the time."""
-GOOD_DISTANCE = 4e-3
+SETTLING_DISTANCE = 4e-3
 """mean distance, of the chord, with which no other outline is tried."""
 
 
@@ -179,7 +179,7 @@ def first_blade(
         away += 0.004 * tamings * found.unwrapped.chord
         if best is None or away < best[0]:
             best = away, design
-        if best[0] < GOOD_DISTANCE * found.unwrapped.chord:
+        if best[0] < SETTLING_DISTANCE * found.unwrapped.chord:
             break
     if best is None:
         raise refusal

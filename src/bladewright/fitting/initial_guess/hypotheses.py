@@ -20,8 +20,8 @@ DECIDING_POINTS = 450
 """points by which outlines are compared; it bounds the time."""
 MOST_CURVE_POINTS = 5
 """control points of a piece of the outline at most"""
-BESIDE_SHARE, BESIDE_POINTS, CORNER_MARGIN = 0.06, 24, 0.12
-"""share of the points (and at least `BESIDE_POINTS`) beside a piece of the outline that show whether the sides meet
+BORDER_SHARE, BORDER_POINTS, CORNER_MARGIN = 0.06, 24, 0.12
+"""share of the points (and at least `BORDER_POINTS`) beside a piece of the outline that show whether the sides meet
 there; they keep clear of its ends by `CORNER_MARGIN` of it."""
 WALL_OPENING_RATIO = 1.4
 """ratio of the openings from which two opposite pieces are the walls."""
@@ -101,8 +101,8 @@ def _opening(machine: Reals, piece: Reals, *, revolved: bool) -> float | None:
     away, index = cKDTree(line).query(machine[:, :2])
     along = t[index]
     beside = np.flatnonzero((along > CORNER_MARGIN) & (along < 1.0 - CORNER_MARGIN))
-    beside = beside[np.argsort(away[beside])[: max(BESIDE_POINTS, int(BESIDE_SHARE * len(machine)))]]
-    if len(beside) < BESIDE_POINTS:
+    beside = beside[np.argsort(away[beside])[: max(BORDER_POINTS, int(BORDER_SHARE * len(machine)))]]
+    if len(beside) < BORDER_POINTS:
         return None
     across = machine[beside, 2] * (machine[beside, 1] if revolved else 1.0)
     depth = away[beside] / max(float(np.max(away[beside])), 1e-300)

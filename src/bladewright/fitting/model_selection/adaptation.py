@@ -13,8 +13,8 @@ from bladewright.fitting.matching.search import MOST_ROUNDS, ROUGH_REDUCTION, Ma
 from bladewright.fitting.model_selection.best_structure import best_match_of_size, smallest_match
 from bladewright.fitting.model_selection.given_structure import (
     GUESS_NOISE,
+    QUICK_NOISE_SHARE,
     QUICK_ROUNDS,
-    QUIET_SHARE,
     has_systematic_misfit,
     matched_structure,
     reduced_to,
@@ -82,7 +82,7 @@ def selected_match(
         min_reduction=ROUGH_REDUCTION,
     )
     exact = guessed and target.open and not is_rounded(task.points)
-    if exact and isinstance(first, UnifiedSection) and has_systematic_misfit(found, QUIET_SHARE):
+    if exact and isinstance(first, UnifiedSection) and has_systematic_misfit(found, QUICK_NOISE_SHARE):
         known = identified_section(few, first)
         if known is not None:
             return (known if known.interrupted else searched(many, known.design)), ""

@@ -19,7 +19,7 @@ from bladewright.fitting.model_selection.steps import (
 from bladewright.fitting.model_selection.structure import Structure, structure_of
 from bladewright.nurbs.basis import Reals
 
-SHARE_AT_ONCE = 4
+SURPLUS_DIVISOR = 4
 """one in so many of the surplus parameters is removed at a time."""
 EXCHANGES, EXCHANGES_TRIED = 6, 3
 """exchanges of control points at most, with `EXCHANGES_TRIED` laws tried each time."""
@@ -109,7 +109,7 @@ def _reduced(forecast: Forecast, structure: Structure, most: int, roots: Reals |
         costs = forecast.costs(structure, [(step.law, step.structure) for step in steps], roots)
         order = sorted(zip(costs, steps, strict=True), key=lambda pair: (pair[0] - now.cost) / pair[1].parameters)
         taken: list[StructureStep] = []
-        left = max(1, over // SHARE_AT_ONCE)
+        left = max(1, over // SURPLUS_DIVISOR)
         for _, step in order:
             if not taken or (step.parameters <= left and step.law not in {each.law for each in taken}):
                 taken.append(step)
@@ -127,7 +127,7 @@ def _extended(forecast: Forecast, structure: Structure, most: int, roots: Reals 
         if not fitting or fitting[0][0] <= 0.0:
             return structure
         structure = union_of(
-            structure, steps_taken_together(fitting, max(fitting[0][1].parameters, room // SHARE_AT_ONCE))
+            structure, steps_taken_together(fitting, max(fitting[0][1].parameters, room // SURPLUS_DIVISOR))
         )
 
 

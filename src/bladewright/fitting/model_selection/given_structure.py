@@ -9,7 +9,7 @@ from bladewright.designs import Design
 from bladewright.errors import FitError
 from bladewright.fitting.clouds.thinning import random_subset
 from bladewright.fitting.matching.search import MOST_ROUNDS, ROUGH_REDUCTION, Match, Task, searched
-from bladewright.fitting.model_selection.identification import KNOWN_MISFIT, nearest_trial
+from bladewright.fitting.model_selection.identification import IDENTIFIED_MISFIT, nearest_trial
 from bladewright.fitting.model_selection.reshaping import reshaped
 from bladewright.fitting.model_selection.stopping import NOISE_CORRELATION
 from bladewright.fitting.model_selection.structure import Structure, structure_of
@@ -21,9 +21,10 @@ QUICK_ROUNDS = 2
 """rounds of a first search"""
 WEAK_REGULARISATION = 0.1
 """factor of the regularisation where a match is only improved."""
-QUIET_SHARE, CLEAR_SHARE = 0.1, 0.5
-"""share of the misfit that is noise up to which a cloud may be exact, after a quick search (`QUIET_SHARE`) and after a
-thorough one (`CLEAR_SHARE`). In noisier clouds no exact design is searched, which saves time (design/fit_made.md)."""
+QUICK_NOISE_SHARE, THOROUGH_NOISE_SHARE = 0.1, 0.5
+"""share of the misfit that is noise up to which a cloud may be exact, after a quick search (`QUICK_NOISE_SHARE`) and
+after a thorough one (`THOROUGH_NOISE_SHARE`). In noisier clouds no exact design is searched, which saves time
+(design/fit_made.md)."""
 EXACT_TURNS, EXACT_GAIN = 3, 0.5
 """turns in which an exact design is sought; `EXACT_GAIN` is the ratio of the misfits of two searches from which there
 is another turn."""
@@ -45,7 +46,7 @@ def matched_structure(few: Task, many: Task, first: Design, base: Structure | No
     found = searched(
         few, first, noise=GUESS_NOISE if guessed else None, rounds=MOST_ROUNDS if base is None else QUICK_ROUNDS
     )
-    if guessed and isinstance(first, UnifiedSection) and found.rms > KNOWN_MISFIT and has_systematic_misfit(found):
+    if guessed and isinstance(first, UnifiedSection) and found.rms > IDENTIFIED_MISFIT and has_systematic_misfit(found):
         other = nearest_trial(few, first, [structure_of(first)])
         if other is not None:
             nearer = min((found, other), key=lambda each: each.rms)
@@ -55,10 +56,10 @@ def matched_structure(few: Task, many: Task, first: Design, base: Structure | No
     if found.interrupted:
         return found
     found = searched(many, found.design) if base is None or not guessed else _exact_or_nearest(many, found)
-    if found.rms < KNOWN_MISFIT and not np.all(found.noise_estimate.inliers) and not found.interrupted:
+    if found.rms < IDENTIFIED_MISFIT and not np.all(found.noise_estimate.inliers) and not found.interrupted:
         # points past the ends of an exact match are no outliers if it can be extended to hold them too
         whole = searched(replace(many, allow_outliers=False), found.design)
-        found = whole if whole.rms < KNOWN_MISFIT else found
+        found = whole if whole.rms < IDENTIFIED_MISFIT else found
     return _weakly_regularised(many, found)
 
 
@@ -67,10 +68,10 @@ def _exact_or_nearest(task: Task, match: Match) -> Match:
 
     Where one search stands still the other may go on: a wrong footpoint stops the first, a short edge the second.
     """
-    most = QUIET_SHARE
+    most = QUICK_NOISE_SHARE
     for _ in range(EXACT_TURNS):
         exact = _exact_match(task, match, most)
-        if exact is not None and (exact.rms < KNOWN_MISFIT or exact.interrupted):
+        if exact is not None and (exact.rms < IDENTIFIED_MISFIT or exact.interrupted):
             return exact
         before = np.inf if exact is None else exact.rms
         start = exact or match
@@ -78,12 +79,12 @@ def _exact_or_nearest(task: Task, match: Match) -> Match:
         match = replace(match, evaluations=start.evaluations + match.evaluations)
         if (
             match.interrupted
-            or match.rms < KNOWN_MISFIT
+            or match.rms < IDENTIFIED_MISFIT
             or match.rms > EXACT_GAIN * before
-            or (exact is None and most > QUIET_SHARE)
+            or (exact is None and most > QUICK_NOISE_SHARE)
         ):
             break
-        most = CLEAR_SHARE
+        most = THOROUGH_NOISE_SHARE
     return match
 
 

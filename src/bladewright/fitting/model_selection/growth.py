@@ -79,7 +79,7 @@ THICKNESS_GROWTHS = 3
 """times that both thicknesses grow before this is given up"""
 NEARER_RATIO = 0.9
 """ratio of distances below which a trial is taken"""
-NEAR_ENOUGH = {2: FAR_SECTION, 3: 1e-3}
+STOPPING_DISTANCE = {2: FAR_SECTION, 3: 1e-3}
 """root mean square distance, of the chord and by dimension, below which a match is near enough to stop at little
 gain."""
 LITTLE_GAIN = {2: 0.75, 3: 0.9}
@@ -120,7 +120,7 @@ def with_grown_thickness(task: Task, match: Match, target: MatchTarget) -> tuple
 def gained_little(task: Task, match: Match, target: MatchTarget, before: float) -> bool:
     """Whether a match is near enough, and growth from a distance `before`, of the chord, gained little."""
     dimension = task.dimension
-    return target.open and LITTLE_GAIN[dimension] * before < match.rms < NEAR_ENOUGH[dimension]
+    return target.open and LITTLE_GAIN[dimension] * before < match.rms < STOPPING_DISTANCE[dimension]
 
 
 WORTHWHILE_GAIN = 0.02

@@ -58,7 +58,7 @@ TRIAL_ROUNDS, FURTHER_ROUNDS = 6, 10
 """rounds of every trial, and of one that gets near (`FURTHER_ROUNDS`)"""
 PROMISING_MISFIT = 3e-6
 """misfit from which a trial goes on, of the chord"""
-KNOWN_MISFIT = 1e-9
+IDENTIFIED_MISFIT = 1e-9
 """misfit at which the section is known, of the chord. A limit of 1e-10 would have refused sections that are found
 within 1e-9 (design/fit_made.md)."""
 SAME_THICKNESS = 1e-6
@@ -70,7 +70,7 @@ def identified_section(task: Task, first: UnifiedSection) -> Match | None:
     structure = structure_of(first)
     structures = [replace(structure, chordwise=counts) for counts in TRIAL_COUNTS]
     found = nearest_trial(task, first, structures)
-    if found is None or not (found.rms < KNOWN_MISFIT or found.interrupted):
+    if found is None or not (found.rms < IDENTIFIED_MISFIT or found.interrupted):
         return None
     plain = plainest(found.design)
     return found if plain is found.design or found.interrupted else searched(task, plain, rounds=FURTHER_ROUNDS)
@@ -84,7 +84,7 @@ def nearest_trial(task: Task, first: UnifiedSection, structures: Sequence[Struct
     for bounded, start in _starts(few, first, structures):
         try:
             found = searched(bounded, start, noise=TRIAL_NOISE, rounds=TRIAL_ROUNDS)
-            if KNOWN_MISFIT < found.rms < PROMISING_MISFIT and not found.interrupted:
+            if IDENTIFIED_MISFIT < found.rms < PROMISING_MISFIT and not found.interrupted:
                 found = searched(replace(few, allow_outliers=False), found.design, rounds=FURTHER_ROUNDS)
         except FitError:
             continue
@@ -93,7 +93,7 @@ def nearest_trial(task: Task, first: UnifiedSection, structures: Sequence[Struct
             best = found
         if found.interrupted:
             best = replace(best, interrupted=True)
-        if best.rms < KNOWN_MISFIT or best.interrupted:
+        if best.rms < IDENTIFIED_MISFIT or best.interrupted:
             break
     return None if best is None else replace(best, evaluations=evaluations)
 

@@ -124,8 +124,8 @@ def curve_of(points: Points, count: int, highest: int) -> Points:
     return tuple(Point(float(x), float(r)) for x, r in full)
 
 
-THINNER_EDGES, THINNINGS = 0.7, 12
-"""ratio by which the thickness beside the edges is reduced at a time, `THINNINGS` times at most."""
+THINNER_EDGES, MOST_THINNINGS = 0.7, 12
+"""ratio by which the thickness beside the edges is reduced at a time, `MOST_THINNINGS` times at most."""
 
 
 def with_feasible_edges(design: Design) -> Design:
@@ -135,7 +135,7 @@ def with_feasible_edges(design: Design) -> Design:
     """
     if not isinstance(design, UnifiedSection | UnifiedBlade):
         return design
-    for _ in range(THINNINGS):
+    for _ in range(MOST_THINNINGS):
         if _has_shape(design):
             break
         values = design.parameters()

@@ -19,7 +19,7 @@ from bladewright.section.unified_limits import THICKNESSES
 WEIGHT_RANGE = (0.1, 10.0)
 """least and largest weight of a point by its distance, where a tolerance is to be met: wider ranges leave all but the
 worst points out of account."""
-WORTH_OF_BEST = 0.4
+MIN_GAIN_OF_BEST = 0.4
 """gain for each parameter, of the best, from which a law grows together with it."""
 QUARTER_STEPS_FROM = 8
 """control points along the chord from which a thickness grows by a quarter at a time."""
@@ -220,7 +220,7 @@ def steps_taken_together(
     left = np.inf if most is None else most
     for gain, step in ranked:
         added = sum(each.parameters for each in taken)
-        worth = not taken or gain / step.parameters >= WORTH_OF_BEST * best or (added < least and gain > 0.0)
+        worth = not taken or gain / step.parameters >= MIN_GAIN_OF_BEST * best or (added < least and gain > 0.0)
         if step.parameters <= left and worth:
             taken.append(step)
             left -= step.parameters

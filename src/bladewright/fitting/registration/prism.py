@@ -21,9 +21,9 @@ CURVE_NEIGHBOURS = 60
 """points of the projection that a piece of the curve is laid through"""
 SECTION_CELLS = 40
 """cells of the section's extent, in each of which the last point is taken"""
-BENT_RATIO, BENT_SHARE = 3.0, 2e-4
-"""an end bends where a plane misses it by this many times what a parabola leaves, and by more than `BENT_SHARE` of the
-extent."""
+CURVED_END_RATIO, CURVED_END_SHARE = 3.0, 2e-4
+"""an end bends where a plane misses it by this many times what a parabola leaves, and by more than
+`CURVED_END_SHARE` of the extent."""
 PRISM_STEPS = 12
 """steps of the least squares at most"""
 
@@ -105,7 +105,7 @@ def flat_ends(cloud: Reals, direction: Reals) -> bool:
                 off = np.abs(level - design @ plane)
                 weight = tukey_weights(off, max(7.0 * float(np.median(off)), 1e-12))
             left.append(float(np.median(off)))
-        if left[0] > BENT_RATIO * left[1] and left[0] > BENT_SHARE:
+        if left[0] > CURVED_END_RATIO * left[1] and left[0] > CURVED_END_SHARE:
             return False
     return True
 

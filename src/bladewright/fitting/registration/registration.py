@@ -23,7 +23,7 @@ DECIDING_POINTS = 3_000
 """points whose true distances decide"""
 SEARCH_POINTS = 600
 """points whose true distances choose among the motions of the global search"""
-GOOD_DISTANCE = 2e-3
+ALL_TURNS_DISTANCE = 2e-3
 """systematic distance, of the chord, above which all turns are tried."""
 OTHER_BLADE_DISTANCE = 5e-3
 """systematic distance, of the chord, above which the cloud is of another blade."""
@@ -137,7 +137,7 @@ def _reported(cloud: Reals, target: RegistrationTarget, descent: RobustMotion) -
 
 
 def _is_good(points: Reals, descent: RobustMotion, target: RegistrationTarget) -> bool:
-    return _systematic(points, descent) < GOOD_DISTANCE * target.chord and _share(descent) > LEAST_SHARE
+    return _systematic(points, descent) < ALL_TURNS_DISTANCE * target.chord and _share(descent) > LEAST_SHARE
 
 
 def _share(descent: RobustMotion) -> float:

@@ -23,9 +23,9 @@ parameter [-]"""
 NOSE_SPEED = 0.75
 """speed by s at the nose, of the mean around the edge: below 1 so that the speed grows towards the long side arc [-]"""
 RADIUS = (0.0, 0.1, "an edge radius must be above 0 and below 0.1 chords; leave it out for a sharp edge")
-"""limits of an edge radius [chords], both excluded, and what is said beyond them"""
+"""limits of an edge radius [chords], both excluded, and the cure that a refusal names"""
 CAMBER = (-120.0, 120.0, "the camber angle must lie between -120 and 120 deg")
-"""limits of the camber angle [deg], both excluded, and what is said beyond them"""
+"""limits of the camber angle [deg], both excluded, and the cure that a refusal names"""
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -97,7 +97,7 @@ class ProfileMeanLine(ABC):
 
     @abstractmethod
     def ordinate(self, x: Series, aft: NDArray[np.bool_]) -> Series:
-        """y at x (..., k); `aft` (k,) says which lie behind the joint."""
+        """y at x (..., k); `aft` (k,) marks those behind the joint."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -192,7 +192,7 @@ class MeanLineOutline(Outline):
 
     @property
     def trailing_edge(self) -> Edge:
-        """Sharp, blunt or round, as the design says."""
+        """Sharp, blunt or round, as in the design."""
         return self._edge(1.0, self.end)
 
     @property

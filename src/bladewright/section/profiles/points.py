@@ -18,7 +18,7 @@ from bladewright.section.profiles.profile import Profile
 from bladewright.section.profiles.quintic_spline import DEGREE
 
 MIN_POINTS = 8
-"""fewest points of a contour: six for a quintic spline, and two more that its edges can be told from its sides"""
+"""fewest points of a contour: six for a quintic spline, and two more to distinguish its edges from its sides"""
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -20,7 +20,8 @@ MIN_CORNER_TURNING = 30.0
 """turning of a contour's polygon from which a point may be a corner: a smooth nose of six points or more turns by less
 at each [deg]"""
 MAX_NEIGHBOUR_TURNING = 0.1
-"""largest turning at the neighbours of a corner, of the corner's own: on a round nose neighbours turn alike [-]"""
+"""largest turning at the neighbours of a corner, of the corner's own: on a round nose neighbours turn as much
+[-]"""
 EDGE_SPEED = 0.5
 """speed of the spline's parameter by s at the edges, of the mean of both sides: half of it, because the curvature is
 largest there [-]"""
@@ -32,10 +33,11 @@ CAMBER = 6
 """degree of the camber line less two: for an oval two degrees more come nearer to the middle of the sides by a sixth
 (design/section_constants.py), and leave the line less smooth for the passage's boundaries"""
 MIDDLE = (0.15, 0.85)
-"""s between which the camber line is fitted to the middle of the sides, which says nothing near a round edge [-]"""
+"""s between which the camber line is fitted to the middle of the sides, which is no camber line near a
+round edge [-]"""
 MIDDLES = 43
 """places at which it is fitted, six for each coefficient"""
-APART = 1e-9
+SAME_PLACE = 1e-9
 """difference by s below which a joint is at the same place in all sections: above rounding of a root [-]"""
 Indices = NDArray[np.intp]
 Kind = Literal["round", "sharp", "blunt"]
@@ -214,7 +216,7 @@ class PointsOutline(Outline):
             rows.append(2.0 * (2.0 * x - 1.0) * rows[-1] - rows[-2])
         matrix = np.stack(rows, axis=-1)
         turned = np.swapaxes(matrix, -1, -2)
-        # the normal equations stay analytic, and so few polynomials are well apart
+        # the normal equations stay analytic, and with so few polynomials they are well conditioned
         return np.linalg.solve(turned @ matrix, turned @ middle[..., 1:])[..., 0]
 
     @cached_property
@@ -323,7 +325,7 @@ class PointsOutline(Outline):
 
         s = bracketed_root(difference, np.zeros(places.shape), np.ones(places.shape))
         rows = s.reshape(-1, s.shape[-1])
-        return [Joint(float(row[0]), 4) for row in rows.T if np.ptp(row) <= APART]
+        return [Joint(float(row[0]), 4) for row in rows.T if np.ptp(row) <= SAME_PLACE]
 
     def _edge(self, s: float, end: int) -> Edge:
         upper, lower = (EdgeDerivatives.of_side(side) for side in self.derivatives(np.array([s]), 2))

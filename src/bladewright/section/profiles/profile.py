@@ -20,7 +20,7 @@ from bladewright.section.profiles.mean_line import TrailingEdge
 POWER = 8
 """power of sqrt(x) whose coefficient closes or opens the trailing edge: x^4, which hardly touches the front half"""
 THICKNESS = (0.0, 0.4, "thickness must be above 0 and below 0.4 chords")
-"""limits of the maximum thickness [chords], both excluded, and what is said beyond them"""
+"""limits of the maximum thickness [chords], both excluded, and the cure that a refusal names"""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -28,7 +28,7 @@ class Profile(SectionFamily, ABC):
     """Base of the kinds of profiles: each is one final class with a `kind` by which design files choose it."""
 
     LIMITS: ClassVar[dict[str, tuple[float, float, str]]] = {}
-    """lowest and highest value of each law, both excluded, and what to say of one that is not between"""
+    """lowest and highest value of each law, both excluded, and the cure that a refusal names"""
 
     stagger_angle: Law = parameter("deg", default=0.0)
     """angle of the chord line [deg]"""

@@ -21,8 +21,8 @@ RANGES = {
     "skew": (-1.0, 1.0, False, "a skewness must lie between -1 and 1, or an edge loses one of its halves"),
     "wedge": (0.0, 90.0, True, "a wedge angle must lie from 0 to 90 deg"),
 }
-"""limits of each number of an edge, whether they are allowed themselves, and what is said beyond them: radius [chords],
-stretch [-], skew [-], wedge [deg]"""
+"""limits of each number of an edge, whether the limits are allowed themselves, and the cure that a refusal names:
+radius [chords], stretch [-], skew [-], wedge [deg]"""
 TANGENTS = ("suction_tangent_in", "suction_tangent_out", "pressure_tangent_in", "pressure_tangent_out")
 POINTS = ("suction_heights", "suction_places", "pressure_heights", "pressure_thickness", "pressure_places")
 CHECKED_AT = np.linspace(0.0, 1.0, 65)

@@ -30,7 +30,7 @@ class SideEnd:
     slope: Array
     """(...) first derivative of the side's own parameter by the section's at the corner, in fractions of the span"""
     rise: Array
-    """(...) second derivative likewise"""
+    """(...) its second derivative there, in the same units"""
     bend: Array
     """(..., 2) curvature vector times the edge's speed squared"""
 

@@ -2,8 +2,8 @@
 
 A law is a part of a design; `at(span)` takes it at places along the span and gives a `Thickness`, which many sections
 share: arrays (..., m, k), leading batch axes before the m places along the span, k places along the chord. Those are
-given by the parameter s of the outline; how u(s) is chosen so that each law's joints stand at fixed s says
-`bladewright.section.thickness.piecewise`.
+given by the parameter s of the outline; `bladewright.section.chord_map` chooses u(s) so that each law's joints are at
+fixed s.
 """
 
 from __future__ import annotations
@@ -59,7 +59,7 @@ class Thickness(ABC):
     def with_breakpoints(self, further: Sequence[Breakpoint]) -> Thickness:
         """The same thickness with further joints at fixed s, those of a meanline.
 
-        Raises DesignError for a thickness in one piece, and ValueError where the breakpoints do not stand in the order
+        Raises DesignError for a thickness in one piece, and ValueError where the breakpoints are not in the order
         of their fixed coordinates in every section.
         """
 
@@ -120,5 +120,5 @@ def same_law(first: Law | None, second: Law | None) -> bool:
 
 
 def leaves_of(law: Law | None) -> tuple[Any, ...]:
-    """The numbers of a law, none of none."""
+    """The numbers of a law; none where there is no law."""
     return () if law is None else law_points(law)

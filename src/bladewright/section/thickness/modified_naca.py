@@ -37,7 +37,7 @@ AT_MAXIMUM = 0.4
 """sigma of the place of the maximum in the map u(s): its chord fraction in a usual blade, where the map is then the
 identity"""
 AT_TRAILING_EDGE = 0.99
-"""sigma of the place where the trailing edge's circle begins, chosen likewise [-]"""
+"""sigma of the place where the trailing edge's circle begins: its chord fraction in a usual blade [-]"""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -45,7 +45,7 @@ class ModifiedNaca(ThicknessLaw):
     """Modified NACA four-digit thickness: thicknesses are full ones, in chords."""
 
     law: Literal["modified-naca"] = "modified-naca"
-    """tells this law from the others"""
+    """which thickness law this is"""
     leading_edge_index: Law = parameter("-", default=6.0)
     """radius of the leading edge: 1.1019 (maximum_thickness index / 6)^2 chords [-]"""
     maximum_thickness: Law = parameter("-")

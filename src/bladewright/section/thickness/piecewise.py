@@ -22,7 +22,7 @@ own"""
 
 
 class PiecewiseThickness(Thickness):
-    """One formula a piece, between the breaks of the chord_map."""
+    """One formula for each piece between the breaks of the chord map."""
 
     def __init__(
         self, chord_map: ChordMap, pieces: Sequence[Formula], *, leading: EdgeKind, trailing: EdgeKind
@@ -71,7 +71,7 @@ class PiecewiseThickness(Thickness):
 
 
 def _anywhere(formula: Formula, *, front: bool, rear: bool) -> Formula:
-    """A formula also in a part of its piece that no longer reaches the edge in front or behind whose root it takes."""
+    """A formula for a part of its piece that no longer touches the edge: it takes the root of the distance itself."""
 
     def half(place: ChordPlace) -> Series:
         place = place._replace(root=place.u.sqrt()) if front else place

@@ -135,7 +135,7 @@ class QuarticSpline(ThicknessLaw):
     """
 
     law: Literal["quartic-spline"] = "quartic-spline"
-    """tells this law from the others"""
+    """which thickness law this is"""
     maximum_thickness: Law = parameter("-")
     """thickness at its maximum, of the chord [-]"""
     maximum_thickness_at: Law = parameter("-")

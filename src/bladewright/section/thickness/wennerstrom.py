@@ -32,9 +32,9 @@ AT_LEADING_EDGE = 0.02
 """sigma of the end of the leading edge's ellipse in the map u(s): its chord fraction in a usual blade, where the map is
 then the identity"""
 AT_MAXIMUM = 0.4
-"""sigma of the place of the maximum, chosen likewise"""
+"""sigma of the place of the maximum: its chord fraction in a usual blade"""
 AT_TRAILING_EDGE = 0.99
-"""sigma of the start of the trailing edge's ellipse, chosen likewise"""
+"""sigma of the start of the trailing edge's ellipse: its chord fraction in a usual blade"""
 RATIOS = {"leading_edge": 2.5, "trailing_edge": 1.0}
 """axis along the chord over axis across of elliptic edges where the design gives none: those of T-Blade3 [-]"""
 
@@ -58,7 +58,7 @@ class Wennerstrom(ThicknessLaw):
     """
 
     law: Literal["wennerstrom"] = "wennerstrom"
-    """tells this law from the others"""
+    """which thickness law this is"""
     maximum_thickness: Law = parameter("-")
     """thickness at its maximum, of the chord [-]"""
     maximum_thickness_at: Law = parameter("-")
