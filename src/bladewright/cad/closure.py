@@ -78,13 +78,13 @@ def closure(shape: TopoDS_Shape) -> Closure:
         forward, backward = coedges.get(index, (0, 0))
         free += forward + backward < 2
         non_manifold += forward + backward > 2 or (forward + backward == 2 and forward != backward)
-        beside = [TopoDS.Face_s(face) for face in owners.FindFromIndex(index)]
+        neighbours = [TopoDS.Face_s(face) for face in owners.FindFromIndex(index)]
         properties = GProp_GProps()
         BRepGProp.LinearProperties_s(edge, properties)
-        distances = _distances(edge, beside)
+        distances = _distances(edge, neighbours)
         edges.append(
             MeasuredEdge(
-                faces=tuple(k for k, face in enumerate(faces) if any(face.IsSame(own) for own in beside)),
+                faces=tuple(k for k, face in enumerate(faces) if any(face.IsSame(own) for own in neighbours)),
                 length=properties.Mass(),
                 gap=float(distances.max()),
                 mean_gap=float(distances.mean()),
@@ -124,10 +124,10 @@ def _coedge_counts(shape: TopoDS_Shape) -> dict[int, tuple[int, int]]:
     return counts
 
 
-def _distances(edge: TopoDS_Edge, beside: list[TopoDS_Face]) -> Array:
+def _distances(edge: TopoDS_Edge, neighbours: list[TopoDS_Face]) -> Array:
     """(POINTS_PER_EDGE,) [mm] Largest distance at equal parameters between the edge's curve and those on its faces."""
     own = BRepAdaptor_Curve(edge)
-    curves = [own, *(BRepAdaptor_Curve(edge, face) for face in beside)]
+    curves = [own, *(BRepAdaptor_Curve(edge, face) for face in neighbours)]
     parameters = np.linspace(own.FirstParameter(), own.LastParameter(), POINTS_PER_EDGE).tolist()
     traces = [np.array([curve.Value(place).Coord() for place in parameters]) for curve in curves]
     squares = [np.zeros(POINTS_PER_EDGE)]

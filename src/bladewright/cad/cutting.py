@@ -150,16 +150,16 @@ def write_cut(cut: CutPassage, path: str | os.PathLike[str], *, schema: Schema =
         opened = read_cad_file(path)
         closed = closure(opened.shape)
         volume = _volume(opened.shape, QUADRATURE[-1])[0]
-        off = abs(volume / MM**3 / cut.properties.volume - 1.0)
+        error = abs(volume / MM**3 / cut.properties.volume - 1.0)
     if (
         sorted(opened.names.values()) != sorted(cut.body.faces)
         or not closed.valid
         or closed.free_edges
-        or off > VOLUME_TOLERANCE
+        or error > VOLUME_TOLERANCE
     ):
         raise CadError(
             f"{path} came back with {len(opened.names)} of {len(cut.body.faces)} names, {closed.free_edges} free edges "
-            f"and a volume off by {off:.2g}: at most {VOLUME_TOLERANCE:g} is allowed; write the passage of untrimmed "
+            f"and a volume off by {error:.2g}: at most {VOLUME_TOLERANCE:g} is allowed; write the passage of untrimmed "
             "patches instead"
         )
 

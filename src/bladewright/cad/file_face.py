@@ -72,17 +72,17 @@ def file_face(face: TopoDS_Face) -> FileFace:
     else:
         u_low, u_high, v_low, v_high = geometry.Bounds()
         bounds = (np.array([u_low, v_low]), np.array([u_high, v_high]))
-    reach = 0.05 * (high - low)
+    margin = 0.05 * (high - low)
     if turned < 0.0:
         # a loop that runs clockwise keeps the outside of what it encloses, up to the bounds of the surface
         low, high = np.maximum(bounds[0], low - 10.0 * (high - low)), np.minimum(bounds[1], high + 10.0 * (high - low))
         evaluator = occ_evaluator(geometry, low, high)
         loops = (*loops, _frame(low, high))
     elif not evaluator.period:
-        low, high = np.maximum(bounds[0], low - reach), np.minimum(bounds[1], high + reach)
+        low, high = np.maximum(bounds[0], low - margin), np.minimum(bounds[1], high + margin)
     else:
-        low = np.array([low[0] - reach[0], max(bounds[0][1], low[1] - reach[1])])
-        high = np.array([high[0] + reach[0], min(bounds[1][1], high[1] + reach[1])])
+        low = np.array([low[0] - margin[0], max(bounds[0][1], low[1] - margin[1])])
+        high = np.array([high[0] + margin[0], min(bounds[1][1], high[1] + margin[1])])
     properties = GProp_GProps()
     BRepGProp.SurfaceProperties_s(face, properties, AREA_ERROR)
     region = Region(evaluator=evaluator, loops=loops, low=low, high=high)

@@ -187,11 +187,11 @@ def _add_trimmed_boundary(
     for curve, coedges in edge_curves:
         first, middle, last = curve(curve.knots[0] + np.array([0.0, 0.5, 1.0]) * (curve.knots[-1] - curve.knots[0]))
         # edge and boundary have different parameters, so that distances are measured to the boundary as a polyline
-        off = _to_polyline(middle, trace)
+        distance = _to_polyline(middle, trace)
         for start, end in ((first, last), (last, first)):
-            nearest = min(nearest, max(_distance(trace[0], start), _distance(trace[-1], end), off[0]))
-        if max(off[0], *(_to_polyline(end, trace)[0] for end in (first, last))) <= tolerance:
-            found.append((off[1], coedges, first, last))
+            nearest = min(nearest, max(_distance(trace[0], start), _distance(trace[-1], end), distance[0]))
+        if max(distance[0], *(_to_polyline(end, trace)[0] for end in (first, last))) <= tolerance:
+            found.append((distance[1], coedges, first, last))
     place, reached = trace[0], boundary.knots[0]
     for at, coedges, first, last in sorted(found, key=lambda each: each[0]):
         along = _distance(place, first) <= _distance(place, last)

@@ -135,8 +135,8 @@ class _FileComparison:
             middle = whole.CentreOfMass()
             centroid = np.array([middle.X(), middle.Y(), middle.Z()])
             volume = Comparison(cad=whole.Mass(), native=native[0])
-            off = float(np.linalg.norm(centroid - native[1])) / (extent(self.built) * MM)
-            if max(volume.relative_error, off) < SAFE_SHARE * self.limits["volume"]:
+            distance = float(np.linalg.norm(centroid - native[1])) / (extent(self.built) * MM)
+            if max(volume.relative_error, distance) < SAFE_SHARE * self.limits["volume"]:
                 break
         return volume, (centroid, native[1])
 

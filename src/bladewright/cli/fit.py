@@ -271,5 +271,5 @@ def _fixed_parameters(
     from bladewright.derivatives.patterns import chosen
 
     values: dict[str, Any] = start.parameters()
-    held = {path: float(values[path]) for path in chosen(start, bare)} if bare else {}
-    return held | {path: value for path, value in given.items() if value is not None}
+    fixed = {path: float(values[path]) for path in chosen(start, bare)} if bare else {}
+    return fixed | {path: value for path, value in given.items() if value is not None}

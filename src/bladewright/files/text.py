@@ -36,8 +36,8 @@ def read_text(path: Path) -> str:
     except (OSError, ValueError) as error:
         raise FileError(f"'{path}' cannot be read: {_reason(error)}") from error
     if max(size, len(data)) > LARGEST:
-        held = f"holds {size:,} bytes" if size > LARGEST else "does not end"
-        raise FileError(f"'{path}' {held}: at most {LARGEST:,} bytes are read; is it a design file?")
+        problem = f"holds {size:,} bytes" if size > LARGEST else "does not end"
+        raise FileError(f"'{path}' {problem}: at most {LARGEST:,} bytes are read; is it a design file?")
     return _decoded(data, path)
 
 

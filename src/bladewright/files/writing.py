@@ -190,19 +190,19 @@ def _rows(parts: tuple[Part, ...], length: str) -> AoT:
 
 def _put(holder: Any, key: str | int, value: Any, path: str) -> None:
     """Set the value at `key` of a table or an array, changing as little of its layout as possible."""
-    there = holder[key]
-    if same(_unwrapped(there), plain(value)):
+    present = holder[key]
+    if same(_unwrapped(present), plain(value)):
         return
-    if not isinstance(there, Array) or not isinstance(value, tuple) or not there or not value:
+    if not isinstance(present, Array) or not isinstance(value, tuple) or not present or not value:
         holder[key] = tomlkit.value(literal(value, path))
         return
-    while len(there) > len(value):
-        del there[-1]
+    while len(present) > len(value):
+        del present[-1]
     for index, item in enumerate(value):
-        if index < len(there):
-            _put(there, index, item, f"{path}[{index}]")
+        if index < len(present):
+            _put(present, index, item, f"{path}[{index}]")
         else:
-            there.append(tomlkit.value(literal(item, f"{path}[{index}]")))
+            present.append(tomlkit.value(literal(item, f"{path}[{index}]")))
 
 
 def _unwrapped(item: Any) -> Any:

@@ -104,12 +104,12 @@ def on_sides(fit: FitResult) -> NDArray[np.bool_]:
     return np.isin(fit.places, SIDES)
 
 
-def points_to_draw(fit: FitResult, among: NDArray[np.bool_], most: int) -> Index:
+def points_to_draw(fit: FitResult, drawn: NDArray[np.bool_], most: int) -> Index:
     """Indices of at most about `most` of the points of a mask (n,), in order of their deviation.
 
     The `WORST_POINTS` are always among them; the others are a random choice, the same one every time.
     """
-    index = np.flatnonzero(among)
+    index = np.flatnonzero(drawn)
     size = np.abs(fit.deviations[index])
     if len(index) > most:
         order = np.argpartition(size, -min(WORST_POINTS, most // 2))
@@ -172,9 +172,9 @@ class DrawnSection:
         """The closed outline (2 k, 2): the upper side from leading to trailing edge, then the lower side back."""
         return np.concatenate([self.sides["upper"], self.sides["lower"][::-1]])
 
-    def moved(self, side: str, off: Reals | float) -> Reals:
+    def moved(self, side: str, distance: Reals | float) -> Reals:
         """A side (k, 2) offset outwards by `off` [mm]."""
-        return self.sides[side] + self.outwards[side] * np.reshape(off, (-1, 1))
+        return self.sides[side] + self.outwards[side] * np.reshape(distance, (-1, 1))
 
     def footpoints(self, fit: FitResult, index: Index) -> tuple[Reals, Reals]:
         """Footpoints (m, 2) of points of the cloud on the outline, and the normals (m, 2) there."""

@@ -202,8 +202,8 @@ def draw_table(axes: Axes, fit: FitResult) -> None:
             axes.text(right, height, cell, ha="right", va="top", fontsize=9.5, fontweight=weight, color=ink)
     height -= 1.6 * line
     axes.text(0.0, height, result, va="top", fontsize=12.0, fontweight="bold", color=colour)
-    asked = "no tolerance asked" if fit.tolerance is None else f"tolerance {fit.tolerance * MILLIMETRES:.3g} mm"
-    axes.text(1.0, height, asked, ha="right", va="top", fontsize=10.0)
+    stated = "no tolerance asked" if fit.tolerance is None else f"tolerance {fit.tolerance * MILLIMETRES:.3g} mm"
+    axes.text(1.0, height, stated, ha="right", va="top", fontsize=10.0)
     height -= 1.15 * line
     lines = [piece for each in fit.failures for piece in wrap(shorten(each, 260, placeholder=" …"), 66)]
     if not lines:

@@ -128,13 +128,13 @@ def _depth_buffer(
         seen[..., :2] = (seen[..., :2] - camera.corner) * unit
         for points in _dense_tiles(np.concatenate([seen, camera.seen(surface.normals)], axis=-1).astype(np.float32)):
             column, row = points[:, 0].astype(np.int32), points[:, 1].astype(np.int32)
-            held = (points[:, 0] >= 0.0) & (points[:, 1] >= 0.0) & (column < across) & (row < height)
+            inside = (points[:, 0] >= 0.0) & (points[:, 1] >= 0.0) & (column < across) & (row < height)
             if surface.side:
-                held &= surface.side * points[:, 5] > 0.0
-            pixel = np.where(held, row * across + column, 0)
-            near = np.where(held, points[:, 2], -np.inf)
+                inside &= surface.side * points[:, 5] > 0.0
+            pixel = np.where(inside, row * across + column, 0)
+            near = np.where(inside, points[:, 2], -np.inf)
             np.maximum.at(depth, pixel, near)
-            nearest = np.flatnonzero(held & (near >= depth[pixel]))
+            nearest = np.flatnonzero(inside & (near >= depth[pixel]))
             normal[pixel[nearest]] = points[nearest, 3:]
             colour[pixel[nearest]] = surface.colour
     return depth.reshape(height, across), normal, colour
@@ -204,11 +204,11 @@ def _draw_polyline(picture: Pixels, depth: Pixels, line: Polyline, camera: Camer
     at = np.linspace(0.0, along[-1], int(2.0 * along[-1]) + 2)
     right, up, towards = (np.interp(at, along, seen[:, i]) for i in range(3))
     bias = 3.0 * line.width / unit
-    reach = np.arange(line.width) - (line.width - 1) // 2
-    for across in reach:
-        for above in reach:
+    offsets = np.arange(line.width) - (line.width - 1) // 2
+    for across in offsets:
+        for above in offsets:
             column, row = (right + across).astype(int), (up + above).astype(int)
-            held = (column >= 0) & (row >= 0) & (column < depth.shape[1]) & (row < depth.shape[0])
-            column, row, near = column[held], row[held], towards[held]
+            inside = (column >= 0) & (row >= 0) & (column < depth.shape[1]) & (row < depth.shape[0])
+            column, row, near = column[inside], row[inside], towards[inside]
             ahead = near + bias > depth[row, column]
             picture[row[ahead], column[ahead]] = (*line.colour, 1.0)

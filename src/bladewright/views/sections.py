@@ -149,8 +149,8 @@ def draw_neighbour(
 
 def narrowest_gap(shape: Reals, neighbour: Reals) -> Reals:
     """The two points (2, 2) of two closed outlines that are nearest to each other."""
-    apart = length(shape[:, None] - neighbour[None])
-    first, second = np.unravel_index(int(np.argmin(apart)), apart.shape)
+    distances = length(shape[:, None] - neighbour[None])
+    first, second = np.unravel_index(int(np.argmin(distances)), distances.shape)
     return np.stack([shape[first], neighbour[second]])
 
 

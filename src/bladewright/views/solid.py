@@ -81,8 +81,8 @@ def _positions(blade: "Blade", neighbours: int | None) -> list[float]:
         number = count if neighbours is None else min(2 * neighbours + 1, count)
         return [2.0 * np.pi / count * (index - number // 2) for index in range(number)]
     pitch = (design.pitch or 0.0) * UNITS[design.length_unit]
-    beside = 0 if pitch > ISOLATED_PITCH * blade.chord else 2 if neighbours is None else neighbours
-    return [MILLIMETRES * pitch * index for index in range(-beside, beside + 1)]
+    neighbours_each_side = 0 if pitch > ISOLATED_PITCH * blade.chord else 2 if neighbours is None else neighbours
+    return [MILLIMETRES * pitch * index for index in range(-neighbours_each_side, neighbours_each_side + 1)]
 
 
 def _moved(blade: "Blade", points: Reals, turn: float) -> Reals:
@@ -271,8 +271,8 @@ def _write_name(axes: Axes, camera: Camera, face: Surface, name: str, clear: Rea
     """Write a face's name on it, as far as possible from points (n, 2) of the picture; return its place (1, 2)."""
     points = MILLIMETRES * np.real(face.grid(NAME_PLACES, NAME_PLACES)).reshape(-1, 3)
     flat = camera.seen(points)[:, :2]
-    apart = np.min(length(flat[:, None] - clear), axis=1)
-    best = flat[int(np.argmax(apart))]
+    clearances = np.min(length(flat[:, None] - clear), axis=1)
+    best = flat[int(np.argmax(clearances))]
     halo = [withStroke(linewidth=3.0, foreground="white", alpha=0.7)]
     axes.text(float(best[0]), float(best[1]), name, ha="center", va="center", path_effects=halo)
     return best[None]

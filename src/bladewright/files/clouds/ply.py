@@ -53,8 +53,8 @@ def read_ply(path: Path, data: bytes) -> Columns:
             np.dtype([(n, order + _TYPES[t]) for n, t in each.properties]).itemsize * each.number for each in before
         )
         if len(data) < start + kind.itemsize * element.number:
-            held = max(0, len(data) - start) // kind.itemsize
-            raise FileError(f"'{path}' is a PLY file that breaks off after {held} of {element.number} vertices")
+            count = max(0, len(data) - start) // kind.itemsize
+            raise FileError(f"'{path}' is a PLY file that breaks off after {count} of {element.number} vertices")
         rows = np.frombuffer(data, dtype=kind, offset=start, count=element.number)
         values = np.stack([rows[axis].astype(np.float64) for axis in "xyz"], axis=-1)
     else:

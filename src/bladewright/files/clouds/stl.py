@@ -37,8 +37,8 @@ def read_stl(path: Path, data: bytes) -> Columns:
         except ValueError as error:
             raise FileError(f"'{path}' is an STL file with a vertex that is no number: {error}") from None
     else:
-        held = (len(data) - HEADER) // _RECORD.itemsize
-        raise FileError(f"'{path}' is an STL file that breaks off after {held} of {_triangle_count(data)} triangles")
+        count = (len(data) - HEADER) // _RECORD.itemsize
+        raise FileError(f"'{path}' is an STL file that breaks off after {count} of {_triangle_count(data)} triangles")
     points = np.unique(corners.reshape(-1, 3), axis=0)
     return Columns(values=points, format="an STL file", columns=("x", "y", "z"))
 

@@ -43,15 +43,15 @@ def parsed(text: str, where: str) -> Config:
     def word(key: str, known: tuple[str, ...]) -> str:
         value = entries.get(key, [""])
         if len(value) != 1 or value[0].upper() not in known:
-            said = f"is '{' '.join(value)}'" if key in entries else "is missing"
-            raise FileError(f"{where}: {key} {said}: it must be one of {', '.join(known)}")
+            state = f"is '{' '.join(value)}'" if key in entries else "is missing"
+            raise FileError(f"{where}: {key} {state}: it must be one of {', '.join(known)}")
         return value[0].upper()
 
     def count(key: str, low: int) -> int:
         value = _numbers(where, key, entries.get(key, []))
         if len(value) != 1 or value[0] != round(value[0]) or value[0] < low:
-            said = f"is '{' '.join(entries[key])}'" if key in entries else "is missing"
-            raise FileError(f"{where}: {key} {said}: a whole number, at least {low}, is needed")
+            state = f"is '{' '.join(entries[key])}'" if key in entries else "is missing"
+            raise FileError(f"{where}: {key} {state}: a whole number, at least {low}, is needed")
         return int(value[0])
 
     kind = word("PARAMETRIZATION_TYPE", ("CAMBER_THICKNESS", "CONNECTING_ARCS"))

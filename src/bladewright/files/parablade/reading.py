@@ -84,11 +84,11 @@ def _design_of(config: Config, name: str, chordwise: int | None) -> tuple[Unifie
         int(blade.blade_count or 1),
         lambda count: exact_unified_blade(blade.changed("blade_count", count)).check_sections(),
     )
-    said = f"N_BLADES = {config.blades} has no effect in ParaBlade, and may be any number there"
+    remark = f"N_BLADES = {config.blades} has no effect in ParaBlade, and may be any number there"
     if count != blade.blade_count:
-        changed.append(f"{said}: so many blades intersect, and {count} are taken; set the true number")
+        changed.append(f"{remark}: so many blades intersect, and {count} are taken; set the true number")
         return blade.changed("blade_count", count), changed
-    changed.append(f"{said}: it is taken as it is; set the true one")
+    changed.append(f"{remark}: it is taken as it is; set the true one")
     return blade, changed
 
 

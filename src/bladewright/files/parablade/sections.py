@@ -61,9 +61,9 @@ class ParaBladeSections:
             points = line + sign * thickness[..., None] * normals
             points[:, [0, -1]] = line[:, [0, -1]]
             inserted = []
-            for end, beside, key in ((0, 1, "radius_in"), (-1, -2, "radius_out")):
-                reach = points[:, beside] - points[:, end]
-                along = reach[:, 0] * normals[:, end, 1] - reach[:, 1] * normals[:, end, 0]
+            for end, inner, key in ((0, 1, "radius_in"), (-1, -2, "radius_out")):
+                step = points[:, inner] - points[:, end]
+                along = step[:, 0] * normals[:, end, 1] - step[:, 1] * normals[:, end, 0]
                 height = np.sqrt(self.law(key) / 3.0 * np.sqrt(along**2))
                 inserted.append(points[:, end] + sign * height[:, None] * normals[:, end])
             rows = [points[:, :1], inserted[0][:, None], points[:, 1:-1], inserted[1][:, None], points[:, -1:]]

@@ -48,21 +48,21 @@ def fitted_thickness(
     inner = places[2:-2]
     along, across = law_basis(least.shape[0], inner), law_basis(least.shape[1], v)
     normals = turned_left(camber_tangents(camber, inner)) * (1.0 if upper else -1.0)
-    law, feet = np.maximum(START_THICKNESS, least), np.zeros(0)
+    law, footpoints = np.maximum(START_THICKNESS, least), np.zeros(0)
     for turn in range(ROUNDS + 1):
         controls, rates = _side(camber, radii, across @ law.T @ along.T, places, normals, upper)
         # footpoints that follow from earlier ones may end beyond an edge: the first and the last search is global
-        near = _closest_sampled(controls, target) if turn in (0, ROUNDS) else feet
-        feet = _closest_refined(controls, target, near)
-        (rows, points), (_, slopes) = (_evaluated(controls, feet, order) for order in (0, 1))
+        near = _closest_sampled(controls, target) if turn in (0, ROUNDS) else footpoints
+        footpoints = _closest_refined(controls, target, near)
+        (rows, points), (_, slopes) = (_evaluated(controls, footpoints, order) for order in (0, 1))
         normal = turned_left(slopes) / np.sqrt(np.sum(slopes**2, axis=-1, keepdims=True))
-        rest = np.sum(normal * (target - points), axis=-1)
+        residuals = np.sum(normal * (target - points), axis=-1)
         if turn == ROUNDS:
             break
         directed = np.einsum("mcpd,mkd->mkcp", rates, normal, optimize=True)
         by_law = np.einsum("mkc,mkcp->mkp", rows, directed) @ along
         normal_matrix = sum(np.kron(each.T @ each, np.outer(a, a)) for each, a in zip(by_law, across, strict=True))
-        right = sum(np.kron(each.T @ r, a) for each, r, a in zip(by_law, rest, across, strict=True))
+        right = sum(np.kron(each.T @ r, a) for each, r, a in zip(by_law, residuals, across, strict=True))
         # the Cholesky factor replaces all rows of the problem; the ridge only keeps it positive definite
         triangle = np.linalg.cholesky(normal_matrix + 1e-12 * np.trace(normal_matrix) * np.eye(law.size)).T
         low = (least - law).ravel() - 1e-12
@@ -91,8 +91,8 @@ def largest_edge_radii(camber: Reals, thickness: tuple[Reals, Reals], places: Re
         for values, upper in zip(thickness, (True, False), strict=True):
             advance = advances(camber, places, values, upper)[end]
             unit_height = edge_height(np.maximum(advance, 0.0), np.ones(len(camber)))
-            beside = values[:, 0 if end == 0 else -1]
-            most.append(np.where(advance > 0.0, (beside / np.maximum(unit_height, 1e-12)) ** 2, 0.0))
+            next_thickness = values[:, 0 if end == 0 else -1]
+            most.append(np.where(advance > 0.0, (next_thickness / np.maximum(unit_height, 1e-12)) ** 2, 0.0))
         found.append(np.minimum(*most))
     return found[0], found[1]
 
@@ -135,10 +135,10 @@ def _closest_sampled(controls: Reals, points: Reals) -> Reals:
     return np.stack([_DENSE[cKDTree(curve).query(each)[1]] for curve, each in zip(curves, points, strict=True)])
 
 
-def _closest_refined(controls: Reals, points: Reals, feet: Reals) -> Reals:
-    """Parameters (m, k) of the footpoints, by two Gauss-Newton steps from `feet` (m, k)."""
+def _closest_refined(controls: Reals, points: Reals, footpoints: Reals) -> Reals:
+    """Parameters (m, k) of the footpoints, by two Gauss-Newton steps from `footpoints` (m, k)."""
     for _ in range(2):
-        (_, at), (_, slope) = (_evaluated(controls, feet, order) for order in (0, 1))
+        (_, at), (_, slope) = (_evaluated(controls, footpoints, order) for order in (0, 1))
         step = np.sum((points - at) * slope, axis=-1) / np.sum(slope**2, axis=-1)
-        feet = np.clip(feet + np.clip(step, -LARGEST_STEP, LARGEST_STEP), 0.0, 1.0)
-    return feet
+        footpoints = np.clip(footpoints + np.clip(step, -LARGEST_STEP, LARGEST_STEP), 0.0, 1.0)
+    return footpoints

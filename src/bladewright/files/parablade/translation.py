@@ -123,14 +123,14 @@ def section_of(config: Config, name: str, chordwise: int | None) -> tuple[Unifie
 
 def blade_of(config: Config, name: str, chordwise: int | None) -> tuple[UnifiedBlade, list[str]]:
     """The blade of a configuration in three dimensions, and what was changed, each a sentence."""
-    channel, off = channel_between_edges(config, UNIT)
+    channel, largest_distance = channel_between_edges(config, UNIT)
     sections = ParaBladeSections(config=config, v=SPAN_STATIONS)
     lengths = meridional_lengths(channel, UNIT, SPAN_STATIONS)
     laws, notes = _laws(config, scaled_sections(sections, sections.lengths / lengths), chordwise)
     notes.insert(
         0,
         "the channel is cut where the camber lines begin and end, as ParaBlade's is filled from nose to nose; its "
-        f"curves lie within {off * 1e3:.2g} mm of those",
+        f"curves lie within {largest_distance * 1e3:.2g} mm of those",
     )
     y = sections.law("y_leading")
     count = len(config.laws["y_leading"])
@@ -181,18 +181,18 @@ def _laws(config: Config, normalised: NormalisedSections, wanted: int | None) ->
     spans = {side_name: _spanwise(config, side_name) for side_name in ("upper", "lower")}
     thickness: dict[str, Reals] = {}
     for chordwise in CHORDWISE_COUNTS if wanted is None else (wanted,):
-        off = 0.0
+        largest_distance = 0.0
         for side_name, target in (("upper", normalised.upper), ("lower", normalised.lower)):
             upper = side_name == "upper"
             least = least_thickness(chordwise, spans[side_name], normalised.radii, v, places)
             law, distance = fitted_thickness(line, normalised.radii, target, least, v, places, upper=upper)
             thickness[side_name] = law
-            off = max(off, distance)
-        if off <= SIDE_TOLERANCE:
+            largest_distance = max(largest_distance, distance)
+        if largest_distance <= SIDE_TOLERANCE:
             break
     notes.append(
         f"the sides are quartic, ParaBlade's cubic: their thickness laws have {chordwise} control points along the "
-        f"chord, matched within {100.0 * off:.2g} % of the meridional length"
+        f"chord, matched within {100.0 * largest_distance:.2g} % of the meridional length"
     )
     for side_name, law in thickness.items():
         found[f"thickness_{side_name}"] = tuple(_plain(row) for row in law)

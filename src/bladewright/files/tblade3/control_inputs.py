@@ -18,7 +18,7 @@ def read_sectionwise(
 ) -> dict[str, Any]:
     """The fields of a case that are given section by section; tables that the case does not need may be missing."""
     lines.text("the name of the case")
-    needed = [kind for kind, asked in zip(_ORDER, (curvature, multiplier, leading_edge), strict=True) if asked]
+    needed = [kind for kind, present in zip(_ORDER, (curvature, multiplier, leading_edge), strict=True) if present]
     found: dict[str, Any] = {}
     kind = ""
     while needed:

@@ -116,10 +116,10 @@ class InputLines:
         first, found = self.place, list_directed_items(line)
         while len(found) < count:
             following = list_directed_items(self.peek())
-            room = count - len(found)
+            missing = count - len(found)
             if (
                 not following
-                or len(following) > room
+                or len(following) > missing
                 or any(fortran_number(word) is None for word in (*found, *following))
             ):
                 break

@@ -164,8 +164,8 @@ def _changed(sections: CaseSections) -> Iterator[str]:
     if moved > 0.0 or not np.array_equal(sections.trailing, sections.flow.trailing):
         what = " and ".join(
             name
-            for name, there in (("sweep", moved > 0.0), ("the sections' own chords", case.chord != "meridional"))
-            if there
+            for name, present in (("sweep", moved > 0.0), ("the sections' own chords", case.chord != "meridional"))
+            if present
         )
         yield f"the edge curves go through the ends of the sections, as {what or 'the chords'} put them"
     if case.leading_edge == "spline":

@@ -170,8 +170,8 @@ def _known(
         return known[int(value)]
     if value is not None and removed and value in removed:
         raise lines.error(f"{what} is {words[0]}: {removed[int(value)].format(value=words[0], known=numbers)}")
-    said = " ".join(words) or "empty"
-    raise lines.error(f"{what} is '{said}': it must be one of {numbers}")
+    text = " ".join(words) or "empty"
+    raise lines.error(f"{what} is '{text}': it must be one of {numbers}")
 
 
 def read_tables(lines: InputLines, count: int, notes: list[str], *, early: bool) -> dict[str, Any]:

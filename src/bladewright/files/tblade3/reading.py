@@ -120,5 +120,5 @@ def _companion(path: Path, kind: str, reason: str) -> Path:
         if name.lower() == wanted.lower():
             return path.with_name(name)
     others = [name for name in names if name.lower().startswith(tuple(f"{each}." for each in COMPANIONS))]
-    there = f"; beside it are {', '.join(others[:5])}" if others else ""
-    raise FileError(f"'{path}' needs the file '{exact}', as {reason}: there is none{there}")
+    hint = f"; beside it are {', '.join(others[:5])}" if others else ""
+    raise FileError(f"'{path}' needs the file '{exact}', as {reason}: there is none{hint}")

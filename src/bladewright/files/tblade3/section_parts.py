@@ -109,8 +109,8 @@ def translated_edges(parts: list[CurvatureMeanline], table: Reals) -> Translated
         edge = EdgeSpline(contact=contact).applied(part.unsplined(Span(np.zeros(1))), Span(np.zeros(1)))
         upper, lower = (np.real(side)[0, 0] for side in edge.outline.points(np.array([contact])))
         half = 0.5 * float(np.sqrt(np.sum((upper - lower) ** 2)))
-        reach = float(np.sqrt(np.sum((0.5 * (upper + lower)) ** 2)))
-        elongation.append(1.0 + row[3] - reach / half)
+        distance = float(np.sqrt(np.sum((0.5 * (upper + lower)) ** 2)))
+        elongation.append(1.0 + row[3] - distance / half)
     # the family's droop is positive towards the lower side, T-Blade3's deflection towards the upper
     return TranslatedEdges(contact, np.array(elongation), -table[:, 2] * (1.0 + table[:, 3]))
 

@@ -57,8 +57,8 @@ def stacking_point(part: CurvatureMeanline, stacking: CaseStacking, stations: Re
     else:
         upper, lower = (_on_polygon(side, along) for side in polygons)
     middle = 0.5 * (upper + lower)
-    reach = abs((upper if stacking.above > 0.0 else lower) - middle)
-    return np.array([along, middle + stacking.above * reach])
+    distance = abs((upper if stacking.above > 0.0 else lower) - middle)
+    return np.array([along, middle + stacking.above * distance])
 
 
 class _Sides:

@@ -185,8 +185,8 @@ def _shape_not_found_message(match: Match) -> str:
 
 
 def _loose_ends_message(ends: Mapping[str, float]) -> str:
-    apart = ", ".join(f"{1e3 * gap:.2g} mm at the {name}" for name, gap in ends.items())
-    return f"no row of points shows where the blade ends: it is known to about {apart}"
+    gaps = ", ".join(f"{1e3 * gap:.2g} mm at the {name}" for name, gap in ends.items())
+    return f"no row of points shows where the blade ends: it is known to about {gaps}"
 
 
 def notes_of(
@@ -200,28 +200,28 @@ def notes_of(
     faced: int = 0,
 ) -> tuple[str, ...]:
     """What else there is to know, each a sentence; `faced` is the number of outliers on end faces."""
-    said = list(notes)
+    sentences = list(notes)
     if faced:
-        said.append(
+        sentences.append(
             f"{faced} of {np.count_nonzero(~inliers)} outliers lie on the end faces: the sides are met without them"
         )
     if shape_not_found(distances, inliers, match, target) and _near_enough(match):
-        said.append(f"near enough to make, but {_shape_not_found_message(match)}")
+        sentences.append(f"near enough to make, but {_shape_not_found_message(match)}")
     if _points(match).shape[1] == 3 and _gross(distances, inliers, match):
-        said.append(f"a blade in other axes is met no nearer than this: {AXES_HINT}")
-    said += [
+        sentences.append(f"a blade in other axes is met no nearer than this: {AXES_HINT}")
+    sentences += [
         f"no point lies around the {name}: where it ends and how round it is are guessed"
         for name, (_, share) in uncovered_edges(match).items()
         if share <= HALF_BLADE_WIDTH
     ]
     loose = loose_ends(match)
     if loose:
-        said.append(_loose_ends_message(loose))
+        sentences.append(_loose_ends_message(loose))
     unknown = [each.path for each in statistics.estimates if not each.identified]
     if unknown:
         more = f" and {len(unknown) - LISTED_NAMES} more" if len(unknown) > LISTED_NAMES else ""
-        said.append(f"the cloud does not determine {', '.join(unknown[:LISTED_NAMES])}{more}")
+        sentences.append(f"the cloud does not determine {', '.join(unknown[:LISTED_NAMES])}{more}")
     bound = [each.path for each in statistics.estimates if each.at_bound]
     if bound:
-        said.append(f"on a bound: {', '.join(bound[:LISTED_NAMES])}{'...' if len(bound) > LISTED_NAMES else ''}")
-    return tuple(said)
+        sentences.append(f"on a bound: {', '.join(bound[:LISTED_NAMES])}{'...' if len(bound) > LISTED_NAMES else ''}")
+    return tuple(sentences)

@@ -54,20 +54,20 @@ def uncovered_edges(match: Match) -> dict[str, tuple[float, float]]:
     if not match.model.rounded:
         return {}
     footpoints, sides = match.state.footpoints, match.state.shape.sides
-    unseen = {}
+    uncovered = {}
     for name, end in EDGE_PARAMETERS.items():
         nearest = _nearest(footpoints, match.rows, end)
         if len(nearest) == 0:
             continue
         side, u, v = footpoints.side[nearest], footpoints.u[nearest], footpoints.v[nearest]
-        here, tip, across = (
+        near_end, tip, across = (
             _places(sides, *at) for at in ((side, u, v), (side, np.full(len(u), end), v), (1 - side, u, v))
         )
-        width = np.sqrt(np.sum((here - across) ** 2, axis=-1))
-        if np.mean(np.sqrt(np.sum((here - tip) ** 2, axis=-1)) <= width) < COVERED_SHARE:
+        width = np.sqrt(np.sum((near_end - across) ** 2, axis=-1))
+        if np.mean(np.sqrt(np.sum((near_end - tip) ** 2, axis=-1)) <= width) < COVERED_SHARE:
             wide = float(np.median(width))
-            unseen[name] = wide, wide / _thickness(sides, float(np.median(v)))
-    return unseen
+            uncovered[name] = wide, wide / _thickness(sides, float(np.median(v)))
+    return uncovered
 
 
 def least_thickness(match: Match) -> float:

@@ -353,8 +353,8 @@ def _parameters(fit: Fit) -> list[str]:
     width = max((len(each.path) for each in shown), default=0)
     lines = []
     for each in shown:
-        asked = {"NOT IDENTIFIED": not each.identified, "AT BOUND": each.at_bound}
-        marks = [word for word, holds in asked.items() if holds]
+        conditions = {"NOT IDENTIFIED": not each.identified, "AT BOUND": each.at_bound}
+        marks = [word for word, holds in conditions.items() if holds]
         value, spread = _with_spread(each)
         unit = unit_of_path(fit, each.path)
         lines.append(f"    {each.path:<{width}}  {value:>12}  {spread:<12}  {unit:<4} {', '.join(marks)}".rstrip())

@@ -77,11 +77,11 @@ def checked_cloud(cloud: ArrayLike) -> tuple[Reals, tuple[str, ...]]:
     extent = float(np.max(np.ptp(points, axis=0)))
     notes: tuple[str, ...] = ()
     if not SMALLEST <= extent <= LARGEST:
-        said = (
+        note = (
             f"the cloud extends over {extent:.4g} m, which is unusual for a blade: the unit of its coordinates may be "
             "another one (--unit on the command line)"
         )
-        notes = (said,)
+        notes = (note,)
     return points, notes
 
 

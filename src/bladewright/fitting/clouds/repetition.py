@@ -51,7 +51,7 @@ def _around(points: Reals) -> str | None:
             continue
         c, s = np.cos(turn), np.sin(turn)
         sides = [np.stack([x, c * y + sign * s * z, c * z - sign * s * y], axis=-1) for sign in (1.0, -1.0)]
-        away = np.max([tree.query(there)[0] for there in sides], axis=0)
+        away = np.max([tree.query(moved_points)[0] for moved_points in sides], axis=0)
         if np.mean(away < near) > REPEATED_SHARE and np.mean(away[away < near]) < MULTIPLE_PITCH_GAIN * nearest:
             nearest, pitch = float(np.mean(away[away < near])), turn
     return f"{np.degrees(pitch):.4g} deg" if pitch else None
@@ -90,12 +90,12 @@ def _turned_onto(part: Reals, other: Reals) -> str | None:
         radius = float(np.mean(np.sqrt(y**2 + z**2)))
         turned = np.stack([part[:, 0], c * y + s * z, -s * y + c * z], axis=-1)
         moved.append((turned, abs(turn) * radius, f"{abs(np.degrees(turn)):.4g} deg"))
-    for there, distance, said in moved:
+    for moved_points, distance, said in moved:
         if distance < SMALLEST_PITCH * extent:
             continue
         spacing = float(np.median(tree.query(other, k=2)[0][:, 1]))
-        onto = float(np.mean(tree.query(there)[0]))
-        back = float(np.mean(cKDTree(there).query(other)[0]))
+        onto = float(np.mean(tree.query(moved_points)[0]))
+        back = float(np.mean(cKDTree(moved_points).query(other)[0]))
         if max(onto, back) < 0.005 * extent + 1.5 * spacing:
             return said
     return None

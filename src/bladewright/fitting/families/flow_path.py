@@ -79,17 +79,17 @@ class ChannelCurves:
         given = metre * np.array([[float(np.real(each.x)), float(np.real(each.r))] for each in own])
         line = _extended(self.values(name, CURVE_PLACES), EDGE_OVERREACH_LIKE)
         # the coordinate in which the edge has its extent is held, the other is the edge's there
-        held = 1 if np.ptp(given[:, 1]) >= np.ptp(given[:, 0]) else 0
-        order = np.argsort(line[:, held])
+        axis = 1 if np.ptp(given[:, 1]) >= np.ptp(given[:, 0]) else 0
+        order = np.argsort(line[:, axis])
         if isinstance(curve, ThroughPoints):
-            free = np.interp(given[:, held], line[order, held], line[order, 1 - held])
+            free = np.interp(given[:, axis], line[order, axis], line[order, 1 - axis])
         else:
             degree = min(len(given) - 1, curve.degree)
             rows = basis(uniform_knots(len(given), degree), degree, CURVE_PLACES)
-            wanted = np.interp(rows @ given[:, held], line[order, held], line[order, 1 - held])
+            wanted = np.interp(rows @ given[:, axis], line[order, axis], line[order, 1 - axis])
             free = np.linalg.lstsq(rows, wanted, rcond=None)[0]
         found = given.copy()
-        found[:, 1 - held] = free
+        found[:, 1 - axis] = free
         return replace(curve, **{field: _points(found, metre)})
 
 

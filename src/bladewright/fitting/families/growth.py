@@ -87,7 +87,7 @@ def grown_to_target(
     A step that brings the design no nearer is taken back, and another is tried. What is grown can be built, with native
     sides of the `coarse` tolerance.
     """
-    best, idle, back = match, 0, 0
+    best, trials_without_gain, back = match, 0, 0
     for _ in range(MOST_GROWTHS):
         short, reason = needs_more(match, target, task)
         if not short or match.interrupted:
@@ -106,9 +106,9 @@ def grown_to_target(
             if fresh is None or target.parameters is None:
                 return best, FUTILE_REASON
         match, back = fresh, 0
-        idle = idle + 1 if match.rms > WORTHWHILE_RATIO * best.rms else 0
+        trials_without_gain = trials_without_gain + 1 if match.rms > WORTHWHILE_RATIO * best.rms else 0
         best = match if match.rms < WORTHWHILE_RATIO * best.rms or target.parameters is not None else best
-        if target.open and idle > PATIENCE:
+        if target.open and trials_without_gain > PATIENCE:
             return best, FUTILE_REASON
     return best, f"control points were added {MOST_GROWTHS} times, and no more are"
 

@@ -76,7 +76,7 @@ def extended_blade(
 
     Where that was taken back `back` times, the law that comes after so many better ones is extended, alone.
     """
-    room = None if target.parameters is None else target.parameters - len(match.problem.paths)
+    available = None if target.parameters is None else target.parameters - len(match.problem.paths)
     named: dict[str, tuple[LawExtension, Any]] = {}
     for widening in law_extensions(match.design, kind):
         try:
@@ -90,14 +90,14 @@ def extended_blade(
     for gain, more, each in ranked[back:]:
         if taken and (back or gain < MIN_GAIN_OF_BEST * ranked[0][0] or taken >= MOST_TOGETHER):
             break
-        if room is not None and more > room:
+        if available is not None and more > available:
             continue
         try:
             design = of[id(each)].applied(design)
         except DesignError:
             continue
         taken += 1
-        room = None if room is None else room - more
+        available = None if available is None else available - more
     if not taken:
         return
     try:

@@ -57,10 +57,10 @@ def nearest_law(values: Sequence[float], v: Reals, count: int) -> Law:
     if count == 1:
         return float(np.median(at))
     found = np.linalg.lstsq(law_basis(count, v), at, rcond=None)[0]
-    room = 0.5 * float(np.ptp(at))
+    margin = 0.5 * float(np.ptp(at))
     low, high = float(np.min(at)), float(np.max(at))
     # a law that runs past its values by much may leave the range in which there is a shape
-    low, high = (low - room, high + room) if low < 0.0 else (max(low - room, 0.5 * low), high + room)
+    low, high = (low - margin, high + margin) if low < 0.0 else (max(low - margin, 0.5 * low), high + margin)
     return tuple(np.clip(found, low, high).tolist())
 
 

@@ -35,8 +35,8 @@ def nearest_on(line: Reals, points: Reals) -> PolylineFootpoints:
     vertex = cKDTree(start).query(points)[1]
     best = np.full(len(points), np.inf)
     place, tangent = np.zeros_like(points), np.zeros_like(points)
-    for beside in (-1, 0, 1):
-        piece = np.clip(vertex + beside, 0, len(start) - 1)
+    for shift in (-1, 0, 1):
+        piece = np.clip(vertex + shift, 0, len(start) - 1)
         way = np.sum((points - start[piece]) * along[piece], axis=1)
         low = np.where(piece == 0, -np.inf, 0.0)
         high = np.where(piece == len(start) - 1, np.inf, size[piece])

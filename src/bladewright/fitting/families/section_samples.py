@@ -51,12 +51,12 @@ def sides_between_edges(upper: Reals, lower: Reals) -> tuple[Reals, Reals, tuple
     around = circles.points
     ends = [_edge(circles, along, sign) for sign in (-1.0, 1.0)]
     given = 0.5 * (upper[0] + lower[0]), 0.5 * (upper[-1] + lower[-1])
-    off = [0.0 if end is None else _distance(around[end], old) for end, old in zip(ends, given, strict=True)]
-    if max(off) < EDGE_MOVED * chord:
+    moves = [0.0 if end is None else _distance(around[end], old) for end, old in zip(ends, given, strict=True)]
+    if max(moves) < EDGE_MOVED * chord:
         return upper, lower, None
     first, last = (
         end if end is not None and away >= EDGE_MOVED * chord else int(np.argmin(np.sum((around - old) ** 2, axis=1)))
-        for end, away, old in zip(ends, off, given, strict=True)
+        for end, away, old in zip(ends, moves, given, strict=True)
     )
     turned = np.roll(around, -first, axis=0)
     count = (last - first) % len(around)
@@ -71,9 +71,9 @@ def inscribed_circles(around: Reals) -> InscribedCircles:
     normal = normal / (np.sqrt(np.sum(normal**2, axis=1))[:, None] + 1e-300)
     x, y = around.T
     inward = normal if float(np.sum(x * np.roll(y, -1) - y * np.roll(x, -1))) > 0.0 else -normal
-    apart = around[None] - around[:, None]
-    ahead = np.einsum("ijk,ik->ij", apart, inward)
-    square = np.sum(apart**2, axis=-1)
+    differences = around[None] - around[:, None]
+    ahead = np.einsum("ijk,ik->ij", differences, inward)
+    square = np.sum(differences**2, axis=-1)
     met = ahead > 1e-9 * np.sqrt(np.max(square))
     radius = np.where(met, square / (2.0 * np.where(met, ahead, 1.0)), np.inf)
     other = np.argmin(radius, axis=1)

@@ -84,8 +84,8 @@ def _through_points(
     task: Task, match: Match, target: MatchTarget, through_points: Callable[[int], Any], made: Callable[[Any], Design]
 ) -> tuple[Match, str]:
     """A match by points of the outline where no other meets the target, by as few as do."""
-    asked = 0 if target.parameters is None else target.parameters - OUTLINE_SURPLUS
-    for count in (asked,) if asked >= FEWEST_OUTLINE_POINTS else OUTLINE_COUNTS:
+    stated_count = 0 if target.parameters is None else target.parameters - OUTLINE_SURPLUS
+    for count in (stated_count,) if stated_count >= FEWEST_OUTLINE_POINTS else OUTLINE_COUNTS:
         short, reason = needs_more(match, target, task)
         near = target.open and match.maximum < GROSS_DEVIATION[1] * match.model.chord
         if not short or near or match.interrupted:

@@ -137,10 +137,10 @@ def _wider(places: list[float]) -> tuple[float, ...]:
 
 def through(part: SuctionPressure, section: SampledSection) -> SuctionPressure:
     """The part with its edges kept and with side control points nearest to the section's sides."""
-    on, off = ("upper", "lower") if part.suction_side == "upper" else ("lower", "upper")
-    found = part.changed(_side_through(part, getattr(section, on), "suction"))
+    suction_name, pressure_name = ("upper", "lower") if part.suction_side == "upper" else ("lower", "upper")
+    found = part.changed(_side_through(part, getattr(section, suction_name), "suction"))
     if part.pressure_heights:
-        return found.changed(_side_through(found, getattr(section, off), "pressure"))
+        return found.changed(_side_through(found, getattr(section, pressure_name), "pressure"))
     count = len(part.pressure_thickness)
     places = _numbers(part.pressure_places) or default_places(side_knots(count, part.pressure_knots)).tolist()
     return replace(found, pressure_thickness=tuple(max(2.0 * section.half_at(each), 1e-3) for each in places))
@@ -154,8 +154,8 @@ def _side_through(part: SuctionPressure, line: Reals, name: str) -> dict[str, fl
     low, high = (
         skeleton_of(part, SINGLE_SECTION).placed(places[None], np.full((1, count), each))[0] for each in (0.0, 1.0)
     )
-    on = "upper" if (name == "suction") == (part.suction_side == "upper") else "lower"
-    corners = [getattr(points, on) for points in edge_points(part, SINGLE_SECTION)]
+    suction_name = "upper" if (name == "suction") == (part.suction_side == "upper") else "lower"
+    corners = [getattr(points, suction_name) for points in edge_points(part, SINGLE_SECTION)]
     points, directions = (np.real([getattr(each, of)[0] for each in corners]) for of in ("point", "direction"))
     rows = basis(knots, DEGREE, SAMPLES)
     # columns by tangent in, heights and tangent out: the control points are linear in these
@@ -181,9 +181,9 @@ def _side_through(part: SuctionPressure, line: Reals, name: str) -> dict[str, fl
         footpoint = nearest_on(line, fixed + np.einsum("nkd,k->nd", moves, unknowns))
         slopes = np.einsum("nkd,nd->nk", moves, footpoint.normals)
         wanted = np.sum((footpoint.points - fixed) * footpoint.normals, axis=1)
-        held = STIFFNESS * np.eye(len(unknowns))
+        penalty = STIFFNESS * np.eye(len(unknowns))
         unknowns = lsq_linear(
-            np.concatenate([slopes, held]), np.concatenate([wanted, held @ unknowns]), bounds=(least, most)
+            np.concatenate([slopes, penalty]), np.concatenate([wanted, penalty @ unknowns]), bounds=(least, most)
         ).x
     values = {f"{name}_heights[{i}]": float(each) for i, each in enumerate(unknowns[1:-1])}
     for way, value, old in zip(("in", "out"), unknowns[[0, -1]], own, strict=True):

@@ -169,9 +169,9 @@ def _compressed(of: Quadratic) -> tuple[Reals, Reals]:
     kept = eigenvalues > LOST_EIGENVALUE * len(size) * max(float(eigenvalues[-1]), 1e-300)
     root = np.sqrt(np.where(kept, eigenvalues, 1.0))
     residuals = np.where(kept, vectors.T @ (of.gradient / size) / root, 0.0)
-    rest = np.sqrt(max(0.0, of.value - float(residuals @ residuals)))
+    remainder = np.sqrt(max(0.0, of.value - float(residuals @ residuals)))
     rows = np.where(kept, root, 0.0)[:, None] * vectors.T * size
-    return np.append(residuals, rest), np.vstack([rows, np.zeros(len(size))])
+    return np.append(residuals, remainder), np.vstack([rows, np.zeros(len(size))])
 
 
 def _gram(rows: csr_array, weights: Reals) -> Reals:

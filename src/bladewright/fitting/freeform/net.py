@@ -98,11 +98,11 @@ class Net:
         if not self.weighted:
             return np.zeros((len(self.points), 0))
         index = np.meshgrid(*[np.arange(count, dtype=float) for count in self.counts], indexing="ij")
-        idle = [np.ones(len(self.points))]
+        null_rows = [np.ones(len(self.points))]
         for along, knots in zip(index, self.knots, strict=True):
             if len(breaks(knots)) == 2 and not self.closed:
-                idle.append(along.ravel())
-        return np.asarray(null_space(np.array(idle)))
+                null_rows.append(along.ravel())
+        return np.asarray(null_space(np.array(null_rows)))
 
     @cached_property
     def bending(self) -> Reals:
@@ -297,14 +297,14 @@ def quadratic_of(net: Net, target: NetTarget, footpoints: Projections, penalty: 
     total: Quadratic | None = None
     for first in range(0, len(footpoints.points), AT_ONCE):
         rows = slice(first, first + AT_ONCE)
-        here = np.flatnonzero((footpoints.across_of >= first) & (footpoints.across_of < first + AT_ONCE))
-        across_of = footpoints.across_of[here] - first
+        in_block = np.flatnonzero((footpoints.across_of >= first) & (footpoints.across_of < first + AT_ONCE))
+        across_of = footpoints.across_of[in_block] - first
         matrix = net.basis(footpoints.parameters[rows])
         places = footpoints.points[rows]
         part = quadratic_of_distances(
             net.rows(matrix, places, footpoints.along[rows]),
             footpoints.distances[rows],
-            net.rows(csr_array(matrix[across_of]), places[across_of], footpoints.across[here]),
+            net.rows(csr_array(matrix[across_of]), places[across_of], footpoints.across[in_block]),
             across_of,
             penalty,
             target.weights[rows],

@@ -160,8 +160,8 @@ def _start(points: Reals, camber: int, thickness: int, *, round_end: bool) -> tu
         hull = points[ConvexHull(points).vertices]
     except QhullError as error:
         raise FitError(f"the {len(points)} points lie on a line: a profile has two sides") from error
-    apart = np.sum((hull[:, None] - hull) ** 2, axis=-1)
-    a, b = hull[list(np.unravel_index(np.argmax(apart), apart.shape))]
+    squares = np.sum((hull[:, None] - hull) ** 2, axis=-1)
+    a, b = hull[list(np.unravel_index(np.argmax(squares), squares.shape))]
     low, high = (a, b) if a[0] < b[0] else (b, a)
     chord = high - low
     size = float(length(chord))

@@ -120,7 +120,7 @@ def with_frames(
     distances = np.sqrt(np.sum(miss**2, axis=-1))
     dimension = points.shape[1]
     along = np.zeros_like(points)
-    rest: list[Reals] = []
+    across: list[Reals] = []
     rest_of: list[NDArray[np.intp]] = []
     moves = [free[:, k] & (np.sum(tangent**2, axis=-1) > 0.0) for k, tangent in enumerate(tangents)]
     code = np.sum([2**k * move for k, move in enumerate(moves)], axis=0)
@@ -135,14 +135,14 @@ def with_frames(
         count = len(used)
         along[rows] = np.where(far[:, None], unit, frame[:, :, min(count, dimension - 1)])
         for k in range(count + 1, dimension):
-            rest.append(frame[:, :, k])
+            across.append(frame[:, :, k])
             rest_of.append(rows)
     return Projections(
         parameters=parameters,
         points=places,
         distances=distances,
         along=along,
-        across=np.concatenate(rest) if rest else np.zeros((0, dimension)),
+        across=np.concatenate(across) if across else np.zeros((0, dimension)),
         across_of=np.concatenate(rest_of) if rest_of else np.zeros(0, dtype=np.intp),
     )
 

@@ -284,8 +284,8 @@ def _noise(parameters: Reals, signed: Reals) -> float:
     if count < 2:
         return 0.0
     _, near = cKDTree(parameters).query(parameters, k=count + 1)
-    off = signed - signed[near[:, 1:]].mean(axis=1)
-    return float(np.sqrt(np.mean(off**2) / (1.0 + 1.0 / count)))
+    difference = signed - signed[near[:, 1:]].mean(axis=1)
+    return float(np.sqrt(np.mean(difference**2) / (1.0 + 1.0 / count)))
 
 
 def _further_knots(match: StagedMatch, target: NetTarget, options: FitOptions, limit: float) -> tuple[Net | None, str]:
@@ -301,15 +301,15 @@ def _further_knots(match: StagedMatch, target: NetTarget, options: FitOptions, l
         knots = []
         at = footpoints.parameters[:, direction]
         for low, high in pairwise(breaks(net.knots[direction])):
-            here = (at >= low) & (at <= high)
-            worst = footpoints.distances[here].max(initial=0.0)
+            inside = (at >= low) & (at <= high)
+            worst = footpoints.distances[inside].max(initial=0.0)
             if worst <= limit or (
-                worst <= 4.0 * noise and np.sqrt(np.mean(footpoints.distances[here] ** 2)) <= NOISE_RATIO * noise
+                worst <= 4.0 * noise and np.sqrt(np.mean(footpoints.distances[inside] ** 2)) <= NOISE_RATIO * noise
             ):
                 continue
-            order = np.argsort(at[here])
-            square = np.cumsum(footpoints.distances[here][order] ** 2)
-            middle = at[here][order][np.searchsorted(square, 0.5 * square[-1])]
+            order = np.argsort(at[inside])
+            square = np.cumsum(footpoints.distances[inside][order] ** 2)
+            middle = at[inside][order][np.searchsorted(square, 0.5 * square[-1])]
             knots.append(float(np.clip(middle, low + 0.25 * (high - low), high - 0.25 * (high - low))))
         if not knots:
             continue

@@ -134,11 +134,13 @@ def blade_ends_of(points: Reals, footpoints: Footpoints, shape: ModelShape, rows
     walls = {}
     for name, end in END_PARAMETERS.items():
         inside = np.flatnonzero((np.abs(footpoints.v - end) < FACE_BAND) & (footpoints.heights < -FACE_DEPTH * usual))
-        off = WallPoints(name=name, places=places[inside], spread=0.0).distances(exact)
-        share = np.abs(off) / -footpoints.heights[inside]
+        distances = WallPoints(name=name, places=places[inside], spread=0.0).distances(exact)
+        share = np.abs(distances) / -footpoints.heights[inside]
         # points of a solid's end faces are outliers to its sides; so are stray points, which stand in no row
-        apart = ~rows[inside] & (share < FACE_NEARER_WALL)
-        dense = np.count_nonzero(apart) >= FACE_OUTLIERS and float(np.median(share[apart])) < FACE_OUTLIERS_NEARER_WALL
+        facing = ~rows[inside] & (share < FACE_NEARER_WALL)
+        dense = (
+            np.count_nonzero(facing) >= FACE_OUTLIERS and float(np.median(share[facing])) < FACE_OUTLIERS_NEARER_WALL
+        )
         face = inside[(share < FACE_NEARER_WALL) & (rows[inside] | dense)]
         # beside an edge that is not yet found, points lie a little inside too
         if np.max(-footpoints.heights[face], initial=0.0) > DEEPEST_FACE_POINT * _half_thickness(shape, end):
@@ -157,7 +159,7 @@ def blade_ends_of(points: Reals, footpoints: Footpoints, shape: ModelShape, rows
     return BladeEnds(walls=walls, on_end_face=on_end_face, near=near)
 
 
-def _off_row(t: Reals, off: Reals, *, inward: float) -> Reals:
+def _off_row(t: Reals, distances: Reals, *, inward: float) -> Reals:
     """Distances (m,) [m] from the row in which most places stand, which may be off the wall by a smooth law.
 
     The law is a polynomial of `t`, first that of a quantile, as places beside the row lie inwards of it only, where
@@ -165,11 +167,11 @@ def _off_row(t: Reals, off: Reals, *, inward: float) -> Reals:
     squares.
     """
     if len(t) == 0:
-        return off
+        return distances
     terms = np.polynomial.chebyshev.chebvander(2.0 * t - 1.0, min(ROW_DEGREE, len(t) // FEWEST_ROW_POINTS - 1))
-    roots, left = np.ones(len(t)), off
+    roots, left = np.ones(len(t)), distances
     for _ in range(ROW_TURNS):
-        left = off - terms @ np.linalg.lstsq(roots[:, None] * terms, roots * off, rcond=None)[0]
+        left = distances - terms @ np.linalg.lstsq(roots[:, None] * terms, roots * distances, rcond=None)[0]
         size = np.maximum(np.abs(left), 1e-3 * float(np.median(np.abs(left))))
         roots = np.sqrt(
             np.where(inward * left > 0.0, OUTER_QUANTILE, 1.0 - OUTER_QUANTILE) / np.where(size > 0.0, size, 1.0)
@@ -177,7 +179,7 @@ def _off_row(t: Reals, off: Reals, *, inward: float) -> Reals:
         roots /= np.max(roots)
     for _ in range(ROW_SETTLING_TURNS):
         row = np.abs(left) <= ROW_WIDTH * DEVIATION_OVER_MEDIAN * float(np.median(np.abs(left)))
-        left = off - terms @ np.linalg.lstsq(terms[row], off[row], rcond=None)[0]
+        left = distances - terms @ np.linalg.lstsq(terms[row], distances[row], rcond=None)[0]
     return np.abs(left)
 
 

@@ -153,10 +153,10 @@ def _second_derivative(
     part = PROBE_SHARE * step
     if np.any(z + part < low) or np.any(z + part > high):
         return None
-    beside = problem.values(z + part)
-    if beside is None:
+    probe = problem.values(z + part)
+    if probe is None:
         return None
-    return np.asarray(2.0 / PROBE_SHARE * ((beside[0] - residuals) / PROBE_SHARE - slopes @ step))
+    return np.asarray(2.0 / PROBE_SHARE * ((probe[0] - residuals) / PROBE_SHARE - slopes @ step))
 
 
 def _step(

@@ -65,18 +65,18 @@ def edge_overhang_of(
     edges = footpoints_at(np.zeros((len(u), points.shape[1])), sides, side, u, v)
     chosen, shown = [], np.ones(len(u), dtype=bool)
     for i, at in enumerate(edges.points):
-        off = cloud - at
-        away = np.sum(off**2, axis=-1)
+        offset = cloud - at
+        away = np.sum(offset**2, axis=-1)
         if isinstance(upper, Surface):
             along = np.asarray(upper.derivative(u[i : i + 1], v[i : i + 1], 0, 1))[0]
-            way = off @ along / (along @ along)
+            way = offset @ along / (along @ along)
             away -= (1.0 - SPANWISE_WEIGHT**2) * way**2 * (along @ along)
             shown[i] = 0.0 < v[i] < 1.0 or abs(way[np.argmin(away)]) < COVERED_SPAN
         chosen.append(int(np.argmin(away)))
-    beside = cloud[chosen]
+    nearest = cloud[chosen]
     tree = cKDTree(cloud)
-    _, around = tree.query(beside, k=NEIGHBOURS)
-    apart = tree.query(cloud[around.ravel()], k=3)[0][:, -1]
+    _, around = tree.query(nearest, k=NEIGHBOURS)
+    spacings = tree.query(cloud[around.ravel()], k=3)[0][:, -1]
     most = ALLOWED_SPACINGS_EXACT if exact else ALLOWED_SPACINGS
-    allowed = np.where(shown, most * np.median(apart.reshape(len(chosen), NEIGHBOURS), axis=1), np.inf)
-    return EdgeOverhang(points=beside, u=u, v=v, allowed=allowed)
+    allowed = np.where(shown, most * np.median(spacings.reshape(len(chosen), NEIGHBOURS), axis=1), np.inf)
+    return EdgeOverhang(points=nearest, u=u, v=v, allowed=allowed)

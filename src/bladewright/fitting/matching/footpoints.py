@@ -236,11 +236,11 @@ def _starts(points: Reals, pieces: Patches) -> list[Start]:
     samples = sampled(pieces, *(SAMPLES if pieces.degrees[1] else CURVE_SAMPLES))
     if pieces.degrees[1]:
         around = 0.5 * np.abs(pieces.low[:, 0] + pieces.high[:, 0])
-        beside = np.flatnonzero((around < EDGE_PATCHES[0]) | (around > EDGE_PATCHES[1]))
-        more = sampled(replace(pieces, nets=pieces.nets[beside]), *EDGE_SAMPLES)
+        near_trailing_edge = np.flatnonzero((around < EDGE_PATCHES[0]) | (around > EDGE_PATCHES[1]))
+        more = sampled(replace(pieces, nets=pieces.nets[near_trailing_edge]), *EDGE_SAMPLES)
         samples = Samples(
             points=np.concatenate([samples.points, more.points]),
-            patch=np.concatenate([samples.patch, beside[more.patch]]),
+            patch=np.concatenate([samples.patch, near_trailing_edge[more.patch]]),
             local=np.concatenate([samples.local, more.local]),
         )
     lower = pieces.low[samples.patch, 0] < 0.0
@@ -257,8 +257,8 @@ def _starts(points: Reals, pieces: Patches) -> list[Start]:
 def _hinted(pieces: Patches, hint: Footpoints) -> list[Start]:
     """Starts at known footpoints, and beside a trailing edge on the other side too."""
     around = np.where(hint.side == 0, hint.u, -hint.u)
-    every, beside = np.arange(len(around)), np.flatnonzero(hint.u > 1.0 - EDGE_BAND)
-    return [(every, *pieces.at(around, hint.v)), (beside, *pieces.at(-around[beside], hint.v[beside]))]
+    every, at_edge = np.arange(len(around)), np.flatnonzero(hint.u > 1.0 - EDGE_BAND)
+    return [(every, *pieces.at(around, hint.v)), (at_edge, *pieces.at(-around[at_edge], hint.v[at_edge]))]
 
 
 def footpoints_at(points: Reals, sides: Sequence[Side], side: NDArray[np.intp], u: Reals, v: Reals) -> Footpoints:

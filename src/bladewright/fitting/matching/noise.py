@@ -53,14 +53,16 @@ def noise_of(
     index = around.index
     kept = inliers & inliers[index].all(axis=1)
     kept = kept if np.any(kept) else np.ones(len(points), dtype=bool)
-    beside, height, own_weight = weights[index[kept]], heights[kept], weights[kept]
-    total = np.sum(beside, axis=1)
+    others, height, own_weight = weights[index[kept]], heights[kept], weights[kept]
+    total = np.sum(others, axis=1)
     # scaled to the variance of the noise
-    rest = (height - np.sum(beside * heights[index[kept]], axis=1) / total) / np.sqrt(1.0 / own_weight + 1.0 / total)
-    variance, own = float(np.mean(own_weight * height**2)), float(np.mean(rest**2))
+    difference = (height - np.sum(others * heights[index[kept]], axis=1) / total) / np.sqrt(
+        1.0 / own_weight + 1.0 / total
+    )
+    variance, own = float(np.mean(own_weight * height**2)), float(np.mean(difference**2))
     correlation = float(np.clip(1.0 - own / variance, 0.0, 1.0)) if variance > 0.0 else 0.0
     return NoiseEstimate(
-        noise=DEVIATION_OVER_MEDIAN * float(np.median(np.abs(rest))), inliers=inliers, correlation=correlation
+        noise=DEVIATION_OVER_MEDIAN * float(np.median(np.abs(difference))), inliers=inliers, correlation=correlation
     )
 
 

@@ -88,13 +88,13 @@ def neighbourhood_of(points: Reals, footpoints: Footpoints) -> Neighbourhood:
     lifted = np.where(footpoints.side == 0, 1.0, -1.0) * SIDES_APART * extent * inward
     places = np.column_stack([footpoints.points, lifted])
     count = NEIGHBOURS[points.shape[1]]
-    asked = min(count + 1, len(points))
-    index = np.reshape(cKDTree(places).query(places, k=asked)[1], (len(points), asked))
+    neighbours = min(count + 1, len(points))
+    index = np.reshape(cKDTree(places).query(places, k=neighbours)[1], (len(points), neighbours))
     # of several points in one place, the point itself is not always found first
     own = index == np.arange(len(points))[:, None]
     index = np.where(own, index[:, :1], index)[:, 1:]
     return Neighbourhood(
-        places=places, index=np.pad(index, ((0, 0), (0, count - asked + 1)), mode="edge"), extent=extent
+        places=places, index=np.pad(index, ((0, 0), (0, count - neighbours + 1)), mode="edge"), extent=extent
     )
 
 
@@ -108,12 +108,12 @@ def outliers_of(
     index, roots = around.index, np.sqrt(weights)
     # a median of k neighbours has about 1 / k of the variance
     spread_out = np.sqrt(1.0 / weights + np.mean(1.0 / weights[index], axis=1) / index.shape[1])
-    off = np.abs(heights - np.median(heights[index], axis=1)) / spread_out * np.sqrt(1.0 + 1.0 / index.shape[1])
-    noise = DEVIATION_OVER_MEDIAN * float(np.median(off))
+    deviations = np.abs(heights - np.median(heights[index], axis=1)) / spread_out * np.sqrt(1.0 + 1.0 / index.shape[1])
+    noise = DEVIATION_OVER_MEDIAN * float(np.median(deviations))
     usual = DEVIATION_OVER_MEDIAN * float(np.median(roots * distances))
     chance = 1.0 + CHANCE_EXCESS / np.sqrt(len(heights))
     misfit = float(np.sqrt(max(usual**2 - (chance * noise) ** 2, 0.0)))
-    level = np.maximum(noise, _local_noise(off, around)) / roots
+    level = np.maximum(noise, _local_noise(deviations, around)) / roots
     edge = (footpoints.u < EDGE_BAND) | (footpoints.u > 1.0 - EDGE_BAND)
     near = ALWAYS_INLIER * around.extent
     least = np.hypot(OUTLYING_NOISE * level, np.where(edge, OUTLYING_MISFIT_AT_EDGES, OUTLYING_MISFIT) * misfit) + near
@@ -156,18 +156,18 @@ def _short_of_ends(past: NDArray[np.bool_], level: NDArray[np.bool_], footpoints
     It is wrong too where most of the points past it are `level` with the sides that go on there.
     """
     wrong = np.zeros(len(past), dtype=bool)
-    for beside in (footpoints.v < END_BAND, footpoints.v > 1.0 - END_BAND):
-        there, onwards = int(np.count_nonzero(past & beside)), int(np.count_nonzero(past & level & beside))
-        if there > WRONG_END_SHARE * np.count_nonzero(beside) or onwards > max(PAST_END_BY_CHANCE, there // 2):
-            wrong |= beside
+    for at_end in (footpoints.v < END_BAND, footpoints.v > 1.0 - END_BAND):
+        past_end, onwards = int(np.count_nonzero(past & at_end)), int(np.count_nonzero(past & level & at_end))
+        if past_end > WRONG_END_SHARE * np.count_nonzero(at_end) or onwards > max(PAST_END_BY_CHANCE, past_end // 2):
+            wrong |= at_end
     return wrong
 
 
-def _local_noise(off: Reals, around: Neighbourhood) -> Reals:
+def _local_noise(deviations: Reals, around: Neighbourhood) -> Reals:
     """The standard deviation of the noise (n,) around each point."""
     sites = even_subset(around.places, LOCAL_SITES)
-    _, near = cKDTree(around.places).query(around.places[sites], k=min(LOCAL_POINTS, len(off)))
-    noise = DEVIATION_OVER_QUARTILE * np.quantile(off[near.reshape(len(sites), -1)], 0.25, axis=1)
+    _, near = cKDTree(around.places).query(around.places[sites], k=min(LOCAL_POINTS, len(deviations)))
+    noise = DEVIATION_OVER_QUARTILE * np.quantile(deviations[near.reshape(len(sites), -1)], 0.25, axis=1)
     return np.asarray(noise[cKDTree(around.places[sites]).query(around.places)[1]])
 
 
@@ -202,15 +202,15 @@ def _cut_off(
     label = _groups(np.ones(len(heights), dtype=bool), linked, index)
     size = _sizes(label)
     core = np.flatnonzero(size > largest if np.any(size > largest) else size == size.max())
-    apart = np.flatnonzero(~np.isin(np.arange(len(heights)), core))
-    if len(apart) == 0:
+    separate = np.flatnonzero(~np.isin(np.arange(len(heights)), core))
+    if len(separate) == 0:
         return np.zeros(len(heights), dtype=bool)
-    _, near = cKDTree(around.places[core]).query(around.places[apart], k=min(CORE_NEIGHBOURS, len(core)))
-    near = core[near.reshape(len(apart), -1)]
-    reached = np.any(steps(np.broadcast_to(apart[:, None], near.shape), near), axis=1)
+    _, near = cKDTree(around.places[core]).query(around.places[separate], k=min(CORE_NEIGHBOURS, len(core)))
+    near = core[near.reshape(len(separate), -1)]
+    reached = np.any(steps(np.broadcast_to(separate[:, None], near.shape), near), axis=1)
     joined = np.zeros(len(heights), dtype=bool)
     joined[label[core]] = True
-    joined[label[apart[reached]]] = True
+    joined[label[separate[reached]]] = True
     return ~joined[label]
 
 

@@ -187,11 +187,11 @@ class MatchProblem(ConstrainedProblem):
             np.ravel(state.shape.edge_radius_margins[1]) - USUAL_EDGE_HEIGHT[0]
         )
         rows = np.concatenate([self.cloud_residuals.residuals(state), full, self.regularisation.residuals(z)])
-        held = np.concatenate([np.ravel(state.shape.edge_radius_margins[0]) + self.margin, state.shape.constraints])
-        cost = float(rows @ rows) * (1.0 + 1e3 * float(np.max(held, initial=0.0)))
+        margins = np.concatenate([np.ravel(state.shape.edge_radius_margins[0]) + self.margin, state.shape.constraints])
+        cost = float(rows @ rows) * (1.0 + 1e3 * float(np.max(margins, initial=0.0)))
         if cost < self._least:
             self._least, self.best = cost, np.array(z)
-        return rows, held
+        return rows, margins
 
     def derivatives(self, z: Reals) -> tuple[Reals, Reals]:
         """Derivatives (m, k) of all residuals and (c, k) of the constrained values."""
@@ -199,12 +199,12 @@ class MatchProblem(ConstrainedProblem):
         if state is None:
             raise DesignError("there is no shape to differentiate: start from a design that can be built")
         edge_radius_margins = self.model.edge_radius_margin_rates(state.shape, self.paths)
-        held, full = (edge_radius_margins[:, i].reshape(len(self.paths), -1).T for i in (0, 1))
-        held = np.concatenate([held, self.model.constraint_rates(state.shape, self.paths).T])
+        margins, full = (edge_radius_margins[:, i].reshape(len(self.paths), -1).T for i in (0, 1))
+        margins = np.concatenate([margins, self.model.constraint_rates(state.shape, self.paths).T])
         rows = np.concatenate(
             [self.cloud_residuals.slopes(state, self.paths), self._edge_height_weight(state.shape) * full]
         )
-        return np.concatenate([rows * self.scales.size, self.regularisation.matrix]), held * self.scales.size
+        return np.concatenate([rows * self.scales.size, self.regularisation.matrix]), margins * self.scales.size
 
     def _edge_height_weight(self, shape: ModelShape) -> float:
         stations = max(shape.edge_radius_margins[0].size / 4.0, 1.0)

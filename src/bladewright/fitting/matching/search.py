@@ -182,7 +182,7 @@ def searched(
     reduction of the cost that a step must predict, `enough` the misfit, of the chord, below which the search ends.
     Raises FitError where the start has no shape.
     """
-    found, idle = _prepared_round(task, start, start, noise), 0
+    found, rounds_without_gain = _prepared_round(task, start, start, noise), 0
     task.best_so_far.note(found)
     for number in range(rounds):
         before = found.misfit
@@ -199,8 +199,8 @@ def searched(
         rms = f"{1e3 * found.rms * found.model.chord:.3g} mm rms, {1e3 * found.maximum:.3g} mm at most"
         task.progress(f"{len(found.problem.paths)} parameters, {rms}")
         ratio = found.misfit / before
-        idle = idle + 1 if ratio**2 > min(SETTLED_RATIO**2, 1.0 - min_reduction) else 0
-        if number and idle and (found.converged or idle > 1):
+        rounds_without_gain = rounds_without_gain + 1 if ratio**2 > min(SETTLED_RATIO**2, 1.0 - min_reduction) else 0
+        if number and rounds_without_gain and (found.converged or rounds_without_gain > 1):
             break
         noise = found.rms * (max(ratio, 1e-3) if ratio < FAST_RATIO else 1.0)
     return found

@@ -122,12 +122,12 @@ def _reduced(forecast: Forecast, structure: Structure, most: int, roots: Reals |
 def _extended(forecast: Forecast, structure: Structure, most: int, roots: Reals | None) -> Structure:
     """A structure with as many parameters as allowed: what is predicted to gain most is added first."""
     while True:
-        room = most - forecast.prediction(structure, roots).parameters
-        fitting = [(gain, step) for gain, step in ranked_steps(forecast, structure, roots) if step.parameters <= room]
+        spare = most - forecast.prediction(structure, roots).parameters
+        fitting = [(gain, step) for gain, step in ranked_steps(forecast, structure, roots) if step.parameters <= spare]
         if not fitting or fitting[0][0] <= 0.0:
             return structure
         structure = union_of(
-            structure, steps_taken_together(fitting, max(fitting[0][1].parameters, room // SURPLUS_DIVISOR))
+            structure, steps_taken_together(fitting, max(fitting[0][1].parameters, spare // SURPLUS_DIVISOR))
         )
 
 

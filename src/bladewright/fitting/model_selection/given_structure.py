@@ -111,13 +111,13 @@ def _exact_match(task: Task, match: Match, most: float) -> Match | None:
 def _informative_points(match: Match) -> NDArray[np.intp]:
     """Points that show edges and ends, which few points of a cloud show, and some of all."""
     footpoints = match.state.footpoints
-    beside = (
+    at_edge = (
         (footpoints.u < EDGE_BANDS[0])
         | (footpoints.u > EDGE_BANDS[1])
         | (footpoints.v < END_BAND)
         | (footpoints.v > 1.0 - END_BAND)
     )
-    rows = np.flatnonzero(beside)
+    rows = np.flatnonzero(at_edge)
     return np.union1d(rows[random_subset(len(rows), EDGE_POINTS)], random_subset(len(footpoints.u), OTHER_POINTS))
 
 

@@ -55,8 +55,11 @@ def edge_steps(match: Match, tolerance: float) -> list[StructureStep]:
     if not structure.channel or not np.any(beyond) or np.mean(beyond[rows]) > FEW_BEYOND:
         return []
     steps = []
-    for edge, beside in (("leading_edge", footpoints.u < EDGE_BAND), ("trailing_edge", footpoints.u > 1.0 - EDGE_BAND)):
-        if np.mean(beside[beyond]) < GATHERED_AT_EDGE:
+    for edge, near_edge in (
+        ("leading_edge", footpoints.u < EDGE_BAND),
+        ("trailing_edge", footpoints.u > 1.0 - EDGE_BAND),
+    ):
+        if np.mean(near_edge[beyond]) < GATHERED_AT_EDGE:
             continue
         counts = {name: _half_as_many_again(structure.span[name], MOST_SPAN) for name in EDGE_LAWS[edge]}
         curve = _half_as_many_again(structure.channel[edge], MOST_CURVE)
@@ -192,8 +195,8 @@ def _predicted_design(forecast: Forecast, match: Match, target: MatchTarget, emp
         steps = [StructureStep(fields=(), structure=structure, parameters=0), *edge_steps(match, target.tolerance)]
         structure = union_of(structure, steps) if len(steps) > 1 else structure
     predicted = forecast.prediction(structure, roots)
-    worth = WORTHWHILE_GAIN if match.rms > NEAR_MISFIT else WORTHWHILE_GAIN_NEAR
-    if structure == now or (target.open and predicted.cost > (1.0 - worth) * forecast.prediction(now).cost):
+    min_gain = WORTHWHILE_GAIN if match.rms > NEAR_MISFIT else WORTHWHILE_GAIN_NEAR
+    if structure == now or (target.open and predicted.cost > (1.0 - min_gain) * forecast.prediction(now).cost):
         return None
     return forecast.designed(structure, predicted)
 

@@ -202,10 +202,10 @@ def predicted_rest(slopes: Reals, rows: Reals, roots: Reals, noise: float) -> fl
     """
     count = slopes.shape[1]
     triangle = np.linalg.qr(np.column_stack([slopes * roots[:, None], rows * roots]), mode="r")
-    held = np.zeros((count, count + 1))
-    held[:, :-1] = noise * np.eye(count)
+    penalty = np.zeros((count, count + 1))
+    penalty[:, :-1] = noise * np.eye(count)
     # the last diagonal entry is what no step removes
-    left = np.asarray(np.linalg.qr(np.vstack([np.asarray(triangle), held]), mode="r"))[-1, -1]
+    left = np.asarray(np.linalg.qr(np.vstack([np.asarray(triangle), penalty]), mode="r"))[-1, -1]
     return float(left**2)
 
 
@@ -220,8 +220,8 @@ def steps_taken_together(
     left = np.inf if most is None else most
     for gain, step in ranked:
         added = sum(each.parameters for each in taken)
-        worth = not taken or gain / step.parameters >= MIN_GAIN_OF_BEST * best or (added < least and gain > 0.0)
-        if step.parameters <= left and worth:
+        worthwhile = not taken or gain / step.parameters >= MIN_GAIN_OF_BEST * best or (added < least and gain > 0.0)
+        if step.parameters <= left and worthwhile:
             taken.append(step)
             left -= step.parameters
     return taken

@@ -193,8 +193,8 @@ def _edge_radius_margins(design: Any, line: Array, upper: Array, lower: Array) -
         plain = side if side.shape[-1] == 2 else side[..., :2] / side[..., 2:]
         for end, (first, second, third) in enumerate(((0, 1, 2), (-1, -2, -3))):
             height = length(plain[..., second, :] - plain[..., first, :])
-            beside = length(plain[..., third, :] - camber[..., end, :])
-            rows.append(np.stack([(height - beside) / extent, height / beside])[..., None, :])
+            next_thickness = length(plain[..., third, :] - camber[..., end, :])
+            rows.append(np.stack([(height - next_thickness) / extent, height / next_thickness])[..., None, :])
     return concatenated(rows, axis=-2)
 
 

@@ -185,8 +185,8 @@ def _check(axis: RevolutionAxis, others: list[RevolutionAxis], extent: float) ->
             f"{axis.offset:.2g} m, more than {np.degrees(DIRECTION_LIMIT):g} deg and {OFFSET_LIMIT * extent:.2g} m"
         )
     for other in others:
-        apart = abs(other.motion.rotation[0] @ axis.motion.rotation[0]) < OTHER_AXIS_COSINE
-        if apart and other.rms < AMBIGUITY_RATIO * max(axis.rms, 1e-9 * extent):
+        other_direction = abs(other.motion.rotation[0] @ axis.motion.rotation[0]) < OTHER_AXIS_COSINE
+        if other_direction and other.rms < AMBIGUITY_RATIO * max(axis.rms, 1e-9 * extent):
             raise _undetermined(
                 f"another axis fits nearly as well: the ends lie {other.rms:.3g} m off it, and {axis.rms:.3g} m "
                 "off the best"

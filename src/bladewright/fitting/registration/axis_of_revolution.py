@@ -92,28 +92,28 @@ def _axis_and_lines(
     """Axis and lines where the steps end, and the width of the weights that the residuals need."""
     extent = _extent(ends)
     lines = [_first_line(end, motion, degree) for end in ends]
-    offs = _equations(ends, motion, lines, np.inf)[2]
-    wide = max(7.0 * float(np.median(np.abs(np.concatenate(offs)))), LEAST_WIDTH * extent)
-    before = _cost(offs, wide)
+    misses = _equations(ends, motion, lines, np.inf)[2]
+    wide = max(7.0 * float(np.median(np.abs(np.concatenate(misses)))), LEAST_WIDTH * extent)
+    before = _cost(misses, wide)
     for _ in range(steps):
-        rows, right, offs = _equations(ends, motion, lines, wide)
+        rows, right, misses = _equations(ends, motion, lines, wide)
         scale = np.ones(rows.shape[1])
         scale[:2] = 1.0 / extent
         found = np.linalg.lstsq(rows * scale, right, rcond=WEAKEST_DIRECTION)[0]
         share = min(1.0, 0.1 * extent / max(float(np.max(np.abs(found[:4]))), 1e-300))
         for _ in range(HALVINGS):
             trial, curves = _changed(motion, lines, share * found * scale)
-            offs = _equations(ends, trial, curves, np.inf)[2]
-            cost = _cost(offs, wide)
+            misses = _equations(ends, trial, curves, np.inf)[2]
+            cost = _cost(misses, wide)
             if cost <= before:
                 break
             share *= 0.4
         else:
             break
         motion, lines = trial, curves
-        narrow = max(7.0 * float(np.median(np.abs(np.concatenate(offs)))), LEAST_WIDTH * extent)
+        narrow = max(7.0 * float(np.median(np.abs(np.concatenate(misses)))), LEAST_WIDTH * extent)
         narrow, wide = wide, min(wide, narrow)
-        before = _cost(offs, wide)
+        before = _cost(misses, wide)
         if share * np.max(np.abs(found)) < 1e-12 * extent or (
             share * np.max(np.abs(found)) < 1e-3 * wide and wide > 0.99 * narrow
         ):
@@ -130,9 +130,9 @@ def _changed(motion: Motion, lines: list[_Line], step: Reals) -> tuple[Motion, l
     return composed(change, motion), curves
 
 
-def _cost(offs: list[Reals], width: float) -> float:
+def _cost(misses: list[Reals], width: float) -> float:
     """Sum of Tukey's losses, 1 for each point outside of the width."""
-    inside = np.minimum(1.0, (np.concatenate(offs) / width) ** 2)
+    inside = np.minimum(1.0, (np.concatenate(misses) / width) ** 2)
     return float(np.sum(1.0 - (1.0 - inside) ** 3))
 
 
@@ -150,8 +150,8 @@ def _first_line(end: EndPoints, motion: Motion, degree: int) -> _Line:
     for _ in range(10):
         root = np.sqrt(weight)
         coefficients = np.linalg.lstsq(vander * root[:, None], ordinate * root, rcond=1e-9)[0]
-        off = np.abs(ordinate - vander @ coefficients)
-        weight = tukey_weights(off, max(7.0 * float(np.median(off)), 1e-12))
+        distances = np.abs(ordinate - vander @ coefficients)
+        weight = tukey_weights(distances, max(7.0 * float(np.median(distances)), 1e-12))
     return _Line(turn=turn, middle=middle, half=half, coefficients=coefficients)
 
 
@@ -159,7 +159,7 @@ def _equations(
     ends: tuple[EndPoints, EndPoints], motion: Motion, lines: list[_Line], width: float
 ) -> tuple[Reals, Reals, list[Reals]]:
     """Weighted rows by the axis' four degrees of freedom and the lines' coefficients, right sides, and distances."""
-    blocks, rights, offs = [], [], []
+    blocks, rights, misses = [], [], []
     size = len(lines[0].coefficients)
     for k, (end, line) in enumerate(zip(ends, lines, strict=True)):
         points = motion(end.points)
@@ -169,7 +169,7 @@ def _equations(
         vander = chebyshev.chebvander(place, size - 1)
         slope = chebyshev.chebval(place, chebyshev.chebder(line.coefficients)) / line.half
         cosine = 1.0 / np.sqrt(1.0 + slope**2)
-        off = (ordinate - vander @ line.coefficients) * cosine
+        distances = (ordinate - vander @ line.coefficients) * cosine
         radial = points[:, 1:] / flat[:, 1:]
         rates = np.einsum("kde,ne->nkd", GENERATORS[3][1:], points)
         rates = np.concatenate([rates, np.broadcast_to(np.eye(3)[1:], (len(points), 2, 3))], axis=1)
@@ -178,19 +178,20 @@ def _equations(
         block = np.zeros((len(points), 4 + 2 * size))
         block[:, :4] = (across - slope[:, None] * along) * cosine[:, None]
         block[:, 4 + k * size : 4 + (k + 1) * size] = -vander * cosine[:, None]
-        root = np.sqrt(tukey_weights(np.abs(off), width)) if np.isfinite(width) else np.ones(len(off))
+        root = np.sqrt(tukey_weights(np.abs(distances), width)) if np.isfinite(width) else np.ones(len(distances))
         blocks.append(block * root[:, None])
-        rights.append(-off * root)
-        offs.append(off)
-    return np.concatenate(blocks), np.concatenate(rights), offs
+        rights.append(-distances * root)
+        misses.append(distances)
+    return np.concatenate(blocks), np.concatenate(rights), misses
 
 
 def _axis(
     ends: tuple[EndPoints, EndPoints], motion: Motion, lines: list[_Line], width: float, degree: int
 ) -> RevolutionAxis | None:
     """The axis with its figures; None where an end has too few points on its surface."""
-    rows, right, offs = _equations(ends, motion, lines, width)
-    inside = [np.abs(off) < width for off in offs]
+    rows, right, misses = _equations(ends, motion, lines, width)
+    inside = [np.abs(miss) < width for miss in misses]
+    kept = [miss[each] for miss, each in zip(misses, inside, strict=True)]
     if min(np.count_nonzero(each) for each in inside) < FEWEST_END_POINTS:
         return None
     extent = _extent(ends)
@@ -203,7 +204,7 @@ def _axis(
     covariance = (spread * half @ half.T)[:4, :4]
     return RevolutionAxis(
         motion=motion,
-        rms=float(np.sqrt(np.mean(np.concatenate([off[each] for off, each in zip(offs, inside, strict=True)]) ** 2))),
+        rms=float(np.sqrt(np.mean(np.concatenate(kept) ** 2))),
         direction=float(np.sqrt(np.linalg.eigvalsh(covariance[:2, :2])[-1])) / extent,
         offset=float(np.sqrt(np.linalg.eigvalsh(covariance[2:, 2:])[-1])),
         score=len(rows) * 2.0 * float(np.log(width)) + 2 * (degree + 1) * float(np.log(len(rows))),

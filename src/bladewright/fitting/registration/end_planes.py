@@ -74,11 +74,11 @@ def _end_plane(sheet: UnrolledSheet, rows: NDArray[np.intp], along: Reals, insid
     design = np.concatenate([np.ones((len(height), 1)), across], axis=1)
     damping = np.diag([0.0, 1.0, 1.0]) * TILT_DAMPING * spacing**2 * len(height)
     for width in spacing * np.geomspace(FIRST_WIDTH, LAST_WIDTH, NARROWINGS):
-        off = height - design @ plane
-        weight = np.where(off < 0.0, 1.0, tukey_weights(np.abs(off), width))
+        residuals = height - design @ plane
+        weight = np.where(residuals < 0.0, 1.0, tukey_weights(np.abs(residuals), width))
         plane = np.linalg.solve((design.T * weight) @ design + damping, (design.T * weight) @ height)
-    off = height - design @ plane
-    on_plane = np.abs(off) < ON_PLANE * spacing
+    residuals = height - design @ plane
+    on_plane = np.abs(residuals) < ON_PLANE * spacing
     if np.count_nonzero(on_plane) < 4:
         return None
     normal = frame[0] - plane[1] * frame[1] - plane[2] * frame[2]

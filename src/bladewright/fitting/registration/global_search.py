@@ -111,9 +111,9 @@ def _descended(
         arms = np.einsum("bde,ne->bnd", rotations, points) + places[:, None]
         distances, index = tree.query(arms.reshape(-1, points.shape[1]))
         # across the samples' spacing only the distance from the tangent plane says how good a place is
-        off = np.sum(normals[index] * (arms.reshape(-1, points.shape[1]) - samples[index]), axis=-1)
-        beside = np.maximum(0.0, distances - 0.3 * width)
-        scores = np.mean(np.minimum(off**2 + beside**2, width**2).reshape(arms.shape[:2]), axis=1)
+        normal_distance = np.sum(normals[index] * (arms.reshape(-1, points.shape[1]) - samples[index]), axis=-1)
+        excess = np.maximum(0.0, distances - 0.3 * width)
+        scores = np.mean(np.minimum(normal_distance**2 + excess**2, width**2).reshape(arms.shape[:2]), axis=1)
         kept = np.argsort(scores)[: max(12, int(share * len(scores)))]
         rotations, places, scores = rotations[kept], places[kept], scores[kept]
     return rotations, places, scores

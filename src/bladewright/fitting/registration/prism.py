@@ -60,13 +60,13 @@ def _followed(cloud: Reals, direction: Reals) -> Prism:
         local = flat[near] - flat[near].mean(axis=1, keepdims=True)
         axes = np.linalg.eigh(np.einsum("nki,nkj->nij", local, local))[1]
         normal, along = axes[:, :, 0], np.einsum("nki,ni->nk", local, axes[:, :, 1])
-        off = np.einsum("nki,ni->nk", local, normal)
+        residuals = np.einsum("nki,ni->nk", local, normal)
         # what smoothing by a parabola leaves of a point's distance and height
         scale = np.maximum(np.max(np.abs(along), axis=1, keepdims=True), 1e-300)
         vander = np.stack([np.ones_like(along), along / scale, (along / scale) ** 2], axis=-1)
         normal_matrix = np.einsum("nki,nkj->nij", vander, vander) + 1e-12 * np.eye(3)
         first = np.einsum("nki,ni->nk", vander, np.linalg.solve(normal_matrix, vander[:, 0, :, None])[..., 0])
-        left = off[:, 0] - np.einsum("nj,nj->n", first, off)
+        left = residuals[:, 0] - np.einsum("nj,nj->n", first, residuals)
         lift = height - np.einsum("nj,nj->n", first, height[near])
         width = max(4.685 * 1.4826 * float(np.median(np.abs(left))), 1e-15)
         root = np.sqrt(tukey_weights(np.abs(left), width))
@@ -102,9 +102,9 @@ def flat_ends(cloud: Reals, direction: Reals) -> bool:
             for _ in range(8):
                 root = np.sqrt(weight)
                 plane = np.linalg.lstsq(design * root[:, None], level * root, rcond=1e-9)[0]
-                off = np.abs(level - design @ plane)
-                weight = tukey_weights(off, max(7.0 * float(np.median(off)), 1e-12))
-            left.append(float(np.median(off)))
+                residuals = np.abs(level - design @ plane)
+                weight = tukey_weights(residuals, max(7.0 * float(np.median(residuals)), 1e-12))
+            left.append(float(np.median(residuals)))
         if left[0] > CURVED_END_RATIO * left[1] and left[0] > CURVED_END_SHARE:
             return False
     return True

@@ -108,10 +108,10 @@ class RegistrationTarget:
             rows = np.flatnonzero(wanted[2 + k])
             if len(rows):
                 inside, at, normal = self._on_end(k, points[rows])
-                off = points[rows] - at
-                inside &= np.sum(off**2, axis=-1) < square[rows]
+                offset = points[rows] - at
+                inside &= np.sum(offset**2, axis=-1) < square[rows]
                 rows = rows[inside]
-                normals[rows], beyond[rows], miss[rows] = normal[inside], 0.0, off[inside]
+                normals[rows], beyond[rows], miss[rows] = normal[inside], 0.0, offset[inside]
                 square[rows], part[rows] = np.sum(miss[rows] ** 2, axis=-1), 2 + k
         return Contact(normals=normals, beyond=beyond, miss=miss, part=part, place=place)
 
@@ -145,12 +145,12 @@ class RegistrationTarget:
         domain = np.array([surface.domain_u, surface.domain_v])
         for _ in range(8):
             of = surface.derivatives(at[0], at[1], 2)
-            off = of[0, 0] - points
+            offset = of[0, 0] - points
             a, b, c = (_dot(x, y) for x, y in ((of[1, 0],) * 2, (of[1, 0], of[0, 1]), (of[0, 1],) * 2))
-            full = a + _dot(off, of[2, 0]), b + _dot(off, of[1, 1]), c + _dot(off, of[0, 2])
+            full = a + _dot(offset, of[2, 0]), b + _dot(offset, of[1, 1]), c + _dot(offset, of[0, 2])
             convex = (full[0] > 0.0) & (full[2] > 0.0) & (full[0] * full[2] - full[1] ** 2 > 1e-3 * a * c)
             a, b, c = (np.where(convex, exact, metric) for exact, metric in zip(full, (a, b, c), strict=True))
-            g, h = _dot(off, of[1, 0]), _dot(off, of[0, 1])
+            g, h = _dot(offset, of[1, 0]), _dot(offset, of[0, 1])
             size = a * c - b * b
             at = np.clip(at - np.stack([c * g - b * h, a * h - b * g]) / size, domain[:, :1], domain[:, 1:])
         return _within(self.outlines[k], at.T), surface(*at), surface.normal(*at)
