@@ -173,7 +173,7 @@ class DrawnSection:
         return np.concatenate([self.sides["upper"], self.sides["lower"][::-1]])
 
     def moved(self, side: str, distance: Reals | float) -> Reals:
-        """A side (k, 2) offset outwards by `off` [mm]."""
+        """A side (k, 2) offset outwards by `distance` [mm]."""
         return self.sides[side] + self.outwards[side] * np.reshape(distance, (-1, 1))
 
     def footpoints(self, fit: FitResult, index: Index) -> tuple[Reals, Reals]:

@@ -100,7 +100,7 @@ def _length(ruler: BladeStreamlines, share: Array, extent: Array) -> tuple[Array
 
 
 def _solved(ruler: BladeStreamlines, share: Reals, wanted: Reals, most: Reals) -> Reals:
-    """Real extents in the plane (m,), up to `most`, of sections `asked` long, by Newton's method.
+    """Real extents in the plane (m,), up to `most`, of sections `wanted` long, by Newton's method.
 
     Length grows with the extent.
     """

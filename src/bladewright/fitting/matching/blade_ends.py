@@ -163,7 +163,7 @@ def _off_row(t: Reals, distances: Reals, *, inward: float) -> Reals:
     """Distances (m,) [m] from the row in which most places stand, which may be off the wall by a smooth law.
 
     The law is a polynomial of `t`, first that of a quantile, as places beside the row lie inwards of it only, where
-    `off` has the sign `inward`. Reference: Koenker and Bassett 1978 (quantiles), by iteratively reweighted least
+    `distances` have the sign `inward`. Reference: Koenker and Bassett 1978 (quantiles), by iteratively reweighted least
     squares.
     """
     if len(t) == 0:

@@ -134,9 +134,9 @@ def check_chord_left(leading: EdgePoints, trailing: EdgePoints, span: Span) -> N
 def check_reparametrisation(name: str, side: Side, span: Span) -> None:
     """Refuse a control point on a tangent so near to its corner that the side cannot continue the edge's speed.
 
-    `reach` is the distance from the corner to that control point, c = reach slope, which does not depend on the reach,
-    and d the distance to the next control point. Then the rise is about -c^2 d / reach^3, and the parameter is monotone
-    up to a rise of about sqrt(72 slope) and a slope of about 2.5.
+    With a the distance from the corner to that control point, c = a slope, which does not depend on a, and d the
+    distance to the next control point, the rise is about -c^2 d / a^3, and the parameter is monotone up to a rise of
+    about sqrt(72 slope) and a slope of about 2.5.
     """
     for end, edge, which in ((side.start, "leading_edge", "in"), (side.end, "trailing_edge", "out")):
         slope = np.min(np.real(reparametrised(end, CHECKED_AT, 1)), axis=-1)
