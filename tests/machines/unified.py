@@ -4,8 +4,6 @@ from bladewright.blade.design.flow_path import Channel
 from bladewright.blade.design.unified import UnifiedBlade
 from bladewright.section.unified import UnifiedSection
 
-from . import COARSE
-
 COMMON = {
     "length_unit": "mm",
     "tangent_in": 0.35,
@@ -99,7 +97,6 @@ VANE = UnifiedSection(
 )
 DRAWN_IMPELLER = UnifiedBlade(
     name="drawn-impeller",
-    tolerance=COARSE,
     length_unit="mm",
     blade_count=14,
     stagger=(35.0, 45.0),
