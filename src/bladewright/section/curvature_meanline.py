@@ -42,6 +42,8 @@ from bladewright.section.thickness.wennerstrom import Wennerstrom
 
 GRID = np.linspace(0.0, 1.0, 9)
 """span fractions at which it is seen whether a joint moves: more places than a usual law has control points [-]"""
+AnyThickness = Annotated[Wennerstrom | ModifiedNaca | QuarticSpline, ByField("law")]
+"""One of the thickness laws, chosen by `law`."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -58,7 +60,7 @@ class CurvatureMeanline(SectionFamily):
     """control points of the meanline's second derivative, leading to trailing edge; only their ratios count [-]"""
     curvature_places: ChordwiseLaw = parameter("-", default=())
     """chord fractions of the inner control points of the second derivative; none: evenly spaced [-]"""
-    thickness: Annotated[Wennerstrom | ModifiedNaca | QuarticSpline, ByField("law")]
+    thickness: AnyThickness
     """thickness law, chosen by its `law`"""
     thickness_multiplier: ChordwiseLaw = parameter("-", default=())
     """control points of the fraction by which the half thickness grows, leading to trailing edge; none: 0 [-]"""
