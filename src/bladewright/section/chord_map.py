@@ -77,24 +77,6 @@ class Breakpoint(NamedTuple):
     """its fixed coordinate"""
 
 
-@dataclass(frozen=True, kw_only=True)
-class _RationalPiece:
-    """R between two joints: rises by `rise` (..., m, 1) over `width`, with slopes at both ends."""
-
-    start: float
-    width: float
-    low: Array
-    rise: Array
-    slope_in: Array
-    slope_out: Array
-
-    def risen(self, zeta: Series, rest: Series) -> tuple[Series, Series, Series]:
-        """R's way from the start over zeta, from the end over 1 - zeta, and their common denominator."""
-        secant = self.rise / self.width
-        bottom = secant + (self.slope_in + self.slope_out - 2.0 * secant) * (zeta * rest)
-        return secant * zeta + self.slope_in * rest, secant * rest + self.slope_out * zeta, bottom
-
-
 class ChordMap:
     """The map u(s) of sections (..., m) with one breakpoint or more, increasing, between edges that are round or not.
 
@@ -109,13 +91,28 @@ class ChordMap:
         self.leading_round, self.trailing_round = leading_round, trailing_round
         self.joints = tuple(Joint(self._placed(each.sigma), each.derivatives) for each in self.breaks)
         self.ends = np.array([each.s for each in self.joints])
-        self._pieces = _rational_pieces(self.breaks)
+        self._sigmas = np.array([0.0, *[each.sigma for each in self.breaks], 1.0])
+        self._widths = np.diff(self._sigmas)
+        self._lows = [np.zeros((1, 1)), *[each.u[..., None] for each in self.breaks]]
+        self._rises = [high - low for low, high in pairwise(self._lows)] + [self.breaks[-1].rest[..., None]]
+        self._slopes = self._slopes_at_sigmas()
         self._skew = None if bend is None else -bend[..., None] * self._root_slope()
+
+    def _slopes_at_sigmas(self) -> list[Array]:
+        """Slopes of R (..., m, 1) at both edges and the breakpoints."""
+        widths, count = self._widths, len(self.breaks)
+        secants = [rise / width for rise, width in zip(self._rises, widths, strict=True)]
+        slopes: list[Array] = [secants[0], *[np.zeros(())] * count, secants[-1]]
+        once = [k for k, each in enumerate(self.breaks, 1) if each.derivatives == 1]
+        for k in once:
+            slopes[k] = 2.0 * secants[k - 1] * secants[k] / (secants[k - 1] + secants[k])
+        for k in (k for k in range(1, count + 1) if k not in once):
+            slopes[k] = _smooth_slope(widths[k - 1 : k + 1], secants[k - 1 : k + 1], slopes[k - 1], slopes[k + 1])
+        return slopes
 
     def _root_slope(self) -> Array:
         """d(sqrt u)/ds (..., m, 1) at a round leading edge."""
-        start = self._pieces[0].slope_in
-        return np.sqrt(start) * (0.5 * np.pi if self.trailing_round else np.sqrt(0.125) * np.pi)
+        return np.sqrt(self._slopes[0]) * (0.5 * np.pi if self.trailing_round else np.sqrt(0.125) * np.pi)
 
     def _skewed(self, s: Series) -> Series:
         """p(s) in the first piece."""
@@ -141,26 +138,29 @@ class ChordMap:
 
     def place(self, piece: int, s: Reals, order: int) -> ChordPlace:
         """Series in s of the place on a piece at s (k,), which may lie beyond the piece's ends."""
-        each = self._pieces[piece]
         at, back = variable(s, order), variable(1.0 - s, order, -1.0)
         if piece == 0:
             at = self._skewed(at)
         sigma, rest = _fixed(at, back, leading=self.leading_round, trailing=self.trailing_round)
         # near an edge the distance from it is what the root is taken of
-        end = each.start + each.width
-        ahead = sigma[0] if piece == 0 else sigma[0] - each.start
+        start, width = self._sigmas[piece], self._widths[piece]
+        end, low, rise = start + width, self._lows[piece], self._rises[piece]
+        ahead = sigma[0] if piece == 0 else sigma[0] - start
         last = piece == len(self.breaks)
         behind = rest[0] if last else end - sigma[0]
-        zeta, omega = ahead / each.width, behind / each.width
-        top, back, bottom = each.risen(zeta, omega)
-        factor, factor_back = each.rise * top / bottom, each.rise * back / bottom
-        u, left = each.low + factor * zeta, (1.0 - each.low - each.rise) + factor_back * omega
+        zeta, omega = ahead / width, behind / width
+        # R's way from the start over zeta, from the end over omega = 1 - zeta, and their common denominator
+        secant, slope_in, slope_out = rise / width, self._slopes[piece], self._slopes[piece + 1]
+        bottom = secant + (slope_in + slope_out - 2.0 * secant) * (zeta * omega)
+        factor = rise * (secant * zeta + slope_in * omega) / bottom
+        factor_back = rise * (secant * omega + slope_out * zeta) / bottom
+        u, left = low + factor * zeta, (1.0 - low - rise) + factor_back * omega
         if piece == 0:
             u = factor * zeta
         if last:
             left = factor_back * omega
-        root = (factor / each.width).sqrt() * sigma[1] if piece == 0 and sigma[1] is not None else None
-        rest_root = (factor_back / each.width).sqrt() * rest[1] if last and rest[1] is not None else None
+        root = (factor / width).sqrt() * sigma[1] if piece == 0 and sigma[1] is not None else None
+        rest_root = (factor_back / width).sqrt() * rest[1] if last and rest[1] is not None else None
         return ChordPlace(u, left, root, rest_root)
 
     def u(self, s: Reals, order: int = 0) -> Series:
@@ -188,27 +188,6 @@ def _fixed(s: Series, back: Series, *, leading: bool, trailing: bool) -> tuple[R
         last = _sine(quarter * back) * np.sqrt(2.0)
         return (_sine(half * s), None), (last * last, last)
     return (s, None), (back, None)
-
-
-def _rational_pieces(breaks: tuple[Breakpoint, ...]) -> list[_RationalPiece]:
-    sigmas = np.array([0.0, *[each.sigma for each in breaks], 1.0])
-    widths = np.diff(sigmas)
-    lows = [np.zeros((1, 1)), *[each.u[..., None] for each in breaks]]
-    rises = [high - low for low, high in pairwise(lows)]
-    rises.append(breaks[-1].rest[..., None])
-    secants = [rise / width for rise, width in zip(rises, widths, strict=True)]
-    slopes: list[Array] = [secants[0], *[np.zeros(())] * len(breaks), secants[-1]]
-    once = [k for k, each in enumerate(breaks, 1) if each.derivatives == 1]
-    for k in once:
-        slopes[k] = 2.0 * secants[k - 1] * secants[k] / (secants[k - 1] + secants[k])
-    for k in (k for k in range(1, len(breaks) + 1) if k not in once):
-        slopes[k] = _smooth_slope(widths[k - 1 : k + 1], secants[k - 1 : k + 1], slopes[k - 1], slopes[k + 1])
-    return [
-        _RationalPiece(
-            start=sigmas[k], width=widths[k], low=lows[k], rise=rises[k], slope_in=slopes[k], slope_out=slopes[k + 1]
-        )
-        for k in range(len(rises))
-    ]
 
 
 def _smooth_slope(widths: Reals, secants: Sequence[Array], before: Array, after: Array) -> Array:
