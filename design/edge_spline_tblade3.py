@@ -32,7 +32,7 @@ import numpy as np
 
 from bladewright.section.chord_spline import ChordSpline, segments
 from bladewright.section.laws import Span
-from bladewright.section.meanline import CurvatureIntegral
+from bladewright.section.meanline import CurvedMeanline
 from bladewright.section.thickness.quartic import QuarticSpline
 
 OUTPUT = Path(__file__).parents[2] / "shared" / "data" / "tblade3" / "LE_spline_turb4_v1.2.2" / "output"
@@ -65,10 +65,12 @@ def section(n, u, scale):
         values=np.array([[0.0, 0.2, 0.4, 1.0, 0.6, 0.15, 0.05, 0.0]]),
     )
     half = (law.at(Span(np.zeros(1))).half_at(u) * (1.0 + multiplier.derivatives(u)[0]))[0]
-    curvature = CurvatureIntegral(
-        places=np.array([[0.0, 0.03, 0.2, 0.5, 0.8, 1.0]]), values=np.array([[0.0, 0.5, 0.25, 0.1, 0.05, 0.0]])
+    line = CurvedMeanline(
+        places=np.array([[0.0, 0.03, 0.2, 0.5, 0.8, 1.0]]),
+        values=np.array([[0.0, 0.5, 0.25, 0.1, 0.05, 0.0]]),
+        camber=np.zeros(1),
     )
-    second, first, *_ = (each[0] for each in curvature.at(u))
+    second, first, *_ = (each[0] for each in line.integrals(u))
     slope_in = np.loadtxt(OUTPUT / f"curvature_data.{n}.NASA")[0, 2]
     slope, v = slope_in - scale * first, slope_in * u - scale * second
     across = half / np.sqrt(1.0 + slope**2)

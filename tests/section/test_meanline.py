@@ -9,7 +9,7 @@ from bladewright.errors import DesignError
 from bladewright.section.chord_spline import ChordSpline
 from bladewright.section.crossing import check_outline
 from bladewright.section.laws import Span
-from bladewright.section.meanline import CurvatureIntegral, CurvedMeanline, MixedMeanline, backward, camber_scale
+from bladewright.section.meanline import CurvedMeanline, MixedMeanline, backward
 from bladewright.section.offset import merged_joints
 from bladewright.section.outline import Joint
 from machines.meanlines import ELLIPTIC, MEANLINES, NACA, SHARP, on_meanline
@@ -18,16 +18,15 @@ from .tblade3_sections import CASES, computed
 
 HUB = Span(np.zeros(1))
 U = np.linspace(0.0, 1.0, 97)
-INFLECTED = CurvatureIntegral(places=np.array([[0.0, 0.3, 0.7, 1.0]]), values=np.array([[-0.5, -0.2, 0.3, 0.7]]))
-"""leaves both edges to the same side of the chord line"""
+INFLECTED = (-0.5, -0.2, 0.3, 0.7)
+"""a second derivative of which the meanline leaves both edges to the same side of the chord line"""
+PLACES = (0.0, 0.3, 0.7, 1.0)
 
 
 def line_of(values, camber, places=None):
     count = len(values)
     places = np.linspace(0.0, 1.0, count) if places is None else np.array(places)
-    curvature = CurvatureIntegral(places=places[None], values=np.array(values)[None])
-    scale, _ = camber_scale(curvature.totals, np.array([camber]))
-    return CurvedMeanline(curvature=curvature, scale=scale)
+    return CurvedMeanline(places=places[None], values=np.array(values)[None], camber=np.array([camber]))
 
 
 @pytest.mark.parametrize("case", [case for case in CASES if not case.startswith("Wennerstrom")])
@@ -87,9 +86,9 @@ def test_the_second_derivative_is_the_uniform_b_spline_of_its_control_points():
     extended = [np.concatenate([[2 * p[0] - p[1]], p, [2 * p[-1] - p[-2]]]) for p in (places, values)]
     run, rise = (BSpline(np.arange(-3.0, 8.0), each, 3) for each in extended)
     t = np.linspace(0.0, 4.0, 41)
-    line = CurvatureIntegral(places=places[None], values=values[None])
+    line = line_of(values, 0.0, places)
     # at t = 4 the witness's u lies 1e-16 outside
-    double, single, bend, _ = line.at(np.clip(run(t), 0.0, 1.0))
+    double, single, bend, _ = line.integrals(np.clip(run(t), 0.0, 1.0))
     assert bend[0] == pytest.approx(rise(t), abs=1e-14)
     for i in (7, 18, 40):
         first = quad(lambda x: rise(x) * run(x, 1), 0.0, t[i], points=[1.0, 2.0, 3.0], epsabs=1e-13)[0]
@@ -135,22 +134,20 @@ def test_a_little_camber_bends_the_straight_line_in_proportion(values):
 
 
 def test_a_meanline_that_bends_back_turns_so_far_and_no_farther():
-    _, largest = camber_scale(INFLECTED.totals, np.array([0.0]))
-    assert 0.0 < largest[0] < np.pi / 2
+    largest = line_of(INFLECTED, 0.0, PLACES).largest_camber[0]
+    assert 0.0 < largest < np.pi / 2
     for share in (0.5, 0.999, -0.999):
-        scale, _ = camber_scale(INFLECTED.totals, share * largest)
-        line = CurvedMeanline(curvature=INFLECTED, scale=scale)
+        line = line_of(INFLECTED, share * largest, PLACES)
         assert line.angle_out - line.angle_in == pytest.approx(share * largest, rel=1e-12)
-    for camber in (1.001 * largest, -1.001 * largest, np.array([2.0])):
-        assert np.isnan(camber_scale(INFLECTED.totals, camber)[0][0])
+    for camber in (1.001 * largest, -1.001 * largest, 2.0):
+        assert np.isnan(line_of(INFLECTED, camber, PLACES).scale[0])
 
 
 def test_more_camber_than_the_law_can_turn_is_refused_with_the_most_there_is():
-    values = tuple(INFLECTED.values[0])
-    part = on_meanline(curvature=values, curvature_places=(0.3, 0.7), thickness=NACA).section.changed(
+    part = on_meanline(curvature=INFLECTED, curvature_places=(0.3, 0.7), thickness=NACA).section.changed(
         {"metal_angle_in": (0.0, 10.0), "metal_angle_out": (1.0, 60.0)}
     )
-    most = np.degrees(camber_scale(INFLECTED.totals, np.array([0.0]))[1][0])
+    most = np.degrees(line_of(INFLECTED, 0.0, PLACES).largest_camber[0])
     with pytest.raises(DesignError, match=rf"is 50 deg at span fraction 1: .* by {most:.4g} deg at most.*lower"):
         part.outline(Span(np.array([0.0, 1.0])))
 

@@ -24,12 +24,10 @@ from bladewright.section.family import SectionFamily
 from bladewright.section.laws import Span
 from bladewright.section.meanline import (
     STRAIGHT,
-    CurvatureIntegral,
     CurvedMeanline,
     Meanline,
     MixedMeanline,
     backward,
-    camber_scale,
 )
 from bladewright.section.offset import OffsetOutline, fixed_joints
 from bladewright.section.outline import Joint, Outline
@@ -108,13 +106,11 @@ class CurvatureMeanline(SectionFamily):
         if self.camber == "mixed":
             stagger = 0.5 * (angle_in + angle_out)
             return MixedMeanline(angles=(angle_in - stagger, angle_out - stagger))
-        curvature = CurvatureIntegral(
-            places=self._places("curvature", span), values=span.control_values(self.curvature)
-        )
-        camber = angle_out - angle_in
-        scale, largest = camber_scale(curvature.totals, camber)
-        if np.any(np.isnan(np.real(scale))):
-            missed, wanted, most = np.broadcast_arrays(np.isnan(np.real(scale)), np.real(camber), largest)
+        places, values = self._places("curvature", span), span.control_values(self.curvature)
+        line = CurvedMeanline(places=places, values=values, camber=angle_out - angle_in)
+        nowhere = np.isnan(np.real(line.scale))
+        if np.any(nowhere):
+            missed, wanted, most = np.broadcast_arrays(nowhere, np.real(line.camber), line.largest_camber)
             first = tuple(np.argwhere(missed)[0])
             raise DesignError(
                 f"metal_angle_out less metal_angle_in is {degrees(wanted[first]):.4g} deg at span fraction "
@@ -122,7 +118,7 @@ class CurvatureMeanline(SectionFamily):
                 "most, for its second derivative is zero, or changes sign and turns back what it has turned; lower the "
                 "difference of the angles, or give more of the control points of curvature the same sign"
             )
-        return CurvedMeanline(curvature=curvature, scale=scale)
+        return line
 
     def outline(self, span: Span) -> Outline:
         """The exact sections (..., m) at the places of the span; raises DesignError where numbers contradict."""
@@ -147,8 +143,8 @@ class CurvatureMeanline(SectionFamily):
         span = Span(GRID)
         thickness, found = self.thickness.at(span), list[Joint]()
         if self.curvature:
-            flat = CurvatureIntegral(places=self._places("curvature", span), values=np.zeros(len(self.curvature)))
-            found += fixed_joints(thickness, flat.joints, 3)
+            straight = CurvedMeanline(places=self._places("curvature", span), values=np.zeros(1), camber=np.zeros(1))
+            found += fixed_joints(thickness, straight.joints, straight.smooth - 1)
         if self.thickness_multiplier:
             found += fixed_joints(thickness, self._multiplier(span).joints, 3)
         return found

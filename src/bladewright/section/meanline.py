@@ -78,18 +78,22 @@ def backward(places: Reals) -> NDArray[np.bool_]:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class CurvatureIntegral:
-    """A second derivative S(u) with its first two integrals I(u), J(u) from the leading edge, all exact.
+class CurvedMeanline(Meanline):
+    """The meanline whose second derivative is kappa S(u), kappa so that its ends include the given camber.
 
     S is the cubic B-spline curve (u(t), S(t)) on the uniform basis; the control polygon is extended at both ends, so
-    that the curve meets its first and last control point. Between two joints u and S are cubic in t, I and J of degree
-    six and nine. Reference: Nemnem et al. 2014, eqs. 5, 6, 9, 10 and 13.
+    that the curve meets its first and last control point. With the integrals I of S and J of I from the leading edge,
+    v' = kappa (I - J1), v = kappa (J - u J1), J1 = J(1). All is exact: between two joints u and S are cubic in t, I and
+    J of degree six and nine. Reference: Nemnem et al. 2014, eqs. 5, 6, 9, 10 and 13, with `scale` in closed form in the
+    place of their secant iteration.
     """
 
     places: Array
     """u (..., m, n) of the control points, rising from 0 to 1, none of their steps `backward`"""
     values: Array
     """S (..., m, n) of the control points"""
+    camber: Array
+    """chi_out - chi_in (..., m) [rad]"""
 
     @cached_property
     def _powers(self) -> Array:
@@ -101,67 +105,60 @@ class CurvatureIntegral:
         padded = [np.pad(each, [(0, 0)] * (each.ndim - 1) + [(0, 10 - each.shape[-1])]) for each in (u, s, first)]
         return np.stack([*padded, second], axis=-1)
 
-    @property
-    def joints(self) -> Array:
-        """Places u (..., m, n - 2) where S has two continuous derivatives."""
-        return self._powers[..., 1:, 0, 0]
-
     @cached_property
-    def totals(self) -> tuple[Array, Array]:
+    def _totals(self) -> tuple[Array, Array]:
         """I and J (..., m) over the whole chord."""
         ends = np.sum(self._powers[..., -1, :, 2:], axis=-2)
         return ends[..., 0], ends[..., 1]
 
-    def at(self, u: Array) -> tuple[Array, Array, Array, Array]:
-        """J, I, S and dS/du (..., m, k) at u (..., m, k) or (k,)."""
-        value, rate, _ = by_abscissa(self._powers, u)
-        return value[..., 3], value[..., 2], value[..., 1], rate[..., 1] / rate[..., 0]
+    @cached_property
+    def _scale_and_largest(self) -> tuple[Array, Reals]:
+        return _camber_scale(self._totals, self.camber)
 
-    def bend(self, u: Array) -> Array:
-        """The second derivative of S (..., m, k) at u (..., m, k) or (k,)."""
-        _, rate, bend = by_abscissa(self._powers, u)
-        return (bend[..., 1] - rate[..., 1] / rate[..., 0] * bend[..., 0]) / rate[..., 0] ** 2
+    @property
+    def scale(self) -> Array:
+        """kappa (..., m); nan where no kappa gives the camber."""
+        return self._scale_and_largest[0]
 
-
-@dataclass(frozen=True, kw_only=True, eq=False)
-class CurvedMeanline(Meanline):
-    """The meanline whose second derivative is kappa S(u), kappa so that its ends include the given camber.
-
-    v' = kappa (I - J1), v = kappa (J - u J1), J1 = J(1). Reference: Nemnem et al. 2014, with `scale` in closed form in
-    the place of their secant iteration.
-    """
-
-    curvature: CurvatureIntegral
-    scale: Array
-    """kappa (..., m)"""
+    @property
+    def largest_camber(self) -> Reals:
+        """The most (...) that meanlines of this S turn [rad], where `scale` is nan."""
+        return self._scale_and_largest[1]
 
     @property
     def angle_in(self) -> Array:
-        return np.arctan(-self.scale * self.curvature.totals[1])
+        return np.arctan(-self.scale * self._totals[1])
 
     @property
     def angle_out(self) -> Array:
-        first, second = self.curvature.totals
+        first, second = self._totals
         return np.arctan(self.scale * (first - second))
 
     @property
     def joints(self) -> Array:
-        return self.curvature.joints
+        return self._powers[..., 1:, 0, 0]
 
     @property
     def smooth(self) -> int:
         return 4
 
+    def integrals(self, u: Array) -> tuple[Array, Array, Array, Array]:
+        """J, I, S and dS/du (..., m, k) at u (..., m, k) or (k,)."""
+        value, rate, _ = by_abscissa(self._powers, u)
+        return value[..., 3], value[..., 2], value[..., 1], rate[..., 1] / rate[..., 0]
+
     def derivatives(self, u: Array) -> tuple[Array, Array, Array, Array]:
-        second, first, bend, slope = self.curvature.at(u)
-        whole, kappa = self.curvature.totals[1][..., None], self.scale[..., None]
+        second, first, bend, slope = self.integrals(u)
+        whole, kappa = self._totals[1][..., None], self.scale[..., None]
         return kappa * (second - u * whole), kappa * (first - whole), kappa * bend, kappa * slope
 
     def fourth(self, u: Array) -> Array:
-        return np.asarray(self.scale[..., None] * self.curvature.bend(u))
+        _, rate, bend = by_abscissa(self._powers, u)
+        second = (bend[..., 1] - rate[..., 1] / rate[..., 0] * bend[..., 0]) / rate[..., 0] ** 2
+        return np.asarray(self.scale[..., None] * second)
 
 
-def camber_scale(totals: tuple[Array, Array], camber: Array) -> tuple[Array, Reals]:
+def _camber_scale(totals: tuple[Array, Array], camber: Array) -> tuple[Array, Reals]:
     """The scale kappa (..., m) that gives meanlines the camber chi_out - chi_in [rad], and the largest there is (...).
 
     `totals` are I1 and J1. With P = J1 (I1 - J1), the tangent of chi_out - chi_in is kappa I1 / (1 - kappa^2 P):

@@ -19,7 +19,7 @@ from bladewright.nurbs.basis import Reals
 from bladewright.section.curvature_meanline import CurvatureMeanline
 from bladewright.section.edge_spline import NARROW, EdgeSpline
 from bladewright.section.laws import DEGREE, Span, law_basis
-from bladewright.section.meanline import CurvatureIntegral, CurvedMeanline, camber_scale
+from bladewright.section.meanline import CurvedMeanline
 from bladewright.section.thickness.law import ThicknessLaw
 from bladewright.section.thickness.modified_naca import ModifiedNaca
 from bladewright.section.thickness.quartic import QuarticSpline
@@ -220,19 +220,18 @@ def _curved_meanline_angles(
 ) -> tuple[Reals, Reals, Reals]:
     """Metal angles (m,) [rad] at inlet and exit of meanlines by curvature, and the scale (m,) of the curvature."""
     camber = np.asarray(angles.camber)
-    integral = CurvatureIntegral(places=places, values=curvature)
-    scale, largest = (np.real(each) for each in camber_scale(integral.totals, camber))
+    line = CurvedMeanline(places=places, values=curvature, camber=camber)
+    scale = np.real(line.scale)
     missed = np.flatnonzero(np.isnan(scale))
     if len(missed):
         which = int(missed[0])
-        most = float(np.degrees(np.broadcast_to(largest, scale.shape)[which]))
+        most = float(np.degrees(np.broadcast_to(line.largest_camber, scale.shape)[which]))
         raise FileError(
             f"'{case.file}': section {which + 1} has a camber of {np.degrees(camber[which]):.4g} deg, but a meanline "
             f"with its control points of the curvature turns by {most:.4g} deg at most: correct these, or its angles"
         )
     if angles.inlet is not None and angles.exit is not None:
         return angles.inlet, angles.exit, scale
-    line = CurvedMeanline(curvature=integral, scale=scale)
     twist = np.asarray(angles.stagger)
     return twist + np.real(line.angle_in), twist + np.real(line.angle_out), scale
 
