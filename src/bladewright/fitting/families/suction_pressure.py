@@ -14,7 +14,7 @@ from bladewright.fitting.families.section_samples import SampledSection
 from bladewright.fitting.models.planar import SINGLE_SECTION
 from bladewright.nurbs.basis import Reals, basis
 from bladewright.section.suction_pressure.part import SuctionPressure, edge_points, skeleton_of
-from bladewright.section.suction_pressure.side import DEGREE, default_places, side_knots
+from bladewright.section.suction_pressure.side import DEGREE, default_places, points_off_line, side_knots
 
 HEIGHTS = 2
 """free control points of each side to begin with"""
@@ -151,9 +151,8 @@ def _side_through(part: SuctionPressure, line: Reals, name: str) -> dict[str, fl
     count = len(getattr(part, f"{name}_heights"))
     knots = side_knots(count, getattr(part, f"{name}_knots"))
     places = np.array(_numbers(getattr(part, f"{name}_places")) or default_places(knots).tolist())
-    low, high = (
-        skeleton_of(part, SINGLE_SECTION).placed(places[None], np.full((1, count), each))[0] for each in (0.0, 1.0)
-    )
+    skeleton = skeleton_of(part, SINGLE_SECTION)
+    low, high = (points_off_line(skeleton, places[None], np.full((1, count), each))[0] for each in (0.0, 1.0))
     suction_name = "upper" if (name == "suction") == (part.suction_side == "upper") else "lower"
     corners = [getattr(points, suction_name) for points in edge_points(part, SINGLE_SECTION)]
     points, directions = (np.real([getattr(each, of)[0] for each in corners]) for of in ("point", "direction"))

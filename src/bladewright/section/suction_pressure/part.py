@@ -29,12 +29,13 @@ from bladewright.section.suction_pressure.outline import SHARE, SuctionPressureO
 from bladewright.section.suction_pressure.side import (
     DEGREE,
     Side,
-    Skeleton,
     chord_line,
     continuing_edges,
     control_points,
     default_places,
     interpolated_free,
+    places_off_line,
+    points_off_line,
     pseudo_line,
     side_knots,
     spline_points,
@@ -190,8 +191,8 @@ def edge_points(part: SuctionPressure, span: Span) -> tuple[EdgePoints, EdgePoin
     return found[0], found[1]
 
 
-def skeleton_of(part: SuctionPressure, span: Span) -> Skeleton:
-    """The skeleton line of places and heights."""
+def skeleton_of(part: SuctionPressure, span: Span) -> Array:
+    """The skeleton lines of places and heights, as coefficients (..., m, 4, 2) of the powers of a fraction."""
     return pseudo_line(*camber_angles(part, span)) if part.skeleton == "pseudo" else chord_line((len(span.v),))
 
 
@@ -202,7 +203,7 @@ def sides(part: SuctionPressure, span: Span, leading: EdgePoints, trailing: Edge
     ends: tuple[Corner, Corner] = getattr(leading, suction_name), getattr(trailing, suction_name)
     other: tuple[Corner, Corner] = getattr(leading, pressure_name), getattr(trailing, pressure_name)
     knots = side_knots(len(part.suction_heights), part.suction_knots)
-    free = skeleton.placed(*_numbers(span, part.suction_places, part.suction_heights, knots))
+    free = points_off_line(skeleton, *_numbers(span, part.suction_places, part.suction_heights, knots))
     tangents = span.values(part.suction_tangent_in), span.values(part.suction_tangent_out)
     controls = control_points(*ends, *tangents, free)
     suction = continuing_edges(controls, knots, *ends, SHARE)
@@ -226,7 +227,7 @@ def sides(part: SuctionPressure, span: Span, leading: EdgePoints, trailing: Edge
         through = _thickened(suction, places, inside * numbers)
         free = interpolated_free(*other, tangents, through, knots)
     else:
-        free = skeleton.placed(places, numbers)
+        free = points_off_line(skeleton, places, numbers)
     return suction, continuing_edges(control_points(*other, *tangents, free), knots, *other, SHARE)
 
 
@@ -308,7 +309,8 @@ def _new(knots: Reals, wanted: int | Sequence[float]) -> list[float]:
 def _fields(part: SuctionPressure, name: str, curve: Curve) -> dict[str, Any]:
     controls = curve.control_points
     inner = curve.knots[DEGREE + 1 : -DEGREE - 1]
-    places, heights = skeleton_of(part, Span(np.zeros(1))).at(0).places(controls[2:-2], default_places(curve.knots))
+    line = np.real(skeleton_of(part, Span(np.zeros(1)))[0])
+    places, heights = places_off_line(line, controls[2:-2], default_places(curve.knots))
     ends = length(controls[1] - controls[0]), length(controls[-2] - controls[-1])
     return {
         f"{name}_heights": tuple(float(each) for each in heights),
