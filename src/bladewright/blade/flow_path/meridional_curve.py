@@ -34,25 +34,30 @@ class PiecewisePolynomial:
 
     def values(self, at: Reals, order: int = 0) -> Array:
         """Values, or derivatives (..., m, d), at real places (m,) of the parameter."""
-        return piecewise(self.powers, self.breaks, at, order)
+        piece = np.clip(np.searchsorted(self.breaks, at, side="right") - 1, 0, len(self.breaks) - 2)
+        away = (at - ((self.breaks[:-1] + self.breaks[1:]) / 2.0)[piece])[:, None]
+        here = self.powers[..., piece, :, :]
+        found = np.zeros_like(here[..., 0, :])
+        for k in range(self.powers.shape[-2] - 1, order - 1, -1):
+            found = found * away + perm(k, order) * here[..., k, :]
+        return found
 
     def around(self, centres: Reals) -> Array:
         """Coefficients (..., c, k, d) in powers of the parameter less each of the centres (c,)."""
-        return shifted(self.powers, self.breaks, centres)
+        piece = np.clip(np.searchsorted(self.breaks, centres, side="right") - 1, 0, len(self.breaks) - 2)
+        away = centres - ((self.breaks[:-1] + self.breaks[1:]) / 2.0)[piece]
+        return binomials(away, self.powers.shape[-2]) @ self.powers[..., piece, :, :]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class MeridionalCurve:
-    """A curve in (x, r) [m]; what a design's numbers decide may be complex and carry a leading batch axis.
+class MeridionalCurve(PiecewisePolynomial):
+    """A curve in (x, r) [m] by its own parameter, from 0 to 1, and the same as a B-spline.
 
-    Where pieces join at places that move with the design, the real design's places bound the pieces: the joined
-    polynomials agree there to as many derivatives as are continuous.
+    What a design's numbers decide may be complex and carry a leading batch axis. Where pieces join at places
+    that move with the design, the real design's places bound the pieces: the joined polynomials agree there to as many
+    derivatives as are continuous.
     """
 
-    breaks: Reals
-    """(p + 1,) ends of the pieces in the own parameter, from 0 to 1"""
-    powers: Array
-    """(..., p, k, 2) coefficients of (x, r) in powers of the parameter less the middle of the piece"""
     net: Array
     """(..., n, 2) control points of the same curve as a B-spline"""
     knots: Reals
@@ -84,13 +89,9 @@ class MeridionalCurve:
         # it keeps two derivatives, though its knots, which move with the points, would let it lose one
         return levels, np.full(len(levels), 2)
 
-    def values(self, at: Reals, order: int = 0) -> Array:
-        """Points, or derivatives (..., m, 2), at real places (m,) of the parameter; past an end its piece goes on."""
-        return piecewise(self.powers, self.breaks, at, order)
-
     def stream_polynomials(self, v: Reals, centres: Reals) -> Array:
         """Coefficients (..., len(v), len(centres), k, 2) of the powers of the parameter less each centre."""
-        found = shifted(self.powers, self.breaks, centres)[..., None, :, :, :]
+        found = self.around(centres)[..., None, :, :, :]
         return np.broadcast_to(found, (*found.shape[:-4], len(v), *found.shape[-3:]))
 
     @cached_property
@@ -124,24 +125,6 @@ class MeridionalCurve:
     def curve(self) -> Curve:
         """The same as a native curve over its own parameter."""
         return Curve(control_points=self.net, knots=self.knots, degree=self.degree)
-
-
-def piecewise(powers: Array, breaks: Reals, at: Reals, order: int = 0) -> Array:
-    """Values or derivatives (..., m, d) at real places (m,) of pieces (..., p, k, d) in powers around their middles."""
-    piece = np.clip(np.searchsorted(breaks, at, side="right") - 1, 0, len(breaks) - 2)
-    away = (at - ((breaks[:-1] + breaks[1:]) / 2.0)[piece])[:, None]
-    here = powers[..., piece, :, :]
-    found = np.zeros_like(here[..., 0, :])
-    for k in range(powers.shape[-2] - 1, order - 1, -1):
-        found = found * away + perm(k, order) * here[..., k, :]
-    return found
-
-
-def shifted(powers: Array, breaks: Reals, centres: Reals) -> Array:
-    """Coefficients (..., c, k, d) around centres (c,) of pieces (..., p, k, d) given in powers around their middles."""
-    piece = np.clip(np.searchsorted(breaks, centres, side="right") - 1, 0, len(breaks) - 2)
-    away = centres - ((breaks[:-1] + breaks[1:]) / 2.0)[piece]
-    return binomials(away, powers.shape[-2]) @ powers[..., piece, :, :]
 
 
 def binomials(away: Array, count: int) -> Array:
