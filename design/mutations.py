@@ -47,7 +47,7 @@ MUTATIONS = (
         "nurbs/mass_properties.py",
         "flux.sum(axis=-1, keepdims=True) / 3.0",
         "flux.sum(axis=-1, keepdims=True) / 3.003",
-        ("tests/nurbs/test_flux.py",),
+        ("tests/nurbs/test_mass_properties.py",),
     ),
     Mutation(
         "section",
@@ -111,7 +111,7 @@ MUTATIONS = (
         "fitting/matching/noise.py",
         "* float(np.median(np.abs(rest)))",
         "* 0.6745 * float(np.median(np.abs(rest)))",
-        ("tests/fitting/test_scatter.py",),
+        ("tests/fitting/test_noise.py",),
     ),
     Mutation(
         "meshing",

@@ -41,7 +41,7 @@ HEAD = """\
 * periodic poles: one boundary's from the other's moved by a pitch, of their extent (limit 1e-12);
 * STEP: the round trip's deviation of untrimmed faces (limit 1e-6 mm) and of the volume (limit 1e-6);
 * cut: volume of the passage that OpenCASCADE cuts from its sector over the native one, less one (limit 1e-6); where
-  the passage winds a full turn, of one that reaches 0.15 past the blade; empty with `--no-cut`;
+  the passage winds a full turn, of one that reaches 0.25 past the blade; empty with `--no-cut`;
 * MB of the STEP file, and seconds of the processor.
 
 """
@@ -101,7 +101,7 @@ def _cut(blade, passage):
     try:
         found = cad.cut_passage(passage)
     except bw.DesignError:
-        passage = bw.passage(blade, upstream=0.15, downstream=0.15)
+        passage = bw.passage(blade, upstream=0.25, downstream=0.25)
         found = cad.cut_passage(passage)
     return f"{found.properties.volume / passage.properties.volume - 1.0:.1e}"
 
