@@ -20,6 +20,8 @@ from bladewright.files.examples import example_text
 ROOT = Path(__file__).parents[1]
 README = ROOT / "README.md"
 PAGES = sorted((ROOT / "docs").glob("*.md"))
+LONG = ("derivatives", "passage-and-mesh")
+"""pages whose Python takes seconds: a whole Jacobian, a passage and its mesh"""
 TEXTS = [*sorted(ROOT.glob("*.md")), *PAGES, *sorted(ROOT.glob("*/README.md")), *sorted((ROOT / "design").glob("*.md"))]
 EXAMPLES = ("fan-rotor", "turbine-section", "compressor-stator", "inlet-guide-vane", "propeller", "pump-inducer")
 """design files that stand in the directory in which a page's blocks run, as `bladewright new` writes them"""
@@ -91,7 +93,14 @@ def test_the_readme_is_short_and_its_python_is_about_ten_lines() -> None:
     assert len(marked("python", "python").splitlines()) <= 12
 
 
-@pytest.mark.parametrize("path", [path for path in (README, *PAGES) if blocks(path, "python")], ids=name_of)
+@pytest.mark.parametrize(
+    "path",
+    [
+        pytest.param(path, marks=[pytest.mark.slow] if path.stem in LONG else [], id=name_of(path))
+        for path in (README, *PAGES)
+        if blocks(path, "python")
+    ],
+)
 @pytest.mark.usefixtures("place")
 def test_the_python_of_a_page_runs(path: Path) -> None:
     names: dict[str, object] = {}

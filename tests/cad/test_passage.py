@@ -181,6 +181,7 @@ def test_a_missing_wall_is_found(vane, tmp_path):
     assert trip.free_edges == 8
 
 
+@pytest.mark.slow
 def test_a_wall_split_by_another_program_is_one_face_still(passages, tmp_path):
     # without names each piece is found to lie on the wall that it is a part of
     put(occ_solid(passages["split"]).solid, tmp_path / "split.brep")

@@ -7,7 +7,7 @@ from bladewright.domain.build import passage
 from machines.passages import passage_case
 
 PARAMETERS = {
-    "rotor": ["stagger[4]", "channel.shroud[0].r"],
+    "rotor": ["stagger[4]"],
     "impeller with a gap": ["tip_clearance[0]"],
     "cascade": ["pitch", "leading_edge_radius"],
     "cantilevered stator": ["hub_clearance"],

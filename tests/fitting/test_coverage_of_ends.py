@@ -47,6 +47,7 @@ def test_ends_of_a_channel_that_is_given_are_known():
     assert ends_of(free="stagger") == {}
 
 
+@pytest.mark.slow
 @pytest.mark.skipif(not LS89.is_file(), reason="the shared clouds are not here")
 def test_one_side_of_a_turning_vane_alone_does_not_pass():
     found = fit(read_cloud(LS89).points[:202])

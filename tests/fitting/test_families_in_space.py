@@ -58,6 +58,7 @@ def test_the_derivatives_of_a_blades_sides_are_those_of_the_sides_built_with_a_d
         assert np.tensordot(direction, rate, axes=1)[own] == pytest.approx(slope[own], abs=1e-6 * model.chord)
 
 
+@pytest.mark.slow
 def test_a_vane_is_found_again_from_a_start_that_is_off():
     found = fit(cloud(), start=shaken(VANE))
     assert found.maximum < 1e-9 * found.built.chord

@@ -135,6 +135,7 @@ def test_blades_with_a_clearance_have_no_forecast():
     assert best_match_of_size(task("compressor-stator"), found, 40) is None
 
 
+@pytest.mark.slow
 def test_a_blade_within_a_tolerance_loses_the_control_points_that_it_does_not_need():
     name = "aachen-stator"
     wide = reshaped(example(name), widest_reach(structure_of(example(name))))

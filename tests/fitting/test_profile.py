@@ -106,6 +106,7 @@ def plain():
     return bw.fit_profile(contour(profile(round_end=False), 30)[0], thickness=5, ends=CAMBER[[0, -1]], tolerance=1.0)
 
 
+@pytest.mark.slow
 def test_control_points_are_added_until_the_tolerance_is_kept():
     points = contour(profile(round_end=False), 30)[0]
     before, grown = (

@@ -73,6 +73,7 @@ def test_a_mirrored_blade_is_told_from_the_design():
     assert "another blade" in " ".join(found.notes)
 
 
+@pytest.mark.slow
 def test_a_blade_of_another_stagger_is_told_from_the_design():
     other = built(example("vki-ls89")).design.changed("stagger", -50.0).build()
     points = np.concatenate([side.grid(np.linspace(0.0, 1.0, 20), np.linspace(0.0, 1.0, 6)) for side in other.sides])
@@ -109,6 +110,7 @@ def test_a_prism_shows_the_span_of_its_cascade(points):
     assert any("chord" in note for note in found.notes)
 
 
+@pytest.mark.slow
 def test_rows_at_both_ends_can_show_the_machine_axis():
     # from this position; from others the search may stop short of the axis, and refuses
     points = rows("compressor-stator", 69, 36)

@@ -43,6 +43,7 @@ def test_points_of_a_known_surface_give_it_back():
     assert fit.converged
 
 
+@pytest.mark.slow
 def test_without_a_start_the_deviation_of_noisy_points_is_their_noise():
     noisy = HILL + 1e-3 * np.random.default_rng(1).normal(size=HILL.shape)
     fit = bw.fit_surface(noisy, control_points=(4, 4))

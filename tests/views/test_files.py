@@ -37,6 +37,7 @@ def test_the_same_figure_gives_the_same_bytes(tmp_path, suffix):
     assert files[0].read_bytes() == files[1].read_bytes()
 
 
+@pytest.mark.slow
 def test_a_blade_is_drawn_sixteen_hundred_pixels_wide_or_more(cascade_drawn, tmp_path):
     views.picture(cascade_drawn.built, tmp_path / "sheet.PNG")
     image = imread(tmp_path / "sheet.PNG", format="png")
@@ -44,6 +45,7 @@ def test_a_blade_is_drawn_sixteen_hundred_pixels_wide_or_more(cascade_drawn, tmp
     assert 0.02 < (image[..., :3].min(axis=-1) < 0.8).mean() < 0.5
 
 
+@pytest.mark.slow
 def test_the_blade_alone_is_drawn_in_its_row(cascade_drawn, tmp_path):
     views.blade_view(cascade_drawn.built, tmp_path / "blade.png")
     image = imread(tmp_path / "blade.png")
