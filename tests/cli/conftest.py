@@ -12,7 +12,7 @@ from bladewright.cli import main
 from bladewright.files.examples import example_text
 
 
-@pytest.fixture(autouse=True, scope="session")
+@pytest.fixture(autouse=True, scope="module")
 def few_samples():
     """Round trips in this process measure fewer points: how well they measure is asked in the tests of cad."""
     from bladewright import cad
