@@ -8,11 +8,8 @@ import numpy as np
 
 from bladewright.designs import Design
 from bladewright.errors import DesignError, FitError
-from bladewright.fitting.matching.footpoints import footpoints_at
-from bladewright.fitting.matching.residuals import PlacedCloud
-from bladewright.fitting.matching.scales import scales_of
 from bladewright.fitting.matching.search import Match, Task
-from bladewright.fitting.model_selection.steps import predicted_rest, row_factors
+from bladewright.fitting.model_selection.steps import predicted_rest, residuals_of, row_factors
 from bladewright.fitting.model_selection.stopping import MatchTarget, needs_more
 from bladewright.nurbs.basis import Reals
 
@@ -41,7 +38,7 @@ def predicted_gains(
             fresh = design.parameters()
             own = tuple(path for path in free if values.get(path) != fresh[path])
             kept = [i for i, path in enumerate(paths) if path in fresh and path not in own]
-            rows, columns = _residuals_of(match, design, own)
+            rows, columns = residuals_of(match, design, own)
         except (DesignError, FitError):
             continue
         wider = np.concatenate([slopes[:, kept], columns], axis=1)
@@ -50,20 +47,6 @@ def predicted_gains(
         if gain > 0.0 and more > 0:
             ranked.append((gain / more, more, design))
     return sorted(ranked, key=lambda each: -each[0])
-
-
-def _residuals_of(match: Match, design: Design, paths: tuple[str, ...]) -> tuple[Reals, Reals]:
-    """Residuals of a design at the footpoints of a match, and their derivatives by scaled parameters."""
-    cloud_residuals, footpoints = match.problem.cloud_residuals, match.state.footpoints
-    shape = cloud_residuals.model.shape(design)
-    if not shape.finite:
-        raise DesignError("a law with another number of control points left no shape: take another one")
-    state = PlacedCloud(
-        shape=shape,
-        footpoints=footpoints_at(cloud_residuals.points, shape.sides, footpoints.side, footpoints.u, footpoints.v),
-    )
-    slopes = cloud_residuals.slopes(state, paths) * scales_of(design, paths, match.model.chord).size
-    return cloud_residuals.residuals(state), slopes
 
 
 WORTHWHILE_RATIO = 0.9

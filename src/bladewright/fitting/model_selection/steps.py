@@ -5,6 +5,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from bladewright.designs import Design
 from bladewright.errors import DesignError
 from bladewright.fitting.matching.footpoints import footpoints_at
 from bladewright.fitting.matching.residuals import PlacedCloud
@@ -230,9 +231,16 @@ def steps_taken_together(
 def _residuals_after(match: Match, step: StructureStep) -> tuple[Reals, Reals]:
     """Residuals after a step at the present footpoints, and their derivatives by its law's parameters."""
     other = reshaped(match.design, step.structure)
-    paths = tuple(path for path in other.parameters() if path.startswith(step.fields))
+    return residuals_of(match, other, tuple(path for path in other.parameters() if path.startswith(step.fields)))
+
+
+def residuals_of(match: Match, design: Design, paths: tuple[str, ...]) -> tuple[Reals, Reals]:
+    """Residuals (n,) of a design at a match's footpoints, and derivatives (n, p) by its scaled parameters `paths`.
+
+    Raises DesignError where the design has no shape.
+    """
     cloud_residuals, footpoints = match.problem.cloud_residuals, match.state.footpoints
-    shape = cloud_residuals.model.shape(other)
+    shape = cloud_residuals.model.shape(design)
     if not shape.finite:
         raise DesignError("a law with another number of control points left no shape: take another one")
     state = PlacedCloud(
@@ -243,4 +251,4 @@ def _residuals_after(match: Match, step: StructureStep) -> tuple[Reals, Reals]:
     if not paths:
         # a wall with no control points but its corners
         return rows, np.zeros((len(rows), 0))
-    return rows, cloud_residuals.slopes(state, paths) * scales_of(other, paths, match.model.chord).size
+    return rows, cloud_residuals.slopes(state, paths) * scales_of(design, paths, match.model.chord).size
