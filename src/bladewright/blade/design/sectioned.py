@@ -4,15 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Literal
 
 from bladewright.blade.design.flow_path import FlowPath, increasing_spans
 from bladewright.blade.design.meridional_curve import Meridian, meridian_at
 from bladewright.blade.design.row_design import RowDesign
 from bladewright.blade.design.stacking import Stacking
-from bladewright.designs import Law, Part, parameter
+from bladewright.designs import Law, parameter
 from bladewright.errors import DesignError
 from bladewright.section import checks
+from bladewright.section.family import SectionFamily
 from bladewright.section.laws import named_laws
 
 if TYPE_CHECKING:
@@ -60,7 +61,7 @@ class SectionedBlade(RowDesign):
     section_spans: tuple[float, ...] = ()
     """further span fractions, increasing inside 0 and 1, at which the built surface's curve of constant v is the
     section to 1e-9 of the chord, as at hub, shroud and the flow path's stream surfaces it is [-]"""
-    section: Any
+    section: SectionFamily
     """the family's parameters, each a law along the span"""
 
     def __post_init__(self) -> None:
@@ -70,7 +71,7 @@ class SectionedBlade(RowDesign):
         if not isinstance(self.flow_path, FlowPath):
             raise DesignError(f"flow_path is {self.flow_path!r}: a FlowPath with hub and shroud is needed")
         self._check_placing()
-        if not isinstance(self.section, Part):
+        if not isinstance(self.section, SectionFamily):
             raise DesignError(f"section is {self.section!r}: the family's parameters are needed")
         self._check_skinning()
         object.__setattr__(self, "section_spans", increasing_spans("section_spans", self.section_spans))
