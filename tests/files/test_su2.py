@@ -7,6 +7,7 @@ import bladewright as bw
 from bladewright.errors import DerivativeError, FileError
 from bladewright.files.examples import example_text
 from bladewright.files.su2 import places_path
+from machines.coarse import SECTION
 
 UNITS = np.array([2.0, -3.0, 5.0])
 
@@ -245,25 +246,11 @@ def test_points_of_a_mesh_made_elsewhere_find_their_places(blade, points):
 
 
 def test_the_points_of_a_section_are_those_of_its_curves():
-    section = bw.UnifiedSection(
-        name="vane",
-        length_unit="mm",
-        axial_chord=40.0,
-        stagger=-30.0,
-        metal_angle_in=10.0,
-        metal_angle_out=-60.0,
-        tangent_in=0.4,
-        tangent_out=0.5,
-        leading_edge_radius=0.02,
-        trailing_edge_radius=0.01,
-        thickness_upper=(0.05, 0.08, 0.03),
-        thickness_lower=(0.05, 0.06, 0.03),
-    )
-    points = bw.surface_points(section.build(), along=11)
+    points = bw.surface_points(SECTION.build(), along=11)
     assert points.points.shape == (20, 2)
-    gradient = bw.pullback(section, points.bars(np.broadcast_to([1.0, 0.0], points.points.shape)))
+    gradient = bw.pullback(SECTION, points.bars(np.broadcast_to([1.0, 0.0], points.points.shape)))
     assert gradient["leading_edge_x"] == pytest.approx(20.0 * 1e-3)
-    found = bw.placed_points(section.build(), points.ids, points.points)
+    found = bw.placed_points(SECTION.build(), points.ids, points.points)
     assert found.points == pytest.approx(points.points, abs=1e-12)
 
 

@@ -6,6 +6,8 @@ from bladewright.blade.design.flow_path import Channel
 from bladewright.blade.design.unified import UnifiedBlade
 from bladewright.section.unified import UnifiedSection
 
+from . import COARSE, unified
+
 COMMON = {
     "length_unit": "mm",
     "tangent_in": 0.35,
@@ -13,7 +15,7 @@ COMMON = {
     "thickness_upper": (0.03, (0.05, 0.06, 0.05), 0.03, (0.02, 0.025)),
     "thickness_lower": (0.03, 0.045, 0.03),
     "samples": 6,
-    "tolerance": 1e-4,
+    "tolerance": COARSE,
 }
 ROTOR = UnifiedBlade(
     **COMMON,
@@ -39,40 +41,15 @@ CLEARED = replace(
     weights_upper=(1.0, (1.1, 0.9), 1.2),
     channel=replace(ROTOR.channel, shroud=((40.0, 252.0),)),
 )
-RADIAL = UnifiedBlade(
+RADIAL = replace(
+    unified.IMPELLER,
     **COMMON,
     name="radial",
-    blade_count=9,
-    stagger=(-38.0, -46.0),
-    metal_angle_in=(-42.0, -57.0),
     metal_angle_out=-35.0,
     leading_edge_radius=0.006,
     trailing_edge_radius=0.006,
-    channel=Channel(
-        leading_edge=((0.0, 16.0), (0.0, 42.0)),
-        trailing_edge=((38.0, 70.0), (32.0, 70.0)),
-        hub=((18.0, 17.0), (36.0, 30.0), (38.0, 50.0)),
-        shroud=((14.0, 43.0), (28.0, 47.0), (32.0, 58.0)),
-    ),
 )
-CASCADE = UnifiedBlade(
-    **COMMON,
-    name="cascade",
-    arrangement="linear",
-    pitch=60.0,
-    leading_edge_y=(0.0, 2.0),
-    stagger=(-35.0, -30.0),
-    metal_angle_in=(20.0, 10.0),
-    metal_angle_out=-58.0,
-    leading_edge_radius=0.01,
-    trailing_edge_radius=0.006,
-    channel=Channel(
-        leading_edge=((0.0, 0.0), (1.0, 100.0)),
-        trailing_edge=((60.0, 3.0), (58.0, 96.0)),
-        hub=((20.0, 0.0), (40.0, 2.0)),
-        shroud=((20.0, 100.0), (40.0, 97.0)),
-    ),
-)
+CASCADE = replace(unified.CASCADE, **COMMON)
 SECTION = UnifiedSection(
     name="section",
     length_unit="mm",
