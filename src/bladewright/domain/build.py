@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from types import MappingProxyType
 from typing import cast
 
 import numpy as np
@@ -19,6 +18,7 @@ from bladewright.domain.passage import Passage
 from bladewright.domain.passage_spec import PassageSpec
 from bladewright.domain.walls import EDGE_FACES, STRIPS
 from bladewright.errors import DesignError
+from bladewright.frozen import FrozenMapping
 from bladewright.numerics.elementary import Array, radians
 from bladewright.nurbs.basis import Reals
 from bladewright.nurbs.refine import inserted
@@ -96,7 +96,7 @@ def _passage(spec: PassageSpec, knots: PassageKnots, split: bool) -> Passage:
     surfaces |= {name: blade.surfaces[name] for name in blade.design.ends if name == "tip"}
     return Passage(
         blade=blade,
-        whole=MappingProxyType(surfaces),
+        whole=FrozenMapping(surfaces),
         knots=knots,
         camber=camber,
         walls=walls,

@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike
 from scipy.interpolate import NdBSpline
 
 from bladewright.errors import GeometryError
+from bladewright.frozen import FrozenRecord
 from bladewright.numerics.elementary import Array, frozen, length, unit
 from bladewright.nurbs.basis import basis, checked_knots
 from bladewright.nurbs.curve import checked_weights
@@ -19,7 +20,7 @@ from bladewright.nurbs.rational import homogeneous, surface_quotients
 
 @final
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Surface:
+class Surface(FrozenRecord):
     """A NURBS surface S(u, v) (Piegl and Tiller 1997, eq. 4.11), usually over [0, 1] x [0, 1].
 
     Its parameters run over [knots_u[0], knots_u[-1]] and [knots_v[0], knots_v[-1]]; outside, the end polynomials (the

@@ -12,6 +12,7 @@ from numpy.random import default_rng
 from numpy.typing import ArrayLike, NDArray
 
 from bladewright.errors import GeometryError
+from bladewright.frozen import FrozenRecord
 from bladewright.numerics.elementary import Array, length
 from bladewright.numerics.quadrature import converged_quadrature, gauss, panels
 from bladewright.nurbs.basis import Reals, breaks
@@ -30,7 +31,7 @@ DRAWS = 4_000_000
 
 @final
 @dataclass(frozen=True, kw_only=True, eq=False)
-class TrimmedSurface:
+class TrimmedSurface(FrozenRecord):
     """The part of `surface` inside `boundary`, a closed loop of curves in (u, v) that runs counter-clockwise.
 
     The loop does not cross itself. Raises GeometryError where it is not plane, not closed or runs clockwise.

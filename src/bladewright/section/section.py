@@ -7,6 +7,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
+from bladewright.frozen import FrozenRecord
 from bladewright.numerics.elementary import Array, cross2, dot, length
 from bladewright.numerics.quadrature import panels
 from bladewright.nurbs.basis import Reals, breaks
@@ -21,7 +22,7 @@ within 1e-7 (design/section_constants.py)"""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Section:
+class Section(FrozenRecord):
     """A closed section between leading and trailing edge.
 
     Its plane is metric for a 2D section and a cascade. For a blade in an annulus it is the conformal plane
