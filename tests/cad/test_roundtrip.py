@@ -1,6 +1,8 @@
 """Round trips: accuracy, the report, and files that other programs wrote in their own way."""
 
+import copy
 import json
+import pickle
 
 import numpy as np
 import pytest
@@ -146,3 +148,11 @@ def test_a_foreign_iges_file_of_loose_faces_passes(rotor, tmp_path):
 
 def test_the_kernel_is_named():
     assert cad.occ_version().startswith("7.")
+
+
+def test_a_round_trip_survives_a_pickle_and_is_named_in_one_line(step):
+    path, trip = step
+    assert pickle.loads(pickle.dumps(trip)).to_dict() == copy.deepcopy(trip).to_dict() == trip.to_dict()
+    line = repr(trip)
+    assert "\n" not in line
+    assert all(word in line for word in (path.name, "STEP", "passed", "4 faces", f"{trip.volume.cad:.6g}"))

@@ -142,6 +142,11 @@ class RoundTrip:
             report["promises"] = self.promises
         return report
 
+    def __repr__(self) -> str:
+        verdict = "passed" if self.passed else f"FAILED ({len(self.failures)})"
+        size = f"volume {self.volume.cad:.6g} mm3 ({self.volume.relative_error:.1e} off)"
+        return f"<RoundTrip '{self.file}' ({self.format}): {verdict}; {len(self.faces)} faces, {size}>"
+
     def __str__(self) -> str:
         kind = " ".join(word for word in (self.format, self.schema) if word)
         valid = "valid" if self.valid else "invalid"

@@ -81,6 +81,10 @@ class Passage(FrozenRecord):
             pieces |= {name: face} if isinstance(face, TrimmedSurface) else pieces_of(name, face, self.knots)
         return FrozenMapping(pieces)
 
+    def __repr__(self) -> str:
+        extents = f"{self.knots.upstream:.3g} upstream, {self.knots.downstream:.3g} downstream"
+        return f"<Passage '{self.name}': {len(self.surfaces)} faces; {extents}, each x {self.knots.length:.6g} m>"
+
     @property
     def name(self) -> str:
         """The blade's name and what this is."""

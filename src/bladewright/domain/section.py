@@ -38,6 +38,9 @@ class SectionPassage(FrozenRecord):
     """`inlet` and `outlet` (from the lower to the upper periodic boundary), `periodic_lower` and `periodic_upper` (from
     inlet to outlet), and the section's own `upper` and `lower`; metres"""
 
+    def __repr__(self) -> str:
+        return f"<SectionPassage: {', '.join(self.curves)}; area {float(np.real(self.area)):.6g} m2>"
+
     @cached_property
     def area(self) -> Array:
         """Area () of the domain [m^2], by Green's theorem: the pitch times its axial extent, less the section."""

@@ -45,6 +45,10 @@ class Curve(FrozenRecord):
         if self.weights is not None:
             object.__setattr__(self, "weights", checked_weights(self.weights, points.shape[:-1]))
 
+    def __repr__(self) -> str:
+        kind = "" if self.weights is None else ", weighted"
+        return f"<Curve: {len(self.control_points)} control points{kind}, degree {self.degree}>"
+
     @property
     def domain(self) -> tuple[float, float]:
         """The first and the last parameter."""

@@ -51,6 +51,11 @@ class Surface(FrozenRecord):
         if self.weights is not None:
             object.__setattr__(self, "weights", checked_weights(self.weights, points.shape[:-1]))
 
+    def __repr__(self) -> str:
+        shape = " x ".join(map(str, self.control_points.shape[:-1]))
+        kind = "" if self.weights is None else ", weighted"
+        return f"<Surface: {shape} control points{kind}, degrees {self.degree_u} x {self.degree_v}>"
+
     @property
     def domain_u(self) -> tuple[float, float]:
         """The first and the last u."""

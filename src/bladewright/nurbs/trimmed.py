@@ -67,6 +67,9 @@ class TrimmedSurface(FrozenRecord):
                 "counter-clockwise; reverse its curves and their order"
             )
 
+    def __repr__(self) -> str:
+        return f"<TrimmedSurface inside {len(self.boundary)} curves, of {self.surface!r}>"
+
     def __call__(self, u: ArrayLike, v: ArrayLike) -> Array:
         """Points (..., d) of the surface, inside the boundary or not."""
         return self.surface(u, v)

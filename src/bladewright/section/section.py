@@ -63,6 +63,11 @@ class Section(FrozenRecord):
         """The section alone, where a blade answers with one for each of the span fractions."""
         return [self]
 
+    def __repr__(self) -> str:
+        chord, stagger = float(np.real(self.chord)), np.degrees(self.stagger)
+        where = f"at span {self.span:.6g}, {self.plane}"
+        return f"<Section {where}: {', '.join(self.curves)}; chord {chord:.6g} m, stagger {stagger:.6g} deg>"
+
     @cached_property
     def chord(self) -> Array:
         """Length () of the straight line of the plane from leading to trailing edge [m]."""

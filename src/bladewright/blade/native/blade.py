@@ -59,6 +59,10 @@ class Blade(FrozenRecord):
     moments: Callable[[], Array] | None = None
     """gives the moments of the volume, as `blade_moments` does, where they are known without quadrature"""
 
+    def __repr__(self) -> str:
+        faces, chord = ", ".join(self.surfaces), float(np.real(self.chord))
+        return f"<Blade '{self.name}' of {type(self.design).__name__}: {faces}; chord {chord:.6g} m>"
+
     @property
     def name(self) -> str:
         """The design's name."""

@@ -144,6 +144,12 @@ class Fit(FrozenRecord):
         """The report, for JSON; lengths in metres."""
         return report(self)
 
+    def __repr__(self) -> str:
+        verdict, points = "passed" if self.passed else "FAILED", f"{len(self.cloud)} points"
+        off = f"mean {self.mean:.3g} m, largest {self.maximum:.3g} m"
+        name = getattr(self.design, "name", "")
+        return f"<Fit '{name}' of {type(self.design).__name__}: {verdict}; {points}, {off}>"
+
     def __str__(self) -> str:
 
         return text(self)
