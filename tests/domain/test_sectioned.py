@@ -3,12 +3,14 @@
 import numpy as np
 import pytest
 
+from bladewright.blade.design.flow_path import FlowPath
 from bladewright.domain.build import passage
 from bladewright.domain.extents import USUAL
 from bladewright.domain.knots import BLADE_AT
 from bladewright.domain.walls import STRIPS
 from bladewright.nurbs.closest import closest_on_curve
 from machines import COARSE, example
+from machines.flow_paths import through
 from machines.passages import SECTIONED, passage_case
 
 
@@ -60,8 +62,8 @@ def test_without_extents_a_passage_reaches_from_end_to_end_of_the_flow_path(name
 
 
 def test_a_flow_path_that_ends_before_the_blade_and_its_pitch_allow_is_continued():
-    near = {f"flow_path.{name}.points[0].x": -1.0 for name in ("hub", "shroud")}
-    blade = example("core-rotor").changed({**near, "tolerance": COARSE}).build()
+    near = FlowPath(hub=through((-0.4, 95), (90, 102)), shroud=through((0.8, 169), (90, 163)))
+    blade = example("core-rotor").changed({"flow_path": near, "tolerance": COARSE}).build()
     around = passage(blade)
     assert around.knots.upstream == USUAL
     assert around.knots.low < blade.exact.surfaces.low

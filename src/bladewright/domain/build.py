@@ -48,8 +48,8 @@ def passage(
     `upstream` and `downstream` are how far the duct reaches past the edges, in mean meridional lengths of the blade;
     where not given, to the ends of the flow path, or without one, one half or what the pitch needs. Camber lines go on
     at the slope of their ends; with `inlet_angle` or `outlet_angle` [deg] they turn to that angle from the meridional
-    direction. `knots=passage.knots` holds another passage's knots and extents. Walls, periodic boundaries, inlet and outlet have creases where the
-    blade's edges are; `split=True` cuts them there into faces without any.
+    direction. `knots=passage.knots` holds another passage's knots and extents. Walls, periodic boundaries, inlet and
+    outlet have creases where the blade's edges are; `split=True` cuts them there into faces without any.
 
     Raises DesignError where a patch would fold, the channel cannot be continued so far, or the blade does not keep
     within its pitch. Agromayor et al. 2021, section 4.

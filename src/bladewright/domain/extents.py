@@ -97,8 +97,9 @@ def _usual(exact: ExactBlade, edge: int, needed: float) -> float:
     """The flow path's extent, else the usual one, or more if needed; less where the duct must end before that."""
     extent = exact.meridional_extent
     path_end = extent.path_end(edge)
-    follows = path_end is not None and path_end >= needed
-    wanted = path_end if follows else max(USUAL, STEP * float(np.ceil(needed / STEP)))
+    wanted = max(USUAL, STEP * float(np.ceil(needed / STEP)))
+    if path_end is not None and path_end >= needed:
+        wanted = path_end
     duct, end = shortest_duct(exact), extent.place(edge, wanted)
     longer = replace(duct, high=end) if edge else replace(duct, low=end)
     limit = longer.limit("downstream" if edge else "upstream")

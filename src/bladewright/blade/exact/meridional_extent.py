@@ -60,6 +60,7 @@ class ChannelExtent(MeridionalExtent):
 
     def path_end(self, past: int) -> float | None:
         del past
+        return None
 
     def place(self, past: int, extent: float) -> float:
         return 1.0 + extent if past else -extent
