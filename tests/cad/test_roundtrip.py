@@ -21,7 +21,7 @@ from bladewright.nurbs.surface import Surface
 
 REPORT = {
     "file", "format", "schema", "unit", "passed", "failures", "limits", "solids", "shells", "free_edges", "valid",
-    "faces", "edges", "volume_mm3", "area_mm2", "centroid_mm",
+    "faces", "edges", "volume_mm3", "area_mm2", "centroid_mm", "version", "design",
 }  # fmt: skip
 SIDE = {"step": 1e-9, "igs": 1e-7, "brep": 1e-11}
 """[mm] what a file's digits allow for a blade of 0.1 m: STEP keeps 14 or 15, IGES as many as leave 1e-8 mm"""
