@@ -1,6 +1,7 @@
 """Writing CAD files, each of which is read again from disk and measured before anyone relies on it."""
 
 import os
+from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
 
@@ -14,7 +15,7 @@ from bladewright.cad.mesh_verification import write_mesh
 from bladewright.cad.native_body import NativeBody, origin_of
 from bladewright.cad.reading import format_of
 from bladewright.cad.round_trip import RoundTrip
-from bladewright.cad.solids import cached_occ_solid
+from bladewright.cad.solids import OccSolid, cached_occ_solid
 from bladewright.cad.step import Schema, write_step
 from bladewright.cad.units import Unit, check_unit
 from bladewright.cad.verification import SAMPLES, verify
@@ -57,10 +58,27 @@ def write(
     with quiet():
         made = cached_occ_solid(built)
         with atomic_write(path) as unfinished:
-            if kind == "STEP":
-                write_step(built, made, unfinished, schema=schema, unit=unit, colours=colours, origin=origin)
-            elif kind == "IGES":
-                write_iges(built, made, unfinished, solid=solid, unit=unit, colours=colours, origin=origin)
-            elif not BRepTools.Write_s(made.solid, unfinished):
-                raise CadError("OpenCASCADE could not write the BREP file: is there space left in that directory?")
+            _write_format(
+                built, made, unfinished, kind, schema=schema, solid=solid, unit=unit, colours=colours, origin=origin
+            )
     return replace(verify(path, built, samples=samples), origin=origin)
+
+
+def _write_format(
+    built: NativeBody,
+    made: OccSolid,
+    unfinished: str,
+    kind: str,
+    *,
+    schema: str,
+    solid: bool,
+    unit: Unit = "mm",
+    colours: Mapping[str, str] | None = None,
+    origin: Origin | None = None,
+) -> None:
+    if kind == "STEP":
+        write_step(built, made, unfinished, schema=schema, unit=unit, colours=colours, origin=origin)
+    elif kind == "IGES":
+        write_iges(built, made, unfinished, solid=solid, unit=unit, colours=colours, origin=origin)
+    elif not BRepTools.Write_s(made.solid, unfinished):
+        raise CadError("OpenCASCADE could not write the BREP file: is there space left in that directory?")
