@@ -92,8 +92,8 @@ def test_a_pole_moved_by_a_few_millionths_of_a_millimetre_is_measured(rotor, tmp
 
 
 @pytest.mark.parametrize(("name", "ending"), [("upper", "step"), ("hub", "brep")])
-def test_a_missing_face(rotor, tmp_path, name, ending):
-    faces = [face for label, face in occ_solid(rotor).faces.items() if label != name]
+def test_a_missing_face(rotor, solid, tmp_path, name, ending):
+    faces = [face for label, face in solid.faces.items() if label != name]
     path = tmp_path / f"open.{ending}"
     put(solid_of(faces), path)
     trip = failing(path, rotor)
@@ -132,11 +132,10 @@ def test_a_swapped_unit(bodies, tmp_path, ending, told, swapped, unit):
     assert about(trip, "the volume of")
 
 
-def test_an_open_edge(rotor, tmp_path):
-    made = occ_solid(rotor)
+def test_an_open_edge(rotor, solid, tmp_path):
     # one face stands on its own copies of the edges
     faces = [TopoDS.Face_s(BRepBuilderAPI_Copy(face).Shape()) if k == 0 else face
-             for k, face in enumerate(made.faces.values())]  # fmt: skip
+             for k, face in enumerate(solid.faces.values())]  # fmt: skip
     put(solid_of(faces), tmp_path / "open.brep")
     trip = failing(tmp_path / "open.brep", rotor)
     # four edges of the side and their four counterparts
@@ -147,10 +146,10 @@ def test_an_open_edge(rotor, tmp_path):
 
 
 @pytest.mark.parametrize("ending", ["step", "brep"])
-def test_faces_that_the_kernel_calls_valid_but_that_are_not_closed(rotor, tmp_path, ending):
+def test_faces_that_the_kernel_calls_valid_but_that_are_not_closed(rotor, solid, tmp_path, ending):
     builder, loose = BRep_Builder(), TopoDS_Compound()
     builder.MakeCompound(loose)
-    for face in occ_solid(rotor).faces.values():
+    for face in solid.faces.values():
         builder.Add(loose, BRepBuilderAPI_Copy(face).Shape())
     assert BRepCheck_Analyzer(loose).IsValid()
     path = tmp_path / f"loose.{ending}"
@@ -161,10 +160,10 @@ def test_faces_that_the_kernel_calls_valid_but_that_are_not_closed(rotor, tmp_pa
     assert not about(trip, "mm off")
 
 
-def test_a_shell_with_a_hole_that_the_kernel_calls_valid(rotor, tmp_path):
+def test_a_shell_with_a_hole_that_the_kernel_calls_valid(rotor, solid, tmp_path):
     builder, shell = BRep_Builder(), TopoDS_Shell()
     builder.MakeShell(shell)
-    for name, face in occ_solid(rotor).faces.items():
+    for name, face in solid.faces.items():
         if name != "shroud":
             builder.Add(shell, face)
     assert BRepCheck_Analyzer(shell).IsValid()
@@ -205,16 +204,16 @@ def wrong_side(face):
 
 
 @pytest.mark.parametrize("name", ["hub", "shroud", "upper"])
-def test_a_face_on_the_wrong_side_of_its_trim(rotor, tmp_path, name):
-    faces = [wrong_side(face) if label == name else face for label, face in occ_solid(rotor).faces.items()]
+def test_a_face_on_the_wrong_side_of_its_trim(rotor, solid, tmp_path, name):
+    faces = [wrong_side(face) if label == name else face for label, face in solid.faces.items()]
     put(solid_of(faces), tmp_path / "wrong.brep")
     trip = failing(tmp_path / "wrong.brep", rotor)
     assert about(trip, f"face {name} keeps the wrong side of its boundary")
 
 
 @pytest.mark.parametrize("name", ["hub", "shroud"])
-def test_a_wall_that_keeps_the_wrong_side_is_far_off_too(rotor, tmp_path, name):
-    faces = [wrong_side(face) if label == name else face for label, face in occ_solid(rotor).faces.items()]
+def test_a_wall_that_keeps_the_wrong_side_is_far_off_too(rotor, solid, tmp_path, name):
+    faces = [wrong_side(face) if label == name else face for label, face in solid.faces.items()]
     put(solid_of(faces), tmp_path / "wrong.brep")
     trip = failing(tmp_path / "wrong.brep", rotor)
     assert next(face for face in trip.faces if face.name == name).max_deviation > 10.0
@@ -254,19 +253,18 @@ def test_a_volume_that_is_not_the_files(rotor, step):
     assert [failure.split(" of ")[0] for failure in trip.failures] == ["the volume"]
 
 
-def test_a_second_body_in_the_file(rotor, tmp_path):
+def test_a_second_body_in_the_file(rotor, solid, tmp_path):
     builder = BRep_Builder()
     both = TopoDS_Compound()
     builder.MakeCompound(both)
-    solid = occ_solid(rotor).solid
-    builder.Add(both, solid)
-    builder.Add(both, BRepBuilderAPI_Copy(solid).Shape())
+    builder.Add(both, solid.solid)
+    builder.Add(both, BRepBuilderAPI_Copy(solid.solid).Shape())
     put(both, tmp_path / "two.brep")
     trip = failing(tmp_path / "two.brep", rotor)
     assert about(trip, "the file holds 2 solids")
 
 
-def test_a_body_turned_inside_out(rotor, tmp_path):
-    put(occ_solid(rotor).solid.Reversed(), tmp_path / "inside.brep")
+def test_a_body_turned_inside_out(rotor, solid, tmp_path):
+    put(solid.solid.Reversed(), tmp_path / "inside.brep")
     trip = failing(tmp_path / "inside.brep", rotor)
     assert trip.volume.cad == pytest.approx(-trip.volume.native, rel=1e-6)

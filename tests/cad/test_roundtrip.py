@@ -1,8 +1,6 @@
 """Round trips: accuracy, the report, and files that other programs wrote in their own way."""
 
-import copy
 import json
-import pickle
 
 import numpy as np
 import pytest
@@ -19,9 +17,11 @@ from bladewright.cad.solids import occ_solid
 from bladewright.cad.verification import limits_of
 from bladewright.nurbs.surface import Surface
 
+SEARCHED = 1000
+"""points a face of a foreign file, each of which is searched for on the native face"""
 REPORT = {
     "file", "format", "schema", "unit", "passed", "failures", "limits", "solids", "shells", "free_edges", "valid",
-    "faces", "edges", "volume_mm3", "area_mm2", "centroid_mm", "version", "design",
+    "faces", "edges", "volume_mm3", "area_mm2", "centroid_mm",
 }  # fmt: skip
 SIDE = {"step": 1e-9, "igs": 1e-7, "brep": 1e-11}
 """[mm] what a file's digits allow for a blade of 0.1 m: STEP keeps 14 or 15, IGES as many as leave 1e-8 mm"""
@@ -34,8 +34,8 @@ def foreign_step(shape, path):
 
 
 @pytest.mark.parametrize("ending", SIDE)
-def test_every_body_passes_its_round_trip_in_every_format(built, tmp_path, ending):
-    trip = cad.write(built, tmp_path / f"body.{ending}")
+def test_every_body_passes_its_round_trip_in_every_format(body, built, filed, ending):
+    trip = filed(body, ending)[1]
     assert trip.passed, str(trip)
     assert (trip.solids, trip.shells, trip.free_edges, trip.valid) == (1, 1, 0, True)
     assert {face.name for face in trip.faces} == set(built.surfaces)
@@ -99,7 +99,7 @@ def test_a_file_in_another_unit_that_says_so_passes(bodies, tmp_path, unit):
         foreign_step(occ_solid(bodies["linear"]).solid, path)
     finally:
         Interface_Static.SetCVal_s("write.step.unit", "MM")
-    trip = cad.verify(path, bodies["linear"])
+    trip = cad.verify(path, bodies["linear"], samples=SEARCHED)
     assert trip.passed, str(trip)
     assert trip.unit == {"M": "m", "INCH": "in"}[unit]
 
@@ -107,26 +107,26 @@ def test_a_file_in_another_unit_that_says_so_passes(bodies, tmp_path, unit):
 @pytest.mark.parametrize("name", ["annular", "linear"])
 def test_a_foreign_file_without_names_passes(bodies, tmp_path, name):
     foreign_step(occ_solid(bodies[name]).solid, tmp_path / "part.step")
-    trip = cad.verify(tmp_path / "part.step", bodies[name])
+    trip = cad.verify(tmp_path / "part.step", bodies[name], samples=SEARCHED)
     assert trip.passed, str(trip)
     assert {face.name for face in trip.faces} == set(bodies[name].surfaces)
 
 
-def test_a_foreign_file_with_other_surfaces_of_the_same_shape_passes(rotor, tmp_path):
+def test_a_foreign_file_with_other_surfaces_of_the_same_shape_passes(rotor, solid, tmp_path):
     # walls become rational splines
-    converted = BRepBuilderAPI_NurbsConvert(occ_solid(rotor).solid).Shape()
+    converted = BRepBuilderAPI_NurbsConvert(solid.solid).Shape()
     foreign_step(converted, tmp_path / "part.step")
-    trip = cad.verify(tmp_path / "part.step", rotor)
+    trip = cad.verify(tmp_path / "part.step", rotor, samples=SEARCHED)
     assert trip.passed, str(trip)
 
 
-def test_a_foreign_file_with_split_faces_passes(rotor, tmp_path):
-    divided = ShapeUpgrade_ShapeDivideContinuity(occ_solid(rotor).solid)
+def test_a_foreign_file_with_split_faces_passes(rotor, solid, tmp_path):
+    divided = ShapeUpgrade_ShapeDivideContinuity(solid.solid)
     divided.SetSurfaceCriterion(GeomAbs_C3)
     divided.SetTolerance(1e-9)
     divided.Perform()
     foreign_step(divided.Result(), tmp_path / "part.step")
-    trip = cad.verify(tmp_path / "part.step", rotor)
+    trip = cad.verify(tmp_path / "part.step", rotor, samples=SEARCHED)
     assert trip.edges.count > 6
     # the kernel's new trimming curves are as good as its own approximation; surfaces and volume are untouched
     about_surfaces = [failure for failure in trip.failures if "edge" not in failure]
@@ -136,23 +136,15 @@ def test_a_foreign_file_with_split_faces_passes(rotor, tmp_path):
             assert face.max_deviation <= 1e-6
 
 
-def test_a_foreign_iges_file_of_loose_faces_passes(rotor, tmp_path):
+def test_a_foreign_iges_file_of_loose_faces_passes(rotor, solid, tmp_path):
     writer = IGESControl_Writer("MM", 0)
-    assert writer.AddShape(occ_solid(rotor).solid)
+    assert writer.AddShape(solid.solid)
     writer.ComputeModel()
     assert writer.Write(str(tmp_path / "part.igs"))
-    trip = cad.verify(tmp_path / "part.igs", rotor)
+    trip = cad.verify(tmp_path / "part.igs", rotor, samples=SEARCHED)
     assert trip.schema == "5.3 trimmed surfaces"
     assert trip.passed, str(trip)
 
 
 def test_the_kernel_is_named():
     assert cad.occ_version().startswith("7.")
-
-
-def test_a_round_trip_survives_a_pickle_and_is_named_in_one_line(step):
-    path, trip = step
-    assert pickle.loads(pickle.dumps(trip)).to_dict() == copy.deepcopy(trip).to_dict() == trip.to_dict()
-    line = repr(trip)
-    assert "\n" not in line
-    assert all(word in line for word in (path.name, "STEP", "passed", "4 faces", f"{trip.volume.cad:.6g}"))

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from bladewright import cad
-from bladewright.cad.deviation import NativeFace
+from bladewright.cad.deviation import native_face
 from bladewright.errors import CadError
 
 COUNT = 800
@@ -13,12 +13,10 @@ COUNT = 800
 @pytest.mark.parametrize(
     ("ending", "near"), [("step", 1e-8), ("igs", 1e-6), ("brep", 1e-8), ("stl", 0.2), ("3mf", 0.2)]
 )
-def test_points_lie_on_the_body_evenly_and_in_metres(rotor, tmp_path, ending, near):
-    path = tmp_path / f"rotor.{ending}"
-    cad.write(rotor, path, samples=100, chordal_deviation=2e-4)
-    points = cad.sample(path, COUNT)
+def test_points_lie_on_the_body_evenly_and_in_metres(rotor, filed, ending, near):
+    points = cad.sample(filed("annular", ending)[0], COUNT)
     assert points.shape == (COUNT, 3)
-    away = {name: NativeFace(face).projection.closest(points * 1e3, 1.0)[1] for name, face in rotor.surfaces.items()}
+    away = {name: native_face(face).projection.closest(points * 1e3, 1.0)[1] for name, face in rotor.surfaces.items()}
     # ends lie off the wall by 4e-7 mm, and so may points next to them
     assert np.max(np.min(list(away.values()), axis=0)) <= max(near, 1e-6)
     owner = np.argmin(list(away.values()), axis=0)
