@@ -8,34 +8,25 @@ import pytest
 from bladewright.files.examples import example_text, examples
 from bladewright.files.reading import read_design
 from bladewright.files.schema import schema
-from bladewright.files.templates import template_text, templates
+
+SECTION = """
+family = "profile-section"
+name = "vane"
+length_unit = "mm"
+chord = 60.0
+[section]
+kind = "naca-4"
+thickness = 0.12
+camber = 0.04
+camber_position = 0.4
+"""
 
 
 def test_new_lists_the_examples_with_a_line_about_each(run):
     found = run("new")
     for name in examples():
         assert f"{name} " in found.out
-    assert run("new", "--json").json == {"examples": examples(), "templates": templates()}
-
-
-@pytest.mark.parametrize("name", templates())
-def test_new_writes_a_template(run, tmp_path, name):
-    file = tmp_path / f"{name}.toml"
-    assert run("new", "--template", name, "-o", file).status == 0
-    assert file.read_text() == template_text(name)
-    assert read_design(file).name
-
-
-def test_an_example_and_a_template_at_once_are_refused(run):
-    found = run("new", "propeller", "--template", "propeller")
-    assert found.status == 2
-    assert "give one of them" in found.err
-
-
-def test_an_unknown_template_names_the_nearest(run):
-    found = run("new", "--template", "turbin-vane")
-    assert found.status == 2
-    assert "did you mean 'turbine-vane'" in found.err
+    assert run("new", "--json").json == {"examples": examples()}
 
 
 @pytest.mark.parametrize("name", examples())
@@ -111,24 +102,12 @@ def test_a_promise_that_is_not_kept_gives_status_one(run, vane_file, monkeypatch
     assert "NOT KEPT" in found.out
 
 
-def test_show_draws_a_picture(run, vane_file, tmp_path):
+def test_show_draws_a_picture(run, tmp_path):
+    (tmp_path / "vane.toml").write_text(SECTION)
     picture = tmp_path / "vane.png"
-    found = run("show", vane_file, "-o", picture, "--json")
+    found = run("show", tmp_path / "vane.toml", "-o", picture, "--json")
     assert (found.status, found.json["picture"]) == (0, str(picture))
     assert picture.read_bytes().startswith(b"\x89PNG")
-
-
-SECTION = """
-family = "profile-section"
-name = "vane"
-length_unit = "mm"
-chord = 60.0
-[section]
-kind = "naca-4"
-thickness = 0.12
-camber = 0.04
-camber_position = 0.4
-"""
 
 
 def test_show_says_how_smooth_a_section_is(run, tmp_path):

