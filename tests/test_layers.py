@@ -4,6 +4,7 @@ import ast
 import subprocess
 import sys
 from collections.abc import Iterator
+from functools import cache
 from pathlib import Path
 
 import numpy as np
@@ -68,9 +69,12 @@ def test_a_file_holds_one_idea() -> None:
     assert not longer, longer
 
 
+parsed = cache(ast.parse)
+
+
 def imported(name: str, text: str, known: set[str]) -> Iterator[str]:
     """The known modules that a module imports anywhere, also inside functions, but for those that only types need."""
-    tree = ast.parse(text)
+    tree = parsed(text)
     checks = [node for node in ast.walk(tree) if isinstance(node, ast.If) and "TYPE_CHECKING" in ast.unparse(node.test)]
     skipped = {id(inner) for check in checks for line in check.body for inner in ast.walk(line)}
     for node in ast.walk(tree):
@@ -124,7 +128,7 @@ def final_designs(kind: type) -> set[str]:
 
 def kinds_asked(text: str, kinds: set[str], *, attributes: bool) -> Iterator[str]:
     """Calls that ask an object for one of the kinds, or for whether it has an attribute."""
-    for node in ast.walk(ast.parse(text)):
+    for node in ast.walk(parsed(text)):
         if isinstance(node, ast.Call) and isinstance(node.func, ast.Name):
             named = {each.id for part in node.args[1:] for each in ast.walk(part) if isinstance(each, ast.Name)}
             if (node.func.id == "isinstance" and named & kinds) or (node.func.id == "hasattr" and attributes):

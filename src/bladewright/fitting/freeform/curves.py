@@ -28,7 +28,7 @@ NOISE_RATIO = 1.25
 
 
 @final
-@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
+@dataclass(frozen=True, kw_only=True, eq=False)
 class CurveFit(FreeformFit):
     """A curve fitted to n points."""
 

@@ -9,7 +9,6 @@ Reference: Wennerstrom 2000, Design of Highly Loaded Axial-Flow Fans and Compres
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import partial
 from typing import Literal, NamedTuple
 
 import numpy as np
@@ -18,15 +17,15 @@ from bladewright.designs import Law, parameter
 from bladewright.errors import DesignError
 from bladewright.numerics.elementary import Array
 from bladewright.section import checks
-from bladewright.section.chord_map import Breakpoint, ChordMap
+from bladewright.section.chord_map import Breakpoint, ChordMap, ChordPlace
 from bladewright.section.laws import Span
+from bladewright.section.power_series import Series, polynomial
 from bladewright.section.thickness.law import EdgeKind, Thickness, ThicknessLaw, leaves_of, same_law
 from bladewright.section.thickness.piecewise import (
     Formula,
     PiecewiseThickness,
     check_positive,
     ellipse,
-    polynomial_from,
 )
 
 AT_LEADING_EDGE = 0.02
@@ -177,4 +176,8 @@ def _cubic(maximum: Array, curvature: Array, third: Array, middle: Array, chord:
     """A cubic of the distance from the maximum, in chords of the body."""
     scaled = (maximum, np.zeros(1), 0.5 * curvature * chord**2, third * chord**3)
     coefficients = [each[..., None] for each in scaled]
-    return partial(polynomial_from, coefficients, middle[..., None])
+
+    def half(place: ChordPlace) -> Series:
+        return polynomial(coefficients, place.u - middle[..., None])
+
+    return half
