@@ -17,6 +17,7 @@ Meridional       ThroughPoints, ControlPolygon, StraightsAndArcs
 2D sections      UnifiedSection, CurvatureMeanlineSection, SuctionPressureSection, CamberAngleSection, ProfileSection,
                  WedgeDiffuserSection
 Parts of them    CurvatureMeanline, SuctionPressure, CamberAngle, WedgeDiffuser
+Laws by values   Stations
 Thickness laws   ModifiedNaca, QuarticSpline, Wennerstrom
 Profiles         Naca4, Naca5, Naca6, Naca65, C4, DoubleCircularArc, MultipleCircularArc, FlatPlate, PointsProfile
 What is built    Blade of Surface and TrimmedSurface, Curve; passage gives a Passage, section_passage a SectionPassage,

@@ -27,6 +27,7 @@ from .derivatives.surface_points import placed_points as placed_points
 from .derivatives.surface_points import surface_points as surface_points
 from .derivatives.variables import Variables as Variables
 from .derivatives.variables import variables as variables
+from .designs import Stations as Stations
 from .domain.build import passage as passage
 from .domain.passage import Passage as Passage
 from .domain.section import SectionPassage as SectionPassage

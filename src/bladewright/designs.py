@@ -4,7 +4,7 @@ import re
 from abc import ABC, abstractmethod
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, fields, replace
-from typing import Any, ClassVar, NamedTuple, Self
+from typing import Annotated, Any, ClassVar, Literal, NamedTuple, Self
 
 from bladewright.errors import DesignError
 
@@ -18,11 +18,9 @@ class Point(NamedTuple):
     """radius, or span coordinate z of a linear cascade [length]"""
 
 
-Law = float | tuple[float, ...]
-"""A law of evolution along the span: a constant, or control points from hub to shroud."""
-ChordwiseLaw = tuple[Law, ...]
-"""Control points along the chord, each a law of evolution along the span."""
 Points = tuple[Point, ...]
+OF_LAW = "of the law"
+"""The unit of a law's values at stations: that of the field that holds the law."""
 
 
 def parameter(unit: str, **options: Any) -> Any:
@@ -36,6 +34,9 @@ class Part:
 
     __pydantic_config__: ClassVar[dict[str, Any]] = {"extra": "forbid", "use_attribute_docstrings": True}
     """how a file is validated: unknown keys are refused, and the schema describes a field by its docstring"""
+
+    inline: ClassVar[bool] = False
+    """whether design files have it on one line, in the place of a number"""
 
     def parameters(self) -> dict[str, float]:
         """Every differentiable leaf by its path, in the order of the fields, in the design's own units."""
@@ -55,6 +56,48 @@ class Part:
                 raise DesignError(unknown(where, name, names))
             put.setdefault(name, []).append((rest, what, where))
         return replace(self, **{name: _with(getattr(self, name), changes) for name, changes in put.items()})
+
+
+@dataclass(frozen=True, kw_only=True)
+class Stations(Part):
+    """A law of evolution along the span by its values at stations, each of which it meets.
+
+    `interpolation` is "natural": the natural cubic spline; "monotone": a quintic spline that rises, falls and stays
+    between stations as their values do; both with continuous curvature; or "linear": straight lines, with a crease at
+    every station between hub and shroud.
+    """
+
+    inline: ClassVar[bool] = True
+
+    span: tuple[float, ...]
+    """span fractions of the stations, increasing from 0 at the hub to 1 at the shroud [-]"""
+    values: tuple[float, ...] = parameter(OF_LAW)
+    """the law's value at each station, in the unit of the law"""
+    interpolation: Literal["natural", "monotone", "linear"] = "natural"
+    """what lies between the stations"""
+
+
+class _ByShape:
+    """Annotates laws: a file's number, list or table is validated as such, so that only its own refusals are named."""
+
+    def __get_pydantic_core_schema__(self, source: Any, handler: Any) -> Any:
+        from pydantic_core import core_schema
+
+        kinds = {"number": float, "list": tuple[float, ...], "Stations": Stations}
+        choices = {name: handler.generate_schema(kind) for name, kind in kinds.items()}
+        return core_schema.tagged_union_schema(choices, discriminator=self._shape)
+
+    @staticmethod
+    def _shape(value: Any) -> str:
+        if isinstance(value, Mapping | Stations):
+            return "Stations"
+        return "list" if isinstance(value, list | tuple) else "number"
+
+
+Law = Annotated[float | tuple[float, ...] | Stations, _ByShape()]
+"""A law of evolution along the span: a constant, control points from hub to shroud, or values at stations."""
+ChordwiseLaw = tuple[Law, ...]
+"""Control points along the chord, each a law of evolution along the span."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -91,9 +134,13 @@ def unit_at(design: Part, path: str) -> str | None:
     node: Any = design
     unit: str | None = None
     for step in _steps(path):
-        if not (isinstance(node, Part) and isinstance(step, str)):
+        if isinstance(node, Part) and isinstance(step, str):
+            own = unit_of(node, step)
+            unit, node = unit if own == OF_LAW else own, getattr(node, step, None)
+        elif isinstance(node, tuple) and isinstance(step, int) and -len(node) <= step < len(node):
+            node = node[step]
+        else:
             break
-        unit, node = unit_of(node, step), getattr(node, step, None)
     return unit
 
 
@@ -165,6 +212,8 @@ def _check_step(node: Any, step: str | int, path: str) -> None:
         if not -len(node) <= step < len(node):
             raise DesignError(f"{path} does not exist: it has {len(node)} entries, 0 to {len(node) - 1}")
         return
+    if isinstance(node, Stations):
+        raise DesignError(f"{path} does not exist: the law is given at stations; write .values[{step}] there")
     kind = "a single number" if not isinstance(node, tuple | Part) else "a list"
     raise DesignError(f"{path} does not exist: what stands before '{step}' is {kind}; see design.parameters()")
 

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from bladewright.section.laws import Span, inner_knots, law_basis
+from bladewright.section.laws import Span, joints_of, law_basis
 
 V = np.linspace(0.0, 1.0, 23)
 
@@ -44,8 +44,9 @@ def test_a_law_carries_a_batch_of_imaginary_steps():
 
 
 def test_inner_knots_appear_from_five_control_points_on():
-    assert [len(inner_knots(count)) for count in range(1, 8)] == [0, 0, 0, 0, 1, 2, 3]
-    assert inner_knots(5) == pytest.approx([0.5])
+    laws = [1.0, *(tuple(np.arange(count, dtype=float)) for count in range(2, 8))]
+    assert [len(list(joints_of(law))) for law in laws] == [0, 0, 0, 0, 1, 2, 3]
+    assert list(joints_of(laws[4])) == [(pytest.approx(0.5), 2)]
 
 
 def test_a_chordwise_law_of_constants_is_a_law_along_the_chord():

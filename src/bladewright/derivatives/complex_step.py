@@ -2,9 +2,9 @@
 
 A blade's control nets are linear in the points of its sections. A law of evolution of the unified family acts on the
 section at span fraction v by its value there alone: a step of the whole law gives the derivative of the section, and
-the derivative by control point j of the law is N_j(v) times that, so that one rebuild serves all control points of a
-law. The other parameters, those of the channel above all and every parameter of a blade from sections, are stepped one
-by one; AT_ONCE steps go through one rebuild as a batch.
+the derivative by its control point j, or its value at station j, is the weight of that number at v times it, so that
+one rebuild serves all numbers of a law. The other parameters, those of the channel above all and every parameter of a
+blade from sections, are stepped one by one; AT_ONCE steps go through one rebuild as a batch.
 """
 
 import re
@@ -23,12 +23,12 @@ from bladewright.blade.native.interpolation import InterpolationData, interpolat
 from bladewright.blade.native.knots import Knots
 from bladewright.blade.native.properties import blade_moments, middle_of, moment_gradient
 from bladewright.blade.native.refinement import mean_chord
-from bladewright.designs import Design
+from bladewright.designs import Design, Law
 from bladewright.numerics.elementary import Array, concatenated
 from bladewright.nurbs.basis import Reals
 from bladewright.nurbs.surface import Surface
 from bladewright.nurbs.trimmed import TrimmedSurface
-from bladewright.section.laws import law_basis
+from bladewright.section.laws import law_weights, number_paths
 from bladewright.section.outline import EdgeDerivatives
 
 STEP = 1e-30
@@ -48,13 +48,13 @@ class LawPoint:
     step: str
     """path of the law, or of the parameter, that is stepped"""
     index: int = 0
-    """index of the control point in its law"""
-    count: int = 0
-    """number of control points of the law; 0 for a parameter that belongs to no law"""
+    """index of the control point, or of the value at a station, in its law"""
+    law: Law | None = None
+    """the law; None for a parameter that belongs to no law"""
 
     def factor(self, v: Reals) -> Reals:
-        """The derivative by the parameter over that by the whole law, at v (m,): the basis function N_j."""
-        return law_basis(self.count, v)[:, self.index] if self.count else np.ones(len(v))
+        """The derivative by the parameter over that by the whole law, at v (m,): its weight in the law there."""
+        return np.ones(len(v)) if self.law is None else law_weights(self.law, v)[:, self.index]
 
 
 def side_tangents(blade: Blade, paths: Sequence[str]) -> Iterator[Nets]:
@@ -78,11 +78,10 @@ def law_point(design: RowDesign, path: str) -> LawPoint:
     name, *places = re.findall(r"\w+", path)
     if name not in (*design.local_laws, *design.local_chordwise_laws):
         return LawPoint(path)
-    depth = 1 if name in design.local_chordwise_laws else 0
-    if len(places) == depth:
-        return LawPoint(path, 0, 1)
-    law = getattr(design, name)[int(places[0])] if depth else getattr(design, name)
-    return LawPoint(path.rpartition("[")[0], int(places[-1]), len(law))
+    law, step = getattr(design, name), name
+    if name in design.local_chordwise_laws:
+        law, step = law[int(places[0])], f"{name}[{places[0]}]"
+    return LawPoint(step, number_paths(law, step).index(path), law)
 
 
 def _rates_of_steps(blade: Blade, steps: Sequence[str]) -> Array:
@@ -98,9 +97,8 @@ def stepped_design(design: RowDesign, steps: Sequence[str]) -> Any:
     for place, step in enumerate(steps):
         change = np.zeros(len(steps), dtype=np.complex128)
         change[place] = STEP * 1j
-        changes |= {
-            path: value + change for path, value in values.items() if path == step or path.startswith(f"{step}[")
-        }
+        own = (path for path in values if path == step or path.startswith((f"{step}[", f"{step}.values[")))
+        changes |= {path: values[path] + change for path in own}
     return design.changed(changes)
 
 

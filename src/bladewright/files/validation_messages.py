@@ -10,7 +10,7 @@ from typing import Any, Literal, Union, get_args, get_origin, get_type_hints
 from pydantic import ValidationError
 from pydantic_core import ErrorDetails
 
-from bladewright.designs import Design, Point, unknown
+from bladewright.designs import OF_LAW, Design, Point, unknown
 from bladewright.section.tagged_unions import tags
 
 _NEEDED = {
@@ -117,7 +117,8 @@ class _Place:
         if not is_dataclass(self.annotation):
             return
         self.names = [each.name for each in fields(self.annotation)]
-        self.unit = next((each.metadata.get("unit", "") for each in fields(self.annotation) if each.name == name), "")
+        unit = next((each.metadata.get("unit", "") for each in fields(self.annotation) if each.name == name), "")
+        self.unit = self.unit if unit == OF_LAW else unit
         self.annotation = _without_none(get_type_hints(self.annotation).get(name))
         self.path = self.field = f"{self.path}.{name}" if self.path else name
 

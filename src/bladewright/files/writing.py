@@ -32,9 +32,11 @@ def literal(value: Any, path: str) -> str:
         return repr(value)
     if isinstance(value, Part):
         entries = (
-            f"{each.name} = {literal(getattr(value, each.name), f'{path}.{each.name}')}" for each in fields(value)
+            f"{each.name} = {literal(getattr(value, each.name), f'{path}.{each.name}')}"
+            for each in fields(value)
+            if not (value.inline and _is_default(each, getattr(value, each.name)))
         )
-        return "{" + ", ".join(entries) + "}"
+        return f"{{ {', '.join(entries)} }}" if value.inline else "{" + ", ".join(entries) + "}"
     if not isinstance(value, tuple):
         raise DesignError(f"{path} is {value!r}: a file holds real numbers, texts and lists of them")
     items = [literal(item, f"{path}[{index}]") for index, item in enumerate(value)]
@@ -123,7 +125,7 @@ def _tables(design: Part, path: str, length: str) -> list[str]:
     lines = []
     for each in fields(design):
         value, name = getattr(design, each.name), path + each.name
-        if isinstance(value, Part):
+        if _is_table(value):
             lines += ["", f"[{name}]"]
             lines += [line for kind in (False, True) for line in _lines(value, f"{name}.", length, parameters=kind)]
             lines += _tables(value, f"{name}.", length)
@@ -133,18 +135,21 @@ def _tables(design: Part, path: str, length: str) -> list[str]:
     return lines
 
 
+def _is_table(value: Any) -> bool:
+    """Whether a value is a part that has a table of its own in files."""
+    return isinstance(value, Part) and not value.inline
+
+
 def _is_parts(value: Any) -> bool:
     """Whether a value is a list of parts, which is written as an array of tables."""
-    return isinstance(value, tuple) and len(value) > 0 and all(isinstance(item, Part) for item in value)
+    return isinstance(value, tuple) and len(value) > 0 and all(_is_table(item) for item in value)
 
 
 def _lines(design: Part, path: str, length: str, *, parameters: bool) -> list[str]:
     lines, tag_fields = [], tags(type(design))
     for each in fields(design):
         value = getattr(design, each.name)
-        left_out = (
-            isinstance(value, Part) or _is_parts(value) or (_is_default(each, value) and each.name not in tag_fields)
-        )
+        left_out = _is_table(value) or _is_parts(value) or (_is_default(each, value) and each.name not in tag_fields)
         if ("unit" in each.metadata) == parameters and not left_out:
             unit = each.metadata.get("unit", "-").replace("length", length)
             comment = "" if unit == "-" else f"  # {unit}"
@@ -160,7 +165,7 @@ def _merge(table: MutableMapping[str, Any], design: Part, before: Part | None, l
     tag_fields = tags(type(design))
     for each in fields(design):
         value, old = getattr(design, each.name), getattr(before, each.name, None)
-        if isinstance(value, Part):
+        if isinstance(value, Part) and _is_table(value):
             if not isinstance(table.get(each.name), MutableMapping):
                 table[each.name] = tomlkit.table()
             _merge(table[each.name], value, old if isinstance(old, Part) else None, length)
@@ -192,6 +197,9 @@ def _put(holder: Any, key: str | int, value: Any, path: str) -> None:
     """Set the value at `key` of a table or an array, changing as little of its layout as possible."""
     present = holder[key]
     if same(_unwrapped(present), plain(value)):
+        return
+    if isinstance(present, MutableMapping) and isinstance(value, Part):
+        _merge(present, value, None, "")
         return
     if not isinstance(present, Array) or not isinstance(value, tuple) or not present or not value:
         holder[key] = tomlkit.value(literal(value, path))

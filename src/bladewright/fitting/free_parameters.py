@@ -12,6 +12,7 @@ from bladewright.blade.design.unified import UnifiedBlade
 from bladewright.derivatives.patterns import Patterns, chosen, matching
 from bladewright.designs import Design
 from bladewright.errors import DesignError, FitError
+from bladewright.section.laws import is_list, law_points
 from bladewright.section.profiles.points import PointsProfile
 
 EDGES = ("leading_edge", "trailing_edge")
@@ -70,9 +71,11 @@ def _across_walls(design: SectionedBlade) -> frozenset[str]:
 
 def _along_contour(section: PointsProfile) -> set[str]:
     """Paths of coordinates that do not change a contour through points, or hardly."""
-    if any(isinstance(law, tuple) for law in (*section.abscissas, *section.ordinates)):
+    if any(is_list(law) for law in (*section.abscissas, *section.ordinates)):
         return set()
-    x, y = (np.array([float(np.real(each)) for each in law]) for law in (section.abscissas, section.ordinates))
+    x, y = (
+        np.array([float(np.real(*law_points(each))) for each in law]) for law in (section.abscissas, section.ordinates)
+    )
     along_x, along_y = ((np.roll(each, -1) - np.roll(each, 1)) ** 2 for each in (x, y))
     found = {f"section.{'abscissas' if along_x[i] >= along_y[i] else 'ordinates'}[{i}]" for i in range(len(x))}
     ends = int(np.argmin(x)), int(np.argmax(x))

@@ -1,16 +1,21 @@
 """Checks of the plain numbers in a design; each refusal names path, value, limit and cure."""
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import fields
 from typing import Any
 
 import numpy as np
 
-from bladewright.designs import ChordwiseLaw, Law, Point, Points
+from bladewright.designs import ChordwiseLaw, Law, Point, Points, Stations, unknown
 from bladewright.errors import DesignError
+from bladewright.section.laws import extremes_between, is_list, law_points, number_paths
 
 UNITS = {"m": 1.0, "cm": 1e-2, "mm": 1e-3, "um": 1e-6, "in": 0.0254, "ft": 0.3048}
 """Metres in one unit of length."""
+NEAREST_STATIONS = 1e-6
+"""Least distance of two stations, of the span: curves of the surfaces have knots there, which count as one below 1e-12,
+and a spline's second derivative grows with the inverse square [-]"""
 
 
 def number(path: str, value: Any) -> Any:
@@ -30,12 +35,54 @@ def number(path: str, value: Any) -> Any:
 
 
 def law(path: str, value: Any) -> Law:
+    """A number, a tuple of at least one number, or values at stations."""
+    if isinstance(value, Stations | Mapping):
+        return stations(path, value)
+    return control_points(path, value)
+
+
+def control_points(path: str, value: Any) -> float | tuple[float, ...]:
     """A number, or a tuple of at least one number."""
     if not is_sequence(value):
         return number(path, value)
     if len(value) == 0:
         raise DesignError(f"{path} is an empty list: give a number, or one control point or more from hub to shroud")
     return tuple(number(f"{path}[{i}]", item) for i, item in enumerate(value))
+
+
+def stations(path: str, given: Any) -> Stations:
+    """Values at stations, of a `Stations` or a table of its fields, which say each station's value."""
+    known = [each.name for each in fields(Stations)]
+    table = dict(given) if isinstance(given, Mapping) else vars(given)
+    for name in table:
+        if name not in known:
+            raise DesignError(unknown(f"{path}.{name}", str(name), known))
+    for name in ("span", "values"):
+        if not is_sequence(table.get(name)):
+            raise DesignError(f"{path}.{name} is {table.get(name)!r}: a list with a number for each station is needed")
+    span = tuple(number(f"{path}.span[{i}]", each) for i, each in enumerate(table["span"]))
+    values = tuple(number(f"{path}.values[{i}]", each) for i, each in enumerate(table["values"]))
+    if len(span) < 2:
+        raise DesignError(f"{path}.span has {len(span)} entries: give two stations or more, from 0 to 1, or one number")
+    if any(np.iscomplexobj(each) or isinstance(each, np.ndarray) for each in span):
+        raise DesignError(f"{path}.span is {span}: stations are plain real numbers, held while differentiating")
+    if len(values) != len(span):
+        raise DesignError(
+            f"{path}.values has {len(values)} entries and {path}.span {len(span)}: give one value for each station"
+        )
+    if span[0] != 0.0 or span[-1] != 1.0:
+        raise DesignError(
+            f"{path}.span runs from {span[0]:g} to {span[-1]:g}: the first station must be 0, the hub, and the last 1, "
+            "the shroud, for a law is never continued past its stations"
+        )
+    for i, step in enumerate(np.diff(span)):
+        if step < NEAREST_STATIONS:
+            raise DesignError(
+                f"{path}.span[{i + 1}] is {span[i + 1]:g} after {span[i]:g}: stations must increase from hub to "
+                f"shroud, by {NEAREST_STATIONS:g} of the span or more"
+            )
+    way = choice(f"{path}.interpolation", table.get("interpolation", "natural"), ["natural", "monotone", "linear"])
+    return Stations(span=span, values=values, interpolation=way)  # type: ignore[arg-type]
 
 
 def chordwise(path: str, value: Any) -> ChordwiseLaw:
@@ -61,21 +108,29 @@ def is_sequence(value: Any) -> bool:
     return isinstance(value, Sequence) and not isinstance(value, str | bytes)
 
 
-def leaves(path: str, value: Any) -> list[tuple[str, Any]]:
-    """Paths and numbers of a law or a chordwise law."""
-    if isinstance(value, tuple):
-        return [pair for i, item in enumerate(value) for pair in leaves(f"{path}[{i}]", item)]
-    return [(path, value)]
-
-
 def between(path: str, value: Any, low: float, high: float, what: str, *, closed: bool = False) -> None:
-    """Refuse every leaf whose real part is not inside (low, high), or [low, high] where closed."""
-    for where, leaf in leaves(path, value):
-        real = np.real(leaf)
+    """Refuse every number whose real part is not inside (low, high), or [low, high] where closed.
+
+    `value` is a number, a law or a row of laws; what a law takes on between its stations is a number of it too.
+    """
+    for where, number, cure in _numbers(path, value):
+        real = np.real(number)
         inside = (real >= low) & (real <= high) if closed else (real > low) & (real < high)
         if not np.all(inside):
             worst = float(np.ravel(real)[np.argmin(np.ravel(inside))])
-            raise DesignError(f"{where} is {worst:g}: {what}")
+            raise DesignError(f"{where} is {worst:g}{cure}: {what}")
+
+
+def _numbers(path: str, value: Any) -> Iterator[tuple[str, Any, str]]:
+    """Paths and numbers of a law or a row of laws, and what a refusal adds."""
+    if any(map(is_list, value)) if isinstance(value, tuple) else False:
+        for i, each in enumerate(value):
+            yield from _numbers(f"{path}[{i}]", each)
+        return
+    yield from ((where, leaf, "") for where, leaf in zip(number_paths(value, path), law_points(value), strict=True))
+    for v, extreme in extremes_between(value):
+        cure = ' between its stations, which it passes: give it interpolation = "monotone", or other values'
+        yield f"{path} at v = {v:.3g}", extreme, cure
 
 
 def integer(path: str, value: Any, low: int, high: int, what: str) -> int:

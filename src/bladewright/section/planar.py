@@ -2,18 +2,18 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
-from typing import ClassVar, Literal, get_args, get_type_hints
+from dataclasses import dataclass
+from typing import ClassVar, Literal
 
 import numpy as np
 
-from bladewright.designs import Design, Part, parameter
+from bladewright.designs import Design, parameter
 from bladewright.errors import DesignError
 from bladewright.nurbs.basis import Reals
 from bladewright.section import checks
 from bladewright.section.crossing import check_outline, closed_outlines, touching
 from bladewright.section.family import SectionFamily
-from bladewright.section.laws import Span
+from bladewright.section.laws import Span, check_plain, named_laws
 from bladewright.section.native import SectionKnots, knots_for, native_section
 from bladewright.section.section import Section
 from bladewright.section.unified_limits import check_labels
@@ -61,7 +61,7 @@ class PlanarSection(Design):
         checks.between("tolerance", self.tolerance, 1e-13, 1e-2, "it must lie above 1e-13 and below 0.01")
         if not isinstance(self.section, SectionFamily):
             raise DesignError(f"section is {self.section!r}: the family's parameters are needed")
-        _check_plain(self.section, "section")
+        check_plain((f"section.{path}", law) for path, law in named_laws(self.section))
 
     def build(self, knots: SectionKnots | None = None) -> Section:
         """The section in metres and radians; raises DesignError where the shape is impossible.
@@ -91,18 +91,3 @@ class PlanarSection(Design):
         """Refuse a pitch at which neighbours (m, n, 2) in chords meet."""
         if touching(outlines, float(np.real(pitch)) / float(np.real(self.chord))) is not None:
             raise DesignError(f"pitch is {pitch:g}: neighbouring sections intersect; take a larger pitch")
-
-
-def _check_plain(part: Part, path: str) -> None:
-    """Refuse laws along the span: a single section has none."""
-    hints = get_type_hints(type(part))
-    for each in fields(part):
-        name, value = each.name, getattr(part, each.name)
-        if isinstance(value, Part):
-            _check_plain(value, f"{path}.{name}")
-        if not isinstance(value, tuple) or "unit" not in each.metadata:
-            continue
-        single = float in get_args(hints[name])
-        for where, item in [(name, value)] if single else [(f"{name}[{i}]", item) for i, item in enumerate(value)]:
-            if isinstance(item, tuple):
-                raise DesignError(f"{path}.{where} is a list: a law along the span; a single section takes a number")

@@ -16,12 +16,14 @@ from bladewright.nurbs.transform import translated
 from bladewright.section import checks
 from bladewright.section.camber import camber_line
 from bladewright.section.crossing import PLACES, check_outlines, outlines_of, touching
-from bladewright.section.laws import Span
+from bladewright.section.laws import Span, check_plain
 from bladewright.section.section import Section
 from bladewright.section.unified_limits import (
     ANGLES,
     RADII,
     TANGENTS,
+    THICKNESSES,
+    WEIGHTS,
     check_edges,
     check_labels,
     check_laws,
@@ -98,6 +100,8 @@ class UnifiedSection(Design):
         for name in [*numbers, *(name for name in ("pitch", "span") if getattr(self, name) is not None)]:
             put(self, name, checks.number(name, getattr(self, name)))
         check_laws(self)
+        rows = ((name, getattr(self, name)) for name in (*THICKNESSES, *WEIGHTS))
+        check_plain((f"{name}[{i}]", law) for name, row in rows for i, law in enumerate(row))
         for name in ("axial_chord", "pitch", "span"):
             if getattr(self, name) is not None:
                 checks.between(name, getattr(self, name), 0.0, float("inf"), "it must be positive")

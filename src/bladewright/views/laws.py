@@ -2,14 +2,13 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import fields
-from typing import TYPE_CHECKING, Any, NamedTuple, get_args, get_type_hints
+from typing import TYPE_CHECKING, Any, NamedTuple, get_args, get_origin, get_type_hints
 
 import numpy as np
 from matplotlib.axes import Axes
 
-from bladewright.designs import ChordwiseLaw, Design, Law, Part
-from bladewright.nurbs.basis import Reals, greville, uniform_knots
-from bladewright.section.laws import DEGREE, Span
+from bladewright.designs import Design, Law, Part, Stations
+from bladewright.section.laws import Span, law_points, places_of
 from bladewright.views.distributions import CAMBER_LABEL, sides_legend
 from bladewright.views.style import (
     CONTROL_POINTS,
@@ -29,11 +28,6 @@ MAX_CONTROL_POINTS = 16
 rows are the points of a given profile, which say nothing as laws."""
 
 
-def control_places(count: int) -> Reals:
-    """Greville abscissae (count,) of a law's control points in [0, 1]; a constant stands in the middle."""
-    return np.array([0.5]) if count == 1 else greville(uniform_knots(count, degree := min(count - 1, DEGREE)), degree)
-
-
 def draw_thickness_laws(axes: Axes, design: Design, sections: Sequence["Section"], ends: tuple[str, str]) -> None:
     """Draw the half-thickness laws along the chord at these sections, in percent of the design's reference length."""
     u = np.linspace(0.0, 1.0, 101)
@@ -44,7 +38,7 @@ def draw_thickness_laws(axes: Axes, design: Design, sections: Sequence["Section"
             laws = design.thickness_laws[name]
             points = np.array([np.real(span.values(law))[0] for law in laws])
             axes.plot(u, 100.0 * np.real(span.chordwise(laws, u))[0], color=colour, linestyle=style)
-            axes.plot(control_places(len(laws)), 100.0 * points, color=colour, marker=marker, **CONTROL_POINTS)
+            axes.plot(places_of(tuple(points)), 100.0 * points, color=colour, marker=marker, **CONTROL_POINTS)
     axes.set_ylim(bottom=0.0)
     axes.set_xlim(-0.03, 1.03)
     label_axes(axes, "Half thickness along the chord", CAMBER_LABEL, f"half thickness [% of {design.reference_length}]")
@@ -131,22 +125,22 @@ def _laws(part: Part) -> tuple[list[tuple[str, str, Law]], list[_Row]]:
     """Names, units and values of the laws, and the rows of laws, of a design and of the parts in it."""
     hints, single, rows = get_type_hints(type(part)), list[tuple[str, str, Law]](), list[_Row]()
     for each in fields(part):
-        value, unit = getattr(part, each.name), each.metadata.get("unit")
-        if isinstance(value, Part):
+        value, unit, hint = getattr(part, each.name), each.metadata.get("unit"), hints[each.name]
+        if unit is None and isinstance(value, Part):
             inner_single, inner_rows = _laws(value)
             single += inner_single
             rows += inner_rows
         elif unit is None or value is None or value == ():
             continue
-        elif hints[each.name] == ChordwiseLaw:
+        elif get_origin(hint) is tuple and Stations in get_args(get_args(hint)[0]):
             rows.append(_Row(each.name, unit, value))
-        elif tuple[float, ...] in get_args(hints[each.name]):
+        elif Stations in get_args(hint):
             single.append((each.name, unit, value))
     return single, rows
 
 
 def draw_laws(axes: Axes, panel: Panel) -> None:
-    """Draw laws with the span upwards; hollow marks are control points."""
+    """Draw laws with the span upwards; hollow marks are control points, and stations, on the curve."""
     v = np.linspace(0.0, 1.0, 101)
     span = Span(v)
     for index, (name, law) in enumerate(panel.laws.items()):
@@ -154,11 +148,10 @@ def draw_laws(axes: Axes, panel: Panel) -> None:
         number = name.rpartition(" ")[2] if sided else ""
         colour = SERIES[(int(number) - 1 if sided else index) % len(SERIES)]
         style, marker = (LOWER, "s") if "lower" in name else (UPPER, "o")
-        points = np.array(law if isinstance(law, tuple) else (law,), dtype=float)
         axes.plot(panel.factor * np.real(span.values(law)), v, color=colour, linestyle=style, label=name)
         axes.plot(
-            panel.factor * points,
-            control_places(len(points)),
+            panel.factor * np.array(law_points(law), dtype=float),
+            places_of(law),
             color=colour,
             marker=marker,
             **CONTROL_POINTS,

@@ -14,7 +14,7 @@ from bladewright.designs import Law, parameter
 from bladewright.errors import DesignError
 from bladewright.section import checks
 from bladewright.section.family import SectionFamily
-from bladewright.section.laws import named_laws
+from bladewright.section.laws import law_points, named_laws, points_word
 
 if TYPE_CHECKING:
     from bladewright.blade.exact.sectioned import ExactSectionedBlade
@@ -86,17 +86,19 @@ class SectionedBlade(RowDesign):
         of_stacking = {"stacking.chord": "chord", "stacking.chord_fraction": "chord_fraction"}
         places = ["sweep", "lean", "conformal_sweep", "leading_edge_theta", "leading_edge_y"]
         laws = [(f"section.{path}", law, of_sections) for path, law in named_laws(self.section)]
-        laws += [(name, getattr(self, name), 2) for name in places]
+        laws += [(name, getattr(self, name), 2) for name in places if getattr(self, name) is not None]
         if self.stacking is not None:
-            laws += [(path, getattr(self.stacking, name), of_sections) for path, name in of_stacking.items()]
-            laws += [(f"stacking.{name}", getattr(self.stacking, name), 2) for name in ("theta", "y")]
+            found = [(path, getattr(self.stacking, name), of_sections) for path, name in of_stacking.items()]
+            found += [(f"stacking.{name}", getattr(self.stacking, name), 2) for name in ("theta", "y")]
+            laws += [each for each in found if each[1] is not None]
         for path, law, most in laws:
-            if isinstance(law, tuple) and len(law) > most:
+            count = len(law_points(law))
+            if count > most:
                 kept = what if most == of_sections else "at hub and shroud"
                 raise DesignError(
-                    f"{path} has {len(law)} control points, but skinning is '{self.skinning}', for which it counts "
+                    f"{path} has {count} {points_word(law)}, but skinning is '{self.skinning}', for which it counts "
                     f"{kept} alone: give {most if most > 1 else 'one number'}"
-                    f"{' control points at most' if most > 1 else ''}, or take skinning = 'sections'"
+                    f"{f' {points_word(law)} at most' if most > 1 else ''}, or take skinning = 'sections'"
                 )
 
     def _check_placing(self) -> None:

@@ -90,7 +90,7 @@ class UnifiedBlade(RowDesign):
                 raise DesignError(
                     f"{name} is {value!r}: give one number, or two, at the leading and at the trailing edge"
                 )
-            value = checks.law(name, value)
+            value = checks.control_points(name, value)
             what = "a clearance must be positive; leave it out where the blade stands on that wall"
             checks.between(name, value, 0.0, float("inf"), what)
             object.__setattr__(self, name, value)

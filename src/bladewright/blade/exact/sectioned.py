@@ -26,8 +26,7 @@ from bladewright.numerics.elementary import Array, radians
 from bladewright.nurbs.basis import Reals
 from bladewright.nurbs.curve import Curve
 from bladewright.section.crossing import check_outline
-from bladewright.section.laws import DEGREE as LAW_DEGREE
-from bladewright.section.laws import Span, inner_knots, laws_of
+from bladewright.section.laws import Span, joints_of, laws_of
 from bladewright.section.native import knots_for, native_section
 from bladewright.section.section import Section
 from bladewright.section.smoothness import Smoothness, outline_smoothness
@@ -149,8 +148,8 @@ class ExactSectionedBlade(ExactBlade):
         if design.stacking is not None:
             laws += [getattr(design.stacking, name) for name in ("chord_fraction", "chord", "theta", "y")]
         for law in (*laws, *laws_of(design.section)):
-            for knot in inner_knots(len(law)) if isinstance(law, tuple) else ():
-                needed(float(knot), LAW_DEGREE - 1)
+            for place, smooth in () if law is None else joints_of(law):
+                needed(place, smooth)
         for place in self.surfaces.span_joints():
             needed(float(place), 2)
         for place, smooth in self.placement.span_joints():

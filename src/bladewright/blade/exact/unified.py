@@ -24,8 +24,7 @@ from bladewright.nurbs.curve import Curve
 from bladewright.nurbs.domain import extended
 from bladewright.section.camber import camber_line, camber_points
 from bladewright.section.crossing import PLACES, check_outlines, outlines_of
-from bladewright.section.laws import DEGREE as LAW_DEGREE
-from bladewright.section.laws import Span, inner_knots
+from bladewright.section.laws import Span, joints_of
 from bladewright.section.outline import EdgeDerivatives
 from bladewright.section.section import Section
 from bladewright.section.smoothness import Smoothness, smoothness
@@ -227,7 +226,7 @@ class ExactUnifiedBlade(ExactBlade):
         return np.repeat(np.linspace(0.0, 1.0, spans + 1)[1:-1], DEGREE - SIDE_DEGREE + 1)
 
     def breaks_along_v(self) -> Reals:
-        """Inner knots of the laws of evolution and of the channel's edges, as often as they lose derivatives."""
+        """Joints of the laws of evolution and of the channel's edges, as often as they lose derivatives."""
         design = self.design
         laws = [design.leading_edge_theta, design.leading_edge_y, design.stagger, design.metal_angle_in]
         laws += [design.metal_angle_out, design.tangent_in, design.tangent_out]
@@ -235,8 +234,9 @@ class ExactUnifiedBlade(ExactBlade):
         laws += [*design.thickness_upper, *design.thickness_lower, *design.weights_upper, *design.weights_lower]
         times: dict[float, int] = {}
         for law in laws:
-            for knot in inner_knots(len(law)) if isinstance(law, tuple) else ():
-                times[round(float(knot), 12)] = DEGREE - LAW_DEGREE + 1
+            for place, smooth in () if law is None else joints_of(law):
+                key = round(place, 12)
+                times[key] = max(times.get(key, 0), DEGREE - smooth)
         for edge in (self.channel.leading_edge, self.channel.trailing_edge):
             for knot in edge.joints():
                 key = round(float(knot), 12)

@@ -28,7 +28,7 @@ from bladewright.fitting.model_selection.structure import first_blade_structure
 from bladewright.fitting.models.feasibility import infeasibility
 from bladewright.nurbs.basis import Reals
 from bladewright.section.checks import UNITS
-from bladewright.section.laws import Span
+from bladewright.section.laws import Span, law_points
 from bladewright.section.section import Section
 
 QUICK_POINTS, THOROUGH_POINTS = 1000, 12_000
@@ -213,7 +213,7 @@ def _part_with_shape(parts: list[Any], counts: Mapping[str, int]) -> Any:
 
 
 def _count(law: Any) -> int:
-    return len(law) if isinstance(law, tuple) else 1
+    return len(law_points(law))
 
 
 def _samples(section: Section) -> SampledSection:

@@ -5,10 +5,11 @@ from dataclasses import replace
 
 import numpy as np
 
-from bladewright.designs import ChordwiseLaw
+from bladewright.designs import ChordwiseLaw, Law
 from bladewright.fitting.families.section_samples import SampledSection
 from bladewright.nurbs.basis import Reals
 from bladewright.section.curvature_meanline import CurvatureMeanline
+from bladewright.section.laws import law_points
 from bladewright.section.thickness.modified_naca import ModifiedNaca
 from bladewright.section.thickness.quartic import QuarticSpline
 from bladewright.section.thickness.wennerstrom import Wennerstrom
@@ -141,8 +142,8 @@ def _ratios(law: Wennerstrom | ModifiedNaca | QuarticSpline) -> tuple[float, flo
     return _number(law.leading_edge_ratio or 1.0), _number(law.trailing_edge_ratio or 1.0)
 
 
-def _number(law: float | tuple[float, ...]) -> float:
-    return float(np.mean(law))
+def _number(law: Law) -> float:
+    return float(np.mean(law_points(law)))
 
 
 def extensions(part: CurvatureMeanline, section: SampledSection) -> Sequence[CurvatureMeanline]:  # noqa: ARG001 - the contract's

@@ -8,27 +8,24 @@ import numpy as np
 
 from bladewright.designs import Law, Part
 from bladewright.nurbs.basis import Reals
-from bladewright.section.laws import law_basis, named_laws
+from bladewright.section.laws import is_list, law_basis, law_points, named_laws, number_paths
 
 
 def lines_of(part: Part, stem: str) -> Iterator[list[str]]:
     """Paths of control points in a row, for every law of a part and every row of laws."""
     for each in fields(part):
         value, path = getattr(part, each.name), f"{stem}.{each.name}"
-        if isinstance(value, Part):
+        if isinstance(value, Part) and "unit" not in each.metadata:
             yield from lines_of(value, path)
-        elif "unit" in each.metadata and isinstance(value, tuple):
+        elif "unit" in each.metadata and is_list(value):
             yield from _lines(value, path)
 
 
-def _lines(value: tuple[Any, ...], path: str) -> Iterator[list[str]]:
-    if not any(isinstance(item, tuple) for item in value):
-        yield [f"{path}[{i}]" for i in range(len(value))]
+def _lines(value: Any, path: str) -> Iterator[list[str]]:
+    if not (isinstance(value, tuple) and any(map(is_list, value))):
+        yield number_paths(value, path)
         return
-    rows = [
-        [f"{path}[{i}][{j}]" for j in range(len(item))] if isinstance(item, tuple) else [f"{path}[{i}]"]
-        for i, item in enumerate(value)
-    ]
+    rows = [number_paths(item, f"{path}[{i}]") for i, item in enumerate(value)]
     yield from rows
     if len({len(row) for row in rows}) == 1:
         yield from (list(column) for column in zip(*rows, strict=True))
@@ -36,12 +33,12 @@ def _lines(value: tuple[Any, ...], path: str) -> Iterator[list[str]]:
 
 def with_mean_laws(part: Any) -> Any:
     """The part with each law replaced by its mean, a number."""
-    return part.changed({path: float(np.mean(law)) for path, law in named_laws(part)})
+    return part.changed({path: float(np.mean(law_points(law))) for path, law in named_laws(part)})
 
 
 def counts_of(part: Part) -> Mapping[str, int]:
     """The number of control points of each law of a part by its path."""
-    return {path: len(law) if isinstance(law, tuple) else 1 for path, law in named_laws(part)}
+    return {path: len(law_points(law)) for path, law in named_laws(part)}
 
 
 def part_along_span(parts: Sequence[Any], v: Reals, counts: Mapping[str, int]) -> Any:

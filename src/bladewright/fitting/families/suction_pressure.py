@@ -7,12 +7,14 @@ from typing import Any, Literal
 import numpy as np
 from scipy.optimize import lsq_linear
 
+from bladewright.designs import ChordwiseLaw
 from bladewright.errors import DesignError
 from bladewright.fitting.families.polyline import nearest_on
 from bladewright.fitting.families.rounded_edge import edge_through
 from bladewright.fitting.families.section_samples import SampledSection
 from bladewright.fitting.models.planar import SINGLE_SECTION
 from bladewright.nurbs.basis import Reals, basis
+from bladewright.section.laws import law_points
 from bladewright.section.suction_pressure.part import SuctionPressure, edge_points, skeleton_of
 from bladewright.section.suction_pressure.side import DEGREE, default_places, points_off_line, side_knots
 
@@ -206,5 +208,5 @@ def _heights_above(line: Reals, low: Reals, high: Reals) -> Reals:
     return np.array(found)
 
 
-def _numbers(laws: Sequence[float | tuple[float, ...]]) -> list[float]:
-    return [float(np.mean(law)) for law in laws]
+def _numbers(laws: ChordwiseLaw) -> list[float]:
+    return [float(np.mean(law_points(law))) for law in laws]

@@ -15,6 +15,7 @@ from bladewright.designs import Design, Part
 from bladewright.fitting.families.laws import lines_of
 from bladewright.fitting.model_selection.structure import SPANWISE
 from bladewright.nurbs.basis import Reals
+from bladewright.section.laws import number_paths
 from bladewright.section.unified_limits import THICKNESSES
 
 SPREAD_ABOUT_START = 3.0
@@ -104,5 +105,5 @@ def paths_of(name: str, law: Any) -> list[list[str]]:
     rows = []
     for i, entry in enumerate(law if chordwise else (law,)):
         stem = f"{name}[{i}]" if chordwise else name
-        rows.append([f"{stem}[{j}]" for j in range(len(entry))] if isinstance(entry, tuple) else [stem])
+        rows.append(number_paths(entry, stem))
     return rows

@@ -78,7 +78,7 @@ RANGE_BY_ENDING: tuple[tuple[str, RangeRule], ...] = (
 
 def part_range(path: str, unit: str | None, value: float, largest: float) -> ParameterRange:
     """The range of a part's parameter at a path; `largest` is the largest magnitude in its field."""
-    name = re.findall(r"[a-z_]\w*", path)[-1]
+    name = re.findall(r"[a-z_]\w*", re.sub(r"\.values\[\d+\]$", "", path))[-1]
     if name in RANGE_BY_NAME:
         return RANGE_BY_NAME[name]
     if unit == "deg":

@@ -31,7 +31,7 @@ from bladewright.fitting.model_selection.structure import SPANWISE, Structure, s
 from bladewright.fitting.models.law_jacobian import AXES, LawJacobian, edge_basis, stands_on_channel
 from bladewright.nurbs.basis import Reals
 from bladewright.section.checks import UNITS
-from bladewright.section.laws import law_basis
+from bladewright.section.laws import Span, law_basis, law_points
 from bladewright.section.unified_limits import THICKNESSES
 
 STRUCTURE_LAWS = (*SPANWISE, "place", *THICKNESSES, *EDGES, *WALLS)
@@ -188,7 +188,7 @@ class Forecast:
         law, sites, moves = getattr(self.design, label), self.jacobian.sites, self.jacobian.moves[label]
         other = law_of(law, counts[0], LAW_LIMITS.get(name, (-np.inf, np.inf)))
         rows = law_basis(counts[0], sites)
-        change = rows @ np.atleast_1d(other) - law_basis(np.size(law), sites) @ np.atleast_1d(law)
+        change = rows @ np.array(law_points(other)) - Span(sites).values(law)
         return moves @ rows * self.sizes[label], moves @ change
 
     def _thickness(self, name: str, counts: Counts) -> tuple[Reals, Reals]:
@@ -199,7 +199,7 @@ class Forecast:
         share = np.linalg.lstsq(law_basis(len(laws), u), law_basis(counts[0], u), rcond=None)[0]
         rows = law_basis(counts[1], sites)
         columns = np.einsum("lnm,li,mj->nij", moves, share, rows, optimize=True)
-        values = np.stack([law_basis(np.size(law), sites) @ np.atleast_1d(law) for law in laws])
+        values = np.stack([Span(sites).values(law) for law in laws])
         change = share @ grid @ rows.T - values
         return columns.reshape(len(self.rows), -1) * self.sizes[name], np.einsum("lnm,lm->n", moves, change)
 

@@ -13,7 +13,7 @@ from bladewright.fitting.matching.search import COARSEST_TOLERANCE
 from bladewright.fitting.model_selection.structure import SPANWISE, Structure
 from bladewright.fitting.models.model import model_of
 from bladewright.nurbs.basis import Reals, basis, uniform_knots
-from bladewright.section.laws import law_basis
+from bladewright.section.laws import Span, is_spline, law_basis, law_points
 from bladewright.section.unified import UnifiedSection
 from bladewright.section.unified_limits import ANGLES, RADII, TANGENTS, THICKNESSES
 from bladewright.section.unified_sides import sample_places
@@ -58,13 +58,12 @@ def reshaped(design: Design, structure: Structure) -> Design:
 
 
 def _values(law: Law) -> Reals:
-    leaves = law if isinstance(law, tuple) else (law,)
-    return np.asarray(law_basis(len(leaves), COMPARED_PLACES) @ np.array(leaves, dtype=float))
+    return np.asarray(Span(COMPARED_PLACES).values(law), dtype=float)
 
 
 def law_of(law: Law, count: int, limits: tuple[float, float] = (-np.inf, np.inf)) -> Law:
     """The nearest law of so many control points, within limits."""
-    if count == (len(law) if isinstance(law, tuple) else 1):
+    if count == len(law_points(law)):
         return law
     found, *_ = np.linalg.lstsq(law_basis(count, COMPARED_PLACES), _values(law), rcond=None)
     return _plain(np.clip(np.asarray(found, dtype=np.float64), *limits))
@@ -76,8 +75,8 @@ def _plain(values: Reals) -> Law:
 
 def grid_of(laws: tuple[Law, ...], count: int, span: int, structure: Structure) -> Reals:
     """Control points (count, span) of a thickness, kept positive."""
-    if len(laws) == count and all((len(law) if isinstance(law, tuple) else 1) == span for law in laws):
-        return np.array([law if isinstance(law, tuple) else (law,) for law in laws], dtype=float)
+    if len(laws) == count and all(len(law_points(law)) == span and is_spline(law) for law in laws):
+        return np.array([law_points(law) for law in laws], dtype=float)
     rows = np.stack([np.linalg.lstsq(law_basis(span, COMPARED_PLACES), _values(law), rcond=None)[0] for law in laws])
     if len(laws) != count:
         # where the samples of the sides stand, the law matters most

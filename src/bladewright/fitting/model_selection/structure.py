@@ -4,8 +4,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from bladewright.blade.design.unified import UnifiedBlade
-from bladewright.designs import Design
+from bladewright.designs import Design, Law
 from bladewright.errors import FitError
+from bladewright.section.laws import law_points
 from bladewright.section.unified import UnifiedSection
 from bladewright.section.unified_limits import ANGLES, RADII, TANGENTS, THICKNESSES
 
@@ -41,7 +42,9 @@ def structure_of(design: Design) -> Structure:
     if not isinstance(design, UnifiedBlade):
         raise FitError(f"a {type(design).__name__} has no laws of the unified family; give a design of that family")
     place = design.leading_edge_theta if design.arrangement == "annular" else design.leading_edge_y
-    span = {name: _count(getattr(design, name)) for name in SPANWISE} | {"place": _count(place)}
+    span = {name: _count(getattr(design, name)) for name in SPANWISE} | {
+        "place": _count(0.0 if place is None else place)
+    }
     for name in THICKNESSES:
         span[name] = max(_count(law) for law in getattr(design, name))
     channel = design.channel
@@ -59,8 +62,8 @@ def structure_of(design: Design) -> Structure:
     )
 
 
-def _count(law: object) -> int:
-    return len(law) if isinstance(law, tuple) else 1
+def _count(law: Law) -> int:
+    return len(law_points(law))
 
 
 def initial_structure(dimension: int, parameters: int | None) -> Structure:

@@ -15,7 +15,7 @@ from bladewright.nurbs.basis import Reals
 from bladewright.nurbs.curve import Curve
 from bladewright.nurbs.refine import inserted
 from bladewright.section.family import SectionFamily
-from bladewright.section.laws import Span
+from bladewright.section.laws import Span, is_list, law_points, named_laws
 from bladewright.section.planar import PlanarSection
 from bladewright.section.suction_pressure.edges import Corner, EdgePoints, characteristic_points, edge_curve
 from bladewright.section.suction_pressure.limits import (
@@ -271,21 +271,17 @@ def _independent_fields(part: SuctionPressure) -> dict[str, Any]:
 
 
 def _sides(part: SuctionPressure) -> tuple[Side, Side]:
-    for path, value in part.parameters().items():
-        name = path.partition("[")[0]
-        if np.size(value) > 1 or (isinstance(getattr(part, name), tuple) and path.count("[") != _depth(name)):
+    for path, law in named_laws(part):
+        value = law_points(law)
+        if is_list(law) or np.size(value) > 1:
             raise DesignError(
                 f"{path} belongs to a law along the span or to a batch: between the places of a law the refined "
                 "control points follow no law of the same kind; refine the sections one by one, with plain numbers"
             )
         if np.iscomplexobj(value):
-            raise DesignError(f"{path} is {value}: only a real section is refined")
+            raise DesignError(f"{path} is {law}: only a real section is refined")
     span = Span(np.zeros(1))
     return sides(part, span, *edge_points(part, span))
-
-
-def _depth(name: str) -> int:
-    return 1 if name.endswith(("heights", "places", "thickness")) else 0
 
 
 def _curve(side: Side) -> Curve:

@@ -11,7 +11,7 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any, ClassVar, Literal
+from typing import ClassVar, Literal
 
 import numpy as np
 
@@ -21,7 +21,7 @@ from bladewright.numerics.elementary import Array
 from bladewright.nurbs.basis import Reals
 from bladewright.section import checks
 from bladewright.section.chord_map import Breakpoint
-from bladewright.section.laws import Span, law_points
+from bladewright.section.laws import Span, law_points, same_kind
 from bladewright.section.outline import Joint
 from bladewright.section.power_series import Series
 
@@ -114,11 +114,7 @@ class ThicknessLaw(Part, ABC):
 
 def same_law(first: Law | None, second: Law | None) -> bool:
     """Whether two laws hold the same real numbers."""
-    one, other = leaves_of(first), leaves_of(second)
-    pairs = zip(one, other, strict=False)
-    return len(one) == len(other) and all(np.array_equal(np.real(a), np.real(b)) for a, b in pairs)
-
-
-def leaves_of(law: Law | None) -> tuple[Any, ...]:
-    """The numbers of a law; none where there is no law."""
-    return () if law is None else law_points(law)
+    if first is None or second is None:
+        return first is second
+    pairs = zip(law_points(first), law_points(second), strict=False)
+    return same_kind(first, second) and all(np.array_equal(np.real(a), np.real(b)) for a, b in pairs)

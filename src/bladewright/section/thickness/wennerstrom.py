@@ -18,9 +18,9 @@ from bladewright.errors import DesignError
 from bladewright.numerics.elementary import Array
 from bladewright.section import checks
 from bladewright.section.chord_map import Breakpoint, ChordMap, ChordPlace
-from bladewright.section.laws import Span
+from bladewright.section.laws import Span, bounds_of
 from bladewright.section.power_series import Series, polynomial
-from bladewright.section.thickness.law import EdgeKind, Thickness, ThicknessLaw, leaves_of, same_law
+from bladewright.section.thickness.law import EdgeKind, Thickness, ThicknessLaw, same_law
 from bladewright.section.thickness.piecewise import (
     Formula,
     PiecewiseThickness,
@@ -86,8 +86,8 @@ class Wennerstrom(ThicknessLaw):
         for name in ("leading_edge", "trailing_edge"):
             self._check_edge(name)
         if self.straight_end == "farther" and not same_law(self.leading_edge_thickness, self.trailing_edge_thickness):
-            before = [bool(np.any(np.real(leaf) < 0.5)) for leaf in leaves_of(self.maximum_thickness_at)]
-            behind = [bool(np.any(np.real(leaf) >= 0.5)) for leaf in leaves_of(self.maximum_thickness_at)]
+            before = [bool(np.any(np.real(each) < 0.5)) for each in bounds_of(self.maximum_thickness_at)]
+            behind = [bool(np.any(np.real(each) >= 0.5)) for each in bounds_of(self.maximum_thickness_at)]
             if any(before) and any(behind):
                 raise DesignError(
                     f"{self.path}.maximum_thickness_at lies on both sides of 0.5: with edges of different thickness "
