@@ -139,3 +139,28 @@ def test_examples_say_what_they_are():
     for name, line in examples().items():
         assert line, f"{name}.toml has no description"
         assert tomllib.loads(example_text(name))["name"] == name
+
+
+def test_show_says_which_law_overshoots_its_stations_or_creases(run, vane_file):
+    stations = "{span=[0, 0.3, 0.4, 1], values=[10, 10, 14, 14], interpolation='%s'}"
+    found = run("show", vane_file, "--set", f"stagger={stations % 'natural'}")
+    assert found.status == 0
+    assert found.out.count("stagger ") == 2
+    assert "overshoots its stations" in found.out
+    assert 'interpolation = "monotone"' in found.out
+    data = run("show", vane_file, "--json", "--set", f"stagger={stations % 'natural'}").json["laws"]
+    assert [(each["law"], each["unit"]) for each in data["overshoots"]] == [("stagger", "deg")] * 2
+    assert all(each["amount"] > 0.004 for each in data["overshoots"])
+    assert "laws" not in run("show", vane_file, "--json", "--set", f"stagger={stations % 'monotone'}").json
+    found = run("show", vane_file, "--set", f"stagger={stations % 'linear'}")
+    assert "creases the surfaces at v = 0.3, 0.4: it is linear" in found.out
+
+
+def test_a_law_at_stations_is_set_and_differentiated_by_its_paths(run, vane_file):
+    changes = ["--set", "stagger={span=[0, 0.4, 1], values=[10, 13, 14]}"]
+    found = run("sensitivity", vane_file, "--of", "volume", "--check", "--free", "stagger*", *changes)
+    assert found.status == 0
+    assert "stagger.values[1]" in found.out
+    found = run("show", vane_file, "--set", "stagger={span=[0, 0.5], values=[10, 12]}")
+    assert (found.status, found.err.count("\n")) == (2, 1)
+    assert "stagger.span runs from 0 to 0.5" in found.err

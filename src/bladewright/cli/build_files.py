@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any, Literal
 
 from bladewright.cli.directory import removing_partial_files
+from bladewright.cli.law_remarks import law_data, law_rows
 from bladewright.cli.load_design import bodies_from, load_design
 from bladewright.cli.outcome import Outcome, jsonable
 from bladewright.cli.progress import Bar
@@ -74,13 +75,15 @@ def build_files(path: Path, options: BuildOptions, bar: Bar) -> Outcome:
                 write_text(directory / report, json.dumps(jsonable(trip.to_dict()), indent=2) + "\n")
                 trips.append(trip)
                 bar.update(1)
+    laws = law_data(design)
     return Outcome(
         data={
             "name": built.name if len(options.bodies) == 1 else design.name,
             "passed": all(trip.passed for trip in trips),
             "files": [str(directory / file) for file in files],
             "roundtrips": [trip.to_dict() for trip in trips],
+            **({"laws": laws} if laws else {}),
         },
-        text="\n".join(str(trip) for trip in trips),
+        text="\n".join([*map(str, trips), *(f"{name} {words}" for name, words in law_rows(laws))]),
         failures=tuple(f"{file}: {text}" for file, trip in zip(files, trips, strict=True) for text in trip.failures),
     )

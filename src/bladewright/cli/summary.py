@@ -4,6 +4,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import fields, is_dataclass
 from typing import Any
 
+from bladewright.cli.law_remarks import law_data, law_rows
 from bladewright.cli.outcome import jsonable
 
 Rows = list[tuple[str, str]]
@@ -45,6 +46,7 @@ def summary_data(design: Any, built: Any) -> dict[str, Any]:
         "chord_m": getattr(built, "chord", None),
         "error": getattr(built, "error", None),
         "properties": _record(getattr(built, "properties", built)),
+        "laws": law_data(design) or None,
         "promises": _record(getattr(built, "conformance", None)),
         entities: {name: _poles(entity) for name, entity in getattr(built, entities).items()},
     }
@@ -99,7 +101,7 @@ def summary_text(data: dict[str, Any], more: Sequence[tuple[str, str]] = ()) -> 
     for name, entity in data.get("surfaces", data.get("curves", {})).items():
         poles, degree = (" x ".join(map(str, entity[key])) for key in ("poles", "degree"))
         rows.append((name, f"{poles} poles of degree {degree}{', rational' if entity['rational'] else ''}"))
-    rows += _promise_rows(data.get("promises", {}))
+    rows += [*law_rows(data.get("laws", {})), *_promise_rows(data.get("promises", {}))]
     width = max((len(name) for name, _ in rows), default=0)
     head = f"{data['name']}: {data['family']}, {data['parameters']} parameters"
     return "\n".join([head, *(f"  {name:<{width}}  {value}" for name, value in rows)])
