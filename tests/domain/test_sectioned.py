@@ -3,11 +3,14 @@
 import numpy as np
 import pytest
 
+from bladewright.blade.design.flow_path import FlowPath
 from bladewright.domain.build import passage
+from bladewright.domain.extents import USUAL
 from bladewright.domain.knots import BLADE_AT
 from bladewright.domain.walls import STRIPS
 from bladewright.nurbs.closest import closest_on_curve
 from machines import COARSE, example
+from machines.flow_paths import through
 from machines.passages import SECTIONED, passage_case
 
 
@@ -46,6 +49,25 @@ def test_the_ducts_walls_are_those_of_the_flow_path_as_far_as_it_reaches(around)
     for row, wall in enumerate(("hub", "shroud")):
         points = surfaces.position(np.array([float(row)]), np.linspace(low, high, 31)[None])[0]
         assert np.max(closest_on_curve(around.duct.wall(wall), points).distances) < 1e-10 * around.blade.chord
+
+
+@pytest.mark.parametrize("name", ["axial rotor", "wedge diffuser"])
+def test_without_extents_a_passage_reaches_from_end_to_end_of_the_flow_path(name):
+    around = made(name)
+    surfaces = around.blade.exact.surfaces
+    assert (around.knots.low, around.knots.high) == surfaces.extent
+    for wall in ("hub", "shroud"):
+        ends = around.duct.wall(wall)(np.array([0.0, 1.0]))
+        np.testing.assert_allclose(ends, surfaces.wall(wall).values(np.array([0.0, 1.0])), atol=1e-14)
+
+
+def test_a_flow_path_that_ends_before_the_blade_and_its_pitch_allow_is_continued():
+    near = FlowPath(hub=through((-0.4, 95), (90, 102)), shroud=through((0.8, 169), (90, 163)))
+    blade = example("core-rotor").changed({"flow_path": near, "tolerance": COARSE}).build()
+    around = passage(blade)
+    assert around.knots.upstream == USUAL
+    assert around.knots.low < blade.exact.surfaces.low
+    assert around.knots.high == blade.exact.surfaces.high
 
 
 def test_extents_are_mean_meridional_lengths_past_the_edges(around):

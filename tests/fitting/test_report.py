@@ -1,7 +1,9 @@
 """The report of a fit: figures to check by hand, JSON without holes, and a text that says the worst first."""
 
+import copy
 import json
 import math
+import pickle
 from dataclasses import replace
 
 import numpy as np
@@ -158,3 +160,12 @@ def test_a_motion_is_said_as_an_angle_and_a_shift():
     solid = replace(PLAIN, motion=Motion(rotation=turn, translation=np.zeros(3)))
     assert f"turned by {math.degrees(math.acos(0.8)):.6g} deg" in str(solid)
     assert report(solid)["motion"]["rotation"] == turn.tolist()
+
+
+def test_a_fit_survives_a_pickle_and_is_named_in_one_line():
+    for other in (pickle.loads(pickle.dumps(PLAIN)), copy.deepcopy(PLAIN)):
+        assert report(other) == report(PLAIN)
+        np.testing.assert_array_equal(other.built.curves["upper"].control_points, BUILT.curves["upper"].control_points)
+    line = repr(PLAIN)
+    assert "\n" not in line
+    assert all(word in line for word in (DESIGN.name, "UnifiedSection", "passed", f"{len(PLAIN.cloud)} points"))

@@ -3,6 +3,7 @@
 from typing import Any
 from warnings import warn
 
+from bladewright.cad.colours import COLOURS as COLOURS
 from bladewright.cad.cutting import CutPassage as CutPassage
 from bladewright.cad.cutting import cut_passage as cut_passage
 from bladewright.cad.cutting import write_cut as write_cut

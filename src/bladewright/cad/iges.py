@@ -1,31 +1,54 @@
 """IGES files: a manifold solid (entity 186) or trimmed surfaces (144), faces named by label and name property."""
 
-import os
+from collections.abc import Mapping
+from io import BytesIO
+from pathlib import Path
 
 from OCP.IGESCAFControl import IGESCAFControl_Writer
 from OCP.IGESControl import IGESControl_Controller
+from OCP.IGESData import IGESData_IGESModel, IGESData_IGESWriter
+from OCP.IGESSelect import IGESSelect_WorkLibrary
 from OCP.Interface import Interface_Static
 from OCP.TCollection import TCollection_HAsciiString
 
 from bladewright.cad.native_body import NativeBody, header_text
 from bladewright.cad.solids import CONFUSION, OccSolid
-from bladewright.cad.step import SYSTEM, document
+from bladewright.cad.step import SYSTEM, UNITS, document, step_text
+from bladewright.cad.units import Unit
 from bladewright.errors import CadError
+from bladewright.origin import Origin, wrapped
+
+COLUMNS = 72
+"""of a line of the start section"""
+DECIMALS: dict[Unit, int] = {"mm": 9, "in": 11, "m": 12}
+"""Decimals of the numbers in a file: OpenCASCADE's nine in millimetres, and as many more as keep 1e-9 mm."""
 
 
-def write_iges(built: NativeBody, body: OccSolid, path: str, *, solid: bool) -> None:
-    """Write an IGES 5.3 file in millimetres. Raises CadError where OpenCASCADE fails."""
+def write_iges(
+    built: NativeBody,
+    body: OccSolid,
+    path: str,
+    *,
+    solid: bool,
+    unit: Unit = "mm",
+    colours: Mapping[str, str] | None = None,
+    origin: Origin | None = None,
+) -> None:
+    """Write an IGES 5.3 file in a unit of length, with the colours `#rrggbb` of the faces by name.
+
+    Its start section names the design that it was made from. Raises CadError where OpenCASCADE fails.
+    """
     IGESControl_Controller.Init_s()
-    Interface_Static.SetCVal_s("write.iges.unit", "MM")
+    Interface_Static.SetCVal_s("write.iges.unit", UNITS[unit])
     # mode 0, the default, writes the faces without the solid that they close
     Interface_Static.SetIVal_s("write.iges.brep.mode", 1 if solid else 0)
     Interface_Static.SetIVal_s("write.precision.mode", 2)
     Interface_Static.SetRVal_s("write.precision.val", max(CONFUSION, body.gap))
     writer = IGESCAFControl_Writer()
     writer.SetNameMode(True)
-    writer.SetColorMode(False)
+    writer.SetColorMode(bool(colours))
     writer.SetLayerMode(False)
-    made, _ = document(ascii_text(built.name), body, {name: ascii_text(name) for name in body.faces})
+    made, _ = document(ascii_text(built.name), body, {name: ascii_text(name) for name in body.faces}, colours or {})
     if not writer.Transfer(made):
         raise CadError(f"OpenCASCADE could not translate the solid of {built.name!r} to IGES")
     model = writer.Model()
@@ -38,9 +61,23 @@ def write_iges(built: NativeBody, body: OccSolid, path: str, *, solid: bool) -> 
     head.SetAuthorName(_text(header_text(built, "author")))
     head.SetCompanyName(_text(header_text(built, "organisation")))
     model.SetGlobalSection(head)
+    for line in origin.lines() if origin else ():
+        for piece in wrapped(step_text(line), COLUMNS):
+            model.AddStartLine(piece)
     writer.ComputeModel()
-    if not writer.Write(os.fspath(path), False):
-        raise CadError("OpenCASCADE could not write the IGES file: is there space left in that directory?")
+    Path(path).write_bytes(_printed(model, DECIMALS[unit]))
+
+
+def _printed(model: IGESData_IGESModel, decimals: int) -> bytes:
+    """The file of a model, its numbers with so many decimals; OpenCASCADE alone writes nine whatever the unit is."""
+    writer, text = IGESData_IGESWriter(model), BytesIO()
+    numbers = writer.FloatWriter()
+    numbers.SetFormat(f"%{decimals + 2}.{decimals}E")
+    numbers.SetFormatForRange(f"%{decimals + 2}.{decimals}f", *numbers.Options()[2:])
+    writer.SendModel(IGESSelect_WorkLibrary.DefineProtocol_s())
+    if not writer.Print(text):
+        raise CadError("OpenCASCADE could not write the IGES file")
+    return text.getvalue()
 
 
 def ascii_text(text: str) -> str:

@@ -1,4 +1,4 @@
-"""STL and 3MF files of triangles: STL, whose unit is taken to be the millimetre, and 3MF, which states its unit."""
+"""STL and 3MF files of triangles: 3MF states its unit; STL does not, and is in millimetres unless bladewright says."""
 
 import re
 import zipfile
@@ -12,27 +12,35 @@ from bladewright.cad.mesh import TriangleMesh, mesh_of_triangles
 from bladewright.cad.native_body import NativeBody, header_text
 from bladewright.cad.reading import first_and_last_bytes
 from bladewright.cad.step import SYSTEM
+from bladewright.cad.units import MILLIMETRES, Unit
 from bladewright.errors import CadError
 
 RECORD = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
 """A triangle of a binary STL file."""
 
 
-def write_stl(mesh: TriangleMesh, path: str, *, name: str) -> None:
-    """Write a binary STL file."""
-    corners = mesh.corners.astype("<f4")
+def write_stl(mesh: TriangleMesh, path: str, *, name: str, unit: Unit = "mm") -> None:
+    """Write a binary STL file of a mesh [mm] in a unit of length, which its header names."""
+    corners = (mesh.corners / MILLIMETRES[unit]).astype("<f4")
     records = np.zeros(len(corners), dtype=RECORD)
     records["corners"] = corners
     normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     records["normal"] = normals / np.maximum(np.linalg.norm(normals, axis=-1), 1e-30)[:, None]
     # a header that begins with "solid" would be taken for ASCII
-    title = f"binary STL of {name} [mm] by {SYSTEM}".encode("ascii", "replace")[:80].ljust(80)
+    title = f"binary STL [{unit}] by {SYSTEM} of {name}".encode("ascii", "replace")[:80].ljust(80)
     with Path(path).open("wb") as file:
         file.write(title + np.uint32(len(records)).astype("<u4").tobytes() + records.tobytes())
 
 
-def read_stl(path: Path) -> TriangleMesh:
-    """The triangles of an STL file, in its own unit, taken as mm. Raises CadError where it is none, or incomplete."""
+STL_UNIT = re.compile(rb"binary STL \[(mm|m|in)\] by bladewright")
+"""What the headers of STL files begin with that bladewright wrote."""
+
+
+def read_stl(path: Path) -> tuple[TriangleMesh, Unit]:
+    """The triangles [mm] of an STL file, and its unit: the one that bladewright wrote in its header, else mm.
+
+    Raises CadError where it is none, or incomplete.
+    """
     head, _ = first_and_last_bytes(path)
     data = path.read_bytes()
     count = int(np.frombuffer(data[80:84].ljust(4, b"\0"), dtype="<u4")[0])
@@ -51,13 +59,17 @@ def read_stl(path: Path) -> TriangleMesh:
         )
     if not np.all(np.isfinite(corners)):
         raise CadError(f"{path} holds a vertex that is not a finite number: write it again")
-    return mesh_of_triangles(corners)
+    told = STL_UNIT.match(head)
+    unit: Unit = next((each for each in MILLIMETRES if told and each.encode() == told[1]), "mm")
+    return mesh_of_triangles(corners * MILLIMETRES[unit]), unit
 
 
 CORE = "http://schemas.microsoft.com/3dmanufacturing/core/2015/02"
 MODEL = "3D/3dmodel.model"
 UNITS = {"micron": 1e-3, "millimeter": 1.0, "centimeter": 10.0, "inch": 25.4, "foot": 304.8, "meter": 1000.0}
 """Millimetres in each unit of the format."""
+SHORT = {"millimeter": "mm", "meter": "m", "inch": "in"}
+"""The units of the format that files are written in, and their signs."""
 
 TYPES = (
     '<?xml version="1.0" encoding="UTF-8"?>\n'
@@ -73,8 +85,8 @@ RELATIONS = (
 )
 
 
-def write_3mf(mesh: TriangleMesh, path: str, *, built: NativeBody) -> None:
-    """Write a 3MF file."""
+def write_3mf(mesh: TriangleMesh, path: str, *, built: NativeBody, unit: Unit = "mm") -> None:
+    """Write a 3MF file of a mesh [mm] in a unit of length."""
     texts = {
         "Title": built.name,
         "Designer": header_text(built, "author"),
@@ -82,10 +94,11 @@ def write_3mf(mesh: TriangleMesh, path: str, *, built: NativeBody) -> None:
         "Application": SYSTEM,
     }
     metadata = "".join(f'<metadata name="{key}">{escape(text)}</metadata>' for key, text in texts.items() if text)
-    vertices = "".join(f'<vertex x="{x:.9g}" y="{y:.9g}" z="{z:.9g}"/>' for x, y, z in mesh.vertices.tolist())
+    places, word = mesh.vertices / MILLIMETRES[unit], next(word for word, sign in SHORT.items() if sign == unit)
+    vertices = "".join(f'<vertex x="{x:.9g}" y="{y:.9g}" z="{z:.9g}"/>' for x, y, z in places.tolist())
     triangles = "".join(f'<triangle v1="{a}" v2="{b}" v3="{c}"/>' for a, b, c in mesh.triangles.tolist())
     model = (
-        f'<?xml version="1.0" encoding="UTF-8"?>\n<model unit="millimeter" xml:lang="en-US" xmlns="{CORE}">{metadata}'
+        f'<?xml version="1.0" encoding="UTF-8"?>\n<model unit="{word}" xml:lang="en-US" xmlns="{CORE}">{metadata}'
         f'<resources><object id="1" type="model" name={quoteattr(built.name)}><mesh><vertices>{vertices}</vertices>'
         f'<triangles>{triangles}</triangles></mesh></object></resources><build><item objectid="1"/></build></model>'
     )
@@ -113,4 +126,4 @@ def read_3mf(path: Path) -> tuple[TriangleMesh, str]:
         found = np.concatenate(corners) * UNITS[unit]
     except (zipfile.BadZipFile, KeyError, ET.ParseError, ValueError, IndexError, OSError, EOFError) as error:
         raise CadError(f"{path} is not a whole 3MF file ({error}): write it again") from error
-    return mesh_of_triangles(found), "mm" if unit == "millimeter" else unit
+    return mesh_of_triangles(found), SHORT.get(unit, unit)

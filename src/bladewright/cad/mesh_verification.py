@@ -15,6 +15,7 @@ from bladewright.cad.native_body import MM, NativeBody, extent
 from bladewright.cad.reading import format_of
 from bladewright.cad.round_trip import Comparison, EdgeReport, FaceReport, RoundTrip, conformance_figures
 from bladewright.cad.solids import cached_occ_solid
+from bladewright.cad.units import Unit
 from bladewright.errors import CadError
 from bladewright.numerics.elementary import Array
 
@@ -31,7 +32,9 @@ BARYCENTRIC_POINTS = np.array(
 three points towards the corners, and the middles of the sides."""
 
 
-def write_mesh(built: NativeBody, path: Path, *, chordal_deviation: float | None, samples: int) -> RoundTrip:
+def write_mesh(
+    built: NativeBody, path: Path, *, chordal_deviation: float | None, samples: int, unit: Unit = "mm"
+) -> RoundTrip:
     """Write an STL or 3MF file with triangles within `chordal_deviation` [m] of the surfaces, and measure it."""
     allowed = DEFAULT_DEVIATION * extent(built) if chordal_deviation is None else chordal_deviation
     if not (np.isfinite(allowed) and allowed > 0.0):
@@ -47,16 +50,16 @@ def write_mesh(built: NativeBody, path: Path, *, chordal_deviation: float | None
                 break
     with atomic_write(path) as unfinished:
         if format_of(path) == "STL":
-            write_stl(mesh, unfinished, name=built.name)
+            write_stl(mesh, unfinished, name=built.name, unit=unit)
         else:
-            write_3mf(mesh, unfinished, built=built)
+            write_3mf(mesh, unfinished, built=built, unit=unit)
     return verify_mesh(path, built, samples=samples, chordal_deviation=allowed)
 
 
 def verify_mesh(path: Path, built: NativeBody, *, samples: int, chordal_deviation: float | None = None) -> RoundTrip:
     """The round trip of an STL or 3MF file against a blade or passage, with the chordal deviation [m] as its limit."""
     kind = format_of(path)
-    mesh, unit = (read_stl(path), "mm") if kind == "STL" else read_3mf(path)
+    mesh, unit = read_stl(path) if kind == "STL" else read_3mf(path)
     if not len(mesh.triangles):
         raise CadError(f"{path} holds no triangle: write it again")
     limit = MM * (DEFAULT_DEVIATION * extent(built) if chordal_deviation is None else chordal_deviation)

@@ -1,13 +1,14 @@
 """What the CAD modules need of a body: named native surfaces that close it, and which of their sides is outside."""
 
 from collections.abc import Mapping
-from typing import Protocol
+from typing import Any, Protocol
 
 import numpy as np
 
 from bladewright.numerics.elementary import Array
 from bladewright.nurbs.surface import Surface
 from bladewright.nurbs.trimmed import TrimmedSurface
+from bladewright.origin import Origin, parameters_hash
 
 MM = 1000.0
 """[mm/m] Everything that is built is in metres, everything in OpenCASCADE and in CAD files in millimetres."""
@@ -77,3 +78,9 @@ def extent(built: ClosedBody) -> float:
     nets = nets or [face.surface.control_points for face in faces if isinstance(face, TrimmedSurface)]
     points = np.concatenate([np.real(net).reshape(-1, 3) for net in nets])
     return float(np.ptp(points, axis=0).max())
+
+
+def origin_of(body: NamedBody) -> Origin | None:
+    """Name and hash of the design that a body was built from; None where it knows none."""
+    design: Any = getattr(getattr(body, "blade", body), "design", None)
+    return None if design is None else Origin(name=design.name, parameters_hash=parameters_hash(design))

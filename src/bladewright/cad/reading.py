@@ -20,6 +20,7 @@ from OCP.TopTools import TopTools_IndexedMapOfShape
 
 from bladewright.cad.kernel import quiet
 from bladewright.errors import CadError
+from bladewright.origin import Origin, unwrapped
 
 FORMATS = {
     ".step": "STEP",
@@ -54,6 +55,8 @@ class CadFile:
     """length unit that the file is written in"""
     written_by_bladewright: bool
     """whether the file says that bladewright wrote it"""
+    origin: Origin | None
+    """the design that the file says it was made from"""
     shape: TopoDS_Shape
     """everything in the file [mm]"""
     names: dict[int, str]
@@ -157,6 +160,8 @@ def _step(path: Path) -> CadFile:
     reader.FileUnits(units, TColStd_SequenceOfAsciiString(), TColStd_SequenceOfAsciiString())
     header = APIHeaderSection_MakeHeader(reader.StepModel())
     schema = header.SchemaIdentifiersValue(1).ToCString() if header.NbSchemaIdentifiers() else ""
+    by_bladewright = "bladewright" in header.OriginatingSystem().ToCString()
+    described = (header.DescriptionValue(place).ToCString() for place in range(2, header.NbDescription() + 1))
     transferred = reader.WS().TransferReader()
     names = {}
     for index, face in enumerate(subshapes(shape, TopAbs_FACE) if not shape.IsNull() else []):
@@ -169,7 +174,8 @@ def _step(path: Path) -> CadFile:
         format="STEP",
         schema=_protocol(schema),
         unit=_unit([unit.ToCString() for unit in units]),
-        written_by_bladewright="bladewright" in header.OriginatingSystem().ToCString(),
+        written_by_bladewright=by_bladewright,
+        origin=Origin.from_lines(unwrapped([step_plain(line) for line in described])) if by_bladewright else None,
         shape=shape,
         names=names,
     )
@@ -200,9 +206,11 @@ def _iges(path: Path) -> CadFile:
         raise CadError(f"OpenCASCADE cannot read the IGES file {path}: its syntax is broken; write it again")
     reader.TransferRoots()
     shape = reader.OneShape()
-    head = reader.IGESModel().GlobalSection()
+    model = reader.IGESModel()
+    head = model.GlobalSection()
     sender = head.SystemId().ToCString() if head.SystemId() is not None else ""
     unit = head.UnitName().ToCString() if head.UnitName() is not None else ""
+    start = [model.StartLine(place).ljust(72) for place in range(1, model.NbStartLines() + 1)]
     transferred = reader.WS().TransferReader()
     names, kind = {}, "5.3 solid"
     faces = subshapes(shape, TopAbs_FACE) if not shape.IsNull() else []
@@ -220,6 +228,9 @@ def _iges(path: Path) -> CadFile:
         schema=kind,
         unit={"MM": "mm", "M": "m", "IN": "in", "INCH": "in", "CM": "cm", "FT": "ft"}.get(unit.upper(), unit.lower()),
         written_by_bladewright="bladewright" in sender,
+        origin=Origin.from_lines([step_plain(line.rstrip()) for line in unwrapped(start)])
+        if "bladewright" in sender
+        else None,
         shape=shape,
         names=names,
     )
@@ -249,4 +260,13 @@ def _brep(path: Path) -> CadFile:
     shape = TopoDS_Shape()
     if not BRepTools.Read_s(shape, str(path), BRep_Builder()):
         raise CadError(f"OpenCASCADE cannot read the BREP file {path}: it is broken or cut off; write it again")
-    return CadFile(path=path, format="BREP", schema="", unit="mm", written_by_bladewright=False, shape=shape, names={})
+    return CadFile(
+        path=path,
+        format="BREP",
+        schema="",
+        unit="mm",
+        written_by_bladewright=False,
+        origin=None,
+        shape=shape,
+        names={},
+    )

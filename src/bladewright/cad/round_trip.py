@@ -3,8 +3,10 @@
 from dataclasses import dataclass
 from typing import Any
 
+from bladewright import __version__
 from bladewright.cad.native_body import NamedBody
 from bladewright.numerics.elementary import Array
+from bladewright.origin import Origin
 
 
 def conformance_figures(body: NamedBody) -> dict[str, float] | None:
@@ -103,6 +105,8 @@ class RoundTrip:
     """(3,) [mm] in the file, and native"""
     promises: dict[str, float] | None = None
     """how the native surfaces themselves conform to the design, where the body states it"""
+    origin: Origin | None = None
+    """the design that the file was made from, where it is known"""
 
     @property
     def passed(self) -> bool:
@@ -138,9 +142,16 @@ class RoundTrip:
                 "distance": self.centroid_distance,
             },
         }
+        report["version"] = __version__
+        report["design"] = None if self.origin is None else self.origin.to_dict()
         if self.promises is not None:
             report["promises"] = self.promises
         return report
+
+    def __repr__(self) -> str:
+        verdict = "passed" if self.passed else f"FAILED ({len(self.failures)})"
+        size = f"volume {self.volume.cad:.6g} mm3 ({self.volume.relative_error:.1e} off)"
+        return f"<RoundTrip '{self.file}' ({self.format}): {verdict}; {len(self.faces)} faces, {size}>"
 
     def __str__(self) -> str:
         kind = " ".join(word for word in (self.format, self.schema) if word)

@@ -28,7 +28,7 @@ def sample(path: str | os.PathLike[str], count: int = 10_000, *, seed: int = 0) 
     random = default_rng(seed)
     kind = format_of(path)
     if kind in {"STL", "3MF"}:
-        mesh = read_stl(path) if kind == "STL" else read_3mf(path)[0]
+        mesh, _ = read_stl(path) if kind == "STL" else read_3mf(path)
         return _of_mesh(mesh, count, random) / MM
     with quiet():
         faces = [file_face(face) for face in read_cad_file(path).faces]

@@ -124,6 +124,7 @@ class _FileComparison:
             area=total,
             centroid=centroid,
             promises=conformance_figures(self.built),
+            origin=self.opened.origin,
         )
 
     def _whole(self) -> tuple[Comparison, tuple[Array, Array]]:

@@ -1,21 +1,26 @@
 """Writing CAD files, each of which is read again from disk and measured before anyone relies on it."""
 
 import os
+from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 
 from OCP.BRepTools import BRepTools
 
 from bladewright.atomic_write import atomic_write
+from bladewright.cad.colours import face_colours
 from bladewright.cad.iges import write_iges
 from bladewright.cad.kernel import quiet
 from bladewright.cad.mesh_verification import write_mesh
-from bladewright.cad.native_body import NativeBody
+from bladewright.cad.native_body import NativeBody, origin_of
 from bladewright.cad.reading import format_of
 from bladewright.cad.round_trip import RoundTrip
 from bladewright.cad.solids import OccSolid, cached_occ_solid
 from bladewright.cad.step import Schema, write_step
+from bladewright.cad.units import Unit, check_unit
 from bladewright.cad.verification import SAMPLES, verify
 from bladewright.errors import CadError
+from bladewright.origin import Origin
 
 
 def write(
@@ -25,31 +30,55 @@ def write(
     schema: Schema = "AP242",
     solid: bool = True,
     chordal_deviation: float | None = None,
+    unit: Unit = "mm",
+    colour: str = "parts",
+    origin: Origin | None = None,
     samples: int = SAMPLES,
 ) -> RoundTrip:
     """Write a blade or passage to a CAD file, read it again from disk and measure it; returns the round trip.
 
     The ending of `path` decides the format: .step and .stp with the application protocol `schema`; .iges and .igs with
     a manifold solid (entity 186), or with trimmed surfaces (entity 144) where `solid` is false; .brep; .stl and .3mf
-    with triangles within `chordal_deviation` [m] of the surfaces, by default 1e-4 of the body's extent. The file is
-    written completely or not at all. Raises CadError where it cannot be written or the surfaces do not close a volume.
-    A file that was written but misses a limit stays there; the round trip says which limit and by how much.
+    with triangles within `chordal_deviation` [m] of the surfaces, by default 1e-4 of the body's extent. `unit` is the
+    unit of length in the file, "mm", "m" or "in"; BREP is always in mm. `colour` is that of the faces in STEP and IGES:
+    "parts" for those of `cad.COLOURS`, one for all such as "#8899aa", or "none". `origin` is the design that the file
+    says it was made from (`bladewright.origin`), by default what the body knows of its design.
+
+    The file is written completely or not at all. Raises CadError where it cannot be written or the surfaces do not
+    close a volume. A file that was written but misses a limit stays there; the round trip says which limit and by how
+    much.
     """
     path = Path(path)
-    kind = format_of(path)
+    kind, origin = format_of(path), origin or origin_of(built)
+    check_unit(unit, kind)
     if kind in {"STL", "3MF"}:
-        return write_mesh(built, path, chordal_deviation=chordal_deviation, samples=samples)
+        trip = write_mesh(built, path, chordal_deviation=chordal_deviation, samples=samples, unit=unit)
+        return replace(trip, origin=origin)
+    colours = face_colours(built, colour)
     with quiet():
         made = cached_occ_solid(built)
         with atomic_write(path) as unfinished:
-            _write_format(built, made, unfinished, kind, schema=schema, solid=solid)
-    return verify(path, built, samples=samples)
+            _write_format(
+                built, made, unfinished, kind, schema=schema, solid=solid, unit=unit, colours=colours, origin=origin
+            )
+    return replace(verify(path, built, samples=samples), origin=origin)
 
 
-def _write_format(built: NativeBody, made: OccSolid, unfinished: str, kind: str, *, schema: str, solid: bool) -> None:
+def _write_format(
+    built: NativeBody,
+    made: OccSolid,
+    unfinished: str,
+    kind: str,
+    *,
+    schema: str,
+    solid: bool,
+    unit: Unit = "mm",
+    colours: Mapping[str, str] | None = None,
+    origin: Origin | None = None,
+) -> None:
     if kind == "STEP":
-        write_step(built, made, unfinished, schema=schema)
+        write_step(built, made, unfinished, schema=schema, unit=unit, colours=colours, origin=origin)
     elif kind == "IGES":
-        write_iges(built, made, unfinished, solid=solid)
+        write_iges(built, made, unfinished, solid=solid, unit=unit, colours=colours, origin=origin)
     elif not BRepTools.Write_s(made.solid, unfinished):
         raise CadError("OpenCASCADE could not write the BREP file: is there space left in that directory?")

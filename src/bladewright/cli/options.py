@@ -44,10 +44,16 @@ def passage_options(command: Command) -> Command:
     return _with_options(
         command,
         click.option(
-            "--upstream", type=float, metavar="X", help="Reach of a passage before the blade, in meridional lengths."
+            "--upstream",
+            type=float,
+            metavar="X",
+            help="Reach of a passage before the blade, in meridional lengths; without it to the flow path's end.",
         ),
         click.option(
-            "--downstream", type=float, metavar="X", help="Reach of a passage behind the blade, in meridional lengths."
+            "--downstream",
+            type=float,
+            metavar="X",
+            help="Reach of a passage behind the blade, in meridional lengths; without it to the flow path's end.",
         ),
         click.option("--inlet-angle", type=float, metavar="DEG", help="Angle that a passage turns to at its inlet."),
         click.option("--outlet-angle", type=float, metavar="DEG", help="Angle that a passage turns to at its outlet."),

@@ -9,7 +9,6 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
-from types import MappingProxyType
 from typing import Any
 
 import numpy as np
@@ -20,6 +19,7 @@ from bladewright.derivatives.complex_step import STEP, built, side_tangents, ste
 from bladewright.derivatives.patterns import Patterns, chosen
 from bladewright.designs import Design, unknown
 from bladewright.errors import DerivativeError
+from bladewright.frozen import FrozenMapping
 from bladewright.numerics.elementary import Array
 from bladewright.nurbs.basis import Reals
 from bladewright.nurbs.collocation import collocation
@@ -51,12 +51,12 @@ class NetJacobian:
     @property
     def nets(self) -> Mapping[str, Array]:
         """Derivatives (k, n_u, n_v, 3) of the control points themselves, which are the poles in a CAD file."""
-        return MappingProxyType({name: self._net(name) for name in self.shapes})
+        return FrozenMapping({name: self._net(name) for name in self.shapes})
 
     @property
     def weights(self) -> Mapping[str, Array | None]:
         """Derivatives (k, n_u, n_v) of the weights; None for a B-spline."""
-        return MappingProxyType(
+        return FrozenMapping(
             {
                 name: None if shape.weights is None else self.homogeneous[name][..., -1]
                 for name, shape in self.shapes.items()
@@ -191,8 +191,8 @@ def net_jacobian(
     shapes = {name: untrimmed(faces[name]) for name in wanted}
     return NetJacobian(
         paths=paths,
-        shapes=MappingProxyType(shapes),
-        homogeneous=MappingProxyType(_rates(design, base, _with_held_knots(of, body), paths, shapes)),
+        shapes=FrozenMapping(shapes),
+        homogeneous=FrozenMapping(_rates(design, base, _with_held_knots(of, body), paths, shapes)),
     )
 
 

@@ -2,7 +2,6 @@
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from types import MappingProxyType
 from typing import Any
 
 import numpy as np
@@ -10,6 +9,7 @@ import numpy as np
 from bladewright.blade.native.throat import throat
 from bladewright.designs import unknown
 from bladewright.errors import DerivativeError
+from bladewright.frozen import FrozenMapping
 from bladewright.numerics.elementary import Array, length
 from bladewright.numerics.quadrature import panels
 from bladewright.nurbs.basis import breaks
@@ -42,7 +42,7 @@ def _chord(blade: Any) -> Array:
     return np.asarray(np.sum(weight * length(side(1.0, v) - side(0.0, v))))
 
 
-BLADE: Mapping[str, NamedQuantity] = MappingProxyType(
+BLADE: Mapping[str, NamedQuantity] = FrozenMapping(
     {
         each.name: each
         for each in (
@@ -58,7 +58,7 @@ BLADE: Mapping[str, NamedQuantity] = MappingProxyType(
 )
 """Quantities of a blade: its sides' control points; volume, area, centroid and inertia; the mean straight distance from
 leading to trailing edge; the area of the throat."""
-SECTION: Mapping[str, NamedQuantity] = MappingProxyType(
+SECTION: Mapping[str, NamedQuantity] = FrozenMapping(
     {
         each.name: each
         for each in (

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from types import MappingProxyType
 from typing import cast
 
 import numpy as np
@@ -19,6 +18,7 @@ from bladewright.domain.passage import Passage
 from bladewright.domain.passage_spec import PassageSpec
 from bladewright.domain.walls import EDGE_FACES, STRIPS
 from bladewright.errors import DesignError
+from bladewright.frozen import FrozenMapping
 from bladewright.numerics.elementary import Array, radians
 from bladewright.nurbs.basis import Reals
 from bladewright.nurbs.refine import inserted
@@ -46,10 +46,10 @@ def passage(
     """The flow passage around a blade, as native patches that close up without trimming.
 
     `upstream` and `downstream` are how far the duct reaches past the edges, in mean meridional lengths of the blade;
-    where not given, one half, or what the pitch needs. Camber lines go on at the slope of their ends; with
-    `inlet_angle` or `outlet_angle` [deg] they turn to that angle from the meridional direction. `knots=passage.knots`
-    holds another passage's knots and extents. Walls, periodic boundaries, inlet and outlet have creases where the
-    blade's edges are; `split=True` cuts them there into faces without any.
+    where not given, to the ends of the flow path, or without one, one half or what the pitch needs. Camber lines go on
+    at the slope of their ends; with `inlet_angle` or `outlet_angle` [deg] they turn to that angle from the meridional
+    direction. `knots=passage.knots` holds another passage's knots and extents. Walls, periodic boundaries, inlet and
+    outlet have creases where the blade's edges are; `split=True` cuts them there into faces without any.
 
     Raises DesignError where a patch would fold, the channel cannot be continued so far, or the blade does not keep
     within its pitch. Agromayor et al. 2021, section 4.
@@ -96,7 +96,7 @@ def _passage(spec: PassageSpec, knots: PassageKnots, split: bool) -> Passage:
     surfaces |= {name: blade.surfaces[name] for name in blade.design.ends if name == "tip"}
     return Passage(
         blade=blade,
-        whole=MappingProxyType(surfaces),
+        whole=FrozenMapping(surfaces),
         knots=knots,
         camber=camber,
         walls=walls,

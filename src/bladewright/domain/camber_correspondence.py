@@ -11,6 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.polynomial import chebyshev
 
+from bladewright.frozen import FrozenRecord
 from bladewright.numerics.elementary import frozen
 from bladewright.nurbs.basis import Reals
 
@@ -34,7 +35,7 @@ ATTENUATIONS = (1.0, 0.8, 0.6, 0.4, 0.2)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class CamberCorrespondence:
+class CamberCorrespondence(FrozenRecord):
     """The share of the camber line as a function of the share t of the sides, both from 0 to 1."""
 
     slopes: tuple[float, float] = (1.0, 1.0)

@@ -15,7 +15,8 @@ from bladewright.nurbs.basis import Reals
 from bladewright.section.checks import number
 
 USUAL = 0.5
-"""Extent, in mean meridional lengths of the blade, where none is given and the pitch needs no more: half a blade."""
+"""Extent, in mean meridional lengths of the blade, where none is given, there is no flow path to follow so far, and the
+pitch needs no more: half a blade."""
 STEP = 0.25
 """Extents that the pitch needs are rounded up to multiples of this, in mean meridional lengths, so that most small
 changes of a design leave them as they are. Half or twice as much is the same for design/passage_constants.md, whose
@@ -37,10 +38,11 @@ With 0.6 or 0.95 the worst wall is as far from folding (design/passage_constants
 def extents(
     exact: ExactBlade, half_pitch: Array, cross_lines: CrossLines, upstream: float | None, downstream: float | None
 ) -> tuple[float, float]:
-    """Extents up- and downstream in mean meridional lengths: those given, or usual ones, or more if needed.
+    """Extents up- and downstream in mean meridional lengths: those given, else those of the flow path or usual ones.
 
-    A usual one is shortened where the duct would fold over or meet the axis. Raises DesignError where a given one is
-    not a number, or less than the blade and its pitch need.
+    Usual ones are taken without a flow path, and where one ends before the blade and its pitch allow; they are more
+    than USUAL if needed. All but those given are shortened where the duct would fold over or meet the axis. Raises
+    DesignError where a given one is not a number, or less than the blade and its pitch need.
     """
     found, ends = [], end_camber_lines(exact)
     for edge, (name, given) in enumerate((("upstream", upstream), ("downstream", downstream))):
@@ -92,9 +94,12 @@ def _at_edge(camber: CamberLines, edge: int) -> Reals:
 
 
 def _usual(exact: ExactBlade, edge: int, needed: float) -> float:
-    """The usual extent; more where it is needed, less where the duct must end before that."""
+    """The flow path's extent, else the usual one, or more if needed; less where the duct must end before that."""
     extent = exact.meridional_extent
+    path_end = extent.path_end(edge)
     wanted = max(USUAL, STEP * float(np.ceil(needed / STEP)))
+    if path_end is not None and path_end >= needed:
+        wanted = path_end
     duct, end = shortest_duct(exact), extent.place(edge, wanted)
     longer = replace(duct, high=end) if edge else replace(duct, low=end)
     limit = longer.limit("downstream" if edge else "upstream")

@@ -8,6 +8,7 @@ import numpy as np
 from bladewright.blade.native.knots import DEGREE, clamped
 from bladewright.domain.camber_correspondence import CamberCorrespondence
 from bladewright.domain.walls import CrossLines
+from bladewright.frozen import FrozenRecord
 from bladewright.numerics.elementary import frozen
 from bladewright.nurbs.basis import Reals, greville
 
@@ -23,7 +24,7 @@ STRIP_AT = (0.4, 0.6)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class PassageKnots:
+class PassageKnots(FrozenRecord):
     """Knots of the passage's faces over [0, 1], and the real numbers that its shape depends on besides the design."""
 
     length: float

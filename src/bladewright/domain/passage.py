@@ -6,7 +6,6 @@ import warnings
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from types import MappingProxyType
 from typing import ClassVar, cast
 
 import numpy as np
@@ -17,6 +16,7 @@ from bladewright.domain.duct import Duct, annulus_volume
 from bladewright.domain.knots import BLADE_AT, PIECES, PassageKnots
 from bladewright.domain.periodic_sector import PeriodicSector, periodic_sector
 from bladewright.domain.walls import STRIPS, WallHalf, WallStrip
+from bladewright.frozen import FrozenMapping, FrozenRecord
 from bladewright.numerics.elementary import Array, dot
 from bladewright.nurbs.basis import Reals, breaks
 from bladewright.nurbs.domain import reparametrised, split
@@ -24,7 +24,7 @@ from bladewright.nurbs.mass_properties import MassProperties, mass_properties
 from bladewright.nurbs.surface import Surface
 from bladewright.nurbs.trimmed import TrimmedSurface
 
-OUTWARD = MappingProxyType(
+OUTWARD = FrozenMapping(
     {
         "hub_upper": -1,
         "hub_lower": 1,
@@ -48,7 +48,7 @@ OUTWARD = MappingProxyType(
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Passage:
+class Passage(FrozenRecord):
     """The flow passage around one blade: half a pitch to each side of it, from inlet to outlet."""
 
     dimension: ClassVar[int] = 3
@@ -79,7 +79,11 @@ class Passage:
         pieces: dict[str, Surface | TrimmedSurface] = {}
         for name, face in self.whole.items():
             pieces |= {name: face} if isinstance(face, TrimmedSurface) else pieces_of(name, face, self.knots)
-        return MappingProxyType(pieces)
+        return FrozenMapping(pieces)
+
+    def __repr__(self) -> str:
+        extents = f"{self.knots.upstream:.3g} upstream, {self.knots.downstream:.3g} downstream"
+        return f"<Passage '{self.name}': {len(self.surfaces)} faces; {extents}, each x {self.knots.length:.6g} m>"
 
     @property
     def name(self) -> str:
@@ -113,7 +117,7 @@ class Passage:
         if "tip" in self.whole:
             senses["tip"] = -self.blade.orientations["tip"]
         whole = sorted(self.whole, key=len, reverse=True)
-        return MappingProxyType(
+        return FrozenMapping(
             {name: senses[next(face for face in whole if name.startswith(face))] for name in self.surfaces}
         )
 

@@ -3,7 +3,6 @@
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
-from types import MappingProxyType
 
 import numpy as np
 
@@ -12,6 +11,7 @@ from bladewright.blade.native.end_faces import Near, WallSurface, followed
 from bladewright.domain.duct import Duct
 from bladewright.domain.knots import BLADE_AT
 from bladewright.errors import DesignError
+from bladewright.frozen import FrozenMapping, FrozenRecord
 from bladewright.numerics.elementary import Array, angle
 from bladewright.nurbs.basis import Reals
 from bladewright.nurbs.curve import Curve
@@ -32,14 +32,12 @@ OVERHANG = 0.02
 of it, or ten times as much, gives the same volume (design/passage_constants.md)."""
 ANGULAR_OVERHANG = 0.05
 """The same in theta (y in a cascade), as a share of the sector's width."""
-OUTWARD = MappingProxyType(
-    {"hub": -1, "shroud": 1, "inlet": -1, "outlet": 1, "periodic_upper": -1, "periodic_lower": 1}
-)
+OUTWARD = FrozenMapping({"hub": -1, "shroud": 1, "inlet": -1, "outlet": 1, "periodic_upper": -1, "periodic_lower": 1})
 """+1 for the faces whose dS/du x dS/dv points out of the sector, -1 for the others."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class PeriodicSector:
+class PeriodicSector(FrozenRecord):
     """One blade's share of the duct; with the blade cut out of it, the passage is left."""
 
     name: str
@@ -67,7 +65,7 @@ def periodic_sector(name: str, faces: Mapping[str, Surface], duct: Duct, chord: 
         wall: _wall(faces, duct, row, wall, chord, cuts) for wall, row in (("hub", 0), ("shroud", -1))
     }
     surfaces |= {face: faces[face] for face in ("inlet", "outlet", "periodic_upper", "periodic_lower")}
-    return PeriodicSector(name=name, surfaces=MappingProxyType(surfaces))
+    return PeriodicSector(name=name, surfaces=FrozenMapping(surfaces))
 
 
 def _wall(faces: Mapping[str, Surface], duct: Duct, row: int, name: str, chord: float, cuts: Cuts) -> TrimmedSurface:

@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from types import MappingProxyType
 from typing import ClassVar
 
 import numpy as np
 
 from bladewright.domain.extents import MAX_EXTENT, USUAL
 from bladewright.errors import DesignError
+from bladewright.frozen import FrozenMapping, FrozenRecord
 from bladewright.numerics.elementary import Array, radians
 from bladewright.numerics.quadrature import panels
 from bladewright.nurbs.basis import breaks
@@ -28,7 +28,7 @@ many."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class SectionPassage:
+class SectionPassage(FrozenRecord):
     """The flow domain about one section: half a pitch to each side of its continued camber line."""
 
     dimension: ClassVar[int] = 2
@@ -37,6 +37,9 @@ class SectionPassage:
     curves: Mapping[str, Curve]
     """`inlet` and `outlet` (from the lower to the upper periodic boundary), `periodic_lower` and `periodic_upper` (from
     inlet to outlet), and the section's own `upper` and `lower`; metres"""
+
+    def __repr__(self) -> str:
+        return f"<SectionPassage: {', '.join(self.curves)}; area {float(np.real(self.area)):.6g} m2>"
 
     @cached_property
     def area(self) -> Array:
@@ -86,7 +89,7 @@ def section_passage(
         name: segment(lower.control_points[at], upper.control_points[at]) for name, at in (("inlet", 0), ("outlet", -1))
     }
     curves = {**ends, "periodic_lower": lower, "periodic_upper": upper, **section.curves}
-    return SectionPassage(section=section, curves=MappingProxyType(curves))
+    return SectionPassage(section=section, curves=FrozenMapping(curves))
 
 
 def _continued(camber: Curve, end: int, extent: complex, degrees: complex | None) -> Curve:

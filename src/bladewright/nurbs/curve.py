@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike
 from scipy.interpolate import BSpline
 
 from bladewright.errors import GeometryError
+from bladewright.frozen import FrozenRecord
 from bladewright.numerics.elementary import Array, frozen
 from bladewright.nurbs.basis import checked_knots
 from bladewright.nurbs.rational import curve_quotients, homogeneous
@@ -19,7 +20,7 @@ from bladewright.nurbs.rational import curve_quotients, homogeneous
 
 @final
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Curve:
+class Curve(FrozenRecord):
     """A NURBS curve C(u) = sum N_i(u) w_i P_i / sum N_i(u) w_i (Piegl and Tiller 1997, eq. 4.1).
 
     Its parameter runs over [knots[0], knots[-1]]; outside, the end polynomials (the end quotients of polynomials,
@@ -43,6 +44,10 @@ class Curve:
         object.__setattr__(self, "knots", checked_knots(self.knots, self.degree, len(points), "knots"))
         if self.weights is not None:
             object.__setattr__(self, "weights", checked_weights(self.weights, points.shape[:-1]))
+
+    def __repr__(self) -> str:
+        kind = "" if self.weights is None else ", weighted"
+        return f"<Curve: {len(self.control_points)} control points{kind}, degree {self.degree}>"
 
     @property
     def domain(self) -> tuple[float, float]:

@@ -2,12 +2,13 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, partial
 from typing import Any
 
 import numpy as np
 
 from bladewright.errors import GeometryError
+from bladewright.frozen import FrozenRecord
 from bladewright.numerics.elementary import Array, cross, length
 from bladewright.numerics.quadrature import panels
 from bladewright.nurbs.basis import breaks
@@ -20,7 +21,7 @@ Face = tuple[Surface | TrimmedSurface, int]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class MassProperties:
+class MassProperties(FrozenRecord):
     """Mass properties of the solid that a closed set of faces encloses, for unit density."""
 
     volume: Array
@@ -83,7 +84,7 @@ def mass_properties(faces: Sequence[Face]) -> MassProperties:
         volume=volume,
         centroid=middle + offset,
         inertia=np.trace(moments) * np.eye(3) - moments,
-        measured=lambda: (np.array([_area(face) for face, _ in faces]), total[:3]),
+        measured=partial(_areas, tuple(face for face, _ in faces), total[:3]),
     )
 
 
@@ -137,6 +138,10 @@ def _of_polynomials(surface: Surface, origin: Array) -> Array:
             np.array(products) / 2.0,
         ]
     )
+
+
+def _areas(faces: Sequence[Surface | TrimmedSurface], vector: Array) -> tuple[Array, Array]:
+    return np.array([_area(face) for face in faces]), vector
 
 
 def _area(face: Surface | TrimmedSurface) -> Array:

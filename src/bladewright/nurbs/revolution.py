@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from bladewright.errors import GeometryError
+from bladewright.frozen import FrozenRecord
 from bladewright.numerics.elementary import Array, unit
 from bladewright.nurbs.basis import Reals
 from bladewright.nurbs.curve import Curve
@@ -116,7 +117,7 @@ LEFT_HANDED = (-1.0, 0.0, 0.0)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Revolution:
+class Revolution(FrozenRecord):
     """A meridian curve turned about the x axis from `start` to `end`, as rational quadratic arcs along v in [0, 1].
 
     On an arc of half angle h about its middle, with the arc's own parameter t in [0, 1], the angle from the middle is

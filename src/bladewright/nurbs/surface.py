@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike
 from scipy.interpolate import NdBSpline
 
 from bladewright.errors import GeometryError
+from bladewright.frozen import FrozenRecord
 from bladewright.numerics.elementary import Array, frozen, length, unit
 from bladewright.nurbs.basis import basis, checked_knots
 from bladewright.nurbs.curve import checked_weights
@@ -19,7 +20,7 @@ from bladewright.nurbs.rational import homogeneous, surface_quotients
 
 @final
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Surface:
+class Surface(FrozenRecord):
     """A NURBS surface S(u, v) (Piegl and Tiller 1997, eq. 4.11), usually over [0, 1] x [0, 1].
 
     Its parameters run over [knots_u[0], knots_u[-1]] and [knots_v[0], knots_v[-1]]; outside, the end polynomials (the
@@ -49,6 +50,11 @@ class Surface:
         object.__setattr__(self, "knots_v", checked_knots(self.knots_v, self.degree_v, points.shape[1], "knots_v"))
         if self.weights is not None:
             object.__setattr__(self, "weights", checked_weights(self.weights, points.shape[:-1]))
+
+    def __repr__(self) -> str:
+        shape = " x ".join(map(str, self.control_points.shape[:-1]))
+        kind = "" if self.weights is None else ", weighted"
+        return f"<Surface: {shape} control points{kind}, degrees {self.degree_u} x {self.degree_v}>"
 
     @property
     def domain_u(self) -> tuple[float, float]:

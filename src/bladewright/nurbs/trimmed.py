@@ -12,6 +12,7 @@ from numpy.random import default_rng
 from numpy.typing import ArrayLike, NDArray
 
 from bladewright.errors import GeometryError
+from bladewright.frozen import FrozenRecord
 from bladewright.numerics.elementary import Array, length
 from bladewright.numerics.quadrature import converged_quadrature, gauss, panels
 from bladewright.nurbs.basis import Reals, breaks
@@ -30,7 +31,7 @@ DRAWS = 4_000_000
 
 @final
 @dataclass(frozen=True, kw_only=True, eq=False)
-class TrimmedSurface:
+class TrimmedSurface(FrozenRecord):
     """The part of `surface` inside `boundary`, a closed loop of curves in (u, v) that runs counter-clockwise.
 
     The loop does not cross itself. Raises GeometryError where it is not plane, not closed or runs clockwise.
@@ -65,6 +66,9 @@ class TrimmedSurface:
                 f"the boundary encloses an area of {self.parametric_area.real:g} in (u, v): it must run "
                 "counter-clockwise; reverse its curves and their order"
             )
+
+    def __repr__(self) -> str:
+        return f"<TrimmedSurface inside {len(self.boundary)} curves, of {self.surface!r}>"
 
     def __call__(self, u: ArrayLike, v: ArrayLike) -> Array:
         """Points (..., d) of the surface, inside the boundary or not."""

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import partial
 from typing import Annotated, Literal
 
 import numpy as np
@@ -135,19 +136,19 @@ class CurvatureMeanline(SectionFamily):
             meanline=meanline,
             thickness=thickness,
             multiplier=self._multiplier(span) if self.thickness_multiplier else None,
-            other_joints=lambda: (*kinks, *self._steady_joints()),
+            other_joints=partial(self._steady_joints, kinks),
         )
 
-    def _steady_joints(self) -> list[Joint]:
-        """Joints of the splines along the chord that are at the same s all along the span."""
+    def _steady_joints(self, kinks: Sequence[Joint]) -> tuple[Joint, ...]:
+        """The kinks, and joints of the splines along the chord that are at the same s all along the span."""
         span = Span(GRID)
-        thickness, found = self.thickness.at(span), list[Joint]()
+        thickness, found = self.thickness.at(span), [*kinks]
         if self.curvature:
             straight = CurvedMeanline(places=self._places("curvature", span), values=np.zeros(1), camber=np.zeros(1))
             found += fixed_joints(thickness, straight.joints, straight.smooth - 1)
         if self.thickness_multiplier:
             found += fixed_joints(thickness, self._multiplier(span).joints, 3)
-        return found
+        return tuple(found)
 
     def stagger(self, span: Span) -> Array:
         """Angles (..., m) of the chord lines [rad], from the metal angle and the meanline's at the leading edge.

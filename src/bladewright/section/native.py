@@ -2,11 +2,11 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from types import MappingProxyType
 
 import numpy as np
 
 from bladewright.errors import DesignError
+from bladewright.frozen import FrozenMapping, FrozenRecord
 from bladewright.numerics.elementary import Array, angle, concatenated, dot, frozen
 from bladewright.numerics.solving import solved
 from bladewright.nurbs.basis import Reals, basis, breaks, greville, knots_with_joints
@@ -29,7 +29,7 @@ SHARES = (0.1, 0.3, 0.5, 0.7, 0.9)
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class SectionKnots:
+class SectionKnots(FrozenRecord):
     """Knots and interpolation sites of a section's curves, held fixed while it is differentiated."""
 
     sides: Reals
@@ -204,7 +204,7 @@ def native_section(
     return Section(
         span=span,
         plane=plane,
-        curves=MappingProxyType({name: transformed(curve, matrix, shift) for name, curve in sides.items()}),
+        curves=FrozenMapping({name: transformed(curve, matrix, shift) for name, curve in sides.items()}),
         camber=line,
         stagger=float(np.real(turn)),
         metal_angle_in=float(metal[0]),

@@ -7,6 +7,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
+from bladewright.frozen import FrozenRecord
 from bladewright.numerics.elementary import Array, cross2, dot, length
 from bladewright.numerics.quadrature import panels
 from bladewright.nurbs.basis import Reals, breaks
@@ -21,7 +22,7 @@ within 1e-7 (design/section_constants.py)"""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Section:
+class Section(FrozenRecord):
     """A closed section between leading and trailing edge.
 
     Its plane is metric for a 2D section and a cascade. For a blade in an annulus it is the conformal plane
@@ -61,6 +62,11 @@ class Section:
     def sections_at(self, spans: Sequence[float]) -> list["Section"]:  # noqa: ARG002 - a blade has one for each
         """The section alone, where a blade answers with one for each of the span fractions."""
         return [self]
+
+    def __repr__(self) -> str:
+        chord, stagger = float(np.real(self.chord)), np.degrees(self.stagger)
+        where = f"at span {self.span:.6g}, {self.plane}"
+        return f"<Section {where}: {', '.join(self.curves)}; chord {chord:.6g} m, stagger {stagger:.6g} deg>"
 
     @cached_property
     def chord(self) -> Array:

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from types import MappingProxyType
 from typing import Any, ClassVar, Literal
 
 import numpy as np
 
 from bladewright.designs import ChordwiseLaw, Design, parameter
 from bladewright.errors import DesignError
+from bladewright.frozen import FrozenMapping
 from bladewright.numerics.elementary import Array, radians
 from bladewright.nurbs.transform import translated
 from bladewright.section import checks
@@ -149,7 +149,7 @@ class UnifiedSection(Design):
         return Section(
             span=0.0,
             plane="x-y",
-            curves=MappingProxyType(
+            curves=FrozenMapping(
                 {"upper": translated(side_curve(upper[0]), shift), "lower": translated(side_curve(lower[0]), shift)}
             ),
             camber=translated(camber_curve(line[0]), shift),

@@ -43,6 +43,10 @@ class MeridionalExtent(ABC):
         """How far u is upstream of the leading (0), or downstream of the trailing edge (1), in mean lengths."""
 
     @abstractmethod
+    def path_end(self, past: int) -> float | None:
+        """The extent at which the flow path ends, upstream (0) or downstream (1); None where the blade has none."""
+
+    @abstractmethod
     def place(self, past: int, extent: float) -> float:
         """The inverse of `extent`: u at an extent upstream of the leading, or downstream of the trailing edge."""
 
@@ -53,6 +57,10 @@ class ChannelExtent(MeridionalExtent):
 
     def extent(self, past: int, u: float) -> float:
         return u - 1.0 if past else -u
+
+    def path_end(self, past: int) -> float | None:
+        del past
+        return None
 
     def place(self, past: int, extent: float) -> float:
         return 1.0 + extent if past else -extent
@@ -72,6 +80,9 @@ class FlowPathExtent(MeridionalExtent):
         own = min(max(u, self.start), self.end)
         lengths = np.mean(self._lines.abscissa(np.array([own]))[:, 0] - self._edge_lengths[past])
         return float((lengths / self.length + (u - own) / self.unit) * (1.0 if past else -1.0))
+
+    def path_end(self, past: int) -> float | None:
+        return self.extent(past, self.end if past else self.start)
 
     def place(self, past: int, extent: float) -> float:
         sign, end, edge = (1.0, self.end, self.edges[1]) if past else (-1.0, self.start, self.edges[0])

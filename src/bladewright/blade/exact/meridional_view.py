@@ -2,13 +2,13 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from bladewright.blade.design.meridional_curve import Meridian
 from bladewright.blade.flow_path.quasi_orthogonals import parameters_at
+from bladewright.frozen import FrozenMapping
 from bladewright.nurbs.basis import Reals
 from bladewright.section.checks import UNITS
 
@@ -71,7 +71,7 @@ def channel_view(exact: "ExactUnifiedBlade") -> MeridionalView:
     tip = None if clearance is None else np.real(exact.channel.curve(clearance.wall)(inside))
     clearances = () if clearance is None else np.real(clearance.real().distance(inside[[0, -1]])).tolist()
     return MeridionalView(
-        lines=MappingProxyType(lines),
+        lines=FrozenMapping(lines),
         stream_lines=tuple(np.real(exact.sections(STREAM_LINES).lines.position(u))),
         tip=tip,
         clearance=tuple(clearances),
@@ -104,7 +104,7 @@ def flow_path_view(exact: "ExactSectionedBlade") -> MeridionalView:
         else ()
     )
     return MeridionalView(
-        lines=MappingProxyType(drawn),
+        lines=FrozenMapping(drawn),
         stream_lines=tuple(np.real(surfaces.position(STREAM_LINES, np.tile(t, (len(STREAM_LINES), 1))))),
         stream_surfaces=tuple(_line(meridian, np.real(each.values(v)), metre) for meridian, each in given),
         quasi_orthogonals=tuple(np.real(joined)),

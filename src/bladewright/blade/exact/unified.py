@@ -2,7 +2,6 @@
 
 from dataclasses import dataclass, replace
 from functools import cached_property
-from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -18,6 +17,7 @@ from bladewright.blade.flow_path.stream_surface_map import StreamSurfaceMap, map
 from bladewright.blade.flow_path.streamlines import StreamLines, stream_lines
 from bladewright.blade.native.knots import DEGREE
 from bladewright.errors import DesignError
+from bladewright.frozen import FrozenMapping
 from bladewright.numerics.elementary import Array, concatenated, radians, unit
 from bladewright.nurbs.basis import Reals
 from bladewright.nurbs.curve import Curve
@@ -302,7 +302,7 @@ class ExactUnifiedBlade(ExactBlade):
         return Section(
             span=v,
             plane=self.mapping.plane,
-            curves=MappingProxyType({"upper": side_curve(plane.upper[0]), "lower": side_curve(plane.lower[0])}),
+            curves=FrozenMapping({"upper": side_curve(plane.upper[0]), "lower": side_curve(plane.lower[0])}),
             camber=camber_curve(plane.camber[0]),
             stagger=float(np.real(np.arctan((ends[1, 1] - ends[0, 1]) / (ends[1, 0] - ends[0, 0])))),
             metal_angle_in=float(np.real(sections.metal_angles[0][0])),

@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from types import MappingProxyType
 from typing import TYPE_CHECKING, ClassVar, cast
 from warnings import warn
 
@@ -25,6 +24,7 @@ from bladewright.blade.native.refinement import (
     refined_knots,
 )
 from bladewright.errors import DesignError
+from bladewright.frozen import FrozenMapping, FrozenRecord
 from bladewright.numerics.elementary import Array
 from bladewright.nurbs.domain import extended, reparametrised
 from bladewright.nurbs.mass_properties import MassProperties, mass_properties
@@ -41,7 +41,7 @@ Faces = Mapping[str, Surface | TrimmedSurface]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Blade:
+class Blade(FrozenRecord):
     """A closed blade of native surfaces."""
 
     dimension: ClassVar[int] = 3
@@ -58,6 +58,10 @@ class Blade:
     """the blade that the design defines, which the surfaces interpolate"""
     moments: Callable[[], Array] | None = None
     """gives the moments of the volume, as `blade_moments` does, where they are known without quadrature"""
+
+    def __repr__(self) -> str:
+        faces, chord = ", ".join(self.surfaces), float(np.real(self.chord))
+        return f"<Blade '{self.name}' of {type(self.design).__name__}: {faces}; chord {chord:.6g} m>"
 
     @property
     def name(self) -> str:
@@ -84,7 +88,7 @@ class Blade:
         """+1 for the faces whose dS/du x dS/dv points out of the blade, -1 for the others."""
         low, high = self.design.ends
         blunt = {name: sign for name, sign in zip(EDGES, (1, -1), strict=True) if name in self.surfaces}
-        return MappingProxyType({"upper": -1, "lower": 1, **blunt, low: -1, high: 1})
+        return FrozenMapping({"upper": -1, "lower": 1, **blunt, low: -1, high: 1})
 
     @property
     def tolerance(self) -> float:
@@ -186,7 +190,7 @@ class Blade:
         }
         return Blade(
             design=self.design.changed("name", f"{self.name}-extended"),
-            surfaces=MappingProxyType({**around, **ends}),
+            surfaces=FrozenMapping({**around, **ends}),
             knots=self.knots,
             chord=self.chord,
             exact=self.exact,
@@ -203,7 +207,7 @@ def native_blade(exact: ExactBlade, knots: Knots | None = None) -> Blade:
     sides = side_surface(nets[0], knots, DEGREE), side_surface(nets[1], knots, DEGREE)
     edges = edge_faces(sections, *sides, knots)
     ends = trimmed_ends(exact, *sides, chord, faces=edges)
-    surfaces: Faces = MappingProxyType({"upper": sides[0], "lower": sides[1], **edges, **ends})
+    surfaces: Faces = FrozenMapping({"upper": sides[0], "lower": sides[1], **edges, **ends})
     blade = Blade(design=exact.design, surfaces=surfaces, knots=knots, chord=chord, exact=exact)
     if not given:
         _check_reached(blade)

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from bladewright.frozen import FrozenRecord
 from bladewright.numerics.elementary import frozen
 from bladewright.nurbs.basis import Reals, greville
 
@@ -18,7 +19,7 @@ their number. Of 2,000 random designs 31 were refused for it (design/random_desi
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Knots:
+class Knots(FrozenRecord):
     """Knots of both sides of a blade, over [0, 1]; they fix the interpolation sites."""
 
     u: Reals

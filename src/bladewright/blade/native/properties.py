@@ -9,6 +9,7 @@ The area of an end is the integral of theta r |C'| du around its outline, C the 
 """
 
 from collections.abc import Callable, Mapping
+from functools import partial
 
 import numpy as np
 
@@ -130,14 +131,11 @@ def blade_properties(
     volume, centroid = total[0], total[1:4] / total[0]
     xx, yy, zz, xy, yz, zx = total[4:]
     spread = np.array([[xx, xy, zx], [xy, yy, yz], [zx, yz, zz]]) - volume * np.outer(centroid, centroid)
-
-    def measured() -> tuple[Array, Array]:
-        sizes = [_measured(surfaces[name]) for name in outward]
-        vectors = [sign * vector for sign, (_, vector) in zip(outward.values(), sizes, strict=True)]
-        return np.array([size for size, _ in sizes]), np.sum(vectors, axis=0)
-
     return MassProperties(
-        volume=volume, centroid=centroid, inertia=np.trace(spread) * np.eye(3) - spread, measured=measured
+        volume=volume,
+        centroid=centroid,
+        inertia=np.trace(spread) * np.eye(3) - spread,
+        measured=partial(_areas, surfaces, outward),
     )
 
 
@@ -156,6 +154,13 @@ def blade_moments(surfaces: Faces, outward: Mapping[str, int], *, revolved: bool
 def middle_of(surfaces: Faces) -> float:
     """theta, or y in a cascade, in the middle of the first of the ends."""
     return _middle(next(face for face in surfaces.values() if isinstance(face, TrimmedSurface)))
+
+
+def _areas(surfaces: Faces, outward: Mapping[str, int]) -> tuple[Array, Array]:
+    """Areas (k,) of the faces and their summed outward area vector (3,)."""
+    sizes = [_measured(surfaces[name]) for name in outward]
+    vectors = [sign * vector for sign, (_, vector) in zip(outward.values(), sizes, strict=True)]
+    return np.array([size for size, _ in sizes]), np.sum(vectors, axis=0)
 
 
 def _measured(face: Surface | TrimmedSurface) -> tuple[Array, Array]:

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from bladewright.designs import Design, unit_at
 from bladewright.fitting.assessment.deviation import REGIONS, Deviation, by_region, deviation_of
+from bladewright.frozen import FrozenRecord
 from bladewright.nurbs.basis import Reals
 
 
@@ -49,7 +50,7 @@ class Estimate:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Fit:
+class Fit(FrozenRecord):
     """A design fitted to a cloud of n points, and what it reaches; points are in the order of the cloud."""
 
     design: Design
@@ -142,6 +143,12 @@ class Fit:
     def to_dict(self) -> dict[str, Any]:
         """The report, for JSON; lengths in metres."""
         return report(self)
+
+    def __repr__(self) -> str:
+        verdict, points = "passed" if self.passed else "FAILED", f"{len(self.cloud)} points"
+        off = f"mean {self.mean:.3g} m, largest {self.maximum:.3g} m"
+        name = getattr(self.design, "name", "")
+        return f"<Fit '{name}' of {type(self.design).__name__}: {verdict}; {points}, {off}>"
 
     def __str__(self) -> str:
 

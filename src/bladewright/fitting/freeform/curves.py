@@ -28,7 +28,7 @@ NOISE_RATIO = 1.25
 
 
 @final
-@dataclass(frozen=True, kw_only=True, eq=False)
+@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
 class CurveFit(FreeformFit):
     """A curve fitted to n points."""
 

@@ -36,6 +36,11 @@ class FreeformFit:
     notes: tuple[str, ...]
     """what else there is to know, each a sentence"""
 
+    def __repr__(self) -> str:
+        state = "converged" if self.converged else "not converged"
+        off = f"mean {self.mean:.3g}, largest {self.maximum:.3g}"
+        return f"<{type(self).__name__}: {state}; {len(self.distances)} points, {off}>"
+
     @property
     def unknowns(self) -> int:
         """Number of coordinates and weights that were free."""

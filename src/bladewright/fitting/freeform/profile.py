@@ -37,7 +37,7 @@ CHORD_BINS = 40
 
 
 @final
-@dataclass(frozen=True, kw_only=True, eq=False)
+@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
 class ProfileFit(FreeformFit):
     """A profile fitted to n points: a camber line, and a half thickness along its normals over the abscissa."""
 

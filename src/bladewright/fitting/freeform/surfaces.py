@@ -43,7 +43,7 @@ ON_A_LINE = 1e-9
 
 
 @final
-@dataclass(frozen=True, kw_only=True, eq=False)
+@dataclass(frozen=True, kw_only=True, eq=False, repr=False)
 class SurfaceFit(FreeformFit):
     """A surface fitted to n points."""
 

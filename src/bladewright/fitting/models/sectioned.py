@@ -2,7 +2,6 @@
 
 from collections.abc import Sequence
 from dataclasses import replace
-from types import MappingProxyType
 from typing import Any, final
 
 import numpy as np
@@ -18,6 +17,7 @@ from bladewright.fitting.models.blunt_edges import BluntEdges, closed_nets, clos
 from bladewright.fitting.models.feasibility import infeasibility
 from bladewright.fitting.models.model import Model, ModelShape, model_of
 from bladewright.fitting.models.planar import infeasibility_rates
+from bladewright.frozen import FrozenMapping
 from bladewright.nurbs.basis import Reals
 from bladewright.section.laws import Span
 
@@ -49,7 +49,7 @@ class SectionedModel(Model):
     def tangents(self, shape: ModelShape, paths: Sequence[str]) -> tuple[Reals, Reals]:
         """By every parameter in a batch; a face of a blunt edge moves as the straight one between its edges."""
         blade = Blade(
-            design=shape.design, surfaces=MappingProxyType({}), knots=self.knots, chord=self.chord, exact=shape.exact
+            design=shape.design, surfaces=FrozenMapping({}), knots=self.knots, chord=self.chord, exact=shape.exact
         )
         pairs = list(side_tangents(blade, paths))
         upper, lower = (np.concatenate([pair[side] for pair in pairs]) for side in (0, 1))

@@ -1,7 +1,6 @@
 """Sections and blades of the unified family, as a search sees them."""
 
 from collections.abc import Sequence
-from types import MappingProxyType
 from typing import Any, final
 
 import numpy as np
@@ -23,6 +22,7 @@ from bladewright.fitting.models.law_jacobian import (
     stands_on_channel,
 )
 from bladewright.fitting.models.model import Model, ModelShape, complex_steps, model_of
+from bladewright.frozen import FrozenMapping
 from bladewright.numerics.elementary import Array, concatenated, cross2, length
 from bladewright.nurbs.basis import Reals
 from bladewright.section.camber import camber_points
@@ -111,7 +111,7 @@ class BladeModel(Model):
         """By laws as a whole, and by each parameter of the channel."""
         blade = Blade(
             design=shape.design,
-            surfaces=MappingProxyType({}),
+            surfaces=FrozenMapping({}),
             knots=self.knots,
             chord=self.chord,
             exact=shape.exact,

@@ -7,7 +7,9 @@ Reference: Stack and von Doenhoff 1934, NACA report 492; the circle and the slop
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import partial
 from typing import Literal
 
 import numpy as np
@@ -25,6 +27,7 @@ from bladewright.section.thickness.piecewise import (
     PiecewiseThickness,
     check_positive,
     ellipse,
+    polynomial_from,
 )
 
 RADIUS = 2.2038
@@ -133,11 +136,7 @@ def _rear(maximum: Array, at: Array, end: Array, edge: Array, slope: Array) -> t
     secant = (end - maximum) / length
     second, third = (3.0 * secant - slope) / length, (slope - 2.0 * secant) / length**2
     coefficients = [each[..., None] for each in (maximum, np.zeros(1), second, third)]
-
-    def half(place: ChordPlace) -> Series:
-        return polynomial(coefficients, place.u - at[..., None])
-
-    return half, 2.0 * second
+    return partial(polynomial_from, coefficients, at[..., None]), 2.0 * second
 
 
 def _front(maximum: Array, at: Array, curvature: Array, index: Array) -> tuple[Formula, Array]:
@@ -153,8 +152,8 @@ def _front(maximum: Array, at: Array, curvature: Array, index: Array) -> tuple[F
         value - slope + 0.5 * bend,
     )
     coefficients = [each[..., None] for each in (first, second / at, third / at**2)]
+    return partial(_root_and_polynomial, root[..., None], coefficients), first / root
 
-    def half(place: ChordPlace) -> Series:
-        return root[..., None] * place.leading_root() + place.u * polynomial(coefficients, place.u)
 
-    return half, first / root
+def _root_and_polynomial(root: Array, coefficients: Sequence[Array], place: ChordPlace) -> Series:
+    return root * place.leading_root() + place.u * polynomial(coefficients, place.u)

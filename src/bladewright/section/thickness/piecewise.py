@@ -1,6 +1,7 @@
 """Thickness laws made of pieces along the chord, each a closed formula of the chord fraction."""
 
 from collections.abc import Callable, Sequence
+from functools import partial
 
 import numpy as np
 
@@ -10,11 +11,11 @@ from bladewright.nurbs.basis import Reals
 from bladewright.section.chord_map import Breakpoint, ChordMap, ChordPlace
 from bladewright.section.laws import Span
 from bladewright.section.outline import Joint
-from bladewright.section.power_series import Series, joined_series
+from bladewright.section.power_series import Series, joined_series, polynomial
 from bladewright.section.thickness.law import EdgeKind, Thickness
 
 Formula = Callable[[ChordPlace], Series]
-"""half thickness at a place"""
+"""half thickness at a place; one that pickles, not a function inside another"""
 
 PLACES = np.linspace(0.0, 1.0, 97)[1:-1]
 """s at which the half thickness must be positive: 95 places for formulas of a few pieces, each without waves of its
@@ -72,12 +73,12 @@ class PiecewiseThickness(Thickness):
 
 def _anywhere(formula: Formula, *, front: bool, rear: bool) -> Formula:
     """A formula for a part of its piece that no longer touches the edge: it takes the root of the distance itself."""
+    return partial(_with_roots, formula, front, rear)
 
-    def half(place: ChordPlace) -> Series:
-        place = place._replace(root=place.u.sqrt()) if front else place
-        return formula(place._replace(rest_root=place.rest.sqrt()) if rear else place)
 
-    return half
+def _with_roots(formula: Formula, front: bool, rear: bool, place: ChordPlace) -> Series:
+    place = place._replace(root=place.u.sqrt()) if front else place
+    return formula(place._replace(rest_root=place.rest.sqrt()) if rear else place)
 
 
 def _safely(formula: Formula, place: ChordPlace) -> Array:
@@ -86,16 +87,23 @@ def _safely(formula: Formula, place: ChordPlace) -> Array:
         return formula(place).value
 
 
+def polynomial_from(coefficients: Sequence[Array], start: Array, place: ChordPlace) -> Series:
+    """The polynomial of the distance from a chord fraction."""
+    return polynomial(coefficients, place.u - start)
+
+
 def ellipse(length: Array, height: Array, *, leading: bool) -> Formula:
     """The round end of semi-axes `length` along the chord and `height` across (..., m), its tip at the edge."""
     ratio, diameter = (height / length)[..., None], 2.0 * length[..., None]
+    return partial(_leading_ellipse if leading else _trailing_ellipse, ratio, diameter)
 
-    def half(place: ChordPlace) -> Series:
-        if leading:
-            return ratio * place.leading_root() * (diameter - place.u).sqrt()
-        return ratio * place.trailing_root() * (diameter - place.rest).sqrt()
 
-    return half
+def _leading_ellipse(ratio: Array, diameter: Array, place: ChordPlace) -> Series:
+    return ratio * place.leading_root() * (diameter - place.u).sqrt()
+
+
+def _trailing_ellipse(ratio: Array, diameter: Array, place: ChordPlace) -> Series:
+    return ratio * place.trailing_root() * (diameter - place.rest).sqrt()
 
 
 def check_positive(thickness: Thickness, path: str, span: Span) -> None:

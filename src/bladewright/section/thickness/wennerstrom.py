@@ -9,6 +9,7 @@ Reference: Wennerstrom 2000, Design of Highly Loaded Axial-Flow Fans and Compres
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import partial
 from typing import Literal, NamedTuple
 
 import numpy as np
@@ -17,15 +18,15 @@ from bladewright.designs import Law, parameter
 from bladewright.errors import DesignError
 from bladewright.numerics.elementary import Array
 from bladewright.section import checks
-from bladewright.section.chord_map import Breakpoint, ChordMap, ChordPlace
+from bladewright.section.chord_map import Breakpoint, ChordMap
 from bladewright.section.laws import Span, bounds_of
-from bladewright.section.power_series import Series, polynomial
 from bladewright.section.thickness.law import EdgeKind, Thickness, ThicknessLaw, same_law
 from bladewright.section.thickness.piecewise import (
     Formula,
     PiecewiseThickness,
     check_positive,
     ellipse,
+    polynomial_from,
 )
 
 AT_LEADING_EDGE = 0.02
@@ -176,8 +177,4 @@ def _cubic(maximum: Array, curvature: Array, third: Array, middle: Array, chord:
     """A cubic of the distance from the maximum, in chords of the body."""
     scaled = (maximum, np.zeros(1), 0.5 * curvature * chord**2, third * chord**3)
     coefficients = [each[..., None] for each in scaled]
-
-    def half(place: ChordPlace) -> Series:
-        return polynomial(coefficients, place.u - middle[..., None])
-
-    return half
+    return partial(polynomial_from, coefficients, middle[..., None])
