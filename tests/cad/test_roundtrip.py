@@ -1,6 +1,8 @@
 """Round trips: accuracy, the report, and files that other programs wrote in their own way."""
 
+import copy
 import json
+import pickle
 
 import numpy as np
 import pytest
@@ -21,7 +23,7 @@ SEARCHED = 1000
 """points a face of a foreign file, each of which is searched for on the native face"""
 REPORT = {
     "file", "format", "schema", "unit", "passed", "failures", "limits", "solids", "shells", "free_edges", "valid",
-    "faces", "edges", "volume_mm3", "area_mm2", "centroid_mm",
+    "faces", "edges", "volume_mm3", "area_mm2", "centroid_mm", "version", "design",
 }  # fmt: skip
 SIDE = {"step": 1e-9, "igs": 1e-7, "brep": 1e-11}
 """[mm] what a file's digits allow for a blade of 0.1 m: STEP keeps 14 or 15, IGES as many as leave 1e-8 mm"""
@@ -148,3 +150,11 @@ def test_a_foreign_iges_file_of_loose_faces_passes(rotor, solid, tmp_path):
 
 def test_the_kernel_is_named():
     assert cad.occ_version().startswith("7.")
+
+
+def test_a_round_trip_survives_a_pickle_and_is_named_in_one_line(step):
+    path, trip = step
+    assert pickle.loads(pickle.dumps(trip)).to_dict() == copy.deepcopy(trip).to_dict() == trip.to_dict()
+    line = repr(trip)
+    assert "\n" not in line
+    assert all(word in line for word in (path.name, "STEP", "passed", "4 faces", f"{trip.volume.cad:.6g}"))

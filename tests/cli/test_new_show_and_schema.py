@@ -8,6 +8,7 @@ import pytest
 from bladewright.files.examples import example_text, examples
 from bladewright.files.reading import read_design
 from bladewright.files.schema import schema
+from bladewright.files.templates import template_text, templates
 
 SECTION = """
 family = "profile-section"
@@ -26,7 +27,27 @@ def test_new_lists_the_examples_with_a_line_about_each(run):
     found = run("new")
     for name in examples():
         assert f"{name} " in found.out
-    assert run("new", "--json").json == {"examples": examples()}
+    assert run("new", "--json").json == {"examples": examples(), "templates": templates()}
+
+
+@pytest.mark.parametrize("name", templates())
+def test_new_writes_a_template(run, tmp_path, name):
+    file = tmp_path / f"{name}.toml"
+    assert run("new", "--template", name, "-o", file).status == 0
+    assert file.read_text() == template_text(name)
+    assert read_design(file).name
+
+
+def test_an_example_and_a_template_at_once_are_refused(run):
+    found = run("new", "propeller", "--template", "propeller")
+    assert found.status == 2
+    assert "give one of them" in found.err
+
+
+def test_an_unknown_template_names_the_nearest(run):
+    found = run("new", "--template", "turbin-vane")
+    assert found.status == 2
+    assert "did you mean 'turbine-vane'" in found.err
 
 
 @pytest.mark.parametrize("name", examples())
