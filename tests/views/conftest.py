@@ -5,8 +5,10 @@ from importlib import import_module
 import pytest
 
 from bladewright.blade.design.families import prismatic
+from bladewright.section.checks import UNITS
 from bladewright.views.picture import sheet
 from bladewright.views.solid import draw_solid
+from bladewright.views.style import lengths_in
 from machines import COARSE, built, example
 from machines.unified import DRAWN_IMPELLER as IMPELLER
 from machines.unified import VANE
@@ -31,6 +33,8 @@ class Drawn:
     def __init__(self, name):
         self.name = name
         self.design = DESIGNS[name]
+        self.unit = self.design.length_unit
+        self.per_metre = 1.0 / UNITS[self.unit]
         self.built = built(self.design)
         with pytest.MonkeyPatch.context() as small:
             # pixels of the view in space are counted in test_files.py alone
@@ -51,14 +55,20 @@ def _drawn(name):
     return _DRAWN[name]
 
 
+def _in_its_unit(name):
+    """The drawing, with everything that a test asks for in the unit in which it is drawn."""
+    with lengths_in(_drawn(name).unit):
+        yield _drawn(name)
+
+
 @pytest.fixture(params=list(DESIGNS))
 def drawn(request):
-    return _drawn(request.param)
+    yield from _in_its_unit(request.param)
 
 
 @pytest.fixture(params=BLADES)
 def blade_drawn(request):
-    return _drawn(request.param)
+    yield from _in_its_unit(request.param)
 
 
 @pytest.fixture

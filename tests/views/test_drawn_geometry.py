@@ -8,7 +8,7 @@ from bladewright.blade.design.families import prismatic
 from bladewright.views.laws import panels_of
 from bladewright.views.meridional import blade_outline
 from bladewright.views.picture import FEW_SPANS, SPANS, sheet
-from bladewright.views.sections import cosine_spacing, millimetres_per_unit, narrowest_gap, outline, pitch_of
+from bladewright.views.sections import cosine_spacing, drawn_per_unit, narrowest_gap, outline, pitch_of
 
 EXACT = 1e-12
 """rounding of a scaling"""
@@ -25,14 +25,14 @@ def with_name(panel, name):
     )
 
 
-def test_sections_are_the_native_curves_in_millimetres(blade_drawn):
+def test_sections_are_the_native_curves_in_the_unit_of_the_design(blade_drawn):
     panel, u = blade_drawn.panel("Sections"), cosine_spacing()
     shapes = [line for line in lines(panel) if len(line) == 2 * len(u)]
     assert len(shapes) == len(SPANS)
     for v, shape in zip(SPANS, shapes, strict=True):
         section = blade_drawn.built.section(v)
         for name, part in (("upper", shape[: len(u)]), ("lower", shape[: len(u) - 1 : -1])):
-            assert np.allclose(part, section.curves[name](u) * millimetres_per_unit(section), **SAME)
+            assert np.allclose(part, section.curves[name](u) * drawn_per_unit(section), **SAME)
 
 
 def test_a_drawn_section_has_the_chord_of_the_built_one(drawn):
@@ -40,14 +40,14 @@ def test_a_drawn_section_has_the_chord_of_the_built_one(drawn):
     ends = outline(section)[[0, 200]]
     # in the plane of an annulus the mean scale stands for that along the chord: 6 % on a radial machine
     limit = {"impeller": 0.10, "fan": 1e-3}.get(drawn.name, 1e-9)
-    assert np.linalg.norm(ends[1] - ends[0]) == pytest.approx(1e3 * section.chord, rel=limit)
+    assert np.linalg.norm(ends[1] - ends[0]) == pytest.approx(drawn.per_metre * section.chord, rel=limit)
 
 
 def test_the_neighbour_stands_one_pitch_away(drawn):
     section = drawn.built if drawn.name == "section" else drawn.built.section(0.5)
     panel = drawn.panel("Section" if drawn.name == "section" else "Mid span")
     first, second = (line for line in lines(panel) if len(line) == 402)
-    pitch = 57.5 if drawn.name in ("section", "cascade") else pitch_of(drawn.built, section)
+    pitch = 0.0575 * drawn.per_metre if drawn.name in ("section", "cascade") else pitch_of(drawn.built, section)
     assert np.allclose(second - first, [0.0, pitch], **SAME)
 
 
@@ -55,9 +55,9 @@ def test_as_many_pitches_as_blades_go_around(blade_drawn):
     section = blade_drawn.built.section(0.5)
     pitch = pitch_of(blade_drawn.built, section)
     if blade_drawn.name == "cascade":
-        assert pitch == pytest.approx(57.5)
+        assert pitch == pytest.approx(0.0575 * blade_drawn.per_metre)
     else:
-        assert pitch * blade_drawn.design.blade_count == pytest.approx(2.0 * np.pi * millimetres_per_unit(section))
+        assert pitch * blade_drawn.design.blade_count == pytest.approx(2.0 * np.pi * drawn_per_unit(section))
 
 
 def test_the_narrowest_gap_of_two_circles_lies_between_their_centres():
@@ -67,34 +67,39 @@ def test_the_narrowest_gap_of_two_circles_lies_between_their_centres():
     assert np.allclose(gap, [[0.0, 1.0], [0.0, 4.0]], atol=1e-12)  # rounding: the points are among those given
 
 
-def test_curvature_is_that_of_the_section_convex_positive_per_millimetre(drawn):
+def test_curvature_is_that_of_the_section_convex_positive_per_unit_of_length(drawn):
     sections = [drawn.built] if drawn.name == "section" else [drawn.built.section(v) for v in FEW_SPANS]
     curves = [line for line in lines(drawn.panel("Curvature")) if len(line) == 601]
     assert len(curves) == 2 * len(sections)
     for index, section in enumerate(sections):
         for name, sign, curve in zip(("upper", "lower"), (-1.0, 1.0), curves[2 * index :], strict=False):
-            assert np.allclose(curve[:, 1], sign * section.curvature(name, cosine_spacing(601)) / 1e3, **SAME)
-            assert np.allclose(curve[[0, -1], 1], 1e-3 / np.array(section.edge_radii), rtol=1e-6)  # of the promise
+            assert np.allclose(
+                curve[:, 1], sign * section.curvature(name, cosine_spacing(601)) / drawn.per_metre, **SAME
+            )
+            assert np.allclose(
+                curve[[0, -1], 1], 1.0 / (drawn.per_metre * np.array(section.edge_radii)), rtol=1e-6
+            )  # of the promise
             assert curve[0, 0] == 0.0
             assert curve[-1, 0] == 1.0
             assert (np.diff(curve[:, 0]) > 0.0).all()
 
 
-def test_thickness_is_that_of_the_section_in_millimetres(drawn):
+def test_thickness_is_that_of_the_section_in_the_unit_of_the_design(drawn):
     sections = [drawn.built] if drawn.name == "section" else [drawn.built.section(v) for v in SPANS]
     curves = [line for line in lines(drawn.panel("Thickness as built")) if len(line) > 1]
     for section, curve in zip(sections, curves, strict=True):
-        assert np.allclose(curve, np.column_stack([section.thickness[0], 1e3 * section.thickness[1]]), **SAME)
+        assert np.allclose(
+            curve, np.column_stack([section.thickness[0], drawn.per_metre * section.thickness[1]]), **SAME
+        )
 
 
 @pytest.mark.parametrize("wall", ["leading_edge", "trailing_edge", "hub", "shroud"])
 def test_the_channel_is_that_of_the_blade_with_the_control_points_of_the_design(blade_drawn, wall):
     panel, channel = blade_drawn.panel("Meridional"), blade_drawn.built.exact.full_channel
     drawn = with_name(panel, wall.replace("_", " "))
-    assert np.allclose(drawn, 1e3 * channel.curve(wall)(np.linspace(0.0, 1.0, 201)), **SAME)
-    inches = {"mm": 1.0, "cm": 10.0}[blade_drawn.design.length_unit]
+    assert np.allclose(drawn, blade_drawn.per_metre * channel.curve(wall)(np.linspace(0.0, 1.0, 201)), **SAME)
     for point in getattr(blade_drawn.design.channel, wall):
-        assert min(np.min(np.linalg.norm(line - inches * np.array(point), axis=1)) for line in lines(panel)) < 1e-9
+        assert min(np.min(np.linalg.norm(line - np.array(point), axis=1)) for line in lines(panel)) < 1e-9
 
 
 def test_the_meridional_outline_holds_the_native_sides(blade_drawn):

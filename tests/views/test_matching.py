@@ -33,7 +33,7 @@ from bladewright.views.fit_deviations import (
     magnification,
 )
 from bladewright.views.fit_sheet import draw_histogram, draw_table, fit_picture, fit_sheet
-from bladewright.views.sections import millimetres_per_unit
+from bladewright.views.sections import drawn_per_unit
 from bladewright.views.style import drawing_style
 from machines import COARSE, built, example
 from machines.sections import EXAMPLES
@@ -188,7 +188,7 @@ def test_the_outline_of_a_blade_has_the_parameters_of_its_surfaces(kind):
     outline = outline_at(fit, 0.3)
     for name in ("upper", "lower"):
         points = fit.built.surfaces[name](outline.u, 0.3)
-        ordinate = angle(points[:, 1], points[:, 2]) * millimetres_per_unit(outline.section)
+        ordinate = angle(points[:, 1], points[:, 2]) * drawn_per_unit(outline.section)
         if kind == "linear":
             ordinate = points[:, 1] * 1e3
         # the surfaces are built to the design's tolerance, in chords

@@ -14,7 +14,7 @@ from bladewright.views.distributions import draw_smoothness, percent
 from bladewright.views.laws import panels_of
 from bladewright.views.meridional import built_edges
 from bladewright.views.picture import sheet
-from bladewright.views.sections import draw_edge, millimetres_per_unit, neighbour_outline, outline
+from bladewright.views.sections import draw_edge, drawn_per_unit, neighbour_outline, outline
 from bladewright.views.solid import blade_surfaces, draw_solid
 from machines import built
 from machines.sectioned import BLUNT, COMPRESSOR, DESIGNS, IMPELLER, STATOR, VANE
@@ -152,7 +152,7 @@ def test_neighbours_in_a_plane_of_lengths_stand_as_far_apart_as_their_radius_say
     shape = outline(section)
     aside = neighbour_outline(blade, section, shape)[:, 1] - shape[:, 1]
     lines = blade.exact.sections(np.array([0.5])).lines
-    radius = np.real(lines.position(lines.u_at(shape[None, :, 0] / millimetres_per_unit(section))))[0, :, 1]
+    radius = np.real(lines.position(lines.u_at(shape[None, :, 0] / drawn_per_unit(section))))[0, :, 1]
     assert aside == pytest.approx(1e3 * radius * 2.0 * np.pi / 22, rel=1e-9)
     assert np.ptp(aside) > 0.1
 

@@ -9,22 +9,22 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from bladewright.views.picture import sheet
 
 PANELS = {
-    "Sections with camber lines": ("mm", "mm"),
-    "Mid span": ("mm", "mm"),
-    "Meridional channel": ("x [mm]", "[mm]"),
-    "Curvature of the sides": ("[-]", "curvature [1/mm]"),
-    "Thickness as built": ("[-]", "thickness across the camber [mm]"),
+    "Sections with camber lines": ("{unit}", "{unit}"),
+    "Mid span": ("{unit}", "{unit}"),
+    "Meridional channel": ("x [{unit}]", "[{unit}]"),
+    "Curvature of the sides": ("[-]", "curvature [1/{unit}]"),
+    "Thickness as built": ("[-]", "thickness across the camber [{unit}]"),
     "Angles": ("angle [deg]", "span v [-]"),
     "Camber tangents": ("[% of extent]", "span v [-]"),
     "Edge radii": ("[% of length]", "span v [-]"),
     "Half thickness along": ("[-]", "half thickness [% of length]"),
 }
 SECTION_PANELS = {
-    "Section, pitch": ("x [mm]", "y [mm]"),
-    "Leading edge, radius": ("x [mm]", "y [mm]"),
-    "Trailing edge, radius": ("x [mm]", "y [mm]"),
-    "Curvature of the sides": ("[-]", "curvature [1/mm]"),
-    "Thickness as built": ("[-]", "thickness across the camber [mm]"),
+    "Section, pitch": ("x [{unit}]", "y [{unit}]"),
+    "Leading edge, radius": ("x [{unit}]", "y [{unit}]"),
+    "Trailing edge, radius": ("x [{unit}]", "y [{unit}]"),
+    "Curvature of the sides": ("[-]", "curvature [1/{unit}]"),
+    "Thickness as built": ("[-]", "thickness across the camber [{unit}]"),
     "Half thickness along": ("[-]", "half thickness [% of axial chord]"),
 }
 
@@ -32,8 +32,8 @@ SECTION_PANELS = {
 def test_every_panel_is_there_with_units_on_its_axes(drawn):
     for title, (abscissa, ordinate) in (SECTION_PANELS if drawn.name == "section" else PANELS).items():
         panel = drawn.panel(title)
-        assert abscissa in panel.get_xlabel()
-        assert ordinate in panel.get_ylabel()
+        assert abscissa.format(unit=drawn.unit) in panel.get_xlabel()
+        assert ordinate.format(unit=drawn.unit) in panel.get_ylabel()
 
 
 def test_the_head_gives_name_and_key_numbers(drawn):
@@ -42,9 +42,9 @@ def test_the_head_gives_name_and_key_numbers(drawn):
     assert drawn.design.description in head
     assert "chord" in head
     if drawn.name == "section":
-        assert f"chord {drawn.built.chord * 1e3:.4g} mm" in head
+        assert f"chord {drawn.built.chord * drawn.per_metre:.4g} {drawn.unit}" in head
     else:
-        assert f"mean chord {drawn.built.chord * 1e3:.4g} mm" in head
+        assert f"mean chord {drawn.built.chord * drawn.per_metre:.4g} {drawn.unit}" in head
         assert "{} x {} poles a side".format(*drawn.built.knots.poles) in head
         assert f"error {drawn.built.error:.1e} of the chord" in head
         assert "every promise kept" in head
@@ -52,7 +52,7 @@ def test_the_head_gives_name_and_key_numbers(drawn):
 
 def test_radial_machines_have_a_radius_and_cascades_a_height(blade_drawn):
     ordinate = blade_drawn.panel("Meridional channel").get_ylabel()
-    assert ordinate == ("z [mm]" if blade_drawn.name == "cascade" else "r [mm]")
+    assert ordinate == (f"z [{blade_drawn.unit}]" if blade_drawn.name == "cascade" else "r [mm]")
 
 
 def test_no_panel_is_blank(drawn):

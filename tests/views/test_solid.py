@@ -26,9 +26,8 @@ def test_the_native_blade_is_where_blue_is_drawn(blade_drawn, view):
     picture, (left, right, low, high) = np.asarray(image.get_array()), image.get_extent()
     u, v = np.meshgrid(np.linspace(0.0, 1.0, 161), np.linspace(0.0, 1.0, 81))
     axes = viewpoint(blade_drawn.built)
-    flat = np.concatenate(
-        [1e3 * blade_drawn.built.surfaces[name](u, v).reshape(-1, 3) @ axes[:2].T for name in ("upper", "lower")]
-    )
+    sides = [blade_drawn.built.surfaces[name](u, v).reshape(-1, 3) for name in ("upper", "lower")]
+    flat = blade_drawn.per_metre * np.concatenate(sides) @ axes[:2].T
     size = np.array([right - left, high - low]) / picture.shape[1::-1]
     column, row = ((flat - [left, low]) / size).astype(int).T
     blue = is_blue(picture)
@@ -44,13 +43,13 @@ def test_the_native_blade_is_where_blue_is_drawn(blade_drawn, view):
     assert (picture[picture.shape[0] - 1 - row, column, 3] > 0.0).mean() > 0.995  # all but the rim
 
 
-def test_lengths_are_millimetres_in_both_directions(blade_drawn, view):
+def test_lengths_are_to_scale_in_both_directions(blade_drawn, view):
     image = view.get_images()[0]
     left, right, low, high = image.get_extent()
     height, width = image.get_array().shape[:2]
     assert (right - left) / width == pytest.approx((high - low) / height, rel=5e-3)  # a row in 200 is rounded
-    assert right - left > 1e3 * blade_drawn.built.chord / 3.0
-    bar = next(text.get_text() for text in view.texts if text.get_text().endswith("mm"))
+    assert right - left > blade_drawn.per_metre * blade_drawn.built.chord / 3.0
+    bar = next(text.get_text() for text in view.texts if text.get_text().endswith(blade_drawn.unit))
     start, end = view.get_lines()[0].get_xdata()
     assert end - start == pytest.approx(float(bar.split()[0]))
 
@@ -63,7 +62,7 @@ def test_a_row_goes_once_around_and_the_blade_itself_is_in_it(blade_drawn):
     places = _positions(blade_drawn.built, None)
     assert 0.0 in places
     if blade_drawn.name == "cascade":
-        assert np.diff(places) == pytest.approx(57.5)
+        assert np.diff(places) == pytest.approx(0.0575 * blade_drawn.per_metre)
     else:
         assert len(places) == blade_drawn.design.blade_count
         assert np.diff(places) == pytest.approx(2.0 * np.pi / blade_drawn.design.blade_count)

@@ -16,14 +16,17 @@ from bladewright.views.sections import cosine_spacing
 from bladewright.views.style import (
     INK,
     LOWER,
-    MILLIMETRES,
     SOFT,
     UPPER,
     WALLS,
+    axis,
+    in_unit,
     label_axes,
     legend_below,
+    per_metre,
     span_colour,
     span_name,
+    unit_name,
 )
 
 if TYPE_CHECKING:
@@ -45,7 +48,7 @@ def side_curvature(section: "Section", name: str) -> tuple[Reals, Reals]:
     steps = length(np.diff(points, axis=0)) * np.real(section.scale((points[1:, 0] + points[:-1, 0]) / 2.0))
     arc = np.concatenate([[0.0], np.cumsum(steps)])
     outwards = -1.0 if name == "upper" else 1.0
-    return arc / arc[-1], outwards * section.curvature(name, u) / MILLIMETRES
+    return arc / arc[-1], outwards * section.curvature(name, u) / per_metre()
 
 
 def draw_curvature(axes: Axes, sections: Sequence["Section"], ends: tuple[str, str] = WALLS) -> None:
@@ -53,7 +56,7 @@ def draw_curvature(axes: Axes, sections: Sequence["Section"], ends: tuple[str, s
     for section in sections:
         for name, style in (("upper", UPPER), ("lower", LOWER)):
             axes.plot(*side_curvature(section, name), color=span_colour(section.span), linestyle=style, linewidth=1.2)
-    least = 2.0 / (MILLIMETRES * min(section.chord for section in sections))
+    least = 2.0 / (per_metre() * min(section.chord for section in sections))
     decade = 10.0 ** np.floor(np.log10(least))
     threshold = decade * min(each for each in (1.0, 2.0, 5.0, 10.0) if each * decade >= least)
     axes.set_yscale("symlog", linthresh=threshold, linscale=1.5)
@@ -67,7 +70,7 @@ def draw_curvature(axes: Axes, sections: Sequence["Section"], ends: tuple[str, s
     axes.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
     axes.axhline(0.0, color=SOFT, linewidth=0.8)
     axes.set_xlim(-0.01, 1.01)
-    label_axes(axes, "Curvature of the sides, convex positive", ARC_LABEL, "curvature [1/mm]")
+    label_axes(axes, "Curvature of the sides, convex positive", ARC_LABEL, f"curvature [1/{unit_name()}]")
     sides_legend(axes, [section.span for section in sections], ends)
 
 
@@ -78,14 +81,14 @@ def draw_thickness(axes: Axes, sections: Sequence["Section"], ends: tuple[str, s
         u, thickness = section.thickness
         largest, place = section.maximum_thickness
         share = 100.0 * largest / section.chord
-        label = f"{largest * MILLIMETRES:.3g} mm, {share:.3g} % of the chord"
+        label = f"{in_unit(largest, '.3g')}, {share:.3g} % of the chord"
         if len(sections) > 1:
             label = f"{span_name(section.span, ends)} {share:.3g} %"
-        axes.plot(u, thickness * MILLIMETRES, color=colour, label=label)
-        axes.plot(place, largest * MILLIMETRES, marker="o", markersize=4.0, color=colour, linestyle="none")
+        axes.plot(u, thickness * per_metre(), color=colour, label=label)
+        axes.plot(place, largest * per_metre(), marker="o", markersize=4.0, color=colour, linestyle="none")
     axes.set_ylim(bottom=0.0)
     axes.set_xlim(-0.01, 1.01)
-    label_axes(axes, "Thickness as built, largest in % of chord", CAMBER_LABEL, "thickness across the camber [mm]")
+    label_axes(axes, "Thickness as built, largest in % of chord", CAMBER_LABEL, axis("thickness across the camber"))
     legend_below(axes, 3, handlelength=1.2)
 
 

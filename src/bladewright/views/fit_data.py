@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 
 from bladewright.numerics.elementary import dot, length, unit
 from bladewright.nurbs.basis import Reals
-from bladewright.views.sections import cosine_spacing, millimetres_per_unit
-from bladewright.views.style import INK, MILLIMETRES
+from bladewright.views.sections import cosine_spacing, drawn_per_unit
+from bladewright.views.style import INK, per_metre
 
 if TYPE_CHECKING:
     from bladewright.section.section import Section
@@ -121,13 +121,13 @@ def points_to_draw(fit: FitResult, drawn: NDArray[np.bool_], most: int) -> Index
 
 def deviations_mm(fit: FitResult, index: Index) -> Reals:
     """Signed deviations (m,) of points [mm]."""
-    return fit.deviations[index] * MILLIMETRES
+    return fit.deviations[index] * per_metre()
 
 
 def colour_scale(fit: FitResult) -> Normalize:
     """Scale of the colours of deviations [mm]: symmetric about 0, up to a round number above 99 % of the inliers."""
     size = np.abs(fit.deviations[fit.inliers])
-    most = float(np.percentile(size, 99.0)) * MILLIMETRES if len(size) else 0.0
+    most = float(np.percentile(size, 99.0)) * per_metre() if len(size) else 0.0
     limit = rounded_up(most) if most > 0.0 else 1.0
     return Normalize(-limit, limit, clip=True)
 
@@ -211,7 +211,7 @@ def outline_at(fit: FitResult, v: float) -> DrawnSection:
     else:
         section = fit.built
         sides = {name: np.real(section.curves[name](u)) for name in SIDES}
-    size = millimetres_per_unit(section)
+    size = drawn_per_unit(section)
     outwards = {}
     for name, sign in (("upper", 1.0), ("lower", -1.0)):
         tangent = np.gradient(sides[name], u, axis=0, edge_order=2)

@@ -26,8 +26,8 @@ from bladewright.views.fit_data import (
     on_sides,
     points_to_draw,
 )
-from bladewright.views.sections import COORDINATES, edge_half_width, edge_size
-from bladewright.views.style import INK, MILLIMETRES, PALE, SOFT, label_axes
+from bladewright.views.sections import coordinates, edge_half_width, edge_size
+from bladewright.views.style import INK, PALE, SOFT, axis, in_unit, label_axes, per_metre, unit_name
 
 MAP_POINTS = 20_000
 """Most points that are drawn on the map one by one; of more, the mean of each cell is drawn, as dots would cover each
@@ -85,7 +85,7 @@ def draw_map(axes: Axes, fit: FitResult) -> None:
     bar = axes.figure.colorbar(
         ScalarMappable(norm=scale, cmap=DEVIATION_COLOURS), ax=axes, extend="both", pad=0.012, aspect=28
     )
-    bar.set_label("inside the blade  ←  deviation [mm]  →  outside")
+    bar.set_label(f"inside the blade  ←  deviation [{unit_name()}]  →  outside")
     bar.outline.set_visible(False)
 
 
@@ -94,7 +94,7 @@ def draw_outline_deviation(axes: Axes, fit: FitResult) -> None:
     scale = colour_scale(fit)
     total = int(np.count_nonzero(fit.inliers))
     drawn = points_to_draw(fit, fit.inliers, MAP_POINTS)
-    most = max(float(np.max(np.abs(fit.deviations[fit.inliers]), initial=0.0)), fit.tolerance or 0.0) * MILLIMETRES
+    most = max(float(np.max(np.abs(fit.deviations[fit.inliers]), initial=0.0)), fit.tolerance or 0.0) * per_metre()
     limit = 1.25 * (most if most > 0.0 else 1.0)
     caption = f"{count_of(total, 'point')}"
     if len(drawn) < total:
@@ -111,11 +111,11 @@ def draw_outline_deviation(axes: Axes, fit: FitResult) -> None:
     axes.axhline(0.0, color=INK, linewidth=0.9)
     if fit.tolerance is not None:
         for sign in (-1.0, 1.0):
-            axes.axhline(sign * fit.tolerance * MILLIMETRES, color=SOFT, linewidth=1.0, linestyle="--")
-        caption += f"; dashed: the tolerance, {fit.tolerance * MILLIMETRES:.3g} mm"
+            axes.axhline(sign * fit.tolerance * per_metre(), color=SOFT, linewidth=1.0, linestyle="--")
+        caption += f"; dashed: the tolerance, {in_unit(fit.tolerance, '.3g')}"
     _label_map(axes)
     axes.set_ylim(-limit, limit)
-    label_axes(axes, "Deviation from the section", f"{ABSCISSA}\n{caption}", "deviation, outside positive [mm]")
+    label_axes(axes, "Deviation from the section", f"{ABSCISSA}\n{caption}", axis("deviation, outside positive"))
 
 
 def abscissae(fit: FitResult, index: Index) -> Reals:
@@ -189,8 +189,8 @@ def draw_magnified(axes: Axes, fit: FitResult, outline: DrawnSection, name: str)
             x, y, color=colour, linestyle="none", marker="o", rasterized=many, markersize=size, markeredgewidth=0.0
         )
     axes.plot(*outline.closed.T, color=INK, linewidth=1.0)
-    _cross_outliers(axes, fit, outline, factor, 0.08 * float(outline.section.chord) * MILLIMETRES)
-    abscissa, ordinate = COORDINATES[outline.section.plane]
+    _cross_outliers(axes, fit, outline, factor, 0.08 * float(outline.section.chord) * per_metre())
+    abscissa, ordinate = coordinates(outline.section.plane)
     caption = "" if fit.tolerance is None else f", dashed: the tolerance × {factor:g}"
     label_axes(axes, f"{name}, deviations × {factor:g}", f"{abscissa}{caption}", ordinate)
     axes.set_aspect("equal", adjustable="datalim")
@@ -204,10 +204,10 @@ def draw_edge_points(axes: Axes, fit: FitResult, outline: DrawnSection, *, trail
     end = -1 if trailing else 0
     tip = 0.5 * (outline.sides["upper"][end] + outline.sides["lower"][end])
     inwards = outline.inwards(trailing=trailing)
-    chord = float(section.chord) * MILLIMETRES
+    chord = float(section.chord) * per_metre()
     region = fit.by_region.get(f"{'trailing' if trailing else 'leading'} edge")
     # Where the fitted edge is far too sharp, the panel must still show how far off the points are.
-    least = max(LEAST_EDGE_WINDOW * chord, 1.5 * region.maximum * MILLIMETRES if region else 0.0)
+    least = max(LEAST_EDGE_WINDOW * chord, 1.5 * region.maximum * per_metre() if region else 0.0)
     half_width = max(edge_half_width(section, size), least)
     middle = tip + 0.6 * half_width * inwards
     axes.fill(*outline.closed.T, color=PALE, linewidth=0.0)
@@ -241,7 +241,7 @@ def draw_edge_points(axes: Axes, fit: FitResult, outline: DrawnSection, *, trail
     axes.set_ylim(middle[1] - half_width, middle[1] + half_width)
     axes.set_aspect("equal", adjustable="box", anchor="N")
     edge = "Trailing" if trailing else "Leading"
-    abscissa, ordinate = COORDINATES[section.plane]
+    abscissa, ordinate = coordinates(section.plane)
     caption = f"{count_of(int(np.count_nonzero(visible)), 'point')}, {description}"
     label_axes(
         axes, f"{edge} edge{where}", f"{abscissa}\n{caption if not where else 'its worst: ' + caption}", ordinate
@@ -251,9 +251,9 @@ def draw_edge_points(axes: Axes, fit: FitResult, outline: DrawnSection, *, trail
 def _draw_tolerance(axes: Axes, fit: FitResult, outline: DrawnSection, factor: float) -> None:
     if fit.tolerance is None:
         return
-    offset = factor * fit.tolerance * MILLIMETRES
+    offset = factor * fit.tolerance * per_metre()
     # Inside a thin section the line would fold.
-    inside = offset < TOLERANCE_SHARE * outline.section.maximum_thickness[0] * MILLIMETRES
+    inside = offset < TOLERANCE_SHARE * outline.section.maximum_thickness[0] * per_metre()
     for sign in (-1.0, 1.0) if inside else (1.0,):
         for side in SIDES:
             axes.plot(*outline.moved(side, sign * offset).T, color=SOFT, linewidth=0.8, linestyle="--")

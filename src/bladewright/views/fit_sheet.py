@@ -19,16 +19,19 @@ from bladewright.views.style import (
     BLUE,
     GREEN,
     INK,
-    MILLIMETRES,
     ORANGE,
     RED,
     SHEET_DPI,
     SOFT,
     WALLS,
+    axis,
     drawing_style,
+    in_unit,
     label_axes,
     legend_below,
+    per_metre,
     span_name,
+    unit_name,
 )
 
 if TYPE_CHECKING:
@@ -63,7 +66,7 @@ def fit_picture(fit: FitResult, path: str | Path) -> None:
 
 def fit_sheet(fit: FitResult) -> Figure:
     """The figure that `fit_picture` writes."""
-    with drawing_style():
+    with drawing_style(fit.design.length_unit):
         return with_fixed_layout(_blade_sheet(fit) if fit.cloud.shape[-1] == 3 else _section_sheet(fit))
 
 
@@ -112,13 +115,13 @@ def _header(fit: FitResult) -> list[str]:
     header = [
         "passed" if fit.passed else "NOT PASSED",
         f"{count_of(len(fit.cloud), 'point')}, {count_of(outliers, 'outlier')}",
-        f"mean {fit.deviation.mean * MILLIMETRES:.3g} mm, largest {fit.deviation.maximum * MILLIMETRES:.3g} mm",
-        f"noise {fit.noise * MILLIMETRES:.2g} mm",
-        f"chord {float(np.real(fit.built.chord)) * MILLIMETRES:.4g} mm",
+        f"mean {in_unit(fit.deviation.mean, '.3g')}, largest {in_unit(fit.deviation.maximum, '.3g')}",
+        f"noise {in_unit(fit.noise, '.2g')}",
+        f"chord {in_unit(float(np.real(fit.built.chord)))}",
         count_of(len(fit.estimates), "free parameter"),
     ]
     if fit.tolerance is not None:
-        header.insert(3, f"tolerance {fit.tolerance * MILLIMETRES:.3g} mm")
+        header.insert(3, f"tolerance {in_unit(fit.tolerance, '.3g')}")
     return header
 
 
@@ -128,9 +131,9 @@ def _place(v: float, ends: tuple[str, str]) -> str:
 
 def draw_histogram(axes: Axes, fit: FitResult) -> None:
     """Draw the distribution of the inliers' signed deviations, with the noise of the cloud and the tolerance."""
-    deviation = fit.deviations[fit.inliers] * MILLIMETRES
+    deviation = fit.deviations[fit.inliers] * per_metre()
     most = float(np.max(np.abs(deviation), initial=0.0))
-    tolerance = None if fit.tolerance is None else fit.tolerance * MILLIMETRES
+    tolerance = None if fit.tolerance is None else fit.tolerance * per_metre()
     largest = most if tolerance is None or tolerance > 4.0 * most > 0.0 else max(most, tolerance)
     limit = 1.12 * (largest if largest > 0.0 else 1.0)
     bins = np.linspace(-limit, limit, 1 + 2 * int(np.clip(np.sqrt(len(deviation)) / 2.0, 10, 60)))
@@ -142,23 +145,23 @@ def draw_histogram(axes: Axes, fit: FitResult) -> None:
             shares = np.full(len(part), 100.0 / len(part))
             axes.hist(part, list(bins), weights=shares, histtype="step", color=colour, linewidth=1.3, label=name)
     tallest = max(axes.get_ylim()[1] / 1.05, 1e-9)
-    sigma = fit.noise * MILLIMETRES
+    sigma = fit.noise * per_metre()
     width = bins[1] - bins[0]
     if np.isfinite(sigma) and sigma > width / 3.0:
         abscissa = np.linspace(-limit, limit, 401)
         bell = 100.0 * width / (sigma * np.sqrt(2.0 * np.pi)) * np.exp(-0.5 * (abscissa / sigma) ** 2)
-        axes.plot(abscissa, bell, color=RED, linewidth=1.3, label=f"noise, σ = {sigma:.3g} mm")
+        axes.plot(abscissa, bell, color=RED, linewidth=1.3, label=f"noise, σ = {sigma:.3g} {unit_name()}")
     else:
-        axes.plot([], [], color=RED, label=f"noise, σ = {sigma:.2g} mm")
+        axes.plot([], [], color=RED, label=f"noise, σ = {sigma:.2g} {unit_name()}")
     axes.axvline(0.0, color=SOFT, linewidth=0.8)
     if tolerance is not None:
         for sign in (-1.0, 1.0):
             axes.axvline(sign * tolerance, color=INK, linewidth=1.1, linestyle="--")
-        axes.plot([], [], color=INK, linewidth=1.1, linestyle="--", label=f"tolerance ± {tolerance:.3g} mm")
+        axes.plot([], [], color=INK, linewidth=1.1, linestyle="--", label=f"tolerance ± {tolerance:.3g} {unit_name()}")
     axes.set_xlim(-limit, limit)
     # Noise far below the deviations makes a narrow, high bell that is cut off.
     axes.set_ylim(0.0, 1.1 * min(max(axes.get_ylim()[1] / 1.05, tallest), 1.5 * tallest))
-    label_axes(axes, "Distribution of the deviations", "deviation, outside positive [mm]", "part of the points [%]")
+    label_axes(axes, "Distribution of the deviations", axis("deviation, outside positive"), "part of the points [%]")
     legend_below(axes, 2)
 
 
@@ -183,7 +186,7 @@ def draw_table(axes: Axes, fit: FitResult) -> None:
     axes.set_ylim(0.0, 1.0)
     colour = GREEN if fit.passed else RED
     result = ("Passed" if fit.passed else "Not passed") + (", interrupted" if fit.interrupted else "")
-    axes.set_title("Distances of the inliers [mm]")
+    axes.set_title(f"Distances of the inliers [{unit_name()}]")
     height, line = 0.98, 0.074
     for name, right in zip(("points", "mean", "rms", "99 %", "max"), TABLE_COLUMNS, strict=True):
         axes.text(right, height, name, ha="right", va="top", fontsize=9.0, color=SOFT)
@@ -195,14 +198,14 @@ def draw_table(axes: Axes, fit: FitResult) -> None:
         cells = ["none", *"––––"]
         if of is not None and known:
             figures = (of.mean, of.rms, of.percentile_99, of.maximum)
-            cells = [f"{of.count:,}", *(f"{value * MILLIMETRES:.3g}" for value in figures)]
+            cells = [f"{of.count:,}", *(f"{value * per_metre():.3g}" for value in figures)]
         for cell, right in zip(cells, TABLE_COLUMNS, strict=True):
             over = known and right == TABLE_COLUMNS[-1] and _beyond(fit, of)
             ink = RED if over else INK
             axes.text(right, height, cell, ha="right", va="top", fontsize=9.5, fontweight=weight, color=ink)
     height -= 1.6 * line
     axes.text(0.0, height, result, va="top", fontsize=12.0, fontweight="bold", color=colour)
-    stated = "no tolerance asked" if fit.tolerance is None else f"tolerance {fit.tolerance * MILLIMETRES:.3g} mm"
+    stated = "no tolerance asked" if fit.tolerance is None else f"tolerance {in_unit(fit.tolerance, '.3g')}"
     axes.text(1.0, height, stated, ha="right", va="top", fontsize=10.0)
     height -= 1.15 * line
     lines = [piece for each in fit.failures for piece in wrap(shorten(each, 260, placeholder=" …"), 66)]

@@ -13,13 +13,15 @@ from bladewright.views.style import (
     GREEN,
     GREY,
     INK,
-    MILLIMETRES,
     ORANGE,
     RED,
     SOFT,
     VIOLET,
+    axis,
     label_axes,
     legend_below,
+    per_metre,
+    unit_name,
 )
 
 if TYPE_CHECKING:
@@ -37,23 +39,28 @@ INLET, OUTLET = VIOLET, GREY
 def draw_meridional(axes: Axes, blade: "Blade") -> None:
     """Draw the meridional view of a blade in the (x, r) plane, or (x, z) in a cascade, to one scale on both axes."""
     exact, view = blade.exact, blade.exact.meridional_view
-    covered = blade_outline(blade) * MILLIMETRES
+    covered = blade_outline(blade) * per_metre()
     axes.fill(*covered.T, color=INK, alpha=0.08, linewidth=0.0, label="blade")
     axes.plot(*covered.T, color=INK, linewidth=0.7)
     for index, line in enumerate(view.stream_lines):
-        axes.plot(*(line * MILLIMETRES).T, color=SOFT, linewidth=0.6, label=None if index else "stream lines")
+        axes.plot(*(line * per_metre()).T, color=SOFT, linewidth=0.6, label=None if index else "stream lines")
     for index, line in enumerate(view.quasi_orthogonals):
         label = None if index else "quasi-orthogonals"
-        axes.plot(*(line * MILLIMETRES).T, color=SOFT, linestyle=(0, (3, 2)), linewidth=0.9, label=label)
+        axes.plot(*(line * per_metre()).T, color=SOFT, linestyle=(0, (3, 2)), linewidth=0.9, label=label)
     for index, surface in enumerate(view.stream_surfaces):
         _draw(axes, surface, VIOLET, None if index else "stream surfaces given")
     for name, curve in view.lines.items():
         _draw(axes, curve, CURVES[name], name.replace("_", " "))
     for index, line in enumerate(built_edges(blade)):
         label = None if index else "edges as built"
-        axes.plot(*(line * MILLIMETRES).T, color=INK, linestyle=(0, (1, 1.2)), linewidth=1.6, label=label)
+        axes.plot(*(line * per_metre()).T, color=INK, linestyle=(0, (1, 1.2)), linewidth=1.6, label=label)
     draw_clearance(axes, view)
-    label_axes(axes, "Meridional channel, given points", "x [mm]", "r [mm]" if exact.mapping.revolved else "z [mm]")
+    label_axes(
+        axes,
+        "Meridional channel, given points",
+        axis("x"),
+        axis("r") if exact.mapping.revolved else axis("z"),
+    )
     axes.set_aspect("equal", adjustable="datalim")
     legend_below(axes, 3)
 
@@ -62,9 +69,9 @@ def draw_clearance(axes: Axes, view: "MeridionalView") -> None:
     """Draw the clearance surface where there is one."""
     if view.tip is None:
         return
-    stated = " to ".join(dict.fromkeys(f"{each * MILLIMETRES:.3g}" for each in view.clearance))
-    tip = view.tip * MILLIMETRES
-    axes.plot(*tip.T, color=INK, linestyle="--", linewidth=1.0, label=f"clearance {stated} mm")
+    stated = " to ".join(dict.fromkeys(f"{each * per_metre():.3g}" for each in view.clearance))
+    tip = view.tip * per_metre()
+    axes.plot(*tip.T, color=INK, linestyle="--", linewidth=1.0, label=f"clearance {stated} {unit_name()}")
 
 
 def built_edges(blade: "Blade") -> list[Reals]:
@@ -79,12 +86,12 @@ def built_edges(blade: "Blade") -> list[Reals]:
 
 def _draw(axes: Axes, line: "ViewLine", colour: str, label: str | None) -> None:
     """Draw a curve with its continuations and the points that define it."""
-    axes.plot(*(line.points * MILLIMETRES).T, color=colour, label=label)
+    axes.plot(*(line.points * per_metre()).T, color=colour, label=label)
     for part in line.beyond:
-        axes.plot(*(part * MILLIMETRES).T, color=colour, linewidth=0.8)
+        axes.plot(*(part * per_metre()).T, color=colour, linewidth=0.8)
     marks: dict[str, Any] = {"marker": "o", "markersize": 4.5, "markerfacecolor": "white"}
     style = ":" if line.polygon else "none"
-    axes.plot(*(line.given * MILLIMETRES).T, color=colour, linestyle=style, linewidth=0.8, **marks)
+    axes.plot(*(line.given * per_metre()).T, color=colour, linestyle=style, linewidth=0.8, **marks)
 
 
 def blade_outline(blade: "Blade") -> Reals:
@@ -100,7 +107,7 @@ def blade_outline(blade: "Blade") -> Reals:
 def draw_duct(axes: Axes, passage: "Passage") -> None:
     """Draw the native duct in the (x, r) plane, or (x, z) in a cascade, to one scale on both axes."""
     blade = passage.blade
-    covered = blade_outline(blade) * MILLIMETRES
+    covered = blade_outline(blade) * per_metre()
     axes.fill(*covered.T, color=INK, alpha=0.08, linewidth=0.0, label="blade")
     periodic, across = cast(Surface, passage.whole["periodic_upper"]), np.linspace(0.0, 1.0, 101)
     u = np.unique(np.concatenate([np.linspace(0.0, 1.0, 401), 0.25 + 0.5 * cosine_spacing(201)]))
@@ -117,7 +124,12 @@ def draw_duct(axes: Axes, passage: "Passage") -> None:
         line = _meridional(passage, side, np.array([end]), across)[0]
         axes.plot(*line.T, color=CURVES[edge], label=edge.replace("_", " "))
     draw_clearance(axes, blade.exact.meridional_view)
-    label_axes(axes, "Meridional duct", "x [mm]", "r [mm]" if passage.duct.revolved else "z [mm]")
+    label_axes(
+        axes,
+        "Meridional duct",
+        axis("x"),
+        axis("r") if passage.duct.revolved else axis("z"),
+    )
     axes.set_aspect("equal", adjustable="datalim")
     legend_below(axes, 3)
 
@@ -125,4 +137,4 @@ def draw_duct(axes: Axes, passage: "Passage") -> None:
 def _meridional(passage: "Passage", face: Surface, u: Reals, v: Reals) -> Reals:
     """Points (k, l, 2) in (x, r) or (x, z) [mm] of a native face at u (k,) and v (l,)."""
     x, y, z = np.moveaxis(np.real(face.grid(u, v)), -1, 0)
-    return np.stack([x, np.sqrt(y * y + z * z) if passage.duct.revolved else z], axis=-1) * MILLIMETRES
+    return np.stack([x, np.sqrt(y * y + z * z) if passage.duct.revolved else z], axis=-1) * per_metre()

@@ -10,9 +10,20 @@ from bladewright.nurbs.basis import Reals
 from bladewright.nurbs.trimmed import TrimmedSurface
 from bladewright.views.meridional import INLET, OUTLET, draw_duct
 from bladewright.views.pages import columns, draw_header, rows
-from bladewright.views.sections import COORDINATES, developed, outline
+from bladewright.views.sections import coordinates, developed, outline
 from bladewright.views.solid import draw_passage_solid
-from bladewright.views.style import CAMBER, INK, LOWER, MILLIMETRES, SOFT, UPPER, label_axes, span_colour
+from bladewright.views.style import (
+    CAMBER,
+    INK,
+    LOWER,
+    SOFT,
+    UPPER,
+    in_unit,
+    label_axes,
+    per_metre,
+    span_colour,
+    unit_name,
+)
 from bladewright.views.walls import draw_least_jacobian, draw_wall
 
 if TYPE_CHECKING:
@@ -80,7 +91,7 @@ def draw_section_passage(axes: Axes, passage: "SectionPassage") -> None:
         ("outlet", OUTLET, UPPER),
     ):
         axes.plot(*lines[name].T, color=ink, linestyle=style, linewidth=1.8, label=name.replace("_", " "))
-    label_axes(axes, f"Flow domain, pitch {pitch:.4g} mm", *COORDINATES[section.plane])
+    label_axes(axes, f"Flow domain, pitch {pitch:.4g} {unit_name()}", *coordinates(section.plane))
     axes.set_aspect("equal", adjustable="datalim")
     axes.legend(loc="upper left", bbox_to_anchor=(0.0, -0.08), ncols=4)
 
@@ -112,7 +123,7 @@ def passage_header(passage: "Passage") -> list[str]:
 
 def figures(passage: "Passage") -> Rows:
     """Volumes, errors, extents, and the poles of every face."""
-    count, size = passage.blade.design.blade_count, passage.knots.length * MILLIMETRES
+    count, size = passage.blade.design.blade_count, passage.knots.length * per_metre()
     table = [
         ("Volume", ""),
         ("passage", _cubic(passage.properties.volume)),
@@ -123,8 +134,8 @@ def figures(passage: "Passage") -> Rows:
         ("off their surfaces / chord", f"{passage.wall_error:.1e}"),
         ("least Jacobian / median", f"{_least(passage):.2g}"),
         ("Extents", ""),
-        ("upstream", f"{passage.knots.upstream:.3g} x {size:.4g} mm"),
-        ("downstream", f"{passage.knots.downstream:.3g} x {size:.4g} mm"),
+        ("upstream", f"{passage.knots.upstream:.3g} x {size:.4g} {unit_name()}"),
+        ("downstream", f"{passage.knots.downstream:.3g} x {size:.4g} {unit_name()}"),
     ]
     for name, turn in zip(("inlet angle", "outlet angle"), passage.camber.turned, strict=True):
         if turn is not None:
@@ -143,7 +154,10 @@ def poles(passage: "Passage", name: str) -> str:
 def section_header(passage: "SectionPassage") -> list[str]:
     """The key figures of a section's passage, for the header."""
     ends = [float(np.real(passage.curves[name].control_points[0, 0])) for name in ("inlet", "outlet")]
-    return [f"area {_square(passage.area)}", f"from x = {ends[0] * MILLIMETRES:.4g} to {ends[1] * MILLIMETRES:.4g} mm"]
+    return [
+        f"area {_square(passage.area)}",
+        f"from x = {ends[0] * per_metre():.4g} to {in_unit(ends[1])}",
+    ]
 
 
 def section_figures(passage: "SectionPassage") -> Rows:
@@ -174,10 +188,12 @@ def _spaced(name: str) -> str:
 
 def _cubic(volume: np.ndarray) -> str:
     """A volume [m^3] with a unit that suits its size."""
-    cubic = float(np.real(volume)) * MILLIMETRES**3
+    cubic = float(np.real(volume)) * per_metre() ** 3
+    if unit_name() != "mm":
+        return f"{cubic:.5g} {unit_name()}³"
     return f"{cubic:.5g} mm³" if cubic < 1e4 else f"{cubic / 1e3:.5g} cm³" if cubic < 1e8 else f"{cubic / 1e6:.5g} dm³"
 
 
 def _square(area: np.ndarray) -> str:
     """An area [m^2] as text."""
-    return f"{float(np.real(area)) * MILLIMETRES**2:.5g} mm²"
+    return f"{float(np.real(area)) * per_metre() ** 2:.5g} {unit_name()}²"

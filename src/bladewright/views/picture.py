@@ -23,7 +23,7 @@ from bladewright.views.pages import checked_path, draw_header, rows, with_fixed_
 from bladewright.views.passage import passage_sheet, section_passage_sheet
 from bladewright.views.sections import draw_edge, draw_edges, draw_neighbour, draw_sections, pitch_of
 from bladewright.views.solid import draw_passage_solid, draw_solid
-from bladewright.views.style import MILLIMETRES, SHEET_DPI, VIEW_DPI, WALLS, drawing_style, span_name
+from bladewright.views.style import SHEET_DPI, VIEW_DPI, WALLS, drawing_style, in_unit, per_metre, span_name, unit_name
 
 SPANS, FEW_SPANS = (0.0, 0.25, 0.5, 0.75, 1.0), (0.0, 0.5, 1.0)
 """Span fractions of the sections drawn on top of each other, and of those in panels where more would hide each
@@ -62,7 +62,7 @@ def blade_view(blade: Blade | RowDesign, path: str | Path) -> None:
             "prismatic(section, span) makes"
         )
     built = blade if isinstance(blade, Blade) else blade.build()
-    with drawing_style():
+    with drawing_style(built.design.length_unit):
         figure = Figure(figsize=(10.0, 8.0), layout="constrained")
         draw_solid(figure.add_subplot(), built, neighbours=None, width=1250)
         write_figure(figure, path, VIEW_DPI)
@@ -79,7 +79,7 @@ def passage_view(passage: Passage, path: str | Path) -> None:
             f"a {type(passage).__name__} was given: only a passage has this view; draw the one that "
             "passage(blade) makes"
         )
-    with drawing_style():
+    with drawing_style(passage.blade.design.length_unit):
         figure = Figure(figsize=(10.0, 8.0), layout="constrained")
         draw_passage_solid(figure.add_subplot(), passage, size=PASSAGE_VIEW)
         write_figure(figure, path, VIEW_DPI)
@@ -89,7 +89,7 @@ def sheet(design: Design | Built, blade: Built | None = None) -> Figure:
     """The figure that `picture` writes."""
     built: Any = design if isinstance(design, Built) else (blade or design.build())
     known = design if isinstance(design, Design) else None
-    with drawing_style():
+    with drawing_style(_unit_of(known, built)):
         match built:
             case Passage():
                 figure = passage_sheet(built)
@@ -100,6 +100,16 @@ def sheet(design: Design | Built, blade: Built | None = None) -> Figure:
             case _:
                 figure = _blade_sheet(built)
         return with_fixed_layout(figure)
+
+
+def _unit_of(design: Any, built: Any) -> str:
+    """The unit of the design's lengths; millimetres where a section is drawn of which no design is known."""
+    match built:
+        case Blade():
+            design = built.design
+        case Passage():
+            design = built.blade.design
+    return "mm" if design is None else str(design.length_unit)
 
 
 def _blade_sheet(blade: Blade) -> Figure:
@@ -144,7 +154,7 @@ def _section_sheet(design: Any, section: Section) -> Figure:
 
     pitch = None
     if design is not None and design.pitch is not None:
-        pitch = design.pitch * UNITS[design.length_unit] * MILLIMETRES
+        pitch = design.pitch * UNITS[design.length_unit] * per_metre()
     figure = Figure(figsize=(16.0, 15.4))
     name, description = (design.name, design.description) if design is not None else ("section", "")
     draw_header(figure, name, description, _section_header(section, pitch))
@@ -168,8 +178,8 @@ def _blade_header(blade: Blade, middle: Section, pitch: float) -> list[str]:
     count = blade.design.blade_count
     return [
         "linear cascade" if count is None else f"{count} blade{'s' if count > 1 else ''}",
-        f"mean chord {blade.chord * MILLIMETRES:.4g} mm",
-        f"chord / pitch at {_span_title(middle, blade.design.ends).lower()} {middle.chord * MILLIMETRES / pitch:.3g}",
+        f"mean chord {in_unit(blade.chord)}",
+        f"chord / pitch at {_span_title(middle, blade.design.ends).lower()} {middle.chord * per_metre() / pitch:.3g}",
         f"{columns} x {rows} poles a side",
         f"error {blade.error:.1e} of the chord",
         "every promise kept" if blade.conformance.kept else "a promise is not kept",
@@ -182,11 +192,11 @@ def _span_title(section: Section, ends: tuple[str, str]) -> str:
 
 
 def _section_header(section: Section, pitch: float | None) -> list[str]:
-    chord = section.chord * MILLIMETRES
+    chord = section.chord * per_metre()
     header = [
-        f"chord {chord:.4g} mm",
-        f"area {section.area * MILLIMETRES**2:.4g} mm²",
-        f"perimeter {section.perimeter * MILLIMETRES:.4g} mm",
+        f"chord {chord:.4g} {unit_name()}",
+        f"area {section.area * per_metre() ** 2:.4g} {unit_name()}²",
+        f"perimeter {in_unit(section.perimeter)}",
         "stagger {:.3g}°, metal angles {:.3g}° and {:.3g}°".format(
             *(np.degrees(each) for each in (section.stagger, section.metal_angle_in, section.metal_angle_out))
         ),

@@ -13,15 +13,16 @@ from bladewright.nurbs.basis import Reals
 from bladewright.views.style import (
     CAMBER,
     INK,
-    MILLIMETRES,
     PALE,
     RED,
     SOFT,
     WALLS,
     label_axes,
     legend_below,
+    per_metre,
     span_colour,
     span_name,
+    unit_name,
 )
 
 if TYPE_CHECKING:
@@ -31,12 +32,12 @@ if TYPE_CHECKING:
     from bladewright.section.section import Section
 
 
-COORDINATES = {
-    "x-y": ("x [mm]", "y [mm]"),
-    "m-y": ("m [mm]", "y [mm]"),
-    "m'-theta": (r"$m'\,\bar{r}$ [mm]", r"$\theta\,\bar{r}$ [mm]"),
-    "m-r*theta": ("m [mm]", r"$r\,\theta$ [mm]"),
-    "u-y/L": (r"$u\,L$ [mm]", r"$r\,\theta$ [mm]"),
+_AXES = {
+    "x-y": ("x", "y"),
+    "m-y": ("m", "y"),
+    "m'-theta": (r"$m'\,\bar{r}$", r"$\theta\,\bar{r}$"),
+    "m-r*theta": ("m", r"$r\,\theta$"),
+    "u-y/L": (r"$u\,L$", r"$r\,\theta$"),
 }
 """Names of the axes of the developed planes. A bar marks the mean along the section: angles are then true, and lengths
 nearly so."""
@@ -49,9 +50,14 @@ FLAT_EDGE_RADIUS = 100.0
 """Radius in chords from which on an edge is called flat: its circle cannot be told from a straight line."""
 SHARP_EDGE_SIZE = 0.01
 """Length in chords that sets the close-up of a sharp edge, which has no radius."""
-AT_EDGE = {"m'-theta": (r"$m'\,r_e$ [mm]", r"$\theta\,r_e$ [mm]")}
-"""Names of the axes of close-ups, where they differ from `COORDINATES`: lengths are true at the edge, at the radius
-r_e."""
+_AT_EDGE = {"m'-theta": (r"$m'\,r_e$", r"$\theta\,r_e$")}
+"""Names of the axes of close-ups, where they differ from `_AXES`: lengths are true at the edge, at the radius r_e."""
+
+
+def coordinates(plane: str, *, at_edge: bool = False) -> tuple[str, str]:
+    """Names and unit of the axes of a section's developed plane, or of the close-up of an edge."""
+    abscissa, ordinate = _AT_EDGE.get(plane, _AXES[plane]) if at_edge else _AXES[plane]
+    return f"{abscissa} [{unit_name()}]", f"{ordinate} [{unit_name()}]"
 
 
 def cosine_spacing(count: int = 201) -> Reals:
@@ -59,19 +65,19 @@ def cosine_spacing(count: int = 201) -> Reals:
     return (1.0 - np.cos(np.pi * np.linspace(0.0, 1.0, count))) / 2.0
 
 
-def millimetres_per_unit(section: "Section") -> float:
-    """Millimetres in one unit of the section's plane, in the mean between its edges."""
+def drawn_per_unit(section: "Section") -> float:
+    """Units of the picture in one unit of the section's plane, in the mean between its edges."""
     ends = np.real(section.camber.control_points[[0, -1], 0])
-    return float(np.mean(np.real(section.scale(np.linspace(ends[0], ends[1], 65))))) * MILLIMETRES
+    return float(np.mean(np.real(section.scale(np.linspace(ends[0], ends[1], 65))))) * per_metre()
 
 
 def developed(section: "Section", points: Reals) -> Reals:
-    """Points (n, 2) of the section's plane [mm]."""
-    return np.real(points) * millimetres_per_unit(section)
+    """Points (n, 2) of the section's plane."""
+    return np.real(points) * drawn_per_unit(section)
 
 
 def outline(section: "Section") -> Reals:
-    """The closed outline (n, 2) [mm]: the upper side from leading to trailing edge, then the lower side back."""
+    """The closed outline (n, 2): the upper side from leading to trailing edge, then the lower side back."""
     u = cosine_spacing()
     upper, lower = (developed(section, section.curves[name](u)) for name in ("upper", "lower"))
     closing = upper[:1] if section.edges[0] == "blunt" else upper[:0]
@@ -79,28 +85,28 @@ def outline(section: "Section") -> Reals:
 
 
 def pitch_of(blade: "Blade", section: "Section") -> float:
-    """Tangential distance between neighbours in the section's developed plane [mm]."""
+    """Tangential distance between neighbours in the section's developed plane."""
     from bladewright.section.checks import UNITS
 
     design = blade.design
     if design.pitch is not None:
-        return design.pitch * UNITS[design.length_unit] * MILLIMETRES
-    radius = millimetres_per_unit(section)
+        return design.pitch * UNITS[design.length_unit] * per_metre()
+    radius = drawn_per_unit(section)
     if section.plane != "m'-theta":
         lines = blade.exact.sections(np.array([section.span])).lines
-        radius = float(np.mean(np.real(lines.position(np.linspace(0.0, 1.0, 65))[..., 1]))) * MILLIMETRES
+        radius = float(np.mean(np.real(lines.position(np.linspace(0.0, 1.0, 65))[..., 1]))) * per_metre()
     return 2.0 * np.pi / (design.blade_count or 1) * radius
 
 
 def neighbour_outline(blade: "Blade", section: "Section", shape: Reals) -> Reals:
-    """The outline (n, 2) [mm] of the neighbour one pitch away from a section of a blade whose outline is `shape`."""
+    """The outline (n, 2) of the neighbour one pitch away from a section of a blade whose outline is `shape`."""
     mapping, pitch = blade.exact.mapping, pitch_of(blade, section)
     offset = np.full(len(shape), pitch)
     if not mapping.keeps_ordinate and mapping.revolved:
         lines = blade.exact.sections(np.array([section.span])).lines
-        radius = lines.position(lines.u_at((shape[:, 0] / millimetres_per_unit(section))[None]))[..., 1]
+        radius = lines.position(lines.u_at((shape[:, 0] / drawn_per_unit(section))[None]))[..., 1]
         turn = np.full(radius.shape, 2.0 * np.pi / (blade.design.blade_count or 1))
-        offset = np.real(mapping.start(turn, radius, lines.lengths[..., None]))[0] * millimetres_per_unit(section)
+        offset = np.real(mapping.start(turn, radius, lines.lengths[..., None]))[0] * drawn_per_unit(section)
     return np.stack([shape[:, 0], shape[:, 1] + offset], axis=-1)
 
 
@@ -113,7 +119,7 @@ def draw_sections(axes: Axes, sections: Sequence["Section"], ends: tuple[str, st
         axes.plot(*shape.T, color=colour, label=span_name(section.span, ends))
         camber = developed(section, section.camber(cosine_spacing()))
         axes.plot(*camber.T, color=colour, linewidth=0.8, linestyle=CAMBER)
-    label_axes(axes, "Sections with camber lines", *COORDINATES[sections[0].plane])
+    label_axes(axes, "Sections with camber lines", *coordinates(sections[0].plane))
     axes.set_aspect("equal", adjustable="datalim")
     legend_below(axes, 5, handlelength=1.0, columnspacing=0.9)
 
@@ -121,28 +127,30 @@ def draw_sections(axes: Axes, sections: Sequence["Section"], ends: tuple[str, st
 def draw_neighbour(
     axes: Axes, section: "Section", pitch: float | None, title: str, blade: "Blade | None" = None
 ) -> None:
-    """Draw a section with its camber line, and its neighbour one pitch [mm] away with the narrowest gap between them.
+    """Draw a section with its camber line, and its neighbour one pitch away with the narrowest gap between them.
 
     Where a blade is given, its geometry says where the neighbour lies; otherwise the neighbour is shifted by the pitch.
     """
     shape = outline(section)
     colour = span_colour(section.span)
-    chord = section.chord * MILLIMETRES
+    chord = section.chord * per_metre()
     axes.fill(*shape.T, color=colour, alpha=0.14, linewidth=0.0)
     axes.plot(*shape.T, color=colour)
     camber = developed(section, section.camber(cosine_spacing()))
     axes.plot(*camber.T, color=INK, linewidth=0.9, linestyle=CAMBER, label="camber line")
-    axes.plot(*camber[[0, -1]].T, color=SOFT, linewidth=0.8, linestyle=":", label=f"chord {chord:.4g} mm")
+    axes.plot(*camber[[0, -1]].T, color=SOFT, linewidth=0.8, linestyle=":", label=f"chord {chord:.4g} {unit_name()}")
     if pitch is not None and pitch < ISOLATED_PITCH * chord:
         neighbour = shape + np.array([0.0, pitch]) if blade is None else neighbour_outline(blade, section, shape)
         axes.fill(*neighbour.T, color=PALE, linewidth=0.0)
         axes.plot(*neighbour.T, color=SOFT)
         gap = narrowest_gap(shape, neighbour)
         width = float(length(gap[1] - gap[0]))
-        axes.plot(*gap.T, color=RED, linewidth=1.1, marker="o", markersize=3.0, label=f"narrowest {width:.4g} mm")
+        axes.plot(
+            *gap.T, color=RED, linewidth=1.1, marker="o", markersize=3.0, label=f"narrowest {width:.4g} {unit_name()}"
+        )
     if pitch is not None:
-        title = f"{title}, pitch {pitch:.4g} mm"
-    label_axes(axes, title, *COORDINATES[section.plane])
+        title = f"{title}, pitch {pitch:.4g} {unit_name()}"
+    label_axes(axes, title, *coordinates(section.plane))
     axes.set_aspect("equal", adjustable="datalim")
     legend_below(axes, 3, handlelength=1.5, columnspacing=0.9)
 
@@ -185,7 +193,7 @@ def draw_edge(axes: Axes, section: "Section", *, trailing: bool) -> None:
     camber = scale * developed(section, section.camber(cosine_spacing()))
     axes.plot(*camber.T, color=INK, linewidth=0.9, linestyle=CAMBER)
     size, name = edge_size(section, trailing=trailing)
-    if kind == "round" and size < EDGE_WINDOW_CHORDS * float(np.real(section.chord)) * MILLIMETRES:
+    if kind == "round" and size < EDGE_WINDOW_CHORDS * float(np.real(section.chord)) * per_metre():
         centre = tip + size * inwards
         axes.add_patch(Circle((centre[0], centre[1]), size, fill=False, edgecolor=RED, linewidth=1.1, linestyle="--"))
         axes.plot(*centre, marker="+", color=RED, markersize=7.0)
@@ -195,30 +203,30 @@ def draw_edge(axes: Axes, section: "Section", *, trailing: bool) -> None:
     axes.set_ylim(middle[1] - half_width, middle[1] + half_width)
     axes.set_aspect("equal", adjustable="box")
     edge = "Trailing edge" if trailing else "Leading edge"
-    label_axes(axes, f"{edge}, {name}", *AT_EDGE.get(section.plane, COORDINATES[section.plane]))
+    label_axes(axes, f"{edge}, {name}", *coordinates(section.plane, at_edge=True))
 
 
 def edge_scale(section: "Section", *, trailing: bool) -> float:
     """Ratio of true lengths at an edge to lengths in the developed section, which is scaled by its mean radius."""
     end = np.real(section.camber.control_points[-1 if trailing else 0, :1])
-    return float(np.real(section.scale(end))[0]) * MILLIMETRES / millimetres_per_unit(section)
+    return float(np.real(section.scale(end))[0]) * per_metre() / drawn_per_unit(section)
 
 
 def edge_half_width(section: "Section", size: float) -> float:
-    """Half width [mm] of the close-up of an edge of this size [mm]."""
-    widest = EDGE_WINDOW_CHORDS * float(np.real(section.chord)) * MILLIMETRES
+    """Half width of the close-up of an edge of this size."""
+    widest = EDGE_WINDOW_CHORDS * float(np.real(section.chord)) * per_metre()
     return min(max(widest, 1.5 * size), EDGE_WINDOW_RADII * size) if size < widest else widest
 
 
 def edge_size(section: "Section", *, trailing: bool) -> tuple[float, str]:
-    """The size of an edge [mm], its radius or half its width, and the words that say it."""
+    """The size of an edge, its radius or half its width, and the words that say it."""
     kind, end = section.edges[int(trailing)], -1 if trailing else 0
     if kind == "round":
-        radius = section.edge_radii[int(trailing)] * MILLIMETRES
-        flat = radius > FLAT_EDGE_RADIUS * float(np.real(section.chord)) * MILLIMETRES
-        return radius, "flat" if flat else f"radius {radius:.4g} mm"
+        radius = section.edge_radii[int(trailing)] * per_metre()
+        flat = radius > FLAT_EDGE_RADIUS * float(np.real(section.chord)) * per_metre()
+        return radius, "flat" if flat else f"radius {radius:.4g} {unit_name()}"
     sides = [developed(section, section.curves[name](np.array([0.0, 1.0]))) for name in ("upper", "lower")]
     width = edge_scale(section, trailing=trailing) * float(length(sides[0][end] - sides[1][end]))
     if kind == "blunt":
-        return 0.5 * width, f"blunt, {width:.4g} mm"
-    return SHARP_EDGE_SIZE * float(np.real(section.chord)) * MILLIMETRES, "sharp"
+        return 0.5 * width, f"blunt, {width:.4g} {unit_name()}"
+    return SHARP_EDGE_SIZE * float(np.real(section.chord)) * per_metre(), "sharp"

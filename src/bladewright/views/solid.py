@@ -12,7 +12,7 @@ from bladewright.nurbs.basis import Reals
 from bladewright.nurbs.surface import Surface
 from bladewright.views.raster import Camera, Polyline, ShadedGrid, axes_towards, framing_camera, rendered
 from bladewright.views.sections import ISOLATED_PITCH, cosine_spacing
-from bladewright.views.style import INK, MILLIMETRES
+from bladewright.views.style import INK, per_metre, unit_name
 
 if TYPE_CHECKING:
     from bladewright.blade.native.blade import Blade
@@ -82,7 +82,7 @@ def _positions(blade: "Blade", neighbours: int | None) -> list[float]:
         return [2.0 * np.pi / count * (index - number // 2) for index in range(number)]
     pitch = (design.pitch or 0.0) * UNITS[design.length_unit]
     neighbours_each_side = 0 if pitch > ISOLATED_PITCH * blade.chord else 2 if neighbours is None else neighbours
-    return [MILLIMETRES * pitch * index for index in range(-neighbours_each_side, neighbours_each_side + 1)]
+    return [per_metre() * pitch * index for index in range(-neighbours_each_side, neighbours_each_side + 1)]
 
 
 def _moved(blade: "Blade", points: Reals, turn: float) -> Reals:
@@ -132,14 +132,14 @@ def _sampled(face: Any, u: Reals, v: Reals) -> tuple[Reals, Reals]:
     """Points (m, n, 3) [mm] of a native face at u (m,) and v (n,), and its unit normals along dS/du x dS/dv."""
     normals = np.cross(np.real(face.grid(u, v, 1, 0)), np.real(face.grid(u, v, 0, 1)))
     size = np.sqrt(np.sum(normals**2, axis=-1, keepdims=True))
-    return MILLIMETRES * np.real(face.grid(u, v)), normals / np.maximum(size, 1e-300)
+    return per_metre() * np.real(face.grid(u, v)), normals / np.maximum(size, 1e-300)
 
 
 def _hub(blade: "Blade", turns: list[float]) -> list[ShadedGrid]:
     """The hub under the blades that are drawn [mm], a little longer than they are; under a whole row with its bore."""
     exact, low, high = blade.exact, *_hub_range(blade)
-    wall = MILLIMETRES * exact.wall_points("hub", np.linspace(low, high, 61))
-    base = MILLIMETRES * np.concatenate(
+    wall = per_metre() * exact.wall_points("hub", np.linspace(low, high, 61))
+    base = per_metre() * np.concatenate(
         [np.real(blade.surfaces[name](cosine_spacing(41), 0.0)) for name in ("upper", "lower")]
     )
     if not exact.mapping.revolved:
@@ -203,7 +203,7 @@ def _scale(axes: Axes, camera: Camera) -> None:
     start, height = left + 0.22 * size, bottom - 0.09 * size
     axes.plot([start, start + bar], [height, height], color=INK, linewidth=2.0, solid_capstyle="butt")
     near: dict[str, Any] = {"textcoords": "offset points", "ha": "center"}
-    axes.annotate(f"{bar:g} mm", (start + bar / 2.0, height), xytext=(0.0, -4.0), va="top", **near)
+    axes.annotate(f"{bar:g} {unit_name()}", (start + bar / 2.0, height), xytext=(0.0, -4.0), va="top", **near)
     origin = np.array([left + 0.09 * size, bottom - 0.08 * size])
     arrow = {"arrowstyle": "-|>", "color": INK, "linewidth": 1.0, "shrinkA": 0.0, "shrinkB": 0.0}
     for index, name in enumerate("xyz"):
@@ -264,12 +264,12 @@ def _outer_edges(passage: "Passage") -> list[Reals]:
         lines += [*np.swapaxes(np.real(face.grid(u, ends)), 0, 1)]
         if name.startswith("periodic"):
             lines += [*np.real(face.grid(ends, u))]
-    return [MILLIMETRES * line for line in lines]
+    return [per_metre() * line for line in lines]
 
 
 def _write_name(axes: Axes, camera: Camera, face: Surface, name: str, clear: Reals) -> Reals:
     """Write a face's name on it, as far as possible from points (n, 2) of the picture; return its place (1, 2)."""
-    points = MILLIMETRES * np.real(face.grid(NAME_PLACES, NAME_PLACES)).reshape(-1, 3)
+    points = per_metre() * np.real(face.grid(NAME_PLACES, NAME_PLACES)).reshape(-1, 3)
     flat = camera.seen(points)[:, :2]
     clearances = np.min(length(flat[:, None] - clear), axis=1)
     best = flat[int(np.argmax(clearances))]

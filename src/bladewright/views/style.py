@@ -2,14 +2,17 @@
 
 from collections.abc import Iterator
 from contextlib import contextmanager
+from contextvars import ContextVar
 from typing import Any, cast
 
 import numpy as np
 from matplotlib import rc_context
 from matplotlib.axes import Axes
 
-MILLIMETRES = 1e3
-"""Millimetres in a metre: geometry is in metres, pictures are in millimetres."""
+from bladewright.section.checks import UNITS
+
+_LENGTH_UNIT: ContextVar[str] = ContextVar("length_unit", default="mm")
+"""The unit of length of the picture that is being drawn."""
 SHEET_DPI, VIEW_DPI = 150, 160
 """Pixels per inch of a sheet and of a single view as PNG: the smallest text, 9 points, is then about 19 pixels high."""
 INK, SOFT, PALE = "#22303c", "#8a97a3", "#e4e9ee"
@@ -70,10 +73,40 @@ _STYLE: dict[str, Any] = {
 
 
 @contextmanager
-def drawing_style() -> Iterator[None]:
-    """Draw in this style inside a `with` block, and restore the caller's own settings afterwards."""
-    with rc_context(cast(Any, _STYLE)):
+def drawing_style(unit: str = "mm") -> Iterator[None]:
+    """Draw in this style and this unit of length in a `with` block, and restore the caller's settings afterwards."""
+    with rc_context(cast(Any, _STYLE)), lengths_in(unit):
         yield
+
+
+@contextmanager
+def lengths_in(unit: str) -> Iterator[None]:
+    """Take lengths in this unit in a `with` block."""
+    token = _LENGTH_UNIT.set(unit)
+    try:
+        yield
+    finally:
+        _LENGTH_UNIT.reset(token)
+
+
+def per_metre() -> float:
+    """Units of length of the picture in a metre: geometry is in metres, pictures are in the design's unit."""
+    return 1.0 / UNITS[_LENGTH_UNIT.get()]
+
+
+def unit_name() -> str:
+    """The name of that unit."""
+    return _LENGTH_UNIT.get()
+
+
+def in_unit(length: Any, digits: str = ".4g") -> str:
+    """A length [m] in the unit of the picture, with its name."""
+    return f"{float(length) * per_metre():{digits}} {unit_name()}"
+
+
+def axis(name: str) -> str:
+    """The name of an axis along which lengths are drawn, with their unit."""
+    return f"{name} [{unit_name()}]"
 
 
 def span_colour(v: float) -> tuple[float, float, float]:

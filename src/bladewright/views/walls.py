@@ -12,18 +12,18 @@ from bladewright.domain.knots import BLADE_AT, PIECES
 from bladewright.numerics.elementary import angle, dot, length
 from bladewright.nurbs.basis import Reals
 from bladewright.nurbs.surface import Surface
-from bladewright.views.sections import COORDINATES, ISOLATED_PITCH, cosine_spacing
+from bladewright.views.sections import ISOLATED_PITCH, coordinates, cosine_spacing
 from bladewright.views.style import (
     BLUE,
     INK,
     LOWER,
-    MILLIMETRES,
     ORANGE,
     RED,
     SOFT,
     UPPER,
     label_axes,
     legend_below,
+    per_metre,
     span_colour,
 )
 
@@ -75,14 +75,14 @@ def wall_pitch(passage: "Passage", wall: str) -> float:
 def wall_scale(passage: "Passage", wall: str) -> float:
     """Millimetres in one unit of the wall's plane: the wall's mean radius beside the blade, or a metre in a cascade."""
     if not passage.duct.revolved:
-        return MILLIMETRES
+        return per_metre()
     line = passage.walls[f"{wall}_upper"].line
-    return float(np.mean(np.real(line.position(np.linspace(0.0, 1.0, 65))[..., 1]))) * MILLIMETRES
+    return float(np.mean(np.real(line.position(np.linspace(0.0, 1.0, 65))[..., 1]))) * per_metre()
 
 
 def wall_coordinates(passage: "Passage") -> tuple[str, str]:
     """Names of the axes of the plane."""
-    return COORDINATES["m'-theta" if passage.duct.revolved else "m-y"]
+    return coordinates("m'-theta" if passage.duct.revolved else "m-y")
 
 
 def unwrapped(passage: "Passage", wall: str, points: Reals, offset: Reals | float = 0.0) -> Reals:
