@@ -83,6 +83,11 @@ def test_arcs_keep_their_radius_and_are_tangent_to_the_straight_pieces():
     assert line.corners == ()
 
 
+def test_two_corners_are_a_straight_line():
+    line = cornered((0.0, 1.0), (3.0, 2.0)).line(1.0)
+    np.testing.assert_allclose(line.values(np.array([0.0, 0.5, 1.0])), [[0, 1], [1.5, 1.5], [3, 2]], atol=1e-15)
+
+
 def test_a_corner_without_a_radius_is_a_joint_without_a_direction():
     line = cornered((0, 1), (1, 1), (1, 2), (2, 2), radii=(0.0, 0.25)).line(1.0)
     assert len(line.corners) == 1

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, ClassVar, Literal
 
-from bladewright.blade.design.flow_path import Channel
+from bladewright.blade.design.flow_path import Channel, FlowPath
 from bladewright.blade.design.row_design import RowDesign
 from bladewright.designs import ChordwiseLaw, Law, parameter
 from bladewright.errors import DesignError
@@ -56,6 +56,9 @@ class UnifiedBlade(RowDesign):
     """meridional distance of the blade's end from the shroud, at leading and trailing edge where two [length]"""
     hub_clearance: float | tuple[float, float] | None = parameter("length", default=None)
     """meridional distance of the blade's end from the hub, at leading and trailing edge where two [length]"""
+    flow_path: FlowPath | None = None
+    """hub and shroud from upstream of the blade to downstream of it, which the channel's edges cut; instead of the
+    channel's own"""
     channel: Channel
     """the meridional channel, from wall to wall"""
     mapping: Literal["conformal", "paper"] = "conformal"
@@ -76,6 +79,32 @@ class UnifiedBlade(RowDesign):
         check_sampling(self)
         if not isinstance(self.channel, Channel):
             raise DesignError(f"channel is {self.channel!r}: a Channel with leading_edge and trailing_edge is needed")
+        self._check_flow_path()
+
+    def _check_flow_path(self) -> None:
+        """Refuse two hubs or shrouds, and what a channel between four curves has no use for."""
+        path = self.flow_path
+        if path is None:
+            return
+        if not isinstance(path, FlowPath):
+            raise DesignError(f"flow_path is {path!r}: a FlowPath with hub and shroud is needed")
+        for name in ("hub", "shroud"):
+            if getattr(self.channel, name):
+                raise DesignError(
+                    f"channel.{name} is given together with flow_path, whose {name} the channel's edges cut: leave "
+                    f"channel.{name} out, or flow_path"
+                )
+        for name in ("stream_surfaces", "quasi_orthogonals"):
+            if getattr(path, name):
+                raise DesignError(
+                    f"flow_path.{name} is given: the stream surfaces of the unified family blend hub, shroud and both "
+                    f"edges of the channel; leave {name} out, or take a family of sections"
+                )
+        if path.matched != "ends":
+            raise DesignError(
+                "flow_path.matched is 'edges': the unified family cuts the flow path at its channel's edges in any "
+                "case; leave matched out"
+            )
 
     def _check_clearances(self) -> None:
         given = [name for name in ("tip_clearance", "hub_clearance") if getattr(self, name) is not None]
@@ -111,6 +140,6 @@ class UnifiedBlade(RowDesign):
         return exact_unified_blade(self, None if knots is None else knots.tip)
 
     def needs_own_search(self, paths: Iterable[str]) -> bool:
-        """Where a clearance surface lies is found for one channel at a time."""
-        cleared = self.ends != ("hub", "shroud")
-        return cleared and any(path.startswith("channel.") or "clearance" in path for path in paths)
+        """Where a clearance surface lies, and where edges cut a flow path, is found for one channel at a time."""
+        searched = self.ends != ("hub", "shroud") or self.flow_path is not None
+        return searched and any(path.startswith(("channel.", "flow_path.")) or "clearance" in path for path in paths)

@@ -111,8 +111,8 @@ def cleared(full: TransfiniteChannel, clearance: Clearance, knots: Reals | None 
     return replace(
         full,
         **{
-            "leading_edge": replace(full.leading_edge, **{cut: ends[..., 0]}),
-            "trailing_edge": replace(full.trailing_edge, **{cut: ends[..., 1]}),
+            "leading_edge": full.leading_edge.cut(cut, ends[..., 0]),
+            "trailing_edge": full.trailing_edge.cut(cut, ends[..., 1]),
             clearance.wall: meridian,
         },
     )
@@ -120,12 +120,12 @@ def cleared(full: TransfiniteChannel, clearance: Clearance, knots: Reals | None 
 
 def off_distance(full: TransfiniteChannel, clearance: Clearance, u: Reals, points: Reals) -> Reals:
     """Differences (m,) [m] between the distances of points (x, r) (m, 2) from the wall and those stated at u (m,)."""
-    wall, foot_u = full.real().curve(clearance.wall), u
+    wall, foot_u = full.real().line(clearance.wall), u
     for _ in range(8):
-        foot, slope, bend = wall.derivatives(foot_u, 2)
+        foot, slope, bend = (wall.values(foot_u, order) for order in range(3))
         gap = points - foot
         foot_u = foot_u + dot(gap, slope) / (dot(slope, slope) - dot(gap, bend))
-    return np.abs(length(points - wall(foot_u)) - clearance.real().distance(u))  # real: a measured distance
+    return np.abs(length(points - wall.values(foot_u)) - clearance.real().distance(u))  # real: a measured distance
 
 
 def check_clearance(clearance: Clearance, sections: "UnifiedSections", row: int) -> None:
@@ -147,9 +147,9 @@ def check_clearance(clearance: Clearance, sections: "UnifiedSections", row: int)
 
 def _knots(full: TransfiniteChannel, clearance: Clearance) -> Reals:
     """Knots of the meridian: where hub and shroud lose derivatives, and wherever else the distance asks for them."""
-    joints = [(float(joint), wall.degree - 1) for wall in (full.hub, full.shroud) for joint in wall.joints()]
+    joints = [each for wall in (full.hub, full.shroud) for each in wall.smoothness()]
     start = knots_with_joints(clamped(np.empty(0)), DEGREE, [*joints, *_passed(full, clearance)])
-    chord = float(np.mean([length(each.points[-1] - each.points[0]) for each in (full.hub, full.shroud)]))
+    chord = float(np.mean([length(each.corners[1] - each.corners[0]) for each in (full.hub, full.shroud)]))
 
     def worst(knots: Reals) -> Reals:
         """Largest miss in each of the spans, of the chord."""
@@ -168,20 +168,20 @@ def _knots(full: TransfiniteChannel, clearance: Clearance) -> Reals:
         raise DesignError(
             f"{clearance.name}: the surface at that distance from the {clearance.wall} is met within {gap:.2g} of the "
             f"meridional chord with {len(knots) - DEGREE - 1} control points, {ALLOWED:g} is allowed: lower "
-            f"{clearance.name}, or smooth channel.{clearance.wall}"
+            f"{clearance.name}, or smooth {full.line(clearance.wall).given_by}.{clearance.wall}"
         )
     return knots
 
 
 def _passed(full: TransfiniteChannel, clearance: Clearance) -> list[tuple[float, int]]:
     """u where the nearest point passes inner knots of the wall, each with the derivatives continuous there."""
-    wall = full.line(clearance.wall)
-    levels = np.unique(wall.joints())
-    if not len(levels):
+    kept = dict(full.line(clearance.wall).smoothness())
+    if not kept:
         return []
     u = np.linspace(0.0, 1.0, 101)
-    foot_u = level_crossings(lambda at: _met(full, clearance, at)[1], u, _met(full, clearance, u)[1], levels)
-    return [(float(place), wall.degree - 1) for place in foot_u]
+    feet = _met(full, clearance, u)[1]
+    passed = [(level_crossings(lambda at: _met(full, clearance, at)[1], u, feet, [each]), kept[each]) for each in kept]
+    return [(float(place), smooth) for places, smooth in passed for place in places]
 
 
 def _met(full: TransfiniteChannel, clearance: Clearance, u: Reals) -> tuple[Reals, Reals]:
@@ -247,5 +247,5 @@ def _cusp(full: TransfiniteChannel, clearance: Clearance) -> str:
     return (
         f"{clearance.name} is {clearance.in_unit(clearance.distance(u)[worst])} at u = {u[worst]:.3f}, where the "
         f"{clearance.wall}'s radius of curvature towards the blade is {radius}: the surface at that distance folds "
-        f"over near there; lower {clearance.name}, or smooth channel.{clearance.wall}"
+        f"over near there; lower {clearance.name}, or smooth {full.line(clearance.wall).given_by}.{clearance.wall}"
     )

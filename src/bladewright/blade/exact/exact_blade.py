@@ -10,7 +10,7 @@ import numpy as np
 from bladewright.blade.exact.meridional_extent import MeridionalExtent
 from bladewright.blade.exact.meridional_view import MeridionalView
 from bladewright.blade.exact.section_stack import SectionStack
-from bladewright.blade.flow_path.channel import ChannelCurve
+from bladewright.blade.flow_path.channel import ChannelLine
 from bladewright.blade.flow_path.meridional_curve import MeridionalCurve, real_first
 from bladewright.blade.flow_path.stream_surface_map import StreamSurfaceMap
 from bladewright.blade.flow_path.streamlines import MeridionalChannel
@@ -87,7 +87,7 @@ class ExactBlade(ABC):
         """The channel, or the flow path, that the blade stands in."""
 
     @abstractmethod
-    def wall(self, name: str) -> ChannelCurve | MeridionalCurve:
+    def wall(self, name: str) -> ChannelLine | MeridionalCurve:
         """The meridian of the hub or the shroud, or of the clearance surface in its place."""
 
     @abstractmethod

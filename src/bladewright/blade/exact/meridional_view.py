@@ -57,8 +57,12 @@ class MeridionalView:
 def channel_view(exact: "ExactUnifiedBlade") -> MeridionalView:
     """The view of a blade in a channel of four curves."""
     inside, u = np.linspace(0.0, 1.0, COUNT), np.linspace(-exact.before, 1.0 + exact.after, COUNT)
-    lines = {}
+    path, metre = exact.design.flow_path, exact.design.metre
+    lines: dict[str, ViewLine] = {}
     for name in ("hub", "shroud", "leading_edge", "trailing_edge"):
+        if path is not None and name in ("hub", "shroud"):
+            lines[name] = _line(getattr(path, name), np.real(exact.full_channel.curve(name)(inside)), metre)
+            continue
         curve = exact.full_channel.curve(name)
         beyond = (u[u < 0.0], u[u > 1.0]) if name in ("hub", "shroud") else ()
         lines[name] = ViewLine(

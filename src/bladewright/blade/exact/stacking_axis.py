@@ -115,7 +115,9 @@ class StackingAxis(Placement):
             return self._by_length(at)
         line = self._straight(self.given[-1], self._value)
         position = partial(self.surfaces.position, at)
-        return intersections(position, self.surfaces.extent, line, f"stacking.{self.given}", ["of the hub"])[0][..., 0]
+        return intersections(
+            position, self.surfaces.extent, line, f"stacking.{self.given}", ["the stream line of the hub"]
+        )[0][..., 0]
 
     @property
     def _value(self) -> Array:

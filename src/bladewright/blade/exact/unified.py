@@ -11,7 +11,8 @@ from bladewright.blade.exact.exact_blade import ExactBlade
 from bladewright.blade.exact.meridional_extent import ChannelExtent
 from bladewright.blade.exact.meridional_view import MeridionalView, channel_view
 from bladewright.blade.exact.section_stack import SectionStack
-from bladewright.blade.flow_path.channel import ChannelCurve, TransfiniteChannel, transfinite_channel
+from bladewright.blade.flow_path.channel import ChannelLine, TransfiniteChannel, transfinite_channel
+from bladewright.blade.flow_path.cut_channel import channel_in_flow_path
 from bladewright.blade.flow_path.meridional_curve import real_first
 from bladewright.blade.flow_path.stream_surface_map import StreamSurfaceMap, mapping_of
 from bladewright.blade.flow_path.streamlines import StreamLines, stream_lines
@@ -21,7 +22,6 @@ from bladewright.frozen import FrozenMapping
 from bladewright.numerics.elementary import Array, concatenated, radians, unit
 from bladewright.nurbs.basis import Reals
 from bladewright.nurbs.curve import Curve
-from bladewright.nurbs.domain import extended
 from bladewright.section.camber import camber_line, camber_points
 from bladewright.section.crossing import PLACES, check_outlines, outlines_of
 from bladewright.section.laws import Span, joints_of
@@ -248,22 +248,23 @@ class ExactUnifiedBlade(ExactBlade):
     def meridional_channel(self) -> TransfiniteChannel:
         return self.channel
 
-    def wall(self, name: str) -> ChannelCurve:
+    def wall(self, name: str) -> ChannelLine:
         return self.channel.line(name)
 
     def end_wall(self, row: int) -> tuple[Curve, Reals]:
         wall = ("hub", "shroud")[row]
-        inner = self.wall(wall).joints()
+        curve = self.wall(wall).curve_over(-self.before, 1.0 + self.after)
+        inner = curve.knots[(curve.knots > curve.knots[0]) & (curve.knots < curve.knots[-1])]
         if self.design.ends[row] == "tip":
             # at a single knot the fitted meridian is smooth up to what it misses
             inner = inner[np.sum(inner[:, None] == inner, axis=0) > 1]
-        return extended(self.channel.curve(wall), -self.before, 1.0 + self.after), inner
+        return curve, inner
 
     def wall_parameters(self, u: Reals) -> Reals:
-        return u
+        return np.stack([self.wall(name).own_parameters(u[row]) for row, name in enumerate(("hub", "shroud"))])
 
     def wall_points(self, name: str, u: Reals) -> Reals:
-        return np.real(self.full_channel.curve(name)(u))
+        return np.real(self.full_channel.line(name).values(u))
 
     @cached_property
     def meridional_view(self) -> MeridionalView:
@@ -357,7 +358,10 @@ def exact_unified_blade(
 def _channels_of(
     design: "UnifiedBlade", tip_knots: Reals | None
 ) -> tuple[TransfiniteChannel, TransfiniteChannel, Clearance | None]:
-    full = transfinite_channel(design.channel, design.metre)
+    if design.flow_path is None:
+        full = transfinite_channel(design.channel, design.metre)
+    else:
+        full = channel_in_flow_path(design.channel, design.flow_path, design.metre)
     clearance = clearance_of(design)
     return full, full if clearance is None else cleared(full, clearance, tip_knots), clearance
 

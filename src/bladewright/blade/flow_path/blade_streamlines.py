@@ -288,7 +288,7 @@ def _known(own: BladeStreamlines, **found: StreamLines | DiscreteConformalLines)
 
 def labels(v: Reals) -> list[str]:
     """What stream lines are called in messages."""
-    return [f"at v = {each:.4g}" for each in v]
+    return [f"the stream line at v = {each:.4g}" for each in v]
 
 
 def _gauss() -> tuple[Reals, Reals]:

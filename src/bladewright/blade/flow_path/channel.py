@@ -1,8 +1,10 @@
 """The meridional channel as native geometry: four curves in transfinite interpolation, and past its ends."""
 
-from dataclasses import dataclass
+from abc import ABC, abstractmethod
+from dataclasses import dataclass, replace
 from functools import lru_cache
 from math import comb, factorial
+from typing import ClassVar, Self
 
 import numpy as np
 
@@ -12,12 +14,64 @@ from bladewright.errors import DesignError
 from bladewright.numerics.elementary import Array, cross2
 from bladewright.nurbs.basis import Reals, basis, uniform_knots
 from bladewright.nurbs.curve import Curve
+from bladewright.nurbs.domain import extended
 from bladewright.section.laws import stacked
 
 
+class ChannelLine(ABC):
+    """One of the four curves of a channel by the channel's u or v, which runs over [0, 1] between the corners."""
+
+    given_by: ClassVar[str]
+    """the part of the design that gives it"""
+
+    @property
+    @abstractmethod
+    def degree(self) -> int:
+        """Degree of the polynomials between its joints."""
+
+    @property
+    @abstractmethod
+    def corners(self) -> tuple[Array, Array]:
+        """Points (..., 2) at 0 and at 1."""
+
+    @abstractmethod
+    def values(self, at: Reals, order: int = 0) -> Array:
+        """Points, or derivatives (..., m, 2), at real places (m,), also past 0 and 1."""
+
+    @abstractmethod
+    def joints(self) -> Reals:
+        """Places at which the polynomials end."""
+
+    @abstractmethod
+    def smoothness(self) -> list[tuple[float, int]]:
+        """Places between 0 and 1 at which derivatives are lost, and how many are kept there."""
+
+    @abstractmethod
+    def powers(self, centres: Reals, count: int) -> Array:
+        """Coefficients (..., len(centres), count, 2) of the powers of u - centre."""
+
+    @abstractmethod
+    def real(self) -> Self:
+        """The same without imaginary parts and batch."""
+
+    @abstractmethod
+    def curve(self) -> Curve:
+        """The whole curve, as the design gives it, as a native one over its own parameter."""
+
+    @abstractmethod
+    def curve_over(self, low: float, high: float) -> Curve:
+        """The same with what it is continued by from `low` to `high` in u."""
+
+    @abstractmethod
+    def own_parameters(self, u: Reals) -> Reals:
+        """Parameters (k,) of it at u (k,), of the real design."""
+
+
 @dataclass(frozen=True, kw_only=True, eq=False)
-class ChannelCurve:
-    """One of the four curves of a channel: a B-spline in (x, r), taken from `start` to `end` of its own parameter."""
+class ChannelCurve(ChannelLine):
+    """A B-spline in (x, r), taken from `start` to `end` of its own parameter."""
+
+    given_by: ClassVar[str] = "channel"
 
     points: Array
     """(..., n, 2) control points in metres"""
@@ -32,6 +86,11 @@ class ChannelCurve:
     def degree(self) -> int:
         """Degree of the B-spline."""
         return len(self.knots) - self.points.shape[-2] - 1
+
+    @property
+    def corners(self) -> tuple[Array, Array]:
+        """The first and the last control point (..., 2)."""
+        return self.points[..., 0, :], self.points[..., -1, :]
 
     def values(self, at: Reals, order: int = 0) -> Array:
         """Points, or derivatives (..., m, 2), at real places (m,) of the piece, which runs over [0, 1]."""
@@ -52,6 +111,15 @@ class ChannelCurve:
             inner = (inner - low) / (high - low)
         return inner[(inner > 0.0) & (inner < 1.0)]
 
+    def smoothness(self) -> list[tuple[float, int]]:
+        """Inner knots of the piece, which are single."""
+        return [(float(joint), self.degree - 1) for joint in self.joints()]
+
+    def cut(self, end: str, at: Array) -> "ChannelCurve":
+        """The piece that has its `start` or its `end` at a place (...) of this one."""
+        low, high = self._ends()
+        return replace(self, **{end: low + (high - low) * at})
+
     def powers(self, centres: Reals, count: int) -> Array:
         """Coefficients (..., len(centres), count, 2) of the whole curve's powers of u - centre.
 
@@ -61,8 +129,6 @@ class ChannelCurve:
         return rows @ self.points[..., None, :, :]
 
     def real(self) -> "ChannelCurve":
-        """The same without imaginary parts and batch."""
-
         def first(values: Array | None, axes: int) -> Array | None:
             return None if values is None else np.asarray(np.real(values[(0,) * (np.ndim(values) - axes)]))
 
@@ -70,8 +136,14 @@ class ChannelCurve:
         return ChannelCurve(points=points, knots=self.knots, start=first(self.start, 0), end=first(self.end, 0))
 
     def curve(self) -> Curve:
-        """The whole B-spline as a native curve over its own parameter."""
         return Curve(control_points=self.points, knots=self.knots, degree=self.degree)
+
+    def curve_over(self, low: float, high: float) -> Curve:
+        return extended(self.curve(), low, high)
+
+    def own_parameters(self, u: Reals) -> Reals:
+        low, high = (float(np.real(np.ravel(end)[0])) for end in self._ends())
+        return low + (high - low) * u
 
     def _ends(self) -> tuple[Array, Array]:
         return np.asarray(0.0 if self.start is None else self.start), np.asarray(1.0 if self.end is None else self.end)
@@ -79,7 +151,7 @@ class ChannelCurve:
 
 @dataclass(frozen=True, kw_only=True)
 class TransfiniteChannel:
-    """The channel's map (u, v) -> (x, r) in metres; outside 0 <= u <= 1 hub and shroud continue their own polynomials.
+    """The channel's map (u, v) -> (x, r) in metres; outside 0 <= u <= 1 hub and shroud continue as they do.
 
     Control points are (..., n, 2): a leading batch axis is carried through. Hub and shroud end on the edges.
     Reference: Agromayor et al. 2021, eq. 16 (Gordon and Hall 1973).
@@ -87,8 +159,8 @@ class TransfiniteChannel:
 
     leading_edge: ChannelCurve
     trailing_edge: ChannelCurve
-    hub: ChannelCurve
-    shroud: ChannelCurve
+    hub: ChannelLine
+    shroud: ChannelLine
 
     def real(self) -> "TransfiniteChannel":
         """The same without imaginary parts and batch."""
@@ -99,21 +171,21 @@ class TransfiniteChannel:
             shroud=self.shroud.real(),
         )
 
-    def line(self, name: str) -> ChannelCurve:
+    def line(self, name: str) -> ChannelLine:
         """One of the four curves by its name."""
-        found: ChannelCurve = getattr(self, name)
+        found: ChannelLine = getattr(self, name)
         return found
 
     def knots(self, name: str) -> Reals:
         """Knots of one of the four curves over its own parameter."""
-        return self.line(name).knots
+        return self.curve(name).knots
 
     def curve(self, name: str) -> Curve:
         """One of the four curves as a native curve in (x, r), an edge whole where the channel has a piece of it."""
         return self.line(name).curve()
 
     def joints(self) -> Reals:
-        """Inner knots of hub and shroud along u."""
+        """Joints of hub and shroud along u."""
         return np.unique(np.concatenate([self.hub.joints(), self.shroud.joints()]).round(14))
 
     def slopes(self, u: Reals, v: Reals) -> tuple[Array, Array]:
@@ -126,7 +198,7 @@ class TransfiniteChannel:
             return [edge.values(v, order)[..., :, None, :] for edge in (self.leading_edge, self.trailing_edge)]
 
         a, b = u[:, None], v[:, None, None]
-        ends = [wall.points[..., end, :][..., None, None, :] for end in (0, -1) for wall in (self.hub, self.shroud)]
+        ends = [wall.corners[end][..., None, None, :] for end in (0, 1) for wall in (self.hub, self.shroud)]
         (hub, shroud), (start, end) = walls(0), edges(0)
         (hub_slope, shroud_slope), (start_slope, end_slope) = walls(1), edges(1)
         by_u = end - start + (1.0 - b) * hub_slope + b * shroud_slope
@@ -139,7 +211,7 @@ class TransfiniteChannel:
         """(x, r) at pairs of u and v (m,), and its derivative by v, (..., m, 2) each."""
         a, b = u[:, None], v[:, None]
         hub, shroud = self.hub.values(u), self.shroud.values(u)
-        corners = [wall.points[..., end, :][..., None, :] for end in (0, -1) for wall in (self.hub, self.shroud)]
+        corners = [wall.corners[end][..., None, :] for end in (0, 1) for wall in (self.hub, self.shroud)]
         ruled = [(1.0 - a) * corners[k] + a * corners[k + 2] for k in (0, 1)]
         start, end = self.leading_edge, self.trailing_edge
         point = (1.0 - a) * start.values(v) + a * end.values(v)
@@ -157,8 +229,8 @@ class TransfiniteChannel:
         w = v[:, None, None, None]
         total = (1.0 - w) * hub + w * shroud
         edges = []
-        for edge, place in ((self.leading_edge, slice(None, 1)), (self.trailing_edge, slice(-1, None))):
-            low, high = self.hub.points[..., place, :], self.shroud.points[..., place, :]
+        for place, edge in enumerate((self.leading_edge, self.trailing_edge)):
+            low, high = (wall.corners[place][..., None, :] for wall in (self.hub, self.shroud))
             ruled = (1.0 - v)[:, None] * low + v[:, None] * high
             edges.append((edge.values(v) - ruled)[..., None, :])
         start, end = edges
@@ -208,11 +280,11 @@ def _power_rows(knots: bytes, degree: int, centres: tuple[float, ...], powers: i
 
 def transfinite_channel(channel: Channel, metre: float) -> TransfiniteChannel:
     """The native channel of a design whose length unit is `metre` metres."""
-    edges = {name: _array(getattr(channel, name), metre) for name in ("leading_edge", "trailing_edge")}
+    edges = {name: control_points(getattr(channel, name), metre) for name in ("leading_edge", "trailing_edge")}
     lines = dict(edges)
     for name, end in (("hub", 0), ("shroud", -1)):
         corners = [edges[edge][..., end : end + 1 or None, :] for edge in ("leading_edge", "trailing_edge")]
-        inner = [_array(getattr(channel, name), metre)] if getattr(channel, name) else []
+        inner = [control_points(getattr(channel, name), metre)] if getattr(channel, name) else []
         rows = [corners[0], *inner, corners[1]]
         batch = np.broadcast_shapes(*[row.shape[:-2] for row in rows])
         lines[name] = np.concatenate([np.broadcast_to(row, (*batch, *row.shape[-2:])) for row in rows], axis=-2)
@@ -224,6 +296,7 @@ def _uniform(points: Array, degree: int) -> ChannelCurve:
     return ChannelCurve(points=points, knots=uniform_knots(count, min(count - 1, degree)))
 
 
-def _array(points: Points, metre: float) -> Array:
+def control_points(points: Points, metre: float) -> Array:
+    """Points (..., n, 2) of a design in metres."""
     flat = stacked([coordinate for point in points for coordinate in point])
     return metre * flat.reshape(*flat.shape[:-1], len(points), 2)

@@ -36,8 +36,9 @@ def intersections(
     """Where m stream lines, t from extent[0] to extent[1], meet an edge curve, to rounding.
 
     Returns t (..., m) on the stream lines, and the edge curve's own parameter (..., m).
-    `name` is the edge curve's in what is refused, and `labels` (m,) the stream lines'. Raises DesignError where they do
-    not meet, the edge curve continued by EXTENSION of itself at both ends, or meet more than once.
+    `name` is what the edge curve is called in what is refused, and `labels` (m,) what the stream lines are. Raises
+    DesignError where they do not meet, the edge curve continued by EXTENSION of itself at both ends, or meet more than
+    once.
     """
     t, q = np.linspace(*extent, SAMPLES), np.linspace(-EXTENSION, 1.0 + EXTENSION, SAMPLES)
     rows = real_first(position(np.broadcast_to(t, (len(labels), SAMPLES)), 0), 3)
@@ -51,7 +52,7 @@ def intersections(
         if len(places) > 1:
             both = " and ".join(_shown(edge, each[1]) for each in places[:2])
             raise DesignError(
-                f"{name} meets the stream line {label} {len(places)} times, at (x, r) = {both} m: an edge curve must "
+                f"{name} meets {label} {len(places)} times, at (x, r) = {both} m: an edge curve must "
                 "cross every stream line once; move its points so that it runs from hub to shroud without turning back"
             )
         chosen.append(places[0])
@@ -61,6 +62,15 @@ def intersections(
     # one more of Newton's steps, in complex numbers, is the derivative of the meeting
     turn = cross2(slope, along)
     return at - cross2(miss, along) / turn, own - cross2(miss, slope) / turn
+
+
+def meeting(curve: MeridionalCurve, edge: MeridionalCurve, name: str, label: str) -> tuple[Array, Array]:
+    """Where an edge curve crosses one other curve: parameters (..., 1) of that, and of the edge curve."""
+
+    def position(t: Reals, order: int) -> Array:
+        return curve.values(t[0], order)[..., None, :, :]
+
+    return intersections(position, (0.0, 1.0), edge, name, [label])
 
 
 def curve_joints(
@@ -155,7 +165,7 @@ def _missed(name: str, label: str, row: Reals, curve: Reals) -> str:
         where = f"the curve, continued by {100.0 * EXTENSION:g}% of itself, ends at {_pair(curve[k])} m"
         cure = "lengthen the curve to hub and shroud"
     return (
-        f"{name} does not meet the stream line {label}: they pass {distance[j, k]:.4g} m apart, where {where}; {cure}, "
+        f"{name} does not meet {label}: they pass {distance[j, k]:.4g} m apart, where {where}; {cure}, "
         f"or move {name} into the flow path"
     )
 

@@ -270,7 +270,7 @@ def rounded_corners(points: Array, radii: Array, metre: float = 1.0) -> Meridion
     cut = radii * half * sign
     _check_room(real_first(sides, 1), real_first(cut, 1), metre)
     cut = np.broadcast_to(cut, (*np.broadcast_shapes(cut.shape[:-1], sides.shape[:-1]), cut.shape[-1]))
-    none = np.zeros_like(cut[..., :1])
+    none = np.zeros((*cut.shape[:-1], 1))
     before, after = np.concatenate([none, cut], axis=-1), np.concatenate([cut, none], axis=-1)
     starts = points[..., :-1, :] + before[..., None] * along
     straight = sides - before - after

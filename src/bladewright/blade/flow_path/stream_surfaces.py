@@ -8,7 +8,7 @@ from scipy.interpolate import BSpline, make_interp_spline
 
 from bladewright.blade.design.flow_path import FlowPath
 from bladewright.blade.design.meridional_curve import Meridian
-from bladewright.blade.flow_path.intersections import intersections
+from bladewright.blade.flow_path.intersections import meeting
 from bladewright.blade.flow_path.meridional_curve import MeridionalCurve, PiecewisePolynomial, real_first
 from bladewright.blade.flow_path.quasi_orthogonals import (
     curved_matches,
@@ -284,11 +284,7 @@ def _unfolded(surfaces: StreamSurfaces) -> StreamSurfaces:
 
 def _meets(curve: MeridionalCurve, edge: MeridionalCurve, what: str, name: str) -> Array:
     """The fraction (...) of a curve at which an edge curve crosses it."""
-
-    def position(t: Reals, order: int) -> Array:
-        return curve.values(t[0], order)[..., None, :, :]
-
-    place = intersections(position, (0.0, 1.0), edge, what, [f"of the {name}"])[0]
+    place = meeting(curve, edge, what, f"the stream line of the {name}")[0]
     return curve.fraction_at(place)[..., 0]
 
 

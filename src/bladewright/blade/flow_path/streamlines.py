@@ -205,7 +205,9 @@ def stream_lines(
     The densities' Chebyshev series are carried to rounding: panels are halved until their last terms vanish.
     Raises DesignError where the channel cannot be continued: r or the speed along a stream line vanishes.
     """
-    ends = np.unique(np.concatenate([[-before, 0.0], channel.joints(), [1.0, 1.0 + after]]))
+    joints = channel.joints()
+    joints = joints[(joints > -before) & (joints < 1.0 + after)]
+    ends = np.unique(np.concatenate([[-before, 0.0], joints, [1.0, 1.0 + after]]))
     for _ in range(6):
         lines, tail = _on_panels(channel, mapping, v, ends)
         poor = tail > 1e-13

@@ -152,7 +152,9 @@ def _met(case: TBlade3Case, line: MeridionalCurve, edge: MeridionalCurve, name: 
         return np.real(line.values(t[0], order))[None]
 
     try:
-        place = intersections(position, (0.0, 1.0), edge, f"the {name}-edge curve", [f"of section {index}"])[0][0]
+        place = intersections(
+            position, (0.0, 1.0), edge, f"the {name}-edge curve", [f"the stream line of section {index}"]
+        )[0][0]
     except DesignError as error:
         raise FileError(f"'{case.file}': {error}") from error
     return float(np.real(place)) * _counted(line)

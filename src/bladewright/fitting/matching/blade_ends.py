@@ -84,7 +84,7 @@ class WallPoints:
 
     def basis(self, exact: ExactUnifiedBlade, t: Reals) -> Reals:
         """Basis functions (m, n) of the channel's curve at parameters (m,)."""
-        line = exact.channel.line(self.name)
+        line = exact.channel.curve(self.name)
         return np.asarray(basis(line.knots, line.degree, t))
 
     def rates(self, shape: ModelShape, t: Reals, paths: Sequence[str]) -> Reals:

@@ -8,6 +8,7 @@ fewer.
 import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from scipy.interpolate import BSpline
@@ -78,7 +79,7 @@ def law_shares(design: UnifiedBlade, path: str, sites: Reals) -> Iterator[tuple[
 
 def stands_on_channel(design: Design) -> bool:
     """Whether a blade is of the unified family and ends on the channel's own hub and shroud, without clearance."""
-    return isinstance(design, UnifiedBlade) and design.tip_clearance is None and design.hub_clearance is None
+    return isinstance(design, UnifiedBlade) and design.ends == ("hub", "shroud") and design.flow_path is None
 
 
 def edge_basis(count: int, degree: int, v: Reals) -> Reals:
@@ -148,14 +149,16 @@ def _motion(
 
 def shifted_channel(channel: TransfiniteChannel, groups: Sequence[Sequence[ChannelShift]]) -> TransfiniteChannel:
     """A channel with a batch (len(groups),) of imaginary steps, each of some control points together."""
-    kicks = {name: np.zeros((len(groups), *channel.line(name).points.shape)) for name in (*EDGES, "hub", "shroud")}
+    curves = {name: channel.curve(name) for name in (*EDGES, "hub", "shroud")}
+    kicks = {name: np.zeros((len(groups), *curve.control_points.shape)) for name, curve in curves.items()}
     for number, group in enumerate(groups):
         for curve, place, axis in group:
             kicks[curve][number, slice(None) if place is None else place, axis] = STEP
-    lines = {}
+    lines: dict[str, Any] = {name: channel.line(name) for name in kicks}
     for name, kick in kicks.items():
-        line = channel.line(name)
-        lines[name] = ChannelCurve(points=line.points + 1j * kick, knots=line.knots) if np.any(kick) else line
+        if np.any(kick):
+            own = curves[name]
+            lines[name] = ChannelCurve(points=own.control_points + 1j * kick, knots=own.knots)
     return TransfiniteChannel(**lines)
 
 
