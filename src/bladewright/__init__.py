@@ -39,10 +39,13 @@ import sys
 
 import lazy_loader
 
+from bladewright.display import drawn_by
+
 __version__ = "0.1.0"
 
 __getattr__, _names, __all__ = lazy_loader.attach_stub(__name__, __file__)
 __all__ += ["__version__"]
+drawn_by("bladewright.views.shown")
 
 
 def __dir__() -> list[str]:

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from matplotlib.figure import Figure
 
-from bladewright.views.solid import _positions, draw_solid, viewpoint
+from bladewright.views.solid import draw_solid, positions, viewpoint
 
 
 @pytest.fixture
@@ -59,19 +59,19 @@ def test_the_directions_of_the_axes_are_named(view):
 
 
 def test_a_row_goes_once_around_and_the_blade_itself_is_in_it(blade_drawn):
-    places = _positions(blade_drawn.built, None)
+    places = positions(blade_drawn.built, None)
     assert 0.0 in places
     if blade_drawn.name == "cascade":
         assert np.diff(places) == pytest.approx(0.0575 * blade_drawn.per_metre)
     else:
         assert len(places) == blade_drawn.design.blade_count
         assert np.diff(places) == pytest.approx(2.0 * np.pi / blade_drawn.design.blade_count)
-    assert len(_positions(blade_drawn.built, 1)) == 3
+    assert len(positions(blade_drawn.built, 1)) == 3
 
 
 def test_a_blade_without_near_neighbours_stands_alone(cascade_drawn):
     wide = cascade_drawn.design.changed("pitch", 100.0).build()
-    assert _positions(wide, 2) == [0.0]
+    assert positions(wide, 2) == [0.0]
 
 
 class Walls(NamedTuple):

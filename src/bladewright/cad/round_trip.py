@@ -1,10 +1,11 @@
 """The report of a round trip: a CAD file measured against the surfaces it came from."""
 
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, ClassVar
 
 from bladewright import __version__
 from bladewright.cad.native_body import NamedBody
+from bladewright.display import Shown
 from bladewright.numerics.elementary import Array
 from bladewright.origin import Origin
 
@@ -82,8 +83,10 @@ class EdgeReport:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class RoundTrip:
+class RoundTrip(Shown):
     """A CAD file measured against a blade or passage; `failures` says what misses a limit, where and by how much."""
+
+    shown_as: ClassVar[str] = "round trip"
 
     file: str
     format: str

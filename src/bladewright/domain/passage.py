@@ -11,6 +11,7 @@ from typing import ClassVar, cast
 import numpy as np
 
 from bladewright.blade.native.blade import Blade, Faces
+from bladewright.display import Shown
 from bladewright.domain.camber_lines import CamberLines
 from bladewright.domain.duct import Duct, annulus_volume
 from bladewright.domain.knots import BLADE_AT, PIECES, PassageKnots
@@ -48,10 +49,11 @@ OUTWARD = FrozenMapping(
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Passage(FrozenRecord):
+class Passage(FrozenRecord, Shown):
     """The flow passage around one blade: half a pitch to each side of it, from inlet to outlet."""
 
     dimension: ClassVar[int] = 3
+    shown_as: ClassVar[str] = "passage"
 
     blade: Blade
     whole: Faces

@@ -9,6 +9,7 @@ from typing import ClassVar
 
 import numpy as np
 
+from bladewright.display import Shown
 from bladewright.domain.extents import MAX_EXTENT, USUAL
 from bladewright.errors import DesignError
 from bladewright.frozen import FrozenMapping, FrozenRecord
@@ -28,10 +29,11 @@ many."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class SectionPassage(FrozenRecord):
+class SectionPassage(FrozenRecord, Shown):
     """The flow domain about one section: half a pitch to each side of its continued camber line."""
 
     dimension: ClassVar[int] = 2
+    shown_as: ClassVar[str] = "section passage"
 
     section: Section
     curves: Mapping[str, Curve]

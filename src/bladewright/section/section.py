@@ -7,6 +7,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
+from bladewright.display import Shown
 from bladewright.frozen import FrozenRecord
 from bladewright.numerics.elementary import Array, cross2, dot, length
 from bladewright.numerics.quadrature import panels
@@ -22,7 +23,7 @@ within 1e-7 (design/section_constants.py)"""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Section(FrozenRecord):
+class Section(FrozenRecord, Shown):
     """A closed section between leading and trailing edge.
 
     Its plane is metric for a 2D section and a cascade. For a blade in an annulus it is the conformal plane
@@ -32,6 +33,7 @@ class Section(FrozenRecord):
     """
 
     dimension: ClassVar[int] = 2
+    shown_as: ClassVar[str] = "section"
 
     span: float
     """v of the section, 0 for a 2D one"""

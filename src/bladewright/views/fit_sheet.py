@@ -13,7 +13,7 @@ from bladewright.section.curvature_extrema import turning_places
 from bladewright.views.distributions import draw_curvature, side_curvature
 from bladewright.views.fit_data import SIDES, FitResult, count_of, outline_at, span_at_share, worst_span
 from bladewright.views.fit_deviations import draw_edge_points, draw_magnified, draw_map, draw_outline_deviation
-from bladewright.views.pages import checked_path, draw_header, rows, with_fixed_layout, write_figure
+from bladewright.views.pages import Page, checked_path, draw_header, rows, with_fixed_layout, write_figure
 from bladewright.views.sections import cosine_spacing
 from bladewright.views.style import (
     BLUE,
@@ -72,7 +72,7 @@ def fit_sheet(fit: FitResult) -> Figure:
 
 def _blade_sheet(fit: FitResult) -> Figure:
     blade = fit.built
-    figure = Figure(figsize=(16.0, 15.0))
+    figure = Page(figsize=(16.0, 15.0))
     draw_header(figure, fit.design.name, fit.design.description, _header(fit))
     top, centre, bottom = rows(figure, 4.5, 4.4, 5.0)
     axes = top.subplots(1, 2, width_ratios=[2.1, 1.0])
@@ -93,7 +93,7 @@ def _blade_sheet(fit: FitResult) -> Figure:
 
 
 def _section_sheet(fit: FitResult) -> Figure:
-    figure = Figure(figsize=(16.0, 14.0))
+    figure = Page(figsize=(16.0, 14.0))
     draw_header(figure, fit.design.name, fit.design.description, _header(fit))
     top, centre, bottom = rows(figure, 3.8, 5.4, 4.6)
     axes = top.subplots(1, 2, width_ratios=[2.1, 1.0])

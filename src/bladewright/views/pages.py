@@ -13,6 +13,7 @@ from matplotlib.layout_engine import ConstrainedLayoutEngine
 
 from bladewright.atomic_write import atomic_write
 from bladewright.errors import FileError
+from bladewright.views.style import drawing_style
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -27,6 +28,21 @@ SUFFIXES = (".png", ".svg", ".pdf")
 """Endings of the formats in which a picture can be written."""
 _UNDATED: dict[str, dict[str, Any]] = {".png": {}, ".svg": {"Date": None}, ".pdf": {"CreationDate": None}}
 """Metadata without a date, so that the same figure gives the same bytes."""
+
+
+NOTEBOOK_DPI = 80
+"""Pixels per inch of a page in a notebook: one of 16 inches is as wide as a window, and half a megabyte."""
+
+
+class Page(Figure):
+    """A figure that a notebook shows as the last line of a cell, also where pyplot was never loaded."""
+
+    def _repr_png_(self) -> bytes:
+        picture = io.BytesIO()
+        FigureCanvasAgg(self)
+        with drawing_style():
+            self.savefig(picture, format="png", dpi=NOTEBOOK_DPI)
+        return picture.getvalue()
 
 
 def rows(figure: Figure, *heights: float) -> Sequence[SubFigure]:

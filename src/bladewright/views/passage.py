@@ -9,7 +9,7 @@ from matplotlib.figure import Figure
 from bladewright.nurbs.basis import Reals
 from bladewright.nurbs.trimmed import TrimmedSurface
 from bladewright.views.meridional import INLET, OUTLET, draw_duct
-from bladewright.views.pages import columns, draw_header, rows
+from bladewright.views.pages import Page, columns, draw_header, rows
 from bladewright.views.sections import coordinates, developed, outline
 from bladewright.views.solid import draw_passage_solid
 from bladewright.views.style import (
@@ -41,7 +41,7 @@ ROWS = 24
 
 def passage_sheet(passage: "Passage") -> Figure:
     """The sheet of a 3D passage, before its layout."""
-    figure = Figure(figsize=(16.0, 13.0))
+    figure = Page(figsize=(16.0, 13.0))
     draw_header(figure, passage.name, passage.description, passage_header(passage))
     top, bottom = rows(figure, 6.0, 6.0)
     # Separate columns: in one row of panels the legend of the duct would make the view lower.
@@ -61,7 +61,7 @@ def passage_sheet(passage: "Passage") -> Figure:
 
 def section_passage_sheet(design: Any, passage: "SectionPassage") -> Figure:
     """The sheet of a 2D section's passage, before its layout; the design, where it is known, gives the name."""
-    figure = Figure(figsize=(14.0, 10.5))
+    figure = Page(figsize=(14.0, 10.5))
     name, description = (design.name, design.description) if design is not None else ("section", "")
     draw_header(figure, f"{name}-passage", description, section_header(passage))
     (strip,) = rows(figure, 1.0)

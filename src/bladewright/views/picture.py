@@ -19,7 +19,7 @@ from bladewright.section.smoothness import smoothness
 from bladewright.views.distributions import draw_curvature, draw_smoothness, draw_thickness
 from bladewright.views.laws import draw_laws, draw_thickness_laws, panels_of
 from bladewright.views.meridional import draw_meridional
-from bladewright.views.pages import checked_path, draw_header, rows, with_fixed_layout, write_figure
+from bladewright.views.pages import Page, checked_path, draw_header, rows, with_fixed_layout, write_figure
 from bladewright.views.passage import passage_sheet, section_passage_sheet
 from bladewright.views.sections import draw_edge, draw_edges, draw_neighbour, draw_sections, pitch_of
 from bladewright.views.solid import draw_passage_solid, draw_solid
@@ -123,7 +123,7 @@ def _blade_sheet(blade: Blade) -> Figure:
         charts.append(partial(draw_thickness_laws, design=blade.design, sections=few, ends=blade.design.ends))
     strips = -(-len(charts) // PANELS_ACROSS)
     heights = [5.4, 4.6, 3.6, 4.4, *[4.4] * strips]
-    figure = Figure(figsize=(16.0, sum(heights) + 0.9))
+    figure = Page(figsize=(16.0, sum(heights) + 0.9))
     draw_header(figure, blade.name, blade.description, _blade_header(blade, middle, pitch))
     top, centre, edges, smooth, *bottom = rows(figure, *heights)
     axes = top.subplots(1, 3, width_ratios=[1.25, 1.0, 1.0])
@@ -155,7 +155,7 @@ def _section_sheet(design: Any, section: Section) -> Figure:
     pitch = None
     if design is not None and design.pitch is not None:
         pitch = design.pitch * UNITS[design.length_unit] * per_metre()
-    figure = Figure(figsize=(16.0, 15.4))
+    figure = Page(figsize=(16.0, 15.4))
     name, description = (design.name, design.description) if design is not None else ("section", "")
     draw_header(figure, name, description, _section_header(section, pitch))
     top, bottom, smooth = rows(figure, 6.0, 4.6, 4.4)

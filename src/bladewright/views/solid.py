@@ -45,19 +45,19 @@ WALL_LINES = 6
 
 def draw_solid(axes: Axes, blade: "Blade", *, neighbours: int | None, width: int) -> None:
     """Draw the blade with `neighbours` on either side (None: the whole row) on the hub [mm], `width` pixels wide."""
-    turns = _positions(blade, neighbours)
+    turns = positions(blade, neighbours)
     surfaces, polylines = [], []
     neighbour = blade_surfaces(blade, COARSE, NEIGHBOUR)
     for turn in turns:
         own = turn == 0.0
         parts, lines = blade_surfaces(blade, GRID, BLADE) if own else neighbour
-        surfaces += [_placed(blade, surface, turn) for surface in parts]
+        surfaces += [placed(blade, surface, turn) for surface in parts]
         polylines += [
-            Polyline(points=_moved(blade, line, turn), colour=EDGE if own else FAINT, width=2 if own else 1)
+            Polyline(points=moved(blade, line, turn), colour=EDGE if own else FAINT, width=2 if own else 1)
             for line in lines
         ]
     blades = np.concatenate([surface.points.reshape(-1, 3) for surface in surfaces])
-    surfaces += _hub(blade, turns)
+    surfaces += hub_surfaces(blade, turns)
     camera = framing_camera(viewpoint(blade), np.concatenate([blades, surfaces[-1].points.reshape(-1, 3)]))
     show_rendering(axes, camera, rendered(surfaces, polylines, camera, width))
 
@@ -71,7 +71,7 @@ def show_rendering(axes: Axes, camera: Camera, rendering: Reals) -> None:
     _scale(axes, camera)
 
 
-def _positions(blade: "Blade", neighbours: int | None) -> list[float]:
+def positions(blade: "Blade", neighbours: int | None) -> list[float]:
     """Rotations [rad], or shifts in a cascade [mm], of the blades to draw; 0 is the blade itself."""
     from bladewright.section.checks import UNITS
 
@@ -85,7 +85,7 @@ def _positions(blade: "Blade", neighbours: int | None) -> list[float]:
     return [per_metre() * pitch * index for index in range(-neighbours_each_side, neighbours_each_side + 1)]
 
 
-def _moved(blade: "Blade", points: Reals, turn: float) -> Reals:
+def moved(blade: "Blade", points: Reals, turn: float) -> Reals:
     """Points (..., 3) moved to the blade at rotation or shift `turn`."""
     if not blade.exact.mapping.revolved:
         return points + np.array([0.0, turn, 0.0])
@@ -99,9 +99,10 @@ def _turned(points: Reals, turn: float) -> Reals:
     return np.stack([x, y * cosine + z * sine, z * cosine - y * sine], axis=-1)
 
 
-def _placed(blade: "Blade", surface: ShadedGrid, turn: float) -> ShadedGrid:
+def placed(blade: "Blade", surface: ShadedGrid, turn: float) -> ShadedGrid:
+    """A surface moved to the blade at rotation or shift `turn`."""
     normals = _turned(surface.normals, turn) if blade.exact.mapping.revolved else surface.normals
-    return ShadedGrid(points=_moved(blade, surface.points, turn), normals=normals, colour=surface.colour)
+    return ShadedGrid(points=moved(blade, surface.points, turn), normals=normals, colour=surface.colour)
 
 
 def blade_surfaces(
@@ -111,12 +112,12 @@ def blade_surfaces(
     u, v = cosine_spacing(size[0]), np.linspace(0.0, 1.0, size[1])
     surfaces, rims = [], []
     for name in ("upper", "lower"):
-        points, normals = _sampled(blade.surfaces[name], u, v)
+        points, normals = sampled(blade.surfaces[name], u, v)
         surfaces.append(ShadedGrid(points=points, normals=normals, colour=colour))
         rims.append(points)
     for name in ("leading_edge", "trailing_edge"):
         if name in blade.surfaces:
-            points, normals = _sampled(blade.surfaces[name], np.linspace(0.0, 1.0, 5), v)
+            points, normals = sampled(blade.surfaces[name], np.linspace(0.0, 1.0, 5), v)
             surfaces.append(ShadedGrid(points=points, normals=normals, colour=colour))
     lines = []
     for row in (-1,) if blade.exact.mapping.revolved and blade.design.ends[0] == "hub" else (0, -1):
@@ -128,14 +129,14 @@ def blade_surfaces(
     return surfaces, lines
 
 
-def _sampled(face: Any, u: Reals, v: Reals) -> tuple[Reals, Reals]:
+def sampled(face: Any, u: Reals, v: Reals) -> tuple[Reals, Reals]:
     """Points (m, n, 3) [mm] of a native face at u (m,) and v (n,), and its unit normals along dS/du x dS/dv."""
     normals = np.cross(np.real(face.grid(u, v, 1, 0)), np.real(face.grid(u, v, 0, 1)))
     size = np.sqrt(np.sum(normals**2, axis=-1, keepdims=True))
     return per_metre() * np.real(face.grid(u, v)), normals / np.maximum(size, 1e-300)
 
 
-def _hub(blade: "Blade", turns: list[float]) -> list[ShadedGrid]:
+def hub_surfaces(blade: "Blade", turns: list[float]) -> list[ShadedGrid]:
     """The hub under the blades that are drawn [mm], a little longer than they are; under a whole row with its bore."""
     exact, low, high = blade.exact, *_hub_range(blade)
     wall = per_metre() * exact.wall_points("hub", np.linspace(low, high, 61))
@@ -223,13 +224,13 @@ def draw_passage_solid(axes: Axes, passage: "Passage", *, size: tuple[int, int])
     for name, sense in outer_faces(passage).items():
         colour = WALL_COLOURS.get(name.partition("_")[0], OPENING)
         for piece in pieces_of(name, cast(Surface, passage.whole[name]), passage.knots).values():
-            points, normals = _sampled(piece, u, u)
+            points, normals = sampled(piece, u, u)
             normals = sense * normals
             solid.append(ShadedGrid(points=points, normals=normals, colour=colour, side=-1))
             glass.append(ShadedGrid(points=points, normals=normals, colour=GLASS, side=1))
             if name.startswith("hub"):
                 lines += [Polyline(points=line, colour=FAINT) for line in _lines(points)]
-    lines += [Polyline(points=line, colour=EDGE) for line in _outer_edges(passage)]
+    lines += [Polyline(points=line, colour=EDGE) for line in outer_edges(passage)]
     lines += [Polyline(points=line, colour=EDGE, width=2) for line in rims]
     outside = np.concatenate([surface.points.reshape(-1, 3) for surface in solid])
     camera = framing_camera(viewpoint(passage.blade), outside)
@@ -255,7 +256,7 @@ def _lines(points: Reals) -> list[Reals]:
     return [*points[at], *np.swapaxes(points[:, at], 0, 1)]
 
 
-def _outer_edges(passage: "Passage") -> list[Reals]:
+def outer_edges(passage: "Passage") -> list[Reals]:
     """Lines where outer faces meet [mm]: the edges of the periodic boundaries, of inlet and outlet."""
     u, ends = np.linspace(0.0, 1.0, 401), np.array([0.0, 1.0])
     lines: list[Reals] = []

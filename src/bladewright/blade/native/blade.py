@@ -23,6 +23,7 @@ from bladewright.blade.native.refinement import (
     mean_chord,
     refined_knots,
 )
+from bladewright.display import Shown
 from bladewright.errors import DesignError
 from bladewright.frozen import FrozenMapping, FrozenRecord
 from bladewright.numerics.elementary import Array
@@ -41,10 +42,11 @@ Faces = Mapping[str, Surface | TrimmedSurface]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Blade(FrozenRecord):
+class Blade(FrozenRecord, Shown):
     """A closed blade of native surfaces."""
 
     dimension: ClassVar[int] = 3
+    shown_as: ClassVar[str] = "blade"
 
     design: RowDesign
     surfaces: Faces

@@ -6,12 +6,13 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from bladewright.designs import Design, unit_at
+from bladewright.display import Shown
 from bladewright.fitting.assessment.deviation import REGIONS, Deviation, by_region, deviation_of
 from bladewright.frozen import FrozenRecord
 from bladewright.nurbs.basis import Reals
@@ -50,8 +51,10 @@ class Estimate:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Fit(FrozenRecord):
+class Fit(FrozenRecord, Shown):
     """A design fitted to a cloud of n points, and what it reaches; points are in the order of the cloud."""
+
+    shown_as: ClassVar[str] = "fit"
 
     design: Design
     """a `UnifiedBlade`, or a `UnifiedSection` for a cloud in the plane"""

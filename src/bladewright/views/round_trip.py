@@ -1,0 +1,80 @@
+"""A round trip as picture and tables: how far each face of the reopened file is from the native one."""
+
+from collections.abc import Mapping, Sequence
+from typing import Any, Protocol
+
+import numpy as np
+from matplotlib.figure import Figure
+
+from bladewright.views.html import Rows
+from bladewright.views.pages import Page, with_fixed_layout
+from bladewright.views.style import BLUE, RED, SOFT, drawing_style, label_axes
+
+Report = Mapping[str, Any]
+"""A round trip as its JSON has it."""
+LEAST = 1e-16
+"""Shortest bar [mm]: what is exact has no place on an axis of powers of ten."""
+
+
+class RoundTripResult(Protocol):
+    """A round trip, as `cad.write` returns it."""
+
+    def to_dict(self) -> dict[str, Any]: ...
+
+
+def round_trip_figure(report: Report) -> Figure:
+    """Largest deviation of each face, and of the edges, beside their limits."""
+    limits, faces = report["limits"], report["faces"]
+    gap = limits.get("edge_mm")
+    bars = [(face["name"], face["max_deviation_mm"]) for face in faces]
+    bars += [] if gap is None else [("edges", report["edges"]["max_gap_mm"])]
+    with drawing_style():
+        figure = Page(figsize=(6.0, 1.2 + 0.28 * len(bars)), layout="constrained")
+        axes = figure.add_subplot()
+        names, values = zip(*bars, strict=True)
+        failed = " ".join(report["failures"])
+        colours = [RED if name in failed else BLUE for name in names]
+        axes.barh(np.arange(len(bars)), np.maximum(values, LEAST), left=0.0, color=colours, height=0.6)
+        axes.set_yticks(np.arange(len(bars)), [name.replace("_", " ") for name in names])
+        axes.invert_yaxis()
+        axes.set_xscale("log")
+        for name, style in (("side_mm", "--"), ("end_mm", ":")):
+            if name in limits:
+                words = f"limit of {name.removesuffix('_mm')}s, {limits[name]:g} mm"
+                axes.axvline(limits[name], color=SOFT, linestyle=style, label=words)
+        axes.legend(loc="upper left", bbox_to_anchor=(0.0, -0.25 / (0.3 + 0.1 * len(bars))), ncols=2)
+        label_axes(axes, "Reopened file off the native faces", "largest deviation [mm], logarithmic", "")
+        return with_fixed_layout(figure)
+
+
+def round_trip_rows(report: Report) -> Rows:
+    """What the file holds, and its volume, area and centroid beside the native ones."""
+    kind = " ".join(word for word in (report["format"], report["schema"]) if word)
+    volume, area, edges = report["volume_mm3"], report["area_mm2"], report["edges"]
+    valid = "valid" if report["valid"] else "INVALID"
+    return [
+        ("file", f"{report['file']} ({kind}, {report['unit']})"),
+        ("verdict", "passed" if report["passed"] else "FAILED"),
+        *(("", failure) for failure in report["failures"]),
+        ("holds", f"{report['solids']} solid, {report['shells']} shell, {report['free_edges']} free edges, {valid}"),
+        ("volume", f"{volume['cad']:.8g} mm³, {volume['relative_error']:.1e} off"),
+        ("surface", f"{area['cad']:.8g} mm², {area['relative_error']:.1e} off"),
+        ("centroid", f"{report['centroid_mm']['distance']:.1e} mm off"),
+        ("edges", f"{edges['count']}, gap {edges['max_gap_mm']:.1e} mm, tolerance {edges['max_tolerance_mm']:.1e} mm"),
+    ]
+
+
+def face_rows(report: Report) -> tuple[Rows, Sequence[str]]:
+    """A row for each face, and the names of the columns."""
+    header = ("face", "largest [mm]", "mean [mm]", "area [mm²]", "area off")
+    rows = [
+        (
+            face["name"],
+            f"{face['max_deviation_mm']:.1e}",
+            f"{face['mean_deviation_mm']:.1e}",
+            f"{face['area_mm2']['cad']:.6g}",
+            f"{face['area_mm2']['relative_error']:.1e}",
+        )
+        for face in report["faces"]
+    ]
+    return rows, header
