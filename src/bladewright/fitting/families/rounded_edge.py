@@ -12,7 +12,7 @@ from bladewright.nurbs.basis import Reals
 from bladewright.section.suction_pressure.edges import (
     MAX_OPENING,
     Continuity,
-    EdgePoints,
+    Corners,
     characteristic_points,
     opening,
 )
@@ -59,7 +59,7 @@ def edge_through(section: SampledSection, end: int, wedge: float, continuity: Co
     def misses(unknowns: Reals) -> Reals:
         at = _points(unknowns, tip, end, continuity)
         rows = []
-        for side, corner in zip(sides, (at.upper, at.lower), strict=True):
+        for side, corner in zip(sides, (at["upper"], at["lower"]), strict=True):
             on = nearest_on(side, corner.point[None])
             along = on.tangents[0]
             turn = along[0] * corner.direction[1] - along[1] * corner.direction[0]
@@ -89,7 +89,7 @@ def edge_through(section: SampledSection, end: int, wedge: float, continuity: Co
     )
 
 
-def _points(unknowns: Reals, tip: Reals, end: int, continuity: Continuity) -> EdgePoints:
+def _points(unknowns: Reals, tip: Reals, end: int, continuity: Continuity) -> Corners:
     return characteristic_points(
         tip,
         np.asarray(unknowns[0]),

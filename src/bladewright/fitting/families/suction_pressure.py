@@ -156,7 +156,7 @@ def _side_through(part: SuctionPressure, line: Reals, name: str) -> dict[str, fl
     skeleton = skeleton_of(part, SINGLE_SECTION)
     low, high = (points_off_line(skeleton, places[None], np.full((1, count), each))[0] for each in (0.0, 1.0))
     suction_name = "upper" if (name == "suction") == (part.suction_side == "upper") else "lower"
-    corners = [getattr(points, suction_name) for points in edge_points(part, SINGLE_SECTION)]
+    corners = [points[suction_name] for points in edge_points(part, SINGLE_SECTION)]
     points, directions = (np.real([getattr(each, of)[0] for each in corners]) for of in ("point", "direction"))
     rows = basis(knots, DEGREE, SAMPLES)
     # columns by tangent in, heights and tangent out: the control points are linear in these

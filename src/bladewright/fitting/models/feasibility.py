@@ -12,7 +12,6 @@ from bladewright.section.laws import Span
 from bladewright.section.suction_pressure.edges import MAX_OPENING, opening
 from bladewright.section.suction_pressure.limits import CHECKED_AT
 from bladewright.section.suction_pressure.part import SuctionPressure, edge_points, sides
-from bladewright.section.suction_pressure.side import reparametrised
 
 SLOWEST_PACE = 0.003
 """smallest speed of a side's own parameter by s beside an edge, of its mean speed; at 0 the family refuses the side."""
@@ -30,7 +29,7 @@ def infeasibility(part: Any, span: Span) -> Array:
     edges = edge_points(part, span)
     rows = [_opening_excess(part, edge, span) for edge in ("leading_edge", "trailing_edge")]
     for side in sides(part, span, *edges):
-        rows += [SLOWEST_PACE - reparametrised(end, CHECKED_AT, 1) for end in (side.start, side.end)]
+        rows += [SLOWEST_PACE - side.own_parameter(end, CHECKED_AT, 1) for end in (0, 1)]
     shape = np.broadcast_shapes(*[each.shape[:-2] for each in rows])
     return np.concatenate([np.broadcast_to(each, (*shape, *each.shape[-2:])).reshape(*shape, -1) for each in rows], -1)
 

@@ -5,6 +5,7 @@ direction and a (1 + skew), a (1 - skew) along it, a / b = `stretch`. Each side 
 the side's direction, half the wedge angle off the edge's. Reference: Voss et al. 2025, section 3 and Fig. 3.
 """
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Literal
 
@@ -25,26 +26,25 @@ the sides [-]"""
 class Corner:
     """Where a side leaves an edge."""
 
-    point: Array
-    """(..., 2)"""
+    nose: Array
+    """(2,) of the edge"""
+    inward: Array
+    """(..., 2) unit vector of the edge's direction, from the nose into the blade"""
     offset: Array
-    """(..., 2) of the point from the nose"""
+    """(..., 2) of the corner from the nose"""
     direction: Array
     """(..., 2) unit vector from the edge along the side, into the blade"""
     speed: Array
     """(...) of the edge there, by a parameter that is 0 at the nose and 1 at the corner"""
 
+    @property
+    def point(self) -> Array:
+        """The corner (..., 2)."""
+        return self.nose + self.offset
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class EdgePoints:
-    """The three characteristic points of an edge: its nose and the corners of both sides."""
 
-    nose: Array
-    """(2,)"""
-    inward: Array
-    """(..., 2) unit vector of the edge's direction, from the nose into the blade"""
-    upper: Corner
-    lower: Corner
+Corners = Mapping[str, Corner]
+"""The corners of an edge by their sides, upper and lower: with the nose its characteristic points."""
 
 
 def opening(stretch: Array, wedge: Array) -> Array:
@@ -62,19 +62,18 @@ def characteristic_points(
     skew: Array,
     wedge: Array,
     continuity: Continuity,
-) -> EdgePoints:
-    """The characteristic points of an edge at `nose` (2,), its camber line's angle from the chord line (...) [rad].
+) -> Corners:
+    """The corners of an edge at `nose` (2,), its camber line's angle from the chord line (...) [rad].
 
     `inward` is 1 where the camber line leaves the edge (leading), -1 where it arrives (trailing); radius (...) in
     chords, stretch, skew (positive: longer on the upper side) (...), wedge (...) [rad].
     """
     forward = np.stack([np.cos(camber_angle), np.sin(camber_angle)], axis=-1)
     along, across = inward * forward, turned_left(forward)
-    corners = [
-        _corner(nose, along, sign * across, radius, stretch * (1.0 + sign * skew), wedge, continuity)
-        for sign in (1.0, -1.0)
-    ]
-    return EdgePoints(nose=nose, inward=along, upper=corners[0], lower=corners[1])
+    return {
+        name: _corner(nose, along, sign * across, radius, stretch * (1.0 + sign * skew), wedge, continuity)
+        for name, sign in (("upper", 1.0), ("lower", -1.0))
+    }
 
 
 def _corner(
@@ -86,7 +85,8 @@ def _corner(
     c, s = np.cos(0.5 * wedge), np.sin(0.5 * wedge)
     offset = radius[..., None] * (advance[..., None] * along + height[..., None] * across)
     return Corner(
-        point=nose + offset,
+        nose=nose,
+        inward=along,
         offset=offset,
         direction=c[..., None] * along + s[..., None] * across,
         speed=radius * _speed(advance, height, c, s, stretch, continuity),
@@ -106,45 +106,19 @@ def _speed(x: Array, y: Array, c: Array, s: Array, stretch: Array, continuity: C
     return -2.0 * constant / (linear + np.sqrt(linear**2 - 4.0 * square * constant))
 
 
-@dataclass(frozen=True, kw_only=True, eq=False)
-class EdgeCurve:
-    """An edge by t, -1 where it meets the lower side, 0 at the nose, 1 where it meets the upper side; its camber line.
+Bends = tuple[Array, Array]
+"""The curvature vectors (..., 2) of the upper and the lower side at their corners, times the edge's speed squared."""
 
-    The camber line, by t in [0, 1], leaves the nose in the edge's direction and continues the middle of the two sides
-    to second order. Its height over that direction is a quartic of the way along it, so that it has no kink where the
-    speed by t changes.
+
+def edge_polynomial(corners: Corners, bends: Bends, continuity: Continuity) -> Array:
+    """The edge by t, -1 where it meets the lower side, 0 at the nose, 1 where it meets the upper side.
+
+    Coefficients (..., 5 or 7, 2) of the powers of t: the polynomial of degree 4 (C1) or 6 (C2) through corner, nose and
+    corner, with the sides' derivatives there; C1 leaves the bends alone. Being one polynomial, the edge is smooth to
+    any order at the nose.
     """
-
-    coefficients: Array
-    """(..., 5 or 7, 2) of the powers of t"""
-    nose: Array
-    """(2,)"""
-    inward: Array
-    """(..., 2) unit vector of the edge's direction, from the nose into the blade"""
-    camber_length: Array
-    """(...) along it from the nose to the middle of the two corners"""
-    camber_fraction: Array
-    """(..., 5) of the powers of t: the fraction of that length"""
-    camber_height: Array
-    """(..., 5) of the powers of that fraction: the height over the direction"""
-
-    def camber(self, t: Reals) -> Array:
-        """Points (..., k, 2) of the camber line at t (k,)."""
-        fraction = polynomial_points(self.camber_fraction[..., None], t)[..., 0]
-        height = polynomial_points(self.camber_height[..., None], fraction)
-        inward = self.inward[..., None, :]
-        along = (self.camber_length[..., None] * fraction)[..., None]
-        return self.nose + along * inward + height * turned_left(inward)
-
-
-def edge_curve(points: EdgePoints, bend_upper: Array, bend_lower: Array, continuity: Continuity) -> EdgeCurve:
-    """The polynomial of degree 4 (C1) or 6 (C2) through corner, nose and corner, with the sides' derivatives there.
-
-    The bends (..., 2) are the sides' curvature vectors at the corners times the speed squared; C1 leaves them alone.
-    Being one polynomial, the edge is smooth to any order at the nose.
-    """
-    (even, even_1, even_2), (odd, odd_1, odd_2) = _halves(points, bend_upper, bend_lower)
-    nose = np.broadcast_to(points.nose, even.shape)
+    (even, even_1, even_2), (odd, odd_1, odd_2) = _halves(corners, bends)
+    nose = np.broadcast_to(corners["upper"].nose, even.shape)
     if continuity == "C1":
         fourth = 0.5 * even_1 - even
         third = 0.5 * (odd_1 - odd)
@@ -155,37 +129,38 @@ def edge_curve(points: EdgePoints, bend_upper: Array, bend_lower: Array, continu
         sixth = 0.125 * (even_2 - 5.0 * even_1 + 8.0 * even)
         fourth = 0.5 * (even_1 - 2.0 * even) - 2.0 * sixth
         powers = [nose, odd - third - fifth, even - fourth - sixth, third, fourth, fifth, sixth]
-    length, fraction, height = _camber(points, even, even_1, even_2)
-    return EdgeCurve(
-        coefficients=_stacked(powers),
-        nose=points.nose,
-        inward=points.inward,
-        camber_length=length,
-        camber_fraction=fraction,
-        camber_height=height,
-    )
+    return _stacked(powers)
 
 
-def _halves(points: EdgePoints, bend_upper: Array, bend_lower: Array) -> tuple[tuple[Array, ...], tuple[Array, ...]]:
+def edge_camber(corners: Corners, bends: Bends, t: Reals) -> Array:
+    """Points (..., k, 2) of the edge's camber line at t (k,) from 0 at the nose to 1 amid the corners.
+
+    It leaves the nose in the edge's direction and continues the middle of the two sides to second order. Its height
+    over that direction is a quartic of the way along it, so that it has no kink where the speed by t changes.
+    """
+    nose, inward = corners["upper"].nose, corners["upper"].inward
+    (even, even_1, even_2), _ = _halves(corners, bends)
+    along, along_1, along_2 = (dot(each, inward) for each in (even, even_1, even_2))
+    across, across_1, across_2 = (dot(each, turned_left(inward)) for each in (even, even_1, even_2))
+    slope = across_1 / along_1
+    bend = (across_2 - slope * along_2) / along_1**2
+    ways = _flat_start(np.zeros_like(along), along_1 / along - 1.0, along_2 / along)
+    ways[..., 1] = 1.0
+    heights = _flat_start(across, slope * along, bend * along**2)
+    way = polynomial_points(ways[..., None], t)[..., 0]
+    height = polynomial_points(heights[..., None], way)
+    inward = inward[..., None, :]
+    return nose + (along[..., None] * way)[..., None] * inward + height * turned_left(inward)
+
+
+def _halves(corners: Corners, bends: Bends) -> tuple[tuple[Array, ...], tuple[Array, ...]]:
     """Even and odd parts at t = 1 of the edge about its nose, with two derivatives."""
-    upper, lower = points.upper, points.lower
-    at_upper = (upper.offset, upper.speed[..., None] * upper.direction, bend_upper)
-    at_lower = (lower.offset, -lower.speed[..., None] * lower.direction, bend_lower)
+    upper, lower = corners["upper"], corners["lower"]
+    at_upper = (upper.offset, upper.speed[..., None] * upper.direction, bends[0])
+    at_lower = (lower.offset, -lower.speed[..., None] * lower.direction, bends[1])
     even = tuple(0.5 * (a + sign * b) for a, b, sign in zip(at_upper, at_lower, (1.0, -1.0, 1.0), strict=True))
     odd = tuple(0.5 * (a - sign * b) for a, b, sign in zip(at_upper, at_lower, (1.0, -1.0, 1.0), strict=True))
     return even, odd
-
-
-def _camber(points: EdgePoints, even: Array, even_1: Array, even_2: Array) -> tuple[Array, Array, Array]:
-    """Length (...) and coefficients (..., 5) of fraction and height of an edge's camber line."""
-    left = turned_left(points.inward)
-    along, along_1, along_2 = (dot(each, points.inward) for each in (even, even_1, even_2))
-    across, across_1, across_2 = (dot(each, left) for each in (even, even_1, even_2))
-    slope = across_1 / along_1
-    bend = (across_2 - slope * along_2) / along_1**2
-    fraction = _flat_start(np.zeros_like(along), along_1 / along - 1.0, along_2 / along)
-    fraction[..., 1] = 1.0
-    return along, fraction, _flat_start(across, slope * along, bend * along**2)
 
 
 def _flat_start(value: Array, slope: Array, bend: Array) -> Array:

@@ -10,8 +10,8 @@ from bladewright.numerics.elementary import Array, cross2, length, radians
 from bladewright.nurbs.basis import Reals
 from bladewright.section import checks
 from bladewright.section.laws import Span
-from bladewright.section.suction_pressure.edges import MAX_OPENING, Continuity, EdgePoints, opening
-from bladewright.section.suction_pressure.side import DEGREE, Side, SideEnd, reparametrised
+from bladewright.section.suction_pressure.edges import MAX_OPENING, Continuity, Corners, opening
+from bladewright.section.suction_pressure.side import DEGREE, Side
 
 ANGLES = ("stagger_angle", "metal_angle_in", "metal_angle_out")
 EDGES = ("leading_edge", "trailing_edge")
@@ -119,10 +119,10 @@ def check_opening(edge: str, continuity: Continuity, stretch: Array, skew: Array
         )
 
 
-def check_chord_left(leading: EdgePoints, trailing: EdgePoints, span: Span) -> None:
+def check_chord_left(leading: Corners, trailing: Corners, span: Span) -> None:
     """Refuse edges that leave nothing of the chord to a side."""
     for name in ("upper", "lower"):
-        ahead = np.real(getattr(trailing, name).point - getattr(leading, name).point)[..., 0]
+        ahead = np.real(trailing[name].point - leading[name].point)[..., 0]
         if np.any(ahead <= 0.0):
             at = _worst(-ahead)
             raise DesignError(
@@ -138,13 +138,17 @@ def check_reparametrisation(name: str, side: Side, span: Span) -> None:
     distance to the next control point, the rise is about -c^2 d / a^3, and the parameter is monotone up to a rise of
     about sqrt(72 slope) and a slope of about 2.5.
     """
-    for end, edge, which in ((side.start, "leading_edge", "in"), (side.end, "trailing_edge", "out")):
-        slope = np.min(np.real(reparametrised(end, CHECKED_AT, 1)), axis=-1)
+    for end, edge, which in ((0, "leading_edge", "in"), (1, "trailing_edge", "out")):
+        slope = np.min(np.real(side.own_parameter(end, CHECKED_AT, 1)), axis=-1)
         if np.any(slope <= 0.0):
             at = _worst(-slope)
             distance, slope_there, next_step = (
                 float(np.broadcast_to(np.real(each), slope.shape)[at])
-                for each in (length(end.taylor[..., 1, :]) / DEGREE, end.slope, _next_step(end))
+                for each in (
+                    length(side.taylor[end][..., 1, :]) / DEGREE,
+                    side.slopes[end],
+                    _next_step(side.taylor[end]),
+                )
             )
             least = 1.2 * max(distance * slope_there / 2.5, ((distance * slope_there) ** 1.5 * next_step / 8.5) ** 0.4)
             raise DesignError(
@@ -171,9 +175,9 @@ def check_crossing(upper: Side, lower: Side, span: Span, *, suction_side: str, b
         )
 
 
-def _next_step(end: SideEnd) -> Array:
+def _next_step(taylor: Array) -> Array:
     """Distance (...) from a side's second control point to its third."""
-    first, second = end.taylor[..., 1, :], end.taylor[..., 2, :]
+    first, second = taylor[..., 1, :], taylor[..., 2, :]
     return length(2.0 * second + 2.0 * first) / DEGREE
 
 

@@ -1,6 +1,7 @@
 """The outline of a section by suction and pressure side: edges and sides in fixed parts of s."""
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,7 +14,7 @@ from bladewright.nurbs.curve import Curve
 from bladewright.nurbs.domain import reversed as backwards
 from bladewright.section.outline import Edge, EdgeDerivatives, Joint, Outline, by_parts
 from bladewright.section.power_series import polynomial_points
-from bladewright.section.suction_pressure.edges import Continuity, EdgeCurve
+from bladewright.section.suction_pressure.edges import Bends, Continuity, Corners, edge_camber, edge_polynomial
 from bladewright.section.suction_pressure.side import DEGREE, Side
 
 EDGE = 0.1
@@ -27,11 +28,22 @@ SHARE = EDGE / (1.0 - 2.0 * EDGE)
 class SuctionPressureOutline(Outline):
     """Sections of two edges and two sides; with C2 edges each side is twice differentiable by s where it joins them."""
 
-    edges: tuple[EdgeCurve, EdgeCurve]
+    corners: tuple[Corners, Corners]
     """leading and trailing"""
     upper: Side
     lower: Side
     continuity: Continuity
+
+    @cached_property
+    def edges(self) -> tuple[Array, Array]:
+        """Coefficients (..., 5 or 7, 2) of the leading and the trailing edge in powers of -1 to 1."""
+        leading, trailing = (
+            edge_polynomial(corners, self._bends(end), self.continuity) for end, corners in enumerate(self.corners)
+        )
+        return leading, trailing
+
+    def _bends(self, end: int) -> Bends:
+        return self.upper.bends[end], self.lower.bends[end]
 
     @property
     def leading_edge(self) -> Edge:
@@ -57,9 +69,9 @@ class SuctionPressureOutline(Outline):
         for side, sign in ((self.upper, 1.0), (self.lower, -1.0)):
             first, middle, last = _parts(s)
             parts = [
-                (first, polynomial_points(self.edges[0].coefficients, sign * s[first] / EDGE)),
+                (first, polynomial_points(self.edges[0], sign * s[first] / EDGE)),
                 (middle, side.points(_fractions(s[middle]))),
-                (last, polynomial_points(self.edges[1].coefficients, sign * (1.0 - s[last]) / EDGE)),
+                (last, polynomial_points(self.edges[1], sign * (1.0 - s[last]) / EDGE)),
             ]
             found.append(by_parts(parts, len(s)))
         return found[0], found[1]
@@ -69,15 +81,15 @@ class SuctionPressureOutline(Outline):
         first, middle, last = _parts(s)
         w = _fractions(s[middle])
         parts = [
-            (first, self.edges[0].camber(s[first] / EDGE)),
+            (first, edge_camber(self.corners[0], self._bends(0), s[first] / EDGE)),
             (middle, 0.5 * (self.upper.points(w) + self.lower.points(w))),
-            (last, self.edges[1].camber((1.0 - s[last]) / EDGE)),
+            (last, edge_camber(self.corners[1], self._bends(1), (1.0 - s[last]) / EDGE)),
         ]
         return by_parts(parts, len(s))
 
 
-def _meeting(edge: EdgeCurve, direction: float) -> Edge:
-    point, first, second = (edge.coefficients[..., k, :] * EDGE**-k for k in range(3))
+def _meeting(edge: Array, direction: float) -> Edge:
+    point, first, second = (edge[..., k, :] * EDGE**-k for k in range(3))
     return Edge.rounded(EdgeDerivatives(point, direction * first, 2.0 * second))
 
 
@@ -101,7 +113,7 @@ def closed_curve(outline: SuctionPressureOutline) -> Curve:
     its parameter long, and the pieces meet at knots of multiplicity `degree`, tangents and with C2 edges curvatures
     alike. Voss et al. 2025, section 3.
     """
-    leading, trailing = (_bezier(edge.coefficients[0]) for edge in outline.edges)
+    leading, trailing = (_bezier(edge[0]) for edge in outline.edges)
     upper, lower = (_spline(side) for side in (outline.upper, outline.lower))
     return joined([upper, backwards(trailing), backwards(lower), leading])
 

@@ -17,7 +17,7 @@ from bladewright.nurbs.refine import inserted
 from bladewright.section.family import SectionFamily
 from bladewright.section.laws import Span, is_list, law_points, named_laws
 from bladewright.section.planar import PlanarSection
-from bladewright.section.suction_pressure.edges import Corner, EdgePoints, characteristic_points, edge_curve
+from bladewright.section.suction_pressure.edges import Corner, Corners, characteristic_points
 from bladewright.section.suction_pressure.limits import (
     check_chord_left,
     check_crossing,
@@ -150,13 +150,9 @@ def assembled(part: SuctionPressure, span: Span) -> SuctionPressureOutline:
     names = ("suction", "pressure") if part.suction_side == "upper" else ("pressure", "suction")
     for name, side in zip(names, (upper, lower), strict=True):
         check_reparametrisation(name, side, span)
-    curves = [
-        edge_curve(points, one.bend, other.bend, part.edges)
-        for points, one, other in ((leading, upper.start, lower.start), (trailing, upper.end, lower.end))
-    ]
     by_thickness = bool(part.pressure_thickness)
     check_crossing(upper, lower, span, suction_side=part.suction_side, by_thickness=by_thickness)
-    return SuctionPressureOutline(edges=(curves[0], curves[1]), upper=upper, lower=lower, continuity=part.edges)
+    return SuctionPressureOutline(corners=(leading, trailing), upper=upper, lower=lower, continuity=part.edges)
 
 
 def camber_angles(part: SuctionPressure, span: Span) -> tuple[Array, Array]:
@@ -165,8 +161,8 @@ def camber_angles(part: SuctionPressure, span: Span) -> tuple[Array, Array]:
     return radians(span.values(part.metal_angle_in) - turn), radians(span.values(part.metal_angle_out) - turn)
 
 
-def edge_points(part: SuctionPressure, span: Span) -> tuple[EdgePoints, EdgePoints]:
-    """The characteristic points of the leading and the trailing edge."""
+def edge_points(part: SuctionPressure, span: Span) -> tuple[Corners, Corners]:
+    """The corners of the leading and the trailing edge."""
     found = []
     suction = 1.0 if part.suction_side == "upper" else -1.0
     for edge, nose, inward, angle in zip(
@@ -196,12 +192,12 @@ def skeleton_of(part: SuctionPressure, span: Span) -> Array:
     return pseudo_line(*camber_angles(part, span)) if part.skeleton == "pseudo" else chord_line((len(span.v),))
 
 
-def sides(part: SuctionPressure, span: Span, leading: EdgePoints, trailing: EdgePoints) -> tuple[Side, Side]:
+def sides(part: SuctionPressure, span: Span, leading: Corners, trailing: Corners) -> tuple[Side, Side]:
     """The suction and the pressure side."""
     skeleton = skeleton_of(part, span)
     suction_name, pressure_name = ("upper", "lower") if part.suction_side == "upper" else ("lower", "upper")
-    ends: tuple[Corner, Corner] = getattr(leading, suction_name), getattr(trailing, suction_name)
-    other: tuple[Corner, Corner] = getattr(leading, pressure_name), getattr(trailing, pressure_name)
+    ends: tuple[Corner, Corner] = leading[suction_name], trailing[suction_name]
+    other: tuple[Corner, Corner] = leading[pressure_name], trailing[pressure_name]
     knots = side_knots(len(part.suction_heights), part.suction_knots)
     free = points_off_line(skeleton, *_numbers(span, part.suction_places, part.suction_heights, knots))
     tangents = span.values(part.suction_tangent_in), span.values(part.suction_tangent_out)
@@ -212,10 +208,7 @@ def sides(part: SuctionPressure, span: Span, leading: EdgePoints, trailing: Edge
     knots = side_knots(len(offsets), part.pressure_knots)
     places, numbers = _numbers(span, part.pressure_places, offsets, knots)
     given = part.pressure_tangent_in, part.pressure_tangent_out
-    speeds = (
-        length(suction.start.taylor[..., 1, :]) / suction.start.span,
-        length(suction.end.taylor[..., 1, :]) / suction.end.span,
-    )
+    speeds = [length(each[..., 1, :]) / width for each, width in zip(suction.taylor, suction.widths, strict=True)]
     widths = knots[DEGREE + 1], 1.0 - knots[-DEGREE - 2]
     tangents_of = [
         speed * (width / DEGREE) if law is None else span.values(law)

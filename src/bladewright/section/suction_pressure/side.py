@@ -20,41 +20,52 @@ DEGREE = 3
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class SideEnd:
-    """A side's first knot span at a corner, seen from the corner."""
-
-    taylor: Array
-    """(..., 4, 2) coefficients of its polynomial by the fraction of the knot span"""
-    span: float
-    """length of the knot span next to the corner"""
-    slope: Array
-    """(...) first derivative of the side's own parameter by the section's at the corner, in fractions of the span"""
-    rise: Array
-    """(...) its second derivative there, in the same units"""
-    bend: Array
-    """(..., 2) curvature vector times the edge's speed squared"""
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
 class Side:
-    """A side by w in [0, 1] from the leading to the trailing edge, twice differentiable where it joins the edges."""
+    """A side by w in [0, 1] from the leading to the trailing edge, twice differentiable where it joins the edges.
+
+    Pairs belong to the corners at both edges, leading first; in the knot spans next to them the side's own parameter
+    is another than w.
+    """
 
     controls: Array
     """(..., n, 2)"""
     knots: Reals
-    start: SideEnd
-    end: SideEnd
+    widths: tuple[float, float]
+    """lengths of the knot spans next to the corners"""
+    taylor: tuple[Array, Array]
+    """(..., 4, 2) coefficients of the polynomials there by the fraction of the knot span, from the corner on"""
+    slopes: tuple[Array, Array]
+    """(...) first derivatives of the own parameter by w at the corners, in fractions of the span"""
+    rises: tuple[Array, Array]
+    """(...) its second derivatives there, in the same units"""
+    bends: tuple[Array, Array]
+    """(..., 2) curvature vectors at the corners times the edge's speed squared"""
 
     def points(self, w: Reals) -> Array:
         """Points (..., len(w), 2)."""
-        first, last = w < self.start.span, w > 1.0 - self.end.span
+        first, last = w < self.widths[0], w > 1.0 - self.widths[1]
         middle = ~first & ~last
         parts = [
-            (first, _points_beside_edge(self.start, w[first] / self.start.span)),
+            (first, self._beside_edge(0, w[first] / self.widths[0])),
             (middle, basis(self.knots, DEGREE, w[middle]) @ self.controls),
-            (last, _points_beside_edge(self.end, (1.0 - w[last]) / self.end.span)),
+            (last, self._beside_edge(1, (1.0 - w[last]) / self.widths[1])),
         ]
         return by_parts(parts, len(w))
+
+    def own_parameter(self, end: int, x: Reals, order: int = 0) -> Array:
+        """The own parameter (..., len(x)) in the knot span at an end, or its slope, at fractions x of w's there.
+
+        x - (1 - slope) x (1 - x)^3 (1 + 3 x) + rise x^2 (1 - x)^3 / 2: with value 0, first derivative `slope` and
+        second `rise` at the corner, and no change of value and two derivatives at the span's other end.
+        """
+        y = 1.0 - x
+        slower, rise = (1.0 - self.slopes[end])[..., None], self.rises[end][..., None]
+        if order == 0:
+            return x - slower * (x * y**3 * (1.0 + 3.0 * x)) + rise * (0.5 * x**2 * y**3)
+        return 1.0 - slower * (y**2 * (1.0 + 5.0 * x) * (1.0 - 3.0 * x)) + rise * (0.5 * x * y**2 * (2.0 - 5.0 * x))
+
+    def _beside_edge(self, end: int, x: Reals) -> Array:
+        return polynomial_points(self.taylor[end], self.own_parameter(end, x))
 
 
 def side_knots(free: int, inner: tuple[float, ...]) -> Reals:
@@ -110,44 +121,34 @@ def continuing_edges(controls: Array, knots: Reals, start: Corner, end: Corner, 
 
     `share` is the part of s that an edge takes, over the part of a side.
     """
-    width = float(knots[DEGREE + 1]), float(1.0 - knots[-DEGREE - 2])
-    ends = [_end(controls, knots, corner, width[i], (1.0, -1.0)[i], share) for i, corner in enumerate((start, end))]
-    return Side(controls=controls, knots=knots, start=ends[0], end=ends[1])
-
-
-def _end(controls: Array, knots: Reals, corner: Corner, width: float, sign: float, share: float) -> SideEnd:
-    at = np.array([0.0 if sign > 0.0 else 1.0])
-    rows = [basis(knots, DEGREE, at, order) * ((sign * width) ** order / factorial(order)) for order in range(4)]
-    taylor = np.concatenate(rows) @ controls
-    speed = length(taylor[..., 1, :])
-    second = 2.0 * taylor[..., 2, :]
-    along = dot(second, corner.direction)
-    slope = corner.speed * (width / share) / speed
-    across = second - along[..., None] * corner.direction
-    return SideEnd(
+    widths = float(knots[DEGREE + 1]), float(1.0 - knots[-DEGREE - 2])
+    taylor = _taylor(controls, knots, 0.0, widths[0]), _taylor(controls, knots, 1.0, -widths[1])
+    slopes, rises, bends = [], [], []
+    for powers, corner, width in zip(taylor, (start, end), widths, strict=True):
+        speed = length(powers[..., 1, :])
+        second = 2.0 * powers[..., 2, :]
+        along = dot(second, corner.direction)
+        slope = corner.speed * (width / share) / speed
+        across = second - along[..., None] * corner.direction
+        slopes.append(slope)
+        rises.append(-(slope**2) * along / speed)
+        bends.append(across * ((corner.speed / speed) ** 2)[..., None])
+    return Side(
+        controls=controls,
+        knots=knots,
+        widths=widths,
         taylor=taylor,
-        span=width,
-        slope=slope,
-        rise=-(slope**2) * along / speed,
-        bend=across * ((corner.speed / speed) ** 2)[..., None],
+        slopes=(slopes[0], slopes[1]),
+        rises=(rises[0], rises[1]),
+        bends=(bends[0], bends[1]),
     )
 
 
-def reparametrised(end: SideEnd, x: Reals, order: int = 0) -> Array:
-    """The side's own parameter (..., len(x)) in the knot span, or its slope, at fractions x of the section's there.
-
-    x - (1 - slope) x (1 - x)^3 (1 + 3 x) + rise x^2 (1 - x)^3 / 2: with value 0, first derivative `slope` and second
-    `rise` at the corner, and no change of value and two derivatives at the span's other end.
-    """
-    y = 1.0 - x
-    slower, rise = (1.0 - end.slope)[..., None], end.rise[..., None]
-    if order == 0:
-        return x - slower * (x * y**3 * (1.0 + 3.0 * x)) + rise * (0.5 * x**2 * y**3)
-    return 1.0 - slower * (y**2 * (1.0 + 5.0 * x) * (1.0 - 3.0 * x)) + rise * (0.5 * x * y**2 * (2.0 - 5.0 * x))
-
-
-def _points_beside_edge(end: SideEnd, x: Reals) -> Array:
-    return polynomial_points(end.taylor, reparametrised(end, x))
+def _taylor(controls: Array, knots: Reals, place: float, width: float) -> Array:
+    """Coefficients (..., 4, 2) of the powers of the way from a place, in widths."""
+    at = np.array([place])
+    rows = [basis(knots, DEGREE, at, order) * (width**order / factorial(order)) for order in range(4)]
+    return np.asarray(np.concatenate(rows) @ controls)
 
 
 def chord_line(shape: tuple[int, ...]) -> Array:
