@@ -18,8 +18,8 @@ from bladewright.section import checks
 from bladewright.section.camber_angle_outline import (
     CamberAngleOutline,
     CamberByAngle,
-    LengthFraction,
     SplinePieces,
+    length_fractions,
 )
 from bladewright.section.family import MeridionalFraction, SectionFamily
 from bladewright.section.laws import Span
@@ -121,7 +121,8 @@ class CamberAngle(SectionFamily):
     def _line(self, span: Span, meridional: MeridionalFraction | None) -> CamberByAngle:
         angles = _stacked([radians(span.values(law)) for law in self.camber_angle])
         return CamberByAngle(
-            angle=SplinePieces(controls=angles), fraction=None if meridional is None else LengthFraction(meridional)
+            angle=SplinePieces(controls=angles),
+            length_fractions=None if meridional is None else length_fractions(meridional),
         )
 
     def _places(self, span: Span) -> list[Array]:

@@ -80,28 +80,30 @@ class SplinePieces:
         return polynomial(taken, at - self.ends[piece])
 
 
-class LengthFraction:
-    """Fractions of the meridional length by fractions of m', at places that differ from section to section."""
+def length_fractions(meridional: MeridionalFraction) -> Array:
+    """Chebyshev coefficients (..., CELLS, NODES) of the fraction of the meridional length by that of m', cell by cell.
 
-    def __init__(self, meridional: MeridionalFraction) -> None:
-        nodes = 0.5 * (1.0 - np.cos(np.pi * (np.arange(NODES) + 0.5) / NODES))
-        places = (np.arange(CELLS)[:, None] + nodes) / CELLS
-        found = meridional(places.ravel())
-        values = found.reshape(*found.shape[:-1], CELLS, NODES)
-        self._powers = values @ np.linalg.inv(np.polynomial.chebyshev.chebvander(2.0 * nodes - 1.0, NODES - 1)).T
+    The cells are those of the fraction of m'; places may differ from section to section.
+    """
+    nodes = 0.5 * (1.0 - np.cos(np.pi * (np.arange(NODES) + 0.5) / NODES))
+    places = (np.arange(CELLS)[:, None] + nodes) / CELLS
+    found = meridional(places.ravel())
+    values = found.reshape(*found.shape[:-1], CELLS, NODES)
+    return np.asarray(values @ np.linalg.inv(np.polynomial.chebyshev.chebvander(2.0 * nodes - 1.0, NODES - 1)).T)
 
-    def at(self, place: Series) -> Series:
-        """Fractions of the length at fractions of m' (..., k)."""
-        cell = np.clip(np.floor(np.real(place.value) * CELLS).astype(int), 0, CELLS - 1)
-        shape = np.broadcast_shapes(cell.shape[:-1], self._powers.shape[:-2])
-        index = np.broadcast_to(cell, (*shape, cell.shape[-1]))
-        table = np.broadcast_to(self._powers, (*shape, *self._powers.shape[-2:]))
-        rows = np.take_along_axis(table, index[..., None], axis=-2)
-        doubled = (place * float(CELLS) - cell - 0.5) * 4.0
-        later, value = place * 0.0, place * 0.0 + rows[..., -1]
-        for k in range(NODES - 2, 0, -1):
-            value, later = doubled * value - later + rows[..., k], value
-        return doubled * 0.5 * value - later + rows[..., 0]
+
+def _length_fraction(coefficients: Array, place: Series) -> Series:
+    """Fractions of the meridional length at fractions of m' (..., k)."""
+    cell = np.clip(np.floor(np.real(place.value) * CELLS).astype(int), 0, CELLS - 1)
+    shape = np.broadcast_shapes(cell.shape[:-1], coefficients.shape[:-2])
+    index = np.broadcast_to(cell, (*shape, cell.shape[-1]))
+    table = np.broadcast_to(coefficients, (*shape, *coefficients.shape[-2:]))
+    rows = np.take_along_axis(table, index[..., None], axis=-2)
+    doubled = (place * float(CELLS) - cell - 0.5) * 4.0
+    later, value = place * 0.0, place * 0.0 + rows[..., -1]
+    for k in range(NODES - 2, 0, -1):
+        value, later = doubled * value - later + rows[..., k], value
+    return doubled * 0.5 * value - later + rows[..., 0]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -110,12 +112,12 @@ class CamberByAngle:
 
     angle: SplinePieces
     """beta by the fraction of the meridional length [rad]"""
-    fraction: LengthFraction | None
-    """None: the fraction of m' is that of the length"""
+    length_fractions: Array | None
+    """of the meridional length by the fraction of m', as the function of that name gives them; None: they are equal"""
 
     def turning(self, x: Series) -> Series:
         """beta at x (..., k)."""
-        length = x if self.fraction is None else self.fraction.at(x)
+        length = x if self.length_fractions is None else _length_fraction(self.length_fractions, x)
         return self.angle.values(length, self.angle.piece(length.value))
 
     def rise(self, x: Series) -> Series:
@@ -141,16 +143,15 @@ class CamberByAngle:
     def knots(self) -> Reals:
         """x (..., j) of the inner knots of beta."""
         inner = self.angle.ends[1:-1]
-        if self.fraction is None:
+        if self.length_fractions is None:
             return np.broadcast_to(inner, (*self.angle.controls.shape[:-1], len(inner)))
-        fraction = self.fraction
+        coefficients = self.length_fractions
 
         def residual(x: Array) -> tuple[Array, Array]:
-            found = fraction.at(variable(x, 1))
+            found = _length_fraction(coefficients, variable(x, 1))
             return np.real(found.value) - inner, np.real(found.coefficients[1])
 
-        count = fraction.at(Series([np.zeros(1)])).value.shape[:-1]
-        ends = [np.full((*count, len(inner)), end) for end in (0.0, 1.0)]
+        ends = [np.full((*coefficients.shape[:-2], len(inner)), end) for end in (0.0, 1.0)]
         return bracketed_root(residual, *ends)
 
     @cached_property
@@ -162,7 +163,7 @@ class CamberByAngle:
         share = np.arange(CUTS) / CUTS
         panels = marks[..., :-1, None] + np.diff(marks, axis=-1)[..., None] * share
         ends = np.concatenate([panels.reshape(*panels.shape[:-2], -1), edges[1]], axis=-1)
-        if self.fraction is None:
+        if self.length_fractions is None:
             return ends
         cells = np.broadcast_to(np.arange(1, CELLS) / CELLS, (*ends.shape[:-1], CELLS - 1))
         return np.sort(np.concatenate([ends, cells], axis=-1), axis=-1)

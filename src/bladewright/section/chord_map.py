@@ -19,12 +19,11 @@ other sign. There s is replaced in the first piece by p(s) = s + k s^2 (1 - s / 
 for every k when c^2 = 1 + (k s_1)^2, keeps two derivatives at the joint s_1, and with k = -b d(sqrt u)/ds makes the
 second derivative of the half thickness vanish at the edge, so that the sides have equal second derivatives there.
 
-Profiles on a mean line (`ClusteredChordMap`) have at most one joint and a published form of thickness; there the steps
+Profiles on a mean line (`clustered_place`) have at most one joint and a published form of thickness; there the steps
 of s are clustered towards the edges as well.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from itertools import pairwise
 from typing import NamedTuple
 
@@ -202,62 +201,62 @@ def _smooth_slope(widths: Reals, secants: Sequence[Array], before: Array, after:
     return 2.0 * constant / (linear + np.sqrt(linear**2 + 4.0 * quadratic * constant))
 
 
-@dataclass(frozen=True, kw_only=True)
-class ClusteredChordMap:
-    """The map from s to x, the same in form for all sections.
+def clustered_place(
+    s: Reals,
+    order: int,
+    *,
+    round_end: bool,
+    clustering: tuple[float, float],
+    stretching: float,
+    bend: float,
+    joint: Array | None,
+) -> ChordPlace:
+    """Places at s (k,) with their derivatives up to an order, by a map that is the same in form for all sections.
 
     sqrt(x) is analytic and odd about s = 0 but for its second derivative, and so is sqrt(1 - x) about s = 1 where the
-    trailing edge is round; elsewhere x runs into s = 1 with a slope.
+    trailing edge is round; elsewhere x runs into s = 1 with a slope. `clustering` are the amplitudes of the sine waves
+    that cluster the steps of s at the leading and at a round trailing edge, 0 (none) to below 1 [-]; `stretching` is k
+    of the hyperbolic tangent that clusters them at a sharp or blunt one, 0: none [-]. `bend` is -a1 / a0 of a thickness
+    a0 sqrt(x) + a1 x + ...: with it the thickness has no second derivative at s = 0. `joint` is x (..., 1) of the mean
+    line's joint, which is at s = `JOINT`.
     """
+    phase = _clustered_phase(s, order, clustering, stretching)
+    sine, cosine = sine_and_cosine(phase)
+    if round_end:
+        root, before = sine, cosine * cosine
+    else:
+        # 1 - cos = 2 sin^2 of half the phase, and 1 less that is the cosine
+        root, _ = sine_and_cosine(phase * 0.5)
+        root, before = root * np.sqrt(2.0), cosine
+    ratio: Array | float = 1.0
+    if joint is not None:
+        middle = float(_clustered_phase(np.array([JOINT]), 0, clustering, stretching).value[0])
+        ratio = _joint_ratio(joint, np.sin(middle) ** 2 if round_end else 1.0 - np.cos(middle), bend)
+    scale = root * root + before * ratio
+    first = root / scale.sqrt()
+    lift = first * first * bend + 1.0
+    x_root = first * (first * bend + 1.0) / lift
+    kept = ratio / scale * (x_root + 1.0) / (first + 1.0) / lift
+    end = cosine * kept.sqrt() if round_end else None
+    return ChordPlace(u=x_root * x_root, rest=before * kept, root=x_root, rest_root=end)
 
-    round_end: bool
-    clustering_in: float
-    """amplitude of the sine waves that cluster the steps of s at the leading edge, 0 (none) to below 1 [-]"""
-    clustering_out: float
-    """the same at a round trailing edge [-]"""
-    stretching: float
-    """k of the hyperbolic tangent that clusters the steps of s at a sharp or blunt trailing edge; 0: none [-]"""
-    bend: float
-    """-a1 / a0 of a thickness a0 sqrt(x) + a1 x + ...: with it the thickness has no second derivative at s = 0"""
-    joint: Array | None
-    """x (..., 1) of the mean line's joint, which is at s = `JOINT`"""
 
-    def at(self, s: Reals, order: int) -> ChordPlace:
-        """Places at s (k,) with their derivatives up to an order."""
-        sine, cosine = sine_and_cosine(self._phase(s, order))
-        if self.round_end:
-            root, before = sine, cosine * cosine
-        else:
-            # 1 - cos = 2 sin^2 of half the phase, and 1 less that is the cosine
-            root, _ = sine_and_cosine(self._phase(s, order) * 0.5)
-            root, before = root * np.sqrt(2.0), cosine
-        ratio: Array | float = 1.0 if self.joint is None else self._ratio(self.joint)
-        scale = root * root + before * ratio
-        first = root / scale.sqrt()
-        lift = first * first * self.bend + 1.0
-        x_root = first * (first * self.bend + 1.0) / lift
-        kept = ratio / scale * (x_root + 1.0) / (first + 1.0) / lift
-        end = cosine * kept.sqrt() if self.round_end else None
-        return ChordPlace(u=x_root * x_root, rest=before * kept, root=x_root, rest_root=end)
+def _clustered_phase(s: Reals, order: int, clustering: tuple[float, float], stretching: float) -> Series:
+    """The angle that runs from 0 to pi / 2; steps clustered at the edges, odd about them."""
+    angle = variable(s, order) * np.pi
+    once, _ = sine_and_cosine(angle)
+    twice, _ = sine_and_cosine(angle * 2.0)
+    both = twice * 0.25 * (clustering[0] + clustering[1])
+    drawn = both + once * 0.5 * (clustering[0] - clustering[1])
+    phase = (angle - drawn) * 0.5
+    if not stretching:
+        return phase
+    return hyperbolic_tangent(phase * (2.0 / np.pi * stretching)) * (0.5 * np.pi / np.tanh(stretching))
 
-    def _phase(self, s: Reals, order: int) -> Series:
-        """The angle that runs from 0 to pi / 2; steps clustered at the edges, odd about them."""
-        angle = variable(s, order) * np.pi
-        once, _ = sine_and_cosine(angle)
-        twice, _ = sine_and_cosine(angle * 2.0)
-        both = twice * 0.25 * (self.clustering_in + self.clustering_out)
-        drawn = both + once * 0.5 * (self.clustering_in - self.clustering_out)
-        phase = (angle - drawn) * 0.5
-        if not self.stretching:
-            return phase
-        return hyperbolic_tangent(phase * (2.0 / np.pi * self.stretching)) * (0.5 * np.pi / np.tanh(self.stretching))
 
-    def _ratio(self, joint: Array) -> Array:
-        """Ratio of the projective map of x that brings the joint to its s."""
-        middle = float(self._phase(np.array([JOINT]), 0).value[0])
-        at = np.sin(middle) ** 2 if self.round_end else 1.0 - np.cos(middle)
-        root = np.sqrt(joint)
-        before_bend = 2.0 * root / (1.0 + np.sqrt(1.0 + 4.0 * self.bend * (1.0 - root) * root))
-        square = before_bend * before_bend
-        ratio: Array = at * (1.0 - square) / (square * (1.0 - at))
-        return ratio
+def _joint_ratio(joint: Array, at: float, bend: float) -> Array:
+    """Ratio of the projective map of x that brings the joint to its place."""
+    root = np.sqrt(joint)
+    before_bend = 2.0 * root / (1.0 + np.sqrt(1.0 + 4.0 * bend * (1.0 - root) * root))
+    square = before_bend * before_bend
+    return np.asarray(at * (1.0 - square) / (square * (1.0 - at)))

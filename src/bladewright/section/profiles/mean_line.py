@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from bladewright.numerics.elementary import Array
 from bladewright.nurbs.basis import Reals
-from bladewright.section.chord_map import JOINT, ChordPlace, ClusteredChordMap
+from bladewright.section.chord_map import JOINT, ChordPlace, clustered_place
 from bladewright.section.outline import Edge, EdgeDerivatives, Joint, Outline
 from bladewright.section.power_series import (
     Series,
@@ -116,12 +116,12 @@ class MeanLineOutline(Outline):
     stretching: float = 0.0
     """k of the hyperbolic tangent that clusters s at a sharp or blunt trailing edge; 0: none [-]"""
 
-    @cached_property
-    def _chord_map(self) -> ClusteredChordMap:
-        return ClusteredChordMap(
+    def _place(self, s: Reals, order: int) -> ChordPlace:
+        return clustered_place(
+            s,
+            order,
             round_end=self.end == "round",
-            clustering_in=self.clustering,
-            clustering_out=END_CLUSTERING if self.end == "round" else 0.0,
+            clustering=(self.clustering, END_CLUSTERING if self.end == "round" else 0.0),
             stretching=0.0 if self.end == "round" else self.stretching,
             bend=self.thickness.bend,
             joint=self.mean_line.joint,
@@ -167,7 +167,7 @@ class MeanLineOutline(Outline):
 
     def _sides(self, s: Reals, order: int) -> list[Array]:
         """Points and their derivatives by s, (..., k, 2, order + 1), of both sides."""
-        place = self._chord_map.at(s, order)
+        place = self._place(s, order)
         ordinate, rise = self._line(place.u, s)
         half = self._half(place)
         across = half / (rise * rise + 1.0).sqrt()
@@ -181,7 +181,7 @@ class MeanLineOutline(Outline):
 
     def camber(self, s: Reals) -> Array:
         """Points (..., len(s), 2) of the mean line."""
-        x = self._chord_map.at(s, 0).u
+        x = self._place(s, 0).u
         pair = np.broadcast_arrays(x.value, self._line(x, s)[0].value)
         return np.stack(pair, axis=-1)
 
