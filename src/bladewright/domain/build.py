@@ -19,7 +19,7 @@ from bladewright.domain.passage_spec import PassageSpec
 from bladewright.domain.walls import EDGE_FACES, STRIPS
 from bladewright.errors import DesignError
 from bladewright.frozen import FrozenMapping
-from bladewright.numerics.elementary import Array, radians
+from bladewright.numerics.elementary import Array, concatenated, radians
 from bladewright.nurbs.basis import Reals
 from bladewright.nurbs.refine import inserted
 from bladewright.nurbs.surface import Surface
@@ -84,16 +84,13 @@ def _passage(spec: PassageSpec, knots: PassageKnots, split: bool) -> Passage:
     blade = spec.blade
     camber, walls, strips = spec.plane(knots, knots.sites("span"))
     upper, lower = (_with_knots(side, knots.side) for side in blade.sides)
-    own = BladeNets(
-        upper.control_points,
-        lower.control_points,
-        [cast(Surface, blade.surfaces[name]).control_points if name in blade.surfaces else None for name in EDGE_FACES],
-    )
+    own = _blade_nets(spec, knots)
     nets = native_nets(camber, walls, strips, own, knots, spec.half_pitch)
     surfaces: dict[str, Surface | TrimmedSurface] = {name: _surface(net, name, knots) for name, net in nets.items()}
     surfaces |= {"blade_upper": upper, "blade_lower": lower}
     surfaces |= {f"blade_{name}": blade.surfaces[name] for name in EDGE_FACES if name in blade.surfaces}
     surfaces |= {name: blade.surfaces[name] for name in blade.design.ends if name == "tip"}
+    surfaces |= {f"{wall}_gap": face for wall, face in spec.faces_at_walls().items()}
     return Passage(
         blade=blade,
         whole=FrozenMapping(surfaces),
@@ -103,6 +100,29 @@ def _passage(spec: PassageSpec, knots: PassageKnots, split: bool) -> Passage:
         strips=strips,
         split=split,
     )
+
+
+def _blade_nets(spec: PassageSpec, knots: PassageKnots) -> BladeNets:
+    """The nets of the sides and of the faces of blunt edges; where a gap's wall has a face, to that wall."""
+    names = ("upper", "lower", *EDGE_FACES)
+    faces = spec.faces_at_walls()
+
+    def net(blade: Blade, name: str) -> Array | None:
+        if name not in blade.surfaces:
+            return None
+        face = cast(Surface, blade.surfaces[name])
+        return (face if name in EDGE_FACES else _with_knots(face, knots.side)).control_points
+
+    def whole(name: str) -> Array | None:
+        own = net(spec.blade, name)
+        if own is None or not faces:
+            return own
+        other = cast(Array, net(spec.to_walls, name))
+        ends = [(other if wall in faces else own)[:, [row]] for wall, row in (("hub", 0), ("shroud", -1))]
+        return concatenated([ends[0], own[:, 1:-1], ends[1]], axis=1)
+
+    upper, lower, *edges = (whole(name) for name in names)
+    return BladeNets(cast(Array, upper), cast(Array, lower), edges)
 
 
 def _slope(name: str, degrees: complex | None) -> Array | None:

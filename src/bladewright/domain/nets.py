@@ -43,7 +43,7 @@ def native_nets(
     nets = dict(shifted)
     for name, wall in walls.items():
         half = name.removeprefix("hub_").removeprefix("shroud_")
-        line = _beside(wall, blade, knots) if wall.has_blade else middle[..., wall.row, :]
+        line = _beside(wall, blade, knots) if wall.beside_blade else middle[..., wall.row, :]
         nets[name] = _with_ends(_wall(wall, knots), line, shifted[f"periodic_{half}"][..., wall.row, :], -2)
     for name, strip in strips.items():
         wall_name = name.partition("_")[0]

@@ -41,6 +41,8 @@ OUTWARD = FrozenMapping(
         "hub_wake": -1,
         "shroud_stagnation": 1,
         "shroud_wake": 1,
+        "hub_gap": -1,
+        "shroud_gap": 1,
         "blade_leading_edge": -1,
         "blade_trailing_edge": 1,
     }
@@ -61,7 +63,8 @@ class Passage(FrozenRecord, Shown):
     outlet, v hub to shroud), inlet and outlet (u from the lower to the upper periodic boundary, v hub to shroud), the
     blade's sides, and its tip where there is a clearance; where an edge is blunt, its face as `blade_trailing_edge`,
     and the strips of the walls downstream of it, `hub_wake` and `shroud_wake` (u along the flow, v from the lower to
-    the upper half), or `blade_leading_edge`, `hub_stagnation` and `shroud_stagnation`; metres"""
+    the upper half), or `blade_leading_edge`, `hub_stagnation` and `shroud_stagnation`, and where there is a gap besides
+    `shroud_gap` or `hub_gap`, the piece of that wall between its halves; metres"""
     knots: PassageKnots
     """as `passage(..., knots=...)` takes them, to hold them"""
     camber: CamberLines
@@ -146,7 +149,7 @@ class Passage(FrozenRecord, Shown):
     @cached_property
     def periodic_sector(self) -> PeriodicSector:
         """One blade's share of the duct, fluid and blade together, between exact surfaces of revolution."""
-        faces = {name: cast(Surface, face) for name, face in self.whole.items() if name != "tip"}
+        faces = {name: face for name, face in self.whole.items() if isinstance(face, Surface)}
         cuts = self.knots.cuts(0), self.knots.cuts(1)
         return periodic_sector(f"{self.blade.name}-sector", faces, self.duct, self.blade.chord, cuts)
 

@@ -2,17 +2,21 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cached_property
+from typing import cast
 
 import numpy as np
 
 from bladewright.blade.exact.exact_blade import ExactBlade
-from bladewright.blade.native.blade import Blade
+from bladewright.blade.native.blade import Blade, native_blade
+from bladewright.blade.native.knots import Knots, clamped
 from bladewright.domain.camber_lines import CamberLines, camber_lines
 from bladewright.domain.duct import Duct
 from bladewright.domain.knots import PassageKnots
 from bladewright.domain.walls import WallHalf, WallStrip, wall_halves, wall_strips
 from bladewright.numerics.elementary import Array
 from bladewright.nurbs.basis import Reals
+from bladewright.nurbs.trimmed import TrimmedSurface
 
 PlaneGeometry = tuple[CamberLines, Mapping[str, WallHalf], Mapping[str, WallStrip]]
 """Camber lines, the halves of the walls and their strips."""
@@ -34,6 +38,28 @@ class PassageSpec:
     def real_half_pitch(self) -> float:
         """Half the pitch of the real design."""
         return float(np.real(self.half_pitch).flat[0])
+
+    def faces_at_walls(self) -> dict[str, TrimmedSurface]:
+        """The pieces of walls with a clearance inside the blade's continuation, by wall, where an edge is blunt.
+
+        The strips past its faces need something to begin at.
+        """
+        return {
+            wall: cast(TrimmedSurface, self.to_walls.surfaces[wall])
+            for wall in ("hub", "shroud")
+            if wall not in self.blade.design.ends and self.blunt
+        }
+
+    @property
+    def blunt(self) -> bool:
+        """Whether a face lies between the sides' ends at an edge: a back face counts."""
+        survey = self.exact.survey
+        return "blunt" in survey.edge_kinds or survey.back is not None
+
+    @cached_property
+    def to_walls(self) -> Blade:
+        """The blade from wall to wall, good at its ends alone: at the knots along the sections that the blade has."""
+        return native_blade(self.exact, Knots(u=self.blade.knots.u, v=clamped(np.empty(0))))
 
     def duct(self, knots: PassageKnots) -> Duct:
         """The duct at given knots."""
@@ -57,6 +83,6 @@ class PassageSpec:
     def plane(self, knots: PassageKnots, v: Reals) -> PlaneGeometry:
         """Camber lines with stations at v (m,), hub first and shroud last, and the walls' halves and strips."""
         camber, ends = (self.camber(knots, places) for places in (v, v[[0, -1]]))
-        has_blade = {wall: wall in self.blade.design.ends for wall in ("hub", "shroud")}
-        halves = wall_halves(ends, has_blade, self.half_pitch, knots.departures, knots.cross_lines)
-        return camber, halves, wall_strips(ends, has_blade)
+        beside = {wall: wall in self.blade.design.ends or any(camber.blunt) for wall in ("hub", "shroud")}
+        halves = wall_halves(ends, beside, self.half_pitch, knots.departures, knots.cross_lines)
+        return camber, halves, wall_strips(ends, beside)

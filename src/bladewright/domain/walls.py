@@ -116,8 +116,8 @@ class WallHalf(WallPatch):
 
     sign: int
     """+1 above the blade, -1 below it"""
-    has_blade: bool
-    """whether the blade stands on the wall, and has no clearance there"""
+    beside_blade: bool
+    """whether it lies beside the blade, or its continuation to the wall, and not along the camber line"""
     half_pitch: Array
     """() in theta, or y in a cascade"""
     departure: float
@@ -128,7 +128,7 @@ class WallHalf(WallPatch):
         middle = self.camber.points(piece, t)[..., self.row, :, :]
         width = self.sign * self.half_pitch[..., None, None] * np.array([0.0, 1.0])
         w = width_share(self.departure, v)
-        if not self.has_blade:
+        if not self.beside_blade:
             return middle[..., None, :] + width[..., None, :] * w[:, None]
         own = self.camber.side(t, self.sign) if piece == "blade" else self.camber.points(piece, t, self.sign)
         south = own[..., self.row, :, :]
@@ -155,7 +155,7 @@ class WallHalf(WallPatch):
 
 def wall_halves(
     camber: CamberLines,
-    has_blade: Mapping[str, bool],
+    beside_blade: Mapping[str, bool],
     half_pitch: Array,
     departures: tuple[float, float],
     cross_lines: CrossLines,
@@ -168,7 +168,7 @@ def wall_halves(
             line=lines[row],
             row=row,
             sign=sign,
-            has_blade=has_blade[wall],
+            beside_blade=beside_blade[wall],
             half_pitch=half_pitch,
             departure=departures[row],
             cross_lines=cross_lines,
@@ -195,11 +195,11 @@ class WallStrip(WallPatch):
         return lower + (upper - lower) * v[:, None]
 
 
-def wall_strips(camber: CamberLines, has_blade: Mapping[str, bool]) -> dict[str, WallStrip]:
-    """The strips of the walls that the blade stands on, by the names of their faces."""
+def wall_strips(camber: CamberLines, beside_blade: Mapping[str, bool]) -> dict[str, WallStrip]:
+    """The strips of the walls whose halves lie beside the blade, by the names of their faces."""
     return {
         f"{wall}_{STRIPS[edge]}": WallStrip(camber=camber, line=camber.lines.rows([row]), row=row, edge=edge)
         for wall, row in (("hub", 0), ("shroud", -1))
         for edge, blunt in enumerate(camber.blunt)
-        if blunt and has_blade[wall]
+        if blunt and beside_blade[wall]
     }

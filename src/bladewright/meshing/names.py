@@ -22,6 +22,8 @@ GROUPS = (
     "hub_wake",
     "shroud_stagnation",
     "shroud_wake",
+    "hub_gap",
+    "shroud_gap",
     "tip",
 )
 """Physical groups of the faces of a passage; where a face is split, its pieces are called GROUP_PIECE."""
