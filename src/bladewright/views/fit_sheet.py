@@ -80,15 +80,15 @@ def _blade_sheet(fit: FitResult) -> Figure:
     draw_table(axes[1], fit)
     outlines = [outline_at(fit, span_at_share(fit, share)) for share in SPAN_SHARES]
     for place, outline in zip(centre.subplots(1, 3), outlines, strict=True):
-        name = _place(outline.section.span, blade.design.ends)
+        name = _place(outline.section.span, blade.design.law_ends)
         draw_magnified(place, fit, outline, f"{name[:1].upper()}{name[1:]} ± {100.0 * outline.band:.2g} %")
     axes = bottom.subplots(1, 4, width_ratios=[1.0, 1.0, 1.1, 1.3])
     for place, region in zip(axes, ("leading edge", "trailing edge"), strict=False):
         outline = outline_at(fit, worst_span(fit, region))
-        where = f", {_place(outline.section.span, blade.design.ends)}"
+        where = f", {_place(outline.section.span, blade.design.law_ends)}"
         draw_edge_points(place, fit, outline, trailing=region == "trailing edge", where=where)
     draw_histogram(axes[2], fit)
-    draw_extrema(axes[3], fit, [blade.section(v) for v in (0.0, 0.5, 1.0)], blade.design.ends)
+    draw_extrema(axes[3], fit, [blade.section(v) for v in (0.0, 0.5, 1.0)], blade.design.law_ends)
     return figure
 
 

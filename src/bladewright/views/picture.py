@@ -120,7 +120,7 @@ def _blade_sheet(blade: Blade) -> Figure:
     panels = panels_of(blade.design)
     charts = [partial(draw_laws, panel=panel) for panel in panels]
     if blade.design.thickness_laws:
-        charts.append(partial(draw_thickness_laws, design=blade.design, sections=few, ends=blade.design.ends))
+        charts.append(partial(draw_thickness_laws, design=blade.design, sections=few, ends=blade.design.law_ends))
     strips = -(-len(charts) // PANELS_ACROSS)
     heights = [5.4, 4.6, 3.6, 4.4, *[4.4] * strips]
     figure = Page(figsize=(16.0, sum(heights) + 0.9))
@@ -129,14 +129,14 @@ def _blade_sheet(blade: Blade) -> Figure:
     axes = top.subplots(1, 3, width_ratios=[1.25, 1.0, 1.0])
     draw_solid(axes[0], blade, neighbours=2, width=760)
     axes[0].set_title("Blade with neighbours")
-    draw_sections(axes[1], sections, blade.design.ends)
-    draw_neighbour(axes[2], middle, pitch, _span_title(middle, blade.design.ends), blade)
+    draw_sections(axes[1], sections, blade.design.law_ends)
+    draw_neighbour(axes[2], middle, pitch, _span_title(middle, blade.design.law_ends), blade)
     axes = centre.subplots(1, 3)
     draw_meridional(axes[0], blade)
-    draw_curvature(axes[1], few, blade.design.ends)
-    draw_thickness(axes[2], sections, blade.design.ends)
-    draw_edges(edges, few, blade.design.ends)
-    draw_smoothness(smooth, {v: blade.smoothness(v) for v in blade.exact.shown_spans(FEW_SPANS)}, blade.design.ends)
+    draw_curvature(axes[1], few, blade.design.law_ends)
+    draw_thickness(axes[2], sections, blade.design.law_ends)
+    draw_edges(edges, few, blade.design.law_ends)
+    draw_smoothness(smooth, {v: blade.smoothness(v) for v in blade.exact.shown_spans(FEW_SPANS)}, blade.design.law_ends)
     across = -(-len(charts) // strips)
     for index, strip in enumerate(bottom):
         own = charts[index * across : (index + 1) * across]
@@ -175,11 +175,11 @@ def _section_sheet(design: Any, section: Section) -> Figure:
 
 def _blade_header(blade: Blade, middle: Section, pitch: float) -> list[str]:
     columns, rows = blade.knots.poles
-    count = blade.design.blade_count
+    count, place = blade.design.blade_count, _span_title(middle, blade.design.law_ends)
     return [
         "linear cascade" if count is None else f"{count} blade{'s' if count > 1 else ''}",
         f"mean chord {in_unit(blade.chord)}",
-        f"chord / pitch at {_span_title(middle, blade.design.ends).lower()} {middle.chord * per_metre() / pitch:.3g}",
+        f"chord / pitch at {place.lower()} {middle.chord * per_metre() / pitch:.3g}",
         f"{columns} x {rows} poles a side",
         f"error {blade.error:.1e} of the chord",
         "every promise kept" if blade.conformance.kept else "a promise is not kept",

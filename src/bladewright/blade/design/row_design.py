@@ -46,6 +46,10 @@ class RowDesign(Design):
     """circumferential position of the leading edge, annular; 0 where neither it nor a stacking is given [deg]"""
     leading_edge_y: Law | None = parameter("length", default=None)
     """tangential position of the leading edge, linear; 0 where neither it nor a stacking is given [length]"""
+    tip_clearance: float | tuple[float, float] | None = parameter("length", default=None)
+    """meridional distance of the blade's end from the shroud, at leading and trailing edge where two [length]"""
+    hub_clearance: float | tuple[float, float] | None = parameter("length", default=None)
+    """meridional distance of the blade's end from the hub, at leading and trailing edge where two [length]"""
     tolerance: float = 1e-6
     """largest distance of the native surfaces from the exact blade, of the chord [-]"""
     description: str = ""
@@ -64,12 +68,19 @@ class RowDesign(Design):
         check_labels(self)
         checks.choice("arrangement", self.arrangement, list(FIELDS_OF))
         self._check_arrangement()
+        self._check_clearances()
         check_range(self, "tolerance", 1e-9, 1e-2)
 
     @property
     def ends(self) -> tuple[str, str]:
         """Names of the blade's ends at v = 0 and v = 1: `hub` and `shroud`, or `tip` where there is a clearance."""
-        return "hub", "shroud"
+        hub = "hub" if self.hub_clearance is None else "tip"
+        return hub, "shroud" if self.tip_clearance is None else "tip"
+
+    @property
+    def law_ends(self) -> tuple[str, str]:
+        """What the laws' and the sections' span fractions 0 and 1 are called: the blade's own ends."""
+        return self.ends
 
     @property
     def metre(self) -> float:
@@ -121,6 +132,24 @@ class RowDesign(Design):
         else:
             object.__setattr__(self, count, checks.number(count, self.pitch))
             checks.between(count, self.pitch, 0.0, float("inf"), "the pitch must be positive")
+
+    def _check_clearances(self) -> None:
+        given = [name for name in ("tip_clearance", "hub_clearance") if getattr(self, name) is not None]
+        if len(given) == 2:
+            raise DesignError(
+                "tip_clearance and hub_clearance are both given: a blade stands on one of the walls; leave out the one "
+                "of the wall that it stands on"
+            )
+        for name in given:
+            value = getattr(self, name)
+            if checks.is_sequence(value) and len(value) != 2:
+                raise DesignError(
+                    f"{name} is {value!r}: give one number, or two, at the leading and at the trailing edge"
+                )
+            value = checks.control_points(name, value)
+            what = "a clearance must be positive; leave it out where the blade stands on that wall"
+            checks.between(name, value, 0.0, float("inf"), what)
+            object.__setattr__(self, name, value)
 
     def _check_position(self, place: str, other: str) -> None:
         """Bring the leading edge's tangential position to a law: 0 where none is given."""

@@ -17,7 +17,7 @@ from bladewright.section.family import SectionFamily
 from bladewright.section.laws import law_points, named_laws, points_word
 
 if TYPE_CHECKING:
-    from bladewright.blade.exact.sectioned import ExactSectionedBlade
+    from bladewright.blade.exact.exact_blade import ExactBlade
     from bladewright.blade.native.knots import Knots
 
 
@@ -31,7 +31,8 @@ class SectionedBlade(RowDesign):
     points of a clamped uniform B-spline of degree min(n - 1, 3) along the span.
 
     `sweep` and `lean` then shift each section as it is, in its plane: its reference point, the leading edge where there
-    is no `stacking`, moves along its stream line and around the axis.
+    is no `stacking`, moves along its stream line and around the axis. A clearance cuts the blade: its sections keep
+    their span, which counts from hub to shroud, and what is left of it is as it was.
     """
 
     plane: Literal["m'-theta", "m-r*theta", "x-y", "counted-m'-theta"] = "m'-theta"
@@ -148,17 +149,22 @@ class SectionedBlade(RowDesign):
                 f"stacking.{of[other]} is given, but arrangement is '{self.arrangement}': give stacking.{of[place]}"
             )
 
-    def exact_blade(self, knots: Knots | None = None) -> ExactSectionedBlade:
-        from bladewright.blade.exact.sectioned import exact_sectioned_blade
+    @property
+    def law_ends(self) -> tuple[str, str]:
+        """Sections keep their span in the flow path, also where a clearance cuts the blade."""
+        return "hub", "shroud"
 
-        del knots
-        return exact_sectioned_blade(self)
+    def exact_blade(self, knots: Knots | None = None) -> ExactBlade:
+        from bladewright.blade.exact.cut_sectioned import exact_blade_of_sections
+
+        return exact_blade_of_sections(self, knots)
 
     def needs_own_search(self, paths: Iterable[str]) -> bool:
         """Where stream lines meet the edge curves is found for one flow path at a time.
 
-        Without edge curves, and on developable blades, the edges follow from the sections.
+        Without edge curves, and on developable blades, the edges follow from the sections; so does where a clearance
+        cuts the blade.
         """
-        if self.leading_edge is None or self.skinning == "developable":
+        if self.ends != ("hub", "shroud") or self.leading_edge is None or self.skinning == "developable":
             return any(True for _ in paths)
         return not all(path.startswith(("section.", "leading_edge_theta", "leading_edge_y", "pitch")) for path in paths)

@@ -52,10 +52,6 @@ class UnifiedBlade(RowDesign):
     """weights of the upper side's control points, a law along the chord; none: a B-spline [-]"""
     weights_lower: ChordwiseLaw = parameter("-", default=())
     """weights of the lower side's control points, a law along the chord; none: a B-spline [-]"""
-    tip_clearance: float | tuple[float, float] | None = parameter("length", default=None)
-    """meridional distance of the blade's end from the shroud, at leading and trailing edge where two [length]"""
-    hub_clearance: float | tuple[float, float] | None = parameter("length", default=None)
-    """meridional distance of the blade's end from the hub, at leading and trailing edge where two [length]"""
     flow_path: FlowPath | None = None
     """hub and shroud from upstream of the blade to downstream of it, which the channel's edges cut; instead of the
     channel's own"""
@@ -75,7 +71,6 @@ class UnifiedBlade(RowDesign):
         super().__post_init__()
         checks.choice("mapping", self.mapping, ["conformal", "paper"])
         check_laws(self)
-        self._check_clearances()
         check_sampling(self)
         if not isinstance(self.channel, Channel):
             raise DesignError(f"channel is {self.channel!r}: a Channel with leading_edge and trailing_edge is needed")
@@ -105,29 +100,6 @@ class UnifiedBlade(RowDesign):
                 "flow_path.matched is 'edges': the unified family cuts the flow path at its channel's edges in any "
                 "case; leave matched out"
             )
-
-    def _check_clearances(self) -> None:
-        given = [name for name in ("tip_clearance", "hub_clearance") if getattr(self, name) is not None]
-        if len(given) == 2:
-            raise DesignError(
-                "tip_clearance and hub_clearance are both given: a blade stands on one of the walls; leave out the one "
-                "of the wall that it stands on"
-            )
-        for name in given:
-            value = getattr(self, name)
-            if checks.is_sequence(value) and len(value) != 2:
-                raise DesignError(
-                    f"{name} is {value!r}: give one number, or two, at the leading and at the trailing edge"
-                )
-            value = checks.control_points(name, value)
-            what = "a clearance must be positive; leave it out where the blade stands on that wall"
-            checks.between(name, value, 0.0, float("inf"), what)
-            object.__setattr__(self, name, value)
-
-    @property
-    def ends(self) -> tuple[str, str]:
-        hub = "hub" if self.hub_clearance is None else "tip"
-        return hub, "shroud" if self.tip_clearance is None else "tip"
 
     @property
     def thickness_laws(self) -> Mapping[str, ChordwiseLaw]:

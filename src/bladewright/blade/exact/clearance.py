@@ -25,7 +25,7 @@ from bladewright.section.checks import UNITS
 from bladewright.section.crossing import PLACES, outlines_of
 
 if TYPE_CHECKING:
-    from bladewright.blade.design.unified import UnifiedBlade
+    from bladewright.blade.design.row_design import RowDesign
     from bladewright.blade.exact.unified import UnifiedSections
 
 REACHED = 1e-9
@@ -77,7 +77,7 @@ class Clearance:
         return f"{distance / UNITS[self.unit]:.4g} {self.unit}"
 
 
-def clearance_of(design: "UnifiedBlade") -> Clearance | None:
+def clearance_of(design: "RowDesign") -> Clearance | None:
     """The clearance of a design, or None where its blade reaches from wall to wall."""
     for name, wall in (("tip_clearance", "shroud"), ("hub_clearance", "hub")):
         value = getattr(design, name)

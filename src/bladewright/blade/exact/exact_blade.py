@@ -15,6 +15,7 @@ from bladewright.blade.flow_path.meridional_curve import MeridionalCurve, real_f
 from bladewright.blade.flow_path.stream_surface_map import StreamSurfaceMap
 from bladewright.blade.flow_path.streamlines import MeridionalChannel
 from bladewright.errors import DesignError
+from bladewright.numerics.elementary import concatenated
 from bladewright.nurbs.basis import Reals
 from bladewright.nurbs.curve import Curve
 from bladewright.section.crossing import touching
@@ -101,6 +102,20 @@ class ExactBlade(ABC):
     def wall_parameters(self, u: Reals) -> Reals:
         """Parameters (2, k) of both walls' meridians at u (2, k) on the first and the last stream line."""
 
+    def end_places(self, s: Reals) -> tuple[Reals, Reals]:
+        """Where the ends of the sides lie: parameters of both end walls' meridians, and theta or y, (2, 2 k) each.
+
+        At s (k,) of the upper, then of the lower side; near enough to begin a search.
+        """
+        sections = self.survey
+        plane = concatenated(sections.plane_points(s), axis=-2)[..., [0, -1], :, :]
+        lines = sections.lines.rows([0, -1])
+        u = lines.u_at(plane[..., 0])
+        across = lines.mapping.tangential(plane[..., 1], lines.position(u)[..., 1], lines.lengths[..., None])
+        first = (0,) * (u.ndim - 2)
+        u, across = np.real(u)[first], np.real(across)[first]
+        return self.wall_parameters(u), across
+
     @abstractmethod
     def wall_points(self, name: str, u: Reals) -> Reals:
         """Points (k, 2) of the hub or shroud by u, past the edges as far as there is a wall."""
@@ -118,6 +133,11 @@ class ExactBlade(ABC):
     @abstractmethod
     def without_clearance(self) -> "ExactBlade":
         """The same from wall to wall of its channel."""
+
+    @property
+    def clearance_range(self) -> tuple[float, float]:
+        """Between which parameters of a clearance surface's meridian it keeps the stated distance."""
+        return 0.0, 1.0
 
     def clearance_error(self, u: Reals, points: Reals) -> Reals | None:
         """How far (m,) [m] the distances of points (x, r) (m, 2) from the wall are off the clearance at u (m,).
@@ -145,6 +165,11 @@ class ExactBlade(ABC):
     @property
     def tip_knots(self) -> Reals | None:
         """Knots of the meridian of a clearance surface, where there is one."""
+        return None
+
+    @property
+    def bent_from(self) -> float | None:
+        """Height from the uncut end at which curves of constant v begin to bend to a cut, where there is one."""
         return None
 
     def section(self, v: float) -> Section:

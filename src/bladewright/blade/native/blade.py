@@ -151,11 +151,14 @@ class Blade(FrozenRecord, Shown):
         return tuple(self.section(v) for v in self.exact.section_spans)
 
     def sections_at(self, spans: Sequence[float]) -> list[Section]:
-        """The exact sections at span fractions."""
+        """The exact sections at span fractions, as `section` counts them."""
         return [self.section(v) for v in spans]
 
     def section(self, v: float) -> Section:
         """The exact section at v in [0, 1], in its plane, with the properties it has on its stream surface.
+
+        On blades from sections v is the span fraction of the flow path, from hub to shroud, also where a clearance cuts
+        the blade; on unified ones it counts from the blade's one end to its other.
 
         Raises DesignError where v is outside.
         """

@@ -265,7 +265,7 @@ def _off_clearance(blade: "Blade") -> float | None:
     if "tip" not in blade.design.ends:
         return None
     exact = blade.exact
-    u = np.linspace(0.0, 1.0, 401)
+    u = np.linspace(*exact.clearance_range, 401)
     x, y, z = np.moveaxis(np.real(blade.surfaces["tip"](u, np.full_like(u, 0.5))), -1, 0)
     points = np.stack([x, length(np.stack([y, z], axis=-1)) if exact.mapping.revolved else z], axis=-1)
     errors = exact.clearance_error(u, points)

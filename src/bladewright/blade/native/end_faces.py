@@ -194,14 +194,7 @@ def trimmed_ends(
     a full turn around the axis.
     """
     places = np.unique(upper.knots_u)
-    sections = exact.survey
-    plane = concatenated(sections.plane_points(places), axis=-2)[..., [0, -1], :, :]
-    lines = sections.lines.rows([0, -1])
-    u = lines.u_at(plane[..., 0])
-    across = lines.mapping.tangential(plane[..., 1], lines.position(u)[..., 1], lines.lengths[..., None])
-    first = (0,) * (u.ndim - 2)
-    u, across = np.real(u)[first], np.real(across)[first]
-    own = exact.wall_parameters(u)
+    own, across = exact.end_places(places)
     ends = {}
     for wall, row in (("hub", 0), ("shroud", -1)):
         name, (meridian, inner) = exact.design.ends[row], exact.end_wall(row)

@@ -29,6 +29,9 @@ class Knots(FrozenRecord):
     sections: Reals | None = None
     """places along v that are interpolated besides, as far as there are sites near them"""
 
+    bent_from: float | None = None
+    """height from the uncut end, in v, at which curves of constant v begin to bend to a cut, where there is one"""
+
     def __post_init__(self) -> None:
         object.__setattr__(self, "u", frozen(self.u))
         object.__setattr__(self, "v", frozen(self.v))

@@ -32,6 +32,9 @@ SECTIONS_RESERVE = 0.8
 FIRST_ALLOWED, SECOND_ALLOWED = 5e-5, 2e-4
 """Largest relative errors along v of the edges' first and second derivatives by s. A first derivative off by so much
 turns by 0.003 deg at most, where 0.01 deg are promised; a second one moves the radius by a fifth of its limit."""
+FLAT = 1e-4
+"""Second derivative of an edge, of its first, below which it is flat and has no radius to keep: as the ends of straight
+faces are."""
 MOST_LINES = 24
 """About how many lines of constant u are looked at for the knots along v: more cost time, fewer may pass over a place
 that needs a knot; the error of the built sides is measured on other lines."""
@@ -62,7 +65,9 @@ def refined_knots(exact: ExactBlade, chord: float, *, slack: float = 1.0) -> Kno
     along_v = refined(
         clamped(np.concatenate([start_v, own])), _error_along_v(exact, tolerance, along_u, spans, slack), MOST_POLES[1]
     )
-    return Knots(u=along_u, v=along_v, tip=exact.tip_knots, sections=spans if len(spans) else None)
+    return Knots(
+        u=along_u, v=along_v, tip=exact.tip_knots, sections=spans if len(spans) else None, bent_from=exact.bent_from
+    )
 
 
 def sections_limit(tolerance: float) -> float:
@@ -138,7 +143,8 @@ def _edge_error(edge: EdgeDerivatives, matrix: Reals, knots: Reals, places: Real
     result = np.zeros(len(places))
     for part, allowed in ((edge.first, FIRST_ALLOWED), (edge.second, SECOND_ALLOWED)):
         error = length(at @ np.linalg.solve(matrix, part[:count]) - part[count:])
-        result = np.maximum(result, error / length(part[count:]) / allowed)
+        size = np.maximum(length(part[count:]), FLAT * length(edge.first[count:]))
+        result = np.maximum(result, error / size / allowed)
     return result
 
 

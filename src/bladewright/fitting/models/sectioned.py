@@ -7,7 +7,7 @@ from typing import Any, final
 import numpy as np
 
 from bladewright.blade.design.sectioned import SectionedBlade
-from bladewright.blade.exact.sectioned import exact_sectioned_blade
+from bladewright.blade.exact.cut_sectioned import exact_blade_of_sections
 from bladewright.blade.native.blade import Blade, side_surface
 from bladewright.blade.native.interpolation import edge_faces, native_sides
 from bladewright.blade.native.knots import DEGREE, Knots
@@ -31,14 +31,14 @@ class SectionedModel(Model):
 
     def __init__(self, design: SectionedBlade, tolerance: float | None = None) -> None:
         own = replace(design, tolerance=design.tolerance if tolerance is None else tolerance)
-        exact = exact_sectioned_blade(own, checked=False)
+        exact = exact_blade_of_sections(own, checked=False)
         self.chord = mean_chord(exact)
         self.knots: Knots = refined_knots(exact, self.chord)
         kinds = exact.survey.edge_kinds
         self.blunt: BluntEdges = kinds[0] == "blunt", kinds[1] == "blunt"
 
     def _shape(self, design: Any) -> ModelShape:
-        exact = exact_sectioned_blade(design, checked=False)
+        exact = exact_blade_of_sections(design, self.knots, checked=False)
         stations = exact.sections(self.knots.sites_v)
         sides = [side_surface(net, self.knots, DEGREE) for net in native_sides(stations, self.knots)]
         faces = edge_faces(stations, sides[0], sides[1], self.knots) if any(self.blunt) else {}
