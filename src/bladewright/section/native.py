@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -190,10 +191,11 @@ def native_section(
     plane: str,
     scale: Callable[[Array], Array],
     meanline: Meanline | None,
+    **labels: Any,
 ) -> Section:
     """The section of an outline of shape () or (1,), turned by `turn` (), `chord` () long and moved by `shift` (2,).
 
-    `plane`, `scale` and `meanline` are the section's own.
+    `plane`, `scale`, `meanline` and `labels` are the section's own.
     """
     matrix = chord * np.array([[np.cos(turn), -np.sin(turn)], [np.sin(turn), np.cos(turn)]])
     upper, lower, camber = native_curves(outline, knots=knots)
@@ -214,6 +216,7 @@ def native_section(
         knots=knots,
         meanline=None if meanline is None else meanline.of_first_section,
         outline=outline,
+        **labels,
     )
 
 

@@ -85,6 +85,9 @@ class PlanarSection(Design):
             plane="x-y",
             scale=np.ones_like,
             meanline=self.section.meanline(span),
+            name=self.name,
+            length_unit=self.length_unit,
+            pitch=None if self.pitch is None else np.asarray(self.pitch * metre),
         )
 
     def _check_pitch(self, outlines: Reals, pitch: float) -> None:

@@ -14,6 +14,7 @@ from bladewright.numerics.quadrature import panels
 from bladewright.nurbs.basis import Reals, breaks
 from bladewright.nurbs.curve import Curve
 from bladewright.section.outline import Outline
+from bladewright.section.section_station import SectionStation, section_station
 
 STEP = 1e-30
 """imaginary step by the abscissa that differentiates the scale: so small that its square vanishes"""
@@ -60,10 +61,20 @@ class Section(FrozenRecord, Shown):
 
     outline: Outline | None = None
     """the exact section in chords, unstaggered, where the family has one"""
+    name: str = "section"
+    """the design's name"""
+    length_unit: str = "m"
+    """the design's unit of length, in which reports print"""
+    pitch: Array | None = None
+    """() tangential distance of neighbours, where a 2D design has one [m]"""
 
     def sections_at(self, spans: Sequence[float]) -> list["Section"]:  # noqa: ARG002 - a blade has one for each
         """The section alone, where a blade answers with one for each of the span fractions."""
         return [self]
+
+    def report(self) -> SectionStation:
+        """The station table of a 2D section, of one station; raises DesignError for a section of a blade."""
+        return section_station(self)
 
     def __repr__(self) -> str:
         chord, stagger = float(np.real(self.chord)), np.degrees(self.stagger)

@@ -157,6 +157,9 @@ class UnifiedSection(Design):
             metal_angle_in=angle_in,
             metal_angle_out=angle_out,
             scale=np.ones_like,
+            name=self.name,
+            length_unit=self.length_unit,
+            pitch=None if self.pitch is None else np.asarray(self.pitch * metre),
         )
 
     def _check_outline(self, line: Array, upper: Array, lower: Array, metre: float) -> None:

@@ -22,6 +22,10 @@ if TYPE_CHECKING:
 FIELDS_OF = {"annular": ("blade_count", "leading_edge_theta"), "linear": ("pitch", "leading_edge_y")}
 """The fields that an arrangement alone has: how far apart blades stand, and where the leading edge does."""
 
+TURNS = {"clockwise": -1, "counterclockwise": 1, "none": 0}
+"""Towards which theta, or y in a cascade, a row of each `rotation` moves: theta turns z towards y, which to an observer
+upstream, who looks along +x with z up, is the way to the left."""
+
 
 @dataclass(frozen=True, kw_only=True)
 class RowDesign(Design):
@@ -42,6 +46,9 @@ class RowDesign(Design):
     """number of blades of an annular row [-]"""
     pitch: float | None = parameter("length", default=None)
     """tangential distance of neighbours in a linear cascade [length]"""
+    rotation: Literal["clockwise", "counterclockwise", "none"] | None = None
+    """how the row turns, seen from upstream: clockwise is towards -theta, counterclockwise towards +theta (-y, +y in a
+    cascade), none of a vane; left out where it is not known"""
     leading_edge_theta: Law | None = parameter("deg", default=None)
     """circumferential position of the leading edge, annular; 0 where neither it nor a stacking is given [deg]"""
     leading_edge_y: Law | None = parameter("length", default=None)
@@ -67,6 +74,8 @@ class RowDesign(Design):
     def __post_init__(self) -> None:
         check_labels(self)
         checks.choice("arrangement", self.arrangement, list(FIELDS_OF))
+        if self.rotation is not None:
+            checks.choice("rotation", self.rotation, list(TURNS))
         self._check_arrangement()
         self._check_clearances()
         check_range(self, "tolerance", 1e-9, 1e-2)

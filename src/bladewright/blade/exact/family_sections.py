@@ -9,6 +9,7 @@ import numpy as np
 from bladewright.blade.exact.section_stack import SectionStack
 from bladewright.blade.flow_path.blade_streamlines import BladeStreamlines
 from bladewright.blade.flow_path.meridional_curve import real_first
+from bladewright.blade.flow_path.stream_surface_map import Taylor
 from bladewright.numerics.elementary import Array
 from bladewright.nurbs.basis import Reals
 from bladewright.section.crossing import closed_outlines
@@ -58,6 +59,21 @@ class FamilySections(FlowPathSections):
         turned = self.turned(points)
         return np.stack(np.broadcast_arrays(turned[..., 0], turned[..., 1] + self.start[..., None]), axis=-1)
 
+    def chord_lines_in_space(self, share: Array) -> tuple[Array, Array]:
+        """Points [m] of the chord lines, and derivatives by the share, (..., m, k, 3) at shares (..., m, k) or (k,)."""
+        lines, mapping = self.lines, self.mapping
+        rate = np.stack([self.chord * np.cos(self.stagger), self.chord * np.sin(self.stagger)], axis=-1)[..., None, :]
+        abscissa, across = share * rate[..., 0], share * rate[..., 1] + self.start[..., None]
+        u = lines.u_at(abscissa)
+        speed = rate[..., 0] / lines.densities(u)[0]
+        position, slope = lines.position(u), lines.position(u, 1) * speed[..., None]
+        none = np.zeros_like(speed)
+        x, radius = (Taylor(position[..., i], slope[..., i], none) for i in (0, 1))
+        ordinate = Taylor(across, rate[..., 1] + none, none)
+        tangential = mapping.tangential_series(ordinate, radius, lines.lengths[..., None])
+        point, first, _ = mapping.series_in_space(x, radius, tangential)
+        return point, first
+
     def turned(self, vectors: Array) -> Array:
         """Vectors (..., m, k, 2) of the plane from vectors in chords."""
         along, across = ((self.chord * part)[..., None] for part in (np.cos(self.stagger), np.sin(self.stagger)))
@@ -79,6 +95,13 @@ class FamilySections(FlowPathSections):
     def camber_ends(self) -> tuple[Array, Array]:
         line = self._camber_line
         first, last = (self.turned(each[..., None, :])[..., 0, :] for each in (line.first, line.last))
+        return first, last
+
+    def camber_tangents(self) -> tuple[Array, Array] | None:
+        first, last = (
+            self.turned(np.stack([np.ones_like(slope), slope], axis=-1)[..., None, :])[..., 0, :]
+            for slope in self.outline.camber_slopes()
+        )
         return first, last
 
     @cached_property

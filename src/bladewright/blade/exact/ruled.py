@@ -8,7 +8,7 @@ import numpy as np
 from bladewright.blade.exact.family_sections import FamilySections, FlowPathSections
 from bladewright.blade.flow_path.meridional_curve import real_first
 from bladewright.errors import DesignError
-from bladewright.numerics.elementary import Array, cross, dot
+from bladewright.numerics.elementary import Array, cross, dot, length
 from bladewright.nurbs.basis import Reals
 from bladewright.section.outline import EdgeDerivatives
 
@@ -49,6 +49,21 @@ class RuledSections(FlowPathSections):
 
     def camber(self, share: Reals) -> Array:
         return self.beside.camber(share)
+
+    def chord_line(self, u: Array, order: int = 0) -> Array:
+        """That of straight lines between the chord lines of hub and shroud, whose ends are the blade's own edges."""
+        u = np.broadcast_to(u, (len(self.v), np.shape(u)[-1]))
+        rails = self.rails.chord_lines_in_space(np.reshape(u, -1))
+        shares = self._shares[:, :, None, None]
+        point, first = (
+            np.einsum("mjkd->mkd", shares * np.swapaxes(each.reshape(2, *u.shape, 3), 0, 1)) for each in rails
+        )
+        if not self.mapping.revolved:
+            return np.asarray((point, first)[order][..., [0, 2]])
+        r = length(point[..., 1:])
+        return np.stack(
+            [(point, first)[order][..., 0], r if order == 0 else dot(point[..., 1:], first[..., 1:]) / r], -1
+        )
 
     def camber_ends(self) -> tuple[Array, Array]:
         return self.beside.camber_ends()

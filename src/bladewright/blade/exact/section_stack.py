@@ -87,6 +87,13 @@ class SectionStack(ABC):
     def camber_ends(self) -> tuple[Array, Array]:
         """Vectors (..., m, 2) along the camber lines at both edges, downstream; their lengths mean nothing."""
 
+    def camber_tangents(self) -> tuple[Array, Array] | None:
+        """Vectors (..., m, 2) along the family's own camber lines at both edges, downstream, of any length.
+
+        None where the blade has none between its ends, as it is ruled or developable.
+        """
+        return None
+
     @abstractmethod
     def channel_parameter(self, u: Array) -> Array:
         """The parameter of the exact blade's channel or flow path at u (..., m, k) or (k,)."""
@@ -122,6 +129,13 @@ class SectionStack(ABC):
     def mapping(self) -> StreamSurfaceMap:
         """The sections' plane and its way to space."""
         return self.lines.mapping
+
+    def chord_line(self, u: Array, order: int = 0) -> Array:
+        """(x, r), or its derivative by u, (..., m, k, 2) from the leading edge, u = 0, to the trailing edge, u = 1.
+
+        It is where the chord lines lie in the meridional plane: on the stream lines.
+        """
+        return self.lines.position(u, order)
 
     def scale(self, abscissa: Array) -> Array:
         """Metres in a unit of the plane at abscissae (k,) of the first section."""

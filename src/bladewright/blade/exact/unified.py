@@ -95,6 +95,9 @@ class UnifiedSections(SectionStack):
         line = self.plane.camber
         return line[..., 1, :] - line[..., 0, :], line[..., 3, :] - line[..., 2, :]
 
+    def camber_tangents(self) -> tuple[Array, Array] | None:
+        return self.camber_ends()
+
     def channel_parameter(self, u: Array) -> Array:
         return u
 

@@ -13,6 +13,7 @@ import numpy as np
 from bladewright.blade.exact.exact_blade import ExactBlade
 from bladewright.blade.native.conformance import Conformance, conformance_of
 from bladewright.blade.native.end_faces import EDGES, cap, parted, trimmed_ends
+from bladewright.blade.native.flow_sense import FlowSense, flow_sense
 from bladewright.blade.native.interpolation import edge_faces, native_sides
 from bladewright.blade.native.knots import DEGREE, MOST_POLES, Knots
 from bladewright.blade.native.properties import blade_properties
@@ -23,6 +24,7 @@ from bladewright.blade.native.refinement import (
     mean_chord,
     refined_knots,
 )
+from bladewright.blade.native.station_table import BladeStations, station_table
 from bladewright.display import Shown
 from bladewright.errors import DesignError
 from bladewright.frozen import FrozenMapping, FrozenRecord
@@ -163,6 +165,28 @@ class Blade(FrozenRecord, Shown):
         Raises DesignError where v is outside.
         """
         return self.exact.section(v)
+
+    def report(self, stations: Sequence[float] | None = None) -> BladeStations:
+        """The station table: what is built at span fractions, where None at 0, 0.25, 0.5, 0.75 and 1.
+
+        Metal angles, chord, thickness, throat, solidity, lean, sweep and more, each an attribute, (m,) in metres and
+        radians; print it, or take `to_dict()` and `to_csv()`. Raises DesignError where a station is outside [0, 1].
+
+        >>> import bladewright as bw
+        >>> blade = bw.read_design("core-rotor.toml").build()  # doctest: +SKIP
+        >>> blade.report([0.0, 0.5, 1.0]).solidity  # doctest: +SKIP
+        """
+        return station_table(self, stations)
+
+    @cached_property
+    def flow_sense(self) -> FlowSense:
+        """Which way the row turns, which side is the suction side, and what that rests on."""
+        return flow_sense(self)
+
+    @property
+    def suction_side(self) -> str | None:
+        """`upper` or `lower`, by camber and rotation; None where neither tells."""
+        return self.flow_sense.suction_side
 
     def smoothness(self, v: float) -> Smoothness:
         """Curvature, its slope and their jumps along the exact section at v in [0, 1], in chords of its plane.

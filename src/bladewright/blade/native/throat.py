@@ -9,12 +9,13 @@ along the outlines with v adds nothing, as that is along t.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import lru_cache
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from bladewright.blade.native.blade import Blade
 from bladewright.blade.native.knots import DEGREE
 from bladewright.errors import DesignError
 from bladewright.numerics.elementary import Array, dot, length, magnitude, unit
@@ -22,20 +23,13 @@ from bladewright.numerics.quadrature import panels
 from bladewright.nurbs.basis import Reals, breaks
 from bladewright.nurbs.surface import Surface
 from bladewright.section.checks import UNITS
+from bladewright.section.closest_pair import Held, Outline, closest_pair, newton_step
+
+if TYPE_CHECKING:
+    from bladewright.blade.native.blade import Blade
 
 PER_SPAN = 4
 """Gauss points in a knot span along v, at which the throat is located."""
-SAMPLES = (1.0 - np.cos(np.pi * np.linspace(0.0, 1.0, 97))) / 2.0
-"""Parameters along a side among which the closest pair of points is first looked for, denser towards the edges."""
-NEARBY = np.linspace(-1.0, 1.0, 9)
-"""Candidates about the closest pair so far, in units of a window that shrinks."""
-WINDOW, SHRINKING, WINDOWS = 0.05, 0.4, 14
-"""Half width of the first window in s, the factor from one window to the next, and how many there are: the last is
-3e-7 wide, from where Newton's method converges."""
-ROUNDING = 1e-12
-"""Relative rounding of a distance."""
-STEPS = 8
-"""Newton steps after the last window."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -60,23 +54,36 @@ def throat(blade: Blade) -> Throat:
     The closest pair is found in real numbers; where the control points or the pitch are complex, one more of Newton's
     steps carries the derivative. Raises DesignError where there is one blade only or neighbours touch.
     """
-    row = _row(blade)
     v, weight = panels(breaks(blade.knots.v), PER_SPAN)
-    own, other = _closest(*_key(row), v.tobytes())
-    if np.iscomplexobj(row.upper.control_points) or np.iscomplexobj(row.pitch):
-        steps = row.newton_step(own, other, v)
-        own, other = own - steps[0], other - steps[1]
+    row, (own, other) = _row(blade), throat_places(blade, v)
     ends = row.own(own, v), row.neighbour(other, v)
     across = ends[1] - ends[0]
     width = length(across)
-    if np.min(width.real) <= 1e-9 * blade.chord:
-        raise DesignError("neighbouring blades touch: they leave no throat; take fewer blades or thinner sections")
     directions = unit(row.own(own, v, 1)), unit(row.neighbour(other, v, 1))
     same = np.where(np.real(dot(*directions)) < 0.0, -1.0, 1.0)[:, None]
     flow = unit(directions[0] + same * directions[1])
     height = (row.own(own, v, 0, 1) + row.neighbour(other, v, 0, 1)) / 2.0
     area = np.sum(weight * magnitude(dot(flow, np.cross(across, height))))
     return Throat(v=v, width=width, ends=ends, places=(own, other), area=np.asarray(area))
+
+
+def throat_ends(blade: Blade, v: Reals) -> tuple[Array, Array]:
+    """The ends (m, 3) [m] of the throat at places v (m,) along the span; raises as `throat` does."""
+    row, (own, other) = _row(blade), throat_places(blade, v)
+    return row.own(own, v), row.neighbour(other, v)
+
+
+def throat_places(blade: Blade, v: Reals) -> tuple[Array, Array]:
+    """Where these ends lie on the outlines (m,), as `Throat.places` has them."""
+    row = _row(blade)
+    own, other, held = _closest(*_key(row), v.tobytes())
+    across = np.real(row.neighbour(other, v) - row.own(own, v))
+    if np.min(length(across)) <= 1e-9 * blade.chord:
+        raise DesignError("neighbouring blades touch: they leave no throat; take fewer blades or thinner sections")
+    if np.iscomplexobj(row.upper.control_points) or np.iscomplexobj(row.pitch):
+        steps = newton_step(*row.outlines(v), (own, other), held)
+        own, other = own - steps[0], other - steps[1]
+    return own, other
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -101,16 +108,13 @@ class _Row:
         """The same of the next blade's outline."""
         return self._moved(self.own(s, v, ds, dv), point=ds + dv == 0)
 
-    def newton_step(self, own: Array, other: Array, v: Reals) -> tuple[Array, Array]:
-        """Newton steps, to be subtracted from s (m,) on both outlines, towards the least |Q - P|^2."""
-        across = self.neighbour(other, v) - self.own(own, v)
-        first, second = self.own(own, v, 1), self.neighbour(other, v, 1)
-        slope = -dot(across, first), dot(across, second)
-        bend_own = dot(first, first) - dot(across, self.own(own, v, 2))
-        bend_other = dot(second, second) + dot(across, self.neighbour(other, v, 2))
-        mixed = -dot(first, second)
-        whole = bend_own * bend_other - mixed * mixed
-        return (bend_other * slope[0] - mixed * slope[1]) / whole, (bend_own * slope[1] - mixed * slope[0]) / whole
+    def outlines(self, v: Reals) -> tuple[Outline, Outline]:
+        """The own and the neighbour's outline at v (m,), by s (..., m) and the order of the derivative."""
+
+        def at(which: Callable[[Array, Reals, int], Array]) -> Outline:
+            return lambda s, order: which(s.ravel(), np.broadcast_to(v, s.shape).ravel(), order).reshape(*s.shape, 3)
+
+        return at(self.own), at(self.neighbour)
 
     def _moved(self, vectors: Array, *, point: bool) -> Array:
         x, y, z = np.moveaxis(vectors, -1, 0)
@@ -140,8 +144,8 @@ def _key(row: _Row) -> tuple[bytes, bytes, bytes, bytes, float, bool]:
 @lru_cache(maxsize=8)
 def _closest(
     upper: bytes, lower: bytes, knots_u: bytes, knots_v: bytes, pitch: float, revolved: bool, places: bytes
-) -> tuple[Reals, Reals]:
-    """s (m,) on a real blade's outline and on the next one's, of their closest pair at each v."""
+) -> tuple[Reals, Reals, Held]:
+    """s (m,) on a real blade's outline and on the next one's, of their closest pair at each v, and which are held."""
     knots = np.frombuffer(knots_u), np.frombuffer(knots_v)
     shape = (*(len(each) - DEGREE - 1 for each in knots), 3)
     sides = [
@@ -155,39 +159,7 @@ def _closest(
         for net in (upper, lower)
     ]
     row, v = _Row(upper=sides[0], lower=sides[1], pitch=np.asarray(pitch), revolved=revolved), np.frombuffer(places)
-    own, other = _rough(row, v)
-    for window in WINDOW * SHRINKING ** np.arange(WINDOWS):
-        own, other = _closest_of(row, v, own + window * NEARBY[:, None], other + window * NEARBY[:, None])
-    least = length(row.neighbour(other, v) - row.own(own, v))
-    for _ in range(STEPS):
-        steps = row.newton_step(own, other, v)
-        own, other = own - steps[0], other - steps[1]
-    found = length(row.neighbour(other, v) - row.own(own, v))
-    missing = ~(found <= (1.0 + ROUNDING) * least)
-    if missing.any():
-        raise DesignError(
-            f"the throat cannot be located at v = {v[missing][0]:.3f}: neighbouring blades run side by side there, so "
-            "that no pair of points is the closest; change the turning or the thickness there a little"
-        )
-    own.setflags(write=False)
-    other.setflags(write=False)
-    return own, other
-
-
-def _rough(row: _Row, v: Reals) -> tuple[Reals, Reals]:
-    """The closest pair's s (m,) among samples of the outlines."""
-    s = np.concatenate([SAMPLES, 2.0 - SAMPLES[-2:0:-1]])
-    along = np.broadcast_to(s[:, None], (len(s), len(v)))
-    return _closest_of(row, v, along, along)
-
-
-def _closest_of(row: _Row, v: Reals, own: Reals, other: Reals) -> tuple[Reals, Reals]:
-    """The closest pair's s (m,) among candidates (k, m) on both outlines at v (m,)."""
-    at = np.broadcast_to(v, own.shape).ravel()
-    starts, stops = (which(s.ravel(), at).reshape(*s.shape, 3) for which, s in ((row.own, own), (row.neighbour, other)))
-    found = np.empty((2, len(v)))
-    for place in range(len(v)):
-        gap = stops[None, :, place] - starts[:, None, place]
-        i, j = np.unravel_index(int(np.argmin(dot(gap, gap))), gap.shape[:2])
-        found[:, place] = own[i, place], other[j, place]
-    return found[0], found[1]
+    own, other, held = closest_pair(*row.outlines(v), len(v))
+    for each in (own, other, *held):
+        each.setflags(write=False)
+    return own, other, held
