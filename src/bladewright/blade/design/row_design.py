@@ -101,6 +101,11 @@ class RowDesign(Design):
         """From one blade to the next: angle [rad], or distance along y [m] in a cascade; complex where `pitch` is."""
         return 2.0 * np.pi / self.blade_count if self.blade_count else self.metre * np.asarray(self.pitch)
 
+    @property
+    def turns(self) -> int:
+        """+1 where the row turns towards larger theta, or y, -1 towards smaller, 0 where it stands or is not known."""
+        return TURNS[self.rotation or "none"]
+
     @abstractmethod
     def exact_blade(self, knots: Knots | None = None) -> ExactBlade:
         """The blade that the design defines, in metres and radians, which native surfaces interpolate.

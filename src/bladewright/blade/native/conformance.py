@@ -8,6 +8,7 @@ import numpy as np
 
 from bladewright.blade.exact.section_stack import SectionStack
 from bladewright.blade.flow_path.meridional_curve import real_first
+from bladewright.blade.native.moving_points import directions
 from bladewright.blade.native.refinement import sections_limit
 from bladewright.numerics.elementary import Array, cross, cross2, degrees, dot, length, unit
 from bladewright.nurbs.basis import Reals
@@ -214,15 +215,7 @@ def _angle_and_radius(sections: SectionStack, row: dict[tuple[int, int], Array],
     first, second, point = row[1, 0], row[2, 0], row[0, 0]
     slope = unit(np.real(sections.lines.position(np.array([float(end)]), 1))[..., 0, :])
     slope = slope.reshape(-1, *slope.shape[-2:])[0]
-    if sections.mapping.revolved:
-        around = unit(point[:, 1:])
-        zero = np.zeros(len(point))
-        meridional = np.stack([slope[:, 0], slope[:, 1] * around[:, 0], slope[:, 1] * around[:, 1]], axis=-1)
-        tangential = np.stack([zero, around[:, 1], -around[:, 0]], axis=-1)
-    else:
-        zero, one = np.zeros(len(point)), np.ones(len(point))
-        meridional = np.stack([slope[:, 0], zero, slope[:, 1]], axis=-1)
-        tangential = np.stack([zero, one, zero], axis=-1)
+    meridional, tangential = directions(point, slope, revolved=sections.mapping.revolved)
     along, across = dot(first, meridional), dot(first, tangential)
     turn = np.arctan2(along, -across) if end else np.arctan2(-along, across)  # real: measured on the real surfaces
     plane_first = np.stack([along, across], axis=-1)

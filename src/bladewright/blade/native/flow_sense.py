@@ -18,7 +18,6 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
-from bladewright.blade.design.row_design import TURNS
 from bladewright.blade.native.station_table import BladeStations, station_table
 
 if TYPE_CHECKING:
@@ -41,6 +40,8 @@ class FlowSense:
 
     rotation: str | None
     """that of the design"""
+    turns: int
+    """its sign in theta, or y"""
     linear: bool
     suction_side: Side | None
     """None where the camber does not turn and no rotation tells"""
@@ -84,8 +85,7 @@ def _size(angle: float) -> str:
 
 
 def _towards(sense: FlowSense) -> str:
-    sign = TURNS[sense.rotation or "none"]
-    return ("+" if sign > 0 else "-") + ("y" if sense.linear else "theta")
+    return ("+" if sense.turns > 0 else "-") + ("y" if sense.linear else "theta")
 
 
 def flow_sense(blade: Blade) -> FlowSense:
@@ -97,18 +97,19 @@ def flow_sense(blade: Blade) -> FlowSense:
     side: Side | None = None
     if turning * turning > UNCAMBERED**2:
         side = "upper" if turning > 0.0 else "lower"
-    sign = TURNS[rotation or "none"]
+    sign = blade.design.turns
     kind = _kind(table, first, last) if sign else None
     if kind:
         side = "upper" if (sign > 0) == (kind == "turbine") else "lower"
     return FlowSense(
         rotation=rotation,
+        turns=sign,
         linear=not table.annular,
         suction_side=side,
         kind=kind,
         metal_angle_in=first,
         turning=turning,
-        warning=_warning(first, last, rotation) if sign else None,
+        warning=_warning(first, last, rotation or "", sign) if sign else None,
     )
 
 
@@ -121,11 +122,11 @@ def _kind(table: BladeStations, first: float, last: float) -> Kind:
     return "compressor or pump" if first * first > last * last else "turbine"
 
 
-def _warning(first: float, last: float, rotation: str | None) -> str | None:
+def _warning(first: float, last: float, rotation: str, sign: int) -> str | None:
     """What is wrong where the steeper metal angle points along the rotation."""
     steeper, name = max((first * first, "metal_angle_in"), (last * last, "metal_angle_out"))
     value = first if name == "metal_angle_in" else last
-    if steeper < AXIAL**2 or (value > 0.0) != (TURNS[rotation or "none"] > 0):
+    if steeper < AXIAL**2 or (value > 0.0) != (sign > 0):
         return None
     other = "counterclockwise" if rotation == "clockwise" else "clockwise"
     return (

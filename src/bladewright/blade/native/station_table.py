@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from bladewright.blade.native.moving_points import components, directions, lean_angle, middle, motion, sweep_angle
 from bladewright.blade.native.throat import throat, throat_ends
 from bladewright.numerics.elementary import Array, angle, cross2, dot, length, magnitude, unit
 from bladewright.numerics.quadrature import panels
@@ -199,22 +200,22 @@ class BladeStations(StationTable):
         """Lean of the line of points halfway between the edges, towards larger theta, or y [rad]."""
         rates = [(a + b) / 2.0 for a, b in zip(*self._edge_rates, strict=True)]
         radius = (self._edges[0].radius[0] + self._edges[1].radius[0]) / 2.0
-        return _lean(rates, self._slope(self._halfway), radius)
+        return lean_angle(rates, self._slope(self._halfway), radius)
 
     @cached_property
     def trailing_edge_lean(self) -> Array:
         """Lean of the trailing edge [rad]."""
-        return _lean(self._edge_rates[1], self._edge_slopes[1], self._edges[1].radius[0])
+        return lean_angle(self._edge_rates[1], self._edge_slopes[1], self._edges[1].radius[0])
 
     @cached_property
     def leading_edge_sweep(self) -> Array:
         """Angle of the leading edge from the normal of the stream line, downstream towards the shroud [rad]."""
-        return _sweep(self._edge_rates[0], self._edge_slopes[0])
+        return sweep_angle(self._edge_rates[0], self._edge_slopes[0])
 
     @cached_property
     def trailing_edge_sweep(self) -> Array:
         """The same of the trailing edge [rad]."""
-        return _sweep(self._edge_rates[1], self._edge_slopes[1])
+        return sweep_angle(self._edge_rates[1], self._edge_slopes[1])
 
     @property
     def scalars(self) -> Mapping[str, tuple[str, Array]]:
@@ -257,7 +258,7 @@ class BladeStations(StationTable):
     def _edges(self) -> tuple[Motion, Motion]:
         """The middle of both edges; of derivatives nothing."""
         first, last = (
-            _middle(*(self._motion(side, np.full(len(self.span), end), self.span) for side in (0, 1)))
+            middle(*(self._motion(side, np.full(len(self.span), end), self.span) for side in (0, 1)))
             for end in (0.0, 1.0)
         )
         return first, last
@@ -323,15 +324,13 @@ class BladeStations(StationTable):
             return self._nose_angle(end)
         along = tangents[end]
         row = stack.row(at, stack.camber(at)[..., 0, :], along, np.zeros_like(along))
-        components = self._components(motion(*row, revolved=self.annular), self._edge_slopes[end])
-        return angle(components[1], components[0])
+        meridional, tangential = components(motion(*row, revolved=self.annular), self._edge_slopes[end])
+        return angle(tangential, meridional)
 
     def _nose_angle(self, end: int) -> Array:
         """Angles (m,) of the normal to a round nose, or of the line midway between the sides at another edge."""
         at, slope = np.full(len(self.span), float(end)), self._edge_slopes[end]
-        upper, lower = (
-            np.stack(self._components(self._motion(side, at, self.span), slope), axis=-1) for side in (0, 1)
-        )
+        upper, lower = (np.stack(components(self._motion(side, at, self.span), slope), axis=-1) for side in (0, 1))
         if self._stack.edge_kinds[end] == "round":
             sign = -1.0 if end else 1.0
             return angle(-sign * upper[:, 0], sign * upper[:, 1])
@@ -343,18 +342,13 @@ class BladeStations(StationTable):
         """Unit vectors (m, 2) downstream along the chord lines in (x, r) at both edges."""
         return self._slope(np.zeros(len(self.span))), self._slope(np.ones(len(self.span)))
 
-    @staticmethod
-    def _components(along: Motion, slope: Array) -> tuple[Array, Array]:
-        """First derivatives (m,) of a motion downstream along the stream line and towards larger theta, or y."""
-        return slope[:, 0] * along.x[1] + slope[:, 1] * along.height[1], along.radius[0] * along.across[1]
-
     def _edge_radius(self, end: int) -> Array:
         if self.edge_kinds[end] != "round":
             return np.zeros(len(self.span))
         side, at = self.blade.sides[0], float(end)
         first, second = (side.derivative(at, self.span, order, 0) for order in (1, 2))
-        directions = _directions(side(at, self.span), self._edge_slopes[end], self.annular)
-        flat = [np.stack([dot(each, direction) for direction in directions], axis=-1) for each in (first, second)]
+        along = directions(side(at, self.span), self._edge_slopes[end], revolved=self.annular)
+        flat = [np.stack([dot(each, direction) for direction in along], axis=-1) for each in (first, second)]
         with np.errstate(divide="ignore"):
             return length(flat[0]) ** 3 / magnitude(cross2(flat[0], flat[1]))
 
@@ -380,49 +374,6 @@ class BladeStations(StationTable):
         middle = (point[0] + point[1]) / 2.0
         radius = length(middle[:, 1:]) if self.annular else middle[:, 2]
         return np.asarray(np.sum(weight * self._pitch(radius) * (slope[:, 0] * rates[1] - slope[:, 1] * rates[0])))
-
-
-def motion(point: Array, first: Array, second: Array, *, revolved: bool) -> Motion:
-    """Points (..., 3) that run along curves, as (x, r, theta), or as (x, z, y) in a cascade."""
-    x, y, z = (np.stack([each[..., i] for each in (point, first, second)]) for i in range(3))
-    if not revolved:
-        return Motion(x, z, y, np.stack([np.ones_like(x[0]), *np.zeros_like(x[1:])]))
-    r = np.sqrt(y[0] ** 2 + z[0] ** 2)
-    climb, turn = (y[0] * y[1] + z[0] * z[1]) / r, (z[0] * y[1] - y[0] * z[1]) / r**2
-    bend = (y[1] ** 2 + z[1] ** 2 + y[0] * y[2] + z[0] * z[2] - climb**2) / r
-    growth = (z[0] * y[2] - y[0] * z[2]) / r**2 - 2.0 * climb * turn / r
-    height = np.stack([r, climb, bend])
-    return Motion(x, height, np.stack([angle(y[0], z[0]), turn, growth]), height, 2.0 * np.pi)
-
-
-def _middle(upper: Motion, lower: Motion) -> Motion:
-    """The middle of two points nearby; of their derivatives nothing."""
-    x, height, radius = ((getattr(upper, name) + getattr(lower, name)) / 2.0 for name in ("x", "height", "radius"))
-    apart = wrapped(lower.across[:1] - upper.across[:1], upper.period)
-    return Motion(x[:1], height[:1], upper.across[:1] + apart / 2.0, radius[:1], upper.period)
-
-
-def _directions(point: Array, slope: Array, revolved: bool) -> tuple[Array, Array]:
-    """Unit vectors (m, 3) downstream along the stream line and towards larger theta, or y, at points (m, 3)."""
-    zero, one = np.zeros_like(point[..., 0]), np.ones_like(point[..., 0])
-    if not revolved:
-        return np.stack([slope[..., 0], zero, slope[..., 1]], axis=-1), np.stack([zero, one, zero], axis=-1)
-    around = unit(point[..., 1:])
-    meridional = np.stack([slope[..., 0], slope[..., 1] * around[..., 0], slope[..., 1] * around[..., 1]], axis=-1)
-    return meridional, np.stack([zero, around[..., 1], -around[..., 0]], axis=-1)
-
-
-def _normal_rate(rates: list[Array], slope: Array) -> Array:
-    """How fast an edge rises normal to the stream lines, towards the shroud."""
-    return slope[..., 0] * rates[1] - slope[..., 1] * rates[0]
-
-
-def _sweep(rates: list[Array], slope: Array) -> Array:
-    return np.arctan((slope[..., 0] * rates[0] + slope[..., 1] * rates[1]) / _normal_rate(rates, slope))
-
-
-def _lean(rates: list[Array], slope: Array, radius: Array) -> Array:
-    return np.arctan(radius * rates[2] / _normal_rate(rates, slope))
 
 
 def station_table(blade: Blade, stations: Sequence[float] | None = None) -> BladeStations:
