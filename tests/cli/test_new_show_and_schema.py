@@ -185,3 +185,33 @@ def test_a_law_at_stations_is_set_and_differentiated_by_its_paths(run, vane_file
     found = run("show", vane_file, "--set", "stagger={span=[0, 0.5], values=[10, 12]}")
     assert (found.status, found.err.count("\n")) == (2, 1)
     assert "stagger.span runs from 0 to 0.5" in found.err
+
+
+TABLE = "r [mm],metal_angle_in [deg],metal_angle_out [deg],chord [mm]\n100,44,10,50\n130,53,34,50\n160,60,48,50\n"
+
+
+def test_new_makes_a_design_of_a_table(run, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "rotor.csv").write_text(TABLE)
+    found = run("new", "--from-table", "rotor.csv", "--set", "blade_count=17")
+    assert (found.status, found.err) == (0, "")
+    assert "wrote rotor.toml" in found.out
+    assert "flow_path: assumed: a straight annulus" in found.out
+    design = read_design("rotor.toml")
+    assert design.section.metal_angle_out.values == (10.0, 34.0, 48.0)
+    assert design.blade_count == 17
+    assert run("new", "--from-table", "rotor.csv").status == 2
+    data = run("new", "--from-table", "rotor.csv", "-o", "other.toml", "--json").json
+    assert (data["table"], data["file"]) == ("rotor.csv", "other.toml")
+    assert "flow_path" in data["remarks"]
+
+
+def test_new_refuses_a_bad_table_and_writes_nothing(run, tmp_path):
+    for text, words in (("r,chord\n1,2\n", "no unit"), (TABLE.replace("34", "x"), "metal_angle_out is 'x'")):
+        (tmp_path / "rotor.csv").write_text(text)
+        found = run("new", "--from-table", tmp_path / "rotor.csv", "-o", tmp_path / "rotor.toml")
+        assert (found.status, found.err.count("\n")) == (2, 1)
+        assert words in found.err
+        assert not (tmp_path / "rotor.toml").exists()
+    assert run("new", "fan-rotor", "--from-table", tmp_path / "rotor.csv").status == 2
+    assert run("new", "fan-rotor", "--set", "blade_count=3").status == 2

@@ -1,10 +1,11 @@
-"""`bladewright new`: the built-in examples, to start from."""
+"""`bladewright new`: a design file to start from, of an example, of a template or of a table of stations."""
 
 from pathlib import Path
+from typing import Any
 
 import click
 
-from bladewright.cli.options import common
+from bladewright.cli.options import common, set_option
 from bladewright.cli.outcome import Outcome
 from bladewright.errors import FileError
 
@@ -13,29 +14,61 @@ from bladewright.errors import FileError
 @click.argument("example", required=False)
 @click.option("-o", "--output", type=click.Path(path_type=Path), help="File to write; EXAMPLE.toml where not given.")
 @click.option("--template", metavar="NAME", help="Write a starting file with every key of its family, explained.")
+@click.option(
+    "--from-table",
+    "table",
+    type=click.Path(path_type=Path),
+    metavar="CSV",
+    help="Write the design of a table of stations: r [mm], metal_angle_in [deg], metal_angle_out [deg], chord [mm]...",
+)
+@set_option
 @click.option("--force", is_flag=True, help="Overwrite a file that is there.")
 @common
-def new(example: str | None, output: Path | None, template: str | None, force: bool) -> Outcome:
-    """List the built-in examples and templates, or write the design file of one to start from."""
+def new(
+    example: str | None,
+    output: Path | None,
+    template: str | None,
+    table: Path | None,
+    changes: dict[str, Any],
+    force: bool,
+) -> Outcome:
+    """List the built-in examples and templates, or write the design file of one to start from.
+
+    With --from-table the file is made from a table of stations, hub to shroud, whose values are met there. What the
+    table does not say is assumed, stated in a comment, and changed with --set.
+    """
     from bladewright.files.examples import example_text, examples
     from bladewright.files.templates import template_text, templates
     from bladewright.files.text import write_text
 
-    if example is not None and template is not None:
-        raise FileError(f"both the example '{example}' and --template {template} are asked for: give one of them")
-    if example is None and template is None:
+    given = {"the example": example, "--template": template, "--from-table": table}
+    asked = [f"{what} {name}" for what, name in given.items() if name is not None]
+    if len(asked) > 1:
+        raise FileError(f"{' and '.join(asked)} are asked for together: give one of them")
+    if changes and table is None:
+        raise click.UsageError("--set completes a table: give --from-table, or change the file once it is written")
+    if not asked:
         lists = {"examples": examples(), "templates": templates()}
         text = f"{_listed('bladewright new NAME', lists['examples'])}\n\n"
         text += _listed("bladewright new --template NAME, every key of its family explained", lists["templates"])
         return Outcome(data=lists, text=text)
-    text = example_text(example) if example is not None else template_text(str(template))
-    file = output or Path(f"{example or template}.toml")
+    remarks: dict[str, str] = {}
+    if table is not None:
+        from bladewright.files.from_table import design_from_table
+
+        made = design_from_table(table, changes)
+        name, text, remarks = made.design.name, made.text, dict(made.remarks)
+        data: dict[str, Any] = {"table": str(table), "remarks": remarks}
+    else:
+        name = str(example or template)
+        text = example_text(name) if example is not None else template_text(name)
+        data = {"example" if example else "template": name}
+    file = output or Path(f"{name}.toml")
     if file.is_file() and not force:
         raise FileError(f"'{file}' exists already: name another file with -o, or overwrite it with --force")
     write_text(file, text)
-    return Outcome(
-        data={"example" if example else "template": example or template, "file": str(file)}, text=f"wrote {file}"
-    )
+    said = [f"wrote {file}", *(f"  {key}: {words}" for key, words in remarks.items())]
+    return Outcome(data={**data, "file": str(file)}, text="\n".join(said))
 
 
 def _listed(title: str, lines: dict[str, str]) -> str:

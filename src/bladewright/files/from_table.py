@@ -1,0 +1,358 @@
+"""A design from a table of stations: every column of the table becomes a law that meets its values.
+
+The design is of the curvature-meanline family with the modified NACA thickness, whose parameters follow from metal
+angles, stagger, maximum thickness, its place and both edge radii in closed form. What the table does not say is
+assumed, and every assumption is stated in a comment beside its key.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from scipy.optimize import brentq
+
+from bladewright.blade.design.families import CurvatureMeanlineBlade
+from bladewright.blade.design.flow_path import FlowPath
+from bladewright.blade.design.meridional_curve import ThroughPoints
+from bladewright.blade.design.stacking import Stacking
+from bladewright.designs import Law, Point, Stations
+from bladewright.errors import DesignError, FileError
+from bladewright.files.station_table import StationTable, read_station_table
+from bladewright.files.writing import text_of
+from bladewright.nurbs.basis import Reals
+from bladewright.section.curvature_meanline import CurvatureMeanline
+from bladewright.section.thickness.modified_naca import RADIUS, ModifiedNaca
+
+SOLIDITY = 1.2
+"""Chord over pitch at mid-span from which the number of blades is assumed: that of a usual axial row [-]"""
+THICKNESS, PLACE = 0.08, 0.4
+"""Maximum thickness and its place where the table gives none, of the chord: those of a usual compressor blade [-]"""
+TRAILING_RADIUS = 0.1
+"""Radius of the trailing edge where the table gives none, of the maximum thickness [-]"""
+EXTENSION = 1.5
+"""How far hub and shroud continue before and behind the blade, in its largest chord [-]"""
+SAME_ANGLE = 1e-6
+"""Camber below which a stagger other than the metal angles has no meanline [deg]"""
+
+
+@dataclass(frozen=True, kw_only=True)
+class TableDesign:
+    """What a table of stations makes."""
+
+    design: CurvatureMeanlineBlade
+    remarks: Mapping[str, str]
+    """what was assumed, or computed, by the key that it is about"""
+
+    @property
+    def text(self) -> str:
+        """The design file, each remark in a comment before its key."""
+        lines, table = [], ""
+        for line in text_of(self.design).splitlines():
+            match = re.match(r"\[([\w.]+)\]$|(\w+) = ", line)
+            table = match[1] if match and match[1] else table
+            key = "" if match is None else match[1] or ".".join(filter(None, (table, match[2])))
+            lines += [f"# {self.remarks[key]}", line] if key in self.remarks else [line]
+        return "\n".join(lines) + "\n"
+
+
+def design_from_table(path: Path, changes: Mapping[str, Any] | None = None) -> TableDesign:
+    """The design that meets the values of a CSV file's table at its stations, with changes by path.
+
+    Raises FileError where the table does not say enough, and DesignError where its blade cannot be built.
+    """
+    made = _Translation(read_station_table(path), re.sub(r'[/\\:*?"<>|\s]+', "-", path.stem) or "blade").result()
+    try:
+        design = made.design.changed(changes or {})
+        design.exact_blade().check()
+    except DesignError as error:
+        raise DesignError(f"'{path}' makes a blade that cannot be built: {error}") from error
+    stated = {key: words for key, words in made.remarks.items() if not any(_is_in(each, key) for each in changes or {})}
+    return TableDesign(design=design, remarks=stated)
+
+
+def _is_in(path: str, key: str) -> bool:
+    """Whether a path leads to a key or into it."""
+    return path == key or path.startswith((f"{key}.", f"{key}["))
+
+
+class _Translation:
+    """A table on its way to a design."""
+
+    def __init__(self, table: StationTable, name: str) -> None:
+        self.table, self.columns, self.name = table, dict(table.columns), name
+        self.where = f"'{table.where}'"
+        self.remarks: dict[str, str] = {}
+        for each in ("metal_angle_in", "metal_angle_out"):
+            if each not in self.columns:
+                raise FileError(f"{self.where} has no column {each}: give it, such as {each} [deg]")
+        self.count = len(self.columns["metal_angle_in"])
+        self.inlet, self.middle, self.outlet = self._places()
+
+    def result(self) -> TableDesign:
+        stagger = self._stagger()
+        chord, placed = self._placed(stagger)
+        blades = self._blade_count(chord)
+        section = CurvatureMeanline(
+            metal_angle_in=self._law("metal_angle_in", self.inlet),
+            metal_angle_out=self._law("metal_angle_out", self.outlet),
+            curvature=self._curvature(),
+            thickness=self._thickness(chord),
+        )
+        moved: dict[str, Any] = {
+            each: self._law(each, self.middle) for each in ("lean", "sweep") if each in self.columns
+        }
+        try:
+            design = CurvatureMeanlineBlade(
+                name=self.name,
+                length_unit=self.table.length_unit,  # type: ignore[arg-type]
+                description=f"From the table {Path(self.table.where).name}",
+                blade_count=blades,
+                section=section,
+                **placed,
+                **moved,
+            )
+        except DesignError as error:
+            raise FileError(f"{self.where} gives no design: {error}") from error
+        return TableDesign(design=design, remarks=self.remarks)
+
+    def _places(self) -> tuple[Reals, Reals, Reals]:
+        """Span fractions (n,) of inlet quantities, of the others, and of outlet quantities."""
+        columns = self.columns
+        if "r" in columns:
+            columns.setdefault("r_le", columns["r"])
+            columns.setdefault("r_te", columns["r"])
+        if "span" in columns:
+            span = columns["span"]
+            self._check_rising("span", span)
+            if span[0] != 0.0 or span[-1] != 1.0:
+                raise FileError(
+                    f"{self.where}: span runs from {span[0]:g} to {span[-1]:g}; the first row must be the hub, 0, and "
+                    "the last the shroud, 1: add rows there"
+                )
+            return span, span, span
+        if not {"r_le", "r_te"} <= columns.keys():
+            raise FileError(
+                f"{self.where} does not say where its rows stand: give a column span, from 0 at the hub to 1 at the "
+                "shroud, or r [mm], or r_le [mm] and r_te [mm]"
+            )
+        for each in ("r_le", "r_te"):
+            self._check_rising("r" if "r" in columns else each, columns[each])
+        inlet, outlet = columns["r_le"], columns["r_te"]
+        return _fractions(inlet), _fractions(0.5 * (inlet + outlet)), _fractions(outlet)
+
+    def _check_rising(self, name: str, values: Reals) -> None:
+        falls = np.flatnonzero(np.diff(values) <= 0.0)
+        if len(falls):
+            i = int(falls[0]) + 1
+            cure = "sort the rows" if name == "span" else "sort the rows, or give a column span in the place of radii"
+            raise FileError(
+                f"{self.where}: {name} is {values[i]:g} in row {i + 1} after {values[i - 1]:g}: it must rise from hub "
+                f"to shroud; {cure}"
+            )
+
+    def _law(self, name: str, places: Reals, values: Reals | None = None) -> Law:
+        """The law through the values of a column, or through others."""
+        found = (self.columns[name] if values is None else values).tolist()
+        return found[0] if len(set(found)) == 1 else Stations(span=tuple(places.tolist()), values=tuple(found))
+
+    def _stagger(self) -> Reals:
+        """Stagger (n,) [deg]: given, or the mean of the metal angles."""
+        columns = self.columns
+        return columns.get("stagger", 0.5 * (columns["metal_angle_in"] + columns["metal_angle_out"]))
+
+    def _curvature(self) -> tuple[Law, ...]:
+        """Control points of the meanline's second derivative: equal ones, or those that give the stagger.
+
+        With S = 1 + k at the leading and 1 - k at the trailing edge, linear between, the slopes there are as -J to
+        I - J, with I = 1 and J = (3 + k) / 6 the integrals of S and of S again.
+        """
+        if "stagger" not in self.columns:
+            self.remarks["section.curvature"] = (
+                "assumed: an even second derivative, so that the stagger is the mean of the metal angles; only ratios "
+                "count"
+            )
+            return (1.0, 1.0)
+        angles = [self.columns[each] - self.columns["stagger"] for each in ("metal_angle_in", "metal_angle_out")]
+        first, last = (np.tan(np.radians(each)) for each in angles)
+        straight = np.abs(first - last) < np.radians(SAME_ANGLE)
+        shares = np.where(straight, 0.5, first / np.where(straight, 1.0, first - last))
+        shares = np.where(straight & (np.abs(first) > np.radians(SAME_ANGLE)), np.inf, shares)
+        bent = 6.0 * shares - 3.0
+        for i in np.flatnonzero(~(np.abs(bent) <= 1.0)):
+            inlet, outlet = self.columns["metal_angle_in"][i], self.columns["metal_angle_out"][i]
+            low, high = sorted((_stagger_of(inlet, outlet, 1.0 / 3.0), _stagger_of(inlet, outlet, 2.0 / 3.0)))
+            raise FileError(
+                f"{self.where}: stagger is {self.columns['stagger'][i]:g} deg in row {i + 1}, between metal angles of "
+                f"{inlet:g} and {outlet:g} deg: a meanline that bends one way all along has a stagger from {low:.4g} "
+                f"to {high:.4g} deg; change it, or leave the column out"
+            )
+        self.remarks["section.curvature"] = "computed: of a linear second derivative with the table's stagger"
+        return (
+            self._law("front", self.middle, _rounded(1.0 + bent)),
+            self._law("rear", self.middle, _rounded(1.0 - bent)),
+        )
+
+    def _placed(self, stagger: Reals) -> tuple[Reals, dict[str, Any]]:
+        """Chords (n,), and the fields that say where the blade stands."""
+        columns, cosine = self.columns, np.cos(np.radians(stagger))
+        theta: dict[str, Any] = {"theta": self._law("theta", self.middle)} if "theta" in columns else {}
+        if not {"r_le", "r_te"} <= columns.keys():
+            raise FileError(f"{self.where} has no radii: give a column r [mm], or r_le [mm] and r_te [mm]")
+        given = [each for each in ("chord", "axial_chord") if each in columns]
+        edges = {"x_le", "x_te"} <= columns.keys()
+        if edges + len(given) != 1:
+            found = " and ".join([*(["x_le and x_te"] if edges else []), *given]) or "nothing"
+            raise FileError(
+                f"{self.where} says how long the sections are by {found}: give one of chord [mm], axial_chord [mm], or "
+                "x_le [mm] and x_te [mm]"
+            )
+        ends = [columns["r_le"], columns["r_te"]]
+        if edges:
+            x = [columns["x_le"], columns["x_te"]]
+            chord = np.hypot(x[1] - x[0], ends[1] - ends[0]) / cosine
+            lines = _edge_lines(x, ends)
+            self.remarks["flow_path"] = (
+                "assumed: straight hub and shroud through the first and the last row's edges, and on beyond them"
+            )
+            walls = _walls(x, ends, chord)
+            position = {"leading_edge_theta": theta["theta"]} if theta else {}
+            return chord, {
+                "flow_path": FlowPath(hub=walls[0], shroud=walls[1], matched="edges"),
+                "leading_edge": lines[0],
+                "trailing_edge": lines[1],
+                **position,
+            }
+        chord = columns["chord"] if "chord" in columns else _rounded(columns["axial_chord"] / cosine)
+        half = 0.5 * chord * cosine
+        level = bool(np.all(ends[0] == ends[1]))
+        self.remarks["flow_path"] = (
+            "assumed: a straight annulus of the first and the last row's radii"
+            if level
+            else "assumed: straight hub and shroud of the first and the last row's radii at both edges"
+        )
+        self.remarks["stacking"] = "assumed: sections stacked by their centroids on the radial line x = 0"
+        walls = _walls([-half, half], ends, chord)
+        stacking = Stacking(reference="centroid", chord=self._law("chord", self.middle, chord), hub_x=0.0, **theta)
+        return chord, {"flow_path": FlowPath(hub=walls[0], shroud=walls[1]), "stacking": stacking}
+
+    def _blade_count(self, chord: Reals) -> int:
+        middle = self.count // 2
+        radius = 0.5 * (self.columns["r_le"][middle] + self.columns["r_te"][middle])
+        count = max(2, round(float(SOLIDITY * 2.0 * np.pi * radius / chord[middle])))
+        self.remarks["blade_count"] = f"assumed: a solidity of about {SOLIDITY:g} in the middle row"
+        return count
+
+    def _of_chord(self, name: str, chord: Reals) -> Reals | None:
+        """A column as fractions of the chord; None where the table does not have it."""
+        if name not in self.columns:
+            return None
+        return self.columns[name] if name in self.table.of_chord else _rounded(self.columns[name] / chord)
+
+    def _thickness(self, chord: Reals) -> ModifiedNaca:
+        """The modified NACA thickness of the table's maximum, its place, and edge radii."""
+        most, leading, trailing = (
+            self._of_chord(each, chord) for each in ("maximum_thickness", "leading_edge_radius", "trailing_edge_radius")
+        )
+        place, path = self.columns.get("maximum_thickness_at"), "section.thickness"
+        # thicknesses are laid off along the chord, and normal to the camber line, which leaves it at these angles
+        ahead, behind = (
+            1.0 / np.cos(np.radians(self.columns[each] - self._stagger()))
+            for each in ("metal_angle_in", "metal_angle_out")
+        )
+        if most is None:
+            most = np.full(self.count, THICKNESS)
+            self.remarks[f"{path}.maximum_thickness"] = "assumed"
+        if place is None:
+            place = np.full(self.count, PLACE)
+            self.remarks[f"{path}.maximum_thickness_at"] = "assumed"
+        if trailing is None:
+            trailing = TRAILING_RADIUS * most / behind
+            self.remarks[f"{path}.trailing_edge_thickness"] = (
+                f"assumed: a radius of {TRAILING_RADIUS:g} of the maximum thickness"
+            )
+        else:
+            self.remarks[f"{path}.trailing_edge_thickness"] = (
+                "computed: where the round edge of the table's trailing_edge_radius begins"
+            )
+        slope, begins = _parabolic_rear(most, place, trailing * behind)
+        self.remarks[f"{path}.trailing_edge_slope"] = (
+            "assumed: the half thickness is a parabola from its maximum to the trailing edge's circle"
+        )
+        fields: dict[str, Law] = {}
+        if leading is not None:
+            index = _rounded(6.0 * np.sqrt(2.0 * leading * ahead / RADIUS) / most)
+            fields["leading_edge_index"] = self._law("index", self.inlet, index)
+            self.remarks[f"{path}.leading_edge_index"] = (
+                "computed: the table's radius, 1.1019 (maximum_thickness index / 6)^2 cos(camber angle from the chord)"
+            )
+        try:
+            return ModifiedNaca(
+                maximum_thickness=self._law("maximum_thickness", self.middle, most),
+                maximum_thickness_at=self._law("maximum_thickness_at", self.middle, place),
+                trailing_edge_thickness=self._law("thickness", self.outlet, _rounded(begins)),
+                trailing_edge_slope=self._law("slope", self.outlet, _rounded(slope)),
+                **fields,  # type: ignore[arg-type]
+            )
+        except DesignError as error:
+            raise FileError(f"{self.where} gives no section: {error}") from error
+
+
+def _fractions(r: Reals) -> Reals:
+    return _rounded((r - r[0]) / (r[-1] - r[0]))
+
+
+def _rounded(values: Reals) -> Reals:
+    """Values to 14 digits, so that a file shows 0.08 for 4 mm in 50."""
+    return np.array([float(f"{value:.14g}") for value in values])
+
+
+def _stagger_of(inlet: float, outlet: float, share: float) -> float:
+    """The stagger [deg] with such a share of the slopes at both ends of the meanline at the leading edge."""
+
+    def missed(stagger: float) -> float:
+        first, last = np.tan(np.radians([inlet - stagger, outlet - stagger]))
+        return float((1.0 - share) * first + share * last)
+
+    return float(brentq(missed, inlet, outlet)) if inlet != outlet else inlet
+
+
+def _parabolic_rear(most: Reals, place: Reals, radius: Reals) -> tuple[Reals, Reals]:
+    """Slopes of the half thickness at the trailing edge, and thicknesses where its circle begins, in chords.
+
+    A parabola falls over its length by half its last slope times that length. The circle of the radius R that is
+    tangent to a side of the slope m begins at the half thickness R / sqrt(1 + m^2), R / sqrt(1 + m^2) / (sqrt(1 + m^2)
+    - m) before the edge.
+    """
+    slope = np.zeros_like(most)
+    for _ in range(50):
+        steep = np.sqrt(1.0 + slope**2)
+        half = radius / steep
+        slope = -2.0 * (0.5 * most - half) / (1.0 - place - half / (steep - slope))
+    return slope, 2.0 * radius / np.sqrt(1.0 + slope**2)
+
+
+def _edge_lines(x: list[Reals], r: list[Reals]) -> list[ThroughPoints]:
+    """The leading and the trailing edge through all rows."""
+    return [
+        ThroughPoints(points=tuple(Point(*map(float, pair)) for pair in zip(*each, strict=True)))
+        for each in zip(x, r, strict=True)
+    ]
+
+
+def _walls(x: list[Reals], r: list[Reals], chord: Reals) -> list[ThroughPoints]:
+    """Hub and shroud, straight through both edges of the first and of the last row."""
+    reach, found = EXTENSION * float(np.max(chord)), []
+    for row in (0, -1):
+        start, end = (np.array([x[i][row], r[i][row]]) for i in (0, 1))
+        if start[1] == end[1]:
+            points = [(np.min(x[0]) - reach, start[1]), (np.max(x[1]) + reach, end[1])]
+        else:
+            step = (end - start) / np.hypot(*(end - start)) * reach
+            points = [tuple(start - step), tuple(start), tuple(end), tuple(end + step)]
+        found.append(ThroughPoints(points=tuple(Point(*(float(f"{c:.10g}") for c in each)) for each in points)))
+    return found
