@@ -19,8 +19,9 @@ from bladewright.cli.options import (
 )
 from bladewright.cli.outcome import Outcome
 from bladewright.cli.progress import progress
+from bladewright.cli.stations import stations_option
 
-_BUILD_OPTIONS = ("directory", "formats", "schema", "iges_surfaces", "chordal_deviation", "changes")
+_BUILD_OPTIONS = ("directory", "formats", "schema", "iges_surfaces", "chordal_deviation", "stations", "changes")
 """Options that are fields of `BuildOptions`; the remaining ones shape a passage."""
 
 
@@ -59,6 +60,7 @@ _BUILD_OPTIONS = ("directory", "formats", "schema", "iges_surfaces", "chordal_de
 @click.option(
     "--jobs", type=click.IntRange(1, 256), metavar="N", help="Designs made at a time.  [as many as processors]"
 )
+@stations_option
 @extend_option
 @passage_options
 @set_option

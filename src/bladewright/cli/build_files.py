@@ -11,6 +11,7 @@ from bladewright.cli.law_remarks import law_data, law_rows
 from bladewright.cli.load_design import bodies_from, load_design
 from bladewright.cli.outcome import Outcome, jsonable
 from bladewright.cli.progress import Bar
+from bladewright.cli.stations import sense_data, sense_rows, station_table
 
 SUFFIXES = {"step": ".step", "iges": ".igs", "brep": ".brep", "stl": ".stl", "3mf": ".3mf"}
 """Endings of the files of each format."""
@@ -30,6 +31,8 @@ class BuildOptions:
     """whether the IGES file holds trimmed surfaces instead of a solid"""
     chordal_deviation: float | None
     """largest distance of the triangles of STL and 3MF from the solid [m]; None: the default of `cad.write`"""
+    stations: tuple[float, ...] | None
+    """span fractions of the station table; None: no table"""
     extend: float
     """fraction of the span by which a blade is extended at both ends [-]"""
     changes: Mapping[str, Any]
@@ -55,11 +58,14 @@ def build_files(path: Path, options: BuildOptions, bar: Bar) -> Outcome:
         for name in names.values()
         for number, each in enumerate(options.formats)
     ]
-    directory, trips = options.directory, list[Any]()
+    directory, trips, sense, table = options.directory, list[Any](), dict[str, Any](), None
     with removing_partial_files(directory, [*files, *reports]):
         bar.set_description_str(" and ".join(options.bodies))
         for built in bodies_from(options.bodies, design, path, options.extend, options.extents):
             bar.update(1)
+            blade = getattr(built, "blade", built)
+            sense = sense or sense_data(blade)
+            table = table or (station_table(blade, options.stations) if options.stations else None)
             from bladewright import cad
 
             for each in options.formats:
@@ -83,7 +89,16 @@ def build_files(path: Path, options: BuildOptions, bar: Bar) -> Outcome:
             "files": [str(directory / file) for file in files],
             "roundtrips": [trip.to_dict() for trip in trips],
             **({"laws": laws} if laws else {}),
+            **sense,
+            **({"table": table.to_dict()} if table else {}),
         },
-        text="\n".join([*map(str, trips), *(f"{name} {words}" for name, words in law_rows(laws))]),
+        text="\n".join(
+            [
+                *map(str, trips),
+                *(f"{name} {words}" for name, words in law_rows(laws)),
+                *(f"{name}: {words}" for name, words in sense_rows(sense)),
+                *([str(table)] if table else []),
+            ]
+        ),
         failures=tuple(f"{file}: {text}" for file, trip in zip(files, trips, strict=True) for text in trip.failures),
     )

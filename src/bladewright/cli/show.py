@@ -9,6 +9,7 @@ from bladewright.cli.load_design import BODIES, built_from, flow_domain_from, lo
 from bladewright.cli.options import Call, check_options, common, design_argument, passage_options, set_option
 from bladewright.cli.outcome import Outcome
 from bladewright.cli.progress import progress
+from bladewright.cli.stations import sense_data, sense_rows, station_table, stations_option, written_csv
 from bladewright.cli.summary import (
     broken_promises,
     passage_data,
@@ -26,19 +27,37 @@ from bladewright.cli.summary import (
 @click.option(
     "--body", type=click.Choice(BODIES), default="blade", show_default=True, help="What to show: blade or passage."
 )
+@stations_option
+@click.option("--csv", "table_file", type=click.Path(path_type=Path), metavar="FILE", help="Write that table as CSV.")
 @passage_options
 @set_option
 @common
 @click.pass_obj
-def show(call: Call, /, path: Path, output: Path | None, body: str, changes: dict[str, Any], **extents: Any) -> Outcome:
-    """Print the properties of what DESIGN builds and the promises it keeps; draw it where -o names a picture.
+def show(
+    call: Call,
+    /,
+    path: Path,
+    output: Path | None,
+    body: str,
+    stations: tuple[float, ...] | None,
+    table_file: Path | None,
+    changes: dict[str, Any],
+    **extents: Any,
+) -> Outcome:
+    """Print the properties of what DESIGN builds and whether it passes its checks; draw it where -o names a picture.
+
+    --stations adds metal angles, chord, thickness, throat, solidity, lean, sweep and more as they are built, at places
+    along the span; --csv writes them, named like the keys of a design.
 
     The picture shows sections, curvature and its slope, the meridional channel, edges from close by, the laws of
     evolution and a 3D view; with --body passage a see-through view of the flow passage, its duct, and its walls
     unwrapped with the lines of their patches. The flow domain of a 2D design is the curves around its section, and
-    reaches are in axial chords. The exit status is 1 where a promise is not kept.
+    reaches are in axial chords. The exit status is 1 where a check fails.
     """
     check_options((body,), 0.0, extents)
+    wants_table = stations is not None or table_file is not None
+    if wants_table and body == "passage":
+        raise click.UsageError("--stations and --csv are of the blade: leave out --body passage")
     design: Any = load_design(path, changes)
     with progress(2 if output else 1, call) as bar:
         bar.set_description_str(body)
@@ -49,6 +68,7 @@ def show(call: Call, /, path: Path, output: Path | None, body: str, changes: dic
             built = built_from(design, path)
             data = summary_data(design, built)
             data["smoothness"] = smoothness_data(built)
+            data |= sense_data(built)
         bar.update(1)
         if output is not None:
             from bladewright import views
@@ -57,6 +77,12 @@ def show(call: Call, /, path: Path, output: Path | None, body: str, changes: dic
             views.picture(design, output, blade=built)
             data["picture"] = str(output)
             bar.update(1)
-    rows = [*passage_rows(data), *smoothness_rows(data.get("smoothness", []))]
-    text = summary_text(data, rows) + (f"\nwrote {output}" if output else "")
+    rows = [*passage_rows(data), *smoothness_rows(data.get("smoothness", [])), *sense_rows(data)]
+    text = summary_text(data, rows)
+    if wants_table:
+        table = station_table(built, stations)
+        data["table"] = table.to_dict()
+        text += f"\n\n{table}"
+        text += f"\n{written_csv(table, table_file)}" if table_file else ""
+    text += f"\nwrote {output}" if output else ""
     return Outcome(data=data, text=text, failures=broken_promises(data))

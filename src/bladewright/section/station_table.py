@@ -219,8 +219,8 @@ class StationTable(ABC):
         real = np.real(value)
         if unit == "deg":
             return np.asarray(degrees(real))
-        name, _, power = unit.partition("^")
-        return np.asarray(real / UNITS[name] ** int(power or 1) if name in UNITS else real)
+        name = unit.removesuffix("2")
+        return np.asarray(real / UNITS[name] ** (2 if name != unit else 1) if name in UNITS else real)
 
     def to_dict(self) -> dict[str, Any]:
         """Columns with their units, lengths in the design's unit and angles in degrees, for JSON."""

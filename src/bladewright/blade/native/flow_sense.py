@@ -46,7 +46,7 @@ class FlowSense:
     suction_side: Side | None
     """None where the camber does not turn and no rotation tells"""
     kind: Kind | None
-    """what a rotor is taken for; None of a vane, or where the rotation is not known"""
+    """what a rotor is taken for; None of a vane, where the rotation is not known, and where it contradicts angles"""
     metal_angle_in: float
     """[rad]"""
     turning: float
@@ -98,7 +98,8 @@ def flow_sense(blade: Blade) -> FlowSense:
     if turning * turning > UNCAMBERED**2:
         side = "upper" if turning > 0.0 else "lower"
     sign = blade.design.turns
-    kind = _kind(table, first, last) if sign else None
+    warning = _warning(first, last, rotation or "", sign) if sign else None
+    kind = _kind(table, first, last) if sign and not warning else None
     if kind:
         side = "upper" if (sign > 0) == (kind == "turbine") else "lower"
     return FlowSense(
@@ -109,12 +110,12 @@ def flow_sense(blade: Blade) -> FlowSense:
         kind=kind,
         metal_angle_in=first,
         turning=turning,
-        warning=_warning(first, last, rotation or "", sign) if sign else None,
+        warning=warning,
     )
 
 
 def _kind(table: BladeStations, first: float, last: float) -> Kind:
-    """What a rotor does by the change of its radius, or by which of its metal angles is the steeper."""
+    """What a rotor is by the change of its radius, or by which of its metal angles is the steeper."""
     if table.annular:
         ratio = float(np.real(table.trailing_edge_r[0] / table.leading_edge_r[0]))
         if ratio > RADIAL or ratio < 1.0 / RADIAL:

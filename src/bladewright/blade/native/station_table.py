@@ -220,7 +220,7 @@ class BladeStations(StationTable):
     @property
     def scalars(self) -> Mapping[str, tuple[str, Array]]:
         """Areas of one passage at the edges, normal to the meridional flow, and of the throat."""
-        area = f"{self.length_unit}^2"
+        area = f"{self.length_unit}2"
         found = {"inlet_area": (area, self.inlet_area)}
         if self._has_throat:
             found["throat_area"] = area, self.throat_area
