@@ -58,6 +58,18 @@ def test_a_file_that_is_cut_off_is_refused(bodies, filed, tmp_path, ending, shar
         cad.verify(path, bodies["linear"])
 
 
+def test_a_brep_file_that_lacks_any_of_its_last_parts_is_refused_before_opencascade_searches_for_them(rotor, tmp_path):
+    path = tmp_path / "rotor.brep"
+    cad.write(rotor, path, samples=100)
+    whole = path.read_bytes()
+    for missing in (3, *range(20, len(whole) // 25, 97)):
+        path.write_bytes(whole[:-missing])
+        with pytest.raises(CadError, match="breaks off before its last part"):
+            cad.verify(path, rotor)
+    path.write_bytes(whole.rstrip())
+    assert cad.verify(path, rotor, samples=100).passed
+
+
 def test_a_step_file_with_its_middle_missing_is_refused_or_fails(bodies, filed, tmp_path):
     whole = filed("linear", "step")[0].read_bytes()
     path = tmp_path / "vane.step"

@@ -1,4 +1,4 @@
-"""Passages of untrimmed patches: creased walls that share edges piece by piece, one solid, one face a name."""
+"""Passages of untrimmed patches: creased walls in pieces that share edges, one solid, every face named."""
 
 import dataclasses
 import re
@@ -10,19 +10,21 @@ from OCP.BRep import BRep_Tool
 from bladewright import cad
 from bladewright.cad.closure import closure
 from bladewright.cad.conversion import native_surface
+from bladewright.cad.face_pieces import in_pieces
 from bladewright.cad.reading import read_cad_file
 from bladewright.cad.solids import occ_solid
 from bladewright.cad.topology import side_curve, smooth_pieces, topology
 from bladewright.errors import CadError
-from bladewright.nurbs.domain import reparametrised
+from bladewright.nurbs.domain import reparametrised, split
 from bladewright.nurbs.surface import Surface
-from machines.closed_form_passages import ALONG, BEFORE, divided, passage
+from machines.closed_form_passages import AFTER, ALONG, BEFORE, divided, passage
 from machines.closed_forms import moved, replaced
 
 from .test_catches import about, failing, put, solid_of, written
 
-COUNTS = {"whole": (24, 34, 10), "gap": (26, 35, 11), "split": (24, 48, 24), "split gap": (26, 49, 25)}
-"""vertices, edges and faces, by hand"""
+COUNTS = {"whole": (24, 48, 24), "gap": (26, 49, 25), "split": (24, 48, 24), "split gap": (26, 49, 25)}
+"""vertices, edges and faces, by hand: ten whole faces, of which the walls and periodic boundaries have two creases each
+and inlet and outlet one, and a tip with a gap"""
 
 
 @pytest.fixture(scope="module")
@@ -38,8 +40,9 @@ def vane(passages):
 
 @pytest.mark.parametrize("kind", COUNTS)
 def test_a_passage_has_the_edges_and_vertices_that_it_should(passages, kind):
-    found = topology(passages[kind])
-    counts = (len(found.vertices), len(found.edges), len(passages[kind].surfaces))
+    pieces = in_pieces(passages[kind])
+    found = topology(pieces)
+    counts = (len(found.vertices), len(found.edges), len(pieces.surfaces))
     assert counts == COUNTS[kind]
     # Euler: a vane from wall to wall is a hole through the passage, one with a gap above its tip is none
     assert counts[0] - counts[1] + counts[2] == (2 if "gap" in kind else 0)
@@ -53,16 +56,22 @@ def test_a_passage_becomes_one_closed_valid_solid_whose_faces_meet_exactly(passa
     assert (closed.solids, closed.shells, closed.free_edges, closed.non_manifold_edges) == (1, 1, 0, 0)
     assert closed.valid
     assert len(closed.edges) == COUNTS[kind][1]
-    assert list(made.faces) == list(passages[kind].surfaces)
+    assert list(made.faces) == list(in_pieces(passages[kind]).surfaces)
     # trimming curves run with their edge's parameter, also where it is the blade's own
     assert max(joint.gap for joint in closed.edges) < 1e-11
 
 
-def test_creased_faces_are_the_native_ones_pole_for_pole(vane):
-    for name, shape in occ_solid(vane).faces.items():
-        returned, face = native_surface(BRep_Tool.Surface_s(shape)), vane.surfaces[name]
-        np.testing.assert_array_equal(returned.control_points, face.control_points * 1000.0)
-        np.testing.assert_array_equal(returned.knots_u, face.knots_u)
+def test_faces_are_the_native_ones_cut_at_their_creases(vane):
+    faces = occ_solid(vane).faces
+    assert "periodic_upper" not in faces
+    for name, cuts in (("hub_upper", [BEFORE, AFTER]), ("inlet", [0.5]), ("blade_upper", [])):
+        whole = vane.surfaces[name]
+        pieces = split(whole, cuts) if len(cuts) else [whole]
+        names = [f"{name}_{number + 1}" for number in range(len(pieces))] if len(cuts) else [name]
+        for piece, label in zip(pieces, names, strict=True):
+            returned = native_surface(BRep_Tool.Surface_s(faces[label]))
+            np.testing.assert_array_equal(returned.control_points, piece.control_points * 1000.0)
+            np.testing.assert_array_equal(returned.knots_u, piece.knots_u)
 
 
 def test_a_side_falls_into_its_pieces_control_point_for_control_point(vane):
@@ -94,14 +103,14 @@ def test_neighbours_with_the_same_poles_and_other_knots_are_refused(vane):
     face = vane.surfaces["blade_upper"]
     knots = np.array(face.knots_u)
     knots[6] += 1e-6
-    with pytest.raises(CadError, match=r"'(hub|blade)_upper'.*exactly two faces"):
+    with pytest.raises(CadError, match=r"'(hub|blade)_upper(_2)?'.*exactly two faces"):
         cad.solid(replaced(vane, blade_upper=dataclasses.replace(face, knots_u=knots)))
 
 
 def test_a_wall_torn_off_the_extension_is_refused(vane):
     # the third control point of the line that both halves of the hub share before the vane
     torn = replaced(vane, hub_upper=moved(vane.surfaces["hub_upper"], 2, 0, 1e-9))
-    with pytest.raises(CadError, match=r"'hub_(upper|lower)'.*exactly two faces"):
+    with pytest.raises(CadError, match=r"'hub_(upper|lower)_1'.*exactly two faces"):
         cad.solid(torn)
 
 
@@ -112,7 +121,7 @@ def test_a_wall_torn_off_the_extension_is_refused(vane):
         *[("gap", "step"), ("split", "igs"), ("split gap", "step")],
     ],
 )
-def test_a_passage_returns_from_a_file_with_one_face_a_name(passages, kind, ending, tmp_path):
+def test_a_passage_returns_from_a_file_with_every_face_named(passages, kind, ending, tmp_path):
     built = passages[kind]
     trip = cad.write(built, tmp_path / f"passage.{ending}", samples=900)
     assert trip.passed, str(trip)
@@ -124,8 +133,8 @@ def test_a_passage_returns_from_a_file_with_one_face_a_name(passages, kind, endi
     assert trip.volume.relative_error < 1e-9
     if ending != "brep":
         opened = read_cad_file(tmp_path / f"passage.{ending}")
-        assert len(opened.faces) == len(built.surfaces)
-        assert sorted(opened.names.values()) == sorted(built.surfaces)
+        assert len(opened.faces) == COUNTS[kind][2]
+        assert sorted(opened.names.values()) == sorted(in_pieces(built).surfaces)
 
 
 @pytest.mark.parametrize("ending", ["stl", "3mf"])
@@ -166,7 +175,7 @@ def test_walls_with_each_others_names_are_found(vane, tmp_path):
     written(vane, path)
     swapped = {"hub_upper": "hub_lower", "hub_lower": "hub_upper"}
     path.write_text(
-        re.sub(r"(ADVANCED_FACE\(')(hub_upper|hub_lower)'", lambda m: f"{m[1]}{swapped[m[2]]}'", path.read_text())
+        re.sub(r"(ADVANCED_FACE\(')(hub_upper|hub_lower)_", lambda m: f"{m[1]}{swapped[m[2]]}_", path.read_text())
     )
     trip = failing(path, vane)
     for name in swapped:
@@ -174,7 +183,8 @@ def test_walls_with_each_others_names_are_found(vane, tmp_path):
 
 
 def test_a_missing_wall_is_found(vane, tmp_path):
-    put(solid_of([face for name, face in occ_solid(vane).faces.items() if name != "hub_upper"]), tmp_path / "open.brep")
+    faces = [face for name, face in occ_solid(vane).faces.items() if not name.startswith("hub_upper")]
+    put(solid_of(faces), tmp_path / "open.brep")
     trip = failing(tmp_path / "open.brep", vane)
     assert about(trip, "no face of the file is hub_upper")
     # three edges to vane and extensions, three to the periodic boundary, one each to inlet and outlet

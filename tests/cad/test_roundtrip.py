@@ -57,11 +57,13 @@ def test_the_report_is_what_was_promised(step):
     limits = report["limits"]
     assert (limits["side_mm"], limits["edge_mm"], limits["face_area"], limits["volume"]) == (1e-6, 1e-6, 1e-9, 1e-6)
     assert set(report["faces"][0]) == {
-        "name", "samples", "max_deviation_mm", "mean_deviation_mm", "worst", "area_mm2",
+        "name", "samples", "pieces", "max_deviation_mm", "mean_deviation_mm", "worst", "area_mm2",
     }  # fmt: skip
     assert set(report["faces"][0]["worst"]) == {"u", "v"}
     assert set(report["edges"]) == {"count", "shortest_mm", "max_gap_mm", "max_tolerance_mm"}
-    assert set(report["volume_mm3"]) == set(report["area_mm2"]) == {"cad", "native", "relative_error"}
+    assert set(report["volume_mm3"]) == {"cad", "native", "relative_error", "kernel_default"}
+    assert set(report["volume_mm3"]["kernel_default"]) == {"cad", "relative_error"}
+    assert set(report["area_mm2"]) == {"cad", "native", "relative_error"}
     assert set(report["centroid_mm"]) == {"cad", "native", "distance"}
     assert report["edges"]["count"] == 6
     assert report["file"] == "rotor.step"

@@ -79,7 +79,7 @@ def test_split_faces_have_names_of_their_own(run, thin_file, tmp_path):
     ("words", "said"),
     [
         (["--upstream", "0.5"], ["--upstream", "--body passage"]),
-        (["--split", "--inlet-angle", "3"], ["--inlet-angle", "--split", "--body passage"]),
+        (["--outlet-angle", "2", "--inlet-angle", "3"], ["--inlet-angle", "--outlet-angle", "--body passage"]),
         (["--body", "passage", "--extend", "0.1"], ["--extend", "--body blade"]),
         (["--body", "passages"], ["passages", "blade, passage"]),
         (["--body", "blade,passage", "--upstream", "-1"], ["upstream", "-1"]),

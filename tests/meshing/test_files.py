@@ -74,19 +74,27 @@ def test_a_mesh_of_gmsh_has_the_groups_and_the_pairs_of_nodes_in_metres(gmsh, ro
     found = groups(opened(gmsh, path))
     assert set(found) == FACES | {"tip", "fluid"}
     assert found["fluid"][0] == 3
-    (face,) = gmsh.model.getEntitiesForPhysicalGroup(*found["periodic_upper"])
-    (master,) = gmsh.model.getEntitiesForPhysicalGroup(*found["periodic_lower"])
-    known, nodes, masters, motion = gmsh.model.mesh.getPeriodicNodes(2, face)
-    assert known == master
+    pairs, motions = set(), []
+    copies, originals = (
+        gmsh.model.getEntitiesForPhysicalGroup(*found[name]) for name in ("periodic_upper", "periodic_lower")
+    )
+    for face in copies:
+        known, own, theirs, motion = gmsh.model.mesh.getPeriodicNodes(2, face)
+        assert known in originals
+        pairs |= set(zip(own.tolist(), theirs.tolist(), strict=True))
+        motions.append(motion)
+    nodes, masters = zip(*sorted(pairs), strict=True)
     assert len(nodes) == report.periodic_nodes
-    matrix = np.reshape(motion, (4, 4))
+    assert all(np.array_equal(motion, motions[0]) for motion in motions)
+    matrix = np.reshape(motions[0], (4, 4))
     points, origins = (np.array([gmsh.model.mesh.getNode(tag)[0] for tag in tags]) for tags in (nodes, masters))
     # of a pitch of 0.1 m
     np.testing.assert_allclose(origins @ matrix[:3, :3].T + matrix[:3, 3], points, rtol=0.0, atol=1e-13)
     turn = 2.0 * np.pi / rotor.passage.blade.design.blade_count
     # theta grows from z to y, against the right hand about x
     assert matrix[1, 2] == pytest.approx(np.sin(turn), rel=1e-12)
-    low, high = np.split(np.array(gmsh.model.getBoundingBox(2, face)), 2)
+    boxes = np.array([gmsh.model.getBoundingBox(2, face) for face in copies])
+    low, high = boxes[:, :3].min(axis=0), boxes[:, 3:].max(axis=0)
     assert (low <= points.min(axis=0) + 1e-6).all()
     assert (high >= points.max(axis=0) - 1e-6).all()
     assert (high - low < 1.0).all()

@@ -1,7 +1,7 @@
 """How far the faces of a CAD file lie from the native faces, measured in both directions."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
 
 import numpy as np
@@ -11,9 +11,10 @@ from bladewright.cad.native_body import MM
 from bladewright.cad.region import Region, greville_spaced
 from bladewright.cad.surface_evaluation import NurbsEvaluator, native_evaluator
 from bladewright.numerics.elementary import Array
+from bladewright.nurbs.domain import piece, swapped
 from bladewright.nurbs.domain import reversed as run_backwards
-from bladewright.nurbs.domain import swapped
 from bladewright.nurbs.measure import area
+from bladewright.nurbs.refine import Direction, direction_of
 from bladewright.nurbs.surface import Surface
 from bladewright.nurbs.trimmed import TrimmedSurface
 
@@ -25,6 +26,9 @@ SEEDS = 4_000
 for every face; fewer would let the search start beyond a fold of the surface and end in a local minimum."""
 EQUAL_KNOTS = 1e-9
 """Largest difference of equal knots, of a parameter range of 1: STEP and IGES files round their knots."""
+
+
+DIRECTIONS: tuple[Direction, ...] = ("u", "v")
 
 
 class FaceProjection:
@@ -141,19 +145,33 @@ class NativeFace:
         return float(area(self.face) if isinstance(self.face, Surface) else self.face.area())
 
     def same_poles(self, region: Region) -> tuple[Surface, Surface] | None:
-        """The native surface [m] and the region's [mm], where both have the same degrees, knots and number of poles.
+        """The native surface or a piece of it [m] and the region's [mm], of equal degrees, knots and numbers of poles.
 
         The region's surface is then turned so that its parameters run as the native ones do. None for other regions.
         """
         if not isinstance(self.face, Surface) or not isinstance(region.evaluator, NurbsEvaluator) or region.loops:
             return None
-        mine = self.face
-        found = [
-            (np.max(np.abs(turned.control_points - MM * mine.control_points)), turned)
-            for turned in _turned(region.evaluator.surface)
-            if _same_basis(mine, turned)
-        ]
-        return (mine, min(found, key=lambda each: float(each[0]))[1]) if found else None
+        found = []
+        for turned in _turned(region.evaluator.surface):
+            mine = _piece_over(self.face, turned)
+            if mine is not None and _same_basis(mine, turned):
+                moved = float(np.max(np.abs(turned.control_points - MM * mine.control_points)))
+                found.append((moved, mine, turned))
+        return min(found, key=lambda each: each[0])[1:] if found else None
+
+
+def _piece_over(native: Surface, other: Surface) -> Surface | None:
+    """The part of a native surface over the domain of another, to whose rounded knots it has the nearest ends."""
+    mine = native
+    for direction in DIRECTIONS:
+        knots, _ = direction_of(native, direction)
+        wanted = other.domain_u if direction == "u" else other.domain_v
+        start, end = (float(knots[np.argmin(np.abs(knots - place))]) for place in wanted)
+        if max(abs(start - wanted[0]), abs(end - wanted[1])) > EQUAL_KNOTS:
+            return None
+        if (start, end) != (knots[0], knots[-1]):
+            mine = piece(mine, start, end, direction)
+    return mine
 
 
 def _same_basis(one: Surface, other: Surface) -> bool:
@@ -176,15 +194,16 @@ def _turned(surface: Surface) -> Iterator[Surface]:
 def deviation(native: NativeFace, regions: list[Region], count: int, limit: float) -> FaceDeviation:
     """Distances between a native face and the faces of the file that stand for it, at `count` samples each way.
 
-    Where the file has the same control points and knots, points at equal parameters are compared: an upper bound of the
-    distance. Where that bound exceeds `limit` [mm], and for all other faces, every sample is projected to the other
-    side: native samples to the file's faces, and samples of these to the native face.
+    Where the file has the same control points and knots, in one face or in pieces, points at equal parameters are
+    compared: an upper bound of the distance. Where that bound exceeds `limit` [mm], and for all other faces, every
+    sample is projected to the other side: native samples to the file's faces, and samples of these to the native face.
     """
-    pair = native.same_poles(regions[0]) if len(regions) == 1 else None
-    if pair is not None:
-        found = _at_equal_parameters(*pair, count)
-        if found.largest <= limit:
-            return found
+    pairs = [pair for region in regions if (pair := native.same_poles(region)) is not None]
+    if len(pairs) == len(regions) and _cover([mine for mine, _ in pairs], native.region):
+        found = [_at_equal_parameters(*pair, count // len(pairs)) for pair in pairs]
+        largest = max(found, key=lambda each: each.largest)
+        if largest.largest <= limit:
+            return replace(largest, mean=float(np.mean([each.mean for each in found])))
     uv = native.region.samples(count)
     points = native.region.points(uv)
     distance = np.full(len(points), np.inf)
@@ -193,16 +212,24 @@ def deviation(native: NativeFace, regions: list[Region], count: int, limit: floa
         projection = FaceProjection(region, own[::2] if len(own) > SEEDS else own)
         distance = np.minimum(distance, projection.closest(points, limit)[1])
     worst = int(np.argmax(distance))
-    largest, place, every = float(distance[worst]), uv[worst], [distance]
+    farthest, place, every = float(distance[worst]), uv[worst], [distance]
     for region, own in zip(regions, samples, strict=True):
         footpoints, distance = native.projection.closest(region.points(own), limit)
         worst = int(np.argmax(distance))
         every.append(distance)
-        if distance[worst] > largest:
-            largest, place = float(distance[worst]), footpoints[worst]
+        if distance[worst] > farthest:
+            farthest, place = float(distance[worst]), footpoints[worst]
     return FaceDeviation(
-        largest=largest, mean=float(np.mean(np.concatenate(every))), worst=(float(place[0]), float(place[1]))
+        largest=farthest, mean=float(np.mean(np.concatenate(every))), worst=(float(place[0]), float(place[1]))
     )
+
+
+def _cover(pieces: list[Surface], region: Region) -> bool:
+    """Whether pieces cover the parameter rectangle of a face once."""
+    starts = {(face.domain_u[0], face.domain_v[0]) for face in pieces}
+    sizes = [np.ptp(face.domain_u) * np.ptp(face.domain_v) for face in pieces]
+    whole = np.prod(region.high - region.low)
+    return len(starts) == len(pieces) and bool(abs(np.sum(sizes) - whole) <= EQUAL_KNOTS * whole)
 
 
 def _at_equal_parameters(surface: Surface, other: Surface, count: int) -> FaceDeviation:

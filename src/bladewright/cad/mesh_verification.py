@@ -101,6 +101,7 @@ def verify_mesh(path: Path, built: NativeBody, *, samples: int, chordal_deviatio
         faces=faces,
         edges=EdgeReport(count=len(sides) // 2, shortest=float(sides.min()), max_gap=0.0, max_tolerance=0.0),
         volume=volume,
+        default_volume=None,
         area=total,
         centroid=centroid,
         promises=conformance_figures(built),
@@ -142,6 +143,7 @@ def _face(
     return FaceReport(
         name=name,
         samples=samples,
+        pieces=1,
         max_deviation=largest,
         mean_deviation=float(np.mean(np.concatenate([away, back]))),
         worst=(float(place[0]), float(place[1])),

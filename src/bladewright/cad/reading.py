@@ -112,8 +112,21 @@ def check_complete(path: Path, kind: str) -> None:
             raise CadError(
                 f"{problem}: it breaks off before its terminate section, so a part is missing; write it again"
             )
-    elif kind == "BREP" and b"DBRep_DrawableShape" not in head and b"CASCADE Topology" not in head:
-        raise CadError(f"{problem}: it does not begin with OpenCASCADE's name; {_likely_format(head)}")
+    elif kind == "BREP":
+        if b"DBRep_DrawableShape" not in head and b"CASCADE Topology" not in head:
+            raise CadError(f"{problem}: it does not begin with OpenCASCADE's name; {_likely_format(head)}")
+        _check_brep_parts(path, problem)
+
+
+def _check_brep_parts(path: Path, problem: str) -> None:
+    """Raise CadError where a BREP file has fewer parts than it states, or does not name the last one as its content.
+
+    OpenCASCADE would read on for ever: each part ends with an asterisk, for which it looks past the end of the file.
+    """
+    parts = path.read_bytes().rpartition(b"TShapes ")[2]
+    stated = re.match(rb"\d+", parts)
+    if stated is None or parts.count(b"*") != int(stated[0]) or not re.search(rb"\*\s*[+-]\d+ \d+\s*$", parts):
+        raise CadError(f"{problem}: it breaks off before its last part, so a part is missing; write it again")
 
 
 def first_and_last_bytes(path: Path) -> tuple[bytes, bytes]:

@@ -39,6 +39,8 @@ class FaceReport:
 
     name: str
     samples: int
+    pieces: int
+    """faces of the file that it is in"""
     max_deviation: float
     """[mm]"""
     mean_deviation: float
@@ -53,6 +55,7 @@ class FaceReport:
         return {
             "name": self.name,
             "samples": self.samples,
+            "pieces": self.pieces,
             "max_deviation_mm": self.max_deviation,
             "mean_deviation_mm": self.mean_deviation,
             "worst": {"u": self.worst[0], "v": self.worst[1]},
@@ -102,6 +105,8 @@ class RoundTrip(Shown):
     edges: EdgeReport
     volume: Comparison
     """[mm^3]"""
+    default_volume: Comparison | None
+    """[mm^3] of the file by OpenCASCADE's default quadrature, as FreeCAD and CadQuery show it; none of triangles"""
     area: Comparison
     """[mm^2]"""
     centroid: tuple[Array, Array]
@@ -123,6 +128,10 @@ class RoundTrip(Shown):
 
     def to_dict(self) -> dict[str, Any]:
         """The report as plain numbers, strings, lists and dictionaries, ready for JSON."""
+        volume: dict[str, Any] = dict(self.volume.to_dict())
+        if self.default_volume is not None:
+            shown = self.default_volume
+            volume["kernel_default"] = {"cad": shown.cad, "relative_error": shown.relative_error}
         report: dict[str, Any] = {
             "file": self.file,
             "format": self.format,
@@ -137,7 +146,7 @@ class RoundTrip(Shown):
             "valid": self.valid,
             "faces": [face.to_dict() for face in self.faces],
             "edges": self.edges.to_dict(),
-            "volume_mm3": self.volume.to_dict(),
+            "volume_mm3": volume,
             "area_mm2": self.area.to_dict(),
             "centroid_mm": {
                 "cad": [float(x) for x in self.centroid[0]],
@@ -167,7 +176,8 @@ class RoundTrip(Shown):
         for face in self.faces:
             away = f"deviation {face.max_deviation:.1e} mm (mean {face.mean_deviation:.1e})"
             size = f"area {face.area.cad:.6g} mm2 ({face.area.relative_error:.1e})"
-            lines.append(f"  {face.name:<{width}}  {away}, {size}")
+            pieces = f", in {face.pieces} pieces" if face.pieces > 1 else ""
+            lines.append(f"  {face.name:<{width}}  {away}, {size}{pieces}")
         lines.append(
             f"  edges: {edges.count}, gap {edges.max_gap:.1e} mm, tolerance {edges.max_tolerance:.1e} mm",
         )
@@ -175,4 +185,7 @@ class RoundTrip(Shown):
             f"  volume {volume.cad:.8g} mm3 ({volume.relative_error:.1e}), area {area.cad:.8g} mm2 "
             f"({area.relative_error:.1e}), centroid off by {self.centroid_distance:.1e} mm"
         )
+        if self.default_volume is not None:
+            shown = self.default_volume
+            lines.append(f"  FreeCAD and CadQuery show a volume of {shown.cad:.8g} mm3 ({shown.relative_error:.1e})")
         return "\n".join(lines)

@@ -1,5 +1,6 @@
 """Closed solids of native surfaces, with shared edges and vertices, whose tolerances are the measured gaps."""
 
+from collections import defaultdict
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import lru_cache
@@ -24,6 +25,8 @@ from OCP.TopoDS import (
 )
 
 from bladewright.cad.conversion import millimetres, occ_knots, plane_curve, space_curve, space_surface
+from bladewright.cad.default_quadrature import volume_error
+from bladewright.cad.face_pieces import BodyInPieces, in_fine_pieces, in_pieces, whole_name
 from bladewright.cad.native_body import MM, ClosedBody, NativeBody
 from bladewright.cad.topology import BodyEdge, Coedge, DegenerateEdge, Topology, topology
 from bladewright.cad.trimmed_faces import trimmed_face
@@ -38,6 +41,10 @@ if TYPE_CHECKING:
 CONFUSION = 1e-7
 """[mm] OpenCASCADE's smallest tolerance (Precision::Confusion)."""
 
+NEED = 1e-7
+"""Error of the body's volume by OpenCASCADE's default quadrature of one face, relative, above which `split` cuts it.
+Volumes are to be within 1e-5, and a passage has some forty faces; most sides of blades need it, most walls do not."""
+
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class OccSolid:
@@ -49,15 +56,16 @@ class OccSolid:
     """[mm] largest tolerance of its edges"""
 
 
-def solid(built: NativeBody) -> "cadquery.Solid":
+def solid(built: NativeBody, *, split: bool = False) -> "cadquery.Solid":
     """The closed solid of a blade or passage, in millimetres.
 
-    Untrimmed faces have the native control points; trimmed faces lie on exact planes and surfaces of revolution.
+    Untrimmed faces have the native control points; trimmed faces lie on exact planes and surfaces of revolution. Faces
+    with a crease are cut there, and with `split` also wherever OpenCASCADE's default quadrature needs it.
     Raises CadError where the surfaces do not close a volume, or where OpenCASCADE finds the solid invalid.
     """
     import cadquery  # as slow to import as OpenCASCADE itself, and not needed for files
 
-    return cadquery.Solid(occ_solid(built).solid)
+    return cadquery.Solid((split_occ_solid(built) if split else occ_solid(built)).solid)
 
 
 class _ByIdentity:
@@ -73,24 +81,54 @@ class _ByIdentity:
         return isinstance(other, _ByIdentity) and other.built is self.built
 
 
-def cached_occ_solid(built: NativeBody) -> OccSolid:
+def cached_occ_solid(built: NativeBody, *, split: bool = False) -> OccSolid:
     """`occ_solid`, cached for the last body, whose files in several formats are written one after another."""
-    return _cached(_ByIdentity(built))
+    return _cached(_ByIdentity(built), split)
 
 
 @lru_cache(maxsize=1)
-def _cached(same: _ByIdentity) -> OccSolid:
-    return occ_solid(same.built)
+def _cached(same: _ByIdentity, split: bool) -> OccSolid:
+    return split_occ_solid(same.built) if split else occ_solid(same.built)
 
 
 def occ_solid(built: ClosedBody) -> OccSolid:
     """The closed solid of a body as OpenCASCADE has it, with its faces by name; raises CadError as `solid` does."""
+    _check_numbers(built)
+    return occ_solid_in_pieces(in_pieces(built))
+
+
+def split_occ_solid(built: NativeBody) -> OccSolid:
+    """`occ_solid` with its faces also cut where OpenCASCADE's default quadrature needs it.
+
+    An untrimmed face needs it where its own part of the volume is off, or that of a trimmed face beside it, which is
+    integrated along their common edges.
+    """
+    whole = occ_solid(built)
+    pieces = in_pieces(built)
+    volume, middle = float(built.properties.volume), np.asarray(built.properties.centroid)
+    errors: dict[str, float] = defaultdict(float)
+    for piece, face in pieces.surfaces.items():
+        name = whole_name(piece, built.surfaces) or piece
+        errors[name] += volume_error(whole.faces[piece], face, pieces.orientations[piece], middle) / volume
+    needy = {name for name, error in errors.items() if error > NEED}
+    for edge in topology(pieces).edges:
+        names = {whole_name(coedge.face, built.surfaces) or coedge.face for coedge in edge.coedges}
+        if any(name in needy and isinstance(built.surfaces[name], TrimmedSurface) for name in names):
+            needy = needy | names
+    return occ_solid_in_pieces(in_fine_pieces(built, needy))
+
+
+def _check_numbers(built: ClosedBody) -> None:
     for face in built.surfaces.values():
         millimetres(face.control_points if isinstance(face, Surface) else face.surface.control_points)
-    parts = _SolidBuilder(built.surfaces, topology(built))
+
+
+def occ_solid_in_pieces(body: BodyInPieces) -> OccSolid:
+    """The closed solid of the pieces of a body."""
+    parts = _SolidBuilder(body.surfaces, topology(body))
     faces = {}
-    for name, face in built.surfaces.items():
-        outwards = built.orientations[name] > 0
+    for name, face in body.surfaces.items():
+        outwards = body.orientations[name] > 0
         if isinstance(face, Surface):
             faces[name] = parts.untrimmed_face(name, face, outwards)
         else:
@@ -107,7 +145,7 @@ def occ_solid(built: ClosedBody) -> OccSolid:
     builder.Add(whole, shell)
     if not BRepCheck_Analyzer(whole).IsValid():
         raise CadError(
-            f"OpenCASCADE finds the solid of {built.name!r} invalid, though its faces share their edges: one crosses "
+            f"OpenCASCADE finds the solid of {body.name!r} invalid, though its faces share their edges: one crosses "
             "itself or another; look at the blade with `bladewright show`"
         )
     return OccSolid(solid=whole, faces=faces, gap=max(parts.gaps))

@@ -8,7 +8,9 @@ from OCP.BRepGProp import BRepGProp
 from OCP.GProp import GProp_GProps
 
 from bladewright.cad.closure import Closure, closure
+from bladewright.cad.default_quadrature import default_volume
 from bladewright.cad.deviation import deviation, native_face
+from bladewright.cad.face_pieces import whole_name
 from bladewright.cad.file_face import FileFace, file_face
 from bladewright.cad.kernel import quiet
 from bladewright.cad.mesh_verification import verify_mesh
@@ -88,7 +90,8 @@ class _FileComparison:
         self.limits = limits_of(built)
         self.native = {name: native_face(face) for name, face in built.surfaces.items()}
         self.returned = [file_face(face) for face in opened.faces]
-        self.named = {k: name for k, name in opened.names.items() if name in self.native}
+        known = {k: whole_name(name, self.native) for k, name in opened.names.items()}
+        self.named = {k: name for k, name in known.items() if name is not None}
         self.names = self._names()
         self.failures: list[str] = []
 
@@ -105,6 +108,7 @@ class _FileComparison:
         edges = self._edges(closed)
         properties = self.built.properties
         volume, centroid = self._whole()
+        shown = Comparison(cad=default_volume(self.opened.shape), native=volume.native)
         total = Comparison(cad=sum(face.area for face in self.returned), native=float(properties.area) * MM**2)
         self._check_whole(volume, total, centroid)
         return RoundTrip(
@@ -121,6 +125,7 @@ class _FileComparison:
             faces=faces,
             edges=edges,
             volume=volume,
+            default_volume=shown,
             area=total,
             centroid=centroid,
             promises=conformance_figures(self.built),
@@ -171,6 +176,16 @@ class _FileComparison:
         if self.opened.format == "STEP" and self.opened.written_by_bladewright:
             unnamed = [self.names[k] for k in range(len(self.returned)) if k not in self.named]
             self.failures += [f"face {name} has no name in the file" for name in unnamed]
+            for name in self.native:
+                self._check_numbers(name)
+
+    def _check_numbers(self, name: str) -> None:
+        """The pieces of a face are numbered along u, and row after row along v."""
+        pieces = [(*face.region.low[::-1].tolist(), k) for k, face in enumerate(self.returned) if self.names[k] == name]
+        given = [self.opened.names.get(k, "") for *_, k in sorted(pieces)]
+        wanted = [f"{name}_{number}" for number in range(1, len(given) + 1)] if len(given) > 1 else given
+        if given != wanted:
+            self.failures.append(f"the pieces of face {name} are called {given}: in the order of u they are {wanted}")
 
     def _face(self, name: str, faces: list[FileFace]) -> FaceReport:
         native = self.built.surfaces[name]
@@ -181,6 +196,7 @@ class _FileComparison:
         trip = FaceReport(
             name=name,
             samples=self.samples,
+            pieces=len(faces),
             max_deviation=found.largest,
             mean_deviation=found.mean,
             worst=found.worst,

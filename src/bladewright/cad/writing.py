@@ -29,6 +29,7 @@ def write(
     *,
     schema: Schema = "AP242",
     solid: bool = True,
+    split: bool = False,
     chordal_deviation: float | None = None,
     unit: Unit = "mm",
     colour: str = "parts",
@@ -39,8 +40,9 @@ def write(
 
     The ending of `path` decides the format: .step and .stp with the application protocol `schema`; .iges and .igs with
     a manifold solid (entity 186), or with trimmed surfaces (entity 144) where `solid` is false; .brep; .stl and .3mf
-    with triangles within `chordal_deviation` [m] of the surfaces, by default 1e-4 of the body's extent. `unit` is the
-    unit of length in the file, "mm", "m" or "in"; BREP is always in mm. `colour` is that of the faces in STEP and IGES:
+    with triangles within `chordal_deviation` [m] of the surfaces, by default 1e-4 of the body's extent. Faces are cut
+    at creases, and with `split` wherever other programs' quadrature needs it (docs/build.md). `unit` is the unit of
+    length in the file, "mm", "m" or "in"; BREP is always in mm. `colour` is that of the faces in STEP and IGES:
     "parts" for those of `cad.COLOURS`, one for all such as "#8899aa", or "none". `origin` is the design that the file
     says it was made from (`bladewright.origin`), by default what the body knows of its design.
 
@@ -56,7 +58,7 @@ def write(
         return replace(trip, origin=origin)
     colours = face_colours(built, colour)
     with quiet():
-        made = cached_occ_solid(built)
+        made = cached_occ_solid(built, split=split)
         with atomic_write(path) as unfinished:
             _write_format(
                 built, made, unfinished, kind, schema=schema, solid=solid, unit=unit, colours=colours, origin=origin

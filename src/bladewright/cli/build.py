@@ -83,8 +83,9 @@ def build(
     made side by side; one that is refused does not keep the others from being made.
     """
     own = {name: others.pop(name) for name in _BUILD_OPTIONS}
-    check_options(bodies, extend, others)
-    options = BuildOptions(bodies=bodies, extend=extend, extents=others, **own)
+    split = others["split"]
+    check_options(bodies, extend, {**others, "split": False})
+    options = BuildOptions(bodies=bodies, extend=extend, split=split, extents=others, **own)
     if len(designs) == 1:
         with progress(options.steps, call) as bar:
             return build_files(designs[0], options, bar)

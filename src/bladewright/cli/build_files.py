@@ -35,6 +35,8 @@ class BuildOptions:
     """span fractions of the station table; None: no table"""
     extend: float
     """fraction of the span by which a blade is extended at both ends [-]"""
+    split: bool
+    """whether faces are cut as other CAD programs need it"""
     changes: Mapping[str, Any]
     """changes of the design's parameters, by path"""
     extents: Mapping[str, Any]
@@ -76,6 +78,7 @@ def build_files(path: Path, options: BuildOptions, bar: Bar) -> Outcome:
                     directory / file,
                     schema=options.schema,
                     solid=not (options.iges_surfaces and each == "iges"),
+                    split=options.split,
                     chordal_deviation=options.chordal_deviation,
                 )
                 write_text(directory / report, json.dumps(jsonable(trip.to_dict()), indent=2) + "\n")

@@ -57,7 +57,11 @@ def passage_options(command: Command) -> Command:
         ),
         click.option("--inlet-angle", type=float, metavar="DEG", help="Angle that a passage turns to at its inlet."),
         click.option("--outlet-angle", type=float, metavar="DEG", help="Angle that a passage turns to at its outlet."),
-        click.option("--split", is_flag=True, help="Split a passage's faces where they have a crease."),
+        click.option(
+            "--split",
+            is_flag=True,
+            help="Cut a passage's faces where they have a crease; build cuts all faces as other CAD programs need it.",
+        ),
     )
 
 

@@ -81,10 +81,11 @@ def set_sizes(job: Job, faces: Faces) -> None:
     fields = []
     for source in job.sources:
         distance = field.add("Distance")
-        kind, tag = (
-            ("SurfacesList", faces[source.face]) if source.face else ("CurvesList", _curve_at(source.place, faces))
-        )
-        field.setNumbers(distance, kind, [tag])
+        if source.face:
+            pieces = [tag for name, tag in faces.items() if group_of(name) == source.face]
+            field.setNumbers(distance, "SurfacesList", pieces)
+        else:
+            field.setNumbers(distance, "CurvesList", [_curve_at(source.place, faces)])
         field.setNumber(distance, "Sampling", FACE_SAMPLES if source.face else CURVE_SAMPLES)
         size = field.add("Threshold")
         values = {

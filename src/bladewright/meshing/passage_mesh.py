@@ -1,6 +1,7 @@
 """A volume mesh of a passage: made by gmsh from a STEP file, reopened from disk and measured."""
 
 import os
+import re
 import shutil
 import tempfile
 import time
@@ -95,7 +96,9 @@ def mesh(
 
 
 def _check_faces(step: Path, faces: tuple[str, ...], passage: Passage) -> None:
-    if sorted(faces) != sorted(passage.surfaces):
+    known = passage.surfaces
+    # of a face in pieces, each has its number behind the face's name
+    if {name if name in known else re.sub(r"_\d+$", "", name) for name in faces} != set(known):
         raise MeshError(
             f"'{step}' holds the faces {', '.join(sorted(faces)) or 'none'}, but the passage has "
             f"{', '.join(sorted(passage.surfaces))}: name the STEP file of this passage"
