@@ -15,6 +15,7 @@ from OCP.XCAFDoc import XCAFDoc_ColorGen, XCAFDoc_ColorSurf, XCAFDoc_ColorTool, 
 
 from bladewright import cad
 from bladewright.cad.colours import COLOURS, part_of
+from bladewright.cad.face_pieces import whole_name
 from bladewright.errors import CadError
 
 PARTS = {"upper": "suction side", "lower": "pressure side", "hub": "hub", "shroud": "shroud"}
@@ -87,3 +88,10 @@ def test_the_name_of_a_face_says_its_part(face, part):
 
 def test_the_suction_side_may_be_the_lower_one():
     assert (part_of("lower", "lower"), part_of("blade_upper", "lower")) == ("suction side", "pressure side")
+
+
+def test_the_pieces_of_a_face_have_its_colour(rotor, tmp_path):
+    cad.write(rotor, tmp_path / "rotor.step", split=True, samples=100)
+    found = dict(colours_in(tmp_path / "rotor.step"))
+    assert {name: COLOURS[PARTS[whole_name(name, PARTS)]] for name in found} == found
+    assert len(found) > len(PARTS)

@@ -9,6 +9,7 @@ from OCP.BRepTools import BRepTools
 
 from bladewright.atomic_write import atomic_write
 from bladewright.cad.colours import face_colours
+from bladewright.cad.face_pieces import whole_name
 from bladewright.cad.iges import write_iges
 from bladewright.cad.kernel import quiet
 from bladewright.cad.mesh_verification import write_mesh
@@ -59,6 +60,8 @@ def write(
     colours = face_colours(built, colour)
     with quiet():
         made = cached_occ_solid(built, split=split)
+        # pieces of a face have its colour
+        colours = {face: colours[whole] for face in made.faces if (whole := whole_name(face, colours))}
         with atomic_write(path) as unfinished:
             _write_format(
                 built, made, unfinished, kind, schema=schema, solid=solid, unit=unit, colours=colours, origin=origin
