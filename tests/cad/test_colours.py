@@ -17,6 +17,7 @@ from bladewright import cad
 from bladewright.cad.colours import COLOURS, part_of
 from bladewright.cad.face_pieces import whole_name
 from bladewright.errors import CadError
+from machines.closed_form_passages import passage
 
 PARTS = {"upper": "suction side", "lower": "pressure side", "hub": "hub", "shroud": "shroud"}
 
@@ -90,8 +91,9 @@ def test_the_suction_side_may_be_the_lower_one():
     assert (part_of("lower", "lower"), part_of("blade_upper", "lower")) == ("suction side", "pressure side")
 
 
-def test_the_pieces_of_a_face_have_its_colour(rotor, tmp_path):
-    cad.write(rotor, tmp_path / "rotor.step", split=True, samples=100)
-    found = dict(colours_in(tmp_path / "rotor.step"))
-    assert {name: COLOURS[PARTS[whole_name(name, PARTS)]] for name in found} == found
-    assert len(found) > len(PARTS)
+def test_the_pieces_of_a_face_have_its_colour(tmp_path):
+    walls = passage()
+    cad.write(walls, tmp_path / "passage.step", samples=100)
+    found = dict(colours_in(tmp_path / "passage.step"))
+    assert {"hub_upper_1", "hub_upper_2", "hub_upper_3"} < set(found)
+    assert {name: COLOURS[part_of(whole_name(name, walls.surfaces), "upper")] for name in found} == found
