@@ -4,7 +4,7 @@ What a law is stands in `bladewright.designs`; everything that depends on its ki
 """
 
 from collections.abc import Iterable, Iterator
-from dataclasses import fields
+from dataclasses import fields, replace
 from itertools import pairwise
 from typing import Any, NamedTuple, get_args, get_origin, get_type_hints
 
@@ -52,9 +52,19 @@ def is_list(law: Law) -> bool:
     return isinstance(law, tuple | Stations)
 
 
-def is_spline(law: Law) -> bool:
-    """Whether a law's numbers are control points, which another number of them can replace; or a constant."""
-    return not isinstance(law, Stations)
+def stations_of(law: Law) -> Stations | None:
+    """The stations at which a law is given; None for one by control points."""
+    return law if isinstance(law, Stations) else None
+
+
+def sampled_at(law: Law, stations: Stations) -> Stations:
+    """A law of real numbers given by its own values at other stations, interpolated as theirs are."""
+    return with_values(stations, np.real(Span(np.array(stations.span)).values(law)))
+
+
+def with_values(stations: Stations, values: Reals) -> Stations:
+    """The same stations with other values (n,)."""
+    return replace(stations, values=tuple(values.tolist()))
 
 
 def number_paths(law: Law, path: str) -> list[str]:

@@ -15,7 +15,7 @@ from bladewright.fitting.families.flow_path import ChannelCurves
 from bladewright.fitting.families.growth import grown_to_target
 from bladewright.fitting.families.kinds import FitFamily
 from bladewright.fitting.families.law_extension import extended_blade
-from bladewright.fitting.families.laws import counts_of, nearest_law, part_along_span, with_mean_laws
+from bladewright.fitting.families.laws import counts_of, nearest_law, part_along_span, with_mean_laws, with_stations_of
 from bladewright.fitting.families.section_samples import SampledSection, reversed_flow, sampled_section
 from bladewright.fitting.families.sections import best_trial, starts_of
 from bladewright.fitting.free_parameters import EDGES, FreeParameters, gauge_parameters
@@ -164,7 +164,7 @@ def _first(closed: Blade, kind: FitFamily, like: Any, header: DesignHeader) -> D
         fields |= {edge: found.edge(edge, metre) for edge in EDGES}
         return kind.blade(**fields, flow_path=found.flow_path(metre))
     fields |= {edge: found.edge_like(edge, getattr(like, edge), metre) for edge in EDGES}
-    changed: Design = replace(like, **fields)
+    changed: Design = with_stations_of(replace(like, **fields), like)
     return changed
 
 

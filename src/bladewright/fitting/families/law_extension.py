@@ -12,7 +12,7 @@ from bladewright.designs import Law, Point
 from bladewright.errors import DesignError, FitError
 from bladewright.fitting.families.growth import predicted_gains
 from bladewright.fitting.families.kinds import FitFamily
-from bladewright.fitting.families.laws import counts_of, part_along_span
+from bladewright.fitting.families.laws import counts_of, part_along_span, with_stations_of
 from bladewright.fitting.families.section_samples import SampledSection
 from bladewright.fitting.free_parameters import EDGES
 from bladewright.fitting.matching.search import EXACT_MISFIT, ROUGH_REDUCTION, Match, Task, searched
@@ -20,7 +20,7 @@ from bladewright.fitting.model_selection.steps import tolerance_weights
 from bladewright.fitting.model_selection.stopping import MatchTarget
 from bladewright.fitting.models.planar import SINGLE_SECTION
 from bladewright.nurbs.basis import Reals
-from bladewright.section.laws import Span, law_basis, named_laws
+from bladewright.section.laws import Span, law_basis, law_points, named_laws, stations_of
 
 MOST_SPAN = 10
 """control points of a law along the span, and of an edge curve, at most; it bounds the time of growth."""
@@ -131,7 +131,9 @@ def _edge_extended(design: Any, name: str) -> Any:
 
 def _extended_law(law: Law) -> Law:
     """The law with one control point more, nearest to what it is."""
-    old = np.atleast_1d(np.asarray(law, dtype=np.float64))
+    if stations_of(law) is not None:
+        raise DesignError("a law is given at stations, and none is added")
+    old = np.array(law_points(law), dtype=np.float64)
     if len(old) >= MOST_SPAN:
         raise DesignError(f"a law has {len(old)} control points along the span, and no more are added")
     rows = law_basis(len(old) + 1, SPANS)
@@ -156,7 +158,7 @@ def _along_chord(design: Any, kind: FitFamily, which: int) -> Any:
     changed = part_along_span(parts, GROWN_SPANS, counts)
     laws = [(path, law) for path, law in named_laws(design.section) if path in counts]
     kept = {path: law for path, law in laws if _is_unchanged(parts, path, design.section)}
-    return replace(design, section=changed.changed(kept))
+    return replace(design, section=with_stations_of(changed.changed(kept), design.section))
 
 
 @lru_cache(maxsize=4)

@@ -8,7 +8,7 @@ import numpy as np
 
 from bladewright.designs import Law, Part
 from bladewright.nurbs.basis import Reals
-from bladewright.section.laws import is_list, law_basis, law_points, named_laws, number_paths
+from bladewright.section.laws import is_list, law_basis, law_points, named_laws, number_paths, sampled_at, stations_of
 
 
 def lines_of(part: Part, stem: str) -> Iterator[list[str]]:
@@ -39,6 +39,13 @@ def with_mean_laws(part: Any) -> Any:
 def counts_of(part: Part) -> Mapping[str, int]:
     """The number of control points of each law of a part by its path."""
     return {path: len(law_points(law)) for path, law in named_laws(part)}
+
+
+def with_stations_of(part: Any, like: Part) -> Any:
+    """The part with those laws given at stations that are so in `like`: the values of its own laws there."""
+    stations = {path: found for path, law in named_laws(like) if (found := stations_of(law))}
+    own = {path: law for path, law in named_laws(part) if path in stations}
+    return part.changed({path: sampled_at(law, stations[path]) for path, law in own.items()})
 
 
 def part_along_span(parts: Sequence[Any], v: Reals, counts: Mapping[str, int]) -> Any:

@@ -31,7 +31,7 @@ from bladewright.fitting.model_selection.structure import SPANWISE, Structure, s
 from bladewright.fitting.models.law_jacobian import AXES, LawJacobian, edge_basis, stands_on_channel
 from bladewright.nurbs.basis import Reals
 from bladewright.section.checks import UNITS
-from bladewright.section.laws import Span, law_basis, law_points
+from bladewright.section.laws import Span, law_basis, law_weights, sampled_at
 from bladewright.section.unified_limits import THICKNESSES
 
 STRUCTURE_LAWS = (*SPANWISE, "place", *THICKNESSES, *EDGES, *WALLS)
@@ -187,17 +187,18 @@ class Forecast:
         label = _field(self.design, name)
         law, sites, moves = getattr(self.design, label), self.jacobian.sites, self.jacobian.moves[label]
         other = law_of(law, counts[0], LAW_LIMITS.get(name, (-np.inf, np.inf)))
-        rows = law_basis(counts[0], sites)
-        change = rows @ np.array(law_points(other)) - Span(sites).values(law)
+        rows = law_weights(other, sites)
+        change = Span(sites).values(other) - Span(sites).values(law)
         return moves @ rows * self.sizes[label], moves @ change
 
     def _thickness(self, name: str, counts: Counts) -> tuple[Reals, Reals]:
         sites, laws = self.jacobian.sites, getattr(self.design, name)
         moves = np.stack([self.jacobian.moves[f"{name}[{i}]"] for i in range(len(laws))])
-        grid = grid_of(laws, counts[0], counts[1], self.widest)
+        stations = self.widest.stations.get(name)
+        grid = grid_of(laws, counts[0], counts[1], self.widest, stations)
         u = samples_of(self.widest)
         share = np.linalg.lstsq(law_basis(len(laws), u), law_basis(counts[0], u), rcond=None)[0]
-        rows = law_basis(counts[1], sites)
+        rows = law_basis(counts[1], sites) if stations is None else law_weights(sampled_at(laws[0], stations), sites)
         columns = np.einsum("lnm,li,mj->nij", moves, share, rows, optimize=True)
         values = np.stack([Span(sites).values(law) for law in laws])
         change = share @ grid @ rows.T - values

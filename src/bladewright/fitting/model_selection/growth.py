@@ -61,7 +61,8 @@ def edge_steps(match: Match, tolerance: float) -> list[StructureStep]:
     ):
         if np.mean(near_edge[beyond]) < GATHERED_AT_EDGE:
             continue
-        counts = {name: _half_as_many_again(structure.span[name], MOST_SPAN) for name in EDGE_LAWS[edge]}
+        laws = [name for name in EDGE_LAWS[edge] if name not in structure.stations]
+        counts = {name: _half_as_many_again(structure.span[name], MOST_SPAN) for name in laws}
         curve = _half_as_many_again(structure.channel[edge], MOST_CURVE)
         added = sum(count - structure.span[name] for name, count in counts.items())
         added += 2 * (curve - structure.channel[edge])

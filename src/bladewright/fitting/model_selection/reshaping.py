@@ -7,13 +7,13 @@ import numpy as np
 
 from bladewright.blade.design.flow_path import Channel
 from bladewright.blade.design.unified import UnifiedBlade
-from bladewright.designs import Design, Law, Point, Points
+from bladewright.designs import Design, Law, Point, Points, Stations
 from bladewright.errors import DesignError, FitError
 from bladewright.fitting.matching.search import COARSEST_TOLERANCE
 from bladewright.fitting.model_selection.structure import SPANWISE, Structure
 from bladewright.fitting.models.model import model_of
 from bladewright.nurbs.basis import Reals, basis, uniform_knots
-from bladewright.section.laws import Span, is_spline, law_basis, law_points
+from bladewright.section.laws import Span, law_basis, law_points, sampled_at, stations_of, with_values
 from bladewright.section.unified import UnifiedSection
 from bladewright.section.unified_limits import ANGLES, RADII, TANGENTS, THICKNESSES
 from bladewright.section.unified_sides import sample_places
@@ -46,8 +46,13 @@ def reshaped(design: Design, structure: Structure) -> Design:
     }
     changes[place] = law_of(getattr(design, place), structure.span["place"])
     for name, count in zip(THICKNESSES, structure.chordwise, strict=True):
-        grid = grid_of(getattr(design, name), count, structure.span[name], structure)
-        changes[name] = tuple(_plain(row) for row in grid)
+        stations = structure.stations.get(name)
+        grid = grid_of(getattr(design, name), count, structure.span[name], structure, stations)
+        changes[name] = tuple(_plain(row) if stations is None else with_values(stations, row) for row in grid)
+    for name, stations in structure.stations.items():
+        if name not in THICKNESSES:
+            field = place if name == "place" else name
+            changes[field] = sampled_at(getattr(design, field), stations)
     return replace(
         design,
         samples=structure.samples,
@@ -73,11 +78,20 @@ def _plain(values: Reals) -> Law:
     return tuple(float(value) for value in values) if len(values) > 1 else float(values[0])
 
 
-def grid_of(laws: tuple[Law, ...], count: int, span: int, structure: Structure) -> Reals:
-    """Control points (count, span) of a thickness, kept positive."""
-    if len(laws) == count and all(len(law_points(law)) == span and is_spline(law) for law in laws):
+def grid_of(
+    laws: tuple[Law, ...], count: int, span: int, structure: Structure, stations: Stations | None = None
+) -> Reals:
+    """Control points (count, span) of a thickness, or its values at stations, kept positive."""
+    same = len(laws) == count
+    if stations is not None:
+        rows = np.stack([np.array(sampled_at(law, stations).values) for law in laws])
+        if same:
+            return rows
+    elif same and all(len(law_points(law)) == span and stations_of(law) is None for law in laws):
         return np.array([law_points(law) for law in laws], dtype=float)
-    rows = np.stack([np.linalg.lstsq(law_basis(span, COMPARED_PLACES), _values(law), rcond=None)[0] for law in laws])
+    else:
+        across = law_basis(span, COMPARED_PLACES)
+        rows = np.stack([np.linalg.lstsq(across, _values(law), rcond=None)[0] for law in laws])
     if len(laws) != count:
         # where the samples of the sides stand, the law matters most
         u = samples_of(structure)

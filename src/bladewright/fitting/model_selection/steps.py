@@ -63,7 +63,7 @@ def steps_up(structure: Structure) -> list[StructureStep]:
             wider = replace(structure, chordwise=(counts[0], counts[1]), samples=samples)
             found.append(StructureStep(fields=(name,), structure=wider, parameters=more * structure.span.get(name, 1)))
     for name, count in structure.span.items():
-        if count < MOST_SPAN:
+        if count < MOST_SPAN and name not in structure.stations:
             wider = replace(structure, span={**structure.span, name: count + 1})
             added = structure.chordwise[THICKNESSES.index(name)] if name in THICKNESSES else 1
             found.append(StructureStep(fields=_fields(name), structure=wider, parameters=added))
@@ -84,7 +84,7 @@ def steps_down(structure: Structure) -> list[StructureStep]:
             narrower = replace(structure, chordwise=(counts[0], counts[1]))
             found.append(StructureStep(fields=(name,), structure=narrower, parameters=structure.span.get(name, 1)))
     for name, count in structure.span.items():
-        if count > 1:
+        if count > 1 and name not in structure.stations:
             narrower = replace(structure, span={**structure.span, name: count - 1})
             left_out = structure.chordwise[THICKNESSES.index(name)] if name in THICKNESSES else 1
             found.append(StructureStep(fields=_fields(name), structure=narrower, parameters=left_out))

@@ -1,12 +1,12 @@
 """How many control points the laws of a design have, apart from their values; and those that a match begins with."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 from bladewright.blade.design.unified import UnifiedBlade
-from bladewright.designs import Design, Law
+from bladewright.designs import Design, Law, Stations
 from bladewright.errors import FitError
-from bladewright.section.laws import law_points
+from bladewright.section.laws import law_points, stations_of
 from bladewright.section.unified import UnifiedSection
 from bladewright.section.unified_limits import ANGLES, RADII, TANGENTS, THICKNESSES
 
@@ -25,6 +25,8 @@ class Structure:
     span: Mapping[str, int] = field(default_factory=dict)
     """control points along the span by field: those of SPANWISE, `place` of the leading edge, and `thickness_upper` and
     `thickness_lower`; empty for a section"""
+    stations: Mapping[str, Stations] = field(default_factory=dict)
+    """those of the fields of `span` that are given at stations, which stay; their values do not count"""
     channel: Mapping[str, int] = field(default_factory=dict)
     """control points of the four curves, corners among them; empty for a section"""
     samples: int = 16
@@ -45,12 +47,16 @@ def structure_of(design: Design) -> Structure:
     span = {name: _count(getattr(design, name)) for name in SPANWISE} | {
         "place": _count(0.0 if place is None else place)
     }
+    rows = {name: (getattr(design, name),) for name in SPANWISE} | {"place": () if place is None else (place,)}
     for name in THICKNESSES:
-        span[name] = max(_count(law) for law in getattr(design, name))
+        rows[name] = getattr(design, name)
+        span[name] = max(_count(law) for law in rows[name])
+    found = {name: [each for law in row if (each := stations_of(law))] for name, row in rows.items()}
     channel = design.channel
     return Structure(
         chordwise=(len(design.thickness_upper), len(design.thickness_lower)),
         span=span,
+        stations={name: replace(row[0], values=(0.0,) * len(row[0].span)) for name, row in found.items() if row},
         channel={
             "leading_edge": len(channel.leading_edge),
             "trailing_edge": len(channel.trailing_edge),

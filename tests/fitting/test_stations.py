@@ -1,0 +1,71 @@
+"""Matching keeps the stations of laws given by values: the values are the variables."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import bladewright as bw
+from bladewright.errors import DesignError
+from bladewright.fitting.families.kinds import FAMILIES
+from bladewright.fitting.families.law_extension import law_extensions
+from bladewright.fitting.families.laws import with_stations_of
+from bladewright.fitting.model_selection.reshaping import reshaped
+from bladewright.fitting.model_selection.steps import steps_down, steps_up
+from bladewright.fitting.model_selection.structure import structure_of
+from bladewright.section.laws import named_laws, stations_of
+from machines import built
+from machines.stations import AXIAL, SPAN, TABLE, at_stations, moved
+
+U, V = (1.0 - np.cos(np.pi * np.linspace(0.0, 1.0, 17))) / 2.0, np.linspace(0.0, 1.0, 7)
+
+
+def cloud(design):
+    sides = built(design).surfaces
+    return np.concatenate([sides[name](U[:, None], V).reshape(-1, 3) for name in ("upper", "lower")])
+
+
+def test_a_match_finds_the_values_at_the_stations_of_its_start():
+    start = AXIAL["unified"]
+    truth = start.changed("metal_angle_out", moved(TABLE, lambda value: value + np.sin(value)))
+    fit = bw.fit(cloud(truth), start=start, free="metal_angle_out*")
+    assert fit.design.metal_angle_out.span == TABLE.span
+    assert fit.design.metal_angle_out.values == pytest.approx(truth.metal_angle_out.values, abs=1e-7)
+    assert fit.maximum < 1e-10
+
+
+def test_a_structure_keeps_stations_and_takes_none_from_them():
+    design = at_stations(AXIAL["unified"], "monotone")
+    structure = structure_of(design)
+    assert reshaped(design, structure) == design
+    along_span = {name for step in (*steps_up(structure), *steps_down(structure)) for name in step.structure.span}
+    changed = [
+        name
+        for step in (*steps_up(structure), *steps_down(structure))
+        for name in along_span
+        if step.structure.span[name] != structure.span[name]
+    ]
+    assert not changed
+    # with more control points of the thickness along the chord these are given at the same stations
+    wider = reshaped(design, replace(structure, chordwise=(5, 4)))
+    assert [(law.span, law.interpolation) for law in wider.thickness_upper] == [(SPAN, "monotone")] * 5
+
+
+def test_a_like_design_says_which_laws_are_given_at_stations():
+    plain = AXIAL["unified"].changed({"metal_angle_out": (-8.0, -30.0, -48.0), "stagger": (6.0, -14.0)})
+    found = reshaped(plain, structure_of(AXIAL["unified"]))
+    assert (found.metal_angle_out.span, found.stagger.span) == (TABLE.span, TABLE.span)
+    assert stations_of(found.metal_angle_in) is None
+    part = AXIAL["profile"].section.changed("stagger_angle", (-8.0, -30.0, -48.0))
+    other = with_stations_of(part, AXIAL["profile"].section)
+    assert other.stagger_angle.values == pytest.approx([-8.0, -18.75, -29.0, -38.75, -48.0], abs=1e-12)
+    assert other.thickness == part.thickness
+
+
+def test_a_law_at_stations_is_not_extended():
+    design = AXIAL["profile"]
+    ways = {each.law: each for each in law_extensions(design, FAMILIES["profile"])}
+    with pytest.raises(DesignError, match="given at stations, and none is added"):
+        ways["section.stagger_angle"].applied(design)
+    wider = ways["section.thickness"].applied(design)
+    assert dict(named_laws(wider.section))["stagger_angle"] == TABLE
