@@ -23,9 +23,20 @@ OF_LAW = "of the law"
 """The unit of a law's values at stations: that of the field that holds the law."""
 
 
-def parameter(unit: str, **options: Any) -> Any:
-    """A dataclass field whose numbers are differentiable parameters, measured in `unit`."""
-    return field(metadata={"unit": unit}, **options)
+class Limits(NamedTuple):
+    """Between which values a parameter must lie."""
+
+    low: float
+    high: float
+    cure: str
+    """what a refusal says after the value"""
+    closed: bool = False
+    """whether the limits are allowed themselves"""
+
+
+def parameter(unit: str, *, limits: Limits | None = None, **options: Any) -> Any:
+    """A dataclass field whose numbers are differentiable parameters, measured in `unit`, within limits if given."""
+    return field(metadata={"unit": unit, "limits": limits}, **options)
 
 
 @dataclass(frozen=True, kw_only=True)

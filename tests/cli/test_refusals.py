@@ -101,7 +101,7 @@ BAD_FILES = {
         TEXT.replace("\nhub           =", "\nswap =").replace("\nshroud        =", "\nhub =").replace("swap", "shroud"),
         ["channel"],
     ),
-    "TOML without a value": (replaced("stagger", "stagger = "), ["not valid TOML", "line 10", "stagger ="]),
+    "TOML without a value": (replaced("stagger", "stagger = "), ["not valid TOML", "line 11", "stagger ="]),
     "TOML with a key twice": (TEXT.replace("[channel]", "stagger = 3\n[channel]"), ["not valid TOML", "line"]),
     "TOML nested without end": ("a = " + "[" * 100_000, ["TOML", "nested"]),
     "an integer without end": (f"a = 1{'0' * 5000}", ["TOML", "digits"]),

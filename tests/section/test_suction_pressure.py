@@ -236,7 +236,7 @@ def test_a_mirrored_design_is_the_mirror_image():
 @pytest.mark.parametrize(
     ("part", "change", "message"),
     [
-        (STATOR, {"suction_heights": ()}, "suction_heights .*too few control points.*one height or more"),
+        (STATOR, {"suction_heights": ()}, "suction_heights is an empty list.*one control point or more"),
         (STATOR, {"pressure_heights": ()}, "pressure_heights and pressure_thickness: none"),
         (STATOR, {"pressure_thickness": (0.1,)}, "pressure_heights and pressure_thickness: both"),
         (STATOR, {"suction_places": (0.5,)}, "suction_places has 1 entries and suction_heights has 3"),

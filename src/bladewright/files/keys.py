@@ -103,16 +103,21 @@ def _held(entry: dict[str, Any]) -> Iterator[str]:
     """The titles of the tables that a value may be, or contain."""
     if "$ref" in entry:
         yield entry["$ref"].rsplit("/", 1)[-1]
-    for arm in (*entry.get("anyOf", ()), *entry.get("oneOf", ())):
+    for arm in _arms(entry):
         yield from _held(arm)
     if "items" in entry:
         yield from _held(entry["items"])
 
 
 def _laws(entry: dict[str, Any]) -> int:
-    if any(arm.get("type") == "array" for arm in entry.get("anyOf", ())):
+    if any(arm.get("type") == "array" and "items" in arm for arm in _arms(entry)):
         return 1
     return 2 if "items" in entry and _laws(entry["items"]) else 0
+
+
+def _arms(entry: dict[str, Any]) -> tuple[dict[str, Any], ...]:
+    """What an entry may be."""
+    return (*entry.get("anyOf", ()), *entry.get("oneOf", ()))
 
 
 def _limits(entry: dict[str, Any]) -> str:
@@ -166,7 +171,7 @@ def _numbers(entry: dict[str, Any]) -> Iterator[dict[str, Any]]:
     """The parts of an entry that describe a number."""
     if entry.get("type") in ("number", "integer"):
         yield entry
-    for arm in (*entry.get("anyOf", ()), *([entry["items"]] if "items" in entry else ())):
+    for arm in (*_arms(entry), *([entry["items"]] if "items" in entry else ())):
         yield from _numbers(arm)
 
 

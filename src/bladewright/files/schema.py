@@ -3,11 +3,12 @@
 from collections.abc import Iterator
 from dataclasses import fields, is_dataclass
 from functools import cache
+from math import isfinite
 from typing import Any, get_args, get_type_hints
 
 from pydantic import TypeAdapter
 
-from bladewright.designs import Part
+from bladewright.designs import Limits, Part
 from bladewright.files.families import FAMILIES
 from bladewright.files.reading import adapter
 from bladewright.section.tagged_unions import tags
@@ -50,6 +51,8 @@ def _refine(kind: type[Part], definitions: dict[str, Any], refined: set[type[Par
             entry["description"] = words
         if "unit" in each.metadata:
             entry["unit"] = each.metadata["unit"]
+        if each.metadata.get("limits") is not None:
+            _limit(entry, each.metadata["limits"])
         if each.name in tag_fields:
             del entry["default"]
             required.insert(0, each.name)
@@ -59,6 +62,15 @@ def _refine(kind: type[Part], definitions: dict[str, Any], refined: set[type[Par
             entry.update(arms[0] if len(arms) == 1 else {"anyOf": arms})
         for hint in _parts_in(hints[each.name]):
             _refine(hint, definitions, refined)
+
+
+def _limit(entry: dict[str, Any], limits: Limits) -> None:
+    """Write limits to every number that an entry may be or hold."""
+    if entry.get("type") == "number":
+        names = ("minimum", "maximum") if limits.closed else ("exclusiveMinimum", "exclusiveMaximum")
+        entry.update({name: value for name, value in zip(names, limits[:2], strict=True) if isfinite(value)})
+    for inner in (*entry.get("anyOf", ()), *entry.get("oneOf", ()), *([entry["items"]] if "items" in entry else ())):
+        _limit(inner, limits)
 
 
 def _parts_in(hint: Any) -> Iterator[type[Part]]:

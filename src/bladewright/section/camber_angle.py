@@ -7,11 +7,11 @@ References: M. Casey, A computational geometry for the blades and internal flow 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, ClassVar, Literal
+from typing import ClassVar, Literal
 
 import numpy as np
 
-from bladewright.designs import ChordwiseLaw, parameter
+from bladewright.designs import ChordwiseLaw, Limits, parameter
 from bladewright.errors import DesignError
 from bladewright.numerics.elementary import Array, concatenated, radians
 from bladewright.section import checks
@@ -31,6 +31,12 @@ NEAR = 0.0625
 decides the shape near the edge only, and a design may give other places [-]"""
 
 
+ANGLE = Limits(-89.0, 89.0, "an angle must lie between -89 and 89 deg")
+HALF_THICKNESS = Limits(0.0, 0.4, "a half thickness must be above 0 and below 0.4 chords")
+PLACE = Limits(0.0, 1.0, "a place must lie between the edges")
+WEIGHT = Limits(1e-3, 1e3, "a weight must be from 0.001 to 1000")
+
+
 @dataclass(frozen=True, kw_only=True)
 class CamberAngle(SectionFamily):
     """A section whose camber line has a given angle along the meridional distance.
@@ -44,31 +50,21 @@ class CamberAngle(SectionFamily):
 
     depends_on_stream_surface: ClassVar[bool] = True
 
-    camber_angle: ChordwiseLaw = parameter("deg")
+    camber_angle: ChordwiseLaw = parameter("deg", limits=ANGLE)
     """angle of the camber line from the meridional direction: control points along the meridional distance [deg]"""
-    half_thickness: ChordwiseLaw = parameter("-")
+    half_thickness: ChordwiseLaw = parameter("-", limits=HALF_THICKNESS)
     """control points of the half thickness, leading to trailing edge, of the chord [-]"""
-    thickness_places: ChordwiseLaw = parameter("-", default=())
+    thickness_places: ChordwiseLaw = parameter("-", limits=PLACE, default=())
     """places of those control points that are not at an edge, of the section's m'; none: 1/16, then equal [-]"""
-    thickness_weights: ChordwiseLaw = parameter("-", default=())
+    thickness_weights: ChordwiseLaw = parameter("-", limits=WEIGHT, default=())
     """weights of the control points of the half thickness; none: 1 each [-]"""
     trailing_edge: Literal["round", "blunt", "sharp"] = "round"
     """round: the last half thickness is at the edge and closes as at the nose; blunt: it is cut off there;
     sharp: the thickness runs out to nothing behind it"""
 
     def __post_init__(self) -> None:
-        put: Any = object.__setattr__
         checks.choice("trailing_edge", self.trailing_edge, ("round", "blunt", "sharp"))
-        for name in ("camber_angle", "half_thickness"):
-            put(self, name, checks.chordwise(name, getattr(self, name)))
-        for name in ("thickness_places", "thickness_weights"):
-            if getattr(self, name) != ():
-                put(self, name, checks.chordwise(name, getattr(self, name)))
-        checks.between("camber_angle", self.camber_angle, -89.0, 89.0, "an angle must lie between -89 and 89 deg")
-        what = "a half thickness must be above 0 and below 0.4 chords"
-        checks.between("half_thickness", self.half_thickness, 0.0, 0.4, what)
-        checks.between("thickness_places", self.thickness_places, 0.0, 1.0, "a place must lie between the edges")
-        checks.between("thickness_weights", self.thickness_weights, 1e-3, 1e3, "a weight must be from 0.001 to 1000")
+        checks.parameters(self)
         least = 3 if self.trailing_edge == "blunt" else 2
         if len(self.half_thickness) < least:
             raise DesignError(

@@ -1,13 +1,15 @@
 """Checks of the plain numbers in a design; each refusal names path, value, limit and cure."""
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import fields
-from typing import Any
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import Field, fields
+from functools import cache
+from types import NoneType, UnionType
+from typing import Any, Union, get_args, get_origin, get_type_hints
 
 import numpy as np
 
-from bladewright.designs import ChordwiseLaw, Law, Point, Points, Stations, unknown
+from bladewright.designs import ChordwiseLaw, Law, Limits, Part, Point, Points, Stations, unknown
 from bladewright.errors import DesignError
 from bladewright.section.laws import extremes_between, is_list, law_points, number_paths
 
@@ -138,6 +140,51 @@ def integer(path: str, value: Any, low: int, high: int, what: str) -> int:
     if isinstance(value, bool) or not isinstance(value, int | np.integer) or not low <= value <= high:
         raise DesignError(f"{path} is {value!r}: {what} ({low} to {high})")
     return int(value)
+
+
+def parameters(part: Part, path: str = "") -> None:
+    """Bring a part's laws, rows of laws and numbers to their kinds, and refuse those outside their fields' limits.
+
+    `path` stands before the fields' names in a refusal.
+    """
+    kind: Any = type(part)
+    for each, kept in _declared(kind):
+        value, where = getattr(part, each.name), f"{path}{each.name}"
+        if value is None or (isinstance(value, tuple) and value == each.default == ()):
+            continue
+        value = kept(where, value)
+        object.__setattr__(part, each.name, value)
+        limits: Limits | None = each.metadata["limits"]
+        if limits is not None:
+            between(where, value, limits.low, limits.high, limits.cure, closed=limits.closed)
+
+
+@cache
+def _declared(kind: Any) -> list[tuple[Field[Any], Callable[[str, Any], Any]]]:
+    """The fields of a class that hold a law, a row of laws or a number, each with what brings a value to its kind."""
+    found: list[tuple[Field[Any], Callable[[str, Any], Any]]] = []
+    hints = get_type_hints(kind)
+    of_law, of_row = get_type_hints(_Kinds).values()
+    for each in fields(kind):
+        hint = hints[each.name]
+        optional = get_origin(hint) in (Union, UnionType)
+        arms = {arm for arm in get_args(hint) if arm is not NoneType} if optional else {hint}
+        if "unit" not in each.metadata:
+            continue
+        if arms == set(get_args(of_law)):
+            found.append((each, law))
+        elif arms <= {of_row, tuple[float, ...]}:
+            found.append((each, chordwise))
+        elif arms == {float}:
+            found.append((each, number))
+    return found
+
+
+class _Kinds:
+    """How a law and a row of laws are declared."""
+
+    one: Law
+    row: ChordwiseLaw
 
 
 def choice(path: str, value: Any, known: Sequence[str]) -> str:

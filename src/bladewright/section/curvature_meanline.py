@@ -14,7 +14,7 @@ from typing import Annotated, Literal
 
 import numpy as np
 
-from bladewright.designs import ChordwiseLaw, Law, parameter
+from bladewright.designs import ChordwiseLaw, Law, Limits, parameter
 from bladewright.errors import DesignError
 from bladewright.numerics.elementary import Array, degrees, radians
 from bladewright.section import checks
@@ -44,35 +44,36 @@ GRID = np.linspace(0.0, 1.0, 9)
 AnyThickness = Annotated[Wennerstrom | ModifiedNaca | QuarticSpline, ByField("law")]
 """One of the thickness laws, chosen by `law`."""
 
+ANGLE = Limits(-90.0, 90.0, "an angle must lie between -90 and 90 deg")
+CONTROL_POINT = Limits(-1e9, 1e9, "it must lie between -1e9 and 1e9")
+PLACE = Limits(0.0, 1.0, "a place must lie between 0 and 1 chord")
+
 
 @dataclass(frozen=True, kw_only=True)
 class CurvatureMeanline(SectionFamily):
     """A section on a meanline of given second derivative, between given metal angles."""
 
-    metal_angle_in: Law = parameter("deg")
+    metal_angle_in: Law = parameter("deg", limits=ANGLE)
     """camber angle at the leading edge [deg]"""
-    metal_angle_out: Law = parameter("deg")
+    metal_angle_out: Law = parameter("deg", limits=ANGLE)
     """camber angle at the trailing edge [deg]"""
     camber: Literal["curvature", "mixed"] = "curvature"
     """curvature: by its second derivative; mixed: straight ends, 0.1 and 0.05 chords long, and a cubic between"""
-    curvature: ChordwiseLaw = parameter("-", default=())
+    curvature: ChordwiseLaw = parameter("-", limits=CONTROL_POINT, default=())
     """control points of the meanline's second derivative, leading to trailing edge; only their ratios count [-]"""
-    curvature_places: ChordwiseLaw = parameter("-", default=())
+    curvature_places: ChordwiseLaw = parameter("-", limits=PLACE, default=())
     """chord fractions of the inner control points of the second derivative; none: evenly spaced [-]"""
     thickness: AnyThickness
     """thickness law, chosen by its `law`"""
-    thickness_multiplier: ChordwiseLaw = parameter("-", default=())
+    thickness_multiplier: ChordwiseLaw = parameter("-", limits=CONTROL_POINT, default=())
     """control points of the fraction by which the half thickness grows, leading to trailing edge; none: 0 [-]"""
-    thickness_multiplier_places: ChordwiseLaw = parameter("-", default=())
+    thickness_multiplier_places: ChordwiseLaw = parameter("-", limits=PLACE, default=())
     """chord fractions of the inner control points of the multiplier; none: evenly spaced [-]"""
     leading_edge_spline: EdgeSpline | None = None
     """a quartic B-spline in place of the leading edge, with droop and elongation; none: the thickness law's own"""
 
     def __post_init__(self) -> None:
-        for name in ("metal_angle_in", "metal_angle_out"):
-            object.__setattr__(self, name, checks.law(name, getattr(self, name)))
-            what = "an angle must lie between -90 and 90 deg"
-            checks.between(name, getattr(self, name), -90.0, 90.0, what)
+        checks.parameters(self)
         checks.choice("camber", self.camber, ["curvature", "mixed"])
         self._check_spline("curvature", 2)
         self._check_spline("thickness_multiplier", 3)
@@ -82,13 +83,8 @@ class CurvatureMeanline(SectionFamily):
             raise DesignError(f"curvature is {given}, but camber is {self.camber}: {cure}")
 
     def _check_spline(self, name: str, least: int) -> None:
-        """Bring control points and their places to tuples of laws; refuse numbers that do not fit."""
+        """Refuse a row of control points and their places whose numbers do not fit."""
         places = f"{name}_places"
-        for each in (name, places):
-            if getattr(self, each) != ():
-                object.__setattr__(self, each, checks.chordwise(each, getattr(self, each)))
-        checks.between(name, getattr(self, name), -1e9, 1e9, "it must lie between -1e9 and 1e9")
-        checks.between(places, getattr(self, places), 0.0, 1.0, "a place must lie between 0 and 1 chord")
         count, inner = len(getattr(self, name)), len(getattr(self, places))
         if 0 < count < least:
             raise DesignError(f"{name} has {count} control points: at least {least} are needed")

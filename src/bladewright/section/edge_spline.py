@@ -15,7 +15,7 @@ from typing import ClassVar
 
 import numpy as np
 
-from bladewright.designs import Law, Part, parameter
+from bladewright.designs import Law, Limits, Part, parameter
 from bladewright.errors import DesignError
 from bladewright.numerics.elementary import Array, angle, concatenated, unit
 from bladewright.numerics.solving import solved
@@ -39,6 +39,8 @@ NARROW = 0.01
 """length by s that this polynomial must have at least: on a fifth of the usual length the rounding of a third
 derivative is 125 times as large [-]"""
 
+MOVE = Limits(-2.0, 2.0, "the tip may move by less than twice half the distance between the contacts")
+
 
 @dataclass(frozen=True, kw_only=True)
 class EdgeSpline(Part):
@@ -49,20 +51,16 @@ class EdgeSpline(Part):
 
     contact: float = 0.15
     """where the spline meets the sides: the outline's s, 0 at the leading edge; 0.15 is about 0.05 of the chord"""
-    elongation: Law = parameter("-", default=0.0)
+    elongation: Law = parameter("-", limits=MOVE, default=0.0)
     """how far the tip lies ahead of the section's own, of half the distance between the contacts [-]"""
-    droop: Law = parameter("-", default=0.0)
+    droop: Law = parameter("-", limits=MOVE, default=0.0)
     """how far the tip lies towards the lower side, of half the distance between the contacts [-]"""
 
     def __post_init__(self) -> None:
         contact = checks.number(f"{self.path}.contact", self.contact)
         checks.between(f"{self.path}.contact", contact, 0.02, 0.5, "the contacts must lie between s = 0.02 and 0.5")
         object.__setattr__(self, "contact", contact)
-        for name in ("elongation", "droop"):
-            law = checks.law(f"{self.path}.{name}", getattr(self, name))
-            what = "the tip may move by less than twice half the distance between the contacts"
-            checks.between(f"{self.path}.{name}", law, -2.0, 2.0, what)
-            object.__setattr__(self, name, law)
+        checks.parameters(self, f"{self.path}.")
 
     def applied(self, outline: Outline, span: Span) -> "SplinedOutline":
         """The outline with this leading edge, at the places of the span.

@@ -16,7 +16,7 @@ from bladewright.section.family import SectionFamily
 from bladewright.section.laws import Span, check_plain, named_laws
 from bladewright.section.native import SectionKnots, knots_for, native_section
 from bladewright.section.section import Section
-from bladewright.section.unified_limits import check_labels
+from bladewright.section.unified_limits import POSITIVE, check_labels
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -29,9 +29,9 @@ class PlanarSection(Design):
     """the part's name, used in files"""
     length_unit: Literal["m", "cm", "mm", "um", "in", "ft"]
     """unit of every length in the design"""
-    chord: float = parameter("length")
+    chord: float = parameter("length", limits=POSITIVE)
     """distance from the leading to the trailing edge [length]"""
-    pitch: float | None = parameter("length", default=None)
+    pitch: float | None = parameter("length", limits=POSITIVE, default=None)
     """tangential distance of neighbours; none: a single section [length]"""
     leading_edge_x: float = parameter("length", default=0.0)
     """axial position of the leading edge [length]"""
@@ -39,7 +39,7 @@ class PlanarSection(Design):
     """tangential position of the leading edge [length]"""
     section: SectionFamily
     """the family's parameters, each a number"""
-    span: float | None = parameter("length", default=None)
+    span: float | None = parameter("length", limits=POSITIVE, default=None)
     """height of the prismatic blade that the section becomes as a solid; none: a section only [length]"""
     tolerance: float = 1e-10
     """distance of the native curves from the exact section, of the chord [-]"""
@@ -52,12 +52,7 @@ class PlanarSection(Design):
 
     def __post_init__(self) -> None:
         check_labels(self)
-        for name in ("chord", "pitch", "leading_edge_x", "leading_edge_y", "span"):
-            if getattr(self, name) is not None:
-                object.__setattr__(self, name, checks.number(name, getattr(self, name)))
-        for name in ("chord", "pitch", "span"):
-            if getattr(self, name) is not None:
-                checks.between(name, getattr(self, name), 0.0, float("inf"), "it must be positive")
+        checks.parameters(self)
         checks.between("tolerance", self.tolerance, 1e-13, 1e-2, "it must lie above 1e-13 and below 0.01")
         if not isinstance(self.section, SectionFamily):
             raise DesignError(f"section is {self.section!r}: the family's parameters are needed")

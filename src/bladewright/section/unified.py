@@ -19,14 +19,18 @@ from bladewright.section.crossing import PLACES, check_outlines, outlines_of, to
 from bladewright.section.laws import Span, check_plain
 from bladewright.section.section import Section
 from bladewright.section.unified_limits import (
+    ANGLE,
     ANGLES,
+    POSITIVE,
     RADII,
-    TANGENTS,
+    RADIUS,
+    TANGENT,
+    THICKNESS,
     THICKNESSES,
+    WEIGHT,
     WEIGHTS,
     check_edges,
     check_labels,
-    check_laws,
     check_sampling,
 )
 from bladewright.section.unified_sides import camber_curve, matched, plane_sections, sample_places, side, side_curve
@@ -50,37 +54,37 @@ class UnifiedSection(Design):
     """the part's name, used in files"""
     length_unit: Literal["m", "cm", "mm", "um", "in", "ft"]
     """unit of every length in the design"""
-    pitch: float | None = parameter("length", default=None)
+    pitch: float | None = parameter("length", limits=POSITIVE, default=None)
     """tangential distance of neighbours; none: a single section [length]"""
     leading_edge_x: float = parameter("length", default=0.0)
     """axial position of the leading edge [length]"""
     leading_edge_y: float = parameter("length", default=0.0)
     """tangential position of the leading edge [length]"""
-    axial_chord: float = parameter("length")
+    axial_chord: float = parameter("length", limits=POSITIVE)
     """axial distance from leading to trailing edge [length]"""
-    stagger: float = parameter("deg")
+    stagger: float = parameter("deg", limits=ANGLE)
     """angle of the chord line from the axis [deg]"""
-    metal_angle_in: float = parameter("deg")
+    metal_angle_in: float = parameter("deg", limits=ANGLE)
     """camber angle at the leading edge [deg]"""
-    metal_angle_out: float = parameter("deg")
+    metal_angle_out: float = parameter("deg", limits=ANGLE)
     """camber angle at the trailing edge [deg]"""
-    tangent_in: float = parameter("-")
+    tangent_in: float = parameter("-", limits=TANGENT)
     """length of the camber's tangent at the leading edge, of the axial chord [-]"""
-    tangent_out: float = parameter("-")
+    tangent_out: float = parameter("-", limits=TANGENT)
     """length of the camber's tangent at the trailing edge, of the axial chord [-]"""
-    leading_edge_radius: float = parameter("-")
+    leading_edge_radius: float = parameter("-", limits=RADIUS)
     """radius of curvature at the leading edge, of the axial chord [-]"""
-    trailing_edge_radius: float = parameter("-")
+    trailing_edge_radius: float = parameter("-", limits=RADIUS)
     """radius of curvature at the trailing edge, of the axial chord [-]"""
-    thickness_upper: Numbers = parameter("-")
+    thickness_upper: Numbers = parameter("-", limits=THICKNESS)
     """half thickness of the upper side, control points along the chord, of the axial chord [-]"""
-    thickness_lower: Numbers = parameter("-")
+    thickness_lower: Numbers = parameter("-", limits=THICKNESS)
     """half thickness of the lower side, control points along the chord, of the axial chord [-]"""
-    weights_upper: Numbers = parameter("-", default=())
+    weights_upper: Numbers = parameter("-", limits=WEIGHT, default=())
     """weights of the upper side's control points, a law along the chord; none: a B-spline [-]"""
-    weights_lower: Numbers = parameter("-", default=())
+    weights_lower: Numbers = parameter("-", limits=WEIGHT, default=())
     """weights of the lower side's control points, a law along the chord; none: a B-spline [-]"""
-    span: float | None = parameter("length", default=None)
+    span: float | None = parameter("length", limits=POSITIVE, default=None)
     """height of the prismatic blade that the section becomes as a solid; none: a section only [length]"""
     samples: int = 16
     """number of places along the chord where the thickness laws are evaluated, edges excluded [-]"""
@@ -94,17 +98,10 @@ class UnifiedSection(Design):
     """for the header of CAD files"""
 
     def __post_init__(self) -> None:
-        put = object.__setattr__
         check_labels(self)
-        numbers = ["leading_edge_x", "leading_edge_y", "axial_chord", *ANGLES, *TANGENTS, *RADII]
-        for name in [*numbers, *(name for name in ("pitch", "span") if getattr(self, name) is not None)]:
-            put(self, name, checks.number(name, getattr(self, name)))
-        check_laws(self)
+        checks.parameters(self)
         rows = ((name, getattr(self, name)) for name in (*THICKNESSES, *WEIGHTS))
         check_plain((f"{name}[{i}]", law) for name, row in rows for i, law in enumerate(row))
-        for name in ("axial_chord", "pitch", "span"):
-            if getattr(self, name) is not None:
-                checks.between(name, getattr(self, name), 0.0, float("inf"), "it must be positive")
         check_sampling(self)
 
     @property

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from bladewright.designs import Law, parameter
+from bladewright.designs import Law, Limits, parameter
 from bladewright.errors import DesignError
 from bladewright.numerics.elementary import Array, degrees, radians
 from bladewright.nurbs.basis import Reals
@@ -129,6 +129,11 @@ def monotone(t: Reals, slope_in: Array, slope_out: Array) -> Array:
     return (t**2 + slope_in[..., None] * across) / below
 
 
+ANGLE = Limits(-90.0, 90.0, "an angle must lie between -90 and 90 deg")
+RADIUS = Limits(0.0, 0.5, "an edge radius must lie above 0 and below half the chord")
+WEDGE = Limits(0.0, 90.0, "a wedge angle must lie from 0 to 90 deg", closed=True)
+
+
 @dataclass(frozen=True, kw_only=True)
 class WedgeDiffuser(SectionFamily):
     """A vane with straight sides, a circular leading edge and circular trailing-edge corners, all in touch.
@@ -138,27 +143,17 @@ class WedgeDiffuser(SectionFamily):
     wedge angle follows. Reference: Voss et al. 2025, section 3.2.
     """
 
-    stagger_angle: Law = parameter("deg")
+    stagger_angle: Law = parameter("deg", limits=ANGLE)
     """angle of the chord line from the axis [deg]"""
-    leading_edge_radius: Law = parameter("-")
+    leading_edge_radius: Law = parameter("-", limits=RADIUS)
     """radius of the leading edge, of the chord [-]"""
-    trailing_edge_radius: Law = parameter("-")
+    trailing_edge_radius: Law = parameter("-", limits=RADIUS)
     """radius of the trailing edge, or of its two corners, of the chord [-]"""
-    wedge_angle: Law | None = parameter("deg", default=None)
+    wedge_angle: Law | None = parameter("deg", limits=WEDGE, default=None)
     """angle between the sides; none: as both radii make it, with a trailing edge of one arc [deg]"""
 
     def __post_init__(self) -> None:
-        put = object.__setattr__
-        for name in ("stagger_angle", "leading_edge_radius", "trailing_edge_radius"):
-            put(self, name, checks.law(name, getattr(self, name)))
-        checks.between("stagger_angle", self.stagger_angle, -90.0, 90.0, "an angle must lie between -90 and 90 deg")
-        for name in ("leading_edge_radius", "trailing_edge_radius"):
-            what = "an edge radius must lie above 0 and below half the chord"
-            checks.between(name, getattr(self, name), 0.0, 0.5, what)
-        if self.wedge_angle is not None:
-            put(self, "wedge_angle", checks.law("wedge_angle", self.wedge_angle))
-            what = "a wedge angle must lie from 0 to 90 deg"
-            checks.between("wedge_angle", self.wedge_angle, 0.0, 90.0, what, closed=True)
+        checks.parameters(self)
 
     def outline(self, span: Span) -> WedgeOutline:
         """The exact sections (..., m), in chords; raises DesignError where the corners leave no back face."""

@@ -6,10 +6,17 @@ from dataclasses import dataclass
 from typing import Literal
 
 from bladewright.blade.design.meridional_curve import Meridian, meridian_at
-from bladewright.designs import Law, Part, parameter
+from bladewright.designs import Law, Limits, Part, parameter
 from bladewright.errors import DesignError
 from bladewright.section import checks
 
+CHORD = Limits(0.0, float("inf"), "a chord must be positive")
+FRACTION = Limits(
+    low=0.0,
+    high=1.0,
+    cure="the reference point must lie on the chord line, from 0 at the leading to 1 at the trailing edge",
+    closed=True,
+)
 HUB_PLACES = ("hub_x", "hub_r", "hub_m")
 """The fields of which one may give the hub's reference point."""
 
@@ -26,9 +33,9 @@ class Stacking(Part):
     reference: Literal["leading-edge", "trailing-edge", "centroid", "chord-fraction"] = "centroid"
     """the point of each section that is placed: an end of its chord line, its centre of area in its plane, or the point
     at `chord_fraction` of its chord line"""
-    chord_fraction: Law | None = parameter("-", default=None)
+    chord_fraction: Law | None = parameter("-", limits=FRACTION, default=None)
     """fraction of the chord line from the leading edge, 0 to 1, where the reference is one [-]"""
-    chord: Law | None = parameter("length", default=None)
+    chord: Law | None = parameter("length", limits=CHORD, default=None)
     """chord, times cos(stagger) the meridional length from the leading to the trailing edge on the stream line; in the
     planes of true lengths, (m, r theta), (m, y) and (x, y), the length of the chord line itself [length]"""
     line: Meridian | None = None
@@ -52,17 +59,10 @@ class Stacking(Part):
         known = ["leading-edge", "trailing-edge", "centroid", "chord-fraction"]
         checks.choice("reference", self.reference, known)
         checks.choice("onwards", self.onwards, ["equal-x", "equal-r", "least-distance"])
-        for name in ("chord_fraction", "chord", "theta", "y"):
-            if getattr(self, name) is not None:
-                object.__setattr__(self, name, checks.law(name, getattr(self, name)))
-        for name in HUB_PLACES:
-            if getattr(self, name) is not None:
-                object.__setattr__(self, name, checks.number(name, getattr(self, name)))
+        checks.parameters(self)
         if self.line is not None:
             meridian_at("line", self.line)
         self._check_reference()
-        if self.chord is not None:
-            checks.between("chord", self.chord, 0.0, float("inf"), "a chord must be positive")
         places = [name for name in ("line", *HUB_PLACES) if getattr(self, name) is not None]
         if len(places) > 1:
             raise DesignError(
@@ -106,6 +106,3 @@ class Stacking(Part):
                 "'chord-fraction', and it alone, takes chord_fraction, a number from 0 at the leading to 1 at the "
                 "trailing edge"
             )
-        if self.chord_fraction is not None:
-            what = "the reference point must lie on the chord line, from 0 at the leading to 1 at the trailing edge"
-            checks.between("chord_fraction", self.chord_fraction, 0.0, 1.0, what, closed=True)

@@ -11,7 +11,19 @@ from bladewright.blade.design.row_design import RowDesign
 from bladewright.designs import ChordwiseLaw, Law, parameter
 from bladewright.errors import DesignError
 from bladewright.section import checks
-from bladewright.section.unified_limits import ANGLES, RADII, TANGENTS, THICKNESSES, WEIGHTS, check_laws, check_sampling
+from bladewright.section.unified_limits import (
+    ANGLE,
+    ANGLES,
+    RADII,
+    RADIUS,
+    TANGENT,
+    TANGENTS,
+    THICKNESS,
+    THICKNESSES,
+    WEIGHT,
+    WEIGHTS,
+    check_sampling,
+)
 
 if TYPE_CHECKING:
     from bladewright.blade.exact.unified import ExactUnifiedBlade
@@ -30,27 +42,27 @@ class UnifiedBlade(RowDesign):
 
     reference_length: ClassVar[str] = "length"
 
-    stagger: Law = parameter("deg")
+    stagger: Law = parameter("deg", limits=ANGLE)
     """atan(delta theta / delta m') of the camber's ends, from the meridional direction [deg]"""
-    metal_angle_in: Law = parameter("deg")
+    metal_angle_in: Law = parameter("deg", limits=ANGLE)
     """camber angle at the leading edge, from the meridional direction [deg]"""
-    metal_angle_out: Law = parameter("deg")
+    metal_angle_out: Law = parameter("deg", limits=ANGLE)
     """camber angle at the trailing edge, from the meridional direction [deg]"""
-    tangent_in: Law = parameter("-")
+    tangent_in: Law = parameter("-", limits=TANGENT)
     """length of the camber's tangent at the leading edge, of the meridional extent [-]"""
-    tangent_out: Law = parameter("-")
+    tangent_out: Law = parameter("-", limits=TANGENT)
     """length of the camber's tangent at the trailing edge, of the meridional extent [-]"""
-    leading_edge_radius: Law = parameter("-")
+    leading_edge_radius: Law = parameter("-", limits=RADIUS)
     """radius of curvature at the leading edge, of the meridional length [-]"""
-    trailing_edge_radius: Law = parameter("-")
+    trailing_edge_radius: Law = parameter("-", limits=RADIUS)
     """radius of curvature at the trailing edge, of the meridional length [-]"""
-    thickness_upper: ChordwiseLaw = parameter("-")
+    thickness_upper: ChordwiseLaw = parameter("-", limits=THICKNESS)
     """half thickness of the upper side, control points along the chord, of the meridional length [-]"""
-    thickness_lower: ChordwiseLaw = parameter("-")
+    thickness_lower: ChordwiseLaw = parameter("-", limits=THICKNESS)
     """half thickness of the lower side, control points along the chord, of the meridional length [-]"""
-    weights_upper: ChordwiseLaw = parameter("-", default=())
+    weights_upper: ChordwiseLaw = parameter("-", limits=WEIGHT, default=())
     """weights of the upper side's control points, a law along the chord; none: a B-spline [-]"""
-    weights_lower: ChordwiseLaw = parameter("-", default=())
+    weights_lower: ChordwiseLaw = parameter("-", limits=WEIGHT, default=())
     """weights of the lower side's control points, a law along the chord; none: a B-spline [-]"""
     flow_path: FlowPath | None = None
     """hub and shroud from upstream of the blade to downstream of it, which the channel's edges cut; instead of the
@@ -70,7 +82,7 @@ class UnifiedBlade(RowDesign):
     def __post_init__(self) -> None:
         super().__post_init__()
         checks.choice("mapping", self.mapping, ["conformal", "paper"])
-        check_laws(self)
+        checks.parameters(self)
         check_sampling(self)
         if not isinstance(self.channel, Channel):
             raise DesignError(f"channel is {self.channel!r}: a Channel with leading_edge and trailing_edge is needed")

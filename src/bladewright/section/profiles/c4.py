@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import ClassVar, Literal
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
-from bladewright.designs import Law, parameter
+from bladewright.designs import Law, Limits, parameter
 from bladewright.numerics.elementary import Array, radians
 from bladewright.section.laws import Span
 from bladewright.section.outline import Outline
@@ -27,6 +27,8 @@ END_THICKNESS = 0.1058603
 BEND = 0.0914 / 0.3048
 """-a2 / a1 of the form a1 sqrt(x) + a2 x + ... [-]"""
 
+CAMBER = Limits(-120.0, 120.0, "the camber angle must lie between -120 and 120 deg")
+
 
 @dataclass(frozen=True, kw_only=True)
 class C4(PublishedProfile):
@@ -36,11 +38,9 @@ class C4(PublishedProfile):
     for, normal to the mean line; it meets the ordinates of the profile of 0.1 chords within 2e-4 chords.
     """
 
-    LIMITS: ClassVar = {"camber_angle": (-120.0, 120.0, "the camber angle must lie between -120 and 120 deg")}
-
     kind: Literal["c4"] = "c4"
     """which kind of profile this is"""
-    camber_angle: Law = parameter("deg", default=0.0)
+    camber_angle: Law = parameter("deg", limits=CAMBER, default=0.0)
     """turning of the mean line, a circular arc [deg]"""
 
     def outline(self, span: Span) -> Outline:

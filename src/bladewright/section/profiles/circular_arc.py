@@ -4,15 +4,14 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import ClassVar, Literal
+from typing import Literal
 
 import numpy as np
 
-from bladewright.designs import Law, parameter
+from bladewright.designs import Law, Limits, parameter
 from bladewright.errors import DesignError
 from bladewright.numerics.elementary import Array, angle, cross2, dot, length, radians, turned_left
 from bladewright.nurbs.basis import Reals
-from bladewright.section import checks
 from bladewright.section.laws import Span
 from bladewright.section.outline import Edge, EdgeDerivatives, Joint, Outline
 from bladewright.section.profiles.profile import THICKNESS, Profile
@@ -22,10 +21,10 @@ EDGE = 0.12
 parameter [-]"""
 NOSE_SPEED = 0.75
 """speed by s at the nose, of the mean around the edge: below 1 so that the speed grows towards the long side arc [-]"""
-RADIUS = (0.0, 0.1, "an edge radius must be above 0 and below 0.1 chords; leave it out for a sharp edge")
-"""limits of an edge radius [chords], both excluded, and the cure that a refusal names"""
-CAMBER = (-120.0, 120.0, "the camber angle must lie between -120 and 120 deg")
-"""limits of the camber angle [deg], both excluded, and the cure that a refusal names"""
+RADIUS = Limits(0.0, 0.1, "an edge radius must be above 0 and below 0.1 chords; leave it out for a sharp edge")
+CAMBER = Limits(-120.0, 120.0, "the camber angle must lie between -120 and 120 deg")
+TRANSITION = Limits(0.1, 0.9, "the transition must lie above 0.1 and below 0.9 of the mean line")
+FRONT_CAMBER = Limits(-2.0, 3.0, "the front's share of the camber must lie between -2 and 3")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -224,24 +223,14 @@ class ArcOutline(Outline):
 class CircularArcProfile(Profile):
     """Base of the profiles whose mean line and sides are circular arcs."""
 
-    LIMITS: ClassVar = {"thickness": THICKNESS, "camber_angle": CAMBER}
-
-    thickness: Law = parameter("-")
+    thickness: Law = parameter("-", limits=THICKNESS)
     """maximum thickness, of the chord, at the transition [-]"""
-    camber_angle: Law = parameter("deg", default=0.0)
+    camber_angle: Law = parameter("deg", limits=CAMBER, default=0.0)
     """turning of the mean line [deg]"""
-    leading_edge_radius: Law | None = parameter("-", default=None)
+    leading_edge_radius: Law | None = parameter("-", limits=RADIUS, default=None)
     """of the chord; none: a sharp edge [-]"""
-    trailing_edge_radius: Law | None = parameter("-", default=None)
+    trailing_edge_radius: Law | None = parameter("-", limits=RADIUS, default=None)
     """of the chord; none: a sharp edge [-]"""
-
-    def __post_init__(self) -> None:
-        super().__post_init__()
-        for name in ("leading_edge_radius", "trailing_edge_radius"):
-            value = getattr(self, name)
-            if value is not None:
-                object.__setattr__(self, name, checks.law(name, value))
-                checks.between(name, getattr(self, name), *RADIUS)
 
     def _outline(self, span: Span, transition: Array, front_camber: Array) -> Outline:
         thickness = span.values(self.thickness)
@@ -286,17 +275,11 @@ class MultipleCircularArc(CircularArcProfile):
     The profile is thickest at the transition, where both sides are parallel to the mean line.
     """
 
-    LIMITS: ClassVar = {
-        **CircularArcProfile.LIMITS,
-        "transition": (0.1, 0.9, "the transition must lie above 0.1 and below 0.9 of the mean line"),
-        "front_camber": (-2.0, 3.0, "the front's share of the camber must lie between -2 and 3"),
-    }
-
     kind: Literal["multiple-circular-arc"] = "multiple-circular-arc"
     """which kind of profile this is"""
-    transition: Law = parameter("-")
+    transition: Law = parameter("-", limits=TRANSITION)
     """where the arcs meet, of the mean line's length [-]"""
-    front_camber: Law = parameter("-")
+    front_camber: Law = parameter("-", limits=FRONT_CAMBER)
     """the front arc's share of the camber angle [-]"""
 
     def outline(self, span: Span) -> Outline:

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import ClassVar, Literal
+from typing import Literal
 
 import numpy as np
 
-from bladewright.designs import Law, parameter
+from bladewright.designs import Law, Limits, parameter
 from bladewright.errors import DesignError
 from bladewright.numerics.elementary import Array
 from bladewright.nurbs.basis import Reals
@@ -24,24 +24,24 @@ NOSE = 0.75
 [-]"""
 PlateEdge = Literal["round", "elliptic", "blunt"]
 
+RATIO = Limits(0.1, 20.0, "it must lie above 0.1 and below 20")
+
 
 @dataclass(frozen=True, kw_only=True)
 class FlatPlate(Profile):
     """A flat plate: straight sides, and edges that are half circles, half ellipses or cut off."""
 
-    LIMITS: ClassVar = {"thickness": THICKNESS}
-
     kind: Literal["flat-plate"] = "flat-plate"
     """which kind of profile this is"""
-    thickness: Law = parameter("-")
+    thickness: Law = parameter("-", limits=THICKNESS)
     """of the chord [-]"""
     leading_edge: PlateEdge = "round"
     """how the leading edge ends"""
-    leading_edge_ratio: Law | None = parameter("-", default=None)
+    leading_edge_ratio: Law | None = parameter("-", limits=RATIO, default=None)
     """of an elliptic edge: its length over half the thickness [-]"""
     trailing_edge: PlateEdge = "round"
     """how the trailing edge ends"""
-    trailing_edge_ratio: Law | None = parameter("-", default=None)
+    trailing_edge_ratio: Law | None = parameter("-", limits=RATIO, default=None)
     """of an elliptic edge: its length over half the thickness [-]"""
 
     def __post_init__(self) -> None:
@@ -54,9 +54,6 @@ class FlatPlate(Profile):
                 cure = "give it, 3 for instance" if elliptic else "leave it out, or make the edge elliptic"
                 state = "missing" if elliptic else "given"
                 raise DesignError(f"{name} is {state} and {edge} is {getattr(self, edge)!r}: {cure}")
-            if ratio is not None:
-                object.__setattr__(self, name, checks.law(name, ratio))
-                checks.between(name, getattr(self, name), 0.1, 20.0, "it must lie above 0.1 and below 20")
 
     def outline(self, span: Span) -> Outline:
         """The exact sections (..., m) at the places of the span, in chords, unstaggered."""

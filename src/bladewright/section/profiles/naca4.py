@@ -8,10 +8,9 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from bladewright.designs import Law, parameter
+from bladewright.designs import Law, Limits, parameter
 from bladewright.errors import DesignError
 from bladewright.numerics.elementary import Array
-from bladewright.section import checks
 from bladewright.section.laws import Span
 from bladewright.section.outline import Outline
 from bladewright.section.power_series import Series
@@ -26,6 +25,9 @@ END_THICKNESS = 0.021
 BEND = 0.6300 / 1.4845
 """-a2 / a1 of the form a1 sqrt(x) + a2 x + ... [-]"""
 
+CAMBER = Limits(-0.3, 0.3, "camber must lie between -0.3 and 0.3 chords")
+POSITION = Limits(0.02, 0.98, "the place of the largest camber must lie above 0.02 and below 0.98 chords")
+
 
 @dataclass(frozen=True, kw_only=True)
 class Naca4(PublishedProfile):
@@ -38,23 +40,16 @@ class Naca4(PublishedProfile):
 
     kind: Literal["naca-4"] = "naca-4"
     """which kind of profile this is"""
-    camber: Law | None = parameter("-", default=None)
+    camber: Law | None = parameter("-", limits=CAMBER, default=None)
     """largest distance of the mean line from the chord line, of the chord; none: a symmetric profile [-]"""
-    camber_position: Law | None = parameter("-", default=None)
+    camber_position: Law | None = parameter("-", limits=POSITION, default=None)
     """place of the largest camber, of the chord; given where camber is [-]"""
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        if self.camber is None and self.camber_position is None:
-            return
-        if self.camber is None or self.camber_position is None:
+        if (self.camber is None) != (self.camber_position is None):
             missing = "camber" if self.camber is None else "camber_position"
             raise DesignError(f"{missing} is missing: a cambered profile needs camber and camber_position, or neither")
-        object.__setattr__(self, "camber", checks.law("camber", self.camber))
-        object.__setattr__(self, "camber_position", checks.law("camber_position", self.camber_position))
-        checks.between("camber", self.camber, -0.3, 0.3, "camber must lie between -0.3 and 0.3 chords")
-        what = "the place of the largest camber must lie above 0.02 and below 0.98 chords"
-        checks.between("camber_position", self.camber_position, 0.02, 0.98, what)
 
     def outline(self, span: Span) -> Outline:
         """The exact sections (..., m) at the places of the span, in chords, unstaggered."""

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import ClassVar, Literal
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
-from bladewright.designs import Law, parameter
+from bladewright.designs import Law, Limits, parameter
 from bladewright.numerics.elementary import Array, angle
 from bladewright.numerics.quadrature import gauss
 from bladewright.section.laws import Span
@@ -25,6 +25,9 @@ ORDER = 24
 STEP = 1e-30
 """imaginary step that differentiates the moment by the joint: so small that its square vanishes [chords]"""
 
+LIFT = Limits(-2.0, 2.0, "a lift coefficient must lie between -2 and 2")
+POSITION = Limits(0.02, 0.4, "the place of the largest camber must lie above 0.02 and below 0.4 chords")
+
 
 @dataclass(frozen=True, kw_only=True)
 class Naca5(PublishedProfile):
@@ -37,16 +40,11 @@ class Naca5(PublishedProfile):
     is that of the four-digit profiles.
     """
 
-    LIMITS: ClassVar = {
-        "design_lift": (-2.0, 2.0, "a lift coefficient must lie between -2 and 2"),
-        "camber_position": (0.02, 0.4, "the place of the largest camber must lie above 0.02 and below 0.4 chords"),
-    }
-
     kind: Literal["naca-5"] = "naca-5"
     """which kind of profile this is"""
-    design_lift: Law = parameter("-", default=0.3)
+    design_lift: Law = parameter("-", limits=LIFT, default=0.3)
     """lift coefficient at the ideal angle of attack, 0.15 times the first digit [-]"""
-    camber_position: Law = parameter("-", default=0.15)
+    camber_position: Law = parameter("-", limits=POSITION, default=0.15)
     """place of the largest camber, of the chord, half the second digit over ten [-]"""
     reflexed: bool = False
     """whether the mean line turns up again, so that the moment about the quarter chord vanishes (third digit 1)"""

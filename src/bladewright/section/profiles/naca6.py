@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import ClassVar, Literal
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
-from bladewright.designs import Law, parameter
+from bladewright.designs import Law, Limits, parameter
 from bladewright.numerics.elementary import Array
 from bladewright.section import checks
 from bladewright.section.laws import Span
@@ -67,6 +67,9 @@ FORMS: dict[str, tuple[tuple[float, ...], ...]] = {
 }  # fmt: skip
 """half thickness over the thickness t: Chebyshev coefficients of the powers 1, t and t^2; see design/six_series.py"""
 
+LIFT = Limits(-2.0, 2.0, "a lift coefficient must lie between -2 and 2")
+LOAD = Limits(0.0, 1.0, "the load is uniform up to a place from 0 to 1 chord", closed=True)
+
 
 @dataclass(frozen=True, kw_only=True)
 class Naca6(PublishedProfile):
@@ -79,23 +82,18 @@ class Naca6(PublishedProfile):
     between the first and the last 2 % within 1.9e-4; its own lift is up to 6 % below the nominal one.
     """
 
-    LIMITS: ClassVar = {"design_lift": (-2.0, 2.0, "a lift coefficient must lie between -2 and 2")}
-
     kind: Literal["naca-6"] = "naca-6"
     """which kind of profile this is"""
     series: Literal["63", "64", "65", "66"]
     """the first two digits: the second is where the pressure is lowest, of the chord, times ten"""
-    design_lift: Law = parameter("-", default=0.0)
+    design_lift: Law = parameter("-", limits=LIFT, default=0.0)
     """lift coefficient at the ideal angle of attack, the first digit behind the hyphen over ten [-]"""
-    uniform_load: Law = parameter("-", default=1.0)
+    uniform_load: Law = parameter("-", limits=LOAD, default=1.0)
     """a of the mean line: the load is uniform up to there, of the chord, and falls linearly behind [-]"""
 
     def __post_init__(self) -> None:
         super().__post_init__()
         checks.choice("series", self.series, tuple(FORMS))
-        object.__setattr__(self, "uniform_load", checks.law("uniform_load", self.uniform_load))
-        what = "the load is uniform up to a place from 0 to 1 chord"
-        checks.between("uniform_load", self.uniform_load, 0.0, 1.0, what, closed=True)
 
     def outline(self, span: Span) -> Outline:
         """The exact sections (..., m) at the places of the span, in chords, unstaggered."""

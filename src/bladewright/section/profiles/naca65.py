@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import ClassVar, Literal
+from typing import Literal
 
 import numpy as np
 
-from bladewright.designs import Law, parameter
+from bladewright.designs import Law, Limits, parameter
 from bladewright.section.laws import Span
 from bladewright.section.outline import Outline
 from bladewright.section.profiles.mean_line import ChebyshevForm, MeanLineOutline
@@ -23,6 +23,8 @@ END_THICKNESS = 0.03
 """thickness of the trailing edge of compressor blades, 2 x 0.15 % of the chord at a thickness of 10 %, of the maximum
 thickness (NACA RM L51G31, 1951) [-]"""
 
+LIFT = Limits(-3.0, 3.0, "a lift coefficient must lie between -3 and 3")
+
 
 @dataclass(frozen=True, kw_only=True)
 class Naca65(PublishedProfile):
@@ -33,11 +35,9 @@ class Naca65(PublishedProfile):
     sqrt(x) (1 - x) that meets the published ordinates within 9e-5 chords at a thickness of 0.1.
     """
 
-    LIMITS: ClassVar = {"lift_coefficient": (-3.0, 3.0, "a lift coefficient must lie between -3 and 3")}
-
     kind: Literal["naca-65-compressor"] = "naca-65-compressor"
     """which kind of profile this is"""
-    lift_coefficient: Law = parameter("-", default=0.0)
+    lift_coefficient: Law = parameter("-", limits=LIFT, default=0.0)
     """of the isolated profile's mean line, the number in brackets over ten [-]"""
 
     def outline(self, span: Span) -> Outline:

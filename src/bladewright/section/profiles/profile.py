@@ -5,11 +5,10 @@ from __future__ import annotations
 from abc import ABC
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import ClassVar
 
 import numpy as np
 
-from bladewright.designs import Law, parameter
+from bladewright.designs import Law, Limits, parameter
 from bladewright.errors import DesignError
 from bladewright.numerics.elementary import Array, radians
 from bladewright.section import checks
@@ -19,25 +18,22 @@ from bladewright.section.profiles.mean_line import TrailingEdge
 
 POWER = 8
 """power of sqrt(x) whose coefficient closes or opens the trailing edge: x^4, which hardly touches the front half"""
-THICKNESS = (0.0, 0.4, "thickness must be above 0 and below 0.4 chords")
-"""limits of the maximum thickness [chords], both excluded, and the cure that a refusal names"""
+ANGLE = Limits(-90.0, 90.0, "an angle must lie between -90 and 90 deg")
+THICKNESS = Limits(0.0, 0.4, "thickness must be above 0 and below 0.4 chords")
+TRAILING_EDGE = Limits(
+    0.002, 0.5, "the trailing edge must be thicker than 0.002 and thinner than 0.5 of the maximum thickness"
+)
 
 
 @dataclass(frozen=True, kw_only=True)
 class Profile(SectionFamily, ABC):
     """Base of the kinds of profiles: each is one final class with a `kind` by which design files choose it."""
 
-    LIMITS: ClassVar[dict[str, tuple[float, float, str]]] = {}
-    """lowest and highest value of each law, both excluded, and the cure that a refusal names"""
-
-    stagger_angle: Law = parameter("deg", default=0.0)
+    stagger_angle: Law = parameter("deg", limits=ANGLE, default=0.0)
     """angle of the chord line [deg]"""
 
     def __post_init__(self) -> None:
-        limits = {"stagger_angle": (-90.0, 90.0, "an angle must lie between -90 and 90 deg"), **self.LIMITS}
-        for name, (low, high, what) in limits.items():
-            object.__setattr__(self, name, checks.law(name, getattr(self, name)))
-            checks.between(name, getattr(self, name), low, high, what)
+        checks.parameters(self)
 
     def stagger(self, span: Span) -> Array:
         """Angles (..., m) of the chord lines [rad]."""
@@ -48,29 +44,21 @@ class Profile(SectionFamily, ABC):
 class PublishedProfile(Profile):
     """Base of the profiles whose thickness is a published form with a trailing edge of choice."""
 
-    thickness: Law = parameter("-")
+    thickness: Law = parameter("-", limits=THICKNESS)
     """maximum thickness, of the chord [-]"""
     trailing_edge: TrailingEdge = "sharp"
     """how the trailing edge ends: sharp, blunt (cut off) or round (a cap within the same chord)"""
-    trailing_edge_thickness: Law | None = parameter("-", default=None)
+    trailing_edge_thickness: Law | None = parameter("-", limits=TRAILING_EDGE, default=None)
     """thickness at a blunt or round trailing edge, of the maximum thickness; none: the published one [-]"""
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        object.__setattr__(self, "thickness", checks.law("thickness", self.thickness))
-        checks.between("thickness", self.thickness, *THICKNESS)
         checks.choice("trailing_edge", self.trailing_edge, ("sharp", "blunt", "round"))
-        given = self.trailing_edge_thickness
-        if given is None:
-            return
-        if self.trailing_edge == "sharp":
+        if self.trailing_edge_thickness is not None and self.trailing_edge == "sharp":
             raise DesignError(
                 "trailing_edge_thickness is given and trailing_edge is 'sharp', which has none: leave it out, or make "
                 "the trailing edge 'blunt' or 'round'"
             )
-        object.__setattr__(self, "trailing_edge_thickness", checks.law("trailing_edge_thickness", given))
-        what = "the trailing edge must be thicker than 0.002 and thinner than 0.5 of the maximum thickness"
-        checks.between("trailing_edge_thickness", self.trailing_edge_thickness, 0.002, 0.5, what)
 
     def form_coefficients(self, span: Span, form: Mapping[int, float | Array], published: float) -> list[Array]:
         """Coefficients (..., m, 1) of the powers of sqrt(x), from the first on, of the half thickness.

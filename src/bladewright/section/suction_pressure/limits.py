@@ -5,6 +5,7 @@ from typing import Any
 
 import numpy as np
 
+from bladewright.designs import Limits, Part
 from bladewright.errors import DesignError
 from bladewright.numerics.elementary import Array, cross2, length, radians
 from bladewright.nurbs.basis import Reals
@@ -13,69 +14,44 @@ from bladewright.section.laws import Span
 from bladewright.section.suction_pressure.edges import MAX_OPENING, Continuity, Corners, opening
 from bladewright.section.suction_pressure.side import DEGREE, Side
 
-ANGLES = ("stagger_angle", "metal_angle_in", "metal_angle_out")
-EDGES = ("leading_edge", "trailing_edge")
-RANGES = {
-    "radius": (0.0, 0.5, False, "an edge radius must lie above 0 and below half the chord"),
-    "stretch": (0.0, 20.0, False, "the ratio of an edge's semi-axes must lie above 0 and below 20"),
-    "skew": (-1.0, 1.0, False, "a skewness must lie between -1 and 1, or an edge loses one of its halves"),
-    "wedge": (0.0, 90.0, True, "a wedge angle must lie from 0 to 90 deg"),
-}
-"""limits of each number of an edge, whether the limits are allowed themselves, and the cure that a refusal names:
-radius [chords], stretch [-], skew [-], wedge [deg]"""
-TANGENTS = ("suction_tangent_in", "suction_tangent_out", "pressure_tangent_in", "pressure_tangent_out")
-POINTS = ("suction_heights", "suction_places", "pressure_heights", "pressure_thickness", "pressure_places")
+ANGLE = Limits(-90.0, 90.0, "an angle must lie between -90 and 90 deg")
+RADIUS = Limits(0.0, 0.5, "an edge radius must lie above 0 and below half the chord")
+STRETCH = Limits(0.0, 20.0, "the ratio of an edge's semi-axes must lie above 0 and below 20")
+SKEW = Limits(-1.0, 1.0, "a skewness must lie between -1 and 1, or an edge loses one of its halves")
+WEDGE = Limits(0.0, 90.0, "a wedge angle must lie from 0 to 90 deg", closed=True)
+TANGENT = Limits(0.0, 10.0, "it must lie above 0 and below 10 chords, along the tangent from the corner")
+PLACE = Limits(-0.5, 1.5, "a place along the skeleton must lie between -0.5 and 1.5")
+"""the skeleton continues beyond the edges, and refined control points may lie there"""
+THICKNESS = Limits(0.0, 1.0, "a thickness must be positive, and below the chord")
 CHECKED_AT = np.linspace(0.0, 1.0, 65)
 """fractions of the sides, and of the knot spans beside the edges, at which sides are compared and parametrisations
 checked"""
 
 
-def checked(given: Mapping[str, Any]) -> dict[str, Any]:
-    """The fields of a part as laws and tuples of numbers; raises DesignError where one is out of its range."""
-    found: dict[str, Any] = {}
-    for name in ANGLES:
-        found[name] = checks.law(name, given[name])
-        checks.between(name, found[name], -90.0, 90.0, "an angle must lie between -90 and 90 deg")
-    for name, (low, high, closed, what) in ((f"{edge}_{k}", RANGES[k]) for edge in EDGES for k in RANGES):
-        found[name] = checks.law(name, given[name])
-        checks.between(name, found[name], low, high, what, closed=closed)
-    for name in TANGENTS:
-        if given[name] is not None or name.startswith("suction"):
-            found[name] = checks.law(name, given[name])
-            what = "it must lie above 0 and below 10 chords, along the tangent from the corner"
-            checks.between(name, found[name], 0.0, 10.0, what)
-    checks.choice("suction_side", given["suction_side"], ("upper", "lower"))
-    checks.choice("edges", given["edges"], ("C1", "C2"))
-    checks.choice("skeleton", given["skeleton"], ("chord", "pseudo"))
-    for name in POINTS:
-        value = given[name]
-        empty = checks.is_sequence(value) and len(value) == 0
-        found[name] = () if empty else checks.chordwise(name, value)
+def check(part: Part) -> None:
+    """Bring the fields of a part to laws and tuples of numbers; raises DesignError where they do not fit."""
+    checks.parameters(part)
+    found = vars(part)
+    checks.choice("suction_side", found["suction_side"], ("upper", "lower"))
+    checks.choice("edges", found["edges"], ("C1", "C2"))
+    checks.choice("skeleton", found["skeleton"], ("chord", "pseudo"))
     _check_counts(found)
     for side, count in (("suction", "suction_heights"), ("pressure", _pressure(found))):
         name = f"{side}_knots"
-        found[name] = _knots(name, given[name], len(found[count]), count)
-    return found
+        object.__setattr__(part, name, _knots(name, found[name], len(found[count]), count))
 
 
-def _pressure(found: dict[str, Any]) -> str:
+def _pressure(found: Mapping[str, Any]) -> str:
     return "pressure_thickness" if found["pressure_thickness"] else "pressure_heights"
 
 
-def _check_counts(found: dict[str, Any]) -> None:
-    if not found["suction_heights"]:
-        raise DesignError(
-            "suction_heights is an empty list: a suction side has too few control points with only the two on its "
-            "tangents; give one height or more from leading to trailing edge"
-        )
+def _check_counts(found: Mapping[str, Any]) -> None:
     if bool(found["pressure_heights"]) == bool(found["pressure_thickness"]):
         given = "both are given" if found["pressure_heights"] else "none is given"
         raise DesignError(
             f"pressure_heights and pressure_thickness: {given}; give heights for a pressure side of its own, or "
             "thicknesses along the suction side, and leave the other out"
         )
-    thickness = found["pressure_thickness"]
-    checks.between("pressure_thickness", thickness, 0.0, 1.0, "a thickness must be positive, and below the chord")
     for places, count in (("suction_places", "suction_heights"), ("pressure_places", _pressure(found))):
         if found[places] and len(found[places]) != len(found[count]):
             raise DesignError(
@@ -84,9 +60,6 @@ def _check_counts(found: dict[str, Any]) -> None:
             )
         if count == "pressure_thickness":
             checks.between(places, found[places], 0.0, 1.0, "a place on the suction side must lie between 0 and 1")
-        else:
-            # the skeleton continues beyond the edges, and refined control points may lie there
-            checks.between(places, found[places], -0.5, 1.5, "a place along the skeleton must lie between -0.5 and 1.5")
 
 
 def _knots(name: str, value: Any, count: int, of: str) -> tuple[float, ...]:

@@ -19,11 +19,19 @@ from bladewright.section.laws import Span, is_list, law_points, named_laws
 from bladewright.section.planar import PlanarSection
 from bladewright.section.suction_pressure.edges import Corner, Corners, characteristic_points
 from bladewright.section.suction_pressure.limits import (
+    ANGLE,
+    PLACE,
+    RADIUS,
+    SKEW,
+    STRETCH,
+    TANGENT,
+    THICKNESS,
+    WEDGE,
+    check,
     check_chord_left,
     check_crossing,
     check_opening,
     check_reparametrisation,
-    checked,
 )
 from bladewright.section.suction_pressure.outline import SHARE, SuctionPressureOutline
 from bladewright.section.suction_pressure.side import (
@@ -52,45 +60,45 @@ class SuctionPressure(SectionFamily):
     pseudo skeleton line, and at heights off it. Reference: Voss et al. 2025, sections 3 and 3.1, Figs. 2 to 5.
     """
 
-    stagger_angle: Law = parameter("deg")
+    stagger_angle: Law = parameter("deg", limits=ANGLE)
     """angle of the chord line from the axis [deg]"""
-    metal_angle_in: Law = parameter("deg")
+    metal_angle_in: Law = parameter("deg", limits=ANGLE)
     """angle of the leading edge's direction from the axis [deg]"""
-    metal_angle_out: Law = parameter("deg")
+    metal_angle_out: Law = parameter("deg", limits=ANGLE)
     """angle of the trailing edge's direction from the axis [deg]"""
-    leading_edge_radius: Law = parameter("-")
+    leading_edge_radius: Law = parameter("-", limits=RADIUS)
     """semi-axis b of the leading edge's ellipse across its direction, its radius where a = b, of the chord [-]"""
-    leading_edge_stretch: Law = parameter("-", default=1.0)
+    leading_edge_stretch: Law = parameter("-", limits=STRETCH, default=1.0)
     """ratio a / b of the leading edge's semi-axes, along over across its direction [-]"""
-    leading_edge_skew: Law = parameter("-", default=0.0)
+    leading_edge_skew: Law = parameter("-", limits=SKEW, default=0.0)
     """part by which the semi-axis along is longer on the suction side and shorter on the pressure side [-]"""
-    leading_edge_wedge: Law = parameter("deg")
+    leading_edge_wedge: Law = parameter("deg", limits=WEDGE)
     """angle between the two sides where they leave the leading edge [deg]"""
-    trailing_edge_radius: Law = parameter("-")
+    trailing_edge_radius: Law = parameter("-", limits=RADIUS)
     """semi-axis b of the trailing edge's ellipse across its direction, its radius where a = b, of the chord [-]"""
-    trailing_edge_stretch: Law = parameter("-", default=1.0)
+    trailing_edge_stretch: Law = parameter("-", limits=STRETCH, default=1.0)
     """ratio a / b of the trailing edge's semi-axes, along over across its direction [-]"""
-    trailing_edge_skew: Law = parameter("-", default=0.0)
+    trailing_edge_skew: Law = parameter("-", limits=SKEW, default=0.0)
     """part by which the semi-axis along is longer on the suction side and shorter on the pressure side [-]"""
-    trailing_edge_wedge: Law = parameter("deg")
+    trailing_edge_wedge: Law = parameter("deg", limits=WEDGE)
     """angle between the two sides where they reach the trailing edge [deg]"""
-    suction_tangent_in: Law = parameter("-")
+    suction_tangent_in: Law = parameter("-", limits=TANGENT)
     """distance of the suction side's first free control point from its corner, along the tangent, of the chord [-]"""
-    suction_tangent_out: Law = parameter("-")
+    suction_tangent_out: Law = parameter("-", limits=TANGENT)
     """distance of the suction side's last free control point from its corner, along the tangent, of the chord [-]"""
     suction_heights: ChordwiseLaw = parameter("-")
     """heights of the suction side's free control points between the tangents, one at least, of the chord [-]"""
-    suction_places: ChordwiseLaw = parameter("-", default=())
+    suction_places: ChordwiseLaw = parameter("-", limits=PLACE, default=())
     """their places along the skeleton, 0 to 1; none: at the Greville abscissae of the knots [-]"""
-    pressure_tangent_in: Law | None = parameter("-", default=None)
+    pressure_tangent_in: Law | None = parameter("-", limits=TANGENT, default=None)
     """as suction_tangent_in; none: such that both sides have the same speed by their parameters there [-]"""
-    pressure_tangent_out: Law | None = parameter("-", default=None)
+    pressure_tangent_out: Law | None = parameter("-", limits=TANGENT, default=None)
     """as suction_tangent_out; none: such that both sides have the same speed by their parameters there [-]"""
     pressure_heights: ChordwiseLaw = parameter("-", default=())
     """heights of the pressure side's free control points between the tangents, of the chord [-]"""
-    pressure_thickness: ChordwiseLaw = parameter("-", default=())
+    pressure_thickness: ChordwiseLaw = parameter("-", limits=THICKNESS, default=())
     """in place of heights: distances of the pressure side from the suction side, normal to it, of the chord [-]"""
-    pressure_places: ChordwiseLaw = parameter("-", default=())
+    pressure_places: ChordwiseLaw = parameter("-", limits=PLACE, default=())
     """places along the skeleton of the heights, or along the suction side of the thicknesses; none: as above [-]"""
     suction_side: Literal["upper", "lower"] = "upper"
     """the side that is the suction side, upper towards larger theta"""
@@ -104,8 +112,7 @@ class SuctionPressure(SectionFamily):
     """inner knots of the pressure side, as many as its heights or thicknesses; none: uniform [-]"""
 
     def __post_init__(self) -> None:
-        for name, value in checked(vars(self)).items():
-            object.__setattr__(self, name, value)
+        check(self)
 
     def outline(self, span: Span) -> SuctionPressureOutline:
         """The exact sections (..., m), in chords; raises DesignError where edges or sides do not fit."""

@@ -15,15 +15,19 @@ from typing import ClassVar, Literal
 
 import numpy as np
 
-from bladewright.designs import Law, Part
+from bladewright.designs import Law, Limits, Part
 from bladewright.errors import DesignError
 from bladewright.numerics.elementary import Array
 from bladewright.nurbs.basis import Reals
-from bladewright.section import checks
 from bladewright.section.chord_map import Breakpoint
 from bladewright.section.laws import Span, law_points, same_kind
 from bladewright.section.outline import Joint
 from bladewright.section.power_series import Series
+
+MAXIMUM = Limits(0.0, 1.0, "it must be between 0 and 1 chord")
+MAXIMUM_AT = Limits(0.05, 0.95, "the maximum must stand between 0.05 and 0.95 of the chord")
+EDGE = Limits(0.0, 1.0, "it must be positive; for none leave it out and make the edge sharp")
+POSITIVE = Limits(0.0, float("inf"), "it must be positive")
 
 EdgeKind = Literal["round", "sharp", "blunt"]
 
@@ -94,13 +98,6 @@ class ThicknessLaw(Part, ABC):
 
         Raises DesignError where parameters contradict each other.
         """
-
-    def _checked(self, name: str, low: float, high: float, what: str) -> None:
-        """Check that the numbers of a field are within (low, high), and keep them as a law; `what` is the cure."""
-        path = f"{self.path}.{name}"
-        law = checks.law(path, getattr(self, name))
-        checks.between(path, law, low, high, what)
-        object.__setattr__(self, name, law)
 
     def _require(self, met: Array, span: Span, name: str, value: Array, cure: str) -> None:
         """Refuse the values (..., m) of a field at the first place along the span where a condition is not met."""

@@ -14,14 +14,14 @@ from typing import Literal
 
 import numpy as np
 
-from bladewright.designs import Law, parameter
+from bladewright.designs import Law, Limits, parameter
 from bladewright.errors import DesignError
 from bladewright.numerics.elementary import Array
 from bladewright.section import checks
 from bladewright.section.chord_map import Breakpoint, ChordMap, ChordPlace
 from bladewright.section.laws import Span
 from bladewright.section.power_series import Series, polynomial
-from bladewright.section.thickness.law import EdgeKind, Thickness, ThicknessLaw
+from bladewright.section.thickness.law import EDGE, MAXIMUM, MAXIMUM_AT, POSITIVE, EdgeKind, Thickness, ThicknessLaw
 from bladewright.section.thickness.piecewise import (
     Formula,
     PiecewiseThickness,
@@ -42,6 +42,9 @@ identity"""
 AT_TRAILING_EDGE = 0.99
 """sigma of the place where the trailing edge's circle begins: its chord fraction in a usual blade [-]"""
 
+INDEX = Limits(0.0, 12.0, "it must be between 0 and 12; 6 is the radius of the NACA series")
+SLOPE = Limits(-float("inf"), 0.0, "the blade must not grow thicker towards the edge: negative, or 0", closed=True)
+
 
 @dataclass(frozen=True, kw_only=True)
 class ModifiedNaca(ThicknessLaw):
@@ -49,17 +52,17 @@ class ModifiedNaca(ThicknessLaw):
 
     law: Literal["modified-naca"] = "modified-naca"
     """which thickness law this is"""
-    leading_edge_index: Law = parameter("-", default=6.0)
+    leading_edge_index: Law = parameter("-", limits=INDEX, default=6.0)
     """radius of the leading edge: 1.1019 (maximum_thickness index / 6)^2 chords [-]"""
-    maximum_thickness: Law = parameter("-")
+    maximum_thickness: Law = parameter("-", limits=MAXIMUM)
     """thickness at its maximum, of the chord [-]"""
-    maximum_thickness_at: Law = parameter("-")
+    maximum_thickness_at: Law = parameter("-", limits=MAXIMUM_AT)
     """place of the maximum, of the chord [-]"""
-    trailing_edge_thickness: Law | None = parameter("-", default=None)
+    trailing_edge_thickness: Law | None = parameter("-", limits=EDGE, default=None)
     """thickness where the trailing edge's circle begins, or of the blunt edge, of the chord; none: a sharp edge [-]"""
-    trailing_edge_slope: Law | None = parameter("-", default=None)
+    trailing_edge_slope: Law | None = parameter("-", limits=SLOPE, default=None)
     """slope d(half thickness)/du at the trailing edge, negative or 0; none: that of the NACA series [-]"""
-    trailing_edge_slope_factor: Law | None = parameter("-", default=None)
+    trailing_edge_slope_factor: Law | None = parameter("-", limits=POSITIVE, default=None)
     """slope at the trailing edge in place of the former, downwards, of the maximum thickness [-]"""
     trailing_edge: Literal["circular", "blunt", "sharp"] = "circular"
     """shape of the trailing edge"""
@@ -67,30 +70,16 @@ class ModifiedNaca(ThicknessLaw):
     def __post_init__(self) -> None:
         checks.choice(f"{self.path}.law", self.law, ["modified-naca"])
         checks.choice(f"{self.path}.trailing_edge", self.trailing_edge, ["circular", "blunt", "sharp"])
-        inf = float("inf")
-        self._checked(
-            "leading_edge_index", 0.0, 12.0, "it must be between 0 and 12; 6 is the radius of the NACA series"
-        )
-        self._checked("maximum_thickness", 0.0, 1.0, "it must be between 0 and 1 chord")
-        self._checked("maximum_thickness_at", 0.05, 0.95, "the maximum must stand between 0.05 and 0.95 of the chord")
+        checks.parameters(self, f"{self.path}.")
         sharp = self.trailing_edge == "sharp"
         if (self.trailing_edge_thickness is None) != sharp:
             cure = "leave it out" if sharp else "give it, or set trailing_edge to sharp"
             given = "given" if sharp else "not given"
             message = f"{self.path}.trailing_edge_thickness is {given} for a {self.trailing_edge} trailing edge: {cure}"
             raise DesignError(message)
-        if not sharp:
-            self._checked(
-                "trailing_edge_thickness", 0.0, 1.0, "it must be positive; set trailing_edge to sharp for none"
-            )
         if self.trailing_edge_slope is not None and self.trailing_edge_slope_factor is not None:
             names = f"{self.path}.trailing_edge_slope and trailing_edge_slope_factor"
             raise DesignError(f"{names} are both given: they say the same; leave one out")
-        if self.trailing_edge_slope is not None:
-            what = "the blade must not grow thicker towards the edge: negative, or 0"
-            self._checked("trailing_edge_slope", -inf, 1e-300, what)
-        if self.trailing_edge_slope_factor is not None:
-            self._checked("trailing_edge_slope_factor", 0.0, inf, "it must be positive")
 
     def slope(self, span: Span) -> Array:
         """d(half thickness)/du (..., m) at the trailing edge."""

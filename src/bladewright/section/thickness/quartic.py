@@ -14,7 +14,7 @@ from typing import Literal
 
 import numpy as np
 
-from bladewright.designs import Law, parameter
+from bladewright.designs import Law, Limits, parameter
 from bladewright.errors import DesignError
 from bladewright.numerics.elementary import Array, radians
 from bladewright.numerics.roots import bracketed_root
@@ -26,7 +26,7 @@ from bladewright.section.chord_spline import QUARTIC, segments
 from bladewright.section.laws import Span
 from bladewright.section.outline import Joint
 from bladewright.section.power_series import Series, joined_series, polynomial, variable
-from bladewright.section.thickness.law import EdgeKind, Thickness, ThicknessLaw
+from bladewright.section.thickness.law import EDGE, MAXIMUM, MAXIMUM_AT, POSITIVE, EdgeKind, Thickness, ThicknessLaw
 from bladewright.section.thickness.piecewise import check_positive
 
 SEGMENTS = 7
@@ -126,6 +126,10 @@ class UniformThickness(Thickness):
         check_positive(self, path, span)
 
 
+NOT_NEGATIVE = Limits(0.0, float("inf"), "it must not be negative", closed=True)
+WEDGE_ANGLE = Limits(0.0, 90.0, "it must be between 0 and 90 deg")
+
+
 @dataclass(frozen=True, kw_only=True)
 class QuarticSpline(ThicknessLaw):
     """Quartic B-spline thickness through leading edge, maximum and trailing edge; thicknesses are full ones, in chords.
@@ -136,19 +140,19 @@ class QuarticSpline(ThicknessLaw):
 
     law: Literal["quartic-spline"] = "quartic-spline"
     """which thickness law this is"""
-    maximum_thickness: Law = parameter("-")
+    maximum_thickness: Law = parameter("-", limits=MAXIMUM)
     """thickness at its maximum, of the chord [-]"""
-    maximum_thickness_at: Law = parameter("-")
+    maximum_thickness_at: Law = parameter("-", limits=MAXIMUM_AT)
     """place of the maximum, of the chord [-]"""
-    leading_edge_thickness: Law = parameter("-")
+    leading_edge_thickness: Law = parameter("-", limits=EDGE)
     """thickness at the end of the first segment from the leading edge, of the chord [-]"""
-    trailing_edge_thickness: Law = parameter("-")
+    trailing_edge_thickness: Law = parameter("-", limits=EDGE)
     """thickness at the start of the last segment before the trailing edge, of the chord [-]"""
-    leading_edge_curvature: Law = parameter("-", default=CURVATURE)
+    leading_edge_curvature: Law = parameter("-", limits=POSITIVE, default=CURVATURE)
     """second derivative of u by segments at the leading edge: the larger, the rounder [-]"""
-    trailing_edge_curvature: Law | None = parameter("-", default=None)
+    trailing_edge_curvature: Law | None = parameter("-", limits=NOT_NEGATIVE, default=None)
     """the same at a closed trailing edge, forwards; none: 0, a flat end [-]"""
-    trailing_edge_wedge_angle: Law | None = parameter("deg", default=None)
+    trailing_edge_wedge_angle: Law | None = parameter("deg", limits=WEDGE_ANGLE, default=None)
     """angle of each side from the chord line at a sharp trailing edge; none: 2.5 [deg]"""
     trailing_edge: Literal["closed", "sharp"] = "closed"
     """shape of the trailing edge"""
@@ -156,11 +160,7 @@ class QuarticSpline(ThicknessLaw):
     def __post_init__(self) -> None:
         checks.choice(f"{self.path}.law", self.law, ["quartic-spline"])
         checks.choice(f"{self.path}.trailing_edge", self.trailing_edge, ["closed", "sharp"])
-        self._checked("maximum_thickness", 0.0, 1.0, "it must be between 0 and 1 chord")
-        self._checked("maximum_thickness_at", 0.05, 0.95, "the maximum must stand between 0.05 and 0.95 of the chord")
-        self._checked("leading_edge_thickness", 0.0, 1.0, "it must be positive")
-        self._checked("trailing_edge_thickness", 0.0, 1.0, "it must be positive")
-        self._checked("leading_edge_curvature", 0.0, float("inf"), "it must be positive")
+        checks.parameters(self, f"{self.path}.")
         closed = self.trailing_edge == "closed"
         name, other = ("trailing_edge_curvature", "trailing_edge_wedge_angle")[:: 1 if closed else -1]
         if getattr(self, other) is not None:
@@ -169,10 +169,6 @@ class QuarticSpline(ThicknessLaw):
             )
         if getattr(self, name) is None:
             object.__setattr__(self, name, 0.0 if closed else WEDGE)
-        elif closed:
-            self._checked(name, -1e-300, float("inf"), "it must not be negative")
-        else:
-            self._checked(name, 0.0, 90.0, "it must be between 0 and 90 deg")
 
     def control_points(self, span: Span) -> tuple[Array, Array]:
         """Control points (..., m, 11) of one side, chord fractions and half thicknesses, leading to trailing edge."""

@@ -14,13 +14,13 @@ from typing import Literal, NamedTuple
 
 import numpy as np
 
-from bladewright.designs import Law, parameter
+from bladewright.designs import Law, Limits, parameter
 from bladewright.errors import DesignError
 from bladewright.numerics.elementary import Array
 from bladewright.section import checks
 from bladewright.section.chord_map import Breakpoint, ChordMap
 from bladewright.section.laws import Span, bounds_of
-from bladewright.section.thickness.law import EdgeKind, Thickness, ThicknessLaw, same_law
+from bladewright.section.thickness.law import EDGE, MAXIMUM, MAXIMUM_AT, EdgeKind, Thickness, ThicknessLaw, same_law
 from bladewright.section.thickness.piecewise import (
     Formula,
     PiecewiseThickness,
@@ -38,6 +38,8 @@ AT_TRAILING_EDGE = 0.99
 """sigma of the start of the trailing edge's ellipse: its chord fraction in a usual blade"""
 RATIOS = {"leading_edge": 2.5, "trailing_edge": 1.0}
 """axis along the chord over axis across of elliptic edges where the design gives none: those of T-Blade3 [-]"""
+
+RATIO = Limits(0.0, 100.0, "it must be positive, and below 100; 1 is a circle")
 
 EdgeShape = Literal["elliptic", "blunt", "sharp"]
 
@@ -60,17 +62,17 @@ class Wennerstrom(ThicknessLaw):
 
     law: Literal["wennerstrom"] = "wennerstrom"
     """which thickness law this is"""
-    maximum_thickness: Law = parameter("-")
+    maximum_thickness: Law = parameter("-", limits=MAXIMUM)
     """thickness at its maximum, of the chord [-]"""
-    maximum_thickness_at: Law = parameter("-")
+    maximum_thickness_at: Law = parameter("-", limits=MAXIMUM_AT)
     """place of the maximum, of the chord without the elliptic edges [-]"""
-    leading_edge_thickness: Law | None = parameter("-", default=None)
+    leading_edge_thickness: Law | None = parameter("-", limits=EDGE, default=None)
     """thickness where the leading edge begins, of the chord; none: a sharp edge [-]"""
-    trailing_edge_thickness: Law | None = parameter("-", default=None)
+    trailing_edge_thickness: Law | None = parameter("-", limits=EDGE, default=None)
     """thickness where the trailing edge begins, of the chord; none: a sharp edge [-]"""
-    leading_edge_ratio: Law | None = parameter("-", default=None)
+    leading_edge_ratio: Law | None = parameter("-", limits=RATIO, default=None)
     """axis along the chord over axis across of an elliptic leading edge; none: 2.5; 1 is a circle [-]"""
-    trailing_edge_ratio: Law | None = parameter("-", default=None)
+    trailing_edge_ratio: Law | None = parameter("-", limits=RATIO, default=None)
     """axis along the chord over axis across of an elliptic trailing edge; none: 1, a circle [-]"""
     leading_edge: EdgeShape = "elliptic"
     """shape of the leading edge"""
@@ -82,8 +84,7 @@ class Wennerstrom(ThicknessLaw):
     def __post_init__(self) -> None:
         checks.choice(f"{self.path}.law", self.law, ["wennerstrom"])
         checks.choice(f"{self.path}.straight_end", self.straight_end, ["farther", "leading", "trailing"])
-        self._checked("maximum_thickness", 0.0, 1.0, "it must be between 0 and 1 chord")
-        self._checked("maximum_thickness_at", 0.05, 0.95, "the maximum must stand between 0.05 and 0.95 of the chord")
+        checks.parameters(self, f"{self.path}.")
         for name in ("leading_edge", "trailing_edge"):
             self._check_edge(name)
         if self.straight_end == "farther" and not same_law(self.leading_edge_thickness, self.trailing_edge_thickness):
@@ -102,15 +103,11 @@ class Wennerstrom(ThicknessLaw):
         if given == (kind == "sharp"):
             cure = "leave it out" if given else f"give it, or set {name} to sharp"
             raise DesignError(f"{thickness} is {'given' if given else 'not given'}, but {shape} is {kind}: {cure}")
-        if given:
-            self._checked(f"{name}_thickness", 0.0, 1.0, f"it must be positive; set {name} to sharp for none")
         if getattr(self, f"{name}_ratio") is None:
             if kind == "elliptic":
                 object.__setattr__(self, f"{name}_ratio", RATIOS[name])
         elif kind != "elliptic":
             raise DesignError(f"{ratio} is given, but {shape} is {kind}: leave it out, or set {name} to elliptic")
-        else:
-            self._checked(f"{name}_ratio", 0.0, 100.0, "it must be positive, and 100 at most; 1 is a circle")
 
     def at(self, span: Span) -> Thickness:
         maximum, at = 0.5 * span.values(self.maximum_thickness), span.values(self.maximum_thickness_at)
