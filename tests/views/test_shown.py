@@ -87,7 +87,7 @@ def test_the_points_of_the_view_in_space_are_the_blades(name):
 
 def test_names_are_written_as_they_are_and_not_as_markup():
     name = 'R&D\'s <b>rotor</b> & "1" <script>'
-    page = Page(frame(name, view3d(blade_scene(built(BLADES["cascade"])), name), table([(name, name)], (name,)), name))
+    page = Page(frame(name, name, view3d(blade_scene(built(BLADES["cascade"])), name), table([(name, name)], (name,))))
     assert page.words.count(name) == 5
     assert [tag for tag, _ in page.tags].count("b") == 1
     assert name in [attrs.get("alt") for _, attrs in page.tags]

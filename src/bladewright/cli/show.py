@@ -9,6 +9,7 @@ from bladewright.cli.load_design import BODIES, built_from, flow_domain_from, lo
 from bladewright.cli.options import Call, check_options, common, design_argument, passage_options, set_option
 from bladewright.cli.outcome import Outcome
 from bladewright.cli.progress import progress
+from bladewright.cli.report_page import write_report
 from bladewright.cli.stations import sense_data, sense_rows, station_table, stations_option, written_csv
 from bladewright.cli.summary import (
     broken_promises,
@@ -24,6 +25,8 @@ from bladewright.cli.summary import (
 @click.command(short_help="Figures and a picture of what a design builds.")
 @design_argument
 @click.option("-o", "--output", type=click.Path(path_type=Path), help="Picture to write: .png, .svg or .pdf.")
+@click.option("--report", type=click.Path(path_type=Path), help="Page to write with all of it, to send: .html.")
+@click.option("--round-trip", is_flag=True, help="Measure a STEP file for the report, in place of NAME.roundtrip.json.")
 @click.option(
     "--body", type=click.Choice(BODIES), default="blade", show_default=True, help="What to show: blade or passage."
 )
@@ -38,6 +41,8 @@ def show(
     /,
     path: Path,
     output: Path | None,
+    report: Path | None,
+    round_trip: bool,
     body: str,
     stations: tuple[float, ...] | None,
     table_file: Path | None,
@@ -47,7 +52,9 @@ def show(
     """Print the properties of what DESIGN builds and whether it passes its checks; draw it where -o names a picture.
 
     --stations adds metal angles, chord, thickness, throat, solidity, lean, sweep and more as they are built, at places
-    along the span; --csv writes them, named like the keys of a design.
+    along the span; --csv writes them, named like the keys of a design. --report writes one page to send, which loads
+    nothing: a 3D view that the mouse turns, the figures, the stations, the pictures, the parameters, and the round trip
+    that `build` left as NAME.roundtrip.json beside the page or the design.
 
     The picture shows sections, curvature and its slope, the meridional channel, edges from close by, the laws of
     evolution and a 3D view; with --body passage a see-through view of the flow passage, its duct, and its walls
@@ -59,7 +66,13 @@ def show(
     if wants_table and body == "passage":
         raise click.UsageError("--stations and --csv are of the blade: leave out --body passage")
     design: Any = load_design(path, changes)
-    with progress(2 if output else 1, call) as bar:
+    if report is not None:
+        from bladewright.views.report import checked_report_path
+
+        checked_report_path(report)
+    elif round_trip:
+        raise click.UsageError("--round-trip is for the report: name it by --report FILE.html, or leave it out")
+    with progress(1 + bool(output) + bool(report), call) as bar:
         bar.set_description_str(body)
         if body == "passage":
             built = flow_domain_from(design, path, extents)
@@ -77,6 +90,11 @@ def show(
             views.picture(design, output, blade=built)
             data["picture"] = str(output)
             bar.update(1)
+        if report is not None:
+            bar.set_description_str("report")
+            write_report(design, built, path, report, measured=round_trip, stations=stations)
+            data["report"] = str(report)
+            bar.update(1)
     rows = [*passage_rows(data), *smoothness_rows(data.get("smoothness", [])), *sense_rows(data)]
     text = summary_text(data, rows)
     if wants_table:
@@ -84,5 +102,5 @@ def show(
         data["table"] = table.to_dict()
         text += f"\n\n{table}"
         text += f"\n{written_csv(table, table_file)}" if table_file else ""
-    text += f"\nwrote {output}" if output else ""
+    text += "".join(f"\nwrote {file}" for file in (output, report) if file)
     return Outcome(data=data, text=text, failures=broken_promises(data))

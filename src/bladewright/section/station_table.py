@@ -10,12 +10,13 @@ from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 from types import MappingProxyType
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
 
 from bladewright.atomic_write import atomic_write
 from bladewright.designs import unknown
+from bladewright.display import Shown
 from bladewright.errors import DesignError
 from bladewright.numerics.elementary import Array, degrees
 from bladewright.nurbs.basis import Reals
@@ -71,13 +72,15 @@ DIGITS = 6
 
 
 @dataclass(frozen=True, kw_only=True, eq=False, repr=False)
-class StationTable(ABC):
+class StationTable(Shown, ABC):
     """What is built, at stations along the span, measured and not taken from the laws of the design.
 
     Each quantity of `names` is an attribute, also `table["solidity"]`: an array (m,), one entry a station, in metres
     and radians, computed when it is first asked for, and complex where the build carries a step. `to_dict`, `to_csv`
     and `str` give them in the design's unit of length and degrees.
     """
+
+    shown_as: ClassVar[str] = "stations"
 
     name: str
     """the design's name"""

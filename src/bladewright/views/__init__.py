@@ -1,5 +1,6 @@
-"""Pictures of what a design builds, drawn with matplotlib: sheets for the engineer, and views of a blade or passage."""
+"""Pictures of what a design builds, drawn with matplotlib: sheets, views of a blade or passage, and report pages."""
 
 from bladewright.views.picture import blade_view, passage_view, picture
+from bladewright.views.report import report
 
-__all__ = ["blade_view", "passage_view", "picture"]
+__all__ = ["blade_view", "passage_view", "picture", "report"]

@@ -16,9 +16,9 @@ CELL = "padding:1px 14px 1px 0;vertical-align:top;border:0"
 
 
 def table(rows: Rows, header: Sequence[str] = ()) -> str:
-    """A table whose first column is text and whose others are values, aligned to the right where there are several."""
+    """A table: names and what they are, or under a header columns of figures, which are aligned to the right."""
     columns = max((len(row) for row in rows), default=1)
-    value = f"{CELL};text-align:{'right' if columns > 2 else 'left'};font-variant-numeric:tabular-nums"
+    value = f"{CELL};text-align:{'right' if header else 'left'};font-variant-numeric:tabular-nums"
 
     def line(cells: Sequence[str], tag: str) -> str:
         if len(cells) == 1:
@@ -37,6 +37,11 @@ def table(rows: Rows, header: Sequence[str] = ()) -> str:
     )
 
 
+def with_headings(rows: Sequence[tuple[str, str]]) -> Rows:
+    """Names and values, of which a name without a value becomes a heading."""
+    return [row if row[1] else row[:1] for row in rows]
+
+
 def image(figure: Figure, title: str) -> str:
     """A figure as an image in the page, of lines and letters at any size."""
     picture = BytesIO()
@@ -47,11 +52,11 @@ def image(figure: Figure, title: str) -> str:
     return f'<img alt="{escape(title)}" style="max-width:100%" src="data:image/svg+xml;base64,{data}">'
 
 
-def frame(title: str, picture: str, tables: str, remark: str = "") -> str:
-    """What a notebook shows of a result: its name and a remark, a picture, and tables beside it."""
+def frame(title: str, remark: str, picture: str, tables: str, further: str = "") -> str:
+    """What a notebook shows of a result: its name and a remark, a picture, tables beside it, and further ones below."""
     cells = f'<div style="flex:1 1 420px;max-width:600px">{picture}</div><div>{tables}</div>'
     return (
         f'<div style="background:white;color:{INK};border:1px solid {PALE};padding:8px;font-family:sans-serif">'
         f'<div style="font-size:15px"><b>{escape(title)}</b> <span style="color:{SOFT}">{escape(remark)}</span></div>'
-        f'<div style="display:flex;flex-wrap:wrap;gap:16px;align-items:flex-start">{cells}</div></div>'
+        f'<div style="display:flex;flex-wrap:wrap;gap:16px;align-items:flex-start">{cells}</div>{further}</div>'
     )

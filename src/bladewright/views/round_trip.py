@@ -1,12 +1,12 @@
 """A round trip as picture and tables: how far each face of the reopened file is from the native one."""
 
-from collections.abc import Mapping, Sequence
-from typing import Any, Protocol
+from collections.abc import Mapping
+from typing import Any
 
 import numpy as np
 from matplotlib.figure import Figure
 
-from bladewright.views.html import Rows
+from bladewright.views.html import Rows, table
 from bladewright.views.pages import Page, with_fixed_layout
 from bladewright.views.style import BLUE, RED, SOFT, drawing_style, label_axes
 
@@ -14,12 +14,6 @@ Report = Mapping[str, Any]
 """A round trip as its JSON has it."""
 LEAST = 1e-16
 """Shortest bar [mm]: what is exact has no place on an axis of powers of ten."""
-
-
-class RoundTripResult(Protocol):
-    """A round trip, as `cad.write` returns it."""
-
-    def to_dict(self) -> dict[str, Any]: ...
 
 
 def round_trip_figure(report: Report) -> Figure:
@@ -64,10 +58,10 @@ def round_trip_rows(report: Report) -> Rows:
     ]
 
 
-def face_rows(report: Report) -> tuple[Rows, Sequence[str]]:
-    """A row for each face, and the names of the columns."""
+def round_trip_tables(report: Report) -> str:
+    """Both as HTML: the whole, and a row for each face."""
     header = ("face", "largest [mm]", "mean [mm]", "area [mm²]", "area off")
-    rows = [
+    faces = [
         (
             face["name"],
             f"{face['max_deviation_mm']:.1e}",
@@ -77,4 +71,4 @@ def face_rows(report: Report) -> tuple[Rows, Sequence[str]]:
         )
         for face in report["faces"]
     ]
-    return rows, header
+    return table(round_trip_rows(report)) + table(faces, header)

@@ -1,6 +1,6 @@
 """What `plot()` and a notebook show of each kind of result, by the name that the result says."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -11,19 +11,18 @@ from matplotlib.figure import Figure
 from bladewright.views.fit_data import FitResult
 from bladewright.views.fit_deviations import draw_outline_deviation
 from bladewright.views.fit_sheet import fit_sheet
-from bladewright.views.html import Rows, frame, image, table
+from bladewright.views.html import Rows, frame, image, table, with_headings
 from bladewright.views.passage import draw_section_passage, figures, section_figures
 from bladewright.views.picture import sheet
-from bladewright.views.round_trip import RoundTripResult, face_rows, round_trip_figure, round_trip_rows
+from bladewright.views.round_trip import round_trip_figure, round_trip_tables
 from bladewright.views.sections import draw_neighbour
+from bladewright.views.station_table import station_figure, station_html
 from bladewright.views.style import axis, drawing_style, in_unit, lengths_in, per_metre, unit_name
 from bladewright.views.view3d import blade_scene, fit_scene, passage_scene, view3d
 
 if TYPE_CHECKING:
     from bladewright.blade.native.blade import Blade
     from bladewright.display import Shown
-    from bladewright.domain.passage import Passage
-    from bladewright.domain.section import SectionPassage
     from bladewright.section.section import Section
 
 
@@ -32,7 +31,15 @@ class Kind:
     """How results of a kind are shown."""
 
     figure: Callable[[Any], Figure]
-    html: Callable[[Any], str]
+    """what `plot()` returns"""
+    picture: Callable[[Any], str]
+    """HTML of the picture in a notebook"""
+    tables: Callable[[Any], str]
+    """HTML of the tables beside it"""
+    title: Callable[[Any], tuple[str, str]]
+    """name of a result, and a remark"""
+    further: Callable[[Any, Sequence[float] | None], str] = lambda *_: ""
+    """HTML of what stands under both, at stations where it has some"""
     unit: Callable[[Any], str] = lambda _: "mm"
     """its unit of length; millimetres of a section, which knows no design"""
 
@@ -46,7 +53,7 @@ def html(shown: "Shown") -> str:
     """Picture and table of a result, which load nothing."""
     kind = KINDS[shown.shown_as]
     with lengths_in(kind.unit(shown)):
-        return kind.html(shown)
+        return frame(*kind.title(shown), kind.picture(shown), kind.tables(shown), kind.further(shown, None))
 
 
 def blade_rows(blade: "Blade") -> Rows:
@@ -62,7 +69,7 @@ def blade_rows(blade: "Blade") -> Rows:
         ("faces", ", ".join(blade.surfaces)),
         ("poles of a side", f"{along} x {across}"),
         ("off the exact blade", f"{blade.error:.1e} of the chord"),
-        ("promises", "all kept" if blade.conformance.kept else "NOT all kept"),
+        ("checks", "all passed" if blade.conformance.kept else "NOT all passed"),
     ]
 
 
@@ -111,49 +118,67 @@ def _panel(draw: Callable[[Axes], None]) -> str:
     return image(found, "section")
 
 
-def _blade(blade: "Blade") -> str:
-    view = view3d(blade_scene(blade), blade.name)
-    return frame(blade.name, view, table(blade_rows(blade)), type(blade.design).__name__)
-
-
-def _passage(passage: "Passage") -> str:
-    rows = [row if row[1] else row[:1] for row in figures(passage)]
-    return frame(passage.name, view3d(passage_scene(passage), passage.name), table(rows), "flow passage")
-
-
-def _section(section: "Section") -> str:
-    drawn = _panel(lambda axes: draw_neighbour(axes, section, None, "Section"))
-    where = f"at span {section.span:.4g}, in the plane {section.plane}"
-    return frame("section", drawn, table(section_rows(section)), where)
-
-
-def _section_passage(passage: "SectionPassage") -> str:
-    rows = [row if row[1] else row[:1] for row in section_figures(passage)]
-    return frame("section-passage", _panel(lambda axes: draw_section_passage(axes, passage)), table(rows))
-
-
-def _fit(fit: FitResult) -> str:
-    rows, regions = fit_rows(fit)
-    header = (axis("deviation"), "points", "mean", "rms", "99 %", "largest")
+def _fit_picture(fit: FitResult) -> str:
     flat = fit.cloud.shape[-1] == 2
-    drawn = _panel(lambda axes: draw_outline_deviation(axes, fit)) if flat else view3d(fit_scene(fit), fit.design.name)
-    verdict = "passed" if fit.passed else "FAILED"
-    return frame(fit.design.name, drawn, table(rows) + table(regions, header), f"fit, {verdict}")
+    return _panel(lambda axes: draw_outline_deviation(axes, fit)) if flat else view3d(fit_scene(fit), fit.design.name)
 
 
-def _round_trip(trip: RoundTripResult) -> str:
-    report = trip.to_dict()
-    rows = table(round_trip_rows(report)) + table(*face_rows(report))
-    verdict = "passed" if report["passed"] else "FAILED"
-    return frame(report["file"], image(round_trip_figure(report), "deviations"), rows, f"round trip, {verdict}")
+def _fit_tables(fit: FitResult) -> str:
+    rows, regions = fit_rows(fit)
+    return table(rows) + table(regions, (axis("deviation"), "points", "mean", "rms", "99 %", "largest"))
+
+
+def _verdict(result: Any) -> str:
+    return "passed" if result.passed else "FAILED"
 
 
 KINDS: Mapping[str, Kind] = {
-    "blade": Kind(figure=sheet, html=_blade, unit=lambda blade: blade.design.length_unit),
-    "passage": Kind(figure=sheet, html=_passage, unit=lambda passage: passage.blade.design.length_unit),
-    "section": Kind(figure=sheet, html=_section),
-    "section passage": Kind(figure=sheet, html=_section_passage),
-    "fit": Kind(figure=fit_sheet, html=_fit, unit=lambda fit: fit.design.length_unit),
-    "round trip": Kind(figure=lambda trip: round_trip_figure(trip.to_dict()), html=_round_trip),
+    "blade": Kind(
+        figure=sheet,
+        picture=lambda blade: view3d(blade_scene(blade), blade.name),
+        tables=lambda blade: table(blade_rows(blade)),
+        further=lambda blade, stations: station_html(blade.report(stations)),
+        title=lambda blade: (blade.name, type(blade.design).__name__),
+        unit=lambda blade: blade.design.length_unit,
+    ),
+    "passage": Kind(
+        figure=sheet,
+        picture=lambda passage: view3d(passage_scene(passage), passage.name),
+        tables=lambda passage: table(with_headings(figures(passage))),
+        title=lambda passage: (passage.name, "flow passage"),
+        unit=lambda passage: passage.blade.design.length_unit,
+    ),
+    "section": Kind(
+        figure=sheet,
+        picture=lambda section: _panel(lambda axes: draw_neighbour(axes, section, None, "Section")),
+        tables=lambda section: table(section_rows(section)),
+        title=lambda section: ("section", f"at span {section.span:.4g}, in the plane {section.plane}"),
+    ),
+    "section passage": Kind(
+        figure=sheet,
+        picture=lambda passage: _panel(lambda axes: draw_section_passage(axes, passage)),
+        tables=lambda passage: table(with_headings(section_figures(passage))),
+        title=lambda _: ("section-passage", "flow domain"),
+    ),
+    "stations": Kind(
+        figure=station_figure,
+        picture=station_html,
+        tables=lambda _: "",
+        title=lambda stations: (stations.name, "at stations along the span"),
+        unit=lambda stations: stations.length_unit,
+    ),
+    "fit": Kind(
+        figure=fit_sheet,
+        picture=_fit_picture,
+        tables=_fit_tables,
+        title=lambda fit: (fit.design.name, f"fit, {_verdict(fit)}"),
+        unit=lambda fit: fit.design.length_unit,
+    ),
+    "round trip": Kind(
+        figure=lambda trip: round_trip_figure(trip.to_dict()),
+        picture=lambda trip: image(round_trip_figure(trip.to_dict()), "deviations"),
+        tables=lambda trip: round_trip_tables(trip.to_dict()),
+        title=lambda trip: (trip.file, f"round trip, {_verdict(trip)}"),
+    ),
 }
 """By the names that results say (`Shown.shown_as`)."""
