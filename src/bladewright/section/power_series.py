@@ -1,11 +1,11 @@
 """Truncated power series: a formula evaluated with them gives its exact derivatives along with its values."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from math import comb, factorial
 
 import numpy as np
 
-from bladewright.numerics.elementary import Array
+from bladewright.numerics.elementary import Array, Reals
 
 NEAR = 0.2
 """size of z up to which log(1 + z) / z is summed as a power series: beyond it the quotient loses less than a digit
@@ -186,30 +186,28 @@ def relative_log_series(at: Series) -> Series:
 
 def relative_exponential(z: Array) -> Array:
     """(exp(z) - 1) / z, also at zero; an imaginary part to first order."""
-    real = np.real(z)
-    nonzero = np.where(real == 0.0, 1.0, real)
-    value = np.where(real == 0.0, 1.0, np.expm1(nonzero) / nonzero)
-    if not np.iscomplexobj(z):
-        return value
-    near = real * real < 1e-6
-    wide = np.where(near, 1.0, real)
-    growth = np.where(near, 0.5 + real / 3.0 + real * real / 8.0, (np.exp(wide) - np.expm1(wide) / wide) / wide)
-    return value + 1j * np.imag(z) * growth
+    return _by_argument(z, np.expm1, np.exp, lambda x: 0.5 + x / 3.0 + x * x / 8.0)
 
 
 def relative_logarithm(w: Array) -> Array:
     """log(1 + w) / w for real parts above -1, also at zero; an imaginary part to first order."""
-    real = np.real(w)
+    return _by_argument(w, np.log1p, lambda x: 1.0 / (1.0 + x), lambda x: -0.5 + x * 2.0 / 3.0 - x * x * 0.75)
+
+
+RealFunction = Callable[[Reals], Reals]
+
+
+def _by_argument(z: Array, function: RealFunction, slope: RealFunction, near_zero: RealFunction) -> Array:
+    """f(z) / z of a function with f(0) = 0 and f'(0) = 1; its derivative near zero by a power series."""
+    real = np.real(z)
     nonzero = np.where(real == 0.0, 1.0, real)
-    value = np.where(real == 0.0, 1.0, np.log1p(nonzero) / nonzero)
-    if not np.iscomplexobj(w):
+    value = np.where(real == 0.0, 1.0, function(nonzero) / nonzero)
+    if not np.iscomplexobj(z):
         return value
     near = real * real < 1e-6
     wide = np.where(near, 1.0, real)
-    growth = np.where(
-        near, -0.5 + real * 2.0 / 3.0 - real * real * 0.75, (1.0 / (1.0 + wide) - np.log1p(wide) / wide) / wide
-    )
-    return value + 1j * np.imag(w) * growth
+    growth = np.where(near, near_zero(real), (slope(wide) - function(wide) / wide) / wide)
+    return value + 1j * np.imag(z) * growth
 
 
 def polynomial_points(coefficients: Array, t: Array) -> Array:

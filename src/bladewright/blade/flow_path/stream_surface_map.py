@@ -164,7 +164,19 @@ class Cascade(TrueLengths):
     plane = "m-y"
 
 
-class Paper(StreamSurfaceMap):
+class ByParameter(StreamSurfaceMap, ABC):
+    """A plane whose abscissa is the parameter along the stream lines."""
+
+    def density(self, position: Array, slope: Array) -> Array:
+        del slope
+        return np.ones_like(position[..., 1])
+
+    def density_slope(self, position: Array, slope: Array, bend: Array) -> Array:
+        del slope, bend
+        return np.zeros_like(position[..., 1])
+
+
+class Paper(ByParameter):
     """The plane (u, y / L) of Agromayor et al. 2021: u is the channel's parameter, and theta = y / r (eq. 28).
 
     Neither angles nor radii survive it; it is here to reproduce the paper's blades.
@@ -176,14 +188,6 @@ class Paper(StreamSurfaceMap):
 
     def __init__(self, *, revolved: bool) -> None:
         self.revolved = revolved
-
-    def density(self, position: Array, slope: Array) -> Array:
-        del slope
-        return np.ones_like(position[..., 1])
-
-    def density_slope(self, position: Array, slope: Array, bend: Array) -> Array:
-        del slope, bend
-        return np.zeros_like(position[..., 1])
 
     def scale(self, radius: Array, lengths: Array) -> Array:
         del lengths
@@ -260,7 +264,7 @@ class Projected(TrueLengths):
         return bend[..., 0]
 
 
-class DiscreteConformal(Conformal):
+class DiscreteConformal(ByParameter, Conformal):
     """The plane (m', theta) with m' in proportion to t, as meridians of points with `spacing` "conformal" count it.
 
     It is that of T-Blade3; it differs from the conformal one by what the sum of chords over radii misses. Its abscissa
@@ -268,14 +272,6 @@ class DiscreteConformal(Conformal):
     """
 
     discrete = True
-
-    def density(self, position: Array, slope: Array) -> Array:
-        del slope
-        return np.ones_like(position[..., 1])
-
-    def density_slope(self, position: Array, slope: Array, bend: Array) -> Array:
-        del slope, bend
-        return np.zeros_like(position[..., 1])
 
 
 PLANES: dict[str, dict[str, type[StreamSurfaceMap]]] = {
