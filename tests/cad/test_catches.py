@@ -47,7 +47,7 @@ def written(built, path):
         _write_format(built, occ_solid(built), str(path), format_of(path), schema="AP242", solid=True)
 
 
-def failing(path, built, samples=900):
+def failing(path, built, samples=400):
     trip = cad.verify(path, built, samples=samples)
     assert not trip.passed
     assert trip.to_dict()["passed"] is False

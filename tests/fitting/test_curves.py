@@ -56,7 +56,7 @@ def test_finite_differences_as_in_the_source_find_nothing_lower(power):
     def objective(inner):
         net = fit.curve.control_points.copy()
         net[1:-1] = inner.reshape(-1, 2)
-        places = bw.Curve(control_points=net, knots=fit.curve.knots, degree=3)(np.linspace(0.0, 1.0, 2001))
+        places = bw.Curve(control_points=net, knots=fit.curve.knots, degree=3)(np.linspace(0.0, 1.0, 801))
         step = np.diff(places, axis=0)
         away = BENT[::4, None] - places[:-1]
         share = np.clip(np.sum(away * step, axis=-1) / np.sum(step**2, axis=-1), 0.0, 1.0)
