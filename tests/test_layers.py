@@ -75,9 +75,10 @@ parsed = cache(ast.parse)
 def imported(name: str, text: str, known: set[str]) -> Iterator[str]:
     """The known modules that a module imports anywhere, also inside functions, but for those that only types need."""
     tree = parsed(text)
-    checks = [node for node in ast.walk(tree) if isinstance(node, ast.If) and "TYPE_CHECKING" in ast.unparse(node.test)]
+    nodes = list(ast.walk(tree))
+    checks = [each for each in nodes if isinstance(each, ast.If) and getattr(each.test, "id", "") == "TYPE_CHECKING"]
     skipped = {id(inner) for check in checks for line in check.body for inner in ast.walk(line)}
-    for node in ast.walk(tree):
+    for node in nodes:
         if id(node) in skipped:
             continue
         targets = []
