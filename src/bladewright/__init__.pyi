@@ -42,6 +42,7 @@ from .errors import GeometryError as GeometryError
 from .errors import MeshError as MeshError
 from .files.clouds import read_cloud as read_cloud
 from .files.imported import Imported as Imported
+from .files.origin import design_origin as design_origin
 from .files.parablade import import_parablade as import_parablade
 from .files.parablade import read_parablade as read_parablade
 from .files.reading import read_design as read_design
@@ -61,6 +62,7 @@ from .fitting.freeform.surfaces import fit_surface as fit_surface
 from .nurbs.curve import Curve as Curve
 from .nurbs.surface import Surface as Surface
 from .nurbs.trimmed import TrimmedSurface as TrimmedSurface
+from .origin import Origin as Origin
 from .section.camber_angle import CamberAngle as CamberAngle
 from .section.camber_angle import CamberAngleSection as CamberAngleSection
 from .section.curvature_meanline import CurvatureMeanline as CurvatureMeanline

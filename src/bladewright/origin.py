@@ -55,7 +55,7 @@ class Origin:
         """The inverse of `lines`; None where they name no design."""
         told = [line.partition(": ")[::2] for line in lines]
         names = [text for key, text in told if key == "design"]
-        hashes = [text.removeprefix("sha256 ") for key, text in told if key == "parameters"]
+        hashes = [text.removeprefix("sha256 ") for key, text in told if key == "parameters" and "sha256 " in text]
         if not names or not hashes:
             return None
         return cls(

@@ -138,7 +138,7 @@ def test_patterns_without_values_are_held_at_the_start(run, stub, cloud_file, de
     bw.write_design(design, start)
     assert run("fit", cloud_file, "--start", start, "--fix", "thickness_*", "--no-picture").status == 0
     assert stub.given["fixed"] == ["thickness_*"]
-    assert run("fit", cloud_file, "--no-picture").status == 0
+    assert run("fit", cloud_file, "--no-picture", "--force").status == 0
     assert [stub.given[name] for name in ("start", "fixed", "free", "bounds", "tolerance")] == [None] * 5
 
 
@@ -187,9 +187,27 @@ def test_a_design_file_that_is_there_keeps_its_comments_and_texts(run, cloud_fil
     path = tmp_path / "vane.toml"
     bw.write_design(design.changed({"description": "stage 2", "stagger": -11.0}), path)
     path.write_text("# measured in Karlsruhe\n" + path.read_text())
-    assert run("fit", cloud_file, "--unit", "mm", "-o", path, "--no-picture", "--name", design.name).status == 0
+    words = ("fit", cloud_file, "--unit", "mm", "-o", path, "--no-picture", "--name", design.name)
+    assert run(*words, "--start", path).status == 0
     assert path.read_text().startswith("# measured in Karlsruhe\n")
     assert bw.read_design(path) == design.changed("description", "stage 2")
+    path.write_text(path.read_text().replace("stagger = ", "stagger = 1.0 # was "))
+    assert run(*words, "--force").status == 0
+    assert path.read_text().startswith("# measured in Karlsruhe\n")
+    assert bw.read_design(path) == design.changed("description", "stage 2")
+
+
+@pytest.mark.usefixtures("stub")
+def test_a_design_file_that_is_there_and_is_not_the_start_stays(run, cloud_file, design, tmp_path):
+    path, start = tmp_path / "vane.toml", tmp_path / "start.toml"
+    for each in (path, start):
+        bw.write_design(design.changed("stagger", -11.0), each)
+    before = path.read_bytes()
+    for words in ((), ("--start", start), ("--like", path)):
+        found = run("fit", cloud_file, "--unit", "mm", "-o", path, "--no-picture", *words)
+        assert found.status == 2
+        assert "exists already: name another file with -o, or overwrite it with --force" in found.err
+    assert path.read_bytes() == before
 
 
 def test_a_unit_that_cannot_be_is_said_with_the_result_and_with_a_refusal(run, stub, cloud_file):
@@ -197,7 +215,7 @@ def test_a_unit_that_cannot_be_is_said_with_the_result_and_with_a_refusal(run, s
     assert found.status == 0
     assert "taken to be in m" in found.out
     stub.error = FitError("all points lie on one line")
-    found = run("fit", cloud_file, "--no-picture")
+    found = run("fit", cloud_file, "--no-picture", "--force")
     assert found.status == 2
     assert "all points lie on one line" in found.err
     assert "taken to be in m" in found.err

@@ -68,7 +68,12 @@ def test_a_design_file_that_is_there_keeps_its_comments(run, configuration):
     assert run("import", configuration).status == 0
     path = configuration.with_suffix(".toml")
     path.write_text("# our vane\n" + path.read_text().replace("stagger = ", "stagger = 1.0 # was "))
-    assert run("import", configuration).status == 0
+    before = path.read_text()
+    refused = run("import", configuration)
+    assert refused.status == 2
+    assert "exists already" in refused.err
+    assert path.read_text() == before
+    assert run("import", configuration, "--force").status == 0
     text = path.read_text()
     assert text.startswith("# our vane")
     assert bw.read_design(path).stagger == pytest.approx(-30, abs=0.5)

@@ -8,6 +8,8 @@ from bladewright.cad.cutting import CutPassage as CutPassage
 from bladewright.cad.cutting import cut_passage as cut_passage
 from bladewright.cad.cutting import write_cut as write_cut
 from bladewright.cad.kernel import occ_version as occ_version
+from bladewright.cad.made_from import MadeFrom as MadeFrom
+from bladewright.cad.made_from import made_from as made_from
 from bladewright.cad.native_body import NativeBody as NativeBody
 from bladewright.cad.round_trip import RoundTrip as RoundTrip
 from bladewright.cad.sampling import sample as sample

@@ -20,8 +20,9 @@ from bladewright.origin import Origin, wrapped
 
 COLUMNS = 72
 """of a line of the start section"""
-DECIMALS: dict[Unit, int] = {"mm": 9, "in": 11, "m": 12}
-"""Decimals of the numbers in a file: OpenCASCADE's nine in millimetres, and as many more as keep 1e-9 mm."""
+DECIMALS = 12
+"""of the numbers in a file: OpenCASCADE alone writes nine, which leaves 5e-7 mm in a file in metres, and areas that are
+off by 1.8e-9 where knots are rounded; twelve make a blade's file a tenth larger."""
 
 
 def write_iges(
@@ -65,15 +66,15 @@ def write_iges(
         for piece in wrapped(step_text(line), COLUMNS):
             model.AddStartLine(piece)
     writer.ComputeModel()
-    Path(path).write_bytes(_printed(model, DECIMALS[unit]))
+    Path(path).write_bytes(_printed(model))
 
 
-def _printed(model: IGESData_IGESModel, decimals: int) -> bytes:
-    """The file of a model, its numbers with so many decimals; OpenCASCADE alone writes nine whatever the unit is."""
+def _printed(model: IGESData_IGESModel) -> bytes:
+    """The file of a model."""
     writer, text = IGESData_IGESWriter(model), BytesIO()
     numbers = writer.FloatWriter()
-    numbers.SetFormat(f"%{decimals + 2}.{decimals}E")
-    numbers.SetFormatForRange(f"%{decimals + 2}.{decimals}f", *numbers.Options()[2:])
+    numbers.SetFormat(f"%{DECIMALS + 2}.{DECIMALS}E", reset=False)
+    numbers.SetFormatForRange(f"%{DECIMALS + 2}.{DECIMALS}f", 0.1, 1000.0)
     writer.SendModel(IGESSelect_WorkLibrary.DefineProtocol_s())
     if not writer.Print(text):
         raise CadError("OpenCASCADE could not write the IGES file")

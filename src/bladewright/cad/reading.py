@@ -53,14 +53,19 @@ class CadFile:
     """application protocol of a STEP file, kind of entities of an IGES file"""
     unit: str
     """length unit that the file is written in"""
-    written_by_bladewright: bool
-    """whether the file says that bladewright wrote it"""
+    system: str
+    """program that wrote the file, as it says"""
     origin: Origin | None
     """the design that the file says it was made from"""
     shape: TopoDS_Shape
     """everything in the file [mm]"""
     names: dict[int, str]
     """names of the faces that have one, by index in `faces`"""
+
+    @property
+    def written_by_bladewright(self) -> bool:
+        """Whether the file says that bladewright wrote it."""
+        return "bladewright" in self.system
 
     @property
     def faces(self) -> list[TopoDS_Face]:
@@ -173,7 +178,7 @@ def _step(path: Path) -> CadFile:
     reader.FileUnits(units, TColStd_SequenceOfAsciiString(), TColStd_SequenceOfAsciiString())
     header = APIHeaderSection_MakeHeader(reader.StepModel())
     schema = header.SchemaIdentifiersValue(1).ToCString() if header.NbSchemaIdentifiers() else ""
-    by_bladewright = "bladewright" in header.OriginatingSystem().ToCString()
+    system = header.OriginatingSystem().ToCString()
     described = (header.DescriptionValue(place).ToCString() for place in range(2, header.NbDescription() + 1))
     transferred = reader.WS().TransferReader()
     names = {}
@@ -187,8 +192,8 @@ def _step(path: Path) -> CadFile:
         format="STEP",
         schema=_protocol(schema),
         unit=_unit([unit.ToCString() for unit in units]),
-        written_by_bladewright=by_bladewright,
-        origin=Origin.from_lines(unwrapped([step_plain(line) for line in described])) if by_bladewright else None,
+        system=step_plain(system),
+        origin=Origin.from_lines(unwrapped([step_plain(line) for line in described])),
         shape=shape,
         names=names,
     )
@@ -221,7 +226,7 @@ def _iges(path: Path) -> CadFile:
     shape = reader.OneShape()
     model = reader.IGESModel()
     head = model.GlobalSection()
-    sender = head.SystemId().ToCString() if head.SystemId() is not None else ""
+    system = head.SystemId().ToCString() if head.SystemId() is not None else ""
     unit = head.UnitName().ToCString() if head.UnitName() is not None else ""
     start = [model.StartLine(place).ljust(72) for place in range(1, model.NbStartLines() + 1)]
     transferred = reader.WS().TransferReader()
@@ -240,10 +245,8 @@ def _iges(path: Path) -> CadFile:
         format="IGES",
         schema=kind,
         unit={"MM": "mm", "M": "m", "IN": "in", "INCH": "in", "CM": "cm", "FT": "ft"}.get(unit.upper(), unit.lower()),
-        written_by_bladewright="bladewright" in sender,
-        origin=Origin.from_lines([step_plain(line.rstrip()) for line in unwrapped(start)])
-        if "bladewright" in sender
-        else None,
+        system=system,
+        origin=Origin.from_lines([step_plain(line.rstrip()) for line in unwrapped(start)]),
         shape=shape,
         names=names,
     )
@@ -278,7 +281,7 @@ def _brep(path: Path) -> CadFile:
         format="BREP",
         schema="",
         unit="mm",
-        written_by_bladewright=False,
+        system="",
         origin=None,
         shape=shape,
         names={},

@@ -13,7 +13,9 @@ from bladewright.cli.options import (
     comma_separated,
     common,
     extend_option,
+    parse_colour,
     parse_length,
+    parse_name,
     passage_options,
     set_option,
 )
@@ -21,7 +23,18 @@ from bladewright.cli.outcome import Outcome
 from bladewright.cli.progress import progress
 from bladewright.cli.stations import stations_option
 
-_BUILD_OPTIONS = ("directory", "formats", "schema", "iges_surfaces", "chordal_deviation", "stations", "changes")
+_BUILD_OPTIONS = (
+    "directory",
+    "formats",
+    "schema",
+    "iges_surfaces",
+    "chordal_deviation",
+    "unit",
+    "colour",
+    "force",
+    "stations",
+    "changes",
+)
 """Options that are fields of `BuildOptions`; the remaining ones shape a passage."""
 
 
@@ -58,6 +71,19 @@ _BUILD_OPTIONS = ("directory", "formats", "schema", "iges_surfaces", "chordal_de
     "--chordal-deviation", callback=parse_length, metavar="LENGTH", help="Largest gap of STL and 3MF, such as 0.01mm."
 )
 @click.option(
+    "--unit", type=click.Choice(["mm", "m", "in"]), default="mm", show_default=True, help="Unit of length in the files."
+)
+@click.option(
+    "--colour",
+    callback=parse_colour,
+    default="parts",
+    show_default=True,
+    metavar="COLOUR",
+    help="Colour of the faces in STEP and IGES: parts for one of each part, '#8899aa' for all, or none.",
+)
+@click.option("--name", callback=parse_name, help="Name of the files, in the place of the design's own.")
+@click.option("--force", is_flag=True, help="Overwrite files that were made from another design file.")
+@click.option(
     "--jobs", type=click.IntRange(1, 256), metavar="N", help="Designs made at a time.  [as many as processors]"
 )
 @stations_option
@@ -72,6 +98,7 @@ def build(
     designs: tuple[Path, ...],
     bodies: tuple[str, ...],
     extend: float,
+    name: str | None,
     jobs: int | None,
     **others: Any,
 ) -> Outcome:
@@ -81,10 +108,19 @@ def build(
     is what was measured on the reopened file of the first format; each further format has its own, such as
     NAME.igs.roundtrip.json. Where a check fails the files stay, say so, and the exit status is 1. Several designs are
     made side by side; one that is refused does not keep the others from being made.
+
+    Files that are there are overwritten where they were made from the same design file, edited or with other changes,
+    and that is said; others only with --force.
     """
-    own = {name: others.pop(name) for name in _BUILD_OPTIONS}
+    own = {option: others.pop(option) for option in _BUILD_OPTIONS}
     split = others["split"]
     check_options(bodies, extend, {**others, "split": False})
+    if own["unit"] != "mm" and "brep" in own["formats"]:
+        raise click.UsageError("--unit: a BREP file states no unit and is in millimetres: leave brep or --unit out")
+    if name is not None:
+        if len(designs) > 1:
+            raise click.UsageError("--name names the files of one design: give one, or leave it out")
+        own["changes"] = {**own["changes"], "name": name}
     options = BuildOptions(bodies=bodies, extend=extend, split=split, extents=others, **own)
     if len(designs) == 1:
         with progress(options.steps, call) as bar:

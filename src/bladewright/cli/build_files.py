@@ -10,6 +10,7 @@ from bladewright.cli.directory import removing_partial_files
 from bladewright.cli.law_remarks import law_data, law_rows
 from bladewright.cli.load_design import bodies_from, load_design
 from bladewright.cli.outcome import Outcome, jsonable
+from bladewright.cli.overwriting import overwritten
 from bladewright.cli.progress import Bar
 from bladewright.cli.stations import sense_data, sense_rows, station_table
 
@@ -33,6 +34,12 @@ class BuildOptions:
     """largest distance of the triangles of STL and 3MF from the solid [m]; None: the default of `cad.write`"""
     stations: tuple[float, ...] | None
     """span fractions of the station table; None: no table"""
+    unit: Literal["mm", "m", "in"]
+    """of length in the files"""
+    colour: str
+    """of the faces, as `cad.write` takes it"""
+    force: bool
+    """whether files are overwritten that were made from another design file"""
     extend: float
     """fraction of the span by which a blade is extended at both ends [-]"""
     split: bool
@@ -50,9 +57,12 @@ class BuildOptions:
 
 def build_files(path: Path, options: BuildOptions, bar: Bar) -> Outcome:
     """Build the design in a file into CAD files and their reports; an error leaves none of them behind."""
+    from bladewright.files.origin import design_origin
     from bladewright.files.text import write_text
 
+    directory, trips = options.directory, list[Any]()
     design: Any = load_design(path, options.changes)
+    origin = design_origin(path, options.changes, directory=directory)
     names = {body: design.name + ("-passage" if body == "passage" else "") for body in options.bodies}
     files = [f"{name}{SUFFIXES[each]}" for name in names.values() for each in options.formats]
     reports = [
@@ -60,7 +70,9 @@ def build_files(path: Path, options: BuildOptions, bar: Bar) -> Outcome:
         for name in names.values()
         for number, each in enumerate(options.formats)
     ]
-    directory, trips, sense, table = options.directory, list[Any](), dict[str, Any](), None
+    told = [directory / f"{name}{end}.roundtrip.json" for name in names.values() for end in ("", *SUFFIXES.values())]
+    note = overwritten([directory / each for each in files], told, path, origin, force=options.force)
+    sense, table = dict[str, Any](), None
     with removing_partial_files(directory, [*files, *reports]):
         bar.set_description_str(" and ".join(options.bodies))
         for built in bodies_from(options.bodies, design, path, options.extend, options.extents):
@@ -80,28 +92,31 @@ def build_files(path: Path, options: BuildOptions, bar: Bar) -> Outcome:
                     solid=not (options.iges_surfaces and each == "iges"),
                     split=options.split,
                     chordal_deviation=options.chordal_deviation,
+                    unit=options.unit,
+                    colour=options.colour,
+                    origin=origin,
                 )
                 write_text(directory / report, json.dumps(jsonable(trip.to_dict()), indent=2) + "\n")
                 trips.append(trip)
                 bar.update(1)
     laws = law_data(design)
+    remarks = [
+        *(f"{name} {words}" for name, words in law_rows(laws)),
+        *(f"{name}: {words}" for name, words in sense_rows(sense)),
+        *([str(table)] if table else []),
+        *([note] if note else []),
+    ]
     return Outcome(
         data={
             "name": built.name if len(options.bodies) == 1 else design.name,
             "passed": all(trip.passed for trip in trips),
             "files": [str(directory / file) for file in files],
             "roundtrips": [trip.to_dict() for trip in trips],
+            "overwritten": note or None,
             **({"laws": laws} if laws else {}),
             **sense,
             **({"table": table.to_dict()} if table else {}),
         },
-        text="\n".join(
-            [
-                *map(str, trips),
-                *(f"{name} {words}" for name, words in law_rows(laws)),
-                *(f"{name}: {words}" for name, words in sense_rows(sense)),
-                *([str(table)] if table else []),
-            ]
-        ),
+        text="\n".join([*map(str, trips), *remarks]),
         failures=tuple(f"{file}: {text}" for file, trip in zip(files, trips, strict=True) for text in trip.failures),
     )

@@ -19,8 +19,9 @@ from bladewright.cli.fit_files import (
     write_deviations,
     write_report,
 )
-from bladewright.cli.options import Call, common, parse_length
+from bladewright.cli.options import Call, common, force_option, parse_length, parse_name
 from bladewright.cli.outcome import Outcome
+from bladewright.cli.overwriting import refuse_existing
 from bladewright.cli.progress import status_line
 from bladewright.designs import Design
 
@@ -35,15 +36,6 @@ UNITS = ("m", "cm", "mm", "um", "in", "ft")
 def _parse_columns(_: click.Context, __: click.Parameter, text: str | None) -> tuple[str, ...] | None:
     """Split words at commas; a word may occur more than once."""
     return None if text is None else tuple(word.strip() for word in text.split(","))
-
-
-def _parse_name(_: click.Context, __: click.Parameter, text: str | None) -> str | None:
-    """Accept a name that files can have."""
-    if text is not None and (not text.strip() or any(sign in text for sign in '/\\:*?"<>|')):
-        raise click.BadParameter(
-            f"'{text}' cannot be a design's name: it names files, so leave / \\ : * ? \" < > | out"
-        )
-    return text
 
 
 def _parse_bounds(_: click.Context, __: click.Parameter, pairs: Sequence[str]) -> dict[str, tuple[float, float]]:
@@ -83,7 +75,7 @@ def _parse_fixed(_: click.Context, __: click.Parameter, words: Sequence[str]) ->
     "-o",
     "--output",
     type=click.Path(path_type=Path),
-    help="Design file to write; NAME.toml where not given. One that is there keeps its comments.",
+    help="Design file to write; NAME.toml where not given. That of --start may be the same, and keeps its comments.",
 )
 @click.option(
     "--start", type=click.Path(path_type=Path), metavar="DESIGN", help="Design, or ParaBlade's .cfg, to begin with."
@@ -142,13 +134,14 @@ def _parse_fixed(_: click.Context, __: click.Parameter, words: Sequence[str]) ->
 @click.option(
     "--pitch", callback=parse_length, metavar="LENGTH", help="Distance of neighbours in a cascade, such as 57.5mm."
 )
-@click.option("--name", callback=_parse_name, help="The design's name; that of the cloud's file where not given.")
+@click.option("--name", callback=parse_name, help="The design's name; that of the cloud's file where not given.")
 @click.option("--length-unit", type=click.Choice(UNITS), default="mm", show_default=True, help="The design's unit.")
 @click.option("--picture", type=click.Path(path_type=Path), help="Picture to write; NAME.fit.png where not given.")
 @click.option("--no-picture", is_flag=True, help="Draw none.")
 @click.option(
     "--deviations", type=click.Path(path_type=Path), metavar="FILE", help="Table of every point's deviation, as CSV."
 )
+@force_option
 @common
 @click.pass_obj
 def fit(
@@ -163,14 +156,16 @@ def fit(
     deviations: Path | None,
     *,
     no_picture: bool,
+    force: bool,
     **fit_options: Any,
 ) -> Outcome:
     """Fit a design to the points of CLOUD, and say how far they lie from it: no first guess is needed.
 
     CLOUD is a table of numbers with or without names above them, an airfoil, a PLY, STL, VTK or NumPy file, or a STEP,
     IGES or BREP file, whose faces are sampled. Two coordinates give a section, three a blade; x is the machine axis, or
-    give --align. NAME.fit.json and NAME.fit.png are written beside the design. The exit status is 1 where the fit does
-    not pass; interrupted, it writes the best design so far.
+    give --align. NAME.fit.json and NAME.fit.png are written beside the design. A design file that is there is only
+    overwritten where it is that of --start, or with --force; it keeps its comments. The exit status is 1 where the fit
+    does not pass; interrupted, it writes the best design so far.
     """
     if no_picture and picture is not None:
         raise click.UsageError("--picture names a picture, and --no-picture wants none: leave one out")
@@ -179,6 +174,8 @@ def fit(
     report = report_beside(design)
     picture = None if no_picture else picture or picture_beside(design)
     check_design_file(design)
+    if not (force or _same_file(design, fit_options["start"])):
+        refuse_existing(design)
     if picture is not None:
         _check_picture(picture, beside=design)
     with removing_partial_files(design.parent, [design.name, report.name]):
@@ -251,6 +248,10 @@ def _check_picture(picture: Path, beside: Path) -> None:
     # The design's own directory is created later where it does not exist yet.
     if picture.parent != beside.parent or picture.parent.is_dir():
         checked_path(picture)
+
+
+def _same_file(design: Path, start: Path | None) -> bool:
+    return start is not None and design.is_file() and start.is_file() and design.samefile(start)
 
 
 def _name_from(cloud: Path) -> str:

@@ -5,9 +5,11 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from bladewright.cli.directory import removing_partial_files
 from bladewright.cli.load_design import built_from
-from bladewright.cli.options import Call, common
+from bladewright.cli.options import Call, common, force_option
 from bladewright.cli.outcome import Outcome
+from bladewright.cli.overwriting import refuse_existing
 from bladewright.cli.progress import progress
 
 if TYPE_CHECKING:
@@ -39,21 +41,32 @@ KNOWN = "ParaBlade's .cfg and T-Blade3's 3dbgbinput.*.dat"
     is_flag=True,
     help="True sweep and lean by the stagger of each section, where T-Blade3 takes a wrong one.",
 )
+@force_option
 @common
 @click.pass_obj
 def import_design(
-    call: Call, /, file: Path, output: Path | None, chordwise: int | None, edge_spline: bool, true_stagger: bool
+    call: Call,
+    /,
+    file: Path,
+    output: Path | None,
+    chordwise: int | None,
+    edge_spline: bool,
+    true_stagger: bool,
+    force: bool,
 ) -> Outcome:
     """Write the design of the blade in FILE, another program's design.
 
     Known are ParaBlade's .cfg with camber and thickness, which becomes the nearest design of the unified family, and
     T-Blade3's 3dbgbinput.*.dat with the file of control points beside it, whose sections are kept. What was kept and
-    what was changed is said, and how far the built surfaces lie from points of the other program's blade. A file that
-    is there keeps its comments.
+    what was changed is said, and how far the built surfaces lie from points of the other program's blade. A design
+    file that is there is only overwritten with --force, and keeps its comments.
     """
     with progress(3, call) as bar:
         bar.set_description_str("sections")
         imported = _read(file, chordwise, edge_spline=edge_spline, true_stagger=true_stagger)
+        design = output or Path(f"{imported.design.name}.toml")
+        if not force:
+            refuse_existing(design)
         bar.update(1)
         bar.set_description_str("surfaces")
         built = built_from(imported.design, file)
@@ -62,8 +75,8 @@ def import_design(
         distances = imported.distances(built)
         from bladewright.files.writing import write_design
 
-        design = output or Path(f"{imported.design.name}.toml")
-        write_design(imported.design, design)
+        with removing_partial_files(design.parent, [design.name]):
+            write_design(imported.design, design)
         bar.update(1)
     chord = float(built.chord)
     mean, most = float(distances.mean()), float(distances.max())

@@ -5,8 +5,9 @@ from typing import Any
 
 import click
 
-from bladewright.cli.options import common, set_option
+from bladewright.cli.options import common, force_option, set_option
 from bladewright.cli.outcome import Outcome
+from bladewright.cli.overwriting import refuse_existing
 from bladewright.errors import FileError
 
 
@@ -22,7 +23,7 @@ from bladewright.errors import FileError
     help="Write the design of a table of stations: r [mm], metal_angle_in [deg], metal_angle_out [deg], chord [mm]...",
 )
 @set_option
-@click.option("--force", is_flag=True, help="Overwrite a file that is there.")
+@force_option
 @common
 def new(
     example: str | None,
@@ -64,8 +65,8 @@ def new(
         text = example_text(name) if example is not None else template_text(name)
         data = {"example" if example else "template": name}
     file = output or Path(f"{name}.toml")
-    if file.is_file() and not force:
-        raise FileError(f"'{file}' exists already: name another file with -o, or overwrite it with --force")
+    if not force:
+        refuse_existing(file)
     write_text(file, text)
     said = [f"wrote {file}", *(f"  {key}: {words}" for key, words in remarks.items())]
     return Outcome(data={**data, "file": str(file)}, text="\n".join(said))

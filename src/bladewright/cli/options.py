@@ -90,6 +90,22 @@ def parse_length(_: click.Context, __: click.Parameter, text: str | None) -> flo
     return value
 
 
+def parse_name(_: click.Context, __: click.Parameter, text: str | None) -> str | None:
+    """Accept a name that files can have."""
+    if text is not None and (not text.strip() or any(sign in text for sign in '/\\:*?"<>|')):
+        raise click.BadParameter(
+            f"'{text}' cannot be a design's name: it names files, so leave / \\ : * ? \" < > | out"
+        )
+    return text
+
+
+def parse_colour(_: click.Context, __: click.Parameter, text: str) -> str:
+    """Accept a colour such as #8899aa, or one of the words that `cad.write` takes in its place."""
+    if text not in {"parts", "none"} and not re.fullmatch(r"#[0-9a-fA-F]{6}", text):
+        raise click.BadParameter(f"'{text}' is no colour: write it like '#8899aa', or parts, or none")
+    return text
+
+
 def comma_separated(known: Sequence[str]) -> Callable[[click.Context, click.Parameter, str], tuple[str, ...]]:
     """Return a callback that splits a list at its commas and accepts only known words."""
 
@@ -142,6 +158,7 @@ set_option = click.option(
     callback=_parse_changes,
     help="Change a parameter, such as stagger[1]=-52 or channel.hub[0].x=3; the value is TOML. Repeatable.",
 )
+force_option = click.option("--force", is_flag=True, help="Overwrite a file that is there.")
 extend_option = click.option(
     "--extend",
     type=click.FloatRange(0.0, 0.5),

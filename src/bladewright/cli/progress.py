@@ -3,7 +3,7 @@
 import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from typing import Protocol
+from typing import Any, Protocol
 
 from bladewright.cli.options import Call
 
@@ -34,9 +34,13 @@ def progress(steps: int, call: Call) -> Iterator[Bar]:
     if call.quiet or not sys.stderr.isatty():
         yield Silent()
         return
+    from shutil import get_terminal_size
+
     from tqdm import tqdm
 
-    with tqdm(total=steps, file=sys.stderr, leave=False, bar_format="{desc}: {bar} {n_fmt}/{total_fmt}") as bar:
+    # a terminal may say that it has no columns, and tqdm would draw none
+    layout: dict[str, Any] = {"ncols": get_terminal_size().columns, "bar_format": "{desc}: {bar} {n_fmt}/{total_fmt}"}
+    with tqdm(total=steps, file=sys.stderr, leave=False, **layout) as bar:
         yield bar
 
 

@@ -1,11 +1,15 @@
 """`bladewright show`: what a design builds, as figures and as a picture."""
 
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
 import click
 
+from bladewright.cli.directory import removing_partial_files
 from bladewright.cli.load_design import BODIES, built_from, flow_domain_from, load_design
+from bladewright.cli.made_from import CAD_SUFFIXES, made_from
 from bladewright.cli.options import Call, check_options, common, design_argument, passage_options, set_option
 from bladewright.cli.outcome import Outcome
 from bladewright.cli.progress import progress
@@ -60,7 +64,13 @@ def show(
     evolution and a 3D view; with --body passage a see-through view of the flow passage, its duct, and its walls
     unwrapped with the lines of their patches. The flow domain of a 2D design is the curves around its section, and
     reaches are in axial chords. The exit status is 1 where a check fails.
+
+    Of a CAD file in the place of DESIGN it tells which design the file was made from.
     """
+    if path.suffix.lower() in CAD_SUFFIXES:
+        if output is not None or changes:
+            raise click.UsageError(f"'{path}' is a CAD file, whose design is told: -o and --set are for a design file")
+        return made_from(path)
     check_options((body,), 0.0, extents)
     wants_table = stations is not None or table_file is not None
     if wants_table and body == "passage":
@@ -72,7 +82,7 @@ def show(
         checked_report_path(report)
     elif round_trip:
         raise click.UsageError("--round-trip is for the report: name it by --report FILE.html, or leave it out")
-    with progress(1 + bool(output) + bool(report), call) as bar:
+    with _picture_file(output), progress(1 + bool(output) + bool(report), call) as bar:
         bar.set_description_str(body)
         if body == "passage":
             built = flow_domain_from(design, path, extents)
@@ -104,3 +114,16 @@ def show(
         text += f"\n{written_csv(table, table_file)}" if table_file else ""
     text += "".join(f"\nwrote {file}" for file in (output, report) if file)
     return Outcome(data=data, text=text, failures=broken_promises(data))
+
+
+@contextmanager
+def _picture_file(output: Path | None) -> Iterator[None]:
+    """A context in which the picture, where one is wanted, can be written; FileError, before any work, where not."""
+    if output is None:
+        yield
+        return
+    with removing_partial_files(output.parent, [output.name]):
+        from bladewright.views.pages import checked_path
+
+        checked_path(output)
+        yield
