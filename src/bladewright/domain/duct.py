@@ -1,8 +1,8 @@
-"""The duct: the blade's channel continued up- and downstream, where hub and shroud straighten; and its volume.
+"""The duct: a flow path, or a blade's channel, continued up- and downstream of its ends; and its volume.
 
-Continued by its own polynomials a channel would curl up within a fraction of a chord, and the walls of an impeller
-would cross. So past its ends a stream line goes on by arc length: its curvature fades to zero, and its direction turns
-to the one between hub and shroud.
+A flow path goes on straight. Continued by its own polynomials a channel of the blade alone would curl up within a
+fraction of a chord, and the walls of an impeller would cross. So past its ends a stream line goes on by arc length: its
+curvature fades to zero, and its direction turns to the one between hub and shroud.
 """
 
 from dataclasses import dataclass
@@ -49,10 +49,11 @@ OUTLINE_POINTS = 16
 
 @dataclass(frozen=True, kw_only=True)
 class Duct:
-    """The channel from inlet to outlet by its own parameter u: polynomial around the blade, straight far from it.
+    """The channel or flow path from inlet to outlet by its own parameter u, and straight past its ends.
 
     Below u = `start` and above u = `end`, u is in proportion to arc length along the stream line: `unit` of it is a
-    `length`. The curvature there, and the difference of the direction from that between the walls, fade as FADING.
+    `length`. Over `bend` of it the curvature there, and the difference of the direction from that between the walls,
+    fade as FADING; where `bend` is 0 a stream line is straight at once.
     """
 
     channel: MeridionalChannel
@@ -66,6 +67,8 @@ class Duct:
     """mean meridional length of the blade [m]"""
     unit: float
     """how much of u such a length takes"""
+    bend: float
+    """how much of u a stream line takes to lose its curvature past its ends"""
     low: float
     """u of the inlet"""
     high: float
@@ -75,8 +78,8 @@ class Duct:
 
     def joints(self) -> Reals:
         """The u at which stream lines lose derivatives, also beyond inlet and outlet."""
-        bend = BEND * self.unit
-        own = np.array([self.start - bend, self.start, *self.channel.joints(), self.end, self.end + bend])
+        ends = [self.start - self.bend, self.start, self.end, self.end + self.bend]
+        own = np.unique([*ends, *self.channel.joints()])
         return own[(own > min(self.low, 0.0)) & (own < max(self.high, 1.0))]
 
     def joints_within(self) -> Reals:
@@ -98,7 +101,7 @@ class Duct:
                 powers = self.channel.stream_polynomials(all_v, np.array([edge]))[..., 0, :, :]
             for i in outside:
                 away = sign * (float(centres[i]) - edge)
-                found = _continued(powers, self.length / self.unit, BEND * self.unit, all_v, sign, away)
+                found = _continued(powers, self.length / self.unit, self.bend, all_v, sign, away)
                 found = found[..., 1:-1, :, :]
                 total[..., i, :, :] = 0.0
                 total[..., i, : found.shape[-2], :] = found
@@ -140,7 +143,7 @@ class Duct:
         for spans in MERIDIAN_SPANS:
             inner = np.linspace(0.0, 1.0, spans + 1)[1:-1]
             inner = inner[np.all(np.abs(inner[:, None] - joints) > 0.1 / spans, axis=1)]  # real: knots
-            inner = np.sort(np.concatenate([inner, np.repeat(joints, WALL_DEGREE - 2)]))
+            inner = np.sort(np.concatenate([inner, np.repeat(joints, WALL_DEGREE - 1)]))
             knots = np.concatenate([np.zeros(WALL_DEGREE + 1), inner, np.ones(WALL_DEGREE + 1)])
             sites = greville(knots, WALL_DEGREE)
             both = np.concatenate([sites, (sites[1:] + sites[:-1]) / 2.0])
@@ -169,12 +172,14 @@ class DuctLimit(NamedTuple):
 def _continued(powers: Array, length_of_u: float, bend: float, v: Reals, sign: float, away: float) -> Array:
     """Coefficients (..., m, k, 2) by powers of u - centre of the stream lines given at an end, `away` past it.
 
-    `length_of_u` is the length that one unit of u takes, `bend` the u over which they become straight, and `sign` -1
-    upstream and +1 downstream.
+    `length_of_u` is the length that one unit of u takes, `bend` the u over which they become straight, or 0 where they
+    are at once, and `sign` -1 upstream and +1 downstream.
     """
     by_length = _by_length(powers * (sign ** np.arange(powers.shape[-2]))[:, None])
     own = by_length * (length_of_u ** np.arange(KEPT))[:, None]
     point, slope = own[..., 0, :], own[..., 1, :]
+    if bend == 0.0:
+        return np.stack([point + away * slope, sign * slope], axis=-2)
     ruled = (1.0 - v)[:, None] * slope[..., :1, :] + v[:, None] * slope[..., -1:, :]
     fading = FADING / bend ** np.arange(len(FADING))
     turning = _integrated(_integrated(_times(_derived(_derived(own)), fading)))

@@ -7,8 +7,9 @@ import numpy as np
 from bladewright.blade.exact.exact_blade import ExactBlade
 from bladewright.blade.flow_path.meridional_curve import real_first
 from bladewright.domain.camber_lines import CamberLines, camber_lines
-from bladewright.domain.duct import Duct
-from bladewright.domain.walls import CrossLines, departure, edge_skew
+from bladewright.domain.duct import BEND, Duct
+from bladewright.domain.kinks import kink_shares, skew_reach
+from bladewright.domain.walls import STEEPEST_FADE, CrossLines, departure, edge_skew
 from bladewright.errors import DesignError
 from bladewright.numerics.elementary import Array
 from bladewright.nurbs.basis import Reals
@@ -70,6 +71,7 @@ def shortest_duct(exact: ExactBlade) -> Duct:
         edges=extent.edges,
         length=extent.length,
         unit=extent.unit,
+        bend=BEND * extent.unit if extent.path_end(0) is None else 0.0,
         low=extent.blade_range[0],
         high=extent.blade_range[1],
         revolved=exact.mapping.revolved,
@@ -79,6 +81,18 @@ def shortest_duct(exact: ExactBlade) -> Duct:
 def end_camber_lines(exact: ExactBlade) -> CamberLines:
     """Camber lines on hub and shroud, hardly continued."""
     return camber_lines(exact.sections(np.array([0.0, 1.0])), shortest_duct(exact))
+
+
+def skew_reaches(camber: CamberLines, half_pitch: Array, cross_lines: CrossLines) -> tuple[float, float]:
+    """Shares of the ways to inlet and outlet over which the skew of cross-lines fades; `camber` reaches to both."""
+    found = []
+    for edge in (0, 1):
+        start = _at_edge(camber, edge)[:, 0]
+        end = real_first(camber.lines.abscissa(np.array([camber.duct.high if edge else camber.duct.low])), 2)[:, 0]
+        bulge = _bulge(camber, half_pitch, cross_lines, edge)
+        least = STEEPEST_FADE * float(np.max(bulge / np.where(end > start, end - start, start - end)))
+        found.append(skew_reach(kink_shares(camber, edge), least))
+    return found[0], found[1]
 
 
 def departures(ends: CamberLines, half_pitch: float) -> tuple[float, float]:
@@ -117,13 +131,18 @@ def _needed(exact: ExactBlade, ends: CamberLines, half_pitch: Array, cross_lines
 
 def _bulges(camber: CamberLines, half_pitch: Array, cross_lines: CrossLines, edge: int) -> Reals:
     """u (2,) on hub and shroud that the duct must reach for the cross-lines from an edge."""
-    direction = np.real(camber.direction(edge)).reshape(-1, 2, 2)[0]
     u = np.broadcast_to(np.real(camber.stations.channel_parameter(np.array([float(edge)]))), (2, 1))
     density = np.real(camber.lines.densities(u)[0])
+    extension = _bulge(camber, half_pitch, cross_lines, edge) / density.reshape(-1, 2)[0]
+    return np.asarray(u[:, 0] + (extension if edge else -extension))
+
+
+def _bulge(camber: CamberLines, half_pitch: Array, cross_lines: CrossLines, edge: int) -> Reals:
+    """The way in m' (2,) on hub and shroud that the cross-lines from an edge take, with a margin."""
+    direction = np.real(camber.direction(edge)).reshape(-1, 2, 2)[0]
     half = float(np.real(half_pitch).flat[0])
     size = np.max([edge_skew(direction[:, 1], half, each, edge, cross_lines.skew) for each in (1, -1)], axis=0)
     if camber.stations.edge_kinds[edge] != "round":
         size = 0.0 * size
     bulge = cross_lines.bulge * np.array(departures(camber, half)) * size * direction[:, 0]
-    extension = BULGE_MARGIN * bulge / density.reshape(-1, 2)[0]
-    return np.asarray(u[:, 0] + (extension if edge else -extension))
+    return np.asarray(BULGE_MARGIN * bulge)

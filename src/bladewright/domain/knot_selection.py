@@ -12,7 +12,8 @@ import numpy as np
 from bladewright.blade.native.knots import DEGREE, clamped, refined
 from bladewright.domain.camber_lines import CamberLines
 from bladewright.domain.checks import AMPLE_JACOBIAN, LeastJacobian, check_duct, check_folds, least_jacobian
-from bladewright.domain.extents import departures, end_camber_lines, extents
+from bladewright.domain.extents import departures, end_camber_lines, extents, skew_reaches
+from bladewright.domain.kinks import fade_joints, kink_shares, kinks
 from bladewright.domain.knots import PIECES, PassageKnots
 from bladewright.domain.passage_spec import PassageSpec
 from bladewright.domain.walls import CROSS_LINES, CROSS_LINES_GATHERED, CrossLines, WallHalf
@@ -58,6 +59,8 @@ def unfolded_walls(
                 spec, cross_lines, extents(exact, spec.half_pitch, cross_lines, upstream, downstream)
             )
             check_duct(spec.duct(start), exact.meridional_extent)
+            camber = spec.camber(start, np.array([0.0, 1.0]))
+            start = replace(start, reaches=skew_reaches(camber, spec.half_pitch, cross_lines))
         except DesignError:
             if not tried:
                 raise
@@ -82,8 +85,8 @@ def with_wall_knots(start: PassageKnots, walls: Mapping[str, WallHalf], toleranc
     return replace(
         start,
         blade=knots_beside(walls, start.blade, tolerance),
-        inlet=knots_along(walls, "inlet", tolerance),
-        outlet=knots_along(walls, "outlet", tolerance),
+        inlet=knots_along(walls, "inlet", start.reaches[0], tolerance),
+        outlet=knots_along(walls, "outlet", start.reaches[1], tolerance),
         across=knots_across(walls, tolerance),
     )
 
@@ -104,8 +107,11 @@ def _without_knots(spec: PassageSpec, cross_lines: CrossLines, reaches: tuple[fl
         high=extent.place(1, reaches[1]),
         start=extent.start,
         end=extent.end,
+        noses=extent.blade_range,
+        bend=ends.duct.bend,
         departures=departures(ends, spec.real_half_pitch),
         cross_lines=cross_lines,
+        reaches=(1.0, 1.0),
         correspondence=ends.fitted_correspondence(cross_lines.edge_slope),
         blunt=ends.blunt,
         back=back,
@@ -134,13 +140,22 @@ def knots_across(walls: Mapping[str, WallHalf], tolerance: float) -> Reals:
     return refined(clamped(np.linspace(0.0, 1.0, 4)[1:-1]), error, MAX_POLES)
 
 
-def knots_along(walls: Mapping[str, WallHalf], piece: str, tolerance: float) -> Reals:
-    """Knots of the piece up- or downstream of the blade."""
-    duct = next(iter(walls.values())).camber.duct
-    edge, end = (duct.edges[0], duct.low) if piece == "inlet" else (duct.edges[1], duct.high)
-    joints = (duct.joints_within() - edge) / (end - edge)
-    inner = 1.0 - joints if piece == "inlet" else joints
-    return refined(clamped(_spaced(np.append(inner, 0.5))), _error_along(walls, piece, tolerance), MAX_POLES)
+def knots_along(walls: Mapping[str, WallHalf], piece: str, reach: float, tolerance: float) -> Reals:
+    """Knots of the piece up- or downstream of the blade, in which the skew of cross-lines fades over `reach` of it.
+
+    At kinks one derivative is kept, and two where the skew begins.
+    """
+    camber = next(iter(walls.values())).camber
+    duct, past = camber.duct, int(piece == "outlet")
+    edge, end = (duct.edges[1], duct.high) if past else (duct.edges[0], duct.low)
+    kinked = [kinks(duct, row) for row in (0, 1)]
+    smooth = np.setdiff1d(duct.joints_within(), np.concatenate(kinked))
+    full = _spaced(kink_shares(camber, past))
+    fading = _apart_from(full, fade_joints(reach))
+    single = _apart_from(np.concatenate([full, fading]), _spaced(np.append((smooth - edge) / (end - edge), 0.5)))
+    inner = np.concatenate([np.repeat(full, DEGREE - 1), np.repeat(fading, DEGREE - 2), single])
+    inner = np.sort(inner if past else 1.0 - inner)
+    return refined(clamped(inner), _error_along(walls, piece, tolerance), MAX_POLES + len(full) * (DEGREE - 1))
 
 
 def knots_beside(walls: Mapping[str, WallHalf], own: Reals, tolerance: float) -> Reals:
@@ -201,6 +216,12 @@ def _distances(matrix: Reals, points: Array, normals: Array) -> Reals:
     count = matrix.shape[1]
     native = np.tensordot(matrix, points[:count], axes=1)
     return np.abs(dot(native - points[count:], normals[count:]))  # real: knots come from the real design
+
+
+def _apart_from(others: Reals, places: Reals) -> Reals:
+    """Those places (k,) that are no others (m,)."""
+    near = np.square(places[:, None] - others) < JOINT_SPACING**2
+    return places[~np.any(near, axis=1)]
 
 
 def _spaced(places: Reals) -> Reals:

@@ -42,9 +42,13 @@ class PassageKnots(FrozenRecord):
     high: float
     """u of the outlet"""
     start: float
-    """u down to which the duct is the channel; it straightens upstream"""
+    """u down to which the duct is the channel or flow path; it goes on straight upstream"""
     end: float
     """u up to which it is"""
+    noses: tuple[float, float]
+    """least and greatest u of the blade"""
+    bend: float
+    """how much of u the duct takes to straighten there; 0 where it is straight at once"""
     departures: tuple[float, float]
     """o of the walls' halves on hub and shroud: the rate at which cross-lines leave the blade"""
     blunt: tuple[bool, bool]
@@ -55,6 +59,8 @@ class PassageKnots(FrozenRecord):
     """the blade's own inner knots along u on the back face"""
     cross_lines: CrossLines
     """how cross-lines leave the edges and turn back"""
+    reaches: tuple[float, float]
+    """shares of the way to inlet and outlet over which the skew of cross-lines fades"""
     correspondence: CamberCorrespondence
     """how periodic boundaries follow the blade's sides"""
     blade: Reals

@@ -64,12 +64,13 @@ class PassageSpec:
     def duct(self, knots: PassageKnots) -> Duct:
         """The duct at given knots."""
         return Duct(
-            channel=self.exact.meridional_channel,
+            channel=self.exact.meridional_channel(knots.noses, (knots.start, knots.end)),
             start=knots.start,
             end=knots.end,
             edges=knots.edges,
             length=knots.length,
             unit=knots.unit,
+            bend=knots.bend,
             low=knots.low,
             high=knots.high,
             revolved=self.exact.mapping.revolved,
@@ -84,5 +85,5 @@ class PassageSpec:
         """Camber lines with stations at v (m,), hub first and shroud last, and the walls' halves and strips."""
         camber, ends = (self.camber(knots, places) for places in (v, v[[0, -1]]))
         beside = {wall: wall in self.blade.design.ends or any(camber.blunt) for wall in ("hub", "shroud")}
-        halves = wall_halves(ends, beside, self.half_pitch, knots.departures, knots.cross_lines)
+        halves = wall_halves(ends, beside, self.half_pitch, knots.departures, knots.cross_lines, knots.reaches)
         return camber, halves, wall_strips(ends, beside)

@@ -27,6 +27,11 @@ STRIPS = ("stagnation", "wake")
 """Names of the strips upstream of a blunt leading, and downstream of a blunt trailing edge."""
 EDGE_FACES = ("leading_edge", "trailing_edge")
 """Names of the faces of blunt edges."""
+EASE = 0.5
+"""Share of the way over which the skew of cross-lines begins, far from an edge, to grow in proportion to the way: the
+less, the less steeply it must grow then, and the more knots its beginning asks for."""
+STEEPEST_FADE = 1.0 / (1.0 - EASE / 2.0)
+"""Its greatest slope, where it does not fade over the whole way."""
 WIDE_PITCH = 4.0
 """Half pitch, in meridional lengths of the blade, at which the departure of cross-lines is halved: a wide passage need
 not skew them by a part of its whole width. With 2 walls come nearer to folding (0.010 of the median instead of 0.018),
@@ -76,6 +81,18 @@ def width_share(departing: float, v: Reals) -> Reals:
     return departing * v + (1.0 - departing) * v * v
 
 
+def skew_share(share: Reals, reach: float) -> Reals:
+    """The share of the skew left at a share of the way from inlet or outlet to an edge, over which it fades.
+
+    In proportion to it where it fades over the whole way; else with two continuous derivatives over `reach` of it.
+    """
+    if reach == 1.0:
+        return share
+    within = np.maximum(1.0 - (1.0 - share) / reach, 0.0)
+    eased = np.minimum(within / EASE, 1.0)
+    return STEEPEST_FADE * (EASE * (eased**3 - eased**4 / 2.0) + np.maximum(within - EASE, 0.0))
+
+
 def edge_skew(sine: Array, half_pitch: Array | float, sign: int, edge: int, least: float) -> Array:
     """Length |A| (...) at an edge where the camber line has the given sine; `least` is the skew of `CrossLines`."""
     outwards = 1.0 if edge else -1.0
@@ -123,6 +140,8 @@ class WallHalf(WallPatch):
     departure: float
     """o in the formula"""
     cross_lines: CrossLines
+    reaches: tuple[float, float]
+    """shares of the way to inlet and outlet over which the skew fades"""
 
     def in_plane(self, piece: str, t: Reals, v: Reals) -> Array:
         middle = self.camber.points(piece, t)[..., self.row, :, :]
@@ -142,7 +161,9 @@ class WallHalf(WallPatch):
         if piece == "blade":
             power = self.cross_lines.fade_power
             return self._edge_skew(0) * ((1.0 - t) ** power)[:, None] + self._edge_skew(1) * (t**power)[:, None]
-        return self._edge_skew(0) * t[:, None] if piece == "inlet" else self._edge_skew(1) * (1.0 - t)[:, None]
+        if piece == "inlet":
+            return self._edge_skew(0) * skew_share(t, self.reaches[0])[:, None]
+        return self._edge_skew(1) * skew_share(1.0 - t, self.reaches[1])[:, None]
 
     def _edge_skew(self, edge: int) -> Array:
         direction = self.camber.direction(edge)[..., self.row, :]
@@ -159,6 +180,7 @@ def wall_halves(
     half_pitch: Array,
     departures: tuple[float, float],
     cross_lines: CrossLines,
+    reaches: tuple[float, float],
 ) -> dict[str, WallHalf]:
     """The four halves of hub (first station) and shroud (last), by the names of their faces."""
     lines = {row: camber.lines.rows([row]) for row in (0, -1)}
@@ -172,6 +194,7 @@ def wall_halves(
             half_pitch=half_pitch,
             departure=departures[row],
             cross_lines=cross_lines,
+            reaches=reaches,
         )
         for wall, row in (("hub", 0), ("shroud", -1))
         for half, sign in (("upper", 1), ("lower", -1))

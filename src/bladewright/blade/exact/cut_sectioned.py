@@ -134,9 +134,8 @@ class ExactCutBlade(ExactBlade):
     def section_spans(self) -> tuple[float, ...]:
         return self.uncut.section_spans
 
-    @property
-    def meridional_channel(self) -> StreamSurfaces:
-        return self.uncut.meridional_channel
+    def meridional_channel(self, noses: tuple[float, float], ends: tuple[float, float]) -> StreamSurfaces:
+        return self.uncut.meridional_channel(noses, ends)
 
     @property
     def meridional_extent(self) -> FlowPathExtent:

@@ -82,10 +82,9 @@ class ExactBlade(ABC):
     def breaks_along_v(self) -> Reals:
         """Inner knots that the sides need along the span, each as often as derivatives are lost."""
 
-    @property
     @abstractmethod
-    def meridional_channel(self) -> MeridionalChannel:
-        """The channel, or the flow path, that the blade stands in."""
+    def meridional_channel(self, noses: tuple[float, float], ends: tuple[float, float]) -> MeridionalChannel:
+        """The channel, or the flow path, that the blade stands in; its `ends` and the blade's `noses` by u are held."""
 
     @abstractmethod
     def wall(self, name: str) -> ChannelLine | MeridionalCurve:

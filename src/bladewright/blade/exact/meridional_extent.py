@@ -7,10 +7,14 @@ from functools import cached_property
 import numpy as np
 
 from bladewright.blade.exact.family_sections import FlowPathSections
+from bladewright.blade.flow_path.channel import TransfiniteChannel
+from bladewright.blade.flow_path.cut_channel import FlowPathWall
+from bladewright.blade.flow_path.followed_channel import FollowedChannel, followed_channel, path_ends
 from bladewright.blade.flow_path.meridional_curve import real_first
 from bladewright.blade.flow_path.stream_surface_map import Cascade
 from bladewright.blade.flow_path.stream_surfaces import StreamSurfaces
 from bladewright.blade.flow_path.streamlines import MeridionalChannel, StreamLines, stream_lines
+from bladewright.numerics.elementary import Array
 from bladewright.numerics.roots import bracketed_root
 from bladewright.nurbs.basis import Reals
 
@@ -68,9 +72,9 @@ class ChannelExtent(MeridionalExtent):
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class FlowPathExtent(MeridionalExtent):
-    """A flow path, by t; extents are the mean of the meridional lengths along its stream lines."""
+    """A flow path, by t, or u of the channel that is cut out of it; extents are mean lengths along its stream lines."""
 
-    channel: StreamSurfaces
+    channel: StreamSurfaces | FollowedChannel
     v: Reals
     """(m,) span fractions of the stream lines that the mean is taken of"""
     edges_at: tuple[Reals, Reals]
@@ -106,6 +110,38 @@ class FlowPathExtent(MeridionalExtent):
     @cached_property
     def _edge_lengths(self) -> list[Reals]:
         return [self._lines.abscissa(at[:, None])[:, 0] for at in self.edges_at]
+
+
+def channel_extent(
+    channel: TransfiniteChannel,
+    walls: tuple[FlowPathWall, FlowPathWall] | None,
+    noses: tuple[float, float],
+    v: Reals,
+    lengths: Array,
+) -> MeridionalExtent:
+    """The extent of a blade in a channel between its noses, or between the ends of the flow path whose the walls are.
+
+    `lengths` (..., m) are those of its stream lines at v (m,).
+    """
+    length = float(np.mean(real_first(lengths, 1)))
+    edges, unit = (0.0, 1.0), 1.0
+    if walls is None:
+        start, end = noses
+        return ChannelExtent(
+            channel=channel, start=start, end=end, blade_range=noses, edges=edges, length=length, unit=unit
+        )
+    start, end = path_ends(walls, noses)
+    return FlowPathExtent(
+        channel=followed_channel(channel, walls, noses, (start, end)),
+        start=start,
+        end=end,
+        blade_range=noses,
+        edges=edges,
+        length=length,
+        unit=unit,
+        v=v,
+        edges_at=(np.zeros_like(v), np.ones_like(v)),
+    )
 
 
 def flow_path_extent(surfaces: StreamSurfaces, survey: FlowPathSections) -> FlowPathExtent:

@@ -159,8 +159,8 @@ class ExactSectionedBlade(ExactBlade):
     def check(self) -> None:
         self.check_neighbours()
 
-    @property
-    def meridional_channel(self) -> StreamSurfaces:
+    def meridional_channel(self, noses: tuple[float, float], ends: tuple[float, float]) -> StreamSurfaces:
+        del noses, ends
         return self.surfaces
 
     @cached_property

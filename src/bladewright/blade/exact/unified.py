@@ -2,20 +2,20 @@
 
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, cast
 
 import numpy as np
 
 from bladewright.blade.exact.clearance import Clearance, check_clearance, clearance_of, cleared, off_distance
 from bladewright.blade.exact.exact_blade import ExactBlade
-from bladewright.blade.exact.meridional_extent import ChannelExtent
+from bladewright.blade.exact.meridional_extent import MeridionalExtent, channel_extent
 from bladewright.blade.exact.meridional_view import MeridionalView, channel_view
 from bladewright.blade.exact.section_stack import SectionStack
 from bladewright.blade.flow_path.channel import ChannelLine, TransfiniteChannel, transfinite_channel
-from bladewright.blade.flow_path.cut_channel import channel_in_flow_path
-from bladewright.blade.flow_path.meridional_curve import real_first
+from bladewright.blade.flow_path.cut_channel import FlowPathWall, channel_in_flow_path
+from bladewright.blade.flow_path.followed_channel import followed_channel
 from bladewright.blade.flow_path.stream_surface_map import StreamSurfaceMap, mapping_of
-from bladewright.blade.flow_path.streamlines import StreamLines, stream_lines
+from bladewright.blade.flow_path.streamlines import MeridionalChannel, StreamLines, stream_lines
 from bladewright.blade.native.knots import DEGREE
 from bladewright.errors import DesignError
 from bladewright.frozen import FrozenMapping
@@ -247,9 +247,16 @@ class ExactUnifiedBlade(ExactBlade):
                     times[key] = max(times.get(key, 0), DEGREE - edge.degree + 1)
         return np.array([knot for knot in sorted(times) for _ in range(times[knot])])
 
+    def meridional_channel(self, noses: tuple[float, float], ends: tuple[float, float]) -> MeridionalChannel:
+        walls = self.path_walls
+        return self.channel if walls is None else followed_channel(self.channel, walls, noses, ends)
+
     @property
-    def meridional_channel(self) -> TransfiniteChannel:
-        return self.channel
+    def path_walls(self) -> tuple[FlowPathWall, FlowPathWall] | None:
+        """Hub and shroud of the flow path, where the blade reaches from wall to wall of one."""
+        if self.design.flow_path is None or self.clearance is not None:
+            return None
+        return cast("FlowPathWall", self.full_channel.hub), cast("FlowPathWall", self.full_channel.shroud)
 
     def wall(self, name: str) -> ChannelLine:
         return self.channel.line(name)
@@ -274,19 +281,11 @@ class ExactUnifiedBlade(ExactBlade):
         """Walls, edges and stream lines in the meridional plane."""
         return channel_view(self)
 
-    @property
-    def meridional_extent(self) -> ChannelExtent:
-        ends = -self.before, 1.0 + self.after
-        length = float(np.mean(real_first(self.survey.lines.lengths, 1)))
-        return ChannelExtent(
-            channel=self.channel,
-            start=ends[0],
-            end=ends[1],
-            blade_range=ends,
-            edges=(0.0, 1.0),
-            length=length,
-            unit=1.0,
-        )
+    @cached_property
+    def meridional_extent(self) -> MeridionalExtent:
+        """Between its noses, and where it stands in a flow path, to the ends of that."""
+        noses, survey = (-self.before, 1.0 + self.after), self.survey
+        return channel_extent(self.channel, self.path_walls, noses, survey.v, survey.lines.lengths)
 
     def without_clearance(self) -> "ExactUnifiedBlade":
         gaps = [name for name in ("tip_clearance", "hub_clearance") if getattr(self.design, name) is not None]

@@ -228,16 +228,19 @@ class TransfiniteChannel:
         hub, shroud = (wall.powers(centres, powers)[..., None, :, :, :] for wall in (self.hub, self.shroud))
         w = v[:, None, None, None]
         total = (1.0 - w) * hub + w * shroud
-        edges = []
-        for place, edge in enumerate((self.leading_edge, self.trailing_edge)):
-            low, high = (wall.corners[place][..., None, :] for wall in (self.hub, self.shroud))
-            ruled = (1.0 - v)[:, None] * low + v[:, None] * high
-            edges.append((edge.values(v) - ruled)[..., None, :])
-        start, end = edges
+        start, end = (bow[..., None, :] for bow in self.bows(v))
         total = np.array(np.broadcast_to(total, np.broadcast_shapes(total.shape, (*start.shape[:-2], 1, powers, 2))))
         total[..., 0, :] += start + centres[:, None] * (end - start)
         total[..., 1, :] += end - start
         return total
+
+    def bows(self, v: Reals) -> tuple[Array, Array]:
+        """How far (..., m, 2) the edges at v (m,) are off the straight lines between their ends."""
+        found = []
+        for place, edge in enumerate((self.leading_edge, self.trailing_edge)):
+            low, high = (wall.corners[place][..., None, :] for wall in (self.hub, self.shroud))
+            found.append(edge.values(v) - ((1.0 - v)[:, None] * low + v[:, None] * high))
+        return found[0], found[1]
 
     def check_folds(self, before: float = 0.0, after: float = 0.0) -> None:
         """Refuse a map (u, v) -> (x, r) that is not one to one.

@@ -130,10 +130,10 @@ def _wall(name: str, line: MeridionalCurve, leading: Array, trailing: Array) -> 
         )
     low, high = -start / (end - start), (1.0 - start) / (end - start)
     pieces = matched_curve(line, straight_match(leading, trailing), low, high)
-    return FlowPathWall(line=line, at_edges=(leading, trailing), pieces=_with_straight_ends(pieces))
+    return FlowPathWall(line=line, at_edges=(leading, trailing), pieces=with_straight_ends(pieces))
 
 
-def _with_straight_ends(pieces: PiecewisePolynomial) -> PiecewisePolynomial:
+def with_straight_ends(pieces: PiecewisePolynomial) -> PiecewisePolynomial:
     """The same with a straight piece before the first and after the last, as long as all of them."""
     ends = pieces.breaks[[0, -1]]
     width = float(ends[1] - ends[0])
