@@ -1,6 +1,7 @@
 """Colours of faces: each part's own, one for all, or none, as other readers find them."""
 
 import re
+from types import SimpleNamespace
 
 import pytest
 from OCP.IGESCAFControl import IGESCAFControl_Reader
@@ -14,12 +15,12 @@ from OCP.TDocStd import TDocStd_Document
 from OCP.XCAFDoc import XCAFDoc_ColorGen, XCAFDoc_ColorSurf, XCAFDoc_ColorTool, XCAFDoc_DocumentTool
 
 from bladewright import cad
-from bladewright.cad.colours import COLOURS, part_of
+from bladewright.cad.colours import COLOURS, face_colours, part_of
 from bladewright.cad.face_pieces import whole_name
 from bladewright.errors import CadError
 from machines.closed_form_passages import passage
 
-PARTS = {"upper": "suction side", "lower": "pressure side", "hub": "hub", "shroud": "shroud"}
+PARTS = {"upper": "upper side", "lower": "lower side", "hub": "hub", "shroud": "shroud"}
 
 
 def colours_in(path, reader=STEPCAFControl_Reader):
@@ -87,8 +88,16 @@ def test_the_name_of_a_face_says_its_part(face, part):
     assert part_of(face, "upper") == part
 
 
-def test_the_suction_side_may_be_the_lower_one():
+def test_the_suction_side_may_be_the_lower_one_or_unknown():
     assert (part_of("lower", "lower"), part_of("blade_upper", "lower")) == ("suction side", "pressure side")
+    assert (part_of("lower", None), part_of("blade_upper", None)) == ("lower side", "upper side")
+
+
+def test_blade_and_passage_know_the_suction_side():
+    blade = SimpleNamespace(suction_side="lower", surfaces={"upper": None, "tip": None})
+    assert face_colours(blade, "parts") == {"upper": COLOURS["pressure side"], "tip": COLOURS["tip"]}
+    passage = SimpleNamespace(blade=blade, surfaces={"blade_lower": None})
+    assert face_colours(passage, "parts") == {"blade_lower": COLOURS["suction side"]}
 
 
 def test_the_pieces_of_a_face_have_its_colour(tmp_path):
@@ -96,4 +105,4 @@ def test_the_pieces_of_a_face_have_its_colour(tmp_path):
     cad.write(walls, tmp_path / "passage.step", samples=100)
     found = dict(colours_in(tmp_path / "passage.step"))
     assert {"hub_upper_1", "hub_upper_2", "hub_upper_3"} < set(found)
-    assert {name: COLOURS[part_of(whole_name(name, walls.surfaces), "upper")] for name in found} == found
+    assert {name: COLOURS[part_of(whole_name(name, walls.surfaces), None)] for name in found} == found

@@ -10,6 +10,8 @@ from bladewright.errors import CadError
 COLOURS = {
     "suction side": "#4477aa",
     "pressure side": "#cc5544",
+    "upper side": "#bbaa99",
+    "lower side": "#887766",
     "edge": "#ddaa33",
     "fillet": "#66bbaa",
     "tip": "#aa7744",
@@ -49,7 +51,8 @@ def face_colours(body: ClosedBody, colour: str) -> dict[str, str]:
         return {}
     if colour != "parts":
         return dict.fromkeys(body.surfaces, colour)
-    return {name: COLOURS[part_of(name, suction_side(body))] for name in body.surfaces}
+    suction = suction_side(body)
+    return {name: COLOURS[part_of(name, suction)] for name in body.surfaces}
 
 
 def check_colour(colour: str) -> None:
@@ -61,8 +64,8 @@ def check_colour(colour: str) -> None:
         )
 
 
-def part_of(face: str, suction: str) -> str:
-    """The part that a face belongs to, a key of `COLOURS`; `suction` is the side of the suction, upper or lower."""
+def part_of(face: str, suction: str | None) -> str:
+    """The part that a face belongs to, a key of `COLOURS`; `suction` is the suction side, where it is known."""
     found = (part for pattern, part in _PARTS.items() if re.search(pattern, face))
     part = next(found, None)
     if part is not None:
@@ -70,12 +73,15 @@ def part_of(face: str, suction: str) -> str:
     side = re.search(r"(?:^|_)(upper|lower)(?:_|$)", face)
     if side is None:
         return "disc"
+    if suction is None:
+        return f"{side[1]} side"
     return "suction side" if side[1] == suction else "pressure side"
 
 
-def suction_side(body: object) -> str:
-    """The suction side of a blade, or of the blade in a passage: upper or lower."""
-    return str(getattr(getattr(body, "blade", body), "suction_side", "upper"))
+def suction_side(body: object) -> str | None:
+    """The suction side of a blade, or of the blade in a passage; None where its camber and rotation do not tell."""
+    side: str | None = getattr(getattr(body, "blade", body), "suction_side", None)
+    return side
 
 
 def occ_colour(colour: str) -> Quantity_Color:
