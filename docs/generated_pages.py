@@ -12,6 +12,11 @@ from bladewright.files.keys import tables
 
 HERE = Path(__file__).parent
 PLACE = HERE / "generated"
+LAWS = (
+    "A law along the span is a list of control points from hub to shroud, or a table of values at stations, each of "
+    "which it meets: `{ span = [0, 0.5, 1], values = [-8, -34, -48] }`, with `interpolation` one of `natural`, "
+    "which is the default, `monotone` and `linear`."
+)
 
 
 def key_reference(family):
@@ -19,6 +24,8 @@ def key_reference(family):
     found = tables(family)
     pictures = key_pictures.draw(family, PLACE / "pictures")
     lines = [f"# Keys of `{family}`", "", found[0].meaning, ""]
+    if any(key.laws for table in found for key in table.keys):
+        lines += [LAWS, ""]
     if family in key_pictures.SHOWN_IN:
         example = key_pictures.SHOWN_IN[family]
         said = f"The pictures show the mid-span section of the example `{example}` (black), and what it becomes when"

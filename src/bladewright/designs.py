@@ -98,6 +98,10 @@ class _ByShape:
         choices = {name: handler.generate_schema(kind) for name, kind in kinds.items()}
         return core_schema.tagged_union_schema(choices, discriminator=self._shape)
 
+    def __get_pydantic_json_schema__(self, core: Any, handler: Any) -> dict[str, Any]:
+        """The three shapes as any other union."""
+        return {"anyOf": handler(core)["oneOf"]}
+
     @staticmethod
     def _shape(value: Any) -> str:
         if isinstance(value, Mapping | Stations):

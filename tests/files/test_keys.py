@@ -28,6 +28,16 @@ def test_every_property_of_the_schema_is_a_key_with_a_meaning(family):
         assert all(key.meaning and key.limits for key in table.keys)
 
 
+def test_a_law_at_stations_is_a_law_in_the_schema_and_among_the_keys():
+    laws = {key.name: key for key in tables("unified")[0].keys if key.laws}
+    assert laws["stagger"].limits.startswith("a number or a law along the span")
+    assert {"leading_edge_theta", "metal_angle_out", "thickness_upper"} <= set(laws)
+    assert "tip_clearance" not in laws
+    stagger = schema()["$defs"]["UnifiedBlade"]["properties"]["stagger"]
+    assert {"$ref": "#/$defs/Stations"} in stagger["anyOf"]
+    assert schema()["$defs"]["Stations"]["required"] == ["span", "values"]
+
+
 def test_an_unknown_family_names_the_nearest():
     with pytest.raises(FileError, match="did you mean 'profile'"):
         tables("profil")

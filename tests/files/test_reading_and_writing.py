@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 from bladewright.blade.design.flow_path import Channel
 from bladewright.blade.design.sectioned import SectionedBlade
 from bladewright.blade.design.unified import UnifiedBlade
+from bladewright.designs import Stations
 from bladewright.errors import DesignError, FileError
 from bladewright.files.examples import example_text, examples
 from bladewright.files.families import FAMILIES, family_of
@@ -27,8 +28,21 @@ def number(low, high):
     return st.floats(low, high, exclude_min=True, exclude_max=True)
 
 
+def stations(low, high):
+    """Laws at stations that stay between their values."""
+    inner = st.lists(st.tuples(st.integers(1, 999), number(low, high)), max_size=3, unique_by=lambda pair: pair[0])
+
+    def made(inner, first, last, interpolation):
+        places, values = zip(*sorted(inner), strict=True) if inner else ((), ())
+        span = (0.0, *(place / 1000 for place in places), 1.0)
+        return Stations(span=span, values=(first, *values, last), interpolation=interpolation)
+
+    return st.builds(made, inner, number(low, high), number(low, high), st.sampled_from(["monotone", "linear"]))
+
+
 def law(low, high):
-    return number(low, high) | st.lists(number(low, high), min_size=1, max_size=6).map(tuple)
+    several = st.lists(number(low, high), min_size=1, max_size=6).map(tuple)
+    return number(low, high) | several | stations(low, high)
 
 
 def chordwise(low, high):

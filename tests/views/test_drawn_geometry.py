@@ -5,10 +5,11 @@ import pytest
 from matplotlib.path import Path as Outline
 
 from bladewright.blade.design.families import prismatic
-from bladewright.views.laws import panels_of
+from bladewright.views.laws import Panel, draw_laws, panels_of
 from bladewright.views.meridional import blade_outline
 from bladewright.views.picture import FEW_SPANS, SPANS, sheet
 from bladewright.views.sections import cosine_spacing, drawn_per_unit, narrowest_gap, outline, pitch_of
+from machines.stations import TABLE
 
 EXACT = 1e-12
 """rounding of a scaling"""
@@ -137,6 +138,16 @@ def test_every_law_of_the_design_is_drawn_from_hub_to_shroud(blade_drawn):
             )
             drawn += 1
     assert drawn == 8
+
+
+def test_stations_are_drawn_on_their_law():
+    from matplotlib.figure import Figure
+
+    axes = Figure().add_subplot()
+    draw_laws(axes, Panel("Angles", "angle [deg]", 1.0, {"metal angle out": TABLE}))
+    curve, marks = lines(axes)
+    assert marks == pytest.approx(np.column_stack([TABLE.values, TABLE.span]))
+    assert np.interp(marks[:, 1], curve[:, 1], curve[:, 0]) == pytest.approx(marks[:, 0], abs=1e-12)
 
 
 def test_thickness_laws_are_drawn_along_span_and_chord(drawn):
