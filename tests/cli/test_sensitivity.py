@@ -49,6 +49,27 @@ def test_every_named_quantity_has_its_derivatives(quantity, run, cascade_file):
     assert all(np.abs(value).max() > 0.0 for value in found.json["derivatives"].values())
 
 
+@pytest.mark.parametrize(
+    ("quantity", "unit"),
+    [
+        ("turning", "deg"),
+        ("solidity", "1"),
+        ("maximum-thickness", "mm"),
+        ("throat_width", "mm"),
+        ("outlet_area", "mm2"),
+    ],
+)
+def test_columns_of_the_station_table_have_derivatives_in_their_own_units(quantity, unit, run, cascade_file):
+    words = ["sensitivity", cascade_file, "--of", quantity, "--stations", "0.2,0.7", "--free", "metal_angle_out"]
+    found = run(*words)
+    assert found.status == 0, found.err
+    row = next(line.split() for line in found.out.splitlines() if line.split()[0] == "metal_angle_out")
+    assert row[-1] == f"{unit}/deg"
+    if quantity == "turning":
+        # one degree more at the trailing edge turns one degree less, at either station
+        assert [float(each) for each in row[1:3]] == pytest.approx([-1.0, -1.0], rel=1e-9)
+
+
 def test_changes_are_applied_first(run, vane_file):
     plain, changed = (
         run("sensitivity", vane_file, "--free", "stagger*", "--json", *more).json["value"]

@@ -37,7 +37,7 @@ def test_show_gives_the_figures_of_a_passage_and_what_it_is_held_to(run, cascade
     assert len(data["surfaces"]) == 10
     text = run("show", cascade_file, "--body", "passage", "--downstream", "0.75").out
     assert f"{ring * 1e9:.6g} mm3" in text
-    assert "promised within 1e-07" in text
+    assert "at most 1e-07 allowed" in text
     least = min(each["share"] for each in data["least_jacobian"].values())
     assert f"{least:.2g} of its median, on " in text
 
@@ -48,7 +48,7 @@ def test_walls_that_miss_their_limit_give_status_one(run, cascade_file, monkeypa
     monkeypatch.setitem(summary.PASSAGE_LIMITS, "walls", 1e-18)
     found = run("show", cascade_file, "--body", "passage")
     assert found.status == 1
-    assert "'walls' is not kept" in found.err
+    assert "the check 'walls' failed" in found.err
     assert "NOT KEPT" in found.out
 
 

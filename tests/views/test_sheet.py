@@ -47,7 +47,7 @@ def test_the_head_gives_name_and_key_numbers(drawn):
         assert f"mean chord {drawn.built.chord * drawn.per_metre:.4g} {drawn.unit}" in head
         assert "{} x {} poles a side".format(*drawn.built.knots.poles) in head
         assert f"error {drawn.built.error:.1e} of the chord" in head
-        assert "every promise kept" in head
+        assert "all checks passed" in head
 
 
 def test_radial_machines_have_a_radius_and_cascades_a_height(blade_drawn):

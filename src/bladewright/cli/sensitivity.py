@@ -10,6 +10,7 @@ from bladewright.cli.load_design import built_from, load_design
 from bladewright.cli.options import Call, common, design_argument, set_option
 from bladewright.cli.outcome import Outcome
 from bladewright.cli.progress import progress
+from bladewright.cli.stations import parse_stations
 from bladewright.designs import unit_at
 
 if TYPE_CHECKING:
@@ -35,8 +36,17 @@ def _parse_grid(_: click.Context, __: click.Parameter, text: str) -> tuple[int, 
     "of",
     metavar="QUANTITY",
     help="volume, area, centroid, inertia, chord, throat, passage-volume, or surface: the control points of the sides; "
-    "of a section: area, centroid, chord, perimeter, camber-length, surface.  [volume; area of a section; surface with "
+    "of a section: area, centroid, chord, perimeter, camber-length, surface; or a column of the station table, such as "
+    "turning, stagger, solidity, wrap, sweep, lean, maximum-thickness.  [volume; area of a section; surface with "
     "--check]",
+)
+@click.option(
+    "--stations",
+    callback=parse_stations,
+    default="0.5",
+    show_default=True,
+    metavar="SPANS",
+    help="Where a column of the station table is taken, such as 0,0.5,1.",
 )
 @click.option(
     "--free", multiple=True, metavar="PATTERN", help="Only these parameters, such as 'stagger[*]'. Repeatable."
@@ -64,6 +74,7 @@ def sensitivity(
     call: Call,
     path: Path,
     of: str | None,
+    stations: tuple[float, ...],
     free: tuple[str, ...],
     check: bool,
     output: Path | None,
@@ -87,8 +98,9 @@ def sensitivity(
     if sensitivity_file is not None and points_file is not None:
         return _pull_back(design, built, free, sensitivity_file, points_file)
     if check:
-        return _check(call, design, built, of or "surface", free, output)
-    return _derivatives(call, design, built, of, free)
+        return _check(call, design, built, _quantity(built, of or "surface", stations), free, output)
+    quantity = _quantity(built, of or ("volume" if built.dimension == 3 else "area"), stations)
+    return _derivatives(call, design, built, quantity, free)
 
 
 def _one_task(
@@ -112,7 +124,7 @@ def _one_task(
         raise click.UsageError(f"--of chooses a quantity, which {chosen_tasks[0]} does not take")
 
 
-def _derivatives(call: Call, design: Any, built: Any, of: str | None, free: Sequence[str]) -> Outcome:
+def _derivatives(call: Call, design: Any, built: Any, quantity: "NamedQuantity", free: Sequence[str]) -> Outcome:
     """Table of the derivatives of a named quantity."""
     import numpy as np
 
@@ -120,7 +132,6 @@ def _derivatives(call: Call, design: Any, built: Any, of: str | None, free: Sequ
     from bladewright.derivatives.sensitivity import sensitivity
     from bladewright.derivatives.step_study import size_of
 
-    quantity = _quantity(built, of or ("volume" if built.dimension == 3 else "area"))
     paths = chosen(design, list(free) or None)
     with progress(1, call) as bar:
         bar.set_description_str(quantity.name)
@@ -131,7 +142,7 @@ def _derivatives(call: Call, design: Any, built: Any, of: str | None, free: Sequ
     if quantity.points:
         rates = {path: np.asarray(size_of(rate, quantity)) for path, rate in rates.items()}
     value = None if quantity.points else np.real(np.asarray(quantity.of(built)))
-    unit, table_unit, factor = _units(quantity.power)
+    unit, table_unit, factor = _units(quantity, design)
     units = {path: unit + _per_parameter(design, path) for path in paths}
     data = {
         "name": design.name,
@@ -148,7 +159,9 @@ def _derivatives(call: Call, design: Any, built: Any, of: str | None, free: Sequ
     return Outcome(data=data, text=_table(head, rows))
 
 
-def _check(call: Call, design: Any, built: Any, of: str, free: Sequence[str], output: Path | None) -> Outcome:
+def _check(
+    call: Call, design: Any, built: Any, quantity: "NamedQuantity", free: Sequence[str], output: Path | None
+) -> Outcome:
     """Table of each derivative checked against central differences; a picture as well where `output` names one."""
     from bladewright.derivatives.step_study import LIMIT, step_studies
     from bladewright.derivatives.variables import variables
@@ -157,7 +170,6 @@ def _check(call: Call, design: Any, built: Any, of: str, free: Sequence[str], ou
         from bladewright.views.pages import checked_path
 
         checked_path(output)
-    quantity = _quantity(built, of)
     space = variables(design, free=list(free) or None, knots=built.knots)
     studies: list[StepStudy] = []
     with progress(len(space.paths), call) as bar:
@@ -216,14 +228,14 @@ def _pull_back(design: Any, built: Any, free: Sequence[str], sensitivity: Path, 
     return Outcome(data=data, text=_table(f"{name}: objective of {sensitivity} at {len(points.ids)} points", rows))
 
 
-def _quantity(built: Any, name: str) -> "NamedQuantity":
+def _quantity(built: Any, name: str, stations: Sequence[float]) -> "NamedQuantity":
     """The quantity of this name; a blade has the volume of its passage besides its own quantities."""
     from bladewright.derivatives.quantities import NamedQuantity, named_quantity
 
     more: dict[str, NamedQuantity] = {}
     if built.dimension == 3:
         more[PASSAGE] = NamedQuantity(name=PASSAGE, of=_PassageVolume(), power=3)
-    return named_quantity(built, name, more)
+    return named_quantity(built, name, more, stations)
 
 
 class _PassageVolume:
@@ -287,10 +299,19 @@ def _verdict(study: "StepStudy") -> tuple[str, str]:
     return f"{study.best:.1e}  {np.min(study.floor):.1e}", "FAILED" if study.failure else ""
 
 
-def _units(power: int) -> tuple[str, str, float]:
-    """The SI unit of the JSON figures, and the unit of the table with its factor."""
+def _units(quantity: "NamedQuantity", design: Any) -> tuple[str, str, float]:
+    """The SI unit of the JSON figures, and the unit of the table, the design's or degrees, with its factor."""
+    import math
+
+    from bladewright.section.checks import UNITS
+
+    if quantity.angle:
+        return "rad", "deg", math.degrees(1.0)
+    power, unit = quantity.power, design.length_unit
+    if power == 0:
+        return "1", "1", 1.0
     raised = "" if power == 1 else str(power)
-    return f"m{raised}", f"mm{raised}", 1e3**power
+    return f"m{raised}", f"{unit}{raised}", UNITS[unit] ** -power
 
 
 def _per_parameter(design: Any, path: str) -> str:

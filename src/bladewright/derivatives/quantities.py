@@ -1,6 +1,6 @@
 """Named quantities that the command line differentiates."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -24,6 +24,8 @@ class NamedQuantity:
     """the quantity, of any shape, of a build that may be complex"""
     power: int
     """its unit is this power of a metre"""
+    angle: bool = False
+    """whether it is an angle [rad]"""
     points: bool = False
     """whether it is a set of control points (k, d), whose derivative is reported as a root mean square"""
 
@@ -75,12 +77,45 @@ SECTION: Mapping[str, NamedQuantity] = FrozenMapping(
 line."""
 
 
-def named_quantity(base: Any, name: str, more: Mapping[str, NamedQuantity] | None = None) -> NamedQuantity:
+AREAS = ("inlet_area", "throat_area", "outlet_area")
+"""Areas of a passage that the station table of a blade has besides its columns."""
+OTHER_NAMES = {"sweep": "leading_edge_sweep", "throat_width": "throat"}
+"""Names by which a column is asked for, besides its own."""
+
+
+def station_quantities(base: Any, stations: Sequence[float]) -> dict[str, NamedQuantity]:
+    """The columns of the station table of what a design builds, at stations, and the areas of a blade's passage."""
+    in_space = base.dimension == 3
+    table = base.report(stations) if in_space else base.report()
+
+    def at_stations(name: str) -> Callable[[Any], Array]:
+        return lambda built: getattr(built.report(stations) if in_space else built.report(), name)
+
+    found = {name: at_stations(column) for name, column in OTHER_NAMES.items() if column in table.names}
+    found |= {name: at_stations(name) for name in table.names if name != "span"}
+    kinds = {name: table.heading(OTHER_NAMES.get(name, name))[1] for name in found}
+    quantities = {
+        name: NamedQuantity(
+            name=name, of=of, power=1 if kinds[name] == table.length_unit else 0, angle=kinds[name] == "deg"
+        )
+        for name, of in found.items()
+    }
+    areas = AREAS if in_space else ()
+    return quantities | {name: NamedQuantity(name=name, of=at_stations(name), power=2) for name in areas}
+
+
+def named_quantity(
+    base: Any, name: str, more: Mapping[str, NamedQuantity] | None = None, stations: Sequence[float] = (0.5,)
+) -> NamedQuantity:
     """The quantity of that name for what a design builds; `more` are known besides the usual ones.
 
-    Raises DerivativeError with the most similar name where there is none.
+    Columns of the station table are those at `stations`; a name may be written with hyphens. Raises DerivativeError
+    with the most similar name where there is none.
     """
     known = {**(BLADE if base.dimension == 3 else SECTION), **(more or {})}
+    if name not in known:
+        known = {**station_quantities(base, stations), **known}
+        name = name.replace("-", "_") if name not in known else name
     if name not in known:
         raise DerivativeError(unknown(f"the quantity '{name}'", name, list(known)))
     return known[name]

@@ -182,7 +182,7 @@ def _blade_header(blade: Blade, middle: Section, pitch: float) -> list[str]:
         f"chord / pitch at {place.lower()} {middle.chord * per_metre() / pitch:.3g}",
         f"{columns} x {rows} poles a side",
         f"error {blade.error:.1e} of the chord",
-        "every promise kept" if blade.conformance.kept else "a promise is not kept",
+        "all checks passed" if blade.conformance.kept else "a check failed",
     ]
 
 
