@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from bladewright.blade.exact.clearance import ALLOWED, REACHED, Clearance, clearance_of
+from bladewright.blade.exact.clearance import ALLOWED, Clearance, clearance_of
 from bladewright.blade.exact.exact_blade import ExactBlade
 from bladewright.blade.exact.meridional_extent import FlowPathExtent
 from bladewright.blade.exact.meridional_view import COUNT, MeridionalView
@@ -36,6 +36,9 @@ from bladewright.section.smoothness import Smoothness
 if TYPE_CHECKING:
     from bladewright.blade.design.sectioned import SectionedBlade
 
+REACHED = 1e-10
+"""Distance of the fitted meridian from the exact one, of the mean meridional length, to which knots are refined: at
+places between those looked at it is up to four times that."""
 PLACES = np.sin(0.5 * np.pi * np.linspace(0.0, 1.0, 25)) ** 2
 """Parameters along the sides at which the blade's distance from the wall is looked at, denser at the edges."""
 SAMPLES = 1001
