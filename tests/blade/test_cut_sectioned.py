@@ -101,13 +101,27 @@ def test_what_is_left_of_the_blade_is_the_uncut_blade(cleared):
             assert spans[i, j] == v[i]
 
 
-def test_sections_keep_their_span(cleared):
+@pytest.mark.parametrize("name", ["blunt edges", "ruled"])
+def test_sections_keep_their_span(name):
+    cleared = coarse(name)
     whole = uncut(cleared.design).exact_blade()
     for v in whole.section_spans:
         own, other = cleared.section(v), whole.section(v)
         assert own.stagger == other.stagger
         assert np.array_equal(own.curves["upper"].control_points, other.curves["upper"].control_points)
     assert cleared.design.law_ends == ("hub", "shroud")
+
+
+@pytest.mark.parametrize("name", ["curvature meanline, pair", "ruled"])
+def test_stations_are_those_of_the_design_and_areas_those_of_what_is_left(name):
+    blade, whole = coarse(name), built(uncut(CLEARED[name].changed("tolerance", COARSE)))
+    cut, full = blade.report((0.0, 0.5, 1.0)), whole.report((0.0, 0.5, 1.0))
+    # both are within their tolerance of the same exact blade
+    for what in ("chord", "stagger", "metal_angle_in", "maximum_thickness", "wrap"):
+        assert getattr(cut, what) == pytest.approx(getattr(full, what), rel=30.0 * COARSE)
+    for what in ("inlet_area", "outlet_area"):
+        assert 0.8 < getattr(cut, what) / getattr(full, what) < 0.999
+    assert "clearance cuts it off" in cut.remarks[0]
 
 
 def test_lines_of_a_ruled_blade_stay_straight():

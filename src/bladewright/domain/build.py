@@ -117,7 +117,7 @@ def _blade_nets(spec: PassageSpec, knots: PassageKnots) -> BladeNets:
         own = net(spec.blade, name)
         if own is None or not faces:
             return own
-        other = cast(Array, net(spec.to_walls, name))
+        other = cast(Array, net(spec.blade.uncut, name))
         ends = [(other if wall in faces else own)[:, [row]] for wall, row in (("hub", 0), ("shroud", -1))]
         return concatenated([ends[0], own[:, 1:-1], ends[1]], axis=1)
 

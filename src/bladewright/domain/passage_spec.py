@@ -2,14 +2,12 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from functools import cached_property
 from typing import cast
 
 import numpy as np
 
 from bladewright.blade.exact.exact_blade import ExactBlade
-from bladewright.blade.native.blade import Blade, native_blade
-from bladewright.blade.native.knots import Knots, clamped
+from bladewright.blade.native.blade import Blade
 from bladewright.domain.camber_lines import CamberLines, camber_lines
 from bladewright.domain.duct import Duct
 from bladewright.domain.knots import PassageKnots
@@ -45,7 +43,7 @@ class PassageSpec:
         The strips past its faces need something to begin at.
         """
         return {
-            wall: cast(TrimmedSurface, self.to_walls.surfaces[wall])
+            wall: cast(TrimmedSurface, self.blade.uncut.surfaces[wall])
             for wall in ("hub", "shroud")
             if wall not in self.blade.design.ends and self.blunt
         }
@@ -55,11 +53,6 @@ class PassageSpec:
         """Whether a face lies between the sides' ends at an edge: a back face counts."""
         survey = self.exact.survey
         return "blunt" in survey.edge_kinds or survey.back is not None
-
-    @cached_property
-    def to_walls(self) -> Blade:
-        """The blade from wall to wall, good at its ends alone: at the knots along the sections that the blade has."""
-        return native_blade(self.exact, Knots(u=self.blade.knots.u, v=clamped(np.empty(0))))
 
     def duct(self, knots: PassageKnots) -> Duct:
         """The duct at given knots."""

@@ -99,7 +99,7 @@ class ExactCutBlade(ExactBlade):
     """A blade of sections, cut off at its clearance; v up to where its curves bend to the cut is the span fraction."""
 
     design: "SectionedBlade"
-    uncut: ExactSectionedBlade
+    whole: ExactSectionedBlade
     """the same from wall to wall"""
     offset: OffsetWall
     cut: SpanCut
@@ -111,38 +111,38 @@ class ExactCutBlade(ExactBlade):
 
     def sections(self, v: Reals) -> CutSections:
         """The blade's curves at v (m,), from its one end to its other."""
-        return cut_sections(self.uncut.sections(spans_of_cut(v, self.cut)), v, self.cut)
+        return cut_sections(self.whole.sections(spans_of_cut(v, self.cut)), v, self.cut)
 
     def moved_to(self, design: "SectionedBlade") -> "ExactCutBlade":
-        uncut = self.uncut.moved_to(_without_clearance(design))
-        offset = _offset(design, uncut)
+        whole = self.whole.moved_to(_without_clearance(design))
+        offset = _offset(design, whole)
         meridian = _meridian(offset, self.cut.meridian.knots)
-        return replace(self, design=design, uncut=uncut, offset=offset, cut=replace(self.cut, meridian=meridian))
+        return replace(self, design=design, whole=whole, offset=offset, cut=replace(self.cut, meridian=meridian))
 
     def check(self) -> None:
-        self.uncut.check()
+        self.whole.check()
 
     def breaks_along_u(self) -> Reals:
-        return self.uncut.breaks_along_u()
+        return self.whole.breaks_along_u()
 
     def breaks_along_v(self) -> Reals:
-        return np.empty(0) if self.cut.straight else self.cut.uncut_breaks(self.uncut.breaks_along_v(), DEGREE)
+        return np.empty(0) if self.cut.straight else self.cut.uncut_breaks(self.whole.breaks_along_v(), DEGREE)
 
     @property
     def given_spans(self) -> Reals:
-        spans = self.uncut.given_spans
+        spans = self.whole.given_spans
         return np.union1d(spans[self.cut.bend(spans) == 0.0], ENDS)
 
     @property
     def section_spans(self) -> tuple[float, ...]:
-        return self.uncut.section_spans
+        return self.whole.section_spans
 
     def meridional_channel(self, noses: tuple[float, float], ends: tuple[float, float]) -> StreamSurfaces:
-        return self.uncut.meridional_channel(noses, ends)
+        return self.whole.meridional_channel(noses, ends)
 
     @property
     def meridional_extent(self) -> FlowPathExtent:
-        return self.uncut.meridional_extent
+        return self.whole.meridional_extent
 
     @cached_property
     def meridional_view(self) -> MeridionalView:
@@ -150,24 +150,28 @@ class ExactCutBlade(ExactBlade):
         real = self.offset.real()
         t = np.linspace(float(real.leading), float(real.trailing), COUNT)
         distances = tuple(float(each) for each in real.distance(t[[0, -1]]))
-        return replace(self.uncut.meridional_view, tip=real.points(t), clearance=distances)
+        return replace(self.whole.meridional_view, tip=real.points(t), clearance=distances)
 
     def without_clearance(self) -> ExactSectionedBlade:
-        return self.uncut
+        return self.whole
+
+    @property
+    def uncut(self) -> ExactSectionedBlade:
+        return self.whole
 
     def wall(self, name: str) -> ChannelCurve | MeridionalCurve:
-        return self.cut.meridian if name == self.offset.clearance.wall else self.uncut.wall(name)
+        return self.cut.meridian if name == self.offset.clearance.wall else self.whole.wall(name)
 
     def end_wall(self, row: int) -> tuple[Curve, Reals]:
         if self.design.ends[row] != "tip":
-            return self.uncut.end_wall(row)
+            return self.whole.end_wall(row)
         curve = self.cut.meridian.curve()
         inner = curve.knots[DEGREE + 1 : -DEGREE - 1]
         # at a single knot the fitted meridian is smooth up to what it misses
         return curve, inner[np.sum(inner[:, None] == inner, axis=0) > 1]
 
     def wall_parameters(self, u: Reals) -> Reals:
-        return self.uncut.wall_parameters(u)
+        return self.whole.wall_parameters(u)
 
     def end_places(self, s: Reals) -> tuple[Reals, Reals]:
         own, across = (np.array(each) for each in super().end_places(s))
@@ -182,7 +186,7 @@ class ExactCutBlade(ExactBlade):
         return own, across
 
     def wall_points(self, name: str, u: Reals) -> Reals:
-        return self.uncut.wall_points(name, u)
+        return self.whole.wall_points(name, u)
 
     @property
     def clearance_range(self) -> tuple[float, float]:
@@ -202,10 +206,10 @@ class ExactCutBlade(ExactBlade):
         return self.cut.bent_from
 
     def _section(self, v: float) -> Section:
-        return self.uncut.section(v)
+        return self.whole.section(v)
 
     def smoothness(self, v: float) -> Smoothness:
-        return self.uncut.smoothness(v)
+        return self.whole.smoothness(v)
 
 
 def exact_blade_of_sections(
@@ -238,7 +242,7 @@ def exact_blade_of_sections(
         breaks=np.unique(uncut.breaks_along_v()),
         mapping=uncut.mapping,
     )
-    return ExactCutBlade(design=design, mapping=uncut.mapping, uncut=uncut, offset=offset, cut=cut)
+    return ExactCutBlade(design=design, mapping=uncut.mapping, whole=uncut, offset=offset, cut=cut)
 
 
 def _without_clearance(design: "SectionedBlade") -> "SectionedBlade":

@@ -134,6 +134,11 @@ class ExactBlade(ABC):
         """The same from wall to wall of its channel."""
 
     @property
+    def uncut(self) -> "ExactBlade":
+        """The blade whose v is its laws' span fraction: itself, or that from wall to wall which a clearance cuts."""
+        return self
+
+    @property
     def clearance_range(self) -> tuple[float, float]:
         """Between which parameters of a clearance surface's meridian it keeps the stated distance."""
         return 0.0, 1.0

@@ -273,6 +273,16 @@ class CutSections(FlowPathSections):
     def outlines(self) -> Reals:
         return self.uncut.outlines()[: len(self.v)]
 
+    def camber_tangents(self) -> tuple[Array, Array] | None:
+        found = self.uncut.camber_tangents()
+        return None if found is None else (self._beside(found[0], -2), self._beside(found[1], -2))
+
+    def chord_line(self, u: Array, order: int = 0) -> Array:
+        own = np.broadcast_to(u, (*np.shape(u)[:-2], len(self.v), np.shape(u)[-1]))
+        more = len(self.uncut.v) - len(self.v)
+        padded = concatenated([own, *[own[..., :1, :]] * more], axis=-2)
+        return self._beside(self.uncut.chord_line(padded, order), -3)
+
     def leading_edge(self) -> EdgeDerivatives:
         return self._edge(self.uncut.leading_edge())
 

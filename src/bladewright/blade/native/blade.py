@@ -29,6 +29,7 @@ from bladewright.display import Shown
 from bladewright.errors import DesignError
 from bladewright.frozen import FrozenMapping, FrozenRecord
 from bladewright.numerics.elementary import Array
+from bladewright.nurbs.basis import knots_with_joints
 from bladewright.nurbs.domain import extended, reparametrised
 from bladewright.nurbs.mass_properties import MassProperties, mass_properties
 from bladewright.nurbs.surface import Surface
@@ -145,6 +146,20 @@ class Blade(FrozenRecord, Shown):
         return self.conformance
 
     @cached_property
+    def uncut(self) -> Blade:
+        """The blade from wall to wall whose sections keep their span: itself, where no clearance cuts it off.
+
+        At the knots along the sections that this one has. A unified blade with a clearance is not cut: its laws run
+        between its own ends.
+        """
+        exact = self.exact.uncut
+        if exact is self.exact:
+            return self
+        levels, counts = np.unique(exact.breaks_along_v(), return_counts=True)
+        joints = [(float(v), DEGREE - int(count)) for v, count in zip(levels, counts, strict=True)]
+        return native_blade(exact, Knots(u=self.knots.u, v=knots_with_joints(self.knots.v, DEGREE, joints)))
+
+    @cached_property
     def sections(self) -> tuple[Section, ...]:
         """Sections at hub, mid-span and shroud, and where a design gives more, from hub to shroud.
 
@@ -170,7 +185,9 @@ class Blade(FrozenRecord, Shown):
         """The station table: what is built at span fractions, where None at 0, 0.25, 0.5, 0.75 and 1.
 
         Metal angles, chord, thickness, throat, solidity, lean, sweep and more, each an attribute, (m,) in metres and
-        radians; print it, or take `to_dict()` and `to_csv()`. Raises DesignError where a station is outside [0, 1].
+        radians; print it, or take `to_dict()` and `to_csv()`. Where a clearance cuts a blade from sections off,
+        stations are those of the uncut blade, and areas those of what is left. Raises DesignError where a station is
+        outside [0, 1].
 
         >>> import bladewright as bw
         >>> blade = bw.read_design("core-rotor.toml").build()  # doctest: +SKIP

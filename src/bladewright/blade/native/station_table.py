@@ -45,6 +45,9 @@ class BladeStations(StationTable):
     """The station table of a blade; complex where the blade carries a step."""
 
     blade: Blade
+    """where a clearance cuts a blade from sections off, the uncut one: sections keep their span"""
+    built: Blade
+    """the same with its clearance, whose areas are measured"""
 
     @property
     def in_space(self) -> bool:
@@ -228,7 +231,11 @@ class BladeStations(StationTable):
 
     @property
     def remarks(self) -> tuple[str, ...]:
-        return (self.blade.flow_sense.sentence,)
+        sense = self.built.flow_sense.sentence
+        if self.built is self.blade:
+            return (sense,)
+        name = "hub_clearance" if self.built.design.tip_clearance is None else "tip_clearance"
+        return f"stations count from hub to shroud, and are those of the blade before {name} cuts it off", sense
 
     @cached_property
     def inlet_area(self) -> Array:
@@ -238,7 +245,7 @@ class BladeStations(StationTable):
     @cached_property
     def throat_area(self) -> Array:
         """Area () of the throat of one passage [m^2]."""
-        return throat(self.blade).area
+        return throat(self.built).area
 
     @cached_property
     def outlet_area(self) -> Array:
@@ -266,13 +273,13 @@ class BladeStations(StationTable):
     @cached_property
     def _edge_rates(self) -> tuple[list[Array], list[Array]]:
         """Derivatives by v of x, r and theta of the middle of both edges."""
-        first, last = (self._rates_at(end, self.span) for end in (0.0, 1.0))
+        first, last = (self._rates_at(self.blade, end, self.span) for end in (0.0, 1.0))
         return first, last
 
-    def _rates_at(self, end: float, v: Reals) -> list[Array]:
+    def _rates_at(self, blade: Blade, end: float, v: Reals) -> list[Array]:
         along = [
             motion(side(end, v), side.derivative(end, v, 0, 1), side.derivative(end, v, 0, 1), revolved=self.annular)
-            for side in self.blade.sides
+            for side in blade.sides
         ]
         return [(a[1] + b[1]) / 2.0 for a, b in zip(along[0][:3], along[1][:3], strict=True)]
 
@@ -367,10 +374,10 @@ class BladeStations(StationTable):
         return thickest(lambda side, u: self._motion(side, u, self.span), end)
 
     def _area(self, end: int) -> Array:
-        v, weight = panels(breaks(self.blade.knots.v), PER_SPAN)
-        rates = self._rates_at(float(end), v)
-        slope = unit(self.blade.exact.sections(v).chord_line(np.array([float(end)]), 1)[..., 0, :])
-        point = [side(float(end), v) for side in self.blade.sides]
+        v, weight = panels(breaks(self.built.knots.v), PER_SPAN)
+        rates = self._rates_at(self.built, float(end), v)
+        slope = unit(self.built.exact.sections(v).chord_line(np.array([float(end)]), 1)[..., 0, :])
+        point = [side(float(end), v) for side in self.built.sides]
         middle = (point[0] + point[1]) / 2.0
         radius = length(middle[:, 1:]) if self.annular else middle[:, 2]
         return np.asarray(np.sum(weight * self._pitch(radius) * (slope[:, 0] * rates[1] - slope[:, 1] * rates[0])))
@@ -384,5 +391,6 @@ def station_table(blade: Blade, stations: Sequence[float] | None = None) -> Blad
         length_unit=design.length_unit,
         span=checked_stations(STATIONS if stations is None else stations),
         annular=blade.exact.mapping.revolved,
-        blade=blade,
+        blade=blade.uncut,
+        built=blade,
     )
