@@ -53,24 +53,27 @@
       this.depth = new Float32Array(width * height).fill(-Infinity);
     }
 
-    // a triangle of corners a, b, c (x, y, depth, light, shine); glass tints what is behind it and hides nothing
-    triangle(a, b, c, shade, glass) {
-      const area = (b[0] - a[0]) * (c[1] - a[1]) - (c[0] - a[0]) * (b[1] - a[1]);
+    // a triangle of the corners at i, j, k of an array of x, y, depth, light, shine and side; glass tints what is behind
+    // it and hides nothing
+    triangle(corners, i, j, k, shade, glass) {
+      const ax = corners[i], ay = corners[i + 1], bx = corners[j] - ax, by = corners[j + 1] - ay;
+      const cx = corners[k] - ax, cy = corners[k + 1] - ay, area = bx * cy - cx * by;
       if (!area) return;
-      const low = [0, 1].map((i) => Math.max(0, Math.ceil(Math.min(a[i], b[i], c[i]) - 0.5)));
-      const high = [this.width, this.height].map((size, i) => Math.min(size - 1, Math.floor(Math.max(a[i], b[i], c[i]) - 0.5)));
-      const stepB = (c[1] - a[1]) / area, stepC = (a[1] - b[1]) / area;
-      for (let y = low[1]; y <= high[1]; y++) {
-        const py = y + 0.5 - a[1], px = low[0] + 0.5 - a[0];
-        let shareB = (px * (c[1] - a[1]) - (c[0] - a[0]) * py) / area;
-        let shareC = ((b[0] - a[0]) * py - px * (b[1] - a[1])) / area;
-        for (let x = low[0], at = y * this.width + x; x <= high[0]; x++, at++, shareB += stepB, shareC += stepC) {
-          if (shareB < -1e-6 || shareC < -1e-6 || shareB + shareC > 1.000001) continue;
-          const mix = (k) => a[k] + shareB * (b[k] - a[k]) + shareC * (c[k] - a[k]);
-          const depth = mix(2);
+      const left = Math.max(0, Math.ceil(ax + Math.min(0, bx, cx) - 0.5));
+      const right = Math.min(this.width - 1, Math.floor(ax + Math.max(0, bx, cx) - 0.5));
+      const top = Math.max(0, Math.ceil(ay + Math.min(0, by, cy) - 0.5));
+      const bottom = Math.min(this.height - 1, Math.floor(ay + Math.max(0, by, cy) - 0.5));
+      for (let y = top; y <= bottom; y++) {
+        const py = y + 0.5 - ay;
+        for (let x = left, at = y * this.width + left; x <= right; x++, at++) {
+          const px = x + 0.5 - ax, b = (px * cy - cx * py) / area, c = (bx * py - px * by) / area, a = 1 - b - c;
+          if (a < -1e-6 || b < -1e-6 || c < -1e-6) continue;
+          const depth = a * corners[i + 2] + b * corners[j + 2] + c * corners[k + 2];
           if (depth <= this.depth[at]) continue;
+          const light = a * corners[i + 3] + b * corners[j + 3] + c * corners[k + 3];
+          const shine = a * corners[i + 4] + b * corners[j + 4] + c * corners[k + 4];
           if (!glass) this.depth[at] = depth;
-          this.colours[at] = glass ? shade.over(this.colours[at], mix(3), mix(4)) : shade.solid(depth, mix(3), mix(4));
+          this.colours[at] = glass ? shade.over(this.colours[at], light, shine) : shade.solid(depth, light, shine);
         }
       }
     }
@@ -101,16 +104,16 @@
   const ink = (colour) => packed(...colour.map(byte));
 
   function shading(colour, near, far) {
-    const [red, green, blue] = colour, lit = (base, light, shine) => Math.min(255, 255 * (base * light + GLOSS * shine));
+    const [red, green, blue] = colour, shown = (base, light, shine) => Math.min(255, 255 * (base * light + GLOSS * shine));
     return {
       solid(depth, light, shine) {
         const haze = HAZE * Math.max(0, Math.min(1, (near - depth) / (near - far))), white = 255 * haze;
-        const over = (base) => (lit(base, light, shine) * (1 - haze) + white) & 255;
+        const over = (base) => (shown(base, light, shine) * (1 - haze) + white) & 255;
         return packed(over(red), over(green), over(blue));
       },
       over(behind, light, shine) {
         const old = behind >>> 24 ? behind : 0xffffffff;
-        const over = (base, bits) => (((old >>> bits) & 255) * (1 - PANE) + PANE * lit(base, light, shine)) & 255;
+        const over = (base, bits) => (((old >>> bits) & 255) * (1 - PANE) + PANE * shown(base, light, shine)) & 255;
         return packed(over(red, 0), over(green, 8), over(blue, 16));
       },
     };
@@ -130,26 +133,14 @@
     for (const glass of [false, true]) {
       for (const grid of parts.grids) {
         if (Boolean(grid.glass) !== glass) continue;
-        const { rows, columns, points, normals } = grid, corners = [];
-        const shade = shading(grid.colour, reach, -reach);
-        for (let i = 0; i < points.length; i += 3) {
-          const corner = seen(points, i), n = unit3(normals, i, view.axes);
-          corner.push(0, 0, n[2]);
-          if (n[2] < 0) { n[0] = -n[0]; n[1] = -n[1]; n[2] = -n[2]; }
-          corner[3] = AMBIENT;
-          for (const lamp of lamps) {
-            corner[3] += lamp.strength * Math.max(0, dot(n, lamp.at));
-            corner[4] += lamp.strength * Math.max(0, dot(n, lamp.half)) ** SHARPNESS;
-          }
-          corners.push(corner);
-        }
-        for (let i = 0; i + 1 < rows; i++) {
-          for (let j = 0; j + 1 < columns; j++) {
-            const [a, b, c, d] = [i * columns + j, (i + 1) * columns + j, (i + 1) * columns + j + 1, i * columns + j + 1]
-              .map((k) => corners[k]);
-            if (grid.side && grid.side * (a[5] + b[5] + c[5] + d[5]) <= 0) continue;
-            picture.triangle(a, b, c, shade, glass);
-            picture.triangle(a, c, d, shade, glass);
+        const shade = shading(grid.colour, reach, -reach), corners = lit(grid, seen, view.axes);
+        for (let i = 0; i + 1 < grid.rows; i++) {
+          for (let j = 0; j + 1 < grid.columns; j++) {
+            const a = 6 * (i * grid.columns + j), b = a + 6 * grid.columns, c = b + 6, d = a + 6;
+            const sides = corners[a + 5] + corners[b + 5] + corners[c + 5] + corners[d + 5];
+            if (grid.side && grid.side * sides <= 0) continue;
+            picture.triangle(corners, a, b, c, shade, glass);
+            picture.triangle(corners, a, c, d, shade, glass);
           }
         }
       }
@@ -166,10 +157,21 @@
     return picture;
   }
 
-  function unit3(normals, i, [right, up, towards]) {
-    const n = [normals[i], normals[i + 1], normals[i + 2]];
-    const size = Math.sqrt(dot(n, n)) || 1;
-    return [dot(n, right) / size, dot(n, up) / size, dot(n, towards) / size];
+  // x, y, depth, light, shine (Blinn 1977) and side of every point of a grid
+  function lit({ points, normals }, seen, [right, up, towards]) {
+    const corners = new Float32Array(2 * points.length), n = [0, 0, 0];
+    for (let i = 0; i < points.length; i += 3) {
+      const normal = [normals[i], normals[i + 1], normals[i + 2]], side = dot(normal, towards);
+      const size = (side < 0 ? -1 : 1) / (Math.sqrt(dot(normal, normal)) || 1);
+      [n[0], n[1], n[2]] = [size * dot(normal, right), size * dot(normal, up), size * side];
+      let light = AMBIENT, shine = 0;
+      for (const lamp of lamps) {
+        light += lamp.strength * Math.max(0, dot(n, lamp.at));
+        shine += lamp.strength * Math.max(0, dot(n, lamp.half)) ** SHARPNESS;
+      }
+      corners.set([...seen(points, i), light, shine, side], 2 * i);
+    }
+    return corners;
   }
 
   // axes after the near side was turned to the right by `across` and downwards by `above`
