@@ -10,7 +10,7 @@
 
 Help on one name: help(bladewright.fit). The pages in docs/ go task by task.
 
-Design files     read_design, write_design
+Design files     read_design, write_design; design_from_table (TableDesign)
 Blades           UnifiedBlade in a Channel; CurvatureMeanlineBlade, SuctionPressureBlade, CamberAngleBlade,
                  ProfileBlade, WedgeDiffuserBlade in a FlowPath with Stacking; prismatic
 Meridional       ThroughPoints, ControlPolygon, StraightsAndArcs

@@ -41,6 +41,8 @@ from .errors import FitError as FitError
 from .errors import GeometryError as GeometryError
 from .errors import MeshError as MeshError
 from .files.clouds import read_cloud as read_cloud
+from .files.from_table import TableDesign as TableDesign
+from .files.from_table import design_from_table as design_from_table
 from .files.imported import Imported as Imported
 from .files.origin import design_origin as design_origin
 from .files.parablade import import_parablade as import_parablade

@@ -115,3 +115,39 @@ def test_a_file_keeps_its_comments_and_a_table_of_its_own_for_a_law(tmp_path):
     assert bw.read_design(path) == other
     bw.write_design(changed.changed("section.stagger_angle", (1.0, 2.0)), path)
     assert bw.read_design(path).section.stagger_angle == (1.0, 2.0)
+
+
+@pytest.mark.parametrize("family", ["unified", "curvature-meanline"])
+def test_a_design_with_stations_builds_the_same_with_its_knots_held(family):
+    blade = built(AXIAL[family])
+    again = AXIAL[family].build(knots=blade.knots)
+    for one, other in zip(blade.sides, again.sides, strict=True):
+        assert np.array_equal(one.control_points, other.control_points)
+
+
+def test_values_at_stations_are_variables():
+    blade = built(AXIAL["unified"])
+    space = bw.variables(AXIAL["unified"], free="metal_angle_out.values*", knots=blade.knots)
+    assert space.vector(AXIAL["unified"]) * space.scale == pytest.approx(TABLE.values)
+    assert set(space.scale) == {10.0}
+
+
+FILE_ERRORS = {
+    "{ span = [0, 1] }": "metal_angle_out.values is missing: a list of numbers [deg] must be given",
+    "{ span = [0, 1], values = [1, 'x'] }": 'metal_angle_out.values[1] is "x": a number [deg] is needed',
+    "{ span = [0, 1], vals = [1, 2] }": "there is no 'vals'; did you mean 'values'?",
+    "{ span = [0, 1], values = [1, 2], interpolation = 'natrual' }": "did you mean 'natural'?",
+    "{ span = [0, 0.5], values = [1, 2] }": "metal_angle_out.span runs from 0 to 0.5",
+    "'abc'": 'metal_angle_out is "abc": a number or a list of numbers or a table of span, values, interpolation',
+}
+
+
+@pytest.mark.parametrize("law", FILE_ERRORS)
+def test_a_file_with_a_wrong_law_is_told_the_mistake_and_no_other(law, tmp_path):
+    path = tmp_path / "design.toml"
+    bw.write_design(AXIAL["unified"].changed("metal_angle_out", -30.0), path)
+    path.write_text(path.read_text().replace("metal_angle_out = -30.0", f"metal_angle_out = {law}"))
+    with pytest.raises(bw.DesignError) as caught:
+        bw.read_design(path)
+    assert FILE_ERRORS[law] in str(caught.value)
+    assert "\n" not in str(caught.value)

@@ -109,6 +109,17 @@ def test_edges_in_x_and_r_say_where_the_blade_stands(made):
     assert design.section.metal_angle_in == Stations(span=(0.0, 0.5, 1.0), values=(50.0, 55.0, 60.0))
 
 
+def test_the_station_table_of_what_is_built_makes_the_blade_again(made):
+    first = made(csv(), blade_count=19).design.build()
+    spans = [(row[0] - 100.0) / 60.0 for row in ROWS]
+    found = made(first.report(stations=spans).to_csv())
+    assert "# results in the table are left out: turning, " in found.text
+    again = found.design.build()
+    assert found.design.blade_count == 19
+    for v in spans:
+        assert measured(again, v) == pytest.approx(measured(first, v), rel=1e-4)
+
+
 def test_what_is_set_is_no_assumption(made):
     found = made(csv(), blade_count=23)
     assert found.design.blade_count == 23

@@ -150,6 +150,12 @@ def test_a_section_in_its_plane_has_no_stations():
         SECTION.changed("stagger", TABLE)
 
 
+def test_a_section_with_a_law_is_not_refined():
+    part = EXAMPLES["suction and pressure side of a stator"].design.section
+    with pytest.raises(DesignError, match="stagger_angle belongs to a law along the span"):
+        part.changed("stagger_angle", TABLE).refined(1)
+
+
 def test_a_law_of_stations_has_paths_to_its_values():
     design = ROTOR.changed("metal_angle_out", TABLE)
     assert design.parameters()["metal_angle_out.values[2]"] == -34.0

@@ -8,7 +8,7 @@ assumed, and every assumption is stated in a comment beside its key.
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -34,6 +34,8 @@ THICKNESS, PLACE = 0.08, 0.4
 """Maximum thickness and its place where the table gives none, of the chord: those of a usual compressor blade [-]"""
 TRAILING_RADIUS = 0.1
 """Radius of the trailing edge where the table gives none, of the maximum thickness [-]"""
+SAME_CHORD = 0.01
+"""Difference up to which a chord beside edges is that of the edges: a mean radius may be taken in another way [-]"""
 EXTENSION = 1.5
 """How far hub and shroud continue before and behind the blade, in its largest chord [-]"""
 SAME_ANGLE = 1e-6
@@ -95,6 +97,8 @@ class _Translation:
 
     def result(self) -> TableDesign:
         stagger = self._stagger()
+        if self.table.results:
+            self.remarks["section"] = f"results in the table are left out: {', '.join(self.table.results)}"
         chord, placed = self._placed(stagger)
         blades = self._blade_count(chord)
         section = CurvatureMeanline(
@@ -205,7 +209,7 @@ class _Translation:
             raise FileError(f"{self.where} has no radii: give a column r [mm], or r_le [mm] and r_te [mm]")
         given = [each for each in ("chord", "axial_chord") if each in columns]
         edges = {"x_le", "x_te"} <= columns.keys()
-        if edges + len(given) != 1:
+        if not (self._same_chords(given, stagger) if edges else len(given) == 1):
             found = " and ".join([*(["x_le and x_te"] if edges else []), *given]) or "nothing"
             raise FileError(
                 f"{self.where} says how long the sections are by {found}: give one of chord [mm], axial_chord [mm], or "
@@ -229,7 +233,7 @@ class _Translation:
             }
         chord = columns["chord"] if "chord" in columns else _rounded(columns["axial_chord"] / cosine)
         half = 0.5 * chord * cosine
-        level = bool(np.all(ends[0] == ends[1]))
+        level = np.allclose(ends[0], ends[1], rtol=1e-9)
         self.remarks["flow_path"] = (
             "assumed: a straight annulus of the first and the last row's radii"
             if level
@@ -240,11 +244,21 @@ class _Translation:
         stacking = Stacking(reference="centroid", chord=self._law("chord", self.middle, chord), hub_x=0.0, **theta)
         return chord, {"flow_path": FlowPath(hub=walls[0], shroud=walls[1]), "stacking": stacking}
 
+    def _same_chords(self, given: Sequence[str], stagger: Reals) -> bool:
+        """Whether chords that a table has beside its edges are those of the edges."""
+        columns = self.columns
+        along = np.hypot(columns["x_te"] - columns["x_le"], columns["r_te"] - columns["r_le"])
+        own = {"chord": along / np.cos(np.radians(stagger)), "axial_chord": columns["x_te"] - columns["x_le"]}
+        return all(np.allclose(columns[each], own[each], rtol=SAME_CHORD) for each in given)
+
     def _blade_count(self, chord: Reals) -> int:
         middle = self.count // 2
         radius = 0.5 * (self.columns["r_le"][middle] + self.columns["r_te"][middle])
-        count = max(2, round(float(SOLIDITY * 2.0 * np.pi * radius / chord[middle])))
-        self.remarks["blade_count"] = f"assumed: a solidity of about {SOLIDITY:g} in the middle row"
+        given = self.columns.get("solidity")
+        solidity = SOLIDITY if given is None else given[middle]
+        count = max(2, round(float(solidity * 2.0 * np.pi * radius / chord[middle])))
+        whose = f"assumed: a solidity of about {SOLIDITY:g}" if given is None else "computed: the table's solidity"
+        self.remarks["blade_count"] = f"{whose} in the middle row"
         return count
 
     def _of_chord(self, name: str, chord: Reals) -> Reals | None:
@@ -349,7 +363,7 @@ def _walls(x: list[Reals], r: list[Reals], chord: Reals) -> list[ThroughPoints]:
     reach, found = EXTENSION * float(np.max(chord)), []
     for row in (0, -1):
         start, end = (np.array([x[i][row], r[i][row]]) for i in (0, 1))
-        if start[1] == end[1]:
+        if np.isclose(start[1], end[1], rtol=1e-9):
             points = [(np.min(x[0]) - reach, start[1]), (np.max(x[1]) + reach, end[1])]
         else:
             step = (end - start) / np.hypot(*(end - start)) * reach

@@ -17,6 +17,7 @@ from bladewright.errors import FileError
 from bladewright.files.text import read_text
 from bladewright.nurbs.basis import Reals
 from bladewright.section.checks import UNITS
+from bladewright.section.station_table import COLUMNS as REPORTED
 
 Kind = Literal["length", "angle", "share"]
 _UNITS: dict[Kind, dict[str, float]] = {
@@ -31,10 +32,16 @@ COLUMNS: dict[str, tuple[Kind, ...]] = {
     **dict.fromkeys(("metal_angle_in", "metal_angle_out", "stagger", "theta"), ("angle",)),
     **dict.fromkeys(("chord", "axial_chord", "lean", "sweep"), ("length",)),
     **dict.fromkeys(("maximum_thickness", "leading_edge_radius", "trailing_edge_radius"), ("length", "share")),
-    "maximum_thickness_at": ("share",),
+    **dict.fromkeys(("maximum_thickness_at", "solidity"), ("share",)),
 }
 """The columns that are understood, and what their unit may measure; a share of these is of the span or the chord."""
+RESULTS = frozenset(REPORTED) - frozenset(COLUMNS)
+"""Columns of the station table of what is built that follow from others: they may be there, and do not count."""
 _ALIASES = {
+    "leading_edge_x": "x_le",
+    "leading_edge_r": "r_le",
+    "trailing_edge_x": "x_te",
+    "trailing_edge_r": "r_te",
     "radius": "r",
     "v": "span",
     "span_fraction": "span",
@@ -60,6 +67,8 @@ class StationTable:
     """the columns that are fractions, of those that may be lengths as well"""
     length_unit: str
     """that of the table's first column of lengths"""
+    results: tuple[str, ...]
+    """columns that follow from others, which are left out"""
 
 
 def read_station_table(path: Path) -> StationTable:
@@ -77,6 +86,12 @@ def station_table(text: str, where: str) -> StationTable:
         raise FileError(f"'{where}' is empty: its first line names the columns, such as span,metal_angle_in [deg]")
     sign = max(",;\t", key=lines[0][1].count)
     rows = [next(csv.reader(io.StringIO(line), delimiter=sign)) for _, line in lines]
+    results = [_is_result(cell) for cell in rows[0]]
+    left_out = tuple(_name(cell) for cell, result in zip(rows[0], results, strict=True) if result)
+    rows = [
+        [cell for cell, result in zip(row, results, strict=True) if not result] if len(row) == len(results) else row
+        for row in rows
+    ]
     names, kinds, factors, unit = _header(rows[0], where)
     if len(rows) < 3:
         raise FileError(f"'{where}' has {len(rows) - 1} rows of numbers: two stations at least are needed, hub and tip")
@@ -90,7 +105,7 @@ def station_table(text: str, where: str) -> StationTable:
     of_chord = frozenset(
         name for name, kind in zip(names, kinds, strict=True) if kind == "share" and "length" in COLUMNS[name]
     )
-    return StationTable(where=where, columns=columns, of_chord=of_chord, length_unit=unit)
+    return StationTable(where=where, columns=columns, of_chord=of_chord, length_unit=unit, results=left_out)
 
 
 def _header(cells: Sequence[str], where: str) -> tuple[list[str], list[Kind], list[float], str]:
@@ -108,12 +123,25 @@ def _header(cells: Sequence[str], where: str) -> tuple[list[str], list[Kind], li
     return names, [kind for _, kind, _ in found], factors, unit
 
 
+def _name(cell: str) -> str:
+    """The name in a header such as `Chord [mm]`."""
+    match = _HEADER.fullmatch(cell)
+    return re.sub(r"[\s-]+", "_", match[1].strip().lower()) if match else ""
+
+
+def _is_result(cell: str) -> bool:
+    """Whether a column follows from others; a lean in degrees does, and one in a length is a shift."""
+    match = _HEADER.fullmatch(cell)
+    shift = match is not None and match[2] in UNITS
+    return (_name(cell) in RESULTS and _name(cell) not in _ALIASES) or (_name(cell) == "lean" and not shift)
+
+
 def _column(cell: str, where: str) -> tuple[str, Kind, str]:
     """Name, kind and unit of a column from its header, such as `chord [mm]`."""
     match = _HEADER.fullmatch(cell)
     if match is None:
         raise FileError(f"'{where}': the header '{cell.strip()}' names no column: write it like chord [mm]")
-    given = re.sub(r"[\s-]+", "_", match[1].strip().lower())
+    given = _name(cell)
     name, unit = _ALIASES.get(given, given), match[2]
     if name not in COLUMNS:
         raise FileError(f"'{where}': {unknown(f'the column {given}', given, list(COLUMNS))}")
