@@ -23,7 +23,7 @@ SEARCHED = 1000
 """points a face of a foreign file, each of which is searched for on the native face"""
 REPORT = {
     "file", "format", "schema", "unit", "passed", "failures", "limits", "solids", "shells", "free_edges", "valid",
-    "faces", "edges", "volume_mm3", "area_mm2", "centroid_mm", "version", "design",
+    "kernel_check", "faces", "edges", "volume_mm3", "area_mm2", "centroid_mm", "version", "design",
 }  # fmt: skip
 SIDE = {"step": 1e-9, "igs": 1e-7, "brep": 1e-11}
 """[mm] what a file's digits allow for a blade of 0.1 m: STEP keeps 14 or 15, IGES as many as leave 1e-8 mm"""

@@ -198,3 +198,17 @@ def test_designs_whose_files_would_be_the_same_are_refused(run, vane_file, tmp_p
     assert asked.status == 2
     assert "both named 'vane'" in asked.err
     assert not (tmp_path / "made").exists()
+
+
+def test_a_fine_split_build_is_measured_as_one(run, tmp_path):
+    design = tmp_path / "vane.toml"
+    design.write_text((Path(__file__).parent / "vane.toml").read_text())
+    found = run("build", design, "-o", tmp_path / "out", "--as", "step", "--fine", "--split", "--json")
+    assert (found.status, found.err) == (0, "")
+    trip = found.json["roundtrips"][0]
+    assert trip["kernel_check"] == []
+    assert trip["volume_mm3"]["kernel_default"]["relative_error"] < 1e-5
+    assert {face["name"]: face["pieces"] > 1 for face in trip["faces"]} == {
+        "upper": True, "lower": True, "hub": False, "shroud": False,
+    }  # fmt: skip
+    assert run("verify", tmp_path / "out" / "vane.step", design, "--fine").status == 0

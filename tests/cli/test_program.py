@@ -53,7 +53,7 @@ def test_without_a_command_the_help_is_printed(run):
 
 
 def test_an_interruption_ends_with_130_and_leaves_nothing(run, design_file, monkeypatch):
-    def interrupted(*_):
+    def interrupted(*_, **__):
         raise KeyboardInterrupt
 
     monkeypatch.setattr("bladewright.cli.build_files.bodies_from", interrupted)

@@ -102,6 +102,7 @@ def verify_mesh(path: Path, built: NativeBody, *, samples: int, chordal_deviatio
         edges=EdgeReport(count=len(sides) // 2, shortest=float(sides.min()), max_gap=0.0, max_tolerance=0.0),
         volume=volume,
         default_volume=None,
+        kernel_faults=None,
         area=total,
         centroid=centroid,
         promises=conformance_figures(built),

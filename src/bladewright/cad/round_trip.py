@@ -4,6 +4,7 @@ from dataclasses import dataclass
 from typing import Any, ClassVar
 
 from bladewright import __version__
+from bladewright.cad.kernel_check import KernelFault
 from bladewright.cad.native_body import NamedBody
 from bladewright.display import Shown
 from bladewright.numerics.elementary import Array
@@ -107,6 +108,8 @@ class RoundTrip(Shown):
     """[mm^3]"""
     default_volume: Comparison | None
     """[mm^3] of the file by OpenCASCADE's default quadrature, as FreeCAD and CadQuery show it; none of triangles"""
+    kernel_faults: tuple[KernelFault, ...] | None
+    """what OpenCASCADE's own check finds, which does not count for `passed`; none of triangles"""
     area: Comparison
     """[mm^2]"""
     centroid: tuple[Array, Array]
@@ -132,6 +135,7 @@ class RoundTrip(Shown):
         if self.default_volume is not None:
             shown = self.default_volume
             volume["kernel_default"] = {"cad": shown.cad, "relative_error": shown.relative_error}
+        faults = None if self.kernel_faults is None else [fault.to_dict() for fault in self.kernel_faults]
         report: dict[str, Any] = {
             "file": self.file,
             "format": self.format,
@@ -144,6 +148,7 @@ class RoundTrip(Shown):
             "shells": self.shells,
             "free_edges": self.free_edges,
             "valid": self.valid,
+            "kernel_check": faults,
             "faces": [face.to_dict() for face in self.faces],
             "edges": self.edges.to_dict(),
             "volume_mm3": volume,
@@ -188,4 +193,7 @@ class RoundTrip(Shown):
         if self.default_volume is not None:
             shown = self.default_volume
             lines.append(f"  FreeCAD and CadQuery show a volume of {shown.cad:.8g} mm3 ({shown.relative_error:.1e})")
+        if self.kernel_faults is not None:
+            found = ", ".join(f"{each.fault} ({each.count})" for each in self.kernel_faults)
+            lines.append(f"  FreeCAD's check of the geometry finds {found or 'nothing'}")
         return "\n".join(lines)

@@ -13,6 +13,7 @@ from bladewright.cli.options import (
     comma_separated,
     common,
     extend_option,
+    fine_option,
     parse_colour,
     parse_length,
     parse_name,
@@ -34,6 +35,7 @@ _BUILD_OPTIONS = (
     "force",
     "stations",
     "changes",
+    "fine",
 )
 """Options that are fields of `BuildOptions`; the remaining ones shape a passage."""
 
@@ -87,6 +89,7 @@ _BUILD_OPTIONS = (
     "--jobs", type=click.IntRange(1, 256), metavar="N", help="Designs made at a time.  [as many as processors]"
 )
 @stations_option
+@fine_option
 @extend_option
 @passage_options
 @set_option

@@ -42,6 +42,8 @@ class BuildOptions:
     """whether files are overwritten that were made from another design file"""
     extend: float
     """fraction of the span by which a blade is extended at both ends [-]"""
+    fine: bool
+    """whether the blade meets hub and shroud within 1e-7 mm"""
     split: bool
     """whether faces are cut as other CAD programs need it"""
     changes: Mapping[str, Any]
@@ -75,7 +77,7 @@ def build_files(path: Path, options: BuildOptions, bar: Bar) -> Outcome:
     sense, table = dict[str, Any](), None
     with removing_partial_files(directory, [*files, *reports]):
         bar.set_description_str(" and ".join(options.bodies))
-        for built in bodies_from(options.bodies, design, path, options.extend, options.extents):
+        for built in bodies_from(options.bodies, design, path, options.extend, options.extents, fine=options.fine):
             bar.update(1)
             blade = getattr(built, "blade", built)
             sense = sense or sense_data(blade)

@@ -42,26 +42,27 @@ def built_from(design: Any, path: Path) -> Any:
         return design.build()
 
 
-def blade_from(design: Any, path: Path) -> Any:
-    """The blade of a design; of a 2D design, its prismatic blade.
+def blade_from(design: Any, path: Path, *, fine: bool = False) -> Any:
+    """The blade of a design, with `fine` as its `build` has it; of a 2D design, its prismatic blade.
 
     Raises DesignError, naming the file at `path`, where the shape is impossible.
     """
     from bladewright.blade.design.families import prismatic
 
     with naming_file(path):
-        return (prismatic(design) if design.dimension == 2 else design).build()
+        return (prismatic(design) if design.dimension == 2 else design).build(fine=fine)
 
 
 def bodies_from(
-    bodies: Sequence[str], design: Any, path: Path, extend: float, extents: Mapping[str, Any]
+    bodies: Sequence[str], design: Any, path: Path, extend: float, extents: Mapping[str, Any], *, fine: bool = False
 ) -> Iterator[Any]:
     """The bodies of a design, each a word of BODIES, one after another around the same blade.
 
-    The blade is extended past both ends by the part `extend` of its span; `extents` are the options of the passage.
+    The blade is extended past both ends by the part `extend` of its span; `extents` are the options of the passage;
+    `fine` is that of `build`.
     Raises DesignError, naming the file at `path`, where a shape is impossible.
     """
-    blade = blade_from(design, path)
+    blade = blade_from(design, path, fine=fine)
     for body in bodies:
         if body == "passage":
             yield _passage_around(blade, design, path, **extents)

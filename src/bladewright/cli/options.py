@@ -159,6 +159,9 @@ set_option = click.option(
     help="Change a parameter, such as stagger[1]=-52 or channel.hub[0].x=3; the value is TOML. Repeatable.",
 )
 force_option = click.option("--force", is_flag=True, help="Overwrite a file that is there.")
+fine_option = click.option(
+    "--fine", is_flag=True, help="Let the blade meet hub and shroud within 1e-7 mm, with up to 1.7 times the poles."
+)
 extend_option = click.option(
     "--extend",
     type=click.FloatRange(0.0, 0.5),

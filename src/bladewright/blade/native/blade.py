@@ -18,11 +18,11 @@ from bladewright.blade.native.interpolation import edge_faces, native_sides
 from bladewright.blade.native.knots import DEGREE, MOST_POLES, Knots
 from bladewright.blade.native.properties import blade_properties
 from bladewright.blade.native.refinement import (
-    WALL_TOLERANCE,
     ApproximationError,
     approximation_error,
     mean_chord,
     refined_knots,
+    wall_tolerance,
 )
 from bladewright.blade.native.station_table import BladeStations, station_table
 from bladewright.display import Shown
@@ -243,11 +243,11 @@ class Blade(FrozenRecord, Shown):
         )
 
 
-def native_blade(exact: ExactBlade, knots: Knots | None = None) -> Blade:
+def native_blade(exact: ExactBlade, knots: Knots | None = None, *, fine: bool = False) -> Blade:
     """The native blade of an exact one, at given knots or at knots refined until the design's tolerance holds."""
     chord = mean_chord(exact)
     given = knots is not None
-    knots = knots if knots is not None else refined_knots(exact, chord)
+    knots = knots if knots is not None else refined_knots(exact, chord, fine=fine)
     sections = exact.sections(knots.sites_v)
     nets = native_sides(sections, knots)
     sides = side_surface(nets[0], knots, DEGREE), side_surface(nets[1], knots, DEGREE)
@@ -256,13 +256,14 @@ def native_blade(exact: ExactBlade, knots: Knots | None = None) -> Blade:
     surfaces: Faces = FrozenMapping({"upper": sides[0], "lower": sides[1], **edges, **ends})
     blade = Blade(design=exact.design, surfaces=surfaces, knots=knots, chord=chord, exact=exact)
     if not given:
-        _check_reached(blade)
+        _check_reached(blade, fine=fine)
     return blade
 
 
-def _check_reached(blade: Blade) -> None:
+def _check_reached(blade: Blade, *, fine: bool) -> None:
     tolerance, poles = blade.tolerance, blade.knots.poles
-    wall = min(WALL_TOLERANCE, tolerance)
+    wall = min(wall_tolerance(blade.chord, fine=fine) / blade.chord, tolerance)
+    otherwise = ", or build it without fine" if fine else ""
     error, wall_error, worst = blade.error, blade.wall_error, blade.approximation_error
     if error <= tolerance and wall_error <= wall and poles[0] <= MOST_POLES[0] and poles[1] <= MOST_POLES[1]:
         return
@@ -273,13 +274,13 @@ def _check_reached(blade: Blade) -> None:
         raise DesignError(
             f"tolerance is {tolerance:g} of the chord, which native surfaces hold with {poles[0]} x {poles[1]} poles a "
             f"side, and at most {MOST_POLES[0]} x {MOST_POLES[1]} are allowed: give the laws along the {where} fewer "
-            "control points, and curves in (x, r) fewer points"
+            f"control points, and curves in (x, r) fewer points{otherwise}"
         )
     raise DesignError(
         f"tolerance is {tolerance:g} of the chord: native surfaces reach {error:.2g} (ends {wall_error:.2g} off the "
         f"walls, {wall:g} allowed) with {poles[0]} x {poles[1]} poles a side, at most {MOST_POLES[0]} x "
         f"{MOST_POLES[1]} are allowed; the worst place is u = {worst.u:.3f}, v = {worst.v:.3f}: raise "
-        "the tolerance, raise a very small edge radius, or smooth the laws there"
+        f"the tolerance, raise a very small edge radius, or smooth the laws there{otherwise}"
     )
 
 

@@ -22,6 +22,9 @@ SECTIONS_SHARE = 1e-3
 WALL_TOLERANCE = 1e-7
 """Largest distance of the blade's ends from hub and shroud [chords], as `docs/nomenclature.md` promises: the sides are
 to meet the end faces within what CAD takes for closed; tighter costs poles."""
+FINE_WALLS = 1e-10
+"""The same of fine blades [m]: OpenCASCADE's smallest tolerance, above which other programs call the edges of a file
+inexact. It takes up to 1.7 times the poles along the chord (design/other_programs.md)."""
 SAME_SPAN = 1e-9
 """Span fractions nearer than this are one: far above rounding, far below the distance of any two sections."""
 RESERVE = 0.4
@@ -48,18 +51,24 @@ def mean_chord(exact: ExactBlade) -> float:
     return float(np.mean(np.real(length(sections.trailing_edge().point - sections.leading_edge().point))))
 
 
-def refined_knots(exact: ExactBlade, chord: float, *, slack: float = 1.0) -> Knots:
+def wall_tolerance(chord: float, *, fine: bool = False) -> float:
+    """Largest distance [m] of the ends of a blade, or of a fine one, from hub and shroud."""
+    return min(WALL_TOLERANCE * chord, FINE_WALLS) if fine else WALL_TOLERANCE * chord
+
+
+def refined_knots(exact: ExactBlade, chord: float, *, slack: float = 1.0, fine: bool = False) -> Knots:
     """Knots with which the native sides meet the design's tolerance, and their ends lie on the walls.
 
     The limits beside the tolerance, of walls and of the edges' angles and radii, may be missed by
     `slack` times as much.
     """
     tolerance, spans = exact.design.tolerance * chord, exact.given_spans
+    walls = slack * wall_tolerance(chord, fine=fine)
     start_u, start_v = clamped(exact.breaks_along_u()), exact.breaks_along_v()
-    along_u = refined(start_u, _error_along_u(exact, tolerance, chord, spans, slack), MOST_POLES[0])
+    along_u = refined(start_u, _error_along_u(exact, tolerance, chord, spans, walls), MOST_POLES[0])
     if len(spans) and len(along_u) - DEGREE - 1 > MOST_POLES[0]:
         spans = spans[:0]
-        along_u = refined(start_u, _error_along_u(exact, tolerance, chord, spans, slack), MOST_POLES[0])
+        along_u = refined(start_u, _error_along_u(exact, tolerance, chord, spans, walls), MOST_POLES[0])
     # a knot at each given section makes sure of an interpolation site nearby
     own = [v for v in spans if 0.0 < v < 1.0 and np.min(np.square(start_v - v), initial=1.0) > SAME_SPAN**2]
     along_v = refined(
@@ -76,7 +85,7 @@ def sections_limit(tolerance: float) -> float:
 
 
 def _error_along_u(
-    exact: ExactBlade, tolerance: float, chord: float, spans: Reals, slack: float
+    exact: ExactBlade, tolerance: float, chord: float, spans: Reals, walls: float
 ) -> Callable[[Reals, Reals], Reals]:
     """The error over what is allowed at places along u, by the knots, where sections are interpolated in u alone."""
     v = np.union1d(exact.survey.v, spans)
@@ -84,7 +93,7 @@ def _error_along_u(
     # along v there is no error at given sections, so that most of their limit is left for u
     limit = min(SECTIONS_RESERVE * sections_limit(tolerance / chord) * chord, RESERVE * tolerance)
     allowed = np.where(np.isin(v, spans), limit, RESERVE * tolerance)[:, None]
-    wall_allowed = RESERVE * min(slack * WALL_TOLERANCE * chord, tolerance)
+    wall_allowed = RESERVE * min(walls, tolerance)
     upper = sections.leading_edge(), sections.trailing_edge()
     edges_of_sides = upper, lower_edges(upper, sections.lower_edges())
 
