@@ -101,6 +101,19 @@ def test_what_is_left_of_the_blade_is_the_uncut_blade(cleared):
             assert spans[i, j] == v[i]
 
 
+@pytest.mark.parametrize("name", ["curvature meanline, pair", "stacked"])
+def test_below_the_cut_curves_of_constant_v_are_the_designs_sections(name):
+    blade = built(CLEARED[name])
+    heights = np.linspace(0.0, blade.exact.bent_from, 61)
+    u, v = np.linspace(0.0, 1.0, 61), heights if blade.exact.cut.end else 1.0 - heights
+    whole = uncut(CLEARED[name]).exact_blade().sections(v).points(u)
+    for side, own, exact in zip(blade.sides, blade.exact.sections(v).points(u), whole, strict=True):
+        # the stretch of the flow path that lengths are counted along may differ: rounding
+        assert np.max(np.abs(own - exact)) < 1e-14
+        away = np.linalg.norm(side.grid(u, v).swapaxes(0, 1) - exact, axis=-1)
+        assert np.max(away) < blade.tolerance * blade.chord
+
+
 @pytest.mark.parametrize("name", ["blunt edges", "ruled"])
 def test_sections_keep_their_span(name):
     cleared = coarse(name)

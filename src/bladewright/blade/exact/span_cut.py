@@ -34,6 +34,8 @@ BENT = 5.0
 come no closer than to 1 - 3/5 of their distance."""
 POWER = 3
 """Power p with which they bend: two derivatives along the span are continuous where they begin to."""
+GRADED = 3.0
+"""Ratio of neighbouring knot spans below the part that bends."""
 STEPS = 30
 """Newton steps after which no crossing is expected any more; mostly four suffice."""
 SAMPLES = 201
@@ -64,7 +66,7 @@ class SpanPieces:
         terms = chebyshev.chebvander((2.0 * real - low - high) / (high - low), self.count - 1)
         found = np.zeros((len(real), len(self.ends) - 1, self.count))
         found[np.arange(len(real)), piece] = terms @ self._series(order) * (2.0 / (high - low))[:, None] ** order
-        flat = found.reshape(len(real), -1)
+        flat = found.reshape(len(real), (len(self.ends) - 1) * self.count)
         return flat + 1j * np.imag(v)[..., None] * self.weights(real, order + 1) if np.iscomplexobj(v) else flat
 
     def _series(self, order: int) -> Reals:
@@ -137,9 +139,22 @@ class SpanCut:
             bent = bent[(bent < self.level) if self.end else (bent > self.level)]
             v = np.linspace(0.0, 1.0, 2001)
             bent = np.interp(bent, self.span(v, np.array([self.level]))[:, 0], v)
-            return np.sort(np.concatenate([kept, bent, np.full(degree - self.power + 1, start)]))
+            graded = self._graded()
+            graded = graded if self.end else 1.0 - graded
+            return np.sort(np.concatenate([kept, bent, graded, np.full(degree - self.power + 1, start)]))
         own = (breaks - (1 - self.end) * self.level) / (self.level if self.end else 1.0 - self.level)
         return own[(own > 0.0) & (own < 1.0)]
+
+    def _graded(self) -> Reals:
+        """Heights (n,) of single knots below where curves bend, with spans that grow from there.
+
+        Beside a much shorter one the error of a span is largest near its end, where it is not looked for.
+        """
+        found, width = [self.bent_from], 1.0 - self.bent_from
+        while found[-1] > (GRADED + 1.0) * width:
+            width *= GRADED
+            found.append(found[-1] - width)
+        return np.array(found[1:])
 
     def crossing(self, nodes: Array) -> Crossing:
         """Where lines through `nodes` (..., n, k, 3) meet the cut; raises DesignError where one does not."""
