@@ -7,7 +7,7 @@ import bladewright as bw
 from bladewright.designs import Stations
 from bladewright.errors import DesignError, FileError
 from bladewright.files.from_table import design_from_table
-from bladewright.files.station_table import station_table
+from bladewright.files.given_table import given_table
 
 HEADER = (
     "r [mm],metal_angle_in [deg],metal_angle_out [deg],chord [mm],maximum_thickness [mm],maximum_thickness_at [%],"
@@ -170,4 +170,4 @@ def test_equal_values_are_one_number_and_two_stations_are_enough(made):
     design = made(f"{SMALL}50,50,20,40\n90,50,25,40\n").design
     assert design.section.metal_angle_in == 50.0
     assert design.section.metal_angle_out == Stations(span=(0.0, 1.0), values=(20.0, 25.0))
-    assert station_table(f"{SMALL}50,50,20,40\n90,50,25,40\n", "x").length_unit == "mm"
+    assert given_table(f"{SMALL}50,50,20,40\n90,50,25,40\n", "x").length_unit == "mm"

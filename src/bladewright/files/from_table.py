@@ -22,7 +22,7 @@ from bladewright.blade.design.meridional_curve import ThroughPoints
 from bladewright.blade.design.stacking import Stacking
 from bladewright.designs import Law, Point, Stations
 from bladewright.errors import DesignError, FileError
-from bladewright.files.station_table import StationTable, read_station_table
+from bladewright.files.given_table import GivenTable, read_given_table
 from bladewright.files.writing import text_of
 from bladewright.nurbs.basis import Reals
 from bladewright.section.curvature_meanline import CurvatureMeanline
@@ -67,7 +67,7 @@ def design_from_table(path: Path, changes: Mapping[str, Any] | None = None) -> T
 
     Raises FileError where the table does not say enough, and DesignError where its blade cannot be built.
     """
-    made = _Translation(read_station_table(path), re.sub(r'[/\\:*?"<>|\s]+', "-", path.stem) or "blade").result()
+    made = _Translation(read_given_table(path), re.sub(r'[/\\:*?"<>|\s]+', "-", path.stem) or "blade").result()
     try:
         design = made.design.changed(changes or {})
         design.exact_blade().check()
@@ -85,7 +85,7 @@ def _is_in(path: str, key: str) -> bool:
 class _Translation:
     """A table on its way to a design."""
 
-    def __init__(self, table: StationTable, name: str) -> None:
+    def __init__(self, table: GivenTable, name: str) -> None:
         self.table, self.columns, self.name = table, dict(table.columns), name
         self.where = f"'{table.where}'"
         self.remarks: dict[str, str] = {}

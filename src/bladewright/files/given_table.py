@@ -56,8 +56,8 @@ _HEADER = re.compile(r"\s*([^\[(]+?)\s*(?:[\[(]\s*([^\])]*?)\s*[\])])?\s*")
 
 
 @dataclass(frozen=True, kw_only=True)
-class StationTable:
-    """Numbers at stations from hub to shroud."""
+class GivenTable:
+    """Numbers at stations from hub to shroud, as a designer has them."""
 
     where: str
     """the file, for messages"""
@@ -71,15 +71,15 @@ class StationTable:
     """columns that follow from others, which are left out"""
 
 
-def read_station_table(path: Path) -> StationTable:
+def read_given_table(path: Path) -> GivenTable:
     """The table in a CSV file; raises FileError with line and cure where it is none.
 
     Entries are parted by commas, semicolons or tabs. Lines that begin with # and empty ones do not count.
     """
-    return station_table(read_text(path), str(path))
+    return given_table(read_text(path), str(path))
 
 
-def station_table(text: str, where: str) -> StationTable:
+def given_table(text: str, where: str) -> GivenTable:
     """The table in a CSV text; `where` names it in a FileError."""
     lines = [(i, line) for i, line in enumerate(text.splitlines(), 1) if line.strip() and not line.startswith("#")]
     if not lines:
@@ -105,7 +105,7 @@ def station_table(text: str, where: str) -> StationTable:
     of_chord = frozenset(
         name for name, kind in zip(names, kinds, strict=True) if kind == "share" and "length" in COLUMNS[name]
     )
-    return StationTable(where=where, columns=columns, of_chord=of_chord, length_unit=unit, results=left_out)
+    return GivenTable(where=where, columns=columns, of_chord=of_chord, length_unit=unit, results=left_out)
 
 
 def _header(cells: Sequence[str], where: str) -> tuple[list[str], list[Kind], list[float], str]:
