@@ -3,7 +3,8 @@
 import re
 from abc import ABC, abstractmethod
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field, fields, replace
+from contextlib import contextmanager
+from dataclasses import dataclass, field, fields, is_dataclass, replace
 from typing import Annotated, Any, ClassVar, Literal, NamedTuple, Self
 
 from bladewright.errors import DesignError
@@ -66,7 +67,11 @@ class Part:
             if name not in names:
                 raise DesignError(unknown(where, name, names))
             put.setdefault(name, []).append((rest, what, where))
-        return replace(self, **{name: _with(getattr(self, name), changes) for name, changes in put.items()})
+        parts = {}
+        for name, changes in put.items():
+            with naming(name, getattr(self, name)):
+                parts[name] = _with(getattr(self, name), changes)
+        return replace(self, **parts)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -212,7 +217,11 @@ def _with(node: Any, changes: list[_Change]) -> Any:
         return node
     if isinstance(node, tuple) and not isinstance(node, Point):
         return tuple(_with(item, groups[place]) if place in groups else item for place, item in enumerate(node))
-    parts: dict[str, Any] = {str(step): _with(getattr(node, str(step)), group) for step, group in groups.items()}
+    parts: dict[str, Any] = {}
+    for step, group in groups.items():
+        part = getattr(node, str(step))
+        with naming(str(step), part):
+            parts[str(step)] = _with(part, group)
     return node._replace(**parts) if isinstance(node, Point) else replace(node, **parts)
 
 
@@ -233,10 +242,33 @@ def _check_step(node: Any, step: str | int, path: str) -> None:
     raise DesignError(f"{path} does not exist: what stands before '{step}' is {kind}; see design.parameters()")
 
 
+def whole_path(path: str, message: str, part: Any) -> str:
+    """A message about the part at a path, with that path before the name of a field or of the part at its beginning.
+
+    A message that begins with neither is returned as it is.
+    """
+    own = re.sub(r"\[\d+\]$", "", path).rpartition(".")[2]
+    if re.match(rf"{re.escape(own)}\b", message):
+        return path + message.removeprefix(own)
+    first = re.match(r"\w+", message)
+    names = [each.name for each in fields(part)] if is_dataclass(part) else []
+    return f"{path}.{message}" if first and first[0] in names else message
+
+
+@contextmanager
+def naming(path: str, part: Any) -> Iterator[None]:
+    """A context in which every DesignError about a part gets the `whole_path`."""
+    try:
+        yield
+    except DesignError as error:
+        raise DesignError(*(whole_path(path, str(each), part) for each in error.args)) from error
+
+
 def unknown(path: str, name: str, known: list[str]) -> str:
     """The message for a name that does not exist, with the nearest that does."""
     from difflib import get_close_matches
 
     near = get_close_matches(name, known, n=1, cutoff=0.5)
     hint = f"did you mean '{near[0]}'?" if near else f"known are {', '.join(known)}"
-    return f"{path} does not exist: there is no '{name}'; {hint}"
+    said = "" if re.search(rf"(^|\W){re.escape(name)}\W*$", path) else f": there is no '{name}'"
+    return f"{path} does not exist{said}; {hint}"

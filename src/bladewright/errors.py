@@ -5,8 +5,18 @@ class BladewrightError(Exception):
     """Base of all errors a user can cause; the command line turns it into one paragraph and exit status 2."""
 
 
-class DesignError(BladewrightError):
-    """A design that cannot be built: a parameter out of its limits, or a shape that is impossible."""
+class DesignError(BladewrightError, ValueError):
+    """A design that cannot be built: parameters out of their limits, or a shape that is impossible.
+
+    `args` are a paragraph for each thing to correct. It is a ValueError so that the validation of a design file goes on
+    with the other keys.
+    """
+
+    def __str__(self) -> str:
+        if len(self.args) < 2:
+            return super().__str__()
+        numbered = (f"({number}) {text}" for number, text in enumerate(self.args, start=1))
+        return f"{len(self.args)} things to correct: {'; '.join(numbered)}"
 
 
 class FileError(BladewrightError):

@@ -121,7 +121,7 @@ def test_laws_that_ask_for_too_many_poles_are_refused_for_their_number(monkeypat
 @pytest.mark.parametrize(
     ("put", "said"),
     [
-        ({"stacking": {"sweep": 5.0}}, "stacking.sweep does not exist: there is no 'sweep'; known are reference,"),
+        ({"stacking": {"sweep": 5.0}}, "stacking.sweep does not exist: in this family it is sweep"),
         ({"leading_edge": 7.0}, "leading_edge is 7.0: a table of points, spacing, ends or a table of"),
         ({"section": 7.0}, "section is 7.0: a table of "),
     ],

@@ -2,6 +2,7 @@
 
 import math
 import os
+import re
 import tomllib
 from pathlib import Path
 
@@ -17,6 +18,7 @@ from bladewright.errors import DesignError, FileError
 from bladewright.files.examples import example_text, examples
 from bladewright.files.families import FAMILIES, family_of
 from bladewright.files.reading import design_from, parsed, read_design
+from bladewright.files.validation_messages import key_paths
 from bladewright.files.writing import text_of, updated, write_design
 from bladewright.section.planar import PlanarSection
 from bladewright.section.unified import UnifiedSection
@@ -284,8 +286,81 @@ def test_a_path_that_is_text_reads_like_a_path(tmp_path):
     assert read_design(str(path)) == read_design(Path(path))
 
 
-def test_a_refusal_names_how_many_more_there_are(tmp_path):
-    path = tmp_path / "design.toml"
-    path.write_text(TEXT.replace("stagger  ", "stager  ").replace("blade_count = 22", 'blade_count = "22"'))
-    with pytest.raises(DesignError, match=r"stager .*did you mean 'stagger'\? \(2 more to correct after that\)"):
+def refusal(tmp_path, example, *changes):
+    """The message with which the file of an example is refused after these replacements of its text."""
+    path, text = tmp_path / "design.toml", example_text(example)
+    for old, new in changes:
+        assert old in text
+        text = text.replace(old, new)
+    path.write_text(text)
+    with pytest.raises(DesignError) as caught:
         read_design(path)
+    return str(caught.value).removeprefix(f"{path}: ")
+
+
+def test_a_refusal_names_everything_that_is_to_be_corrected(tmp_path):
+    text = refusal(
+        tmp_path,
+        "fan-rotor",
+        ("stagger  ", "stager  "),
+        ("blade_count = 22", 'blade_count = "22"'),
+        ("[22.8, 100.5]", '[22.8, "x"]'),
+        ("tangent_in           = [0.34,", 'tangent_in = ["a",'),
+    )
+    beginnings = [
+        "5 things to correct: (1) stager does not exist; did you mean 'stagger'?",
+        '(2) blade_count is "22": a whole number is needed',
+        '(3) tangent_in[0] is "a"',
+        '(4) channel.hub[0].r is "x": a number [length] is needed',
+        "(5) stagger is missing: ",
+    ]
+    assert [text.find(each) >= 0 for each in beginnings] == [True] * 5
+    assert text.startswith(beginnings[0])
+
+
+def test_values_outside_their_limits_are_named_together_with_their_whole_paths(tmp_path):
+    text = refusal(
+        tmp_path,
+        "core-rotor",
+        ("maximum_thickness_at = 0.45", "maximum_thickness_at = 1.45"),
+        ("leading_edge_index = 4.0", "leading_edge_index = -4.0"),
+        ("blade_count = 29", "blade_count = 2.5"),
+    )
+    assert text.startswith("3 things to correct: (1) blade_count is 2.5")
+    assert "(2) section.thickness.leading_edge_index is -4: it must be between 0 and 12" in text
+    assert "(3) section.thickness.maximum_thickness_at is 1.45: the maximum must stand between" in text
+
+
+def test_a_change_names_the_whole_path_too():
+    design = design_from(tomllib.loads(example_text("core-rotor")), "rotor.toml")
+    with pytest.raises(DesignError, match=r"^section\.thickness\.maximum_thickness_at is 1\.45: "):
+        design.changed("section.thickness.maximum_thickness_at", 1.45)
+    with pytest.raises(DesignError, match=r"^section\.curvature_places"):
+        design.changed("section.curvature_places", (0.5,))
+
+
+def test_what_is_found_while_building_has_its_whole_path():
+    design = design_from(tomllib.loads(example_text("core-rotor")), "rotor.toml")
+    with pytest.raises(DesignError, match=r"^section\.metal_angle_out less metal_angle_in is "):
+        design.changed({"section.curvature": (-1.0, 1.0), "section.curvature_places": ()}).build()
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "said"),
+    [
+        ("metal_angle_in  =", "lean = 1\nmetal_angle_in =", "section.lean does not exist: in this family it is lean"),
+        ("[flow_path]", "stagger = 3\n[flow_path]", "stagger does not exist in this family: it is a key of unified"),
+        ("[flow_path]", "metal_angle_in = 3\n[flow_path]", "in this family it is section.metal_angle_in"),
+        ('"modified-naca"', '"quartic-spline"', 'leading_edge_index does not exist here: it belongs to law = "modif'),
+        ("blade_count =", "blade_cuont =", "blade_cuont does not exist; did you mean 'blade_count'?"),
+    ],
+)
+def test_a_key_of_another_place_or_family_is_said_to_belong_there(tmp_path, old, new, said):
+    assert said in refusal(tmp_path, "core-rotor", (old, new))
+
+
+@pytest.mark.parametrize("name", examples())
+def test_every_parameter_of_an_example_is_a_key_of_its_family(name):
+    design = design_from(tomllib.loads(example_text(name)), name)
+    paths = {re.sub(r"\[\d+\]", "", path) for path in design.parameters()}
+    assert {re.sub(r"\.[xr]$", "", path) for path in paths} <= {*key_paths(type(design))}

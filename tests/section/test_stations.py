@@ -121,7 +121,7 @@ REFUSED = {
     "stagger.span has 1 entries": {"span": [0.0], "values": [1.0]},
     "stagger.values has 3 entries and stagger.span 2": {"span": [0.0, 1.0], "values": [1.0, 2.0, 3.0]},
     "stagger.interpolation is 'naturally'": {"span": [0.0, 1.0], "values": [1.0, 2.0], "interpolation": "naturally"},
-    "stagger.value does not exist: there is no 'value'; did you mean 'values'?": {"span": [0.0, 1.0], "value": [1.0]},
+    "stagger.value does not exist; did you mean 'values'?": {"span": [0.0, 1.0], "value": [1.0]},
     "stagger.values is None": {"span": [0.0, 1.0]},
     "stagger.values[1] is 'x': a number": {"span": [0.0, 1.0], "values": [1.0, "x"]},
     "stagger.values[0] is nan": {"span": [0.0, 1.0], "values": [float("nan"), 1.0]},

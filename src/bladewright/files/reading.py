@@ -16,7 +16,7 @@ from bladewright.designs import Design, unknown
 from bladewright.errors import DesignError, FileError
 from bladewright.files.families import FAMILIES
 from bladewright.files.text import read_text
-from bladewright.files.validation_messages import validation_message
+from bladewright.files.validation_messages import validation_messages
 
 
 def read_design(path: str | PathLike[str]) -> Design:
@@ -47,7 +47,7 @@ def design_from(document: Mapping[str, Any], where: str) -> Design:
         kind = _class_of(document.pop("family", None), document)
         return adapter(kind).validate_json(json.dumps(document, default=str), strict=True)
     except ValidationError as error:
-        raise DesignError(f"{where}: {validation_message(error, document, kind)}") from error
+        raise DesignError(f"{where}: {DesignError(*validation_messages(error, document, kind))}") from error
     except DesignError as error:
         raise DesignError(f"{where}: {error}") from error
     except RecursionError:

@@ -1,16 +1,19 @@
-"""Validation errors of pydantic, each turned into one paragraph: path, value, and what is needed."""
+"""Validation errors of pydantic, each turned into one paragraph: whole path, value, and what is needed."""
 
 import json
 import math
 from collections.abc import Mapping
 from dataclasses import fields, is_dataclass
+from difflib import get_close_matches
+from functools import cache
 from types import NoneType, UnionType
 from typing import Any, Literal, Union, get_args, get_origin, get_type_hints
 
 from pydantic import ValidationError
 from pydantic_core import ErrorDetails
 
-from bladewright.designs import OF_LAW, Design, Point, unknown
+from bladewright.designs import OF_LAW, Design, Point, unknown, whole_path
+from bladewright.files.families import FAMILIES
 from bladewright.section.tagged_unions import tags
 
 _NEEDED = {
@@ -24,18 +27,27 @@ _RANKS = {"unexpected_keyword_argument": 0, "missing": 2}
 """Order in which errors are reported: unknown keys, wrong values (1), missing keys."""
 
 
-def validation_message(error: ValidationError, document: Mapping[str, Any], kind: type[Design]) -> str:
-    """A paragraph on the first error (unknown keys before wrong values before missing keys), and how many more."""
-    found: dict[str, tuple[int, int, str]] = {}
+def validation_messages(error: ValidationError, document: Mapping[str, Any], kind: type[Design]) -> list[str]:
+    """A paragraph for each thing to correct: unknown keys, then wrong values, then missing keys."""
+    found: dict[str, list[tuple[int, int, str, str]]] = {}
     for each in error.errors(include_url=False):
         place = _Place(each["loc"], document, kind)
         rank = _RANKS.get(each["type"], 1) if place.depth_in_list == 0 else 1
+        if each["type"] == "value_error":
+            for text in each["ctx"]["error"].args:
+                own = whole_path(place.path, str(text), place.annotation) if place.path else str(text)
+                own = own if own.startswith(place.path) else f"{place.path}: {own}"
+                found.setdefault(f"{place.path}: {text}", []).append((rank, 0, place.path, own))
+            continue
+        depth = place.path.count(".") + place.path.count("[")
+        found.setdefault(place.field, []).append((rank, -depth, place.path, _error_text(each, place)))
+    said = list[tuple[int, str]]()
+    for candidates in found.values():
         # of the members of a union, the one that was intended is the one that reached deepest into the value
-        candidate = (rank, -len(place.path), _error_text(each, place))
-        found[place.field] = min(found.get(place.field, candidate), candidate)
-    first = min(found.values(), key=lambda item: item[0])
-    more = len(found) - 1
-    return first[2] + (f" ({more} more to correct after that)" if more else "")
+        rank, depth, *_ = min(candidates)
+        deepest = {path: text for *ranks, path, text in sorted(candidates, reverse=True) if ranks == [rank, depth]}
+        said += ((rank, text) for text in reversed(deepest.values()))
+    return list(dict.fromkeys(text for _, text in sorted(said, key=lambda each: each[0])))
 
 
 def shown(value: Any) -> str:
@@ -100,6 +112,7 @@ class _Place:
         self.path = self.field = self.unit = ""
         self.annotation: Any = kind
         self.names: list[str] = [each.name for each in fields(kind)]
+        self.kind = kind
         self.depth_in_list = 0
         node: Any = document
         for step in loc:
@@ -137,7 +150,7 @@ class _Place:
 def _error_text(error: ErrorDetails, place: _Place) -> str:
     unit = f" [{place.unit}]" if place.unit else ""
     if error["type"] == "unexpected_keyword_argument":
-        return unknown(place.path, place.path.rpartition(".")[2], place.names)
+        return _unknown_key(place)
     if error["type"] == "missing" and place.depth_in_list == 0:
         return f"{place.path} is missing: {needed(place.annotation)}{unit} must be given"
     if error["type"] == "missing":
@@ -147,6 +160,43 @@ def _error_text(error: ErrorDetails, place: _Place) -> str:
     value = shown(error["input"])
     what = f"{place.path or 'the file'} is {value}: {needed(place.annotation)}{unit} is needed"
     return what + _nearest_choice(error, place)
+
+
+def _unknown_key(place: _Place) -> str:
+    """The message for a key that does not exist here, with the place or the families in which it does."""
+    name = place.path.rpartition(".")[2]
+    own = sorted(path for path in key_paths(place.kind) if path.rpartition(".")[2] == name)
+    if place.path in own:
+        tags_of = " or ".join(sorted(key_paths(place.kind)[place.path]))
+        return f"{place.path} does not exist here: it belongs to {tags_of}"
+    if own:
+        return f"{place.path} does not exist: in this family it is {' or '.join(own)}"
+    families = [family for family, kind in FAMILIES.items() if place.path in key_paths(kind)]
+    if families and not get_close_matches(name, place.names, n=1, cutoff=0.9):
+        return f"{place.path} does not exist in this family: it is a key of {', '.join(families)}"
+    return unknown(place.path, name, place.names)
+
+
+@cache
+def key_paths(kind: Any, path: str = "", within: tuple[Any, ...] = ()) -> dict[str, set[str]]:
+    """The path of every key that a design, or a part of it, may have; with the tags of the parts that have it."""
+    found: dict[str, set[str]] = {}
+    hints, told = get_type_hints(kind), " and ".join(f"{name} = {shown(value)}" for name, value in tags(kind).items())
+    for each in fields(kind):
+        where = path + each.name
+        found.setdefault(where, set()).update([told] if told else [])
+        for part in _parts_in(hints[each.name]):
+            if part not in within:
+                for below, tags_of in key_paths(part, f"{where}.", (*within, part)).items():
+                    found.setdefault(below, set()).update(tags_of)
+    return found
+
+
+def _parts_in(annotation: Any) -> list[Any]:
+    """The part classes that a field may hold."""
+    if is_dataclass(annotation) and isinstance(annotation, type):
+        return [annotation]
+    return [part for arm in get_args(annotation) for part in _parts_in(arm)]
 
 
 def _wrong_tag(error: ErrorDetails, place: _Place) -> str:
@@ -169,7 +219,5 @@ def _nearest_choice(error: ErrorDetails, place: _Place) -> str:
 
 
 def _suggestion(given: object, known: list[str]) -> str:
-    from difflib import get_close_matches
-
     near = get_close_matches(str(given), known, n=1, cutoff=0.4)
     return f"; did you mean '{near[0]}'?" if near else ""

@@ -145,18 +145,29 @@ def integer(path: str, value: Any, low: int, high: int, what: str) -> int:
 def parameters(part: Part, path: str = "") -> None:
     """Bring a part's laws, rows of laws and numbers to their kinds, and refuse those outside their fields' limits.
 
-    `path` stands before the fields' names in a refusal.
+    `path` stands before the fields' names in a refusal, which names every field that is refused.
     """
     kind: Any = type(part)
+    problems = list[str]()
     for each, kept in _declared(kind):
-        value, where = getattr(part, each.name), f"{path}{each.name}"
-        if value is None or (isinstance(value, tuple) and value == each.default == ()):
-            continue
-        value = kept(where, value)
-        object.__setattr__(part, each.name, value)
-        limits: Limits | None = each.metadata["limits"]
-        if limits is not None:
-            between(where, value, limits.low, limits.high, limits.cure, closed=limits.closed)
+        try:
+            _keep(part, each, kept, path)
+        except DesignError as error:
+            problems += error.args
+    if problems:
+        raise DesignError(*problems)
+
+
+def _keep(part: Part, each: Field[Any], kept: Callable[[str, Any], Any], path: str) -> None:
+    """Bring a field to its kind, and refuse a value outside its limits."""
+    value, where = getattr(part, each.name), f"{path}{each.name}"
+    if value is None or (isinstance(value, tuple) and value == each.default == ()):
+        return
+    value = kept(where, value)
+    object.__setattr__(part, each.name, value)
+    limits: Limits | None = each.metadata["limits"]
+    if limits is not None:
+        between(where, value, limits.low, limits.high, limits.cure, closed=limits.closed)
 
 
 @cache

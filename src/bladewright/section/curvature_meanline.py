@@ -187,6 +187,8 @@ def _with_kinks(thickness: Thickness, kinks: Sequence[Breakpoint]) -> tuple[Thic
     """The thickness with the kinks of a meanline at fixed s, and the sides' joints there."""
     try:
         found = thickness.with_breakpoints(kinks)
+    except DesignError:
+        raise
     except ValueError as error:
         raise DesignError(
             "thickness.maximum_thickness_at, or the end of a round edge, lies on the wrong side of an end of the mixed "

@@ -7,7 +7,7 @@ from typing import ClassVar, Literal
 
 import numpy as np
 
-from bladewright.designs import Design, parameter
+from bladewright.designs import Design, naming, parameter
 from bladewright.errors import DesignError
 from bladewright.nurbs.basis import Reals
 from bladewright.section import checks
@@ -64,8 +64,9 @@ class PlanarSection(Design):
         `knots` are those to hold, a section's own `knots`.
         """
         span, metre = Span(np.zeros(1)), checks.UNITS[self.length_unit]
-        outline = self.section.outline(span)
-        turn = self.section.stagger(span)[..., 0]
+        with naming("section", self.section):
+            outline = self.section.outline(span)
+            turn = self.section.stagger(span)[..., 0]
         check_outline(outline, [""])
         if self.pitch is not None:
             rotation = np.array([[np.cos(turn), -np.sin(turn)], [np.sin(turn), np.cos(turn)]])

@@ -11,6 +11,7 @@ from bladewright.blade.flow_path.blade_streamlines import BladeStreamlines
 from bladewright.blade.flow_path.meridional_curve import MeridionalCurve
 from bladewright.blade.flow_path.stream_surface_map import StreamSurfaceMap
 from bladewright.blade.flow_path.stream_surfaces import StreamSurfaces
+from bladewright.designs import naming
 from bladewright.errors import DesignError
 from bladewright.numerics.elementary import Array, concatenated
 from bladewright.numerics.quadrature import converged_quadrature, gauss, panels
@@ -58,14 +59,15 @@ class Placement(ABC):
 def family_sections(design: "SectionedBlade", span: Span, lines: BladeStreamlines) -> tuple[Outline, Array]:
     """The family's sections in chords and their stagger (..., m) [rad] on stream lines."""
     part = design.section
-    if lines.mapping.plane != "m'-theta":
-        return part.outline(span), part.stagger(span)
 
     def meridional(fractions: Reals) -> Array:
         u = lines.u_at(lines.extents()[..., None] * fractions)
         return lines.meridional(u) / lines.lengths[..., None]
 
-    return part.on_stream_surfaces(span, meridional)
+    with naming("section", part):
+        if lines.mapping.plane != "m'-theta":
+            return part.outline(span), part.stagger(span)
+        return part.on_stream_surfaces(span, meridional)
 
 
 def check_stagger(stagger: Array, v: Reals) -> None:
