@@ -33,7 +33,8 @@ COLUMNS = (
 HEAD = """\
 # Passages
 
-`{command}`: every built-in example, and each of the unified family with the other of gap and no gap.
+`{command}`: every built-in example as it is, and with the other of gap and no gap; to the ends of the flow path where
+there is one.
 
 * walls off: hub and shroud from their surfaces of revolution, of the chord (limit 1e-7);
 * fold: least Jacobian of the walls' patches in (m', theta), of its median;
@@ -57,12 +58,11 @@ def designs():
             design = bw.prismatic(design)
         has = [gap for gap in ("tip_clearance", "hub_clearance") if getattr(design, gap, None) is not None]
         yield name, design
-        if not hasattr(design, "tip_clearance"):
-            continue
         if has:
             yield f"{name}, no gap", design.changed(dict.fromkeys(has))
         else:
-            edges = [np.array(getattr(design.channel, edge)) for edge in ("leading_edge", "trailing_edge")]
+            lines = design.exact_blade().meridional_view.lines
+            edges = [lines[edge].points / design.metre for edge in ("leading_edge", "trailing_edge")]
             span = min(float(np.sqrt(np.sum((edge[-1] - edge[0]) ** 2))) for edge in edges)
             yield f"{name}, gap", design.changed("tip_clearance", GAP * span)
 
