@@ -12,11 +12,13 @@ import bladewright as bw
 from bladewright.errors import FitError
 from bladewright.files.clouds import read_cloud
 from bladewright.fitting.fit import fit
+from bladewright.fitting.free_parameters import FreeParameters
 from bladewright.fitting.matching import search
 from bladewright.fitting.matching.footpoints import nearest_footpoints
 from bladewright.fitting.model_selection.reshaping import reshaped
 from bladewright.fitting.model_selection.structure import Structure
 from machines import COARSE, built, example
+from machines.unified_paths import INFLOW_IN_PATH
 
 CLOUDS = Path(__file__).parents[3] / "shared" / "data" / "clouds"
 NOISE = 2e-5
@@ -198,6 +200,20 @@ def test_progress_is_told():
     assert told[-1] == "measuring"
 
 
+def test_a_blade_in_a_flow_path_is_found_again_from_a_start_and_its_flow_path_stands_unless_it_is_freed():
+    random, blade = np.random.default_rng(0), built(INFLOW_IN_PATH.changed("tolerance", COARSE))
+    points = np.concatenate([side(*random.random((2, 150))) for side in blade.sides])
+    start = blade.design.changed({"stagger": (-13.5, -29.0), "flow_path.hub.radii[0]": 49.5})
+    free = FreeParameters()(start)
+    assert not any(path.startswith("flow_path") for path in free)
+    assert {"channel.leading_edge[0].r", "channel.trailing_edge[1].x"} <= set(free)
+    assert not {"channel.leading_edge[0].x", "channel.trailing_edge[1].r"} & set(free)
+    found = fit(points, start=start, free=("stagger*", "flow_path.hub.radii[0]"))
+    assert found.passed
+    np.testing.assert_allclose(found.design.stagger, (-14.0, -30.0), atol=1e-9)
+    assert found.design.flow_path.hub.radii[0] == pytest.approx(50.0, abs=1e-8)
+
+
 @pytest.mark.parametrize(
     ("points", "asked", "words"),
     [
@@ -214,6 +230,8 @@ def test_progress_is_told():
         (cloud(0, 400), {"start": STATOR}, "UnifiedSection"),
         (cloud(0, 400), {"like": STATOR}, "UnifiedSection"),
         (solid_cloud(), {"family": "unified-section"}, "x and y alone"),
+        (solid_cloud(), {"like": INFLOW_IN_PATH}, "like is a unified blade in a flow path.*give it as start"),
+        (solid_cloud(), {"start": INFLOW_IN_PATH, "tolerance": 1e-5}, "start is a unified blade in a flow path"),
         (cloud(0, 400), {"weights": np.ones(3)}, "weights"),
         (cloud(0, 400), {"weights": -np.ones(400)}, "0 or more"),
         (cloud(0, 400), {"fixed": "stagger"}, "give a start"),

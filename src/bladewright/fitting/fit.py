@@ -174,6 +174,7 @@ def _check_call(
                 f"{kind.__name__}{'' if family is None else f' of the family {family.name}'}: give such a design, "
                 f"or {'points of the other kind' if family is None else 'another family'}"
             )
+    _check_flow_path(start, like, resized=tolerance is not None or count is not None)
     if tolerance is not None and not 0.0 < tolerance < np.inf:
         raise FitError(f"tolerance is {tolerance!r}: a positive length in metres is needed, such as 5e-5")
     if tolerance is not None and count is not None:
@@ -181,6 +182,20 @@ def _check_call(
     least = 14 if family is None else 4
     if count is not None and (isinstance(count, bool) or not least <= count <= 2000):
         raise FitError(f"parameters is {count!r}: a whole number from {least} to 2000 is needed")
+
+
+def _check_flow_path(start: Design | None, like: Design | None, *, resized: bool) -> None:
+    """Refuse to change the structure of a unified blade in a flow path: growth knows the channel's own curves alone."""
+    if isinstance(like, UnifiedBlade) and like.flow_path is not None:
+        raise FitError(
+            "like is a unified blade in a flow path, of which only the numbers change: give it as start, or a design "
+            "with channel.hub and channel.shroud"
+        )
+    if resized and isinstance(start, UnifiedBlade) and start.flow_path is not None:
+        raise FitError(
+            "start is a unified blade in a flow path, whose numbers of control points are kept: leave tolerance and "
+            "parameters out, or give a start with channel.hub and channel.shroud"
+        )
 
 
 def _built(match: Match) -> Any:

@@ -12,6 +12,7 @@ from bladewright.blade.design.unified import UnifiedBlade
 from bladewright.derivatives.patterns import Patterns, chosen, matching
 from bladewright.designs import Design
 from bladewright.errors import DesignError, FitError
+from bladewright.numerics.elementary import Array
 from bladewright.section.laws import is_list, law_points
 from bladewright.section.profiles.points import PointsProfile
 
@@ -30,6 +31,8 @@ def gauge_parameters(design: Design, *, walls: bool = False) -> frozenset[str]:
     along which the points of its edge curves slide on the curve. Where the `walls` are free, only that coordinate of
     the points of hub and shroud is held.
     """
+    if isinstance(design, UnifiedBlade):
+        return frozenset() if design.flow_path is None else _in_flow_path(design)
     section = getattr(design, "section", None)
     if section is None:
         return frozenset()
@@ -49,11 +52,24 @@ def gauge_parameters(design: Design, *, walls: bool = False) -> frozenset[str]:
 def sliding_coordinate(design: SectionedBlade, edge: str) -> str:
     """The coordinate, x or r, in which an edge curve has its extent."""
     curve = getattr(design, edge)
-    if curve is None:
-        return "r"
-    points = np.real(curve.line(1.0).net[[0, -1]])
-    across = (points[1] - points[0]) ** 2
+    return "r" if curve is None else _longer(curve.line(1.0).net)
+
+
+def _longer(points: Array) -> str:
+    """The coordinate, x or r, in which the first and the last of points (n, 2) are farther apart."""
+    across = np.real(points[-1] - points[0]) ** 2
     return "x" if across[0] > across[1] else "r"
+
+
+def _in_flow_path(design: UnifiedBlade) -> frozenset[str]:
+    """Flow path, and the coordinates along which the points of the channel's edges slide on these."""
+    along = {edge: _longer(np.array([tuple(each) for each in getattr(design.channel, edge)])) for edge in EDGES}
+    return frozenset(
+        path
+        for path in design.parameters()
+        if path.startswith("flow_path.")
+        or any(path.startswith(f"channel.{edge}") and path.endswith(f".{name}") for edge, name in along.items())
+    )
 
 
 def _across_walls(design: SectionedBlade) -> frozenset[str]:
