@@ -11,6 +11,7 @@ from bladewright.cli.options import Call, common, force_option
 from bladewright.cli.outcome import Outcome
 from bladewright.cli.overwriting import refuse_existing
 from bladewright.cli.progress import progress
+from bladewright.section.checks import UNITS
 
 if TYPE_CHECKING:
     from bladewright.files.imported import Imported
@@ -80,6 +81,8 @@ def import_design(
         bar.update(1)
     chord = float(built.chord)
     mean, most = float(distances.mean()), float(distances.max())
+    unit = imported.design.length_unit
+    metre = UNITS[unit]
     data = {
         "file": str(file),
         "program": imported.program,
@@ -102,7 +105,7 @@ def import_design(
     lines += [f"  changed: {text}" for text in imported.changed]
     lines += [f"  note: {text}" for text in imported.notes]
     lines.append(
-        f"  the built sides lie {mean * 1e3:.3g} mm in the mean and {most * 1e3:.3g} mm at most from "
+        f"  the built sides lie {mean / metre:.3g} {unit} in the mean and {most / metre:.3g} {unit} at most from "
         f"{imported.program}'s ({mean / chord:.2g} and {most / chord:.2g} of the chord), by {imported.source}"
     )
     return Outcome(data=data, text="\n".join([*lines, f"wrote {design}"]))

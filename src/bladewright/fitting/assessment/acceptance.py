@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from bladewright.fitting.assessment.coverage import least_thickness, loose_ends, uncovered_edges
 from bladewright.fitting.assessment.estimates import ParameterEstimates
+from bladewright.fitting.assessment.lengths import with_unit
 from bladewright.fitting.clouds.cloud import is_rounded
 from bladewright.fitting.initial_guess.blade import AXES_HINT
 from bladewright.fitting.matching.search import Match
@@ -66,8 +67,8 @@ def failures_of(
     worst = int(np.flatnonzero(inliers)[np.argmax(kept)])
     if target.tolerance is not None and kept.max() > target.tolerance:
         failures.append(
-            f"the largest deviation is {1e3 * kept.max():.4g} mm ({regions[worst]}, point {worst}), and "
-            f"{1e3 * target.tolerance:.4g} mm were asked for"
+            f"the largest deviation is {with_unit(match.design, kept.max(), 4)} ({regions[worst]}, point {worst}), and "
+            f"{with_unit(match.design, target.tolerance, 4)} were asked for"
         )
     elif target.tolerance is None:
         for word, value, limit in (
@@ -76,23 +77,24 @@ def failures_of(
         ):
             if value > limit * chord:
                 failures.append(
-                    f"the {word} deviation is {1e3 * value:.4g} mm, {100 * value / chord:.2g} % of the chord, and "
-                    f"{100 * limit:.2g} % are allowed where no tolerance is stated: give more parameters"
+                    f"the {word} deviation is {with_unit(match.design, float(value), 4)}, "
+                    f"{100 * value / chord:.2g} % of the chord, and {100 * limit:.2g} % are allowed where no "
+                    "tolerance is stated: give more parameters"
                 )
     failures += filter(None, (_structure_not_met(match, target), _too_few_points(match, target)))
     one_sided = _one_sided(match)
     if one_sided:
         failures.append(f"{one_sided}: is it one side of a blade alone? Give points of both")
     failures += [
-        f"no point lies around the {name}, where the blade is still {1e3 * wide:.3g} mm wide, {share:.0%} of its "
-        "thickest: is it half a blade? Give the points of the whole"
+        f"no point lies around the {name}, where the blade is still {with_unit(match.design, wide)} wide, "
+        f"{share:.0%} of its thickest: is it half a blade? Give the points of the whole"
         for name, (wide, share) in uncovered_edges(match).items()
         if share > HALF_BLADE_WIDTH
     ]
     loose = loose_ends(match)
     if loose and target.structured and target.tolerance is None and not match.interrupted and match.rms < EXACT_MISFIT:
         failures.append(
-            f"the sides are met exactly, but {_loose_ends_message(loose)}; state the tolerance that is enough"
+            f"the sides are met exactly, but {_loose_ends_message(match, loose)}; state the tolerance that is enough"
         )
     if shape_not_found(distances, inliers, match, target) and not _near_enough(match):
         failures.append(_shape_not_found_message(match))
@@ -108,14 +110,15 @@ def _structure_not_met(match: Match, target: MatchTarget) -> str:
     least = ACCEPTED_MISFIT[_points(match).shape[1]] if target.registered else EXACT_MISFIT
     if match.rms > least and rms > SYSTEMATIC_OVER_NOISE * noise:
         return (
-            f"the misfit of the given structure is {1e3 * rms:.3g} mm rms, and the cloud's noise {1e3 * noise:.3g} mm: "
-            "the structure does not hold this blade, or a better design was not found; state a tolerance, or another "
-            "structure"
+            f"the misfit of the given structure is {with_unit(match.design, rms)} rms, and the cloud's noise "
+            f"{with_unit(match.design, noise)}: the structure does not hold this blade, or a better design was not "
+            "found; state a tolerance, or another structure"
         )
     if least < match.rms < FINEST_NOISE and not is_rounded(_points(match)):
         return (
-            f"the misfit of the given structure is {1e3 * rms:.3g} mm rms, too much for an exact cloud and too little "
-            "for the noise of another: the exact design was not found; state the tolerance that is enough"
+            f"the misfit of the given structure is {with_unit(match.design, rms)} rms, too much for an exact cloud "
+            "and too little for the noise of another: the exact design was not found; state the tolerance that is "
+            "enough"
         )
     return ""
 
@@ -150,7 +153,7 @@ def _one_sided(match: Match) -> str:
         return f"hardly a point lies on the {bare} side"
     thin = least_thickness(match)
     if thin < SHEET_THICKNESS * match.model.chord:
-        return f"the blade is a sheet, no more than {1e3 * thin:.3g} mm thick at a place of its span"
+        return f"the blade is a sheet, no more than {with_unit(match.design, thin)} thick at a place of its span"
     return ""
 
 
@@ -177,15 +180,15 @@ def _near_enough(match: Match) -> bool:
 
 
 def _shape_not_found_message(match: Match) -> str:
-    rms, noise = 1e3 * match.rms * match.model.chord, 1e3 * match.noise_estimate.noise
+    rms, noise = (with_unit(match.design, each) for each in (match.rms * match.model.chord, match.noise_estimate.noise))
     return (
-        f"the shape is not found: deviations go on from point to point, {rms:.3g} mm rms where the cloud's own noise "
-        f"is {noise:.3g} mm; state the tolerance that is enough, a number of parameters, or a start"
+        f"the shape is not found: deviations go on from point to point, {rms} rms where the cloud's own noise "
+        f"is {noise}; state the tolerance that is enough, a number of parameters, or a start"
     )
 
 
-def _loose_ends_message(ends: Mapping[str, float]) -> str:
-    gaps = ", ".join(f"{1e3 * gap:.2g} mm at the {name}" for name, gap in ends.items())
+def _loose_ends_message(match: Match, ends: Mapping[str, float]) -> str:
+    gaps = ", ".join(f"{with_unit(match.design, gap, 2)} at the {name}" for name, gap in ends.items())
     return f"no row of points shows where the blade ends: it is known to about {gaps}"
 
 
@@ -216,7 +219,7 @@ def notes_of(
     ]
     loose = loose_ends(match)
     if loose:
-        sentences.append(_loose_ends_message(loose))
+        sentences.append(_loose_ends_message(match, loose))
     unknown = [each.path for each in statistics.estimates if not each.identified]
     if unknown:
         more = f" and {len(unknown) - LISTED_NAMES} more" if len(unknown) > LISTED_NAMES else ""

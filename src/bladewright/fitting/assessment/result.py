@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from bladewright.designs import Design, unit_at
 from bladewright.display import Shown
 from bladewright.fitting.assessment.deviation import REGIONS, Deviation, by_region, deviation_of
+from bladewright.fitting.assessment.lengths import in_unit, unit_of_lengths, with_unit
 from bladewright.frozen import FrozenRecord
 from bladewright.nurbs.basis import Reals
 
@@ -210,16 +211,19 @@ def report(fit: Fit) -> dict[str, Any]:
 
 
 def text(fit: Fit) -> str:
-    """A fit for people: whether it passes and why not, deviations by region in millimetres, then the parameters."""
+    """A fit for people: whether it passes and why not, deviations by region, then the parameters.
+
+    Lengths are in the design's own unit.
+    """
     verdict = "passed" if fit.passed else "FAILED"
     state = ", interrupted" if fit.interrupted else ""
     lines = [f"{fit.design.name}: {verdict}{state}"]  # type: ignore[attr-defined]
     lines += [f"  - {failure}" for failure in fit.failures]
     lines += _table(fit)
-    limits = [f"noise of the cloud {_mm(fit.noise)} mm"]
+    limits = [f"noise of the cloud {with_unit(fit.design, fit.noise)}"]
     if fit.tolerance is not None:
-        limits.insert(0, f"tolerance {_mm(fit.tolerance)} mm")
-    lines.append(f"  {', '.join(limits)}, chord {_mm(_chord_of(fit), 6)} mm")
+        limits.insert(0, f"tolerance {with_unit(fit.design, fit.tolerance)}")
+    lines.append(f"  {', '.join(limits)}, chord {with_unit(fit.design, _chord_of(fit), 6)}")
     lines += [f"  {line}" for line in (_outliers_line(fit), _motion_line(fit)) if line]
     waves = ", ".join(f"{count} on the {name} side" for name, count in fit.extrema.items())
     lines.append(f"  extrema of curvature: {waves}")
@@ -317,15 +321,15 @@ def _motion(fit: Fit) -> dict[str, Any]:
 
 
 def _table(fit: Fit) -> list[str]:
-    """Deviations of the inliers in millimetres, a row for each region."""
+    """Deviations of the inliers, a row for each region."""
     chord = _chord_of(fit)
-    rows = [["deviation [mm]", "points", "mean", "rms", "99 %", "max", "max of chord"]]
+    rows = [[f"deviation [{unit_of_lengths(fit.design)}]", "points", "mean", "rms", "99 %", "max", "max of chord"]]
     for name, of in {"all inliers": fit.deviation, **{name: fit.by_region.get(name) for name in REGIONS}}.items():
         if of is None or of.count == 0:
             # sections have no ends, but a cloud without points on an edge says nothing about it
             rows += [] if name == "ends" else [[name, "none", *"-----"]]
             continue
-        figures = [_mm(getattr(of, figure)) for figure in FIGURES]
+        figures = [in_unit(fit.design, getattr(of, figure)) for figure in FIGURES]
         rows.append([name, str(of.count), *figures, f"{of.maximum / chord:.1e}"])
     widths = [max(len(row[i]) for row in rows) for i in range(len(rows[0]))]
     return [
@@ -339,10 +343,10 @@ def _outliers_line(fit: Fit) -> str:
     if count == 0:
         return f"{_number_of(total, 'point')}, no outliers"
     share = f"{100.0 * count / total:.2g} %"
-    shown = ", ".join(str(i) for i in fit.outliers[:8])
+    shown = ", ".join(str(i) for i in fit.outliers[:8]) + (", ..." if count > 8 else "")
+    farthest = with_unit(fit.design, float(np.max(fit.distances[fit.outliers])))
     return (
-        f"{_number_of(total, 'point')}, {_number_of(count, 'outlier')} ({share}) up to "
-        f"{_mm(float(np.max(fit.distances[fit.outliers])))} mm away: number {shown}{', ...' if count > 8 else ''}"
+        f"{_number_of(total, 'point')}, {_number_of(count, 'outlier')} ({share}) up to {farthest} away: number {shown}"
     )
 
 
@@ -352,8 +356,9 @@ def _motion_line(fit: Fit) -> str:
     turn, shift = np.asarray(fit.motion.rotation), np.asarray(fit.motion.translation)
     cosine = (np.trace(turn) - (1.0 if len(turn) == 3 else 0.0)) / 2.0
     angle = np.degrees(np.arccos(np.clip(cosine, -1.0, 1.0)))
-    moved = ", ".join(f"{value * MILLIMETRES:.6g}" for value in shift)
-    return f"moved to the machine's axes: turned by {angle:.6g} deg, then shifted by ({moved}) mm"
+    moved = ", ".join(in_unit(fit.design, float(value), 6) for value in shift)
+    unit = unit_of_lengths(fit.design)
+    return f"moved to the machine's axes: turned by {angle:.6g} deg, then shifted by ({moved}) {unit}"
 
 
 def _parameters(fit: Fit) -> list[str]:
@@ -381,10 +386,6 @@ def _with_spread(each: Estimate) -> tuple[str, str]:
         return f"{each.value:.6g}", ""
     decimals = min(max(1 - math.floor(math.log10(half)), 0), 12)
     return f"{each.value:.{decimals}f}", f"+- {half:.2g}"
-
-
-def _mm(metres: float, digits: int = 3) -> str:
-    return f"{metres * MILLIMETRES:.{digits}g}"
 
 
 def _number_of(count: int, what: str) -> str:
