@@ -127,10 +127,27 @@ def test_a_check_that_fails_gives_status_one(run, vane_file, monkeypatch):
 
 def test_show_draws_a_picture(run, tmp_path):
     (tmp_path / "vane.toml").write_text(SECTION)
-    picture = tmp_path / "vane.png"
+    picture = tmp_path / "new" / "vane.png"
     found = run("show", tmp_path / "vane.toml", "-o", picture, "--json")
     assert (found.status, found.json["picture"]) == (0, str(picture))
     assert picture.read_bytes().startswith(b"\x89PNG")
+
+
+@pytest.mark.parametrize("name", ["new/vane.gif", "file/vane.png", "new/"])
+def test_show_refuses_a_picture_that_cannot_be_before_it_works(run, tmp_path, monkeypatch, name):
+    (tmp_path / "vane.toml").write_text(SECTION)
+    (tmp_path / "file").touch()
+    before = sorted(tmp_path.iterdir())
+    monkeypatch.setattr("bladewright.cli.show.built_from", lambda *_: pytest.fail("it worked"))
+    found = run("show", tmp_path / "vane.toml", "-o", f"{tmp_path}/{name}")
+    assert (found.status, found.out) == (2, "")
+    assert sorted(tmp_path.iterdir()) == before
+
+
+def test_show_leaves_no_folder_behind_where_the_design_is_refused(run, tmp_path):
+    (tmp_path / "vane.toml").write_text(SECTION.replace("chord = 60.0", "chord = 60.0\npitch = 1e-3"))
+    assert run("show", tmp_path / "vane.toml", "-o", tmp_path / "new" / "vane.png").status == 2
+    assert not (tmp_path / "new").exists()
 
 
 def test_show_says_how_smooth_a_section_is(run, tmp_path):

@@ -1,7 +1,7 @@
 """`bladewright show`: what a design builds, as figures and as a picture."""
 
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -82,7 +82,7 @@ def show(
         checked_report_path(report)
     elif round_trip:
         raise click.UsageError("--round-trip is for the report: name it by --report FILE.html, or leave it out")
-    with _picture_file(output), progress(1 + bool(output) + bool(report), call) as bar:
+    with _writing(output, table_file, report), progress(1 + bool(output) + bool(report), call) as bar:
         bar.set_description_str(body)
         if body == "passage":
             built = flow_domain_from(design, path, extents)
@@ -117,13 +117,17 @@ def show(
 
 
 @contextmanager
-def _picture_file(output: Path | None) -> Iterator[None]:
-    """A context in which the picture, where one is wanted, can be written; FileError, before any work, where not."""
-    if output is None:
-        yield
-        return
-    with removing_partial_files(output.parent, [output.name]):
-        from bladewright.views.pages import checked_path
+def _writing(picture: Path | None, *others: Path | None) -> Iterator[None]:
+    """A context in which the files that are wanted can be written; FileError, before any work, where not.
 
-        checked_path(output)
+    Their directories are made; after an error, what is new is removed.
+    """
+    with ExitStack() as stack:
+        for path in (picture, *others):
+            if path is not None:
+                stack.enter_context(removing_partial_files(path.parent, [path.name]))
+        if picture is not None:
+            from bladewright.views.pages import checked_path
+
+            checked_path(picture)
         yield

@@ -6,7 +6,6 @@ from typing import Any
 
 from bladewright.cli.law_remarks import law_data, law_rows
 from bladewright.cli.outcome import jsonable
-from bladewright.section.checks import UNITS
 
 Rows = list[tuple[str, str]]
 """Names and values of a table."""
@@ -126,7 +125,7 @@ def summary_text(data: dict[str, Any], more: Sequence[tuple[str, str]] = ()) -> 
     `more` are names and values that go before the poles.
     """
     unit = data["length_unit"]
-    metre = 1.0 / UNITS[unit]
+    metre = 1.0 / _metres(unit)
     in_space = "surfaces" in data
     words = "mean chord" if in_space else "chord"
     rows = [(words, f"{data['chord_m'] * metre:.6g} {unit}")] if "chord_m" in data else []
@@ -150,7 +149,7 @@ def summary_text(data: dict[str, Any], more: Sequence[tuple[str, str]] = ()) -> 
 def _property(name: str, value: Any, faces: list[str], unit: str) -> str:
     """The value of a property with its unit, and its components or faces by name."""
     power = _POWERS.get(name, 0)
-    shown, scale = "", UNITS[unit] ** -power
+    shown, scale = "", _metres(unit) ** -power
     if power:
         shown = f" {unit}" if power == 1 else f" {unit}{power}"
     if name.endswith("_deg"):
@@ -176,8 +175,8 @@ def passage_rows(data: Mapping[str, Any]) -> Rows:
     if "ring_m3" not in data:
         return []
     unit = data["length_unit"]
-    length = f"{data['meridional_length_m'] / UNITS[unit]:.6g} {unit}"
-    rows = [("whole annulus", f"{data['ring_m3'] / UNITS[unit] ** 3:.6g} {unit}3")]
+    length = f"{data['meridional_length_m'] / _metres(unit):.6g} {unit}"
+    rows = [("whole annulus", f"{data['ring_m3'] / _metres(unit) ** 3:.6g} {unit}3")]
     rows += [(name, f"{data[name]:.4g} meridional lengths of {length}") for name in ("upstream", "downstream")]
     name, least = min(data["least_jacobian"].items(), key=lambda each: each[1]["share"])
     text = f"{least['share']:.2g} of its median, on {name} at u = {least['u']:.4g}, v = {least['v']:.4g}"
@@ -235,7 +234,7 @@ def _smoothness_text(sections: list[dict[str, Any]], line: str, unit: str) -> st
             parts.append(f"{name} with it")
             continue
         worst = max(jumps, key=lambda jump: jump[0] / jump[2]["chord_m"] ** order)
-        size = worst[0] * (UNITS[unit] / worst[2]["chord_m"]) ** order
+        size = worst[0] * (_metres(unit) / worst[2]["chord_m"]) ** order
         where = f"at {100.0 * worst[1]:.3g} % of its length"
         where += f", span {worst[2]['span']:.3g}" if len(sections) > 1 else ""
         parts.append(f"{name} jumps by {size:.3g} {per} {where}")
@@ -260,3 +259,10 @@ def _poles(entity: Any) -> dict[str, Any]:
 
 def _figure(value: Any, scale: float) -> str:
     return f"{value * scale:.6g}" if isinstance(value, float) else str(value)
+
+
+def _metres(unit: str) -> float:
+    """Metres in one unit of length."""
+    from bladewright.section.checks import UNITS
+
+    return UNITS[unit]
