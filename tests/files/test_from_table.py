@@ -73,6 +73,31 @@ def test_a_stagger_bends_the_meanline(made):
         assert np.degrees(section.metal_angle_out) == pytest.approx(row[2], abs=1e-7)
 
 
+VANE_HEADER = (
+    "r [in],stagger [deg],metal_angle_in [deg],metal_angle_out [deg],axial chord [in],max thickness [%],LE radius [in]"
+)
+VANE_ROWS = [[10, -38, 5, -62, 1.5, 14, 0.06], [11, -37, 0, -62, 1.5, 13, 0.06], [12, -46, -5, -62, 1.5, 12, 0.05]]
+
+
+def test_a_turbine_vane_in_inches_has_its_stagger_far_from_the_mean_of_its_angles(made):
+    found = made(csv(VANE_ROWS, VANE_HEADER))
+    assert found.design.length_unit == "in"
+    exact = found.design.exact_blade()
+    for v, stagger, most, radius in ((0.0, -38.0, 0.14, 0.06), (0.5, -37.0, 0.13, 0.06), (1.0, -46.0, 0.12, 0.05)):
+        section = exact.section(v)
+        assert np.degrees(section.stagger) == pytest.approx(stagger, abs=1e-7)
+        assert section.chord / 0.0254 == pytest.approx(1.5 / np.cos(np.radians(stagger)), rel=1e-12)
+        assert section.maximum_thickness[0] / section.chord == pytest.approx(most, rel=1e-5)
+        assert section.edge_radii[0] / 0.0254 == pytest.approx(radius, rel=1e-7)
+
+
+def test_an_impeller_s_hub_keeps_off_the_axis(made):
+    header = "span,x_le [mm],r_le [mm],x_te [mm],r_te [mm],metal_angle_in [deg],metal_angle_out [deg]"
+    found = made(f"{header}\n0,0,16,38,70,-42,-35\n0.5,0,29,35,70,-50,-35\n1,0,42,32,70,-57,-35\n")
+    assert min(point.r for point in found.design.flow_path.hub.points) >= 8.0
+    assert "# in the plane (m', theta): where the radius changes" in found.text
+
+
 def test_other_units_names_and_signs_give_the_same_blade(made):
     factors = [1e-3, np.pi / 180.0, np.pi / 180.0, 1.0 / 25.4, 1.0 / 25.4, 0.01, 1.0 / 25.4, 1.0 / 25.4]
     header = (

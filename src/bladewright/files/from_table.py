@@ -14,7 +14,6 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from scipy.optimize import brentq
 
 from bladewright.blade.design.families import CurvatureMeanlineBlade
 from bladewright.blade.design.flow_path import FlowPath
@@ -23,6 +22,7 @@ from bladewright.blade.design.stacking import Stacking
 from bladewright.designs import Law, Point, Stations
 from bladewright.errors import DesignError, FileError
 from bladewright.files.given_table import GivenTable, read_given_table
+from bladewright.files.table_formulas import other_point, parabolic_rear, share_of, stagger_of
 from bladewright.files.writing import text_of
 from bladewright.nurbs.basis import Reals
 from bladewright.section.curvature_meanline import CurvatureMeanline
@@ -172,8 +172,8 @@ class _Translation:
     def _curvature(self) -> tuple[Law, ...]:
         """Control points of the meanline's second derivative: equal ones, or those that give the stagger.
 
-        With S = 1 + k at the leading and 1 - k at the trailing edge, linear between, the slopes there are as -J to
-        I - J, with I = 1 and J = (3 + k) / 6 the integrals of S and of S again.
+        With I the integral of the second derivative S and J that of (1 - u) S, the slopes at the edges are as -J to
+        I - J. Two of three control points are equal, and the one ahead of them, or behind them, is 1.
         """
         if "stagger" not in self.columns:
             self.remarks["section.curvature"] = (
@@ -186,20 +186,20 @@ class _Translation:
         straight = np.abs(first - last) < np.radians(SAME_ANGLE)
         shares = np.where(straight, 0.5, first / np.where(straight, 1.0, first - last))
         shares = np.where(straight & (np.abs(first) > np.radians(SAME_ANGLE)), np.inf, shares)
-        bent = 6.0 * shares - 3.0
-        for i in np.flatnonzero(~(np.abs(bent) <= 1.0)):
+        most = share_of((1.0, 0.0, 0.0))
+        for i in np.flatnonzero(~(np.abs(shares - 0.5) <= most - 0.5)):
             inlet, outlet = self.columns["metal_angle_in"][i], self.columns["metal_angle_out"][i]
-            low, high = sorted((_stagger_of(inlet, outlet, 1.0 / 3.0), _stagger_of(inlet, outlet, 2.0 / 3.0)))
+            low, high = sorted(stagger_of(inlet, outlet, each) for each in (1.0 - most, most))
             raise FileError(
                 f"{self.where}: stagger is {self.columns['stagger'][i]:g} deg in row {i + 1}, between metal angles of "
                 f"{inlet:g} and {outlet:g} deg: a meanline that bends one way all along has a stagger from {low:.4g} "
                 f"to {high:.4g} deg; change it, or leave the column out"
             )
-        self.remarks["section.curvature"] = "computed: of a linear second derivative with the table's stagger"
-        return (
-            self._law("front", self.middle, _rounded(1.0 + bent)),
-            self._law("rear", self.middle, _rounded(1.0 - bent)),
-        )
+        self.remarks["section.curvature"] = "computed: the table's stagger; only ratios count"
+        other = [other_point(0.5 + abs(float(share) - 0.5)) for share in shares]
+        ahead, behind = (np.where(side, 1.0, other) for side in (shares >= 0.5, shares <= 0.5))
+        points = {"front": ahead, "middle": np.array(other), "rear": behind}
+        return tuple(self._law(name, self.middle, _rounded(values)) for name, values in points.items())
 
     def _placed(self, stagger: Reals) -> tuple[Reals, dict[str, Any]]:
         """Chords (n,), and the fields that say where the blade stands."""
@@ -293,7 +293,7 @@ class _Translation:
             self.remarks[f"{path}.trailing_edge_thickness"] = (
                 "computed: where the round edge of the table's trailing_edge_radius begins"
             )
-        slope, begins = _parabolic_rear(most, place, trailing * behind)
+        slope, begins = parabolic_rear(most, place, trailing * behind)
         self.remarks[f"{path}.trailing_edge_slope"] = (
             "assumed: the half thickness is a parabola from its maximum to the trailing edge's circle"
         )
@@ -303,6 +303,10 @@ class _Translation:
             fields["leading_edge_index"] = self._law("index", self.inlet, index)
             self.remarks[f"{path}.leading_edge_index"] = (
                 "computed: the table's radius, 1.1019 (maximum_thickness index / 6)^2 cos(camber angle from the chord)"
+            )
+        if not np.allclose(self.columns["r_le"], self.columns["r_te"], rtol=1e-9):
+            self.remarks[path] = (
+                "in the plane (m', theta): where the radius changes along the chord, so do thicknesses and edge radii"
             )
         try:
             return ModifiedNaca(
@@ -325,31 +329,6 @@ def _rounded(values: Reals) -> Reals:
     return np.array([float(f"{value:.14g}") for value in values])
 
 
-def _stagger_of(inlet: float, outlet: float, share: float) -> float:
-    """The stagger [deg] with such a share of the slopes at both ends of the meanline at the leading edge."""
-
-    def missed(stagger: float) -> float:
-        first, last = np.tan(np.radians([inlet - stagger, outlet - stagger]))
-        return float((1.0 - share) * first + share * last)
-
-    return float(brentq(missed, inlet, outlet)) if inlet != outlet else inlet
-
-
-def _parabolic_rear(most: Reals, place: Reals, radius: Reals) -> tuple[Reals, Reals]:
-    """Slopes of the half thickness at the trailing edge, and thicknesses where its circle begins, in chords.
-
-    A parabola falls over its length by half its last slope times that length. The circle of the radius R that is
-    tangent to a side of the slope m begins at the half thickness R / sqrt(1 + m^2), R / sqrt(1 + m^2) / (sqrt(1 + m^2)
-    - m) before the edge.
-    """
-    slope = np.zeros_like(most)
-    for _ in range(50):
-        steep = np.sqrt(1.0 + slope**2)
-        half = radius / steep
-        slope = -2.0 * (0.5 * most - half) / (1.0 - place - half / (steep - slope))
-    return slope, 2.0 * radius / np.sqrt(1.0 + slope**2)
-
-
 def _edge_lines(x: list[Reals], r: list[Reals]) -> list[ThroughPoints]:
     """The leading and the trailing edge through all rows."""
     return [
@@ -360,13 +339,18 @@ def _edge_lines(x: list[Reals], r: list[Reals]) -> list[ThroughPoints]:
 
 def _walls(x: list[Reals], r: list[Reals], chord: Reals) -> list[ThroughPoints]:
     """Hub and shroud, straight through both edges of the first and of the last row."""
-    reach, found = EXTENSION * float(np.max(chord)), []
+    reach, ends = EXTENSION * float(np.max(chord)), []
     for row in (0, -1):
         start, end = (np.array([x[i][row], r[i][row]]) for i in (0, 1))
-        if np.isclose(start[1], end[1], rtol=1e-9):
-            points = [(np.min(x[0]) - reach, start[1]), (np.max(x[1]) + reach, end[1])]
-        else:
-            step = (end - start) / np.hypot(*(end - start)) * reach
-            points = [tuple(start - step), tuple(start), tuple(end), tuple(end + step)]
+        step = (end - start) / np.hypot(*(end - start))
+        # both walls reach as far, and stay at half their least radius from the axis
+        reach = min(reach, *(0.5 * at[1] / max(abs(step[1]), 1e-12) for at in (start, end)))
+        ends.append((start, end, step))
+    level = all(np.isclose(start[1], end[1], rtol=1e-9) for start, end, _ in ends)
+    found = []
+    for start, end, step in ends:
+        points = [start - reach * step, start, end, end + reach * step]
+        if level:
+            points = [np.array([at, start[1]]) for at in (np.min(x[0]) - reach, np.max(x[1]) + reach)]
         found.append(ThroughPoints(points=tuple(Point(*(float(f"{c:.10g}") for c in each)) for each in points)))
     return found
