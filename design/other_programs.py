@@ -1,10 +1,10 @@
-"""What FreeCAD, CadQuery and gmsh make of the files of all examples, whole and with `--split`.
+"""What FreeCAD, CadQuery and gmsh make of the files of all examples, as they are, with `--split` and with `--fine`.
 
     python design/other_programs.py [EXAMPLE]...
 
-For each example: the native volume, how far CadQuery's and FreeCAD's volumes are off it, the largest gap between edges
-and faces, what FreeCAD's geometry check says, and the size of the STEP file. FreeCAD (`freecadcmd`, in Debian's package
-freecad) runs without a window; where it is absent its columns stay empty.
+For each example: the poles of a side, how far CadQuery's and FreeCAD's volumes are off the native one, the largest gap
+between edges and faces, what FreeCAD's geometry check says, and the size of the STEP file. FreeCAD (`freecadcmd`, in
+Debian's package freecad) runs without a window; where it is absent its columns stay empty.
 """
 
 import json
@@ -78,14 +78,15 @@ def main(names):
         rows = {}
         for name in names or sorted(examples()):
             design = bw.read_design(Path(bw.__file__).parent / "examples" / f"{name}.toml")
-            blade = (prismatic(design) if design.dimension == 2 else design).build()
-            for split in (False, True):
-                path = Path(folder) / f"{name}{'-split' if split else ''}.step"
-                rows[path] = cad.write(blade, path, split=split, samples=400)
+            design = prismatic(design) if design.dimension == 2 else design
+            blade, fine = design.build(), design.build(fine=True)
+            for ending, body, split in (("", blade, False), ("-split", blade, True), ("-fine", fine, False)):
+                path = Path(folder) / f"{name}{ending}.step"
+                rows[path] = body.knots.poles, cad.write(body, path, split=split, samples=400)
         seen = freecad(folder)
-        print("| file | faces | CadQuery's volume off | FreeCAD's | gmsh's | gap [mm] | FreeCAD's check | kB |")
-        print("|---|---|---|---|---|---|---|---|")
-        for path, trip in rows.items():
+        print("| file | poles | faces | CadQuery's volume off | FreeCAD's | gmsh's | gap [mm] | FreeCAD's check | kB |")
+        print("|---|---|---|---|---|---|---|---|---|")
+        for path, (poles, trip) in rows.items():
             native = trip.volume.native
             opened = cadquery.importers.importStep(str(path)).val()
             assert opened.isValid()
@@ -96,7 +97,7 @@ def main(names):
             faults = sorted({line.split(": ")[1] for line in own["check"].splitlines()[1:]}) if own else []
             said = ", ".join(fault.removeprefix("BOPAlgo_") for fault in faults) or ("nothing" if own else "")
             print(
-                f"| {path.stem} | {len(opened.Faces())} |",
+                f"| {path.stem} | {poles[0]} x {poles[1]} | {len(opened.Faces())} |",
                 *(f"{volume / native - 1.0:+.1e} |" for volume in volumes),
                 f"{trip.edges.max_gap:.1e} | {said} | {path.stat().st_size / 1024:.0f} |",
             )

@@ -16,13 +16,14 @@ from bladewright.cad.kernel import quiet
 from bladewright.cad.solids import occ_solid, occ_solid_in_pieces, split_occ_solid
 from bladewright.cad.step import write_step
 from bladewright.designs import Stations
-from bladewright.nurbs.refine import inserted
+from bladewright.nurbs.refine import elevated, inserted
 from bladewright.nurbs.surface import Surface
 from machines import COARSE, built, unified
 from machines.sectioned import DESIGNS, DIFFUSER, VANE
 
 from .test_catches import about, failing, put, solid_of
 
+ROTATION = np.array([[0.36, 0.48, -0.8], [-0.8, 0.6, 0.0], [0.48, 0.64, 0.6]])
 BLADES = {**DESIGNS, "unified": unified.INFLOW}
 
 
@@ -59,6 +60,9 @@ def test_a_knot_is_a_crease_only_where_a_derivative_jumps(rotor, diffuser):
     assert creases(tent(0.3), "u") == [0.5]
     assert creases(tent(0.0), "u") == []
     assert creases(tent(0.0, middle=0.3), "u") == [0.5]
+    plane = elevated(elevated(tent(0.0), 4, "u"), 4, "v")
+    turned = dataclasses.replace(plane, control_points=0.1 * plane.control_points @ ROTATION + 1.0 / 3.0)
+    assert creases(turned, "u") == []
     smooth = inserted(rotor.surfaces["upper"], [0.21, 0.21, 0.21, 0.21, 0.21], "u")
     assert creases(smooth, "u") == []
     upper = diffuser.surfaces["upper"]

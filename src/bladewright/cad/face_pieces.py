@@ -21,6 +21,9 @@ from bladewright.nurbs.trimmed import TrimmedSurface
 CREASE = 1e-3
 """Smallest jump of a derivative at a crease, as a fraction of the derivative's size beside it. The jumps of second
 derivatives at repeated knots of the examples are either above 0.4 or below 4e-7 (design/other_programs.md)."""
+ROUNDING = 1e-10
+"""What else may be rounding, as a fraction of the face's extent over the knot span to the power of the derivative: of a
+straight side the second derivative is nothing but that."""
 PLACES = 41
 """Places along a knot line at which the jump across it is measured: a law that bends there bends along a stretch."""
 SPANS_U, SPANS_V = 9, 24
@@ -121,9 +124,12 @@ def _jumps(face: Surface, knot: float, direction: Direction, ends: list[float]) 
     at = ends.index(knot)
     before = piece(face, ends[at - 1], knot, direction)
     after = piece(face, knot, ends[at + 1], direction)
+    extent = float(np.ptp(face.control_points, axis=(0, 1)).max())
+    step = min(knot - ends[at - 1], ends[at + 1] - knot)
     for order in (1, 2):
         one, other = (_derivative(side, knot, direction, order) for side in (before, after))
-        if _largest(other - one) > CREASE * (_largest(one) + _largest(other)):
+        rounding = ROUNDING * extent / step**order
+        if _largest(other - one) > CREASE * (_largest(one) + _largest(other)) + rounding:
             return True
     return False
 
