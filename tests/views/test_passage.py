@@ -19,9 +19,10 @@ from bladewright.errors import DesignError
 from bladewright.views.passage import boundary, figures, poles
 from bladewright.views.picture import sheet
 from bladewright.views.raster import Camera, ShadedGrid, rendered
-from bladewright.views.solid import draw_passage_solid, outer_faces, viewpoint
+from bladewright.views.solid import draw_passage_solid, outer_faces, outer_grids, viewpoint
 from bladewright.views.walls import patch_lines, patch_lines_near, unwrapped, unwrapped_face, wall_scale
 from machines import COARSE, built, example
+from machines.sectioned import DIFFUSER
 from machines.unified import DRAWN_IMPELLER as IMPELLER
 
 EXACT = 1e-9
@@ -145,6 +146,15 @@ def test_the_lines_of_both_patches_are_drawn_with_their_least_jacobians(drawn):
             place = unwrapped_face(made, f"{wall}_{half}", np.array([u]), np.array([v]))[0, 0]
             assert np.allclose(line(axes, label), place, atol=EXACT)
         assert ("tip, off the wall" in axes.get_legend_handles_labels()[1]) == (wall not in made.blade.surfaces)
+
+
+def test_the_wall_of_a_gap_behind_a_blunt_edge_is_drawn_where_it_is():
+    made = passage(built(DIFFUSER.changed({"tip_clearance": 0.6, "tolerance": COARSE})))
+    points, normals = next(each[1:] for each in outer_grids(made, np.linspace(0.0, 1.0, 9)) if each[0] == "shroud_gap")
+    # plane walls across the axis: the gap is its width away from the tip, and faces away from it
+    away = points[..., 0] - 1e3 * made.blade.sides[0](0.5, 1.0)[0]
+    assert np.abs(away) == pytest.approx(np.full(away.shape, 0.6), abs=1e-9)
+    assert normals[1:, 1:, 0] * np.sign(away[1:, 1:]) == pytest.approx(np.ones((8, 8)), abs=1e-9)
 
 
 def test_lines_close_by_are_on_the_patch_and_pass_the_place(made):

@@ -7,9 +7,11 @@ from matplotlib.axes import Axes
 from matplotlib.patheffects import withStroke
 
 from bladewright.domain.passage import pieces_of
-from bladewright.numerics.elementary import length
+from bladewright.numerics.elementary import length, unit
 from bladewright.nurbs.basis import Reals
+from bladewright.nurbs.curve import Curve
 from bladewright.nurbs.surface import Surface
+from bladewright.nurbs.trimmed import TrimmedSurface
 from bladewright.views.raster import Camera, Polyline, ShadedGrid, axes_towards, framing_camera, rendered
 from bladewright.views.sections import ISOLATED_PITCH, cosine_spacing
 from bladewright.views.style import INK, per_metre, unit_name
@@ -221,15 +223,12 @@ def draw_passage_solid(axes: Axes, passage: "Passage", *, size: tuple[int, int])
     u = np.linspace(0.0, 1.0, PIECE_POINTS)
     blade, rims = blade_surfaces(passage.blade, GRID, BLADE)
     solid, glass, lines = [], [], []
-    for name, sense in outer_faces(passage).items():
+    for name, points, normals in outer_grids(passage, u):
         colour = WALL_COLOURS.get(name.partition("_")[0], OPENING)
-        for piece in pieces_of(name, cast(Surface, passage.whole[name]), passage.knots).values():
-            points, normals = sampled(piece, u, u)
-            normals = sense * normals
-            solid.append(ShadedGrid(points=points, normals=normals, colour=colour, side=-1))
-            glass.append(ShadedGrid(points=points, normals=normals, colour=GLASS, side=1))
-            if name.startswith("hub"):
-                lines += [Polyline(points=line, colour=FAINT) for line in _lines(points)]
+        solid.append(ShadedGrid(points=points, normals=normals, colour=colour, side=-1))
+        glass.append(ShadedGrid(points=points, normals=normals, colour=GLASS, side=1))
+        if name.startswith("hub"):
+            lines += [Polyline(points=line, colour=FAINT) for line in _lines(points)]
     lines += [Polyline(points=line, colour=EDGE) for line in outer_edges(passage)]
     lines += [Polyline(points=line, colour=EDGE, width=2) for line in rims]
     outside = np.concatenate([surface.points.reshape(-1, 3) for surface in solid])
@@ -241,6 +240,20 @@ def draw_passage_solid(axes: Axes, passage: "Passage", *, size: tuple[int, int])
         occupied.append(_write_name(axes, camera, cast(Surface, passage.whole[name]), name, np.concatenate(occupied)))
 
 
+def outer_grids(passage: "Passage", u: Reals) -> list[tuple[str, Reals, Reals]]:
+    """Names, points (m, m, 3) [mm] at u (m,), and outward unit normals of the pieces of `outer_faces`."""
+    found = []
+    for name, sense in outer_faces(passage).items():
+        face = passage.whole[name]
+        if isinstance(face, TrimmedSurface):
+            upper = face.boundary[2 if "blade_trailing_edge" in passage.whole else 1]
+            grids = [_sampled_inside(face, upper, u)]
+        else:
+            grids = [sampled(piece, u, u) for piece in pieces_of(name, face, passage.knots).values()]
+        found += [(name, points, sense * normals) for points, normals in grids]
+    return found
+
+
 def outer_faces(passage: "Passage") -> dict[str, int]:
     """The faces without the blade's, with +1 where dS/du x dS/dv points out of the passage, and -1 elsewhere."""
     return {
@@ -248,6 +261,14 @@ def outer_faces(passage: "Passage") -> dict[str, int]:
         for name in passage.whole
         if name != "tip" and not name.startswith("blade")
     }
+
+
+def _sampled_inside(face: TrimmedSurface, upper: Curve, u: Reals) -> tuple[Reals, Reals]:
+    """`sampled` of a blade's end at u (m,) along and across: from its boundary along the lower side to `upper`."""
+    first, last = np.real(face.boundary[0](u)), np.real(upper(1.0 - u))
+    own, around = np.moveaxis(first[:, None] + u[:, None] * (last - first)[:, None], -1, 0)
+    along, across = (np.real(face.surface.derivative(own, around, *order)) for order in ((1, 0), (0, 1)))
+    return per_metre() * np.real(face.surface(own, around)), unit(np.cross(along, across))
 
 
 def _lines(points: Reals) -> list[Reals]:

@@ -7,14 +7,12 @@ from dataclasses import dataclass
 from html import escape
 from importlib.resources import files
 from io import BytesIO
-from typing import TYPE_CHECKING, Any, cast
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from matplotlib.image import imsave
 
-from bladewright.domain.passage import pieces_of
 from bladewright.nurbs.basis import Reals
-from bladewright.nurbs.surface import Surface
 from bladewright.views.fit_data import DEVIATION_COLOURS, FitResult, colour_scale, deviations_mm, points_to_draw
 from bladewright.views.raster import Polyline, ShadedGrid, framing_camera, rendered
 from bladewright.views.solid import (
@@ -29,10 +27,9 @@ from bladewright.views.solid import (
     hub_surfaces,
     moved,
     outer_edges,
-    outer_faces,
+    outer_grids,
     placed,
     positions,
-    sampled,
     viewpoint,
 )
 from bladewright.views.style import per_metre, unit_name
@@ -100,12 +97,10 @@ def passage_scene(passage: "Passage") -> Scene:
     u = np.linspace(0.0, 1.0, PIECE)
     own, rims = blade_surfaces(passage.blade, OWN, BLADE)
     solid, glass = [], []
-    for name, sense in outer_faces(passage).items():
+    for name, points, normals in outer_grids(passage, u):
         colour = WALL_COLOURS.get(name.partition("_")[0], OPENING)
-        for piece in pieces_of(name, cast(Surface, passage.whole[name]), passage.knots).values():
-            points, normals = sampled(piece, u, u)
-            solid.append(ShadedGrid(points=points, normals=sense * normals, colour=colour, side=-1))
-            glass.append(ShadedGrid(points=points, normals=sense * normals, colour=GLASS, side=1))
+        solid.append(ShadedGrid(points=points, normals=normals, colour=colour, side=-1))
+        glass.append(ShadedGrid(points=points, normals=normals, colour=GLASS, side=1))
     lines = [Polyline(points=line[::8], colour=EDGE) for line in outer_edges(passage)]
     lines += [Polyline(points=line, colour=EDGE, width=2) for line in rims]
     groups = [Group(surfaces=[*solid, *own], lines=lines), Group(surfaces=glass, glass=True)]

@@ -193,7 +193,7 @@ def _at_equal_distances(parameter: Reals, distance: Reals, half_width: float) ->
 def _draw_blade_end(axes: Axes, passage: "Passage", wall: str, shape: Reals) -> None:
     """Draw the end of the blade on the wall; where it stands off the wall, the outline of its tip."""
     colour = span_colour(0.0 if wall == "hub" else 1.0)
-    if passage.walls[f"{wall}_upper"].beside_blade:
+    if wall in passage.blade.design.ends:
         axes.fill(*shape.T, color=colour, alpha=0.25, linewidth=0.0)
         axes.plot(*shape.T, color=colour)
     else:
