@@ -135,7 +135,7 @@ def test_values_at_stations_are_variables():
 FILE_ERRORS = {
     "{ span = [0, 1] }": "metal_angle_out.values is missing: a list of numbers [deg] must be given",
     "{ span = [0, 1], values = [1, 'x'] }": 'metal_angle_out.values[1] is "x": a number [deg] is needed',
-    "{ span = [0, 1], vals = [1, 2] }": "there is no 'vals'; did you mean 'values'?",
+    "{ span = [0, 1], vals = [1, 2] }": "metal_angle_out.vals does not exist; did you mean 'values'?",
     "{ span = [0, 1], values = [1, 2], interpolation = 'natrual' }": "did you mean 'natural'?",
     "{ span = [0, 0.5], values = [1, 2] }": "metal_angle_out.span runs from 0 to 0.5",
     "'abc'": 'metal_angle_out is "abc": a number or a list of numbers or a table of span, values, interpolation',

@@ -49,7 +49,7 @@ def test_walls_that_miss_their_limit_give_status_one(run, cascade_file, monkeypa
     found = run("show", cascade_file, "--body", "passage")
     assert found.status == 1
     assert "the check 'walls' failed" in found.err
-    assert "NOT KEPT" in found.out
+    assert "FAILED" in found.out
 
 
 def test_the_passage_of_a_section_is_drawn_as_curves(run, section_file, tmp_path):

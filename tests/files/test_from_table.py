@@ -169,7 +169,7 @@ REFUSED = {
     )
     + "1,2,3,4\n2,2,3,4\n",
     "the column metal_angle_in has no unit": SMALL.replace("in [deg]", "in") + "1,2,3,4\n2,2,3,4\n",
-    "there is no 'metal_angle_inn'; did you mean 'metal_angle_in'?": SMALL.replace("angle_in", "angle_inn")
+    "the column metal_angle_inn does not exist; did you mean 'metal_angle_in'?": SMALL.replace("angle_in", "angle_inn")
     + "1,2,3,4\n2,2,3,4\n",
     "has no column metal_angle_out": "r [mm],metal_angle_in [deg],chord [mm]\n1,2,3\n2,2,3\n",
     "does not say where its rows stand": "metal_angle_in [deg],metal_angle_out [deg],chord [mm]\n1,2,3\n2,2,3\n",
