@@ -8,6 +8,7 @@ from bladewright import cad
 from bladewright.domain.build import passage
 from bladewright.domain.kinks import kinks
 from machines import COARSE, built
+from machines.flow_paths import cornered
 from machines.unified_paths import DESIGNS, FAN_IN_PATH, IMPELLER_IN_PATH, INFLOW_IN_PATH
 
 INNER = np.linspace(1e-9, 1.0 - 1e-9, 61)
@@ -119,6 +120,14 @@ def test_bent_walls_go_on_straight_too():
         beyond = made.duct.lines(np.array([float(row)])).position(u)[0] - point
         away = beyond @ np.array([slope[1], -slope[0]]) / np.hypot(*slope)
         np.testing.assert_allclose(away, 0.0, atol=1e-13)
+    assert made.wall_error <= 1e-7
+
+
+def test_walls_follow_a_corner_ahead_of_the_blade():
+    hub = cornered((-40.0, 86.0), (-25.0, 93.0), (150.0, 123.0))
+    made = passage(built(FAN_IN_PATH.changed({"flow_path.hub": hub, "tolerance": COARSE})))
+    assert made.knots.start == made.knots.low
+    assert kinks(made.duct, 0, corners=True).size == 1
     assert made.wall_error <= 1e-7
 
 

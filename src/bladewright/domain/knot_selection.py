@@ -143,19 +143,19 @@ def knots_across(walls: Mapping[str, WallHalf], tolerance: float) -> Reals:
 def knots_along(walls: Mapping[str, WallHalf], piece: str, reach: float, tolerance: float) -> Reals:
     """Knots of the piece up- or downstream of the blade, in which the skew of cross-lines fades over `reach` of it.
 
-    At kinks one derivative is kept, and two where the skew begins.
+    At kinks one derivative is kept, at corners none, and two where the skew begins.
     """
     camber = next(iter(walls.values())).camber
     duct, past = camber.duct, int(piece == "outlet")
     edge, end = (duct.edges[1], duct.high) if past else (duct.edges[0], duct.low)
     kinked = [kinks(duct, row) for row in (0, 1)]
     smooth = np.setdiff1d(duct.joints_within(), np.concatenate(kinked))
-    full = _spaced(kink_shares(camber, past))
+    full, corners = (_spaced(kink_shares(camber, past, corners=only)) for only in (False, True))
     fading = _apart_from(full, fade_joints(reach))
     single = _apart_from(np.concatenate([full, fading]), _spaced(np.append((smooth - edge) / (end - edge), 0.5)))
-    inner = np.concatenate([np.repeat(full, DEGREE - 1), np.repeat(fading, DEGREE - 2), single])
+    inner = np.concatenate([np.repeat(full, DEGREE - 1), corners, np.repeat(fading, DEGREE - 2), single])
     inner = np.sort(inner if past else 1.0 - inner)
-    return refined(clamped(inner), _error_along(walls, piece, tolerance), MAX_POLES + len(full) * (DEGREE - 1))
+    return refined(clamped(inner), _error_along(walls, piece, tolerance), MAX_POLES + len(full) * DEGREE)
 
 
 def knots_beside(walls: Mapping[str, WallHalf], own: Reals, tolerance: float) -> Reals:
