@@ -16,13 +16,21 @@ from bladewright.domain.section import SectionPassage
 from bladewright.errors import DesignError
 from bladewright.section.section import Section
 from bladewright.section.smoothness import smoothness
+from bladewright.views.along_the_blade import (
+    draw_camber_angle,
+    draw_flow_area,
+    draw_lean,
+    draw_throat,
+    draw_wrap,
+    has_throat,
+)
 from bladewright.views.distributions import draw_curvature, draw_smoothness, draw_thickness
 from bladewright.views.laws import draw_laws, draw_thickness_laws, panels_of
 from bladewright.views.meridional import draw_meridional
 from bladewright.views.pages import Page, checked_path, draw_header, rows, with_fixed_layout, write_figure
 from bladewright.views.passage import passage_sheet, section_passage_sheet
 from bladewright.views.sections import draw_edge, draw_edges, draw_neighbour, draw_sections, pitch_of
-from bladewright.views.solid import draw_passage_solid, draw_solid
+from bladewright.views.solid import draw_passage_solid, draw_solid, viewpoints
 from bladewright.views.style import SHEET_DPI, VIEW_DPI, WALLS, drawing_style, in_unit, per_metre, span_name, unit_name
 
 SPANS, FEW_SPANS = (0.0, 0.25, 0.5, 0.75, 1.0), (0.0, 0.5, 1.0)
@@ -122,15 +130,19 @@ def _blade_sheet(blade: Blade) -> Figure:
     if blade.design.thickness_laws:
         charts.append(partial(draw_thickness_laws, design=blade.design, sections=few, ends=blade.design.law_ends))
     strips = -(-len(charts) // PANELS_ACROSS)
-    heights = [5.4, 4.6, 3.6, 4.4, *[4.4] * strips]
+    along = [draw_camber_angle, draw_wrap, *([draw_flow_area, draw_throat] if has_throat(blade) else []), draw_lean]
+    heights = [5.4, 4.6, 4.4, 3.6, 4.4, *[4.4] * strips]
     figure = Page(figsize=(16.0, sum(heights) + 0.9))
     draw_header(figure, blade.name, blade.description, _blade_header(blade, middle, pitch))
-    top, centre, edges, smooth, *bottom = rows(figure, *heights)
-    axes = top.subplots(1, 3, width_ratios=[1.25, 1.0, 1.0])
-    draw_solid(axes[0], blade, neighbours=2, width=760)
-    axes[0].set_title("Blade with neighbours")
-    draw_sections(axes[1], sections, blade.design.law_ends)
-    draw_neighbour(axes[2], middle, pitch, _span_title(middle, blade.design.law_ends), blade)
+    top, centre, shape, edges, smooth, *bottom = rows(figure, *heights)
+    axes = top.subplots(1, 4, width_ratios=[1.2, 1.2, 1.0, 1.0])
+    for place, view, title in zip(axes, viewpoints(blade), ("Blade with neighbours", "The other side"), strict=False):
+        draw_solid(place, blade, neighbours=2, width=640, view=view)
+        place.set_title(title)
+    draw_sections(axes[2], sections, blade.design.law_ends)
+    draw_neighbour(axes[3], middle, pitch, _span_title(middle, blade.design.law_ends), blade)
+    for place, draw in zip(shape.subplots(1, len(along)), along, strict=True):
+        draw(place, blade, [section.span for section in sections])
     axes = centre.subplots(1, 3)
     draw_meridional(axes[0], blade)
     draw_curvature(axes[1], few, blade.design.law_ends)

@@ -121,7 +121,7 @@ def draw_sections(axes: Axes, sections: Sequence["Section"], ends: tuple[str, st
         axes.plot(*camber.T, color=colour, linewidth=0.8, linestyle=CAMBER)
     label_axes(axes, "Sections with camber lines", *coordinates(sections[0].plane))
     axes.set_aspect("equal", adjustable="datalim")
-    legend_below(axes, 5, handlelength=1.0, columnspacing=0.9)
+    legend_below(axes, 3, handlelength=1.0, columnspacing=0.9)
 
 
 def draw_neighbour(
@@ -152,7 +152,7 @@ def draw_neighbour(
         title = f"{title}, pitch {pitch:.4g} {unit_name()}"
     label_axes(axes, title, *coordinates(section.plane))
     axes.set_aspect("equal", adjustable="datalim")
-    legend_below(axes, 3, handlelength=1.5, columnspacing=0.9)
+    legend_below(axes, 2, handlelength=1.5, columnspacing=0.9)
 
 
 def narrowest_gap(shape: Reals, neighbour: Reals) -> Reals:

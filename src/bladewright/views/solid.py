@@ -12,6 +12,7 @@ from bladewright.nurbs.basis import Reals
 from bladewright.nurbs.curve import Curve
 from bladewright.nurbs.surface import Surface
 from bladewright.nurbs.trimmed import TrimmedSurface
+from bladewright.views.flow_marks import draw_marks
 from bladewright.views.raster import Camera, Polyline, ShadedGrid, axes_towards, framing_camera, rendered
 from bladewright.views.sections import ISOLATED_PITCH, cosine_spacing
 from bladewright.views.style import INK, per_metre, unit_name
@@ -31,6 +32,8 @@ wheel; no design says it."""
 DISC_SLOPE = 0.2
 """Axial extent of a hub, in radial extents, below which it is seen as a disc from the shroud's side: from upstream the
 blades would hide behind it."""
+STEEP = 0.5
+"""Radial extent of a hub, in axial extents, from which on it hides the blades from one end."""
 GRID, COARSE = (121, 41), (57, 17)
 """Points along and across a side of the blade, and of its neighbours, which are drawn many times."""
 WALL_COLOURS = {"hub": (0.88, 0.80, 0.66), "shroud": (0.88, 0.80, 0.66), "periodic": (0.80, 0.86, 0.92)}
@@ -45,8 +48,12 @@ WALL_LINES = 6
 """Lines of constant u, and lines of constant v, on a smooth piece of a wall."""
 
 
-def draw_solid(axes: Axes, blade: "Blade", *, neighbours: int | None, width: int) -> None:
-    """Draw the blade with `neighbours` on either side (None: the whole row) on the hub [mm], `width` pixels wide."""
+def draw_solid(axes: Axes, blade: "Blade", *, neighbours: int | None, width: int, view: Reals | None = None) -> None:
+    """Draw the blade with `neighbours` on either side (None: the whole row) on the hub, `width` pixels wide.
+
+    `view` holds the axes (3, 3) of the viewer, `viewpoint(blade)` where not given. Arrows say where the flow comes from
+    and which way the row turns, as far as the design says it.
+    """
     turns = positions(blade, neighbours)
     surfaces, polylines = [], []
     neighbour = blade_surfaces(blade, COARSE, NEIGHBOUR)
@@ -60,8 +67,10 @@ def draw_solid(axes: Axes, blade: "Blade", *, neighbours: int | None, width: int
         ]
     blades = np.concatenate([surface.points.reshape(-1, 3) for surface in surfaces])
     surfaces += hub_surfaces(blade, turns)
-    camera = framing_camera(viewpoint(blade), np.concatenate([blades, surfaces[-1].points.reshape(-1, 3)]))
+    view = viewpoint(blade) if view is None else view
+    camera = framing_camera(view, np.concatenate([blades, surfaces[-1].points.reshape(-1, 3)]))
     show_rendering(axes, camera, rendered(surfaces, polylines, camera, width))
+    draw_marks(axes, blade, camera)
 
 
 def show_rendering(axes: Axes, camera: Camera, rendering: Reals) -> None:
@@ -194,6 +203,19 @@ def viewpoint(blade: "Blade") -> Reals:
     narrows = first[1] - last[1] > 0.15 * first[1]
     smaller, larger = (last, first) if narrows else (first, last)
     return axes_towards((0.74 if smaller[0] > larger[0] else -0.74, 0.42, 0.52), (0.0, 0.0, 1.0))
+
+
+def viewpoints(blade: "Blade") -> tuple[Reals, Reals]:
+    """The axes of the viewer, and of one who sees the blade's other side.
+
+    He stands at the opposite end of the row, but where the hub would hide it: then at the same end, on the other side.
+    """
+    first = viewpoint(blade)
+    x, y, z = first[2]
+    start, end = blade.exact.wall_points("hub", np.array([0.0, 1.0]))
+    run, rise = end - start
+    hidden = blade.exact.mapping.revolved and rise * rise > (STEEP * run) ** 2
+    return first, axes_towards((x if hidden else -x, -y, z), (0.0, 0.0, 1.0))
 
 
 def _scale(axes: Axes, camera: Camera) -> None:

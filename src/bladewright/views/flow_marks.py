@@ -1,0 +1,90 @@
+"""Marks in a view in space: where the flow comes from, which way the row turns, and which side is the suction side."""
+
+from typing import TYPE_CHECKING, Any, cast
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.patheffects import withStroke
+
+from bladewright.numerics.elementary import length, unit
+from bladewright.nurbs.basis import Reals
+from bladewright.nurbs.surface import Surface
+from bladewright.views.raster import Camera
+from bladewright.views.style import BLUE, INK, RED, per_metre
+
+if TYPE_CHECKING:
+    from bladewright.blade.native.blade import Blade
+
+REACH = 0.6
+"""Length of the arrow of the flow, of the mean chord: as long as a blade is seen from its edge."""
+TURN = 0.35
+"""Angle of the arrow of the rotation [rad], or its part of the chord in a cascade: seen as a bow, not as a circle."""
+MARKED_AT = ((0.4, 0.5), (0.6, 0.6), (0.25, 0.4), (0.7, 0.35), (0.15, 0.75))
+"""Places (u, v) of a side that are tried for its mark, from its middle on."""
+HALO = [withStroke(linewidth=3.0, foreground="white", alpha=0.8)]
+
+
+def draw_marks(axes: Axes, blade: "Blade", camera: Camera) -> None:
+    """Draw the arrows of the flow and of the rotation, and name the suction side where it faces the viewer."""
+    stations = blade.exact.sections(np.array([0.5, 1.0]))
+    ends = np.real(stations.lines.position(np.array([0.0, 1.0])))
+    tip, _ = _edge(blade, 1.0, ends[1])
+    start, upstream = _edge(blade, 0.5, ends[0])
+    size = REACH * blade.chord
+    _arrow(axes, camera, np.stack([start + 1.4 * size * upstream, start + 0.4 * size * upstream]), BLUE, "flow")
+    turns = blade.design.turns
+    if turns:
+        _arrow(axes, camera, bow(blade, tip, turns), RED, "rotation")
+    side = blade.suction_side
+    if side is not None:
+        _mark_side(axes, blade, camera, side)
+
+
+def _edge(blade: "Blade", v: float, meridian: Reals) -> tuple[Reals, Reals]:
+    """The leading edge at v (3,) [m], and the direction upstream of it."""
+    point = np.real(cast(Surface, blade.surfaces["upper"])(np.array([0.0]), np.array([v])))[0]
+    x, r = unit(meridian[0] - meridian[1])
+    if not blade.exact.mapping.revolved:
+        return point, np.array([x, 0.0, r])
+    theta = np.arctan2(point[1], point[2])
+    return point, np.array([x, r * np.sin(theta), r * np.cos(theta)])
+
+
+def bow(blade: "Blade", point: Reals, turns: int) -> Reals:
+    """Points (n, 3) from a place on, the way that the row turns."""
+    share = np.linspace(0.0, 1.0, 25)[:, None]
+    if not blade.exact.mapping.revolved:
+        return point + turns * TURN * blade.chord * share * np.array([0.0, 1.0, 0.0])
+    radius, theta = 1.04 * length(point[1:]), np.arctan2(point[1], point[2]) + turns * TURN * share
+    return np.concatenate([np.full_like(theta, point[0]), radius * np.sin(theta), radius * np.cos(theta)], axis=-1)
+
+
+def _arrow(axes: Axes, camera: Camera, points: Reals, colour: str, name: str) -> None:
+    flat = camera.seen(points * per_metre())[:, :2]
+    axes.plot(*flat.T, color=colour, linewidth=1.8, path_effects=HALO, clip_on=False)
+    head: dict[str, Any] = {"arrowstyle": "-|>", "color": colour, "linewidth": 1.8, "mutation_scale": 14.0}
+    axes.annotate("", tuple(flat[-1]), xytext=tuple(flat[-2]), arrowprops={**head, "shrinkA": 0.0, "shrinkB": 0.0})
+    away = 9.0 * unit(flat[0] - flat[-1])
+    place: dict[str, Any] = {"textcoords": "offset points", "ha": "center", "va": "center", "path_effects": HALO}
+    axes.annotate(name, tuple(flat[0]), xytext=tuple(away), color=colour, **place)
+
+
+def _mark_side(axes: Axes, blade: "Blade", camera: Camera, side: str) -> None:
+    face = cast(Surface, blade.surfaces[side])
+    for u, v in MARKED_AT:
+        at = np.array([u]), np.array([v])
+        outwards = blade.orientations[side] * np.real(face.normal(*at))[0]
+        if float(outwards @ camera.axes[2]) > 0.2:
+            flat = camera.seen(np.real(face(*at))[0] * per_metre())[:2]
+            middle = float(camera.corner[0] + 0.5 * camera.extent[0])
+            away = -34.0 if flat[0] > middle else 34.0
+            style: dict[str, Any] = {
+                "textcoords": "offset points",
+                "ha": "center",
+                "va": "center",
+                "path_effects": HALO,
+            }
+            line = {"arrowstyle": "-", "color": INK, "linewidth": 0.9, "shrinkA": 0.0, "shrinkB": 0.0}
+            axes.annotate("suction\nside", (flat[0], flat[1]), xytext=(away, 26.0), arrowprops=line, **style)
+            axes.plot(*flat, marker="o", markersize=3.0, color=INK)
+            return
