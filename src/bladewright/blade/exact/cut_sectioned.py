@@ -14,20 +14,21 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from bladewright.blade.exact.clearance import ALLOWED, Clearance, clearance_of
+from bladewright.blade.exact.clearance import ALLOWED, clearance_of
 from bladewright.blade.exact.exact_blade import ExactBlade
 from bladewright.blade.exact.meridional_extent import FlowPathExtent
 from bladewright.blade.exact.meridional_view import COUNT, MeridionalView
+from bladewright.blade.exact.offset_wall import OffsetWall, check_distance, check_folds, check_span
 from bladewright.blade.exact.sectioned import ENDS, ExactSectionedBlade, exact_sectioned_blade
 from bladewright.blade.exact.span_cut import BENT, CutSections, SpanCut, cut_sections, spans_of_cut
 from bladewright.blade.exact.unified import SURVEY
 from bladewright.blade.flow_path.channel import ChannelCurve
-from bladewright.blade.flow_path.meridional_curve import MeridionalCurve, PiecewisePolynomial, real_first
+from bladewright.blade.flow_path.meridional_curve import MeridionalCurve, real_first
 from bladewright.blade.flow_path.quasi_orthogonals import parameters_at
 from bladewright.blade.flow_path.stream_surfaces import StreamSurfaces
 from bladewright.blade.native.knots import DEGREE, Knots, refined
 from bladewright.errors import DesignError
-from bladewright.numerics.elementary import Array, angle, cross2, dot, length
+from bladewright.numerics.elementary import angle, length
 from bladewright.nurbs.basis import Reals, basis, greville, knots_with_joints
 from bladewright.nurbs.curve import Curve
 from bladewright.section.section import Section
@@ -47,51 +48,6 @@ MARGIN = 0.05
 """How far the meridian reaches past the blade at both edges, as a share of its stretch."""
 MOST_POLES = 400
 """Control points of the meridian up to which knots are added: a wall through many points has knots at each."""
-
-
-@dataclass(frozen=True, kw_only=True, eq=False)
-class OffsetWall:
-    """A wall by t, and the distance that a blade keeps from it."""
-
-    wall: PiecewisePolynomial
-    clearance: Clearance
-    leading: Array
-    """(...) t of the uncut blade's leading edge on the wall"""
-    trailing: Array
-    """(...) t of its trailing edge"""
-
-    def real(self) -> "OffsetWall":
-        """The same without imaginary parts and batch."""
-        wall = PiecewisePolynomial(breaks=self.wall.breaks, powers=real_first(self.wall.powers, 3))
-        leading, trailing = (np.asarray(real_first(each, 0)) for each in (self.leading, self.trailing))
-        return OffsetWall(wall=wall, clearance=self.clearance.real(), leading=leading, trailing=trailing)
-
-    def u(self, t: Reals) -> Array:
-        """u (..., k) at t (k,)."""
-        return (t - self.leading[..., None]) / (self.trailing - self.leading)[..., None]
-
-    def distance(self, t: Reals) -> Array:
-        """Stated distance (..., k) [m] at t (k,)."""
-        return self.clearance.distance(self.u(t))
-
-    def points(self, t: Reals) -> Array:
-        """Points (..., k, 2) of the clearance surface at t (k,)."""
-        slope = self.wall.values(t, 1)
-        normal = self.clearance.inward * np.stack([-slope[..., 1], slope[..., 0]], axis=-1) / length(slope)[..., None]
-        return self.wall.values(t) + self.distance(t)[..., None] * normal
-
-    def nearest(self, points: Reals, t: Reals) -> Reals:
-        """t (k,) of the wall's points nearest to `points` (k, 2), by Newton's method from t (k,)."""
-        for _ in range(12):
-            foot, slope, bend = (self.wall.values(t, order) for order in range(3))
-            gap = points - foot
-            t = t + dot(gap, slope) / np.maximum(dot(slope, slope) - dot(gap, bend), 0.1 * dot(slope, slope))
-        return t
-
-    def bend(self, t: Reals) -> Reals:
-        """Curvature (k,) of the wall towards the flow path [1/m]."""
-        slope, bend = self.wall.values(t, 1), self.wall.values(t, 2)
-        return self.clearance.inward * cross2(slope, bend) / length(slope) ** 3
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -287,7 +243,7 @@ def _reached(uncut: ExactSectionedBlade, offset: OffsetWall, end: int) -> tuple[
     t = t.reshape(r.shape)
     free = away - offset.distance(t.ravel()).reshape(r.shape)
     order = np.arange(len(SURVEY)) if end == 0 else np.arange(len(SURVEY))[::-1]
-    _check_span(offset, t[order[-1]], away[order[-1]])
+    check_span(offset, t[order[-1]], away[order[-1]])
     after = np.argmax(free[order] > 0.0, axis=0)
     both = np.stack([order[np.maximum(after - 1, 0)], order[after]])
     columns = np.arange(r.shape[1])
@@ -299,7 +255,7 @@ def _reached(uncut: ExactSectionedBlade, offset: OffsetWall, end: int) -> tuple[
     feet = feet[0] + share * (feet[1] - feet[0])
     low, high = float(np.min(feet)), float(np.max(feet))
     margin = MARGIN * (high - low)
-    _check_distance(offset, (low, high))
+    check_distance(offset, (low, high))
     return (low - margin, high + margin), spans
 
 
@@ -330,7 +286,7 @@ def _knots(uncut: ExactSectionedBlade, offset: OffsetWall, stretch: tuple[float,
     ]
     joints += [(float(place), 1) for place in match.breaks[1:-1]]
     chord = float(np.mean(real_first(uncut.survey.lines.lengths, 1)))
-    _check_folds(offset, stretch)
+    check_folds(offset, stretch)
 
     def miss(knots: Reals, places: Reals) -> Reals:
         fitted = _meridian(offset, knots).values(places)
@@ -346,45 +302,3 @@ def _knots(uncut: ExactSectionedBlade, offset: OffsetWall, stretch: tuple[float,
             f"{clearance.name}, or smooth flow_path.{clearance.wall}"
         )
     return knots
-
-
-def _check_span(offset: OffsetWall, t: Reals, away: Reals) -> None:
-    """Refuse a clearance that leaves no blade somewhere: `away` (k,) is how far its other end is from the wall."""
-    clearance = offset.clearance
-    stated = offset.distance(t)
-    worst = int(np.argmax(stated / away))
-    if stated[worst] >= away[worst]:
-        other = "hub" if clearance.wall == "shroud" else "shroud"
-        raise DesignError(
-            f"{clearance.name} is {clearance.in_unit(stated[worst])} at u = {float(offset.u(t)[worst]):.3f}, where the "
-            f"{other} is {clearance.in_unit(away[worst])} from the {clearance.wall}: a clearance must be smaller than "
-            f"the span everywhere; lower {clearance.name}"
-        )
-
-
-def _check_distance(offset: OffsetWall, stretch: tuple[float, float]) -> None:
-    """Refuse a clearance that ends on the nose of the blade, past the edge at which it is smaller."""
-    clearance = offset.clearance
-    for t, edge in zip(stretch, ("leading", "trailing"), strict=True):
-        at = np.array([t])
-        distance = float(offset.distance(at)[0])
-        if distance <= 0.0:
-            raise DesignError(
-                f"{clearance.name} is linear in u and falls to {clearance.in_unit(distance)} at u = "
-                f"{float(offset.u(at)[0]):.3f}, the nose past the {edge} edge: the blade would meet the "
-                f"{clearance.wall} there; bring its two values nearer to each other"
-            )
-
-
-def _check_folds(offset: OffsetWall, stretch: tuple[float, float]) -> None:
-    """Refuse a wall that bends towards the blade more sharply than the clearance allows."""
-    clearance, t = offset.clearance, np.linspace(*stretch, SAMPLES)
-    bend, stated = offset.bend(t), offset.distance(t)
-    worst = int(np.argmax(bend * stated))
-    if bend[worst] * stated[worst] >= 1.0:
-        raise DesignError(
-            f"{clearance.name} is {clearance.in_unit(stated[worst])} at u = {float(offset.u(t)[worst]):.3f}, where the "
-            f"{clearance.wall}'s radius of curvature towards the blade is {clearance.in_unit(1.0 / bend[worst])}: the "
-            f"surface at that distance folds over near there; lower {clearance.name}, or smooth "
-            f"flow_path.{clearance.wall}"
-        )
