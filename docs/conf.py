@@ -4,6 +4,8 @@ import re
 import sys
 from pathlib import Path
 
+from pygments.lexers.special import TextLexer
+
 import bladewright as bw
 
 HERE = Path(__file__).parent
@@ -40,5 +42,6 @@ def within_the_tree(_app, _page, source):
 
 
 def setup(app):
+    app.add_lexer("csv", TextLexer)
     app.connect("source-read", within_the_tree)
     app.connect("autodoc-process-docstring", as_rst)
