@@ -19,7 +19,10 @@ exclude_patterns = ["_build"]
 html_theme = "furo"
 html_title = f"bladewright {version}"
 myst_heading_anchors = 3
-suppress_warnings = ["ref.python"]  # `law` and `kind` are fields of several classes
+suppress_warnings = [
+    "ref.python",  # `law` and `kind` are fields of several classes
+    "misc.highlighting_failure",  # tables of numbers, `csv`, have no highlighting
+]
 autodoc_member_order = "bysource"
 autodoc_default_options = {"exclude-members": "__init__"}
 autodoc_class_signature = "separated"

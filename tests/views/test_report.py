@@ -28,7 +28,9 @@ def trip_of(design):
         "file": "rotor.step", "format": "STEP", "schema": "AP242", "unit": "mm", "passed": True, "failures": [],
         "limits": {"side_mm": 1e-6, "end_mm": 1e-5, "edge_mm": 1e-6}, "solids": 1, "shells": 1, "free_edges": 0,
         "valid": True, "faces": [face], "edges": {"count": 6, "max_gap_mm": 1e-9, "max_tolerance_mm": 1e-7},
-        "volume_mm3": pair, "area_mm2": pair, "centroid_mm": {"distance": 1e-12},
+        "kernel_check": [{"fault": "a crooked edge", "count": 3}],
+        "volume_mm3": {**pair, "kernel_default": {"cad": 2.5, "relative_error": 0.25}},
+        "area_mm2": pair, "centroid_mm": {"distance": 1e-12},
         "design": {"name": design.name, "parameters_hash": parameters_hash(design)},
     }  # fmt: skip
 
@@ -66,6 +68,8 @@ def test_a_report_says_what_the_blade_is(page):
     for word in (ROTOR.name, ROTOR.description, ROTOR.author, f"{volume:.6g} mm³", f"{chord:.5g}", "rotor.step"):
         assert word in words
     assert parameters_hash(ROTOR) in words
+    assert "2.5 mm³, 2.5e-01 off" in words
+    assert "a crooked edge (3)" in words
     assert "another state" not in words
 
 

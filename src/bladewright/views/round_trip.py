@@ -12,6 +12,8 @@ from bladewright.views.style import BLUE, RED, SOFT, drawing_style, label_axes
 
 Report = Mapping[str, Any]
 """A round trip as its JSON has it."""
+LIMITS = {"side_mm": "--", "end_mm": ":"}
+"""Limits of deviations by their keys, and the styles of their lines."""
 LEAST = 1e-16
 """Shortest bar [mm]: what is exact has no place on an axis of powers of ten."""
 
@@ -19,9 +21,7 @@ LEAST = 1e-16
 def round_trip_figure(report: Report) -> Figure:
     """Largest deviation of each face, and of the edges, beside their limits."""
     limits, faces = report["limits"], report["faces"]
-    gap = limits.get("edge_mm")
-    bars = [(face["name"], face["max_deviation_mm"]) for face in faces]
-    bars += [] if gap is None else [("edges", report["edges"]["max_gap_mm"])]
+    bars = [*((face["name"], face["max_deviation_mm"]) for face in faces), ("edges", report["edges"]["max_gap_mm"])]
     with drawing_style():
         figure = Page(figsize=(6.0, 1.2 + 0.28 * len(bars)), layout="constrained")
         axes = figure.add_subplot()
@@ -32,10 +32,9 @@ def round_trip_figure(report: Report) -> Figure:
         axes.set_yticks(np.arange(len(bars)), [name.replace("_", " ") for name in names])
         axes.invert_yaxis()
         axes.set_xscale("log")
-        for name, style in (("side_mm", "--"), ("end_mm", ":")):
-            if name in limits:
-                words = f"limit of {name.removesuffix('_mm')}s, {limits[name]:g} mm"
-                axes.axvline(limits[name], color=SOFT, linestyle=style, label=words)
+        for name, style in LIMITS.items():
+            words = f"limit of {name.removesuffix('_mm')}s, {limits[name]:.3g} mm"
+            axes.axvline(limits[name], color=SOFT, linestyle=style, label=words)
         axes.legend(loc="upper left", bbox_to_anchor=(0.0, -0.25 / (0.3 + 0.1 * len(bars))), ncols=2)
         label_axes(axes, "Reopened file off the native faces", "largest deviation [mm], logarithmic", "")
         return with_fixed_layout(figure)
@@ -46,12 +45,17 @@ def round_trip_rows(report: Report) -> Rows:
     kind = " ".join(word for word in (report["format"], report["schema"]) if word)
     volume, area, edges = report["volume_mm3"], report["area_mm2"], report["edges"]
     valid = "valid" if report["valid"] else "INVALID"
+    shown, faults = volume.get("kernel_default"), report.get("kernel_check")
+    faulty = ", ".join(f"{fault['fault']} ({fault['count']})" for fault in faults or ())
+    others = [] if shown is None else [("in FreeCAD", f"{shown['cad']:.8g} mm³, {shown['relative_error']:.1e} off")]
+    others += [] if faults is None else [("its check finds", faulty or "nothing")]
     return [
         ("file", f"{report['file']} ({kind}, {report['unit']})"),
         ("verdict", "passed" if report["passed"] else "FAILED"),
         *(("", failure) for failure in report["failures"]),
         ("holds", f"{report['solids']} solid, {report['shells']} shell, {report['free_edges']} free edges, {valid}"),
         ("volume", f"{volume['cad']:.8g} mm³, {volume['relative_error']:.1e} off"),
+        *others,
         ("surface", f"{area['cad']:.8g} mm², {area['relative_error']:.1e} off"),
         ("centroid", f"{report['centroid_mm']['distance']:.1e} mm off"),
         ("edges", f"{edges['count']}, gap {edges['max_gap_mm']:.1e} mm, tolerance {edges['max_tolerance_mm']:.1e} mm"),
