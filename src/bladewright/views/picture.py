@@ -133,7 +133,7 @@ def _blade_sheet(blade: Blade) -> Figure:
     along = [draw_camber_angle, draw_wrap, *([draw_flow_area, draw_throat] if has_throat(blade) else []), draw_lean]
     heights = [5.4, 4.6, 4.4, 3.6, 4.4, *[4.4] * strips]
     figure = Page(figsize=(16.0, sum(heights) + 0.9))
-    draw_header(figure, blade.name, blade.description, _blade_header(blade, middle, pitch))
+    draw_header(figure, blade.name, blade.description, _blade_header(blade, middle))
     top, centre, shape, edges, smooth, *bottom = rows(figure, *heights)
     axes = top.subplots(1, 4, width_ratios=[1.2, 1.2, 1.0, 1.0])
     for place, view, title in zip(axes, viewpoints(blade), ("Blade with neighbours", "The other side"), strict=False):
@@ -185,13 +185,14 @@ def _section_sheet(design: Any, section: Section) -> Figure:
     return figure
 
 
-def _blade_header(blade: Blade, middle: Section, pitch: float) -> list[str]:
+def _blade_header(blade: Blade, middle: Section) -> list[str]:
     columns, rows = blade.knots.poles
     count, place = blade.design.blade_count, _span_title(middle, blade.design.law_ends)
+    solidity = float(blade.report([middle.span]).solidity[0])
     return [
         "linear cascade" if count is None else f"{count} blade{'s' if count > 1 else ''}",
         f"mean chord {in_unit(blade.chord)}",
-        f"chord / pitch at {place.lower()} {middle.chord * per_metre() / pitch:.3g}",
+        f"solidity at {place.lower()} {solidity:.3g}",
         f"{columns} x {rows} poles a side",
         f"error {blade.error:.1e} of the chord",
         "all checks passed" if blade.conformance.kept else "a check failed",
