@@ -2,7 +2,7 @@
 
 import re
 from abc import ABC, abstractmethod
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field, fields, is_dataclass, replace
 from typing import Annotated, Any, ClassVar, Literal, NamedTuple, Self
@@ -49,6 +49,13 @@ class Part:
 
     inline: ClassVar[bool] = False
     """whether design files have it on one line, in the place of a number"""
+
+    def control_places(self, row: str) -> Sequence[float] | None:  # noqa: ARG002 - most parts have them there
+        """Places from the leading edge, 0, to the trailing edge, 1, of a row's control points, at mid-span.
+
+        None where they are the Greville abscissae; empty where the row does not run along the chord.
+        """
+        return None
 
     def parameters(self) -> dict[str, float]:
         """Every differentiable leaf by its path, in the order of the fields, in the design's own units."""

@@ -5,15 +5,28 @@ import pytest
 from matplotlib.path import Path as Outline
 
 from bladewright.blade.design.families import prismatic
-from bladewright.views.laws import Panel, draw_laws, panels_of
+from bladewright.designs import Stations
+from bladewright.section.laws import overshoots_of
+from bladewright.views.laws import Panel, constant_rows, constants_of, draw_laws, panels_of, place_names
 from bladewright.views.meridional import blade_outline
 from bladewright.views.picture import FEW_SPANS, SPANS, sheet
 from bladewright.views.sections import cosine_spacing, drawn_per_unit, narrowest_gap, outline, pitch_of
+from machines import example
+from machines.sectioned import DESIGNS as SECTIONED
+from machines.sectioned import IMPELLER
 from machines.stations import TABLE
+
+FAMILIES = (*SECTIONED.values(), *(example(name) for name in ("core-rotor", "booster-stator", "pump-inducer")))
+"""designs with rows of laws of every kind"""
 
 EXACT = 1e-12
 """rounding of a scaling"""
 SAME = {"rtol": EXACT, "atol": EXACT}
+
+
+def shown_spans(drawn, spans):
+    """A cascade has the same section all along the span: it is drawn once."""
+    return (0.5,) if drawn.name == "cascade" else spans
 
 
 def lines(panel):
@@ -29,8 +42,8 @@ def with_name(panel, name):
 def test_sections_are_the_native_curves_in_the_unit_of_the_design(blade_drawn):
     panel, u = blade_drawn.panel("Sections"), cosine_spacing()
     shapes = [line for line in lines(panel) if len(line) == 2 * len(u)]
-    assert len(shapes) == len(SPANS)
-    for v, shape in zip(SPANS, shapes, strict=True):
+    assert len(shapes) == len(shown_spans(blade_drawn, SPANS))
+    for v, shape in zip(shown_spans(blade_drawn, SPANS), shapes, strict=True):
         section = blade_drawn.built.section(v)
         for name, part in (("upper", shape[: len(u)]), ("lower", shape[: len(u) - 1 : -1])):
             assert np.allclose(part, section.curves[name](u) * drawn_per_unit(section), **SAME)
@@ -69,7 +82,9 @@ def test_the_narrowest_gap_of_two_circles_lies_between_their_centres():
 
 
 def test_curvature_is_that_of_the_section_convex_positive_per_unit_of_length(drawn):
-    sections = [drawn.built] if drawn.name == "section" else [drawn.built.section(v) for v in FEW_SPANS]
+    sections = (
+        [drawn.built] if drawn.name == "section" else [drawn.built.section(v) for v in shown_spans(drawn, FEW_SPANS)]
+    )
     curves = [line for line in lines(drawn.panel("Curvature")) if len(line) == 601]
     assert len(curves) == 2 * len(sections)
     for index, section in enumerate(sections):
@@ -86,7 +101,7 @@ def test_curvature_is_that_of_the_section_convex_positive_per_unit_of_length(dra
 
 
 def test_thickness_is_that_of_the_section_in_the_unit_of_the_design(drawn):
-    sections = [drawn.built] if drawn.name == "section" else [drawn.built.section(v) for v in SPANS]
+    sections = [drawn.built] if drawn.name == "section" else [drawn.built.section(v) for v in shown_spans(drawn, SPANS)]
     curves = [line for line in lines(drawn.panel("Thickness as built")) if len(line) > 1]
     for section, curve in zip(sections, curves, strict=True):
         assert np.allclose(
@@ -120,24 +135,75 @@ def test_the_meridional_outline_holds_the_native_sides(blade_drawn):
     assert reach == pytest.approx(np.ptp(shape, axis=0), rel=3e-2)
 
 
-def test_every_law_of_the_design_is_drawn_from_hub_to_shroud(blade_drawn):
-    design, drawn = blade_drawn.design, 0
-    for title, factor in (("Angles", 1.0), ("Position", 1.0), ("Camber tangents", 100.0), ("Edge radii", 100.0)):
-        if title == "Position" and blade_drawn.name != "cascade":
-            continue
-        panel = blade_drawn.panel(title)
-        named = [line.get_label() for line in panel.get_lines() if not line.get_label().startswith("_")]
-        for name in named:
+def test_every_law_of_the_design_is_drawn_from_hub_to_shroud_or_written_as_a_constant(blade_drawn):
+    design, found = blade_drawn.design, []
+    for title, factor in (("Angles", 1.0), ("Leading edge position", 1.0), ("Camber t", 100.0), ("Edge radii", 100.0)):
+        panel = next((axes for axes in blade_drawn.figure.axes if axes.get_title(loc="left").startswith(title)), None)
+        named = [] if panel is None else [line.get_label() for line in panel.get_lines()]
+        for name in [name for name in named if not name.startswith("_")]:
             law = getattr(design, name.replace(" ", "_"))
-            law = law if isinstance(law, tuple) else (law,)
             curve = with_name(panel, name)
+            assert len(set(law)) > 1
             assert curve[0] == pytest.approx([factor * law[0], 0.0], abs=1e-12)
             assert curve[-1] == pytest.approx([factor * law[-1], 1.0], abs=1e-12)
             assert any(
                 len(line) == len(law) and np.allclose(line[:, 0], factor * np.array(law)) for line in lines(panel)
             )
-            drawn += 1
-    assert drawn == 8
+            found.append(name)
+    for each in constants_of(design):
+        if not each.name.startswith(("thickness", "weights")):
+            law = getattr(design, each.name.replace(" ", "_"))
+            factor = 1.0 if each.unit in ("deg", design.length_unit) else 100.0
+            assert each.values == pytest.approx((factor * (law[0] if isinstance(law, tuple) else law),))
+            found.append(each.name)
+    assert sorted(found) == sorted(set(found))
+    assert len(found) == 8
+    texts = [text.get_text() for axes in blade_drawn.figure.axes for text in axes.texts]
+    constants = constants_of(design)
+    for name, *_ in constant_rows(constants) if any(not each.default for each in constants) else []:
+        assert name in texts or not name
+
+
+def test_constants_say_their_unit_and_whether_anybody_gave_them():
+    given = {each.name: each for each in constants_of(IMPELLER)}
+    assert all(len(row) == 3 for row in constant_rows(list(given.values())))
+    theta = given["leading edge theta"]
+    assert theta.default
+    assert constant_rows([theta]) == [("leading edge theta", "0", "deg, default")]
+
+
+def test_laws_that_coincide_are_one_line_with_all_their_names():
+    from matplotlib.figure import Figure
+
+    axes, same = Figure().add_subplot(), (0.3, 0.4)
+    laws = {"tangent in": same, "tangent out": (0.3, 0.35, 0.4), "other": (0.3, 0.5)}
+    laws |= {"upper, at 33 %": (0.1, 0.2), "lower, at 33 %": (0.1, 0.2)}
+    draw_laws(axes, Panel("Tangents", "length [%]", 100.0, laws))
+    named = [line.get_label() for line in axes.get_lines() if not line.get_label().startswith("_")]
+    assert named == ["tangent in = tangent out", "other", "both sides, at 33 %"]
+    assert len({line.get_color() for line in axes.get_lines()}) == 3
+
+
+def test_control_points_along_the_chord_are_called_by_their_places():
+    assert place_names((0.0, 0.2, 1.0 / 3.0, 1.0), 4) == ["leading edge", "at 20 %", "at 33.3 %", "trailing edge"]
+    assert place_names((), 2) == ["point 1", "point 2"]
+    names = {panel.title: list(panel.laws) for design in FAMILIES for panel in panels_of(design)}
+    assert names["Curvature"][0] == "leading edge"
+    assert names["Camber angle"][-1] == "trailing edge"
+    assert not any(name.isdigit() for each in names.values() for name in each)
+
+
+def test_an_overshoot_of_stations_is_marked_with_its_size():
+    from matplotlib.figure import Figure
+
+    axes = Figure().add_subplot()
+    law = Stations(span=(0.0, 0.4, 0.6, 1.0), values=(0.0, 0.0, 1.0, 1.0))
+    draw_laws(axes, Panel("Angles", "angle [deg]", 1.0, {"metal angle out": law}))
+    marked = next(line for line in axes.get_lines() if line.get_label().startswith("overshoot"))
+    found = list(overshoots_of(law, ""))
+    assert len(found) == 2
+    assert np.column_stack(marked.get_data()) == pytest.approx(np.array([(each.value, each.v) for each in found]))
+    assert marked.get_label() == f"overshoot, {max(each.amount for each in found):.2g} deg"
 
 
 def test_stations_are_drawn_on_their_law():
@@ -157,18 +223,32 @@ def test_thickness_laws_are_drawn_along_span_and_chord(drawn):
         points = [100.0 * (law[0] if isinstance(law, tuple) else law) for law in laws]
         assert any(len(line) == len(points) and np.allclose(line[:, 1], points) for line in lines(panel))
     if drawn.name != "section":
-        along_span = [a for a in drawn.figure.axes if a.get_title(loc="left") == "Half thickness"]
-        labels = [line.get_label() for line in along_span[0].get_lines()]
-        assert [f"upper {i + 1}" for i in range(len(drawn.design.thickness_upper))] == [
-            n for n in labels if "upper" in n
-        ]
+        panels = {panel.title: panel for panel in panels_of(drawn.design)}
+        if drawn.name == "cascade":
+            assert "Half thickness" not in panels
+            return
+        names = list(panels["Half thickness"].laws)
+        assert names[0] == "upper, leading edge"
+        assert len([name for name in names if "upper" in name]) == len(drawn.design.thickness_upper)
 
 
 def test_weights_have_a_panel_where_there_are_some(section_drawn):
-    weighted = section_drawn.design.changed({"weights_upper": (1.0, 1.3, 1.0), "weights_lower": (1.0, 1.2)})
-    assert "Weights" not in [panel.title for panel in panels_of(prismatic(section_drawn.design))]
-    weights = next(panel for panel in panels_of(prismatic(weighted)) if panel.title == "Weights")
-    assert weights.laws == {"upper 1": 1.0, "upper 2": 1.3, "upper 3": 1.0, "lower 1": 1.0, "lower 2": 1.2}
+    plain, weighted = (
+        prismatic(section_drawn.design.changed({"weights_upper": upper, "weights_lower": lower}))
+        for upper, lower in (((), ()), ((1.0, 1.3, 1.0), (1.0, 1.2)))
+    )
+    assert not any(each.name.startswith("weights") for each in constants_of(plain))
+    assert {each.name: each.values for each in constants_of(weighted) if each.name.startswith("weights")} == {
+        "weights upper": (1.0, 1.3, 1.0),
+        "weights lower": (1.0, 1.2),
+    }
+    panels = panels_of(weighted.changed("weights_upper[1]", (1.3, 1.4)))
+    weights = next(panel for panel in panels if panel.title == "Weights")
+    assert weights.laws == {
+        "upper, leading edge": 1.0,
+        "upper, at 50 %": (1.3, 1.4),
+        "upper, trailing edge": 1.0,
+    }
 
 
 def test_a_built_section_is_drawn_without_the_laws_it_does_not_know(section_drawn):

@@ -2,20 +2,23 @@
 
 from dataclasses import replace
 from importlib import import_module
+from itertools import pairwise
 
 import numpy as np
 import pytest
+from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
 from bladewright.blade.exact.sectioned import exact_sectioned_blade
 from bladewright.section.profiles.points import PointsProfile
 from bladewright.section.smoothness import smoothness
-from bladewright.views.distributions import draw_smoothness, percent
-from bladewright.views.laws import panels_of
+from bladewright.views.distributions import draw_sides, draw_smoothness, jump_rows, logarithmic_beyond
+from bladewright.views.laws import constants_of, panels_of
 from bladewright.views.meridional import built_edges
 from bladewright.views.picture import sheet
 from bladewright.views.sections import draw_edge, drawn_per_unit, neighbour_outline, outline
 from bladewright.views.solid import blade_surfaces, draw_solid
+from bladewright.views.text_table import draw_text_table
 from machines import built
 from machines.sectioned import BLUNT, COMPRESSOR, DESIGNS, IMPELLER, STATOR, VANE
 from machines.sections import EXAMPLES
@@ -120,7 +123,7 @@ def test_an_impeller_is_seen_from_its_shroud(impeller):
 
 @pytest.mark.parametrize("design", [*DESIGNS.values(), BLUNT], ids=lambda each: each.name)
 def test_every_law_of_a_family_has_a_place_in_a_panel(design):
-    drawn = sum(len(panel.laws) for panel in panels_of(design))
+    drawn = sum(len(panel.laws) for panel in panels_of(design)) + sum(len(each.values) for each in constants_of(design))
     apart = ("flow_path", "leading_edge.", "leading_edge_", "trailing_edge.", "pitch")
     paths = {path.split("[")[0] for path in design.parameters() if not path.startswith(apart)}
     rows = sum(
@@ -142,7 +145,8 @@ def test_points_of_a_given_profile_have_no_panel_each():
     turn = np.linspace(0.0, 2.0 * np.pi, 20, endpoint=False)
     abscissas, ordinates = (tuple(each.tolist()) for each in (0.5 + 0.5 * np.cos(turn), 0.1 * np.sin(turn)))
     blade = replace(VANE, section=PointsProfile(abscissas=abscissas, ordinates=ordinates))
-    assert [panel.title for panel in panels_of(blade)] == ["Angles", "Position of the leading edge"]
+    assert [panel.title for panel in panels_of(blade)] == ["Leading edge position"]
+    assert [each.name for each in constants_of(blade)] == ["stagger angle"]
 
 
 def test_neighbours_in_a_plane_of_lengths_stand_as_far_apart_as_their_radius_says():
@@ -195,15 +199,65 @@ def test_the_thickness_at_a_blunt_edge_is_that_of_the_edge():
 
 
 def test_smoothness_is_drawn_in_pieces_with_the_jumps_in_a_table():
-    found = smoothness(built(EXAMPLES["naca-2412"].design))
+    section = built(EXAMPLES["naca-2412"].design)
+    found, chord = smoothness(section), 1e3 * section.chord
     figure = Figure(layout="constrained")
-    draw_smoothness(figure.subfigures(), {0.0: found})
+    draw_smoothness(figure.subfigures(), [section])
     camber = figure.axes[1].get_lines()
     dots = next(line for line in camber if line.get_marker() == "o").get_ydata()
-    assert dots == pytest.approx(found.camber.jumps[0].curvature, rel=1e-6)  # the places beside the joint
+    jump = found.camber.jumps[0].curvature
+    assert dots == pytest.approx(np.array(jump) / chord, rel=1e-6)  # the places beside the joint
     texts = [text.get_text() for text in figure.axes[3].texts]
-    assert percent(found.camber.curvature_jump) in texts
-    assert [percent(share) for share in (2.0, 0.0712, 4e-5, 1e-7)] == ["200 %", "7.1 %", "0.004 %", "1e-05 %"]
+    assert f"{abs(jump[1] - jump[0]) / chord:.3g}" in texts
+    assert "curvature [1/mm]" in texts
+    assert [row[0] for row in jump_rows([(section, found)], ("hub", "tip"))] == ["upper", "lower", "camber"]
+
+
+def test_the_columns_of_a_table_do_not_touch_whatever_stands_in_them():
+    axes = Figure(figsize=(9.0, 3.0)).add_subplot()
+    draw_text_table(
+        axes, [("a name that is very much longer", "1", "mm"), ("short", "123456789", "1/mm²")], align="lrl"
+    )
+    FigureCanvasAgg(axes.figure).draw()
+    boxes = [text.get_window_extent() for text in axes.texts]
+    for line in (boxes[:3], boxes[3:]):
+        assert all(left.x1 + 8.0 < right.x0 for left, right in pairwise(line))
+    assert boxes[1].x1 == pytest.approx(boxes[4].x1, abs=1.0)  # a pixel
+
+
+@pytest.mark.parametrize(("limits", "least"), [((-0.3, 40.0), 0.03), ((-1e6, 1e6), 0.7), ((0.0, 1e-3), 0.01)])
+def test_a_logarithmic_axis_says_where_it_begins_and_its_ticks_stand_apart(limits, least):
+    axes = Figure(figsize=(4.0, 3.0)).add_subplot()
+    axes.plot([0.0, 1.0], limits)
+    axes.set_ylabel("curvature [1/mm]")
+    logarithmic_beyond(axes, least)
+    begin = float(axes.get_ylabel().partition("±")[2])
+    assert least <= begin <= 3.0 * least
+    assert axes.get_ylabel() == f"curvature [1/mm],\nlogarithmic beyond ±{begin:g}"
+    FigureCanvasAgg(axes.figure).draw()
+    low, high = axes.get_ylim()
+    boxes = [each.label1.get_window_extent() for each in axes.yaxis.get_major_ticks() if low <= each.get_loc() <= high]
+    boxes.sort(key=lambda box: box.y0)
+    assert len(boxes) >= 3
+    assert all(lower.y1 <= upper.y0 + 1.0 for lower, upper in pairwise(boxes))  # a pixel: boxes are rounded outwards
+
+
+def test_sides_that_are_alike_are_both_seen():
+    axes, x = Figure().add_subplot(), np.linspace(0.0, 1.0, 5)
+    draw_sides(axes, (x, x), (x, x), "black")
+    draw_sides(axes, (x, x), (x, 1.1 * x), "black")
+    widths = [line.get_linewidth() for line in axes.get_lines()]
+    assert widths[0] > 2.0 * widths[1]
+    assert widths[1] == widths[2] == widths[3]
+
+
+def test_straight_camber_lines_have_no_panels_of_curvature():
+    section, figure = built(EXAMPLES["wedge diffuser with a back face"].design), Figure(layout="constrained")
+    draw_smoothness(figure.subfigures(), [section])
+    assert [axes.get_title() for axes in figure.axes] == [
+        "Slope of the curvature of the sides",
+        "Largest jumps at joints",
+    ]
 
 
 def test_smoothness_of_a_blade_is_that_of_its_exact_sections(impeller):

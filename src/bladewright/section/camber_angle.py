@@ -6,6 +6,7 @@ References: M. Casey, A computational geometry for the blades and internal flow 
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import ClassVar, Literal
 
@@ -82,6 +83,13 @@ class CamberAngle(SectionFamily):
     def _inner(self) -> int:
         """How many values of the half thickness are not at an edge."""
         return len(self.half_thickness) - (1 if self.trailing_edge == "sharp" else 2)
+
+    def control_places(self, row: str) -> Sequence[float] | None:
+        """The half thickness stands at given places."""
+        if row not in ("half_thickness", "thickness_weights"):
+            return None
+        inner = [float(np.real(each[0])) for each in self._places(Span(np.array([0.5])))]
+        return [0.0, *inner, *([1.0] if self.trailing_edge != "sharp" else [])]
 
     def outline(self, span: Span, meridional: MeridionalFraction | None = None) -> CamberAngleOutline:
         """The exact sections (..., m) at the places of the span, in chords, unstaggered.

@@ -94,6 +94,12 @@ class CurvatureMeanline(SectionFamily):
                 "each but the first, at 0, and the last, at 1"
             )
 
+    def control_places(self, row: str) -> Sequence[float] | None:
+        """Both rows stand at given places."""
+        if row not in ("curvature", "thickness_multiplier"):
+            return None
+        return np.real(self._places(row, Span(np.array([0.5]))))[0].tolist()
+
     def meanline(self, span: Span) -> Meanline:
         """The meanlines (..., m) at the places of the span; raises DesignError where none has the camber asked for.
 

@@ -1,6 +1,6 @@
 """Distributions along a section: curvature, its slope with the jumps at joints, and thickness."""
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -11,7 +11,7 @@ from matplotlib.ticker import FixedLocator, FuncFormatter, NullLocator
 
 from bladewright.numerics.elementary import length
 from bladewright.nurbs.basis import Reals
-from bladewright.section.smoothness import STEADY, SmoothLine, Smoothness
+from bladewright.section.smoothness import STEADY, SmoothLine, Smoothness, smoothness
 from bladewright.views.sections import cosine_spacing
 from bladewright.views.style import (
     INK,
@@ -28,6 +28,7 @@ from bladewright.views.style import (
     span_name,
     unit_name,
 )
+from bladewright.views.text_table import draw_text_table
 
 if TYPE_CHECKING:
     from bladewright.section.section import Section
@@ -36,6 +37,14 @@ ARC_LABEL = "part of the arc, leading to trailing edge [-]"
 """Name of the abscissa along a side."""
 CAMBER_LABEL = "along the camber, leading to trailing edge [-]"
 """Name of the abscissa along the camber line."""
+Line = tuple[Reals, Reals]
+"""Abscissae and ordinates of a line."""
+ALIKE = 1e-3
+"""Distance of two lines, of the range of the first, up to which one hides the other: half a width of the line."""
+POWERS = 4
+"""Most powers of ten beside a logarithmic axis, on either side of zero; fewer leave room for the linear part."""
+STRAIGHT = 1e-9
+"""Curvature of a camber line that is straight [1 / chord]: rounding."""
 EDGE_SHARE = 0.05
 """Fraction of the arc length at either end that does not set the scale of an axis: values at the edges are far larger
 than between them."""
@@ -54,24 +63,57 @@ def side_curvature(section: "Section", name: str) -> tuple[Reals, Reals]:
 def draw_curvature(axes: Axes, sections: Sequence["Section"], ends: tuple[str, str] = WALLS) -> None:
     """Draw the curvature of both sides, linear about zero and logarithmic beyond, as it is far larger at the edges."""
     for section in sections:
-        for name, style in (("upper", UPPER), ("lower", LOWER)):
-            axes.plot(*side_curvature(section, name), color=span_colour(section.span), linestyle=style, linewidth=1.2)
-    least = 2.0 / (per_metre() * min(section.chord for section in sections))
-    decade = 10.0 ** np.floor(np.log10(least))
-    threshold = decade * min(each for each in (1.0, 2.0, 5.0, 10.0) if each * decade >= least)
-    axes.set_yscale("symlog", linthresh=threshold, linscale=1.5)
-    low, high = axes.get_ylim()
-    beyond = decade * 10.0 ** np.arange(1.0, 9.0)
-    beyond = beyond[beyond > 1.5 * threshold]
-    ticks = np.concatenate([-beyond, threshold * np.linspace(-1.0, 1.0, 5), beyond])
-    axes.set_ylim(low, high)
-    axes.yaxis.set_major_locator(FixedLocator(ticks[(ticks >= low) & (ticks <= high)].tolist()))
-    axes.yaxis.set_minor_locator(NullLocator())
-    axes.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+        upper, lower = (side_curvature(section, name) for name in ("upper", "lower"))
+        draw_sides(axes, upper, lower, span_colour(section.span))
+    least = 2.0 / (per_metre() * min(float(section.chord) for section in sections))
     axes.axhline(0.0, color=SOFT, linewidth=0.8)
     axes.set_xlim(-0.01, 1.01)
     label_axes(axes, "Curvature of the sides, convex positive", ARC_LABEL, f"curvature [1/{unit_name()}]")
+    logarithmic_beyond(axes, least)
     sides_legend(axes, [section.span for section in sections], ends)
+
+
+def draw_sides(axes: Axes, upper: Line, lower: Line, colour: Any) -> None:
+    """Draw a line for each side; where they are the same line, the upper one is a pale band under the lower one."""
+    alike = len(upper[0]) == len(lower[0]) and all(
+        np.allclose(one, other, rtol=0.0, atol=ALIKE * float(np.ptp(one)))
+        for one, other in zip(upper, lower, strict=True)
+    )
+    band: dict[str, Any] = {"linewidth": 4.0, "alpha": 0.4} if alike else {"linewidth": 1.2}
+    axes.plot(*upper, color=colour, linestyle=UPPER, **band)
+    axes.plot(*lower, color=colour, linestyle=LOWER, linewidth=1.2)
+
+
+def logarithmic_beyond(axes: Axes, least: float) -> None:
+    """Scale the ordinate linearly up to a round value that is not below `least`, logarithmically beyond; say so.
+
+    The name of the axis goes before. Ticks are zero, the round value, half of it and powers of ten far enough apart to
+    be read.
+    """
+    decade = 10.0 ** np.floor(np.log10(least))
+    threshold = decade * min(each for each in (1.0, 2.0, 5.0, 10.0) if each * decade >= least * (1.0 - 1e-9))
+    axes.set_yscale("symlog", linthresh=threshold, linscale=1.5)
+    low, high = axes.get_ylim()
+    low, high = min(low, -threshold), max(high, threshold)
+    powers = np.arange(np.ceil(np.log10(4.0 * threshold)), np.floor(np.log10(max(-low, high))) + 1.0)
+    beyond = 10.0 ** powers[:: max(1, -(-len(powers) // POWERS))]
+    inner = threshold * np.linspace(-1.0, 1.0, 5 if len(powers) < POWERS else 3)
+    ticks = np.concatenate([-beyond, inner, beyond])
+    axes.set_ylim(low, high)
+    axes.yaxis.set_major_locator(FixedLocator(ticks[(ticks >= low) & (ticks <= high)].tolist()))
+    axes.yaxis.set_minor_locator(NullLocator())
+    axes.yaxis.set_major_formatter(FuncFormatter(lambda value, _: _tick(value)))
+    axes.set_ylabel(f"{axes.get_ylabel()},\nlogarithmic beyond ±{_tick(threshold)}")
+
+
+def _tick(value: float) -> str:
+    """A value on an axis; powers of ten that would be long as such."""
+    size = float(np.sqrt(value * value))
+    if size == 0.0 or 1e-4 <= size < 1e5:
+        return f"{value:g}".replace("-", "\N{MINUS SIGN}")
+    digits, _, power = f"{value:.0e}".partition("e")
+    factor = {"1": "", "-1": "-"}.get(digits, rf"{digits}\times")
+    return rf"${factor}10^{{{int(power)}}}$"
 
 
 def draw_thickness(axes: Axes, sections: Sequence["Section"], ends: tuple[str, str] = WALLS) -> None:
@@ -102,33 +144,82 @@ def sides_legend(axes: Axes, spans: Sequence[float], ends: tuple[str, str] = WAL
     legend_below(axes, 3, handles=handles)
 
 
-def draw_smoothness(strip: SubFigure, by_span: Mapping[float, Smoothness], ends: tuple[str, str] = WALLS) -> None:
+def draw_smoothness(strip: SubFigure, sections: Sequence["Section"], ends: tuple[str, str] = WALLS) -> None:
     """Draw the slope of the sides' curvature, curvature and slope of the camber lines, and a table of jumps.
 
-    `by_span` holds the smoothness of sections by their span fraction; lengths are in chords, in the section's plane.
+    Curvature is that in the section's plane. Camber lines that are straight at all sections have no panels.
     """
-    axes = strip.subplots(1, 4, width_ratios=[1.0, 0.85, 0.85, 1.15])
-    spans = list(by_span)
-    for v, each in by_span.items():
-        colour = span_colour(v)
-        _draw(axes[0], each.upper, each.upper.slope, colour, UPPER, order=1)
+    smooth = [(section, smoothness(section)) for section in sections]
+    bent = any(
+        float(np.ptp(each.camber.curvature)) + float(np.max(each.camber.curvature**2)) > STRAIGHT for _, each in smooth
+    )
+    widths = [1.0, 0.85, 0.85, 1.3] if bent else [1.5, 1.3, 1.2]
+    axes = strip.subplots(1, len(widths), width_ratios=widths)
+    sides = list[tuple[Reals, Reals]]()
+    for section, each in smooth:
+        colour, scale = span_colour(section.span), 1.0 / _chord(section)
         # On the lower side a convex bend turns the other way.
-        _draw(axes[0], each.lower, -each.lower.slope, colour, LOWER, order=1)
-        _draw(axes[1], each.camber, each.camber.curvature, colour, UPPER, order=0)
-        _draw(axes[2], each.camber, each.camber.slope, colour, UPPER, order=1)
-    sides = [line for each in by_span.values() for line in (each.upper, each.lower)]
-    square = max(float(np.median(line.curvature**2)) for line in sides)
-    _logarithmic(axes[0], np.concatenate([line.slope[_inside(line)] for line in sides]), least=STEADY * square)
-    for place, name in ((axes[1], "curvature"), (axes[2], "slope")):
-        _limited(place, [getattr(each.camber, name)[_inside(each.camber)] for each in by_span.values()])
-    label_axes(axes[0], "Slope of the curvature of the sides", ARC_LABEL, "d curvature / d arc × chord² [-]")
-    label_axes(axes[1], "Curvature of the camber line", ARC_LABEL, "curvature × chord [-]")
-    label_axes(axes[2], "Slope of the camber's curvature", ARC_LABEL, "d curvature / d arc × chord² [-]")
-    for place in axes[:3]:
+        slopes = [(each.upper, scale**2 * each.upper.slope), (each.lower, -(scale**2) * each.lower.slope)]
+        sides += [(line.curvature * scale, slope[_inside(line)]) for line, slope in slopes]
+        for (line, slope), style in zip(slopes, (UPPER, LOWER), strict=True):
+            _draw(axes[0], line, slope, colour, style, order=1)
+        if bent:
+            _draw(axes[1], each.camber, scale * each.camber.curvature, colour, UPPER, order=0)
+            _draw(axes[2], each.camber, scale**2 * each.camber.slope, colour, UPPER, order=1)
+    per = unit_name()
+    label_axes(axes[0], "Slope of the curvature of the sides", ARC_LABEL, f"d curvature / d arc [1/{per}²]")
+    square = max(float(np.median(curvature**2)) for curvature, _ in sides)
+    values = np.concatenate([slope for _, slope in sides])
+    median = float(np.median(np.sqrt(values * values))) if len(values) else 1.0
+    logarithmic_beyond(axes[0], 10.0 ** np.ceil(np.log10(max(2.0 * median, STEADY * square, 1e-3 * scale**2))))
+    if bent:
+        label_axes(axes[1], "Curvature of the camber line", ARC_LABEL, f"curvature [1/{per}]")
+        label_axes(axes[2], "Slope of that curvature", ARC_LABEL, f"d curvature / d arc [1/{per}²]")
+        for place, order in ((axes[1], 1), (axes[2], 2)):
+            _limited(
+                place,
+                [
+                    (each.camber.curvature, each.camber.slope)[order - 1][_inside(each.camber)]
+                    / _chord(section) ** order
+                    for section, each in smooth
+                ],
+            )
+    for place in axes[: 3 if bent else 1]:
         place.axhline(0.0, color=SOFT, linewidth=0.8)
         place.set_xlim(-0.01, 1.01)
-    sides_legend(axes[0], spans, ends)
-    _table(axes[3], by_span, ends)
+    sides_legend(axes[0], [section.span for section in sections], ends)
+    axes[3 if bent else 1].set_title("Largest jumps at joints")
+    draw_text_table(
+        axes[3 if bent else 1],
+        jump_rows(smooth, ends),
+        align="lll",
+        header=("", f"curvature [1/{per}]", f"its slope [1/{per}²]"),
+        inks=[span_colour(section.span) for section, each in smooth for _ in each.lines],
+    )
+    if not bent:
+        axes[2].remove()
+
+
+def _chord(section: "Section") -> float:
+    """The chord in the unit of the picture."""
+    return float(np.real(section.chord)) * per_metre()
+
+
+def jump_rows(smooth: Sequence[tuple["Section", Smoothness]], ends: tuple[str, str]) -> list[tuple[str, str, str]]:
+    """The largest jump of curvature and of its slope at the joints of every line, in the unit of the picture."""
+    rows = []
+    for section, each in smooth:
+        for line in each.lines:
+            name = line.name if len(smooth) == 1 else f"{span_name(section.span, ends)}, {line.name}"
+            cells = []
+            for order, sizes in enumerate(
+                ([jump.of_curvature for jump in line.jumps], [jump.of_slope for jump in line.jumps])
+            ):
+                beyond = [size for size, jump in zip(sizes, line.jumps, strict=True) if jump.discontinuous[order]]
+                jump = f"{max(beyond, default=0.0) / _chord(section) ** (order + 1):.3g}"
+                cells.append("continuous" if line.continuous[order] else jump if beyond else "with it")
+            rows.append((name, cells[0], cells[1]))
+    return rows
 
 
 def _draw(axes: Axes, line: SmoothLine, values: Reals, colour: Any, style: Any, *, order: int) -> None:
@@ -146,41 +237,8 @@ def _inside(line: SmoothLine) -> Any:
     return (line.arc > EDGE_SHARE) & (line.arc < 1.0 - EDGE_SHARE)
 
 
-def _logarithmic(axes: Axes, values: Reals, *, least: float) -> None:
-    """Scale the axis linearly where most of the values are, at least up to `least`, and logarithmically beyond."""
-    median = float(np.median(np.sqrt(values * values), axis=None)) if len(values) else 1.0
-    threshold = 10.0 ** np.ceil(np.log10(max(2.0 * median, least, 1e-3)))
-    axes.set_yscale("symlog", linthresh=threshold, linscale=1.5)
-    low, high = axes.get_ylim()
-    axes.set_ylim(min(low, -threshold), max(high, threshold))
-
-
 def _limited(axes: Axes, values: Sequence[Reals]) -> None:
     """Set limits that hold the values and zero, with a margin."""
     low, high = min(0.0, *(float(each.min()) for each in values)), max(0.0, *(float(each.max()) for each in values))
     margin = 0.08 * (high - low) or 1.0
     axes.set_ylim(low - margin, high + margin)
-
-
-def _table(axes: Axes, by_span: Mapping[float, Smoothness], ends: tuple[str, str]) -> None:
-    """Write a table of the largest jumps at joints, as fractions of the largest value on the line."""
-    axes.set_axis_off()
-    axes.set_title("Jumps at joints, of the largest value")
-    place: dict[str, Any] = {"transform": axes.transAxes, "va": "top", "fontsize": 9.5}
-    columns = (0.36, 0.70)
-    for x, name in zip(columns, ("curvature", "its slope"), strict=True):
-        axes.text(x, 0.97, name, color=INK, fontweight="bold", **place)
-    rows = [(v, line) for v, each in by_span.items() for line in each.lines]
-    step = min(0.92 / (len(rows) + 1), 0.1)
-    for index, (v, line) in enumerate(rows):
-        height = 0.97 - step * (index + 1)
-        name = line.name if len(by_span) == 1 else f"{span_name(v, ends)}, {line.name}"
-        axes.text(0.0, height, name, color=span_colour(v), **place)
-        for x, smooth, jump in zip(columns, line.continuous, (line.curvature_jump, line.slope_jump), strict=True):
-            axes.text(x, height, "continuous" if smooth else percent(jump) if jump else "with it", color=INK, **place)
-
-
-def percent(share: float) -> str:
-    """A fraction in percent, to two digits."""
-    value = 100.0 * share
-    return f"{value:.0f} %" if value >= 10.0 else f"{value:.2g} %" if value >= 1e-3 else f"{value:.0e} %"

@@ -1,6 +1,5 @@
 """The sheet of a blade or a section, and views of a blade or a passage alone."""
 
-from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -15,7 +14,6 @@ from bladewright.domain.passage import Passage
 from bladewright.domain.section import SectionPassage
 from bladewright.errors import DesignError
 from bladewright.section.section import Section
-from bladewright.section.smoothness import smoothness
 from bladewright.views.along_the_blade import (
     draw_camber_angle,
     draw_flow_area,
@@ -25,19 +23,17 @@ from bladewright.views.along_the_blade import (
     has_throat,
 )
 from bladewright.views.distributions import draw_curvature, draw_smoothness, draw_thickness
-from bladewright.views.laws import draw_laws, draw_thickness_laws, panels_of
+from bladewright.views.laws import draw_strip, draw_thickness_laws, in_strips, law_charts, strip_height
 from bladewright.views.meridional import draw_meridional
 from bladewright.views.pages import Page, checked_path, draw_header, rows, with_fixed_layout, write_figure
 from bladewright.views.passage import passage_sheet, section_passage_sheet
-from bladewright.views.sections import draw_edge, draw_edges, draw_neighbour, draw_sections, pitch_of
+from bladewright.views.sections import distinct, draw_edge, draw_edges, draw_neighbour, draw_sections, pitch_of
 from bladewright.views.solid import draw_passage_solid, draw_solid, viewpoints
 from bladewright.views.style import SHEET_DPI, VIEW_DPI, WALLS, drawing_style, in_unit, per_metre, span_name, unit_name
 
 SPANS, FEW_SPANS = (0.0, 0.25, 0.5, 0.75, 1.0), (0.0, 0.5, 1.0)
 """Span fractions of the sections drawn on top of each other, and of those in panels where more would hide each
 other."""
-PANELS_ACROSS = 6
-"""Most panels of laws in a row: more would be too narrow for their legends."""
 PASSAGE_VIEW = (1250, 1000)
 """Largest width and height of a view of a passage alone [pixels]: what its figure of 10 x 8 inches shows."""
 Built = Blade | Section | Passage | SectionPassage
@@ -121,19 +117,18 @@ def _unit_of(design: Any, built: Any) -> str:
 
 
 def _blade_sheet(blade: Blade) -> Figure:
-    sections = [blade.section(v) for v in blade.exact.shown_spans(SPANS)]
+    sections = distinct([blade.section(v) for v in blade.exact.shown_spans(SPANS)])
     few = [section for section in sections if section.span in FEW_SPANS]
     middle = sections[len(sections) // 2]
     pitch = pitch_of(blade, middle)
-    panels = panels_of(blade.design)
-    charts = [partial(draw_laws, panel=panel) for panel in panels]
-    if blade.design.thickness_laws:
-        charts.append(partial(draw_thickness_laws, design=blade.design, sections=few, ends=blade.design.law_ends))
-    strips = -(-len(charts) // PANELS_ACROSS)
+    strips = in_strips(law_charts(blade.design, few, blade.design.law_ends))
     along = [draw_camber_angle, draw_wrap, *([draw_flow_area, draw_throat] if has_throat(blade) else []), draw_lean]
-    heights = [5.4, 4.6, 4.4, 3.6, 4.4, *[4.4] * strips]
+    heights = [5.4, 4.6, 4.4, 3.6, 4.4, *map(strip_height, strips)]
     figure = Page(figsize=(16.0, sum(heights) + 0.9))
-    draw_header(figure, blade.name, blade.description, _blade_header(blade, middle))
+    header = _blade_header(blade, middle)
+    if len(sections) == 1:
+        header.insert(1, "one section all along the span")
+    draw_header(figure, blade.name, blade.description, header)
     top, centre, shape, edges, smooth, *bottom = rows(figure, *heights)
     axes = top.subplots(1, 4, width_ratios=[1.2, 1.2, 1.0, 1.0])
     for place, view, title in zip(axes, viewpoints(blade), ("Blade with neighbours", "The other side"), strict=False):
@@ -148,16 +143,9 @@ def _blade_sheet(blade: Blade) -> Figure:
     draw_curvature(axes[1], few, blade.design.law_ends)
     draw_thickness(axes[2], sections, blade.design.law_ends)
     draw_edges(edges, few, blade.design.law_ends)
-    draw_smoothness(smooth, {v: blade.smoothness(v) for v in blade.exact.shown_spans(FEW_SPANS)}, blade.design.law_ends)
-    across = -(-len(charts) // strips)
-    for index, strip in enumerate(bottom):
-        own = charts[index * across : (index + 1) * across]
-        widths = [1.6 if each.func is draw_thickness_laws else 1.0 for each in own]
-        places = strip.subplots(1, across, width_ratios=widths + [1.0] * (across - len(own)), squeeze=False)[0]
-        for place, draw in zip(places, own, strict=False):
-            draw(place)
-        for place in places[len(own) :]:
-            place.remove()
+    draw_smoothness(smooth, few, blade.design.law_ends)
+    for strip, charts in zip(bottom, strips, strict=True):
+        draw_strip(strip, charts)
     return figure
 
 
@@ -181,7 +169,7 @@ def _section_sheet(design: Any, section: Section) -> Figure:
     draw_thickness(axes[1], [section])
     if has_laws:
         draw_thickness_laws(axes[2], design, [section], WALLS)
-    draw_smoothness(smooth, {section.span: smoothness(section)})
+    draw_smoothness(smooth, [section])
     return figure
 
 

@@ -41,6 +41,8 @@ _AXES = {
 }
 """Names of the axes of the developed planes. A bar marks the mean along the section: angles are then true, and lengths
 nearly so."""
+SAME_OUTLINE = 1e-6
+"""Distance of two outlines, of their size, up to which they are the same: far less than a line is wide."""
 ISOLATED_PITCH = 4.0
 """Pitch in chords from which on a neighbour is not drawn: the section would shrink to a line beside it."""
 EDGE_WINDOW_RADII, EDGE_WINDOW_CHORDS = 5.0, 0.15
@@ -50,6 +52,8 @@ FLAT_EDGE_RADIUS = 100.0
 """Radius in chords from which on an edge is called flat: its circle cannot be told from a straight line."""
 SHARP_EDGE_SIZE = 0.01
 """Length in chords that sets the close-up of a sharp edge, which has no radius."""
+LEAST_EDGES = 4
+"""Close-ups that a strip has room for at least: two alone would stand far apart."""
 _AT_EDGE = {"m'-theta": (r"$m'\,r_e$", r"$\theta\,r_e$")}
 """Names of the axes of close-ups, where they differ from `_AXES`: lengths are true at the edge, at the radius r_e."""
 
@@ -82,6 +86,16 @@ def outline(section: "Section") -> Reals:
     upper, lower = (developed(section, section.curves[name](u)) for name in ("upper", "lower"))
     closing = upper[:1] if section.edges[0] == "blunt" else upper[:0]
     return np.concatenate([upper, lower[::-1], closing])
+
+
+def distinct(sections: Sequence["Section"]) -> Sequence["Section"]:
+    """The sections; the middle one alone where all have the same outline."""
+    shapes = [outline(section) for section in sections]
+    close = SAME_OUTLINE * float(np.ptp(shapes[0]))
+    alike = all(
+        shape.shape == shapes[0].shape and np.allclose(shape, shapes[0], rtol=0.0, atol=close) for shape in shapes
+    )
+    return [sections[len(sections) // 2]] if alike else sections
 
 
 def pitch_of(blade: "Blade", section: "Section") -> float:
@@ -164,7 +178,9 @@ def narrowest_gap(shape: Reals, neighbour: Reals) -> Reals:
 
 def draw_edges(strip: "SubFigure", sections: Sequence["Section"], ends: tuple[str, str]) -> None:
     """Draw close-ups of both edges of several sections in a row."""
-    axes = strip.subplots(1, 2 * len(sections))
+    axes = strip.subplots(1, max(2 * len(sections), LEAST_EDGES))
+    for place in axes[2 * len(sections) :]:
+        place.remove()
     for index, section in enumerate(sections):
         for trailing in (False, True):
             place = axes[index + len(sections) * trailing]

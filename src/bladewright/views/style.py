@@ -8,6 +8,7 @@ from typing import Any, cast
 import numpy as np
 from matplotlib import rc_context
 from matplotlib.axes import Axes
+from matplotlib.transforms import ScaledTranslation
 
 from bladewright.section.checks import UNITS
 
@@ -32,6 +33,8 @@ CONTROL_POINTS: dict[str, Any] = {
     "markerfacecolor": "white",
 }
 """Style of the control polygons of laws: hollow marks on a dotted line."""
+LEGEND_BELOW = 0.45
+"""Distance of a legend from the panel above it: ticks and the name of the axis stand between [inches]."""
 WALLS = ("hub", "shroud")
 """Names of the ends of a blade that stands on both walls."""
 _SPAN = np.array([[0.07, 0.25, 0.42], [0.12, 0.56, 0.55], [0.88, 0.44, 0.22]])
@@ -128,5 +131,7 @@ def label_axes(axes: Axes, title: str, abscissa: str, ordinate: str) -> None:
 
 
 def legend_below(axes: Axes, columns: int, **options: Any) -> None:
-    """Draw the legend under the panel, where it covers no data."""
-    axes.legend(loc="upper left", bbox_to_anchor=(0.0, -0.15), ncols=columns, **options)
+    """Draw the legend under the panel and the name of its axis, where it covers no data."""
+    inches = cast(Any, axes.figure).dpi_scale_trans
+    under = axes.transAxes + ScaledTranslation(0.0, -LEGEND_BELOW, inches)
+    axes.legend(loc="upper left", bbox_to_anchor=(0.0, 0.0), bbox_transform=under, ncols=columns, **options)

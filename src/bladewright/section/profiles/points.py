@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Literal
 
@@ -52,6 +53,10 @@ class PointsProfile(Profile):
             raise DesignError(
                 f"abscissas has {len(self.abscissas)} entries: a contour needs at least {MIN_POINTS} points"
             )
+
+    def control_places(self, row: str) -> Sequence[float] | None:  # noqa: ARG002 - both rows are the contour's
+        """The points run around the contour."""
+        return ()
 
     def outline(self, span: Span) -> Outline:
         """The exact sections (..., m) at the places of the span, in chords, unstaggered."""

@@ -114,6 +114,15 @@ class SuctionPressure(SectionFamily):
     def __post_init__(self) -> None:
         check(self)
 
+    def control_places(self, row: str) -> Sequence[float] | None:
+        """Heights and thicknesses stand at places along the skeleton, or along the suction side."""
+        side, _, quantity = row.partition("_")
+        if quantity not in ("heights", "thickness"):
+            return None
+        count, middle = len(getattr(self, row)), Span(np.array([0.5]))
+        knots = side_knots(count, getattr(self, f"{side}_knots"))
+        return np.real(_numbers(middle, getattr(self, f"{side}_places"), getattr(self, row), knots)[0])[0].tolist()
+
     def outline(self, span: Span) -> SuctionPressureOutline:
         """The exact sections (..., m), in chords; raises DesignError where edges or sides do not fit."""
         return assembled(self, span)
