@@ -5,6 +5,8 @@ import tomllib
 
 import pytest
 
+from bladewright import cad
+from bladewright.blade.design.families import prismatic
 from bladewright.errors import DesignError, FileError
 from bladewright.files.families import FAMILIES
 from bladewright.files.keys import tables
@@ -46,6 +48,16 @@ def test_an_unknown_family_names_the_nearest():
 def commented(text):
     """The lines that hold a key which is commented out."""
     return [number for number, line in enumerate(text.splitlines()) if re.match(r"#[a-z_]+ = ", line)]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", NAMES)
+def test_the_machine_of_a_template_leaves_as_a_proven_file(texts, name, tmp_path):
+    design = design_from(tomllib.loads(texts[name]), name)
+    built = prismatic(design).build() if design.dimension == 2 else design.build()
+    for suffix in ("step", "igs"):
+        trip = cad.write(built, tmp_path / f"{name}.{suffix}")
+        assert trip.passed, trip.failures
 
 
 def refusal_of(text, name):
