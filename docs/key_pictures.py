@@ -28,31 +28,80 @@ SHARE = 0.25
 COLOURS = {"raised": "tab:red", "lowered": "tab:blue"}
 
 
+OTHER_KINDS = {
+    "curvature-meanline": (
+        {
+            "law": "wennerstrom",
+            "maximum_thickness": 0.08,
+            "maximum_thickness_at": 0.45,
+            "leading_edge_thickness": 0.012,
+            "trailing_edge_thickness": 0.01,
+        },
+        {
+            "law": "quartic-spline",
+            "maximum_thickness": 0.08,
+            "maximum_thickness_at": 0.3,
+            "leading_edge_thickness": 0.02,
+            "trailing_edge_thickness": 0.01,
+        },
+    ),
+    "profile": (
+        {"kind": "naca-4", "thickness": 0.12, "camber": 0.05, "camber_position": 0.4},
+        {"kind": "naca-5", "thickness": 0.12},
+        {"kind": "naca-6", "series": "64", "thickness": 0.12, "design_lift": 0.6},
+        {"kind": "c4", "thickness": 0.1, "camber_angle": 25.0},
+        {"kind": "double-circular-arc", "thickness": 0.08, "camber_angle": 25.0, "leading_edge_radius": 0.008},
+        {
+            "kind": "multiple-circular-arc",
+            "thickness": 0.06,
+            "camber_angle": 15.0,
+            "transition": 0.5,
+            "front_camber": 0.3,
+            "leading_edge_radius": 0.006,
+        },
+        {"kind": "flat-plate", "thickness": 0.05, "leading_edge": "elliptic", "leading_edge_ratio": 3.0},
+    ),
+}
+"""the same example with another thickness law, or another profile, so that their keys have pictures too"""
+
+
 def draw(family, directory):
     """Pictures of a family's keys: name of the file and what it shows, by title of the table and name of the key."""
     if family not in SHOWN_IN:
         return {}
-    design = design_from(tomllib.loads(example_text(SHOWN_IN[family])), SHOWN_IN[family])
-    shape = _shape(design)
+    document = tomllib.loads(example_text(SHOWN_IN[family]))
+    shown = [document]
+    for kind in OTHER_KINDS.get(family, ()):
+        section = {**document["section"], "thickness": kind} if "law" in kind else {**kind, "stagger_angle": 20.0}
+        shown.append({**document, "section": section})
     drawn = {}
+    for each in shown:
+        drawn = {**_drawn(family, design_from(each, SHOWN_IN[family]), directory), **drawn}
+    return drawn
+
+
+def _drawn(family, design, directory):
+    shape, drawn = _shape(design), {}
     for part, prefix in _parts(design):
         for each in fields(part):
-            unit = each.metadata.get("unit")
-            value = getattr(part, each.name)
+            unit, value = each.metadata.get("unit"), getattr(part, each.name)
             if unit is None or value in (None, ()) or not _leaves(value):
                 continue
             shapes = {}
             for word, sign in (("raised", 1.0), ("lowered", -1.0)):
-                changed = _moved(value, sign, unit)
                 try:
-                    shapes[word] = _shape(design.changed(f"{prefix}{each.name}", changed))
+                    shapes[word] = _shape(design.changed(f"{prefix}{each.name}", _moved(value, sign, unit)))
                 except BladewrightError:
                     continue
             if any(np.ptp(other - shape) > 1e-6 * np.ptp(shape) for other in shapes.values()):
-                name = f"{family}-{prefix}{each.name}.svg".replace("..", ".")
+                title = type(part).__name__
+                name = f"{family}-{title}-{each.name}.svg"
                 _picture(shape, shapes).savefig(directory / name, bbox_inches="tight")
                 said = f"{ANGLE:g} deg more and less" if unit == "deg" else f"{100 * SHARE:g} % more and less"
-                drawn[type(part).__name__, each.name] = name, said
+                said = (
+                    said if len(shapes) == 2 else said.replace(" and less" if "raised" in shapes else "more and ", "")
+                )
+                drawn[title, each.name] = name, said
     return drawn
 
 
@@ -75,7 +124,9 @@ def _leaves(value):
 def _moved(value, sign, unit):
     if isinstance(value, tuple):
         return tuple(_moved(each, sign, unit) for each in value)
-    return value + sign * ANGLE if unit == "deg" else value * (1.0 + sign * SHARE)
+    if unit == "deg":
+        return value + sign * ANGLE
+    return value * (1.0 + sign * SHARE) if value else sign * SHARE
 
 
 def _shape(design):
@@ -84,8 +135,6 @@ def _shape(design):
     u = 0.5 - 0.5 * np.cos(np.linspace(0.0, np.pi, 81))
     upper, lower = (np.real(section.curves[name](u)) for name in ("upper", "lower"))
     outline = np.concatenate([upper, lower[::-1]])
-    if design.dimension == 2:
-        return (outline - upper[0]) / np.hypot(*(upper[-1] - upper[0]))
     return (outline - upper[0]) / np.hypot(*(upper[-1] - upper[0]))
 
 
