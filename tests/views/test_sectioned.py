@@ -14,10 +14,11 @@ from bladewright.section.profiles.points import PointsProfile
 from bladewright.section.smoothness import smoothness
 from bladewright.views.distributions import draw_sides, draw_smoothness, jump_rows, logarithmic_beyond
 from bladewright.views.laws import constants_of, panels_of
-from bladewright.views.meridional import built_edges
+from bladewright.views.meridional import FEW_SURFACES, blade_outline, built_edges, draw_meridional, draw_view
 from bladewright.views.picture import sheet
 from bladewright.views.sections import draw_edge, drawn_per_unit, neighbour_outline, outline
 from bladewright.views.solid import blade_surfaces, draw_solid
+from bladewright.views.style import VIOLET
 from bladewright.views.text_table import draw_text_table
 from machines import built
 from machines.sectioned import BLUNT, COMPRESSOR, DESIGNS, IMPELLER, STATOR, VANE
@@ -91,6 +92,27 @@ def test_given_stream_surfaces_are_part_of_the_plan():
     assert not surface.polygon
     assert surface.given * 1e3 == pytest.approx(np.array([(-60, 125), (0, 128), (40, 131), (120, 132)]))
     assert surface.points[[0, -1]] == pytest.approx(surface.given[[0, -1]])
+
+
+def test_many_stream_surfaces_are_hairlines_without_marks(impeller):
+    view = impeller.exact.meridional_view
+    line = replace(view.lines["hub"], polygon=False)
+    for count, marked in ((2, 2), (FEW_SURFACES + 1, 0)):
+        axes = Figure().add_subplot()
+        draw_view(axes, replace(view, lines={}, stream_surfaces=(line,) * count))
+        violet = [each for each in axes.get_lines() if each.get_color() == VIOLET]
+        assert sum(each.get_marker() == "o" for each in violet) == marked
+        assert sum(each.get_marker() != "o" for each in violet) == count
+
+
+def test_the_channel_is_seen_close_to_the_blade_in_both_directions(impeller):
+    axes = Figure().add_subplot()
+    draw_meridional(axes, impeller)
+    shape, (left, right) = 1e3 * blade_outline(impeller), axes.get_xlim()
+    extent = np.ptp(shape, axis=0).max()
+    assert left <= shape[:, 0].min()
+    assert right >= shape[:, 0].max()
+    assert right - left <= np.ptp(shape[:, 0]) + 2.0 * extent
 
 
 @pytest.mark.parametrize("name", ["diffuser", "inlet-vane"])

@@ -32,6 +32,12 @@ if TYPE_CHECKING:
 
 CURVES = {"hub": BLUE, "shroud": ORANGE, "leading_edge": GREEN, "trailing_edge": RED}
 """Colours of the walls and of the edges."""
+FEW_SURFACES = 5
+"""Most stream surfaces that are drawn with their points: those of more would cover the blade."""
+FEW_POINTS = 12
+"""Most points of a line with marks of full size."""
+SEEN_BEYOND = 0.6
+"""What is seen before and behind the blade, in its larger extent: a long duct would make the blade small."""
 INLET, OUTLET = VIOLET, GREY
 """Colours of the ends of a passage."""
 
@@ -42,15 +48,7 @@ def draw_meridional(axes: Axes, blade: "Blade") -> None:
     covered = blade_outline(blade) * per_metre()
     axes.fill(*covered.T, color=INK, alpha=0.08, linewidth=0.0, label="blade")
     axes.plot(*covered.T, color=INK, linewidth=0.7)
-    for index, line in enumerate(view.stream_lines):
-        axes.plot(*(line * per_metre()).T, color=SOFT, linewidth=0.6, label=None if index else "stream lines")
-    for index, line in enumerate(view.quasi_orthogonals):
-        label = None if index else "quasi-orthogonals"
-        axes.plot(*(line * per_metre()).T, color=SOFT, linestyle=(0, (3, 2)), linewidth=0.9, label=label)
-    for index, surface in enumerate(view.stream_surfaces):
-        _draw(axes, surface, VIOLET, None if index else "stream surfaces given")
-    for name, curve in view.lines.items():
-        _draw(axes, curve, CURVES[name], name.replace("_", " "))
+    draw_view(axes, view)
     for index, line in enumerate(built_edges(blade)):
         label = None if index else "edges as built"
         axes.plot(*(line * per_metre()).T, color=INK, linestyle=(0, (1, 1.2)), linewidth=1.6, label=label)
@@ -62,7 +60,31 @@ def draw_meridional(axes: Axes, blade: "Blade") -> None:
         axis("r") if exact.mapping.revolved else axis("z"),
     )
     axes.set_aspect("equal", adjustable="datalim")
+    _near_the_blade(axes, covered)
     legend_below(axes, 3)
+
+
+def draw_view(axes: Axes, view: "MeridionalView") -> None:
+    """Draw the lines of a design in the meridional plane, with the points that define them."""
+    for index, line in enumerate(view.stream_lines):
+        axes.plot(*(line * per_metre()).T, color=SOFT, linewidth=0.6, label=None if index else "stream lines")
+    for index, line in enumerate(view.quasi_orthogonals):
+        label = None if index else "quasi-orthogonals"
+        axes.plot(*(line * per_metre()).T, color=SOFT, linestyle=(0, (3, 2)), linewidth=0.9, label=label)
+    given = len(view.stream_surfaces)
+    for index, surface in enumerate(view.stream_surfaces):
+        label = None if index else f"{given} stream surfaces given" if given > 1 else "stream surface given"
+        _draw(axes, surface, VIOLET, label, hairline=given > FEW_SURFACES)
+    for name, curve in view.lines.items():
+        _draw(axes, curve, CURVES[name], name.replace("_", " "))
+
+
+def _near_the_blade(axes: Axes, covered: Reals) -> None:
+    """Leave out what is far from the blade along the axis."""
+    (left, low), (right, high) = covered.min(axis=0), covered.max(axis=0)
+    beyond = SEEN_BEYOND * max(right - left, high - low)
+    seen = axes.get_xlim()
+    axes.set_xlim(max(seen[0], left - beyond), min(seen[1], right + beyond), auto=True)
 
 
 def draw_clearance(axes: Axes, view: "MeridionalView") -> None:
@@ -84,12 +106,16 @@ def built_edges(blade: "Blade") -> list[Reals]:
     return edges
 
 
-def _draw(axes: Axes, line: "ViewLine", colour: str, label: str | None) -> None:
-    """Draw a curve with its continuations and the points that define it."""
+def _draw(axes: Axes, line: "ViewLine", colour: str, label: str | None, *, hairline: bool = False) -> None:
+    """Draw a curve with its continuations and the points that define it; a hairline without them."""
+    if hairline:
+        axes.plot(*(line.points * per_metre()).T, color=colour, linewidth=0.4, label=label)
+        return
     axes.plot(*(line.points * per_metre()).T, color=colour, label=label)
     for part in line.beyond:
         axes.plot(*(part * per_metre()).T, color=colour, linewidth=0.8)
-    marks: dict[str, Any] = {"marker": "o", "markersize": 4.5, "markerfacecolor": "white"}
+    size = 4.5 if len(line.given) <= FEW_POINTS else 2.0
+    marks: dict[str, Any] = {"marker": "o", "markersize": size, "markerfacecolor": "white"}
     style = ":" if line.polygon else "none"
     axes.plot(*(line.given * per_metre()).T, color=colour, linestyle=style, linewidth=0.8, **marks)
 
