@@ -37,6 +37,8 @@ ARC_LABEL = "part of the arc, leading to trailing edge [-]"
 """Name of the abscissa along a side."""
 CAMBER_LABEL = "along the camber, leading to trailing edge [-]"
 """Name of the abscissa along the camber line."""
+Smooth = Sequence[tuple["Section", Smoothness]]
+"""Sections with their smoothness."""
 Line = tuple[Reals, Reals]
 """Abscissae and ordinates of a line."""
 ALIKE = 1e-3
@@ -150,54 +152,65 @@ def draw_smoothness(strip: SubFigure, sections: Sequence["Section"], ends: tuple
     Curvature is that in the section's plane. Camber lines that are straight at all sections have no panels.
     """
     smooth = [(section, smoothness(section)) for section in sections]
-    bent = any(
-        float(np.ptp(each.camber.curvature)) + float(np.max(each.camber.curvature**2)) > STRAIGHT for _, each in smooth
-    )
+    bent = any(float(np.max(each.camber.curvature**2)) > STRAIGHT**2 for _, each in smooth)
     widths = [1.0, 0.85, 0.85, 1.3] if bent else [1.5, 1.3, 1.2]
     axes = strip.subplots(1, len(widths), width_ratios=widths)
-    sides = list[tuple[Reals, Reals]]()
-    for section, each in smooth:
-        colour, scale = span_colour(section.span), 1.0 / _chord(section)
-        # On the lower side a convex bend turns the other way.
-        slopes = [(each.upper, scale**2 * each.upper.slope), (each.lower, -(scale**2) * each.lower.slope)]
-        sides += [(line.curvature * scale, slope[_inside(line)]) for line, slope in slopes]
-        for (line, slope), style in zip(slopes, (UPPER, LOWER), strict=True):
-            _draw(axes[0], line, slope, colour, style, order=1)
-        if bent:
-            _draw(axes[1], each.camber, scale * each.camber.curvature, colour, UPPER, order=0)
-            _draw(axes[2], each.camber, scale**2 * each.camber.slope, colour, UPPER, order=1)
-    per = unit_name()
-    label_axes(axes[0], "Slope of the curvature of the sides", ARC_LABEL, f"d curvature / d arc [1/{per}²]")
-    square = max(float(np.median(curvature**2)) for curvature, _ in sides)
-    values = np.concatenate([slope for _, slope in sides])
-    median = float(np.median(np.sqrt(values * values))) if len(values) else 1.0
-    logarithmic_beyond(axes[0], 10.0 ** np.ceil(np.log10(max(2.0 * median, STEADY * square, 1e-3 * scale**2))))
+    _draw_side_slopes(axes[0], smooth, ends)
     if bent:
-        label_axes(axes[1], "Curvature of the camber line", ARC_LABEL, f"curvature [1/{per}]")
-        label_axes(axes[2], "Slope of that curvature", ARC_LABEL, f"d curvature / d arc [1/{per}²]")
-        for place, order in ((axes[1], 1), (axes[2], 2)):
-            _limited(
-                place,
-                [
-                    (each.camber.curvature, each.camber.slope)[order - 1][_inside(each.camber)]
-                    / _chord(section) ** order
-                    for section, each in smooth
-                ],
-            )
-    for place in axes[: 3 if bent else 1]:
-        place.axhline(0.0, color=SOFT, linewidth=0.8)
-        place.set_xlim(-0.01, 1.01)
-    sides_legend(axes[0], [section.span for section in sections], ends)
-    axes[3 if bent else 1].set_title("Largest jumps at joints")
+        _draw_camber(axes[1], smooth, order=0)
+        _draw_camber(axes[2], smooth, order=1)
+        _draw_jumps(axes[3], smooth, ends)
+    else:
+        _draw_jumps(axes[1], smooth, ends)
+        axes[2].remove()
+
+
+def _draw_side_slopes(axes: Axes, smooth: Smooth, ends: tuple[str, str]) -> None:
+    """Draw the slope of the curvature of both sides."""
+    inner, least = list[Reals](), 0.0
+    for section, each in smooth:
+        square = _chord(section) ** 2
+        # On the lower side a convex bend turns the other way.
+        for line, sign, style in ((each.upper, 1.0, UPPER), (each.lower, -1.0, LOWER)):
+            slope = sign * line.slope / square
+            _draw(axes, line, slope, span_colour(section.span), style, order=1)
+            inner.append(slope[_inside(line)])
+            least = max(least, max(STEADY * float(np.median(line.curvature**2)), 1e-3) / square)
+    axes.axhline(0.0, color=SOFT, linewidth=0.8)
+    axes.set_xlim(-0.01, 1.01)
+    label_axes(axes, "Slope of the curvature of the sides", ARC_LABEL, f"d curvature / d arc [1/{unit_name()}²]")
+    most = float(np.median(np.sqrt(np.concatenate(inner) ** 2)))
+    logarithmic_beyond(axes, 10.0 ** np.ceil(np.log10(max(2.0 * most, least))))
+    sides_legend(axes, [section.span for section, _ in smooth], ends)
+
+
+def _draw_camber(axes: Axes, smooth: Smooth, *, order: int) -> None:
+    """Draw the curvature of the camber lines (order 0) or its slope (order 1)."""
+    inner = []
+    for section, each in smooth:
+        values = (each.camber.slope if order else each.camber.curvature) / _chord(section) ** (order + 1)
+        _draw(axes, each.camber, values, span_colour(section.span), UPPER, order=order)
+        inner.append(values[_inside(each.camber)])
+    _limited(axes, inner)
+    axes.axhline(0.0, color=SOFT, linewidth=0.8)
+    axes.set_xlim(-0.01, 1.01)
+    if order:
+        label_axes(axes, "Slope of that curvature", ARC_LABEL, f"d curvature / d arc [1/{unit_name()}²]")
+    else:
+        label_axes(axes, "Curvature of the camber line", ARC_LABEL, f"curvature [1/{unit_name()}]")
+
+
+def _draw_jumps(axes: Axes, smooth: Smooth, ends: tuple[str, str]) -> None:
+    """Write the table of jumps."""
+    axes.set_title("Largest jumps at joints")
+    owners = [section for section, each in smooth for _ in each.lines]
     draw_text_table(
-        axes[3 if bent else 1],
+        axes,
         jump_rows(smooth, ends),
         align="lll",
-        header=("", f"curvature [1/{per}]", f"its slope [1/{per}²]"),
-        inks=[span_colour(section.span) for section, each in smooth for _ in each.lines],
+        header=("", f"curvature [1/{unit_name()}]", f"its slope [1/{unit_name()}²]"),
+        inks={(row, 0): span_colour(section.span) for row, section in enumerate(owners)},
     )
-    if not bent:
-        axes[2].remove()
 
 
 def _chord(section: "Section") -> float:
@@ -205,7 +218,7 @@ def _chord(section: "Section") -> float:
     return float(np.real(section.chord)) * per_metre()
 
 
-def jump_rows(smooth: Sequence[tuple["Section", Smoothness]], ends: tuple[str, str]) -> list[tuple[str, str, str]]:
+def jump_rows(smooth: Smooth, ends: tuple[str, str]) -> list[tuple[str, str, str]]:
     """The largest jump of curvature and of its slope at the joints of every line, in the unit of the picture."""
     rows = []
     for section, each in smooth:

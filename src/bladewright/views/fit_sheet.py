@@ -33,6 +33,7 @@ from bladewright.views.style import (
     span_name,
     unit_name,
 )
+from bladewright.views.text_table import LINE, Row, draw_text_table
 
 if TYPE_CHECKING:
     from bladewright.section.section import Section
@@ -42,8 +43,6 @@ REGIONS = ("sides", "leading edge", "trailing edge", "ends")
 """Regions of the blade in the table of distances."""
 EDGE_COLOURS = {"leading edge": ORANGE, "trailing edge": GREEN}
 """Colours of the histograms of the regions at the edges."""
-TABLE_COLUMNS = (0.415, 0.565, 0.715, 0.86, 1.0)
-"""Right ends of the columns of the table after the first, in widths of the panel."""
 FAILURE_LINES = 6
 """Most lines of failures under the table, which its panel has room for."""
 SPAN_SHARES = (0.08, 0.5, 0.92)
@@ -181,39 +180,30 @@ def draw_extrema(axes: Axes, fit: FitResult, sections: Sequence["Section"], ends
 
 def draw_table(axes: Axes, fit: FitResult) -> None:
     """Write the distances by region, whether the fit passed, and why not."""
-    axes.axis("off")
-    axes.set_xlim(0.0, 1.0)
-    axes.set_ylim(0.0, 1.0)
-    colour = GREEN if fit.passed else RED
-    result = ("Passed" if fit.passed else "Not passed") + (", interrupted" if fit.interrupted else "")
     axes.set_title(f"Distances of the inliers [{unit_name()}]")
-    height, line = 0.98, 0.074
-    for name, right in zip(("points", "mean", "rms", "99 %", "max"), TABLE_COLUMNS, strict=True):
-        axes.text(right, height, name, ha="right", va="top", fontsize=9.0, color=SOFT)
+    rows, inks = list[Row](), dict[tuple[int, int], str]()
     for name, of in {"all": fit.deviation, **{name: fit.by_region.get(name) for name in REGIONS}}.items():
-        height -= line
-        known = of is not None and of.count > 0
-        weight = "bold" if name == "all" else "normal"
-        axes.text(0.0, height, name, va="top", fontsize=9.5, fontweight=weight)
         cells = ["none", *"––––"]
-        if of is not None and known:
+        if of is not None and of.count > 0:
             figures = (of.mean, of.rms, of.percentile_99, of.maximum)
             cells = [f"{of.count:,}", *(f"{value * per_metre():.3g}" for value in figures)]
-        for cell, right in zip(cells, TABLE_COLUMNS, strict=True):
-            over = known and right == TABLE_COLUMNS[-1] and _beyond(fit, of)
-            ink = RED if over else INK
-            axes.text(right, height, cell, ha="right", va="top", fontsize=9.5, fontweight=weight, color=ink)
-    height -= 1.6 * line
-    axes.text(0.0, height, result, va="top", fontsize=12.0, fontweight="bold", color=colour)
+            if _beyond(fit, of):
+                inks[len(rows), len(cells)] = RED
+        rows.append((name, *cells))
+    header = ("", "points", "mean", "rms", "99 %", "max")
+    height = draw_text_table(axes, rows, align="lrrrrr", header=header, inks=inks)
+    result = ("Passed" if fit.passed else "Not passed") + (", interrupted" if fit.interrupted else "")
     stated = "no tolerance asked" if fit.tolerance is None else f"tolerance {in_unit(fit.tolerance, '.3g')}"
-    axes.text(1.0, height, stated, ha="right", va="top", fontsize=10.0)
-    height -= 1.15 * line
-    lines = [piece for each in fit.failures for piece in wrap(shorten(each, 260, placeholder=" …"), 66)]
-    if not lines:
-        lines = [f"{count_of(len(fit.estimates), 'free parameter')}, rank {fit.rank}"]
-    for piece in lines[:FAILURE_LINES] + (["…"] if len(lines) > FAILURE_LINES else []):
-        axes.text(0.0, height, piece, va="top", fontsize=9.0, parse_math=False)
-        height -= 0.85 * line
+    place: dict[str, Any] = {"xycoords": "axes fraction", "textcoords": "offset points", "va": "top"}
+    ink = GREEN if fit.passed else RED
+    axes.annotate(result, (0.0, 1.0), (0.0, -height), fontsize=12.0, fontweight="bold", color=ink, **place)
+    height += 1.4 * LINE
+    lines = [stated, *(piece for each in fit.failures for piece in wrap(shorten(each, 260, placeholder=" …"), 66))]
+    if not fit.failures:
+        lines.append(f"{count_of(len(fit.estimates), 'free parameter')}, rank {fit.rank}")
+    for piece in lines[: FAILURE_LINES + 1] + (["…"] if len(lines) > FAILURE_LINES + 1 else []):
+        axes.annotate(piece, (0.0, 1.0), (0.0, -height), fontsize=9.0, parse_math=False, **place)
+        height += 0.9 * LINE
 
 
 def _beyond(fit: FitResult, of: Any) -> bool:

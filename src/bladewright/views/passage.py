@@ -24,6 +24,7 @@ from bladewright.views.style import (
     span_colour,
     unit_name,
 )
+from bladewright.views.text_table import draw_text_table
 from bladewright.views.walls import draw_least_jacobian, draw_wall
 
 if TYPE_CHECKING:
@@ -35,8 +36,6 @@ VIEW = (900, 760)
 """Largest width and height of the view in space [pixels]: what its panel of the sheet shows."""
 Rows = list[tuple[str, str]]
 """Names and values of a table; a heading has no value."""
-ROWS = 24
-"""Fewest rows that the height of a panel is divided into, so that short tables are not spread over all of it."""
 
 
 def passage_sheet(passage: "Passage") -> Figure:
@@ -169,11 +168,7 @@ def section_figures(passage: "SectionPassage") -> Rows:
 
 def draw_figures(axes: Axes, rows: Rows) -> None:
     """Write a table of names and values."""
-    axes.set_axis_off()
-    axes.set_ylim(max(len(rows), ROWS) - 0.5, -0.5)
-    for line, (name, value) in enumerate(rows):
-        axes.text(0.0, line, name, va="center", fontweight="normal" if value else "bold")
-        axes.text(1.0, line, value, va="center", ha="right")
+    draw_text_table(axes, rows, align="lr")
     axes.set_title("Figures")
 
 
