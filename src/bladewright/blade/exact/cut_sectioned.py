@@ -15,12 +15,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from bladewright.blade.exact.clearance import ALLOWED, clearance_of
+from bladewright.blade.exact.cut_curves import CutSections, cut_sections, spans_of_cut
 from bladewright.blade.exact.exact_blade import ExactBlade
 from bladewright.blade.exact.meridional_extent import FlowPathExtent
 from bladewright.blade.exact.meridional_view import COUNT, MeridionalView
 from bladewright.blade.exact.offset_wall import OffsetWall, check_distance, check_folds, check_span
 from bladewright.blade.exact.sectioned import ENDS, ExactSectionedBlade, exact_sectioned_blade
-from bladewright.blade.exact.span_cut import BENT, CutSections, SpanCut, cut_sections, spans_of_cut
+from bladewright.blade.exact.span_cut import BENT, SpanCut
 from bladewright.blade.exact.unified import SURVEY
 from bladewright.blade.flow_path.channel import ChannelCurve
 from bladewright.blade.flow_path.meridional_curve import MeridionalCurve, real_first

@@ -9,6 +9,8 @@ from bladewright.nurbs.basis import Reals
 
 REGIONS = ("sides", "leading edge", "trailing edge", "ends")
 """regions of a blade in which a point of a cloud may lie"""
+FIGURES = ("mean", "rms", "percentile_99", "maximum")
+"""figures of a deviation that are reported"""
 
 
 @dataclass(frozen=True, kw_only=True)

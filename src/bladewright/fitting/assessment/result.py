@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
@@ -11,10 +10,11 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from bladewright.designs import Design, unit_at
+from bladewright.designs import Design
 from bladewright.display import Shown
-from bladewright.fitting.assessment.deviation import REGIONS, Deviation, by_region, deviation_of
-from bladewright.fitting.assessment.lengths import in_unit, unit_of_lengths, with_unit
+from bladewright.fitting.assessment.deviation import Deviation, by_region, deviation_of
+from bladewright.fitting.assessment.report import report
+from bladewright.fitting.assessment.text import text
 from bladewright.frozen import FrozenRecord
 from bladewright.nurbs.basis import Reals
 
@@ -130,6 +130,11 @@ class Fit(FrozenRecord, Shown):
         return self.deviation.maximum
 
     @property
+    def chord(self) -> float:
+        """Chord of what was built, the mean over the span [m]."""
+        return float(np.real(self.built.chord))
+
+    @property
     def outliers(self) -> NDArray[np.intp]:
         """Indices of the points that are outliers."""
         return np.flatnonzero(~self.inliers)
@@ -155,238 +160,4 @@ class Fit(FrozenRecord, Shown):
         return f"<Fit '{name}' of {type(self.design).__name__}: {verdict}; {points}, {off}>"
 
     def __str__(self) -> str:
-
         return text(self)
-
-
-LISTED_OUTLIERS = 1000
-"""outliers that are listed; the count is that of all"""
-FEW_PARAMETERS = 30
-"""parameters up to which the text shows all of them; with more it shows the doubtful ones"""
-FIGURES = ("mean", "rms", "percentile_99", "maximum")
-"""figures of a deviation that are reported"""
-MILLIMETRES = 1e3
-"""millimetres in a metre"""
-
-
-def report(fit: Fit) -> dict[str, Any]:
-    """A fit as plain numbers, strings, lists and dictionaries, ready for JSON; what is not finite is None.
-
-    Deviations are those of the inliers, each in metres, in millimetres and of the chord; a region without points has
-    None. `outliers` lists the first 1000, by their index in the cloud. Estimates are in the units of their fields, and
-    so are rows and columns of the covariance, in the same order.
-    """
-    chord = _chord_of(fit)
-    regions = fit.by_region
-    return {
-        "name": fit.design.name,  # type: ignore[attr-defined]
-        "passed": fit.passed,
-        "failures": list(fit.failures),
-        "notes": list(fit.notes),
-        "interrupted": fit.interrupted,
-        "points": len(fit.cloud),
-        "inliers": int(np.count_nonzero(fit.inliers)),
-        "outliers": _outliers(fit),
-        "chord_m": plain(chord),
-        "tolerance_m": plain(fit.tolerance),
-        "tolerance_mm": plain(None if fit.tolerance is None else fit.tolerance * MILLIMETRES),
-        "noise_m": plain(fit.noise),
-        "noise_mm": plain(fit.noise * MILLIMETRES),
-        "deviation": {
-            "all": _figures(fit.deviation, chord),
-            **{name: _figures(regions.get(name), chord) for name in REGIONS},
-        },
-        "worst": _worst(fit),
-        "curvature_extrema": {name: int(count) for name, count in fit.extrema.items()},
-        "parameters": len(fit.estimates),
-        "rank": int(fit.rank),
-        "condition": plain(fit.condition),
-        "unidentified": list(fit.unidentified),
-        "at_bounds": list(fit.at_bounds),
-        "estimates": [_estimate(fit, each) for each in fit.estimates],
-        "covariance": plain(fit.covariance),
-        "motion": None if fit.motion is None else _motion(fit),
-        "evaluations": int(fit.evaluations),
-    }
-
-
-def text(fit: Fit) -> str:
-    """A fit for people: whether it passes and why not, deviations by region, then the parameters.
-
-    Lengths are in the design's own unit.
-    """
-    verdict = "passed" if fit.passed else "FAILED"
-    state = ", interrupted" if fit.interrupted else ""
-    lines = [f"{fit.design.name}: {verdict}{state}"]  # type: ignore[attr-defined]
-    lines += [f"  - {failure}" for failure in fit.failures]
-    lines += _table(fit)
-    limits = [f"noise of the cloud {with_unit(fit.design, fit.noise)}"]
-    if fit.tolerance is not None:
-        limits.insert(0, f"tolerance {with_unit(fit.design, fit.tolerance)}")
-    lines.append(f"  {', '.join(limits)}, chord {with_unit(fit.design, _chord_of(fit), 6)}")
-    lines += [f"  {line}" for line in (_outliers_line(fit), _motion_line(fit)) if line]
-    waves = ", ".join(f"{count} on the {name} side" for name, count in fit.extrema.items())
-    lines.append(f"  extrema of curvature: {waves}")
-    lines.append(
-        f"  {_number_of(len(fit.estimates), 'free parameter')}, rank {fit.rank}, condition {fit.condition:.2g}, "
-        f"{_number_of(fit.evaluations, 'evaluation')}"
-    )
-    lines += _parameters(fit)
-    lines += [f"  note: {note}" for note in fit.notes]
-    return "\n".join(lines)
-
-
-def _chord_of(fit: Fit) -> float:
-    """The chord of what was built, the mean over the span [m]."""
-    return float(np.real(fit.built.chord))
-
-
-def plain(value: Any) -> Any:
-    """Numbers, arrays and sequences as JSON has them; None for what is not finite."""
-    if isinstance(value, np.ndarray):
-        return plain(value.tolist())
-    if isinstance(value, list | tuple):
-        return [plain(item) for item in value]
-    if value is None or isinstance(value, bool | int | str):
-        return value
-    number = float(value)
-    return number if math.isfinite(number) else None
-
-
-def unit_of_path(fit: Fit, path: str) -> str:
-    """Unit of a parameter: that of its field, the design's unit of length where it is one."""
-    unit = unit_at(fit.design, path) or "-"
-    return str(getattr(fit.design, "length_unit", unit)) if unit == "length" else unit
-
-
-def _figures(deviation: Deviation | None, chord: float) -> dict[str, Any]:
-    units = {"m": 1.0, "mm": MILLIMETRES, "of_chord": 1.0 / chord}
-    known = deviation is not None and deviation.count > 0
-    return {"count": deviation.count if deviation else 0} | {
-        unit: {name: plain(getattr(deviation, name) * scale) if known else None for name in FIGURES}
-        for unit, scale in units.items()
-    }
-
-
-def _outliers(fit: Fit) -> dict[str, Any]:
-    index = fit.outliers
-    far = fit.distances[index]
-    return {
-        "count": len(index),
-        "farthest_m": plain(np.max(far)) if len(index) else None,
-        "listed": [
-            {"index": int(i), "distance_m": plain(d), "distance_mm": plain(d * MILLIMETRES)}
-            for i, d in zip(index[:LISTED_OUTLIERS], far[:LISTED_OUTLIERS], strict=True)
-        ],
-    }
-
-
-def _worst(fit: Fit) -> dict[str, Any] | None:
-    """The inlier that is farthest off."""
-    index = np.flatnonzero(fit.inliers)
-    if len(index) == 0:
-        return None
-    i = int(index[np.argmax(fit.distances[index])])
-    return {
-        "index": i,
-        "point_m": plain(fit.cloud[i]),
-        "region": str(fit.regions[i]),
-        "place": str(fit.places[i]),
-        "u": plain(fit.u[i]),
-        "v": plain(fit.v[i]),
-        "deviation_m": plain(fit.deviations[i]),
-        "deviation_mm": plain(fit.deviations[i] * MILLIMETRES),
-    }
-
-
-def _estimate(fit: Fit, each: Estimate) -> dict[str, Any]:
-    return {
-        "path": each.path,
-        "unit": unit_of_path(fit, each.path),
-        "value": plain(each.value),
-        "standard_deviation": plain(each.deviation),
-        "interval_95": [plain(each.low), plain(each.high)],
-        "identified": bool(each.identified),
-        "at_bound": bool(each.at_bound),
-    }
-
-
-def _motion(fit: Fit) -> dict[str, Any]:
-    assert fit.motion is not None  # noqa: S101 - the caller asks only where there is one
-    return {
-        "rotation": plain(fit.motion.rotation),
-        "translation_m": plain(fit.motion.translation),
-        "translation_mm": plain(fit.motion.translation * MILLIMETRES),
-    }
-
-
-def _table(fit: Fit) -> list[str]:
-    """Deviations of the inliers, a row for each region."""
-    chord = _chord_of(fit)
-    rows = [[f"deviation [{unit_of_lengths(fit.design)}]", "points", "mean", "rms", "99 %", "max", "max of chord"]]
-    for name, of in {"all inliers": fit.deviation, **{name: fit.by_region.get(name) for name in REGIONS}}.items():
-        if of is None or of.count == 0:
-            # sections have no ends, but a cloud without points on an edge says nothing about it
-            rows += [] if name == "ends" else [[name, "none", *"-----"]]
-            continue
-        figures = [in_unit(fit.design, getattr(of, figure)) for figure in FIGURES]
-        rows.append([name, str(of.count), *figures, f"{of.maximum / chord:.1e}"])
-    widths = [max(len(row[i]) for row in rows) for i in range(len(rows[0]))]
-    return [
-        "  " + f"{row[0]:<{widths[0]}}" + "".join(f"  {cell:>{widths[i]}}" for i, cell in enumerate(row) if i)
-        for row in rows
-    ]
-
-
-def _outliers_line(fit: Fit) -> str:
-    count, total = len(fit.outliers), len(fit.cloud)
-    if count == 0:
-        return f"{_number_of(total, 'point')}, no outliers"
-    share = f"{100.0 * count / total:.2g} %"
-    shown = ", ".join(str(i) for i in fit.outliers[:8]) + (", ..." if count > 8 else "")
-    farthest = with_unit(fit.design, float(np.max(fit.distances[fit.outliers])))
-    return (
-        f"{_number_of(total, 'point')}, {_number_of(count, 'outlier')} ({share}) up to {farthest} away: number {shown}"
-    )
-
-
-def _motion_line(fit: Fit) -> str:
-    if fit.motion is None:
-        return ""
-    turn, shift = np.asarray(fit.motion.rotation), np.asarray(fit.motion.translation)
-    cosine = (np.trace(turn) - (1.0 if len(turn) == 3 else 0.0)) / 2.0
-    angle = np.degrees(np.arccos(np.clip(cosine, -1.0, 1.0)))
-    moved = ", ".join(in_unit(fit.design, float(value), 6) for value in shift)
-    unit = unit_of_lengths(fit.design)
-    return f"moved to the machine's axes: turned by {angle:.6g} deg, then shifted by ({moved}) {unit}"
-
-
-def _parameters(fit: Fit) -> list[str]:
-    """A line for each parameter, or for each that the reader must look at where there are many."""
-    doubtful = [each for each in fit.estimates if not each.identified or each.at_bound]
-    shown = list(fit.estimates) if len(fit.estimates) <= FEW_PARAMETERS else doubtful
-    width = max((len(each.path) for each in shown), default=0)
-    lines = []
-    for each in shown:
-        conditions = {"NOT IDENTIFIED": not each.identified, "AT BOUND": each.at_bound}
-        marks = [word for word, holds in conditions.items() if holds]
-        value, spread = _with_spread(each)
-        unit = unit_of_path(fit, each.path)
-        lines.append(f"    {each.path:<{width}}  {value:>12}  {spread:<12}  {unit:<4} {', '.join(marks)}".rstrip())
-    if len(shown) < len(fit.estimates):
-        rest = len(fit.estimates) - len(shown)
-        lines.append(f"    {'the others' if shown else 'all'} ({rest}) are identified and inside their bounds")
-    return lines
-
-
-def _with_spread(each: Estimate) -> tuple[str, str]:
-    """The value to the digits that are known, and half of its 95 % interval."""
-    half = (each.high - each.low) / 2.0
-    if not (each.identified and math.isfinite(half) and half > 0.0):
-        return f"{each.value:.6g}", ""
-    decimals = min(max(1 - math.floor(math.log10(half)), 0), 12)
-    return f"{each.value:.{decimals}f}", f"+- {half:.2g}"
-
-
-def _number_of(count: int, what: str) -> str:
-    return f"{count} {what}{'' if count == 1 else 's'}"
