@@ -17,12 +17,12 @@ import numpy as np
 
 from bladewright.blade.design.families import CurvatureMeanlineBlade
 from bladewright.blade.design.flow_path import FlowPath
-from bladewright.blade.design.meridional_curve import ThroughPoints
 from bladewright.blade.design.stacking import Stacking
-from bladewright.designs import Law, Point, Stations
+from bladewright.designs import Law, Stations
 from bladewright.errors import DesignError, FileError
 from bladewright.files.given_table import GivenTable, read_given_table
 from bladewright.files.table_formulas import other_point, parabolic_rear, share_of, stagger_of
+from bladewright.files.table_walls import edge_lines, straight_walls
 from bladewright.files.writing import text_of
 from bladewright.nurbs.basis import Reals
 from bladewright.section.curvature_meanline import CurvatureMeanline
@@ -36,8 +36,6 @@ TRAILING_RADIUS = 0.1
 """Radius of the trailing edge where the table gives none, of the maximum thickness [-]"""
 SAME_CHORD = 0.01
 """Difference up to which a chord beside edges is that of the edges: a mean radius may be taken in another way [-]"""
-EXTENSION = 1.5
-"""How far hub and shroud continue before and behind the blade, in its largest chord [-]"""
 SAME_ANGLE = 1e-6
 """Camber below which a stagger other than the metal angles has no meanline [deg]"""
 
@@ -219,11 +217,11 @@ class _Translation:
         if edges:
             x = [columns["x_le"], columns["x_te"]]
             chord = np.hypot(x[1] - x[0], ends[1] - ends[0]) / cosine
-            lines = _edge_lines(x, ends)
+            lines = edge_lines(x, ends)
             self.remarks["flow_path"] = (
                 "assumed: straight hub and shroud through the first and the last row's edges, and on beyond them"
             )
-            walls = _walls(x, ends, chord)
+            walls = straight_walls(x, ends, chord)
             position = {"leading_edge_theta": theta["theta"]} if theta else {}
             return chord, {
                 "flow_path": FlowPath(hub=walls[0], shroud=walls[1], matched="edges"),
@@ -240,7 +238,7 @@ class _Translation:
             else "assumed: straight hub and shroud of the first and the last row's radii at both edges"
         )
         self.remarks["stacking"] = "assumed: sections stacked by their centroids on the radial line x = 0"
-        walls = _walls([-half, half], ends, chord)
+        walls = straight_walls([-half, half], ends, chord)
         stacking = Stacking(reference="centroid", chord=self._law("chord", self.middle, chord), hub_x=0.0, **theta)
         return chord, {"flow_path": FlowPath(hub=walls[0], shroud=walls[1]), "stacking": stacking}
 
@@ -327,30 +325,3 @@ def _fractions(r: Reals) -> Reals:
 def _rounded(values: Reals) -> Reals:
     """Values to 14 digits, so that a file shows 0.08 for 4 mm in 50."""
     return np.array([float(f"{value:.14g}") for value in values])
-
-
-def _edge_lines(x: list[Reals], r: list[Reals]) -> list[ThroughPoints]:
-    """The leading and the trailing edge through all rows."""
-    return [
-        ThroughPoints(points=tuple(Point(*map(float, pair)) for pair in zip(*each, strict=True)))
-        for each in zip(x, r, strict=True)
-    ]
-
-
-def _walls(x: list[Reals], r: list[Reals], chord: Reals) -> list[ThroughPoints]:
-    """Hub and shroud, straight through both edges of the first and of the last row."""
-    reach, ends = EXTENSION * float(np.max(chord)), []
-    for row in (0, -1):
-        start, end = (np.array([x[i][row], r[i][row]]) for i in (0, 1))
-        step = (end - start) / np.hypot(*(end - start))
-        # both walls reach as far, and stay at half their least radius from the axis
-        reach = min(reach, *(0.5 * at[1] / max(abs(step[1]), 1e-12) for at in (start, end)))
-        ends.append((start, end, step))
-    level = all(np.isclose(start[1], end[1], rtol=1e-9) for start, end, _ in ends)
-    found = []
-    for start, end, step in ends:
-        points = [start - reach * step, start, end, end + reach * step]
-        if level:
-            points = [np.array([at, start[1]]) for at in (np.min(x[0]) - reach, np.max(x[1]) + reach)]
-        found.append(ThroughPoints(points=tuple(Point(*(float(f"{c:.10g}") for c in each)) for each in points)))
-    return found

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from bladewright.blade.native.chord_lines import ChordLines
 from bladewright.blade.native.moving_points import components, directions, lean_angle, middle, motion, sweep_angle
 from bladewright.blade.native.throat import throat, throat_ends
 from bladewright.numerics.elementary import Array, angle, cross2, dot, length, magnitude, unit
@@ -29,11 +30,6 @@ if TYPE_CHECKING:
 
 STATIONS = (0.0, 0.25, 0.5, 0.75, 1.0)
 """Places along the span where none are asked for."""
-ALONG = panels(np.linspace(0.0, 1.0, 33), 8)
-"""Places along a chord line and their weights: lengths of polynomials are exact to rounding, and those of splines
-through points, whose third derivatives jump, to some 1e-9."""
-HALFWAY_STEPS = 8
-"""Newton steps to half the meridional length: they converge quadratically from half the parameter."""
 UNWRAPPED = np.linspace(0.0, 1.0, 65)
 """Places along a side at which its theta is followed: between two of them no blade turns by half a revolution."""
 PER_SPAN = 6
@@ -67,6 +63,10 @@ class BladeStations(StationTable):
     def _stack(self) -> SectionStack:
         return self.blade.exact.sections(self.span)
 
+    @cached_property
+    def _chord_lines(self) -> ChordLines:
+        return ChordLines(stack=self._stack, annular=self.annular)
+
     @property
     def leading_edge_x(self) -> Array:
         """x of the leading edge [m]."""
@@ -98,7 +98,7 @@ class BladeStations(StationTable):
     @cached_property
     def stagger(self) -> Array:
         """Angle of the chord line, atan(Delta theta / Delta m') [rad]."""
-        return np.arctan(self.wrap / self._extent)
+        return np.arctan(self.wrap / self._chord_lines.extents)
 
     @cached_property
     def chord(self) -> Array:
@@ -107,7 +107,7 @@ class BladeStations(StationTable):
     @cached_property
     def meridional_chord(self) -> Array:
         """Meridional length from the leading to the trailing edge [m]."""
-        return self._length_to(np.ones(len(self.span)), conformal=False)
+        return self._chord_lines.lengths
 
     @property
     def axial_chord(self) -> Array:
@@ -135,8 +135,8 @@ class BladeStations(StationTable):
         turn = turn + upper.across[0] - self._edges[0].across[0]
         turn = wrapped(turn - self.wrap / 2.0, lower.period) + self.wrap / 2.0
         place = np.stack([(upper.x[0] + lower.x[0]) / 2.0, (upper.height[0] + lower.height[0]) / 2.0], axis=-1)
-        along = self._length_to(self._nearest_on_chord_line(place), conformal=True)
-        return (along * self._extent + turn * self.wrap) / (self._extent**2 + self.wrap**2)
+        along = self._chord_lines.length_to(self._chord_lines.nearest(place), conformal=True)
+        return (along * self._chord_lines.extents + turn * self.wrap) / (self._chord_lines.extents**2 + self.wrap**2)
 
     @cached_property
     def leading_edge_radius(self) -> Array:
@@ -165,7 +165,7 @@ class BladeStations(StationTable):
 
     @cached_property
     def pitch_mid(self) -> Array:
-        return self._pitch(self._stack.chord_line(self._halfway[:, None])[..., 0, 1])
+        return self._pitch(self._stack.chord_line(self._chord_lines.halfway[:, None])[..., 0, 1])
 
     @property
     def pitch_out(self) -> Array:
@@ -203,7 +203,7 @@ class BladeStations(StationTable):
         """Lean of the line of points halfway between the edges, towards larger theta, or y [rad]."""
         rates = [(a + b) / 2.0 for a, b in zip(*self._edge_rates, strict=True)]
         radius = (self._edges[0].radius[0] + self._edges[1].radius[0]) / 2.0
-        return lean_angle(rates, self._slope(self._halfway), radius)
+        return lean_angle(rates, self._chord_lines.slope(self._chord_lines.halfway), radius)
 
     @cached_property
     def trailing_edge_lean(self) -> Array:
@@ -283,42 +283,6 @@ class BladeStations(StationTable):
         ]
         return [(a[1] + b[1]) / 2.0 for a, b in zip(along[0][:3], along[1][:3], strict=True)]
 
-    def _slope(self, u: Array) -> Array:
-        """Unit vectors (m, 2) downstream along the chord lines in (x, r) at u (m,)."""
-        return unit(self._stack.chord_line(u[:, None], 1)[..., 0, :])
-
-    @cached_property
-    def _extent(self) -> Array:
-        """Delta m' between the edges, or the meridional length in a cascade."""
-        return self._length_to(np.ones(len(self.span)), conformal=True)
-
-    def _length_to(self, u: Array, *, conformal: bool) -> Array:
-        """Meridional lengths (m,), or increases of m', along the chord lines from the leading edge to u (m,)."""
-        places = u[:, None] * ALONG[0]
-        speed = length(self._stack.chord_line(places, 1))
-        if conformal and self.annular:
-            speed = speed / self._stack.chord_line(places)[..., 1]
-        return u * np.sum(ALONG[1] * speed, axis=-1)
-
-    @cached_property
-    def _halfway(self) -> Array:
-        """u (m,) at half the meridional length."""
-        u: Array = np.full(len(self.span), 0.5)
-        for _ in range(HALFWAY_STEPS):
-            rate = length(self._stack.chord_line(u[:, None], 1)[..., 0, :])
-            u = u - (self._length_to(u, conformal=False) - self.meridional_chord / 2.0) / rate
-        return u
-
-    def _nearest_on_chord_line(self, place: Array) -> Array:
-        """u (m,) of the points of the chord lines nearest to places (m, 2) in (x, r)."""
-        stack, tried = self._stack, np.linspace(0.0, 1.0, 65)
-        away = length(np.real(stack.chord_line(tried) - place[:, None, :]))
-        u: Array = tried[np.argmin(away, axis=-1)]
-        for _ in range(HALFWAY_STEPS):
-            point, slope = (stack.chord_line(u[:, None], order)[..., 0, :] for order in (0, 1))
-            u = u - dot(point - place, slope) / dot(slope, slope)
-        return u
-
     def _pitch(self, radius: Array) -> Array:
         spacing = self.blade.design.spacing
         return spacing * radius if self.annular else spacing + 0.0 * radius
@@ -347,7 +311,8 @@ class BladeStations(StationTable):
     @cached_property
     def _edge_slopes(self) -> tuple[Array, Array]:
         """Unit vectors (m, 2) downstream along the chord lines in (x, r) at both edges."""
-        return self._slope(np.zeros(len(self.span))), self._slope(np.ones(len(self.span)))
+        start, end = (np.full(len(self.span), at) for at in (0.0, 1.0))
+        return self._chord_lines.slope(start), self._chord_lines.slope(end)
 
     def _edge_radius(self, end: int) -> Array:
         if self.edge_kinds[end] != "round":
