@@ -12,13 +12,13 @@ from matplotlib.figure import Figure
 from bladewright.blade.exact.sectioned import exact_sectioned_blade
 from bladewright.section.profiles.points import PointsProfile
 from bladewright.section.smoothness import smoothness
-from bladewright.views.distributions import draw_sides, draw_smoothness, jump_rows, logarithmic_beyond
+from bladewright.views.distributions import draw_smoothness, jump_rows, logarithmic_beyond
 from bladewright.views.laws import constants_of, panels_of
 from bladewright.views.meridional import FEW_SURFACES, blade_outline, built_edges, draw_meridional, draw_view
 from bladewright.views.picture import sheet
 from bladewright.views.sections import draw_edge, drawn_per_unit, neighbour_outline, outline
 from bladewright.views.solid import blade_surfaces, draw_solid
-from bladewright.views.style import VIOLET
+from bladewright.views.style import VIOLET, draw_lines
 from bladewright.views.text_table import draw_text_table
 from machines import built
 from machines.sectioned import BLUNT, COMPRESSOR, DESIGNS, IMPELLER, STATOR, VANE
@@ -264,13 +264,13 @@ def test_a_logarithmic_axis_says_where_it_begins_and_its_ticks_stand_apart(limit
     assert all(lower.y1 <= upper.y0 + 1.0 for lower, upper in pairwise(boxes))  # a pixel: boxes are rounded outwards
 
 
-def test_sides_that_are_alike_are_both_seen():
-    axes, x = Figure().add_subplot(), np.linspace(0.0, 1.0, 5)
-    draw_sides(axes, (x, x), (x, x), "black")
-    draw_sides(axes, (x, x), (x, 1.1 * x), "black")
+def test_lines_that_coincide_are_all_seen():
+    axes, x = Figure().add_subplot(), np.linspace(0.0, 1.0, 50)
+    curvature = np.where(x > 0.9, 40.0, 0.01)  # of a side: 4,000 times as large at an edge
+    rows = (x, x, 1.0001 * x, 1.1 * x, curvature, np.where(x > 0.9, 40.0, -0.01), 1e-17 * x)
+    draw_lines(axes, [(x, y, {"color": "black"}) for y in rows])
     widths = [line.get_linewidth() for line in axes.get_lines()]
-    assert widths[0] > 2.0 * widths[1]
-    assert widths[1] == widths[2] == widths[3]
+    assert widths[0] > widths[1] > widths[2] == widths[3] == widths[4] == widths[5] == widths[6]
 
 
 def test_straight_camber_lines_have_no_panels_of_curvature():

@@ -1,7 +1,7 @@
 """Distributions along a section: curvature, its slope with the jumps at joints, and thickness."""
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -19,7 +19,10 @@ from bladewright.views.style import (
     SOFT,
     UPPER,
     WALLS,
+    Line,
     axis,
+    bands,
+    draw_lines,
     in_unit,
     label_axes,
     legend_below,
@@ -39,10 +42,6 @@ CAMBER_LABEL = "along the camber, leading to trailing edge [-]"
 """Name of the abscissa along the camber line."""
 Smooth = Sequence[tuple["Section", Smoothness]]
 """Sections with their smoothness."""
-Line = tuple[Reals, Reals]
-"""Abscissae and ordinates of a line."""
-ALIKE = 1e-3
-"""Distance of two lines, of the range of the first, up to which one hides the other: half a width of the line."""
 POWERS = 4
 """Most powers of ten beside a logarithmic axis, on either side of zero; fewer leave room for the linear part."""
 STRAIGHT = 1e-9
@@ -50,6 +49,14 @@ STRAIGHT = 1e-9
 EDGE_SHARE = 0.05
 """Fraction of the arc length at either end that does not set the scale of an axis: values at the edges are far larger
 than between them."""
+
+
+class _Drawn(NamedTuple):
+    """A line of values along a side or a camber line."""
+
+    line: SmoothLine
+    values: Reals
+    options: dict[str, Any]
 
 
 def side_curvature(section: "Section", name: str) -> tuple[Reals, Reals]:
@@ -64,26 +71,21 @@ def side_curvature(section: "Section", name: str) -> tuple[Reals, Reals]:
 
 def draw_curvature(axes: Axes, sections: Sequence["Section"], ends: tuple[str, str] = WALLS) -> None:
     """Draw the curvature of both sides, linear about zero and logarithmic beyond, as it is far larger at the edges."""
-    for section in sections:
-        upper, lower = (side_curvature(section, name) for name in ("upper", "lower"))
-        draw_sides(axes, upper, lower, span_colour(section.span))
+    styles = {"upper": UPPER, "lower": LOWER}
+    draw_lines(
+        axes,
+        [
+            (*side_curvature(section, name), {"color": span_colour(section.span), "linestyle": style})
+            for section in sections
+            for name, style in styles.items()
+        ],
+    )
     least = 2.0 / (per_metre() * min(float(section.chord) for section in sections))
     axes.axhline(0.0, color=SOFT, linewidth=0.8)
     axes.set_xlim(-0.01, 1.01)
     label_axes(axes, "Curvature of the sides, convex positive", ARC_LABEL, f"curvature [1/{unit_name()}]")
     logarithmic_beyond(axes, least)
     sides_legend(axes, [section.span for section in sections], ends)
-
-
-def draw_sides(axes: Axes, upper: Line, lower: Line, colour: Any) -> None:
-    """Draw a line for each side; where they are the same line, the upper one is a pale band under the lower one."""
-    alike = len(upper[0]) == len(lower[0]) and all(
-        np.allclose(one, other, rtol=0.0, atol=ALIKE * float(np.ptp(one)))
-        for one, other in zip(upper, lower, strict=True)
-    )
-    band: dict[str, Any] = {"linewidth": 4.0, "alpha": 0.4} if alike else {"linewidth": 1.2}
-    axes.plot(*upper, color=colour, linestyle=UPPER, **band)
-    axes.plot(*lower, color=colour, linestyle=LOWER, linewidth=1.2)
 
 
 def logarithmic_beyond(axes: Axes, least: float) -> None:
@@ -120,6 +122,7 @@ def _tick(value: float) -> str:
 
 def draw_thickness(axes: Axes, sections: Sequence["Section"], ends: tuple[str, str] = WALLS) -> None:
     """Draw the thickness across the camber line as built [mm], and mark its largest value."""
+    lines = list[Line]()
     for section in sections:
         colour = span_colour(section.span)
         u, thickness = section.thickness
@@ -128,8 +131,9 @@ def draw_thickness(axes: Axes, sections: Sequence["Section"], ends: tuple[str, s
         label = f"{in_unit(largest, '.3g')}, {share:.3g} % of the chord"
         if len(sections) > 1:
             label = f"{span_name(section.span, ends)} {share:.3g} %"
-        axes.plot(u, thickness * per_metre(), color=colour, label=label)
+        lines.append((u, thickness * per_metre(), {"color": colour, "label": label}))
         axes.plot(place, largest * per_metre(), marker="o", markersize=4.0, color=colour, linestyle="none")
+    draw_lines(axes, lines)
     axes.set_ylim(bottom=0.0)
     axes.set_xlim(-0.01, 1.01)
     label_axes(axes, "Thickness as built, largest in % of chord", CAMBER_LABEL, axis("thickness across the camber"))
@@ -167,33 +171,29 @@ def draw_smoothness(strip: SubFigure, sections: Sequence["Section"], ends: tuple
 
 def _draw_side_slopes(axes: Axes, smooth: Smooth, ends: tuple[str, str]) -> None:
     """Draw the slope of the curvature of both sides."""
-    inner, least = list[Reals](), 0.0
+    drawn, least = list[_Drawn](), 0.0
     for section, each in smooth:
         square = _chord(section) ** 2
         # On the lower side a convex bend turns the other way.
         for line, sign, style in ((each.upper, 1.0, UPPER), (each.lower, -1.0, LOWER)):
-            slope = sign * line.slope / square
-            _draw(axes, line, slope, span_colour(section.span), style, order=1)
-            inner.append(slope[_inside(line)])
+            options = {"color": span_colour(section.span), "linestyle": style}
+            drawn.append(_Drawn(line, sign * line.slope / square, options))
             least = max(least, max(STEADY * float(np.median(line.curvature**2)), 1e-3) / square)
-    axes.axhline(0.0, color=SOFT, linewidth=0.8)
-    axes.set_xlim(-0.01, 1.01)
+    _draw(axes, drawn, order=1)
     label_axes(axes, "Slope of the curvature of the sides", ARC_LABEL, f"d curvature / d arc [1/{unit_name()}²]")
-    most = float(np.median(np.sqrt(np.concatenate(inner) ** 2)))
+    most = float(np.median(np.sqrt(np.concatenate([_inner(each) for each in drawn]) ** 2)))
     logarithmic_beyond(axes, 10.0 ** np.ceil(np.log10(max(2.0 * most, least))))
     sides_legend(axes, [section.span for section, _ in smooth], ends)
 
 
 def _draw_camber(axes: Axes, smooth: Smooth, *, order: int) -> None:
     """Draw the curvature of the camber lines (order 0) or its slope (order 1)."""
-    inner = []
+    drawn = list[_Drawn]()
     for section, each in smooth:
         values = (each.camber.slope if order else each.camber.curvature) / _chord(section) ** (order + 1)
-        _draw(axes, each.camber, values, span_colour(section.span), UPPER, order=order)
-        inner.append(values[_inside(each.camber)])
-    _limited(axes, inner)
-    axes.axhline(0.0, color=SOFT, linewidth=0.8)
-    axes.set_xlim(-0.01, 1.01)
+        drawn.append(_Drawn(each.camber, values, {"color": span_colour(section.span), "linestyle": UPPER}))
+    _draw(axes, drawn, order=order)
+    _limited(axes, [_inner(each) for each in drawn])
     if order:
         label_axes(axes, "Slope of that curvature", ARC_LABEL, f"d curvature / d arc [1/{unit_name()}²]")
     else:
@@ -235,19 +235,25 @@ def jump_rows(smooth: Smooth, ends: tuple[str, str]) -> list[tuple[str, str, str
     return rows
 
 
-def _draw(axes: Axes, line: SmoothLine, values: Reals, colour: Any, style: Any, *, order: int) -> None:
-    """Draw one line, with a gap and two dots where the curvature (order 0) or its slope (order 1) jumps at a joint."""
-    joints = [jump.at for jump in line.jumps if jump.place == "joint" and not jump.continuous[order]]
-    cuts = [int(np.searchsorted(line.arc, at, side="left")) for at in joints]
-    for part in np.split(np.arange(len(values)), cuts):
-        axes.plot(line.arc[part], values[part], color=colour, linestyle=style, linewidth=1.2)
-    dots = np.array([k for cut in cuts for k in (cut - 1, cut) if cut < len(values)], dtype=int)
-    axes.plot(line.arc[dots], values[dots], color=colour, linestyle="none", marker="o", markersize=2.6)
+def _draw(axes: Axes, drawn: Sequence[_Drawn], *, order: int) -> None:
+    """Draw lines, with a gap and two dots where the curvature (order 0) or its slope (order 1) jumps at a joint."""
+    for (line, values, options), band in zip(
+        drawn, bands([(line.arc, values) for line, values, _ in drawn]), strict=True
+    ):
+        joints = [jump.at for jump in line.jumps if jump.place == "joint" and not jump.continuous[order]]
+        cuts = [int(np.searchsorted(line.arc, at, side="left")) for at in joints]
+        for part in np.split(np.arange(len(values)), cuts):
+            axes.plot(line.arc[part], values[part], **options, **band)
+        dots = np.array([k for cut in cuts for k in (cut - 1, cut) if cut < len(values)], dtype=int)
+        axes.plot(line.arc[dots], values[dots], color=options["color"], linestyle="none", marker="o", markersize=2.6)
+    axes.axhline(0.0, color=SOFT, linewidth=0.8)
+    axes.set_xlim(-0.01, 1.01)
 
 
-def _inside(line: SmoothLine) -> Any:
-    """Whether each point of a line (n,) is away from both edges."""
-    return (line.arc > EDGE_SHARE) & (line.arc < 1.0 - EDGE_SHARE)
+def _inner(drawn: _Drawn) -> Reals:
+    """The values of a line away from both edges."""
+    arc = drawn.line.arc
+    return drawn.values[(arc > EDGE_SHARE) & (arc < 1.0 - EDGE_SHARE)]
 
 
 def _limited(axes: Axes, values: Sequence[Reals]) -> None:

@@ -9,16 +9,19 @@ import numpy as np
 from matplotlib import colormaps
 from matplotlib.axes import Axes
 from matplotlib.figure import SubFigure
+from matplotlib.ticker import MaxNLocator
 
 from bladewright.designs import Design, Law, Part, Stations
 from bladewright.section.laws import Span, law_points, overshoots_of, places_of, stations_of
-from bladewright.views.distributions import CAMBER_LABEL, draw_sides, sides_legend
+from bladewright.views.distributions import CAMBER_LABEL, sides_legend
 from bladewright.views.style import (
     CONTROL_POINTS,
     LOWER,
     RED,
     SERIES,
     UPPER,
+    Line,
+    draw_lines,
     label_axes,
     legend_below,
     span_colour,
@@ -190,17 +193,17 @@ def draw_strip(strip: SubFigure, charts: Sequence[Chart]) -> None:
 
 def draw_thickness_laws(axes: Axes, design: Design, sections: Sequence["Section"], ends: tuple[str, str]) -> None:
     """Draw the half-thickness laws along the chord at these sections, in percent of the design's reference length."""
-    u = np.linspace(0.0, 1.0, 101)
+    u, lines = np.linspace(0.0, 1.0, 101), list[Line]()
     for section in sections:
         span = Span(np.array([section.span]))
         colour = span_colour(section.span)
-        curves = {}
-        for name, marker in (("upper", "o"), ("lower", "s")):
+        for name, style, marker in (("upper", UPPER, "o"), ("lower", LOWER, "s")):
             laws = design.thickness_laws[name]
             points = np.array([np.real(span.values(law))[0] for law in laws])
-            curves[name] = 100.0 * np.real(span.chordwise(laws, u))[0]
+            curve = 100.0 * np.real(span.chordwise(laws, u))[0]
+            lines.append((u, curve, {"color": colour, "linestyle": style}))
             axes.plot(places_of(tuple(points)), 100.0 * points, color=colour, marker=marker, **CONTROL_POINTS)
-        draw_sides(axes, (u, curves["upper"]), (u, curves["lower"]), colour)
+    draw_lines(axes, lines)
     axes.set_ylim(bottom=0.0)
     axes.set_xlim(-0.03, 1.03)
     label_axes(axes, "Half thickness along the chord", CAMBER_LABEL, f"half thickness [% of {design.reference_length}]")
@@ -359,6 +362,7 @@ def draw_laws(axes: Axes, panel: Panel, columns: int = 1) -> None:
     low, high = axes.get_xlim()
     if high - low < 1e-3 * max(abs(low), abs(high), 1e-9):
         axes.set_xlim(low - 1.0, high + 1.0)
+    axes.xaxis.set_major_locator(MaxNLocator(4))
     axes.set_ylim(-0.03, 1.03)
     label_axes(axes, panel.title, panel.abscissa, "span v [-]")
     legend_below(axes, columns, handlelength=1.8)
@@ -382,8 +386,9 @@ def _alike(panel: Panel) -> list[list[str]]:
 
 def _joined(names: Sequence[str]) -> str:
     """The name of a line that is several laws."""
-    if len(names) == 2 and names[0].startswith("upper, ") and names[1] == f"lower, {_place(names[0])}":
-        return f"both sides, {_place(names[0])}"
+    places = list(dict.fromkeys(map(_place, names)))
+    if all(f"{side}, {place}" in names for place in places for side in ("upper", "lower")):
+        names = [f"both sides, {place}" for place in places]
     whole = " = ".join(names)
     return whole if len(whole) <= ONE_LINE else " =\n".join(names)
 

@@ -17,6 +17,8 @@ from bladewright.views.style import (
     RED,
     SOFT,
     WALLS,
+    Line,
+    draw_lines,
     label_axes,
     legend_below,
     per_metre,
@@ -126,13 +128,15 @@ def neighbour_outline(blade: "Blade", section: "Section", shape: Reals) -> Reals
 
 def draw_sections(axes: Axes, sections: Sequence["Section"], ends: tuple[str, str] = WALLS) -> None:
     """Draw sections along the span on top of each other, each with its camber line."""
+    lines = list[Line]()
     for section in sections:
         colour = span_colour(section.span)
         shape = outline(section)
         axes.fill(*shape.T, color=colour, alpha=0.10, linewidth=0.0)
-        axes.plot(*shape.T, color=colour, label=span_name(section.span, ends))
+        lines.append((shape[:, 0], shape[:, 1], {"color": colour, "label": span_name(section.span, ends)}))
         camber = developed(section, section.camber(cosine_spacing()))
         axes.plot(*camber.T, color=colour, linewidth=0.8, linestyle=CAMBER)
+    draw_lines(axes, lines)
     label_axes(axes, "Sections with camber lines", *coordinates(sections[0].plane))
     axes.set_aspect("equal", adjustable="datalim")
     legend_below(axes, 3, handlelength=1.0, columnspacing=0.9)

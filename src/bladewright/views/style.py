@@ -1,6 +1,6 @@
 """The style of all pictures: colours, fonts, lines and resolutions, and what every panel has."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from contextvars import ContextVar
 from typing import Any, cast
@@ -10,6 +10,7 @@ from matplotlib import rc_context
 from matplotlib.axes import Axes
 from matplotlib.transforms import ScaledTranslation
 
+from bladewright.nurbs.basis import Reals
 from bladewright.section.checks import UNITS
 
 _LENGTH_UNIT: ContextVar[str] = ContextVar("length_unit", default="mm")
@@ -33,6 +34,12 @@ CONTROL_POINTS: dict[str, Any] = {
     "markerfacecolor": "white",
 }
 """Style of the control polygons of laws: hollow marks on a dotted line."""
+Line = tuple[Reals, Reals, Mapping[str, Any]]
+"""Abscissae and ordinates of a line, and the options with which it is drawn."""
+LINE_WIDTH, BAND = 1.3, 1.0
+"""Width of a line, and how much wider one is for each that lies on it [points]."""
+ALIKE = 3e-3
+"""Difference of two lines, of their size, up to which one hides the other: less than the width of a line."""
 LEGEND_BELOW = 0.45
 """Distance of a legend from the panel above it: ticks and the name of the axis stand between [inches]."""
 WALLS = ("hub", "shroud")
@@ -121,6 +128,31 @@ def span_colour(v: float) -> tuple[float, float, float]:
 def span_name(v: float, ends: tuple[str, str] = WALLS) -> str:
     """The name in a legend of the section at v of a blade whose ends have these names."""
     return {0.0: ends[0], 1.0: ends[1]}.get(v, f"{100.0 * v:.3g} % span")
+
+
+def draw_lines(axes: Axes, lines: Sequence[Line]) -> None:
+    """Draw lines on top of each other so that all are seen."""
+    for (x, y, options), band in zip(lines, bands([(x, y) for x, y, _ in lines]), strict=True):
+        axes.plot(x, y, **{**options, **band})
+
+
+def bands(lines: Sequence[tuple[Reals, Reals]]) -> list[dict[str, Any]]:
+    """Width and paleness of lines in the order of drawing: those that coincide with later ones are wider and paler."""
+    found = list[dict[str, Any]]()
+    for index, (x, y) in enumerate(lines):
+        over = sum(_alike(x, other_x) and _alike(y, other_y) for other_x, other_y in lines[index + 1 :])
+        pale: dict[str, Any] = {"alpha": 0.45} if over else {}
+        found.append({"linewidth": LINE_WIDTH + BAND * over, **pale})
+    return found
+
+
+def _alike(one: Reals, other: Reals) -> bool:
+    """Whether two rows of numbers are the same in a drawing, linear or logarithmic."""
+    if len(one) != len(other):
+        return False
+    size = np.sqrt(one * one)
+    close = ALIKE * max(float(np.median(size)), ALIKE**2 * float(np.max(size)))
+    return bool(np.allclose(one, other, rtol=ALIKE, atol=close))
 
 
 def label_axes(axes: Axes, title: str, abscissa: str, ordinate: str) -> None:
