@@ -7,7 +7,8 @@ from matplotlib.path import Path as Outline
 from bladewright.blade.design.families import prismatic
 from bladewright.designs import Stations
 from bladewright.section.laws import overshoots_of
-from bladewright.views.laws import Panel, constant_rows, constants_of, draw_laws, panels_of, place_names
+from bladewright.views.law_charts import draw_laws
+from bladewright.views.laws import Panel, constant_rows, constants_of, panels_of, place_names
 from bladewright.views.meridional import blade_outline
 from bladewright.views.picture import FEW_SPANS, SPANS, sheet
 from bladewright.views.sections import cosine_spacing, drawn_per_unit, narrowest_gap, outline, pitch_of

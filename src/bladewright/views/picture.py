@@ -23,7 +23,7 @@ from bladewright.views.along_the_blade import (
     has_throat,
 )
 from bladewright.views.distributions import draw_curvature, draw_smoothness, draw_thickness
-from bladewright.views.laws import draw_strip, draw_thickness_laws, in_strips, law_charts, strip_height
+from bladewright.views.law_charts import draw_strip, draw_thickness_laws, in_strips, law_charts, strip_height
 from bladewright.views.meridional import draw_meridional
 from bladewright.views.pages import Page, checked_path, draw_header, rows, with_fixed_layout, write_figure
 from bladewright.views.passage import passage_sheet, section_passage_sheet
