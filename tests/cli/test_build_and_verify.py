@@ -9,6 +9,7 @@ import pytest
 
 from bladewright import cad
 from bladewright.errors import CadError
+from bladewright.files.reading import read_design
 
 SUFFIXES = {"step": ".step", "iges": ".igs", "brep": ".brep", "stl": ".stl", "3mf": ".3mf"}
 KEYS = {"file", "format", "unit", "passed", "failures", "limits", "solids", "shells", "free_edges", "valid", "faces"}
@@ -212,3 +213,17 @@ def test_a_fine_split_build_is_measured_as_one(run, tmp_path):
         "upper": True, "lower": True, "hub": False, "shroud": False,
     }  # fmt: skip
     assert run("verify", tmp_path / "out" / "vane.step", design, "--fine").status == 0
+
+
+def test_a_round_trip_is_printed_in_the_unit_of_the_design(run, vane_file, tmp_path):
+    built = run("build", vane_file, "-o", tmp_path, "--as", "step", "--set", "length_unit=in")
+    assert built.status == 0, built.out
+    blade = read_design(vane_file).changed("length_unit", "in").build()
+    [told] = re.findall(r"^  volume ([\d.]+) in3 \(.* off\), area ([\d.]+) in2 \(", built.out, re.MULTILINE)
+    expected = (float(blade.properties.volume) / 0.0254**3, float(blade.properties.area) / 0.0254**2)
+    assert tuple(map(float, told)) == pytest.approx(expected, rel=1e-6)
+    assert not re.search(r"\d mm", built.out)
+    # every fraction says what it is
+    assert not re.search(r"\([\d.]+e[-+]\d+\)", built.out)
+    checked = run("verify", tmp_path / "vane.step", vane_file, "--set", "length_unit=in")
+    assert not re.search(r"\d mm", checked.out)

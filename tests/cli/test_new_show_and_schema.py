@@ -196,7 +196,7 @@ def test_show_says_which_law_overshoots_its_stations_or_creases(run, vane_file):
     assert all(each["amount"] > 0.004 for each in data["overshoots"])
     assert "laws" not in run("show", vane_file, "--json", "--set", f"stagger={stations % 'monotone'}").json
     found = run("show", vane_file, "--set", f"stagger={stations % 'linear'}")
-    assert "creases the surfaces at v = 0.3, 0.4: it is linear" in found.out
+    assert "creases the surfaces at span 0.3, 0.4: it is linear" in found.out
 
 
 def test_a_law_at_stations_is_set_and_differentiated_by_its_paths(run, vane_file):

@@ -1,6 +1,7 @@
 """Derivatives on the command line: a table, its check, and the chain to a flow solver."""
 
 import json
+import re
 
 import numpy as np
 import pytest
@@ -173,3 +174,12 @@ def test_a_section_has_its_own_quantities(run, tmp_path):
     check = run("sensitivity", tmp_path / "section.toml", "--check", "--json")
     assert check.status == 0
     assert json.loads(check.out)["passed"]
+
+
+def test_several_figures_are_named(run, vane_file):
+    found = run("sensitivity", vane_file, "--of", "centroid", "--free", "stagger*").out.splitlines()[0]
+    assert re.fullmatch(r"vane: centroid x [-\d.e]+, y [-\d.e]+, z [-\d.e]+ mm", found)
+    found = run("sensitivity", vane_file, "--of", "turning", "--stations", "0,1", "--free", "stagger*").out
+    assert re.match(r"vane: turning [-\d.e]+ deg at span 0, [-\d.e]+ deg at span 1\n", found)
+    found = run("sensitivity", vane_file, "--of", "solidity", "--free", "stagger*").out
+    assert re.match(r"vane: solidity [\d.]+\n", found)

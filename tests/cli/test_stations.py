@@ -101,3 +101,10 @@ def test_rotation_is_told_and_a_wrong_one_warned_of(run, vane_file):
     found = run("show", vane_file, "--set", "rotation=left")
     assert found.status == 2
     assert "clockwise" in found.err
+
+
+def test_where_the_flow_comes_from_is_said_once(run, vane_file, tmp_path):
+    words = ["build", vane_file, "-o", tmp_path, "--as", "brep"]
+    for command in (["show", vane_file], words):
+        for more in ([], ["--stations", "0.5"]):
+            assert run(*command, *more).out.count("without incidence") == 1

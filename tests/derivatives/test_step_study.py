@@ -1,5 +1,7 @@
 """Every derivative of every built-in example agrees with central differences; what is wrong is found."""
 
+import tomllib
+
 import numpy as np
 import pytest
 
@@ -10,6 +12,8 @@ from bladewright.derivatives.quantities import named_quantity
 from bladewright.derivatives.step_study import IMAGINARY, LIMIT, STEPS, step_studies
 from bladewright.errors import DerivativeError
 from bladewright.files.examples import example_text, examples
+from bladewright.files.reading import design_from
+from bladewright.files.templates import template_text
 from bladewright.section.unified import UnifiedSection
 from machines import built, example
 from machines.coarse import CASCADE, CLEARED
@@ -150,3 +154,12 @@ def test_an_unknown_quantity_is_refused_with_the_nearest():
     _, base = machine("vki-ls89")
     with pytest.raises(DerivativeError, match="did you mean 'throat'"):
         named_quantity(base, "throt")
+
+
+def test_complex_steps_that_cannot_be_built_are_left_out():
+    design = design_from(tomllib.loads(template_text("turbine-vane")), "turbine-vane.toml")
+    base = design.build()
+    space = bw.variables(design, free=["stacking.line.points[0].x"], knots=base.knots)
+    [study] = step_studies(design, base, named_quantity(base, "throat"), space)
+    assert 1 < len(study.imaginary) < len(IMAGINARY)
+    assert not study.failure

@@ -9,6 +9,7 @@ from bladewright.cad.native_body import NamedBody
 from bladewright.display import Shown
 from bladewright.numerics.elementary import Array
 from bladewright.origin import Origin
+from bladewright.section.checks import UNITS
 
 
 def conformance_figures(body: NamedBody) -> dict[str, float] | None:
@@ -171,28 +172,38 @@ class RoundTrip(Shown):
         return f"<RoundTrip '{self.file}' ({self.format}): {verdict}; {len(self.faces)} faces, {size}>"
 
     def __str__(self) -> str:
+        return self.text(self.unit if self.unit in UNITS else "mm")
+
+    def text(self, unit: str) -> str:
+        """The report to read, with lengths in `unit` (of `section.checks.UNITS`); limits are in mm."""
         kind = " ".join(word for word in (self.format, self.schema) if word)
         valid = "valid" if self.valid else "invalid"
         width = max((len(face.name) for face in self.faces), default=0)
         volume, area, edges = self.volume, self.area, self.edges
+        length = 1e-3 / UNITS[unit]
         lines = [f"{self.file} ({kind}, {self.unit}): {'passed' if self.passed else 'FAILED'}"]
         lines += [f"  - {failure}" for failure in self.failures]
         lines.append(f"  {self.solids} solid, {self.shells} shell, {self.free_edges} free edges, {valid}")
         for face in self.faces:
-            away = f"deviation {face.max_deviation:.1e} mm (mean {face.mean_deviation:.1e})"
-            size = f"area {face.area.cad:.6g} mm2 ({face.area.relative_error:.1e})"
+            away = (
+                f"deviation {face.max_deviation * length:.1e} {unit} (mean {face.mean_deviation * length:.1e} {unit})"
+            )
+            size = f"area {face.area.cad * length**2:.6g} {unit}2 ({face.area.relative_error:.1e} off)"
             pieces = f", in {face.pieces} pieces" if face.pieces > 1 else ""
             lines.append(f"  {face.name:<{width}}  {away}, {size}{pieces}")
         lines.append(
-            f"  edges: {edges.count}, gap {edges.max_gap:.1e} mm, tolerance {edges.max_tolerance:.1e} mm",
+            f"  edges: {edges.count}, gap {edges.max_gap * length:.1e} {unit}, "
+            f"tolerance {edges.max_tolerance * length:.1e} {unit}"
         )
         lines.append(
-            f"  volume {volume.cad:.8g} mm3 ({volume.relative_error:.1e}), area {area.cad:.8g} mm2 "
-            f"({area.relative_error:.1e}), centroid off by {self.centroid_distance:.1e} mm"
+            f"  volume {volume.cad * length**3:.8g} {unit}3 ({volume.relative_error:.1e} off), "
+            f"area {area.cad * length**2:.8g} {unit}2 ({area.relative_error:.1e} off), "
+            f"centroid {self.centroid_distance * length:.1e} {unit} off"
         )
         if self.default_volume is not None:
             shown = self.default_volume
-            lines.append(f"  FreeCAD and CadQuery show a volume of {shown.cad:.8g} mm3 ({shown.relative_error:.1e})")
+            size = f"{shown.cad * length**3:.8g} {unit}3 ({shown.relative_error:.1e} off)"
+            lines.append(f"  FreeCAD and CadQuery show a volume of {size}")
         if self.kernel_faults is not None:
             found = ", ".join(f"{each.fault} ({each.count})" for each in self.kernel_faults)
             lines.append(f"  FreeCAD's check of the geometry finds {found or 'nothing'}")

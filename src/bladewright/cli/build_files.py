@@ -104,7 +104,7 @@ def build_files(path: Path, options: BuildOptions, bar: Bar) -> Outcome:
     laws = law_data(design)
     remarks = [
         *(f"{name} {words}" for name, words in law_rows(laws)),
-        *(f"{name}: {words}" for name, words in sense_rows(sense)),
+        *(f"{name}: {words}" for name, words in sense_rows(sense, with_table=table is not None)),
         *([str(table)] if table else []),
         *([note] if note else []),
     ]
@@ -119,6 +119,6 @@ def build_files(path: Path, options: BuildOptions, bar: Bar) -> Outcome:
             **sense,
             **({"table": table.to_dict()} if table else {}),
         },
-        text="\n".join([*map(str, trips), *remarks]),
+        text="\n".join([*(trip.text(design.length_unit) for trip in trips), *remarks]),
         failures=tuple(f"{file}: {text}" for file, trip in zip(files, trips, strict=True) for text in trip.failures),
     )

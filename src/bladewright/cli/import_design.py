@@ -11,7 +11,6 @@ from bladewright.cli.options import Call, common, force_option
 from bladewright.cli.outcome import Outcome
 from bladewright.cli.overwriting import refuse_existing
 from bladewright.cli.progress import progress
-from bladewright.section.checks import UNITS
 
 if TYPE_CHECKING:
     from bladewright.files.imported import Imported
@@ -79,6 +78,8 @@ def import_design(
         with removing_partial_files(design.parent, [design.name]):
             write_design(imported.design, design)
         bar.update(1)
+    from bladewright.section.checks import UNITS
+
     chord = float(built.chord)
     mean, most = float(distances.mean()), float(distances.max())
     unit = imported.design.length_unit

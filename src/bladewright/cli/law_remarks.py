@@ -24,9 +24,9 @@ def law_rows(data: Mapping[str, Any]) -> list[tuple[str, str]]:
     rows = []
     for each in data.get("overshoots", []):
         unit = "" if each["unit"] == "-" else f" {each['unit']}"
-        place = f"{each['value']:.5g}{unit} at v = {each['v']:.3g}, {each['amount']:.2g}{unit} beyond both beside it"
+        place = f"{each['value']:.5g}{unit} at span {each['v']:.3g}, {each['amount']:.2g}{unit} beyond both beside it"
         rows.append((each["law"], f'overshoots its stations: {place}; interpolation = "monotone" would not'))
     for each in data.get("creases", []):
         places = ", ".join(f"{v:g}" for v in each["v"])
-        rows.append((each["law"], f"creases the surfaces at v = {places}: it is linear between its stations"))
+        rows.append((each["law"], f"creases the surfaces at span {places}: it is linear between its stations"))
     return rows

@@ -53,6 +53,10 @@ def new(
         text = f"{_listed('bladewright new NAME', lists['examples'])}\n\n"
         text += _listed("bladewright new --template NAME, every key of its family explained", lists["templates"])
         return Outcome(data=lists, text=text)
+    if example in templates() and example not in examples():
+        raise FileError(f"'{example}' is a template: write it by bladewright new --template {example}")
+    if template in examples() and template not in templates():
+        raise FileError(f"'{template}' is an example: write it by bladewright new {template}")
     remarks: dict[str, str] = {}
     if table is not None:
         from bladewright.files.from_table import design_from_table

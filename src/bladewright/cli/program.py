@@ -64,7 +64,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except (KeyboardInterrupt, click.Abort) as error:
         return _refused(call, error, "Interrupted", f"interrupted {error}".strip(), INTERRUPTED)
     except click.ClickException as error:
-        return _refused(call, error, "UsageError", f"{error.format_message()} {_help_of(error)}".strip())
+        return _refused(call, error, "UsageError", _with_help(error))
     except (BladewrightError, MemoryError) as error:
         return _refused(call, error, type(error).__name__, str(error) or "there is not enough memory for this design")
     except OSError as error:
@@ -75,9 +75,10 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return _refused(call, error, "InternalError", message)
 
 
-def _help_of(error: click.ClickException) -> str:
-    context = getattr(error, "ctx", None)
-    return f"See '{context.command_path} --help'." if context else ""
+def _with_help(error: click.ClickException) -> str:
+    """The message of a usage error as a sentence, and where the help is."""
+    context, message = getattr(error, "ctx", None), error.format_message()
+    return f"{message.rstrip('.')}. See '{context.command_path} --help'." if context else message
 
 
 def _refused(call: Call, error: BaseException, kind: str, message: str, status: int = 2) -> int:

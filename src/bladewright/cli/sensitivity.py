@@ -11,6 +11,7 @@ from bladewright.cli.options import Call, common, design_argument, set_option
 from bladewright.cli.outcome import Outcome
 from bladewright.cli.progress import progress
 from bladewright.cli.stations import parse_stations
+from bladewright.cli.summary import COMPONENTS
 from bladewright.designs import unit_at
 
 if TYPE_CHECKING:
@@ -100,7 +101,7 @@ def sensitivity(
     if check:
         return _check(call, design, built, _quantity(built, of or "surface", stations), free, output)
     quantity = _quantity(built, of or ("volume" if built.dimension == 3 else "area"), stations)
-    return _derivatives(call, design, built, quantity, free)
+    return _derivatives(call, design, built, quantity, free, stations)
 
 
 def _one_task(
@@ -124,7 +125,9 @@ def _one_task(
         raise click.UsageError(f"--of chooses a quantity, which {chosen_tasks[0]} does not take")
 
 
-def _derivatives(call: Call, design: Any, built: Any, quantity: "NamedQuantity", free: Sequence[str]) -> Outcome:
+def _derivatives(
+    call: Call, design: Any, built: Any, quantity: "NamedQuantity", free: Sequence[str], stations: Sequence[float]
+) -> Outcome:
     """Table of the derivatives of a named quantity."""
     import numpy as np
 
@@ -154,7 +157,7 @@ def _derivatives(call: Call, design: Any, built: Any, quantity: "NamedQuantity",
     }
     head = f"{data['name']}: {quantity.name}"
     head += ", root mean square over the control points" if quantity.points else ""
-    head += f" {_figures(value, factor)} {table_unit}" if value is not None else ""
+    head += f" {_named_figures(quantity.name, value * factor, table_unit, stations)}" if value is not None else ""
     rows = [(path, _figures(rate, factor), table_unit + _per_parameter(design, path)) for path, rate in rates.items()]
     return Outcome(data=data, text=_table(head, rows))
 
@@ -186,10 +189,12 @@ def _check(
         "passed": not failures,
         "checks": [_record(study) for study in studies],
     }
-    head = f"{name}: {quantity.name} by {len(studies)} parameters; closest difference, and complex step"
+    head = f"{name}: {quantity.name} by {len(studies)} parameters; relative error of the closest central difference, "
+    head += "and of the derivative by other complex steps"
     rows = [(study.path, *_verdict(study)) for study in studies]
     text = _table(head, rows)
-    text += f"\n{len(failures)} of {len(studies)} FAILED" if failures else f"\nall within {LIMIT:g}"
+    verdict = f"{len(failures)} of {len(studies)} FAILED" if failures else "all passed"
+    text += f"\nchecked: the closest difference within {LIMIT:g} of each derivative: {verdict}"
     if output is not None:
         from bladewright.views.step_study import draw_step_studies
 
@@ -295,8 +300,8 @@ def _verdict(study: "StepStudy") -> tuple[str, str]:
     import numpy as np
 
     if not len(study.errors):
-        return study.failure or study.note, ""
-    return f"{study.best:.1e}  {np.min(study.floor):.1e}", "FAILED" if study.failure else ""
+        return "", (study.failure or study.note).removeprefix(study.path).lstrip(": ")
+    return f"{study.best:.1e}  {np.min(study.floor, initial=np.inf):.1e}", "FAILED" if study.failure else ""
 
 
 def _units(quantity: "NamedQuantity", design: Any) -> tuple[str, str, float]:
@@ -318,6 +323,19 @@ def _per_parameter(design: Any, path: str) -> str:
     """What is appended to the unit of a quantity to make the unit of its derivative."""
     unit = unit_at(design, path)
     return {"length": f"/{design.length_unit}", "-": ""}.get(str(unit), f"/{unit}")
+
+
+def _named_figures(name: str, value: Any, unit: str, stations: Sequence[float]) -> str:
+    """The entries of a quantity with unit, each named by its component or its station where there are several."""
+    import numpy as np
+
+    figures, shown = [f"{entry:.6g}" for entry in np.ravel(value)], "" if unit == "1" else f" {unit}"
+    components = COMPONENTS.get(name, ())
+    if components:
+        return ", ".join(f"{part} {figure}" for part, figure in zip(components, figures, strict=False)) + shown
+    if len(figures) == len(stations) > 1:
+        return ", ".join(f"{figure}{shown} at span {v:g}" for figure, v in zip(figures, stations, strict=True))
+    return " ".join(figures) + shown
 
 
 def _figures(value: Any, factor: float) -> str:

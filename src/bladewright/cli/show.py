@@ -105,7 +105,8 @@ def show(
             write_report(design, built, path, report, measured=round_trip, stations=stations)
             data["report"] = str(report)
             bar.update(1)
-    rows = [*passage_rows(data), *smoothness_rows(data.get("smoothness", []), data["length_unit"]), *sense_rows(data)]
+    rows = [*passage_rows(data), *smoothness_rows(data.get("smoothness", []), data["length_unit"])]
+    rows += sense_rows(data, with_table=wants_table)
     text = summary_text(data, rows)
     if wants_table:
         table = station_table(built, stations)

@@ -44,9 +44,9 @@ def sense_data(built: Any) -> dict[str, Any]:
     return {**found, "warnings": [sense.warning]} if sense.warning else found
 
 
-def sense_rows(data: dict[str, Any]) -> Rows:
-    """The same to read."""
-    rows = [("flow", data["flow"])] if "flow" in data else []
+def sense_rows(data: dict[str, Any], *, with_table: bool) -> Rows:
+    """The same to read; the station table says where the flow comes from itself."""
+    rows = [("flow", data["flow"])] if "flow" in data and not with_table else []
     return [*rows, *(("WARNING", each) for each in data.get("warnings", []))]
 
 

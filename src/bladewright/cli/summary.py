@@ -32,7 +32,7 @@ _POWERS = {
     "edge_radii": 1,
 }
 """Power of a length that a property has as its unit."""
-_COMPONENTS = {
+COMPONENTS = {
     "centroid": ("x", "y", "z"),
     "inertia": ("Ixx", "Ixy", "Ixz", "Iyx", "Iyy", "Iyz", "Izx", "Izy", "Izz"),
     "edge_radii": ("leading", "trailing"),
@@ -154,7 +154,7 @@ def _property(name: str, value: Any, faces: list[str], unit: str) -> str:
         shown = f" {unit}" if power == 1 else f" {unit}{power}"
     if name.endswith("_deg"):
         shown = " deg"
-    names = faces if name == "areas" else _COMPONENTS.get(name, ())
+    names = faces if name == "areas" else COMPONENTS.get(name, ())
     if name == "openness":
         shown = " of their area"
     figures = _flat(value)

@@ -40,9 +40,10 @@ def verify(
 ) -> Outcome:
     """Measure the CAD file FILE against the blade of DESIGN, or against its passage, both ways."""
     check_options([body], extend, extents)
-    [built] = bodies_from([body], load_design(path, changes), path, extend, extents, fine=fine)
+    design: Any = load_design(path, changes)
+    [built] = bodies_from([body], design, path, extend, extents, fine=fine)
     from bladewright import cad
 
     trip = cad.verify(file, built, intersections=intersections)
     failures = tuple(f"{file}: {failure}" for failure in trip.failures)
-    return Outcome(data=trip.to_dict(), text=str(trip), failures=failures)
+    return Outcome(data=trip.to_dict(), text=trip.text(design.length_unit), failures=failures)

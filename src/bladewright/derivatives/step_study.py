@@ -140,6 +140,18 @@ class _Derivative(NamedTuple):
                 return kept, self.errors(rows / _aligned(kept, rows))
         return np.empty(0), np.empty(0)
 
+    def complex_steps(self, imaginary: Reals) -> tuple[Reals, Reals]:
+        """Complex steps (k,) and errors (k,) of their derivatives, without the largest where those cannot be built."""
+        for last in range(len(imaginary), 0, -1):
+            kept = imaginary[:last]
+            try:
+                with np.errstate(all="ignore"):
+                    carried = np.imag(self.values(1j * kept))
+            except DesignError:
+                continue
+            return kept, self.errors(carried / _aligned(kept, carried))
+        return np.empty(0), np.empty(0)
+
 
 def _step_study(derivative: _Derivative, steps: Reals, imaginary: Reals) -> StepStudy:
     path, quantity, size = derivative.path, derivative.quantity, size_of(derivative.exact, derivative.quantity)
@@ -154,10 +166,9 @@ def _step_study(derivative: _Derivative, steps: Reals, imaginary: Reals) -> Step
         if quantity.points and path not in ELSEWHERE:
             return replace(unmeasured, failure=no_effect)
         return replace(unmeasured, note=f"{no_effect}: it {ELSEWHERE[path]}" if path in ELSEWHERE else no_effect)
-    carried = np.imag(derivative.values(1j * imaginary))
+    small, floor = derivative.complex_steps(imaginary)
     kept, errors = derivative.differences(steps)
-    floor = derivative.errors(carried / _aligned(imaginary, carried))
-    study = replace(unmeasured, steps=kept, errors=errors, imaginary=imaginary, floor=floor)
+    study = replace(unmeasured, steps=kept, errors=errors, imaginary=small, floor=floor)
     if study.best <= LIMIT:
         return study
     reason = (

@@ -130,7 +130,8 @@ class MeshReport:
             f"  {self.tetrahedra} tetrahedra, {self.nodes} nodes, {self.inverted} inverted",
             f"  size {self.size:.3g} to {self.smallest:.3g} of the chord, {self.expected} tetrahedra expected",
             *(
-                f"  worst {name} {each.worst:.3f}, 1 % below {each.percentile:.3f}, mean {each.mean:.3f}"
+                f"  {name}, 1 of a regular tetrahedron: worst {each.worst:.3f}, 1 % below {each.percentile:.3f}, "
+                f"mean {each.mean:.3f}"
                 for name, each in (("minSICN", self.min_sicn), ("gamma", self.gamma))
             ),
             *(
@@ -139,8 +140,8 @@ class MeshReport:
                 for face in self.faces
             ),
             f"  periodic: {self.periodic_nodes} pairs of nodes, {self.periodic_mismatch:.2g} of the pitch apart",
-            f"  volume {self.volume_error:+.2g} of the native one",
-            f"  gmsh {self.gmsh}: {', '.join(self.algorithms)}; {self.seconds:.1f} s",
+            f"  volume {100.0 * self.volume_error:+.2g} % off the native one, which flat triangles do not fill",
+            f"  gmsh {self.gmsh}: {', '.join(self.algorithms)}; meshed in {self.seconds:.1f} s",
             *([f"  {self.su2_marker}"] if self.format == "SU2" else []),
             *(f"  FAILED: {failure}" for failure in self.failures),
         ]

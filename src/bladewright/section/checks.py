@@ -70,7 +70,7 @@ def stations(path: str, given: Any) -> Stations:
         raise DesignError(f"{path}.span is {span}: stations are plain real numbers, held while differentiating")
     if len(values) != len(span):
         raise DesignError(
-            f"{path}.values has {len(values)} entries and {path}.span {len(span)}: give one value for each station"
+            f"{path}.values has {len(values)} entries for the {len(span)} stations of its span: give one value for each"
         )
     if span[0] != 0.0 or span[-1] != 1.0:
         raise DesignError(
