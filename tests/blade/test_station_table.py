@@ -135,7 +135,7 @@ def quantities(blade):
         (BLADES[COMPRESSOR.name], "section.metal_angle_out[1]", 0.02),
         (BLADES[COMPRESSOR.name], "section.thickness.maximum_thickness[1]", 1e-4),
         (BLADES[BLUNT.name], "leading_edge.points[1].x", 0.02),
-        (BLADES[stacked.RULED.name], "section.camber_angle[1][0]", 0.02),
+        pytest.param(BLADES[stacked.RULED.name], "section.camber_angle[1][0]", 0.02, marks=pytest.mark.slow),
         (BLADES[stacked.MILLED.name], "section.stagger_angle", 0.02),
     ],
     ids=["wall", "stagger", "pitch", "metal angle", "thickness", "edge", "ruled", "developable"],

@@ -25,6 +25,8 @@ from .test_catches import about, failing, put, solid_of
 
 ROTATION = np.array([[0.36, 0.48, -0.8], [-0.8, 0.6, 0.0], [0.48, 0.64, 0.6]])
 BLADES = {**DESIGNS, "unified": unified.INFLOW}
+QUICK = (DIFFUSER.name, VANE.name, "unified")
+"""sides with creases, from wall to wall of a cascade, and of no sections"""
 
 
 @pytest.fixture(scope="module")
@@ -73,7 +75,9 @@ def test_a_knot_is_a_crease_only_where_a_derivative_jumps(rotor, diffuser):
     assert creases(upper, "v") == []
 
 
-@pytest.mark.parametrize("name", BLADES)
+@pytest.mark.parametrize(
+    "name", [pytest.param(name, marks=() if name in QUICK else pytest.mark.slow) for name in BLADES]
+)
 def test_the_split_volume_of_every_family_is_the_native_one_by_default_quadrature_too(name):
     body = built(dataclasses.replace(BLADES[name], tolerance=COARSE))
     made = split_occ_solid(body)

@@ -16,7 +16,7 @@ INNER = np.linspace(1e-9, 1.0 - 1e-9, 61)
 
 @pytest.fixture(scope="module")
 def passages():
-    return {name: passage(built(design.changed("tolerance", 1e-5))) for name, design in DESIGNS.items()}
+    return {name: passage(built(design.changed("tolerance", COARSE))) for name, design in DESIGNS.items()}
 
 
 @pytest.fixture(params=list(DESIGNS))
@@ -134,7 +134,7 @@ def test_walls_follow_a_corner_ahead_of_the_blade():
 @pytest.mark.parametrize(
     ("design", "path"),
     [
-        (FAN_IN_PATH, "flow_path.hub.points[0].r"),
+        pytest.param(FAN_IN_PATH, "flow_path.hub.points[0].r", marks=pytest.mark.slow),
         (INFLOW_IN_PATH, "flow_path.shroud.radii[0]"),
         pytest.param(IMPELLER_IN_PATH, "channel.leading_edge[1].x", marks=pytest.mark.slow),
     ],
