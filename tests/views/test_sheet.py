@@ -1,12 +1,21 @@
 """The sheet: every panel is there, named, legible and not blank."""
 
 from itertools import combinations
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
 
+from bladewright.views.law_charts import FULL_STRIP, draw_strip, in_strips, law_charts, strip_height
+from bladewright.views.pages import rows, with_fixed_layout
 from bladewright.views.picture import sheet
+from bladewright.views.style import drawing_style
+from machines import example
+from machines.stations import at_stations
+
+AT_STATIONS = at_stations(example("core-rotor"))
 
 PANELS = {
     "Sections with camber lines": ("{unit}", "{unit}"),
@@ -69,11 +78,30 @@ def test_no_panel_is_blank(drawn):
 
 
 def test_no_text_covers_another_or_leaves_the_sheet(drawn):
-    canvas = drawn.figure.canvas
+    assert legible_texts(drawn.figure) > 60
+
+
+@pytest.mark.parametrize(
+    "name", ["core-rotor", "booster-stator", "radial-turbine", "aachen-stator", "given at stations"]
+)
+def test_the_laws_of_a_design_of_any_family_are_legible(name):
+    design = AT_STATIONS if name == "given at stations" else example(name)
+    strips = in_strips(law_charts(design, [SimpleNamespace(span=v) for v in (0.0, 0.5, 1.0)], ("hub", "tip")))
+    with drawing_style("in"):
+        figure = Figure(figsize=(16.0, sum(map(strip_height, strips))), layout="constrained")
+        for strip, charts in zip(rows(figure, *map(strip_height, strips)), strips, strict=True):
+            assert sum(chart.width for chart in charts) <= FULL_STRIP + 2.0
+            draw_strip(strip, charts)
+        with_fixed_layout(figure).canvas.draw()
+    assert legible_texts(figure) > 20
+
+
+def legible_texts(figure):
+    """How many texts a figure has, none of which covers another or leaves the sheet."""
+    canvas = figure.canvas
     assert isinstance(canvas, FigureCanvasAgg)
     renderer = canvas.get_renderer()
-    boxes = [(text.get_text(), text.get_window_extent(renderer)) for text in texts_of(drawn.figure)]
-    assert len(boxes) > 60
+    boxes = [(text.get_text(), text.get_window_extent(renderer)) for text in texts_of(figure)]
     width, height = canvas.get_width_height()
     for name, box in boxes:
         assert box.x0 >= 0.0, name
@@ -83,6 +111,7 @@ def test_no_text_covers_another_or_leaves_the_sheet(drawn):
     for (first, one), (second, other) in combinations(boxes, 2):
         overlap = min(one.x1, other.x1) - max(one.x0, other.x0), min(one.y1, other.y1) - max(one.y0, other.y0)
         assert min(overlap) <= 1.0, (first, second)  # a pixel: boxes are rounded outwards
+    return len(boxes)
 
 
 def test_no_legend_covers_a_panel(drawn):

@@ -130,7 +130,8 @@ def constant_rows(constants: Sequence[Constant]) -> list[tuple[str, str, str]]:
     for name, values, unit, default in constants:
         figures = [f"{value + 0.0:.4g}" for value in values]
         lines = ["  ".join(figures[start : start + VALUES_ACROSS]) for start in range(0, len(figures), VALUES_ACROSS)]
-        rows.append((name, lines[0], f"{unit}, default" if default else unit))
+        remark = "default" if unit == "-" else f"{unit}, default"
+        rows.append((name, lines[0], remark if default else unit))
         rows += [("", line, "") for line in lines[1:]]
     return rows
 
