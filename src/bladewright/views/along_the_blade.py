@@ -5,6 +5,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.ticker import MaxNLocator
 
 from bladewright.errors import DesignError
 from bladewright.numerics.elementary import length
@@ -14,7 +15,9 @@ from bladewright.views.style import (
     BLUE,
     GREEN,
     RED,
+    Line,
     axis,
+    draw_lines,
     label_axes,
     legend_below,
     per_metre,
@@ -29,6 +32,9 @@ ALONG_SPAN = np.linspace(0.0, 1.0, 21)
 """Span fractions at which the station table is taken for a curve along the span: as dense as laws have knots."""
 FOR_AREA = np.linspace(0.0, 1.0, 11)
 """Span fractions between which the flow area is summed; it is drawn, not reported."""
+
+ANGLE_DECIMALS = 6
+"""Decimals of lean and sweep that are drawn: rounding of a blade without any is no curve [deg]"""
 
 
 class CamberLine(NamedTuple):
@@ -59,22 +65,26 @@ def camber_line(blade: "Blade", v: float) -> CamberLine:
 
 def draw_camber_angle(axes: Axes, blade: "Blade", spans: Sequence[float]) -> None:
     """Draw the angle of the camber lines along the meridional length."""
+    lines = list[Line]()
     for v in spans:
         line = camber_line(blade, v)
-        axes.plot(line.m * per_metre(), np.degrees(line.angle), color=span_colour(v), label=_name(blade, v))
+        options = {"color": span_colour(v), "label": _name(blade, v)}
+        lines.append((line.m * per_metre(), np.degrees(line.angle), options))
+    draw_lines(axes, lines)
     label_axes(axes, "Camber angle", axis("meridional length"), "from the meridional direction [deg]")
     legend_below(axes, 2, handlelength=1.0, columnspacing=0.9)
 
 
 def draw_wrap(axes: Axes, blade: "Blade", spans: Sequence[float]) -> None:
     """Draw the camber lines' position around the axis, or along y, over the meridional length."""
-    revolved = blade.exact.mapping.revolved
+    revolved, lines = blade.exact.mapping.revolved, list[Line]()
     for v in spans:
         line = camber_line(blade, v)
         around = np.degrees(line.tangential) if revolved else line.tangential * per_metre()
         wrap = f"{abs(around[-1] - around[0]):.3g}" + (" deg" if revolved else "")
         label = f"{_name(blade, v)} {wrap}"
-        axes.plot(line.m * per_metre(), around, color=span_colour(v), label=label)
+        lines.append((line.m * per_metre(), around, {"color": span_colour(v), "label": label}))
+    draw_lines(axes, lines)
     title = "Wrap" if revolved else "Tangential position"
     label_axes(axes, title, axis("meridional length"), "theta [deg]" if revolved else axis("y"))
     legend_below(axes, 2, handlelength=1.0, columnspacing=0.9)
@@ -126,8 +136,12 @@ def draw_lean(axes: Axes, blade: "Blade", spans: Sequence[float]) -> None:
         ("sweep, l.e.", table.leading_edge_sweep, GREEN, "--"),
         ("sweep, t.e.", table.trailing_edge_sweep, RED, "--"),
     )
+    lines = list[Line]()
     for name, values, colour, style in curves:
-        axes.plot(np.degrees(np.real(values)), ALONG_SPAN, color=colour, linestyle=style, label=name)
+        angle = np.round(np.degrees(np.real(values)), ANGLE_DECIMALS)
+        lines.append((angle, ALONG_SPAN, {"color": colour, "linestyle": style, "label": name}))
+    draw_lines(axes, lines)
+    axes.xaxis.set_major_locator(MaxNLocator(4))
     label_axes(axes, "Lean and sweep", "angle [deg]", "span v [-]")
     legend_below(axes, 2)
 
