@@ -23,6 +23,7 @@ from bladewright.views.style import (
     per_metre,
     span_colour,
     span_name,
+    unit_name,
 )
 
 if TYPE_CHECKING:
@@ -81,7 +82,7 @@ def draw_wrap(axes: Axes, blade: "Blade", spans: Sequence[float]) -> None:
     for v in spans:
         line = camber_line(blade, v)
         around = np.degrees(line.tangential) if revolved else line.tangential * per_metre()
-        wrap = f"{abs(around[-1] - around[0]):.3g}" + (" deg" if revolved else "")
+        wrap = f"{abs(around[-1] - around[0]):.3g}" + (" deg" if revolved else f" {unit_name()}")
         label = f"{_name(blade, v)} {wrap}"
         lines.append((line.m * per_metre(), around, {"color": span_colour(v), "label": label}))
     draw_lines(axes, lines)
