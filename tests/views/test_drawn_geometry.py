@@ -264,7 +264,8 @@ def test_a_built_section_is_drawn_without_the_laws_it_does_not_know(section_draw
 
 @pytest.mark.parametrize("v", [0.0, 0.5, 1.0])
 def test_a_camber_line_begins_and_ends_at_the_metal_angles(blade_drawn, v):
-    line, section = camber_line(blade_drawn.built, v), blade_drawn.built.section(v)
+    section = blade_drawn.built.section(v)
+    line = camber_line(blade_drawn.built, section)
     # angles are those of chords between 101 points, drawn only: 0.2 deg at the ends
     assert np.degrees(line.angle[0]) == pytest.approx(np.degrees(section.metal_angle_in), abs=0.2)
     assert np.degrees(line.angle[-1]) == pytest.approx(np.degrees(section.metal_angle_out), abs=0.2)
@@ -272,7 +273,7 @@ def test_a_camber_line_begins_and_ends_at_the_metal_angles(blade_drawn, v):
 
 def test_the_wrap_drawn_is_that_of_the_station_table(blade_drawn):
     table = blade_drawn.built.report([0.5])
-    line = camber_line(blade_drawn.built, 0.5)
+    line = camber_line(blade_drawn.built, blade_drawn.built.section(0.5))
     wrap = line.tangential[-1] - line.tangential[0]
     assert wrap == pytest.approx(float(np.real(table.wrap[0])), rel=1e-4)
 

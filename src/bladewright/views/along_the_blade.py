@@ -10,6 +10,7 @@ from matplotlib.ticker import MaxNLocator
 from bladewright.errors import DesignError
 from bladewright.numerics.elementary import length
 from bladewright.nurbs.basis import Reals
+from bladewright.section.section import Section
 from bladewright.views.sections import ISOLATED_PITCH, cosine_spacing
 from bladewright.views.style import (
     BLUE,
@@ -51,11 +52,11 @@ class CamberLine(NamedTuple):
     """(n,) from the meridional direction [rad]"""
 
 
-def camber_line(blade: "Blade", v: float) -> CamberLine:
-    """The camber line of the exact section at v."""
-    section = blade.section(v)
+def camber_line(blade: "Blade", section: Section) -> CamberLine:
+    """The camber line of an exact section."""
     plane = np.real(section.camber(cosine_spacing(101)))[None]
-    _, position, tangential = (np.real(each)[0] for each in blade.exact.sections(np.array([v])).on_lines(plane))
+    stack = blade.exact.sections(np.array([section.span]))
+    _, position, tangential = (np.real(each)[0] for each in stack.on_lines(plane))
     steps = length(np.diff(position, axis=0))
     m = np.concatenate([[0.0], np.cumsum(steps)])
     radius = (position[1:, 1] + position[:-1, 1]) / 2.0 if blade.exact.mapping.revolved else 1.0
@@ -64,11 +65,11 @@ def camber_line(blade: "Blade", v: float) -> CamberLine:
     return CamberLine(m, position, tangential, angle)
 
 
-def draw_camber_angle(axes: Axes, blade: "Blade", spans: Sequence[float]) -> None:
+def draw_camber_angle(axes: Axes, blade: "Blade", sections: Sequence[Section]) -> None:
     """Draw the angle of the camber lines along the meridional length."""
     lines = list[Line]()
-    for v in spans:
-        line = camber_line(blade, v)
+    for section in sections:
+        v, line = section.span, camber_line(blade, section)
         options = {"color": span_colour(v), "label": _name(blade, v)}
         lines.append((line.m * per_metre(), np.degrees(line.angle), options))
     draw_lines(axes, lines)
@@ -76,11 +77,11 @@ def draw_camber_angle(axes: Axes, blade: "Blade", spans: Sequence[float]) -> Non
     legend_below(axes, 2, handlelength=1.0, columnspacing=0.9)
 
 
-def draw_wrap(axes: Axes, blade: "Blade", spans: Sequence[float]) -> None:
+def draw_wrap(axes: Axes, blade: "Blade", sections: Sequence[Section]) -> None:
     """Draw the camber lines' position around the axis, or along y, over the meridional length."""
     revolved, lines = blade.exact.mapping.revolved, list[Line]()
-    for v in spans:
-        line = camber_line(blade, v)
+    for section in sections:
+        v, line = section.span, camber_line(blade, section)
         around = np.degrees(line.tangential) if revolved else line.tangential * per_metre()
         wrap = f"{abs(around[-1] - around[0]):.3g}" + (" deg" if revolved else f" {unit_name()}")
         label = f"{_name(blade, v)} {wrap}"
@@ -91,19 +92,20 @@ def draw_wrap(axes: Axes, blade: "Blade", spans: Sequence[float]) -> None:
     legend_below(axes, 2, handlelength=1.0, columnspacing=0.9)
 
 
-def draw_flow_area(axes: Axes, blade: "Blade", spans: Sequence[float]) -> None:
+def draw_flow_area(axes: Axes, blade: "Blade", sections: Sequence[Section]) -> None:
     """Draw the area of one passage normal to the camber lines, at equal fractions of their meridional lengths.
 
     It is the sum over the span of pitch times the cosine of the camber angle, less the thickness: an estimate that
     takes the flow along the camber lines.
     """
-    del spans
+    del sections
     share = np.linspace(0.0, 1.0, 81)
-    lines = [camber_line(blade, v) for v in blade.exact.shown_spans(tuple(FOR_AREA))]
+    across = [blade.section(v) for v in blade.exact.shown_spans(tuple(FOR_AREA))]
+    lines = [camber_line(blade, section) for section in across]
     places = np.stack([_at(line, line.position, share) for line in lines])
     angles = np.stack([_at(line, line.angle[:, None], share)[:, 0] for line in lines])
     pitch = blade.design.spacing * (places[..., 1] if blade.exact.mapping.revolved else 1.0)
-    thickness = np.stack([_thickness(blade, v, share) for v in blade.exact.shown_spans(tuple(FOR_AREA))])
+    thickness = np.stack([_thickness(*each, share) for each in zip(across, lines, strict=True)])
     width = np.real(pitch) * np.cos(angles) - thickness
     along = np.gradient(places, share, axis=1)
     along /= length(along)[..., None]
@@ -116,9 +118,9 @@ def draw_flow_area(axes: Axes, blade: "Blade", spans: Sequence[float]) -> None:
     label_axes(axes, "Flow area, estimate", "part of the meridional length [-]", f"{axis('area')[:-1]}²]")
 
 
-def draw_throat(axes: Axes, blade: "Blade", spans: Sequence[float]) -> None:
+def draw_throat(axes: Axes, blade: "Blade", sections: Sequence[Section]) -> None:
     """Draw the throat width and the pitch at mid-chord along the span."""
-    del spans
+    del sections
     table = blade.report(ALONG_SPAN.tolist())
     for name, values, colour in (("throat", table.throat, RED), ("pitch, mid-chord", table.pitch_mid, BLUE)):
         axes.plot(np.real(values) * per_metre(), ALONG_SPAN, color=colour, label=name)
@@ -127,9 +129,9 @@ def draw_throat(axes: Axes, blade: "Blade", spans: Sequence[float]) -> None:
     legend_below(axes, 2)
 
 
-def draw_lean(axes: Axes, blade: "Blade", spans: Sequence[float]) -> None:
+def draw_lean(axes: Axes, blade: "Blade", sections: Sequence[Section]) -> None:
     """Draw lean and sweep of the edges along the span."""
-    del spans
+    del sections
     table = blade.report(ALONG_SPAN.tolist())
     curves = (
         ("lean, l.e.", table.lean, GREEN, "-"),
@@ -162,9 +164,8 @@ def _at(line: CamberLine, values: Reals, share: Reals) -> Reals:
     return np.stack([np.interp(share * line.m[-1], line.m, column) for column in values.T], axis=-1)
 
 
-def _thickness(blade: "Blade", v: float, share: Reals) -> Reals:
+def _thickness(section: Section, line: CamberLine, share: Reals) -> Reals:
     """Thickness across the camber [m] at fractions of the meridional length."""
-    section, line = blade.section(v), camber_line(blade, v)
     u, thickness = section.thickness
     at = np.interp(share * line.m[-1], line.m, cosine_spacing(101))
     return np.interp(at, u, thickness)

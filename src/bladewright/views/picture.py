@@ -137,7 +137,7 @@ def _blade_sheet(blade: Blade) -> Figure:
     draw_sections(axes[2], sections, blade.design.law_ends)
     draw_neighbour(axes[3], middle, pitch, _span_title(middle, blade.design.law_ends), blade)
     for place, draw in zip(shape.subplots(1, len(along)), along, strict=True):
-        draw(place, blade, [section.span for section in sections])
+        draw(place, blade, sections)
     axes = centre.subplots(1, 3)
     draw_meridional(axes[0], blade)
     draw_curvature(axes[1], few, blade.design.law_ends)
