@@ -31,13 +31,14 @@ def draw_marks(axes: Axes, blade: "Blade", camera: Camera) -> None:
     tip, _ = _edge(blade, 1.0, ends[1])
     start, upstream = _edge(blade, 0.5, ends[0])
     size = REACH * blade.chord
-    _arrow(axes, camera, np.stack([start + 1.4 * size * upstream, start + 0.4 * size * upstream]), BLUE, "flow")
+    flow = np.stack([start + 1.4 * size * upstream, start + 0.4 * size * upstream])
+    _arrow(axes, camera, flow, BLUE, "flow")
     turns = blade.design.turns
     if turns:
         _arrow(axes, camera, bow(blade, tip, turns), RED, "rotation")
     side = blade.suction_side
     if side is not None:
-        _mark_side(axes, blade, camera, side)
+        _mark_side(axes, blade, camera, side, clear_of=camera.seen(flow[0] * per_metre())[:2])
 
 
 def _edge(blade: "Blade", v: float, meridian: Reals) -> tuple[Reals, Reals]:
@@ -69,15 +70,15 @@ def _arrow(axes: Axes, camera: Camera, points: Reals, colour: str, name: str) ->
     axes.annotate(name, tuple(flat[0]), xytext=tuple(away), color=colour, **place)
 
 
-def _mark_side(axes: Axes, blade: "Blade", camera: Camera, side: str) -> None:
+def _mark_side(axes: Axes, blade: "Blade", camera: Camera, side: str, *, clear_of: Reals) -> None:
+    """Name a side from a place on it, away from another name."""
     face = cast(Surface, blade.surfaces[side])
     for u, v in MARKED_AT:
         at = np.array([u]), np.array([v])
         outwards = blade.orientations[side] * np.real(face.normal(*at))[0]
         if float(outwards @ camera.axes[2]) > 0.2:
             flat = camera.seen(np.real(face(*at))[0] * per_metre())[:2]
-            middle = float(camera.corner[0] + 0.5 * camera.extent[0])
-            away = -34.0 if flat[0] > middle else 34.0
+            away = 38.0 * unit(flat - clear_of)
             style: dict[str, Any] = {
                 "textcoords": "offset points",
                 "ha": "center",
@@ -85,6 +86,6 @@ def _mark_side(axes: Axes, blade: "Blade", camera: Camera, side: str) -> None:
                 "path_effects": HALO,
             }
             line = {"arrowstyle": "-", "color": INK, "linewidth": 0.9, "shrinkA": 0.0, "shrinkB": 0.0}
-            axes.annotate("suction\nside", (flat[0], flat[1]), xytext=(away, 26.0), arrowprops=line, **style)
+            axes.annotate("suction\nside", (flat[0], flat[1]), xytext=(away[0], away[1]), arrowprops=line, **style)
             axes.plot(*flat, marker="o", markersize=3.0, color=INK)
             return
