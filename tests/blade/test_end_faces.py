@@ -24,6 +24,12 @@ def blade(request):
     return FORMS[request.param].changed("tolerance", COARSE).build()
 
 
+@pytest.mark.parametrize(
+    "blade",
+    [pytest.param(name, marks=pytest.mark.slow if name == "round and back face" else ()) for name in FORMS],
+    indirect=True,
+    scope="module",
+)
 def test_a_blade_past_its_walls_is_a_closed_solid_whatever_its_edges(blade, tmp_path):
     longer = blade.extended(0.1)
     assert set(longer.surfaces) == set(blade.surfaces)
