@@ -275,7 +275,7 @@ def unknown(path: str, name: str, known: list[str]) -> str:
     """The message for a name that does not exist, with the nearest that does."""
     from difflib import get_close_matches
 
-    near = get_close_matches(name, known, n=1, cutoff=0.5)
+    near = get_close_matches(name, known, n=1, cutoff=0.61)
     hint = f"did you mean '{near[0]}'?" if near else f"known are {', '.join(known)}"
     said = "" if re.search(rf"(^|\W){re.escape(name)}\W*$", path) else f": there is no '{name}'"
     return f"{path} does not exist{said}; {hint}"

@@ -119,7 +119,7 @@ REFUSED = {
     "stagger.span runs from 0.1 to 1": {"span": [0.1, 1.0], "values": [1.0, 2.0]},
     "stagger.span runs from 0 to 0.9": {"span": [0.0, 0.9], "values": [1.0, 2.0]},
     "stagger.span has 1 entries": {"span": [0.0], "values": [1.0]},
-    "stagger.values has 3 entries and stagger.span 2": {"span": [0.0, 1.0], "values": [1.0, 2.0, 3.0]},
+    "stagger.values has 3 entries for the 2 stations of its span": {"span": [0.0, 1.0], "values": [1.0, 2.0, 3.0]},
     "stagger.interpolation is 'naturally'": {"span": [0.0, 1.0], "values": [1.0, 2.0], "interpolation": "naturally"},
     "stagger.value does not exist; did you mean 'values'?": {"span": [0.0, 1.0], "value": [1.0]},
     "stagger.values is None": {"span": [0.0, 1.0]},

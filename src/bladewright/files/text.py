@@ -81,7 +81,7 @@ def _suggestion(path: Path) -> str:
     except OSError:
         return f", nor a directory '{path.parent}'"
     near = get_close_matches(path.name, names, n=1, cutoff=0.5)
-    designs = sorted(name for name in names if name.endswith(".toml"))
+    designs = sorted(name for name in names if name.endswith(".toml")) if path.suffix in ("", ".toml") else []
     if near:
         return f"; did you mean '{path.with_name(near[0])}'?"
     return f"; design files there are {', '.join(designs[:5])}" if designs else ""

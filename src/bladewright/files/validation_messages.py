@@ -174,7 +174,21 @@ def _unknown_key(place: _Place) -> str:
     families = [family for family, kind in FAMILIES.items() if place.path in key_paths(kind)]
     if families and not get_close_matches(name, place.names, n=1, cutoff=0.9):
         return f"{place.path} does not exist in this family: it is a key of {', '.join(families)}"
+    elsewhere = _same_name_elsewhere(name)
+    if elsewhere and not get_close_matches(name, place.names, n=1, cutoff=0.9):
+        told = "; ".join(f"{path} of {', '.join(found)}" for path, found in elsewhere.items())
+        return f"{place.path} does not exist in this family: there is {told}"
     return unknown(place.path, name, place.names)
+
+
+def _same_name_elsewhere(name: str) -> dict[str, list[str]]:
+    """The families that have a key of this name, by its path there."""
+    found: dict[str, list[str]] = {}
+    for family, kind in FAMILIES.items():
+        for path in key_paths(kind):
+            if path.rpartition(".")[2] == name:
+                found.setdefault(path, []).append(family)
+    return found
 
 
 @cache
