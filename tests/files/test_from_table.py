@@ -8,6 +8,7 @@ from bladewright.designs import Stations
 from bladewright.errors import DesignError, FileError
 from bladewright.files.from_table import design_from_table
 from bladewright.files.given_table import given_table
+from bladewright.files.table_formulas import stagger_of
 
 HEADER = (
     "r [mm],metal_angle_in [deg],metal_angle_out [deg],chord [mm],maximum_thickness [mm],maximum_thickness_at [%],"
@@ -196,3 +197,24 @@ def test_equal_values_are_one_number_and_two_stations_are_enough(made):
     assert design.section.metal_angle_in == 50.0
     assert design.section.metal_angle_out == Stations(span=(0.0, 1.0), values=(20.0, 25.0))
     assert given_table(f"{SMALL}50,50,20,40\n90,50,25,40\n", "x").length_unit == "mm"
+
+
+def test_the_station_table_of_a_radial_machine_is_one_to_start_from(made):
+    header = "r_le [mm],r_te [mm],x_le [mm],x_te [mm],metal_angle_in [deg],metal_angle_out [deg],chord [mm],"
+    header += "meridional_chord [mm]"
+    # lengths along a curved stream line, as an impeller has them, are longer than the way between its edges
+    rows = [[20.0, 60.0, 0.0, 30.0, -30.0, -35.0, 70.0, 60.0], [35.0, 60.0, 5.0, 22.0, -50.0, -40.0, 50.0, 36.0]]
+    found = made(csv(rows, header))
+    assert "x and r of the edges say how long" in found.remarks["leading_edge"]
+    table = found.design.build().report([0.0, 1.0])
+    assert table.values("leading_edge_r") == pytest.approx([20.0, 35.0], rel=1e-6)
+    assert table.values("metal_angle_out") == pytest.approx([-35.0, -40.0], abs=1e-4)
+
+
+@pytest.mark.parametrize("share", [0.2, 0.5, 0.75])
+def test_the_stagger_of_a_strong_turning_lies_within_a_right_angle_of_both_ends(share):
+    inlet, outlet = 30.0, -62.0
+    stagger = stagger_of(inlet, outlet, share)
+    assert inlet - 90.0 < stagger < outlet + 90.0
+    first, last = np.tan(np.radians([inlet - stagger, outlet - stagger]))
+    assert first / (first - last) == pytest.approx(share, rel=1e-9)

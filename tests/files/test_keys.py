@@ -96,3 +96,9 @@ def test_a_key_of_a_template_may_be_taken_from_its_comment(texts, name):
 def test_a_table_of_a_template_may_be_taken_from_its_comments(texts, name):
     parsed = tomllib.loads(re.sub(r"^#(?=[\[a-z])", "", texts[name], flags=re.MULTILINE))
     assert set(parsed) == {key.name for key in tables(parsed["family"])[0].keys}
+
+
+def test_a_key_of_a_table_of_another_family_is_named_with_its_path():
+    text = template_text("turbine-vane").replace("[section]", "[section]\nmaximum_thickness_at = 0.4")
+    with pytest.raises(DesignError, match=r"there is section\.thickness\.maximum_thickness_at of curvature-meanline"):
+        design_from(tomllib.loads(text), "vane.toml")

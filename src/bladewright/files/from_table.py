@@ -207,7 +207,13 @@ class _Translation:
             raise FileError(f"{self.where} has no radii: give a column r [mm], or r_le [mm] and r_te [mm]")
         given = [each for each in ("chord", "axial_chord") if each in columns]
         edges = {"x_le", "x_te"} <= columns.keys()
-        if not (self._same_chords(given, stagger) if edges else len(given) == 1):
+        built = "meridional_chord" in self.table.results
+        if edges and built and not self._same_chords(given, stagger):
+            self.remarks["leading_edge"] = (
+                f"{' and '.join(given)} of the table are left out: they are lengths along a curved stream line, and "
+                "x and r of the edges say how long the sections are"
+            )
+        elif not (self._same_chords(given, stagger) if edges else len(given) == 1):
             found = " and ".join([*(["x_le and x_te"] if edges else []), *given]) or "nothing"
             raise FileError(
                 f"{self.where} says how long the sections are by {found}: give one of chord [mm], axial_chord [mm], or "

@@ -7,6 +7,9 @@ from scipy.optimize import brentq
 from bladewright.numerics.quadrature import panels
 from bladewright.nurbs.basis import Reals
 
+UPRIGHT = 90.0 - 1e-6
+"""Largest angle of a meanline's end from its chord, whose tangent is still finite [deg]"""
+
 
 def _integrals(points: tuple[float, float, float]) -> tuple[float, float]:
     """I and J of the second derivative with three control points, as the family has it: extended by one at each end."""
@@ -36,7 +39,10 @@ def stagger_of(inlet: float, outlet: float, share: float) -> float:
         first, last = np.tan(np.radians([inlet - stagger, outlet - stagger]))
         return float((1.0 - share) * first + share * last)
 
-    return float(brentq(missed, inlet, outlet)) if inlet != outlet else inlet
+    low, high = sorted((inlet, outlet))
+    # the meanline is a graph over its chord: both ends are less than 90 deg off it
+    low, high = max(low, high - UPRIGHT), min(high, low + UPRIGHT)
+    return float(brentq(missed, low, high)) if inlet != outlet else inlet
 
 
 def parabolic_rear(most: Reals, place: Reals, radius: Reals) -> tuple[Reals, Reals]:

@@ -268,7 +268,7 @@ class StationTable(Shown, ABC):
 def _figure(value: float) -> str:
     if not np.isfinite(value):
         return "flat"
-    rounded = 0.0 if value * value < 1e-20 else value
+    rounded = 0.0 if value * value < 1e-18 else value
     return f"{rounded:.{DIGITS}g}"
 
 
