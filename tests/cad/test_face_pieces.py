@@ -128,7 +128,7 @@ def test_pieces_are_the_face_itself(split_vane):
             np.testing.assert_allclose(face.grid(u, v, order), whole.grid(u, v, order), rtol=1e-9, atol=1e-12)
 
 
-@pytest.mark.parametrize("ending", ["step", "igs", "brep"])
+@pytest.mark.parametrize("ending", ["step", "igs", pytest.param("brep", marks=pytest.mark.slow)])
 def test_a_split_file_passes_and_says_in_how_many_pieces_its_faces_are(split_vane, ending, tmp_path):
     trip = cad.write(split_vane, tmp_path / f"vane.{ending}", split=True, samples=400)
     assert trip.passed, str(trip)
