@@ -38,7 +38,7 @@ def test_another_blade_may_be_further_off_and_the_round_trip_says_so(tmp_path):
     assert trip.passed, str(trip)
     assert trip.edges.max_gap > 1e-7
     assert trip.to_dict()["kernel_check"] == [CURVES]
-    assert "InvalidCurveOnSurface (4)" in str(trip)
+    assert "InvalidCurveOnSurface (4): build --fine" in str(trip)
 
 
 def test_fine_is_a_choice_of_knots_alone(fine):

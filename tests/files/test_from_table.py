@@ -200,11 +200,11 @@ def test_equal_values_are_one_number_and_two_stations_are_enough(made):
 
 
 def test_the_station_table_of_a_radial_machine_is_one_to_start_from(made):
-    header = "r_le [mm],r_te [mm],x_le [mm],x_te [mm],metal_angle_in [deg],metal_angle_out [deg],chord [mm],"
+    header = "span,r_le [mm],r_te [mm],x_le [mm],x_te [mm],metal_angle_in [deg],metal_angle_out [deg],chord [mm],"
     header += "meridional_chord [mm]"
     # lengths along a curved stream line, as an impeller has them, are longer than the way between its edges
-    rows = [[20.0, 60.0, 0.0, 30.0, -30.0, -35.0, 70.0, 60.0], [35.0, 60.0, 5.0, 22.0, -50.0, -40.0, 50.0, 36.0]]
-    found = made(csv(rows, header))
+    hub, tip = (20.0, 60.0, 0.0, 30.0, -30.0, -35.0, 70.0, 60.0), (35.0, 60.0, 5.0, 22.0, -50.0, -40.0, 50.0, 36.0)
+    found = made(csv([(0.0, *hub), (1.0, *tip)], header))
     assert "x and r of the edges say how long" in found.remarks["leading_edge"]
     table = found.design.build().report([0.0, 1.0])
     assert table.values("leading_edge_r") == pytest.approx([20.0, 35.0], rel=1e-6)
