@@ -17,6 +17,10 @@ if TYPE_CHECKING:
 
 REACH = 0.6
 """Length of the arrow of the flow, of the mean chord: as long as a blade is seen from its edge."""
+MOST_OF_PICTURE = 0.22
+"""Greatest length of that arrow, of the picture's longer side: beside long blades it would make them small."""
+NAME_ROOM = 0.06
+"""Room kept around the arrows for their names, of the picture's longer side: two lines of text."""
 TURN = 0.35
 """Angle of the arrow of the rotation [rad], or its part of the chord in a cascade: seen as a bow, not as a circle."""
 MARKED_AT = ((0.4, 0.5), (0.6, 0.6), (0.25, 0.4), (0.7, 0.35), (0.15, 0.75))
@@ -30,15 +34,27 @@ def draw_marks(axes: Axes, blade: "Blade", camera: Camera) -> None:
     ends = np.real(stations.lines.position(np.array([0.0, 1.0])))
     tip, _ = _edge(blade, 1.0, ends[1])
     start, upstream = _edge(blade, 0.5, ends[0])
-    size = REACH * blade.chord
-    flow = np.stack([start + 1.4 * size * upstream, start + 0.4 * size * upstream])
-    _arrow(axes, camera, flow, BLUE, "flow")
+    size = min(REACH * blade.chord, MOST_OF_PICTURE * float(np.max(camera.extent)) / per_metre())
+    arrows = [("flow", BLUE, np.stack([start + 1.4 * size * upstream, start + 0.4 * size * upstream]))]
     turns = blade.design.turns
     if turns:
-        _arrow(axes, camera, bow(blade, tip, turns), RED, "rotation")
+        arrows.append(("rotation", RED, bow(blade, tip, turns)))
+    flat = [camera.seen(points * per_metre())[:, :2] for _, _, points in arrows]
+    _make_room(axes, camera, np.concatenate(flat))
+    for (name, colour, _), points in zip(arrows, flat, strict=True):
+        _arrow(axes, points, colour, name)
     side = blade.suction_side
     if side is not None:
-        _mark_side(axes, blade, camera, side, clear_of=camera.seen(flow[0] * per_metre())[:2])
+        _mark_side(axes, blade, camera, side, clear_of=np.mean([points[0] for points in flat], axis=0))
+
+
+def _make_room(axes: Axes, camera: Camera, points: Reals) -> None:
+    """Widen the picture until it holds points (n, 2) and a name beside them."""
+    margin = NAME_ROOM * float(np.max(camera.extent))
+    (left, right), (low, high) = axes.get_xlim(), axes.get_ylim()
+    first, last = points.min(axis=0) - margin, points.max(axis=0) + margin
+    axes.set_xlim(min(left, float(first[0])), max(right, float(last[0])))
+    axes.set_ylim(min(low, float(first[1])), max(high, float(last[1])))
 
 
 def _edge(blade: "Blade", v: float, meridian: Reals) -> tuple[Reals, Reals]:
@@ -60,8 +76,8 @@ def bow(blade: "Blade", point: Reals, turns: int) -> Reals:
     return np.concatenate([np.full_like(theta, point[0]), radius * np.sin(theta), radius * np.cos(theta)], axis=-1)
 
 
-def _arrow(axes: Axes, camera: Camera, points: Reals, colour: str, name: str) -> None:
-    flat = camera.seen(points * per_metre())[:, :2]
+def _arrow(axes: Axes, flat: Reals, colour: str, name: str) -> None:
+    """Draw an arrow along points (n, 2) of the picture, with its name at its start."""
     axes.plot(*flat.T, color=colour, linewidth=1.8, path_effects=HALO, clip_on=False)
     head: dict[str, Any] = {"arrowstyle": "-|>", "color": colour, "linewidth": 1.8, "mutation_scale": 14.0}
     axes.annotate("", tuple(flat[-1]), xytext=tuple(flat[-2]), arrowprops={**head, "shrinkA": 0.0, "shrinkB": 0.0})
