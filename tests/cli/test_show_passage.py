@@ -48,7 +48,8 @@ def test_walls_that_miss_their_limit_give_status_one(run, cascade_file, monkeypa
     monkeypatch.setitem(summary.PASSAGE_LIMITS, "walls", 1e-18)
     found = run("show", cascade_file, "--body", "passage")
     assert found.status == 1
-    assert "the check 'walls' failed" in found.err
+    assert "the check of ends on their walls ('walls') failed: " in found.err
+    assert "chords off, at most 1e-18 allowed" in found.err
     assert "FAILED" in found.out
 
 

@@ -44,7 +44,7 @@ _WORDS = {
     "inertia": "inertia about centroid",
     "openness": "faces close up to",
     "centroid": "centroid",
-    "maximum_thickness_at": "its place on the camber",
+    "maximum_thickness_at": "where, camber's u",
 }
 """What a property is called in the table, where its name does not say it."""
 _CHECKS = {
@@ -192,7 +192,7 @@ def broken_promises(data: dict[str, Any]) -> tuple[str, ...]:
     """A line for every check that failed."""
     promises = data.get("promises", {})
     return tuple(
-        f"{data['name']}: the check '{name}' failed: {promises[name]} where at most {limit} is allowed"
+        f"{data['name']}: the check of {_CHECKS[name][0]} ('{name}') failed: {_check_text(name, promises[name], limit)}"
         for name, limit in promises.get("limits", {}).items()
         if not _kept(promises[name], limit)
     )
@@ -204,13 +204,16 @@ def _check_rows(promises: Mapping[str, Any]) -> Rows:
         failed = sum(not _kept(promises[name], limit) for name, limit in limits.items())
         rows.append(("checks", f"{failed} of {len(limits)} FAILED:" if failed else f"all {len(limits)} passed:"))
     for name, limit in limits.items():
-        value, (words, counts) = promises[name], _CHECKS[name]
-        text = f"{'unknown' if value is None else f'{value:.2g}'} {counts}, at most {limit:.2g} allowed"
-        rows.append((words, text + ("" if _kept(value, limit) else ": FAILED")))
+        text = _check_text(name, promises[name], limit)
+        rows.append((_CHECKS[name][0], text + ("" if _kept(promises[name], limit) else ": FAILED")))
     if promises.get("twist") is not None and "twist" not in limits:
         cut = f"a flank cutter cuts {promises['flank_cut']:.2g} of its radius into it"
         rows.append(("twist", f"{promises['twist']:.3g} deg along the line at u = {promises['twist_at']:.3g}: {cut}"))
     return rows
+
+
+def _check_text(name: str, value: float | None, limit: float) -> str:
+    return f"{'unknown' if value is None else f'{value:.2g}'} {_CHECKS[name][1]}, at most {limit:.2g} allowed"
 
 
 def _kept(value: float | None, limit: float) -> bool:
