@@ -10,7 +10,7 @@ from bladewright.blade.design.meridional_curve import StraightsAndArcs
 from bladewright.domain.build import passage
 from bladewright.errors import DesignError
 from bladewright.section.profiles.naca4 import Naca4
-from machines import COARSE, built, stacked
+from machines import COARSE, built, stacked, stations
 from machines.families import FAMILIES
 from machines.sectioned import COMPRESSOR, DIFFUSER, IMPELLER, PLATE, VANE, through
 
@@ -288,3 +288,12 @@ def test_an_impossible_clearance_is_refused_with_path_value_and_cure(design, cha
         design.changed(changes).build()
     for word in words:
         assert word in str(refused.value)
+
+
+@pytest.mark.parametrize("wall", ["tip_clearance", "hub_clearance"])
+@pytest.mark.parametrize("clearance", [0.15, 0.75, 1.5, 3.0, 6.0])
+def test_knots_of_a_cut_blade_are_equal_or_well_apart(wall, clearance):
+    """Of a span of 60: where curves begin to bend, or a span that grows from there, lies on a station of the laws."""
+    design = stations.AXIAL["curvature-meanline"].changed(wall, clearance)
+    places = np.unique(design.exact_blade().breaks_along_v())
+    assert np.diff(places).min() > 1e-3

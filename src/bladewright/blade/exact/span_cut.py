@@ -21,7 +21,7 @@ from bladewright.blade.flow_path.meridional_curve import real_first
 from bladewright.blade.flow_path.stream_surface_map import StreamSurfaceMap, Taylor
 from bladewright.errors import DesignError
 from bladewright.numerics.elementary import Array, concatenated, cross2, length, unit
-from bladewright.nurbs.basis import Reals
+from bladewright.nurbs.basis import JOINT_TOLERANCE, Reals
 
 NODES = 12
 """Chebyshev nodes along the span on each piece of the part that bends to the cut."""
@@ -32,6 +32,9 @@ BENT = 5.0
 come no closer than to 1 - 3/5 of their distance."""
 POWER = 3
 """Power p with which they bend: two derivatives along the span are continuous where they begin to."""
+APART = 0.1
+"""Least distance of a knot that only grades the spans from any other, of its distance from where curves bend: a shorter
+span undoes the grading, and OpenCASCADE takes knots 1e-15 apart for one [-]"""
 GRADED = 3.0
 """Ratio of neighbouring knot spans below the part that bends."""
 STEPS = 30
@@ -96,14 +99,19 @@ class SpanCut:
         if self.power > 1:
             height = breaks if self.end else 1.0 - breaks
             start = self.bent_from if self.end else 1.0 - self.bent_from
-            kept = breaks[height < self.bent_from]
-            bent = breaks[height > self.bent_from]
+            at_start = np.square(breaks - start) < JOINT_TOLERANCE**2
+            kept = breaks[(height < self.bent_from) & ~at_start]
+            bent = breaks[(height > self.bent_from) & ~at_start]
             bent = bent[(bent < self.level) if self.end else (bent > self.level)]
             v = np.linspace(0.0, 1.0, 2001)
             bent = np.interp(bent, self.span(v, np.array([self.level]))[:, 0], v)
             graded = self._graded()
             graded = graded if self.end else 1.0 - graded
-            return np.sort(np.concatenate([kept, bent, graded, np.full(degree - self.power + 1, start)]))
+            own = np.concatenate([kept, bent, [0.0, 1.0]])
+            clear = APART**2 * np.square(graded - start)
+            graded = graded[np.min(np.square(graded[:, None] - own), axis=1) > clear]
+            times = max(degree - self.power + 1, int(np.sum(at_start)))
+            return np.sort(np.concatenate([kept, bent, graded, np.full(times, start)]))
         own = (breaks - (1 - self.end) * self.level) / (self.level if self.end else 1.0 - self.level)
         return own[(own > 0.0) & (own < 1.0)]
 
