@@ -364,3 +364,20 @@ def test_every_parameter_of_an_example_is_a_key_of_its_family(name):
     design = design_from(tomllib.loads(example_text(name)), name)
     paths = {re.sub(r"\[\d+\]", "", path) for path in design.parameters()}
     assert {re.sub(r"\.[xr]$", "", path) for path in paths} <= {*key_paths(type(design))}
+
+
+def test_limits_are_checked_beside_what_is_wrong_in_the_same_table_and_below():
+    document = tomllib.loads(example_text("core-rotor"))
+    document["flow_path"]["matchd"] = "ends"
+    document["section"]["metal_angle_in"] = [-44, -95, -57]
+    document["section"]["thicknes"] = 3
+    document["section"]["thickness"]["maximum_thickness"] = [0.09, 1.7]
+    with pytest.raises(DesignError, match="4 things to correct") as refused:
+        design_from(document, "rotor.toml")
+    for said in (
+        "flow_path.matchd does not exist",
+        "section.thicknes does not exist",
+        "section.thickness.maximum_thickness[1] is 1.7",
+        "section.metal_angle_in[1] is -95",
+    ):
+        assert str(refused.value).count(said) == 1

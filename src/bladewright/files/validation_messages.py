@@ -2,7 +2,7 @@
 
 import json
 import math
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import fields, is_dataclass
 from difflib import get_close_matches
 from functools import cache
@@ -13,7 +13,9 @@ from pydantic import ValidationError
 from pydantic_core import ErrorDetails
 
 from bladewright.designs import OF_LAW, Design, Point, unknown, whole_path
+from bladewright.errors import DesignError
 from bladewright.files.families import FAMILIES
+from bladewright.section.checks import between, declared
 from bladewright.section.tagged_unions import tags
 
 _NEEDED = {
@@ -47,7 +49,31 @@ def validation_messages(error: ValidationError, document: Mapping[str, Any], kin
         rank, depth, *_ = min(candidates)
         deepest = {path: text for *ranks, path, text in sorted(candidates, reverse=True) if ranks == [rank, depth]}
         said += ((rank, text) for text in reversed(deepest.values()))
+    said += ((1, text) for text in _beyond_limits(document, kind, ""))
     return list(dict.fromkeys(text for _, text in sorted(said, key=lambda each: each[0])))
+
+
+def _beyond_limits(table: Mapping[str, Any], kind: Any, path: str) -> Iterator[str]:
+    """What lies outside its field's limits, also where a table's own checks do not run for an error in it."""
+    limited = {each.name: (kept, each.metadata["limits"]) for each, kept in declared(kind) if each.metadata["limits"]}
+    hints = get_type_hints(kind)
+    for name in (each.name for each in fields(kind) if table.get(each.name) is not None):
+        value, annotation = table[name], _without_none(hints[name])
+        if name in limited:
+            kept, limits = limited[name]
+            try:
+                value = kept(f"{path}{name}", value)
+            except (DesignError, TypeError, ValueError, OverflowError):
+                continue  # no number, or no law, which is said already
+            try:
+                between(f"{path}{name}", value, limits.low, limits.high, limits.cure, closed=limits.closed)
+            except DesignError as error:
+                yield str(error)
+        elif isinstance(value, Mapping):
+            parts: list[Any] = [part for part, own in _tagged_parts(annotation) if own.items() <= value.items()]
+            parts = [annotation] if is_dataclass(annotation) else parts
+            for part in parts[:1]:
+                yield from _beyond_limits(value, part, f"{path}{name}.")
 
 
 def shown(value: Any) -> str:

@@ -149,7 +149,7 @@ def parameters(part: Part, path: str = "") -> None:
     """
     kind: Any = type(part)
     problems = list[str]()
-    for each, kept in _declared(kind):
+    for each, kept in declared(kind):
         try:
             _keep(part, each, kept, path)
         except DesignError as error:
@@ -171,7 +171,7 @@ def _keep(part: Part, each: Field[Any], kept: Callable[[str, Any], Any], path: s
 
 
 @cache
-def _declared(kind: Any) -> list[tuple[Field[Any], Callable[[str, Any], Any]]]:
+def declared(kind: Any) -> list[tuple[Field[Any], Callable[[str, Any], Any]]]:
     """The fields of a class that hold a law, a row of laws or a number, each with what brings a value to its kind."""
     found: list[tuple[Field[Any], Callable[[str, Any], Any]]] = []
     hints = get_type_hints(kind)
