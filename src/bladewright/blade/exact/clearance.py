@@ -76,6 +76,49 @@ class Clearance:
         """A distance [m] in the design's unit."""
         return f"{distance / UNITS[self.unit]:.4g} {self.unit}"
 
+    def check_span(self, u: Reals, away: Reals) -> None:
+        """Refuse a clearance that leaves no blade at some u (m,), where the other end is `away` (m,) from the wall."""
+        stated = self.distance(u)
+        worst = int(np.argmax(stated / away))
+        if stated[worst] >= away[worst]:
+            other = "hub" if self.wall == "shroud" else "shroud"
+            raise DesignError(
+                f"{self.name} is {self._at(u[worst])}, where the {other} is {self.in_unit(away[worst])} from the "
+                f"{self.wall}: a clearance must be smaller than the span everywhere; lower {self.name}"
+            )
+
+    def check_nose(self, u: float, edge: str) -> None:
+        """Refuse a clearance that ends on the blade's nose at u, past the edge at which it is smaller."""
+        if float(self.distance(np.array([u]))[0]) <= 0.0:
+            raise DesignError(
+                f"{self.name} is linear in u and falls to {self._at(u)}, the nose past the {edge} edge: the blade "
+                f"would meet the {self.wall} there; bring its two values nearer to each other"
+            )
+
+    def folding(self, u: Reals, bend: Reals, given_by: str) -> str:
+        """Why the surface folds over, where the wall's curvature towards the blade at u (m,) is `bend` (m,) [1/m]."""
+        worst = int(np.argmax(bend * self.distance(u)))
+        radius = self.in_unit(1.0 / float(bend[worst])) if bend[worst] > 0.0 else "without limit"
+        return (
+            f"{self.name} is {self._at(u[worst])}, where the {self.wall}'s radius of curvature towards the blade is "
+            f"{radius}: the surface at that distance folds over near there; lower {self.name}, or smooth "
+            f"{given_by}.{self.wall}"
+        )
+
+    def check_met(self, gap: float, knots: Reals, given_by: str) -> None:
+        """Refuse a fitted meridian on `knots` that misses its distance by `gap`, of the meridional chord."""
+        if gap > ALLOWED:
+            raise DesignError(
+                f"{self.name}: the surface at that distance from the {self.wall} is met within {gap:.2g} of the "
+                f"meridional chord with {len(knots) - DEGREE - 1} control points, {ALLOWED:g} is allowed: lower "
+                f"{self.name}, or smooth {given_by}.{self.wall}"
+            )
+
+    def _at(self, u: float) -> str:
+        """The clearance at u, in words."""
+        stated = self.in_unit(float(self.distance(np.array([u]))[0]))
+        return f"{stated} at u = {u:.3f} (0 at the leading, 1 at the trailing edge)"
+
 
 def clearance_of(design: "RowDesign") -> Clearance | None:
     """The clearance of a design, or None where its blade reaches from wall to wall."""
@@ -135,14 +178,8 @@ def check_clearance(clearance: Clearance, sections: "UnifiedSections", row: int)
     """
     outline = outlines_of(*sections.plane_points(PLACES))[..., [row], :, :]
     u = np.real(sections.lines.rows([row]).u_at(outline[..., 0]))
-    for place, edge in ((float(np.min(u)), "leading"), (float(np.max(u)), "trailing")):
-        distance = float(clearance.real().distance(np.array([place]))[0])
-        if distance <= 0.0:
-            raise DesignError(
-                f"{clearance.name} is linear in u and falls to {clearance.in_unit(distance)} at u = {place:.3f}, the "
-                f"nose past the {edge} edge: the blade would meet the {clearance.wall} there; bring its two values "
-                "nearer to each other"
-            )
+    clearance.real().check_nose(float(np.min(u)), "leading")
+    clearance.real().check_nose(float(np.max(u)), "trailing")
 
 
 def _knots(full: TransfiniteChannel, clearance: Clearance) -> Reals:
@@ -164,12 +201,7 @@ def _knots(full: TransfiniteChannel, clearance: Clearance) -> Reals:
 
     knots = refined(start, miss, MOST_POLES)
     gap = float(np.max(worst(knots)))
-    if gap > ALLOWED:
-        raise DesignError(
-            f"{clearance.name}: the surface at that distance from the {clearance.wall} is met within {gap:.2g} of the "
-            f"meridional chord with {len(knots) - DEGREE - 1} control points, {ALLOWED:g} is allowed: lower "
-            f"{clearance.name}, or smooth {full.line(clearance.wall).given_by}.{clearance.wall}"
-        )
+    clearance.check_met(gap, knots, full.line(clearance.wall).given_by)
     return knots
 
 
@@ -229,23 +261,9 @@ def _check_span(full: TransfiniteChannel, clearance: Clearance) -> None:
     other = "hub" if clearance.wall == "shroud" else "shroud"
     wall = full.line(clearance.wall).values(np.linspace(-0.1, 1.1, 601))
     span = np.min(length(full.line(other).values(u)[:, None] - wall), axis=1)
-    share = clearance.distance(u) / span
-    worst = int(np.argmax(share))
-    if share[worst] >= 1.0:
-        raise DesignError(
-            f"{clearance.name} is {clearance.in_unit(clearance.distance(u)[worst])} at u = {u[worst]:.3f}, where the "
-            f"{other} is {clearance.in_unit(span[worst])} from the {clearance.wall}: a clearance must be smaller than "
-            f"the span everywhere; lower {clearance.name}"
-        )
+    clearance.check_span(u, np.asarray(span))
 
 
 def _cusp(full: TransfiniteChannel, clearance: Clearance) -> str:
     u = np.linspace(-0.05, 1.05, 111)
-    bend = _bend(full, clearance, u)
-    worst = int(np.argmax(bend * clearance.distance(u)))
-    radius = clearance.in_unit(1.0 / float(bend[worst])) if bend[worst] > 0.0 else "without limit"
-    return (
-        f"{clearance.name} is {clearance.in_unit(clearance.distance(u)[worst])} at u = {u[worst]:.3f}, where the "
-        f"{clearance.wall}'s radius of curvature towards the blade is {radius}: the surface at that distance folds "
-        f"over near there; lower {clearance.name}, or smooth {full.line(clearance.wall).given_by}.{clearance.wall}"
-    )
+    return clearance.folding(u, _bend(full, clearance, u), full.line(clearance.wall).given_by)

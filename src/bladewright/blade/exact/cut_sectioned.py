@@ -14,12 +14,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from bladewright.blade.exact.clearance import ALLOWED, clearance_of
+from bladewright.blade.exact.clearance import clearance_of
 from bladewright.blade.exact.cut_curves import CutSections, cut_sections, spans_of_cut
 from bladewright.blade.exact.exact_blade import ExactBlade
 from bladewright.blade.exact.meridional_extent import FlowPathExtent
 from bladewright.blade.exact.meridional_view import COUNT, MeridionalView
-from bladewright.blade.exact.offset_wall import OffsetWall, check_distance, check_folds, check_span
+from bladewright.blade.exact.offset_wall import OffsetWall, check_folds
 from bladewright.blade.exact.sectioned import ENDS, ExactSectionedBlade, exact_sectioned_blade
 from bladewright.blade.exact.span_cut import BENT, SpanCut
 from bladewright.blade.exact.unified import SURVEY
@@ -244,7 +244,7 @@ def _reached(uncut: ExactSectionedBlade, offset: OffsetWall, end: int) -> tuple[
     t = t.reshape(r.shape)
     free = away - offset.distance(t.ravel()).reshape(r.shape)
     order = np.arange(len(SURVEY)) if end == 0 else np.arange(len(SURVEY))[::-1]
-    check_span(offset, t[order[-1]], away[order[-1]])
+    offset.clearance.check_span(offset.u(t[order[-1]]), away[order[-1]])
     after = np.argmax(free[order] > 0.0, axis=0)
     both = np.stack([order[np.maximum(after - 1, 0)], order[after]])
     columns = np.arange(r.shape[1])
@@ -256,7 +256,8 @@ def _reached(uncut: ExactSectionedBlade, offset: OffsetWall, end: int) -> tuple[
     feet = feet[0] + share * (feet[1] - feet[0])
     low, high = float(np.min(feet)), float(np.max(feet))
     margin = MARGIN * (high - low)
-    check_distance(offset, (low, high))
+    for place, edge in ((low, "leading"), (high, "trailing")):
+        offset.clearance.check_nose(float(offset.u(np.array([place]))[0]), edge)
     return (low - margin, high + margin), spans
 
 
@@ -296,10 +297,5 @@ def _knots(uncut: ExactSectionedBlade, offset: OffsetWall, stretch: tuple[float,
     knots = refined(knots_with_joints(np.repeat([low, high], DEGREE + 1), DEGREE, joints), miss, MOST_POLES)
     places = np.linspace(low, high, 2 * SAMPLES)
     gap = REACHED * float(np.max(miss(knots, places)))
-    if gap > ALLOWED:
-        raise DesignError(
-            f"{clearance.name}: the surface at that distance from the {clearance.wall} is met within {gap:.2g} of the "
-            f"meridional chord with {len(knots) - DEGREE - 1} control points, {ALLOWED:g} is allowed: lower "
-            f"{clearance.name}, or smooth flow_path.{clearance.wall}"
-        )
+    clearance.real().check_met(gap, knots, "flow_path")
     return knots

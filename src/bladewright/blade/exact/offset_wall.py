@@ -1,4 +1,4 @@
-"""A wall moved along its normals into the flow path, and clearances that are refused."""
+"""A wall moved along its normals into the flow path: the clearance surface of a blade from sections."""
 
 from dataclasses import dataclass
 
@@ -59,43 +59,9 @@ class OffsetWall:
         return self.clearance.inward * cross2(slope, bend) / length(slope) ** 3
 
 
-def check_span(offset: OffsetWall, t: Reals, away: Reals) -> None:
-    """Refuse a clearance that leaves no blade somewhere: `away` (k,) is how far its other end is from the wall."""
-    clearance = offset.clearance
-    stated = offset.distance(t)
-    worst = int(np.argmax(stated / away))
-    if stated[worst] >= away[worst]:
-        other = "hub" if clearance.wall == "shroud" else "shroud"
-        raise DesignError(
-            f"{clearance.name} is {clearance.in_unit(stated[worst])} at u = {float(offset.u(t)[worst]):.3f}, where the "
-            f"{other} is {clearance.in_unit(away[worst])} from the {clearance.wall}: a clearance must be smaller than "
-            f"the span everywhere; lower {clearance.name}"
-        )
-
-
-def check_distance(offset: OffsetWall, stretch: tuple[float, float]) -> None:
-    """Refuse a clearance that ends on the nose of the blade, past the edge at which it is smaller."""
-    clearance = offset.clearance
-    for t, edge in zip(stretch, ("leading", "trailing"), strict=True):
-        at = np.array([t])
-        distance = float(offset.distance(at)[0])
-        if distance <= 0.0:
-            raise DesignError(
-                f"{clearance.name} is linear in u and falls to {clearance.in_unit(distance)} at u = "
-                f"{float(offset.u(at)[0]):.3f}, the nose past the {edge} edge: the blade would meet the "
-                f"{clearance.wall} there; bring its two values nearer to each other"
-            )
-
-
 def check_folds(offset: OffsetWall, stretch: tuple[float, float]) -> None:
     """Refuse a wall that bends towards the blade more sharply than the clearance allows."""
-    clearance, t = offset.clearance, np.linspace(*stretch, SAMPLES)
-    bend, stated = offset.bend(t), offset.distance(t)
-    worst = int(np.argmax(bend * stated))
-    if bend[worst] * stated[worst] >= 1.0:
-        raise DesignError(
-            f"{clearance.name} is {clearance.in_unit(stated[worst])} at u = {float(offset.u(t)[worst]):.3f}, where the "
-            f"{clearance.wall}'s radius of curvature towards the blade is {clearance.in_unit(1.0 / bend[worst])}: the "
-            f"surface at that distance folds over near there; lower {clearance.name}, or smooth "
-            f"flow_path.{clearance.wall}"
-        )
+    t = np.linspace(*stretch, SAMPLES)
+    bend = offset.bend(t)
+    if np.max(bend * offset.distance(t)) >= 1.0:
+        raise DesignError(offset.clearance.folding(offset.u(t), bend, "flow_path"))
