@@ -369,15 +369,24 @@ def test_every_parameter_of_an_example_is_a_key_of_its_family(name):
 def test_limits_are_checked_beside_what_is_wrong_in_the_same_table_and_below():
     document = tomllib.loads(example_text("core-rotor"))
     document["flow_path"]["matchd"] = "ends"
+    document["blade_count"] = 0
     document["section"]["metal_angle_in"] = [-44, -95, -57]
     document["section"]["thicknes"] = 3
     document["section"]["thickness"]["maximum_thickness"] = [0.09, 1.7]
-    with pytest.raises(DesignError, match="4 things to correct") as refused:
+    with pytest.raises(DesignError, match="5 things to correct") as refused:
         design_from(document, "rotor.toml")
     for said in (
         "flow_path.matchd does not exist",
+        "blade_count is 0",
         "section.thicknes does not exist",
         "section.thickness.maximum_thickness[1] is 1.7",
         "section.metal_angle_in[1] is -95",
     ):
         assert str(refused.value).count(said) == 1
+
+
+def test_what_is_beyond_its_limits_is_said_once():
+    document = tomllib.loads(example_text("core-rotor")) | {"blade_count": 0}
+    with pytest.raises(DesignError) as refused:
+        design_from(document, "rotor.toml")
+    assert str(refused.value).count("blade_count") == 1

@@ -66,7 +66,7 @@ def _refine(kind: type[Part], definitions: dict[str, Any], refined: set[type[Par
 
 def _limit(entry: dict[str, Any], limits: Limits) -> None:
     """Write limits to every number that an entry may be or hold."""
-    if entry.get("type") == "number":
+    if entry.get("type") in ("number", "integer"):
         names = ("minimum", "maximum") if limits.closed else ("exclusiveMinimum", "exclusiveMaximum")
         entry.update({name: value for name, value in zip(names, limits[:2], strict=True) if isfinite(value)})
     for inner in (*entry.get("anyOf", ()), *entry.get("oneOf", ()), *([entry["items"]] if "items" in entry else ())):

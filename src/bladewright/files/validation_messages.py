@@ -15,7 +15,7 @@ from pydantic_core import ErrorDetails
 from bladewright.designs import OF_LAW, Design, Point, unknown, whole_path
 from bladewright.errors import DesignError
 from bladewright.files.families import FAMILIES
-from bladewright.section.checks import between, declared
+from bladewright.section.checks import between, declared, number
 from bladewright.section.tagged_unions import tags
 
 _NEEDED = {
@@ -55,14 +55,15 @@ def validation_messages(error: ValidationError, document: Mapping[str, Any], kin
 
 def _beyond_limits(table: Mapping[str, Any], kind: Any, path: str) -> Iterator[str]:
     """What lies outside its field's limits, also where a table's own checks do not run for an error in it."""
-    limited = {each.name: (kept, each.metadata["limits"]) for each, kept in declared(kind) if each.metadata["limits"]}
+    kinds = {each.name: kept for each, kept in declared(kind)}
+    limited = {each.name: each.metadata["limits"] for each in fields(kind) if each.metadata.get("limits")}
     hints = get_type_hints(kind)
     for name in (each.name for each in fields(kind) if table.get(each.name) is not None):
         value, annotation = table[name], _without_none(hints[name])
         if name in limited:
-            kept, limits = limited[name]
+            limits = limited[name]
             try:
-                value = kept(f"{path}{name}", value)
+                value = kinds.get(name, number)(f"{path}{name}", value)
             except (DesignError, TypeError, ValueError, OverflowError):
                 continue  # no number, or no law, which is said already
             try:

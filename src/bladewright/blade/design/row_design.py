@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from abc import abstractmethod
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, ClassVar, Literal
 
 import numpy as np
 
-from bladewright.designs import Design, Law, parameter
+from bladewright.designs import Design, Law, Limits, parameter
 from bladewright.errors import DesignError
 from bladewright.section import checks
 from bladewright.section.unified_limits import check_labels, check_range
@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from bladewright.blade.native.blade import Blade
     from bladewright.blade.native.knots import Knots
 
+BLADES = Limits(1, 10_000, "a whole number of blades is needed (1 to 10000)", closed=True)
 FIELDS_OF = {"annular": ("blade_count", "leading_edge_theta"), "linear": ("pitch", "leading_edge_y")}
 """The fields that an arrangement alone has: how far apart blades stand, and where the leading edge does."""
 
@@ -42,7 +43,7 @@ class RowDesign(Design):
     """unit of every length in the design"""
     arrangement: Literal["annular", "linear"] = "annular"
     """blades around the machine axis, or side by side in a cascade"""
-    blade_count: int | None = None
+    blade_count: int | None = field(default=None, metadata={"limits": BLADES})
     """number of blades of an annular row [-]"""
     pitch: float | None = parameter("length", default=None)
     """tangential distance of neighbours in a linear cascade [length]"""
@@ -143,7 +144,9 @@ class RowDesign(Design):
         if getattr(self, count) is None:
             raise DesignError(f"{count} is missing: arrangement '{own}' needs it")
         if own == "annular":
-            number = checks.integer(count, self.blade_count, 1, 10_000, "a whole number of blades is needed")
+            number = checks.integer(
+                count, self.blade_count, int(BLADES.low), int(BLADES.high), "a whole number of blades is needed"
+            )
             object.__setattr__(self, count, number)
         else:
             object.__setattr__(self, count, checks.number(count, self.pitch))
