@@ -53,13 +53,13 @@ class Origin:
     @classmethod
     def from_lines(cls, lines: Sequence[str]) -> Self | None:
         """The inverse of `lines`; None where they name no design."""
-        told = [line.partition(": ")[::2] for line in lines]
-        names = [text for key, text in told if key == "design"]
-        hashes = [text.removeprefix("sha256 ") for key, text in told if key == "parameters" and "sha256 " in text]
+        pairs = [line.partition(": ")[::2] for line in lines]
+        names = [text for key, text in pairs if key == "design"]
+        hashes = [text.removeprefix("sha256 ") for key, text in pairs if key == "parameters" and "sha256 " in text]
         if not names or not hashes:
             return None
         return cls(
-            name=names[-1], parameters_hash=hashes[-1], changes=tuple(text for key, text in told if key == "set")
+            name=names[-1], parameters_hash=hashes[-1], changes=tuple(text for key, text in pairs if key == "set")
         )
 
 

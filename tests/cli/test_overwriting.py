@@ -73,7 +73,7 @@ def test_a_file_of_unknown_origin_stays_unless_by_force(folder):
     (folder / "out" / "vane.roundtrip.json").unlink()
     with pytest.raises(FileError, match=r"vane.step' exists, and no report beside it tells from which design file"):
         asked(folder, "vane.toml", MADE)
-    assert "nothing told" in asked(folder, "vane.toml", MADE, force=True)
+    assert "nothing says" in asked(folder, "vane.toml", MADE, force=True)
 
 
 @pytest.mark.parametrize("design", [None, [], {"name": 3}, {"name": "vane"}])

@@ -63,19 +63,21 @@ def made_from(path: str | os.PathLike[str]) -> MadeFrom:
     """Which design a CAD file was made from. Raises CadError where the file is not of the format that it names."""
     path = Path(path)
     kind = format_of(path)
-    report, told = _report_beside(path)
+    report, reported = _report_beside(path)
     if kind in {"STL", "3MF"}:
         _, unit = read_stl(path) if kind == "STL" else read_3mf(path)
-        return MadeFrom(file=str(path), format=kind, unit=unit, system="", origin=told, report=report)
+        return MadeFrom(file=str(path), format=kind, unit=unit, system="", origin=reported, report=report)
     opened = read_cad_file(path)
     own, notes = opened.origin, []
     if kind == "BREP":
-        own = told
-    elif own is not None and told is not None:
-        if own == replace(told, file=None, text=None):
-            own = told
+        own = reported
+    elif own is not None and reported is not None:
+        if own == replace(reported, file=None, text=None):
+            own = reported
         else:
-            notes.append(f"{report} beside it is about another design, {told.name} (sha256 {told.parameters_hash})")
+            notes.append(
+                f"{report} beside it is about another design, {reported.name} (sha256 {reported.parameters_hash})"
+            )
     return MadeFrom(
         file=str(path),
         format=" ".join(word for word in (kind, opened.schema) if word),

@@ -59,8 +59,8 @@ def read_stl(path: Path) -> tuple[TriangleMesh, Unit]:
         )
     if not np.all(np.isfinite(corners)):
         raise CadError(f"{path} holds a vertex that is not a finite number: write it again")
-    told = STL_UNIT.match(head)
-    unit: Unit = next((each for each in MILLIMETRES if told and each.encode() == told[1]), "mm")
+    stated = STL_UNIT.match(head)
+    unit: Unit = next((each for each in MILLIMETRES if stated and each.encode() == stated[1]), "mm")
     return mesh_of_triangles(corners * MILLIMETRES[unit]), unit
 
 

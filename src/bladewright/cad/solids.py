@@ -110,12 +110,12 @@ def split_occ_solid(built: NativeBody) -> OccSolid:
     for piece, face in pieces.surfaces.items():
         name = whole_name(piece, built.surfaces) or piece
         errors[name] += volume_error(whole.faces[piece], face, pieces.orientations[piece], middle) / volume
-    needy = {name for name, error in errors.items() if error > NEED}
+    inexact = {name for name, error in errors.items() if error > NEED}
     for edge in topology(pieces).edges:
         names = {whole_name(coedge.face, built.surfaces) or coedge.face for coedge in edge.coedges}
-        if any(name in needy and isinstance(built.surfaces[name], TrimmedSurface) for name in names):
-            needy = needy | names
-    return occ_solid_in_pieces(in_fine_pieces(built, needy))
+        if any(name in inexact and isinstance(built.surfaces[name], TrimmedSurface) for name in names):
+            inexact = inexact | names
+    return occ_solid_in_pieces(in_fine_pieces(built, inexact))
 
 
 def _check_numbers(built: ClosedBody) -> None:

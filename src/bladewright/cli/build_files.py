@@ -72,8 +72,8 @@ def build_files(path: Path, options: BuildOptions, bar: Bar) -> Outcome:
         for name in names.values()
         for number, each in enumerate(options.formats)
     ]
-    told = [directory / f"{name}{end}.roundtrip.json" for name in names.values() for end in ("", *SUFFIXES.values())]
-    note = overwritten([directory / each for each in files], told, path, origin, force=options.force)
+    former = [directory / f"{name}{end}.roundtrip.json" for name in names.values() for end in ("", *SUFFIXES.values())]
+    note = overwritten([directory / each for each in files], former, path, origin, force=options.force)
     sense, table = dict[str, Any](), None
     with removing_partial_files(directory, [*files, *reports]):
         bar.set_description_str(" and ".join(options.bodies))

@@ -15,5 +15,5 @@ def made_from(path: Path) -> Outcome:
 
     if not path.exists():
         raise FileError(f"there is no file '{path}'")
-    told = cad.made_from(path)
-    return Outcome(data=told.to_dict(), text=str(told))
+    found = cad.made_from(path)
+    return Outcome(data=found.to_dict(), text=str(found))

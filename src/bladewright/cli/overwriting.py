@@ -39,7 +39,7 @@ def overwritten(files: Sequence[Path], reports: Sequence[Path], design: Path, or
     if not records:
         if not force:
             raise FileError(f"'{present[0]}' exists, and no report beside it tells from which design file: {cure}")
-        return f"{names} overwritten: nothing told from which design file they were made"
+        return f"{names} overwritten: nothing says from which design file they were made"
     changes = [(before.changes, before.parameters_hash) for _, before in records]
     if any(each != origin.changes for each, _ in changes):
         return f"{names} overwritten: {_with(origin.changes)}, {_with(changes[0][0])} before"

@@ -69,7 +69,9 @@ def show(
     """
     if path.suffix.lower() in CAD_SUFFIXES:
         if output is not None or changes:
-            raise click.UsageError(f"'{path}' is a CAD file, whose design is told: -o and --set are for a design file")
+            raise click.UsageError(
+                f"'{path}' is a CAD file, of which only the design is shown: -o and --set are for a design file"
+            )
         return made_from(path)
     check_options((body,), 0.0, extents)
     wants_table = stations is not None or table_file is not None

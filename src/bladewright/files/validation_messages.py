@@ -203,8 +203,8 @@ def _unknown_key(place: _Place) -> str:
         return f"{place.path} does not exist in this family: it is a key of {', '.join(families)}"
     elsewhere = _same_name_elsewhere(name)
     if elsewhere and not get_close_matches(name, place.names, n=1, cutoff=0.9):
-        told = "; ".join(f"{path} of {', '.join(found)}" for path, found in elsewhere.items())
-        return f"{place.path} does not exist in this family: there is {told}"
+        others = "; ".join(f"{path} of {', '.join(found)}" for path, found in elsewhere.items())
+        return f"{place.path} does not exist in this family: there is {others}"
     return unknown(place.path, name, place.names)
 
 
@@ -222,10 +222,13 @@ def _same_name_elsewhere(name: str) -> dict[str, list[str]]:
 def key_paths(kind: Any, path: str = "", within: tuple[Any, ...] = ()) -> dict[str, set[str]]:
     """The path of every key that a design, or a part of it, may have; with the tags of the parts that have it."""
     found: dict[str, set[str]] = {}
-    hints, told = get_type_hints(kind), " and ".join(f"{name} = {shown(value)}" for name, value in tags(kind).items())
+    hints, tag_text = (
+        get_type_hints(kind),
+        " and ".join(f"{name} = {shown(value)}" for name, value in tags(kind).items()),
+    )
     for each in fields(kind):
         where = path + each.name
-        found.setdefault(where, set()).update([told] if told else [])
+        found.setdefault(where, set()).update([tag_text] if tag_text else [])
         for part in _parts_in(hints[each.name]):
             if part not in within:
                 for below, tags_of in key_paths(part, f"{where}.", (*within, part)).items():
