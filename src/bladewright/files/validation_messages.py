@@ -222,10 +222,8 @@ def _same_name_elsewhere(name: str) -> dict[str, list[str]]:
 def key_paths(kind: Any, path: str = "", within: tuple[Any, ...] = ()) -> dict[str, set[str]]:
     """The path of every key that a design, or a part of it, may have; with the tags of the parts that have it."""
     found: dict[str, set[str]] = {}
-    hints, tag_text = (
-        get_type_hints(kind),
-        " and ".join(f"{name} = {shown(value)}" for name, value in tags(kind).items()),
-    )
+    hints = get_type_hints(kind)
+    tag_text = " and ".join(f"{name} = {shown(value)}" for name, value in tags(kind).items())
     for each in fields(kind):
         where = path + each.name
         found.setdefault(where, set()).update([tag_text] if tag_text else [])

@@ -45,7 +45,7 @@ Smooth = Sequence[tuple["Section", Smoothness]]
 POWERS = 4
 """Most powers of ten beside a logarithmic axis, on either side of zero; fewer leave room for the linear part."""
 STRAIGHT = 1e-9
-"""Curvature of a camber line that is straight [1 / chord]: rounding."""
+"""Curvature of a camber line that is straight [1 / chord], and slope of that of an arc [1 / chord^2]: rounding."""
 EDGE_SHARE = 0.05
 """Fraction of the arc length at either end that does not set the scale of an axis: values at the edges are far larger
 than between them."""
@@ -60,7 +60,7 @@ class _Drawn(NamedTuple):
 
 
 def side_curvature(section: "Section", name: str) -> tuple[Reals, Reals]:
-    """Fraction of a side's arc length from the leading edge (n,) and curvature there (n,) [1/mm], convex positive."""
+    """Fraction of a side's arc length from the leading edge (n,), and curvature there (n,), convex positive."""
     u = cosine_spacing(601)
     points = np.real(section.curves[name](u))
     steps = length(np.diff(points, axis=0)) * np.real(section.scale((points[1:, 0] + points[:-1, 0]) / 2.0))
@@ -121,7 +121,7 @@ def _tick(value: float) -> str:
 
 
 def draw_thickness(axes: Axes, sections: Sequence["Section"], ends: tuple[str, str] = WALLS) -> None:
-    """Draw the thickness across the camber line as built [mm], and mark its largest value."""
+    """Draw the thickness across the camber line as built, and mark its largest value."""
     lines = list[Line]()
     for section in sections:
         colour = span_colour(section.span)
@@ -190,7 +190,8 @@ def _draw_camber(axes: Axes, smooth: Smooth, *, order: int) -> None:
     """Draw the curvature of the camber lines (order 0) or its slope (order 1)."""
     drawn = list[_Drawn]()
     for section, each in smooth:
-        values = (each.camber.slope if order else each.camber.curvature) / _chord(section) ** (order + 1)
+        in_chords = each.camber.slope if order else each.camber.curvature
+        values = np.where(in_chords**2 > STRAIGHT**2, in_chords, 0.0) / _chord(section) ** (order + 1)
         drawn.append(_Drawn(each.camber, values, {"color": span_colour(section.span), "linestyle": UPPER}))
     _draw(axes, drawn, order=order)
     _limited(axes, [_inner(each) for each in drawn])
