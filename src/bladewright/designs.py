@@ -100,13 +100,19 @@ class Stations(Part):
     """what lies between the stations"""
 
 
-class _ByShape:
-    """Annotates laws: a file's number, list or table is validated as such, so that only its own refusals are named."""
+@dataclass(frozen=True)
+class ByShape:
+    """Annotates a number, a list or a table: a file's value is validated as what it is, so only its refusals are named.
+
+    `table` is the part that a table is.
+    """
+
+    table: type[Part]
 
     def __get_pydantic_core_schema__(self, source: Any, handler: Any) -> Any:
         from pydantic_core import core_schema
 
-        kinds = {"number": float, "list": tuple[float, ...], "Stations": Stations}
+        kinds = {"number": float, "list": tuple[float, ...], self.table.__name__: self.table}
         choices = {name: handler.generate_schema(kind) for name, kind in kinds.items()}
         return core_schema.tagged_union_schema(choices, discriminator=self._shape)
 
@@ -114,14 +120,13 @@ class _ByShape:
         """The three shapes as any other union."""
         return {"anyOf": handler(core)["oneOf"]}
 
-    @staticmethod
-    def _shape(value: Any) -> str:
-        if isinstance(value, Mapping | Stations):
-            return "Stations"
+    def _shape(self, value: Any) -> str:
+        if isinstance(value, Mapping | self.table):
+            return self.table.__name__
         return "list" if isinstance(value, list | tuple) else "number"
 
 
-Law = Annotated[float | tuple[float, ...] | Stations, _ByShape()]
+Law = Annotated[float | tuple[float, ...] | Stations, ByShape(Stations)]
 """A law of evolution along the span: a constant, control points from hub to shroud, or values at stations."""
 ChordwiseLaw = tuple[Law, ...]
 """Control points along the chord, each a law of evolution along the span."""

@@ -9,6 +9,9 @@ from typing import TYPE_CHECKING, Any, ClassVar, Literal
 
 import numpy as np
 
+from bladewright.blade.design.cut import Cut
+from bladewright.blade.design.disc import Disc
+from bladewright.blade.design.fillet import Fillet
 from bladewright.designs import Design, Law, Limits, parameter
 from bladewright.errors import DesignError
 from bladewright.section import checks
@@ -20,8 +23,12 @@ if TYPE_CHECKING:
     from bladewright.blade.native.knots import Knots
 
 BLADES = Limits(1, 10_000, "a whole number of blades is needed (1 to 10000)", closed=True)
+DENSITY = Limits(0.0, float("inf"), "a density must be positive")
 FIELDS_OF = {"annular": ("blade_count", "leading_edge_theta"), "linear": ("pitch", "leading_edge_y")}
 """The fields that an arrangement alone has: how far apart blades stand, and where the leading edge does."""
+
+DISCS = {"disc": Disc, "shroud_ring": Disc}
+"""The fields that hold what carries or joins the blades."""
 
 TURNS = {"clockwise": -1, "counterclockwise": 1, "none": 0}
 """Towards which theta, or y in a cascade, a row of each `rotation` moves: theta turns z towards y, which to an observer
@@ -58,6 +65,18 @@ class RowDesign(Design):
     """meridional distance of the blade's end from the shroud, at leading and trailing edge where two [length]"""
     hub_clearance: float | tuple[float, float] | None = parameter("length", default=None)
     """meridional distance of the blade's end from the hub, at leading and trailing edge where two [length]"""
+    density: float | None = parameter("kg/m^3", limits=DENSITY, default=None)
+    """density of the metal, for masses [kg/m^3]"""
+    cut: Cut | None = None
+    """what is cut off the blade"""
+    hub_fillet: Fillet | None = None
+    """the fillet between blade and hub"""
+    shroud_fillet: Fillet | None = None
+    """the fillet between blade and shroud"""
+    disc: Disc | None = None
+    """what carries the blades under the hub"""
+    shroud_ring: Disc | None = None
+    """what joins the blades around the shroud"""
     tolerance: float = 1e-6
     """largest distance of the native surfaces from the exact blade, of the chord [-]"""
     description: str = ""
@@ -79,6 +98,7 @@ class RowDesign(Design):
             checks.choice("rotation", self.rotation, list(TURNS))
         self._check_arrangement()
         self._check_clearances()
+        self._check_parts()
         check_range(self, "tolerance", 1e-9, 1e-2)
 
     @property
@@ -169,6 +189,28 @@ class RowDesign(Design):
             what = "a clearance must be positive; leave it out where the blade stands on that wall"
             checks.between(name, value, 0.0, float("inf"), what)
             object.__setattr__(self, name, value)
+
+    def _check_parts(self) -> None:
+        """Refuse fillets, discs and rings where the blade does not stand on the wall, and discs in a cascade."""
+        if self.density is not None:
+            object.__setattr__(self, "density", checks.number("density", self.density))
+            checks.between("density", self.density, DENSITY.low, DENSITY.high, DENSITY.cure)
+        for name, kind in (("cut", Cut), ("hub_fillet", Fillet), ("shroud_fillet", Fillet), *DISCS.items()):
+            value = getattr(self, name)
+            if value is not None and not isinstance(value, kind):
+                raise DesignError(f"{name} is {value!r}: a table is needed")
+            if value is not None and name in DISCS and self.arrangement != "annular":
+                raise DesignError(f"{name} is given, but arrangement is 'linear': wheels are annular; leave it out")
+        for wall, clearance, on_wall in (
+            ("hub", "hub_clearance", ("hub_fillet", "disc")),
+            ("shroud", "tip_clearance", ("shroud_fillet", "shroud_ring")),
+        ):
+            for name in on_wall:
+                if getattr(self, clearance) is not None and getattr(self, name) is not None:
+                    raise DesignError(
+                        f"{name} is given together with {clearance}: the blade does not touch the {wall} there; leave "
+                        "one of the two out"
+                    )
 
     def _check_position(self, place: str, other: str) -> None:
         """Bring the leading edge's tangential position to a law: 0 where none is given."""

@@ -1,0 +1,70 @@
+"""Cuts of a blade by surfaces of revolution, as a design."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields
+from typing import Annotated
+
+import numpy as np
+
+from bladewright.blade.design.meridional_curve import ControlPolygon, StraightsAndArcs, ThroughPoints
+from bladewright.designs import Part, parameter
+from bladewright.errors import DesignError
+from bladewright.section import checks
+from bladewright.section.tagged_unions import ByKey
+
+
+@dataclass(frozen=True, kw_only=True)
+class AtRadius(Part):
+    """A cylinder about the machine axis, or a plane of constant z in a cascade."""
+
+    radius: float = parameter("length")
+    """its radius, or z [length]"""
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "radius", checks.number("radius", self.radius))
+        checks.between("radius", self.radius, 0.0, np.inf, "a radius must be positive")
+
+
+@dataclass(frozen=True, kw_only=True)
+class AtX(Part):
+    """A plane across the machine axis."""
+
+    x: float = parameter("length")
+    """its axial place [length]"""
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "x", checks.number("x", self.x))
+
+
+CutCurve = Annotated[AtRadius | AtX | ThroughPoints | ControlPolygon | StraightsAndArcs, ByKey()]
+"""Where a blade is cut: at a radius, at an axial place, or along a curve in (x, r)."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Cut(Part):
+    """What is cut off a blade: its ends at hub and tip, and its edges.
+
+    Laws keep the span and the chord of the uncut blade. The cuts of hub and tip are walls of passage and disc.
+    """
+
+    hub: CutCurve | None = None
+    """the blade begins here, instead of at the hub"""
+    tip: CutCurve | None = None
+    """the blade ends here, instead of at the shroud"""
+    leading_edge: CutCurve | None = None
+    """the blade begins here along the flow, with a blunt face"""
+    trailing_edge: CutCurve | None = None
+    """the blade ends here along the flow, with a blunt face"""
+
+    def __post_init__(self) -> None:
+        kinds = (AtRadius, AtX, ThroughPoints, ControlPolygon, StraightsAndArcs)
+        given = {each.name: getattr(self, each.name) for each in fields(self)}
+        for name, value in given.items():
+            if value is not None and not isinstance(value, kinds):
+                raise DesignError(
+                    f"{name} is {value!r}: a cut is at a radius, at an x, or along a curve in (x, r): write "
+                    f"{{ radius = 93 }}, {{ x = 12 }} or {{ points = [[0, 50], [20, 52]] }}"
+                )
+        if all(value is None for value in given.values()):
+            raise DesignError(f"the cut is empty: give {', '.join(given)}, or leave the table out")
