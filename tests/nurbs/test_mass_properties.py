@@ -1,3 +1,5 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -39,6 +41,25 @@ def cylinder(radius=1.5, height=4.0):
     square = ruled(segment((0, -side, -side), (0, side, -side)), segment((0, -side, side), (0, side, side)))
     disc = TrimmedSurface(surface=square, boundary=(circle((0.5, 0.5), radius / (2.0 * side)),))
     return ((wall, -1), (disc, -1), (translated(disc, (height, 0, 0)), 1))
+
+
+def pipe(radius, height, bore):
+    """The same with a hole along its axis."""
+    outer, low, high = (face for face, _ in cylinder(radius, height))
+    inner = revolved(segment((0.0, bore, 0.0), (height, bore, 0.0)))
+    around = (arc((0.5, 0.5), bore / (4.0 * radius), 2.0 * np.pi, 0.0),)
+    return ((outer, -1), (inner, 1), (replace(low, holes=(around,)), -1), (replace(high, holes=(around,)), 1))
+
+
+def test_a_pipe_whose_ends_have_a_hole_has_its_volume_and_inertia():
+    found = mass_properties(pipe(1.5, 4.0, 0.5 + 1e-30j))
+    squares, fourths = 1.5**2 - 0.5**2, 1.5**4 - 0.5**4
+    assert np.isclose(found.volume.real, np.pi * squares * 4.0, rtol=1e-12)
+    assert np.isclose(found.volume.imag / 1e-30, -4.0 * np.pi, rtol=1e-11)
+    across = np.pi * (3.0 * fourths * 4.0 + squares * 4.0**3) / 12.0
+    assert np.allclose(found.inertia.real, np.diag([np.pi * fourths * 2.0, across, across]), rtol=1e-11, atol=1e-11)
+    assert np.allclose(found.areas[2:].real, np.pi * squares, rtol=1e-12)
+    assert found.openness < 1e-13
 
 
 def test_a_sphere_has_its_volume_and_inertia():

@@ -6,7 +6,7 @@ from bladewright.nurbs.basis import uniform_knots
 from bladewright.nurbs.curve import Curve
 from bladewright.nurbs.domain import reversed  # noqa: A004
 from bladewright.nurbs.fit import interpolated
-from bladewright.nurbs.revolution import arc, circle, revolved, segment
+from bladewright.nurbs.revolution import Revolution, arc, circle, revolved, segment
 from bladewright.nurbs.skinning import ruled
 from bladewright.nurbs.surface import Surface
 from bladewright.nurbs.transform import scaled, transformed
@@ -177,3 +177,62 @@ def test_the_area_carries_an_imaginary_step_of_the_boundary_and_of_the_surface()
 def test_a_boundary_that_encloses_nothing_is_refused_with_the_reason(boundary, says):
     with pytest.raises(GeometryError, match=says):
         TrimmedSurface(surface=PLANE, boundary=boundary)
+
+
+def hole(u, v, radius, angle=2.0 * np.pi):
+    """A clockwise circle."""
+    return (arc((u, v), radius, angle, angle - 2.0 * np.pi),)
+
+
+def test_a_disc_with_holes_lacks_their_areas_and_their_points():
+    boundary, holes = (circle((0.5, 0.5), 0.45),), (hole(0.35, 0.4, 0.1), hole(0.7, 0.6, 0.05, 1.0))
+    face = TrimmedSurface(surface=PLANE, boundary=boundary, holes=holes)
+    assert np.isclose(face.area(), np.pi * (0.45**2 - 0.1**2 - 0.05**2), rtol=1e-12)
+    assert np.isclose(face.parametric_area, face.area(), rtol=1e-12)
+    u, v = np.random.default_rng(0).random((2, 5000))
+    inside = (u - 0.5) ** 2 + (v - 0.5) ** 2 < 0.45**2
+    inside &= ((u - 0.35) ** 2 + (v - 0.4) ** 2 > 0.1**2) & ((u - 0.7) ** 2 + (v - 0.6) ** 2 > 0.05**2)
+    assert np.array_equal(face.contains(u, v), inside)
+    assert face.contains(*face.interior_points(500)).all()
+    moment = face.integral(lambda u, v: u + 0.0 * v)
+    assert np.isclose(moment, np.pi * (0.45**2 * 0.5 - 0.1**2 * 0.35 - 0.05**2 * 0.7), rtol=1e-12)
+    assert "outside 2 holes" in repr(face)
+    assert face.curves == (*boundary, *holes[0], *holes[1])
+
+
+def test_what_a_hole_lacks_is_what_its_own_face_has():
+    boundary, cut = frame(0.05, 0.99, 0.1, 0.95), blob()
+    whole, inside = (TrimmedSurface(surface=KNOTTED, boundary=loop) for loop in (boundary, (cut,)))
+    rest = TrimmedSurface(surface=KNOTTED, boundary=boundary, holes=((reversed(cut),),))
+    assert np.isclose(rest.area() + inside.area(), whole.area(), rtol=1e-12)
+
+
+def test_a_hole_in_the_wall_of_a_cylinder_carries_an_imaginary_step():
+    """A window of a cylinder, in which a rectangle of heights and angles is missing."""
+    wall = Revolution(meridian=segment((0.0, 2.0), (3.0, 2.0)), start=-0.5, end=1.1)
+
+    def rectangle(x, start, end):
+        low, high = (wall.v(np.asarray(angle)) for angle in (start, end))
+        return frame(x[0] / 3.0, x[1] / 3.0, low, high)
+
+    around = rectangle((0.5, 2.5), -0.2, 0.9)
+    missing = tuple(reversed(side) for side in rectangle((1.0, 1.0 + 0.7 * (1.0 + 1e-30j)), 0.1, 0.4)[::-1])
+    face = TrimmedSurface(surface=wall.surface(), boundary=around, holes=(missing,), revolution=wall)
+    area = face.area()
+    assert np.isclose(area.real, 2.0 * (2.0 * 1.1 - 0.7 * 0.3), rtol=1e-12)
+    assert np.isclose(area.imag / 1e-30, -2.0 * 0.7 * 0.3, rtol=1e-11)
+
+
+@pytest.mark.parametrize(
+    ("holes", "says"),
+    [
+        (((),), "a hole 1 of curves"),
+        ((frame(0.4, 0.6, 0.4, 0.6)[:3],), "hole 1 curve 0 starts"),
+        ((hole(0.5, 0.5, 0.1), (circle((0.8, 0.5), 0.1),)), "hole 2 encloses .* must run clockwise"),
+        ((hole(0.9, 0.5, 0.2),), "hole 1 passes"),
+        ((hole(0.5, 0.5, 0.2), hole(0.5, 0.5, 0.1)), "inside another hole"),
+    ],
+)
+def test_a_hole_that_is_none_is_refused_with_the_reason(holes, says):
+    with pytest.raises(GeometryError, match=says):
+        TrimmedSurface(surface=PLANE, boundary=frame(0.0, 1.0, 0.0, 1.0), holes=holes)

@@ -1,7 +1,8 @@
-"""The boundary of a trimmed surface as a closed loop of plane curves, and which points it encloses."""
+"""The loops of a trimmed surface as closed chains of plane curves, and which points they enclose."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,10 +17,10 @@ from bladewright.nurbs.domain import piece as part
 
 @dataclass(frozen=True, kw_only=True)
 class TrimLoop:
-    """A closed loop of plane curves cut into pieces on which v is monotone."""
+    """Closed loops of plane curves cut into pieces on which v is monotone."""
 
     curves: tuple[Curve, ...]
-    """the loop, of real parts"""
+    """the loops one after another, of real parts"""
     curve: NDArray[np.intp]
     """(k,) which curve a piece belongs to"""
     start: Reals
@@ -64,34 +65,33 @@ def meeting_parameters(curve: Curve, values_u: Reals, values_v: Reals) -> Reals:
     return np.concatenate([np.zeros(0), *met])
 
 
-def trim_loop(curves: Sequence[Curve]) -> TrimLoop:
-    """The closed loop of curves, of real parts, cut into pieces on which v is monotone."""
-    real = tuple(_real(curve) for curve in curves)
-    which: list[int] = []
+def trim_loop(loops: Sequence[Sequence[Curve]]) -> TrimLoop:
+    """Closed loops of curves, of real parts, cut into pieces on which v is monotone."""
+    real = tuple(_real(curve) for loop in loops for curve in loop)
     starts: list[Reals] = []
     ends: list[Reals] = []
-    for index, curve in enumerate(real):
+    for curve in real:
         cuts = np.unique(np.concatenate([curve.domain, curve.knots, coordinate_roots(curve, 1, 0.0, order=1)]))
-        which += [index] * (len(cuts) - 1)
         starts.append(cuts[:-1])
         ends.append(cuts[1:])
-    curve_of, start, end = np.array(which), np.concatenate(starts), np.concatenate(ends)
-    v_start = np.array([real[i](t)[1] for i, t in zip(curve_of, start, strict=True)])
+    heights = [curve(start)[:, 1] for curve, start in zip(real, starts, strict=True)]
+    of_loops = np.cumsum([0, *map(len, loops)])
+    around = [np.concatenate(heights[first:last]) for first, last in pairwise(of_loops)]
     points = np.concatenate([curve.control_points for curve in real])
     return TrimLoop(
         curves=real,
-        curve=curve_of,
-        start=start,
-        end=end,
-        v_start=v_start,
-        v_end=np.roll(v_start, -1),
+        curve=np.repeat(np.arange(len(real)), list(map(len, starts))),
+        start=np.concatenate(starts),
+        end=np.concatenate(ends),
+        v_start=np.concatenate(around),
+        v_end=np.concatenate([np.roll(loop, -1) for loop in around]),
         low=points.min(axis=0),
         high=points.max(axis=0),
     )
 
 
 def contained(loop: TrimLoop, u: Reals, v: Reals) -> NDArray[np.bool_]:
-    """Whether points (m,) lie inside: a ray towards greater u crosses the loop an odd number of times."""
+    """Whether points (m,) lie inside: a ray towards greater u crosses the loops an odd number of times."""
     inside = np.zeros(len(u), dtype=bool)
     for piece in range(len(loop.curve)):
         curve, start, end = loop.curves[loop.curve[piece]], loop.start[piece], loop.end[piece]

@@ -34,7 +34,9 @@ DRAWS = 4_000_000
 class TrimmedSurface(FrozenRecord):
     """The part of `surface` inside `boundary`, a closed loop of curves in (u, v) that runs counter-clockwise.
 
-    The loop does not cross itself. Raises GeometryError where it is not plane, not closed or runs clockwise.
+    `holes` are closed loops inside it that run clockwise, so that the face is to the left of every curve. No loop
+    crosses itself or another. Raises GeometryError where one is not plane, not closed, runs the other way or lies
+    outside.
     """
 
     surface: Surface
@@ -43,52 +45,66 @@ class TrimmedSurface(FrozenRecord):
     """curves of dimension 2, each ending where the next one starts"""
     revolution: Revolution | None = None
     """how the surface was revolved, where it is one of revolution about the x axis"""
+    holes: tuple[tuple[Curve, ...], ...] = ()
+    """loops of such curves, inside which there is no surface"""
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "boundary", tuple(self.boundary))
-        if not self.boundary or any(curve.control_points.shape[1:] != (2,) for curve in self.boundary):
-            shapes = [curve.control_points.shape for curve in self.boundary]
+        object.__setattr__(self, "holes", tuple(map(tuple, self.holes)))
+        _check_closed(self.boundary, "boundary")
+        area = _enclosed(self.boundary, ORIENTING).real
+        if not area > 0.0:
             raise GeometryError(
-                f"a boundary of curves of shapes {shapes} was given: at least one, each (n, 2) in (u, v)"
+                f"the boundary encloses an area of {area:g} in (u, v): it must run counter-clockwise; reverse its "
+                "curves and their order"
             )
-        ends = [(curve.control_points[0].real, curve.control_points[-1].real) for curve in self.boundary]
-        extent = float(np.ptp(np.concatenate([curve.control_points.real for curve in self.boundary]), axis=0).max())
-        for index, (_, end) in enumerate(ends):
-            following = (index + 1) % len(ends)
-            gap = float(length(ends[following][0] - end))
-            if gap > CLOSED * extent:
-                raise GeometryError(
-                    f"boundary curve {following} starts {gap:g} away from the end of curve {index}: at most "
-                    f"{CLOSED * extent:g} is allowed; reorder, reverse or close the chain"
-                )
-        if not self._enclosed(ORIENTING).real > 0.0:
+        for number, hole in enumerate(self.holes, 1):
+            self._check_hole(hole, f"hole {number}")
+
+    def _check_hole(self, hole: tuple[Curve, ...], name: str) -> None:
+        _check_closed(hole, name)
+        area = _enclosed(hole, ORIENTING).real
+        if not area < 0.0:
             raise GeometryError(
-                f"the boundary encloses an area of {self.parametric_area.real:g} in (u, v): it must run "
-                "counter-clockwise; reverse its curves and their order"
+                f"{name} encloses an area of {area:g} in (u, v): it must run clockwise; reverse its curves and their "
+                "order"
+            )
+        points = np.concatenate([curve(breaks(curve.knots)).real for curve in hole])
+        others = trim_loop([loop for loop in self.loops if loop is not hole])
+        outside = ~contained(others, points[:, 0], points[:, 1])
+        if outside.any():
+            u, v = points[np.argmax(outside)]
+            raise GeometryError(
+                f"{name} passes (u, v) = ({u:g}, {v:g}), which is outside the boundary or inside another hole: holes "
+                "lie apart from each other within the boundary; move it or enlarge the boundary"
             )
 
     def __repr__(self) -> str:
-        return f"<TrimmedSurface inside {len(self.boundary)} curves, of {self.surface!r}>"
+        holes = {0: "", 1: " and outside a hole"}.get(len(self.holes), f" and outside {len(self.holes)} holes")
+        return f"<TrimmedSurface inside {len(self.boundary)} curves{holes}, of {self.surface!r}>"
+
+    @property
+    def loops(self) -> tuple[tuple[Curve, ...], ...]:
+        """The boundary and the holes: closed loops with the face to their left."""
+        return (self.boundary, *self.holes)
+
+    @property
+    def curves(self) -> tuple[Curve, ...]:
+        """The curves of all loops, one loop after another."""
+        return tuple(curve for loop in self.loops for curve in loop)
 
     def __call__(self, u: ArrayLike, v: ArrayLike) -> Array:
-        """Points (..., d) of the surface, inside the boundary or not."""
+        """Points (..., d) of the surface, on the face or not."""
         return self.surface(u, v)
 
     def normal(self, u: ArrayLike, v: ArrayLike) -> Array:
-        """Unit normals (..., 3) of the surface, inside the boundary or not."""
+        """Unit normals (..., 3) of the surface, on the face or not."""
         return self.surface.normal(u, v)
 
     @cached_property
     def parametric_area(self) -> Array:
-        """Area () enclosed by the boundary in the (u, v) plane."""
-        return converged_quadrature(self._enclosed)
-
-    def _enclosed(self, order: int) -> Array:
-        enclosed: Array = np.zeros(())
-        for curve in self.boundary:
-            t, weights = panels(breaks(curve.knots), order)
-            enclosed = enclosed + np.sum(weights * curve(t)[:, 0] * curve.derivative(t)[:, 1])
-        return enclosed
+        """Area () of the face in the (u, v) plane."""
+        return converged_quadrature(lambda order: _enclosed(self.curves, order))
 
     def area(self) -> Array:
         """Area () of the trimmed piece of a surface in space."""
@@ -100,12 +116,12 @@ class TrimmedSurface(FrozenRecord):
         return self.integral(density)
 
     def integral(self, density: Callable[[Array, Array], Array], order: int | None = None) -> Array:
-        """Integral (k) of density(u, v) (..., k) du dv over the region inside the boundary.
+        """Integral (k) of density(u, v) (..., k) du dv over the face.
 
-        Green's theorem: the sum over the boundary of F dv, with F the integral of the density along u from the
-        boundary's smallest u. Both quadratures break at the surface's knots, the outer one also at the boundary's;
+        Green's theorem: the sum over the loops of F dv, with F the integral of the density along u from the
+        boundary's smallest u. Both quadratures break at the surface's knots, the outer one also at the loops';
         `order` Gauss points a panel, or, where None, as many as the result needs to converge to 1e-13 of itself.
-        The parameters are complex where the boundary is; `Surface` carries their imaginary parts to first order.
+        The parameters are complex where a loop is; `Surface` carries their imaginary parts to first order.
         """
         return (
             converged_quadrature(lambda points: self._green(density, points))
@@ -114,12 +130,12 @@ class TrimmedSurface(FrozenRecord):
         )
 
     def contains(self, u: ArrayLike, v: ArrayLike) -> NDArray[np.bool_]:
-        """Whether points (...) of the parameter plane lie inside the boundary; on the boundary itself, either."""
+        """Whether points (...) of the parameter plane lie on the face; on a loop itself, either."""
         at_u, at_v = np.broadcast_arrays(np.asarray(u, dtype=np.float64), np.asarray(v, dtype=np.float64))
         return contained(self._loop, at_u.ravel(), at_v.ravel()).reshape(at_u.shape)
 
     def interior_points(self, count: int, seed: int = 0) -> tuple[Reals, Reals]:
-        """Random parameters u, v (count,), uniform in the (u, v) plane inside the boundary, the same for the same seed.
+        """Random parameters u, v (count,), uniform in the (u, v) plane on the face, the same for the same seed.
 
         Raises GeometryError where the region is too thin for four million draws in its box.
         """
@@ -132,7 +148,7 @@ class TrimmedSurface(FrozenRecord):
             batch = min(int(1.2 * (count - inside) / share) + 16, DRAWS - drawn)
             if batch <= 0:
                 raise GeometryError(
-                    f"{inside} of {count} points inside a boundary were found in {DRAWS} draws: it fills {share:g} "
+                    f"{inside} of {count} points of a trimmed face were found in {DRAWS} draws: it fills {share:g} "
                     "of its box in (u, v); ask for fewer points"
                 )
             sites = low + (high - low) * random.random((batch, 2))
@@ -143,10 +159,10 @@ class TrimmedSurface(FrozenRecord):
 
     @cached_property
     def _loop(self) -> TrimLoop:
-        return trim_loop(self.boundary)
+        return trim_loop(self.loops)
 
     def _green(self, density: Callable[[Array, Array], Array], order: int) -> Array:
-        """Green's theorem: lines across the region, along the direction with fewer knots, summed over its boundary."""
+        """Green's theorem: lines across the face, along the direction with fewer knots, summed over its loops."""
         knots = breaks(self.surface.knots_u), breaks(self.surface.knots_v)
         within = [
             inner[(inner > low) & (inner < high)]
@@ -157,7 +173,7 @@ class TrimmedSurface(FrozenRecord):
         tops = np.append(starts[1:], np.inf)
         nodes, weights = gauss(order)
         total: Array = np.zeros(())
-        for curve in self.boundary:
+        for curve in self.curves:
             ends = np.concatenate([breaks(curve.knots), meeting_parameters(curve, knots[0][1:-1], knots[1][1:-1])])
             t, outer = panels(np.unique(ends), order)
             place = curve(t)
@@ -174,3 +190,29 @@ class TrimmedSurface(FrozenRecord):
             scale = (inner * weights) * rise[row][:, None]
             total = total + np.tensordot(scale, values, axes=((0, 1), (0, 1)))
         return total
+
+
+def _check_closed(loop: tuple[Curve, ...], name: str) -> None:
+    """Raise GeometryError unless a loop is a closed chain of plane curves."""
+    if not loop or any(curve.control_points.shape[1:] != (2,) for curve in loop):
+        shapes = [curve.control_points.shape for curve in loop]
+        raise GeometryError(f"a {name} of curves of shapes {shapes} was given: at least one, each (n, 2) in (u, v)")
+    ends = [(curve.control_points[0].real, curve.control_points[-1].real) for curve in loop]
+    extent = float(np.ptp(np.concatenate([curve.control_points.real for curve in loop]), axis=0).max())
+    for index, (_, end) in enumerate(ends):
+        following = (index + 1) % len(ends)
+        gap = float(length(ends[following][0] - end))
+        if gap > CLOSED * extent:
+            raise GeometryError(
+                f"{name} curve {following} starts {gap:g} away from the end of curve {index}: at most "
+                f"{CLOSED * extent:g} is allowed; reorder, reverse or close the chain"
+            )
+
+
+def _enclosed(curves: tuple[Curve, ...], order: int) -> Array:
+    """Area () to the left of closed loops, by Gauss points on their knot spans."""
+    enclosed: Array = np.zeros(())
+    for curve in curves:
+        t, weights = panels(breaks(curve.knots), order)
+        enclosed = enclosed + np.sum(weights * curve(t)[:, 0] * curve.derivative(t)[:, 1])
+    return enclosed

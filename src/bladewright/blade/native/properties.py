@@ -181,7 +181,7 @@ def _end(end: TrimmedSurface) -> tuple[Array, Array]:
     """Area and area vector (3,) of a trimmed end, along its own normal."""
     size: Array = np.zeros(())
     vector: Array = np.zeros(3)
-    for curve in end.boundary:
+    for curve in end.curves:
         s, weight = panels(breaks(curve.knots), OUTLINE_POINTS)
         uv, slope = curve(s), curve.derivative(s)
         point = end.surface(uv[:, 0], uv[:, 1])
