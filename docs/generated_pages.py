@@ -44,7 +44,7 @@ def key_reference(family):
 
 def _key(key, picture):
     default = "required" if key.required else ("" if key.default in (None, "", []) else f"default `{key.default}`")
-    unit = {"": "", "-": "no unit", "length": "in `length_unit`", "deg": "degrees"}[key.unit]
+    unit = {"": "", "-": "no unit", "length": "in `length_unit`", "deg": "degrees"}.get(key.unit, f"in {key.unit}")
     kinds = "kinds " + ", ".join(f"[{each}](#{each.lower()})" for each in key.holds) if key.holds else ""
     facts = "; ".join(each for each in (key.limits, unit, kinds, default or "optional") if each)
     lines = [f"### {key.name}", "", _sentence(key.meaning), "", f"*{facts}*", ""]
@@ -55,7 +55,7 @@ def _key(key, picture):
 
 
 def _sentence(text):
-    text = re.sub(r"\s*\[(?:-|deg|length)\]$", "", " ".join(text.split()))
+    text = re.sub(r"\s*\[(?:-|deg|length|kg/m\^3)\]$", "", " ".join(text.split()))
     return f"{text[0].upper()}{text[1:]}." if text else ""
 
 

@@ -14,6 +14,7 @@ Design files     read_design, write_design; design_from_table (TableDesign)
 Blades           UnifiedBlade in a Channel; CurvatureMeanlineBlade, SuctionPressureBlade, CamberAngleBlade,
                  ProfileBlade, WedgeDiffuserBlade in a FlowPath with Stacking; prismatic
 Meridional       ThroughPoints, ControlPolygon, StraightsAndArcs
+As a part        Fillet with FilletRadii; Cut of AtRadius, AtX or a meridional curve; Disc with an Outline
 2D sections      UnifiedSection, CurvatureMeanlineSection, SuctionPressureSection, CamberAngleSection, ProfileSection,
                  WedgeDiffuserSection
 Parts of them    CurvatureMeanline, SuctionPressure, CamberAngle, WedgeDiffuser

@@ -2,12 +2,19 @@
 
 from . import cad as cad
 from . import meshing as meshing
+from .blade.design.cut import AtRadius as AtRadius
+from .blade.design.cut import AtX as AtX
+from .blade.design.cut import Cut as Cut
+from .blade.design.disc import Disc as Disc
+from .blade.design.disc import Outline as Outline
 from .blade.design.families import CamberAngleBlade as CamberAngleBlade
 from .blade.design.families import CurvatureMeanlineBlade as CurvatureMeanlineBlade
 from .blade.design.families import ProfileBlade as ProfileBlade
 from .blade.design.families import SuctionPressureBlade as SuctionPressureBlade
 from .blade.design.families import WedgeDiffuserBlade as WedgeDiffuserBlade
 from .blade.design.families import prismatic as prismatic
+from .blade.design.fillet import Fillet as Fillet
+from .blade.design.fillet import FilletRadii as FilletRadii
 from .blade.design.flow_path import Channel as Channel
 from .blade.design.flow_path import FlowPath as FlowPath
 from .blade.design.meridional_curve import ControlPolygon as ControlPolygon

@@ -110,7 +110,7 @@ def _held(entry: dict[str, Any]) -> Iterator[str]:
 
 
 def _laws(entry: dict[str, Any]) -> int:
-    if any(arm.get("type") == "array" and "items" in arm for arm in _arms(entry)):
+    if any(arm.get("$ref", "").endswith("/Stations") for arm in _arms(entry)):
         return 1
     return 2 if "items" in entry and _laws(entry["items"]) else 0
 

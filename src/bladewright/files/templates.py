@@ -66,7 +66,7 @@ def _body(table: Table, given: Mapping[str, Any] | None, path: str, found: Mappi
 
 def _is_table(key: Key, found: Mapping[str, Table]) -> bool:
     """Whether a key is written as a [table]; curves of two or three keys and lists of tables stand on one line."""
-    return len(key.holds) == 1 or any(_tag(found[each]) for each in key.holds)
+    return key.limits == "a table" or any(_tag(found[each]) for each in key.holds)
 
 
 def _tag(table: Table) -> Key | None:
@@ -86,10 +86,12 @@ def _kind(key: Key, given: Mapping[str, Any] | None, found: Mapping[str, Table])
 
 def _comment(key: Key, found: Mapping[str, Table]) -> Iterator[str]:
     """What a key means, and below it what it may be and what it is where it is left out."""
-    unit = {"length": " [length_unit]", "deg": " [deg]", "-": " [-]"}.get(key.unit, "")
+    unit = f" [{key.unit.replace('length', 'length_unit')}]" if key.unit else ""
     values = " or ".join(_written(found[each]) for each in key.holds) if len(key.holds) > 1 else key.limits
+    if len(key.holds) == 1 and not _is_table(key, found):
+        values = values.replace("a table", _written(found[key.holds[0]]))
     default = "" if key.default in (None, "", []) else f"; default {inline(key.default)}"
-    yield from _wrapped(re.sub(r"\s*\[(-|deg|length)\]$", "", " ".join(key.meaning.split())), "# ")
+    yield from _wrapped(re.sub(r"\s*\[(-|deg|length|kg/m\^3)\]$", "", " ".join(key.meaning.split())), "# ")
     if len(key.choices) != 1 and values not in ("a table", "text"):
         yield from _wrapped(f"{values}{unit}{default}", "#   = ")
 
@@ -115,8 +117,11 @@ def _placeholder(key: Key, found: Mapping[str, Table]) -> Any:
         return key.default
     if key.choices:
         return key.choices[0]
-    if key.holds:
-        return {found[key.holds[0]].keys[0].name: [[0.0, 1.0], [1.0, 2.0]]}
+    if key.limits.startswith("a table"):
+        first = found[key.holds[0]].keys[0]
+        return {first.name: _placeholder(first, found)}
+    if key.limits.startswith("a list: each [x, r]"):
+        return [[0.0, 1.0], [1.0, 2.0], [2.0, 2.0]]
     if key.laws or "number" in key.limits:
         return [key.allowed] * 3 if key.laws == 2 else key.allowed
     return [] if key.limits.startswith("a list") else ""

@@ -194,8 +194,8 @@ def _unknown_key(place: _Place) -> str:
     name = place.path.rpartition(".")[2]
     own = sorted(path for path in key_paths(place.kind) if path.rpartition(".")[2] == name)
     if place.path in own:
-        tags_of = " or ".join(sorted(key_paths(place.kind)[place.path]))
-        return f"{place.path} does not exist here: it belongs to {tags_of}"
+        tags_of = " or ".join(sorted(key_paths(place.kind)[place.path])) or "another kind of this table"
+        return f"{place.path} does not exist here: it belongs to {tags_of}; known here are {', '.join(place.names)}"
     if own:
         return f"{place.path} does not exist: in this family it is {' or '.join(own)}"
     families = [family for family, kind in FAMILIES.items() if place.path in key_paths(kind)]

@@ -5,25 +5,24 @@ from __future__ import annotations
 from dataclasses import dataclass, fields
 from typing import Annotated
 
-import numpy as np
-
 from bladewright.blade.design.meridional_curve import ControlPolygon, StraightsAndArcs, ThroughPoints
-from bladewright.designs import Part, parameter
+from bladewright.designs import Limits, Part, parameter
 from bladewright.errors import DesignError
 from bladewright.section import checks
 from bladewright.section.tagged_unions import ByKey
+
+RADIUS = Limits(0.0, float("inf"), "a radius must be positive")
 
 
 @dataclass(frozen=True, kw_only=True)
 class AtRadius(Part):
     """A cylinder about the machine axis, or a plane of constant z in a cascade."""
 
-    radius: float = parameter("length")
+    radius: float = parameter("length", limits=RADIUS)
     """its radius, or z [length]"""
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "radius", checks.number("radius", self.radius))
-        checks.between("radius", self.radius, 0.0, np.inf, "a radius must be positive")
+        checks.parameters(self)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -34,7 +33,7 @@ class AtX(Part):
     """its axial place [length]"""
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "x", checks.number("x", self.x))
+        checks.parameters(self)
 
 
 CutCurve = Annotated[AtRadius | AtX | ThroughPoints | ControlPolygon | StraightsAndArcs, ByKey()]

@@ -7,9 +7,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from bladewright.blade.design.meridional_curve import StraightsAndArcs
-from bladewright.designs import Part, Points, parameter
+from bladewright.designs import Limits, Part, Points, parameter
 from bladewright.errors import DesignError
 from bladewright.section import checks
+
+SIZE = Limits(0.0, float("inf"), "it must be positive")
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -49,12 +51,12 @@ class Disc(Part):
 
     outline: Outline | None = None
     """its meridional outline, from the wall upstream of the blades to the wall downstream of them"""
-    thickness: float | None = parameter("length", default=None)
+    thickness: float | None = parameter("length", limits=SIZE, default=None)
     """instead of an outline: the thickness of a rim along the wall [length]"""
-    upstream: float | None = parameter("length", default=None)
+    upstream: float | None = parameter("length", limits=SIZE, default=None)
     """how far a rim reaches upstream of the blade's leading edge along the wall; a tenth of the blade's length where
     not given [length]"""
-    downstream: float | None = parameter("length", default=None)
+    downstream: float | None = parameter("length", limits=SIZE, default=None)
     """how far a rim reaches downstream of the blade's trailing edge along the wall; a tenth of the blade's length where
     not given [length]"""
 
@@ -62,11 +64,7 @@ class Disc(Part):
         if (self.outline is None) == (self.thickness is None):
             both = "neither is" if self.outline is None else "both are"
             raise DesignError(f"outline or thickness: {both} given; give one of the two")
-        for name in ("thickness", "upstream", "downstream"):
-            value = getattr(self, name)
-            if value is None:
-                continue
-            if name != "thickness" and self.outline is not None:
+        for name in ("upstream", "downstream"):
+            if getattr(self, name) is not None and self.outline is not None:
                 raise DesignError(f"{name} is given beside an outline, whose ends say how far it reaches: drop it")
-            object.__setattr__(self, name, checks.number(name, value))
-            checks.between(name, value, 0.0, np.inf, "it must be positive")
+        checks.parameters(self)

@@ -2,16 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from typing import Annotated, ClassVar, Literal
 
-import numpy as np
-
-from bladewright.designs import ByShape, Part, parameter
+from bladewright.designs import ByShape, Limits, Part, parameter
 from bladewright.errors import DesignError
 from bladewright.section import checks
 
-POSITIVE = "a fillet's size must be positive; leave the fillet out where there is none"
+SIZE = Limits(0.0, float("inf"), "a fillet's size must be positive; leave the fillet out where there is none")
 KINDS = ("radius", "ellipse", "curvature")
 ELLIPSE = ("on_blade", "on_wall")
 
@@ -22,22 +20,21 @@ class FilletRadii(Part):
 
     inline: ClassVar[bool] = True
 
-    leading_edge: float = parameter("length")
+    leading_edge: float = parameter("length", limits=SIZE)
     """radius at the leading edge [length]"""
-    trailing_edge: float = parameter("length")
+    trailing_edge: float = parameter("length", limits=SIZE)
     """radius at the trailing edge [length]"""
-    upper: float | None = parameter("length", default=None)
+    upper: float | None = parameter("length", limits=SIZE, default=None)
     """radius in the middle of the upper side [length]"""
-    lower: float | None = parameter("length", default=None)
+    lower: float | None = parameter("length", limits=SIZE, default=None)
     """radius in the middle of the lower side [length]"""
-    suction_side: float | None = parameter("length", default=None)
+    suction_side: float | None = parameter("length", limits=SIZE, default=None)
     """instead of upper or lower, where the design says which is the suction side [length]"""
-    pressure_side: float | None = parameter("length", default=None)
+    pressure_side: float | None = parameter("length", limits=SIZE, default=None)
     """instead of the other [length]"""
 
     def __post_init__(self) -> None:
-        for each in fields(self):
-            _positive(self, each.name)
+        checks.parameters(self)
         sides = ("upper", "lower"), ("suction_side", "pressure_side")
         named = tuple(name for pair in sides for name in pair if getattr(self, name) is not None)
         if named not in sides:
@@ -62,12 +59,12 @@ class Fillet(Part):
 
     kind: Literal["radius", "ellipse", "curvature"] = "radius"
     """the cross-section: an arc, an ellipse, or a curve with continuous curvature"""
-    radius: Radius | None = parameter("length", default=None)
+    radius: Radius | None = parameter("length", limits=SIZE, default=None)
     """radius of the rolling ball: a number, control points of a law from leading to trailing edge, alike on both sides,
     or a table of the radii at leading_edge, upper, trailing_edge and lower [length]"""
-    on_blade: float | None = parameter("length", default=None)
+    on_blade: float | None = parameter("length", limits=SIZE, default=None)
     """height of an ellipse on the blade, where the two stand at a right angle [length]"""
-    on_wall: float | None = parameter("length", default=None)
+    on_wall: float | None = parameter("length", limits=SIZE, default=None)
     """width of an ellipse on the wall, where the two stand at a right angle [length]"""
 
     def __post_init__(self) -> None:
@@ -89,6 +86,10 @@ def _positive(part: Part, name: str) -> None:
     value = getattr(part, name)
     if value is None:
         return
+    if checks.is_sequence(value) and len(value) == 0:
+        raise DesignError(
+            f"{name} is an empty list: give a number, or one radius or more from leading to trailing edge"
+        )
     value = checks.control_points(name, value)
-    checks.between(name, value, 0.0, np.inf, POSITIVE)
+    checks.between(name, value, SIZE.low, SIZE.high, SIZE.cure)
     object.__setattr__(part, name, value)
