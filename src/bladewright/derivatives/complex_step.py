@@ -19,6 +19,7 @@ import numpy as np
 from bladewright.blade.design.row_design import RowDesign
 from bladewright.blade.native.blade import Blade
 from bladewright.blade.native.end_faces import trimmed_ends
+from bladewright.blade.native.finishing import finished
 from bladewright.blade.native.interpolation import InterpolationData, interpolation_data, native_sides, sides_through
 from bladewright.blade.native.knots import Knots
 from bladewright.blade.native.properties import blade_moments, middle_of, moment_gradient
@@ -134,9 +135,18 @@ def built(design: Design, knots: Any = None) -> Any:
 def stepped(design: Design, base: Any, paths: Sequence[str]) -> Iterator[Any]:
     """What the design builds with a complex step on each parameter in turn, at the knots of `base`, its build.
 
-    A blade of two sides is made from its nets and their derivatives, and its ends only when they are used.
+    A blade of two sides is made from its nets and their derivatives, and its ends only when they are used. One that is
+    cut or filleted is so made from the plain blade, its contacts with surfaces by one more of Newton's steps.
     """
     values = design.parameters()
+    if is_finished(base):
+        plain = base.plain
+        own = plain.design.parameters()
+        carrying = stepped(plain.design, plain, [path for path in paths if path in own])
+        for path in paths:
+            blade = next(carrying) if path in own else plain
+            yield finished(blade, base.design.changed(path, values[path] + STEP * 1j), base.knots)
+        return
     if not two_sided(base):
         for path in paths:
             yield built(design.changed(path, values[path] + STEP * 1j), getattr(base, "knots", None))
@@ -155,6 +165,13 @@ def varied(design: Design, base: Any, changes: Sequence[Mapping[str, complex]]) 
 
     For small changes: what a build chooses besides knots is taken from `base` too.
     """
+    if is_finished(base):
+        plain = base.plain
+        own = plain.design.parameters()
+        kept = [{path: value for path, value in each.items() if path in own} for each in changes]
+        for blade, each in zip(varied(plain.design, plain, kept), changes, strict=True):
+            yield finished(blade, base.design.changed(each), base.knots)
+        return
     if not two_sided(base):
         for each in changes:
             yield built(design.changed(each), getattr(base, "knots", None))
@@ -169,7 +186,16 @@ def varied(design: Design, base: Any, changes: Sequence[Mapping[str, complex]]) 
 
 def two_sided(built: Any) -> TypeGuard[Blade]:
     """Whether it is a blade whose faces are two sides and two ends, without faces of blunt edges."""
-    return isinstance(built, Blade) and set(built.surfaces) == {"upper", "lower", *built.design.ends}
+    return (
+        isinstance(built, Blade)
+        and built.before is None
+        and set(built.surfaces) == {"upper", "lower", *built.design.ends}
+    )
+
+
+def is_finished(built: Any) -> TypeGuard[Blade]:
+    """Whether it is a blade that is cut or filleted."""
+    return isinstance(built, Blade) and built.before is not None
 
 
 def varied_nets(blade: Blade, changes: Sequence[Mapping[str, complex]]) -> Nets:

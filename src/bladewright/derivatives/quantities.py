@@ -39,8 +39,8 @@ def _curves(section: Any) -> Array:
 
 
 def _chord(blade: Any) -> Array:
-    v, weight = panels(breaks(blade.knots.v), 3)
-    side = blade.sides[0]
+    v, weight = panels(breaks(blade.plain.knots.v), 3)
+    side = blade.plain.sides[0]
     return np.asarray(np.sum(weight * length(side(1.0, v) - side(0.0, v))))
 
 
@@ -54,12 +54,12 @@ BLADE: Mapping[str, NamedQuantity] = FrozenMapping(
             NamedQuantity(name="centroid", of=lambda blade: blade.properties.centroid, power=1),
             NamedQuantity(name="inertia", of=lambda blade: blade.properties.inertia, power=5),
             NamedQuantity(name="chord", of=_chord, power=1),
-            NamedQuantity(name="throat", of=lambda blade: throat(blade).area, power=2),
+            NamedQuantity(name="throat", of=lambda blade: throat(blade.plain).area, power=2),
         )
     }
 )
 """Quantities of a blade: its sides' control points; volume, area, centroid and inertia; the mean straight distance from
-leading to trailing edge; the area of the throat."""
+leading to trailing edge and the area of the throat, both before cuts and fillets."""
 SECTION: Mapping[str, NamedQuantity] = FrozenMapping(
     {
         each.name: each

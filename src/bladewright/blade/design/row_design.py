@@ -5,7 +5,7 @@ from __future__ import annotations
 from abc import abstractmethod
 from collections.abc import Iterable
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, ClassVar, Literal
+from typing import TYPE_CHECKING, Any, ClassVar, Literal, Self
 
 import numpy as np
 
@@ -102,6 +102,19 @@ class RowDesign(Design):
         check_range(self, "tolerance", 1e-9, 1e-2)
 
     @property
+    def plain(self) -> Self:
+        """The design of the blade before cuts and fillets: itself, where there are none.
+
+        A clearance at an end that is cut keeps its distance from the cut, so that the plain blade has none.
+        """
+        names = ["cut", "hub_fillet", "shroud_fillet"]
+        if self.cut is not None:
+            names += ["hub_clearance"] if self.cut.hub is not None else []
+            names += ["tip_clearance"] if self.cut.tip is not None else []
+        given = [name for name in names if getattr(self, name) is not None]
+        return self.changed(dict.fromkeys(given)) if given else self
+
+    @property
     def ends(self) -> tuple[str, str]:
         """Names of the blade's ends at v = 0 and v = 1: `hub` and `shroud`, or `tip` where there is a clearance."""
         hub = "hub" if self.hub_clearance is None else "tip"
@@ -146,10 +159,12 @@ class RowDesign(Design):
         Raises DesignError where the shape is impossible or the tolerance cannot be reached within 200 x 100 poles.
         """
         from bladewright.blade.native.blade import native_blade
+        from bladewright.blade.native.finishing import finished
 
-        exact = self.exact_blade(knots)
+        plain, own = self.plain, None if knots is None else knots.chain[0]
+        exact = plain.exact_blade(own)
         exact.check()
-        return native_blade(exact, knots, fine=fine)
+        return finished(native_blade(exact, own, fine=fine), self, knots)
 
     def _check_arrangement(self) -> None:
         """Refuse what the other arrangement has; bring what this one has to numbers."""

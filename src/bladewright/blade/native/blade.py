@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING, ClassVar, cast
 from warnings import warn
@@ -12,7 +12,7 @@ import numpy as np
 
 from bladewright.blade.exact.exact_blade import ExactBlade
 from bladewright.blade.native.conformance import Conformance, conformance_of
-from bladewright.blade.native.end_faces import EDGES, cap, parted, trimmed_ends
+from bladewright.blade.native.end_faces import EDGES, cap, end_row, parted, trimmed_ends
 from bladewright.blade.native.flow_sense import FlowSense, flow_sense
 from bladewright.blade.native.interpolation import edge_faces, native_sides
 from bladewright.blade.native.knots import DEGREE, MOST_POLES, Knots
@@ -29,8 +29,10 @@ from bladewright.display import Shown
 from bladewright.errors import DesignError
 from bladewright.frozen import FrozenMapping, FrozenRecord
 from bladewright.numerics.elementary import Array
-from bladewright.nurbs.basis import knots_with_joints
+from bladewright.nurbs.basis import Reals, knots_with_joints
+from bladewright.nurbs.curve import Curve
 from bladewright.nurbs.domain import extended, reparametrised
+from bladewright.nurbs.domain import reversed as run_back
 from bladewright.nurbs.mass_properties import MassProperties, mass_properties
 from bladewright.nurbs.surface import Surface
 from bladewright.nurbs.trimmed import TrimmedSurface
@@ -63,6 +65,14 @@ class Blade(FrozenRecord, Shown):
     """the blade that the design defines, which the surfaces interpolate"""
     moments: Callable[[], Array] | None = None
     """gives the moments of the volume, as `blade_moments` does, where they are known without quadrature"""
+    before: Blade | None = None
+    """the blade that this one was cut or filleted from"""
+    outlines: Mapping[str, tuple[Curve, ...]] = field(default_factory=lambda: FrozenMapping({}))
+    """closed chains of space curves [m] around end faces, where cuts or fillets have changed them"""
+    walls: Mapping[str, tuple[Curve, Reals]] = field(default_factory=lambda: FrozenMapping({}))
+    """meridians of the walls of ends that are cut, as `end_wall` gives them"""
+    edges: tuple[Curve, ...] = ()
+    """space curves [m] along which trimmed faces meet: arcs between the ends and the faces of edges that are cut"""
 
     def __repr__(self) -> str:
         faces, chord = ", ".join(self.surfaces), float(np.real(self.chord))
@@ -101,14 +111,39 @@ class Blade(FrozenRecord, Shown):
         return self.design.tolerance
 
     @property
+    def plain(self) -> Blade:
+        """The blade before cuts and fillets, which laws speak of: itself, where there are none."""
+        return self if self.before is None else self.before.plain
+
+    def end_outline(self, name: str) -> tuple[Curve, ...]:
+        """The closed chain of space curves [m] around an end face, in the order and sense of its boundary."""
+        if name in self.outlines:
+            return self.outlines[name]
+        row = -self.design.ends.index(name)
+        leading, trailing = (
+            [end_row(cast(Surface, self.surfaces[edge]), row)] if edge in self.surfaces else [] for edge in EDGES
+        )
+        upper, lower = (end_row(side, row) for side in self.sides)
+        return (lower, *map(run_back, trailing), run_back(upper), *leading)
+
+    def end_wall(self, name: str) -> tuple[Curve, Reals]:
+        """The meridian (x, r) [m] of the wall that an end lies on, and its inner knots: of the cut where it is cut.
+
+        The knots are those at which it loses derivatives, each as often as it occurs.
+        """
+        if name in self.walls:
+            return self.walls[name]
+        return self.plain.exact.end_wall(-self.design.ends.index(name))
+
+    @property
     def sides(self) -> tuple[Surface, Surface]:
         """The upper and the lower side."""
         return cast(Surface, self.surfaces["upper"]), cast(Surface, self.surfaces["lower"])
 
     @cached_property
     def approximation_error(self) -> ApproximationError:
-        """Where and how far the sides are from the exact blade between the sites."""
-        return approximation_error(self.exact, *self.sides)
+        """Where and how far the sides, before cuts and fillets, are from the exact blade between the sites."""
+        return approximation_error(self.exact, *self.plain.sides)
 
     @property
     def misfit(self) -> ApproximationError:
@@ -136,8 +171,11 @@ class Blade(FrozenRecord, Shown):
 
     @cached_property
     def conformance(self) -> Conformance:
-        """What the built surfaces keep of what the design asks for: angles, radii, smooth edges, ends on the walls."""
-        return conformance_of(self)
+        """What the built surfaces keep of what the design asks for: angles, radii, smooth edges, ends on the walls.
+
+        Before cuts and fillets.
+        """
+        return conformance_of(self.plain)
 
     @property
     def promises(self) -> Conformance:
@@ -152,6 +190,8 @@ class Blade(FrozenRecord, Shown):
         At the knots along the sections that this one has. A unified blade with a clearance is not cut: its laws run
         between its own ends.
         """
+        if self.before is not None:
+            return self.plain.uncut
         exact = self.exact.uncut
         if exact is self.exact:
             return self
@@ -186,19 +226,19 @@ class Blade(FrozenRecord, Shown):
 
         Metal angles, chord, thickness, throat, solidity, lean, sweep and more, each an attribute, (m,) in metres and
         radians; print it, or take `to_dict()` and `to_csv()`. Where a clearance cuts a blade from sections off,
-        stations are those of the uncut blade, and areas those of what is left. Raises DesignError where a station is
-        outside [0, 1].
+        stations are those of the uncut blade, and areas those of what is left. Those of the design's `cut`, and
+        fillets, are left out. Raises DesignError where a station is outside [0, 1].
 
         >>> import bladewright as bw
         >>> blade = bw.read_design("core-rotor.toml").build()  # doctest: +SKIP
         >>> blade.report([0.0, 0.5, 1.0]).solidity  # doctest: +SKIP
         """
-        return station_table(self, stations)
+        return station_table(self.plain, stations)
 
     @cached_property
     def flow_sense(self) -> FlowSense:
         """Which way the row turns, which side is the suction side, and what that rests on."""
-        return flow_sense(self)
+        return flow_sense(self.plain)
 
     @property
     def suction_side(self) -> str | None:
@@ -221,6 +261,11 @@ class Blade(FrozenRecord, Shown):
         """
         if not 0.0 < span <= 0.5:
             raise DesignError(f"an extension by {span:g} of the span was asked: it must be above 0 and at most 0.5")
+        if self.before is not None:
+            raise DesignError(
+                f"an extension by {span:g} of the span was asked of '{self.name}', which the design cuts or fillets: "
+                "leave cut, hub_fillet and shroud_fillet out where the blade is to be cut or filleted elsewhere"
+            )
         low, high = (0.0 if name == "tip" else span for name in self.design.ends)
         back = self.exact.survey.back
         sides = {name: parted(side, back) for name, side in zip(("upper", "lower"), self.sides, strict=True)}

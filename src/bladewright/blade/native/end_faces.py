@@ -13,7 +13,6 @@ from bladewright.numerics.roots import level_crossings
 from bladewright.nurbs.basis import Reals, greville, knots_with_joints
 from bladewright.nurbs.curve import Curve
 from bladewright.nurbs.domain import piece, reparametrised
-from bladewright.nurbs.domain import reversed as reversed_
 from bladewright.nurbs.domain import reversed as run_back
 from bladewright.nurbs.fit import interpolated
 from bladewright.nurbs.refine import inserted
@@ -199,14 +198,14 @@ def trimmed_ends(
     for wall, row in (("hub", 0), ("shroud", -1)):
         name, (meridian, inner) = exact.design.ends[row], exact.end_wall(row)
         outline = [
-            (_end(side, row), (places, own[row, part], across[row, part]))
+            (end_row(side, row), (places, own[row, part], across[row, part]))
             for side, part in ((upper, slice(None, len(places))), (lower, slice(len(places), None)))
         ]
         blunt = {}
         for edge, face in ({} if faces is None else faces).items():
             at = 0 if edge == "leading_edge" else len(places) - 1
             both, two = [at, len(places) + at], np.array([0.0, 1.0])
-            blunt[edge] = _end(face, row), (two, own[row, both], across[row, both])
+            blunt[edge] = end_row(face, row), (two, own[row, both], across[row, both])
         known = None if like is None else like[name]
         revolved = exact.mapping.revolved
         low, high = _stretch(across[row], wall, revolved=revolved) if known is None else _stretch_of(known)
@@ -222,12 +221,12 @@ def _trimmed(
     chord: float,
     like: TrimmedSurface | None,
 ) -> TrimmedSurface:
-    held = [None, None] if like is None else [reversed_(like.boundary[1]).knots, like.boundary[0].knots]
+    held = [None, None] if like is None else [run_back(like.boundary[1]).knots, like.boundary[0].knots]
     upper, lower = (followed(wall, *curve, chord, knots) for curve, knots in zip(outline, held, strict=True))
     faces = {edge: followed(wall, *curve, chord) for edge, curve in blunt.items()}
     boundary = [lower]
-    boundary += [reversed_(faces["trailing_edge"])] if "trailing_edge" in faces else []
-    boundary += [reversed_(upper)]
+    boundary += [run_back(faces["trailing_edge"])] if "trailing_edge" in faces else []
+    boundary += [run_back(upper)]
     boundary += [faces["leading_edge"]] if "leading_edge" in faces else []
     return TrimmedSurface(surface=wall.surface, boundary=tuple(boundary), revolution=wall.revolution)
 
@@ -252,10 +251,6 @@ def _stretch_of(end: TrimmedSurface) -> tuple[float, float]:
     return float(y[0]), float(y[-1])
 
 
-def _end(side: Surface, row: int) -> Curve:
-    return Curve(control_points=side.control_points[:, row], knots=side.knots_u, degree=side.degree_u)
-
-
 def cap(upper: Surface, lower: Surface, faces: Mapping[str, Surface], back: float | None, row: int) -> Surface:
     """The cap of the end at v = 0 (row 0) or v = 1 (row -1): v runs from the lower to the upper side's end.
 
@@ -263,8 +258,8 @@ def cap(upper: Surface, lower: Surface, faces: Mapping[str, Surface], back: floa
     bilinear patch. `faces` are those of blunt edges; `back` is the u from which both sides are one straight back face,
     across which the cap ends. Coons 1967; Farin 2002, Curves and Surfaces for CAGD, section 22.2.
     """
-    low, high = (_row_curve(side, row) for side in (lower, upper))
-    across = {name: run_back(_row_curve(face, row)) for name, face in faces.items()}
+    low, high = (end_row(side, row) for side in (lower, upper))
+    across = {name: run_back(end_row(face, row)) for name, face in faces.items()}
     if back is not None:
         across["trailing_edge"] = _end_to_end(piece(low, back, 1.0), run_back(piece(high, back, 1.0)))
         low, high = (reparametrised(piece(end, 0.0, back)) for end in (low, high))
@@ -317,7 +312,8 @@ def _end_to_end(first: Curve, second: Curve) -> Curve:
     )
 
 
-def _row_curve(face: Surface, row: int) -> Curve:
+def end_row(face: Surface, row: int) -> Curve:
+    """The end of a face at v = 0 (row 0) or v = 1 (row -1)."""
     return Curve(control_points=face.control_points[:, row], knots=face.knots_u, degree=face.degree_u)
 
 

@@ -5,21 +5,43 @@ The edges' two derivatives are built into the sides' control points.
 
 from collections.abc import Sequence
 from itertools import islice
-from typing import NamedTuple
+from typing import NamedTuple, Protocol
 
 import numpy as np
 
-from bladewright.blade.exact.section_stack import SectionStack
 from bladewright.blade.native.knots import DEGREE, Knots
 from bladewright.numerics.elementary import Array, concatenated
 from bladewright.numerics.solving import solved
-from bladewright.nurbs.basis import basis
+from bladewright.nurbs.basis import Reals, basis
 from bladewright.nurbs.surface import Surface
 from bladewright.section.native import interpolated_along_u
 from bladewright.section.outline import EdgeDerivatives
 
 
-def native_sides(sections: SectionStack, knots: Knots) -> tuple[Array, Array]:
+class SideStack(Protocol):
+    """What sides interpolate along curves of constant v: sections, or curves on other native sides."""
+
+    @property
+    def v(self) -> Reals:
+        """(m,) places along the span."""
+
+    def points(self, s: Reals) -> tuple[Array, Array]:
+        """Points (..., m, len(s), 3) [m] of the upper and the lower side."""
+
+    def leading_edge(self) -> EdgeDerivatives:
+        """The upper side at the leading edge, (..., m, 3) each."""
+
+    def trailing_edge(self) -> EdgeDerivatives:
+        """The upper side at the trailing edge."""
+
+    def lower_edges(self) -> tuple[EdgeDerivatives | None, EdgeDerivatives | None]:
+        """The lower side at both edges; None where it is the upper side's `mirrored`."""
+
+    def faces(self, w: Reals) -> dict[str, Array]:
+        """Points (..., m, len(w), 3) of the native faces of blunt edges by name, w from the upper to the lower side."""
+
+
+def native_sides(sections: SideStack, knots: Knots) -> tuple[Array, Array]:
     """Control nets (..., n_u, n_v, 3) of the upper and the lower side from sections at `knots.sites_v`.
 
     Across each edge the sides share the row P0, the rows P0 + D and P0 - D and the row of second derivatives E, so
@@ -42,7 +64,7 @@ class InterpolationData(NamedTuple):
     """the lower side at both edges where it does not mirror the upper one"""
 
 
-def interpolation_data(sections: SectionStack, knots: Knots) -> InterpolationData:
+def interpolation_data(sections: SideStack, knots: Knots) -> InterpolationData:
     """What the sides interpolate of sections at `knots.sites_v`."""
     edges = sections.leading_edge(), sections.trailing_edge()
     return InterpolationData(*edges, *sections.points(knots.sites_u), sections.lower_edges())
@@ -81,7 +103,7 @@ def lower_edges(
     return first, last
 
 
-def edge_faces(sections: SectionStack, upper: Surface, lower: Surface, knots: Knots) -> dict[str, Surface]:
+def edge_faces(sections: SideStack, upper: Surface, lower: Surface, knots: Knots) -> dict[str, Surface]:
     """The faces by name, from sections at `knots.sites_v`; u from the upper to the lower side, v along the span.
 
     They have the control points of both sides' edges. A face is one polynomial of degree 5 along u: it is as short as

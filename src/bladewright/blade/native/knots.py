@@ -1,5 +1,7 @@
 """Knots of the native sides: where the exact blade loses derivatives, and wherever else the tolerance asks for them."""
 
+from __future__ import annotations
+
 from collections.abc import Callable
 from dataclasses import dataclass
 
@@ -31,6 +33,8 @@ class Knots(FrozenRecord):
 
     bent_from: float | None = None
     """height from the uncut end, in v, at which curves of constant v begin to bend to a cut, where there is one"""
+    before: Knots | None = None
+    """of the blade that this one was cut or filleted from; None of a plain one"""
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "u", frozen(self.u))
@@ -39,6 +43,11 @@ class Knots(FrozenRecord):
             object.__setattr__(self, "tip", frozen(self.tip))
         if self.sections is not None:
             object.__setattr__(self, "sections", frozen(self.sections))
+
+    @property
+    def chain(self) -> tuple[Knots, ...]:
+        """Those of the plain blade, of the blade after its first cut, and so on to its own."""
+        return (self,) if self.before is None else (*self.before.chain, self)
 
     @property
     def sites_u(self) -> Reals:

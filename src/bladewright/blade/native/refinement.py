@@ -1,14 +1,14 @@
 """How far native sides are from the exact blade, and the knots that bring them within the tolerance."""
 
 from collections.abc import Callable
-from typing import NamedTuple
+from typing import NamedTuple, Protocol
 
 import numpy as np
 
 from bladewright.blade.exact.exact_blade import ExactBlade
-from bladewright.blade.native.interpolation import lower_edges
+from bladewright.blade.native.interpolation import SideStack, lower_edges
 from bladewright.blade.native.knots import DEGREE, MOST_POLES, Knots, clamped, refined, sites_through
-from bladewright.numerics.elementary import dot, length
+from bladewright.numerics.elementary import Array, dot, length
 from bladewright.nurbs.basis import Reals, basis, greville
 from bladewright.nurbs.surface import Surface
 from bladewright.section.native import interpolated_along_u
@@ -45,6 +45,34 @@ BETWEEN_KNOTS = (0.31, 0.74)
 """Places in a knot span at which the error of the built sides is measured: other ones than knots are chosen by."""
 
 
+class RefinedStack(SideStack, Protocol):
+    """Curves of constant v that tell how far sides are off the walls of their ends."""
+
+    def points_and_normals(self, s: Reals) -> tuple[tuple[Array, Array], tuple[Array, Array]]:
+        """Points of both sides, and unit normals of the walls at the first and the last curve, (m, len(s), 3) each."""
+
+
+class Interpolated(Protocol):
+    """A shape that native sides interpolate: the exact blade, or one that is cut from native sides."""
+
+    @property
+    def survey(self) -> RefinedStack:
+        """Curves from end to end on which knots along u are chosen."""
+
+    def sections(self, v: Reals) -> RefinedStack:
+        """Curves of constant v (m,)."""
+
+    @property
+    def given_spans(self) -> Reals:
+        """Places (n,) along the span at which the sides are to be these curves."""
+
+    def breaks_along_u(self) -> Reals:
+        """Inner knots that the sides need by s, each as often as derivatives are lost."""
+
+    def breaks_along_v(self) -> Reals:
+        """Inner knots that the sides need along the span, each as often as derivatives are lost."""
+
+
 def mean_chord(exact: ExactBlade) -> float:
     """Mean straight distance from leading to trailing edge along the span [m]."""
     sections = exact.survey
@@ -62,8 +90,22 @@ def refined_knots(exact: ExactBlade, chord: float, *, slack: float = 1.0, fine: 
     The limits beside the tolerance, of walls and of the edges' angles and radii, may be missed by
     `slack` times as much.
     """
-    tolerance, spans = exact.design.tolerance * chord, exact.given_spans
-    walls = slack * wall_tolerance(chord, fine=fine)
+    along_u, along_v, spans = refined_knots_of(
+        exact, exact.design.tolerance * chord, chord, walls=slack * wall_tolerance(chord, fine=fine), slack=slack
+    )
+    return Knots(
+        u=along_u, v=along_v, tip=exact.tip_knots, sections=spans if len(spans) else None, bent_from=exact.bent_from
+    )
+
+
+def refined_knots_of(
+    exact: Interpolated, tolerance: float, chord: float, *, walls: float, edges: float | None = None, slack: float = 1.0
+) -> tuple[Reals, Reals, Reals]:
+    """Knots along u and v with which native sides hold a shape, and the places along v that they interpolate besides.
+
+    Within the tolerance, their ends within `walls` of theirs, and their edges within `edges` where that is given [m].
+    """
+    spans = exact.given_spans
     start_u, start_v = clamped(exact.breaks_along_u()), exact.breaks_along_v()
     along_u = refined(start_u, _error_along_u(exact, tolerance, chord, spans, walls), MOST_POLES[0])
     if len(spans) and len(along_u) - DEGREE - 1 > MOST_POLES[0]:
@@ -72,11 +114,11 @@ def refined_knots(exact: ExactBlade, chord: float, *, slack: float = 1.0, fine: 
     # a knot at each given section makes sure of an interpolation site nearby
     own = [v for v in spans if 0.0 < v < 1.0 and np.min(np.square(start_v - v), initial=1.0) > SAME_SPAN**2]
     along_v = refined(
-        clamped(np.concatenate([start_v, own])), _error_along_v(exact, tolerance, along_u, spans, slack), MOST_POLES[1]
+        clamped(np.concatenate([start_v, own])),
+        _error_along_v(exact, (tolerance, tolerance if edges is None else edges), along_u, spans, slack),
+        MOST_POLES[1],
     )
-    return Knots(
-        u=along_u, v=along_v, tip=exact.tip_knots, sections=spans if len(spans) else None, bent_from=exact.bent_from
-    )
+    return along_u, along_v, spans
 
 
 def sections_limit(tolerance: float) -> float:
@@ -85,7 +127,7 @@ def sections_limit(tolerance: float) -> float:
 
 
 def _error_along_u(
-    exact: ExactBlade, tolerance: float, chord: float, spans: Reals, walls: float
+    exact: Interpolated, tolerance: float, chord: float, spans: Reals, walls: float
 ) -> Callable[[Reals, Reals], Reals]:
     """The error over what is allowed at places along u, by the knots, where sections are interpolated in u alone."""
     v = np.union1d(exact.survey.v, spans)
@@ -120,12 +162,16 @@ def _error_along_u(
 
 
 def _error_along_v(
-    exact: ExactBlade, tolerance: float, knots_u: Reals, through: Reals, slack: float
+    exact: Interpolated, tolerances: tuple[float, float], knots_u: Reals, through: Reals, slack: float
 ) -> Callable[[Reals, Reals], Reals]:
-    """The error over what is allowed at places along v, by the knots, where lines of constant u are interpolated."""
+    """The error over what is allowed at places along v, by the knots, where lines of constant u are interpolated.
+
+    The tolerances are those of the sides and of their edges.
+    """
     spans = np.unique(knots_u)
     step = max(1, (len(spans) - 1) // MOST_LINES)
     s = np.concatenate([[0.0], (spans[:-1:step] + spans[1::step]) / 2.0, [1.0]])
+    allowed = RESERVE * np.where((s > 0.0) & (s < 1.0), tolerances[0], min(tolerances))
 
     def error(knots: Reals, places: Reals) -> Reals:
         sites = sites_through(knots, through)
@@ -137,7 +183,7 @@ def _error_along_v(
             flat = points.reshape(len(both), -1)
             native = basis(knots, DEGREE, places) @ np.linalg.solve(matrix, flat[: len(sites)])
             miss = (native - flat[len(sites) :]).reshape(len(places), -1, 3)
-            errors.append(np.max(length(miss), axis=1) / (RESERVE * tolerance))
+            errors.append(np.max(length(miss) / allowed, axis=1))
         edges = [sections.leading_edge(), sections.trailing_edge(), *sections.lower_edges()]
         errors += [_edge_error(edge, matrix, knots, places) / slack for edge in edges if edge is not None]
         return np.max(errors, axis=0)
@@ -169,7 +215,7 @@ class ApproximationError(NamedTuple):
     v: float
 
 
-def approximation_error(exact: ExactBlade, upper: Surface, lower: Surface) -> ApproximationError:
+def approximation_error(exact: Interpolated, upper: Surface, lower: Surface) -> ApproximationError:
     """The distance of the sides from the exact blade: at equal parameters, so it bounds the true distance."""
     u, v = (_between(knots) for knots in (upper.knots_u, upper.knots_v))
     v = np.concatenate([[0.0], v, [1.0]])
