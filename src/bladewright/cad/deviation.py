@@ -53,23 +53,23 @@ class FaceProjection:
         the face can lie within the limit.
         """
         seed, near = self.tree.query(points)
-        uv, distance = self._search(points, self.uv[near])
+        uv, distance = self._search(points, self.uv[near], limit)
         doubtful = np.flatnonzero((distance > limit) & (seed < limit + 3.0 * self.spacing))
         if len(doubtful):
             _, candidates = self.tree.query(points[doubtful], k=min(8, len(self.uv)))
             for k in range(1, candidates.shape[1], 3):
-                again, away = self._search(points[doubtful], self.uv[candidates[:, k]])
+                again, away = self._search(points[doubtful], self.uv[candidates[:, k]], limit)
                 better = away < distance[doubtful]
                 uv[doubtful[better]], distance[doubtful[better]] = again[better], away[better]
         return uv, distance
 
-    def _search(self, points: Array, start: Array) -> tuple[Array, Array]:
+    def _search(self, points: Array, start: Array, limit: float) -> tuple[Array, Array]:
         """Nearest points of the face, found from parameters `start` (n, 2)."""
         uv, distance = self._on_surface(points, start)
         if self.region.loops:
             outside = np.flatnonzero(~self.region.contains(uv))
             if len(outside):
-                uv[outside], distance[outside] = self.region.boundary.closest(points[outside])
+                uv[outside], distance[outside] = self.region.boundary.closest(points[outside], limit)
         return uv, distance
 
     def _on_surface(self, points: Array, start: Array) -> tuple[Array, Array]:

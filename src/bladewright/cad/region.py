@@ -10,6 +10,7 @@ from bladewright.cad.surface_evaluation import SurfaceEvaluator
 from bladewright.numerics.elementary import Array
 from bladewright.nurbs.basis import greville
 from bladewright.nurbs.curve import Curve
+from bladewright.nurbs.trim_loop import TrimLoop, contained, trim_loop
 
 POINTS_PER_CURVE = 400
 """Points of the boundary polygon on each trimming curve. They only start the search for the nearest point of the true
@@ -18,7 +19,7 @@ curve, which is then found by Newton steps, so that the number trades time for s
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Region:
-    """A face: the surface under it, and the closed loops of parameter curves that trim it, the face to their left."""
+    """A face: the surface under it, and the closed loops of parameter curves that trim it."""
 
     evaluator: SurfaceEvaluator
     loops: tuple[tuple[Curve, ...], ...]
@@ -55,8 +56,12 @@ class Region:
         return np.clip(uv, self.low, self.high)
 
     def contains(self, uv: Array) -> Array:
-        """Whether parameters (n, 2) lie in the face; decided on the true trimming curves, also next to them."""
-        return self.boundary.contains(uv) if self.loops else np.ones(len(uv), dtype=bool)
+        """Whether parameters (n, 2) lie in the face: inside an odd number of its loops."""
+        return contained(self._loop, uv[:, 0], uv[:, 1]) if self.loops else np.ones(len(uv), dtype=bool)
+
+    @cached_property
+    def _loop(self) -> TrimLoop:
+        return trim_loop(self.loops)
 
     def samples(self, count: int) -> Array:
         """Parameters (about count, 2) spread over the face and along its boundary."""
@@ -163,82 +168,67 @@ class BoundaryPolygon:
     def _space_tree(self) -> cKDTree:
         return cKDTree(self.points)
 
-    @cached_property
-    def _sag(self) -> Array:
-        """(n,) [mm] Eight times the distance between polygon and curve next to each vertex, by second differences."""
-        steps = (self.uv[self.following] - self.uv) * self.region.scale
-        turns = np.sqrt(_square(steps - steps[self.preceding]))
-        return np.maximum(turns, np.maximum(turns[self.following], turns[self.preceding]))
-
-    def contains(self, uv: Array) -> Array:
-        """Whether parameters (n, 2) lie inside: to the left of the nearest point of the boundary.
-
-        At a vertex the mean of the tangents on both sides decides (Baerentzen and Aanaes 2005); nearer to the polygon
-        than its deviation from the curve, the curve itself decides.
-        """
-        scale = self.region.scale
-        _, near = self._parameter_tree.query(uv * scale)
-        offset = (uv - self.uv[near]) * scale
-        onward = _unit((self.uv[self.following[near]] - self.uv[near]) * scale)
-        onto = _unit((self.uv[near] - self.uv[self.preceding[near]]) * scale)
-        # the nearest point lies on the segment along which the offset has a component, else it is the vertex
-        tangent = onward + onto
-        tangent = np.where((_dot(offset, onward) > 0.0)[:, None], onward, tangent)
-        tangent = np.where(((_dot(offset, onto) < 0.0) & (_dot(offset, onward) <= 0.0))[:, None], onto, tangent)
-        height = tangent[:, 0] * offset[:, 1] - tangent[:, 1] * offset[:, 0]
-        inside = height > 0.0
-        close = np.flatnonzero(np.abs(height) <= self._sag[near] + 1e-12 * scale.max())
-        if len(close):
-            inside[close] = self._left_of_curve(uv[close], near[close], inside[close])
-        return inside
-
-    def _left_of_curve(self, uv: Array, near: Array, of_polygon: Array) -> Array:
-        """Whether parameters lie to the left of their curve; `of_polygon` where a curve's end is nearest."""
-        inside = np.array(of_polygon)
-        scale = self.region.scale
-        for index in np.unique(self.curve[near]):
-            mine = np.flatnonzero(self.curve[near] == index)
-            curve = self.curves[index]
-            first, last = curve.knots[0], curve.knots[-1]
-            s = self.parameter[near[mine]]
-            for _ in range(6):
-                tangent, miss = curve.derivative(s) * scale, (uv[mine] - curve(s)) * scale
-                s = np.clip(s + _dot(tangent, miss) / _dot(tangent, tangent), first, last)
-            tangent, miss = curve.derivative(s) * scale, (uv[mine] - curve(s)) * scale
-            within = (s > first) & (s < last)
-            side = tangent[:, 0] * miss[:, 1] - tangent[:, 1] * miss[:, 0] >= 0.0
-            inside[mine[within]] = side[within]
-        return inside
-
     def nearest(self, uv: Array) -> Array:
         """The vertices (n, 2) nearest to parameters (n, 2)."""
         return self.uv[self._parameter_tree.query(uv * self.region.scale)[1]] if len(uv) else np.zeros((0, 2))
 
-    def closest(self, points: Array) -> tuple[Array, Array]:
-        """Parameters (n, 2) and distances (n,) [mm] of the points of the boundary nearest to points (n, 3)."""
+    def closest(self, points: Array, limit: float) -> tuple[Array, Array]:
+        """Parameters (n, 2) and distances (n,) [mm] of the points of the boundary nearest to points (n, 3).
+
+        The search starts from the nearest vertices. Where it ends further away than `limit` [mm], the boundary may
+        nearly touch itself and the vertex lie across the gap: there it is repeated from everywhere nearby.
+        """
         _, near = self._space_tree.query(points)
-        uv, distance = np.array(self.uv[near]), np.full(len(points), np.inf)
-        # the nearest vertex may be the end of one curve and the start of the next: both are tried
-        for start in (near, self.preceding[near]):
-            for index in np.unique(self.curve[start]):
-                mine = np.flatnonzero(self.curve[start] == index)
-                curve = self.curves[index]
-                s = self.parameter[start[mine]]
-                for _ in range(8):
-                    at, along, across = self.region.evaluator.frame(curve(s))
-                    turn = curve.derivative(s)
-                    tangent = turn[:, :1] * along + turn[:, 1:] * across
-                    step = _dot(tangent, points[mine] - at) / _dot(tangent, tangent)
-                    moved = np.clip(s + step, curve.knots[0], curve.knots[-1])
-                    settled = np.max(np.abs(moved - s)) <= 1e-12 * (curve.knots[-1] - curve.knots[0])
-                    s = moved
-                    if settled:
-                        break
-                place = curve(s)
-                away = np.sqrt(_square(self.region.points(place) - points[mine]))
-                better = away < distance[mine]
-                uv[mine[better]], distance[mine[better]] = place[better], away[better]
+        every = np.arange(len(points))
+        uv, distance = self._searched(points, np.tile(every, 2), np.concatenate([near, self.preceding[near]]))
+        doubtful = np.flatnonzero(distance > limit)
+        if len(doubtful):
+            uv[doubtful], distance[doubtful] = self._searched(points[doubtful], *self._starts(points[doubtful]))
         return uv, distance
+
+    def _searched(self, points: Array, which: Array, start: Array) -> tuple[Array, Array]:
+        """The nearest point of the boundary to each of points (n, 3), of searches for `which` from vertices `start`."""
+        uv, distance = np.zeros((len(which), 2)), np.zeros(len(which))
+        for index, curve in enumerate(self.curves):
+            mine = np.flatnonzero(self.curve[start] == index)
+            wanted, s = points[which[mine]], self.parameter[start[mine]]
+            for _ in range(8):
+                at, along, across = self.region.evaluator.frame(curve(s))
+                turn = curve.derivative(s)
+                tangent = turn[:, :1] * along + turn[:, 1:] * across
+                step = _dot(tangent, wanted - at) / _dot(tangent, tangent)
+                moved = np.clip(s + step, curve.knots[0], curve.knots[-1])
+                settled = np.max(np.abs(moved - s), initial=0.0) <= 1e-12 * (curve.knots[-1] - curve.knots[0])
+                s = moved
+                if settled:
+                    break
+            uv[mine] = curve(s)
+            distance[mine] = np.sqrt(_square(self.region.points(uv[mine]) - wanted))
+        order = np.lexsort((distance, which))
+        best = order[np.unique(which[order], return_index=True)[1]]
+        return uv[best], distance[best]
+
+    def _starts(self, points: Array) -> tuple[Array, Array]:
+        """Which of points (n, 3), and the vertex before a place that may be nearest to it: (k,) each."""
+        away, _ = self._space_tree.query(points)
+        steps = self.points[self.following] - self.points
+        squares = np.maximum(_square(steps), 1e-300)
+        # a segment as near as a vertex has an end within this
+        ends = self._space_tree.query_ball_point(points, np.sqrt(away**2 + squares.max() / 4.0) * (1.0 + 1e-9))
+        which = np.repeat(np.arange(len(points)), [len(found) for found in ends])
+        vertex = np.concatenate([np.zeros(0, dtype=int), *ends]).astype(int)
+        pairs = [which * len(self.uv) + segment for segment in (vertex, self.preceding[vertex])]
+        which, start = np.divmod(np.unique(np.concatenate(pairs)), len(self.uv))
+        offset = points[which] - self.points[start]
+        share = np.clip(_dot(offset, steps[start]) / squares[start], 0.0, 1.0)
+        away = np.sqrt(_square(offset - share[:, None] * steps[start]))
+        # how far the curve may be from its polygon
+        turns = np.sqrt(_square(steps - steps[self.preceding]))
+        sag = np.maximum(turns, turns[self.following])[start] / 8.0
+        nearest = np.full(len(points), np.inf)
+        np.minimum.at(nearest, which, away + sag)
+        kept = away - sag <= nearest[which]
+        return which[kept], start[kept]
 
 
 def greville_spaced(knots: Array, degree: int, count: int) -> Array:
@@ -254,7 +244,3 @@ def _dot(a: Array, b: Array) -> Array:
 
 def _square(a: Array) -> Array:
     return np.einsum("ij,ij->i", a, a)
-
-
-def _unit(a: Array) -> Array:
-    return a / np.maximum(np.sqrt(_square(a)), 1e-300)[..., None]

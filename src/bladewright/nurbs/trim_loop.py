@@ -12,12 +12,14 @@ from bladewright.numerics.elementary import Array
 from bladewright.numerics.roots import bracketed_root
 from bladewright.nurbs.basis import Reals
 from bladewright.nurbs.curve import Curve
-from bladewright.nurbs.domain import piece as part
+
+PIECES = 8
+"""Pieces of a knot span at the least: a point in the box of a piece needs a root, and short pieces have small boxes."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class TrimLoop:
-    """Closed loops of plane curves cut into pieces on which v is monotone."""
+    """Closed loops of plane curves cut into pieces on which u and v are monotone."""
 
     curves: tuple[Curve, ...]
     """the loops one after another, of real parts"""
@@ -31,6 +33,10 @@ class TrimLoop:
     """(k,) v at its start: to the bit the v at the end of the piece before"""
     v_end: Reals
     """(k,) v at its end"""
+    u_low: Reals
+    """(k,) its smallest u"""
+    u_high: Reals
+    """(k,) its largest u"""
     low: Reals
     """(2,) smallest u and v of the control points"""
     high: Reals
@@ -66,25 +72,24 @@ def meeting_parameters(curve: Curve, values_u: Reals, values_v: Reals) -> Reals:
 
 
 def trim_loop(loops: Sequence[Sequence[Curve]]) -> TrimLoop:
-    """Closed loops of curves, of real parts, cut into pieces on which v is monotone."""
+    """Closed loops of curves, of real parts, cut into short pieces on which u and v are monotone."""
     real = tuple(_real(curve) for loop in loops for curve in loop)
-    starts: list[Reals] = []
-    ends: list[Reals] = []
-    for curve in real:
-        cuts = np.unique(np.concatenate([curve.domain, curve.knots, coordinate_roots(curve, 1, 0.0, order=1)]))
-        starts.append(cuts[:-1])
-        ends.append(cuts[1:])
-    heights = [curve(start)[:, 1] for curve, start in zip(real, starts, strict=True)]
+    cuts = [_cuts(curve) for curve in real]
+    places = [curve(cut) for curve, cut in zip(real, cuts, strict=True)]
+    u_start, u_end = (np.concatenate([place[part, 0] for place in places]) for part in (slice(-1), slice(1, None)))
+    heights = [place[:-1, 1] for place in places]
     of_loops = np.cumsum([0, *map(len, loops)])
     around = [np.concatenate(heights[first:last]) for first, last in pairwise(of_loops)]
     points = np.concatenate([curve.control_points for curve in real])
     return TrimLoop(
         curves=real,
-        curve=np.repeat(np.arange(len(real)), list(map(len, starts))),
-        start=np.concatenate(starts),
-        end=np.concatenate(ends),
+        curve=np.repeat(np.arange(len(real)), [len(cut) - 1 for cut in cuts]),
+        start=np.concatenate([cut[:-1] for cut in cuts]),
+        end=np.concatenate([cut[1:] for cut in cuts]),
         v_start=np.concatenate(around),
         v_end=np.concatenate([np.roll(loop, -1) for loop in around]),
+        u_low=np.minimum(u_start, u_end),
+        u_high=np.maximum(u_start, u_end),
         low=points.min(axis=0),
         high=points.max(axis=0),
     )
@@ -92,30 +97,32 @@ def trim_loop(loops: Sequence[Sequence[Curve]]) -> TrimLoop:
 
 def contained(loop: TrimLoop, u: Reals, v: Reals) -> NDArray[np.bool_]:
     """Whether points (m,) lie inside: a ray towards greater u crosses the loops an odd number of times."""
-    inside = np.zeros(len(u), dtype=bool)
-    for piece in range(len(loop.curve)):
-        curve, start, end = loop.curves[loop.curve[piece]], loop.start[piece], loop.end[piece]
-        v_start, v_end = loop.v_start[piece], loop.v_end[piece]
-        level = np.flatnonzero((v >= min(v_start, v_end)) & (v < max(v_start, v_end)))
-        if len(level) == 0:
-            continue
-        left, right = _range(curve, start, end)
-        inside[level[u[level] < left]] ^= True
-        doubtful = level[(u[level] >= left) & (u[level] <= right)]
-        if len(doubtful) == 0:
-            continue
+    order = np.argsort(v)
+    low, high = np.minimum(loop.v_start, loop.v_end), np.maximum(loop.v_start, loop.v_end)
+    first, last = (np.searchsorted(v[order], bound) for bound in (low, high))
+    # every piece with every point at its height
+    counts = last - first
+    piece = np.repeat(np.arange(len(counts)), counts)
+    point = order[np.arange(len(piece)) - np.repeat(np.cumsum(counts) - counts - first, counts)]
+    crossed = u[point] < loop.u_low[piece]
+    doubtful = ~crossed & (u[point] <= loop.u_high[piece])
+    for index, curve in enumerate(loop.curves):
+        pair = np.flatnonzero(doubtful & (loop.curve[piece] == index))
 
-        def height(t: Array, curve: Curve = curve, target: Reals = v[doubtful]) -> tuple[Array, Array]:
-            return curve(t)[:, 1] - target, curve.derivative(t)[:, 1]
+        def height(t: Array, curve: Curve = curve, level: Reals = v[point[pair]]) -> tuple[Array, Array]:
+            return curve(t)[:, 1] - level, curve.derivative(t)[:, 1]
 
-        met = bracketed_root(height, np.full(len(doubtful), start), np.full(len(doubtful), end))
-        inside[doubtful[curve(met)[:, 0] > u[doubtful]]] ^= True
-    return inside
+        met = bracketed_root(height, loop.start[piece[pair]], loop.end[piece[pair]])
+        crossed[pair] = curve(met)[:, 0] > u[point[pair]]
+    return np.bincount(point[crossed], minlength=len(u)) % 2 == 1
 
 
-def _range(curve: Curve, start: float, end: float) -> tuple[float, float]:
-    control = part(curve, start, end).control_points[:, 0]
-    return float(control.min()), float(control.max())
+def _cuts(curve: Curve) -> Reals:
+    """Where a real curve is cut: at its knots, between them, and where u or v is stationary."""
+    knots = np.unique(curve.knots)
+    between = knots[:-1, None] + np.diff(knots)[:, None] * np.arange(PIECES) / PIECES
+    stationary = [coordinate_roots(curve, coordinate, 0.0, order=1) for coordinate in (0, 1)]
+    return np.unique(np.concatenate([knots, between.ravel(), *stationary]))
 
 
 def _rational_stationary(curve: Curve, coordinate: int) -> Reals:
