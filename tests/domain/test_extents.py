@@ -23,9 +23,9 @@ def test_an_extent_out_of_range_is_refused_with_its_limits(rotor, name, value):
 
 def test_the_least_extent_that_a_refusal_names_is_enough(rotor):
     with pytest.raises(DesignError) as refused:
-        passage(rotor.blade, upstream=0.01, downstream=0.5)
+        passage(rotor.blade, upstream=0.01, downstream=0.5, walls="patches")
     least = float(re.search(r"at least ([\d.]+)", str(refused.value))[1])
-    made = passage(rotor.blade, upstream=least * 1.001, downstream=0.5)
+    made = passage(rotor.blade, upstream=least * 1.001, downstream=0.5, walls="patches")
     assert min(share for share, _, _ in made.folds.values()) > 0.0
 
 

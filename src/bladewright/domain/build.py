@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import cast
+from typing import Literal, cast
 
 import numpy as np
 
@@ -11,11 +11,18 @@ from bladewright.blade.native.knots import DEGREE
 from bladewright.domain.camber_lines import camber_lines
 from bladewright.domain.checks import check_folds, check_pitch
 from bladewright.domain.extents import shortest_duct
-from bladewright.domain.knot_selection import WALL_TOLERANCE, unfolded_walls, with_span_knots, with_wall_knots
+from bladewright.domain.knot_selection import (
+    WALL_TOLERANCE,
+    skin_knots,
+    unfolded_walls,
+    with_span_knots,
+    with_wall_knots,
+)
 from bladewright.domain.knots import PassageKnots
 from bladewright.domain.nets import BladeNets, native_nets
 from bladewright.domain.passage import Passage
 from bladewright.domain.passage_spec import PassageSpec
+from bladewright.domain.skin import Skin, wall_face
 from bladewright.domain.walls import EDGE_FACES, STRIPS
 from bladewright.errors import DesignError
 from bladewright.frozen import FrozenMapping
@@ -29,6 +36,8 @@ from bladewright.section.checks import UNITS, number
 TOLERANCE_SHARES = (0.5, 0.2, 0.08, 0.025)
 """Shares of the walls' tolerance that the knots of each direction may use, tried in turn until all directions together
 keep the whole of it: most passages need the first only."""
+WALLS = ("auto", "patches", "trimmed")
+"""What hub and shroud may be asked to be made of."""
 STEEPEST = 89.0
 """Largest angle of the flow from the meridional direction at inlet and outlet [deg]: its tangent must stay finite."""
 
@@ -42,41 +51,81 @@ def passage(
     outlet_angle: complex | None = None,
     knots: PassageKnots | None = None,
     split: bool = False,
+    walls: Literal["auto", "patches", "trimmed"] = "auto",
 ) -> Passage:
-    """The flow passage around a blade, as native patches that close up without trimming.
+    """The flow passage around a blade.
 
+    `walls` "patches" makes hub and shroud of untrimmed halves, which close up without trimming, but fold beside some
+    blades; "trimmed" makes each one face of its exact surface, with the blade's end as a hole; "auto" takes patches
+    where they do not fold, and else trimmed walls.
     `upstream` and `downstream` are how far the duct reaches past the edges, in mean meridional lengths of the blade;
     where not given, to the ends of the flow path, or without one, one half or what the pitch needs. Camber lines go on
     at the slope of their ends; with `inlet_angle` or `outlet_angle` [deg] they turn to that angle from the meridional
     direction. `knots=passage.knots` holds another passage's knots and extents. Walls, periodic boundaries, inlet and
     outlet have creases where the blade's edges are; `split=True` cuts them there into faces without any.
 
-    Raises DesignError where a patch would fold, the channel cannot be continued so far, or the blade does not keep
-    within its pitch. Agromayor et al. 2021, section 4.
+    Raises DesignError where a patch asked for would fold, the channel cannot be continued so far, or the blade does not
+    keep within its pitch. Agromayor et al. 2021, section 4.
     """
     if blade.dimension == 2:
         raise DesignError(
             "passage: a 2D section was given: use section_passage for its flow domain, or build prismatic(design) first"
         )
+    if walls not in WALLS:
+        raise DesignError(f"walls is {walls!r}: choose {', '.join(map(repr, WALLS))}")
     turned = _slope("inlet_angle", inlet_angle), _slope("outlet_angle", outlet_angle)
     spec = PassageSpec(blade=blade, exact=blade.exact.without_clearance(), half_pitch=_half_pitch(blade), turned=turned)
     if knots is not None:
-        for name, given in (("upstream", upstream), ("downstream", downstream)):
+        asked = (("upstream", upstream), ("downstream", downstream), ("walls", None if walls == "auto" else walls))
+        for name, given in asked:
             if given is not None and given != getattr(knots, name):
                 raise DesignError(
-                    f"{name} is {given!r}, but the knots given hold {getattr(knots, name):g}: leave one of them out"
+                    f"{name} is {given!r}, but the knots given hold {getattr(knots, name)!r}: leave one of them out"
                 )
-        return _passage(spec, knots, split)
+        return _passage(spec, knots, split) if knots.walls == "patches" else _trimmed(spec, knots, split)
+    if walls != "trimmed":
+        try:
+            return _patched(spec, upstream, downstream, split)
+        except DesignError:
+            if walls == "patches":
+                raise
+    made = _trimmed(spec, skin_knots(spec, upstream, downstream), split)
+    _check_walls(made)
+    return made
+
+
+def _patched(spec: PassageSpec, upstream: float | None, downstream: float | None, split: bool) -> Passage:
+    """The passage with untrimmed walls, at knots of its own."""
     _check_within_pitch(spec)
+    chord = spec.blade.chord
     start, walls = unfolded_walls(spec, upstream, downstream)
-    start = with_span_knots(spec, start, TOLERANCE_SHARES[0] * WALL_TOLERANCE * blade.chord)
+    start = with_span_knots(spec, start, TOLERANCE_SHARES[0] * WALL_TOLERANCE * chord)
     for share in TOLERANCE_SHARES:
-        made = _passage(spec, with_wall_knots(start, walls, share * WALL_TOLERANCE * blade.chord), split)
+        made = _passage(spec, with_wall_knots(start, walls, share * WALL_TOLERANCE * chord), split)
         if made.wall_error <= WALL_TOLERANCE:
             break
     check_folds(made.folds)
     _check_walls(made)
     return made
+
+
+def _trimmed(spec: PassageSpec, knots: PassageKnots, split: bool) -> Passage:
+    """The passage at given knots, its walls trimmed faces."""
+    blade = spec.blade
+    skin = Skin(blade=blade, camber=spec.camber(knots, knots.sites("span")), knots=knots, half_pitch=spec.half_pitch)
+    walls = {wall: wall_face(skin, wall) for wall in ("hub", "shroud")}
+    own = {name: face for name, face in blade.surfaces.items() if name not in blade.design.ends}
+    surfaces = walls | skin.ends | skin.periodic | {f"blade_{name}": face for name, face in own.items()}
+    surfaces |= {name: blade.surfaces[name] for name in blade.design.ends if name == "tip"}
+    return Passage(
+        blade=blade,
+        whole=FrozenMapping(surfaces),
+        knots=knots,
+        camber=skin.camber,
+        half_pitch=spec.half_pitch,
+        skin=skin,
+        split=split,
+    )
 
 
 def _passage(spec: PassageSpec, knots: PassageKnots, split: bool) -> Passage:
@@ -96,6 +145,7 @@ def _passage(spec: PassageSpec, knots: PassageKnots, split: bool) -> Passage:
         whole=FrozenMapping(surfaces),
         knots=knots,
         camber=camber,
+        half_pitch=spec.half_pitch,
         walls=walls,
         strips=strips,
         split=split,

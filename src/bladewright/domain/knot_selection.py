@@ -16,7 +16,7 @@ from bladewright.domain.extents import departures, end_camber_lines, extents, sk
 from bladewright.domain.kinks import fade_joints, kink_shares, kinks
 from bladewright.domain.knots import PIECES, PassageKnots
 from bladewright.domain.passage_spec import PassageSpec
-from bladewright.domain.walls import CROSS_LINES, CROSS_LINES_GATHERED, CrossLines, WallHalf
+from bladewright.domain.walls import CROSS_LINES, CROSS_LINES_GATHERED, NO_SKEW, CrossLines, WallHalf
 from bladewright.errors import DesignError
 from bladewright.numerics.elementary import Array, dot, length
 from bladewright.nurbs.basis import Reals, basis, greville
@@ -25,6 +25,8 @@ WALL_TOLERANCE = 1e-7
 """Largest distance of hub and shroud from their surfaces of revolution, in chords: 1e-5 mm on a blade of 100 mm, which
 is below what meshing and CAD resolve. design/passages.md has what every example reaches; with 1e-8 two of eight
 machines are refused, with 1e-6 the annulus is off by 3e-8 instead of 1e-9 (design/passage_constants.md)."""
+TRIMMED_SHARE = 0.2
+"""Share of that tolerance that the edges of trimmed walls may use: those walls themselves are exact."""
 MAX_POLES = 80
 """Control points of a piece in one direction above which refinement stops, and a passage is refused. With 40 passages
 have 0.8 % more control points elsewhere, with 160 the same (design/passage_constants.md)."""
@@ -72,6 +74,26 @@ def unfolded_walls(
     least, start, walls = max(tried, key=lambda each: each[0].share)
     check_folds({least.name: (least.share, least.u, least.v)})
     return start, walls
+
+
+def skin_knots(spec: PassageSpec, upstream: float | None, downstream: float | None) -> PassageKnots:
+    """The knots of a skin whose walls are trimmed faces: cross-lines do not matter, and the duct may be as short.
+
+    `upstream` and `downstream` are extents, where stated. The middle surface keeps WALL_TOLERANCE on both walls.
+    """
+    exact = spec.exact
+    start = _without_knots(spec, NO_SKEW, extents(exact, np.zeros(()), NO_SKEW, upstream, downstream))
+    start = replace(start, walls="trimmed", blunt=(False, False))
+    check_duct(spec.duct(start), exact.meridional_extent)
+    tolerance = TRIMMED_SHARE * WALL_TOLERANCE * spec.blade.chord
+    lines = spec.middle_lines(start)
+    known = replace(
+        start,
+        blade=knots_beside(lines, start.blade, tolerance),
+        inlet=knots_along(lines, "inlet", 1.0, tolerance),
+        outlet=knots_along(lines, "outlet", 1.0, tolerance),
+    )
+    return with_span_knots(spec, known, tolerance)
 
 
 def with_span_knots(spec: PassageSpec, start: PassageKnots, tolerance: float) -> PassageKnots:

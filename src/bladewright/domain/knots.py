@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Literal
 
 import numpy as np
 
@@ -12,6 +13,8 @@ from bladewright.frozen import FrozenRecord
 from bladewright.numerics.elementary import frozen
 from bladewright.nurbs.basis import Reals, greville
 
+Walls = Literal["patches", "trimmed"]
+"""What hub and shroud of a passage are made of."""
 PIECES = ("inlet", "blade", "outlet")
 """Pieces of a passage's faces along the flow."""
 BLADE_AT = (0.25, 0.75)
@@ -73,6 +76,8 @@ class PassageKnots(FrozenRecord):
     """knots from the blade to a periodic boundary"""
     span: Reals
     """knots of inlet, outlet and periodic boundaries along v"""
+    walls: Walls = "patches"
+    """whether hub and shroud are untrimmed patches, or trimmed faces of their exact surfaces"""
 
     def __post_init__(self) -> None:
         for name in (*PIECES, "across", "span", "tail"):

@@ -38,13 +38,13 @@ def native_nets(
     Patches are interpolated, and then given the boundary control points of the neighbours that they join: the walls
     that the blade stands on those of the blade's ends.
     """
-    middle = _middle(camber, knots)
-    shifted = {f"periodic_{half}": _shifted(camber, middle, sign * half_pitch) for half, sign in _HALVES}
-    nets = dict(shifted)
+    middle = middle_net(camber, knots)
+    periodic = {f"periodic_{half}": shifted(camber, middle, sign * half_pitch) for half, sign in _HALVES}
+    nets = dict(periodic)
     for name, wall in walls.items():
         half = name.removeprefix("hub_").removeprefix("shroud_")
         line = _beside(wall, blade, knots) if wall.beside_blade else middle[..., wall.row, :]
-        nets[name] = _with_ends(_wall(wall, knots), line, shifted[f"periodic_{half}"][..., wall.row, :], -2)
+        nets[name] = _with_ends(_wall(wall, knots), line, periodic[f"periodic_{half}"][..., wall.row, :], -2)
     for name, strip in strips.items():
         wall_name = name.partition("_")[0]
         lines = [nets[f"{wall_name}_{half}"][..., 0, :] for half in ("lower", "upper")]
@@ -69,7 +69,7 @@ def through(points: Array, knots: Reals, axis: int) -> Array:
     return np.moveaxis(solved.reshape(moved.shape), 0, axis)
 
 
-def _middle(camber: CamberLines, knots: PassageKnots) -> Array:
+def middle_net(camber: CamberLines, knots: PassageKnots) -> Array:
     """Net of the continued camber surface, u along the flow and v along the span."""
     points = {}
     for piece in PIECES:
@@ -174,7 +174,7 @@ def _with_ends(net: Array, first: Array, last: Array, axis: int) -> Array:
     return concatenated([np.expand_dims(first, axis), inner, np.expand_dims(last, axis)], axis)
 
 
-def _shifted(camber: CamberLines, net: Array, by: Array) -> Array:
+def shifted(camber: CamberLines, net: Array, by: Array) -> Array:
     """A net rotated about the machine axis by theta, or translated along y in a cascade."""
     x, y, z = np.moveaxis(net, -1, 0)
     by = by[..., None, None]

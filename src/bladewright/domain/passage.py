@@ -4,18 +4,20 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import ClassVar, cast
 
 import numpy as np
 
 from bladewright.blade.native.blade import Blade, Faces
+from bladewright.blade.native.properties import blade_properties
 from bladewright.display import Shown
 from bladewright.domain.camber_lines import CamberLines
 from bladewright.domain.duct import Duct, annulus_volume
 from bladewright.domain.knots import BLADE_AT, PIECES, PassageKnots
-from bladewright.domain.periodic_sector import PeriodicSector, periodic_sector
+from bladewright.domain.periodic_sector import PeriodicSector, periodic_sector, sector_of
+from bladewright.domain.skin import Skin
 from bladewright.domain.walls import STRIPS, WallHalf, WallStrip
 from bladewright.frozen import FrozenMapping, FrozenRecord
 from bladewright.numerics.elementary import Array, dot
@@ -27,6 +29,8 @@ from bladewright.nurbs.trimmed import TrimmedSurface
 
 OUTWARD = FrozenMapping(
     {
+        "hub": -1,
+        "shroud": 1,
         "hub_upper": -1,
         "hub_lower": 1,
         "shroud_upper": 1,
@@ -64,15 +68,20 @@ class Passage(FrozenRecord, Shown):
     blade's sides, and its tip where there is a clearance; where an edge is blunt, its face as `blade_trailing_edge`,
     and the strips of the walls downstream of it, `hub_wake` and `shroud_wake` (u along the flow, v from the lower to
     the upper half), or `blade_leading_edge`, `hub_stagnation` and `shroud_stagnation`, and where there is a gap besides
-    `shroud_gap` or `hub_gap`, the piece of that wall between its halves; metres"""
+    `shroud_gap` or `hub_gap`, the piece of that wall between its halves; metres. Where the walls are trimmed, `hub` and
+    `shroud` are one face each, with the blade's end as a hole, and there are neither strips nor gap faces"""
     knots: PassageKnots
     """as `passage(..., knots=...)` takes them, to hold them"""
     camber: CamberLines
     """continued camber lines, from hub to shroud"""
-    walls: Mapping[str, WallHalf]
-    """the exact halves of hub and shroud that the native ones interpolate"""
-    strips: Mapping[str, WallStrip]
+    half_pitch: Array
+    """() in theta, or y in a cascade"""
+    walls: Mapping[str, WallHalf] = field(default_factory=dict)
+    """the exact halves of hub and shroud that the native ones interpolate; none where the walls are trimmed"""
+    strips: Mapping[str, WallStrip] = field(default_factory=dict)
     """the exact strips between them past blunt edges"""
+    skin: Skin | None = None
+    """what a passage with trimmed walls is made from"""
     split: bool = False
     """whether `surfaces` are cut where the whole faces have a crease"""
 
@@ -129,6 +138,8 @@ class Passage(FrozenRecord, Shown):
     @cached_property
     def properties(self) -> MassProperties:
         """Volume [m^3], area [m^2], centroid [m] and inertia [m^5], by quadrature on the native surfaces."""
+        if self.skin is not None and self.skin.within_a_turn:
+            return blade_properties(self.surfaces, self.orientations, revolved=self.duct.revolved)
         return mass_properties([(self.surfaces[name], sign) for name, sign in self.orientations.items()])
 
     @property
@@ -138,7 +149,7 @@ class Passage(FrozenRecord, Shown):
         In a cascade, of one pitch of the duct.
         """
         volume = annulus_volume(self.duct, self.camber.joints)
-        return volume if self.duct.revolved else volume * 2.0 * self.walls["hub_upper"].half_pitch
+        return volume if self.duct.revolved else volume * 2.0 * self.half_pitch
 
     @cached_property
     def ring_error(self) -> float:
@@ -149,6 +160,8 @@ class Passage(FrozenRecord, Shown):
     @cached_property
     def periodic_sector(self) -> PeriodicSector:
         """One blade's share of the duct, fluid and blade together, between exact surfaces of revolution."""
+        if self.skin is not None:
+            return sector_of(self.skin, f"{self.blade.name}-sector")
         faces = {name: face for name, face in self.whole.items() if isinstance(face, Surface)}
         cuts = self.knots.cuts(0), self.knots.cuts(1)
         return periodic_sector(f"{self.blade.name}-sector", faces, self.duct, self.blade.chord, cuts)
@@ -161,12 +174,20 @@ class Passage(FrozenRecord, Shown):
 
     @cached_property
     def folds(self) -> dict[str, tuple[float, float, float]]:
-        """By the name of a wall's half: least Jacobian in (m', theta) over its median, and the u, v where it is."""
+        """By the name of a wall's half: least Jacobian in (m', theta) over its median, and the u, v where it is.
+
+        Nothing where the walls are trimmed.
+        """
         return {name: self._least(name, wall) for name, wall in self.walls.items()}
 
     @cached_property
     def wall_error(self) -> float:
-        """Largest distance of hub and shroud from their surfaces of revolution, in chords."""
+        """Largest distance of hub and shroud from their surfaces of revolution, in chords.
+
+        Where they are trimmed, of the edges on them.
+        """
+        if self.skin is not None:
+            return self.skin.wall_error / self.blade.chord
         halves = [self._wall_distance(name, wall) for name, wall in self.walls.items()]
         strips = [self._strip_distance(name, strip) for name, strip in self.strips.items()]
         return max([*halves, *strips]) / self.blade.chord
@@ -219,7 +240,8 @@ def _between(knots: Reals, shares: tuple[float, ...]) -> Reals:
 
 def pieces_of(name: str, face: Surface, knots: PassageKnots) -> dict[str, Surface]:
     """The smooth pieces of a face between its creases, each over [0, 1], by names that begin with the face's."""
-    if name.startswith("blade") or name.endswith(STRIPS):
+    trimmed_walls = knots.walls == "trimmed" and not name.startswith("periodic")
+    if name.startswith("blade") or name.endswith(STRIPS) or trimmed_walls:
         return {name: face}
     cuts: tuple[float, ...] = BLADE_AT
     ends: tuple[str, ...] = PIECES

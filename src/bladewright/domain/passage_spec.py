@@ -74,6 +74,12 @@ class PassageSpec:
         joints = np.unique(self.exact.breaks_along_v())
         return camber_lines(self.exact.sections(v), self.duct(knots), self.turned, joints, knots.correspondence)
 
+    def middle_lines(self, knots: PassageKnots) -> Mapping[str, WallHalf]:
+        """Halves of the walls between middle and periodic lines, past which the blade is not seen; they never fold."""
+        ends = self.camber(knots, np.array([0.0, 1.0]))
+        beside = {"hub": False, "shroud": False}
+        return wall_halves(ends, beside, self.half_pitch, (1.0, 1.0), knots.cross_lines, knots.reaches)
+
     def plane(self, knots: PassageKnots, v: Reals) -> PlaneGeometry:
         """Camber lines with stations at v (m,), hub first and shroud last, and the walls' halves and strips."""
         camber, ends = (self.camber(knots, places) for places in (v, v[[0, -1]]))

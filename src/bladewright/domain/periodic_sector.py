@@ -10,6 +10,7 @@ from bladewright.blade.native.blade import Faces
 from bladewright.blade.native.end_faces import Near, WallSurface, followed
 from bladewright.domain.duct import Duct
 from bladewright.domain.knots import BLADE_AT
+from bladewright.domain.skin import Skin, wall_face
 from bladewright.errors import DesignError
 from bladewright.frozen import FrozenMapping, FrozenRecord
 from bladewright.numerics.elementary import Array, angle
@@ -66,6 +67,12 @@ def periodic_sector(name: str, faces: Mapping[str, Surface], duct: Duct, chord: 
     }
     surfaces |= {face: faces[face] for face in ("inlet", "outlet", "periodic_upper", "periodic_lower")}
     return PeriodicSector(name=name, surfaces=FrozenMapping(surfaces))
+
+
+def sector_of(skin: Skin, name: str) -> PeriodicSector:
+    """The sector of a skin, from its inlet to its outlet."""
+    walls = {wall: wall_face(skin, wall, hole=False) for wall in ("hub", "shroud")}
+    return PeriodicSector(name=name, surfaces=FrozenMapping(walls | skin.ends | skin.periodic))
 
 
 def _wall(faces: Mapping[str, Surface], duct: Duct, row: int, name: str, chord: float, cuts: Cuts) -> TrimmedSurface:

@@ -58,6 +58,8 @@ class CrossLines(NamedTuple):
         return float((1.0 - share) * share**self.return_power)
 
 
+NO_SKEW = CrossLines(1, 0.0, edge_slope=1.0)
+"""Where walls are trimmed faces, which have no cross-lines."""
 CROSS_LINES = (CrossLines(3, 1.0), CrossLines(1, 1.0), CrossLines(1, 2.0))
 """What is tried in turn: built-in examples of the unified family need only the first; stout blades beside narrow
 passages, such as the seeds 23, 52 and 80 of design/random_designs.py, need the others."""

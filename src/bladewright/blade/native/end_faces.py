@@ -93,7 +93,7 @@ def followed(wall: WallSurface, curve: Curve, near: Near, chord: float, knots: R
     """
 
     def exact(s: Reals) -> Array:
-        return wall.parameters(*_nearest_on_wall(wall, curve, near, s))
+        return wall.parameters(*nearest_on_wall(wall, curve, near, s))
 
     if knots is not None:
         sites = greville(knots, curve.degree)
@@ -117,7 +117,7 @@ def followed(wall: WallSurface, curve: Curve, near: Near, chord: float, knots: R
     )
 
 
-def _nearest_on_wall(wall: WallSurface, curve: Curve, near: Near, s: Reals) -> tuple[Array, Array]:
+def nearest_on_wall(wall: WallSurface, curve: Curve, near: Near, s: Reals) -> tuple[Array, Array]:
     """The meridian's u, and theta or y, (len(s),), of the wall's points nearest to the curve's at s."""
     places, near_u, near_across = near
     points = curve(s)
@@ -145,7 +145,7 @@ def _joints(wall: WallSurface, curve: Curve, near: Near) -> list[tuple[float, in
 
     def passed(which: int, values: Reals, levels: Reals) -> list[float]:
         def at(s: Reals) -> Reals:
-            return np.real(_nearest_on_wall(wall, curve, near, s)[which])
+            return np.real(nearest_on_wall(wall, curve, near, s)[which])
 
         return list(map(float, level_crossings(at, places, values, levels)))
 
