@@ -129,7 +129,7 @@ class NativeFace:
         self.face = face
         self.region = Region(
             evaluator=native_evaluator(surface),
-            loops=() if isinstance(face, Surface) else (face.boundary,),
+            loops=() if isinstance(face, Surface) else face.loops,
             low=np.array([surface.knots_u[0], surface.knots_v[0]]),
             high=np.array([surface.knots_u[-1], surface.knots_v[-1]]),
         )

@@ -108,7 +108,9 @@ def whole_name(name: str, faces: Collection[str]) -> str | None:
 def creases(face: Surface, direction: Direction) -> list[float]:
     """The knots along u or v across which a first or second derivative jumps.
 
-    It can only at a knot of multiplicity degree - 1 or more; there it is measured from both sides.
+    It can only at a knot of multiplicity degree - 1 or more; there it is measured from both sides. Where the weights
+    vary along that direction, as on the arcs of a surface of revolution, only corners count: the parameter's own
+    derivatives jump between arcs, which leaves the surface smooth.
     """
     knots, degree = direction_of(face, direction)
     inner, counts = np.unique(knots[degree + 1 : -degree - 1], return_counts=True)
@@ -125,6 +127,9 @@ def _jumps(face: Surface, knot: float, direction: Direction, ends: list[float]) 
     before = piece(face, ends[at - 1], knot, direction)
     after = piece(face, knot, ends[at + 1], direction)
     extent = float(np.ptp(face.control_points, axis=(0, 1)).max())
+    if _varies(face.weights, direction):
+        one, other = (_derivative(side, knot, direction, 1) for side in (before, after))
+        return _largest(np.cross(one, other)) > CREASE * _largest(one) * _largest(other)
     step = min(knot - ends[at - 1], ends[at + 1] - knot)
     for order in (1, 2):
         one, other = (_derivative(side, knot, direction, order) for side in (before, after))
@@ -132,6 +137,10 @@ def _jumps(face: Surface, knot: float, direction: Direction, ends: list[float]) 
         if _largest(other - one) > CREASE * (_largest(one) + _largest(other)) + rounding:
             return True
     return False
+
+
+def _varies(weights: Array | None, direction: Direction) -> bool:
+    return weights is not None and bool(np.ptp(weights, axis=0 if direction == "u" else 1).max() > 0.0)
 
 
 def _derivative(face: Surface, knot: float, direction: Direction, order: int) -> Array:

@@ -6,6 +6,7 @@ from typing import Any, Protocol
 import numpy as np
 
 from bladewright.numerics.elementary import Array
+from bladewright.nurbs.curve import Curve
 from bladewright.nurbs.surface import Surface
 from bladewright.nurbs.trimmed import TrimmedSurface
 from bladewright.origin import Origin, parameters_hash
@@ -51,7 +52,11 @@ class CadProduct(NamedBody, Protocol):
 
 
 class ClosedBody(NamedBody, Protocol):
-    """A body bounded by native surfaces."""
+    """A body bounded by native surfaces.
+
+    A face of revolution may be a whole turn: an untrimmed `Surface` of which two opposite sides are the same curve, its
+    seam. A body may have `edges` (`declared_edges`).
+    """
 
     @property
     def surfaces(self) -> Mapping[str, Surface | TrimmedSurface]:
@@ -69,6 +74,15 @@ class NativeBody(ClosedBody, CadProduct, Protocol):
 def header_text(body: NamedBody, field: str) -> str:
     """A body's `description`, `author` or `organisation` for the header of a file; empty where it has none."""
     return str(getattr(body, field, "") or "")
+
+
+def declared_edges(body: NamedBody) -> tuple[Curve, ...]:
+    """A body's `edges`: curves in space [m], rational or not, along which trimmed faces meet each other.
+
+    Where one ends on an edge of an untrimmed face, such as the rim circle of a wheel, that edge is cut there. Edges of
+    untrimmed faces need not be declared.
+    """
+    return tuple(getattr(body, "edges", ()))
 
 
 def extent(built: ClosedBody) -> float:

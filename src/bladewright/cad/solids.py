@@ -3,7 +3,7 @@
 from collections import defaultdict
 from collections.abc import Mapping
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import cached_property, lru_cache
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -176,39 +176,42 @@ class _SolidBuilder:
         self.builder.Add(edge, self.vertices[end].Oriented(TopAbs_REVERSED))
 
     def untrimmed_face(self, name: str, surface: Surface, outwards: bool) -> TopoDS_Face:
-        """An untrimmed face, whose wire runs around the parameter rectangle."""
+        """An untrimmed face, whose wire runs around the parameter rectangle: along a seam once each way."""
         face = TopoDS_Face()
         self.builder.MakeFace(face, space_surface(surface), CONFUSION)
         wire = self._wire()
         for side in range(4):
             for index, coedge in self._along(name, side):
-                pcurve = _side_curve(surface, coedge, self.topology.edges[index].curve)
-                self.builder.UpdateEdge(self.edges[index], pcurve, face, CONFUSION)
+                edge = self.topology.edges[index]
+                # on a seam first the one of which the face lies to the left of the edge
+                mine = sorted((each for each in edge.coedges if each.face == name), key=lambda each: not each.along)
+                pcurves = [_side_curve(surface, each, edge.curve) for each in mine]
+                self.builder.UpdateEdge(self.edges[index], *pcurves, face, CONFUSION)
                 self._add(wire, self.edges[index], along=coedge.along)
             for point in self.topology.degenerate_edges:
                 if (point.coedge.face, point.coedge.side) == (name, side):
                     self._add(wire, self._degenerate(surface, point, face), along=point.coedge.along)
-        return self._closed(face, wire, outwards)
+        return self._closed(face, [wire], outwards)
 
     def trimmed_face(self, name: str, face: TrimmedSurface, outwards: bool) -> TopoDS_Face:
-        """A trimmed face, whose wire runs along the edges that its boundary follows."""
+        """A trimmed face, whose wires run along the edges that its loops follow."""
         chain = [
             (index, self.topology.edges[index], coedge)
-            for side in range(len(face.boundary))
+            for side in range(len(face.curves))
             for index, coedge in self._along(name, side)
         ]
         shape = trimmed_face(face, [(edge, coedge) for _, edge, coedge in chain])
         made = TopoDS_Face()
         self.builder.MakeFace(made, shape.geometry, CONFUSION)
-        counter_clockwise = _counter_clockwise(face) != shape.reversed_normal
-        wire = self._wire()
+        of_side = [wire for loop in face.loops for wire in [self._wire()] * len(loop)]
         for (index, edge, coedge), pcurve in zip(chain, shape.pcurves, strict=True):
             gap = _gap(edge, pcurve, shape.geometry)
             # 5 % more than the measured gap, which may be larger between the samples
             self.gaps[index] = max(self.gaps[index], 1.05 * gap)
             self.builder.UpdateEdge(self.edges[index], plane_curve(pcurve), made, self.gaps[index])
-            self._add(wire, self.edges[index], along=coedge.along == counter_clockwise)
-        return self._closed(made, wire, outwards != shape.reversed_normal)
+            self._add(of_side[coedge.side], self.edges[index], along=coedge.along != shape.reversed_normal)
+        wires = [of_side[side] for side in np.cumsum([len(loop) for loop in face.loops]) - 1]
+        return self._closed(made, wires, outwards != shape.reversed_normal)
 
     def close_edges(self) -> None:
         """Set the tolerances of edges and vertices to the measured gaps."""
@@ -221,16 +224,20 @@ class _SolidBuilder:
         for vertex, tolerance in zip(self.vertices, self.tolerances.tolist(), strict=True):
             self.builder.UpdateVertex(vertex, tolerance)
 
+    @cached_property
+    def _coedges(self) -> Mapping[tuple[str, int], list[tuple[int, Coedge]]]:
+        """Indices and coedges of the edges on each side of each face."""
+        found = defaultdict(list)
+        for index, edge in enumerate(self.topology.edges):
+            for coedge in edge.coedges:
+                found[coedge.face, coedge.side].append((index, coedge))
+        return found
+
     def _along(self, name: str, side: int) -> list[tuple[int, Coedge]]:
-        """Indices and coedges of the edges on a side of a face, in the direction of its wire."""
-        found = [
-            (index, coedge)
-            for index, edge in enumerate(self.topology.edges)
-            for coedge in edge.coedges
-            if (coedge.face, coedge.side) == (name, side)
-        ]
+        """The same of one side, in the direction of its face's wire."""
         trimmed = isinstance(self.surfaces[name], TrimmedSurface)
-        return sorted(found, key=lambda each: each[1].span, reverse=not trimmed and side in {2, 3})
+        backwards = not trimmed and side in {2, 3}
+        return sorted(self._coedges.get((name, side), []), key=lambda each: each[1].span, reverse=backwards)
 
     def _wire(self) -> TopoDS_Wire:
         wire = TopoDS_Wire()
@@ -240,9 +247,10 @@ class _SolidBuilder:
     def _add(self, wire: TopoDS_Wire, edge: TopoDS_Edge, *, along: bool) -> None:
         self.builder.Add(wire, edge.Oriented(TopAbs_FORWARD if along else TopAbs_REVERSED))
 
-    def _closed(self, face: TopoDS_Face, wire: TopoDS_Wire, forward: bool) -> TopoDS_Face:
-        wire.Closed(True)
-        self.builder.Add(face, wire)
+    def _closed(self, face: TopoDS_Face, wires: list[TopoDS_Wire], forward: bool) -> TopoDS_Face:
+        for wire in wires:
+            wire.Closed(True)
+            self.builder.Add(face, wire)
         return TopoDS.Face_s(face.Oriented(TopAbs_FORWARD if forward else TopAbs_REVERSED))
 
     def _degenerate(self, surface: Surface, point: DegenerateEdge, face: TopoDS_Face) -> TopoDS_Edge:
@@ -276,12 +284,6 @@ def _side_curve(surface: Surface, coedge: Coedge, curve: Curve | None) -> Geom2d
     poles.SetValue(1, at(start))
     poles.SetValue(2, at(end))
     return Geom2d_BSplineCurve(poles, *occ_knots(np.array([first, first, last, last])), 1)
-
-
-def _counter_clockwise(face: TrimmedSurface) -> bool:
-    chain = np.concatenate([curve(np.linspace(curve.knots[0], curve.knots[-1], 401))[:-1] for curve in face.boundary])
-    ahead = np.roll(chain, -1, axis=0)
-    return bool(np.sum(chain[:, 0] * ahead[:, 1] - ahead[:, 0] * chain[:, 1]) > 0.0)
 
 
 def _gap(edge: BodyEdge, pcurve: Curve, geometry: Geom_Surface) -> float:

@@ -25,6 +25,11 @@ Frame = tuple[Array, Array, Array]
 """points (n, 3) [mm] and their derivatives by the first and by the second parameter"""
 
 
+PAST = 1e-9
+"""How far a face may reach past a period of its surface, of a parameter range of 1, and count as within it: files round
+their knots and trimming curves."""
+
+
 class SurfaceEvaluator(Protocol):
     """The untrimmed surface under a face, in millimetres."""
 
@@ -110,9 +115,8 @@ def occ_evaluator(geometry: Geom_Surface, low: Array, high: Array) -> SurfaceEva
     while isinstance(geometry, Geom_RectangularTrimmedSurface):
         geometry = geometry.BasisSurface()
     if isinstance(geometry, Geom_BSplineSurface):
-        if geometry.IsUPeriodic() or geometry.IsVPeriodic():
-            return OccEvaluator(geometry=geometry)
-        return NurbsEvaluator(surface=native_surface(geometry))
+        clamped = _clamped(geometry, low, high)
+        return OccEvaluator(geometry=geometry) if clamped is None else NurbsEvaluator(surface=native_surface(clamped))
     if isinstance(geometry, Geom_SurfaceOfRevolution):
         line = Geom_TrimmedCurve(geometry.BasisCurve(), *_extended_range(geometry.BasisCurve(), low[1], high[1]))
         axis = geometry.Axis()
@@ -129,6 +133,21 @@ def occ_evaluator(geometry: Geom_Surface, low: Array, high: Array) -> SurfaceEva
             across=_coordinates(frame.YDirection()),
         )
     return OccEvaluator(geometry=geometry, period=2.0 * np.pi if geometry.IsUPeriodic() else 0.0)
+
+
+def _clamped(geometry: Geom_BSplineSurface, low: Array, high: Array) -> Geom_BSplineSurface | None:
+    """The same surface over one period, where a face does not reach past it: else None.
+
+    OpenCASCADE makes faces of a whole turn periodic where it reads STEP and IGES.
+    """
+    if not (geometry.IsUPeriodic() or geometry.IsVPeriodic()):
+        return geometry
+    start, end = np.reshape(geometry.Bounds(), (2, 2)).T
+    if np.any((low < start - PAST) | (high > end + PAST)):
+        return None
+    clamped: Geom_BSplineSurface = geometry.Copy()
+    clamped.Segment(*geometry.Bounds())
+    return clamped
 
 
 def native_evaluator(surface: Surface) -> NurbsEvaluator:

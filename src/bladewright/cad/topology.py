@@ -1,16 +1,20 @@
 """The edges that the faces of a body share, found from the native boundary curves."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from itertools import pairwise
 from typing import cast
 
 import numpy as np
+from numpy.typing import NDArray
+from scipy.spatial import cKDTree
 
+from bladewright.cad.boundary_trace import ON_BOUNDARY, BoundaryTrace
 from bladewright.cad.face_pieces import BodyInPieces
-from bladewright.cad.native_body import extent
-from bladewright.cad.region import greville_spaced
+from bladewright.cad.native_body import declared_edges, extent
 from bladewright.errors import CadError
 from bladewright.numerics.elementary import Array
+from bladewright.nurbs.closest import closest_on_curve
 from bladewright.nurbs.curve import Curve
 from bladewright.nurbs.domain import split
 from bladewright.nurbs.surface import Surface
@@ -19,10 +23,6 @@ from bladewright.nurbs.trimmed import TrimmedSurface
 COINCIDENT = 1e-12
 """Largest distance of equal points, as a fraction of the body's extent. Neighbours share their boundary control points
 to the last bit, so that this only allows for the rounding of one more operation, such as a turn by a pitch."""
-ON_BOUNDARY = 1e-6
-"""Largest distance of a trimmed face's boundary from the edge that it runs along, as a fraction of the body's extent.
-It only decides which edge is meant: the distance itself is measured, and becomes the gap of the edge."""
-
 SAME_KNOT = 1e-12
 """Largest difference of equal knots, as a fraction of the edge's parameter range: rounding."""
 
@@ -37,11 +37,11 @@ class Coedge:
     face: str
     """name of the face"""
     side: int
-    """index into SIDES, or into the boundary curves of a trimmed face"""
+    """index into SIDES, or into the curves of a trimmed face"""
     along: bool
     """whether the boundary of the face runs in the direction of the edge's parameter"""
     span: tuple[float, float]
-    """parameters of the side, or of the boundary curve, between which the edge lies, the smaller one first"""
+    """parameters of the side, or of the trimmed face's curve, between which the edge lies, the smaller one first"""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -80,12 +80,13 @@ def topology(body: BodyInPieces) -> Topology:
 
     A side of an untrimmed face is split where it has a corner (an inner knot of full multiplicity), and each piece is
     an edge of its own. Untrimmed faces are neighbours where two such pieces have the same control points, in either
-    direction, and the same knots up to a linear change of the parameter. Where either of the two is cut the edge is cut
-    too, and the pieces of a face share an edge on each cut. A trimmed face is a neighbour along the edges that its
-    boundary follows. Raises CadError where an edge does not belong to exactly two faces.
+    direction, and the same knots up to a linear change of the parameter; a face of a whole turn is its own neighbour
+    along its seam. Where either of the two is cut the edge is cut too, also where a declared edge ends on it, and the
+    pieces of a face share an edge on each cut. A trimmed face is a neighbour along the edges, of untrimmed faces or
+    declared, that its loops follow. Raises CadError where an edge does not belong to exactly two faces.
     """
     size = extent(body.built)
-    whole_edges: list[tuple[Curve, list[Coedge]]] = []
+    sides: list[tuple[Curve, Coedge]] = []
     points: list[tuple[Array, Coedge]] = []
     for name, face in body.built.surfaces.items():
         if isinstance(face, Surface):
@@ -98,28 +99,30 @@ def topology(body: BodyInPieces) -> Topology:
                     if np.ptp(net, axis=0).max() <= COINCIDENT * size:
                         points += [(net[0], part) for part in _parts(body, coedge, _own_cuts(body, coedge))]
                     else:
-                        _add_coedge(whole_edges, curve, coedge, COINCIDENT * size)
-    edge_curves = [part for curve, coedges in whole_edges for part in _cut_edge(body, curve, coedges)]
+                        sides.append((curve, coedge))
+    declared = declared_edges(body.built)
+    ends = np.array([curve.control_points[end] for curve in declared for end in (0, -1)]).reshape(-1, 3)
+    ends, _ = _merged(ends, COINCIDENT * size)
+    whole_edges = _shared(sides, COINCIDENT * size) + [(curve, list[Coedge]()) for curve in declared]
+    edge_curves = [
+        part
+        for curve, coedges in whole_edges
+        for part in _cut_edge(body, curve, coedges, _met(curve, ends, COINCIDENT * size))
+    ]
     edge_curves += _edges_on_cuts(body)
-    for name, face in body.built.surfaces.items():
-        if isinstance(face, TrimmedSurface):
-            for side, boundary in enumerate(face.boundary):
-                _add_trimmed_boundary(edge_curves, face, boundary, name, side, ON_BOUNDARY * size)
+    _add_trimmed_faces(edge_curves, body.built.surfaces, ON_BOUNDARY * size)
     _require_pairs(edge_curves)
-    vertices: list[Array] = []
+    corners = [curve.control_points[end] for curve, _ in edge_curves for end in (0, -1)] + [at for at, _ in points]
+    vertices, index = _merged(np.array(corners).reshape(-1, 3), COINCIDENT * size)
     edges = tuple(
-        BodyEdge(
-            curve=curve,
-            coedges=tuple(coedges),
-            start=_vertex(vertices, curve.control_points[0], COINCIDENT * size),
-            end=_vertex(vertices, curve.control_points[-1], COINCIDENT * size),
-        )
-        for curve, coedges in edge_curves
+        BodyEdge(curve=curve, coedges=tuple(coedges), start=int(index[2 * k]), end=int(index[2 * k + 1]))
+        for k, (curve, coedges) in enumerate(edge_curves)
     )
     degenerate_edges = tuple(
-        DegenerateEdge(coedge=coedge, vertex=_vertex(vertices, point, COINCIDENT * size)) for point, coedge in points
+        DegenerateEdge(coedge=coedge, vertex=int(vertex))
+        for (_, coedge), vertex in zip(points, index[2 * len(edges) :], strict=True)
     )
-    return Topology(edges=edges, degenerate_edges=degenerate_edges, vertices=np.array(vertices))
+    return Topology(edges=edges, degenerate_edges=degenerate_edges, vertices=vertices)
 
 
 def side_curve(face: Surface, side: int) -> tuple[Curve, bool]:
@@ -173,8 +176,22 @@ def _parts(body: BodyInPieces, coedge: Coedge, ends: list[float]) -> list[Coedge
     ]
 
 
-def _cut_edge(body: BodyInPieces, curve: Curve, coedges: list[Coedge]) -> list[tuple[Curve, list[Coedge]]]:
-    """An edge of whole faces in its parts, cut where either of its faces is."""
+def _met(curve: Curve, points: Array, tolerance: float) -> list[float]:
+    """The parameters at which points lie on a curve between its ends."""
+    low, high = (reach(curve.control_points, axis=0) for reach in (np.min, np.max))
+    near = points[np.all((points >= low - tolerance) & (points <= high + tolerance), axis=1)]
+    for end in (0, -1):
+        near = near[np.max(np.abs(near - curve.control_points[end]), axis=1, initial=0.0) > tolerance]
+    if len(near) == 0:
+        return []
+    found = closest_on_curve(curve, near)
+    return [float(u) for u in found.u[found.distances <= tolerance]]
+
+
+def _cut_edge(
+    body: BodyInPieces, curve: Curve, coedges: list[Coedge], met: list[float]
+) -> list[tuple[Curve, list[Coedge]]]:
+    """An edge of whole faces in its parts, cut where either of its faces is, and where other edges meet it."""
     first, last = curve.domain
 
     def change(coedge: Coedge, to_edge: bool, at: float) -> float:
@@ -184,7 +201,7 @@ def _cut_edge(body: BodyInPieces, curve: Curve, coedges: list[Coedge]) -> list[t
         share = (at - start) / (end - start)
         return new_start + (1.0 - share if backwards else share) * (new_end - new_start)
 
-    cuts: list[float] = []
+    cuts = list(met)
     for coedge in coedges:
         for at in _own_cuts(body, coedge)[1:-1]:
             place = change(coedge, True, at)
@@ -223,13 +240,26 @@ def _edges_on_cuts(body: BodyInPieces) -> list[tuple[Curve, list[Coedge]]]:
     return found
 
 
-def _add_coedge(edge_curves: list[tuple[Curve, list[Coedge]]], curve: Curve, coedge: Coedge, tolerance: float) -> None:
-    for known, coedges in edge_curves:
-        for backwards in (False, True):
-            if _same(known, curve, tolerance, backwards=backwards):
-                coedges.append(replace(coedge, along=coedge.along != backwards))
-                return
-    edge_curves.append((curve, [coedge]))
+def _shared(sides: list[tuple[Curve, Coedge]], tolerance: float) -> list[tuple[Curve, list[Coedge]]]:
+    """Sides of faces as edges: one edge for those that are the same curve, in either direction."""
+    if not sides:
+        return []
+    middles = np.array([curve.control_points.mean(axis=0) for curve, _ in sides])
+    neighbours = cKDTree(middles).query_ball_point(middles, 2.0 * tolerance, p=np.inf)
+    edges: dict[int, tuple[Curve, list[Coedge]]] = {}
+    for index, (curve, coedge) in enumerate(sides):
+        known = [
+            (edge, backwards)
+            for edge in sorted(neighbours[index])
+            for backwards in (False, True)
+            if edge in edges and _same(edges[edge][0], curve, tolerance, backwards=backwards)
+        ]
+        if known:
+            edge, backwards = known[0]
+            edges[edge][1].append(replace(coedge, along=coedge.along != backwards))
+        else:
+            edges[index] = (curve, [coedge])
+    return list(edges.values())
 
 
 def _same(one: Curve, other: Curve, tolerance: float, *, backwards: bool) -> bool:
@@ -249,74 +279,35 @@ def _shares(knots: Array) -> Array:
     return (knots - knots[0]) / (knots[-1] - knots[0])
 
 
-def _add_trimmed_boundary(
-    edge_curves: list[tuple[Curve, list[Coedge]]],
-    face: TrimmedSurface,
-    boundary: Curve,
-    name: str,
-    side: int,
-    tolerance: float,
+def _add_trimmed_faces(
+    edge_curves: list[tuple[Curve, list[Coedge]]], faces: Mapping[str, Surface | TrimmedSurface], tolerance: float
 ) -> None:
-    """Add the boundary curve of a trimmed face to the edge that it follows, or to several edges one after another."""
-    s = greville_spaced(boundary.knots, boundary.degree, 2001)
-    line = face.surface(*boundary(s).T)
-
-    def foot(point: Array, after: float = -np.inf) -> tuple[float, float]:
-        """Distance of a point from the boundary, and the boundary's parameter there, not before `after`."""
-        begin = max(0, int(np.searchsorted(s, after, side="right")) - 1)
-        away, at = _to_polyline(point, line[begin:])
-        if away > 100.0 * tolerance:
-            return away, float(np.interp(begin + at, np.arange(len(s)), s))
-        # the polyline cuts the corner around a nose, a finer one less
-        low, high = s[max(begin + int(at) - 1, begin)], s[min(begin + int(at) + 2, len(s) - 1)]
-        near = np.linspace(float(low), float(high), 61)
-        away, at = _to_polyline(point, face.surface(*boundary(near).T))
-        return away, float(np.interp(at, np.arange(len(near)), near))
-
-    found, nearest = [], np.inf
-    for curve, coedges in edge_curves:
-        first, middle, last = curve(curve.knots[0] + np.array([0.0, 0.5, 1.0]) * (curve.knots[-1] - curve.knots[0]))
-        # edge and boundary have different parameters, so that distances are measured
-        distance = foot(middle)
-        for start, end in ((first, last), (last, first)):
-            nearest = min(nearest, max(_distance(line[0], start), _distance(line[-1], end), distance[0]))
-        if max(distance[0], *(foot(end)[0] for end in (first, last))) <= tolerance:
-            found.append((distance[1], coedges, first, last))
-    place, reached = line[0], float(s[0])
-    for at, coedges, first, last in sorted(found, key=lambda each: each[0]):
-        along = _distance(place, first) <= _distance(place, last)
-        start, end = (first, last) if along else (last, first)
-        if _distance(place, start) > tolerance:
-            break
-        past = foot(end, after=at)[1]
-        coedges.append(Coedge(face=name, side=side, along=along, span=(reached, past)))
-        place, reached = end, past
-    if not found or _distance(place, line[-1]) > tolerance:
-        raise CadError(
-            f"boundary {side} of face {name!r} runs along no edge of another face: the nearest is {nearest:.3g} m "
-            f"away, and at most {tolerance:.3g} m is taken for the same; let the neighbour end on this boundary"
-        )
+    """Add the curves of trimmed faces to the edges that they follow."""
+    places = [np.linspace(*curve.domain, 5) for curve, _ in edge_curves]
+    probes = np.array([curve(at) for (curve, _), at in zip(edge_curves, places, strict=True)]).reshape(-1, 5, 3)
+    for name, face in faces.items():
+        if isinstance(face, TrimmedSurface):
+            labels = [
+                f"{f'hole {loop}, curve' if loop else 'boundary'} {number} of face {name!r}"
+                for loop, curves in enumerate(face.loops)
+                for number in range(len(curves))
+            ]
+            for side, (boundary, label) in enumerate(zip(face.curves, labels, strict=True)):
+                trace = BoundaryTrace(face, boundary, tolerance)
+                for edge, along, span in trace.followed(probes, label):
+                    edge_curves[edge][1].append(Coedge(face=name, side=side, along=along, span=span))
 
 
-def _distance(a: Array, b: Array) -> float:
-    return float(np.sqrt(np.sum((a - b) ** 2)))
-
-
-def _to_polyline(point: Array, line: Array) -> tuple[float, float]:
-    """Distance of a point from a polyline, and where it is nearest, in segments from the start."""
-    start, step = line[:-1], np.diff(line, axis=0)
-    share = np.clip(np.sum((point - start) * step, axis=-1) / np.sum(step * step, axis=-1), 0.0, 1.0)
-    away = np.sum((start + share[:, None] * step - point) ** 2, axis=-1)
-    nearest = int(np.argmin(away))
-    return float(np.sqrt(away[nearest])), float(nearest + share[nearest])
-
-
-def _vertex(vertices: list[Array], point: Array, tolerance: float) -> int:
-    for index, known in enumerate(vertices):
-        if np.max(np.abs(known - point)) <= tolerance:
-            return index
-    vertices.append(point)
-    return len(vertices) - 1
+def _merged(points: Array, tolerance: float) -> tuple[Array, NDArray[np.intp]]:
+    """The distinct ones of points (n, 3), and for each point the index of the one that it is."""
+    index: dict[int, int] = {}
+    near = cKDTree(points).query_ball_point(points, tolerance, p=np.inf) if len(points) else []
+    kept = np.zeros(len(points), dtype=bool)
+    for place, others in enumerate(near):
+        known = sorted(index[other] for other in others if kept[other])
+        kept[place] = not known
+        index[place] = known[0] if known else int(np.sum(kept[:place]))
+    return points[kept], np.array(list(index.values()), dtype=np.intp)
 
 
 def _require_pairs(edge_curves: list[tuple[Curve, list[Coedge]]]) -> None:
@@ -327,7 +318,9 @@ def _require_pairs(edge_curves: list[tuple[Curve, list[Coedge]]]) -> None:
                 f"the edge from {curve.control_points[0]} to {curve.control_points[-1]} m belongs to {where}: an edge "
                 "of a closed body belongs to exactly two faces; give the neighbours the same boundary control points"
             )
-        if coedges[0].face == coedges[1].face:
+        one, other = coedges
+        if one.face == other.face and ({one.side, other.side} not in ({0, 2}, {1, 3}) or one.along == other.along):
             raise CadError(
-                f"face {coedges[0].face!r} meets itself along an edge: split it there, so that each edge has two faces"
+                f"face {one.face!r} meets itself along an edge, which only opposite sides of a face of a whole turn "
+                "do: split it there, so that each edge has two faces"
             )

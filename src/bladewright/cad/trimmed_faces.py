@@ -40,7 +40,7 @@ class TrimmedFace:
 
 
 def trimmed_face(face: TrimmedSurface, edges: list[tuple[BodyEdge, Coedge]]) -> TrimmedFace:
-    """The surface of a trimmed face, and the pcurves of its edges, which are given in the order of its boundary."""
+    """The surface of a trimmed face, and the pcurves of its edges, which are given in the order of its curves."""
     if face.revolution is not None:
         return _revolved(face, face.revolution, edges)
     net = face.surface.control_points
@@ -72,7 +72,7 @@ def _revolved(face: TrimmedSurface, revolution: Revolution, edges: list[tuple[Bo
     OpenCASCADE's angle starts half a turn before the middle of the face, so that no pcurve comes near the seam.
     """
     line = revolution.meridian
-    angles = [np.asarray(revolution.theta(boundary(_spread(boundary.knots, 201))[:, 1])) for boundary in face.boundary]
+    angles = [np.asarray(revolution.theta(boundary(_spread(boundary.knots, 201))[:, 1])) for boundary in face.curves]
     low, high = min(float(a.min()) for a in angles), max(float(a.max()) for a in angles)
     if high - low >= 2.0 * np.pi:
         raise CadError(
@@ -90,7 +90,7 @@ def _revolved(face: TrimmedSurface, revolution: Revolution, edges: list[tuple[Bo
     axis = gp_Ax1(gp_Pnt(0.0, 0.0, 0.0), gp_Dir(-1.0, 0.0, 0.0))
 
     def pcurve(edge: BodyEdge, coedge: Coedge) -> Curve:
-        boundary = face.boundary[coedge.side]
+        boundary = face.curves[coedge.side]
         s = np.linspace(*coedge.span, 201)
         guides = boundary(s if coedge.along else s[::-1])
         reference = np.asarray(revolution.theta(guides[:, 1]))
@@ -122,7 +122,7 @@ def _patch(face: TrimmedSurface, edges: list[tuple[BodyEdge, Coedge]]) -> Trimme
     surface = face.surface
 
     def pcurve(edge: BodyEdge, coedge: Coedge) -> Curve:
-        boundary = face.boundary[coedge.side]
+        boundary = face.curves[coedge.side]
         guides = boundary(np.linspace(*coedge.span, 2001))
         ahead = surface(*guides.T)
 
@@ -197,7 +197,7 @@ def _interpolated(place: Along, scales: Along, along: Curve, joints: list[tuple[
     whole = knots_with_joints(np.sort(np.concatenate([ends, np.repeat(inner, counts)])), degree, joints)
     inner, counts = np.unique(whole[degree + 1 : -degree - 1], return_counts=True)
     size = float(np.ptp(along.control_points, axis=0).max())
-    for division in (1, 2, 4, 8, 16):
+    for division in (1, 2, 4, 8, 16, 32):
         ends = np.concatenate([along.knots[:1], inner, along.knots[-1:]])
         added = (ends[:-1, None] + np.diff(ends)[:, None] * np.arange(1, division) / division).ravel()
         knots = np.sort(np.concatenate([np.repeat(ends[0], degree + 1), np.repeat(inner, counts), added,
