@@ -12,6 +12,7 @@ from bladewright.nurbs.basis import Reals
 from bladewright.nurbs.curve import Curve
 from bladewright.nurbs.surface import Surface
 from bladewright.nurbs.trimmed import TrimmedSurface
+from bladewright.views.faces import sampled
 from bladewright.views.flow_marks import draw_marks
 from bladewright.views.raster import Camera, Polyline, ShadedGrid, axes_towards, framing_camera, rendered
 from bladewright.views.sections import ISOLATED_PITCH, cosine_spacing
@@ -26,6 +27,11 @@ BLADE, NEIGHBOUR, HUB = (0.16, 0.47, 0.68), (0.74, 0.78, 0.83), (0.70, 0.68, 0.6
 """Colours (red, green, blue) of the blade, of its neighbours and of the hub."""
 EDGE, FAINT = (0.05, 0.16, 0.26), (0.55, 0.60, 0.65)
 """Colours of the main and of the auxiliary lines."""
+FILLET = (0.40, 0.73, 0.67)
+"""Colour that is mixed into that of a blade for its fillets."""
+SIDES, EDGES = ("upper", "lower"), ("leading_edge", "trailing_edge")
+FEW = 9
+"""Points across a fillet and an end."""
 BORE_RADIUS = 0.8
 """Radius of the bore drawn in the hub of a whole row, in smallest radii of the hub. It only shows that the hub is a
 wheel; no design says it."""
@@ -120,31 +126,35 @@ def blade_surfaces(
     blade: "Blade", size: tuple[int, int], colour: tuple[float, float, float]
 ) -> tuple[list[ShadedGrid], list[Reals]]:
     """Sides and ends of the blade [mm] with their normals, and the lines between them."""
-    u, v = cosine_spacing(size[0]), np.linspace(0.0, 1.0, size[1])
-    surfaces, rims = [], []
-    for name in ("upper", "lower"):
-        points, normals = sampled(blade.surfaces[name], u, v)
-        surfaces.append(ShadedGrid(points=points, normals=normals, colour=colour))
-        rims.append(points)
-    for name in ("leading_edge", "trailing_edge"):
-        if name in blade.surfaces:
-            points, normals = sampled(blade.surfaces[name], np.linspace(0.0, 1.0, 5), v)
-            surfaces.append(ShadedGrid(points=points, normals=normals, colour=colour))
-    lines = []
-    for row in (-1,) if blade.exact.mapping.revolved and blade.design.ends[0] == "hub" else (0, -1):
-        ends = np.stack([rim[:, row] for rim in rims], axis=1)
-        across = rims[0][:, row] - rims[0][:, 1 if row == 0 else -2]
-        normals = np.broadcast_to(across[:, None], ends.shape)
-        surfaces.append(ShadedGrid(points=ends, normals=normals, colour=colour))
-        lines += [ends[:, 0], ends[:, 1]]
+    surfaces, lines = [], list[Reals]()
+    hidden = ["hub"] if blade.exact.mapping.revolved else []
+    for name, face in blade.surfaces.items():
+        if name in hidden:
+            continue
+        points, normals = sampled(face, *places_on(name, size))
+        own = mixed(colour, FILLET) if "fillet" in name else colour
+        surfaces.append(ShadedGrid(points=points, normals=normals, colour=own))
+        if name in SIDES and not any("shroud_fillet" in each for each in blade.surfaces):
+            lines.append(points[:, -1])
+        if "fillet" in name or (name in SIDES and "hub" not in hidden):
+            lines += [points[:, 0], points[:, -1]]
     return surfaces, lines
 
 
-def sampled(face: Any, u: Reals, v: Reals) -> tuple[Reals, Reals]:
-    """Points (m, n, 3) [mm] of a native face at u (m,) and v (n,), and its unit normals along dS/du x dS/dv."""
-    normals = np.cross(np.real(face.grid(u, v, 1, 0)), np.real(face.grid(u, v, 0, 1)))
-    size = np.sqrt(np.sum(normals**2, axis=-1, keepdims=True))
-    return per_metre() * np.real(face.grid(u, v)), normals / np.maximum(size, 1e-300)
+def places_on(name: str, size: tuple[int, int]) -> tuple[Reals, Reals]:
+    """Parameters along and across a face of a blade, of which a side has this size."""
+    along, across = cosine_spacing(size[0]), np.linspace(0.0, 1.0, size[1])
+    if name in SIDES:
+        return along, across
+    if name in EDGES:
+        return np.linspace(0.0, 1.0, 5), across
+    return (along if name.endswith(SIDES) or "fillet" not in name else cosine_spacing(FEW)), cosine_spacing(FEW)
+
+
+def mixed(one: tuple[float, float, float], other: tuple[float, float, float]) -> tuple[float, float, float]:
+    """The colour between two."""
+    red, green, blue = (0.5 * (a + b) for a, b in zip(one, other, strict=True))
+    return red, green, blue
 
 
 def hub_surfaces(blade: "Blade", turns: list[float]) -> list[ShadedGrid]:
