@@ -1,7 +1,5 @@
 """Native faces as grids of points and their borders as lines, for the views in space."""
 
-from typing import Any
-
 import numpy as np
 
 from bladewright.nurbs.basis import Reals
@@ -25,12 +23,12 @@ def sampled(face: Face, u: Reals, v: Reals) -> tuple[Reals, Reals]:
     Of a trimmed face u is a share of its width, and v of the way across from border to border there; its holes are
     covered.
     """
-    surface: Any = face
     if isinstance(face, TrimmedSurface):
         surface, at = face.surface, _across(face, u, v)
     else:
-        ends = face.domain_u, face.domain_v
-        at = np.meshgrid(*(a + (b - a) * share for (a, b), share in zip(ends, (u, v), strict=True)), indexing="ij")
+        ends = zip((face.domain_u, face.domain_v), (u, v), strict=True)
+        columns, rows = np.meshgrid(*(a + (b - a) * share for (a, b), share in ends), indexing="ij")
+        surface, at = face, (columns, rows)
     along, aside = (np.real(surface.derivative(*at, *order)) for order in ((1, 0), (0, 1)))
     normals = np.cross(along, aside)
     size = np.sqrt(np.sum(normals**2, axis=-1, keepdims=True))

@@ -1,19 +1,24 @@
 """Meridional views: the channel of a blade with the points that define it, and the duct of a passage."""
 
+from dataclasses import fields
 from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.collections import PolyCollection
 
 from bladewright.nurbs.basis import Reals
 from bladewright.nurbs.surface import Surface
+from bladewright.views.faces import sampled
 from bladewright.views.sections import cosine_spacing
+from bladewright.views.solid import FILLET, SIDES
 from bladewright.views.style import (
     BLUE,
     GREEN,
     GREY,
     INK,
     ORANGE,
+    PALE,
     RED,
     SOFT,
     VIOLET,
@@ -38,6 +43,8 @@ FEW_POINTS = 12
 """Most points of a line with marks of full size."""
 SEEN_BEYOND = 0.6
 """What is seen before and behind the blade, in its larger extent: a long duct would make the blade small."""
+CUT_BEYOND = 0.15
+"""How far a straight cut is drawn past the blade, of its extent."""
 INLET, OUTLET = VIOLET, GREY
 """Colours of the ends of a passage."""
 
@@ -45,10 +52,15 @@ INLET, OUTLET = VIOLET, GREY
 def draw_meridional(axes: Axes, blade: "Blade") -> None:
     """Draw the meridional view of a blade in the (x, r) plane, or (x, z) in a cascade, to one scale on both axes."""
     exact, view = blade.exact, blade.exact.meridional_view
-    covered = blade_outline(blade) * per_metre()
-    axes.fill(*covered.T, color=INK, alpha=0.08, linewidth=0.0, label="blade")
-    axes.plot(*covered.T, color=INK, linewidth=0.7)
+    covered = blade_outline(blade.plain) * per_metre()
+    if blade.plain is blade:
+        axes.fill(*covered.T, color=INK, alpha=0.08, linewidth=0.0, label="blade")
+        axes.plot(*covered.T, color=INK, linewidth=0.7)
+    else:
+        draw_covered(axes, blade)
     draw_view(axes, view)
+    draw_cuts(axes, blade, covered)
+    draw_outlines(axes, blade)
     for index, line in enumerate(built_edges(blade)):
         label = None if index else "edges as built"
         axes.plot(*(line * per_metre()).T, color=INK, linestyle=(0, (1, 1.2)), linewidth=1.6, label=label)
@@ -85,6 +97,49 @@ def _near_the_blade(axes: Axes, covered: Reals) -> None:
     beyond = SEEN_BEYOND * max(right - left, high - low)
     seen = axes.get_xlim()
     axes.set_xlim(max(seen[0], left - beyond), min(seen[1], right + beyond), auto=True)
+
+
+def draw_covered(axes: Axes, blade: "Blade") -> None:
+    """Fill what the faces of a cut or filleted blade cover, its fillets in their own colour."""
+    kinds: list[tuple[str, Any, list[str]]] = [
+        ("blade", PALE, [name for name in blade.surfaces if name in SIDES]),
+        ("fillet", FILLET, [name for name in blade.surfaces if "fillet" in name]),
+    ]
+    for label, colour, names in kinds:
+        pieces = list[Reals]()
+        for name in names:
+            x, y, z = np.moveaxis(sampled(blade.surfaces[name], cosine_spacing(81), cosine_spacing(17))[0], -1, 0)
+            flat = np.stack([x, np.hypot(y, z) if blade.exact.mapping.revolved else z], axis=-1)
+            corners = flat[:-1, :-1], flat[1:, :-1], flat[1:, 1:], flat[:-1, 1:]
+            pieces += [*np.stack(corners, axis=2).reshape(-1, 4, 2)]
+        if pieces:
+            axes.add_collection(PolyCollection(pieces, facecolors=colour, edgecolors=colour, label=label))
+
+
+def draw_cuts(axes: Axes, blade: "Blade", covered: Reals) -> None:
+    """Draw the lines that a design cuts its blade by; straight ones pass what it covered (n, 2) by a little."""
+    cut, metre = blade.design.cut, blade.design.metre
+    if cut is None:
+        return
+    low, high = covered.min(axis=0), covered.max(axis=0)
+    low, high = low - CUT_BEYOND * (high - low), high + CUT_BEYOND * (high - low)
+    label: str | None = "cut"
+    for line in (getattr(cut, each.name) for each in fields(cut)):
+        if line is None:
+            continue
+        points = per_metre() * line.points_within(metre, low / per_metre(), high / per_metre())
+        axes.plot(*points.T, color=VIOLET, linestyle=(0, (5, 1.5)), linewidth=1.3, label=label)
+        label = None
+
+
+def draw_outlines(axes: Axes, blade: "Blade") -> None:
+    """Draw the outlines of disc and shroud ring that a design gives."""
+    label: str | None = "disc, ring"
+    for part in (blade.design.disc, blade.design.shroud_ring):
+        if part is not None and part.outline is not None:
+            line = part.outline.pieces.line(blade.design.metre)
+            axes.plot(*(per_metre() * line.drawn_points).T, color=GREY, linewidth=1.3, label=label)
+            label = None
 
 
 def draw_clearance(axes: Axes, view: "MeridionalView") -> None:

@@ -5,9 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass, fields
 from typing import Annotated
 
+import numpy as np
+
 from bladewright.blade.design.meridional_curve import ControlPolygon, StraightsAndArcs, ThroughPoints
 from bladewright.designs import Limits, Part, parameter
 from bladewright.errors import DesignError
+from bladewright.nurbs.basis import Reals
 from bladewright.section import checks
 from bladewright.section.tagged_unions import ByKey
 
@@ -24,6 +27,10 @@ class AtRadius(Part):
     def __post_init__(self) -> None:
         checks.parameters(self)
 
+    def points_within(self, metre: float, low: Reals, high: Reals) -> Reals:
+        """Its two ends (2, 2) [m] in a box of (x, r), for pictures."""
+        return np.array([[each[0], metre * np.real(self.radius)] for each in (low, high)])
+
 
 @dataclass(frozen=True, kw_only=True)
 class AtX(Part):
@@ -34,6 +41,10 @@ class AtX(Part):
 
     def __post_init__(self) -> None:
         checks.parameters(self)
+
+    def points_within(self, metre: float, low: Reals, high: Reals) -> Reals:
+        """Its two ends (2, 2) [m] in a box of (x, r), for pictures."""
+        return np.array([[metre * np.real(self.x), each[1]] for each in (low, high)])
 
 
 CutCurve = Annotated[AtRadius | AtX | ThroughPoints | ControlPolygon | StraightsAndArcs, ByKey()]

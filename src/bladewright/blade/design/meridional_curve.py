@@ -13,6 +13,7 @@ from bladewright.blade.flow_path.meridional_curve import MeridionalCurve, rounde
 from bladewright.designs import Part, Points, parameter
 from bladewright.errors import DesignError
 from bladewright.numerics.elementary import Array
+from bladewright.nurbs.basis import Reals
 from bladewright.section import checks
 from bladewright.section.laws import stacked
 from bladewright.section.tagged_unions import ByKey
@@ -32,6 +33,10 @@ class MeridianDesign(Part, ABC):
     @abstractmethod
     def line(self, metre: float) -> MeridionalCurve:
         """The native curve in metres of a design whose length unit is `metre` metres."""
+
+    def points_within(self, metre: float, low: Reals, high: Reals) -> Reals:  # noqa: ARG002 - it has ends of its own
+        """Points (n, 2) [m] of the real curve, for pictures."""
+        return self.line(metre).drawn_points
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -19,6 +19,8 @@ ARC = np.pi / 8.0
 """Largest angle of one polynomial piece of an arc [rad]."""
 ARC_DEGREE = 11
 """Degree of such a piece: the truncated series of sine and cosine are off by 1e-17 of the radius at its ends."""
+DRAWN = 201
+"""Points of a drawn curve beside the ends of its pieces."""
 ROUNDING = 1e-9
 """Share of a straight piece by which the arcs on it may overlap, as rounding makes them."""
 
@@ -78,6 +80,12 @@ class MeridionalCurve(PiecewisePolynomial):
     def joints(self) -> Reals:
         """Where the curve loses derivatives."""
         return self.breaks[1:-1]
+
+    @property
+    def drawn_points(self) -> Reals:
+        """Points (n, 2) of the real design, with the ends of all pieces, for pictures."""
+        drawn: Reals = np.real(self.values(np.unique(np.concatenate([np.linspace(0.0, 1.0, DRAWN), self.breaks]))))
+        return drawn
 
     def smoothness(self) -> tuple[Reals, NDArray[np.intp]]:
         """Own parameters (n,) at which the curve loses derivatives, and how many it keeps there (n,)."""
