@@ -88,6 +88,30 @@ def mass_properties(faces: Sequence[Face]) -> MassProperties:
     )
 
 
+def placed(one: MassProperties, turns: Array, shifts: Array) -> MassProperties:
+    """Mass properties of n copies of a solid together: x goes to `turns[k]` x + `shifts[k]`.
+
+    `turns` (n, 3, 3) are rotations, `shifts` (n, 3) [length]; both may be complex. The inertia is that about the common
+    centroid, by the parallel axis theorem (Huygens and Steiner).
+    """
+    centres = turns @ one.centroid + shifts
+    centroid = centres.mean(axis=0)
+    away = centres - centroid
+    turned = np.sum(turns @ one.inertia @ np.swapaxes(turns, -1, -2), axis=0)
+    spread = away.T @ away
+    return MassProperties(
+        volume=len(turns) * one.volume,
+        centroid=centroid,
+        inertia=turned + one.volume * (np.trace(spread) * np.eye(3) - spread),
+        measured=partial(_placed_areas, one, turns),
+    )
+
+
+def _placed_areas(one: MassProperties, turns: Array) -> tuple[Array, Array]:
+    areas, vector = one.measured()
+    return np.tile(areas, len(turns)), np.sum(turns @ vector, axis=0)
+
+
 def face_moments(face: Surface | TrimmedSurface, origin: Array) -> Array:
     """Integrals (13,) over one face in space, along its own normal, with x measured from `origin` (3,).
 

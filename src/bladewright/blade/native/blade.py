@@ -16,6 +16,7 @@ from bladewright.blade.native.end_faces import EDGES, cap, end_row, parted, trim
 from bladewright.blade.native.flow_sense import FlowSense, flow_sense
 from bladewright.blade.native.interpolation import edge_faces, native_sides
 from bladewright.blade.native.knots import DEGREE, MOST_POLES, Knots
+from bladewright.blade.native.mass import MetalBody
 from bladewright.blade.native.properties import blade_properties
 from bladewright.blade.native.refinement import (
     ApproximationError,
@@ -47,7 +48,7 @@ Faces = Mapping[str, Surface | TrimmedSurface]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Blade(FrozenRecord, Shown):
+class Blade(FrozenRecord, Shown, MetalBody):
     """A closed blade of native surfaces."""
 
     dimension: ClassVar[int] = 3
@@ -168,6 +169,11 @@ class Blade(FrozenRecord, Shown):
         if moments or any(isinstance(self.surfaces[name], TrimmedSurface) for name in self.design.ends):
             return blade_properties(self.surfaces, self.orientations, revolved=revolved, moments=moments)
         return mass_properties([(self.surfaces[name], sign) for name, sign in self.orientations.items()])
+
+    @property
+    def metal(self) -> RowDesign:
+        """The design that states the density."""
+        return self.design
 
     @cached_property
     def conformance(self) -> Conformance:
