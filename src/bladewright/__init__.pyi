@@ -37,6 +37,8 @@ from .derivatives.variables import variables as variables
 from .designs import Stations as Stations
 from .domain.build import passage as passage
 from .domain.passage import Passage as Passage
+from .domain.row import Row as Row
+from .domain.row import row as row
 from .domain.section import SectionPassage as SectionPassage
 from .domain.section import section_passage as section_passage
 from .errors import BladewrightError as BladewrightError

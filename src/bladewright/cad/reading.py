@@ -14,8 +14,9 @@ from OCP.Interface import Interface_Static
 from OCP.STEPControl import STEPControl_Reader
 from OCP.TColStd import TColStd_SequenceOfAsciiString
 from OCP.TopAbs import TopAbs_FACE, TopAbs_SHELL, TopAbs_SOLID
-from OCP.TopExp import TopExp
-from OCP.TopoDS import TopoDS, TopoDS_Face, TopoDS_Shape
+from OCP.TopExp import TopExp, TopExp_Explorer
+from OCP.TopLoc import TopLoc_Location
+from OCP.TopoDS import TopoDS, TopoDS_Face, TopoDS_Shape, TopoDS_Solid
 from OCP.TopTools import TopTools_IndexedMapOfShape
 
 from bladewright.cad.kernel import quiet
@@ -61,6 +62,8 @@ class CadFile:
     """everything in the file [mm]"""
     names: dict[int, str]
     """names of the faces that have one, by index in `faces`"""
+    solid_names: tuple[str, ...] = ()
+    """names of the `solids` of a STEP file, as an assembly calls them; empty where one has none"""
 
     @property
     def written_by_bladewright(self) -> bool:
@@ -71,6 +74,20 @@ class CadFile:
     def faces(self) -> list[TopoDS_Face]:
         """All faces, in the order of the file."""
         return [TopoDS.Face_s(face) for face in subshapes(self.shape, TopAbs_FACE)]
+
+    @property
+    def solids(self) -> list[TopoDS_Solid]:
+        """Every occurrence of a solid, in the order of the file; also of those that stand in the same place."""
+        return occurrences(self.shape)
+
+
+def occurrences(shape: TopoDS_Shape) -> list[TopoDS_Solid]:
+    """Every occurrence of a solid in a shape."""
+    found, walk = [], TopExp_Explorer(shape, TopAbs_SOLID)
+    while walk.More():
+        found.append(TopoDS.Solid_s(walk.Current()))
+        walk.Next()
+    return found
 
 
 def subshapes(shape: TopoDS_Shape, kind: object) -> list[TopoDS_Shape]:
@@ -181,12 +198,13 @@ def _step(path: Path) -> CadFile:
     system = header.OriginatingSystem().ToCString()
     described = (header.DescriptionValue(place).ToCString() for place in range(2, header.NbDescription() + 1))
     transferred = reader.WS().TransferReader()
-    names = {}
+    names, solid_names = {}, list[str]()
     for index, face in enumerate(subshapes(shape, TopAbs_FACE) if not shape.IsNull() else []):
-        entity = transferred.EntityFromShapeResult(face, 1)
-        name = entity.Name() if hasattr(entity, "Name") else None
-        if name is not None and name.ToCString():
-            names[index] = step_plain(name.ToCString())
+        # the face of a part that is placed has its name where the part itself stands
+        if name := _step_name(transferred, face.Located(TopLoc_Location())):
+            names[index] = name
+    if not shape.IsNull():
+        solid_names = [_step_name(transferred, solid) for solid in occurrences(shape)]
     return CadFile(
         path=path,
         format="STEP",
@@ -196,7 +214,15 @@ def _step(path: Path) -> CadFile:
         origin=Origin.from_lines(unwrapped([step_plain(line) for line in described])),
         shape=shape,
         names=names,
+        solid_names=tuple(solid_names),
     )
+
+
+def _step_name(transferred: object, shape: TopoDS_Shape) -> str:
+    """The name of what a shape was read from; empty where it has none."""
+    entity = transferred.EntityFromShapeResult(shape, 1)  # type: ignore[attr-defined]
+    name = entity.Name() if hasattr(entity, "Name") else None
+    return "" if name is None else step_plain(name.ToCString())
 
 
 def step_plain(text: str) -> str:

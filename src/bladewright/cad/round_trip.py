@@ -91,8 +91,24 @@ class EdgeReport:
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
+class PlacementReport:
+    """The measurement of one blade of a row."""
+
+    name: str
+    displacement: float
+    """[mm] largest distance of a point of the blade's box from where the placement puts it"""
+
+    def to_dict(self) -> dict[str, Any]:
+        """As in the round-trip report."""
+        return {"name": self.name, "displacement_mm": self.displacement}
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
 class RoundTrip(Shown):
-    """A CAD file measured against a blade or passage; `failures` says what misses a limit, where and by how much."""
+    """A CAD file measured against a body; `failures` says what misses a limit, where and by how much.
+
+    Of a row faces and edges are those of its one part, and volume, area and centroid those of all blades together.
+    """
 
     shown_as: ClassVar[str] = "round trip"
 
@@ -122,6 +138,8 @@ class RoundTrip(Shown):
     """how the native surfaces themselves conform to the design, where the body states it"""
     origin: Origin | None = None
     """the design that the file was made from, where it is known"""
+    placements: tuple[PlacementReport, ...] = ()
+    """of the blades of a row"""
 
     @property
     def passed(self) -> bool:
@@ -165,6 +183,8 @@ class RoundTrip(Shown):
         }
         report["version"] = __version__
         report["design"] = None if self.origin is None else self.origin.to_dict()
+        if self.placements:
+            report["placements"] = [each.to_dict() for each in self.placements]
         if self.promises is not None:
             report["promises"] = self.promises
         return report
@@ -186,7 +206,12 @@ class RoundTrip(Shown):
         length = 1e-3 / UNITS[unit]
         lines = [f"{self.file} ({kind}, {self.unit}): {'passed' if self.passed else 'FAILED'}"]
         lines += [f"  - {failure}" for failure in self.failures]
-        lines.append(f"  {self.solids} solid, {self.shells} shell, {self.free_edges} free edges, {valid}")
+        solids, shells = (f"{n} {word}{'s' * (n != 1)}" for n, word in ((self.solids, "solid"), (self.shells, "shell")))
+        lines.append(f"  {solids}, {shells}, {self.free_edges} free edges, {valid}")
+        if self.placements:
+            worst = max(self.placements, key=lambda each: each.displacement)
+            away = f"{worst.displacement * length:.1e} {unit} off, {worst.name}"
+            lines.append(f"  placements: {len(self.placements)}, at most {away}")
         for face in self.faces:
             away = (
                 f"deviation {face.max_deviation * length:.1e} {unit} (mean {face.mean_deviation * length:.1e} {unit})"

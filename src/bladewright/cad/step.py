@@ -26,9 +26,11 @@ from OCP.XCAFDoc import (
 
 from bladewright import __version__
 from bladewright.cad.colours import occ_colour
-from bladewright.cad.native_body import MM, CadProduct, header_text
+from bladewright.cad.native_body import MM, CadProduct, NamedBody, header_text
+from bladewright.cad.placement import location
 from bladewright.cad.solids import CONFUSION, OccSolid
 from bladewright.cad.units import MILLIMETRES, Unit
+from bladewright.domain.row import Row
 from bladewright.errors import CadError
 from bladewright.origin import Origin, wrapped
 
@@ -57,10 +59,12 @@ def write_step(
     unit: Unit = "mm",
     colours: Mapping[str, str] | None = None,
     origin: Origin | None = None,
+    row: Row | None = None,
 ) -> None:
     """Write a STEP file in a unit of length, with the colours `#rrggbb` of the faces by name.
 
-    The description in its header names the design that it was made from. Raises CadError where OpenCASCADE fails.
+    With a `row`, `built` is its blade, and the file an assembly of one part and its placements. The description in the
+    header names the design that the file was made from. Raises CadError where OpenCASCADE fails.
     """
     if schema not in SCHEMAS:
         raise CadError(f"schema {schema!r} is not a STEP schema that can be written: choose AP242, AP214 or AP203")
@@ -79,11 +83,13 @@ def write_step(
     XCAFDoc_Volume.Set_s(label, float(properties.volume) * scale**3)
     XCAFDoc_Area.Set_s(label, float(properties.area) * scale**2)
     XCAFDoc_Centroid.Set_s(label, gp_Pnt(*(properties.centroid * scale).tolist()))
+    if row is not None:
+        assemble(made, label, row)
     if not writer.Transfer(made, STEPControl_AsIs):
         raise CadError(f"OpenCASCADE could not translate the solid of {built.name!r} to STEP")
     model = writer.ChangeWriter().Model()
     _name_solid(model, built)
-    _fill_header(APIHeaderSection_MakeHeader(model), built, origin)
+    _fill_header(APIHeaderSection_MakeHeader(model), row or built, origin)
     if writer.Write(os.fspath(path)) != IFSelect_RetDone:
         raise CadError("OpenCASCADE could not write the STEP file: is there space left in that directory?")
 
@@ -108,6 +114,17 @@ def document(
     return made, label
 
 
+def assemble(made: TDocStd_Document, part: TDF_Label, row: Row) -> None:
+    """Put the placements of a row into the document of its blade: an assembly with one named component each."""
+    shapes = XCAFDoc_DocumentTool.ShapeTool_s(made.Main())
+    whole = shapes.NewShape()
+    TDataStd_Name.Set_s(whole, TCollection_ExtendedString(step_text(row.name)))
+    for placement in row.placements:
+        component = shapes.AddComponent(whole, part, location(placement))
+        TDataStd_Name.Set_s(component, TCollection_ExtendedString(placement.name))
+    shapes.UpdateAssemblies()
+
+
 def _settings(schema: str, unit: Unit) -> None:
     Interface_Static.SetCVal_s("write.step.schema", SCHEMAS[schema])
     Interface_Static.SetCVal_s("write.step.unit", UNITS[unit])
@@ -130,7 +147,7 @@ def _name_solid(model: object, built: CadProduct) -> None:
             break
 
 
-def _fill_header(header: APIHeaderSection_MakeHeader, built: CadProduct, origin: Origin | None) -> None:
+def _fill_header(header: APIHeaderSection_MakeHeader, built: NamedBody, origin: Origin | None) -> None:
     def texts(*values: str) -> Interface_HArray1OfHAsciiString:
         array = Interface_HArray1OfHAsciiString(1, len(values))
         for place, value in enumerate(values, start=1):

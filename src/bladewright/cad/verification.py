@@ -16,8 +16,11 @@ from bladewright.cad.kernel import quiet
 from bladewright.cad.kernel_check import kernel_faults
 from bladewright.cad.mesh_verification import verify_mesh
 from bladewright.cad.native_body import MM, NativeBody, extent
+from bladewright.cad.placement import check_row_format, row_and_part
 from bladewright.cad.reading import CadFile, format_of, read_cad_file
 from bladewright.cad.round_trip import Comparison, EdgeReport, FaceReport, RoundTrip, conformance_figures
+from bladewright.cad.row_verification import row_trip
+from bladewright.domain.row import Row
 from bladewright.numerics.elementary import Array
 from bladewright.nurbs.surface import Surface
 from bladewright.nurbs.trimmed import TrimmedSurface
@@ -51,9 +54,9 @@ that may be off by the gap; largest displacement of the centroid as a fraction o
 
 
 def verify(
-    path: str | os.PathLike[str], built: NativeBody, *, samples: int = SAMPLES, intersections: bool = False
+    path: str | os.PathLike[str], built: NativeBody | Row, *, samples: int = SAMPLES, intersections: bool = False
 ) -> RoundTrip:
-    """The round trip of a CAD file: what it holds, and how far that lies from a blade or passage.
+    """The round trip of a CAD file: what it holds, and how far that lies from a body.
 
     STEP, IGES and BREP files are measured face by face, whoever wrote them and however their surfaces are parametrised;
     STL and 3MF files triangle by triangle. The round trip says what OpenCASCADE's own check finds; with `intersections`
@@ -61,11 +64,18 @@ def verify(
     not of the format that its name states.
     """
     path = Path(path)
+    row, body = row_and_part(built)
     if format_of(path) in {"STL", "3MF"}:
-        return verify_mesh(path, built, samples=samples)
+        if row is not None:
+            check_row_format(path, format_of(path))
+        return verify_mesh(path, body, samples=samples)
     opened = read_cad_file(path)
+
+    def measured(part: CadFile) -> RoundTrip:
+        return _FileComparison(part, body, samples, intersections).report()
+
     with quiet():
-        return _FileComparison(opened, built, samples, intersections).report()
+        return measured(opened) if row is None else row_trip(opened, row, measured)
 
 
 def limits_of(built: NativeBody) -> dict[str, float]:

@@ -22,7 +22,9 @@ from bladewright.views.view3d import blade_scene, fit_scene, passage_scene, view
 
 if TYPE_CHECKING:
     from bladewright.blade.native.blade import Blade
+    from bladewright.blade.native.mass import MetalBody
     from bladewright.display import Shown
+    from bladewright.domain.row import Row
     from bladewright.section.section import Section
 
 
@@ -42,6 +44,10 @@ class Kind:
     """HTML of what stands under both, at stations where it has some"""
     unit: Callable[[Any], str] = lambda _: "mm"
     """its unit of length; millimetres of a section, which knows no design"""
+
+
+MASSES = ("mass", "centre of mass", "inertia about its centre", "inertia about the machine axis")
+"""What the table says of the mass of a body."""
 
 
 def figure(shown: "Shown") -> Figure:
@@ -66,11 +72,39 @@ def blade_rows(blade: "Blade") -> Rows:
         ("volume", f"{float(np.real(blade.properties.volume)) * per_metre() ** 3:.6g} {unit}³"),
         ("surface", f"{float(np.real(blade.properties.area)) * per_metre() ** 2:.6g} {unit}²"),
         ("centroid", f"{', '.join(f'{x:.4g}' for x in centroid)} {unit}"),
+        *mass_rows(blade),
         ("faces", ", ".join(blade.surfaces)),
         ("poles of a side", f"{along} x {across}"),
         ("off the exact blade", f"{blade.error:.1e} of the chord"),
         ("checks", "all passed" if blade.conformance.kept else "NOT all passed"),
     ]
+
+
+def row_rows(row: "Row") -> Rows:
+    """Size and mass of a row."""
+    volume = float(np.real(row.properties.volume)) * per_metre() ** 3
+    return [
+        ("blades", str(len(row.placements))),
+        ("volume of all", f"{volume:.6g} {unit_name()}³"),
+        *mass_rows(row),
+        *((f"a blade: {name}", value) for name, value in blade_rows(row.blade) if name not in MASSES),
+    ]
+
+
+def mass_rows(body: "MetalBody") -> Rows:
+    """Mass, centre and inertia of a body whose design states a density; nothing of another."""
+    if body.metal.density is None:
+        return []
+    report = body.mass_report()
+    centre = ", ".join(f"{x:.4g}" for x in per_metre() * np.real(report.centre))
+    diagonal, around = (np.real(np.diag(each)) for each in (report.inertia, report.inertia_about_axis))
+    figures = (
+        f"{float(np.real(report.mass)):.5g} kg",
+        f"{centre} {unit_name()}",
+        f"{', '.join(f'{each:.4g}' for each in diagonal)} kg m² about x, y, z",
+        f"{around[0]:.5g} kg m²",
+    )
+    return list(zip(MASSES, figures, strict=True))
 
 
 def section_rows(section: "Section") -> Rows:
@@ -147,6 +181,13 @@ KINDS: Mapping[str, Kind] = {
         tables=lambda passage: table(with_headings(figures(passage))),
         title=lambda passage: (passage.name, "flow passage"),
         unit=lambda passage: passage.blade.design.length_unit,
+    ),
+    "row": Kind(
+        figure=lambda row: sheet(row.blade),
+        picture=lambda row: view3d(blade_scene(row.blade), row.name),
+        tables=lambda row: table(row_rows(row)),
+        title=lambda row: (row.name, "row"),
+        unit=lambda row: row.blade.design.length_unit,
     ),
     "section": Kind(
         figure=sheet,
