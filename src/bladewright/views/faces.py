@@ -73,6 +73,16 @@ def is_closed(line: Reals) -> bool:
 def meridian_line(face: Face) -> Reals:
     """The line (n, 2) in (x, r) [unit of the picture] that a face of revolution is turned from."""
     share, middle = np.linspace(0.0, 1.0, LINE_POINTS), np.array([0.5])
-    lines = [sampled(face, share, middle)[0][:, 0], sampled(face, middle, share)[0][0]]
-    flat = [np.stack([line[:, 0], np.hypot(line[:, 1], line[:, 2])], axis=-1) for line in lines]
-    return max(flat, key=lambda line: float(np.ptp(line, axis=0).max()))
+    return _flat(sampled(face, middle, share)[0][0] if turns_along_u(face) else sampled(face, share, middle)[0][:, 0])
+
+
+def turns_along_u(face: Face) -> bool:
+    """Whether u of a face of revolution is the one that runs around the axis."""
+    share, middle = np.linspace(0.0, 1.0, 5), np.array([0.5])
+    first, second = _flat(sampled(face, share, middle)[0][:, 0]), _flat(sampled(face, middle, share)[0][0])
+    return float(np.ptp(first, axis=0).max()) < float(np.ptp(second, axis=0).max())
+
+
+def _flat(points: Reals) -> Reals:
+    """Points (n, 3) in (x, r)."""
+    return np.stack([points[:, 0], np.hypot(points[:, 1], points[:, 2])], axis=-1)

@@ -113,7 +113,7 @@ def passage_header(passage: "Passage") -> list[str]:
     filled = "passages and blades fill the ring" if count else "passage and blade fill a pitch"
     return [
         "linear cascade" if count is None else f"one passage of {count}",
-        f"volume {_cubic(passage.properties.volume)}",
+        f"volume {cubic(passage.properties.volume)}",
         f"{filled} within {abs(passage.ring_error):.1e}",
         f"walls within {passage.wall_error:.1e} of the chord",
         f"least Jacobian {_least(passage):.2g} of its median",
@@ -125,9 +125,9 @@ def figures(passage: "Passage") -> Rows:
     count, size = passage.blade.design.blade_count, passage.knots.length * per_metre()
     table = [
         ("Volume", ""),
-        ("passage", _cubic(passage.properties.volume)),
-        ("blade", _cubic(passage.blade.properties.volume)),
-        (f"ring of N = {count}" if count else "one pitch of the duct", _cubic(passage.ring)),
+        ("passage", cubic(passage.properties.volume)),
+        ("blade", cubic(passage.blade.properties.volume)),
+        (f"ring of N = {count}" if count else "one pitch of the duct", cubic(passage.ring)),
         (f"{'N ' if count else ''}(passage + blade) / {'ring' if count else 'duct'} - 1", f"{passage.ring_error:.1e}"),
         ("Walls", ""),
         ("off their surfaces / chord", f"{passage.wall_error:.1e}"),
@@ -181,7 +181,7 @@ def _spaced(name: str) -> str:
     return name.replace("_", " ")
 
 
-def _cubic(volume: np.ndarray) -> str:
+def cubic(volume: np.ndarray) -> str:
     """A volume [m^3] with a unit that suits its size."""
     cubic = float(np.real(volume)) * per_metre() ** 3
     if unit_name() != "mm":

@@ -26,6 +26,7 @@ from bladewright.views.distributions import draw_curvature, draw_smoothness, dra
 from bladewright.views.law_charts import draw_strip, draw_thickness_laws, in_strips, law_charts, strip_height
 from bladewright.views.meridional import draw_meridional
 from bladewright.views.pages import Page, checked_path, draw_header, rows, with_fixed_layout, write_figure
+from bladewright.views.part import Part, part_sheet
 from bladewright.views.passage import passage_sheet, section_passage_sheet
 from bladewright.views.sections import distinct, draw_edge, draw_edges, draw_neighbour, draw_sections, pitch_of
 from bladewright.views.solid import draw_passage_solid, draw_solid, viewpoints
@@ -36,7 +37,7 @@ SPANS, FEW_SPANS = (0.0, 0.25, 0.5, 0.75, 1.0), (0.0, 0.5, 1.0)
 other."""
 PASSAGE_VIEW = (1250, 1000)
 """Largest width and height of a view of a passage alone [pixels]: what its figure of 10 x 8 inches shows."""
-Built = Blade | Section | Passage | SectionPassage
+Built = Blade | Section | Passage | SectionPassage | Part
 """What a design builds, and the flow domain around it."""
 
 
@@ -91,8 +92,8 @@ def passage_view(passage: Passage, path: str | Path) -> None:
 
 def sheet(design: Design | Built, blade: Built | None = None) -> Figure:
     """The figure that `picture` writes."""
-    built: Any = design if isinstance(design, Built) else (blade or design.build())
     known = design if isinstance(design, Design) else None
+    built: Any = design if known is None else (blade or known.build())
     with drawing_style(_unit_of(known, built)):
         match built:
             case Passage():
@@ -101,8 +102,10 @@ def sheet(design: Design | Built, blade: Built | None = None) -> Figure:
                 figure = section_passage_sheet(known, built)
             case Section():
                 figure = _section_sheet(known, built)
-            case _:
+            case Blade():
                 figure = _blade_sheet(built)
+            case _:
+                figure = part_sheet(built)
         return with_fixed_layout(figure)
 
 
@@ -111,7 +114,9 @@ def _unit_of(design: Any, built: Any) -> str:
     match built:
         case Blade():
             design = built.design
-        case Passage():
+        case Section() | SectionPassage():
+            pass
+        case _:
             design = built.blade.design
     return "mm" if design is None else str(design.length_unit)
 

@@ -12,6 +12,8 @@ from bladewright.views.fit_data import FitResult
 from bladewright.views.fit_deviations import draw_outline_deviation
 from bladewright.views.fit_sheet import fit_sheet
 from bladewright.views.html import Rows, frame, image, table, with_headings
+from bladewright.views.masses import mass_rows
+from bladewright.views.part import PARTS, part_figures, part_scene
 from bladewright.views.passage import draw_section_passage, figures, section_figures
 from bladewright.views.picture import sheet
 from bladewright.views.round_trip import round_trip_figure, round_trip_tables
@@ -22,9 +24,7 @@ from bladewright.views.view3d import blade_scene, fit_scene, passage_scene, view
 
 if TYPE_CHECKING:
     from bladewright.blade.native.blade import Blade
-    from bladewright.blade.native.mass import MetalBody
     from bladewright.display import Shown
-    from bladewright.domain.row import Row
     from bladewright.section.section import Section
 
 
@@ -44,10 +44,6 @@ class Kind:
     """HTML of what stands under both, at stations where it has some"""
     unit: Callable[[Any], str] = lambda _: "mm"
     """its unit of length; millimetres of a section, which knows no design"""
-
-
-MASSES = ("mass", "centre of mass", "inertia about its centre", "inertia about the machine axis")
-"""What the table says of the mass of a body."""
 
 
 def figure(shown: "Shown") -> Figure:
@@ -78,33 +74,6 @@ def blade_rows(blade: "Blade") -> Rows:
         ("off the exact blade", f"{blade.error:.1e} of the chord"),
         ("checks", "all passed" if blade.conformance.kept else "NOT all passed"),
     ]
-
-
-def row_rows(row: "Row") -> Rows:
-    """Size and mass of a row."""
-    volume = float(np.real(row.properties.volume)) * per_metre() ** 3
-    return [
-        ("blades", str(len(row.placements))),
-        ("volume of all", f"{volume:.6g} {unit_name()}³"),
-        *mass_rows(row),
-        *((f"a blade: {name}", value) for name, value in blade_rows(row.blade) if name not in MASSES),
-    ]
-
-
-def mass_rows(body: "MetalBody") -> Rows:
-    """Mass, centre and inertia of a body whose design states a density; nothing of another."""
-    if body.metal.density is None:
-        return []
-    report = body.mass_report()
-    centre = ", ".join(f"{x:.4g}" for x in per_metre() * np.real(report.centre))
-    diagonal, around = (np.real(np.diag(each)) for each in (report.inertia, report.inertia_about_axis))
-    figures = (
-        f"{float(np.real(report.mass)):.5g} kg",
-        f"{centre} {unit_name()}",
-        f"{', '.join(f'{each:.4g}' for each in diagonal)} kg m² about x, y, z",
-        f"{around[0]:.5g} kg m²",
-    )
-    return list(zip(MASSES, figures, strict=True))
 
 
 def section_rows(section: "Section") -> Rows:
@@ -182,13 +151,16 @@ KINDS: Mapping[str, Kind] = {
         title=lambda passage: (passage.name, "flow passage"),
         unit=lambda passage: passage.blade.design.length_unit,
     ),
-    "row": Kind(
-        figure=lambda row: sheet(row.blade),
-        picture=lambda row: view3d(blade_scene(row.blade), row.name),
-        tables=lambda row: table(row_rows(row)),
-        title=lambda row: (row.name, "row"),
-        unit=lambda row: row.blade.design.length_unit,
-    ),
+    **{
+        name: Kind(
+            figure=sheet,
+            picture=lambda part: view3d(part_scene(part), part.name),
+            tables=lambda part: table(with_headings(part_figures(part))),
+            title=lambda part: (part.name, part.shown_as),
+            unit=lambda part: part.blade.design.length_unit,
+        )
+        for name in PARTS
+    },
     "section": Kind(
         figure=sheet,
         picture=lambda section: _panel(lambda axes: draw_neighbour(axes, section, None, "Section")),

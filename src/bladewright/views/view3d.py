@@ -142,6 +142,17 @@ def _thinned(grid: ShadedGrid) -> ShadedGrid:
 
 def _still(scene: Scene) -> str:
     """The picture of the scene as it is first seen."""
+    blade, (surfaces, lines) = scene.blade, with_copies(scene)
+    glass = [surface for group in scene.groups if group.glass for surface in group.surfaces]
+    camera = framing_camera(viewpoint(blade), all_points(scene))
+    picture, width = BytesIO(), int(min(WIDTH, WIDTH * camera.extent[0] / camera.extent[1]))
+    pixels = rendered(surfaces, lines, camera, width, glass=glass)
+    imsave(picture, np.asarray(np.round(255.0 * pixels), dtype=np.uint8), format="png")
+    return f"data:image/png;base64,{b64encode(picture.getvalue()).decode()}"
+
+
+def with_copies(scene: Scene) -> tuple[list[ShadedGrid], list[Polyline]]:
+    """The surfaces that hide something, and the lines, each at all of its places."""
     blade, surfaces, lines = scene.blade, list[ShadedGrid](), list[Polyline]()
     for group in scene.groups:
         for turn in () if group.glass else group.turns:
@@ -150,15 +161,10 @@ def _still(scene: Scene) -> str:
                 Polyline(points=moved(blade, line.points, turn), colour=line.colour, width=line.width)
                 for line in group.lines
             ]
-    glass = [surface for group in scene.groups if group.glass for surface in group.surfaces]
-    camera = framing_camera(viewpoint(blade), _all_points(scene))
-    picture, width = BytesIO(), int(min(WIDTH, WIDTH * camera.extent[0] / camera.extent[1]))
-    pixels = rendered(surfaces, lines, camera, width, glass=glass)
-    imsave(picture, np.asarray(np.round(255.0 * pixels), dtype=np.uint8), format="png")
-    return f"data:image/png;base64,{b64encode(picture.getvalue()).decode()}"
+    return surfaces, lines
 
 
-def _all_points(scene: Scene) -> Reals:
+def all_points(scene: Scene) -> Reals:
     """All points (n, 3) of the surfaces and their copies."""
     return np.concatenate(
         [
@@ -172,7 +178,7 @@ def _all_points(scene: Scene) -> Reals:
 
 def _packed(scene: Scene) -> Mapping[str, Any]:
     """The scene as JSON: points as 16-bit and normals as 8-bit integers in base 64."""
-    points, axes = _all_points(scene), viewpoint(scene.blade)
+    points, axes = all_points(scene), viewpoint(scene.blade)
     camera = framing_camera(axes, points)
     ratio = float(np.clip(camera.extent[0] / camera.extent[1], *RATIOS))
     depth = points @ axes[2]
