@@ -3,6 +3,7 @@
 import re
 from collections.abc import Mapping, Sequence
 from pathlib import Path
+from textwrap import wrap
 from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
@@ -34,6 +35,7 @@ from bladewright.views.style import (
     GREY,
     SOFT,
     VIEW_DPI,
+    WALLS,
     axis,
     drawing_style,
     in_unit,
@@ -55,8 +57,10 @@ CUT = (0.86, 0.84, 0.80)
 """Colour of the cuts between two sectors."""
 FINE, COARSE = (121, 33), (41, 11)
 """Points along and across a side of a blade, in pictures and in views that turn."""
-AROUND = 361
-"""Points of a full turn."""
+AROUND = 3
+"""Points of a full turn, in points along a side."""
+WIDEST = 44
+"""Letters in a line of names of faces."""
 NOUGHT = 1e-9
 """Distance from the axis, in chords, that a table shows as 0: rounding."""
 Rows = list[tuple[str, str]]
@@ -119,6 +123,7 @@ def part_sheet(part: Part) -> Figure:
     for place, view, title in zip(views, viewpoints(part.blade), ("In space", "The other side"), strict=True):
         draw_part(place, part, width=900, view=view)
         place.set_title(title)
+        place.set_anchor("N")
     section, numbers = columns(bottom, 1.4, 1.0)
     draw_half_section(section.subplots(), part)
     draw_figures(numbers.subplots(), part_figures(part))
@@ -164,7 +169,7 @@ def _drawn(
         colour = mixed(BLADE, FILLET) if fillet else BLADE
         ink = FAINT if fillet else EDGE
     else:
-        count = AROUND if whole and name not in ("hub", "shroud") else size[0]
+        count = AROUND * size[0] if whole and name not in WALLS else size[0]
         along, around = np.linspace(0.0, 1.0, size[1]), np.linspace(0.0, 1.0, count)
         cyclic = "cyclic" in name
         turned = not cyclic and turns_along_u(face)
@@ -241,8 +246,11 @@ def part_figures(part: Part) -> Rows:
     names = dict.fromkeys(NUMBERED.sub(r"\1 \3", name).replace("_", " ").strip() for name in part.surfaces)
     kinds = [name.removeprefix("blade ") for name in names if name.startswith("blade")]
     others = [name for name in names if not name.startswith("blade")]
-    rows_of += [("Faces", str(len(part.surfaces))), ("of a blade", ", ".join(kinds))]
-    return [*rows_of, *([("others", ", ".join(others))] if others else [])]
+    rows_of += [(f"{len(part.surfaces)} faces", "")]
+    for title, found_names in (("of a blade", kinds), ("others", others)):
+        lines = wrap(", ".join(found_names), WIDEST)
+        rows_of += [(title if line is lines[0] else " ", line) for line in lines]
+    return rows_of
 
 
 def _count(part: Part) -> str:
