@@ -250,6 +250,10 @@ def _check_step(node: Any, step: str | int, path: str) -> None:
         return
     if isinstance(node, Stations):
         raise DesignError(f"{path} does not exist: the law is given at stations; write .values[{step}] there")
+    if node is None:
+        raise DesignError(
+            f"{path} does not exist: nothing is given before '{step}'; give the whole table or list there"
+        )
     kind = "a single number" if not isinstance(node, tuple | Part) else "a list"
     raise DesignError(f"{path} does not exist: what stands before '{step}' is {kind}; see design.parameters()")
 

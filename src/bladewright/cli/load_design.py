@@ -9,19 +9,25 @@ import click
 
 from bladewright.errors import DesignError, FileError
 
-BODIES = ("blade", "passage")
+BODIES = ("blade", "passage", "row", "sector", "wheel")
 """The bodies that a design is built into, as `--body` names them."""
+
+
+def body_name(design: Any, body: str) -> str:
+    """The name of a body of a design, which is that of its files."""
+    return str(design.name) if body == "blade" else f"{design.name}-{body}"
 
 
 def load_design(path: Path, changes: Mapping[str, Any]) -> Any:
     """Read the design in a file and apply the changes of `--set`."""
+    from bladewright.files.changing import changed_design
     from bladewright.files.examples import examples
-    from bladewright.files.reading import read_design
+    from bladewright.files.reading import parsed
+    from bladewright.files.text import read_text
 
     if not (path.exists() or path.with_suffix(".toml").exists()) and path.stem in examples():
         raise FileError(f"there is no file '{path}': 'bladewright new {path.stem}' writes the built-in example")
-    design = read_design(path)
-    return design.changed(changes) if changes else design
+    return changed_design(parsed(read_text(path), str(path)), str(path), changes)
 
 
 @contextmanager
@@ -54,22 +60,41 @@ def blade_from(design: Any, path: Path, *, fine: bool = False) -> Any:
 
 
 def bodies_from(
-    bodies: Sequence[str], design: Any, path: Path, extend: float, extents: Mapping[str, Any], *, fine: bool = False
+    bodies: Sequence[str],
+    design: Any,
+    path: Path,
+    extend: float,
+    extents: Mapping[str, Any],
+    *,
+    fine: bool = False,
+    blades: int | None = None,
 ) -> Iterator[Any]:
     """The bodies of a design, each a word of BODIES, one after another around the same blade.
 
     The blade is extended past both ends by the part `extend` of its span; `extents` are the options of the passage;
-    `fine` is that of `build`.
+    `fine` is that of `build`, `blades` the number of them in a row.
     Raises DesignError, naming the file at `path`, where a shape is impossible.
     """
     blade = blade_from(design, path, fine=fine)
     for body in bodies:
-        if body == "passage":
-            yield _passage_around(blade, design, path, **extents)
-            continue
         with naming_file(path):
-            extended = blade.extended(extend) if extend else blade
-        yield extended
+            made = _body_around(body, blade, design, extend, extents, blades)
+        yield made
+
+
+def _body_around(
+    body: str, blade: Any, design: Any, extend: float, extents: Mapping[str, Any], blades: int | None
+) -> Any:
+    import bladewright as bw
+
+    if body == "passage":
+        return _passage_around(blade, design, **extents)
+    if body == "row":
+        _check_pitch(design, "a row has neighbours")
+        return bw.row(blade, blades)
+    if body in {"sector", "wheel"}:
+        return getattr(bw, body)(blade)
+    return blade.extended(extend) if extend else blade
 
 
 def passage_from(design: Any, path: Path, **extents: Any) -> Any:
@@ -77,7 +102,9 @@ def passage_from(design: Any, path: Path, **extents: Any) -> Any:
 
     Raises DesignError, naming the file at `path`, where the shape is impossible.
     """
-    return _passage_around(blade_from(design, path), design, path, **extents)
+    blade = blade_from(design, path)
+    with naming_file(path):
+        return _passage_around(blade, design, **extents)
 
 
 def flow_domain_from(design: Any, path: Path, extents: Mapping[str, Any]) -> Any:
@@ -99,10 +126,14 @@ def flow_domain_from(design: Any, path: Path, extents: Mapping[str, Any]) -> Any
         return section_passage(design.build(), design.pitch * UNITS[design.length_unit], **given)
 
 
-def _passage_around(blade: Any, design: Any, path: Path, *, split: bool = False, **extents: Any) -> Any:
+def _passage_around(blade: Any, design: Any, *, split: bool = False, walls: str | None = None, **extents: Any) -> Any:
     from bladewright.domain.build import passage
 
-    with naming_file(path):
-        if design.dimension == 2 and design.pitch is None:
-            raise DesignError("pitch is missing: a passage lies between neighbours; set pitch in the design")
-        return passage(blade, split=split, **extents)
+    _check_pitch(design, "a passage lies between neighbours")
+    given: Any = {} if walls is None else {"walls": walls}
+    return passage(blade, split=split, **given, **extents)
+
+
+def _check_pitch(design: Any, why: str) -> None:
+    if design.dimension == 2 and design.pitch is None:
+        raise DesignError(f"pitch is missing: {why}; set pitch in the design")

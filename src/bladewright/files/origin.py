@@ -9,7 +9,8 @@ from typing import Any
 
 import tomlkit
 
-from bladewright.files.reading import design_from, parsed
+from bladewright.files.changing import changed_design
+from bladewright.files.reading import parsed
 from bladewright.files.text import read_text
 from bladewright.origin import Origin, parameters_hash
 
@@ -27,14 +28,21 @@ def design_origin(
     """
     path, changes = Path(path), changes or {}
     text = read_text(path)
-    design: Any = design_from(parsed(text, str(path)), str(path)).changed(changes)
+    design = changed_design(parsed(text, str(path)), str(path), changes)
     return Origin(
         name=design.name,
         parameters_hash=parameters_hash(design),
-        changes=tuple(f"{where}={tomlkit.item(value).as_string()}" for where, value in changes.items()),
+        changes=tuple(f"{where}={_toml(value)}" for where, value in changes.items()),
         file=_relative(path, Path(directory)),
         text=text,
     )
+
+
+def _toml(value: Any) -> str:
+    """A value as it is written after an equals sign, on one line."""
+    if isinstance(value, Mapping):
+        return "{" + ", ".join(f"{key} = {_toml(item)}" for key, item in value.items()) + "}"
+    return tomlkit.item(value).as_string()
 
 
 def _relative(path: Path, directory: Path) -> str:
