@@ -86,7 +86,7 @@ def test_split_faces_have_names_of_their_own(run, thin_file, tmp_path):
         (["--body", "passage", "--downstream", "nan"], ["downstream", "nan"]),
         (["--body", "passage", "--downstream", "far"], ["--downstream", "far"]),
         (["--body", "passage", "--inlet-angle", "95"], ["inlet_angle", "95"]),
-        (["--body", "passage", "--set", "pitch=8"], ["pitch"]),
+        (["--body", "passage", "--set", "pitch=5"], ["pitch"]),
     ],
     ids=lambda value: " ".join(value) if isinstance(value, list) else None,
 )

@@ -202,7 +202,7 @@ def test_an_unwritable_output_is_refused(run, design_file):
         (["--set", "blade_count=0"], ["blade_count", "0", "1 to 10000"]),
         (["--as", "step,stp"], ["stp", "step, iges"]),
         (["--as", ""], ["step, iges"]),
-        (["--body", "row"], ["row", "blade, passage"]),
+        (["--body", "disc"], ["disc", "blade, passage, row"]),
         (["--schema", "AP999"], ["AP999", "AP242"]),
         (["--chordal-deviation", "0.01"], ["0.01", "0.01mm"]),
         (["--chordal-deviation", "-1mm"], ["-1mm", "positive"]),

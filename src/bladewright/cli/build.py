@@ -5,10 +5,11 @@ from typing import Any
 
 import click
 
-from bladewright.cli.build_files import SUFFIXES, BuildOptions, build_files
+from bladewright.cli.build_files import ROW_FORMATS, SUFFIXES, BuildOptions, build_files
 from bladewright.cli.load_design import BODIES
 from bladewright.cli.options import (
     Call,
+    blades_option,
     check_options,
     comma_separated,
     common,
@@ -36,6 +37,7 @@ _BUILD_OPTIONS = (
     "stations",
     "changes",
     "fine",
+    "blades",
 )
 """Options that are fields of `BuildOptions`; the remaining ones shape a passage."""
 
@@ -48,10 +50,8 @@ _BUILD_OPTIONS = (
 @click.option(
     "--as",
     "formats",
-    default="step,iges",
-    show_default=True,
     callback=comma_separated(tuple(SUFFIXES)),
-    help="Formats, with commas between: step, iges, brep, stl, 3mf.",
+    help="Formats, with commas between: step, iges, brep, stl, 3mf.  [step,iges; step of a row]",
 )
 @click.option(
     "--body",
@@ -59,7 +59,7 @@ _BUILD_OPTIONS = (
     default="blade",
     show_default=True,
     callback=comma_separated(BODIES),
-    help="What to make solid, with commas between: blade, passage.",
+    help="What to make solid, with commas between: blade, passage, row, sector, wheel.",
 )
 @click.option(
     "--schema",
@@ -91,6 +91,7 @@ _BUILD_OPTIONS = (
 @stations_option
 @fine_option
 @extend_option
+@blades_option
 @passage_options
 @set_option
 @common
@@ -107,18 +108,25 @@ def build(
 ) -> Outcome:
     """Build DESIGN into verified CAD files: NAME.step, NAME.igs and so on, NAME being the design's name.
 
-    With --body passage the files of the flow passage are NAME-passage.step and so on. NAME.roundtrip.json beside them
-    is what was measured on the reopened file of the first format; each further format has its own, such as
-    NAME.igs.roundtrip.json. Where a check fails the files stay, say so, and the exit status is 1. Several designs are
-    made side by side; one that is refused does not keep the others from being made.
+    With --body passage the files of the flow passage are NAME-passage.step and so on; likewise those of a row, one
+    blade and its placements, of a sector, one pitch of a wheel, and of a wheel, all blades and what carries them as one
+    solid. NAME.roundtrip.json beside them is what was measured on the reopened file of the first format; each further
+    format has its own, such as NAME.igs.roundtrip.json. Where a check fails the files stay, say so, and the exit status
+    is 1. Several designs are made side by side; one that is refused does not keep the others from being made.
 
     Files that are there are overwritten where they were made from the same design file, edited or with other changes,
     and that is said; others only with --force.
     """
     own = {option: others.pop(option) for option in _BUILD_OPTIONS}
     split = others["split"]
-    check_options(bodies, extend, {**others, "split": False})
-    if own["unit"] != "mm" and "brep" in own["formats"]:
+    check_options(bodies, extend, {**others, "split": False}, blades=own["blades"])
+    formats = own["formats"] or ()
+    if "row" in bodies and not set(formats) <= set(ROW_FORMATS):
+        raise click.UsageError(
+            f"--as {','.join(formats)}: a row is one blade and its placements, which {' and '.join(ROW_FORMATS)} files "
+            "keep: ask for these, or for the row on its own"
+        )
+    if own["unit"] != "mm" and "brep" in formats:
         raise click.UsageError("--unit: a BREP file states no unit and is in millimetres: leave brep or --unit out")
     if name is not None:
         if len(designs) > 1:

@@ -8,7 +8,8 @@ from typing import Any, Literal
 
 from bladewright.cli.directory import removing_partial_files
 from bladewright.cli.law_remarks import law_data, law_rows
-from bladewright.cli.load_design import bodies_from, load_design
+from bladewright.cli.load_design import bodies_from, body_name, load_design
+from bladewright.cli.masses import mass_data, mass_texts
 from bladewright.cli.outcome import Outcome, jsonable
 from bladewright.cli.overwriting import overwritten
 from bladewright.cli.progress import Bar
@@ -16,6 +17,10 @@ from bladewright.cli.stations import sense_data, sense_rows, station_table
 
 SUFFIXES = {"step": ".step", "iges": ".igs", "brep": ".brep", "stl": ".stl", "3mf": ".3mf"}
 """Endings of the files of each format."""
+FORMATS = ("step", "iges")
+"""Formats of a body where none is asked for."""
+ROW_FORMATS = ("step", "brep")
+"""Formats that keep one blade and its placements, of which the first is written where none is asked for."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -23,8 +28,8 @@ class BuildOptions:
     """What a design is built into, and where the files go."""
 
     directory: Path
-    formats: tuple[str, ...]
-    """each a key of SUFFIXES"""
+    formats: tuple[str, ...] | None
+    """each a key of SUFFIXES; None: those of the body"""
     bodies: tuple[str, ...]
     """each a word of BODIES"""
     schema: Literal["AP242", "AP214", "AP203"]
@@ -49,12 +54,18 @@ class BuildOptions:
     changes: Mapping[str, Any]
     """changes of the design's parameters, by path"""
     extents: Mapping[str, Any]
-    """options of a passage: how far it reaches, its angles, whether it is split"""
+    """options of a passage: how far it reaches, its angles, its walls, whether it is split"""
+    blades: int | None = None
+    """number of blades of a row; None: all"""
+
+    def formats_of(self, body: str) -> tuple[str, ...]:
+        """The formats that a body is written in."""
+        return self.formats or (ROW_FORMATS[:1] if body == "row" else FORMATS)
 
     @property
     def steps(self) -> int:
         """Steps of a progress bar for one design."""
-        return len(self.bodies) * (1 + len(self.formats))
+        return sum(1 + len(self.formats_of(body)) for body in self.bodies)
 
 
 def build_files(path: Path, options: BuildOptions, bar: Bar) -> Outcome:
@@ -65,26 +76,30 @@ def build_files(path: Path, options: BuildOptions, bar: Bar) -> Outcome:
     directory, trips = options.directory, list[Any]()
     design: Any = load_design(path, options.changes)
     origin = design_origin(path, options.changes, directory=directory)
-    names = {body: design.name + ("-passage" if body == "passage" else "") for body in options.bodies}
-    files = [f"{name}{SUFFIXES[each]}" for name in names.values() for each in options.formats]
+    names = {body: body_name(design, body) for body in options.bodies}
+    files = [f"{name}{SUFFIXES[each]}" for body, name in names.items() for each in options.formats_of(body)]
     reports = [
         f"{name}{SUFFIXES[each] if number else ''}.roundtrip.json"
-        for name in names.values()
-        for number, each in enumerate(options.formats)
+        for body, name in names.items()
+        for number, each in enumerate(options.formats_of(body))
     ]
     former = [directory / f"{name}{end}.roundtrip.json" for name in names.values() for end in ("", *SUFFIXES.values())]
     note = overwritten([directory / each for each in files], former, path, origin, force=options.force)
-    sense, table = dict[str, Any](), None
+    sense, table, masses = dict[str, Any](), None, dict[str, Any]()
     with removing_partial_files(directory, [*files, *reports]):
         bar.set_description_str(" and ".join(options.bodies))
-        for built in bodies_from(options.bodies, design, path, options.extend, options.extents, fine=options.fine):
+        bodies = bodies_from(
+            options.bodies, design, path, options.extend, options.extents, fine=options.fine, blades=options.blades
+        )
+        for body, built in zip(options.bodies, bodies, strict=True):
             bar.update(1)
+            masses[body] = mass_data(built)
             blade = getattr(built, "blade", built)
             sense = sense or sense_data(blade)
             table = table or (station_table(blade, options.stations) if options.stations else None)
             from bladewright import cad
 
-            for each in options.formats:
+            for each in options.formats_of(body):
                 bar.set_description_str(each)
                 file, report = files[len(trips)], reports[len(trips)]
                 trip = cad.write(
@@ -105,6 +120,7 @@ def build_files(path: Path, options: BuildOptions, bar: Bar) -> Outcome:
     remarks = [
         *(f"{name} {words}" for name, words in law_rows(laws)),
         *(f"{name}: {words}" for name, words in sense_rows(sense, with_table=table is not None)),
+        *(f"{design.name}: {body}: {words}" for body, found in masses.items() for words in mass_texts(found)),
         *([str(table)] if table else []),
         *([note] if note else []),
     ]
@@ -117,6 +133,7 @@ def build_files(path: Path, options: BuildOptions, bar: Bar) -> Outcome:
             "overwritten": note or None,
             **({"laws": laws} if laws else {}),
             **sense,
+            **({"masses": masses} if any(masses.values()) else {}),
             **({"table": table.to_dict()} if table else {}),
         },
         text="\n".join([*(trip.text(design.length_unit) for trip in trips), *remarks]),

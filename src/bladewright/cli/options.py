@@ -58,6 +58,12 @@ def passage_options(command: Command) -> Command:
         click.option("--inlet-angle", type=float, metavar="DEG", help="Angle that a passage turns to at its inlet."),
         click.option("--outlet-angle", type=float, metavar="DEG", help="Angle that a passage turns to at its outlet."),
         click.option(
+            "--walls",
+            type=click.Choice(["auto", "patches", "trimmed"]),
+            help="A passage's hub and shroud: untrimmed patches, trimmed faces, or patches where they do not fold "
+            "(auto, the rule).",
+        ),
+        click.option(
             "--split",
             is_flag=True,
             help="Cut a passage's faces where they have a crease; build cuts all faces as other CAD programs need it.",
@@ -65,13 +71,17 @@ def passage_options(command: Command) -> Command:
     )
 
 
-def check_options(bodies: Sequence[str], extend: float, extents: Mapping[str, Any]) -> None:
+def check_options(
+    bodies: Sequence[str], extend: float, extents: Mapping[str, Any], *, blades: int | None = None
+) -> None:
     """Raise a usage error where an option is given for a body that is not asked for."""
     given = [f"--{name.replace('_', '-')}" for name, value in extents.items() if value not in {None, False}]
     if given and "passage" not in bodies:
         raise click.UsageError(f"{' and '.join(given)} shapes a passage: ask for one with --body passage")
     if extend and "blade" not in bodies:
         raise click.UsageError("--extend lengthens a blade: ask for one with --body blade")
+    if blades is not None and "row" not in bodies:
+        raise click.UsageError("--blades counts those of a row: ask for one with --body row")
 
 
 def parse_length(_: click.Context, __: click.Parameter, text: str | None) -> float | None:
@@ -106,10 +116,14 @@ def parse_colour(_: click.Context, __: click.Parameter, text: str) -> str:
     return text
 
 
-def comma_separated(known: Sequence[str]) -> Callable[[click.Context, click.Parameter, str], tuple[str, ...]]:
+def comma_separated(
+    known: Sequence[str],
+) -> Callable[[click.Context, click.Parameter, str | None], tuple[str, ...] | None]:
     """Return a callback that splits a list at its commas and accepts only known words."""
 
-    def entries(_: click.Context, __: click.Parameter, text: str) -> tuple[str, ...]:
+    def entries(_: click.Context, __: click.Parameter, text: str | None) -> tuple[str, ...] | None:
+        if text is None:
+            return None
         words = tuple(dict.fromkeys(word.strip().lower() for word in text.split(",")))
         for word in words:
             if word not in known:
@@ -161,6 +175,12 @@ set_option = click.option(
 force_option = click.option("--force", is_flag=True, help="Overwrite a file that is there.")
 fine_option = click.option(
     "--fine", is_flag=True, help="Let the blade meet hub and shroud within 1e-7 mm, with up to 1.7 times the poles."
+)
+blades_option = click.option(
+    "--blades",
+    type=click.IntRange(1, 10_000),
+    metavar="N",
+    help="Blades of a row; without it all, and a cascade, which has no end, needs it.",
 )
 extend_option = click.option(
     "--extend",

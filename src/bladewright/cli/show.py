@@ -8,15 +8,25 @@ from typing import Any
 import click
 
 from bladewright.cli.directory import removing_partial_files
-from bladewright.cli.load_design import BODIES, built_from, flow_domain_from, load_design
+from bladewright.cli.load_design import BODIES, bodies_from, built_from, flow_domain_from, load_design
 from bladewright.cli.made_from import CAD_SUFFIXES, made_from
-from bladewright.cli.options import Call, check_options, common, design_argument, passage_options, set_option
+from bladewright.cli.masses import mass_data, mass_rows
+from bladewright.cli.options import (
+    Call,
+    blades_option,
+    check_options,
+    common,
+    design_argument,
+    passage_options,
+    set_option,
+)
 from bladewright.cli.outcome import Outcome
 from bladewright.cli.progress import progress
 from bladewright.cli.report_page import write_report
 from bladewright.cli.stations import sense_data, sense_rows, station_table, stations_option, written_csv
 from bladewright.cli.summary import (
     broken_promises,
+    part_data,
     passage_data,
     passage_rows,
     smoothness_data,
@@ -31,9 +41,8 @@ from bladewright.cli.summary import (
 @click.option("-o", "--output", type=click.Path(path_type=Path), help="Picture to write: .png, .svg or .pdf.")
 @click.option("--report", type=click.Path(path_type=Path), help="Page to write with all of it, to send: .html.")
 @click.option("--round-trip", is_flag=True, help="Measure a STEP file for the report, in place of NAME.roundtrip.json.")
-@click.option(
-    "--body", type=click.Choice(BODIES), default="blade", show_default=True, help="What to show: blade or passage."
-)
+@click.option("--body", type=click.Choice(BODIES), default="blade", show_default=True, help="What to show.")
+@blades_option
 @stations_option
 @click.option("--csv", "table_file", type=click.Path(path_type=Path), metavar="FILE", help="Write that table as CSV.")
 @passage_options
@@ -48,6 +57,7 @@ def show(
     report: Path | None,
     round_trip: bool,
     body: str,
+    blades: int | None,
     stations: tuple[float, ...] | None,
     table_file: Path | None,
     changes: dict[str, Any],
@@ -62,8 +72,8 @@ def show(
 
     The picture shows sections, curvature and its slope, the meridional channel, edges from close by, the laws of
     evolution and a 3D view; with --body passage a see-through view of the flow passage, its duct, and its walls
-    unwrapped with the lines of their patches. The flow domain of a 2D design is the curves around its section, and
-    reaches are in axial chords. The exit status is 1 where a check fails.
+    unwrapped with the lines of their patches; with --body row, sector or wheel that part. The flow domain of a 2D
+    design is the curves around its section, and reaches are in axial chords. The exit status is 1 where a check fails.
 
     Of a CAD file in the place of DESIGN it tells which design the file was made from.
     """
@@ -73,10 +83,10 @@ def show(
                 f"'{path}' is a CAD file, of which only the design is shown: -o and --set are for a design file"
             )
         return made_from(path)
-    check_options((body,), 0.0, extents)
+    check_options((body,), 0.0, extents, blades=blades)
     wants_table = stations is not None or table_file is not None
-    if wants_table and body == "passage":
-        raise click.UsageError("--stations and --csv are of the blade: leave out --body passage")
+    if wants_table and body != "blade":
+        raise click.UsageError(f"--stations and --csv are of the blade: leave out --body {body}")
     design: Any = load_design(path, changes)
     if report is not None:
         from bladewright.views.report import checked_report_path
@@ -89,11 +99,15 @@ def show(
         if body == "passage":
             built = flow_domain_from(design, path, extents)
             data = passage_data(design, built)
+        elif body != "blade":
+            [built] = bodies_from((body,), design, path, 0.0, {}, blades=blades)
+            data = part_data(design, built)
         else:
             built = built_from(design, path)
             data = summary_data(design, built)
             data["smoothness"] = smoothness_data(built)
             data |= sense_data(built)
+        data["mass"] = mass_data(built) or None
         bar.update(1)
         if output is not None:
             from bladewright import views
@@ -107,7 +121,11 @@ def show(
             write_report(design, built, path, report, measured=round_trip, stations=stations)
             data["report"] = str(report)
             bar.update(1)
-    rows = [*passage_rows(data), *smoothness_rows(data.get("smoothness", []), data["length_unit"])]
+    rows = [
+        *mass_rows(data["mass"] or {}, data["length_unit"]),
+        *passage_rows(data),
+        *smoothness_rows(data.get("smoothness", []), data["length_unit"]),
+    ]
     rows += sense_rows(data, with_table=wants_table)
     text = summary_text(data, rows)
     if wants_table:

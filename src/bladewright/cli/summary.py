@@ -106,6 +106,20 @@ def passage_data(design: Any, built: Any) -> dict[str, Any]:
     return {**summary_data(design, built), **{key: jsonable(value) for key, value in own.items()}}
 
 
+def part_data(design: Any, built: Any) -> dict[str, Any]:
+    """The figures of a row, a sector or a wheel: number of blades and faces, properties, and the blade's checks."""
+    data = summary_data(design, built)
+    del data["surfaces"], data["properties"]["areas"]
+    return {
+        **data,
+        "name": built.name,
+        "blades": int(design.blade_count or len(getattr(built, "placements", ()))),
+        "faces": len(built.surfaces),
+        "surfaces": {},
+        "promises": jsonable(_record(built.blade.conformance)),
+    }
+
+
 def smoothness_data(built: Any) -> list[dict[str, Any]]:
     """Curvature and its slope with their jumps, by line, of the sections at SMOOTHNESS_SPANS, or of one section."""
     import numpy as np
@@ -129,6 +143,7 @@ def summary_text(data: dict[str, Any], more: Sequence[tuple[str, str]] = ()) -> 
     in_space = "surfaces" in data
     words = "mean chord" if in_space else "chord"
     rows = [(words, f"{data['chord_m'] * metre:.6g} {unit}")] if "chord_m" in data else []
+    rows += [(name, str(data[name])) for name in ("blades", "faces") if name in data]
     if "error" in data:
         size = f" ({data['error'] * data['chord_m'] * metre:.2g} {unit})" if "chord_m" in data else ""
         rows.append(("off the exact blade", f"{data['error']:.2g} of the chord at most{size}"))
