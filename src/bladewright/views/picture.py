@@ -22,11 +22,11 @@ from bladewright.views.along_the_blade import (
     draw_wrap,
     has_throat,
 )
+from bladewright.views.body import BladedBody, body_sheet
 from bladewright.views.distributions import draw_curvature, draw_smoothness, draw_thickness
 from bladewright.views.law_charts import draw_strip, draw_thickness_laws, in_strips, law_charts, strip_height
 from bladewright.views.meridional import draw_meridional
 from bladewright.views.pages import Page, checked_path, draw_header, rows, with_fixed_layout, write_figure
-from bladewright.views.part import Part, part_sheet
 from bladewright.views.passage import passage_sheet, section_passage_sheet
 from bladewright.views.sections import distinct, draw_edge, draw_edges, draw_neighbour, draw_sections, pitch_of
 from bladewright.views.solid import draw_passage_solid, draw_solid, viewpoints
@@ -37,7 +37,7 @@ SPANS, FEW_SPANS = (0.0, 0.25, 0.5, 0.75, 1.0), (0.0, 0.5, 1.0)
 other."""
 PASSAGE_VIEW = (1250, 1000)
 """Largest width and height of a view of a passage alone [pixels]: what its figure of 10 x 8 inches shows."""
-Built = Blade | Section | Passage | SectionPassage | Part
+Built = Blade | Section | Passage | SectionPassage | BladedBody
 """What a design builds, and the flow domain around it."""
 
 
@@ -105,7 +105,7 @@ def sheet(design: Design | Built, blade: Built | None = None) -> Figure:
             case Blade():
                 figure = _blade_sheet(built)
             case _:
-                figure = part_sheet(built)
+                figure = body_sheet(built)
         return with_fixed_layout(figure)
 
 

@@ -8,12 +8,12 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from bladewright.views.body import BODIES, body_figures, body_scene
 from bladewright.views.fit_data import FitResult
 from bladewright.views.fit_deviations import draw_outline_deviation
 from bladewright.views.fit_sheet import fit_sheet
 from bladewright.views.html import Rows, frame, image, table, with_headings
 from bladewright.views.masses import mass_rows
-from bladewright.views.part import PARTS, part_figures, part_scene
 from bladewright.views.passage import draw_section_passage, figures, section_figures
 from bladewright.views.picture import sheet
 from bladewright.views.round_trip import round_trip_figure, round_trip_tables
@@ -154,12 +154,12 @@ KINDS: Mapping[str, Kind] = {
     **{
         name: Kind(
             figure=sheet,
-            picture=lambda part: view3d(part_scene(part), part.name),
-            tables=lambda part: table(with_headings(part_figures(part))),
-            title=lambda part: (part.name, part.shown_as),
-            unit=lambda part: part.blade.design.length_unit,
+            picture=lambda body: view3d(body_scene(body), body.name),
+            tables=lambda body: table(with_headings(body_figures(body))),
+            title=lambda body: (body.name, body.shown_as),
+            unit=lambda body: body.blade.design.length_unit,
         )
-        for name in PARTS
+        for name in BODIES
     },
     "section": Kind(
         figure=sheet,

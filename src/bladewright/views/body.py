@@ -49,7 +49,7 @@ from bladewright.views.view3d import Group, Scene, all_points, with_copies
 if TYPE_CHECKING:
     from bladewright.blade.native.blade import Blade
 
-PARTS = ("row", "sector", "wheel")
+BODIES = ("row", "sector", "wheel")
 """The names under which they are shown."""
 NUMBERED = re.compile(r"(blade|hub|shroud)_0*(\d+)(?:_(\w+))?$")
 """Names of the faces that a row or a wheel has once for each of its blades."""
@@ -67,7 +67,7 @@ Rows = list[tuple[str, str]]
 """Names and values of a table; a heading has no value."""
 
 
-class Part(Protocol):
+class BladedBody(Protocol):
     """A body made of blades: a row, a sector, a wheel."""
 
     @property
@@ -98,52 +98,52 @@ class Part(Protocol):
         """Mass, centre and inertia."""
 
 
-def part_view(part: Part, path: str | Path) -> None:
+def body_view(body: BladedBody, path: str | Path) -> None:
     """Draw a row, a sector or a wheel in space, shaded, as PNG, SVG or PDF by the ending of `path`.
 
     Raises FileError where the ending is another or the path cannot be written, DesignError where something else is
     given.
     """
     checked_path(path)
-    if getattr(part, "shown_as", "") not in PARTS:
-        raise DesignError(f"a {type(part).__name__} was given: draw what row, sector or wheel of a blade makes")
-    with drawing_style(part.blade.design.length_unit):
+    if getattr(body, "shown_as", "") not in BODIES:
+        raise DesignError(f"a {type(body).__name__} was given: draw what row, sector or wheel of a blade makes")
+    with drawing_style(body.blade.design.length_unit):
         figure = Figure(figsize=(10.0, 8.0), layout="constrained")
-        draw_part(figure.add_subplot(), part, width=1250, view=viewpoint(part.blade))
+        draw_body(figure.add_subplot(), body, width=1250, view=viewpoint(body.blade))
         write_figure(figure, path, VIEW_DPI)
 
 
-def part_sheet(part: Part) -> Figure:
+def body_sheet(body: BladedBody) -> Figure:
     """The sheet of a row, a sector or a wheel, before its layout."""
     figure = Page(figsize=(16.0, 13.0))
-    volume = f"volume {cubic(part.properties.volume)}"
-    draw_header(figure, part.name, part.description, [_count(part), volume, f"{len(part.surfaces)} faces"])
+    volume = f"volume {cubic(body.properties.volume)}"
+    draw_header(figure, body.name, body.description, [_count(body), volume, f"{len(body.surfaces)} faces"])
     top, bottom = rows(figure, 7.0, 5.0)
     views = top.subplots(1, 2)
-    for place, view, title in zip(views, viewpoints(part.blade), ("In space", "The other side"), strict=True):
-        draw_part(place, part, width=900, view=view)
+    for place, view, title in zip(views, viewpoints(body.blade), ("In space", "The other side"), strict=True):
+        draw_body(place, body, width=900, view=view)
         place.set_title(title)
         place.set_anchor("N")
     section, numbers = columns(bottom, 1.4, 1.0)
-    draw_half_section(section.subplots(), part)
-    draw_figures(numbers.subplots(), part_figures(part))
+    draw_half_section(section.subplots(), body)
+    draw_figures(numbers.subplots(), body_figures(body))
     return figure
 
 
-def draw_part(axes: Axes, part: Part, *, width: int, view: Reals) -> None:
-    """Draw the part `width` pixels wide, as the viewer with axes `view` (3, 3) sees it."""
-    scene = part_scene(part, FINE)
+def draw_body(axes: Axes, body: BladedBody, *, width: int, view: Reals) -> None:
+    """Draw the body `width` pixels wide, as the viewer with axes `view` (3, 3) sees it."""
+    scene = body_scene(body, FINE)
     camera = framing_camera(view, all_points(scene))
     show_rendering(axes, camera, rendered(*with_copies(scene), camera, width))
 
 
-def part_scene(part: Part, size: tuple[int, int] = COARSE) -> Scene:
-    """The part in space; what it has once for each blade is one group with its places."""
-    copies = max((int(found[2]) for name in part.surfaces if (found := NUMBERED.match(name))), default=1)
-    design = part.blade.design
+def body_scene(body: BladedBody, size: tuple[int, int] = COARSE) -> Scene:
+    """The body in space; what it has once for each blade is one group with its places."""
+    copies = max((int(found[2]) for name in body.surfaces if (found := NUMBERED.match(name))), default=1)
+    design = body.blade.design
     step = design.spacing if design.blade_count else per_metre() * float(np.real(design.spacing))
     repeated, once = (list[ShadedGrid](), list[Polyline]()), (list[ShadedGrid](), list[Polyline]())
-    for name, face in part.surfaces.items():
+    for name, face in body.surfaces.items():
         found = NUMBERED.match(name)
         if found and int(found[2]) > 1:
             continue
@@ -154,13 +154,13 @@ def part_scene(part: Part, size: tuple[int, int] = COARSE) -> Scene:
         lines += [] if found and not found[3] else around
     turns = [step * k for k in range(copies)]
     groups = [Group(surfaces=repeated[0], lines=repeated[1], turns=turns), Group(surfaces=once[0], lines=once[1])]
-    return Scene(blade=part.blade, groups=[group for group in groups if group.surfaces])
+    return Scene(blade=body.blade, groups=[group for group in groups if group.surfaces])
 
 
 def _drawn(
     name: str, face: Face, size: tuple[int, int], *, whole: bool, of_blade: bool
 ) -> tuple[ShadedGrid, list[Polyline]]:
-    """A face with the lines around it that are edges of the part."""
+    """A face with the lines around it that are edges of the body."""
     if of_blade:
         fillet = "fillet" in name
         points, normals = sampled(face, *places_on(name, size))
@@ -180,30 +180,30 @@ def _drawn(
     return surface, [Polyline(points=line, colour=ink) for line in lines]
 
 
-def draw_half_section(axes: Axes, part: Part) -> None:
-    """Draw what the part covers in the (x, r) plane, or (x, z) of a cascade: its disc, its ring and its blades."""
-    for label, lines in carried_lines(part).items():
+def draw_half_section(axes: Axes, body: BladedBody) -> None:
+    """Draw what the body covers in the (x, r) plane, or (x, z) of a cascade: its disc, its ring and its blades."""
+    for label, lines in carried_lines(body).items():
         outline = chained(lines)
         axes.fill(*outline.T, color=SOFT, alpha=0.45, linewidth=0.0, label=label)
         for line in lines:
             axes.plot(*line.T, color=GREY, linewidth=1.0)
             axes.plot(*line[[0, -1]].T, color=GREY, linestyle="none", marker=".", markersize=3.0)
-    draw_covered(axes, part.blade)
-    covered = blade_outline(part.blade.plain) * per_metre()
-    draw_cuts(axes, part.blade, covered)
-    view = part.blade.exact.meridional_view
+    draw_covered(axes, body.blade)
+    covered = blade_outline(body.blade.plain) * per_metre()
+    draw_cuts(axes, body.blade, covered)
+    view = body.blade.exact.meridional_view
     for name in ("hub", "shroud"):
         axes.plot(*(view.lines[name].points * per_metre()).T, color=CURVES[name], linewidth=1.2, label=name)
-    revolved = part.blade.exact.mapping.revolved
+    revolved = body.blade.exact.mapping.revolved
     label_axes(axes, "Half section", axis("x"), axis("r" if revolved else "z"))
     axes.set_aspect("equal", adjustable="datalim")
     legend_below(axes, 5)
 
 
-def carried_lines(part: Part) -> dict[str, list[Reals]]:
+def carried_lines(body: BladedBody) -> dict[str, list[Reals]]:
     """Meridional lines (n, 2) [unit of the picture] of the faces of revolution around the disc, and around the ring."""
     found = dict[str, list[Reals]]()
-    for name, face in part.surfaces.items():
+    for name, face in body.surfaces.items():
         numbered = NUMBERED.match(name)
         if name.startswith("blade") or "cyclic" in name or (numbered and int(numbered[2]) > 1):
             continue
@@ -227,9 +227,9 @@ def chained(lines: Sequence[Reals]) -> Reals:
     return outline
 
 
-def part_figures(part: Part) -> Rows:
+def body_figures(body: BladedBody) -> Rows:
     """Volume, area, centroid, mass and faces."""
-    found, blade = part.properties, part.blade
+    found, blade = body.properties, body.blade
     centroid = per_metre() * np.real(found.centroid)
     centroid = np.where(np.square(centroid) < (NOUGHT * per_metre() * blade.chord) ** 2, 0.0, centroid)
     area = float(np.real(found.area)) * per_metre() ** 2
@@ -241,18 +241,18 @@ def part_figures(part: Part) -> Rows:
         ("centroid", f"{', '.join(f'{x:.4g}' for x in centroid)} {unit_name()}"),
         ("mean chord", in_unit(blade.chord)),
     ]
-    masses = mass_rows(part)
+    masses = mass_rows(body)
     rows_of += [("Mass", ""), *masses] if masses else []
-    names = dict.fromkeys(NUMBERED.sub(r"\1 \3", name).replace("_", " ").strip() for name in part.surfaces)
+    names = dict.fromkeys(NUMBERED.sub(r"\1 \3", name).replace("_", " ").strip() for name in body.surfaces)
     kinds = [name.removeprefix("blade ") for name in names if name.startswith("blade")]
     others = [name for name in names if not name.startswith("blade")]
-    rows_of += [(f"{len(part.surfaces)} faces", "")]
+    rows_of += [(f"{len(body.surfaces)} faces", "")]
     for title, found_names in (("of a blade", kinds), ("others", others)):
         lines = wrap(", ".join(found_names), WIDEST)
         rows_of += [(title if line is lines[0] else " ", line) for line in lines]
     return rows_of
 
 
-def _count(part: Part) -> str:
-    count = part.blade.design.blade_count
+def _count(body: BladedBody) -> str:
+    count = body.blade.design.blade_count
     return "linear cascade" if count is None else f"{count} blade{'s' if count > 1 else ''}"
