@@ -6,6 +6,7 @@ from bladewright.nurbs.basis import uniform_knots
 from bladewright.nurbs.curve import Curve
 from bladewright.nurbs.domain import reversed  # noqa: A004
 from bladewright.nurbs.fit import interpolated
+from bladewright.nurbs.refine import elevated
 from bladewright.nurbs.revolution import Revolution, arc, circle, revolved, segment
 from bladewright.nurbs.skinning import ruled
 from bladewright.nurbs.surface import Surface
@@ -69,7 +70,11 @@ def test_polynomials_over_a_triangle_have_their_moments():
     assert np.allclose(found, size * np.array([1.0, (x0 + x1 + x2) / 3, (y0 + y1 + y2) / 3, second]), rtol=1e-13)
 
 
-@pytest.mark.parametrize("boundary", [circle((0.5, 0.5), 0.4), blob()], ids=["disc", "blob"])
+@pytest.mark.parametrize(
+    "boundary",
+    [circle((0.5, 0.5), 0.4), blob(), elevated(blob(), 6), elevated(circle((0.5, 0.5), 0.4), 5)],
+    ids=["disc", "blob", "blob of degree 9", "disc of degree 7"],
+)
 def test_a_trimmed_integral_is_the_mean_over_points_inside(boundary):
     face = TrimmedSurface(surface=KNOTTED, boundary=(boundary,))
 

@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
+from math import factorial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -51,13 +52,13 @@ def coordinate_roots(curve: Curve, coordinate: int, value: float, order: int = 0
     """
     points = curve.control_points.real[:, coordinate]
     if curve.weights is None:
-        spline = PPoly.from_spline(BSpline(curve.knots, points, curve.degree))
+        spline = _polynomials(curve, points)
         found = spline.derivative().roots() if order else spline.solve(value)
     elif order:
         found = _rational_stationary(curve, coordinate)
     else:
         weights = curve.weights.real
-        found = PPoly.from_spline(BSpline(curve.knots, weights * (points - value), curve.degree)).roots()
+        found = _polynomials(curve, weights * (points - value)).roots()
     found = np.asarray(found, dtype=np.float64)
     first, last = curve.domain
     return np.unique(found[np.isfinite(found) & (found >= first) & (found <= last)])
@@ -125,17 +126,27 @@ def _cuts(curve: Curve) -> Reals:
     return np.unique(np.concatenate([knots, between.ravel(), *stationary]))
 
 
+def _polynomials(curve: Curve, values: Reals) -> PPoly:
+    """The polynomials of a spline on the curve's knots with coefficients (n,): one a span, of any degree.
+
+    scipy's own conversion goes through FITPACK, which writes past its memory above degree 5.
+    """
+    spans = np.unique(curve.knots)
+    spline = BSpline(curve.knots, values, curve.degree)
+    taylor = [spline(spans[:-1], nu=order) / factorial(order) for order in range(curve.degree, -1, -1)]
+    return PPoly(np.stack(taylor), spans)
+
+
 def _rational_stationary(curve: Curve, coordinate: int) -> Reals:
-    numerator = PPoly.from_spline(BSpline(curve.knots, curve.homogeneous.real[:, coordinate], curve.degree))
-    weights = PPoly.from_spline(BSpline(curve.knots, curve.homogeneous.real[:, -1], curve.degree))
+    numerator = _polynomials(curve, curve.homogeneous.real[:, coordinate])
+    weights = _polynomials(curve, curve.homogeneous.real[:, -1])
     found: list[Reals] = []
     for index in range(len(numerator.x) - 1):
-        if numerator.x[index + 1] > numerator.x[index]:
-            top, bottom = np.poly1d(numerator.c[:, index]), np.poly1d(weights.c[:, index])
-            roots = (top.deriv() * bottom - top * bottom.deriv()).roots
-            roots = roots.real[roots.imag**2 <= 1e-20]
-            width = numerator.x[index + 1] - numerator.x[index]
-            found.append(numerator.x[index] + roots[(roots >= 0.0) & (roots <= width)])
+        top, bottom = np.poly1d(numerator.c[:, index]), np.poly1d(weights.c[:, index])
+        roots = (top.deriv() * bottom - top * bottom.deriv()).roots
+        roots = roots.real[roots.imag**2 <= 1e-20]
+        width = numerator.x[index + 1] - numerator.x[index]
+        found.append(numerator.x[index] + roots[(roots >= 0.0) & (roots <= width)])
     return np.concatenate([np.zeros(0), *found])
 
 
