@@ -28,7 +28,15 @@ from bladewright.views.law_charts import draw_strip, draw_thickness_laws, in_str
 from bladewright.views.meridional import draw_meridional
 from bladewright.views.pages import Page, checked_path, draw_header, rows, with_fixed_layout, write_figure
 from bladewright.views.passage import passage_sheet, section_passage_sheet
-from bladewright.views.sections import distinct, draw_edge, draw_edges, draw_neighbour, draw_sections, pitch_of
+from bladewright.views.sections import (
+    distinct,
+    draw_edge,
+    draw_edges,
+    draw_feet,
+    draw_neighbour,
+    draw_sections,
+    pitch_of,
+)
 from bladewright.views.solid import draw_passage_solid, draw_solid, viewpoints
 from bladewright.views.style import SHEET_DPI, VIEW_DPI, WALLS, drawing_style, in_unit, per_metre, span_name, unit_name
 
@@ -140,6 +148,7 @@ def _blade_sheet(blade: Blade) -> Figure:
         draw_solid(place, blade, neighbours=2, width=640, view=view)
         place.set_title(title)
     draw_sections(axes[2], sections, blade.design.law_ends)
+    draw_feet(axes[2], blade, sections)
     draw_neighbour(axes[3], middle, pitch, _span_title(middle, blade.design.law_ends), blade)
     for place, draw in zip(shape.subplots(1, len(along)), along, strict=True):
         draw(place, blade, sections)

@@ -136,7 +136,8 @@ def _text(value: Any) -> str:
     if isinstance(value, tuple):
         return f"[{', '.join(map(_text, value))}]"
     if isinstance(value, Part):
-        return f"{{ {', '.join(f'{name} = {_text(each)}' for name, each in _fields(value, ''))} }}"
+        given = (f"{name} = {_text(each)}" for name, each in _fields(value, "") if each is not None)
+        return f"{{ {', '.join(given)} }}"
     if isinstance(value, bool):
         return str(value).lower()
     return f"{value:.10g}" if isinstance(value, float) else str(value)

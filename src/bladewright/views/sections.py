@@ -52,6 +52,10 @@ EDGE_WINDOW_RADII, EDGE_WINDOW_CHORDS = 5.0, 0.15
 fifth of the panel, and the other edge stays outside."""
 FLAT_EDGE_RADIUS = 100.0
 """Radius in chords from which on an edge is called flat: its circle cannot be told from a straight line."""
+FOOT, FOOT_POINTS = (0, (3.0, 1.5)), 101
+"""Line style of the foot of a fillet, and points of each of its curves."""
+WALL_POINTS = 2001
+"""Points of a wall along a section among which the nearest to a foot is looked for."""
 SHARP_EDGE_SIZE = 0.01
 """Length in chords that sets the close-up of a sharp edge, which has no radius."""
 LEAST_EDGES = 4
@@ -140,6 +144,38 @@ def draw_sections(axes: Axes, sections: Sequence["Section"], ends: tuple[str, st
     label_axes(axes, "Sections with camber lines", *coordinates(sections[0].plane))
     axes.set_aspect("equal", adjustable="datalim")
     legend_below(axes, 3, handlelength=1.0, columnspacing=0.9)
+
+
+def draw_feet(axes: Axes, blade: "Blade", sections: Sequence["Section"]) -> None:
+    """Draw the feet of fillets around the sections at hub and shroud, where the blade stands on an uncut wall."""
+    cut = blade.design.cut
+    uncut = {"hub": cut is None or cut.hub is None, "shroud": cut is None or cut.tip is None}
+    for section in sections:
+        name = {0.0: "hub", 1.0: "shroud"}.get(section.span)
+        if name and uncut[name] and any(face.startswith(f"{name}_fillet") for face in blade.surfaces):
+            foot = developed(section, foot_in_plane(blade, name, section.span))
+            axes.plot(*foot.T, color=span_colour(section.span), linewidth=0.9, linestyle=FOOT, label=f"foot at {name}")
+
+
+def foot_in_plane(blade: "Blade", name: str, span: float) -> Reals:
+    """The foot (n, 2) of the fillet at a wall in the plane of the section that stands there."""
+    exact = blade.plain.exact
+    lines, mapping = exact.sections(np.array([span])).lines, exact.mapping
+    points = np.concatenate(
+        [np.real(curve(np.linspace(*curve.domain, FOOT_POINTS))) for curve in blade.end_outline(name)]
+    )
+    x, y, z = points.T
+    radius, tangential = (np.hypot(y, z), np.unwrap(np.arctan2(y, z))) if mapping.revolved else (z, y)
+    places = np.stack([x, radius], axis=-1)
+    own = np.real(blade.plain.section(span).curves["upper"](cosine_spacing(WALL_POINTS))[:, 0])
+    across = np.linspace(own.min(), own.max(), WALL_POINTS)
+    wall = np.real(lines.position(lines.u_at(across[None])))[0]
+    nearest = np.argmin(np.sum((places[:, None] - wall) ** 2, axis=-1), axis=1)
+    # from there along the wall, which past the noses is as good as straight
+    step, metres = np.gradient(wall, across, axis=0), places - wall[nearest]
+    along = across[nearest] + np.sum(metres * step[nearest], axis=-1) / np.sum(step[nearest] ** 2, axis=-1)
+    ordinate = mapping.start(tangential[None], radius[None], lines.lengths[..., None])
+    return np.stack([along, np.real(ordinate)[0]], axis=-1)
 
 
 def draw_neighbour(
