@@ -104,7 +104,14 @@ class Blade(FrozenRecord, Shown, MetalBody):
         """+1 for the faces whose dS/du x dS/dv points out of the blade, -1 for the others."""
         low, high = self.design.ends
         blunt = {name: sign for name, sign in zip(EDGES, (1, -1), strict=True) if name in self.surfaces}
-        return FrozenMapping({"upper": -1, "lower": 1, **blunt, low: -1, high: 1})
+        around = {"upper": -1, "lower": 1, **blunt}
+        fillets = {
+            f"{wall}_fillet_{name}": sign
+            for wall in ("hub", "shroud")
+            for name, sign in around.items()
+            if f"{wall}_fillet_{name}" in self.surfaces
+        }
+        return FrozenMapping({**around, **fillets, low: -1, high: 1})
 
     @property
     def tolerance(self) -> float:

@@ -8,6 +8,7 @@ import numpy as np
 
 from bladewright.blade.exact.exact_blade import ExactBlade
 from bladewright.errors import DesignError
+from bladewright.frozen import FrozenRecord
 from bladewright.numerics.elementary import Array, angle, concatenated, dot, length
 from bladewright.numerics.roots import level_crossings
 from bladewright.nurbs.basis import Reals, greville, knots_with_joints
@@ -208,7 +209,7 @@ def trimmed_ends(
             blunt[edge] = end_row(face, row), (two, own[row, both], across[row, both])
         known = None if like is None else like[name]
         revolved = exact.mapping.revolved
-        low, high = _stretch(across[row], wall, revolved=revolved) if known is None else _stretch_of(known)
+        low, high = stretch_about(across[row], wall, revolved=revolved) if known is None else _stretch_of(known)
         surface = WallSurface(meridian=meridian, inner=inner, revolved=revolved, low=low, high=high)
         ends[name] = _trimmed(surface, outline, blunt, chord, known)
     return ends
@@ -231,7 +232,36 @@ def _trimmed(
     return TrimmedSurface(surface=wall.surface, boundary=tuple(boundary), revolution=wall.revolution)
 
 
-def _stretch(across: Reals, name: str, *, revolved: bool) -> tuple[float, float]:
+@dataclass(frozen=True, kw_only=True, eq=False)
+class EndKnots(FrozenRecord):
+    """What derivatives hold of an end face: the extent of its wall, and the knots of the curves of its boundary."""
+
+    domain: tuple[float, float]
+    """of the meridian"""
+    low: float
+    """theta, or y in a cascade, at which the wall begins"""
+    high: float
+    """where it ends"""
+    curves: tuple[Reals, ...]
+
+
+def end_within(
+    wall: WallSurface, chain: Sequence[tuple[Curve, Near, bool]], chord: float, held: EndKnots | None = None
+) -> tuple[TrimmedSurface, EndKnots]:
+    """The piece of a wall inside a closed chain of space curves, counter-clockwise in (u, v), and what is to be held.
+
+    Each curve comes with what is near it on the wall, and whether the chain runs against it.
+    """
+    known: Sequence[Reals | None] = [None] * len(chain) if held is None else held.curves
+    curves = [followed(wall, curve, near, chord, knots) for (curve, near, _), knots in zip(chain, known, strict=True)]
+    boundary = tuple(run_back(curve) if back else curve for curve, (_, _, back) in zip(curves, chain, strict=True))
+    end = TrimmedSurface(surface=wall.surface, boundary=boundary, revolution=wall.revolution)
+    return end, EndKnots(
+        domain=wall.meridian.domain, low=wall.low, high=wall.high, curves=tuple(curve.knots for curve in curves)
+    )
+
+
+def stretch_about(across: Reals, name: str, *, revolved: bool) -> tuple[float, float]:
     """Where the wall starts and ends in theta, or y in a cascade: with a margin about the blade's end."""
     low, high = float(across.min()), float(across.max())
     margin = MARGIN * (high - low)

@@ -6,6 +6,7 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 from bladewright.blade.native.blade import Blade
+from bladewright.blade.native.fillet import filleted
 from bladewright.blade.native.knots import Knots
 
 if TYPE_CHECKING:
@@ -18,8 +19,8 @@ Finish = Callable[[Blade, "RowDesign", Knots | None], Blade]
 
 def finishes(design: RowDesign) -> list[Finish]:
     """What a design asks for, in order: cuts of edges, cuts of ends with their clearances, fillets."""
-    del design
-    return []
+    filleted_at = [design.hub_fillet, design.shroud_fillet]
+    return [filleted] if any(each is not None for each in filleted_at) else []
 
 
 def finished(plain: Blade, design: RowDesign, knots: Knots | None = None) -> Blade:

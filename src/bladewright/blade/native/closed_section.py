@@ -1,0 +1,194 @@
+"""Both sides of a blade as one closed section, smooth across its round edges, and splines around it.
+
+A site is a side and its u. Past a round edge the side goes on as the other one: u = -0.1 on the upper side is u = 0.1
+on the lower one, so that what leaves an edge obliquely may cross it.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from bladewright.blade.native.knots import DEGREE
+from bladewright.frozen import FrozenRecord
+from bladewright.numerics.elementary import Array, cross, unit
+from bladewright.nurbs.basis import Reals, basis, greville
+from bladewright.nurbs.surface import Surface
+
+UPPER, LOWER = 0, 1
+ACROSS_EDGES = 1
+"""Derivatives that splines around the section keep across round edges: the sides keep two, their normals one."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Sites(FrozenRecord):
+    """Places around the section."""
+
+    side: NDArray[np.intp]
+    """(k,) UPPER or LOWER"""
+    u: Array
+    """(k,) its parameter"""
+
+    def __len__(self) -> int:
+        return len(self.side)
+
+    def moved(self, u: Array) -> Sites:
+        """The same sides at another u (..., k)."""
+        return Sites(side=np.broadcast_to(self.side, u.shape), u=u)
+
+    def picked(self, which: NDArray[np.intp]) -> Sites:
+        """Some of them."""
+        return Sites(side=self.side[which], u=self.u[which])
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class ClosedSection(FrozenRecord):
+    """The two sides, and at which of the edges, leading and trailing, they are one smooth surface."""
+
+    upper: Surface
+    lower: Surface
+    smooth: tuple[bool, bool]
+
+    def real(self) -> ClosedSection:
+        """The same of real parts."""
+        upper, lower = (replace(side, control_points=np.real(side.control_points)) for side in (self.upper, self.lower))
+        return replace(self, upper=upper, lower=lower)
+
+    def derivative(self, sites: Sites, v: Array, du: int = 0, dv: int = 0) -> Array:
+        """Points or derivatives (..., 3) at sites and v of one shape, by the u of each site's own side."""
+        side, u, v = np.broadcast_arrays(sites.side, sites.u, v)
+        before, after = (np.real(u) < 0.0) & self.smooth[0], (np.real(u) > 1.0) & self.smooth[1]
+        u = np.where(before, -u, np.where(after, 2.0 - u, u))
+        other = before | after
+        on_lower = (side == LOWER) ^ other
+        found = np.empty((*u.shape, 3), dtype=np.result_type(u, v, self.upper.control_points))
+        for surface, mask in ((self.upper, ~on_lower), (self.lower, on_lower)):
+            if mask.any():
+                found[mask] = surface.derivative(u[mask], v[mask], du, dv)
+        return np.where(other[..., None], -found, found) if du % 2 else found
+
+    def normal(self, sites: Sites, v: Array) -> Array:
+        """Unit normals (..., 3) out of the blade."""
+        return unit(self._outward(sites, cross(self.derivative(sites, v, 1, 0), self.derivative(sites, v, 0, 1))))
+
+    def normal_slopes(self, sites: Sites, v: Array) -> tuple[Array, Array, Array]:
+        """The unit normals (..., 3) with their derivatives by u and v."""
+        first = {order: self.derivative(sites, v, *order) for order in ((1, 0), (0, 1), (2, 0), (1, 1), (0, 2))}
+        raw = self._outward(sites, cross(first[1, 0], first[0, 1]))
+        size = np.sqrt(np.sum(raw * raw, axis=-1))[..., None]
+        normal = raw / size
+        slopes = []
+        for along, across in (((2, 0), (1, 1)), ((1, 1), (0, 2))):
+            change = cross(first[along], first[0, 1]) + cross(first[1, 0], first[across])
+            change = self._outward(sites, change) / size
+            slopes.append(change - normal * np.sum(normal * change, axis=-1)[..., None])
+        return normal, slopes[0], slopes[1]
+
+    def _outward(self, sites: Sites, vectors: Array) -> Array:
+        return np.where((sites.side == LOWER)[..., None], vectors, -vectors)
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class SectionSplines(FrozenRecord):
+    """Splines around the section on the same inner knots of both sides, cut into one of each side.
+
+    Across round edges they keep `ACROSS_EDGES` derivatives; at the other edges each side ends. Interpolation at the
+    sites is linear in the values there, and its matrices are the same for every row of a net.
+    """
+
+    knots: Reals
+    """of a side, clamped over [0, 1]"""
+    smooth: tuple[bool, bool]
+
+    @cached_property
+    def _lines(self) -> list[tuple[Reals, tuple[tuple[int, float, float], ...], bool]]:
+        """Each line around the section: its knots, the (side, start, direction) of its stretches, and if it closes."""
+        inner = self.knots[DEGREE + 1 : -DEGREE - 1]
+        at_edge = DEGREE - ACROSS_EDGES
+        leading, trailing = self.smooth
+        up, down = (UPPER, 0.0, 1.0), (LOWER, 2.0, -1.0)
+        clamp = DEGREE + 1
+        if leading and trailing:
+            own = np.concatenate([np.zeros(at_edge), inner, np.full(at_edge, 1.0), 2.0 - inner[::-1]])
+            return [(own, (up, down), True)]
+        if trailing:
+            own = np.concatenate(
+                [np.zeros(clamp), inner, np.full(at_edge, 1.0), 2.0 - inner[::-1], np.full(clamp, 2.0)]
+            )
+            return [(own, (up, down), False)]
+        if leading:
+            own = np.concatenate([np.full(clamp, -1.0), -inner[::-1], np.zeros(at_edge), inner, np.full(clamp, 1.0)])
+            return [(own, (up, (LOWER, 0.0, -1.0)), False)]
+        return [(self.knots, (up,), False), (self.knots, ((LOWER, 0.0, 1.0),), False)]
+
+    @cached_property
+    def _places(self) -> list[Reals]:
+        """Greville's abscissae of each line."""
+        return [
+            greville(_tiled(knots), DEGREE)[: len(knots)] if closed else greville(knots, DEGREE)
+            for knots, _, closed in self._lines
+        ]
+
+    @cached_property
+    def sites(self) -> Sites:
+        """Where splines are interpolated, one site for each degree of freedom."""
+        side, u = [], []
+        for (_, parts, closed), places in zip(self._lines, self._places, strict=True):
+            p = np.mod(places, 2.0) if closed else places
+            if len(parts) == 1:
+                on_lower, at = np.full(len(p), parts[0][0] == LOWER), p
+            else:
+                _, start, _ = parts[1]
+                on_lower = p > 1.0 if start else p < 0.0
+                at = np.where(on_lower, start - p, p)
+            side.append(on_lower.astype(np.intp))
+            u.append(at)
+        return Sites(side=np.concatenate(side), u=np.concatenate(u))
+
+    @cached_property
+    def nets(self) -> tuple[Reals, Reals]:
+        """Matrices (n, k) from values at the sites to the control points of the upper and the lower side."""
+        found: dict[int, Reals] = {}
+        at = greville(self.knots, DEGREE)
+        own = np.linalg.inv(basis(self.knots, DEGREE, at))
+        total, first = len(self.sites), 0
+        for (knots, parts, closed), places in zip(self._lines, self._places, strict=True):
+            to_line = np.linalg.inv(_matrix(knots, places, closed=closed))
+            for side, start, direction in parts:
+                net = np.zeros((len(at), total))
+                net[:, first : first + len(places)] = (
+                    own @ _matrix(knots, start + direction * at, closed=closed) @ to_line
+                )
+                found[side] = net
+            first += len(places)
+        for row, smooth in zip((0, -1), self.smooth, strict=True):
+            if smooth:
+                # one row, to the bit
+                found[LOWER][row] = found[UPPER][row]
+        return found[UPPER], found[LOWER]
+
+    def split(self, values: Array) -> tuple[Array, Array]:
+        """Control points (n, ...) of both sides from values (k, ...) at the sites."""
+        upper, lower = (np.tensordot(net, values, axes=1) for net in self.nets)
+        return upper, lower
+
+
+def _tiled(knots: Reals) -> Reals:
+    """Knots of a closed line over [0, 2), repeated before and after."""
+    return np.concatenate([knots - 2.0, knots, knots + 2.0])[len(knots) - DEGREE - 1 :]
+
+
+def _matrix(knots: Reals, places: Reals, *, closed: bool) -> Reals:
+    """Values (m, n) of the basis functions of a line at places (m,)."""
+    if not closed:
+        return basis(knots, DEGREE, places)
+    tiled, count = _tiled(knots), len(knots)
+    start = tiled[DEGREE]
+    full = basis(tiled, DEGREE, start + np.mod(places - start, 2.0))
+    folded = np.zeros((len(places), count))
+    for k in range(full.shape[1]):
+        folded[:, k % count] += full[:, k]
+    return folded

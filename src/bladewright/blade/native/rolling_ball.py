@@ -1,0 +1,137 @@
+"""A ball that rolls along a blade and a wall: where it touches, and how the blade's lines leave the fillet."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from bladewright.blade.native.above_fillet import Joints, Leaving, leaving, places
+from bladewright.blade.native.blade import Blade
+from bladewright.blade.native.closed_section import ClosedSection, Sites
+from bladewright.blade.native.contacts import Contacts, Wall, contacts
+from bladewright.blade.native.cross_section import CrossSections
+from bladewright.frozen import FrozenRecord
+from bladewright.numerics.elementary import Array, dot
+from bladewright.nurbs.basis import Reals
+
+if TYPE_CHECKING:
+    from bladewright.blade.design.row_design import RowDesign
+
+WALLS = {"hub": 0.0, "shroud": 1.0}
+"""Walls, and v at the end of a blade that stands on one."""
+Sizes = Callable[[Sites], tuple[Array, Array]]
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Ball(FrozenRecord):
+    """A ball that rolls along the blade and one wall."""
+
+    wall: Wall
+    sizes: Sizes
+    """distances of its centre from blade and wall at sites [m]"""
+    end: float
+    """v at which the blade ends on the wall"""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Touch(FrozenRecord):
+    """A ball at sites around the blade."""
+
+    ball: Ball
+    section: ClosedSection
+    found: Contacts
+
+    @cached_property
+    def sections(self) -> CrossSections:
+        """The fillet's cross-sections there."""
+        found, wall = self.found, self.ball.wall
+        point, normal = self.section.derivative(found.sites, found.v), self.section.normal(found.sites, found.v)
+        return CrossSections(
+            blade=point,
+            wall=wall.point(found.t, found.across),
+            normals=(normal, wall.normal(found.t, found.across)),
+            centre=point + found.on_blade[:, None] * normal,
+            sizes=(found.on_blade, found.on_wall),
+        )
+
+    @cached_property
+    def slope(self) -> Array:
+        """dF/ds (k, 3) on the blade."""
+        return np.asarray(self.sections.points(np.zeros(1), 1)[0])
+
+    @cached_property
+    def lines(self) -> Leaving:
+        """How lines of the blade leave the fillet."""
+        return leaving(self.section, self.found, self.slope, 1 if self.ball.end == 0.0 else -1)
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Rolled(FrozenRecord):
+    """The balls of all fillets of a blade at the same sites."""
+
+    section: ClosedSection
+    sites: Sites
+    touches: Mapping[str, Touch]
+    """by the wall"""
+
+    @classmethod
+    def at(cls, section: ClosedSection, balls: Mapping[str, Ball], sites: Sites, near: Rolled | None = None) -> Rolled:
+        """Where they touch at sites; `near` are known ones, between which the search begins."""
+        touches = {}
+        for wall, ball in balls.items():
+            known = None if near is None else near.touches[wall].found
+            found = contacts(section, ball.wall, sites, ball.sizes(sites), ball.end, known)
+            touches[wall] = Touch(ball=ball, section=section, found=found)
+        return cls(section=section, sites=sites, touches=touches)
+
+    def above(self, joints: Joints, w: Reals) -> Array:
+        """Points (len(w), k, 3) of the blade above the fillets."""
+        ends = {wall: (joints[wall], touch.lines) for wall, touch in self.touches.items()}
+        found = self.section.derivative(*places(self.sites, ends, w))
+        for wall, row in (("hub", 0), ("shroud", -1)):
+            if wall in self.touches and w[row] == WALLS[wall]:
+                # the joint's own points, to the bit
+                found[row] = self.touches[wall].sections.blade
+        return found
+
+    def slopes(self, joints: Joints) -> dict[str, Array]:
+        """dB/dx (k, 3) of the blade above at each joint."""
+        return {wall: -touch.slope / joints[wall].speed for wall, touch in self.touches.items()}
+
+
+def closed_section(blade: Blade) -> ClosedSection:
+    """The sides of a blade as one closed section."""
+    leading, trailing = blade.exact.survey.edge_kinds
+    upper, lower = blade.sides
+    return ClosedSection(upper=upper, lower=lower, smooth=(leading == "round", trailing == "round"))
+
+
+def balls_of(blade: Blade, section: ClosedSection, design: RowDesign) -> dict[str, Ball]:
+    """The balls of the fillets that a design asks for, by the wall."""
+    asked = {"hub": design.hub_fillet, "shroud": design.shroud_fillet}
+    balls = {}
+    for name, fillet in asked.items():
+        if fillet is None:
+            continue
+        size = design.metre * np.asarray(fillet.radius)
+
+        def sizes(sites: Sites, size: Array = size) -> tuple[Array, Array]:
+            each = np.full(len(sites), size)
+            return each, each
+
+        balls[name] = Ball(wall=_wall(blade, section, name), sizes=sizes, end=WALLS[name])
+    return balls
+
+
+def _wall(blade: Blade, section: ClosedSection, name: str) -> Wall:
+    """The wall, with the side of it on which the blade stands."""
+    end, sites = np.array([WALLS[name]]), Sites(side=np.zeros(1, dtype=np.intp), u=np.array([0.5]))
+    wall = Wall(meridian=blade.end_wall(name)[0], revolved=blade.exact.mapping.revolved, inward=1.0)
+    real, solid = wall.real(), section.real()
+    normal = real.normal(*real.places_near(solid.derivative(sites, end)))
+    grows = solid.derivative(sites, end, 0, 1) * (1.0 - 2.0 * end)
+    return replace(wall, inward=1.0 if dot(normal, grows)[0] > 0.0 else -1.0)
