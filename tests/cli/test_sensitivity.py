@@ -50,6 +50,22 @@ def test_every_named_quantity_has_its_derivatives(quantity, run, cascade_file):
     assert all(np.abs(value).max() > 0.0 for value in found.json["derivatives"].values())
 
 
+def test_a_mass_has_its_derivatives_in_kilograms(run, vane_file):
+    words = ("--set", "density=7800", "--free", "density", "--free", "pitch")
+    found = run("sensitivity", vane_file, *words, "--of", "mass")
+    assert found.status == 0
+    assert "kg/(kg/m^3)" in found.out
+    data = run("sensitivity", vane_file, *words, "--of", "moment-of-inertia", "--json").json
+    assert data["unit"] == "kg m2"
+    assert data["derivatives"]["density"] == pytest.approx(data["value"] / 7800.0)
+    checked = run("sensitivity", vane_file, *words, "--check")
+    assert checked.status == 0
+    assert "it is that of the metal" in checked.out
+    refused = run("sensitivity", vane_file, "--of", "mass")
+    assert refused.status == 2
+    assert "density is missing" in refused.err
+
+
 @pytest.mark.parametrize(
     ("quantity", "unit"),
     [

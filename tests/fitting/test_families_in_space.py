@@ -67,6 +67,7 @@ def test_a_vane_is_found_again_from_a_start_that_is_off():
 
 
 def test_flow_path_and_the_way_along_edge_curves_stand():
+    assert gauge_parameters(COMPRESSOR.changed("density", 7800.0)) - gauge_parameters(COMPRESSOR) == {"density"}
     held = gauge_parameters(COMPRESSOR)
     assert {"flow_path.hub.points[0].x", "leading_edge.points[1].r", "section.curvature[1]"} <= held
     assert "leading_edge.points[1].x" not in held

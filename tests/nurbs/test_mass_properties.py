@@ -5,7 +5,7 @@ import pytest
 
 from bladewright.errors import GeometryError
 from bladewright.nurbs.domain import swapped
-from bladewright.nurbs.mass_properties import mass_properties
+from bladewright.nurbs.mass_properties import mass_properties, placed
 from bladewright.nurbs.revolution import arc, circle, revolved, segment
 from bladewright.nurbs.skinning import ruled
 from bladewright.nurbs.transform import rotated, scaled, translated
@@ -138,3 +138,22 @@ def test_the_derivative_of_a_trimmed_cylinder_by_radius_is_its_wall():
 def test_faces_that_enclose_nothing_are_refused_with_the_reason(faces, says):
     with pytest.raises(GeometryError, match=says):
         mass_properties(faces)
+
+
+def test_two_boxes_side_by_side_are_one_of_twice_the_length():
+    one, both = mass_properties(box(1.0, 2.0, 3.0)), mass_properties(box(2.0, 2.0, 3.0))
+    found = placed(one, np.stack([np.eye(3)] * 2), np.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0]]))
+    assert np.isclose(found.volume, both.volume, rtol=1e-14)
+    assert np.allclose(found.centroid, both.centroid, rtol=1e-14)
+    assert np.allclose(found.inertia, both.inertia, rtol=1e-13, atol=1e-13)
+    assert np.isclose(found.area, 2.0 * one.area, rtol=1e-14)
+
+
+def test_boxes_turned_around_an_axis_have_the_inertia_of_the_faces_that_they_are():
+    angles = 2.0 * np.pi * np.arange(5) / 7.0
+    turns = np.array([[[1, 0, 0], [0, np.cos(a), -np.sin(a)], [0, np.sin(a), np.cos(a)]] for a in angles])
+    shape = [(translated(face, (0.3, 4.0, 0.2)), sign) for face, sign in box(1.0, 2.0, 3.0)]
+    found = placed(mass_properties(shape), turns, np.zeros((5, 3)))
+    naive = mass_properties([(rotated(face, angle), sign) for angle in angles for face, sign in shape])
+    assert np.allclose(found.centroid, naive.centroid, rtol=1e-12)
+    assert np.allclose(found.inertia, naive.inertia, rtol=1e-11, atol=1e-9)

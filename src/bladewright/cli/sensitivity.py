@@ -1,6 +1,7 @@
 """`bladewright sensitivity`: derivatives of what a design builds, their check, and the chain to a flow solver."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -20,6 +21,8 @@ if TYPE_CHECKING:
 
 PASSAGE = "passage-volume"
 """The quantity `--of passage-volume`: the volume of the passage around a blade."""
+OF_WHEEL = ("volume", "mass", "moment-of-inertia")
+"""Quantities of a blade that a wheel has as well, as `--of wheel-mass`."""
 
 
 def _parse_grid(_: click.Context, __: click.Parameter, text: str) -> tuple[int, int]:
@@ -36,7 +39,8 @@ def _parse_grid(_: click.Context, __: click.Parameter, text: str) -> tuple[int, 
     "--of",
     "of",
     metavar="QUANTITY",
-    help="volume, area, centroid, inertia, chord, throat, passage-volume, or surface: the control points of the sides; "
+    help="volume, area, centroid, inertia, chord, throat, mass, moment-of-inertia, passage-volume, wheel-volume, "
+    "wheel-mass, wheel-moment-of-inertia, or surface: the control points of the sides; "
     "of a section: area, centroid, chord, perimeter, camber-length, surface; or a column of the station table, such as "
     "turning, stagger, solidity, wrap, sweep, lean, maximum-thickness.  [volume; area of a section; surface with "
     "--check]",
@@ -234,12 +238,16 @@ def _pull_back(design: Any, built: Any, free: Sequence[str], sensitivity: Path, 
 
 
 def _quantity(built: Any, name: str, stations: Sequence[float]) -> "NamedQuantity":
-    """The quantity of this name; a blade has the volume of its passage besides its own quantities."""
-    from bladewright.derivatives.quantities import NamedQuantity, named_quantity
+    """The quantity of this name; a blade has those of its passage and its wheel besides its own."""
+    from bladewright.derivatives.quantities import BLADE, NamedQuantity, named_quantity
 
     more: dict[str, NamedQuantity] = {}
     if built.dimension == 3:
         more[PASSAGE] = NamedQuantity(name=PASSAGE, of=_PassageVolume(), power=3)
+        more |= {
+            f"wheel-{each}": replace(BLADE[each], name=f"wheel-{each}", of=_OfWheel(BLADE[each].of))
+            for each in OF_WHEEL
+        }
     return named_quantity(built, name, more, stations)
 
 
@@ -255,6 +263,21 @@ class _PassageVolume:
         passage_around = passage(blade, knots=self.knots)
         self.knots = passage_around.knots
         return passage_around.properties.volume
+
+
+class _OfWheel:
+    """A quantity of the wheel of a blade, at the knots of the wheel of the first blade."""
+
+    def __init__(self, of: Callable[[Any], Any]) -> None:
+        self.of, self.knots = of, None
+
+    def __call__(self, blade: Any) -> Any:
+        import bladewright as bw
+
+        make: Any = bw
+        wheel = make.wheel(blade, knots=self.knots)
+        self.knots = wheel.knots
+        return self.of(wheel)
 
 
 def _rates(design: Any, built: Any, quantity: "NamedQuantity", paths: Sequence[str]) -> dict[str, Any] | None:
@@ -312,6 +335,8 @@ def _units(quantity: "NamedQuantity", design: Any) -> tuple[str, str, float]:
 
     if quantity.angle:
         return "rad", "deg", math.degrees(1.0)
+    if quantity.unit:
+        return quantity.unit, quantity.unit, 1.0
     power, unit = quantity.power, design.length_unit
     if power == 0:
         return "1", "1", 1.0
@@ -322,7 +347,8 @@ def _units(quantity: "NamedQuantity", design: Any) -> tuple[str, str, float]:
 def _per_parameter(design: Any, path: str) -> str:
     """What is appended to the unit of a quantity to make the unit of its derivative."""
     unit = unit_at(design, path)
-    return {"length": f"/{design.length_unit}", "-": ""}.get(str(unit), f"/{unit}")
+    alone = f"({unit})" if "/" in str(unit) else unit
+    return {"length": f"/{design.length_unit}", "-": ""}.get(str(unit), f"/{alone}")
 
 
 def _named_figures(name: str, value: Any, unit: str, stations: Sequence[float]) -> str:

@@ -23,9 +23,11 @@ class NamedQuantity:
     of: Callable[[Any], Array]
     """the quantity, of any shape, of a build that may be complex"""
     power: int
-    """its unit is this power of a metre"""
+    """its unit is this power of a metre, where it has no other"""
     angle: bool = False
     """whether it is an angle [rad]"""
+    unit: str = ""
+    """its own unit, where that is none of these"""
     points: bool = False
     """whether it is a set of control points (k, d), whose derivative is reported as a root mean square"""
 
@@ -44,6 +46,10 @@ def _chord(blade: Any) -> Array:
     return np.asarray(np.sum(weight * length(side(1.0, v) - side(0.0, v))))
 
 
+def _moment_of_inertia(body: Any) -> Array:
+    return np.asarray(body.mass_report().inertia_about_axis[0, 0])
+
+
 BLADE: Mapping[str, NamedQuantity] = FrozenMapping(
     {
         each.name: each
@@ -55,11 +61,14 @@ BLADE: Mapping[str, NamedQuantity] = FrozenMapping(
             NamedQuantity(name="inertia", of=lambda blade: blade.properties.inertia, power=5),
             NamedQuantity(name="chord", of=_chord, power=1),
             NamedQuantity(name="throat", of=lambda blade: throat(blade.plain).area, power=2),
+            NamedQuantity(name="mass", of=lambda body: body.mass, power=0, unit="kg"),
+            NamedQuantity(name="moment-of-inertia", of=_moment_of_inertia, power=0, unit="kg m2"),
         )
     }
 )
 """Quantities of a blade: its sides' control points; volume, area, centroid and inertia; the mean straight distance from
-leading to trailing edge and the area of the throat, both before cuts and fillets."""
+leading to trailing edge and the area of the throat, both before cuts and fillets; mass, and moment of inertia about the
+machine axis."""
 SECTION: Mapping[str, NamedQuantity] = FrozenMapping(
     {
         each.name: each

@@ -39,8 +39,14 @@ DIFFERENCES = (
 at its limit."""
 NO_EFFECT = 1e-11
 """Relative change of a quantity by one scale of a parameter below which the parameter has no effect: it is rounding."""
-ELSEWHERE = {"pitch": "places the next blade", "span": "is the height of the section's solid"}
-"""Parameters that do not change the shape of a blade or section, and what they do instead."""
+ELSEWHERE = {
+    "pitch": "places the next blade",
+    "span": "is the height of the section's solid",
+    "density": "is that of the metal",
+    "disc": "shapes the wheel",
+    "shroud_ring": "shapes the wheel",
+}
+"""Parameters and tables that do not change the shape of a blade or section, and what they do instead."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -163,9 +169,10 @@ def _step_study(derivative: _Derivative, steps: Reals, imaginary: Reals) -> Step
         return replace(unmeasured, failure=f"{path}: the derivative of the {quantity.name} is not finite")
     if size * derivative.scale <= NO_EFFECT * derivative.whole:
         no_effect = f"{path} has no effect on the {quantity.name}"
-        if quantity.points and path not in ELSEWHERE:
+        elsewhere = ELSEWHERE.get(path.partition(".")[0])
+        if quantity.points and elsewhere is None:
             return replace(unmeasured, failure=no_effect)
-        return replace(unmeasured, note=f"{no_effect}: it {ELSEWHERE[path]}" if path in ELSEWHERE else no_effect)
+        return replace(unmeasured, note=f"{no_effect}: it {elsewhere}" if elsewhere else no_effect)
     small, floor = derivative.complex_steps(imaginary)
     kept, errors = derivative.differences(steps)
     study = replace(unmeasured, steps=kept, errors=errors, imaginary=small, floor=floor)

@@ -22,15 +22,25 @@ WALLS = ("hub", "shroud")
 """walls of a flow path"""
 
 
+BESIDE_THE_BLADE = ("density", "disc", "shroud_ring")
+"""Parameters and tables of a design that say nothing of its blade."""
+
+
 def gauge_parameters(design: Design, *, walls: bool = False) -> frozenset[str]:
     """Paths of the parameters that a cloud cannot determine, which are held unless they are freed.
 
+    Of any design they are those that say nothing of its blade: the metal's density, and what carries the blades.
     Of control points that count by their ratios only it is the largest. Of points of a contour it is the coordinate
     along which they slide on it, and both coordinates of the first and the last along the chord, as their size and
     direction do not matter. Of a blade it is the flow path, which a blade shows by its ends only, and the coordinate
     along which the points of its edge curves slide on the curve. Where the `walls` are free, only that coordinate of
     the points of hub and shroud is held.
     """
+    beside = {path for path in design.parameters() if path.partition(".")[0] in BESIDE_THE_BLADE}
+    return frozenset(beside) | _gauge_of_blade(design, walls=walls)
+
+
+def _gauge_of_blade(design: Design, *, walls: bool) -> frozenset[str]:
     if isinstance(design, UnifiedBlade):
         return frozenset() if design.flow_path is None else _in_flow_path(design)
     section = getattr(design, "section", None)
