@@ -2,11 +2,12 @@
 
     python design/random_designs.py --count 2000 --jobs 2 --record design/random_designs.md
     python design/random_designs.py --of sections --count 1000 --jobs 2 --record design/random_sections.md
+    python design/random_designs.py --of parts --count 500 --jobs 2 --record design/random_parts.md
     python design/random_designs.py --seed 17 --count 1 --show
 
-A design follows from its seed alone (random_blades.py, random_sections.py). It is built in a process that may die, so
-that a crash of the kernel or a hang is a result like any other. The results of the first commands are recorded in the
-files that they name.
+A design follows from its seed alone (random_blades.py, random_sections.py, random_parts.py). It is built in a process
+that may die, so that a crash of the kernel or a hang is a result like any other. The results of the first commands are
+recorded in the files that they name.
 """
 
 import argparse
@@ -25,9 +26,10 @@ from pathlib import Path
 
 import numpy as np
 import random_blades
+import random_parts
 import random_sections
 
-DRAWN = {"unified": random_blades, "sections": random_sections}
+DRAWN = {"unified": random_blades, "sections": random_sections, "parts": random_parts}
 """what designs are drawn by"""
 
 LIMIT = 60.0
@@ -38,7 +40,11 @@ OPEN = 1e-9
 """summed area vectors of a passage's faces over their area; a trimmed tip is followed within 1e-9 of the chord"""
 SAMPLES = 2000
 """points on each face, each way, in the round trip"""
-FINE = frozenset({"built", "blade only", "refused"})
+TURNED = 1e-9
+"""share by which a wheel may differ from its blade count times the sector"""
+WHEEL = 12
+"""most blades of a wheel that is written as a whole; of others a sector is"""
+FINE = frozenset({"built", "no wheel", "blade only", "refused"})
 """what may become of a design"""
 REASONS = {
     "outside its": "the blade stands outside its passage",
@@ -74,7 +80,7 @@ class Outcome:
 
     seed: int
     kind: str
-    """built, blade only (without its passage), refused, failed, crashed or hung"""
+    """built, no wheel (of a design with a disc), blade only (without its passage), refused, failed, crashed or hung"""
     message: str
     seconds: float
     shape: str
@@ -98,7 +104,9 @@ def judged(seed, directory, samples=SAMPLES, of="unified"):
     trip = cad.write(blade, Path(directory) / f"{design.name}.step", samples=samples)
     if not trip.passed:
         return "failed", f"round trip: {'; '.join(trip.failures)}"
-    return with_passage(blade)
+    kind, message = with_passage(blade)
+    carried = design.disc is not None or design.shroud_ring is not None
+    return with_wheel(blade, Path(directory), samples) if carried and kind == "built" else (kind, message)
 
 
 def with_passage(blade):
@@ -119,6 +127,32 @@ def with_passage(blade):
     if made.properties.openness > OPEN:
         return "failed", f"the passage is open by {made.properties.openness:.2g} of its area"
     return "built", f"{poles}, passage {off:.1e} off the ring"
+
+
+def with_wheel(blade, directory, samples):
+    """What becomes of the wheel that carries a blade, or of a sector of it where it has many."""
+    import bladewright as bw
+    from bladewright import cad
+    from bladewright.errors import DesignError
+
+    try:
+        one, whole = bw.sector(blade), bw.wheel(blade)
+    except DesignError as error:
+        wrong = unclear(str(error))
+        return ("failed", f"unclear refusal ({wrong}): {error}") if wrong else ("no wheel", str(error))
+    off = blade.design.blade_count * one.properties.volume / whole.properties.volume - 1.0
+    if not -TURNED < off < TURNED:
+        return "failed", f"sectors differ from the wheel by {off:.2g} of its volume"
+    made = whole if blade.design.blade_count <= WHEEL else one
+    for body in {one, made}:
+        if body.properties.openness > OPEN:
+            return "failed", f"the {body.shown_as} is open by {body.properties.openness:.2g} of its area"
+    trip = cad.write(made, directory / f"{blade.design.name}.step", samples=samples)
+    return (
+        ("built", f"with its {made.shown_as}")
+        if trip.passed
+        else ("failed", f"round trip of the {made.shown_as}: {'; '.join(trip.failures)}")
+    )
 
 
 def unclear(message):
@@ -247,18 +281,22 @@ def report(found, command):
         "| | designs | processor seconds each: median | 95 % | most |",
         "|---|---|---|---|---|",
     ]
-    for kind in ("built", "blade only", "refused", "failed", "crashed", "hung"):
+    for kind in ("built", "no wheel", "blade only", "refused", "failed", "crashed", "hung"):
         times = np.array([outcome.seconds for outcome in by_kind[kind]])
         figures = [*np.quantile(times, [0.5, 0.95, 1.0])] if len(times) else []
         row = [f"{figure:.2f}" for figure in figures] or [""] * 3
         lines.append(f"| {kind} | {len(times)} | {' | '.join(row)} |")
-    lines += ["", "| channel | built | blade only | refused |", "|---|---|---|---|"]
+    lines += ["", "| drawn | built | no wheel | blade only | refused |", "|---|---|---|---|---|"]
     for shape in sorted({outcome.shape for outcome in found}):
-        row = [sum(outcome.shape == shape for outcome in by_kind[kind]) for kind in ("built", "blade only", "refused")]
-        lines.append(f"| {shape} | {row[0]} | {row[1]} | {row[2]} |")
+        row = [
+            sum(outcome.shape == shape for outcome in by_kind[kind])
+            for kind in ("built", "no wheel", "blade only", "refused")
+        ]
+        lines.append(f"| {shape} | {' | '.join(map(str, row))} |")
     lines += ["", "| refused because | designs | for example |", "|---|---|---|"]
     lines += _reasons(by_kind["refused"])
     lines += ["", "| no passage because | designs | for example |", "|---|---|---|", *_reasons(by_kind["blade only"])]
+    lines += ["", "| no wheel because | designs | for example |", "|---|---|---|", *_reasons(by_kind["no wheel"])]
     bad = [outcome for kind in ("failed", "crashed", "hung") for outcome in by_kind[kind]]
     if bad:
         lines += ["", "## Failures", ""]

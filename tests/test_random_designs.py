@@ -27,7 +27,7 @@ def test_each_random_design_is_refused_with_a_reason_or_passes_its_round_trip(of
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("of", "count"), [("unified", 2000), ("sections", 500)])
+@pytest.mark.parametrize(("of", "count"), [("unified", 2000), ("sections", 500), ("parts", 200)])
 def test_each_of_many_random_designs_is_refused_with_a_reason_or_passes_its_round_trip(of, count):
     found = random_designs.outcomes(range(count), jobs=2, of=of)
     assert [outcome for outcome in found if outcome.kind not in random_designs.FINE] == []
