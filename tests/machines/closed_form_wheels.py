@@ -65,10 +65,11 @@ def piece(hub: Curve, turn: float, pitch: float, foot: TrimmedSurface | None) ->
     return face, fitted(in_space, FINE)
 
 
-def ring(count: int = 5, *, blades: int = 1, name: str = "wheel", solid: bool = False) -> Wheel:
+def ring(count: int = 5, *, blades: int = 1, name: str = "wheel", solid: bool = False, askew: float = 0.0) -> Wheel:
     """A ring of the hub, in pieces of a pitch, two discs and a bore; blades stand through holes of the first pieces.
 
-    With `solid` the ring has no bore, so that its discs end in poles on the axis.
+    With `solid` the ring has no bore, so that its discs end in poles on the axis. The blades are turned by `askew`
+    from where they belong.
     """
     pitch, hub = 2.0 * np.pi / count, meridian(HUB)
     surfaces: dict[str, Surface | TrimmedSurface] = {}
@@ -76,7 +77,7 @@ def ring(count: int = 5, *, blades: int = 1, name: str = "wheel", solid: bool = 
     for number in range(1, count + 1):
         turn, foot = (number - 1) * pitch, None
         if number <= blades:
-            own, label = annular(turn=turn).surfaces, f"blade_{number:02d}"
+            own, label = annular(turn=turn + askew).surfaces, f"blade_{number:02d}"
             surfaces |= {f"{label}_{face}": own[face] for face in ("upper", "lower")}
             surfaces[f"{label}_tip"], foot = own["shroud"], own["hub"]
             orientations |= {f"{label}_upper": -1, f"{label}_lower": 1, f"{label}_tip": 1}

@@ -45,6 +45,12 @@ class FaceProjection:
         self.tree = cKDTree(points[kept])
         self.spacing = float(self.tree.query(points[kept], k=min(5, len(kept)))[0].max())
 
+    def least_distance(self, points: Array) -> Array:
+        """Distances (n,) [mm] from a box that holds the face: none of points (n, 3) is nearer to the face."""
+        low, high = self.tree.mins - self.spacing, self.tree.maxes + self.spacing
+        outside = np.maximum(np.maximum(low - points, points - high), 0.0)
+        return np.sqrt(_dot(outside, outside))
+
     def closest(self, points: Array, limit: float) -> tuple[Array, Array]:
         """Parameters (n, 2) and distances (n,) [mm] of the nearest points of the face to points (n, 3).
 

@@ -4,6 +4,7 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
 from bladewright.cad.surface_evaluation import SurfaceEvaluator
@@ -15,6 +16,10 @@ from bladewright.nurbs.trim_loop import TrimLoop, contained, trim_loop
 POINTS_PER_CURVE = 400
 """Points of the boundary polygon on each trimming curve. They only start the search for the nearest point of the true
 curve, which is then found by Newton steps, so that the number trades time for safety, not for accuracy."""
+
+
+SEAM = 1e-9
+"""Largest distance of the two sides of a seam, as a fraction of the face's extent: so much may be a file's rounding."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -46,14 +51,25 @@ class Region:
         return np.array([np.sqrt(np.mean(np.sum(t * t, axis=-1))) for t in (along, across)])
 
     def into_domain(self, uv: Array) -> Array:
-        """Parameters moved by whole periods to where the face lies, and clipped to the bounds."""
+        """Parameters moved by whole periods to where the face lies, and clipped to the bounds but across seams."""
         uv = np.array(uv)
         if self.evaluator.period:
             middle = 0.5 * (self.low[0] + self.high[0])
             uv[:, 0] -= self.evaluator.period * np.round((uv[:, 0] - middle) / self.evaluator.period)
             uv[:, 1] = np.clip(uv[:, 1], self.low[1], self.high[1])
             return uv
-        return np.clip(uv, self.low, self.high)
+        across_seam = self.low + (uv - self.low) % (self.high - self.low)
+        return np.where(self._closed, across_seam, np.clip(uv, self.low, self.high))
+
+    @cached_property
+    def _closed(self) -> NDArray[np.bool_]:
+        """(2,) whether the face is a whole turn in either parameter, so that it goes on beyond its seam."""
+        surface = getattr(self.evaluator, "surface", None)
+        if self.loops or surface is None:
+            return np.zeros(2, dtype=bool)
+        net = surface.control_points
+        ends = [np.max(np.abs(np.take(net, 0, axis) - np.take(net, -1, axis))) for axis in (0, 1)]
+        return np.array(ends) <= SEAM * np.ptp(net, axis=(0, 1)).max()
 
     def contains(self, uv: Array) -> Array:
         """Whether parameters (n, 2) lie in the face: inside an odd number of its loops."""
