@@ -55,6 +55,8 @@ NUMBERED = re.compile(r"(blade|hub|shroud)_0*(\d+)(?:_(\w+))?$")
 """Names of the faces that a row or a wheel has once for each of its blades."""
 CUT = (0.86, 0.84, 0.80)
 """Colour of the cuts between two sectors."""
+ALONE, BESIDE = (1250, 1000), (800, 700)
+"""Largest width and height of a view alone and of one of two beside each other [pixels]."""
 FINE, COARSE = (121, 33), (41, 11)
 """Points along and across a side of a blade, in pictures and in views that turn."""
 AROUND = 3
@@ -109,7 +111,7 @@ def body_view(body: BladedBody, path: str | Path) -> None:
         raise DesignError(f"a {type(body).__name__} was given: draw what row, sector or wheel of a blade makes")
     with drawing_style(body.blade.design.length_unit):
         figure = Figure(figsize=(10.0, 8.0), layout="constrained")
-        draw_body(figure.add_subplot(), body, width=1250, view=viewpoint(body.blade))
+        draw_body(figure.add_subplot(), body, size=ALONE, view=viewpoint(body.blade))
         write_figure(figure, path, VIEW_DPI)
 
 
@@ -121,7 +123,7 @@ def body_sheet(body: BladedBody) -> Figure:
     top, bottom = rows(figure, 7.0, 5.0)
     views = top.subplots(1, 2)
     for place, view, title in zip(views, viewpoints(body.blade), ("In space", "The other side"), strict=True):
-        draw_body(place, body, width=900, view=view)
+        draw_body(place, body, size=BESIDE, view=view)
         place.set_title(title)
         place.set_anchor("N")
     section, numbers = columns(bottom, 1.4, 1.0)
@@ -130,10 +132,11 @@ def body_sheet(body: BladedBody) -> Figure:
     return figure
 
 
-def draw_body(axes: Axes, body: BladedBody, *, width: int, view: Reals) -> None:
-    """Draw the body `width` pixels wide, as the viewer with axes `view` (3, 3) sees it."""
+def draw_body(axes: Axes, body: BladedBody, *, size: tuple[int, int], view: Reals) -> None:
+    """Draw the body at most `size` pixels wide and high, as the viewer with axes `view` (3, 3) sees it."""
     scene = body_scene(body, FINE)
     camera = framing_camera(view, all_points(scene))
+    width = int(min(size[0], size[1] * camera.extent[0] / camera.extent[1]))
     show_rendering(axes, camera, rendered(*with_copies(scene), camera, width))
 
 
