@@ -8,6 +8,7 @@ from typing import Annotated
 import numpy as np
 
 from bladewright.blade.design.meridional_curve import ControlPolygon, StraightsAndArcs, ThroughPoints
+from bladewright.blade.flow_path.meridional_curve import MeridionalCurve, spline_on
 from bladewright.designs import Limits, Part, parameter
 from bladewright.errors import DesignError
 from bladewright.nurbs.basis import Reals
@@ -31,6 +32,12 @@ class AtRadius(Part):
         """Its two ends (2, 2) [m] in a box of (x, r), for pictures."""
         return np.array([[each[0], metre * np.real(self.radius)] for each in (low, high)])
 
+    def line(self, metre: float) -> MeridionalCurve:
+        """A piece of the straight line in (x, r) [m], from x = 0 downstream."""
+        radius = metre * np.asarray(self.radius)
+        start, end = (np.stack(np.broadcast_arrays(x, radius), axis=-1) for x in (0.0, metre))
+        return spline_on(np.stack([start, end], axis=-2), 1)
+
 
 @dataclass(frozen=True, kw_only=True)
 class AtX(Part):
@@ -45,6 +52,12 @@ class AtX(Part):
     def points_within(self, metre: float, low: Reals, high: Reals) -> Reals:
         """Its two ends (2, 2) [m] in a box of (x, r), for pictures."""
         return np.array([[metre * np.real(self.x), each[1]] for each in (low, high)])
+
+    def line(self, metre: float) -> MeridionalCurve:
+        """A piece of the straight line in (x, r) [m], from the axis outwards."""
+        x = metre * np.asarray(self.x)
+        start, end = (np.stack(np.broadcast_arrays(x, r), axis=-1) for r in (0.0, metre))
+        return spline_on(np.stack([start, end], axis=-2), 1)
 
 
 CutCurve = Annotated[AtRadius | AtX | ThroughPoints | ControlPolygon | StraightsAndArcs, ByKey()]

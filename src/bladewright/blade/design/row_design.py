@@ -164,7 +164,7 @@ class RowDesign(Design):
         plain, own = self.plain, None if knots is None else knots.chain[0]
         exact = plain.exact_blade(own)
         exact.check()
-        return finished(native_blade(exact, own, fine=fine), self, knots)
+        return finished(native_blade(exact, own, fine=fine), self, knots, fine=fine)
 
     def _check_arrangement(self) -> None:
         """Refuse what the other arrangement has; bring what this one has to numbers."""

@@ -2,28 +2,42 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Protocol
 
 from bladewright.blade.native.blade import Blade
+from bladewright.blade.native.edge_cut import cut_edges
+from bladewright.blade.native.end_cut import cut_ends
 from bladewright.blade.native.fillet import filleted
 from bladewright.blade.native.knots import Knots
 
 if TYPE_CHECKING:
     from bladewright.blade.design.row_design import RowDesign
 
-Finish = Callable[[Blade, "RowDesign", Knots | None], Blade]
-"""Makes a blade from the one before, for the design that asks for it, at its own knots where they are held: with
-`before` the blade that it was given, and in its knots `before` those of that blade."""
+
+class Finish(Protocol):
+    """Cuts or fillets a blade."""
+
+    def __call__(self, blade: Blade, design: RowDesign, knots: Knots | None, *, fine: bool) -> Blade:
+        """The blade from the one before, for the design that asks for it, at its own knots where they are held.
+
+        Its `before` is the blade that it was given, and the `before` of its knots those of that blade.
+        """
 
 
 def finishes(design: RowDesign) -> list[Finish]:
     """What a design asks for, in order: cuts of edges, cuts of ends with their clearances, fillets."""
-    filleted_at = [design.hub_fillet, design.shroud_fillet]
-    return [filleted] if any(each is not None for each in filleted_at) else []
+    wanted: list[Finish] = []
+    cut = design.cut
+    if cut is not None and (cut.leading_edge is not None or cut.trailing_edge is not None):
+        wanted.append(cut_edges)
+    if cut is not None and (cut.hub is not None or cut.tip is not None):
+        wanted.append(cut_ends)
+    if design.hub_fillet is not None or design.shroud_fillet is not None:
+        wanted.append(filleted)
+    return wanted
 
 
-def finished(plain: Blade, design: RowDesign, knots: Knots | None = None) -> Blade:
+def finished(plain: Blade, design: RowDesign, knots: Knots | None = None, *, fine: bool = False) -> Blade:
     """The blade of a design, from the blade of `design.plain`; `knots` hold those of another build of it.
 
     Raises DesignError where it cannot be cut or filleted as the design asks.
@@ -31,5 +45,5 @@ def finished(plain: Blade, design: RowDesign, knots: Knots | None = None) -> Bla
     blade, wanted = plain, finishes(design)
     held = [None] * len(wanted) if knots is None else knots.chain[1:]
     for finish, own in zip(wanted, held, strict=True):
-        blade = finish(blade, design, own)
+        blade = finish(blade, design, own, fine=fine)
     return blade
