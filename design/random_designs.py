@@ -98,6 +98,9 @@ def judged(seed, directory, samples=SAMPLES, of="unified"):
         return ("failed", f"unclear refusal ({wrong}): {error}") if wrong else ("refused", str(error))
     from bladewright import cad
 
+    for name in ("hub_fillet", "shroud_fillet"):
+        if getattr(design, name) is not None and not any(face.startswith(name) for face in blade.surfaces):
+            return "failed", f"the blade has no {name}"
     if not blade.conformance.kept:
         broken = {name: getattr(blade.conformance, name) for name in blade.conformance.limits}
         return "failed", f"a promise is not kept: {broken}, limits {blade.conformance.limits}"
