@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from bladewright.blade.native.knots import DEGREE
 from bladewright.frozen import FrozenRecord
-from bladewright.numerics.elementary import Array, cross, unit
+from bladewright.numerics.elementary import Array, cross, dot, length, unit
 from bladewright.nurbs.basis import Reals, basis, greville
 from bladewright.nurbs.surface import Surface
 
@@ -59,33 +59,49 @@ class ClosedSection(FrozenRecord):
 
     def derivative(self, sites: Sites, v: Array, du: int = 0, dv: int = 0) -> Array:
         """Points or derivatives (..., 3) at sites and v of one shape, by the u of each site's own side."""
+        return self.derivatives(sites, v, (du, dv))[0]
+
+    def derivatives(self, sites: Sites, v: Array, *orders: tuple[int, int]) -> list[Array]:
+        """Several of the same, each `du` times by u and `dv` times by v."""
         side, u, v = np.broadcast_arrays(sites.side, sites.u, v)
         before, after = (np.real(u) < 0.0) & self.smooth[0], (np.real(u) > 1.0) & self.smooth[1]
         u = np.where(before, -u, np.where(after, 2.0 - u, u))
         other = before | after
         on_lower = (side == LOWER) ^ other
-        found = np.empty((*u.shape, 3), dtype=np.result_type(u, v, self.upper.control_points))
+        kind = np.result_type(u, v, self.upper.control_points)
+        found = [np.empty((*u.shape, 3), dtype=kind) for _ in orders]
         for surface, mask in ((self.upper, ~on_lower), (self.lower, on_lower)):
             if mask.any():
-                found[mask] = surface.derivative(u[mask], v[mask], du, dv)
-        return np.where(other[..., None], -found, found) if du % 2 else found
+                own_u, own_v = u[mask], v[mask]
+                for each, order in zip(found, orders, strict=True):
+                    each[mask] = surface.derivative(own_u, own_v, *order)
+        against = other[..., None]
+        return [
+            np.where(against, -each, each) if order[0] % 2 else each for each, order in zip(found, orders, strict=True)
+        ]
 
     def normal(self, sites: Sites, v: Array) -> Array:
         """Unit normals (..., 3) out of the blade."""
-        return unit(self._outward(sites, cross(self.derivative(sites, v, 1, 0), self.derivative(sites, v, 0, 1))))
+        along, across = self.derivatives(sites, v, (1, 0), (0, 1))
+        return unit(self._outward(sites, cross(along, across)))
 
-    def normal_slopes(self, sites: Sites, v: Array) -> tuple[Array, Array, Array]:
-        """The unit normals (..., 3) with their derivatives by u and v."""
-        first = {order: self.derivative(sites, v, *order) for order in ((1, 0), (0, 1), (2, 0), (1, 1), (0, 2))}
-        raw = self._outward(sites, cross(first[1, 0], first[0, 1]))
-        size = np.sqrt(np.sum(raw * raw, axis=-1))[..., None]
-        normal = raw / size
-        slopes = []
-        for along, across in (((2, 0), (1, 1)), ((1, 1), (0, 2))):
-            change = cross(first[along], first[0, 1]) + cross(first[1, 0], first[across])
-            change = self._outward(sites, change) / size
-            slopes.append(change - normal * np.sum(normal * change, axis=-1)[..., None])
-        return normal, slopes[0], slopes[1]
+    def rising(self, sites: Sites, v: Array) -> tuple[Array, Array, Array, Array]:
+        """Points (..., 3), their derivatives by v, unit normals and their derivatives by v."""
+        point, along, across, mixed, bend = self.derivatives(sites, v, (0, 0), (1, 0), (0, 1), (1, 1), (0, 2))
+        normal, turn = self._turning(sites, cross(along, across), cross(mixed, across) + cross(along, bend))
+        return point, across, normal, turn
+
+    def running(self, sites: Sites, v: Array) -> tuple[Array, Array, Array]:
+        """Derivatives (..., 3) of points by u, unit normals and their derivatives by u."""
+        along, across, bend, mixed = self.derivatives(sites, v, (1, 0), (0, 1), (2, 0), (1, 1))
+        normal, turn = self._turning(sites, cross(along, across), cross(bend, across) + cross(along, mixed))
+        return along, normal, turn
+
+    def _turning(self, sites: Sites, product: Array, change: Array) -> tuple[Array, Array]:
+        """Unit normals from dS/du x dS/dv, with the derivative from that of the product."""
+        size = length(product)[..., None]
+        normal, turn = self._outward(sites, product / size), self._outward(sites, change / size)
+        return normal, turn - normal * dot(normal, turn)[..., None]
 
     def _outward(self, sites: Sites, vectors: Array) -> Array:
         return np.where((sites.side == LOWER)[..., None], vectors, -vectors)

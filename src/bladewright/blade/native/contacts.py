@@ -23,6 +23,8 @@ from bladewright.nurbs.curve import Curve
 
 GROWN = 3
 """Steps in which a ball is grown from nothing: each begins with a tangent predictor, so that few are needed."""
+GROWING = 2
+"""Newton's steps of a ball while it grows."""
 STEPS = 12
 """Newton's steps for a ball: from a tangent predictor three to five reach rounding."""
 SETTLED = 1e-11
@@ -146,13 +148,11 @@ def contacts(
     """
     real = section.real(), wall.real()
     own = np.real(sizes[0]), np.real(sizes[1])
-    x = _grown(*real, sites, own, end) if near is None else near.between(sites)
-    x = _settled(*real, sites, own, x)
+    x, residual = _settled(*real, sites, own, _grown(*real, sites, own, end) if near is None else near.between(sites))
     found: Array = x
     if _stepped(section, wall, sizes):
-        change = _solved(_jacobian(*real, sites, own, x), np.imag(_miss(section, wall, sites, sizes, x)))
-        found = x - 1j * change
-    residual = length(_miss(*real, sites, own, x)) / np.maximum(*own)
+        slopes = _differences(*real, sites, own, x)[1]
+        found = x - 1j * _solved(slopes, np.imag(_differences(section, wall, sites, sizes, x)[0]))
     return Contacts(
         sites=sites,
         on_blade=sizes[0],
@@ -160,7 +160,7 @@ def contacts(
         v=found[:, 0],
         t=found[:, 1],
         across=found[:, 2],
-        residual=np.where(np.isfinite(residual), residual, np.inf),
+        residual=residual,
     )
 
 
@@ -168,55 +168,61 @@ def _grown(section: ClosedSection, wall: Wall, sites: Sites, own: tuple[Reals, R
     """v, t and theta (k, 3) near the contacts: a ball grown from nothing at the end of the blade."""
     v = np.full(len(sites), end)
     x = np.stack([v, *wall.places_near(section.derivative(sites, v))], axis=-1)
-    none = np.zeros(len(sites))
-    x = _settled(section, wall, sites, (none, none), x)
     for k in range(GROWN):
         small = own[0] * k / GROWN, own[1] * k / GROWN
-        if k:
-            x = _settled(section, wall, sites, small, x)
+        for _ in range(GROWING):
+            miss, jacobian = _differences(section, wall, sites, small, x)
+            x = x - _solved(jacobian, miss)
         # the root moves along the conormals: into the span on the blade, away from the blade on the wall
-        normals = _normals(section, wall, sites, x)
+        normals = section.normal(sites, x[:, 0]), wall.normal(x[:, 1], x[:, 2])
         push = own[0][:, None] / GROWN * normals[0] - own[1][:, None] / GROWN * normals[1]
-        x = x - _solved(_jacobian(section, wall, sites, small, x), push)
+        x = x - _solved(_differences(section, wall, sites, small, x)[1], push)
     return x
 
 
-def rates(section: ClosedSection, wall: Wall, found: Contacts, growth: tuple[Array, Array]) -> Array:
-    """Derivatives (k, 3) of v, t and theta of real contacts by u, where a and b change by `growth` (k,)."""
+def rates(
+    section: ClosedSection, wall: Wall, found: Contacts, growth: tuple[Array, Array]
+) -> tuple[Array, Array, Array]:
+    """Derivatives (k, 3) by u of real contacts on the blade, on the wall, and of the centre.
+
+    a and b change by `growth` (k,).
+    """
     sites, x = found.sites, np.stack([found.v, found.t, found.across], axis=-1)
-    normal, along, _ = section.normal_slopes(sites, found.v)
-    push = section.derivative(sites, found.v, 1, 0) + found.on_blade[:, None] * along + growth[0][:, None] * normal
-    push = push - growth[1][:, None] * wall.normal(found.t, found.across)
-    return -_solved(_jacobian(section, wall, sites, (found.on_blade, found.on_wall), x), push)
+    along, normal, turn = section.running(sites, found.v)
+    of_centre = along + found.on_blade[:, None] * turn + growth[0][:, None] * normal
+    push = of_centre - growth[1][:, None] * wall.normal(found.t, found.across)
+    jacobian = _differences(section, wall, sites, (found.on_blade, found.on_wall), x)[1]
+    change = -_solved(jacobian, push)
+    slopes = wall.slopes(found.t, found.across)
+    on_blade = along + change[:, :1] * section.derivative(sites, found.v, 0, 1)
+    on_wall = change[:, 1:2] * slopes[0] + change[:, 2:] * slopes[1]
+    return on_blade, on_wall, of_centre + change[:, :1] * jacobian[..., 0]
 
 
-def _miss(section: ClosedSection, wall: Wall, sites: Sites, sizes: tuple[Array, Array], x: Reals) -> Array:
-    normals = _normals(section, wall, sites, x)
-    on_blade = section.derivative(sites, x[:, 0]) + sizes[0][:, None] * normals[0]
-    return on_blade - wall.point(x[:, 1], x[:, 2]) - sizes[1][:, None] * normals[1]
-
-
-def _normals(section: ClosedSection, wall: Wall, sites: Sites, x: Reals) -> tuple[Array, Array]:
-    return section.normal(sites, x[:, 0]), wall.normal(x[:, 1], x[:, 2])
-
-
-def _jacobian(section: ClosedSection, wall: Wall, sites: Sites, sizes: tuple[Array, Array], x: Reals) -> Reals:
-    """Derivatives (k, 3, 3) of the distance of the two centres by v, t and theta."""
-    _, _, across = section.normal_slopes(sites, x[:, 0])
-    on_blade = section.derivative(sites, x[:, 0], 0, 1) + sizes[0][:, None] * across
+def _differences(
+    section: ClosedSection, wall: Wall, sites: Sites, sizes: tuple[Array, Array], x: Reals
+) -> tuple[Array, Array]:
+    """Distance (k, 3) of the two centres and its derivatives (k, 3, 3) by v, t and theta."""
+    point, rise, normal, turn = section.rising(sites, x[:, 0])
+    on_blade, on_wall = sizes[0][:, None], sizes[1][:, None]
+    miss = point + on_blade * normal - wall.point(x[:, 1], x[:, 2]) - on_wall * wall.normal(x[:, 1], x[:, 2])
     pairs = zip(wall.slopes(x[:, 1], x[:, 2]), wall.normal_slopes(x[:, 1], x[:, 2]), strict=True)
-    on_wall = [-(slope + sizes[1][:, None] * turn) for slope, turn in pairs]
-    return np.stack([on_blade, *on_wall], axis=-1)
+    columns = [rise + on_blade * turn, *(-(slope + on_wall * own) for slope, own in pairs)]
+    return miss, np.stack(columns, axis=-1)
 
 
-def _settled(section: ClosedSection, wall: Wall, sites: Sites, sizes: tuple[Reals, Reals], x: Reals) -> Reals:
+def _settled(
+    section: ClosedSection, wall: Wall, sites: Sites, sizes: tuple[Reals, Reals], x: Reals
+) -> tuple[Reals, Reals]:
+    """The contacts by Newton's steps from nearby, and their residuals, over the size."""
     extent = np.maximum(np.maximum(*sizes), np.finfo(np.float64).tiny)
     for _ in range(STEPS):
-        miss = _miss(section, wall, sites, sizes, x)
-        x = x - _solved(_jacobian(section, wall, sites, sizes, x), miss)
+        miss, jacobian = _differences(section, wall, sites, sizes, x)
         if np.all(length(miss) < SETTLED * extent):
             break
-    return x
+        x = x - _solved(jacobian, miss)
+    residual = length(miss) / extent
+    return x, np.where(np.isfinite(residual), residual, np.inf)
 
 
 def _solved(jacobian: Array, right: Array) -> Array:

@@ -11,10 +11,10 @@ from bladewright.blade.native.above_fillet import Joint, Joints, SpanSplines, fi
 from bladewright.blade.native.blade import Blade
 from bladewright.blade.native.closed_section import ClosedSection, SectionSplines, Sites
 from bladewright.blade.native.end_faces import EndKnots
+from bladewright.blade.native.fillet_limits import check_fillets
 from bladewright.blade.native.knots import DEGREE, MOST_POLES, Knots, refined
 from bladewright.blade.native.refinement import RESERVE, wall_tolerance
 from bladewright.blade.native.rolling_ball import Ball, Rolled, Touch
-from bladewright.errors import DesignError
 from bladewright.frozen import FrozenMapping
 from bladewright.numerics.elementary import Array, cross, dot, length, unit
 from bladewright.nurbs.basis import Reals, basis
@@ -23,8 +23,6 @@ ON_BALL = 1e-6
 """Largest distance of a fillet from its ball, of the ball's radius."""
 ON_WALL = 1e-6
 """Largest angle between the tangent planes of fillet and wall at the foot [rad]."""
-TOUCHING = 1e-9
-"""Residual of the contacts, of the radius, below which a ball touches both."""
 LINES = 12
 """About how many lines along the span are looked at on each side for the knots there."""
 LEVELS = (0.0, 0.02, 0.05, 0.1, 0.2, 0.4, 0.7)
@@ -45,11 +43,7 @@ def chosen_knots(blade: Blade, section: ClosedSection, balls: Mapping[str, Ball]
     """The knots; raises DesignError where a ball does not touch blade and wall."""
     first = SectionSplines(knots=blade.knots.u, smooth=section.smooth)
     rolled = Rolled.at(section, balls, first.sites)
-    for wall, touch in rolled.touches.items():
-        if not np.max(touch.found.residual) < TOUCHING:
-            raise DesignError(
-                f"{wall}_fillet.radius: no ball of this radius touches blade and {wall} everywhere; give a smaller one"
-            )
+    check_fillets(blade, balls, rolled)
     joints = joints_for(rolled.sites, {wall: touch.lines for wall, touch in rolled.touches.items()})
     tolerance = RESERVE * blade.tolerance * blade.chord
     v = _along_span(blade.knots.v, rolled, balls, joints, tolerance)

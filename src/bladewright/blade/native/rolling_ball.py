@@ -23,6 +23,8 @@ if TYPE_CHECKING:
 
 WALLS = {"hub": 0.0, "shroud": 1.0}
 """Walls, and v at the end of a blade that stands on one."""
+STEP = 1e-30
+"""Complex step of u: its square vanishes beside 1, so that the derivative is exact to rounding."""
 Sizes = Callable[[Sites], tuple[Array, Array]]
 
 
@@ -35,6 +37,11 @@ class Ball(FrozenRecord):
     """distances of its centre from blade and wall at sites [m]"""
     end: float
     """v at which the blade ends on the wall"""
+
+    def growth(self, sites: Sites) -> tuple[Reals, Reals]:
+        """Derivatives of the sizes by u."""
+        on_blade, on_wall = self.sizes(sites.moved(np.real(sites.u) + 1j * STEP))
+        return np.imag(on_blade) / STEP, np.imag(on_wall) / STEP
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

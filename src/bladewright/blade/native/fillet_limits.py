@@ -1,0 +1,187 @@
+"""How large a fillet may be: what its ball must not do, and the largest radius at which it does not."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import NamedTuple
+
+import numpy as np
+
+from bladewright.blade.native.blade import Blade
+from bladewright.blade.native.closed_section import UPPER, Sites
+from bladewright.blade.native.contacts import rates
+from bladewright.blade.native.rolling_ball import Ball, Rolled, Touch
+from bladewright.errors import DesignError
+from bladewright.numerics.elementary import Array, cross, dot, length, unit
+from bladewright.nurbs.basis import Reals
+from bladewright.section.crossing import self_crossings, touching
+
+TOUCHING = 1e-9
+"""Residual of the contacts, of the radius, below which a ball touches both."""
+LEAST_LEFT = 0.1
+"""Share of the span that must be left between a contact and the blade's other end, or the other fillet's contact."""
+LEAST_ANGLE, MOST_ANGLE = np.radians((8.0, 172.0))
+"""Angles between the normals of blade and wall at which there is a fillet to speak of [rad]."""
+LEAST_PROGRESS = 0.02
+"""How far a cross-section must move along the blade, of what the blade's own points do: at 0 the fillet folds."""
+FARTHEST = 0.5
+"""How far a foot may lie past the wall's own stretch, of that, where the wall has no end: its polynomials curl up."""
+SEARCHED = 14
+"""Bisections of the largest radius: to 1e-4 of the one asked for."""
+NAMED = 0.999
+"""Share of the largest radius that is named, so that it holds as it is printed."""
+
+
+class Obstacle(NamedTuple):
+    """Why a fillet does not hold, and where."""
+
+    wall: str
+    reason: str
+
+
+def check_fillets(blade: Blade, balls: Mapping[str, Ball], rolled: Rolled) -> None:
+    """Raise DesignError where a fillet does not hold, with the largest radius that does."""
+    found = obstacle(blade, rolled)
+    if found is None:
+        return
+    wall, design = found.wall, blade.design
+    low, high, at_high = 0.0, 1.0, found
+    for _ in range(SEARCHED):
+        share = 0.5 * (low + high)
+        smaller = {name: scaled(ball, share) if name == wall else ball for name, ball in balls.items()}
+        own = obstacle(blade, Rolled.at(rolled.section, smaller, rolled.sites))
+        low, high, at_high = (share, high, at_high) if own is None else (low, share, own)
+    sizes = [
+        np.real(size) / design.metre
+        for size in (rolled.touches[wall].found.on_blade, rolled.touches[wall].found.on_wall)
+    ]
+    raise DesignError(_refusal(wall, sizes, low * NAMED, at_high.reason, design.length_unit))
+
+
+def _refusal(wall: str, sizes: list[Reals], share: float, reason: str, unit: str) -> str:
+    most = float(max(np.max(size) for size in sizes))
+    least = float(min(np.min(size) for size in sizes))
+    asked = (
+        f"{wall}_fillet is {most:.6g} {unit}"
+        if least > (1.0 - 1e-9) * most
+        else f"{wall}_fillet is {least:.6g} to {most:.6g} {unit}"
+    )
+    if share == 0.0:
+        return f"{asked}: {reason}; no smaller one holds either: leave it out"
+    if least > (1.0 - 1e-9) * most:
+        return f"{asked}: {reason}; the largest that holds is {share * most:.4g} {unit}"
+    return f"{asked}: {reason}; the largest that holds is {share:.4f} of that"
+
+
+def scaled(ball: Ball, share: float) -> Ball:
+    """A ball of the same law, smaller."""
+
+    def sizes(sites: Sites) -> tuple[Array, Array]:
+        on_blade, on_wall = ball.sizes(sites)
+        return share * on_blade, share * on_wall
+
+    return replace(ball, sizes=sizes)
+
+
+def obstacle(blade: Blade, rolled: Rolled) -> Obstacle | None:
+    """The first reason why fillets do not hold."""
+    for wall, touch in rolled.touches.items():
+        for check in (_no_contact, _off_path, _at_angle, _folding):
+            reason = check(blade, wall, touch)
+            if reason is not None:
+                return Obstacle(wall, reason)
+    for wall, touch in rolled.touches.items():
+        reason = _too_high(blade, wall, rolled) or _meeting(blade, wall, touch)
+        if reason is not None:
+            return Obstacle(wall, reason)
+    return None
+
+
+def _place(sites: Sites, at: int) -> str:
+    side = "upper" if sites.side[at] == UPPER else "lower"
+    return f"at u = {float(np.real(sites.u[at])):.3f} of the {side} side"
+
+
+def _no_contact(blade: Blade, wall: str, touch: Touch) -> str | None:
+    found = touch.found
+    missing = found.residual >= TOUCHING
+    outside = (np.real(found.v) < 0.0) | (np.real(found.v) > 1.0)
+    if missing.any():
+        return f"{_place(found.sites, int(np.argmax(missing)))} no ball of that radius touches blade and {wall}"
+    if outside.any():
+        name = blade.design.ends[1 if wall == "hub" else 0]
+        return f"{_place(found.sites, int(np.argmax(outside)))} the ball touches the blade past its {name}"
+    return None
+
+
+def _off_path(blade: Blade, wall: str, touch: Touch) -> str | None:
+    low, high = touch.ball.wall.meridian.domain
+    extent = blade.plain.exact.meridional_extent
+    t = np.real(touch.found.t)
+    for past, ahead, name in ((0, low - t, "start"), (1, t - high, "end")):
+        allowed = FARTHEST * (high - low) if extent.path_end(past) is None else 0.0
+        worst = int(np.argmax(ahead))
+        if ahead[worst] > allowed:
+            return f"{_place(touch.found.sites, worst)} its foot lies past the {name} of the {wall}"
+    return None
+
+
+def _at_angle(blade: Blade, wall: str, touch: Touch) -> str | None:
+    del blade
+    angle = np.real(touch.sections.angle)
+    for worst, wrong in ((int(np.argmin(angle)), angle < LEAST_ANGLE), (int(np.argmax(angle)), angle > MOST_ANGLE)):
+        if wrong[worst]:
+            between = 180.0 - np.degrees(angle[worst])
+            return (
+                f"{_place(touch.found.sites, worst)} blade and {wall} meet at {between:.0f} deg, which it cannot fill"
+            )
+    return None
+
+
+def _folding(blade: Blade, wall: str, touch: Touch) -> str | None:
+    """Whether neighbouring cross-sections cross: a ball that is larger than the hollow that it rolls in."""
+    del blade
+    found, sections = touch.found, touch.sections
+    growth = touch.ball.growth(found.sites)
+    on_blade, on_wall, centre = rates(touch.section, touch.ball.wall, found, growth)
+    normals = sections.normals
+    along = unit(cross(*normals))
+    forward = np.where(dot(along, on_blade) < 0.0, -1.0, 1.0)[:, None] * along
+    size = length(on_blade)
+    middle = 0.5 / np.cos(0.5 * sections.angle)[:, None]
+    half = middle * on_blade + middle * on_wall + (1.0 - 2.0 * middle) * centre
+    # all cross-sections run one way around the blade
+    senses = np.where(dot(along, on_blade) < 0.0, -1.0, 1.0) * np.where(found.sites.side == UPPER, 1.0, -1.0)
+    progress = np.min([dot(forward, each) / size for each in (on_wall, half)], axis=0)
+    progress = np.where(senses == np.median(senses), progress, -1.0)
+    worst = int(np.argmin(progress))
+    if progress[worst] < LEAST_PROGRESS:
+        return f"{_place(found.sites, worst)} it folds: the ball is larger than the hollow between blade and {wall}"
+    return None
+
+
+def _too_high(blade: Blade, wall: str, rolled: Rolled) -> str | None:
+    at = {name: np.real(touch.found.v) for name, touch in rolled.touches.items()}
+    left = at.get("shroud", np.ones(len(rolled.sites))) - at.get("hub", np.zeros(len(rolled.sites)))
+    worst = int(np.argmin(left))
+    if left[worst] >= LEAST_LEFT:
+        return None
+    other = "the other fillet" if len(at) > 1 else f"the {blade.design.ends[1 if wall == 'hub' else 0]}"
+    at_most = f"only {left[worst]:.3f} of the span is left to {other}, {LEAST_LEFT:g} are needed"
+    return f"{_place(rolled.sites, worst)} {at_most}"
+
+
+def _meeting(blade: Blade, wall: str, touch: Touch) -> str | None:
+    """Whether its foot crosses itself, or the one of the neighbouring blade."""
+    found, design = touch.found, blade.design
+    sides = [np.flatnonzero(found.sites.side == side) for side in (0, 1)]
+    upper, lower = (side[np.argsort(found.sites.u[side])] for side in sides)
+    order = np.concatenate([upper, lower[::-1]])
+    foot = np.stack([np.real(found.t), np.real(found.across)], axis=-1)[order]
+    if self_crossings(foot[None]) is not None:
+        return f"its foot on the {wall} crosses itself"
+    spacing = float(np.real(np.ravel(design.spacing))[0])
+    if touching(foot[None], spacing) is not None:
+        return f"it meets the fillet of the neighbouring blade on the {wall}"
+    return None
