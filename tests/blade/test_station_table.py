@@ -83,6 +83,21 @@ def test_a_plate_has_its_stagger_chord_and_thickness():
     assert "leading_edge_radius" not in table.names
 
 
+def test_a_plate_of_steel_has_the_mass_and_inertia_of_a_box():
+    plate = replace(PLATE, **UPRIGHT, section=replace(PLATE.section, stagger_angle=0.0), density=7800.0)
+    blade = plate.build()
+    size = np.array([0.04, 0.08 * 0.04, 0.05])
+    mass, report = 7800.0 * np.prod(size), blade.mass_report()
+    inertia = mass / 12.0 * (np.sum(size**2) - size**2)
+    assert blade.mass == pytest.approx(mass, rel=1e-9)
+    assert report.centre == pytest.approx([0.02, 0.0, 0.025], abs=1e-9)
+    assert report.inertia == pytest.approx(np.diag(inertia), rel=1e-8, abs=1e-15)
+    # by Steiner's theorem about the x axis
+    assert report.inertia_about_axis[0, 0] == pytest.approx(inertia[0] + mass * 0.025**2, rel=1e-9)
+    assert blade.report().to_dict()["mass"] == pytest.approx(mass, rel=1e-9)
+    assert "mass" in str(blade.report())
+
+
 def test_an_arc_turns_by_its_camber_angle():
     arc = DoubleCircularArc(
         camber_angle=40.0, thickness=0.06, leading_edge_radius=0.005, trailing_edge_radius=0.005, stagger_angle=-30.0

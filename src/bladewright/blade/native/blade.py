@@ -246,7 +246,7 @@ class Blade(FrozenRecord, Shown, MetalBody):
         >>> blade = bw.read_design("core-rotor.toml").build()  # doctest: +SKIP
         >>> blade.report([0.0, 0.5, 1.0]).solidity  # doctest: +SKIP
         """
-        return station_table(self.plain, stations)
+        return station_table(self, stations)
 
     @cached_property
     def flow_sense(self) -> FlowSense:

@@ -44,6 +44,8 @@ class BladeStations(StationTable):
     """where a clearance cuts a blade from sections off, the uncut one: sections keep their span"""
     built: Blade
     """the same with its clearance, whose areas are measured"""
+    finished: Blade
+    """the same with its cuts and fillets, whose mass is stated"""
 
     @property
     def in_space(self) -> bool:
@@ -222,12 +224,13 @@ class BladeStations(StationTable):
 
     @property
     def scalars(self) -> Mapping[str, tuple[str, Array]]:
-        """Areas of one passage at the edges, normal to the meridional flow, and of the throat."""
+        """Areas of one passage at the edges, normal to the meridional flow, and of the throat; the blade's mass."""
         area = f"{self.length_unit}2"
         found = {"inlet_area": (area, self.inlet_area)}
         if self._has_throat:
             found["throat_area"] = area, self.throat_area
-        return {**found, "outlet_area": (area, self.outlet_area)}
+        found["outlet_area"] = area, self.outlet_area
+        return found if self.finished.design.density is None else {**found, "mass": ("kg", self.finished.mass)}
 
     @property
     def remarks(self) -> tuple[str, ...]:
@@ -348,9 +351,12 @@ class BladeStations(StationTable):
         return np.asarray(np.sum(weight * self._pitch(radius) * (slope[:, 0] * rates[1] - slope[:, 1] * rates[0])))
 
 
-def station_table(blade: Blade, stations: Sequence[float] | None = None) -> BladeStations:
-    """The table of a blade at stations, increasing or not; DesignError where one is outside [0, 1] or no number."""
-    design = blade.design
+def station_table(finished: Blade, stations: Sequence[float] | None = None) -> BladeStations:
+    """The table of a blade at stations, increasing or not; DesignError where one is outside [0, 1] or no number.
+
+    But for the mass it is that of the blade before cuts and fillets.
+    """
+    blade, design = finished.plain, finished.plain.design
     return BladeStations(
         name=design.name,
         length_unit=design.length_unit,
@@ -358,4 +364,5 @@ def station_table(blade: Blade, stations: Sequence[float] | None = None) -> Blad
         annular=blade.exact.mapping.revolved,
         blade=blade.uncut,
         built=blade,
+        finished=finished,
     )
