@@ -150,6 +150,13 @@ class NativeFace:
         """Area [m^2] by quadrature."""
         return float(area(self.face) if isinstance(self.face, Surface) else self.face.area())
 
+    def may_hold(self, points: Array, distance: float) -> bool:
+        """Whether points (n, 3) [mm] are at most a distance outside the box of the control points, per coordinate."""
+        surface = self.face if isinstance(self.face, Surface) else self.face.surface
+        net = MM * surface.control_points
+        low, high = net.min(axis=(0, 1)) - distance, net.max(axis=(0, 1)) + distance
+        return bool(np.all((points >= low) & (points <= high)))
+
     def same_poles(self, region: Region) -> tuple[Surface, Surface] | None:
         """The native surface or a piece of it [m] and the region's [mm], of equal degrees, knots and numbers of poles.
 

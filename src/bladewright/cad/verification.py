@@ -171,19 +171,28 @@ class _FileComparison:
                 continue
             nearest = near
             for name, native in self.native.items():
-                pair = native.same_poles(face.region)
+                pair = native.same_poles(face.region) if native.may_hold(face.outline, near) else None
                 # with the same knots and a displaced control point it is this face, with a defect
                 moved = np.inf if pair is None else np.max(np.abs(pair[1].control_points - MM * pair[0].control_points))
                 if moved < nearest:
                     names[k], nearest = name, float(moved)
             if k not in names:
-                # the boundary identifies a face even where the file keeps the wrong side of it
-                distances = {
-                    name: float(native.projection.closest(face.outline, 0.0)[1].max())
-                    for name, native in self.native.items()
-                }
-                names[k] = min(distances, key=distances.__getitem__)
+                names[k] = self._nearest(face)
         return names
+
+    def _nearest(self, face: FileFace) -> str:
+        """The native face that the boundary of a face is nearest to: it tells even where the wrong side is kept."""
+        least = {
+            name: float(native.projection.least_distance(face.outline).max()) for name, native in self.native.items()
+        }
+        found, nearest = "", np.inf
+        for name in sorted(least, key=least.__getitem__):
+            if least[name] >= nearest:
+                break
+            distance = float(self.native[name].projection.closest(face.outline, 0.0)[1].max())
+            if distance < nearest:
+                found, nearest = name, distance
+        return found
 
     def _check_names(self) -> None:
         missing = [name for name in self.native if name not in self.names.values()]
