@@ -20,6 +20,7 @@ from bladewright.domain.camber_correspondence import (
     fitted_correspondence,
 )
 from bladewright.domain.duct import Duct
+from bladewright.domain.middle_shift import MiddleShift
 from bladewright.numerics.elementary import Array, unit
 from bladewright.nurbs.basis import Reals
 
@@ -44,6 +45,8 @@ class CamberLines:
     """which point of the camber line belongs to a point of the sides"""
     joints: Reals
     """where, along the span, laws of evolution and the channel's edges lose derivatives"""
+    shift: MiddleShift | None = None
+    """what is added to theta, or y, so that the lines are those of a middle surface"""
 
     def points(self, piece: str, t: Reals, sign: int = 0) -> Array:
         """Points (..., m, k, 2) at t (k,) in [0, 1] along `inlet`, `blade` or `outlet`.
@@ -51,6 +54,21 @@ class CamberLines:
         Upstream and downstream of a blunt edge, `sign` +1 or -1 gives the line that continues the end of the upper or
         the lower side instead of that of the camber line.
         """
+        plane = self._camber_points(piece, t, sign)
+        return plane if self.shift is None or sign else plane + self._beside(self.shift, piece, t, plane)
+
+    def _beside(self, shift: MiddleShift, piece: str, t: Reals, plane: Array) -> Array:
+        """How far (..., m, k, 2) the middle lines stand beside camber lines, at points of those."""
+        upwards = np.array([0.0, 1.0])
+        if piece == "blade":
+            return shift(self.stations.v, self.correspondence(t))[..., None] * upwards
+        edge = 0 if piece == "inlet" else 1
+        way = plane[..., 0] - self.edge_points(edge)[..., 0]
+        sign = 1.0 if edge else -1.0
+        less = sign * self.slopes[edge][..., None] * shift.past(edge, sign * way)
+        return (shift(self.stations.v, np.full(len(t), float(edge))) - less)[..., None] * upwards
+
+    def _camber_points(self, piece: str, t: Reals, sign: int) -> Array:
         if piece == "blade":
             return self.in_plane(self.stations.camber(self.correspondence(t)))
         edge = 0 if piece == "inlet" else 1
@@ -67,7 +85,7 @@ class CamberLines:
     def edge_points(self, edge: int, sign: int = 0) -> Array:
         """Ends (..., m, 1, 2) of camber lines at an edge; where it is blunt, of the upper (+1) or lower side (-1)."""
         if sign == 0 or not self.blunt[edge]:
-            return self.points("blade", np.array([float(edge)]))
+            return self._camber_points("blade", np.array([float(edge)]), 0)
         return self.side(np.array([float(edge)]), sign)
 
     @property

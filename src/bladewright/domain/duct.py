@@ -46,6 +46,11 @@ much or as little decides nothing in design/passage_constants.md."""
 OUTLINE_POINTS = 16
 """Gauss points on each polynomial piece of the duct's outline: exact for r^2 dx up to degree 31."""
 
+HALVINGS = 7
+"""Times that the pieces of inlet and outlet may be halved for the volume of the annulus."""
+RING_ROUNDING = 1e-12
+"""Change of that volume, of itself, by a halving, below which it is not halved further."""
+
 
 @dataclass(frozen=True, kw_only=True)
 class Duct:
@@ -267,11 +272,28 @@ def annulus_volume(duct: Duct, span_joints: Reals) -> Array:
     flux = np.sum(along * _flux_density(duct, point[..., 1]) * slope[..., 0], axis=-1)
     total: Array = flux[..., 0] - flux[..., 1]
     pieces = np.unique([0.0, *span_joints, 1.0])
+    passed = _passed(duct, ends, pieces)
+    for _ in range(HALVINGS):
+        # the ends are no polynomials of v where walls straighten: their directions have length one
+        pieces = np.sort(np.concatenate([pieces, 0.5 * (pieces[1:] + pieces[:-1])]))
+        finer = _passed(duct, ends, pieces)
+        change = np.real(finer - passed).ravel()
+        if np.max(np.square(change)) <= (RING_ROUNDING * np.max(np.real(total + passed[..., 1] - passed[..., 0]))) ** 2:
+            break
+        passed = finer
+    total = total + passed[..., 1] - passed[..., 0]
+    return -total
+
+
+def _passed(duct: Duct, ends: Reals, pieces: Reals) -> Array:
+    """The flux (..., 2) through inlet and outlet, piece by piece along the span."""
+    passed: Array = np.zeros(2)
     for low, high in pairwise(pieces):
         lines = duct.lines(np.concatenate([[0.0], low + (high - low) * _NODES, [1.0]])).position(ends)[..., 1:-1, :, :]
-        passed = np.sum(_WEIGHTS[:, None] * _flux_density(duct, lines[..., 1]) * (_DERIVATIVE @ lines[..., 0]), axis=-2)
-        total = total + passed[..., 1] - passed[..., 0]
-    return -total
+        passed = passed + np.sum(
+            _WEIGHTS[:, None] * _flux_density(duct, lines[..., 1]) * (_DERIVATIVE @ lines[..., 0]), axis=-2
+        )
+    return passed
 
 
 def _derivative_matrix(nodes: Reals) -> Reals:

@@ -108,7 +108,10 @@ def _at_edge(camber: CamberLines, edge: int) -> Reals:
 
 
 def _usual(exact: ExactBlade, edge: int, needed: float) -> float:
-    """The flow path's extent, else the usual one, or more if needed; less where the duct must end before that."""
+    """The flow path's extent, else the usual one, or more if needed; less where the duct must end before that.
+
+    Where it must end before even what is needed, half way from the blade's foremost or rearmost point.
+    """
     extent = exact.meridional_extent
     path_end = extent.path_end(edge)
     wanted = max(USUAL, STEP * float(np.ceil(needed / STEP)))
@@ -117,7 +120,10 @@ def _usual(exact: ExactBlade, edge: int, needed: float) -> float:
     duct, end = shortest_duct(exact), extent.place(edge, wanted)
     longer = replace(duct, high=end) if edge else replace(duct, low=end)
     limit = longer.limit("downstream" if edge else "upstream")
-    return wanted if limit is None else max(needed, LIMIT_SHARE * extent.extent(edge, limit.last))
+    if limit is None:
+        return wanted
+    nose, last = extent.extent(edge, extent.blade_range[edge]), extent.extent(edge, limit.last)
+    return 0.5 * (nose + last) if nose < last < needed else max(needed, LIMIT_SHARE * last)
 
 
 def _needed(exact: ExactBlade, ends: CamberLines, half_pitch: Array, cross_lines: CrossLines, edge: int) -> float:

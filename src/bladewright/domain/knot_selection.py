@@ -9,12 +9,22 @@ from dataclasses import replace
 
 import numpy as np
 
+from bladewright.blade.flow_path.meridional_curve import real_first
 from bladewright.blade.native.knots import DEGREE, clamped, refined
-from bladewright.domain.camber_lines import CamberLines
-from bladewright.domain.checks import AMPLE_JACOBIAN, LeastJacobian, check_duct, check_folds, least_jacobian
-from bladewright.domain.extents import departures, end_camber_lines, extents, skew_reaches
+from bladewright.domain.camber_lines import CamberLines, camber_lines
+from bladewright.domain.checks import (
+    AMPLE_JACOBIAN,
+    SIDES,
+    LeastJacobian,
+    check_duct,
+    check_folds,
+    check_pitch,
+    least_jacobian,
+)
+from bladewright.domain.extents import departures, end_camber_lines, extents, shortest_duct, skew_reaches
 from bladewright.domain.kinks import fade_joints, kink_shares, kinks
 from bladewright.domain.knots import PIECES, PassageKnots
+from bladewright.domain.middle_shift import SHARES, MiddleShift, fitted_shift
 from bladewright.domain.passage_spec import PassageSpec
 from bladewright.domain.walls import CROSS_LINES, CROSS_LINES_GATHERED, NO_SKEW, CrossLines, WallHalf
 from bladewright.errors import DesignError
@@ -27,6 +37,11 @@ is below what meshing and CAD resolve. design/passages.md has what every example
 machines are refused, with 1e-6 the annulus is off by 3e-8 instead of 1e-9 (design/passage_constants.md)."""
 TRIMMED_SHARE = 0.2
 """Share of that tolerance that the edges of trimmed walls may use: those walls themselves are exact."""
+SHORTENING, SHORTENINGS = 0.75, 12
+"""Factor by which automatic extents past the blade are shortened where trimmed walls would wind more than a turn, and
+how often at most: to 3 % of what they were."""
+FULL_TURN = np.radians(355.0)
+"""Winding of a trimmed wall [rad] that is allowed: a face of revolution must be less than a turn, with a margin."""
 MAX_POLES = 80
 """Control points of a piece in one direction above which refinement stops, and a passage is refused. With 40 passages
 have 0.8 % more control points elsewhere, with 160 the same (design/passage_constants.md)."""
@@ -79,12 +94,21 @@ def unfolded_walls(
 def skin_knots(spec: PassageSpec, upstream: float | None, downstream: float | None) -> PassageKnots:
     """The knots of a skin whose walls are trimmed faces: cross-lines do not matter, and the duct may be as short.
 
-    `upstream` and `downstream` are extents, where stated. The middle surface keeps WALL_TOLERANCE on both walls.
+    `upstream` and `downstream` are extents, where stated; others are shortened where the walls would wind more than a
+    turn. The middle surface keeps WALL_TOLERANCE on both walls.
     """
     exact = spec.exact
-    start = _without_knots(spec, NO_SKEW, extents(exact, np.zeros(()), NO_SKEW, upstream, downstream))
-    start = replace(start, walls="trimmed", blunt=(False, False))
+    start = replace(
+        _without_knots(spec, NO_SKEW, extents(exact, np.zeros(()), NO_SKEW, upstream, downstream)),
+        walls="trimmed",
+        blunt=(False, False),
+        shift=_middle_shift(spec),
+    )
     check_duct(spec.duct(start), exact.meridional_extent)
+    for _ in range(SHORTENINGS):
+        if not exact.mapping.revolved or max(spec.winding(start).values()) < FULL_TURN:
+            break
+        start = _shortened(spec, start, (upstream is None, downstream is None))
     tolerance = TRIMMED_SHARE * WALL_TOLERANCE * spec.blade.chord
     lines = spec.middle_lines(start)
     known = replace(
@@ -94,6 +118,34 @@ def skin_knots(spec: PassageSpec, upstream: float | None, downstream: float | No
         outlet=knots_along(lines, "outlet", 1.0, tolerance),
     )
     return with_span_knots(spec, known, tolerance)
+
+
+def _shortened(spec: PassageSpec, start: PassageKnots, which: tuple[bool, bool]) -> PassageKnots:
+    """The same with shorter extents past the blade's foremost and rearmost points, up- or downstream or both."""
+    extent = spec.exact.meridional_extent
+    found = []
+    for edge, known in enumerate((start.upstream, start.downstream)):
+        nose = extent.extent(edge, extent.blade_range[edge])
+        found.append(nose + SHORTENING * (known - nose) if which[edge] else known)
+    places = (extent.place(edge, known) for edge, known in enumerate(found))
+    low, high = places
+    return replace(start, upstream=found[0], downstream=found[1], low=low, high=high)
+
+
+def _middle_shift(spec: PassageSpec) -> MiddleShift | None:
+    """How far the middle surface must stand beside the camber surface for the blade to lie within its pitch."""
+    exact, half = spec.exact, spec.real_half_pitch
+    camber = camber_lines(exact.survey, shortest_duct(exact))
+    try:
+        check_pitch(camber, spec.blade, half)
+    except DesignError:
+        upper, lower = (real_first(camber.in_plane(side), 3) for side in camber.stations.plane_points(SIDES))
+        around = np.concatenate([upper, lower[:, ::-1]], axis=1)
+        lines = real_first(camber.points("blade", SHARES), 3)
+        shift = fitted_shift(camber.stations.v, lines, around)
+        check_pitch(replace(camber, shift=shift), spec.blade, half)
+        return shift
+    return None
 
 
 def with_span_knots(spec: PassageSpec, start: PassageKnots, tolerance: float) -> PassageKnots:

@@ -8,6 +8,7 @@ import numpy as np
 
 from bladewright.blade.native.knots import DEGREE, clamped
 from bladewright.domain.camber_correspondence import CamberCorrespondence
+from bladewright.domain.middle_shift import MiddleShift
 from bladewright.domain.walls import CrossLines
 from bladewright.frozen import FrozenRecord
 from bladewright.numerics.elementary import frozen
@@ -78,6 +79,8 @@ class PassageKnots(FrozenRecord):
     """knots of inlet, outlet and periodic boundaries along v"""
     walls: Walls = "patches"
     """whether hub and shroud are untrimmed patches, or trimmed faces of their exact surfaces"""
+    shift: MiddleShift | None = None
+    """how the periodic boundaries lie beside those of the camber surface, where the blade needs it"""
 
     def __post_init__(self) -> None:
         for name in (*PIECES, "across", "span", "tail"):

@@ -5,7 +5,7 @@ from __future__ import annotations
 import warnings
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from functools import cached_property
+from functools import cached_property, partial
 from typing import ClassVar, cast
 
 import numpy as np
@@ -17,7 +17,7 @@ from bladewright.domain.camber_lines import CamberLines
 from bladewright.domain.duct import Duct, annulus_volume
 from bladewright.domain.knots import BLADE_AT, PIECES, PassageKnots
 from bladewright.domain.periodic_sector import PeriodicSector, periodic_sector, sector_of
-from bladewright.domain.skin import Skin
+from bladewright.domain.skin import Skin, skin_moments
 from bladewright.domain.walls import STRIPS, WallHalf, WallStrip
 from bladewright.frozen import FrozenMapping, FrozenRecord
 from bladewright.numerics.elementary import Array, dot
@@ -138,8 +138,9 @@ class Passage(FrozenRecord, Shown):
     @cached_property
     def properties(self) -> MassProperties:
         """Volume [m^3], area [m^2], centroid [m] and inertia [m^5], by quadrature on the native surfaces."""
-        if self.skin is not None and self.skin.within_a_turn:
-            return blade_properties(self.surfaces, self.orientations, revolved=self.duct.revolved)
+        if self.skin is not None:
+            moments = partial(skin_moments, self.skin, self.surfaces, self.orientations)
+            return blade_properties(self.surfaces, self.orientations, revolved=self.duct.revolved, moments=moments)
         return mass_properties([(self.surfaces[name], sign) for name, sign in self.orientations.items()])
 
     @property

@@ -1,16 +1,17 @@
 """What a passage is made for: the blade, half its pitch, and the flow angles at inlet and outlet."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import cast
 
 import numpy as np
 
 from bladewright.blade.exact.exact_blade import ExactBlade
+from bladewright.blade.flow_path.meridional_curve import real_first
 from bladewright.blade.native.blade import Blade
 from bladewright.domain.camber_lines import CamberLines, camber_lines
 from bladewright.domain.duct import Duct
-from bladewright.domain.knots import PassageKnots
+from bladewright.domain.knots import PIECES, PassageKnots
 from bladewright.domain.walls import WallHalf, WallStrip, wall_halves, wall_strips
 from bladewright.numerics.elementary import Array
 from bladewright.nurbs.basis import Reals
@@ -72,13 +73,23 @@ class PassageSpec:
     def camber(self, knots: PassageKnots, v: Reals) -> CamberLines:
         """Camber lines with stations at v (m,)."""
         joints = np.unique(self.exact.breaks_along_v())
-        return camber_lines(self.exact.sections(v), self.duct(knots), self.turned, joints, knots.correspondence)
+        found = camber_lines(self.exact.sections(v), self.duct(knots), self.turned, joints, knots.correspondence)
+        return found if knots.shift is None else replace(found, shift=knots.shift)
 
     def middle_lines(self, knots: PassageKnots) -> Mapping[str, WallHalf]:
         """Halves of the walls between middle and periodic lines, past which the blade is not seen; they never fold."""
         ends = self.camber(knots, np.array([0.0, 1.0]))
         beside = {"hub": False, "shroud": False}
         return wall_halves(ends, beside, self.half_pitch, (1.0, 1.0), knots.cross_lines, knots.reaches)
+
+    def winding(self, knots: PassageKnots) -> dict[str, float]:
+        """The theta [rad], or y in a cascade, over which one pitch of `hub` and `shroud` reaches."""
+        camber, t = self.camber(knots, np.array([0.0, 1.0])), np.linspace(0.0, 1.0, 65)
+        lines = np.concatenate([real_first(camber.points(piece, t), 3)[..., 1] for piece in PIECES], axis=-1)
+        return {
+            name: float(np.ptp(line)) + 2.0 * self.real_half_pitch
+            for name, line in zip(("hub", "shroud"), lines, strict=True)
+        }
 
     def plane(self, knots: PassageKnots, v: Reals) -> PlaneGeometry:
         """Camber lines with stations at v (m,), hub first and shroud last, and the walls' halves and strips."""

@@ -5,6 +5,7 @@ from inlet to outlet; turned by half a pitch either way it bounds the pitch. A w
 is one face, trimmed by the periodic lines and by circles across the pitch, with the blade's end as a hole.
 """
 
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import cast
@@ -15,6 +16,7 @@ from scipy.spatial import cKDTree
 from bladewright.blade.native.blade import Blade
 from bladewright.blade.native.end_faces import EDGES, Near, WallSurface, followed, nearest_on_wall
 from bladewright.blade.native.knots import DEGREE
+from bladewright.blade.native.properties import MOMENTS, side_moments
 from bladewright.domain.camber_lines import CamberLines
 from bladewright.domain.duct import WALL_DEGREE, Duct
 from bladewright.domain.knots import BLADE_AT, PassageKnots
@@ -39,7 +41,7 @@ MERIDIAN_POINTS = 2001
 """Points of a wall's meridian among which that search looks for the nearest, before Newton's method."""
 OVERHANG = 0.02
 """How far walls reach past inlet and outlet, in mean meridional lengths of the blade: trimming needs a margin."""
-ANGULAR_OVERHANG = 0.05
+ANGULAR_OVERHANG = 0.01
 """The same in theta (y in a cascade), in pitches."""
 SAME_PLACE = 1e-9
 """Distance along a wall's meridian, of its length, within which a place is an end of the skin."""
@@ -87,14 +89,6 @@ class Skin(FrozenRecord):
         margin = OVERHANG * self.duct.unit
         longer = replace(self.duct, low=self.duct.low - margin, high=self.duct.high + margin)
         return {name: self._wall(name, longer.wall(name)) for name in ("hub", "shroud")}
-
-    @property
-    def within_a_turn(self) -> bool:
-        """Whether all lies within half a turn of the hub's middle, so that theta is known; always in a cascade."""
-        hub = self.walls["hub"]
-        middle = 0.5 * (hub.low + hub.high)
-        ends = [end for wall in self.walls.values() for end in (wall.low, wall.high)]
-        return not self.duct.revolved or (max(ends) < middle + np.pi and min(ends) > middle - np.pi)
 
     def places(self, wall: str) -> tuple[float, float]:
         """The parameters of a wall's meridian at which the skin begins and ends."""
@@ -240,6 +234,25 @@ def wall_face(
         holes=holes,
         revolution=surface.revolution,
     )
+
+
+def skin_moments(skin: Skin, faces: Mapping[str, Surface | TrimmedSurface], outward: Mapping[str, int]) -> Array:
+    """The moments (10,) of what faces of a skin enclose, as `blade_moments` gives those of a blade.
+
+    Faces are by name; those that begin with `blade` lie around the blade, all others at the middle surface's theta.
+    """
+    hub = skin.walls["hub"]
+    middle = 0.5 * (hub.low + hub.high)
+    lines = [_near(wall, _row(skin.middle, name)) for name, wall in skin.walls.items()]
+    low, high = BLADE_AT
+    around = float(np.mean([theta[(at >= low) & (at <= high)].mean() for at, _, theta in lines]))
+    whole = float(np.mean([theta.mean() for _, _, theta in lines]))
+    total: Array = np.zeros(MOMENTS)
+    for name, face in faces.items():
+        if isinstance(face, Surface):
+            near = around if name.startswith("blade") else whole
+            total = total + outward[name] * side_moments(face, middle, revolved=skin.duct.revolved, near=near)
+    return total
 
 
 def end_outline(blade: Blade, wall: str) -> tuple[Curve, ...]:

@@ -36,15 +36,19 @@ OUTLINE_POINTS = 12
 """Gauss points in a knot span of the outline of an end."""
 
 
-def side_moments(side: Surface, middle: float, *, revolved: bool, count: int = MOMENTS) -> Array:
+def side_moments(
+    side: Surface, middle: float, *, revolved: bool, count: int = MOMENTS, near: float | None = None
+) -> Array:
     """Integrals (count,) of 1, x, y, z, xx, yy, zz, xy, yz, zx that a side gives a volume, along its own normal.
 
     `middle` is the theta, or y in a cascade, at which the field vanishes: in the middle of the blade, so that
-    what passes through the gap between sides and walls stays small. Control points may be complex.
+    what passes through the gap between sides and walls stays small. The side's mean theta lies within half a turn of
+    `near`, by default of the middle. Control points may be complex.
     """
     u, v, weight = _places(side)
     point, normal = side.grid(u, v), np.cross(side.grid(u, v, 1, 0), side.grid(u, v, 0, 1))
-    return np.einsum("uv,uvk->k", weight, _density(middle, count, revolved=revolved)(point, normal))
+    away = 0.0 if near is None else near - middle
+    return np.einsum("uv,uvk->k", weight, _density(middle, count, revolved=revolved, away=away)(point, normal))
 
 
 def area_vector(side: Surface) -> Array:
@@ -84,19 +88,23 @@ def _places(side: Surface) -> tuple[Reals, Reals, Reals]:
     return u, v, along[:, None] * across
 
 
-def _density(middle: float, count: int, *, revolved: bool) -> Density:
-    field = _around_axis if revolved else _along_y
-    return lambda point, normal: field(point, normal, middle, count)
+def _density(middle: float, count: int, *, revolved: bool, away: float = 0.0) -> Density:
+    if revolved:
+        return lambda point, normal: _around_axis(point, normal, middle, count, away)
+    return lambda point, normal: _along_y(point, normal, middle, count)
 
 
-def _around_axis(point: Array, normal: Array, middle: float, count: int) -> Array:
-    """Densities (..., count) of the moments for a field along theta, which vanishes at theta = `middle`."""
+def _around_axis(point: Array, normal: Array, middle: float, count: int, away: float) -> Array:
+    """Densities (..., count) of the moments for a field along theta, which vanishes at theta = `middle`.
+
+    The mean theta is within half a turn of `away` from that.
+    """
     x, y, z = np.moveaxis(point, -1, 0)
     radius = length(point[..., 1:])
     start_y, start_z = radius * np.sin(middle), radius * np.cos(middle)
     theta = angle(y * np.cos(middle) - z * np.sin(middle), z * np.cos(middle) + y * np.sin(middle))
     turns = np.unwrap(np.unwrap(np.real(theta), axis=0), axis=1)
-    turns = turns - 2.0 * np.pi * np.round(np.mean(turns) / (2.0 * np.pi))
+    turns = turns - 2.0 * np.pi * np.round((np.mean(turns) - away) / (2.0 * np.pi))
     theta = theta + (turns - np.real(theta))
     flux = z * normal[..., 1] - y * normal[..., 2]
     if count == 1:
