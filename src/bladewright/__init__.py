@@ -22,7 +22,7 @@ Laws by values   Stations
 Thickness laws   ModifiedNaca, QuarticSpline, Wennerstrom
 Profiles         Naca4, Naca5, Naca6, Naca65, C4, DoubleCircularArc, MultipleCircularArc, FlatPlate, PointsProfile
 What is built    Blade of Surface and TrimmedSurface, Curve; passage gives a Passage, section_passage a SectionPassage,
-                 row a Row, throat a Throat; blade.report() the station table
+                 row a Row, sector a Sector, wheel a Wheel, throat a Throat; blade.report() the station table
 Derivatives      sensitivity, net_jacobian (NetJacobian), pullback, variables (Variables)
 With SU2         surface_points, placed_points (SurfacePoints), read_surface_points, write_surface_points,
                  read_surface_sensitivity

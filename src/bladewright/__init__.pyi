@@ -41,6 +41,10 @@ from .domain.row import Row as Row
 from .domain.row import row as row
 from .domain.section import SectionPassage as SectionPassage
 from .domain.section import section_passage as section_passage
+from .domain.sector import Sector as Sector
+from .domain.sector import sector as sector
+from .domain.wheel import Wheel as Wheel
+from .domain.wheel import wheel as wheel
 from .errors import BladewrightError as BladewrightError
 from .errors import CadError as CadError
 from .errors import DerivativeError as DerivativeError

@@ -5,7 +5,7 @@ from inlet to outlet; turned by half a pitch either way it bounds the pitch. A w
 is one face, trimmed by the periodic lines and by circles across the pitch, with the blade's end as a hole.
 """
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import cast
@@ -214,23 +214,33 @@ def wall_face(
     Where the blade stands on the wall, its end is a hole, unless that is not wanted. Raises DesignError where a place
     lies beyond the skin, or a line cannot be followed on the wall.
     """
-    surface, chord = skin.walls[wall], skin.blade.chord
 
-    def along(sign: int) -> list[Curve]:
+    def along(sign: int) -> tuple[Curve, ...]:
         line = skin.periodic_line(wall, sign, start, end)
         cuts = [at for at in BLADE_AT if line.domain[0] < at < line.domain[1]]
-        return [_on_wall(surface, part, chord) for part in (split(line, cuts) if cuts else (line,))]
+        return split(line, cuts) if cuts else (line,)
 
-    lower, upper = along(-1), [run_back(part) for part in reversed(along(1))]
-    behind = _rim_in_plane(surface, lower[-1].control_points[-1], upper[0].control_points[0])
-    ahead = _rim_in_plane(surface, upper[-1].control_points[-1], lower[0].control_points[0])
+    return trimmed_wall(skin, wall, along(-1), along(1), hole=hole)
+
+
+def trimmed_wall(
+    skin: Skin, wall: str, lower: Sequence[Curve], upper: Sequence[Curve], *, hole: bool = True
+) -> TrimmedSurface:
+    """The same between two chains of curves in space, both along the flow, and the circles across their ends."""
+    surface, chord = skin.walls[wall], skin.blade.chord
+    ahead = [_on_wall(surface, part, chord) for part in lower]
+    back = [run_back(_on_wall(surface, part, chord)) for part in reversed(upper)]
+    across = [
+        _rim_in_plane(surface, one.control_points[-1], other.control_points[0])
+        for one, other in ((ahead[-1], back[0]), (back[-1], ahead[0]))
+    ]
     holes: tuple[tuple[Curve, ...], ...] = ()
     if hole and wall in skin.blade.design.ends:
         outline = [_on_wall(surface, edge, chord) for edge in end_outline(skin.blade, wall)]
         holes = (tuple(run_back(edge) for edge in reversed(outline)),)
     return TrimmedSurface(
         surface=surface.surface,
-        boundary=(*lower, behind, *upper, ahead),
+        boundary=(*ahead, across[0], *back, across[1]),
         holes=holes,
         revolution=surface.revolution,
     )

@@ -13,6 +13,7 @@ from bladewright.numerics.elementary import Array, cross, length
 from bladewright.numerics.quadrature import panels
 from bladewright.nurbs.basis import breaks
 from bladewright.nurbs.measure import area, surface_integral
+from bladewright.nurbs.revolved_faces import revolved_area, revolved_moments
 from bladewright.nurbs.surface import Surface
 from bladewright.nurbs.trimmed import TrimmedSurface
 
@@ -174,3 +175,71 @@ def _area(face: Surface | TrimmedSurface) -> Array:
 
 def _surface(face: Surface | TrimmedSurface) -> Surface:
     return face if isinstance(face, Surface) else face.surface
+
+
+def repeated_properties(repeated: Sequence[Face], turns: Array, others: Sequence[Face], apex: Array) -> MassProperties:
+    """Mass properties of what turned copies of faces enclose together with other faces.
+
+    `turns` (n, 3, 3) are rotations that keep a point `apex` (3,). The given faces alone need not enclose anything: over
+    each the moments of the cone from that point are integrated, which turn with it. Areas are those of the copies, one
+    after another, then of the others. Raises GeometryError as `mass_properties` does.
+    """
+    once, rest = (
+        np.sum([sign * _cone_moments(face, apex) for face, sign in faces], axis=0) if faces else np.zeros(16)
+        for faces in (repeated, others)
+    )
+    parts = [*((once, turn) for turn in turns), (rest, np.eye(3))]
+    vector = np.sum([turn @ part[:3] for part, turn in parts], axis=0)
+    volume = np.sum([part[3] for part, _ in parts])
+    first = np.sum([turn @ part[4:7] for part, turn in parts], axis=0)
+    second = np.sum([turn @ part[7:].reshape(3, 3) @ turn.T for part, turn in parts], axis=0)
+    if not volume.real > 0.0:
+        raise GeometryError(f"the faces enclose a volume of {volume.real:g}: turn their orientations round")
+    offset = first / volume
+    moments = second - volume * np.outer(offset, offset)
+    return MassProperties(
+        volume=np.asarray(volume),
+        centroid=apex + offset,
+        inertia=np.trace(moments) * np.eye(3) - moments,
+        measured=partial(
+            _repeated_areas, tuple(f for f, _ in repeated), len(turns), tuple(f for f, _ in others), vector
+        ),
+    )
+
+
+def _cone_moments(face: Surface | TrimmedSurface, apex: Array) -> Array:
+    """Area vector (3) of a face along its own normal, and volume, first (3) and second moments (9) of its cone.
+
+    About the apex, from which x is measured: the fluxes of x / 3, x_i x / 4 and x_i x_j x / 5.
+    """
+
+    def density(points: Array, along_u: Array, along_v: Array) -> Array:
+        normal, x = cross(along_u, along_v), points - apex
+        flux = np.sum(x * normal, axis=-1, keepdims=True)
+        second = (x[..., :, None] * x[..., None, :]).reshape(*x.shape[:-1], 9)
+        return np.concatenate([normal, flux / 3.0, x * flux / 4.0, second * flux / 5.0], axis=-1)
+
+    if isinstance(face, Surface):
+        exact = (5 * max(face.degree_u, face.degree_v) + 1) // 2
+        return surface_integral(face, density, exact if face.weights is None else None)
+    if face.revolution is not None and not np.any(apex[1:]):
+        return revolved_moments(face, face.revolution, apex[0])
+    surface = face.surface
+    return face.integral(
+        lambda u, v: density(surface(u, v), surface.derivative(u, v, 1, 0), surface.derivative(u, v, 0, 1))
+    )
+
+
+def _repeated_areas(
+    repeated: Sequence[Surface | TrimmedSurface], count: int, others: Sequence[Surface | TrimmedSurface], vector: Array
+) -> tuple[Array, Array]:
+    once, rest = (
+        [
+            revolved_area(face, face.revolution)
+            if isinstance(face, TrimmedSurface) and face.revolution is not None
+            else _area(face)
+            for face in faces
+        ]
+        for faces in (repeated, others)
+    )
+    return np.concatenate([np.tile(once, count), rest]), vector

@@ -1,0 +1,178 @@
+"""One pitch of a wall with what carries it: the wall's face between the outline's ends, and the outline."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from bladewright.blade.native.blade import Blade
+from bladewright.blade.native.knots import DEGREE
+from bladewright.domain.disc import KINDS, Carrier, Kind, carrier, shortfalls
+from bladewright.domain.knot_selection import skin_knots
+from bladewright.domain.knots import BLADE_AT, PassageKnots
+from bladewright.domain.passage_spec import PassageSpec
+from bladewright.domain.skin import Skin, end_outline, trimmed_wall
+from bladewright.domain.wall_line import WallLine
+from bladewright.errors import DesignError
+from bladewright.frozen import FrozenRecord
+from bladewright.numerics.elementary import Array, frozen, length
+from bladewright.nurbs.basis import Reals, breaks, greville, multiplicities
+from bladewright.nurbs.curve import Curve
+from bladewright.nurbs.fit import interpolated
+from bladewright.nurbs.revolution import LEFT_HANDED
+from bladewright.nurbs.transform import rotated
+from bladewright.nurbs.trimmed import TrimmedSurface
+
+FURTHER = 0.1
+"""By how much more than needed the skin is made longer, in mean meridional lengths of the blade."""
+LENGTHENINGS = 6
+"""How often it is: each time by what its wall is short of the outline's end."""
+LINE_TOLERANCE = 1e-10
+"""Largest error of the wall's line, of its length: 1e-8 mm on 100 mm."""
+HALVINGS = 8
+"""How often knot spans of the line are halved at most."""
+OUTLINE_POINTS = 201
+"""Points on each curve of the blade's end by which it is judged whether it lies between the outline's ends."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class CarriedPitch(FrozenRecord):
+    """One pitch of the wall that carries the blades, from one end of the outline to the other."""
+
+    skin: Skin
+    carrier: Carrier
+    knots: Reals
+    """of the wall's line over [0, 1]"""
+
+    @property
+    def kind(self) -> Kind:
+        """Whether it is a disc or a shroud ring."""
+        return self.carrier.kind
+
+    @property
+    def half_pitch(self) -> float:
+        """[rad]."""
+        return float(np.real(self.skin.half_pitch))
+
+    @cached_property
+    def line(self) -> Curve:
+        """The middle line of the pitch in space over [0, 1], in proportion to meridional length."""
+        return _line(self.carrier, self.knots)
+
+    def periodic(self, sign: int) -> Curve:
+        """The upper (+1) or lower (-1) line of the pitch."""
+        return rotated(self.line, sign * self.half_pitch, axis=LEFT_HANDED)
+
+    @cached_property
+    def face(self) -> TrimmedSurface:
+        """The wall between them, with the blade's end as a hole."""
+        return trimmed_wall(self.skin, self.kind.wall, [self.periodic(-1)], [self.periodic(1)])
+
+
+def carried_pitches(blade: Blade, known: PassageKnots | None, lines: Mapping[str, Reals] | None) -> list[CarriedPitch]:
+    """The pitch of each wall that a disc or a ring lies on, at given knots or at their own.
+
+    Raises DesignError where there is none, or it does not carry the whole blade.
+    """
+    design = blade.design
+    wanted = [kind for kind in KINDS if getattr(design, kind.field) is not None]
+    if not wanted:
+        raise DesignError(f"{design.name}: neither disc nor shroud_ring is given: a sector or wheel needs one of them")
+    spec = PassageSpec(
+        blade=blade,
+        exact=blade.exact.without_clearance(),
+        half_pitch=np.asarray(0.5 * design.spacing),
+        turned=(None, None),
+    )
+    skin = _skin(spec, known) if known is not None else _long_enough(spec, wanted)
+    found = []
+    for kind in wanted:
+        own = carrier(kind, getattr(design, kind.field), _wall_line(skin, kind), design.metre)
+        _check_carried(skin, own)
+        found.append(
+            CarriedPitch(skin=skin, carrier=own, knots=_line_knots(own) if lines is None else lines[kind.field])
+        )
+    return found
+
+
+def _skin(spec: PassageSpec, knots: PassageKnots) -> Skin:
+    camber = spec.camber(knots, knots.sites("span"))
+    return Skin(blade=spec.blade, camber=camber, knots=knots, half_pitch=spec.half_pitch)
+
+
+def _long_enough(spec: PassageSpec, wanted: list[Kind]) -> Skin:
+    """A skin that reaches past the outlines' ends."""
+    design = spec.blade.design
+    knots = skin_knots(spec, None, None)
+    for _ in range(LENGTHENINGS):
+        skin = _skin(spec, knots)
+        short = np.max(
+            [shortfalls(getattr(design, kind.field), _wall_line(skin, kind), design.metre) for kind in wanted], axis=0
+        )
+        if not short.any():
+            break
+        more = np.where(short > 0.0, short / knots.length + FURTHER, 0.0)
+        knots = skin_knots(spec, knots.upstream + more[0], knots.downstream + more[1])
+    return skin
+
+
+def _wall_line(skin: Skin, kind: Kind) -> WallLine:
+    wall = skin.walls[kind.wall]
+    line = skin.periodic_line(kind.wall, 0)
+    return WallLine(curve=line, blade=BLADE_AT, meridian=wall.meridian, joints=wall.inner)
+
+
+def _line(own: Carrier, knots: Reals) -> Curve:
+    sites = greville(knots, DEGREE)
+    return interpolated(_on_line(own, sites), sites, degree=DEGREE, knots=knots)
+
+
+def _on_line(own: Carrier, share: Reals) -> Array:
+    """Points (k, 3) of the wall's line at shares of the meridional length between the outline's ends."""
+    line = own.line
+    first, last = line.reached(np.array(own.ends))
+    inner = line.parameter(first + (last - first) * share[1:-1])
+    return line.curve(np.concatenate([[own.ends[0]], inner, [own.ends[1]]]))
+
+
+def _line_knots(own: Carrier) -> Reals:
+    """Knots over [0, 1] with which the line is accurate; one continuous derivative is kept where the blade begins."""
+    start, end = (float(np.real(each)) for each in own.ends)
+    inner, counts = multiplicities(own.line.curve.knots)
+    within = (inner > start) & (inner < end)
+    first, *reached, last = np.real(own.line.reached(np.array([start, *inner[within], end])))
+    shares = (np.array(reached) - first) / (last - first)
+    inner = np.repeat(shares, np.minimum(counts[within], DEGREE - 1))
+    knots = np.concatenate([np.zeros(DEGREE + 1), inner, np.ones(DEGREE + 1)])
+    for _ in range(HALVINGS):
+        spans = breaks(knots)
+        places = (spans[:-1, None] + np.diff(spans)[:, None] * np.array([0.2, 0.5, 0.8])).ravel()
+        # with the ends, which are known without a search
+        miss = np.real(_line(own, knots)(places) - _on_line(own, np.array([0.0, *places, 1.0]))[1:-1])
+        poor = length(miss).reshape(-1, 3).max(axis=1) > LINE_TOLERANCE * (last - first)
+        if not poor.any():
+            break
+        knots = np.sort(np.concatenate([knots, (0.5 * (spans[1:] + spans[:-1]))[poor]]))
+    return frozen(knots)
+
+
+def _check_carried(skin: Skin, own: Carrier) -> None:
+    """Refuse an outline between whose ends the blade's end, or its fillet's foot, does not lie."""
+    design, kind = skin.blade.design, own.kind
+    curves = end_outline(skin.blade, kind.wall)
+    points = np.concatenate([np.real(curve(np.linspace(*curve.domain, OUTLINE_POINTS))) for curve in curves])
+    places = np.stack([points[:, 0], length(points[:, 1:])], axis=-1)
+    line = own.line
+    ends = np.real(line.at(np.array([np.real(end) for end in own.ends])))
+    along = np.real(line.at(np.array([np.real(end) for end in own.ends]), 1))
+    for which, (end, slope, way) in enumerate(zip(ends, along, (1.0, -1.0), strict=True)):
+        ahead = way * (places - end) @ slope
+        nearest = int(np.argmin(ahead))
+        if ahead[nearest] <= 0.0:
+            (x, r), (at_x, at_r) = places[nearest] / design.metre, end / design.metre
+            edge, where = ("leading", "upstream") if which == 0 else ("trailing", "downstream")
+            raise DesignError(
+                f"{kind.field}: its outline ends at ({at_x:.6g}, {at_r:.6g}) on the {kind.wall}, and the blade or its "
+                f"fillet reaches to ({x:.6g}, {r:.6g}) at the {edge} edge: let the outline end further {where}"
+            )
