@@ -23,6 +23,7 @@ from bladewright.cad.solids import occ_solid
 from bladewright.cad.step import write_step
 from bladewright.domain.row import turn_matrix
 from bladewright.errors import CadError
+from bladewright.views.round_trip import round_trip_tables
 from machines.coarse import CASCADE, ROTOR
 
 SAMPLES = 100
@@ -56,6 +57,7 @@ def test_a_row_is_one_proven_part_and_its_placements(filed, row):
     assert data["limits"]["placement_mm"] == 1e-6
     assert data["placements"][4]["name"] == "blade_05"
     assert "placements: 5, at most" in str(trip)
+    assert "5, at most" in round_trip_tables(data)
 
 
 def test_a_step_file_of_a_row_holds_the_blade_once_and_names_its_copies(filed, row, tmp_path):

@@ -63,6 +63,14 @@ def test_show_tells_the_mass_of_a_blade_and_of_a_row(run, vane):
     assert row["mass"]["mass_kg"] == pytest.approx(7800.0 * row["properties"]["volume"])
 
 
+def test_trimmed_walls_are_built_and_told(run, vane, tmp_path):
+    shown = run("show", vane, "--body", "passage", "--walls", "trimmed")
+    assert shown.status == 0, shown.err
+    assert "trimmed faces of their exact surfaces" in shown.out
+    made = run("build", vane, "-o", tmp_path, "--as", "step", "--body", "passage", "--walls", "trimmed", "--json").json
+    assert [face["name"] for face in made["roundtrips"][0]["faces"]][:2] == ["hub", "shroud"]
+
+
 def test_a_table_that_the_file_lacks_is_made_by_set_and_recorded(tmp_path):
     from bladewright import design_origin
     from bladewright.files.changing import changed_design

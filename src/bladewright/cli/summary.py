@@ -193,6 +193,8 @@ def passage_rows(data: Mapping[str, Any]) -> Rows:
     length = f"{data['meridional_length_m'] / _metres(unit):.6g} {unit}"
     rows = [("whole annulus", f"{data['ring_m3'] / _metres(unit) ** 3:.6g} {unit}3")]
     rows += [(name, f"{data[name]:.4g} meridional lengths of {length}") for name in ("upstream", "downstream")]
+    if not data["least_jacobian"]:
+        return [*rows, ("hub and shroud", "trimmed faces of their exact surfaces, which have no patches to fold")]
     name, least = min(data["least_jacobian"].items(), key=lambda each: each[1]["share"])
     text = f"{least['share']:.2g} of its median, on {name} at u = {least['u']:.4g}, v = {least['v']:.4g}"
     return [*rows, ("least Jacobian", text)]

@@ -54,12 +54,19 @@ def round_trip_rows(report: Report) -> Rows:
         ("verdict", "passed" if report["passed"] else "FAILED"),
         *(("", failure) for failure in report["failures"]),
         ("holds", f"{report['solids']} solid, {report['shells']} shell, {report['free_edges']} free edges, {valid}"),
+        *placement_rows(report),
         ("volume", f"{volume['cad']:.8g} mm³, {volume['relative_error']:.1e} off"),
         *others,
         ("surface", f"{area['cad']:.8g} mm², {area['relative_error']:.1e} off"),
         ("centroid", f"{report['centroid_mm']['distance']:.1e} mm off"),
         ("edges", f"{edges['count']}, gap {edges['max_gap_mm']:.1e} mm, tolerance {edges['max_tolerance_mm']:.1e} mm"),
     ]
+
+
+def placement_rows(report: Report) -> Rows:
+    """How far the blades of a row are from their places."""
+    away = [each["displacement_mm"] for each in report.get("placements", ())]
+    return [("placements", f"{len(away)}, at most {max(away):.1e} mm off")] if away else []
 
 
 def round_trip_tables(report: Report) -> str:
