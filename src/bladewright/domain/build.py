@@ -83,7 +83,11 @@ def passage(
                     f"{name} is {given!r}, but the knots given hold {getattr(knots, name)!r}: leave one of them out"
                 )
         return _passage(spec, knots, split) if knots.walls == "patches" else _trimmed(spec, knots, split)
-    if walls != "trimmed":
+    if blade.before is not None and walls == "patches":
+        raise DesignError(
+            "walls is 'patches', and the blade has a cut or fillets, around which walls are trimmed: take 'auto'"
+        )
+    if walls != "trimmed" and blade.before is None:
         try:
             return _patched(spec, upstream, downstream, split)
         except DesignError:

@@ -12,7 +12,7 @@ from bladewright.domain.disc import KINDS, Carrier, Kind, carrier, shortfalls
 from bladewright.domain.knot_selection import skin_knots
 from bladewright.domain.knots import BLADE_AT, PassageKnots
 from bladewright.domain.passage_spec import PassageSpec
-from bladewright.domain.skin import Skin, end_outline, trimmed_wall
+from bladewright.domain.skin import Skin, trimmed_wall
 from bladewright.domain.wall_line import WallLine
 from bladewright.errors import DesignError
 from bladewright.frozen import FrozenRecord
@@ -160,7 +160,7 @@ def _line_knots(own: Carrier) -> Reals:
 def _check_carried(skin: Skin, own: Carrier) -> None:
     """Refuse an outline between whose ends the blade's end, or its fillet's foot, does not lie."""
     design, kind = skin.blade.design, own.kind
-    curves = end_outline(skin.blade, kind.wall)
+    curves = skin.blade.end_outline(kind.wall)
     points = np.concatenate([np.real(curve(np.linspace(*curve.domain, OUTLINE_POINTS))) for curve in curves])
     places = np.stack([points[:, 0], length(points[:, 1:])], axis=-1)
     line = own.line

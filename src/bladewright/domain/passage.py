@@ -22,6 +22,7 @@ from bladewright.domain.walls import STRIPS, WallHalf, WallStrip
 from bladewright.frozen import FrozenMapping, FrozenRecord
 from bladewright.numerics.elementary import Array, dot
 from bladewright.nurbs.basis import Reals, breaks
+from bladewright.nurbs.curve import Curve
 from bladewright.nurbs.domain import reparametrised, split
 from bladewright.nurbs.mass_properties import MassProperties, mass_properties
 from bladewright.nurbs.surface import Surface
@@ -39,19 +40,15 @@ OUTWARD = FrozenMapping(
         "outlet": 1,
         "periodic_upper": -1,
         "periodic_lower": 1,
-        "blade_upper": 1,
-        "blade_lower": -1,
         "hub_stagnation": -1,
         "hub_wake": -1,
         "shroud_stagnation": 1,
         "shroud_wake": 1,
         "hub_gap": -1,
         "shroud_gap": 1,
-        "blade_leading_edge": -1,
-        "blade_trailing_edge": 1,
     }
 )
-"""+1 for the faces whose dS/du x dS/dv points out of the passage, -1 for the others."""
+"""+1 for the faces whose dS/du x dS/dv points out of the passage, -1 for the others; the blade's are its own."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -120,6 +117,11 @@ class Passage(FrozenRecord, Shown):
         return self.blade.organisation
 
     @property
+    def edges(self) -> tuple[Curve, ...]:
+        """Space curves [m] along which trimmed faces meet: those of the blade, and of trimmed walls around its cuts."""
+        return self.blade.edges
+
+    @property
     def duct(self) -> Duct:
         """The channel with its continuations."""
         return self.camber.duct
@@ -127,9 +129,10 @@ class Passage(FrozenRecord, Shown):
     @property
     def orientations(self) -> Mapping[str, int]:
         """+1 for the faces whose dS/du x dS/dv points out of the passage, -1 for the others."""
-        senses = dict(OUTWARD)
+        around = self.blade.orientations
+        senses = {**OUTWARD, **{f"blade_{name}": -sense for name, sense in around.items()}}
         if "tip" in self.whole:
-            senses["tip"] = -self.blade.orientations["tip"]
+            senses["tip"] = -around["tip"]
         whole = sorted(self.whole, key=len, reverse=True)
         return FrozenMapping(
             {name: senses[next(face for face in whole if name.startswith(face))] for name in self.surfaces}

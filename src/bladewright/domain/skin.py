@@ -14,14 +14,15 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from bladewright.blade.native.blade import Blade
-from bladewright.blade.native.end_faces import EDGES, Near, WallSurface, followed, nearest_on_wall
+from bladewright.blade.native.cut_faces import DRAWN
+from bladewright.blade.native.end_faces import Near, WallSurface, followed, nearest_on_wall
 from bladewright.blade.native.knots import DEGREE
 from bladewright.blade.native.properties import MOMENTS, side_moments
 from bladewright.domain.camber_lines import CamberLines
 from bladewright.domain.duct import WALL_DEGREE, Duct
 from bladewright.domain.knots import BLADE_AT, PassageKnots
 from bladewright.domain.nets import middle_net, shifted
-from bladewright.errors import DesignError
+from bladewright.errors import DesignError, GeometryError
 from bladewright.frozen import FrozenRecord
 from bladewright.numerics.elementary import Array, angle, concatenated, length
 from bladewright.numerics.roots import level_crossings
@@ -118,7 +119,7 @@ class Skin(FrozenRecord):
         """Largest distance [m] of the edges of trimmed walls from the exact walls."""
         found = 0.0
         for name, wall in self.walls.items():
-            outline = end_outline(self.blade, name) if name in self.blade.design.ends else ()
+            outline = self.blade.end_outline(name) if name in self.blade.design.ends else ()
             for curve in (self._middle_line(name), *outline):
                 places, u, _ = _near(wall, curve)
                 points = np.real(curve(places))
@@ -234,16 +235,32 @@ def trimmed_wall(
         _rim_in_plane(surface, one.control_points[-1], other.control_points[0])
         for one, other in ((ahead[-1], back[0]), (back[-1], ahead[0]))
     ]
-    holes: tuple[tuple[Curve, ...], ...] = ()
-    if hole and wall in skin.blade.design.ends:
-        outline = [_on_wall(surface, edge, chord) for edge in end_outline(skin.blade, wall)]
-        holes = (tuple(run_back(edge) for edge in reversed(outline)),)
-    return TrimmedSurface(
-        surface=surface.surface,
-        boundary=(*ahead, across[0], *back, across[1]),
-        holes=holes,
-        revolution=surface.revolution,
-    )
+    holes = (_hole(surface, skin.blade.end_outline(wall), chord),) if hole and wall in skin.blade.design.ends else ()
+    try:
+        return TrimmedSurface(
+            surface=surface.surface,
+            boundary=(*ahead, across[0], *back, across[1]),
+            holes=holes,
+            revolution=surface.revolution,
+        )
+    except GeometryError as error:
+        raise DesignError(
+            f"upstream, downstream or the pitch: the end of the blade, or the foot of its fillet, reaches out of its "
+            f"passage on the {wall}: let the passage reach further, take fewer blades, or a smaller fillet"
+        ) from error
+
+
+def _hole(wall: WallSurface, outline: Sequence[Curve], chord: float) -> tuple[Curve, ...]:
+    """The outline of a blade's end as a hole: run backwards, arcs about the axis as straight lines."""
+    drawn = [_on_wall(wall, edge, chord) if edge.degree >= DRAWN else None for edge in outline]
+    chain = []
+    for index, curve in enumerate(drawn):
+        before, after = drawn[index - 1], drawn[(index + 1) % len(drawn)]
+        if curve is not None:
+            chain.append(curve)
+        elif before is not None and after is not None:
+            chain.append(_rim_in_plane(wall, before.control_points[-1], after.control_points[0]))
+    return tuple(run_back(curve) for curve in reversed(chain))
 
 
 def skin_moments(skin: Skin, faces: Mapping[str, Surface | TrimmedSurface], outward: Mapping[str, int]) -> Array:
@@ -263,19 +280,6 @@ def skin_moments(skin: Skin, faces: Mapping[str, Surface | TrimmedSurface], outw
             near = around if name.startswith("blade") else whole
             total = total + outward[name] * side_moments(face, middle, revolved=skin.duct.revolved, near=near)
     return total
-
-
-def end_outline(blade: Blade, wall: str) -> tuple[Curve, ...]:
-    """The closed chain of space curves around a blade's end, in the order and sense of the end face's boundary."""
-
-    def edge(name: str) -> Curve:
-        return _row(cast(Surface, blade.surfaces[name]), wall)
-
-    chain = [edge("lower")]
-    chain += [run_back(edge("trailing_edge"))] if EDGES[1] in blade.surfaces else []
-    chain += [run_back(edge("upper"))]
-    chain += [edge("leading_edge")] if EDGES[0] in blade.surfaces else []
-    return tuple(chain)
 
 
 def _row(surface: Surface, wall: str) -> Curve:
