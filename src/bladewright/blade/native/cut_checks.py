@@ -100,6 +100,12 @@ def met(lines: Lines, meridian: Curve, near: Crossing, key: str) -> Crossing:
     return found
 
 
+def about(at: Reals, found: Found) -> Crossing:
+    """About where lines at places (k,) meet a cut, from those that were searched."""
+    places, near = found
+    return Crossing(np.interp(at, places, np.real(near.place)), np.interp(at, places, np.real(near.t)))
+
+
 def _lines(blade: Blade, face: Surface, name: str, at: Reals) -> Lines:
     return Lines(face=face, along="u" if name in EDGES else "v", at=at, revolved=blade.plain.exact.mapping.revolved)
 
@@ -119,8 +125,9 @@ def _why_not(lines: Lines, counts: Reals, design: "RowDesign", name: str) -> str
     if np.max(counts) > 1:
         worst = int(np.argmax(counts))
         return (
-            f"it crosses the blade {counts[worst]:.0f} times along {other} = {lines.at[worst]:.3g}: a cut must cross "
-            "each line of the blade once; give a curve that does"
+            f"it crosses one side of the blade {counts[worst]:.0f} times along {other} = {lines.at[worst]:.3g}: a cut "
+            f"must cross each side once from {'end to end' if other == 'v' else 'edge to edge'}; move it further into "
+            "the blade, or give a curve that does"
         )
     missed = lines.at[counts == 0]
     where = "" if len(missed) == len(lines.at) else f" from {other} = {missed[0]:.3g} to {missed[-1]:.3g}"
@@ -135,7 +142,7 @@ def _limits(lines: Lines, design: "RowDesign", name: str) -> str:
     unit, key = design.length_unit, fields(getattr(design.cut, name))[0].name
     if key in ("x", "radius"):
         values = points[..., 0 if key == "x" else 1]
-        low, high = float(np.max(np.min(values, axis=1))), float(np.min(np.max(values, axis=1)))
+        low, high = np.round([np.max(np.min(values, axis=1)), np.min(np.max(values, axis=1))], 9)
         if low < high:
             return f"cut.{name}.{key} must lie between {low:.5g} and {high:.5g} {unit}"
         return f"no {key} does, so give a curve in (x, r)"

@@ -17,9 +17,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from bladewright.blade.native.blade import Blade
-from bladewright.blade.native.cut_checks import check_apart, check_edge_cut, meridian_of_cut, met
+from bladewright.blade.native.cut_checks import Found, about, check_apart, check_edge_cut, meridian_of_cut, met
 from bladewright.blade.native.cut_faces import inner_knots, wall_normals
-from bladewright.blade.native.cut_lines import Crossing, Lines
+from bladewright.blade.native.cut_lines import Lines
 from bladewright.blade.native.end_faces import EDGES
 from bladewright.blade.native.knots import DEGREE, Knots
 from bladewright.blade.native.recut import ON_CUT, native_faces, recut, survey_places
@@ -100,7 +100,7 @@ class EdgeCut:
     blade: Blade
     meridians: Mapping[str, Curve]
     """of the cuts, by edge, from hub to tip"""
-    near: Mapping[str, tuple[tuple[Reals, Crossing], tuple[Reals, Crossing]]]
+    near: Mapping[str, tuple[Found, Found]]
     """places v and about where both sides meet a cut there"""
     stretch: Stretch
 
@@ -143,10 +143,13 @@ class EdgeCut:
         )
 
     def _met(self, edge: str, side: int, v: Reals) -> Array:
-        blade, (at, near) = self.blade, self.near[edge][side]
-        lines = Lines(face=blade.sides[side], along="u", at=v, revolved=blade.plain.exact.mapping.revolved)
-        start = Crossing(np.interp(v, at, near.place), np.interp(v, at, near.t))
-        return met(lines, self.meridians[edge], start, f"cut.{edge}").place
+        found = met(self._lines(v)[side], self.meridians[edge], about(v, self.near[edge][side]), f"cut.{edge}")
+        return found.place
+
+    def _lines(self, v: Reals) -> tuple[Lines, Lines]:
+        revolved = self.blade.plain.exact.mapping.revolved
+        upper, lower = (Lines(face=side, along="u", at=v, revolved=revolved) for side in self.blade.sides)
+        return upper, lower
 
 
 def cut_edges(blade: Blade, design: "RowDesign", knots: Knots | None, *, fine: bool) -> Blade:

@@ -14,7 +14,7 @@ import numpy as np
 
 from bladewright.blade.exact.clearance import clearance_of
 from bladewright.blade.native.blade import Blade
-from bladewright.blade.native.cut_checks import check_apart, check_end_cut, meridian_of_cut, met
+from bladewright.blade.native.cut_checks import Found, about, check_apart, check_end_cut, meridian_of_cut, met
 from bladewright.blade.native.cut_clearance import cleared_meridian
 from bladewright.blade.native.cut_faces import inner_knots, wall_normals
 from bladewright.blade.native.cut_lines import Crossing, Lines, crossing_rates
@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 
 ENDS = ("hub", "tip")
 """Keys of the cuts of ends."""
-NearEnds = Mapping[str, Mapping[str, tuple[Reals, Crossing]]]
+NearEnds = Mapping[str, Mapping[str, Found]]
 """By end and face: places u, and about where the face's lines meet the cut there."""
 
 
@@ -162,12 +162,13 @@ class EndCut:
         return found[0], found[1]
 
     def _end(self, name: str, end: str, s: Reals) -> tuple[Crossing, Lines]:
-        lines = Lines(face=self.face(name), along="v", at=s, revolved=self.revolved)
+        lines = self._lines(name, s)
         if end not in self.meridians:
             return Crossing(np.full(len(s), float(ENDS.index(end))), np.zeros(len(s))), lines
-        at, near = self.near[end][name]
-        start = Crossing(np.interp(s, at, near.place), np.interp(s, at, near.t))
-        return met(lines, self.meridians[end], start, f"cut.{end}"), lines
+        return met(lines, self.meridians[end], about(s, self.near[end][name]), f"cut.{end}"), lines
+
+    def _lines(self, name: str, s: Reals) -> Lines:
+        return Lines(face=self.face(name), along="v", at=s, revolved=self.revolved)
 
 
 def cut_ends(blade: Blade, design: "RowDesign", knots: Knots | None, *, fine: bool) -> Blade:
@@ -182,7 +183,10 @@ def cut_ends(blade: Blade, design: "RowDesign", knots: Knots | None, *, fine: bo
         clearance = clearance_of(design) if face == "tip" else None
         if clearance is not None:
             meridian = cleared_meridian(blade, design, end, meridian, clearance, tip_knots)
-            walls[face], tip_knots = (meridian, np.empty(0)), meridian.knots
+            inner = inner_knots(meridian)
+            # at a single knot the fitted meridian is smooth up to what it misses
+            walls[face] = meridian, inner[np.sum(inner[:, None] == inner, axis=0) > 1]
+            tip_knots = meridian.knots
         meridians[end] = meridian
     near = {end: check_end_cut(blade, design, end, meridian) for end, meridian in meridians.items()}
     ends = [

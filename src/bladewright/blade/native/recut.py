@@ -50,8 +50,11 @@ def recut(
     allowed, off_walls = SHARE * design.tolerance * chord, wall_tolerance(chord, fine=fine)
     own = knots
     if own is None:
-        on_edges = None if edges is None else edges * chord
-        u, v, _ = refined_knots_of(shape, allowed, chord, walls=off_walls, edges=on_edges)
+        on_edges = None if edges is None else min(edges * chord, off_walls)
+        shaped = [edge not in walls for edge in EDGES]
+        u, v, _ = refined_knots_of(
+            shape, allowed, chord, walls=off_walls, edges=on_edges, shaped=(shaped[0], shaped[1])
+        )
         own = Knots(u=u, v=v, tip=tip, stretch=stretch, before=blade.knots)
     sections = shape.sections(own.sites_v)
     upper, lower = (side_surface(net, own, DEGREE) for net in native_sides(sections, own))

@@ -99,11 +99,19 @@ def refined_knots(exact: ExactBlade, chord: float, *, slack: float = 1.0, fine: 
 
 
 def refined_knots_of(
-    exact: Interpolated, tolerance: float, chord: float, *, walls: float, edges: float | None = None, slack: float = 1.0
+    exact: Interpolated,
+    tolerance: float,
+    chord: float,
+    *,
+    walls: float,
+    edges: float | None = None,
+    shaped: tuple[bool, bool] = (True, True),
+    slack: float = 1.0,
 ) -> tuple[Reals, Reals, Reals]:
     """Knots along u and v with which native sides hold a shape, and the places along v that they interpolate besides.
 
     Within the tolerance, their ends within `walls` of theirs, and their edges within `edges` where that is given [m].
+    Edges that are `shaped` keep their angles and radii; those that are cut have none.
     """
     spans = exact.given_spans
     start_u, start_v = clamped(exact.breaks_along_u()), exact.breaks_along_v()
@@ -115,7 +123,7 @@ def refined_knots_of(
     own = [v for v in spans if 0.0 < v < 1.0 and np.min(np.square(start_v - v), initial=1.0) > SAME_SPAN**2]
     along_v = refined(
         clamped(np.concatenate([start_v, own])),
-        _error_along_v(exact, (tolerance, tolerance if edges is None else edges), along_u, spans, slack),
+        _error_along_v(exact, (tolerance, tolerance if edges is None else edges), along_u, spans, slack, shaped),
         MOST_POLES[1],
     )
     return along_u, along_v, spans
@@ -162,7 +170,12 @@ def _error_along_u(
 
 
 def _error_along_v(
-    exact: Interpolated, tolerances: tuple[float, float], knots_u: Reals, through: Reals, slack: float
+    exact: Interpolated,
+    tolerances: tuple[float, float],
+    knots_u: Reals,
+    through: Reals,
+    slack: float,
+    shaped: tuple[bool, bool],
 ) -> Callable[[Reals, Reals], Reals]:
     """The error over what is allowed at places along v, by the knots, where lines of constant u are interpolated.
 
@@ -184,8 +197,9 @@ def _error_along_v(
             native = basis(knots, DEGREE, places) @ np.linalg.solve(matrix, flat[: len(sites)])
             miss = (native - flat[len(sites) :]).reshape(len(places), -1, 3)
             errors.append(np.max(length(miss) / allowed, axis=1))
-        edges = [sections.leading_edge(), sections.trailing_edge(), *sections.lower_edges()]
-        errors += [_edge_error(edge, matrix, knots, places) / slack for edge in edges if edge is not None]
+        edges = sections.leading_edge(), sections.trailing_edge(), *sections.lower_edges()
+        kept = [edge for keeps, edge in zip(2 * shaped, edges, strict=True) if keeps and edge is not None]
+        errors += [_edge_error(edge, matrix, knots, places) / slack for edge in kept]
         return np.max(errors, axis=0)
 
     return error
