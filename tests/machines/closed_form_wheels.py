@@ -93,7 +93,7 @@ def ring(count: int = 5, *, blades: int = 1, name: str = "wheel", solid: bool = 
     }
     for face, ends in outline.items():
         if not (solid and face == "bore"):
-            surfaces[face], orientations[face] = revolved(segment(*ends), axis=LEFT_HANDED), -1
+            surfaces[face], orientations[face] = revolved(segment(*ends), axis=LEFT_HANDED, smooth=True), -1
     return Wheel(
         name=name,
         surfaces=surfaces,

@@ -49,6 +49,17 @@ def test_a_revolved_curve_has_the_points_of_the_turned_curve():
             )
 
 
+@pytest.mark.parametrize("turn", [(0.3, 1.0), (0.2, 0.2 + 2.0 * np.pi), (1.0, -2.5 + 1e-30j)])
+def test_smooth_arcs_are_the_same_arcs_with_a_continuous_derivative(turn):
+    profile = segment((0.0, 1.0, 0.0), (2.0, 1.5, 0.3))
+    arcs, smooth = (revolved(profile, *turn, smooth=smooth) for smooth in (False, True))
+    np.testing.assert_allclose(smooth.grid(U, U), arcs.grid(U, U), rtol=0, atol=3e-15)
+    np.testing.assert_allclose(smooth.grid(U, U).imag, arcs.grid(U, U).imag, rtol=1e-13, atol=1e-44)
+    joints = np.unique(smooth.knots_v)[1:-1]
+    assert all(np.sum(smooth.knots_v == joint) == smooth.degree_v - 1 for joint in joints)
+    assert np.min(np.real(smooth.weights)) > 0.9
+
+
 def test_a_surface_of_revolution_keeps_radius_and_height_around():
     profile = arc((0.0, 3.0, 0.0), 1.0, 0.0, 2.0, axes=((1, 0, 0), (0, 1, 0)))
     around = revolved(profile).grid(U, U)

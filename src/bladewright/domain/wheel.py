@@ -54,7 +54,7 @@ class Wheel(WheelBody):
             start = _seam(pitch)
             for name, piece in pitch.carrier.pieces.items():
                 turned = Revolution(meridian=piece.curve, start=start, end=start + FULL_TURN)
-                faces[name] = (turned.surface(), pitch.kind.side)
+                faces[name] = (turned.surface(smooth=True), pitch.kind.side)
         return faces
 
     def _names(self) -> list[str]:

@@ -61,15 +61,18 @@ def revolved(
     *,
     origin: ArrayLike = (0.0, 0.0, 0.0),
     axis: ArrayLike = (1.0, 0.0, 0.0),
+    smooth: bool = False,
 ) -> Surface:
     """The exact surface of a curve (n, 3) turned right-handed about an axis (3,) through `origin`, start to end [rad].
 
-    u runs along the curve, v in [0, 1] with the turn, though not in proportion to the angle. Raises GeometryError where
-    the curve is not in space or the turn is none or more than a full one. Piegl and Tiller 1997, algorithm A8.1.
+    u runs along the curve, v in [0, 1] with the turn, though not in proportion to the angle. Its arcs are quadratic, or
+    where it is to be `smooth` quartic with the same parameter: their numerators and denominators join with a continuous
+    derivative, as other programs ask of a face in one piece. Raises GeometryError where the curve is not in space or
+    the turn is none or more than a full one. Piegl and Tiller 1997, algorithm A8.1.
     """
     if curve.control_points.shape[1:] != (3,):
         raise GeometryError(f"a curve of shape {curve.control_points.shape} was to be revolved: it must be (n, 3)")
-    ring, weights, knots = _turn(start, end)
+    ring, weights, knots = _smooth(*_turn(start, end)) if smooth else _turn(start, end)
     direction = unit(np.asarray(axis, dtype=np.result_type(np.asarray(axis), np.float64)))
     offset = curve.control_points - np.asarray(origin)
     along = (offset @ direction)[:, None] * direction
@@ -83,7 +86,7 @@ def revolved(
         knots_u=curve.knots,
         knots_v=knots,
         degree_u=curve.degree,
-        degree_v=2,
+        degree_v=4 if smooth else 2,
     )
 
 
@@ -110,6 +113,29 @@ def _turn(start: complex, end: complex) -> tuple[Array, Array, Reals]:
         ring[-1] = ring[0]
     inner = np.repeat(np.arange(1, pieces) / pieces, 2)
     return ring, weights, np.concatenate([np.zeros(3), inner, np.ones(3)])
+
+
+def _smooth(ring: Array, weights: Array, knots: Reals) -> tuple[Array, Array, Reals]:
+    """The same arcs as quartic ones: numerator and denominator of each times 1 + 2 (1 - w) t (1 - t), w in its middle.
+
+    So the denominator has no derivative at the joints, where the numerators' are equal by symmetry: one control point
+    in the middle of its neighbours and one knot less are needed there.
+    """
+    net = np.concatenate([ring, np.ones_like(ring[:, :1])], axis=1) * weights[:, None]
+    first, middle, last = net[:-2:2], net[1:-1:2], net[2::2]
+    factor = 2.0 - weights[1]
+    inner = [
+        (factor * first + middle) / 2.0,
+        (first + 4.0 * factor * middle + last) / 6.0,
+        (middle + factor * last) / 2.0,
+    ]
+    product = np.concatenate([net[:1], np.stack(inner, axis=1).reshape(-1, 3), net[-1:]])
+    joints = np.repeat(np.unique(knots)[1:-1], 3)
+    return (
+        product[:, :2] / product[:, 2:],
+        product[:, 2],
+        np.concatenate([np.zeros(5), joints, np.ones(5)]),
+    )
 
 
 LEFT_HANDED = (-1.0, 0.0, 0.0)
@@ -159,8 +185,8 @@ class Revolution(FrozenRecord):
         away = theta - self.start - (arc + 0.5) * step
         return (arc + (1.0 + np.tan(away / 2.0) / np.tan(step / 4.0)) / 2.0) / self.arcs
 
-    def surface(self) -> Surface:
-        """The rational surface: u along the meridian, v around the axis."""
+    def surface(self, *, smooth: bool = False) -> Surface:
+        """The rational surface: u along the meridian, v around the axis; `smooth` as in `revolved`."""
         x, r = self.meridian.control_points[:, 0], self.meridian.control_points[:, 1]
         in_space = Curve(
             control_points=np.stack([x, np.zeros_like(r), r], axis=-1),
@@ -168,4 +194,4 @@ class Revolution(FrozenRecord):
             degree=self.meridian.degree,
             weights=self.meridian.weights,
         )
-        return revolved(in_space, self.start, self.end, axis=LEFT_HANDED)
+        return revolved(in_space, self.start, self.end, axis=LEFT_HANDED, smooth=smooth)
