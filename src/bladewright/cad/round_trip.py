@@ -7,6 +7,7 @@ from bladewright import __version__
 from bladewright.cad.kernel_check import KernelFault
 from bladewright.cad.native_body import NamedBody
 from bladewright.display import Shown
+from bladewright.domain.row import of_every_blade
 from bladewright.numerics.elementary import Array
 from bladewright.origin import Origin
 from bladewright.section.checks import UNITS
@@ -201,7 +202,6 @@ class RoundTrip(Shown):
         """The report to read, with lengths in `unit` (of `section.checks.UNITS`); limits are in mm."""
         kind = " ".join(word for word in (self.format, self.schema) if word)
         valid = "valid" if self.valid else "invalid"
-        width = max((len(face.name) for face in self.faces), default=0)
         volume, area, edges = self.volume, self.area, self.edges
         length = 1e-3 / UNITS[unit]
         lines = [f"{self.file} ({kind}, {self.unit}): {'passed' if self.passed else 'FAILED'}"]
@@ -212,13 +212,20 @@ class RoundTrip(Shown):
             worst = max(self.placements, key=lambda each: each.displacement)
             away = f"{worst.displacement * length:.1e} {unit} off, {worst.name}"
             lines.append(f"  placements: {len(self.placements)}, at most {away}")
+        groups: dict[str, list[FaceReport]] = {}
         for face in self.faces:
+            groups.setdefault(of_every_blade(face.name), []).append(face)
+        width = max((len(name) for name in groups), default=0)
+        for name, alike in groups.items():
+            face = max(alike, key=lambda each: each.max_deviation)
             away = (
                 f"deviation {face.max_deviation * length:.1e} {unit} (mean {face.mean_deviation * length:.1e} {unit})"
             )
-            size = f"area {face.area.cad * length**2:.6g} {unit}2 ({face.area.relative_error:.1e} off)"
+            area_off = max(each.area.relative_error for each in alike)
+            size = f"area {face.area.cad * length**2:.6g} {unit}2 ({area_off:.1e} off)"
             pieces = f", in {face.pieces} pieces" if face.pieces > 1 else ""
-            lines.append(f"  {face.name:<{width}}  {away}, {size}{pieces}")
+            count = f", the worst of {len(alike)}" if len(alike) > 1 else ""
+            lines.append(f"  {name:<{width}}  {away}, {size}{pieces}{count}")
         lines.append(
             f"  edges: {edges.count}, gap {edges.max_gap * length:.1e} {unit}, "
             f"tolerance {edges.max_tolerance * length:.1e} {unit}"

@@ -77,8 +77,13 @@ def carried_pitches(blade: Blade, known: PassageKnots | None, lines: Mapping[str
     """
     design = blade.design
     wanted = [kind for kind in KINDS if getattr(design, kind.field) is not None]
+    if design.blade_count is None:
+        raise DesignError(f"arrangement is 'linear': '{design.name}' is a cascade, and sectors and wheels are annular")
     if not wanted:
-        raise DesignError(f"{design.name}: neither disc nor shroud_ring is given: a sector or wheel needs one of them")
+        raise DesignError(
+            f"neither disc nor shroud_ring is given: a sector or wheel of '{design.name}' needs what carries them; "
+            "add a table [disc] with the thickness of a rim under the hub, or with an outline in (x, r)"
+        )
     spec = PassageSpec(
         blade=blade,
         exact=blade.exact.without_clearance(),

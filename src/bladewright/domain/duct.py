@@ -104,6 +104,8 @@ class Duct:
             all_v = np.concatenate([[0.0], v, [1.0]])
             if outside.size:
                 powers = self.channel.stream_polynomials(all_v, np.array([edge]))[..., 0, :, :]
+                # a stream line of one wall is real where the other wall alone carries a step
+                total = total.astype(np.result_type(total, powers), copy=False)
             for i in outside:
                 away = sign * (float(centres[i]) - edge)
                 found = _continued(powers, self.length / self.unit, self.bend, all_v, sign, away)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
@@ -117,6 +118,11 @@ def row(blade: Blade, blades: int | None = None) -> Row:
 def blade_name(number: int, count: int) -> str:
     """The name of a blade of a row of `count`, counted from 1: `blade_07`."""
     return f"blade_{number:0{max(2, len(str(count)))}d}"
+
+
+def of_every_blade(face: str) -> str:
+    """The name of a face with an asterisk for its blade's number: `blade_*_upper` of `blade_07_upper`."""
+    return re.sub(r"^(blade|hub|shroud)_\d{2,}", r"\1_*", face)
 
 
 def turn_matrix(theta: complex) -> Array:

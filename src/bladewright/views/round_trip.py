@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 from matplotlib.figure import Figure
 
+from bladewright.domain.row import of_every_blade
 from bladewright.views.html import Rows, table
 from bladewright.views.pages import Page, with_fixed_layout
 from bladewright.views.style import BLUE, RED, SOFT, drawing_style, label_axes
@@ -20,13 +21,13 @@ LEAST = 1e-16
 
 def round_trip_figure(report: Report) -> Figure:
     """Largest deviation of each face, and of the edges, beside their limits."""
-    limits, faces = report["limits"], report["faces"]
+    limits, faces = report["limits"], worst_faces(report)
     bars = [*((face["name"], face["max_deviation_mm"]) for face in faces), ("edges", report["edges"]["max_gap_mm"])]
     with drawing_style():
         figure = Page(figsize=(6.0, 1.2 + 0.28 * len(bars)), layout="constrained")
         axes = figure.add_subplot()
         names, values = zip(*bars, strict=True)
-        failed = " ".join(report["failures"])
+        failed = " ".join(of_every_blade(word) for failure in report["failures"] for word in failure.split())
         colours = [RED if name in failed else BLUE for name in names]
         axes.barh(np.arange(len(bars)), np.maximum(values, LEAST), left=0.0, color=colours, height=0.6)
         axes.set_yticks(np.arange(len(bars)), [name.replace("_", " ") for name in names])
@@ -63,6 +64,16 @@ def round_trip_rows(report: Report) -> Rows:
     ]
 
 
+def worst_faces(report: Report) -> list[Report]:
+    """The faces; of those that a wheel has for every blade the one with the largest deviation, as `blade_*_upper`."""
+    worst: dict[str, Report] = {}
+    for face in report["faces"]:
+        name = of_every_blade(face["name"])
+        if name not in worst or face["max_deviation_mm"] > worst[name]["max_deviation_mm"]:
+            worst[name] = {**face, "name": name}
+    return list(worst.values())
+
+
 def placement_rows(report: Report) -> Rows:
     """How far the blades of a row are from their places."""
     away = [each["displacement_mm"] for each in report.get("placements", ())]
@@ -80,6 +91,6 @@ def round_trip_tables(report: Report) -> str:
             f"{face['area_mm2']['cad']:.6g}",
             f"{face['area_mm2']['relative_error']:.1e}",
         )
-        for face in report["faces"]
+        for face in worst_faces(report)
     ]
     return table(round_trip_rows(report)) + table(faces, header)
