@@ -123,6 +123,18 @@ class Blade(FrozenRecord, Shown, MetalBody):
         """The blade before cuts and fillets, which laws speak of: itself, where there are none."""
         return self if self.before is None else self.before.plain
 
+    @property
+    def edge_kinds(self) -> tuple[str, str]:
+        """How the sides meet at the leading and at the trailing edge: "round", "sharp" or "blunt", as a cut edge is."""
+        kinds = zip(EDGES, self.plain.exact.survey.edge_kinds, strict=True)
+        first, last = ("blunt" if edge in self.walls else kind for edge, kind in kinds)
+        return first, last
+
+    @property
+    def back(self) -> float | None:
+        """The u from which both sides are one straight back face, where they are and it is not cut off."""
+        return None if EDGES[1] in self.walls else self.plain.exact.survey.back
+
     def end_outline(self, name: str) -> tuple[Curve, ...]:
         """The closed chain of space curves [m] around an end face, in the order and sense of its boundary."""
         if name in self.outlines:

@@ -161,7 +161,9 @@ def cut_edges(blade: Blade, design: "RowDesign", knots: Knots | None, *, fine: b
         for edge, at in zip(EDGES, (0.0, 1.0), strict=True)
     ]
     check_apart(design, EDGES, ends[0], ends[1])
-    stretch = stretch_between(*ends) if knots is None or knots.stretch is None else knots.stretch
+    stretch = (
+        stretch_between(ends[0], ends[1], blade.knots.u) if knots is None or knots.stretch is None else knots.stretch
+    )
     shape = EdgeCut(blade=blade, meridians=meridians, near=near, stretch=stretch)
     walls = {**blade.walls, **{edge: (meridian, inner_knots(meridian)) for edge, meridian in meridians.items()}}
     return recut(shape, blade, design, knots, walls=walls, stretch=stretch, fine=fine, edges=ON_CUT)

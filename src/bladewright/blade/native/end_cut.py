@@ -195,7 +195,11 @@ def cut_ends(blade: Blade, design: "RowDesign", knots: Knots | None, *, fine: bo
     ]
     check_apart(design, ENDS, *ends)
     straight = blade.plain.exact.survey.skinning != "sections"
-    stretch = stretch_between(*ends, straight=straight) if knots is None or knots.stretch is None else knots.stretch
+    stretch = (
+        stretch_between(ends[0], ends[1], blade.knots.v, straight=straight)
+        if knots is None or knots.stretch is None
+        else knots.stretch
+    )
     own = [walls[wall][0] if wall in walls else blade.end_wall(wall)[0] for wall in design.ends]
     shape = EndCut(blade=blade, meridians=meridians, near=near, stretch=stretch, walls=(own[0], own[1]))
     return recut(shape, blade, design, knots, walls=walls, stretch=stretch, fine=fine, tip=tip_knots)

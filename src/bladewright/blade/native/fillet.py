@@ -110,6 +110,5 @@ def _reach(meridian: Curve, t: Reals) -> tuple[float, float]:
 
 
 def _check_smooth(blade: Blade) -> None:
-    sections = blade.exact.survey
-    if sections.edge_kinds != ("round", "round") or sections.back is not None:
+    if blade.edge_kinds != ("round", "round") or blade.back is not None:
         raise DesignError("a fillet was asked of a blade with a blunt or sharp edge: give it round edges")

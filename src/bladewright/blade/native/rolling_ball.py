@@ -112,7 +112,7 @@ class Rolled(FrozenRecord):
 
 def closed_section(blade: Blade) -> ClosedSection:
     """The sides of a blade as one closed section."""
-    leading, trailing = blade.exact.survey.edge_kinds
+    leading, trailing = blade.edge_kinds
     upper, lower = blade.sides
     return ClosedSection(upper=upper, lower=lower, smooth=(leading == "round", trailing == "round"))
 

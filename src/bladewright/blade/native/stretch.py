@@ -25,6 +25,9 @@ BENT = 5.0
 LEAST_BENT = 0.2
 """Least length of the part that bends: in a shorter one, knots would lie closer than the cut asks for."""
 
+CLEAR = 0.02
+"""The same where a joint of the uncut blade lies so near to the cut."""
+
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Stretch(FrozenRecord):
@@ -55,11 +58,23 @@ class Stretch(FrozenRecord):
         return knots_with_joints(whole, degree, [each for each in joints if 0.0 < each[0] < 1.0])
 
 
-def stretch_between(low: Reals, high: Reals, *, straight: bool = False) -> Stretch:
-    """The stretch of lines that begin and end at these places (n,); even where curves could not bend, or `straight`."""
+def stretch_between(low: Reals, high: Reals, knots: Reals, *, straight: bool = False) -> Stretch:
+    """The stretch of lines that begin and end at these places (n,); even where curves could not bend, or `straight`.
+
+    Curves bend past the last of the `knots` at which the uncut blade has less than three derivatives, where the cut
+    leaves the room: a knot line that is bent itself is no knot line of the cut blade.
+    """
     first, last = float(np.mean(low)), float(np.mean(high))
     away = [float(np.max(np.square(each - mean))) ** 0.5 for each, mean in ((low, first), (high, last))]
-    bent = [1.0 if gap < JOINT_TOLERANCE else max(LEAST_BENT, BENT * gap / (last - first)) for gap in away]
+    needed = [BENT * gap / (last - first) for gap in away]
+    levels, counts = np.unique(knots, return_counts=True)
+    joints = (levels[counts >= POWER] - first) / (last - first)
+    joints = joints[(joints > 0.0) & (joints < 1.0)]
+    bent = []
+    for least, room in zip(needed, (joints, 1.0 - joints), strict=True):
+        nearest = float(np.min(room, initial=1.0))
+        roomy = max(LEAST_BENT, least)
+        bent.append(1.0 if least < JOINT_TOLERANCE else nearest if max(least, CLEAR) < nearest < roomy else roomy)
     even = straight or max(bent) > 1.0
     return Stretch(low=first, high=last, bent=(1.0, 1.0) if even else (bent[0], bent[1]), even=even)
 
