@@ -21,7 +21,7 @@ from bladewright.domain.checks import (
     check_pitch,
     least_jacobian,
 )
-from bladewright.domain.extents import departures, end_camber_lines, extents, shortest_duct, skew_reaches
+from bladewright.domain.extents import CLEARANCE, departures, end_camber_lines, extents, shortest_duct, skew_reaches
 from bladewright.domain.kinks import fade_joints, kink_shares, kinks
 from bladewright.domain.knots import PIECES, PassageKnots
 from bladewright.domain.middle_shift import SHARES, MiddleShift, fitted_shift
@@ -42,6 +42,8 @@ SHORTENING, SHORTENINGS = 0.75, 12
 how often at most: to 3 % of what they were."""
 FULL_TURN = np.radians(355.0)
 """Winding of a trimmed wall [rad] that is allowed: a face of revolution must be less than a turn, with a margin."""
+FOOT_MARGIN = 0.002
+"""How far past the foot of a fillet walls are the channel's own, in mean meridional lengths, before they straighten."""
 MAX_POLES = 80
 """Control points of a piece in one direction above which refinement stops, and a passage is refused. With 40 passages
 have 0.8 % more control points elsewhere, with 160 the same (design/passage_constants.md)."""
@@ -104,6 +106,7 @@ def skin_knots(spec: PassageSpec, upstream: float | None, downstream: float | No
         blunt=(False, False),
         shift=_middle_shift(spec),
     )
+    start = _past_feet(spec, start, (upstream is None, downstream is None))
     check_duct(spec.duct(start), exact.meridional_extent)
     for _ in range(SHORTENINGS):
         if not exact.mapping.revolved or max(spec.winding(start).values()) < FULL_TURN:
@@ -118,6 +121,41 @@ def skin_knots(spec: PassageSpec, upstream: float | None, downstream: float | No
         outlet=knots_along(lines, "outlet", 1.0, tolerance),
     )
     return with_span_knots(spec, known, tolerance)
+
+
+def _past_feet(spec: PassageSpec, start: PassageKnots, which: tuple[bool, bool]) -> PassageKnots:
+    """The same, the walls those of the channel as far as fillets reach past the blade, and automatic extents past them.
+
+    Raises DesignError where a stated extent ends before.
+    """
+    extent = spec.exact.meridional_extent
+    feet = spec.feet(start)
+    if feet is None:
+        return start
+    found, reaches = [start.start, start.end], [start.upstream, start.downstream]
+    for edge, (foot, sign) in enumerate(zip(feet, (-1.0, 1.0), strict=True)):
+        beyond = sign * (foot - found[edge]) > 0.0
+        if beyond and extent.path_end(edge) is None:
+            found[edge] = foot + sign * FOOT_MARGIN * extent.unit
+        needed = extent.extent(edge, foot + sign * CLEARANCE * extent.unit)
+        if reaches[edge] < needed:
+            if not which[edge]:
+                name = ("upstream", "downstream")[edge]
+                raise DesignError(
+                    f"{name} is {reaches[edge]:g} meridional lengths of the blade: the foot of the fillet, or the cut "
+                    f"blade, asks for at least {needed:.4g}"
+                )
+            reaches[edge] = needed
+    places = [extent.place(edge, reach) for edge, reach in enumerate(reaches)]
+    return replace(
+        start,
+        start=found[0],
+        end=found[1],
+        upstream=reaches[0],
+        downstream=reaches[1],
+        low=places[0],
+        high=places[1],
+    )
 
 
 def _shortened(spec: PassageSpec, start: PassageKnots, which: tuple[bool, bool]) -> PassageKnots:

@@ -5,6 +5,7 @@ from dataclasses import dataclass, replace
 from typing import cast
 
 import numpy as np
+from scipy.spatial import cKDTree
 
 from bladewright.blade.exact.exact_blade import ExactBlade
 from bladewright.blade.flow_path.meridional_curve import real_first
@@ -13,10 +14,12 @@ from bladewright.domain.camber_lines import CamberLines, camber_lines
 from bladewright.domain.duct import Duct
 from bladewright.domain.knots import PIECES, PassageKnots
 from bladewright.domain.walls import WallHalf, WallStrip, wall_halves, wall_strips
-from bladewright.numerics.elementary import Array
+from bladewright.numerics.elementary import Array, length
 from bladewright.nurbs.basis import Reals
 from bladewright.nurbs.trimmed import TrimmedSurface
 
+FOOT_PLACES, OUTLINE_PLACES = 4001, 201
+"""Points of a wall, and of each curve around a blade's end, among which the end's extremes are found."""
 PlaneGeometry = tuple[CamberLines, Mapping[str, WallHalf], Mapping[str, WallStrip]]
 """Camber lines, the halves of the walls and their strips."""
 
@@ -81,6 +84,22 @@ class PassageSpec:
         ends = self.camber(knots, np.array([0.0, 1.0]))
         beside = {"hub": False, "shroud": False}
         return wall_halves(ends, beside, self.half_pitch, (1.0, 1.0), knots.cross_lines, knots.reaches)
+
+    def feet(self, knots: PassageKnots) -> tuple[float, float] | None:
+        """Least and greatest u of the ends of a blade with fillets or cuts on its walls; None of a plain one."""
+        blade, found = self.blade, []
+        if blade.before is None:
+            return None
+        duct = self.duct(knots)
+        u = np.linspace(duct.low, duct.high, FOOT_PLACES)
+        for row, wall in enumerate(("hub", "shroud")):
+            if wall in blade.design.ends:
+                line = real_first(duct.lines(np.array([float(row)])).position(u), 3)[0]
+                curves = blade.end_outline(wall)
+                points = np.concatenate([np.real(each(np.linspace(*each.domain, OUTLINE_PLACES))) for each in curves])
+                radius = length(points[:, 1:]) if duct.revolved else points[:, 2]
+                found.append(u[cKDTree(line).query(np.stack([points[:, 0], radius], axis=-1))[1]])
+        return (float(np.min(np.concatenate(found))), float(np.max(np.concatenate(found)))) if found else None
 
     def winding(self, knots: PassageKnots) -> dict[str, float]:
         """The theta [rad], or y in a cascade, over which one pitch of `hub` and `shroud` reaches."""

@@ -25,8 +25,16 @@ GROUPS = (
     "hub_gap",
     "shroud_gap",
     "tip",
+    *(
+        f"blade_{wall}_fillet_{face}"
+        for wall in ("hub", "shroud")
+        for face in ("upper", "lower", "leading_edge", "trailing_edge")
+    ),
+    "hub",
+    "shroud",
 )
-"""Physical groups of the faces of a passage; where a face is split, its pieces are called GROUP_PIECE."""
+"""Physical groups of the faces of a passage; where a face is split, its pieces are called GROUP_PIECE. Trimmed
+walls come last, as their names begin those of others."""
 FLUID = "fluid"
 """Physical group of the volume."""
 GROUP_PREFIX = "group "

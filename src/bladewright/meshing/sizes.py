@@ -49,9 +49,10 @@ class Source:
 
 
 def size_sources(passage: Passage, curvature: float) -> tuple[Source, ...]:
-    """The blade's edges, with `curvature` elements on a circle of their radius, and its tip, with one across the gap.
+    """The blade's edges and fillets, with `curvature` elements on a circle of their radius, and its tip.
 
-    The face of a blunt edge gets elements as small as a round edge of the same width.
+    That has one element across the gap. The face of a blunt edge gets elements as small as a round edge of the same
+    width.
     """
     upper, tip = passage.surfaces["blade_upper"], passage.surfaces.get("tip")
     sources = []
@@ -61,6 +62,9 @@ def size_sources(passage: Passage, curvature: float) -> tuple[Source, ...]:
             sources.append(_face_source(name, face, curvature))
         elif isinstance(upper, Surface):
             sources.append(_edge_source(upper, u, curvature))
+    for name, face in passage.surfaces.items():
+        if "fillet" in name and isinstance(face, Surface):
+            sources.append(_fillet_source(name, face, curvature))
     if isinstance(tip, TrimmedSurface):
         sources.append(_tip_source(passage, tip))
     return tuple(sources)
@@ -80,6 +84,17 @@ def _face_source(name: str, face: Surface, curvature: float) -> Source:
     x, y, z = (0.5 * (first + last))[len(v) // 2].tolist()
     area = float(np.sum(0.5 * (widths[1:] + widths[:-1]) * steps))
     return Source(face=name, place=(x, y, z), size=np.pi * float(np.median(widths)) / curvature, extent=area)
+
+
+def _fillet_source(name: str, face: Surface, curvature: float) -> Source:
+    """A fillet between wall and blade: u around the blade, v across, its radius that of a quarter of a circle."""
+    u = np.linspace(0.0, 1.0, 65)
+    first, last = face(u, 0.0).real, face(u, 1.0).real
+    widths, steps = length(last - first), length(np.diff(0.5 * (first + last), axis=0))
+    x, y, z = (0.5 * (first + last))[len(u) // 2].tolist()
+    area = float(np.sum(0.5 * (widths[1:] + widths[:-1]) * steps))
+    size = 2.0 * np.pi * float(np.median(widths)) / np.sqrt(2.0) / curvature
+    return Source(face=name, place=(x, y, z), size=size, extent=area)
 
 
 def _radius(side: Surface, u: float) -> float:
@@ -102,11 +117,18 @@ def _tip_source(passage: Passage, tip: TrimmedSurface) -> Source:
 
 def _tip_gap(passage: Passage, rim: Reals) -> float:
     """Median distance of points (n, 3) on the rim of the tip from the nearer wall [m]."""
-    sides = [
+    trimmed = [face.surface for wall in WALLS if isinstance(face := passage.surfaces.get(wall), TrimmedSurface)]
+    sides = [[face] for face in trimmed] or [
         [face for name, face in passage.surfaces.items() if name.startswith(wall) and isinstance(face, Surface)]
         for wall in WALLS
     ]
-    near = min(sides, key=lambda faces: min(_distance_to_net(face, rim[0]) for face in faces))
+
+    def away(faces: list[Surface]) -> float:
+        if trimmed:
+            return float(closest_on_surface(faces[0], rim[:1], tolerance=1e-3).distances.real[0])
+        return min(_distance_to_net(face, rim[0]) for face in faces)
+
+    near = min(sides, key=away)
     distances = [closest_on_surface(face, rim, tolerance=1e-3).distances.real for face in near]
     return float(np.median(np.min(distances, axis=0)))
 
