@@ -88,19 +88,21 @@ def _cut(draw, blade):
 
 
 def _cut_curve(draw, blade, name):
-    """Where a blade is cut: along a line of its own parameters, or at the mean radius or x of one."""
-    share = draw.uniform(-0.05, 0.3)
-    along = np.linspace(-0.25, 1.25, int(draw.integers(2, 6)))
-    at = share if name in {"hub", "leading_edge"} else 1.0 - share
-    across = at + draw.uniform(-0.05, 0.05) * (along - 0.5)
-    u, v = (along, across) if name in {"hub", "tip"} else (across, along)
-    points = _meridional(blade, u, v)
-    x, r = points.mean(axis=0)
-    choice = draw.random()
-    if choice < 0.2 and r > 0.0:
-        return AtRadius(radius=float(r))
-    if choice < 0.4:
-        return AtX(x=float(x))
+    """Where a blade is cut: along a line between two of its borders, or at that line's mean x or radius."""
+    share = draw.uniform(-0.02, 0.3)
+    share = share if name in {"hub", "leading_edge"} else 1.0 - share
+    places = np.linspace(0.05, 0.95, int(draw.integers(2, 6)))
+    share = share + draw.uniform(-0.1, 0.1) * (places - 0.5)
+    borders = [
+        _meridional(blade, *((places, end) if name in {"hub", "tip"} else (end, places)))
+        for end in (np.zeros(len(places)), np.ones(len(places)))
+    ]
+    points = borders[0] + share[:, None] * (borders[1] - borders[0])
+    ends = [0.4 * (points[i] - points[j]) / (places[1] - places[0]) for i, j in ((0, 1), (-1, -2))]
+    points = np.concatenate([points[:1] + ends[0], points, points[-1:] + ends[1]])
+    (x, r), spread = points.mean(axis=0), np.ptp(points, axis=0)
+    if draw.random() < 0.3:
+        return AtX(x=float(x)) if spread[0] < spread[1] or r <= 0.0 else AtRadius(radius=float(r))
     pairs = random_blades.pairs(points)
     return ThroughPoints(points=pairs) if draw.random() < 0.6 else ControlPolygon(control_points=pairs)
 
@@ -142,12 +144,8 @@ def _length(blade):
 
 
 def _meridional(blade, u, v):
-    """(x, r) (k, 2) of the upper side in the design's unit, carried on straight past its borders."""
-    side = blade.surfaces["upper"]
-    inside = np.clip(u, 0.0, 1.0), np.clip(v, 0.0, 1.0)
-    points = np.real(side(*inside))
-    for order, beyond in (((1, 0), u - inside[0]), ((0, 1), v - inside[1])):
-        points = points + beyond[:, None] * np.real(side.derivative(*inside, *order))
+    """(x, r) (k, 2) of the upper side in the design's unit."""
+    points = np.real(blade.surfaces["upper"](u, v))
     radius = np.hypot(points[:, 1], points[:, 2]) if blade.design.arrangement == "annular" else points[:, 2]
     return np.stack([points[:, 0], radius], axis=-1) / blade.design.metre
 
