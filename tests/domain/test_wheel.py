@@ -99,6 +99,14 @@ def test_a_cyclic_face_is_straight_at_each_theta_and_its_neighbour_a_pitch_furth
         np.testing.assert_allclose(low[[0, -1], 0], low[[0, -1], -1], atol=1e-15)
 
 
+def test_the_edges_of_a_cyclic_face_are_its_own_control_points_to_the_bit(rotor):
+    (face,) = sector(rotor).cyclic
+    own = list(map(tuple, face.surface.control_points[:, 1]))
+    for edge in face.edges.values():
+        first = own.index(tuple(edge.control_points[0]))
+        assert own[first : first + len(edge.control_points)] == list(map(tuple, edge.control_points))
+
+
 def test_passage_and_sector_fill_the_annulus_between_bore_and_shroud():
     plain = coarse.ROTOR.build()
     around = passage(plain)

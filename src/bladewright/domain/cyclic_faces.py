@@ -7,6 +7,7 @@ outline meets the wall.
 
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import pairwise
 
 import numpy as np
 
@@ -18,7 +19,6 @@ from bladewright.frozen import FrozenRecord
 from bladewright.numerics.elementary import Array, concatenated, cross2, frozen, length, unit
 from bladewright.nurbs.basis import Reals, breaks, greville
 from bladewright.nurbs.curve import Curve
-from bladewright.nurbs.domain import split
 from bladewright.nurbs.fit import interpolated
 from bladewright.nurbs.refine import inserted
 from bladewright.nurbs.surface import Surface
@@ -90,9 +90,17 @@ class CyclicFace(FrozenRecord):
 
     @property
     def edges(self) -> dict[str, Curve]:
-        """That curve in its pieces, by the names of the faces of revolution."""
-        inner = self.knots.corners[1:-1]
-        parts = split(self.on_outline, inner) if len(inner) else (self.on_outline,)
+        """That curve in its pieces, by the names of the faces of revolution: its own control points, to the bit."""
+        points, knots, inner = self.on_outline.control_points, self.on_outline.knots, self.knots.corners[1:-1]
+        ends = [0, *(np.searchsorted(knots, inner) - 1), len(points) - 1]
+        parts = [
+            Curve(
+                control_points=points[first : last + 1],
+                knots=np.concatenate([[start], knots[first + 1 : last + DEGREE + 1], [end]]),
+                degree=DEGREE,
+            )
+            for (first, last), (start, end) in zip(pairwise(ends), pairwise(self.knots.corners), strict=True)
+        ]
         return dict(zip(self.carrier.pieces, parts, strict=True))
 
     def outline(self, s: Reals) -> Array:
