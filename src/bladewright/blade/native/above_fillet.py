@@ -16,7 +16,7 @@ and fillet have one tangent plane at every point of the joint, not only where th
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -37,6 +37,8 @@ FOLDED = 0.35
 """Share of their distance that is left to lines as they leave the joint sideways; at 0 they would cross."""
 HIGHEST = (5.0 / 6.0) ** 5 / 6.0
 """Largest value of h."""
+FIRST_OF_F, FIRST_OF_H = -30.0, -10.0
+"""Second derivatives of f and h at 0."""
 NEAR_END = 0.02
 """Distance from an end below which the sides' own knots are left out: others are put there where they are needed."""
 SMOOTH = 4
@@ -75,15 +77,17 @@ class Leaving(FrozenRecord):
 
 def leaving(section: ClosedSection, found: Contacts, slope: Array, toward: int) -> Leaving:
     """From contacts and dF/ds (k, 3) on the blade; `toward` is d, +1 at the hub's end, -1 at the shroud's."""
-    along, across = (section.derivative(found.sites, found.v, *order) for order in ((1, 0), (0, 1)))
+    along, across = section.derivatives(found.sites, found.v, (1, 0), (0, 1))
+    sideways, upwards = resolved(along, across, -slope)
+    return Leaving(contact=found.v, sideways=sideways, upwards=toward * upwards)
+
+
+def resolved(along: Array, across: Array, vectors: Array) -> tuple[Array, Array]:
+    """The shares (k,) of two tangents (k, 3) in vectors (k, 3) of their plane."""
     a, b, c = dot(along, along), dot(along, across), dot(across, across)
-    first, second = -dot(along, slope), -dot(across, slope)
+    first, second = dot(along, vectors), dot(across, vectors)
     size = a * c - b * b
-    return Leaving(
-        contact=found.v,
-        sideways=(c * first - b * second) / size,
-        upwards=toward * (a * second - b * first) / size,
-    )
+    return (c * first - b * second) / size, (a * second - b * first) / size
 
 
 def _fade(x: Reals, order: int = 0) -> Reals:
@@ -159,29 +163,40 @@ def first_knots(plain: Reals, joints: Joints) -> Reals:
     return knots_with_joints(knots, DEGREE, [(x if wall == "hub" else 1.0 - x, SMOOTH) for wall, x in ends])
 
 
+def bend(section: ClosedSection, found: Contacts, ends: Ends, wall: str) -> Array:
+    """d2B/dx2 (k, 3) of the blade above at its joint with a fillet."""
+    low, high = levels_of({name: joint for name, (joint, _) in ends.items()})
+    joint, lines = ends[wall]
+    toward = 1 if wall == "hub" else -1
+    sideways, upwards = lines.sideways / joint.speed, toward * lines.upwards / joint.speed
+    turn = FIRST_OF_H * sideways / joint.shifted
+    lift = FIRST_OF_F * (lines.contact - joint.level) / joint.bent**2
+    lift = lift + FIRST_OF_H * (upwards - toward * (high - low)) / joint.bent
+    u, v, uu, uv, vv = section.derivatives(found.sites, found.v, (1, 0), (0, 1), (2, 0), (1, 1), (0, 2))
+    shares = turn, lift, sideways**2, 2.0 * sideways * upwards, upwards**2
+    return np.asarray(sum(share[:, None] * each for share, each in zip(shares, (u, v, uu, uv, vv), strict=True)))
+
+
 @dataclass(frozen=True, kw_only=True, eq=False)
 class SpanSplines(FrozenRecord):
-    """Splines along w through values at sites, and at filleted ends a first derivative by x."""
+    """Splines along w through values at sites, and at filleted ends the first derivatives by x."""
 
     knots: Reals
-    walls: tuple[str, ...]
-    """at which there are fillets"""
+    orders: Mapping[str, int]
+    """how many derivatives, 1 or 2, by the wall"""
 
     @property
     def sites(self) -> Reals:
-        """w of the values: a derivative takes the place of the second, or last but one."""
+        """w of the values: derivatives take the places beside the end."""
         own = greville(self.knots, DEGREE)
-        first, last = 1 + ("hub" in self.walls), len(own) - 1 - ("shroud" in self.walls)
+        first, last = 1 + self.orders.get("hub", 0), len(own) - 1 - self.orders.get("shroud", 0)
         return np.concatenate([own[:1], own[first:last], own[-1:]])
 
-    def net(self, values: Array, slopes: Mapping[str, Array]) -> Array:
+    def net(self, values: Array, derivatives: Mapping[str, Sequence[Array]]) -> Array:
         """Control points (n, ...) from values (m, ...) at the sites and the derivatives by x at filleted ends."""
         count, knots = len(self.knots) - DEGREE - 1, self.knots
-        first, last = [values[0]], [values[-1]]
-        if "hub" in self.walls:
-            first.append(values[0] + slopes["hub"] * (knots[DEGREE + 1] - knots[0]) / DEGREE)
-        if "shroud" in self.walls:
-            last.insert(0, values[-1] + slopes["shroud"] * (knots[-1] - knots[-DEGREE - 2]) / DEGREE)
+        first = _first_points(values[0], derivatives.get("hub", ()), knots - knots[0])
+        last = _first_points(values[-1], derivatives.get("shroud", ()), knots[-1] - knots[::-1])[::-1]
         inside = slice(len(first), count - len(last))
         outer = np.stack([*first, *last])
         matrix = basis(knots, DEGREE, self.sites[1:-1])
@@ -189,3 +204,15 @@ class SpanSplines(FrozenRecord):
         right = values[1:-1] - np.tensordot(known, outer, axes=1)
         inner = np.tensordot(np.linalg.inv(matrix[:, inside]), right, axes=1)
         return np.concatenate([outer[: len(first)], inner, outer[len(first) :]])
+
+
+def _first_points(start: Array, derivatives: Sequence[Array], knots: Reals) -> list[Array]:
+    """The first control points of a spline that starts so (Piegl and Tiller 1997, eqs. 3.7 and 3.9)."""
+    found = [start]
+    near, far = knots[DEGREE + 1], knots[DEGREE + 2]
+    if len(derivatives) > 0:
+        found.append(start + derivatives[0] * near / DEGREE)
+    if len(derivatives) > 1:
+        second = derivatives[1] * near / (DEGREE * (DEGREE - 1))
+        found.append(found[1] + far * (second + derivatives[0] / DEGREE))
+    return found

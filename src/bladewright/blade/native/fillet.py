@@ -15,11 +15,10 @@ import numpy as np
 from bladewright.blade.native.above_fillet import SpanSplines
 from bladewright.blade.native.blade import Blade
 from bladewright.blade.native.closed_section import LOWER, UPPER, SectionSplines
-from bladewright.blade.native.cross_section import ARC_DEGREE, CLAMPED
 from bladewright.blade.native.end_faces import EndKnots, WallSurface, end_row, end_within, stretch_about
 from bladewright.blade.native.fillet_knots import FilletKnots, chosen_knots
 from bladewright.blade.native.knots import DEGREE, Knots
-from bladewright.blade.native.rolling_ball import Rolled, Touch, balls_of, closed_section
+from bladewright.blade.native.rolling_ball import Rolled, Touch, balls_of, closed_section, orders_of
 from bladewright.errors import DesignError
 from bladewright.frozen import FrozenMapping
 from bladewright.nurbs.basis import Reals
@@ -48,18 +47,22 @@ def filleted(blade: Blade, design: RowDesign, knots: Knots | None = None, *, fin
     held = knots if isinstance(knots, FilletKnots) else chosen_knots(blade, section, balls, fine=fine)
     around = SectionSplines(knots=held.u, smooth=section.smooth)
     rolled = Rolled.at(section, balls, around.sites)
-    along = SpanSplines(knots=held.v, walls=tuple(held.joints))
-    rows = along.net(rolled.above(held.joints, along.sites), rolled.slopes(held.joints))
+    along = SpanSplines(knots=held.v, orders=orders_of(balls))
+    rows = along.net(rolled.above(held.joints, along.sites), rolled.derivatives(held.joints))
     faces: dict[str, Surface | TrimmedSurface] = {}
     for name, net in zip(SIDES, around.split(np.swapaxes(rows, 0, 1)), strict=True):
         faces[name] = Surface(control_points=net, knots_u=held.u, knots_v=held.v, degree_u=DEGREE, degree_v=DEGREE)
     ends, outlines, walls = dict(held.ends), dict(blade.outlines), dict(blade.walls)
     for wall, touch in rolled.touches.items():
         net = touch.sections.net()
-        net = np.swapaxes(net[::-1] if wall == "hub" else net, 0, 1)
+        degree, net = len(net) - 1, np.swapaxes(net[::-1] if wall == "hub" else net, 0, 1)
         for name, part in zip(SIDES, around.split(net), strict=True):
             faces[f"{wall}_fillet_{name}"] = Surface(
-                control_points=part, knots_u=held.u, knots_v=CLAMPED, degree_u=DEGREE, degree_v=ARC_DEGREE
+                control_points=part,
+                knots_u=held.u,
+                knots_v=np.repeat([0.0, 1.0], degree + 1),
+                degree_u=DEGREE,
+                degree_v=degree,
             )
     for row, name in zip((0, -1), design.ends, strict=True):
         if name not in rolled.touches:

@@ -14,7 +14,7 @@ from bladewright.blade.native.end_faces import EndKnots
 from bladewright.blade.native.fillet_limits import check_fillets
 from bladewright.blade.native.knots import DEGREE, MOST_POLES, Knots, refined
 from bladewright.blade.native.refinement import RESERVE, wall_tolerance
-from bladewright.blade.native.rolling_ball import Ball, Rolled, Touch
+from bladewright.blade.native.rolling_ball import Ball, Rolled, Touch, orders_of
 from bladewright.frozen import FrozenMapping
 from bladewright.numerics.elementary import Array, cross, dot, length, unit
 from bladewright.nurbs.basis import Reals, basis
@@ -57,8 +57,8 @@ def _along_span(plain: Reals, rolled: Rolled, balls: Mapping[str, Ball], joints:
     few = Rolled.at(rolled.section, balls, rolled.sites.picked(np.arange(0, len(rolled.sites), step)), rolled)
 
     def miss(knots: Reals, at: Reals) -> Reals:
-        splines = SpanSplines(knots=knots, walls=tuple(joints))
-        net = splines.net(few.above(joints, splines.sites), few.slopes(joints))
+        splines = SpanSplines(knots=knots, orders=orders_of(balls))
+        net = splines.net(few.above(joints, splines.sites), few.derivatives(joints))
         off = np.tensordot(basis(knots, DEGREE, at), net, axes=1) - few.above(joints, at)
         return np.max(length(off), axis=1) / tolerance
 

@@ -2,18 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from bladewright.blade.native.above_fillet import Joints, Leaving, leaving, places
+from bladewright.blade.native.above_fillet import Ends, Joints, Leaving, bend, leaving, places, resolved
 from bladewright.blade.native.blade import Blade
 from bladewright.blade.native.closed_section import ClosedSection, Sites
 from bladewright.blade.native.contacts import Contacts, Wall, contacts
-from bladewright.blade.native.cross_section import CrossSections
+from bladewright.blade.native.cross_section import ConicSections, CrossSections, QuinticSections
+from bladewright.blade.native.fillet_sizes import Sizes, ball_sizes
 from bladewright.frozen import FrozenRecord
 from bladewright.numerics.elementary import Array, dot
 from bladewright.nurbs.basis import Reals
@@ -25,7 +26,6 @@ WALLS = {"hub": 0.0, "shroud": 1.0}
 """Walls, and v at the end of a blade that stands on one."""
 STEP = 1e-30
 """Complex step of u: its square vanishes beside 1, so that the derivative is exact to rounding."""
-Sizes = Callable[[Sites], tuple[Array, Array]]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -37,6 +37,9 @@ class Ball(FrozenRecord):
     """distances of its centre from blade and wall at sites [m]"""
     end: float
     """v at which the blade ends on the wall"""
+
+    curved: bool = False
+    """whether the cross-sections take the curvatures of blade and wall at their ends"""
 
     def growth(self, sites: Sites) -> tuple[Reals, Reals]:
         """Derivatives of the sizes by u."""
@@ -57,13 +60,40 @@ class Touch(FrozenRecord):
         """The fillet's cross-sections there."""
         found, wall = self.found, self.ball.wall
         point, normal = self.section.derivative(found.sites, found.v), self.section.normal(found.sites, found.v)
-        return CrossSections(
+        conics = ConicSections(
             blade=point,
             wall=wall.point(found.t, found.across),
             normals=(normal, wall.normal(found.t, found.across)),
             centre=point + found.on_blade[:, None] * normal,
             sizes=(found.on_blade, found.on_wall),
         )
+        if not self.ball.curved:
+            return conics
+        start, end = conics.points(np.array([0.0, 1.0]), 1)
+        return QuinticSections(
+            blade=conics.blade,
+            wall=conics.wall,
+            normals=conics.normals,
+            centre=conics.centre,
+            sizes=conics.sizes,
+            slopes=(start, end),
+            bends=(self._bend_of_blade(start), self._bend_of_wall(end)),
+        )
+
+    def _bend_of_blade(self, slope: Array) -> Array:
+        """Normal curvature (k,) of the blade along tangents (k, 3), times their squared length, towards the fluid."""
+        sites, v = self.found.sites, self.found.v
+        along, _, by_u = self.section.running(sites, v)
+        _, across, _, by_v = self.section.rising(sites, v)
+        first, second = resolved(along, across, slope)
+        return -dot(slope, first[:, None] * by_u + second[:, None] * by_v)
+
+    def _bend_of_wall(self, slope: Array) -> Array:
+        """The same of the wall."""
+        t, across = self.found.t, self.found.across
+        first, second = resolved(*self.ball.wall.slopes(t, across), slope)
+        by_t, by_theta = self.ball.wall.normal_slopes(t, across)
+        return -dot(slope, first[:, None] * by_t + second[:, None] * by_theta)
 
     @cached_property
     def slope(self) -> Array:
@@ -97,17 +127,30 @@ class Rolled(FrozenRecord):
 
     def above(self, joints: Joints, w: Reals) -> Array:
         """Points (len(w), k, 3) of the blade above the fillets."""
-        ends = {wall: (joints[wall], touch.lines) for wall, touch in self.touches.items()}
-        found = self.section.derivative(*places(self.sites, ends, w))
+        found = self.section.derivative(*places(self.sites, self._ends(joints), w))
         for wall, row in (("hub", 0), ("shroud", -1)):
             if wall in self.touches and w[row] == WALLS[wall]:
                 # the joint's own points, to the bit
                 found[row] = self.touches[wall].sections.blade
         return found
 
-    def slopes(self, joints: Joints) -> dict[str, Array]:
-        """dB/dx (k, 3) of the blade above at each joint."""
-        return {wall: -touch.slope / joints[wall].speed for wall, touch in self.touches.items()}
+    def derivatives(self, joints: Joints) -> dict[str, list[Array]]:
+        """dB/dx, and where curvature is to be continuous d2B/dx2, (k, 3) of the blade above at each joint."""
+        ends = self._ends(joints)
+        found = {}
+        for wall, touch in self.touches.items():
+            found[wall] = [-touch.slope / joints[wall].speed]
+            if touch.ball.curved:
+                found[wall].append(bend(self.section, touch.found, ends, wall))
+        return found
+
+    def _ends(self, joints: Joints) -> Ends:
+        return {wall: (joints[wall], touch.lines) for wall, touch in self.touches.items()}
+
+
+def orders_of(balls: Mapping[str, Ball]) -> dict[str, int]:
+    """How many derivatives the blade above a fillet and the fillet share, by the wall."""
+    return {wall: 2 if ball.curved else 1 for wall, ball in balls.items()}
 
 
 def closed_section(blade: Blade) -> ClosedSection:
@@ -124,13 +167,9 @@ def balls_of(blade: Blade, section: ClosedSection, design: RowDesign) -> dict[st
     for name, fillet in asked.items():
         if fillet is None:
             continue
-        size = design.metre * np.asarray(fillet.radius)
-
-        def sizes(sites: Sites, size: Array = size) -> tuple[Array, Array]:
-            each = np.full(len(sites), size)
-            return each, each
-
-        balls[name] = Ball(wall=_wall(blade, section, name), sizes=sizes, end=WALLS[name])
+        sizes = ball_sizes(fillet, design.metre, blade.suction_side)
+        curved = fillet.kind == "curvature"
+        balls[name] = Ball(wall=_wall(blade, section, name), sizes=sizes, end=WALLS[name], curved=curved)
     return balls
 
 
