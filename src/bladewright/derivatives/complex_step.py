@@ -8,7 +8,7 @@ blade from sections, are stepped one by one; AT_ONCE steps go through one rebuil
 """
 
 import re
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
 from itertools import islice
@@ -22,6 +22,7 @@ from bladewright.blade.native.end_faces import trimmed_ends
 from bladewright.blade.native.finishing import finished
 from bladewright.blade.native.interpolation import InterpolationData, interpolation_data, native_sides, sides_through
 from bladewright.blade.native.knots import Knots
+from bladewright.blade.native.lazy_faces import Face, LazyFaces
 from bladewright.blade.native.properties import blade_moments, middle_of, moment_gradient
 from bladewright.blade.native.refinement import mean_chord
 from bladewright.designs import Design, Law
@@ -124,9 +125,6 @@ def data_from_rates(rows: Array, mirrored: Sequence[bool]) -> InterpolationData:
     return InterpolationData(found[0], found[1], sides[0], sides[1], (first, last))
 
 
-Face = Surface | TrimmedSurface
-
-
 def built(design: Design, knots: Any = None) -> Any:
     """What the design builds, at the given knots if any."""
     return design.build() if knots is None else design.build(knots=knots)  # type: ignore[call-arg]
@@ -140,12 +138,13 @@ def stepped(design: Design, base: Any, paths: Sequence[str]) -> Iterator[Any]:
     """
     values = design.parameters()
     if is_finished(base):
-        plain = base.plain
+        plain, own_moments = base.plain, _SteppedMoments(base)
         own = plain.design.parameters()
         carrying = stepped(plain.design, plain, [path for path in paths if path in own])
         for path in paths:
             blade = next(carrying) if path in own else plain
-            yield finished(blade, base.design.changed(path, values[path] + STEP * 1j), base.knots)
+            made = finished(blade, base.design.changed(path, values[path] + STEP * 1j), base.knots)
+            yield replace(made, moments=partial(own_moments, _rates_of(base, made)))
         return
     if not two_sided(base):
         for path in paths:
@@ -157,7 +156,7 @@ def stepped(design: Design, base: Any, paths: Sequence[str]) -> Iterator[Any]:
             path = next(rows)
             nets = [side.control_points + STEP * 1j * rate for side, rate in zip(base.sides, pair, strict=True)]
             blade = _blade(base, design.changed(path, values[path] + STEP * 1j), nets[0], nets[1])
-            yield replace(blade, moments=partial(moments, pair))
+            yield replace(blade, moments=partial(moments, dict(zip(("upper", "lower"), pair, strict=True))))
 
 
 def varied(design: Design, base: Any, changes: Sequence[Mapping[str, complex]]) -> Iterator[Any]:
@@ -226,40 +225,26 @@ class _SteppedMoments:
         self.base = base
 
     @cached_property
-    def _value_and_gradients(self) -> tuple[Array, list[Array]]:
+    def _value_and_gradients(self) -> tuple[Array, dict[str, Array]]:
         outward, revolved = self.base.orientations, self.base.exact.mapping.revolved
         middle = middle_of(self.base.surfaces)
-        gradients = [
-            outward[name] * moment_gradient(side, middle, revolved=revolved)
-            for name, side in zip(("upper", "lower"), self.base.sides, strict=True)
-        ]
+        gradients = {
+            name: outward[name] * moment_gradient(face, middle, revolved=revolved)
+            for name, face in self.base.surfaces.items()
+            if isinstance(face, Surface)
+        }
         return blade_moments(self.base.surfaces, outward, revolved=revolved), gradients
 
-    def __call__(self, tangents: Nets) -> Array:
+    def __call__(self, tangents: Mapping[str, Array]) -> Array:
         value, gradients = self._value_and_gradients
-        rates = [np.tensordot(gradient, rate, axes=3) for gradient, rate in zip(gradients, tangents, strict=True)]
-        return value + STEP * 1j * (rates[0] + rates[1])
+        rates = [np.tensordot(gradient, tangents[name], axes=3) for name, gradient in gradients.items()]
+        return np.asarray(value + STEP * 1j * sum(rates))
 
 
-class _LazyFaces(Mapping[str, Face]):
-    """A blade's sides, and its ends, which are made when one is first used."""
-
-    def __init__(
-        self, sides: Mapping[str, Surface], names: Sequence[str], ends: Callable[[], Mapping[str, Face]]
-    ) -> None:
-        self._found: dict[str, Face] = dict(sides)
-        self._names, self._ends = tuple(names), ends
-
-    def __getitem__(self, name: str) -> Face:
-        if name not in self._found and name in self._names:
-            self._found |= self._ends()
-        return self._found[name]
-
-    def __iter__(self) -> Iterator[str]:
-        return iter(self._names)
-
-    def __len__(self) -> int:
-        return len(self._names)
+def _rates_of(base: Blade, made: Blade) -> dict[str, Array]:
+    """Derivatives of the nets of a blade that carries a step."""
+    faces = {name: made.surfaces[name] for name, face in base.surfaces.items() if isinstance(face, Surface)}
+    return {name: np.imag(face.control_points) / STEP for name, face in faces.items() if isinstance(face, Surface)}
 
 
 def _blade(base: Blade, design: Any, upper: Array, lower: Array) -> Blade:
@@ -271,5 +256,5 @@ def _blade(base: Blade, design: Any, upper: Array, lower: Array) -> Blade:
         like = {name: face for name, face in base.surfaces.items() if isinstance(face, TrimmedSurface)}
         return trimmed_ends(exact, sides[0], sides[1], base.chord, like)
 
-    surfaces = _LazyFaces({"upper": sides[0], "lower": sides[1]}, tuple(base.surfaces), ends)
+    surfaces = LazyFaces({"upper": sides[0], "lower": sides[1]}, tuple(base.surfaces), ends)
     return replace(base, design=design, surfaces=surfaces, exact=exact)

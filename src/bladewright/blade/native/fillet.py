@@ -18,6 +18,7 @@ from bladewright.blade.native.closed_section import LOWER, UPPER, SectionSplines
 from bladewright.blade.native.end_faces import EndKnots, WallSurface, end_row, end_within, stretch_about
 from bladewright.blade.native.fillet_knots import FilletKnots, chosen_knots
 from bladewright.blade.native.knots import DEGREE, Knots
+from bladewright.blade.native.lazy_faces import Face, LazyFaces
 from bladewright.blade.native.rolling_ball import Rolled, Touch, balls_of, closed_section, orders_of
 from bladewright.errors import DesignError
 from bladewright.frozen import FrozenMapping
@@ -44,51 +45,68 @@ def filleted(blade: Blade, design: RowDesign, knots: Knots | None = None, *, fin
     _check_smooth(blade)
     section = closed_section(blade)
     balls = balls_of(blade, section, design)
-    held = knots if isinstance(knots, FilletKnots) else chosen_knots(blade, section, balls, fine=fine)
-    around = SectionSplines(knots=held.u, smooth=section.smooth)
-    rolled = Rolled.at(section, balls, around.sites)
-    along = SpanSplines(knots=held.v, orders=orders_of(balls))
-    rows = along.net(rolled.above(held.joints, along.sites), rolled.derivatives(held.joints))
-    faces: dict[str, Surface | TrimmedSurface] = {}
+    held = knots if isinstance(knots, FilletKnots) else None
+    own = chosen_knots(blade, section, balls, fine=fine) if held is None else held
+    around = cast(SectionSplines, own.splines)
+    rolled = Rolled.at(section, balls, around.sites, own.near)
+    along = SpanSplines(knots=own.v, orders=orders_of(balls))
+    rows = along.net(rolled.above(own.joints, along.sites), rolled.derivatives(own.joints))
+    faces: dict[str, Surface] = {}
     for name, net in zip(SIDES, around.split(np.swapaxes(rows, 0, 1)), strict=True):
-        faces[name] = Surface(control_points=net, knots_u=held.u, knots_v=held.v, degree_u=DEGREE, degree_v=DEGREE)
-    ends, outlines, walls = dict(held.ends), dict(blade.outlines), dict(blade.walls)
+        faces[name] = Surface(control_points=net, knots_u=own.u, knots_v=own.v, degree_u=DEGREE, degree_v=DEGREE)
+    outlines = dict(blade.outlines)
     for wall, touch in rolled.touches.items():
         net = touch.sections.net()
         degree, net = len(net) - 1, np.swapaxes(net[::-1] if wall == "hub" else net, 0, 1)
         for name, part in zip(SIDES, around.split(net), strict=True):
             faces[f"{wall}_fillet_{name}"] = Surface(
                 control_points=part,
-                knots_u=held.u,
+                knots_u=own.u,
                 knots_v=np.repeat([0.0, 1.0], degree + 1),
                 degree_u=DEGREE,
                 degree_v=degree,
             )
-    for row, name in zip((0, -1), design.ends, strict=True):
-        if name not in rolled.touches:
-            faces[name] = blade.surfaces[name]
-            continue
-        feet = {side: end_row(cast(Surface, faces[f"{name}_fillet_{side}"]), row) for side in SIDES}
-        touch, inner = rolled.touches[name], blade.end_wall(name)[1]
-        faces[name], ends[name] = _end(touch, name, feet, inner, blade.chord, held.ends.get(name))
-        outlines[name] = (feet["lower"], run_back(feet["upper"]))
-        walls[name] = extended(touch.ball.wall.meridian, *ends[name].domain), inner
+        upper, lower = (end_row(faces[f"{wall}_fillet_{name}"], -design.ends.index(wall)) for name in SIDES)
+        outlines[wall] = (lower, run_back(upper))
+
+    def ends() -> tuple[dict[str, Face], dict[str, EndKnots]]:
+        found: dict[str, Face] = {}
+        knots_of = {}
+        for name in design.ends:
+            if name in rolled.touches:
+                feet = outlines[name][0], run_back(outlines[name][1])
+                inner, known = blade.end_wall(name)[1], None if held is None else held.ends[name]
+                found[name], knots_of[name] = _end(rolled.touches[name], name, feet, inner, blade.chord, known)
+            else:
+                found[name] = blade.surfaces[name]
+        return found, knots_of
+
+    if held is None:
+        made, ends_held = ends()
+        own = replace(own, ends=FrozenMapping(ends_held))
+        surfaces: Mapping[str, Face] = FrozenMapping({**faces, **made})
+    else:
+        surfaces = LazyFaces(faces, (*faces, *design.ends), lambda: ends()[0])
+    walls = {
+        name: (extended(touch.ball.wall.meridian, *own.ends[name].domain), blade.end_wall(name)[1])
+        for name, touch in rolled.touches.items()
+    }
     return replace(
         blade,
         design=design,
-        surfaces=FrozenMapping(faces),
-        knots=replace(held, ends=FrozenMapping(ends)),
+        surfaces=surfaces,
+        knots=own,
         before=blade,
         moments=None,
         outlines=FrozenMapping(outlines),
-        walls=FrozenMapping(walls),
+        walls=FrozenMapping({**blade.walls, **walls}),
     )
 
 
 def _end(
-    touch: Touch, name: str, feet: Mapping[str, Curve], inner: Reals, chord: float, held: EndKnots | None
+    touch: Touch, name: str, feet: tuple[Curve, Curve], inner: Reals, chord: float, held: EndKnots | None
 ) -> tuple[TrimmedSurface, EndKnots]:
-    """The end face inside the feet of the fillet."""
+    """The end face inside the feet (lower, upper) of the fillet."""
     found, own = touch.found, touch.ball.wall
     t, across = np.real(found.t), np.real(found.across)
     domain = _reach(own.meridian, t) if held is None else held.domain
@@ -96,11 +114,11 @@ def _end(
     meridian = extended(own.meridian, *domain)
     wall = WallSurface(meridian=meridian, inner=inner, revolved=own.revolved, low=low, high=high)
     chain = []
-    for index, side in ((LOWER, "lower"), (UPPER, "upper")):
+    for index, foot in zip((LOWER, UPPER), feet, strict=True):
         which = np.flatnonzero(found.sites.side == index)
         which = which[np.argsort(found.sites.u[which])]
         near = found.sites.u[which], t[which], across[which]
-        chain.append((feet[side], near, index == UPPER))
+        chain.append((foot, near, index == UPPER))
     return end_within(wall, chain, float(np.real(chord)), held)
 
 

@@ -10,6 +10,7 @@ import numpy as np
 from bladewright.blade.native.above_fillet import Joint, Joints, SpanSplines, first_knots, joints_for
 from bladewright.blade.native.blade import Blade
 from bladewright.blade.native.closed_section import ClosedSection, SectionSplines, Sites
+from bladewright.blade.native.contacts import Contacts
 from bladewright.blade.native.end_faces import EndKnots
 from bladewright.blade.native.fillet_limits import check_fillets
 from bladewright.blade.native.knots import DEGREE, MOST_POLES, Knots, refined
@@ -37,6 +38,10 @@ class FilletKnots(Knots):
     """how lines leave each fillet, by the wall"""
     ends: Mapping[str, EndKnots] = field(default_factory=lambda: FrozenMapping({}))
     """of the end faces inside the feet"""
+    near: Mapping[str, Contacts] = field(default_factory=lambda: FrozenMapping({}))
+    """contacts by the wall, near which others are sought"""
+    splines: SectionSplines | None = None
+    """around the blade, on `u`"""
 
 
 def chosen_knots(blade: Blade, section: ClosedSection, balls: Mapping[str, Ball], *, fine: bool = False) -> FilletKnots:
@@ -49,12 +54,14 @@ def chosen_knots(blade: Blade, section: ClosedSection, balls: Mapping[str, Ball]
     v = _along_span(blade.knots.v, rolled, balls, joints, tolerance)
     off_wall = RESERVE * wall_tolerance(blade.chord, fine=fine)
     u = _around(blade.knots.u, rolled, balls, joints, tolerance, off_wall)
-    return FilletKnots(u=u, v=v, before=blade.knots, joints=FrozenMapping(joints))
+    splines = SectionSplines(knots=u, smooth=section.smooth)
+    near = FrozenMapping(rolled.found)
+    return FilletKnots(u=u, v=v, before=blade.knots, joints=FrozenMapping(joints), near=near, splines=splines)
 
 
 def _along_span(plain: Reals, rolled: Rolled, balls: Mapping[str, Ball], joints: Joints, tolerance: float) -> Reals:
     step = max(1, len(rolled.sites) // (2 * LINES))
-    few = Rolled.at(rolled.section, balls, rolled.sites.picked(np.arange(0, len(rolled.sites), step)), rolled)
+    few = Rolled.at(rolled.section, balls, rolled.sites.picked(np.arange(0, len(rolled.sites), step)), rolled.found)
 
     def miss(knots: Reals, at: Reals) -> Reals:
         splines = SpanSplines(knots=knots, orders=orders_of(balls))
@@ -74,9 +81,9 @@ def _around(
     def miss(knots: Reals, at: Reals) -> Reals:
         nonlocal known
         splines = SectionSplines(knots=knots, smooth=section.smooth)
-        known = Rolled.at(section, balls, splines.sites, known)
+        known = Rolled.at(section, balls, splines.sites, known.found)
         between = Sites(side=np.repeat([0, 1], len(at)), u=np.tile(at, 2))
-        wanted = Rolled.at(section, balls, between, known)
+        wanted = Rolled.at(section, balls, between, known.found)
 
         def carried(values: Array, order: int = 0) -> Array:
             rows = basis(knots, DEGREE, at, order)

@@ -20,7 +20,7 @@ Sizes = Callable[[Sites], tuple[Array, Array]]
 """Distances (k,) [m] of the ball's centre from blade and wall at sites (k,)."""
 
 
-def ball_sizes(fillet: Fillet, metre: float, suction_side: str | None) -> Sizes:
+def ball_sizes(fillet: Fillet, metre: float, suction_side: Callable[[], str | None]) -> Sizes:
     """The sizes by site; an ellipse's height on the blade is the distance of its centre from the wall.
 
     A law along the section runs with u^2 (3 - 2 u), and values at edges and sides are joined by
@@ -45,17 +45,18 @@ def ball_sizes(fillet: Fillet, metre: float, suction_side: str | None) -> Sizes:
     return lambda sites: _twice(_everywhere(metre * np.asarray(radius), sites))
 
 
-def side_radii(radii: FilletRadii, suction_side: str | None) -> tuple[float, float]:
+def side_radii(radii: FilletRadii, suction_side: Callable[[], str | None]) -> tuple[float, float]:
     """The radii in the middle of the upper and the lower side; raises DesignError where the design does not say."""
     if radii.upper is not None:
         return radii.upper, cast(float, radii.lower)
-    if suction_side is None:
+    name = suction_side()
+    if name is None:
         raise DesignError(
             "radius gives suction_side and pressure_side, but neither rotation nor the camber says which side that is: "
             "give upper and lower, or rotation"
         )
     suction, pressure = cast(float, radii.suction_side), cast(float, radii.pressure_side)
-    return (suction, pressure) if suction_side == "upper" else (pressure, suction)
+    return (suction, pressure) if name == "upper" else (pressure, suction)
 
 
 def _joined(sites: Sites, ends: tuple[Array, Array], middles: tuple[Array, Array]) -> Array:

@@ -116,14 +116,25 @@ class Rolled(FrozenRecord):
     """by the wall"""
 
     @classmethod
-    def at(cls, section: ClosedSection, balls: Mapping[str, Ball], sites: Sites, near: Rolled | None = None) -> Rolled:
-        """Where they touch at sites; `near` are known ones, between which the search begins."""
+    def at(
+        cls,
+        section: ClosedSection,
+        balls: Mapping[str, Ball],
+        sites: Sites,
+        near: Mapping[str, Contacts] | None = None,
+    ) -> Rolled:
+        """Where they touch at sites; `near` are known contacts by the wall, between which the search begins."""
         touches = {}
         for wall, ball in balls.items():
-            known = None if near is None else near.touches[wall].found
+            known = None if near is None else near[wall]
             found = contacts(section, ball.wall, sites, ball.sizes(sites), ball.end, known)
             touches[wall] = Touch(ball=ball, section=section, found=found)
         return cls(section=section, sites=sites, touches=touches)
+
+    @property
+    def found(self) -> dict[str, Contacts]:
+        """The contacts by the wall."""
+        return {wall: touch.found for wall, touch in self.touches.items()}
 
     def above(self, joints: Joints, w: Reals) -> Array:
         """Points (len(w), k, 3) of the blade above the fillets."""
@@ -167,7 +178,7 @@ def balls_of(blade: Blade, section: ClosedSection, design: RowDesign) -> dict[st
     for name, fillet in asked.items():
         if fillet is None:
             continue
-        sizes = ball_sizes(fillet, design.metre, blade.suction_side)
+        sizes = ball_sizes(fillet, design.metre, lambda: blade.suction_side)
         curved = fillet.kind == "curvature"
         balls[name] = Ball(wall=_wall(blade, section, name), sizes=sizes, end=WALLS[name], curved=curved)
     return balls

@@ -1,0 +1,29 @@
+"""Faces of a blade that are made when one is first used."""
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+
+from bladewright.nurbs.surface import Surface
+from bladewright.nurbs.trimmed import TrimmedSurface
+
+Face = Surface | TrimmedSurface
+
+
+class LazyFaces(Mapping[str, Face]):
+    """A blade's sides, and its ends, which are made when one is first used."""
+
+    def __init__(
+        self, sides: Mapping[str, Surface], names: Sequence[str], ends: Callable[[], Mapping[str, Face]]
+    ) -> None:
+        self._found: dict[str, Face] = dict(sides)
+        self._names, self._ends = tuple(names), ends
+
+    def __getitem__(self, name: str) -> Face:
+        if name not in self._found and name in self._names:
+            self._found |= self._ends()
+        return self._found[name]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._names)
+
+    def __len__(self) -> int:
+        return len(self._names)
