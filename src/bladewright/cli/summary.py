@@ -100,6 +100,7 @@ def passage_data(design: Any, built: Any) -> dict[str, Any]:
         "upstream": built.knots.upstream,
         "downstream": built.knots.downstream,
         "meridional_length_m": built.knots.length,
+        "walls": built.knots.walls,
         "least_jacobian": jacobians,
         "promises": {**errors, "limits": PASSAGE_LIMITS, "kept": kept},
     }

@@ -51,10 +51,11 @@ def passage_sheet(passage: "Passage") -> Figure:
     view.set_anchor("N")
     draw_duct(duct.subplots(), passage)
     draw_figures(numbers.subplots(), figures(passage))
-    panels = bottom.subplots(1, 3)
+    panels = bottom.subplots(1, 3 if passage.skin is None else 2)
     for panel, wall in zip(panels, ("hub", "shroud"), strict=False):
         draw_wall(panel, passage, wall)
-    draw_least_jacobian(panels[2], passage)
+    if passage.skin is None:
+        draw_least_jacobian(panels[2], passage)
     return figure
 
 
@@ -116,7 +117,7 @@ def passage_header(passage: "Passage") -> list[str]:
         f"volume {cubic(passage.properties.volume)}",
         f"{filled} within {abs(passage.ring_error):.1e}",
         f"walls within {passage.wall_error:.1e} of the chord",
-        f"least Jacobian {_least(passage):.2g} of its median",
+        "trimmed walls" if passage.skin else f"least Jacobian {_least(passage):.2g} of its median",
     ]
 
 
@@ -131,7 +132,7 @@ def figures(passage: "Passage") -> Rows:
         (f"{'N ' if count else ''}(passage + blade) / {'ring' if count else 'duct'} - 1", f"{passage.ring_error:.1e}"),
         ("Walls", ""),
         ("off their surfaces / chord", f"{passage.wall_error:.1e}"),
-        ("least Jacobian / median", f"{_least(passage):.2g}"),
+        ("least Jacobian / median", "trimmed" if passage.skin else f"{_least(passage):.2g}"),
         ("Extents", ""),
         ("upstream", f"{passage.knots.upstream:.3g} x {size:.4g} {unit_name()}"),
         ("downstream", f"{passage.knots.downstream:.3g} x {size:.4g} {unit_name()}"),

@@ -277,9 +277,14 @@ def outer_grids(passage: "Passage", u: Reals) -> list[tuple[str, Reals, Reals]]:
     found = []
     for name, sense in outer_faces(passage).items():
         face = passage.whole[name]
-        if isinstance(face, TrimmedSurface):
+        if isinstance(face, TrimmedSurface) and passage.skin is not None:
+            # the blade hides the hole at its end; an outline has its pieces in the order of the flow, and back
+            *pieces, _ = face.boundary
+            ahead, back = pieces[: len(pieces) // 2], pieces[: len(pieces) // 2 : -1]
+            grids = [_sampled_between(face, *both, u) for both in zip(ahead, back, strict=True)]
+        elif isinstance(face, TrimmedSurface):
             upper = face.boundary[2 if "blade_trailing_edge" in passage.whole else 1]
-            grids = [_sampled_inside(face, upper, u)]
+            grids = [_sampled_between(face, face.boundary[0], upper, u)]
         else:
             grids = [sampled(piece, u, u) for piece in pieces_of(name, face, passage.knots).values()]
         found += [(name, points, sense * normals) for points, normals in grids]
@@ -295,9 +300,13 @@ def outer_faces(passage: "Passage") -> dict[str, int]:
     }
 
 
-def _sampled_inside(face: TrimmedSurface, upper: Curve, u: Reals) -> tuple[Reals, Reals]:
-    """`sampled` of a blade's end at u (m,) along and across: from its boundary along the lower side to `upper`."""
-    first, last = np.real(face.boundary[0](u)), np.real(upper(1.0 - u))
+def _sampled_between(face: TrimmedSurface, lower: Curve, upper: Curve, u: Reals) -> tuple[Reals, Reals]:
+    """`sampled` at u (m,) along and across of a trimmed face between two curves of its boundary, which run opposite."""
+    first, last = (
+        np.real(curve(start + (end - start) * at))
+        for curve, at in ((lower, u), (upper, 1.0 - u))
+        for start, end in [curve.domain]
+    )
     own, around = np.moveaxis(first[:, None] + u[:, None] * (last - first)[:, None], -1, 0)
     along, across = (np.real(face.surface.derivative(own, around, *order)) for order in ((1, 0), (0, 1)))
     return per_metre() * np.real(face.surface(own, around)), unit(np.cross(along, across))

@@ -8,6 +8,7 @@ from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
 from scipy.spatial import cKDTree
 
+from bladewright.blade.flow_path.streamlines import StreamLines
 from bladewright.domain.knots import BLADE_AT, PIECES
 from bladewright.numerics.elementary import angle, dot, length
 from bladewright.nurbs.basis import Reals
@@ -33,6 +34,8 @@ if TYPE_CHECKING:
 
 HALVES = ("upper", "lower")
 """The halves of a wall, above and below the blade."""
+ROWS = {"hub": 0, "shroud": -1}
+"""Which of the camber lines is that on a wall."""
 COLOURS = {"hub": BLUE, "shroud": ORANGE}
 """Colours of the grid lines on each wall."""
 ALONG, ACROSS = (9, 17, 9), 9
@@ -63,21 +66,30 @@ def unwrapped_face(passage: "Passage", name: str, u: Reals, v: Reals) -> Reals:
 def blade_end_outline(passage: "Passage", wall: str) -> Reals:
     """Closed outline (n, 2) in the wall's plane [mm] of the blade's end at this wall."""
     end = np.array([0.0 if wall == "hub" else 1.0])
+    if passage.skin is not None and wall in passage.blade.design.ends:
+        curves = passage.blade.end_outline(wall)
+        points = [curve(low + (high - low) * cosine_spacing()) for curve in curves for low, high in [curve.domain]]
+        return unwrapped(passage, wall, np.real(np.concatenate(points)))
     sides = [cast(Surface, passage.whole[f"blade_{half}"]).grid(cosine_spacing(), end)[:, 0] for half in HALVES]
     return unwrapped(passage, wall, np.real(np.concatenate([sides[0], sides[1][::-1]])))
 
 
 def wall_pitch(passage: "Passage", wall: str) -> float:
     """Distance between neighbours in the wall's plane [mm]."""
-    return 2.0 * float(np.real(passage.walls[f"{wall}_upper"].half_pitch)) * wall_scale(passage, wall)
+    return 2.0 * float(np.real(passage.half_pitch)) * wall_scale(passage, wall)
 
 
 def wall_scale(passage: "Passage", wall: str) -> float:
     """Millimetres in one unit of the wall's plane: the wall's mean radius beside the blade, or a metre in a cascade."""
     if not passage.duct.revolved:
         return per_metre()
-    line = passage.walls[f"{wall}_upper"].line
+    line = wall_line(passage, wall)
     return float(np.mean(np.real(line.position(np.linspace(0.0, 1.0, 65))[..., 1]))) * per_metre()
+
+
+def wall_line(passage: "Passage", wall: str) -> StreamLines:
+    """The duct's stream line along a wall."""
+    return passage.camber.lines.rows([ROWS[wall]])
 
 
 def wall_coordinates(passage: "Passage") -> tuple[str, str]:
@@ -91,7 +103,7 @@ def unwrapped(passage: "Passage", wall: str, points: Reals, offset: Reals | floa
     `offset` (...) is the expected theta relative to the continued camber line [rad], which decides between full turns.
     """
     x, y, z = np.moveaxis(points, -1, 0)
-    revolved, line = passage.duct.revolved, passage.walls[f"{wall}_upper"].line
+    revolved, line = passage.duct.revolved, wall_line(passage, wall)
     meridional = np.stack([x, np.sqrt(y * y + z * z) if revolved else z], axis=-1).reshape(-1, 2)
     places = np.linspace(passage.duct.low, passage.duct.high, 2001)
     u = places[cKDTree(np.real(line.position(places))[0]).query(meridional)[1]]
@@ -108,13 +120,50 @@ def unwrapped(passage: "Passage", wall: str, points: Reals, offset: Reals | floa
 
 def _camber_theta(passage: "Passage", wall: str, abscissa: Reals) -> Reals:
     """theta (...) of the wall's continued camber line at abscissae (...)."""
-    row, t = passage.walls[f"{wall}_upper"].row, np.linspace(0.0, 1.0, 101)
+    row, t = ROWS[wall], np.linspace(0.0, 1.0, 101)
     line = np.concatenate([np.real(passage.camber.points(piece, t))[row] for piece in PIECES])
     return np.asarray(np.interp(abscissa, line[:, 0], line[:, 1]))
 
 
 def draw_wall(axes: Axes, passage: "Passage", wall: str) -> None:
     """Draw the hub or the shroud in its plane [mm]: patches, blade, neighbours and periodic boundaries."""
+    if passage.skin is None:
+        _draw_patches(axes, passage, wall)
+    else:
+        _draw_trimmed(axes, passage, wall)
+    shape, pitch = blade_end_outline(passage, wall), wall_pitch(passage, wall)
+    _draw_blade_end(axes, passage, wall, shape)
+    for turn in (-1.0, 1.0) if pitch < ISOLATED_PITCH * _chord(shape) else ():
+        axes.plot(*(shape + np.array([0.0, turn * pitch])).T, color=SOFT, linewidth=0.8, alpha=0.8)
+    for half, marker in zip(HALVES, ("o", "s"), strict=True) if passage.skin is None else ():
+        share, u, v = passage.folds[f"{wall}_{half}"]
+        place = unwrapped_face(passage, f"{wall}_{half}", np.array([u]), np.array([v]))[0, 0]
+        axes.plot(*place, marker=marker, label=f"{half}: least Jacobian {_jacobian_text(share, u, v)}", **MARK)
+    slender = axes.dataLim.height > MAX_ASPECT * axes.dataLim.width
+    kind = "unwrapped" if passage.skin is None else "unwrapped, one trimmed face"
+    title = f"{wall.capitalize()} {kind}{', compressed upright' if slender else ''}"
+    label_axes(axes, title, *wall_coordinates(passage))
+    axes.set_aspect("auto" if slender else "equal", adjustable="datalim")
+    legend_below(axes, 1)
+
+
+def _draw_trimmed(axes: Axes, passage: "Passage", wall: str) -> None:
+    """The outline of a trimmed wall."""
+    end = np.array([0.0 if wall == "hub" else 1.0])
+    for half, sign, style in (("upper", 1.0, UPPER), ("lower", -1.0, LOWER)):
+        points = cast(Surface, passage.whole[f"periodic_{half}"]).grid(_stations_along(), end)[:, 0]
+        edge = unwrapped(passage, wall, np.real(points), sign * float(np.real(passage.half_pitch)))
+        label = "periodic boundaries, the lower dashed" if sign > 0.0 else None
+        axes.plot(*edge.T, color=INK, linewidth=1.6, linestyle=style, label=label)
+    for name in ("inlet", "outlet"):
+        u = np.linspace(0.0, 1.0, LINE_POINTS)
+        points = np.real(cast(Surface, passage.whole[name]).grid(u, end)[:, 0])
+        offset = float(np.real(passage.half_pitch)) * (2.0 * u - 1.0)
+        axes.plot(*unwrapped(passage, wall, points, offset).T, color=INK, linewidth=0.9)
+
+
+def _draw_patches(axes: Axes, passage: "Passage", wall: str) -> None:
+    """The halves of a wall, with lines of constant u and v."""
     for half, style in zip(HALVES, (UPPER, LOWER), strict=True):
         name = f"{wall}_{half}"
         lines = LineCollection(patch_lines(passage, name), colors=COLOURS[wall], linewidths=0.5, alpha=0.55)
@@ -124,19 +173,6 @@ def draw_wall(axes: Axes, passage: "Passage", wall: str) -> None:
         axes.plot(*edge.T, color=INK, linewidth=1.6, linestyle=style, label=label)
         for end in unwrapped_face(passage, name, np.array([0.0, 1.0]), np.linspace(0.0, 1.0, LINE_POINTS)):
             axes.plot(*end.T, color=INK, linewidth=0.9)
-    shape, pitch = blade_end_outline(passage, wall), wall_pitch(passage, wall)
-    _draw_blade_end(axes, passage, wall, shape)
-    for turn in (-1.0, 1.0) if pitch < ISOLATED_PITCH * _chord(shape) else ():
-        axes.plot(*(shape + np.array([0.0, turn * pitch])).T, color=SOFT, linewidth=0.8, alpha=0.8)
-    for half, marker in zip(HALVES, ("o", "s"), strict=True):
-        share, u, v = passage.folds[f"{wall}_{half}"]
-        place = unwrapped_face(passage, f"{wall}_{half}", np.array([u]), np.array([v]))[0, 0]
-        axes.plot(*place, marker=marker, label=f"{half}: least Jacobian {_jacobian_text(share, u, v)}", **MARK)
-    slender = axes.dataLim.height > MAX_ASPECT * axes.dataLim.width
-    title = f"{wall.capitalize()} unwrapped{', compressed upright' if slender else ''}"
-    label_axes(axes, title, *wall_coordinates(passage))
-    axes.set_aspect("auto" if slender else "equal", adjustable="datalim")
-    legend_below(axes, 1)
 
 
 def draw_least_jacobian(axes: Axes, passage: "Passage") -> None:
