@@ -1,5 +1,6 @@
 """The meridians of cuts, and what is refused: cuts that miss the blade, cross it twice or leave nothing of it."""
 
+from collections.abc import Mapping
 from dataclasses import fields
 from typing import TYPE_CHECKING
 
@@ -7,7 +8,16 @@ import numpy as np
 
 from bladewright.blade.native.blade import Blade
 from bladewright.blade.native.cut_faces import along
-from bladewright.blade.native.cut_lines import Crossing, Lines, continued, crossing, in_meridian, real_curve, searched
+from bladewright.blade.native.cut_lines import (
+    Crossing,
+    Found,
+    Lines,
+    continued,
+    crossing,
+    in_meridian,
+    real_curve,
+    searched,
+)
 from bladewright.blade.native.end_faces import EDGES
 from bladewright.errors import DesignError
 from bladewright.numerics.elementary import length
@@ -26,8 +36,6 @@ ON_FACES = np.linspace(0.0, 1.0, 5)
 """The same on the faces of blunt edges."""
 LEAST_LEFT = 0.02
 """Least share of a line, from edge to edge or from end to end, that cuts may leave: less is no blade."""
-Found = tuple[Reals, Crossing]
-"""Places of lines, and where they meet a cut there."""
 
 
 def meridian_of_cut(blade: Blade, design: "RowDesign", name: str) -> Curve:
@@ -50,7 +58,7 @@ def meridian_of_cut(blade: Blade, design: "RowDesign", name: str) -> Curve:
     return along(meridian, upper[0], upper[2]) if name == "hub" else along(meridian, upper[1], upper[3])
 
 
-def check_edge_cut(blade: Blade, design: "RowDesign", edge: str, meridian: Curve) -> tuple[Found, Found]:
+def check_edge_cut(blade: Blade, design: "RowDesign", edge: str, meridian: Curve) -> dict[str, Found]:
     """About where both sides' lines of constant v meet the cut of an edge, which each must do once."""
     upper, lower = (_once(_lines(blade, side, edge, ACROSS), design, edge, meridian) for side in blade.sides)
     back = blade.plain.exact.survey.back
@@ -62,7 +70,16 @@ def check_edge_cut(blade: Blade, design: "RowDesign", edge: str, meridian: Curve
                 f"u = {most:.4f} of the sides, where that face begins at {back:.4f}: move the cut upstream of it, or "
                 f"leave cut.{edge} out"
             )
-    return upper, lower
+    return {"upper": upper, "lower": lower}
+
+
+def mirrored_edges(blade: Blade, cut: Mapping[str, Curve]) -> tuple[bool, bool]:
+    """Whether the lower side mirrors the upper one at the edges: where they are round, and are not `cut`."""
+    first, last = (
+        own is None and edge not in blade.walls and edge not in cut
+        for own, edge in zip(blade.plain.exact.survey.lower_edges(), EDGES, strict=True)
+    )
+    return first, last
 
 
 def check_end_cut(blade: Blade, design: "RowDesign", end: str, meridian: Curve) -> dict[str, Found]:

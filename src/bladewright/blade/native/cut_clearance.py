@@ -5,23 +5,20 @@
 u linear in t, 0 where the uncut blade's leading edge meets the cut and 1 where its trailing edge does, d linear in u.
 """
 
-from typing import TYPE_CHECKING
+from collections.abc import Mapping
 
 import numpy as np
 
 from bladewright.blade.exact.clearance import Clearance
 from bladewright.blade.native.blade import Blade
-from bladewright.blade.native.cut_checks import check_end_cut, met
-from bladewright.blade.native.cut_lines import Crossing, Lines
+from bladewright.blade.native.cut_checks import about, met
+from bladewright.blade.native.cut_lines import Found, Lines
 from bladewright.blade.native.knots import DEGREE, refined
 from bladewright.errors import DesignError
 from bladewright.numerics.elementary import Array, cross2, length
 from bladewright.nurbs.basis import Reals, greville, knots_with_joints
 from bladewright.nurbs.curve import Curve
 from bladewright.nurbs.fit import interpolated
-
-if TYPE_CHECKING:
-    from bladewright.blade.design.row_design import RowDesign
 
 REACHED = 1e-10
 """Distance of the fitted meridian from the exact one, of the chord, to which knots are refined."""
@@ -32,14 +29,15 @@ BESIDE = 0.25
 
 
 def cleared_meridian(
-    blade: Blade, design: "RowDesign", end: str, cut: Curve, clearance: Clearance, knots: Reals | None
+    blade: Blade, end: str, cut: Curve, clearance: Clearance, near: Mapping[str, Found], knots: Reals | None
 ) -> Curve:
-    """The meridian of the clearance surface beside a cut, at held knots if any; DesignError where it folds."""
-    near = check_end_cut(blade, design, end, cut)
-    at, about = near["upper"]
+    """The meridian of the clearance surface beside a cut, at held knots if any; DesignError where it folds.
+
+    `near` is about where lines of the faces meet the cut.
+    """
     edges = np.array([0.0, 1.0])
     lines = Lines(face=blade.sides[0], along="v", at=edges, revolved=blade.plain.exact.mapping.revolved)
-    found = met(lines, cut, Crossing(np.interp(edges, at, about.place), np.interp(edges, at, about.t)), f"cut.{end}")
+    found = met(lines, cut, about(edges, near["upper"]), f"cut.{end}")
     chord = float(np.real(blade.chord))
 
     def points(t: Reals) -> Array:

@@ -20,7 +20,7 @@ from bladewright.nurbs.trimmed import TrimmedSurface
 if TYPE_CHECKING:
     from bladewright.blade.native.blade import Blade
 
-SAMPLES = 401
+SAMPLES = 201
 """Points of a meridian among which the nearest begins the search."""
 BESIDE = 0.05
 """How far the surface of a cut reaches past the blade along its meridian, as a share of its stretch."""
@@ -64,17 +64,10 @@ def arc_between(start: Array, end: Array, *, revolved: bool) -> Curve:
     )
 
 
-def closing_faces(
-    blade: "Blade", sides: tuple[Surface, Surface], faces: Mapping[str, Surface], walls: Walls, ends: tuple[str, str]
-) -> tuple[dict[str, TrimmedSurface], dict[str, tuple[Curve, ...]], tuple[Curve, ...]]:
-    """Trimmed faces of cut edges and of both ends, the chains around these, and the arcs between the two.
-
-    Of a blade cut from `blade`, with native `faces` of blunt edges; `walls` are those that cuts have made, by edge and
-    end.
-    """
-    revolved, chord = blade.plain.exact.mapping.revolved, float(np.real(blade.chord))
+def arcs_of(sides: tuple[Surface, Surface], walls: Walls, *, revolved: bool) -> dict[str, tuple[Curve, ...]]:
+    """The arcs at both ends of edges that are cut, by edge, from the upper to the lower side."""
     upper, lower = sides
-    arcs = {
+    return {
         edge: tuple(
             arc_between(upper.control_points[at, row], lower.control_points[at, row], revolved=revolved)
             for row in (0, -1)
@@ -82,7 +75,21 @@ def closing_faces(
         for edge, at in zip(EDGES, (0, -1), strict=True)
         if edge in walls
     }
-    found, outlines = {}, {}
+
+
+def closing_faces(
+    blade: "Blade",
+    sides: tuple[Surface, Surface],
+    arcs: Mapping[str, tuple[Curve, ...]],
+    outlines: Mapping[str, tuple[Curve, ...]],
+    walls: Walls,
+) -> dict[str, TrimmedSurface]:
+    """Trimmed faces of cut edges and of both ends, inside their outlines, of a blade cut from `blade`.
+
+    `walls` are the meridians that cuts have made, by edge and end. Raises DesignError where an outline does not follow.
+    """
+    revolved, chord = blade.plain.exact.mapping.revolved, float(np.real(blade.chord))
+    found = {}
     for edge, at in zip(EDGES, (0, -1), strict=True):
         if edge in walls:
             rows = [
@@ -92,11 +99,10 @@ def closing_faces(
             first, last = arcs[edge]
             chain = (rows[1], run_back(last), run_back(rows[0]), first)
             found[edge] = face_inside(chain, *walls[edge], revolved=revolved, chord=chord)
-    for row, name in zip((0, -1), ends, strict=True):
-        outlines[name] = around(sides, faces, arcs, row)
-        wall = walls[name] if name in walls else blade.end_wall(blade.design.ends[row])
-        found[name] = face_inside(outlines[name], *wall, revolved=revolved, chord=chord)
-    return found, outlines, tuple(arc for both in arcs.values() for arc in both)
+    for old, (name, outline) in zip(blade.design.ends, outlines.items(), strict=True):
+        wall = walls[name] if name in walls else blade.end_wall(old)
+        found[name] = face_inside(outline, *wall, revolved=revolved, chord=chord)
+    return found
 
 
 def face_inside(
@@ -164,7 +170,9 @@ def nearest_on_meridian(meridian: Curve, points: Reals) -> Reals:
     for _ in range(8):
         gap, slope, bend = points - line(u), line.derivative(u), line.derivative(u, 2)
         size = dot(slope, slope)
-        u = np.clip(u + dot(gap, slope) / np.maximum(size - dot(gap, bend), 0.1 * size), low, high)
+        before, u = u, np.clip(u + dot(gap, slope) / np.maximum(size - dot(gap, bend), 0.1 * size), low, high)
+        if np.max(np.square(u - before)) < (1e-9 * (high - low)) ** 2:
+            break
     return u
 
 

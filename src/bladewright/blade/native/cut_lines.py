@@ -1,6 +1,6 @@
 """Where lines of a blade's faces meet the meridian that cuts it, by Newton's method; and that meridian."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from typing import Literal, NamedTuple
 
@@ -31,6 +31,12 @@ class Crossing(NamedTuple):
     """(k,) parameter along each line"""
     t: Array
     """(k,) parameter of the meridian"""
+
+
+Found = tuple[Reals, Crossing]
+"""Places of lines, and where they meet a cut there."""
+Near = Mapping[str, Mapping[str, Found]]
+"""The same by cut and by face."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)

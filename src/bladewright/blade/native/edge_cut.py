@@ -17,13 +17,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from bladewright.blade.native.blade import Blade
-from bladewright.blade.native.cut_checks import Found, about, check_apart, check_edge_cut, meridian_of_cut, met
+from bladewright.blade.native.cut_checks import about, check_apart, check_edge_cut, meridian_of_cut, met, mirrored_edges
 from bladewright.blade.native.cut_faces import inner_knots, wall_normals
 from bladewright.blade.native.cut_lines import Lines
 from bladewright.blade.native.end_faces import EDGES
 from bladewright.blade.native.knots import DEGREE, Knots
 from bladewright.blade.native.recut import ON_CUT, native_faces, recut, survey_places
-from bladewright.blade.native.stretch import Stretch, stretch_between
+from bladewright.blade.native.stretch import CutChoices, Stretch, stretch_between
 from bladewright.numerics.elementary import Array
 from bladewright.nurbs.basis import Reals
 from bladewright.nurbs.curve import Curve
@@ -100,9 +100,7 @@ class EdgeCut:
     blade: Blade
     meridians: Mapping[str, Curve]
     """of the cuts, by edge, from hub to tip"""
-    near: Mapping[str, tuple[Found, Found]]
-    """places v and about where both sides meet a cut there"""
-    stretch: Stretch
+    choices: CutChoices
 
     @cached_property
     def survey(self) -> EdgeCutRows:
@@ -114,7 +112,7 @@ class EdgeCut:
         return np.empty(0)
 
     def breaks_along_u(self) -> Reals:
-        knots = self.stretch.knots(self.blade.knots.u, DEGREE)
+        knots = self.choices.stretch.knots(self.blade.knots.u, DEGREE)
         return knots[DEGREE + 1 : -DEGREE - 1]
 
     def breaks_along_v(self) -> Reals:
@@ -128,14 +126,12 @@ class EdgeCut:
             for edge, at in zip(EDGES, (0.0, 1.0), strict=True)
         ]
         first, last = blade.design.ends
-        own_lower = blade.plain.exact.survey.lower_edges()
-        mirrored = [own is None and edge not in self.meridians for own, edge in zip(own_lower, EDGES, strict=True)]
         return EdgeCutRows(
             v=v,
             sides=blade.sides,
             native={name: face for name, face in native_faces(blade).items() if name not in self.meridians},
-            mirrored=(mirrored[0], mirrored[1]),
-            stretch=self.stretch,
+            mirrored=self.choices.mirrored,
+            stretch=self.choices.stretch,
             starts=(ends[0][0], ends[0][1]),
             stops=(ends[1][0], ends[1][1]),
             walls=(blade.end_wall(first)[0], blade.end_wall(last)[0]),
@@ -143,8 +139,8 @@ class EdgeCut:
         )
 
     def _met(self, edge: str, side: int, v: Reals) -> Array:
-        found = met(self._lines(v)[side], self.meridians[edge], about(v, self.near[edge][side]), f"cut.{edge}")
-        return found.place
+        near = self.choices.near[edge][("upper", "lower")[side]]
+        return met(self._lines(v)[side], self.meridians[edge], about(v, near), f"cut.{edge}").place
 
     def _lines(self, v: Reals) -> tuple[Lines, Lines]:
         revolved = self.blade.plain.exact.mapping.revolved
@@ -155,15 +151,18 @@ class EdgeCut:
 def cut_edges(blade: Blade, design: "RowDesign", knots: Knots | None, *, fine: bool) -> Blade:
     """The blade with the edges cut that the design's `cut` names."""
     meridians = {edge: meridian_of_cut(blade, design, edge) for edge in EDGES if getattr(design.cut, edge) is not None}
-    near = {edge: check_edge_cut(blade, design, edge, meridian) for edge, meridian in meridians.items()}
-    ends = [
-        np.concatenate([np.real(found.place) for _, found in near[edge]]) if edge in near else np.array([at])
-        for edge, at in zip(EDGES, (0.0, 1.0), strict=True)
-    ]
-    check_apart(design, EDGES, ends[0], ends[1])
-    stretch = (
-        stretch_between(ends[0], ends[1], blade.knots.u) if knots is None or knots.stretch is None else knots.stretch
-    )
-    shape = EdgeCut(blade=blade, meridians=meridians, near=near, stretch=stretch)
+    choices = _chosen(blade, design, meridians) if knots is None or knots.cut is None else knots.cut
+    shape = EdgeCut(blade=blade, meridians=meridians, choices=choices)
     walls = {**blade.walls, **{edge: (meridian, inner_knots(meridian)) for edge, meridian in meridians.items()}}
-    return recut(shape, blade, design, knots, walls=walls, stretch=stretch, fine=fine, edges=ON_CUT)
+    return recut(shape, blade, design, knots, walls=walls, choices=choices, fine=fine, edges=ON_CUT)
+
+
+def _chosen(blade: Blade, design: "RowDesign", meridians: Mapping[str, Curve]) -> CutChoices:
+    near = {edge: check_edge_cut(blade, design, edge, meridian) for edge, meridian in meridians.items()}
+    low, high = (
+        np.concatenate([found.place for _, found in near[edge].values()]) if edge in near else np.array([at])
+        for edge, at in zip(EDGES, (0.0, 1.0), strict=True)
+    )
+    check_apart(design, EDGES, low, high)
+    stretch = stretch_between(low, high, blade.knots.u)
+    return CutChoices(stretch=stretch, mirrored=mirrored_edges(blade, meridians), near=near)

@@ -14,13 +14,13 @@ import numpy as np
 
 from bladewright.blade.exact.clearance import clearance_of
 from bladewright.blade.native.blade import Blade
-from bladewright.blade.native.cut_checks import Found, about, check_apart, check_end_cut, meridian_of_cut, met
+from bladewright.blade.native.cut_checks import about, check_apart, check_end_cut, meridian_of_cut, met, mirrored_edges
 from bladewright.blade.native.cut_clearance import cleared_meridian
 from bladewright.blade.native.cut_faces import inner_knots, wall_normals
 from bladewright.blade.native.cut_lines import Crossing, Lines, crossing_rates
 from bladewright.blade.native.knots import DEGREE, Knots
 from bladewright.blade.native.recut import native_faces, recut
-from bladewright.blade.native.stretch import Stretch, stretch_between
+from bladewright.blade.native.stretch import CutChoices, stretch_between
 from bladewright.numerics.elementary import Array
 from bladewright.nurbs.basis import Reals
 from bladewright.nurbs.curve import Curve
@@ -32,8 +32,6 @@ if TYPE_CHECKING:
 
 ENDS = ("hub", "tip")
 """Keys of the cuts of ends."""
-NearEnds = Mapping[str, Mapping[str, Found]]
-"""By end and face: places u, and about where the face's lines meet the cut there."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -64,7 +62,8 @@ class EndCutRows:
 
     def lower_edges(self) -> tuple[EdgeDerivatives | None, EdgeDerivatives | None]:
         first, last = (
-            None if same else self._edge("lower", at) for same, at in zip(self.cut.mirrored, (0.0, 1.0), strict=True)
+            None if same else self._edge("lower", at)
+            for same, at in zip(self.cut.choices.mirrored, (0.0, 1.0), strict=True)
         )
         return first, last
 
@@ -101,8 +100,7 @@ class EndCut:
     blade: Blade
     meridians: Mapping[str, Curve]
     """of the cuts, by `hub` and `tip`, along the flow"""
-    near: NearEnds
-    stretch: Stretch
+    choices: CutChoices
     walls: tuple[Curve, Curve]
     """meridians of both ends"""
 
@@ -110,12 +108,6 @@ class EndCut:
     def revolved(self) -> bool:
         """Whether the row is annular."""
         return self.blade.plain.exact.mapping.revolved
-
-    @property
-    def mirrored(self) -> tuple[bool, bool]:
-        """Whether the lower side mirrors the upper one at the edges: where they are round."""
-        own, walls = self.blade.plain.exact.survey.lower_edges(), self.blade.walls
-        return own[0] is None and "leading_edge" not in walls, own[1] is None and "trailing_edge" not in walls
 
     def face(self, name: str) -> Surface:
         """A native face of the blade."""
@@ -135,7 +127,7 @@ class EndCut:
         return self.blade.knots.u[DEGREE + 1 : -DEGREE - 1]
 
     def breaks_along_v(self) -> Reals:
-        knots = self.stretch.knots(self.blade.knots.v, DEGREE)
+        knots = self.choices.stretch.knots(self.blade.knots.v, DEGREE)
         return knots[DEGREE + 1 : -DEGREE - 1]
 
     def sections(self, v: Reals) -> EndCutRows:
@@ -144,7 +136,7 @@ class EndCut:
 
     def places(self, w: Reals, low: Array, high: Array) -> Array:
         """V (m, k) at w (m,) on lines that begin and end at l and h (k,)."""
-        return self.stretch.places(w[:, None], low, high, (low, high))
+        return self.choices.stretch.places(w[:, None], low, high, (low, high))
 
     def met(self, name: str, s: Reals) -> tuple[Crossing, Crossing]:
         """Where a face's lines at s (k,) begin and end."""
@@ -165,7 +157,7 @@ class EndCut:
         lines = self._lines(name, s)
         if end not in self.meridians:
             return Crossing(np.full(len(s), float(ENDS.index(end))), np.zeros(len(s))), lines
-        return met(lines, self.meridians[end], about(s, self.near[end][name]), f"cut.{end}"), lines
+        return met(lines, self.meridians[end], about(s, self.choices.near[end][name]), f"cut.{end}"), lines
 
     def _lines(self, name: str, s: Reals) -> Lines:
         return Lines(face=self.face(name), along="v", at=s, revolved=self.revolved)
@@ -182,24 +174,27 @@ def cut_ends(blade: Blade, design: "RowDesign", knots: Knots | None, *, fine: bo
         walls[wall] = meridian, inner_knots(meridian)
         clearance = clearance_of(design) if face == "tip" else None
         if clearance is not None:
-            meridian = cleared_meridian(blade, design, end, meridian, clearance, tip_knots)
+            held = None if knots is None or knots.cut is None else knots.cut.near[end]
+            near = check_end_cut(blade, design, end, meridian) if held is None else held
+            meridian = cleared_meridian(blade, end, meridian, clearance, near, tip_knots)
             inner = inner_knots(meridian)
             # at a single knot the fitted meridian is smooth up to what it misses
             walls[face] = meridian, inner[np.sum(inner[:, None] == inner, axis=0) > 1]
             tip_knots = meridian.knots
         meridians[end] = meridian
-    near = {end: check_end_cut(blade, design, end, meridian) for end, meridian in meridians.items()}
-    ends = [
-        np.concatenate([np.real(found.place) for _, found in near[end].values()]) if end in near else np.array([at])
-        for end, at in zip(ENDS, (0.0, 1.0), strict=True)
-    ]
-    check_apart(design, ENDS, *ends)
-    straight = blade.plain.exact.survey.skinning != "sections"
-    stretch = (
-        stretch_between(ends[0], ends[1], blade.knots.v, straight=straight)
-        if knots is None or knots.stretch is None
-        else knots.stretch
-    )
+    choices = _chosen(blade, design, meridians) if knots is None or knots.cut is None else knots.cut
     own = [walls[wall][0] if wall in walls else blade.end_wall(wall)[0] for wall in design.ends]
-    shape = EndCut(blade=blade, meridians=meridians, near=near, stretch=stretch, walls=(own[0], own[1]))
-    return recut(shape, blade, design, knots, walls=walls, stretch=stretch, fine=fine, tip=tip_knots)
+    shape = EndCut(blade=blade, meridians=meridians, choices=choices, walls=(own[0], own[1]))
+    return recut(shape, blade, design, knots, walls=walls, choices=choices, fine=fine, tip=tip_knots)
+
+
+def _chosen(blade: Blade, design: "RowDesign", meridians: Mapping[str, Curve]) -> CutChoices:
+    near = {end: check_end_cut(blade, design, end, meridian) for end, meridian in meridians.items()}
+    low, high = (
+        np.concatenate([found.place for _, found in near[end].values()]) if end in near else np.array([at])
+        for end, at in zip(ENDS, (0.0, 1.0), strict=True)
+    )
+    check_apart(design, ENDS, low, high)
+    straight = blade.plain.exact.survey.skinning != "sections"
+    stretch = stretch_between(low, high, blade.knots.v, straight=straight)
+    return CutChoices(stretch=stretch, mirrored=mirrored_edges(blade, {}), near=near)

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from bladewright.blade.native.stretch import Stretch
+from bladewright.blade.native.stretch import CutChoices
 from bladewright.frozen import FrozenRecord
 from bladewright.numerics.elementary import frozen
 from bladewright.nurbs.basis import Reals, greville
@@ -34,8 +34,8 @@ class Knots(FrozenRecord):
 
     bent_from: float | None = None
     """height from the uncut end, in v, at which curves of constant v begin to bend to a cut, where there is one"""
-    stretch: Stretch | None = None
-    """how the parameter runs across the blade that this one was cut from"""
+    cut: CutChoices | None = None
+    """what the cut of the blade before chose, where there is one"""
     before: Knots | None = None
     """of the blade that this one was cut or filleted from; None of a plain one"""
 

@@ -22,6 +22,9 @@ class LazyFaces(Mapping[str, Face]):
             self._found |= self._ends()
         return self._found[name]
 
+    def __contains__(self, name: object) -> bool:
+        return name in self._names
+
     def __iter__(self) -> Iterator[str]:
         return iter(self._names)
 

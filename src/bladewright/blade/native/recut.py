@@ -1,17 +1,19 @@
 """Native blades that interpolate a shape cut from other native sides."""
 
 from collections.abc import Mapping
+from functools import partial
 from typing import TYPE_CHECKING, cast
 
 import numpy as np
 
-from bladewright.blade.native.blade import Blade, side_surface
-from bladewright.blade.native.cut_faces import Walls, closing_faces
+from bladewright.blade.native.blade import Blade, Faces, side_surface
+from bladewright.blade.native.cut_faces import Walls, arcs_of, around, closing_faces
 from bladewright.blade.native.end_faces import EDGES
 from bladewright.blade.native.interpolation import edge_faces, native_sides
 from bladewright.blade.native.knots import DEGREE, MOST_POLES, Knots
+from bladewright.blade.native.lazy_faces import LazyFaces
 from bladewright.blade.native.refinement import Interpolated, approximation_error, refined_knots_of, wall_tolerance
-from bladewright.blade.native.stretch import Stretch
+from bladewright.blade.native.stretch import CutChoices
 from bladewright.errors import DesignError
 from bladewright.frozen import FrozenMapping
 from bladewright.nurbs.basis import Reals
@@ -36,7 +38,7 @@ def recut(
     knots: Knots | None,
     *,
     walls: Walls,
-    stretch: Stretch,
+    choices: CutChoices,
     fine: bool,
     edges: float | None = None,
     tip: Reals | None = None,
@@ -55,23 +57,29 @@ def recut(
         u, v, _ = refined_knots_of(
             shape, allowed, chord, walls=off_walls, edges=on_edges, shaped=(shaped[0], shaped[1])
         )
-        own = Knots(u=u, v=v, tip=tip, stretch=stretch, before=blade.knots)
+        own = Knots(u=u, v=v, tip=tip, cut=choices, before=blade.knots)
     sections = shape.sections(own.sites_v)
     upper, lower = (side_surface(net, own, DEGREE) for net in native_sides(sections, own))
     if knots is None:
         _check_reached(shape, design, own, (upper, lower), (allowed, off_walls), chord)
     native = edge_faces(sections, upper, lower, own)
-    trimmed, outlines, arcs = closing_faces(blade, (upper, lower), native, walls, design.ends)
+    arcs = arcs_of((upper, lower), walls, revolved=blade.plain.exact.mapping.revolved)
+    outlines = {name: around((upper, lower), native, arcs, row) for name, row in zip(design.ends, (0, -1), strict=True)}
+    trimmed = partial(closing_faces, blade, (upper, lower), arcs, outlines, walls)
+    own_faces = {"upper": upper, "lower": lower, **native}
+    faces: Faces = LazyFaces(own_faces, (*own_faces, *arcs, *design.ends), trimmed)
+    if not np.iscomplexobj(upper.control_points):
+        faces = FrozenMapping({**own_faces, **trimmed()})
     return Blade(
         design=design,
-        surfaces=FrozenMapping({"upper": upper, "lower": lower, **native, **trimmed}),
+        surfaces=faces,
         knots=own,
         chord=blade.chord,
         exact=blade.exact,
         before=blade,
         outlines=FrozenMapping(outlines),
         walls=FrozenMapping(walls),
-        edges=arcs,
+        edges=tuple(arc for both in arcs.values() for arc in both),
     )
 
 

@@ -13,6 +13,7 @@ from math import perm
 
 import numpy as np
 
+from bladewright.blade.native.cut_lines import Near
 from bladewright.frozen import FrozenRecord
 from bladewright.numerics.elementary import Array
 from bladewright.nurbs.basis import JOINT_TOLERANCE, Reals, knots_with_joints
@@ -56,6 +57,17 @@ class Stretch(FrozenRecord):
         whole = np.concatenate([np.zeros(degree + 1), inner, np.ones(degree + 1)])
         joints = [(self.bent[0], POWER - 1), (1.0 - self.bent[1], POWER - 1)]
         return knots_with_joints(whole, degree, [each for each in joints if 0.0 < each[0] < 1.0])
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class CutChoices(FrozenRecord):
+    """What a cut chooses for the real blade, and derivatives hold."""
+
+    stretch: Stretch
+    mirrored: tuple[bool, bool]
+    """whether the lower side mirrors the upper one at the edges: where they are round, and not cut"""
+    near: Near
+    """about where lines of the faces meet the cuts"""
 
 
 def stretch_between(low: Reals, high: Reals, knots: Reals, *, straight: bool = False) -> Stretch:
