@@ -216,6 +216,10 @@ REFUSED = {
         r"cut.leading_edge: it misses the blade from v = ",
     ),
     "crossing": ({"leading_edge": AtX(x=50.0), "trailing_edge": AtX(x=45.0)}, r"the cuts cross, or leave"),
+    "through the axis": (
+        {"leading_edge": ThroughPoints(points=((5.0, -20.0), (5.0, 300.0)))},
+        r"cut.leading_edge: its curve reaches down to r = -20 mm",
+    ),
     "nothing": (
         {"hub": ThroughPoints(points=((-50, 150), (150, 200))), "tip": ThroughPoints(points=((-50, 149), (150, 199)))},
         r"cut.hub and cut.tip: the cuts cross",

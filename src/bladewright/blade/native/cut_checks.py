@@ -34,14 +34,26 @@ ALONG = np.sin(0.5 * np.pi * np.linspace(0.0, 1.0, 49)) ** 2
 """Places along the sides at which the cut of an end is searched, denser at the edges."""
 ON_FACES = np.linspace(0.0, 1.0, 5)
 """The same on the faces of blunt edges."""
+ON_THE_CUT = 201
+"""Points of a cut at which its radius is looked at."""
 LEAST_LEFT = 0.02
 """Least share of a line, from edge to edge or from end to end, that cuts may leave: less is no blade."""
 
 
 def meridian_of_cut(blade: Blade, design: "RowDesign", name: str) -> Curve:
-    """The meridian (x, r) [m] of a cut, continued straight past the blade; from hub to tip, or along the flow."""
+    """The meridian (x, r) [m] of a cut, continued straight past the blade; from hub to tip, or along the flow.
+
+    Raises DesignError where it crosses the axis that the blade turns about.
+    """
     line = getattr(design.cut, name).line(design.metre).curve()
     revolved = blade.plain.exact.mapping.revolved
+    low, high = line.domain
+    lowest = float(np.min(np.real(line(np.linspace(low, high, ON_THE_CUT))[:, 1])))
+    if revolved and lowest < 0.0:
+        raise DesignError(
+            f"cut.{name}: its curve reaches down to r = {lowest / design.metre:.5g} {design.length_unit}: it must stay "
+            "above the axis; move its points"
+        )
     points = np.concatenate(
         [np.real(in_meridian(side.control_points.reshape(-1, 3), revolved)) for side in blade.sides]
     )
