@@ -13,6 +13,7 @@ from bladewright.blade.native.blade import Blade, Faces
 from bladewright.domain.cyclic_faces import CyclicFace, CyclicKnots, cyclic_face
 from bladewright.domain.wheel_body import WheelBody, WheelKnots, pitches_of
 from bladewright.frozen import FrozenMapping
+from bladewright.nurbs.curve import Curve
 from bladewright.nurbs.mass_properties import Face, MassProperties, repeated_properties
 from bladewright.nurbs.revolution import LEFT_HANDED, revolved
 from bladewright.nurbs.transform import rotated
@@ -54,6 +55,11 @@ class Sector(WheelBody):
     def orientations(self) -> Mapping[str, int]:
         """+1 for the faces whose dS/du x dS/dv points out of the sector, -1 for the others."""
         return FrozenMapping({name: sign for name, (_, sign) in self._oriented.items()})
+
+    @property
+    def edges(self) -> tuple[Curve, ...]:
+        """Curves in space along which trimmed faces meet: those of the blade."""
+        return self.blade.edges
 
     @cached_property
     def properties(self) -> MassProperties:

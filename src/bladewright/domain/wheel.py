@@ -93,8 +93,9 @@ class Wheel(WheelBody):
 
     @cached_property
     def edges(self) -> tuple[Curve, ...]:
-        """The periodic lines in space, along which the pieces of a wall meet."""
-        return tuple(transformed(pitch.periodic(-1), turn) for pitch in self.pitches for turn in self.turns)
+        """Curves in space along which trimmed faces meet: periodic lines, and those of the blades."""
+        once = [*self.blade.edges, *(pitch.periodic(-1) for pitch in self.pitches)]
+        return tuple(transformed(curve, turn) for turn in self.turns for curve in once)
 
     @cached_property
     def properties(self) -> MassProperties:
