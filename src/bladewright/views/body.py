@@ -2,6 +2,7 @@
 
 import re
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from textwrap import wrap
 from typing import TYPE_CHECKING, Any, Protocol
@@ -63,6 +64,8 @@ AROUND = 3
 """Points of a full turn, in points along a side."""
 WIDEST = 44
 """Letters in a line of names of faces."""
+SUNK = 1e-3
+"""How far walls are drawn inside the metal, in chords: more than their grids are off, less than is seen."""
 NOUGHT = 1e-9
 """Distance from the axis, in chords, that a table shows as 0: rounding."""
 Rows = list[tuple[str, str]]
@@ -87,6 +90,10 @@ class BladedBody(Protocol):
     @property
     def surfaces(self) -> Mapping[str, Face]:
         """Its faces [m]."""
+
+    @property
+    def orientations(self) -> Mapping[str, int]:
+        """+1 for a face whose dS/du x dS/dv points out of the body, -1 for the others."""
 
     @property
     def properties(self) -> Any:
@@ -153,6 +160,10 @@ def body_scene(body: BladedBody, size: tuple[int, int] = COARSE) -> Scene:
         surfaces, lines = repeated if found else once
         own = (found[3] or found[1]) if found else name.removeprefix("blade_")
         surface, around = _drawn(own, face, size, whole=copies > 1, of_blade=name.startswith("blade_"))
+        if own in WALLS:
+            # a fillet's foot is tangent to the wall, which must not be seen through it
+            sunk = SUNK * per_metre() * body.blade.chord * body.orientations[name]
+            surface = replace(surface, points=surface.points - sunk * surface.normals)
         surfaces.append(surface)
         lines += [] if found and not found[3] else around
     turns = [step * k for k in range(copies)]
@@ -251,8 +262,9 @@ def body_figures(body: BladedBody) -> Rows:
     others = [name for name in names if not name.startswith("blade")]
     rows_of += [(f"{len(body.surfaces)} faces", "")]
     for title, found_names in (("of a blade", kinds), ("others", others)):
-        lines = wrap(", ".join(found_names), WIDEST)
-        rows_of += [(title if line is lines[0] else " ", line) for line in lines]
+        # names of two words are not broken
+        lines = wrap(", ".join(name.replace(" ", "\0") for name in found_names), WIDEST)
+        rows_of += [(" " if index else title, line.replace("\0", " ")) for index, line in enumerate(lines)]
     return rows_of
 
 

@@ -15,7 +15,7 @@ def mass_rows(body: Any) -> list[tuple[str, str]]:
     if body.metal.density is None:
         return []
     report = body.mass_report()
-    centre = ", ".join(f"{round(float(x), 9):.4g}" for x in per_metre() * np.real(report.centre))
+    centre = ", ".join(f"{round(float(x), 9) + 0.0:.4g}" for x in per_metre() * np.real(report.centre) + 0.0)
     diagonal, around = (np.real(np.diag(each)) for each in (report.inertia, report.inertia_about_axis))
     figures = (
         f"{float(np.real(report.mass)):.5g} kg",

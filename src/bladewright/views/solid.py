@@ -30,6 +30,8 @@ EDGE, FAINT = (0.05, 0.16, 0.26), (0.55, 0.60, 0.65)
 FILLET = (0.40, 0.73, 0.67)
 """Colour that is mixed into that of a blade for its fillets."""
 SIDES, EDGES = ("upper", "lower"), ("leading_edge", "trailing_edge")
+SLOPE_STEP = 0.01
+"""Step of u from which the slope of a wall at a nose is taken."""
 FEW = 9
 """Points across a fillet and an end."""
 BORE_RADIUS = 0.8
@@ -132,7 +134,7 @@ def blade_surfaces(
         if name in hidden:
             continue
         points, normals = sampled(face, *places_on(name, size))
-        own = mixed(colour, FILLET) if "fillet" in name else colour
+        own = mixed(colour, FILLET) if "fillet" in name and colour == BLADE else colour
         surfaces.append(ShadedGrid(points=points, normals=normals, colour=own))
         if name in SIDES and not any("shroud_fillet" in each for each in blade.surfaces):
             lines.append(points[:, -1])
@@ -159,8 +161,7 @@ def mixed(one: tuple[float, float, float], other: tuple[float, float, float]) ->
 
 def hub_surfaces(blade: "Blade", turns: list[float]) -> list[ShadedGrid]:
     """The hub under the blades that are drawn [mm], a little longer than they are; under a whole row with its bore."""
-    exact, low, high = blade.exact, *_hub_range(blade)
-    wall = per_metre() * exact.wall_points("hub", np.linspace(low, high, 61))
+    exact, wall = blade.exact, per_metre() * _hub_wall(blade)
     base = per_metre() * np.concatenate(
         [np.real(blade.surfaces[name](cosine_spacing(41), 0.0)) for name in ("upper", "lower")]
     )
@@ -187,11 +188,32 @@ def hub_surfaces(blade: "Blade", turns: list[float]) -> list[ShadedGrid]:
     return surfaces
 
 
-def _hub_range(blade: "Blade") -> tuple[float, float]:
-    """Range of u over which the hub is drawn: a little past both edges of the blade."""
+def _hub_wall(blade: "Blade") -> Reals:
+    """Points (61, 2) [m] of the hub, or of the curve that cuts the blade there, a little past both of its edges."""
+    share, cut = np.linspace(0.0, 1.0, 61), blade.design.cut
+    if cut is not None and cut.hub is not None:
+        curve = blade.end_wall(blade.design.ends[0])[0]
+        start, end = curve.domain
+        return np.real(curve(start + (end - start) * share))
     stations = blade.exact.sections(np.zeros(1))
     u = np.real(stations.on_lines(np.concatenate(stations.plane_points(cosine_spacing(41)), axis=-2))[0])
-    return min(float(u.min()), 0.0) - 0.06, max(float(u.max()), 1.0) + 0.06
+    before, after = _past_section(blade, float(u.min()), float(u.max()))
+    low, high = min(float(u.min()) - before, 0.0) - 0.06, max(float(u.max()) + after, 1.0) + 0.06
+    return blade.exact.wall_points("hub", low + (high - low) * share)
+
+
+def _past_section(blade: "Blade", low: float, high: float) -> tuple[float, float]:
+    """How far in u a fillet's foot reaches before and behind the section at the hub, whose noses are at these u."""
+    if not any(name.startswith("hub_fillet") for name in blade.surfaces):
+        return 0.0, 0.0
+    foot = np.concatenate([np.real(curve(np.linspace(*curve.domain, 101))) for curve in blade.end_outline("hub")])
+    radius = length(foot[:, 1:]) if blade.exact.mapping.revolved else foot[:, 2]
+    places, found = np.stack([foot[:, 0], radius], axis=-1), []
+    for u, way in ((low, -1.0), (high, 1.0)):
+        nose, inside = blade.plain.exact.wall_points("hub", np.array([u, u - way * SLOPE_STEP]))
+        slope = (nose - inside) / SLOPE_STEP
+        found.append(max(float(np.max((places - nose) @ slope) / (slope @ slope)), 0.0))
+    return found[0], found[1]
 
 
 def _hub_surface(grid: Reals) -> ShadedGrid:
