@@ -17,17 +17,17 @@ def example(name):
         return bw.read_design(path)
 
 
-def export(design, blade):
-    """Write verified STEP and IGES files of the blade and a picture of what the design builds.
+def export(design, body):
+    """Write verified STEP and IGES files of a blade or a wheel, and a picture of what the design builds.
 
     They go to the directory that is the script's argument, or to exports/; NAME.roundtrip.json is what was measured.
     """
     directory = Path(sys.argv[1]) if len(sys.argv) > 1 else EXPORTS
     directory.mkdir(parents=True, exist_ok=True)
     for suffix in ("igs", "step"):
-        trip = cad.write(blade, directory / f"{blade.name}.{suffix}")
+        trip = cad.write(body, directory / f"{design.name}.{suffix}")
         print(trip)
         assert trip.passed, trip.failures
     report = json.dumps(trip.to_dict(), indent=2)
-    (directory / f"{blade.name}.roundtrip.json").write_text(report + "\n", encoding="utf-8")
-    views.picture(blade if design is blade.design else design, directory / f"{blade.name}.png")
+    (directory / f"{design.name}.roundtrip.json").write_text(report + "\n", encoding="utf-8")
+    views.picture(design if design.dimension == 2 else body, directory / f"{design.name}.png")

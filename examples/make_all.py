@@ -43,14 +43,15 @@ def listing(found):
         "# What the examples make",
         "",
         "`python examples/make_all.py` makes all of this again: for each example the STEP file (AP242, mm), the",
-        "report of its round trip and a picture of what its design builds. The scripts write IGES files too.",
+        "report of its round trip and a picture of what its design builds. The scripts write IGES files too. That of",
+        "`marine-propeller` is a wheel: three blades with their fillets and their hub as one solid.",
         "",
         "| example | measured by its script | side faces off by at most | volume | STEP |",
         "|---|---|---|---|---|",
     ]
     for name in NAMES:
         trip = json.loads((EXPORTS / f"{name}.roundtrip.json").read_text(encoding="utf-8"))
-        sides = max(face["max_deviation_mm"] for face in trip["faces"] if face["name"] in {"upper", "lower"})
+        sides = max(face["max_deviation_mm"] for face in trip["faces"] if face["name"].endswith(("upper", "lower")))
         volume = trip["volume_mm3"]
         size = (EXPORTS / f"{name}.step").stat().st_size / 1024
         lines.append(
@@ -71,7 +72,7 @@ def main(names):
     (EXPORTS / "README.md").write_text(listing(found), encoding="utf-8")
     total = sum(path.stat().st_size for path in EXPORTS.iterdir())
     print(f"exports/: {total / 1e6:.1f} MB")
-    assert total < 10e6
+    assert total < 16e6
 
 
 if __name__ == "__main__":

@@ -40,7 +40,7 @@ def test_every_machine_keeps_every_promise(name):
 
 @pytest.mark.parametrize("name", NAMES)
 def test_every_machine_holds_the_default_tolerance_with_a_moderate_number_of_poles(name):
-    columns, rows = blade(name).knots.poles
+    columns, rows = blade(name).plain.knots.poles
     assert blade(name).design.tolerance <= 1e-6
     # a STEP file takes about 105 bytes a pole and two sides: half a megabyte
     assert columns * rows * 2 * 105 < 5e5
