@@ -4,6 +4,7 @@ import re
 from pathlib import Path
 
 import key_pictures
+import part_key_pictures
 
 import bladewright as bw
 from bladewright.files.examples import example_text, examples
@@ -19,17 +20,18 @@ LAWS = (
 )
 
 
-def key_reference(family):
+def key_reference(family, of_parts):
     """The keys of a family's files, a section a table."""
     found = tables(family)
-    pictures = key_pictures.draw(family, PLACE / "pictures")
+    pictures = {**of_parts, **key_pictures.draw(family, PLACE / "pictures")}
     lines = [f"# Keys of `{family}`", "", found[0].meaning, ""]
     if any(key.laws for table in found for key in table.keys):
         lines += [LAWS, ""]
     if family in key_pictures.SHOWN_IN:
         example = key_pictures.SHOWN_IN[family]
         said = f"The pictures show the mid-span section of the example `{example}` (black), and what it becomes when"
-        lines += [f"{said} one key is raised (red) or lowered (blue) by the amount that is written below it.", ""]
+        said = f"{said} one key is raised (red) or lowered (blue) by the amount that is written below it."
+        lines += [f"{said} Those of [fillets, cuts and discs](../wheels.md) show the same of an impeller.", ""]
     for table in found:
         if table is found[0]:
             lines += ["## The file", ""]
@@ -95,7 +97,8 @@ def python_reference():
 
 def write(_app):
     (PLACE / "pictures").mkdir(parents=True, exist_ok=True)
-    pages = {f"keys-{family}": key_reference(family) for family in FAMILIES}
+    of_parts = part_key_pictures.draw(PLACE / "pictures")
+    pages = {f"keys-{family}": key_reference(family, of_parts) for family in FAMILIES}
     pages |= {"gallery": gallery(), "python": python_reference()}
     for name, lines in pages.items():
         (PLACE / f"{name}.md").write_text("\n".join(lines), encoding="utf-8")

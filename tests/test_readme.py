@@ -7,6 +7,7 @@ import shlex
 import shutil
 import subprocess
 import sys
+import tomllib
 from pathlib import Path
 
 import click
@@ -17,14 +18,25 @@ import bladewright as bw
 from bladewright.cli.program import program
 from bladewright.files.examples import example_text
 from bladewright.files.families import FAMILIES
+from bladewright.files.reading import design_from
 
 ROOT = Path(__file__).parents[1]
 README = ROOT / "README.md"
 PAGES = sorted((ROOT / "docs").glob("*.md"))
-LONG = ("derivatives", "passage-and-mesh")
+LONG = ("derivatives", "passage-and-mesh", "wheels")
 """pages whose Python takes seconds: a whole Jacobian, a passage and its mesh"""
 TEXTS = [*sorted(ROOT.glob("*.md")), *PAGES, *sorted(ROOT.glob("*/README.md")), *sorted((ROOT / "design").glob("*.md"))]
-EXAMPLES = ("fan-rotor", "turbine-section", "compressor-stator", "inlet-guide-vane", "propeller", "pump-inducer")
+COMPLETED_BY = {"hub_fillet": "marine-propeller", "cut": "pump-impeller", "disc": "pump-impeller"}
+"""the example whose file a table on a page is put into, by the table"""
+EXAMPLES = (
+    "fan-rotor",
+    "turbine-section",
+    "compressor-stator",
+    "inlet-guide-vane",
+    "propeller",
+    "pump-inducer",
+    "marine-propeller",
+)
 """design files that stand in the directory in which a page's blocks run, as `bladewright new` writes them"""
 MADE_WITH_THE_SITE = {f"generated/keys-{family}.md" for family in FAMILIES} | {"generated/gallery.md"}
 """pages that docs/generated_pages.py writes"""
@@ -51,6 +63,11 @@ def commands(path: Path) -> list[str]:
     """Lines of a page's shell blocks that call the program, in their order."""
     lines = "\n".join(blocks(path, "bash")).splitlines()
     return [line for line in lines if line.startswith("bladewright ")]
+
+
+def is_whole(text: str) -> bool:
+    """Whether a block is a whole design file, and not some of its tables."""
+    return "family = " in text
 
 
 COMMANDS = [line for path in (README, *PAGES) for line in commands(path)]
@@ -117,11 +134,18 @@ def test_the_python_of_a_page_runs(path: Path) -> None:
         assert any(values.values())
 
 
-@pytest.mark.parametrize("path", [path for path in PAGES if blocks(path, "toml")], ids=name_of)
-def test_the_design_files_of_a_page_build(path: Path, place: Path) -> None:
-    for text in blocks(path, "toml"):
-        (place / "design.toml").write_text(text)
-        assert bw.read_design(place / "design.toml").build().properties.volume > 0.0
+@pytest.mark.parametrize(
+    ("path", "text"),
+    [
+        pytest.param(path, text, marks=[] if is_whole(text) else [pytest.mark.slow], id=f"{name_of(path)} {number}")
+        for path in PAGES
+        for number, text in enumerate(blocks(path, "toml"))
+    ],
+)
+def test_a_design_file_of_a_page_builds_and_a_table_of_one_in_the_file_of_an_example(path: Path, text: str) -> None:
+    given = tomllib.loads(text)
+    document = given if is_whole(text) else tomllib.loads(example_text(COMPLETED_BY[next(iter(given))])) | given
+    assert design_from(document, path.stem).build().properties.volume > 0.0
 
 
 def test_the_design_file_that_is_explained_is_the_example() -> None:
