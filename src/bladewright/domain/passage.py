@@ -14,6 +14,7 @@ from bladewright.blade.native.blade import Blade, Faces
 from bladewright.blade.native.properties import blade_properties
 from bladewright.display import Shown
 from bladewright.domain.camber_lines import CamberLines
+from bladewright.domain.cut_duct import outline_volume
 from bladewright.domain.duct import Duct, annulus_volume
 from bladewright.domain.knots import BLADE_AT, PIECES, PassageKnots
 from bladewright.domain.periodic_sector import PeriodicSector, periodic_sector, sector_of
@@ -152,7 +153,11 @@ class Passage(FrozenRecord, Shown):
 
         In a cascade, of one pitch of the duct.
         """
-        volume = annulus_volume(self.duct, self.camber.joints)
+        cut = self.skin is not None and (self.skin.is_cut("hub") or self.skin.is_cut("shroud"))
+        if self.skin is not None and cut:
+            volume = outline_volume(self.skin.middle, revolved=self.duct.revolved)
+        else:
+            volume = annulus_volume(self.duct, self.camber.joints)
         return volume if self.duct.revolved else volume * 2.0 * self.half_pitch
 
     @cached_property

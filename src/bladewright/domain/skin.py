@@ -14,11 +14,13 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from bladewright.blade.native.blade import Blade
-from bladewright.blade.native.cut_faces import DRAWN
+from bladewright.blade.native.cut_faces import DRAWN, nearest_on_meridian
+from bladewright.blade.native.cut_lines import in_meridian
 from bladewright.blade.native.end_faces import Near, WallSurface, followed, nearest_on_wall
 from bladewright.blade.native.knots import DEGREE
 from bladewright.blade.native.properties import MOMENTS, side_moments
 from bladewright.domain.camber_lines import CamberLines
+from bladewright.domain.cut_duct import between_walls
 from bladewright.domain.duct import WALL_DEGREE, Duct
 from bladewright.domain.knots import BLADE_AT, PassageKnots
 from bladewright.domain.nets import middle_net, shifted
@@ -66,8 +68,17 @@ class Skin(FrozenRecord):
 
     @cached_property
     def middle(self) -> Surface:
-        """The surface of the camber lines: u along the flow over [0, 1], the blade at BLADE_AT, v hub to shroud."""
-        return self._surface(middle_net(self.camber, self.knots))
+        """The surface of the camber lines: u along the flow over [0, 1], the blade at BLADE_AT, v hub to shroud.
+
+        Between the walls that cuts of the blade's ends have made, where there are some.
+        """
+        whole = self._surface(middle_net(self.camber, self.knots))
+        cut = {wall: self.blade.walls[wall][0] for wall in ("hub", "shroud") if self.is_cut(wall)}
+        return between_walls(whole, cut, revolved=self.duct.revolved) if cut else whole
+
+    def is_cut(self, wall: str) -> bool:
+        """Whether a cut of the blade is the `hub` or the `shroud`."""
+        return wall in self.blade.walls
 
     @cached_property
     def periodic(self) -> dict[str, Surface]:
@@ -89,7 +100,10 @@ class Skin(FrozenRecord):
         """The exact `hub` and `shroud`, a little larger than the pitch between inlet and outlet."""
         margin = OVERHANG * self.duct.unit
         longer = replace(self.duct, low=self.duct.low - margin, high=self.duct.high + margin)
-        return {name: self._wall(name, longer.wall(name)) for name in ("hub", "shroud")}
+        return {
+            name: self._cut_wall(name) if self.is_cut(name) else self._wall(name, longer.wall(name))
+            for name in ("hub", "shroud")
+        }
 
     def places(self, wall: str) -> tuple[float, float]:
         """The parameters of a wall's meridian at which the skin begins and ends."""
@@ -183,7 +197,16 @@ class Skin(FrozenRecord):
             degree_v=DEGREE,
         )
 
-    def _wall(self, name: str, meridian: Curve) -> WallSurface:
+    def _cut_wall(self, name: str) -> WallSurface:
+        """The surface of a cut, a little past the ends of the middle surface on it."""
+        meridian, inner = self.blade.walls[name]
+        ends = in_meridian(np.real(self._middle_line(name).control_points[[0, -1]]), self.duct.revolved)
+        first, last = nearest_on_meridian(meridian, ends)
+        margin = OVERHANG * (last - first)
+        start, end = max(float(first - margin), meridian.domain[0]), min(float(last + margin), meridian.domain[1])
+        return self._wall(name, piece(meridian, start, end), inner[(inner > start) & (inner < end)])
+
+    def _wall(self, name: str, meridian: Curve, joints: Reals | None = None) -> WallSurface:
         half, revolved_ = float(np.real(self.half_pitch).flat[0]), self.duct.revolved
         line = self._middle_line(name)
         points = np.real(line(_places(line)))
@@ -200,8 +223,9 @@ class Skin(FrozenRecord):
                 f"{name}, and a trimmed wall is one face of less than a full turn: shorten them, or let the flow turn "
                 "to a lower inlet_angle or outlet_angle"
             )
-        inner, counts = np.unique(meridian.knots[WALL_DEGREE + 1 : -WALL_DEGREE - 1], return_counts=True)
-        joints = np.repeat(inner[counts > 1], counts[counts > 1])
+        if joints is None:
+            inner, counts = np.unique(meridian.knots[WALL_DEGREE + 1 : -WALL_DEGREE - 1], return_counts=True)
+            joints = np.repeat(inner[counts > 1], counts[counts > 1])
         return WallSurface(meridian=meridian, inner=joints, revolved=revolved_, low=low, high=high)
 
 
