@@ -77,7 +77,7 @@ DISCS = {
     ),
     ("Outline", "radii"): (
         {"outline": {"points": OUTLINE}},
-        {"outline": {"points": OUTLINE, "radii": [0, 4, 5, 12, 0]}},
+        {"outline": {"points": OUTLINE, "radii": [0, 5, 8, 25, 0]}},
         "a disc (black), and the same with three of its corners rounded (red)",
     ),
 }
@@ -134,6 +134,7 @@ def _across(axes, blades):
         points = np.concatenate([fillet(0.5, height), side(0.5, 0.25 * height)])
         origin = blades[0].surfaces["hub_fillet_upper"](0.5, 0.0)
         flat = np.stack([(points - origin) @ along_wall, (points - foot) @ upright], axis=-1)
+        flat = flat[flat[:, 1] < 5e-3]
         axes.plot(*flat.T, color=colour, linewidth=1.0)
         axes.plot([flat[0, 0], flat[0, 0] + 3e-3], [0.0, 0.0], color=BLACK, linewidth=1.0)
 
@@ -148,14 +149,14 @@ def _feet(axes, blades):
 
 def _covered(axes, blades):
     """What blades cover in the meridional plane: the first pale, the last red."""
-    for blade, colour, edge in zip(blades, ("0.85", "#e8b0b0"), ("0.85", "#e8b0b0"), strict=True):
+    for blade, colour in zip(blades, ("0.85", "#e8b0b0"), strict=False):
         u, v = (0.5 - 0.5 * np.cos(np.linspace(0.0, np.pi, count)) for count in (61, 13))
         for side in blade.sides:
             x, y, z = np.moveaxis(side.grid(u, v), -1, 0)
             flat = np.stack([x, np.hypot(y, z)], axis=-1)
             corners = flat[:-1, :-1], flat[1:, :-1], flat[1:, 1:], flat[:-1, 1:]
             axes.add_collection(
-                PolyCollection(np.stack(corners, axis=2).reshape(-1, 4, 2), facecolors=colour, edgecolors=edge)
+                PolyCollection(np.stack(corners, axis=2).reshape(-1, 4, 2), facecolors=colour, edgecolors=colour)
             )
     _walls(axes, blades[0])
 
@@ -167,7 +168,7 @@ def _walls(axes, blade):
 
 
 def _half_sections(axes, blades):
-    _covered(axes, [blades[0].plain, blades[0].plain])
+    _covered(axes, [blades[0].plain])
     for blade, colour in zip(blades, (BLACK, RED), strict=True):
         if blade.design.disc is not None:
             for line in carried_lines(sector(blade))["disc"]:

@@ -2,8 +2,13 @@
 
 import numpy as np
 import pytest
+from matplotlib.figure import Figure
 
+from bladewright.blade.design.cut import AtX, Cut
+from bladewright.blade.design.disc import Disc
+from bladewright.blade.design.fillet import Fillet
 from bladewright.domain.row import row
+from bladewright.domain.wheel import wheel
 from bladewright.nurbs.curve import Curve
 from bladewright.nurbs.revolution import Revolution
 from bladewright.nurbs.surface import Surface
@@ -11,8 +16,10 @@ from bladewright.nurbs.trimmed import TrimmedSurface
 from bladewright.views import body, body_view
 from bladewright.views.body import body_figures, body_scene, carried_lines, chained
 from bladewright.views.faces import borders, is_closed, meridian_line, sampled
+from bladewright.views.meridional import draw_meridional
 from bladewright.views.picture import sheet
-from bladewright.views.sections import foot_in_plane
+from bladewright.views.sections import draw_feet, foot_in_plane
+from bladewright.views.solid import BLADE, FILLET, HUB, mixed
 from bladewright.views.view3d import all_points
 from machines import built
 from machines.coarse import BLADES
@@ -100,3 +107,47 @@ def test_without_a_fillet_the_foot_is_the_section():
     sides = np.concatenate([np.real(section.curves[name](np.linspace(0.0, 1.0, 4001))) for name in ("upper", "lower")])
     gaps = np.min(np.linalg.norm(foot[:, None] - sides, axis=-1), axis=1)
     assert gaps.max() < 1e-3 * np.ptp(sides)
+
+
+@pytest.fixture(scope="module")
+def wheel_drawn():
+    parts = {"disc": Disc(thickness=8.0), "hub_fillet": Fillet(radius=4.0)}
+    return wheel(BLADES["rotor"].changed(parts).build())
+
+
+def test_what_a_wheel_is_drawn_to_cover_has_its_volume(wheel_drawn):
+    outline = chained(carried_lines(wheel_drawn)["disc"]) / 1e3
+    (x, r), (next_x, next_r) = outline.T, np.roll(outline, -1, axis=0).T
+    # Green: the integral of pi r^2 dx along straight lines
+    disc = abs(np.sum(np.pi / 3.0 * (r**2 + r * next_r + next_r**2) * (next_x - x)))
+    blades = wheel_drawn.blade.design.blade_count * wheel_drawn.blade.properties.volume
+    assert disc + blades == pytest.approx(wheel_drawn.properties.volume, rel=1e-4)
+
+
+def test_a_wheel_is_drawn_from_one_blade_and_one_piece_of_its_wall(wheel_drawn):
+    repeated, once = body_scene(wheel_drawn).groups
+    assert len(repeated.turns) == wheel_drawn.blade.design.blade_count
+    names = [name for name in wheel_drawn.surfaces if "_01" in name]
+    assert len(repeated.surfaces) == len(names) == 6  # both sides, both fillets, the shroud's end, the hub
+    assert len(once.surfaces) == len(wheel_drawn.surfaces) - len(names) * len(repeated.turns)
+    assert {surface.colour for surface in repeated.surfaces} == {BLADE, mixed(BLADE, FILLET), HUB}
+
+
+def test_a_fillet_is_seen_in_the_pictures_of_its_blade(wheel_drawn):
+    blade, axes = wheel_drawn.blade, Figure().add_subplot()
+    draw_meridional(axes, blade)
+    assert "fillet" in axes.get_legend_handles_labels()[1]
+    draw_feet(axes, blade, [blade.section(0.0), blade.section(1.0)])
+    assert [name for name in axes.get_legend_handles_labels()[1] if "foot" in name] == ["foot at hub"]
+    foot = foot_in_plane(blade, "hub", 0.0)
+    section = np.concatenate([np.real(curve(SHARES)) for curve in blade.section(0.0).curves.values()])
+    assert np.all(foot.min(axis=0) < section.min(axis=0))
+    assert np.all(foot.max(axis=0) > section.max(axis=0))
+
+
+def test_a_cut_is_seen_in_the_meridional_picture_of_its_blade():
+    axes = Figure().add_subplot()
+    draw_meridional(axes, BLADES["rotor"].changed("cut", Cut(leading_edge=AtX(x=30.0))).build())
+    lines = {line.get_label(): line for line in axes.get_lines()}
+    np.testing.assert_allclose(lines["cut"].get_xdata(), 30.0)
+    assert "blade" in axes.get_legend_handles_labels()[1]
