@@ -4,6 +4,7 @@ python design/wheels.py --record design/wheels.md
 """
 
 import argparse
+import os
 import subprocess
 import sys
 import tempfile
@@ -165,13 +166,16 @@ def measured(case: Case, folder: Path, *, programs: bool) -> list[str]:
 
 def others(path: Path, volume: float) -> str:
     """What FreeCAD and gmsh find in a file."""
-    script = path.with_suffix(".py")
+    script = path.with_name("measure.py")
     script.write_text(FREECAD.format(path=str(path)))
-    found = subprocess.run(["/usr/bin/freecadcmd", str(script)], capture_output=True, text=True, check=False).stdout
+    own = {name: value for name, value in os.environ.items() if not name.startswith("PYTHON")}
+    given = {"stdin": subprocess.DEVNULL, "capture_output": True, "text": True}
+    run = ["freecadcmd", str(script)]
+    found = subprocess.run(run, check=False, env={**own, "HOME": str(path.parent)}, **given).stdout
     told = next((line.split() for line in found.splitlines() if line.startswith("FREECAD")), None)
     free = "failed" if told is None else f"{told[1]} {'valid' if told[2:4] == ['True', 'True'] else 'invalid'}"
     run = [sys.executable, "-c", GMSH.format(path=str(path))]
-    found = subprocess.run(run, capture_output=True, text=True, check=False).stdout
+    found = subprocess.run(run, check=False, **given).stdout
     told = next((line.split() for line in found.splitlines() if line.startswith("GMSH")), None)
     mesh = "failed" if told is None else f"{told[1]} ({float(told[2]) / volume / 1e9 - 1.0:.0e})"
     return f"{free}, {mesh}"

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from bladewright.blade.design.disc import Disc, Outline
+from bladewright.blade.design.fillet import Fillet
 from bladewright.domain.build import passage
 from bladewright.domain.disc import lines_and_arcs
 from bladewright.domain.duct import annulus_volume
@@ -39,6 +40,12 @@ def shrouded():
     return with_parts(coarse.RADIAL, disc=back, shroud_ring=Disc(thickness=2.0))
 
 
+@pytest.fixture(scope="module")
+def bodies(rotor, shrouded):
+    """Sector and wheel of each."""
+    return {"rotor": (sector(rotor), wheel(rotor)), "shrouded": (sector(shrouded), wheel(shrouded))}
+
+
 def test_arcs_are_exact_and_enclose_what_pappus_says():
     points = np.array([[0.0, 5.0], [0.0, 2.0], [4.0, 2.0], [4.0, 5.0]])
     radii = np.array([0.5, 1.0])
@@ -54,9 +61,9 @@ def test_arcs_are_exact_and_enclose_what_pappus_says():
 
 
 @pytest.mark.parametrize("name", ["rotor", "shrouded"])
-def test_a_wheel_is_its_sectors_and_both_are_the_ring_and_the_blades(name, request):
-    blade = request.getfixturevalue(name)
-    one, all_ = sector(blade), wheel(blade)
+def test_a_wheel_is_its_sectors_and_both_are_the_ring_and_the_blades(name, bodies):
+    one, all_ = bodies[name]
+    blade = one.blade
     count = blade.design.blade_count
     volume = count * blade.properties.volume + sum(pitch.carrier.volume for pitch in all_.pitches)
     assert all_.properties.volume == pytest.approx(count * one.properties.volume, rel=1e-9)
@@ -69,18 +76,18 @@ def test_a_wheel_is_its_sectors_and_both_are_the_ring_and_the_blades(name, reque
     np.testing.assert_allclose(moments[1], moments[2], rtol=1e-9)
 
 
-def test_faces_have_the_names_that_users_rely_on(rotor, shrouded):
+def test_faces_have_the_names_that_users_rely_on(bodies):
     discs = [f"disc_{number}" for number in range(1, 7)]
     outline = ["hub", "rim_front", *discs[:3], "bore", *discs[3:], "rim_back"]
-    assert list(sector(rotor).surfaces)[2:] == ["blade_shroud", *outline, "cyclic_low", "cyclic_high"]
-    names = set(wheel(shrouded).surfaces)
+    assert list(bodies["rotor"][0].surfaces)[2:] == ["blade_shroud", *outline, "cyclic_low", "cyclic_high"]
+    names = set(bodies["shrouded"][1].surfaces)
     expected = {"blade_07_upper", "hub_01", "hub_09", "shroud_05", "rim_front", "rim_back", "bore", "disc_1"}
     assert expected | {"ring_front", "ring_outside", "ring_back"} <= names
     assert not {"blade_01_hub", "blade_01_shroud"} & names
 
 
-def test_blades_of_a_wheel_are_turned_copies(rotor):
-    made = wheel(rotor)
+def test_blades_of_a_wheel_are_turned_copies(rotor, bodies):
+    made = bodies["rotor"][1]
     net = made.surfaces["blade_05_lower"].control_points
     own = rotor.surfaces["lower"].control_points
     np.testing.assert_allclose(net[..., 0], own[..., 0], rtol=0, atol=0)
@@ -88,8 +95,8 @@ def test_blades_of_a_wheel_are_turned_copies(rotor):
     np.testing.assert_allclose(turn, 4 * 2 * np.pi / 17, rtol=1e-12)
 
 
-def test_a_cyclic_face_is_straight_at_each_theta_and_its_neighbour_a_pitch_further(shrouded):
-    made = sector(shrouded)
+def test_a_cyclic_face_is_straight_at_each_theta_and_its_neighbour_a_pitch_further(bodies):
+    made = bodies["shrouded"][0]
     u, v = np.linspace(0.0, 1.0, 41)[:, None], np.linspace(0.0, 1.0, 5)
     for kind in ("cyclic", "ring_cyclic"):
         low, high = (made.surfaces[f"{kind}_{name}"](u, v) for name in ("low", "high"))
@@ -99,30 +106,31 @@ def test_a_cyclic_face_is_straight_at_each_theta_and_its_neighbour_a_pitch_furth
         np.testing.assert_allclose(low[[0, -1], 0], low[[0, -1], -1], atol=1e-15)
 
 
-def test_the_edges_of_a_cyclic_face_are_its_own_control_points_to_the_bit(rotor):
-    (face,) = sector(rotor).cyclic
+def test_the_edges_of_a_cyclic_face_are_its_own_control_points_to_the_bit(bodies):
+    (face,) = bodies["rotor"][0].cyclic
     own = list(map(tuple, face.surface.control_points[:, 1]))
     for edge in face.edges.values():
         first = own.index(tuple(edge.control_points[0]))
         assert own[first : first + len(edge.control_points)] == list(map(tuple, edge.control_points))
 
 
-def test_passage_and_sector_fill_the_annulus_between_bore_and_shroud():
-    plain = coarse.ROTOR.build()
-    around = passage(plain)
-    duct, metre = around.duct, plain.design.metre
+@pytest.mark.parametrize("fillet", [None, Fillet(radius=1.5)], ids=["plain", "filleted"])
+def test_passage_and_sector_fill_the_annulus_between_bore_and_shroud(fillet):
+    blade = with_parts(coarse.ROTOR, hub_fillet=fillet)
+    around = passage(blade)
+    duct, metre = around.duct, blade.design.metre
     ends = duct.lines(np.zeros(1)).position(np.array([duct.low, duct.high]))[0] / metre
     (x_0, r_0), (x_1, r_1) = ends
     disc = outlined((x_0, r_0), (x_0, 50.0), (x_1, 50.0), (x_1, r_1))
-    made = sector(replace(plain, design=replace(plain.design, disc=disc)))
+    made = sector(replace(blade, design=replace(blade.design, disc=disc)))
     metal = 17 * made.properties.volume + 17 * around.properties.volume
     annulus = annulus_volume(duct, around.camber.joints) + made.pitches[0].carrier.volume
     assert metal == pytest.approx(annulus, rel=1e-6)
 
 
-@pytest.mark.parametrize("path", ["disc.outline.points[1].r", "disc.outline.points[0].x", "stagger[1]"])
-def test_volume_and_cyclic_faces_follow_the_parameters(rotor, path):
-    knots, design = sector(rotor).knots, rotor.design
+@pytest.mark.parametrize("path", ["disc.outline.points[0].x", "stagger[1]"])
+def test_volume_and_cyclic_faces_follow_the_parameters(rotor, bodies, path):
+    knots, design = bodies["rotor"][0].knots, rotor.design
     value = design.parameters()[path]
 
     def figures(changed):
