@@ -7,7 +7,11 @@ import bladewright as bw
 from bladewright import cad
 from bladewright.blade.design.cut import AtRadius, AtX, Cut
 from bladewright.blade.design.meridional_curve import ThroughPoints
+from bladewright.blade.native.cut_faces import face_inside
 from bladewright.errors import DesignError
+from bladewright.nurbs.domain import reversed as run_back
+from bladewright.nurbs.fit import interpolated
+from bladewright.nurbs.revolution import segment
 from machines import COARSE, built, coarse, example, stacked
 from machines.sectioned import COMPRESSOR, DIFFUSER, IMPELLER, PLATE, STATOR, VANE
 
@@ -206,6 +210,19 @@ def test_the_volume_falls_with_the_face_of_a_trim():
     rate = bw.sensitivity(design, lambda body: body.properties.volume, free="cut*")["cut.trailing_edge.radius"]
     area = blade.surfaces["trailing_edge"].area()
     assert rate == pytest.approx(area * 1e-3, rel=1e-4)
+
+
+def test_a_face_may_wind_by_more_than_half_a_turn():
+    """Two helices on a cylinder from theta = 0 to 4 rad, around a strip of known area."""
+    t = np.linspace(0.0, 1.0, 41)
+    sides = []
+    for sign in (-1.0, 1.0):
+        theta = 4.0 * t + 0.1 * sign * np.sin(np.pi * t)
+        sides.append(interpolated(np.stack([t, np.sin(theta), np.cos(theta)], axis=-1), t, degree=5))
+    wall = segment((-0.5, 1.0), (1.5, 1.0))
+    face = face_inside((sides[0], run_back(sides[1])), wall, np.zeros(0), revolved=True, chord=1.0)
+    assert face.area() == pytest.approx(0.4 / np.pi, rel=1e-6)
+    assert face.revolution.end - face.revolution.start < 4.5
 
 
 REFUSED = {

@@ -115,8 +115,7 @@ def face_inside(
     surface.
     """
     near = [near_on_wall(meridian, curve, revolved=revolved) for curve in chain]
-    first = near[0][2][0]
-    near = [_beside(each, first) if revolved else each for each in near]
+    near = _one_after_another(near) if revolved else near
     own, across = (np.concatenate([each[i] for each in near]) for i in (1, 2))
     margin, low, high = BESIDE * np.ptp(own), *meridian.domain
     start, end = max(low, float(np.min(own) - margin)), min(high, float(np.max(own) + margin))
@@ -186,9 +185,14 @@ def wall_normals(meridian: Curve, points: Array, *, revolved: bool) -> Reals:
     return np.concatenate([-slope[:, 1:], outward], axis=-1)
 
 
-def _beside(near: Near, first: float) -> Near:
-    places, u, across = near
-    return places, u, across - 2.0 * np.pi * np.round((across[0] - first) / (2.0 * np.pi))
+def _one_after_another(chain: Sequence[Near]) -> list[Near]:
+    """The curves of a chain by whole turns to where each begins at the theta at which the one before ends."""
+    found, last = [], chain[0][2][0]
+    for places, u, across in chain:
+        turned = across - 2.0 * np.pi * np.round((across[0] - last) / (2.0 * np.pi))
+        found.append((places, u, turned))
+        last = turned[-1]
+    return found
 
 
 def inner_knots(meridian: Curve) -> Reals:
