@@ -58,7 +58,10 @@ def filleted(blade: Blade, design: RowDesign, knots: Knots | None = None, *, fin
     for wall, touch in rolled.touches.items():
         net = touch.sections.net()
         degree, net = len(net) - 1, np.swapaxes(net[::-1] if wall == "hub" else net, 0, 1)
+        mine, theirs = (-1, 0) if wall == "hub" else (0, -1)
         for name, part in zip(SIDES, around.split(net), strict=True):
+            # one row, to the bit
+            part[:, mine] = faces[name].control_points[:, theirs]
             faces[f"{wall}_fillet_{name}"] = Surface(
                 control_points=part,
                 knots_u=own.u,
