@@ -2,6 +2,7 @@
 
 import re
 from dataclasses import replace
+from importlib.resources import files
 
 import numpy as np
 import pytest
@@ -230,6 +231,16 @@ def test_a_refusal_names_the_largest_radius_that_holds(design):
 def test_a_blade_that_leans_into_its_wall_has_no_fillet():
     with pytest.raises(bw.DesignError, match=r"meet at 17\d deg, which it cannot fill; no smaller one holds either"):
         with_fillets(RADIAL).build()
+
+
+@pytest.mark.parametrize(
+    ("example", "corner"),
+    [("vaned-diffuser", "its leading edge is sharp"), ("wedge-diffuser", "it ends in a back face")],
+)
+def test_a_blade_with_corners_is_refused(example, corner):
+    design = bw.read_design(files("bladewright") / "examples" / f"{example}.toml")
+    with pytest.raises(bw.DesignError, match=corner):
+        design.changed("hub_fillet", Fillet(radius=0.3)).build()
 
 
 def test_a_suction_side_that_is_not_known_is_refused():

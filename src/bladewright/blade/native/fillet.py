@@ -15,11 +15,11 @@ import numpy as np
 from bladewright.blade.native.above_fillet import SpanSplines
 from bladewright.blade.native.blade import Blade
 from bladewright.blade.native.closed_section import LOWER, UPPER, SectionSplines
-from bladewright.blade.native.end_faces import EndKnots, WallSurface, end_row, end_within, stretch_about
+from bladewright.blade.native.end_faces import EDGES, EndKnots, WallSurface, end_row, end_within, stretch_about
 from bladewright.blade.native.fillet_knots import FilletKnots, chosen_knots
 from bladewright.blade.native.knots import DEGREE, Knots
 from bladewright.blade.native.lazy_faces import Face, LazyFaces
-from bladewright.blade.native.rolling_ball import Rolled, Touch, balls_of, closed_section, orders_of
+from bladewright.blade.native.rolling_ball import WALLS, Rolled, Touch, balls_of, closed_section, orders_of
 from bladewright.errors import DesignError
 from bladewright.frozen import FrozenMapping
 from bladewright.nurbs.basis import Reals
@@ -42,7 +42,7 @@ def filleted(blade: Blade, design: RowDesign, knots: Knots | None = None, *, fin
 
     Raises DesignError where a fillet does not hold.
     """
-    _check_smooth(blade)
+    _check_round(blade, design)
     section = closed_section(blade)
     balls = balls_of(blade, section, design)
     held = knots if isinstance(knots, FilletKnots) else None
@@ -133,6 +133,19 @@ def _reach(meridian: Curve, t: Reals) -> tuple[float, float]:
     return low if first > low else first - margin, high if last < high else last + margin
 
 
-def _check_smooth(blade: Blade) -> None:
-    if blade.edge_kinds != ("round", "round") or blade.back is not None:
-        raise DesignError("a fillet was asked of a blade with a blunt or sharp edge: give it round edges")
+def _check_round(blade: Blade, design: RowDesign) -> None:
+    """Refuse corners along the blade, about which the ball would have to pivot."""
+    name = next(f"{wall}_fillet" for wall in WALLS if getattr(design, f"{wall}_fillet") is not None)
+    sections = blade.exact.survey
+    edges = [
+        ("cut" if edge in blade.surfaces and kind == "round" else kind, edge)
+        for edge, kind in zip(EDGES, sections.edge_kinds, strict=True)
+    ]
+    corner = next((f"its {edge.replace('_', ' ')} is {kind}" for kind, edge in edges if kind != "round"), None)
+    if sections.back is not None:
+        corner = "it ends in a back face"
+    if corner is not None:
+        raise DesignError(
+            f"{name} is given, but the blade has corners, for {corner}: the ball rolls around round edges only; round "
+            "the edges off, or leave the fillet out"
+        )
