@@ -164,8 +164,8 @@ def _at_few_spans(face: Surface, direction: Direction, ends: tuple[float, ...]) 
     knots, degree = direction_of(face, direction)
     values, counts = np.unique(knots, return_counts=True)
     most = SPANS_U if direction == "u" else SPANS_V
-    if direction == "u":
-        # a third derivative may jump there
+    if direction == "u" or _varies(face.weights, direction):
+        # a third derivative may jump there, or arcs join
         ends = tuple(values[counts >= degree - 2].tolist())
     found = [0]
     for start, end in pairwise(np.searchsorted(values, ends).tolist()):

@@ -139,9 +139,14 @@ def side_curve(face: Surface, side: int) -> tuple[Curve, bool]:
 
 
 def smooth_pieces(curve: Curve) -> tuple[Curve, ...]:
-    """The parts of a curve between its corners (inner knots of full multiplicity), with the same control points."""
+    """The parts of a curve between its corners (inner knots of full multiplicity), with the same control points.
+
+    Where weights vary, the joints of smooth arcs count too: other programs integrate along a whole edge at once.
+    """
     degree = curve.degree
     inner, counts = np.unique(curve.knots[degree + 1 : -degree - 1], return_counts=True)
+    if curve.weights is not None and np.ptp(curve.weights) > 0.0 and np.any(counts == degree - 1):
+        return split(curve, inner[counts >= degree - 1])
     cuts = [curve.knots[0], *inner[counts == degree], curve.knots[-1]]
     # index of the control point that the curve passes through at a corner
     places = [0, *(int(np.searchsorted(curve.knots, cut)) - 1 for cut in cuts[1:-1]), len(curve.control_points) - 1]
