@@ -78,7 +78,10 @@ class Skin(FrozenRecord):
 
     def is_cut(self, wall: str) -> bool:
         """Whether a cut of the blade is the `hub` or the `shroud`."""
-        return wall in self.blade.walls
+        cut = self.blade.design.cut
+        given = cut is not None and (cut.hub if wall == "hub" else cut.tip) is not None
+        # a fillet states its wall too, which stays the duct's own
+        return given and wall in self.blade.walls
 
     @cached_property
     def periodic(self) -> dict[str, Surface]:
