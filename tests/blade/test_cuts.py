@@ -272,3 +272,10 @@ def test_a_cut_blade_of_every_family_survives_its_files(name, tmp_path):
     for ending in ("step", "igs"):
         trip = cad.write(blade, tmp_path / f"cut.{ending}", samples=400)
         assert trip.passed, trip.failures
+
+
+def test_a_cylinder_may_be_crossed_against_the_sense_of_the_edge():
+    """Along the cylinder the outlet of a radial turbine runs from shroud to hub, and its cut from hub to shroud."""
+    design = example("radial-turbine").changed("tolerance", COARSE)
+    blade = built(cut(design, trailing_edge=AtRadius(radius=50.0)))
+    assert 0.0 < blade.properties.volume < built(design).properties.volume

@@ -23,6 +23,7 @@ from bladewright.errors import DesignError
 from bladewright.numerics.elementary import length
 from bladewright.nurbs.basis import Reals
 from bladewright.nurbs.curve import Curve
+from bladewright.nurbs.domain import reversed as run_back
 from bladewright.nurbs.surface import Surface
 
 if TYPE_CHECKING:
@@ -62,12 +63,14 @@ def meridian_of_cut(blade: Blade, design: "RowDesign", name: str) -> Curve:
         return float(np.max(length(points - point)))
 
     meridian = continued(line, reach, revolved=revolved)
+    # it runs as the places do at which the first and the last line meet it; elsewhere, as those nearest to their ends
+    lines = _lines(blade, blade.sides[0], name, np.array([0.0, 1.0]))
+    met_by = searched(lines.real(), real_curve(meridian))
+    if all(len(each) == 1 for each in met_by):
+        return meridian if met_by[0][0][1] < met_by[1][0][1] else run_back(meridian)
     upper = np.real(in_meridian(blade.sides[0].control_points[[0, 0, -1, -1], [0, -1, 0, -1]], revolved))
-    if name == "leading_edge":
-        return along(meridian, upper[0], upper[1])
-    if name == "trailing_edge":
-        return along(meridian, upper[2], upper[3])
-    return along(meridian, upper[0], upper[2]) if name == "hub" else along(meridian, upper[1], upper[3])
+    ends = {"leading_edge": (0, 1), "trailing_edge": (2, 3), "hub": (0, 2), "tip": (1, 3)}[name]
+    return along(meridian, *upper[list(ends)])
 
 
 def check_edge_cut(blade: Blade, design: "RowDesign", edge: str, meridian: Curve) -> dict[str, Found]:
