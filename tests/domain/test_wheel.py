@@ -126,6 +126,8 @@ def test_passage_and_sector_fill_the_annulus_between_bore_and_shroud(fillet):
     metal = 17 * made.properties.volume + 17 * around.properties.volume
     annulus = annulus_volume(duct, around.camber.joints) + made.pitches[0].carrier.volume
     assert metal == pytest.approx(annulus, rel=1e-6)
+    # a fillet's foot stands on the channel's own hub
+    assert not made.pitches[0].skin.is_cut("hub")
 
 
 @pytest.mark.parametrize("path", ["disc.outline.points[0].x", "stagger[1]"])
