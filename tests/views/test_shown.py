@@ -12,7 +12,10 @@ from matplotlib.image import imread
 
 from bladewright import cad
 from bladewright.display import Shown
+from bladewright.domain.row import Row
 from bladewright.domain.section import section_passage
+from bladewright.domain.sector import Sector
+from bladewright.domain.wheel import Wheel
 from bladewright.views.html import frame, table
 from bladewright.views.picture import sheet
 from bladewright.views.shown import KINDS
@@ -67,8 +70,8 @@ def test_plot_returns_a_figure_that_pyplot_does_not_know_and_a_notebook_shows(na
 
 def test_every_kind_of_result_is_shown_and_a_blade_as_the_picture_of_show():
     direct = Shown.__subclasses__()
-    kinds = [*direct, *(below for kind in direct for below in kind.__subclasses__())]
-    assert {kind.shown_as for kind in kinds if hasattr(kind, "shown_as")} <= set(KINDS)
+    kinds = [Row, Sector, Wheel, *direct, *(below for kind in direct for below in kind.__subclasses__())]
+    assert {kind.shown_as for kind in kinds if hasattr(kind, "shown_as")} == set(KINDS)
     assert KINDS["blade"].figure is KINDS["passage"].figure is sheet
 
 
