@@ -18,18 +18,18 @@ from bladewright.blade.design.fillet import Fillet
 
 SHARES = (0.003, 0.006, 0.012, 0.025, 0.04, 0.06)
 """radii over the chord"""
-PROVEN = (0.012,)
+PROVEN = (0.003, 0.012, 0.06)
 """radii whose solid is written and compared; of the others it is built"""
 NAMED = re.compile(r"largest that holds is ([\d.e+-]+) ")
 
 
 def built(design, wall: str, radius: float):
-    start = time.perf_counter()
+    start = time.process_time()
     try:
         blade = design.changed(f"{wall}_fillet", Fillet(radius=radius)).build()
     except bw.DesignError as error:
-        return None, str(error), time.perf_counter() - start
-    return blade, "", time.perf_counter() - start
+        return None, str(error), time.process_time() - start
+    return blade, "", time.process_time() - start
 
 
 def line(design, plain, plain_time: float, wall: str, share: float, folder: Path) -> str:
@@ -59,9 +59,9 @@ def main(names: list[str]) -> None:
             design = bw.read_design(path) if path.name.endswith(".toml") else None
             if design is None or design.dimension != 3 or (names and design.name not in names):
                 continue
-            start = time.perf_counter()
+            start = time.process_time()
             plain = design.build()
-            plain_time = time.perf_counter() - start
+            plain_time = time.process_time() - start
             for wall in (name for name in design.ends if name != "tip"):
                 for share in SHARES:
                     rows.append(line(design, plain, plain_time, wall, share, Path(folder)))
@@ -75,6 +75,12 @@ def main(names: list[str]) -> None:
         (
             f"`python design/fillets.py`: {len(rows)} fillets, of which {counts['proven']} are proven by a round trip, "
             f"{counts['built']} built and {counts['refused']} refused."
+        ),
+        "",
+        (
+            "Seconds are of processor time, beside the build without a fillet. The fillet of a straight blade on a flat "
+            "wall has the volume of Pappus within 1e-6 (tests/blade/test_fillets.py). OpenCASCADE 7.9 gives none to "
+            "compare with: of vki-ls89, fused to a block behind its hub, MakeFillet makes none of 0.6, 1.2 and 2.5 %."
         ),
         "",
         "| example | wall | % of the chord | radius | | | seconds added | volume added [mm^3] |",

@@ -11,6 +11,7 @@ from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.interpolate import BSpline
 
 from bladewright.blade.native.knots import DEGREE
 from bladewright.frozen import FrozenRecord
@@ -203,8 +204,6 @@ def _matrix(knots: Reals, places: Reals, *, closed: bool) -> Reals:
         return basis(knots, DEGREE, places)
     tiled, count = _tiled(knots), len(knots)
     start = tiled[DEGREE]
-    full = basis(tiled, DEGREE, start + np.mod(places - start, 2.0))
-    folded = np.zeros((len(places), count))
-    for k in range(full.shape[1]):
-        folded[:, k % count] += full[:, k]
-    return folded
+    full = BSpline.design_matrix(start + np.mod(places - start, 2.0), tiled, DEGREE).toarray()
+    # a function and the one a turn later are the same
+    return np.asarray(full[:, :count] + np.pad(full[:, count:], ((0, 0), (0, 2 * count - full.shape[1]))))
