@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -13,9 +13,10 @@ from bladewright.blade.native.closed_section import ClosedSection, SectionSpline
 from bladewright.blade.native.contacts import Contacts
 from bladewright.blade.native.end_faces import EndKnots
 from bladewright.blade.native.fillet_limits import check_fillets
-from bladewright.blade.native.knots import DEGREE, MOST_POLES, Knots, refined
+from bladewright.blade.native.knots import DEGREE, Knots, refined
 from bladewright.blade.native.refinement import RESERVE, wall_tolerance
 from bladewright.blade.native.rolling_ball import Ball, Rolled, Touch, orders_of
+from bladewright.errors import DesignError
 from bladewright.frozen import FrozenMapping
 from bladewright.numerics.elementary import Array, cross, dot, length, unit
 from bladewright.nurbs.basis import Reals, basis
@@ -24,6 +25,9 @@ ON_BALL = 1e-6
 """Largest distance of a fillet from its ball, of the ball's radius."""
 ON_WALL = 1e-6
 """Largest angle between the tangent planes of fillet and wall at the foot [rad]."""
+MOST_POLES = (300, 150)
+"""Control points of a side above its fillets along u and v at which knots are added no more: half as many again as a
+plain blade may have, for what the foot asks for along u and two joints along v."""
 LINES = 12
 """About how many lines along the span are looked at on each side for the knots there."""
 LEVELS = (0.0, 0.02, 0.05, 0.1, 0.2, 0.4, 0.7)
@@ -69,7 +73,7 @@ def _along_span(plain: Reals, rolled: Rolled, balls: Mapping[str, Ball], joints:
         off = np.tensordot(basis(knots, DEGREE, at), net, axes=1) - few.above(joints, at)
         return np.max(length(off), axis=1) / tolerance
 
-    return refined(first_knots(plain, joints), miss, MOST_POLES[1])
+    return _reached(refined(first_knots(plain, joints), miss, MOST_POLES[1]), miss, "span")
 
 
 def _around(
@@ -101,7 +105,24 @@ def _around(
             error = np.max([error, *errors], axis=0)
         return np.maximum(error[: len(at)], error[len(at) :])
 
-    return refined(plain, miss, MOST_POLES[0])
+    return _reached(refined(plain, miss, MOST_POLES[0]), miss, "chord")
+
+
+def _reached(knots: Reals, miss: Callable[[Reals, Reals], Reals], along: str) -> Reals:
+    """The knots; raises DesignError where the limits are not held on them."""
+    spans = np.unique(knots)
+    places = (spans[1:] + spans[:-1]) / 2.0
+    error = RESERVE * miss(knots, places)
+    worst = int(np.argmax(error))
+    if error[worst] > 1.0:
+        name = "u" if along == "chord" else "v"
+        raise DesignError(
+            f"hub_fillet or shroud_fillet: near {name} = {places[worst]:.3f} native surfaces miss what is promised of "
+            f"them {error[worst]:.2g} times with {len(knots) - DEGREE - 1} poles along the {along}, at most "
+            f"{MOST_POLES[along == 'span']} are used: take a smaller fillet, raise the tolerance, or raise a very "
+            "small edge radius there"
+        )
+    return knots
 
 
 def _off_ball(touch: Touch, middle: Array) -> Reals:
