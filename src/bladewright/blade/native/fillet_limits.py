@@ -65,7 +65,7 @@ def _refusal(wall: str, sizes: list[Reals], share: float, reason: str, unit: str
     asked = (
         f"{wall}_fillet is {most:.6g} {unit}"
         if least > (1.0 - 1e-9) * most
-        else f"{wall}_fillet is {least:.6g} to {most:.6g} {unit}"
+        else f"{wall}_fillet is {least:.4g} to {most:.4g} {unit}"
     )
     if share == 0.0:
         return f"{asked}: {reason}; no smaller one holds either: leave it out"
@@ -183,5 +183,10 @@ def _meeting(blade: Blade, wall: str, touch: Touch) -> str | None:
         return f"its foot on the {wall} crosses itself"
     spacing = float(np.real(np.ravel(design.spacing))[0])
     if touching(foot[None], spacing) is not None:
-        return f"it meets the fillet of the neighbouring blade on the {wall}"
+        scale = np.array(
+            [float(np.mean(length(np.real(each)))) for each in touch.ball.wall.slopes(found.t, found.across)]
+        )
+        apart = length((foot[:, None] - foot - np.array([0.0, spacing])) * scale)
+        nearest = int(order[np.argmin(np.min(apart, axis=1))])
+        return f"{_place(found.sites, nearest)} it meets the fillet of the neighbouring blade on the {wall}"
     return None
