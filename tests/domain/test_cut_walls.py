@@ -6,6 +6,7 @@ import pytest
 import bladewright as bw
 from bladewright import cad
 from bladewright.blade.design.cut import AtRadius, AtX, Cut
+from bladewright.blade.design.fillet import Fillet
 from bladewright.blade.design.meridional_curve import ThroughPoints
 from bladewright.errors import DesignError
 from machines import built, coarse
@@ -15,6 +16,7 @@ TIP = ThroughPoints(points=((-120.0, 228.0), (40.0, 226.0), (220.0, 222.0)))
 CUT = {
     "both ends and the trailing edge": coarse.ROTOR.changed("cut", Cut(hub=HUB, tip=TIP, trailing_edge=AtX(x=68.0))),
     "a tip with its clearance": coarse.CLEARED.changed("cut", Cut(tip=TIP)),
+    "a tip beside a fillet": coarse.ROTOR.changed({"cut": Cut(tip=TIP), "hub_fillet": Fillet(radius=2.0)}),
     "a cascade": coarse.CASCADE.changed("cut", Cut(hub=AtRadius(radius=10.0), tip=AtRadius(radius=70.0))),
 }
 
