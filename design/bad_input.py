@@ -2,6 +2,7 @@
 
     python design/bad_input.py --share 0.05 --seed 1
     python design/bad_input.py --of designs --like wedge --share 1
+    python design/bad_input.py --of parts --share 1
 
 The design files are those of the built-in examples; the files of T-Blade3 and ParaBlade are beside the repository. Each
 broken one must be read, or refused in one paragraph that names it, within LIMIT seconds of processor time, without a
@@ -27,6 +28,7 @@ from typing import Any
 
 import numpy as np
 
+from bladewright.domain.sector import sector
 from bladewright.errors import BladewrightError
 from bladewright.files.examples import example_text, examples
 from bladewright.files.parablade import import_parablade
@@ -42,6 +44,22 @@ VALUES: tuple[Any, ...] = (-1, 0, 1e9, 10**9, float("nan"), "text", [], [1.0], {
 """what takes the place of a key's value"""
 WORDS = ("oops", "nan", "-1", "0", "1e9", "")
 """what takes the place of a number in a line"""
+PARTS = """
+density = 4430.0
+disc = { outline = { points = [[-8, 94], [-8, 60], [80, 30], [97, 60], [97, 118.5]], radii = [3, 5, 3] } }
+shroud_ring = { thickness = 4, upstream = 5, downstream = 5 }
+[cut]
+tip = { points = [[-200, 236], [200, 232]] }
+trailing_edge = { x = 62 }
+[hub_fillet]
+kind = "curvature"
+radius = { leading_edge = 1, upper = 1.5, trailing_edge = 1, lower = 1.5 }
+[shroud_fillet]
+kind = "ellipse"
+on_blade = 1.0
+on_wall = 0.8
+"""
+"""every part, in numbers that Rotor 67 takes"""
 FINE = frozenset({"taken", "refused"})
 _NUMBER = re.compile(r"(?<![\w.])[-+]?(?:\d+\.?\d*|\.\d+)(?:[eEdD][-+]?\d+)?(?![\w.])")
 
@@ -138,6 +156,34 @@ def broken_designs(name: str, text: str, *, build: bool = True) -> Iterator[Brok
             yield Broken(name, change, tried(path, value))
 
 
+def broken_parts(*, build: bool = True) -> Iterator[Broken]:
+    """The rotor with every part that a design may have, each key of these left out or given another value.
+
+    What is built is made a sector as well, which looks at disc and ring.
+    """
+    document = tomllib.loads(example_text("nasa-rotor-67")) | tomllib.loads(PARTS)
+
+    def tried(path: tuple[Any, ...], value: Any) -> Callable[[], Any]:
+        def run() -> Any:
+            design = design_from(_changed(document, path, value), "parts")
+            if not build:
+                return None
+            try:
+                blade = design.build()  # type: ignore[attr-defined]
+                return sector(blade) if blade.design.disc or blade.design.shroud_ring else blade
+            except BladewrightError as error:
+                raise type(error)(f"parts: {error}") from error
+
+        return run
+
+    for key, part in tomllib.loads(PARTS).items():
+        for path in ((key,), *(_paths(part, (key,)) if isinstance(part, dict) else ())):
+            said = ".".join(map(str, path))
+            for value in (_ABSENT, *VALUES):
+                change = f"without {said}" if value is _ABSENT else f"{said} = {value!r}"
+                yield Broken("parts", change, tried(path, value))
+
+
 def broken_files(
     files: dict[str, str], of: str, run: Callable[[dict[str, str]], Any], lines: range | None = None
 ) -> Iterator[Broken]:
@@ -213,6 +259,8 @@ def _all(of: str, like: str, folder: Path, *, build: bool) -> Iterator[Broken]:
         for name in examples():
             if like in name:
                 yield from broken_designs(f"{name}.toml", example_text(name), build=build)
+    if of in ("all", "parts"):
+        yield from broken_parts(build=build)
     if of in ("all", "tblade3"):
         for case in sorted((DATA / "tblade3").glob("*/input")):
             files = {path.name: path.read_text() for path in sorted(case.iterdir())}
@@ -229,7 +277,7 @@ def _all(of: str, like: str, folder: Path, *, build: bool) -> Iterator[Broken]:
 
 def main() -> int:
     parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
-    parser.add_argument("--of", choices=("all", "designs", "tblade3", "parablade"), default="all")
+    parser.add_argument("--of", choices=("all", "designs", "parts", "tblade3", "parablade"), default="all")
     parser.add_argument("--like", default="", help="part of the name of what is broken")
     parser.add_argument("--share", type=float, default=0.02, help="of all that can be broken")
     parser.add_argument("--seed", type=int, default=0)

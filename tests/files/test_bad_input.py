@@ -55,6 +55,10 @@ def test_a_design_file_with_a_wrong_key_is_built_or_refused_in_one_paragraph():
         assert wrong(drawn(bad_input.broken_designs(name, example_text(name)), 4)) == []
 
 
+def test_parts_with_a_wrong_key_are_read_or_refused_in_one_paragraph():
+    assert wrong(drawn(bad_input.broken_parts(build=False), 100)) == []
+
+
 def test_a_broken_case_of_tblade3_is_imported_or_refused_in_one_paragraph(tmp_path):
     run = bad_input.imported(tmp_path, "3dbgbinput.7.dat", import_tblade3, build=False)
     assert wrong(drawn(bad_input.broken_files(CASE, str(tmp_path), run), 25)) == []
