@@ -14,14 +14,14 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from bladewright.blade.native.blade import Blade
-from bladewright.blade.native.cut_faces import DRAWN, nearest_on_meridian
+from bladewright.blade.native.cut_faces import DRAWN, inner_knots, nearest_on_meridian
 from bladewright.blade.native.cut_lines import in_meridian
 from bladewright.blade.native.end_faces import Near, WallSurface, followed, nearest_on_wall
 from bladewright.blade.native.knots import DEGREE
 from bladewright.blade.native.properties import MOMENTS, side_moments
 from bladewright.domain.camber_lines import CamberLines
 from bladewright.domain.cut_duct import between_walls
-from bladewright.domain.duct import WALL_DEGREE, Duct
+from bladewright.domain.duct import Duct
 from bladewright.domain.knots import BLADE_AT, PassageKnots
 from bladewright.domain.nets import middle_net, shifted
 from bladewright.errors import DesignError, GeometryError
@@ -227,7 +227,7 @@ class Skin(FrozenRecord):
                 "to a lower inlet_angle or outlet_angle"
             )
         if joints is None:
-            inner, counts = np.unique(meridian.knots[WALL_DEGREE + 1 : -WALL_DEGREE - 1], return_counts=True)
+            inner, counts = np.unique(inner_knots(meridian), return_counts=True)
             joints = np.repeat(inner[counts > 1], counts[counts > 1])
         return WallSurface(meridian=meridian, inner=joints, revolved=revolved_, low=low, high=high)
 
