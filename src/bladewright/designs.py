@@ -144,6 +144,11 @@ class Design(Part, ABC):
     """whether the flow domain shown of a 2D design is curves in its plane instead of its prismatic passage"""
 
     @property
+    def plain(self) -> Self:
+        """The design of what is built before cuts and fillets: itself, where there are none."""
+        return self
+
+    @property
     def thickness_laws(self) -> Mapping[str, ChordwiseLaw]:
         """Half-thickness laws along the chord of the `upper` and the `lower` side, in families that have such laws."""
         return {}

@@ -174,6 +174,11 @@ def _check_call(
                 f"{kind.__name__}{'' if family is None else f' of the family {family.name}'}: give such a design, "
                 f"or {'points of the other kind' if family is None else 'another family'}"
             )
+        if design is not None and design.plain is not design:
+            raise FitError(
+                f"{label} has a cut or fillets, and a fit matches the blade before them: leave them and the points on "
+                "their faces out, and put them into the design that is found"
+            )
     _check_flow_path(start, like, resized=tolerance is not None or count is not None)
     if tolerance is not None and not 0.0 < tolerance < np.inf:
         raise FitError(f"tolerance is {tolerance!r}: a positive length in metres is needed, such as 5e-5")
