@@ -9,6 +9,7 @@ import numpy as np
 from bladewright.blade.native.blade import Blade
 from bladewright.blade.native.knots import DEGREE
 from bladewright.domain.disc import KINDS, Carrier, Kind, carrier, shortfalls
+from bladewright.domain.extents import MAX_EXTENT
 from bladewright.domain.knot_selection import skin_knots
 from bladewright.domain.knots import BLADE_AT, PassageKnots
 from bladewright.domain.passage_spec import PassageSpec
@@ -109,16 +110,20 @@ def _skin(spec: PassageSpec, knots: PassageKnots) -> Skin:
 def _long_enough(spec: PassageSpec, wanted: list[Kind]) -> Skin:
     """A skin that reaches past the outlines' ends."""
     design = spec.blade.design
-    knots = skin_knots(spec, None, None)
+    knots = skin_knots(spec, None, None, filled=False)
     for _ in range(LENGTHENINGS):
-        skin = _skin(spec, knots)
-        short = np.max(
-            [shortfalls(getattr(design, kind.field), _wall_line(skin, kind), design.metre) for kind in wanted], axis=0
-        )
+        try:
+            skin = _skin(spec, knots)
+            lines = [(getattr(design, kind.field), _wall_line(skin, kind)) for kind in wanted]
+        except DesignError as error:
+            fields = " or ".join(kind.field for kind in wanted)
+            raise DesignError(f"{fields}: the wall cannot be continued to the outline's ends: {error}") from error
+        short = np.max([shortfalls(part, line, design.metre) for part, line in lines], axis=0)
         if not short.any():
             break
         more = np.where(short > 0.0, short / knots.length + FURTHER, 0.0)
-        knots = skin_knots(spec, knots.upstream + more[0], knots.downstream + more[1])
+        upstream, downstream = np.minimum(np.array([knots.upstream, knots.downstream]) + more, MAX_EXTENT)
+        knots = skin_knots(spec, upstream, downstream, filled=False)
     return skin
 
 

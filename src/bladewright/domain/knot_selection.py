@@ -93,11 +93,14 @@ def unfolded_walls(
     return start, walls
 
 
-def skin_knots(spec: PassageSpec, upstream: float | None, downstream: float | None) -> PassageKnots:
+def skin_knots(
+    spec: PassageSpec, upstream: float | None, downstream: float | None, *, filled: bool = True
+) -> PassageKnots:
     """The knots of a skin whose walls are trimmed faces: cross-lines do not matter, and the duct may be as short.
 
     `upstream` and `downstream` are extents, where stated; others are shortened where the walls would wind more than a
-    turn. The middle surface keeps WALL_TOLERANCE on both walls.
+    turn. The middle surface keeps WALL_TOLERANCE on both walls. Where nothing is to fill the duct between them, they
+    may cross.
     """
     exact = spec.exact
     start = replace(
@@ -107,7 +110,8 @@ def skin_knots(spec: PassageSpec, upstream: float | None, downstream: float | No
         shift=_middle_shift(spec),
     )
     start = _past_feet(spec, start, (upstream is None, downstream is None))
-    check_duct(spec.duct(start), exact.meridional_extent)
+    if filled:
+        check_duct(spec.duct(start), exact.meridional_extent)
     for _ in range(SHORTENINGS):
         if not exact.mapping.revolved or max(spec.winding(start).values()) < FULL_TURN:
             break
