@@ -37,7 +37,7 @@ HEAD = """\
 there is one.
 
 * walls off: hub and shroud from their surfaces of revolution, of the chord (limit 1e-7);
-* fold: least Jacobian of the walls' patches in (m', theta), of its median;
+* fold: least Jacobian of the walls' patches in (m', theta), of its median; "trimmed" with `--walls trimmed`;
 * ring: blade count x (passage + blade) over the ring between inlet and outlet, less one (limit 1e-6);
 * periodic poles: one boundary's from the other's moved by a pitch, of their extent (limit 1e-12);
 * STEP: the round trip's deviation of untrimmed faces (limit 1e-6 mm) and of the volume (limit 1e-6);
@@ -67,23 +67,24 @@ def designs():
             yield f"{name}, gap", design.changed("tip_clearance", GAP * span)
 
 
-def measured(name, design, directory, *, cut):
+def measured(name, design, directory, *, cut, walls):
     """One row of the table."""
     blade = design.build()
     start = time.process_time()
-    passage = bw.passage(blade)
+    passage = bw.passage(blade, walls=walls)
     native = time.process_time() - start
     filled = (design.blade_count or 1) * (passage.properties.volume + blade.properties.volume)
     start = time.process_time()
     trip = cad.write(passage, Path(directory) / "passage.step")
     written = time.process_time() - start
-    faces = max(face["max_deviation_mm"] for face in trip.to_dict()["faces"] if face["name"] != "tip")
+    untrimmed = {name for name, face in passage.surfaces.items() if not hasattr(face, "boundary")}
+    faces = max(face["max_deviation_mm"] for face in trip.to_dict()["faces"] if face["name"] in untrimmed)
     off = ""
     if cut:
         off = _cut(blade, passage)
     figures = [
         f"{passage.wall_error:.1e}",
-        f"{min(share for share, _, _ in passage.folds.values()):.3f}",
+        f"{min(share for share, _, _ in passage.folds.values()):.3f}" if passage.folds else "trimmed",
         f"{filled / passage.ring - 1.0:.1e}",
         f"{periodic(passage):.1e}",
         f"{faces:.1e} mm",
@@ -109,7 +110,7 @@ def _cut(blade, passage):
 def periodic(passage):
     """Largest distance of the upper periodic poles from the lower ones moved by a pitch, of their extent."""
     lower, upper = (passage.whole[f"periodic_{half}"].control_points for half in ("lower", "upper"))
-    by = 2.0 * float(passage.walls["hub_upper"].half_pitch)
+    by = 2.0 * float(passage.half_pitch)
     x, y, z = np.moveaxis(lower, -1, 0)
     if passage.duct.revolved:
         moved = np.stack([x, y * np.cos(by) + z * np.sin(by), z * np.cos(by) - y * np.sin(by)], axis=-1)
@@ -123,12 +124,13 @@ def main():
     parser.add_argument("names", nargs="*", help="examples, all where none is named")
     parser.add_argument("--record", type=Path, help="Markdown file for the result")
     parser.add_argument("--no-cut", action="store_true", help="leave out the cut, which takes most of the time")
+    parser.add_argument("--walls", choices=["auto", "trimmed"], default="auto", help="what the walls are made of")
     given = parser.parse_args()
     rows = []
     with tempfile.TemporaryDirectory() as directory:
         for name, design in designs():
             if not given.names or name.split(",")[0] in given.names:
-                rows.append(measured(name, design, directory, cut=not given.no_cut))
+                rows.append(measured(name, design, directory, cut=not given.no_cut, walls=given.walls))
                 print(rows[-1], flush=True)
     if given.record:
         given.record.write_text(_table(rows), encoding="utf-8")

@@ -39,6 +39,18 @@ def test_a_passage_past_blunt_edges_is_one_solid_and_a_mesh_with_their_groups(pa
     assert {"blade_leading_edge", "hub_stagnation", "shroud_wake", "blade_trailing_edge"} <= groups
 
 
+@pytest.mark.usefixtures("gmsh")
+def test_a_passage_with_trimmed_walls_is_a_mesh_whose_walls_are_one_group_each(passage, tmp_path):
+    step, mesh = tmp_path / "trimmed.step", tmp_path / "trimmed.msh"
+    trimmed = bw.passage(passage.blade, walls="trimmed")
+    trip = cad.write(trimmed, step, samples=200)
+    assert trip.passed, trip.failures
+    report = meshing.mesh(step, mesh, passage=trimmed, size=0.4, smallest=0.05)
+    assert report.passed, report.failures
+    assert {face.name for face in report.faces} == set(trimmed.surfaces) > {"hub", "shroud"}
+    assert report.periodic_triangles
+
+
 def test_sizes_grow_away_from_the_faces_of_blunt_edges(passage):
     plan = sizes(passage, size=0.4, smallest=1e-3, curvature=12.0)
     assert [source.face for source in plan.sources] == ["blade_leading_edge", "blade_trailing_edge"]
