@@ -89,10 +89,10 @@ def _cut(draw, blade):
 
 def _cut_curve(draw, blade, name):
     """Where a blade is cut: along a line between two of its borders, or at that line's mean x or radius."""
-    share = draw.uniform(-0.02, 0.3)
+    share = draw.uniform(0.03, 0.3) if draw.random() < 0.9 else draw.uniform(-0.1, 0.03)
     share = share if name in {"hub", "leading_edge"} else 1.0 - share
     places = np.linspace(0.05, 0.95, int(draw.integers(2, 6)))
-    share = share + draw.uniform(-0.1, 0.1) * (places - 0.5)
+    share = share + draw.uniform(-0.05, 0.05) * (places - 0.5)
     borders = [
         _meridional(blade, *((places, end) if name in {"hub", "tip"} else (end, places)))
         for end in (np.zeros(len(places)), np.ones(len(places)))
@@ -101,7 +101,7 @@ def _cut_curve(draw, blade, name):
     ends = [0.4 * (points[i] - points[j]) / (places[1] - places[0]) for i, j in ((0, 1), (-1, -2))]
     points = np.concatenate([points[:1] + ends[0], points, points[-1:] + ends[1]])
     (x, r), spread = points.mean(axis=0), np.ptp(points, axis=0)
-    if draw.random() < 0.3:
+    if draw.random() < 0.8 and min(spread) < 0.15 * max(spread):
         return AtX(x=float(x)) if spread[0] < spread[1] or r <= 0.0 else AtRadius(radius=float(r))
     pairs = random_blades.pairs(points)
     return ThroughPoints(points=pairs) if draw.random() < 0.6 else ControlPolygon(control_points=pairs)
