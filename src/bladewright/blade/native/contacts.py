@@ -29,6 +29,8 @@ STEPS = 12
 """Newton's steps for a ball: from a tangent predictor three to five reach rounding."""
 SETTLED = 1e-11
 """Residual, of the radius, at which a ball touches both: a thousand times rounding, a millionth of what is promised."""
+ROUNDED = 1e-4
+"""Size of a ball, of the blade's extent, below which rounding of its coordinates is more than SETTLED."""
 SEARCHED = 400
 """Places of a meridian among which the nearest begins the search for a point's own."""
 
@@ -214,8 +216,9 @@ def _differences(
 def _settled(
     section: ClosedSection, wall: Wall, sites: Sites, sizes: tuple[Reals, Reals], x: Reals
 ) -> tuple[Reals, Reals]:
-    """The contacts by Newton's steps from nearby, and their residuals, over the size."""
-    extent = np.maximum(np.maximum(*sizes), np.finfo(np.float64).tiny)
+    """The contacts by Newton's steps from nearby, and their residuals, over the size of the ball."""
+    far = float(np.ptp(section.upper.control_points, axis=(0, 1)).max())
+    extent = np.maximum(np.maximum(*sizes), ROUNDED * far)
     for _ in range(STEPS):
         miss, jacobian = _differences(section, wall, sites, sizes, x)
         if np.all(length(miss) < SETTLED * extent):

@@ -50,7 +50,7 @@ def check_fillets(blade: Blade, balls: Mapping[str, Ball], rolled: Rolled) -> No
     for _ in range(SEARCHED):
         share = 0.5 * (low + high)
         smaller = {name: scaled(ball, share) if name == wall else ball for name, ball in balls.items()}
-        own = obstacle(blade, Rolled.at(rolled.section, smaller, rolled.sites))
+        own = obstacle(blade, Rolled.at(rolled.section, smaller, rolled.sites), at=wall)
         low, high, at_high = (share, high, at_high) if own is None else (low, share, own)
     sizes = [
         np.real(size) / design.metre
@@ -84,14 +84,15 @@ def scaled(ball: Ball, share: float) -> Ball:
     return replace(ball, sizes=sizes)
 
 
-def obstacle(blade: Blade, rolled: Rolled) -> Obstacle | None:
-    """The first reason why fillets do not hold."""
-    for wall, touch in rolled.touches.items():
+def obstacle(blade: Blade, rolled: Rolled, *, at: str | None = None) -> Obstacle | None:
+    """The first reason why fillets do not hold, or the one `at` a wall."""
+    touches = {wall: touch for wall, touch in rolled.touches.items() if at in (None, wall)}
+    for wall, touch in touches.items():
         for check in (_no_contact, _off_path, _at_angle, _folding):
             reason = check(blade, wall, touch)
             if reason is not None:
                 return Obstacle(wall, reason)
-    for wall, touch in rolled.touches.items():
+    for wall, touch in touches.items():
         reason = _too_high(blade, wall, rolled) or _meeting(blade, wall, touch)
         if reason is not None:
             return Obstacle(wall, reason)
