@@ -49,7 +49,10 @@ WHEEL = 12
 FINE = frozenset({"built", "no wheel", "blade only", "refused"})
 """what may become of a design"""
 REASONS = {
-    "a blunt or sharp edge": "a fillet at a corner of the blade",
+    "the ball rolls around round edges only": "a fillet at a blade that has corners",
+    "miss what is promised": "a fillet is not reached within 300 poles along the chord",
+    "touches the blade past": "a fillet is higher than its blade",
+    "foot lies past the end": "a fillet reaches past the end of its wall",
     "misses the blade": "a cut misses the blade",
     "2 times along": "a cut crosses the blade twice",
     "which is blunt already": "a cut crosses a back face",
