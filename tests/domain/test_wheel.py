@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from bladewright.blade.design.cut import AtRadius, AtX, Cut
 from bladewright.blade.design.disc import Disc, Outline
 from bladewright.blade.design.fillet import Fillet
 from bladewright.domain.build import passage
@@ -74,6 +75,17 @@ def test_a_wheel_is_its_sectors_and_both_are_the_ring_and_the_blades(name, bodie
     moments = np.diag(all_.properties.inertia)
     np.testing.assert_allclose(all_.properties.centroid[1:], 0.0, atol=1e-9)
     np.testing.assert_allclose(moments[1], moments[2], rtol=1e-9)
+
+
+def test_a_rim_ends_as_far_past_a_trimmed_edge_as_is_stated():
+    cut = Cut(trailing_edge=AtRadius(radius=66.0), leading_edge=AtX(x=3.0))
+    blade = with_parts(coarse.RADIAL, cut=cut, shroud_ring=Disc(thickness=2.0, upstream=1.5, downstream=1.0))
+    (ring,) = wheel(blade).pitches
+    line, ends = ring.carrier.line, np.array(ring.carrier.ends)
+    first, last = line.at(np.array(line.blade))
+    assert first[0] == pytest.approx(3e-3, rel=1e-7)
+    assert last[1] == pytest.approx(66e-3, rel=1e-7)
+    np.testing.assert_allclose(np.hypot(*(line.at(ends) - [first, last]).T), [1.5e-3, 1e-3], rtol=1e-3)
 
 
 def test_faces_have_the_names_that_users_rely_on(bodies):

@@ -1,7 +1,7 @@
 """One pitch of a wall with what carries it: the wall's face between the outline's ends, and the outline."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -128,9 +128,18 @@ def _long_enough(spec: PassageSpec, wanted: list[Kind]) -> Skin:
 
 
 def _wall_line(skin: Skin, kind: Kind) -> WallLine:
-    wall = skin.walls[kind.wall]
-    line = skin.periodic_line(kind.wall, 0)
-    return WallLine(curve=line, blade=BLADE_AT, meridian=wall.meridian, joints=wall.inner)
+    """The wall's line, on which the blade begins and ends with its camber line, or where its edges are cut."""
+    wall, blade = skin.walls[kind.wall], skin.blade
+    first, last = (np.asarray(at) for at in BLADE_AT)
+    line = WallLine(
+        curve=skin.periodic_line(kind.wall, 0), blade=(first, last), meridian=wall.meridian, joints=wall.inner
+    )
+    corners = blade.sides[0].control_points[:, 0 if kind.wall == "hub" else -1]
+    if "leading_edge" in blade.walls:
+        first = line.beside(corners[0])
+    if "trailing_edge" in blade.walls:
+        last = line.beside(corners[-1])
+    return replace(line, blade=(first, last))
 
 
 def _line(own: Carrier, knots: Reals) -> Curve:

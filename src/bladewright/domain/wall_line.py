@@ -28,8 +28,8 @@ class WallLine(FrozenRecord):
 
     curve: Curve
     """in space [m]"""
-    blade: tuple[float, float]
-    """its parameters where the blade's camber line begins and ends"""
+    blade: tuple[Array, Array]
+    """() its parameters where the blade begins and ends"""
     meridian: Curve
     """the exact wall (x, r) [m], by shares of its length, and longer than the curve"""
     joints: Reals
@@ -67,6 +67,19 @@ class WallLine(FrozenRecord):
             if np.max(step**2) < SETTLED**2:
                 break
         return np.asarray(t - (self.reached(t) - distance) / length(self.at(t, 1)))
+
+    def beside(self, point: Array) -> Array:
+        """The parameter () of a point (3,) on the wall."""
+        place = np.stack([point[0], length(point[1:])])
+        known = np.linspace(*self.curve.domain, SEARCHED)
+        t = known[np.argmin(np.sum(np.real(self.at(known) - place) ** 2, axis=-1))]
+        for _ in range(STEPS):
+            slope = self.at(t, 1)
+            found = t - dot(self.at(t) - place, slope) / dot(slope, slope)
+            step, t = np.real(found) - t, np.real(found)
+            if step**2 < SETTLED**2:
+                break
+        return np.asarray(found)
 
     def foot(self, t: Array) -> Array:
         """The meridian's parameter () at a parameter of the curve."""
