@@ -129,7 +129,8 @@ def body_sheet(body: BladedBody) -> Figure:
     draw_header(figure, body.name, body.description, [_count(body), volume, f"{len(body.surfaces)} faces"])
     top, bottom = rows(figure, 7.0, 5.0)
     views = top.subplots(1, 2)
-    for place, view, title in zip(views, viewpoints(body.blade), ("In space", "The other side"), strict=True):
+    seen = viewpoints(body.blade, opposite=True)
+    for place, view, title in zip(views, seen, ("In space", "The other side"), strict=True):
         draw_body(place, body, size=BESIDE, view=view)
         place.set_title(title)
         place.set_anchor("N")

@@ -237,16 +237,17 @@ def viewpoint(blade: "Blade") -> Reals:
     return axes_towards((0.74 if smaller[0] > larger[0] else -0.74, 0.42, 0.52), (0.0, 0.0, 1.0))
 
 
-def viewpoints(blade: "Blade") -> tuple[Reals, Reals]:
+def viewpoints(blade: "Blade", *, opposite: bool = False) -> tuple[Reals, Reals]:
     """The axes of the viewer, and of one who sees the blade's other side.
 
-    He stands at the opposite end of the row, but where the hub would hide it: then at the same end, on the other side.
+    He stands at the opposite end of the row, but where the hub would hide it: then at the same end, on the other side,
+    unless he is to see what carries the blades from the `opposite` end.
     """
     first = viewpoint(blade)
     x, y, z = first[2]
     start, end = blade.exact.wall_points("hub", np.array([0.0, 1.0]))
     run, rise = end - start
-    hidden = blade.exact.mapping.revolved and rise * rise > (STEEP * run) ** 2
+    hidden = not opposite and blade.exact.mapping.revolved and rise * rise > (STEEP * run) ** 2
     return first, axes_towards((x if hidden else -x, -y, z), (0.0, 0.0, 1.0))
 
 
