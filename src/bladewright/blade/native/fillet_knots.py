@@ -51,8 +51,10 @@ class FilletKnots(Knots):
 def chosen_knots(blade: Blade, section: ClosedSection, balls: Mapping[str, Ball], *, fine: bool = False) -> FilletKnots:
     """The knots; raises DesignError where a ball does not touch blade and wall."""
     first = SectionSplines(knots=blade.knots.u, smooth=section.smooth)
-    rolled = Rolled.at(section, balls, first.sites)
-    check_fillets(blade, balls, rolled)
+    # balls that are far too large find no numbers, and are refused for it
+    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
+        rolled = Rolled.at(section, balls, first.sites)
+        check_fillets(blade, balls, rolled)
     joints = joints_for(rolled.sites, {wall: touch.lines for wall, touch in rolled.touches.items()})
     tolerance = RESERVE * blade.tolerance * blade.chord
     v = _along_span(blade.knots.v, rolled, balls, joints, tolerance)
@@ -73,7 +75,7 @@ def _along_span(plain: Reals, rolled: Rolled, balls: Mapping[str, Ball], joints:
         off = np.tensordot(basis(knots, DEGREE, at), net, axes=1) - few.above(joints, at)
         return np.max(length(off), axis=1) / tolerance
 
-    return _reached(refined(first_knots(plain, joints), miss, MOST_POLES[1]), miss, "span")
+    return _reached(refined(first_knots(plain, joints), miss, MOST_POLES[1]), miss, "span", balls)
 
 
 def _around(
@@ -105,19 +107,19 @@ def _around(
             error = np.max([error, *errors], axis=0)
         return np.maximum(error[: len(at)], error[len(at) :])
 
-    return _reached(refined(plain, miss, MOST_POLES[0]), miss, "chord")
+    return _reached(refined(plain, miss, MOST_POLES[0]), miss, "chord", balls)
 
 
-def _reached(knots: Reals, miss: Callable[[Reals, Reals], Reals], along: str) -> Reals:
+def _reached(knots: Reals, miss: Callable[[Reals, Reals], Reals], along: str, balls: Mapping[str, Ball]) -> Reals:
     """The knots; raises DesignError where the limits are not held on them."""
     spans = np.unique(knots)
     places = (spans[1:] + spans[:-1]) / 2.0
     error = RESERVE * miss(knots, places)
     worst = int(np.argmax(error))
     if error[worst] > 1.0:
-        name = "u" if along == "chord" else "v"
+        name, given = "u" if along == "chord" else "v", " or ".join(f"{wall}_fillet" for wall in balls)
         raise DesignError(
-            f"hub_fillet or shroud_fillet: near {name} = {places[worst]:.3f} native surfaces miss what is promised of "
+            f"{given}: near {name} = {places[worst]:.3f} native surfaces miss what is promised of "
             f"them {error[worst]:.2g} times with {len(knots) - DEGREE - 1} poles along the {along}, at most "
             f"{MOST_POLES[along == 'span']} are used: take a smaller fillet, raise the tolerance, or raise a very "
             "small edge radius there"
