@@ -228,6 +228,19 @@ def test_a_refusal_names_the_largest_radius_that_holds(design):
         asked.changed(f"{wall}_fillet.radius", 1.05 * largest).build()
 
 
+@pytest.mark.parametrize(
+    ("radius", "says"),
+    [
+        (1e9, r"hub_fillet.radius is 1e\+09 mm: .* the largest that holds is \d"),
+        (1e-9, "CAD programs lose narrower faces"),
+    ],
+)
+@pytest.mark.filterwarnings("error")
+def test_a_radius_beyond_all_measure_is_refused_like_any_other(radius, says):
+    with pytest.raises(bw.DesignError, match=says):
+        ROTOR.changed("hub_fillet", Fillet(radius=radius)).build()
+
+
 def test_a_blade_that_leans_into_its_wall_has_no_fillet():
     with pytest.raises(bw.DesignError, match=r"meet at 17\d deg, which it cannot fill; no smaller one holds either"):
         with_fillets(RADIAL).build()

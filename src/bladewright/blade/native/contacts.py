@@ -150,7 +150,9 @@ def contacts(
     """
     real = section.real(), wall.real()
     own = np.real(sizes[0]), np.real(sizes[1])
-    x, residual = _settled(*real, sites, own, _grown(*real, sites, own, end) if near is None else near.between(sites))
+    with np.errstate(all="ignore"):
+        start = _grown(*real, sites, own, end) if near is None else near.between(sites)
+        x, residual = _settled(*real, sites, own, start)
     found: Array = x
     if _stepped(section, wall, sizes):
         slopes = _differences(*real, sites, own, x)[1]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -17,6 +17,9 @@ from bladewright.numerics.elementary import Array, cross, dot, length, unit
 from bladewright.nurbs.basis import Reals
 from bladewright.section.crossing import self_crossings, touching
 
+if TYPE_CHECKING:
+    from bladewright.blade.design.row_design import RowDesign
+
 TOUCHING = 1e-9
 """Residual of the contacts, of the radius, below which a ball touches both."""
 LEAST_LEFT = 0.1
@@ -28,7 +31,9 @@ LEAST_PROGRESS = 0.02
 FARTHEST = 0.5
 """How far a foot may lie past the wall's own stretch, of that, where the wall has no end: its polynomials curl up."""
 SEARCHED = 14
-"""Bisections of the largest radius: to 1e-4 of the one asked for."""
+"""Bisections of the largest radius: to 1e-4 of the one asked for, or of the chord."""
+LEAST_SIZE = 1e-4
+"""Smallest size of a fillet [chords], 0.01 mm of 100 mm: a tenth of it fails the round trip of the core rotor."""
 NAMED = 0.999
 """Share of the largest radius that is named, so that it holds as it is printed."""
 
@@ -42,36 +47,52 @@ class Obstacle(NamedTuple):
 
 def check_fillets(blade: Blade, balls: Mapping[str, Ball], rolled: Rolled) -> None:
     """Raise DesignError where a fillet does not hold, with the largest radius that does."""
+    design, chord = blade.design, float(np.real(blade.chord))
+    sizes = {
+        wall: [np.real(size) / design.metre for size in (touch.found.on_blade, touch.found.on_wall)]
+        for wall, touch in rolled.touches.items()
+    }
+    for wall, own in sizes.items():
+        least = LEAST_SIZE * chord / design.metre
+        if min(map(np.min, own)) < least:
+            raise DesignError(
+                f"{_asked(design, wall, own)}: at least {LEAST_SIZE:g} of the chord, {least:.3g} {design.length_unit}, "
+                "is needed, since CAD programs lose narrower faces; take more, or leave the fillet out"
+            )
     found = obstacle(blade, rolled)
     if found is None:
         return
-    wall, design = found.wall, blade.design
-    low, high, at_high = 0.0, 1.0, found
+    wall = found.wall
+    # a ball as large as the blade holds nowhere
+    most = max(map(np.max, sizes[wall])) * design.metre
+    low, high, at_high = 0.0, min(1.0, chord / most), found
     for _ in range(SEARCHED):
         share = 0.5 * (low + high)
         smaller = {name: scaled(ball, share) if name == wall else ball for name, ball in balls.items()}
-        own = obstacle(blade, Rolled.at(rolled.section, smaller, rolled.sites), at=wall)
-        low, high, at_high = (share, high, at_high) if own is None else (low, share, own)
-    sizes = [
-        np.real(size) / design.metre
-        for size in (rolled.touches[wall].found.on_blade, rolled.touches[wall].found.on_wall)
-    ]
-    raise DesignError(_refusal(wall, sizes, low * NAMED, at_high.reason, design.length_unit))
+        met = obstacle(blade, Rolled.at(rolled.section, smaller, rolled.sites), at=wall)
+        low, high, at_high = (share, high, at_high) if met is None else (low, share, met)
+    asked, largest = _asked(design, wall, sizes[wall]), NAMED * low * most / design.metre
+    if low == 0.0:
+        cure = "no smaller one holds either: leave it out"
+    elif _constant(sizes[wall]):
+        cure = f"the largest that holds is {largest:.4g} {design.length_unit}"
+    else:
+        cure = f"the largest that holds is {NAMED * low:.4g} of that"
+    raise DesignError(f"{asked}: {at_high.reason}; {cure}")
 
 
-def _refusal(wall: str, sizes: list[Reals], share: float, reason: str, unit: str) -> str:
-    most = float(max(np.max(size) for size in sizes))
-    least = float(min(np.min(size) for size in sizes))
-    asked = (
-        f"{wall}_fillet is {most:.6g} {unit}"
-        if least > (1.0 - 1e-9) * most
-        else f"{wall}_fillet is {least:.4g} to {most:.4g} {unit}"
-    )
-    if share == 0.0:
-        return f"{asked}: {reason}; no smaller one holds either: leave it out"
-    if least > (1.0 - 1e-9) * most:
-        return f"{asked}: {reason}; the largest that holds is {share * most:.4g} {unit}"
-    return f"{asked}: {reason}; the largest that holds is {share:.4f} of that"
+def _asked(design: RowDesign, wall: str, sizes: list[Reals]) -> str:
+    """The sizes that are asked for, by their keys."""
+    most, least = (float(pick([pick(size) for size in sizes])) for pick in (np.max, np.min))
+    # the centre of an ellipse lies unlike far from blade and wall
+    name, ball = f"{wall}_fillet", np.array_equal(sizes[0], sizes[1])
+    keys = f"{name}.radius is" if ball else f"{name}.on_blade and {name}.on_wall are"
+    amount = f"{most:.6g}" if _constant(sizes) else f"{least:.4g} to {most:.4g}"
+    return f"{keys} {amount} {design.length_unit}"
+
+
+def _constant(sizes: list[Reals]) -> bool:
+    return bool(min(map(np.min, sizes)) > (1.0 - 1e-9) * max(map(np.max, sizes)))
 
 
 def scaled(ball: Ball, share: float) -> Ball:
@@ -106,7 +127,7 @@ def _place(sites: Sites, at: int) -> str:
 
 def _no_contact(blade: Blade, wall: str, touch: Touch) -> str | None:
     found = touch.found
-    missing = found.residual >= TOUCHING
+    missing = ~(found.residual < TOUCHING)
     outside = (np.real(found.v) < 0.0) | (np.real(found.v) > 1.0)
     if missing.any():
         return f"{_place(found.sites, int(np.argmax(missing)))} no ball of that radius touches blade and {wall}"
