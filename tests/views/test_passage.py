@@ -123,7 +123,8 @@ def test_theta_is_followed_where_a_wall_wraps_around_the_axis(wrapped):
             duct=wrapped.duct,
             walls=wrapped.walls,
             camber=SimpleNamespace(
-                points=lambda piece, t, by=turn: wrapped.camber.points(piece, t) + np.array([0.0, by])
+                lines=wrapped.camber.lines,
+                points=lambda piece, t, by=turn: wrapped.camber.points(piece, t) + np.array([0.0, by]),
             ),
         )
         x, y, z = np.moveaxis(points, -1, 0)

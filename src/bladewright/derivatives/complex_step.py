@@ -199,6 +199,10 @@ def is_finished(built: Any) -> TypeGuard[Blade]:
 
 def varied_nets(blade: Blade, changes: Sequence[Mapping[str, complex]]) -> Nets:
     """Nets (k, n_u, n_v, 3) of the upper and the lower side after each of k changes, at the blade's knots."""
+    if is_finished(blade):
+        sides = [[side.control_points for side in each.sides] for each in varied(blade.design, blade, changes)]
+        upper, lower = (np.stack(nets) for nets in zip(*sides, strict=True))
+        return upper, lower
     if len(changes) > 1 and any(_needs_search(blade, each) for each in changes):
         # a clearance surface, and the edges' intersections with stream lines, are found for one real channel at a time
         single = [varied_nets(blade, [each]) for each in changes]
