@@ -37,6 +37,13 @@ def test_a_curve_is_the_weighted_mean_of_its_control_points(curve, spread, witne
     assert np.allclose(curve(u), expected, rtol=0.0, atol=ROUNDING * 10)
 
 
+def test_the_first_and_last_greville_abscissae_are_the_ends_to_the_bit():
+    for low, width in np.random.default_rng(0).uniform(0.1, 1.0, (200, 2)):
+        high = low + width
+        sites = greville(np.repeat([low, high], 6), 5)
+        assert (sites[0], sites[-1]) == (low, high)
+
+
 @pytest.mark.parametrize("order", [1, 2, 3, 4, 6])
 def test_derivatives_of_any_order_are_those_of_the_definition(curve, witness, order):
     first, last = curve.domain

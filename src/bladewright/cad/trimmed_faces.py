@@ -202,8 +202,7 @@ def _interpolated(place: Along, scales: Along, along: Curve, joints: list[tuple[
         added = (ends[:-1, None] + np.diff(ends)[:, None] * np.arange(1, division) / division).ravel()
         knots = np.sort(np.concatenate([np.repeat(ends[0], degree + 1), np.repeat(inner, counts), added,
                                         np.repeat(ends[-1], degree + 1)]))  # fmt: skip
-        # by rounding, the mean of equal knots may lie beyond them
-        sites = np.clip(greville(knots, degree), knots[0], knots[-1])
+        sites = greville(knots, degree)
         spline = make_interp_spline(sites, place(sites), k=degree, t=knots)
         between = 0.5 * (sites[1:] + sites[:-1])
         exact = place(between)

@@ -34,8 +34,15 @@ def uniform_knots(count: int, degree: int) -> Reals:
 
 
 def greville(knots: Reals, degree: int) -> Reals:
-    """Greville abscissae (n,): the means of `degree` consecutive knots, one for each control point."""
-    return np.lib.stride_tricks.sliding_window_view(knots[1:-1], degree).mean(axis=-1)
+    """Greville abscissae (n,): the means of `degree` consecutive knots, one for each control point.
+
+    At ends of full multiplicity they are the ends, to the bit.
+    """
+    windows = np.lib.stride_tricks.sliding_window_view(knots[1:-1], degree)
+    found = windows.mean(axis=-1)
+    # the mean of equal numbers may be another one by rounding
+    found[[0, -1]] = np.clip(found[[0, -1]], windows[[0, -1], 0], windows[[0, -1], -1])
+    return np.asarray(found)
 
 
 def breaks(knots: Reals) -> Reals:
