@@ -10,9 +10,9 @@ from typing import ClassVar, cast
 
 import numpy as np
 
-from bladewright.blade.native.blade import Blade, Faces
+from bladewright.blade.native.blade import Faces
 from bladewright.blade.native.properties import blade_properties
-from bladewright.display import Shown
+from bladewright.domain.blade_body import BladeBody
 from bladewright.domain.camber_lines import CamberLines
 from bladewright.domain.cut_duct import outline_volume
 from bladewright.domain.duct import Duct, annulus_volume
@@ -20,7 +20,7 @@ from bladewright.domain.knots import BLADE_AT, PIECES, PassageKnots
 from bladewright.domain.periodic_sector import PeriodicSector, periodic_sector, sector_of
 from bladewright.domain.skin import Skin, skin_moments
 from bladewright.domain.walls import STRIPS, WallHalf, WallStrip
-from bladewright.frozen import FrozenMapping, FrozenRecord
+from bladewright.frozen import FrozenMapping
 from bladewright.numerics.elementary import Array, dot
 from bladewright.nurbs.basis import Reals, breaks
 from bladewright.nurbs.curve import Curve
@@ -53,13 +53,11 @@ OUTWARD = FrozenMapping(
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Passage(FrozenRecord, Shown):
+class Passage(BladeBody):
     """The flow passage around one blade: half a pitch to each side of it, from inlet to outlet."""
 
-    dimension: ClassVar[int] = 3
     shown_as: ClassVar[str] = "passage"
 
-    blade: Blade
     whole: Faces
     """walls' halves (u inlet to outlet, v from the blade to a periodic boundary), periodic boundaries (u inlet to
     outlet, v hub to shroud), inlet and outlet (u from the lower to the upper periodic boundary, v hub to shroud), the
@@ -96,26 +94,6 @@ class Passage(FrozenRecord, Shown):
     def __repr__(self) -> str:
         extents = f"{self.knots.upstream:.3g} upstream, {self.knots.downstream:.3g} downstream"
         return f"<Passage '{self.name}': {len(self.surfaces)} faces; {extents}, each x {self.knots.length:.6g} m>"
-
-    @property
-    def name(self) -> str:
-        """The blade's name and what this is."""
-        return f"{self.blade.name}-passage"
-
-    @property
-    def description(self) -> str:
-        """One line for the header of CAD files."""
-        return self.blade.description
-
-    @property
-    def author(self) -> str:
-        """For the header of CAD files."""
-        return self.blade.author
-
-    @property
-    def organisation(self) -> str:
-        """For the header of CAD files."""
-        return self.blade.organisation
 
     @property
     def edges(self) -> tuple[Curve, ...]:

@@ -12,7 +12,7 @@ import numpy as np
 
 from bladewright.blade.native.blade import Blade, Faces
 from bladewright.blade.native.mass import MetalBody
-from bladewright.display import Shown
+from bladewright.domain.blade_body import BladeBody
 from bladewright.errors import DesignError
 from bladewright.frozen import FrozenMapping, FrozenRecord
 from bladewright.numerics.elementary import Array
@@ -39,39 +39,16 @@ class Placement(FrozenRecord):
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class Row(FrozenRecord, Shown, MetalBody):
-    """The blades of a row, one beside the other: one part and its placements."""
+class Row(BladeBody, MetalBody):
+    """The blades of a row, one beside the other: one part, `blade_01`, and its placements."""
 
-    dimension: ClassVar[int] = 3
     shown_as: ClassVar[str] = "row"
 
-    blade: Blade
-    """the part, which is `blade_01`"""
     placements: tuple[Placement, ...]
     """of the blade and its copies, a pitch apart, towards larger theta, or y in a cascade"""
 
     def __repr__(self) -> str:
         return f"<Row '{self.name}': {len(self.placements)} of {self.blade!r}>"
-
-    @property
-    def name(self) -> str:
-        """The blade's name and what this is."""
-        return f"{self.blade.name}-row"
-
-    @property
-    def description(self) -> str:
-        """One line for the header of CAD files."""
-        return self.blade.description
-
-    @property
-    def author(self) -> str:
-        """For the header of CAD files."""
-        return self.blade.author
-
-    @property
-    def organisation(self) -> str:
-        """For the header of CAD files."""
-        return self.blade.organisation
 
     @property
     def metal(self) -> RowDesign:

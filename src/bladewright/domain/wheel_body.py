@@ -5,13 +5,13 @@ from __future__ import annotations
 from abc import abstractmethod
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, ClassVar
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from bladewright.blade.native.blade import Blade, Faces
 from bladewright.blade.native.mass import MetalBody
-from bladewright.display import Shown
+from bladewright.domain.blade_body import BladeBody
 from bladewright.domain.carried_pitch import CarriedPitch, carried_pitches
 from bladewright.domain.cyclic_faces import CyclicKnots
 from bladewright.domain.knots import PassageKnots
@@ -36,12 +36,9 @@ class WheelKnots(FrozenRecord):
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
-class WheelBody(FrozenRecord, Shown, MetalBody):
+class WheelBody(BladeBody, MetalBody):
     """Base of sector and wheel."""
 
-    dimension: ClassVar[int] = 3
-
-    blade: Blade
     pitches: tuple[CarriedPitch, ...]
     """of the walls that are carried"""
 
@@ -52,26 +49,6 @@ class WheelBody(FrozenRecord, Shown, MetalBody):
     @abstractmethod
     def surfaces(self) -> Faces:
         """Faces by name; metres."""
-
-    @property
-    def name(self) -> str:
-        """The blade's name and what this is."""
-        return f"{self.blade.name}-{self.shown_as}"
-
-    @property
-    def description(self) -> str:
-        """One line for the header of CAD files."""
-        return self.blade.description
-
-    @property
-    def author(self) -> str:
-        """For the header of CAD files."""
-        return self.blade.author
-
-    @property
-    def organisation(self) -> str:
-        """For the header of CAD files."""
-        return self.blade.organisation
 
     @property
     def metal(self) -> RowDesign:
