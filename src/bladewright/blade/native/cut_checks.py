@@ -108,8 +108,22 @@ def check_end_cut(blade: Blade, design: "RowDesign", end: str, meridian: Curve) 
     return found
 
 
-def check_apart(design: "RowDesign", names: tuple[str, str], low: Reals, high: Reals) -> None:
-    """Refuse cuts that leave less than a little of some line between them."""
+def between_cuts(
+    design: "RowDesign", names: tuple[str, str], near: Mapping[str, Mapping[str, Found]]
+) -> tuple[Reals, Reals]:
+    """Parameters (k,) at which the blade's lines begin and end between the cuts `names`: 0 and 1 where there is none.
+
+    Raises DesignError where less than a little of some line is left.
+    """
+    low, high = (
+        np.concatenate([found.place for _, found in near[name].values()]) if name in near else np.array([at])
+        for name, at in zip(names, (0.0, 1.0), strict=True)
+    )
+    _check_left(design, names, low, high)
+    return low, high
+
+
+def _check_left(design: "RowDesign", names: tuple[str, str], low: Reals, high: Reals) -> None:
     least = float(np.min(high - low))
     if least >= LEAST_LEFT:
         return

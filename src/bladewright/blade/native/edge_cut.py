@@ -17,7 +17,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from bladewright.blade.native.blade import Blade
-from bladewright.blade.native.cut_checks import about, check_apart, check_edge_cut, meridian_of_cut, met, mirrored_edges
+from bladewright.blade.native.cut_checks import (
+    about,
+    between_cuts,
+    check_edge_cut,
+    meridian_of_cut,
+    met,
+    mirrored_edges,
+)
 from bladewright.blade.native.cut_faces import inner_knots, wall_normals
 from bladewright.blade.native.cut_lines import Lines
 from bladewright.blade.native.end_faces import EDGES
@@ -159,10 +166,6 @@ def cut_edges(blade: Blade, design: "RowDesign", knots: Knots | None, *, fine: b
 
 def _chosen(blade: Blade, design: "RowDesign", meridians: Mapping[str, Curve]) -> CutChoices:
     near = {edge: check_edge_cut(blade, design, edge, meridian) for edge, meridian in meridians.items()}
-    low, high = (
-        np.concatenate([found.place for _, found in near[edge].values()]) if edge in near else np.array([at])
-        for edge, at in zip(EDGES, (0.0, 1.0), strict=True)
-    )
-    check_apart(design, EDGES, low, high)
+    low, high = between_cuts(design, EDGES, near)
     stretch = stretch_between(low, high, blade.knots.u)
     return CutChoices(stretch=stretch, mirrored=mirrored_edges(blade, meridians), near=near)

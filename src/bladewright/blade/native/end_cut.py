@@ -14,7 +14,7 @@ import numpy as np
 
 from bladewright.blade.exact.clearance import clearance_of
 from bladewright.blade.native.blade import Blade
-from bladewright.blade.native.cut_checks import about, check_apart, check_end_cut, meridian_of_cut, met, mirrored_edges
+from bladewright.blade.native.cut_checks import about, between_cuts, check_end_cut, meridian_of_cut, met, mirrored_edges
 from bladewright.blade.native.cut_clearance import cleared_meridian
 from bladewright.blade.native.cut_faces import inner_knots, wall_normals
 from bladewright.blade.native.cut_lines import Crossing, Lines, crossing_rates
@@ -190,11 +190,7 @@ def cut_ends(blade: Blade, design: "RowDesign", knots: Knots | None, *, fine: bo
 
 def _chosen(blade: Blade, design: "RowDesign", meridians: Mapping[str, Curve]) -> CutChoices:
     near = {end: check_end_cut(blade, design, end, meridian) for end, meridian in meridians.items()}
-    low, high = (
-        np.concatenate([found.place for _, found in near[end].values()]) if end in near else np.array([at])
-        for end, at in zip(ENDS, (0.0, 1.0), strict=True)
-    )
-    check_apart(design, ENDS, low, high)
+    low, high = between_cuts(design, ENDS, near)
     straight = blade.plain.exact.survey.skinning != "sections"
     stretch = stretch_between(low, high, blade.knots.v, straight=straight)
     return CutChoices(stretch=stretch, mirrored=mirrored_edges(blade, {}), near=near)
