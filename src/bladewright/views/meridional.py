@@ -134,12 +134,17 @@ def draw_cuts(axes: Axes, blade: "Blade", covered: Reals) -> None:
 
 def draw_outlines(axes: Axes, blade: "Blade") -> None:
     """Draw the outlines of disc and shroud ring that a design gives."""
-    label: str | None = "disc, ring"
-    for part in (blade.design.disc, blade.design.shroud_ring):
-        if part is not None and part.outline is not None:
-            line = part.outline.pieces.line(blade.design.metre)
-            axes.plot(*(per_metre() * line.drawn_points).T, color=GREY, linewidth=1.3, label=label)
-            label = None
+    design = blade.design
+    outlines = {
+        name: part.outline
+        for name, part in (("disc", design.disc), ("ring", design.shroud_ring))
+        if part is not None and part.outline is not None
+    }
+    label: str | None = ", ".join(outlines)
+    for outline in outlines.values():
+        line = outline.pieces.line(design.metre)
+        axes.plot(*(per_metre() * line.drawn_points).T, color=GREY, linewidth=1.3, label=label)
+        label = None
 
 
 def draw_clearance(axes: Axes, view: "MeridionalView") -> None:
