@@ -110,20 +110,24 @@ def _skin(spec: PassageSpec, knots: PassageKnots) -> Skin:
 def _long_enough(spec: PassageSpec, wanted: list[Kind]) -> Skin:
     """A skin that reaches past the outlines' ends."""
     design = spec.blade.design
-    knots = skin_knots(spec, None, None, filled=False)
+    extents: tuple[float | None, float | None] = None, None
     for _ in range(LENGTHENINGS):
         try:
+            knots = skin_knots(spec, *extents, filled=False)
             skin = _skin(spec, knots)
             lines = [(getattr(design, kind.field), _wall_line(skin, kind)) for kind in wanted]
         except DesignError as error:
             fields = " or ".join(kind.field for kind in wanted)
-            raise DesignError(f"{fields}: the wall cannot be continued to the outline's ends: {error}") from error
+            raise DesignError(
+                f"{fields}: the wall cannot be continued to the ends of its outline; let it end nearer to the blade. "
+                f"What stops it: {error}"
+            ) from error
         short = np.max([shortfalls(part, line, design.metre) for part, line in lines], axis=0)
         if not short.any():
             break
         more = np.where(short > 0.0, short / knots.length + FURTHER, 0.0)
         upstream, downstream = np.minimum(np.array([knots.upstream, knots.downstream]) + more, MAX_EXTENT)
-        knots = skin_knots(spec, upstream, downstream, filled=False)
+        extents = float(upstream), float(downstream)
     return skin
 
 
