@@ -2,10 +2,11 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from itertools import pairwise
+from itertools import pairwise, product
 from typing import cast
 
 import numpy as np
+from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
@@ -15,7 +16,9 @@ from bladewright.cad.native_body import declared_edges, extent
 from bladewright.errors import CadError
 from bladewright.numerics.elementary import Array
 from bladewright.nurbs.closest import closest_on_curve
+from bladewright.nurbs.compatible import compatible
 from bladewright.nurbs.curve import Curve
+from bladewright.nurbs.domain import reversed as run_back
 from bladewright.nurbs.domain import split
 from bladewright.nurbs.surface import Surface
 from bladewright.nurbs.trimmed import TrimmedSurface
@@ -81,9 +84,11 @@ def topology(body: BodyInPieces) -> Topology:
     A side of an untrimmed face is split where it has a corner (an inner knot of full multiplicity), and each piece is
     an edge of its own. Untrimmed faces are neighbours where two such pieces have the same control points, in either
     direction, and the same knots up to a linear change of the parameter; a face of a whole turn is its own neighbour
-    along its seam. Where either of the two is cut the edge is cut too, also where a declared edge ends on it, and the
-    pieces of a face share an edge on each cut. A trimmed face is a neighbour along the edges, of untrimmed faces or
-    declared, that its loops follow. Raises CadError where an edge does not belong to exactly two faces.
+    along its seam. Sides that find none so are cut where ends of others lie on them (T-junctions), and neighbours where
+    they run through the same points, whatever their knots. Where either of the two is cut the edge is cut too, also
+    where a declared edge ends on it, and the pieces of a face share an edge on each cut. A trimmed face is a neighbour
+    along the edges, of untrimmed faces or declared, that its loops follow. Raises CadError where an edge does not
+    belong to exactly two faces.
     """
     size = extent(body.built)
     sides: list[tuple[Curve, Coedge]] = []
@@ -103,7 +108,8 @@ def topology(body: BodyInPieces) -> Topology:
     declared = declared_edges(body.built)
     ends = np.array([curve.control_points[end] for curve in declared for end in (0, -1)]).reshape(-1, 3)
     ends, _ = _merged(ends, COINCIDENT * size)
-    whole_edges = _shared(sides, COINCIDENT * size) + [(curve, list[Coedge]()) for curve in declared]
+    shared = _at_t_junctions(_shared(sides, COINCIDENT * size), COINCIDENT * size)
+    whole_edges = shared + [(curve, list[Coedge]()) for curve in declared]
     edge_curves = [
         part
         for curve, coedges in whole_edges
@@ -182,15 +188,22 @@ def _parts(body: BodyInPieces, coedge: Coedge, ends: list[float]) -> list[Coedge
 
 
 def _met(curve: Curve, points: Array, tolerance: float) -> list[float]:
-    """The parameters at which points lie on a curve between its ends."""
-    low, high = (reach(curve.control_points, axis=0) for reach in (np.min, np.max))
-    near = points[np.all((points >= low - tolerance) & (points <= high + tolerance), axis=1)]
+    """The parameters at which points lie on a curve between its ends, its own knots to the last bit."""
+    hulls = sliding_window_view(curve.control_points, curve.degree + 1, axis=0)
+    low, high = hulls.min(axis=-1) - tolerance, hulls.max(axis=-1) + tolerance
+    near = points[np.any(np.all((points[:, None] >= low) & (points[:, None] <= high), axis=-1), axis=1)]
     for end in (0, -1):
         near = near[np.max(np.abs(near - curve.control_points[end]), axis=1, initial=0.0) > tolerance]
     if len(near) == 0:
         return []
     found = closest_on_curve(curve, near)
-    return [float(u) for u in found.u[found.distances <= tolerance]]
+    return [_at_knot(curve, float(u)) for u in found.u[found.distances <= tolerance]]
+
+
+def _at_knot(curve: Curve, place: float) -> float:
+    """The curve's own knot where the place is one but for rounding: two would lie too close for OpenCASCADE."""
+    nearest = float(curve.knots[np.argmin(np.abs(curve.knots - place))])
+    return nearest if abs(nearest - place) <= SAME_KNOT * (curve.domain[1] - curve.domain[0]) else place
 
 
 def _cut_edge(
@@ -208,11 +221,7 @@ def _cut_edge(
 
     cuts = list(met)
     for coedge in coedges:
-        for at in _own_cuts(body, coedge)[1:-1]:
-            place = change(coedge, True, at)
-            # to the last bit, or two knots would lie too close for OpenCASCADE
-            nearest = float(curve.knots[np.argmin(np.abs(curve.knots - place))])
-            cuts.append(nearest if abs(nearest - place) <= SAME_KNOT * (last - first) else place)
+        cuts += [_at_knot(curve, change(coedge, True, at)) for at in _own_cuts(body, coedge)[1:-1]]
     if not cuts:
         return [(curve, [part for coedge in coedges for part in _parts(body, coedge, list(coedge.span))])]
     cuts = sorted(set(cuts))
@@ -278,6 +287,44 @@ def _same(one: Curve, other: Curve, tolerance: float, *, backwards: bool) -> boo
         return False
     weights = [np.ones(1) if curve.weights is None else curve.weights for curve in (one, other)]
     return bool(np.allclose(weights[0], weights[1][::step], rtol=1e-12, atol=0.0))
+
+
+def _at_t_junctions(edges: list[tuple[Curve, list[Coedge]]], tolerance: float) -> list[tuple[Curve, list[Coedge]]]:
+    """The edges; those of one face only are cut at each other's ends, and joined where they are then the same line.
+
+    Of two that are, the one with fewer knots is the edge.
+    """
+    single = [(curve, coedges[0]) for curve, coedges in edges if len(coedges) == 1]
+    ends, _ = _merged(_end_points(single), tolerance)
+    parts: list[tuple[Curve, Coedge]] = []
+    for curve, coedge in single:
+        cuts = _met(curve, ends, tolerance)
+        parts += [(part, replace(coedge, span=part.domain)) for part in (split(curve, cuts) if cuts else (curve,))]
+    parts.sort(key=lambda part: len(part[0].knots))
+    _, index = _merged(_end_points(parts), tolerance)
+    between: dict[tuple[int, ...], list[tuple[Curve, list[Coedge]]]] = {}
+    for (curve, coedge), pair in zip(parts, np.sort(index.reshape(-1, 2), axis=1).tolist(), strict=True):
+        known = between.setdefault(tuple(pair), [])
+        for (edge, coedges), backwards in product(known, (False, True)):
+            if _same_line(edge, curve, tolerance, backwards=backwards):
+                coedges.append(replace(coedge, along=coedge.along != backwards))
+                break
+        else:
+            known.append((curve, [coedge]))
+    return [edge for edge in edges if len(edge[1]) > 1] + [edge for known in between.values() for edge in known]
+
+
+def _end_points(curves: list[tuple[Curve, Coedge]]) -> Array:
+    return np.array([curve.control_points[end] for curve, _ in curves for end in (0, -1)]).reshape(-1, 3)
+
+
+def _same_line(one: Curve, other: Curve, tolerance: float, *, backwards: bool) -> bool:
+    """Whether two curves run through the same points at parameters that are linear in each other's."""
+    other = run_back(other) if backwards else other
+    if np.max(np.abs(one.control_points[[0, -1]] - other.control_points[[0, -1]])) > tolerance:
+        return False
+    one, other = compatible([one, other])
+    return _same(one, other, tolerance, backwards=False)
 
 
 def _shares(knots: Array) -> Array:
