@@ -20,12 +20,12 @@ from bladewright.fitting.families.section_samples import SampledSection, reverse
 from bladewright.fitting.families.sections import best_trial, starts_of
 from bladewright.fitting.free_parameters import EDGES, FreeParameters, gauge_parameters
 from bladewright.fitting.initial_guess.blade import first_blade
-from bladewright.fitting.matching.constrained_least_squares import MIN_REDUCTION
 from bladewright.fitting.matching.scales import check_bounds
 from bladewright.fitting.matching.search import EXACT_MISFIT, ROUGH_REDUCTION, Match, Task, evaluated, searched
 from bladewright.fitting.model_selection.stopping import MatchTarget
 from bladewright.fitting.model_selection.structure import first_blade_structure
 from bladewright.fitting.models.feasibility import infeasibility
+from bladewright.numerics.least_squares import MIN_REDUCTION
 from bladewright.nurbs.basis import Reals
 from bladewright.section.checks import UNITS
 from bladewright.section.laws import Span, law_points

@@ -10,7 +10,6 @@ from bladewright.fitting.design_header import DesignHeader
 from bladewright.fitting.free_parameters import FreeParameters
 from bladewright.fitting.initial_guess.blade import AXES_HINT, first_blade
 from bladewright.fitting.initial_guess.section import first_section
-from bladewright.fitting.matching.constrained_least_squares import MIN_REDUCTION
 from bladewright.fitting.matching.scales import check_bounds
 from bladewright.fitting.matching.search import ROUGH_REDUCTION, Match, Task, searched
 from bladewright.fitting.model_selection.adaptation import FINAL_REDUCTION, THOROUGH_POINTS, selected_match
@@ -24,6 +23,7 @@ from bladewright.fitting.model_selection.structure import (
     initial_structure,
     structure_of,
 )
+from bladewright.numerics.least_squares import MIN_REDUCTION
 
 FEWER_SHARES = (1.0, 0.5)
 """shares of the control points along the chord that are tried where the nearest design cannot be built"""

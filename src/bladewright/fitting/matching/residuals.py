@@ -8,13 +8,13 @@ import numpy as np
 from bladewright.designs import Design
 from bladewright.errors import DesignError
 from bladewright.fitting.matching.blade_ends import BladeEnds, WallPoints
-from bladewright.fitting.matching.constrained_least_squares import ConstrainedProblem
 from bladewright.fitting.matching.edge_overhang import EdgeOverhang
 from bladewright.fitting.matching.footpoints import Footpoints, concatenated, nearest_footpoints
 from bladewright.fitting.matching.regularisation import Regularisation
 from bladewright.fitting.matching.scales import Scales
 from bladewright.fitting.models.law_jacobian import LawJacobian, law_jacobian
 from bladewright.fitting.models.model import Model, ModelShape
+from bladewright.numerics.least_squares import ConstrainedProblem
 from bladewright.nurbs.basis import Reals
 
 EDGE_SHARE = 0.05

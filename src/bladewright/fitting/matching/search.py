@@ -15,7 +15,6 @@ from bladewright.designs import Design
 from bladewright.errors import DesignError, FitError
 from bladewright.fitting.clouds.thinning import random_subset
 from bladewright.fitting.matching.blade_ends import BladeEnds, blade_ends_of
-from bladewright.fitting.matching.constrained_least_squares import FIRST_DAMPING, MIN_REDUCTION, constrained_minimum
 from bladewright.fitting.matching.edge_overhang import edge_overhang_of
 from bladewright.fitting.matching.footpoints import nearest_footpoints
 from bladewright.fitting.matching.noise import NoiseEstimate, noise_of
@@ -23,6 +22,7 @@ from bladewright.fitting.matching.regularisation import regularisation_of
 from bladewright.fitting.matching.residuals import CloudResiduals, MatchProblem, PlacedCloud
 from bladewright.fitting.matching.scales import scales_of
 from bladewright.fitting.models.model import Model, model_of
+from bladewright.numerics.least_squares import FIRST_DAMPING, MIN_REDUCTION, constrained_minimum
 from bladewright.nurbs.basis import Reals
 
 KEPT_DESIGNS = 3

@@ -8,7 +8,6 @@ from bladewright.designs import Design
 from bladewright.errors import DesignError
 from bladewright.fitting.clouds.cloud import is_rounded
 from bladewright.fitting.free_parameters import corner_radii
-from bladewright.fitting.matching.constrained_least_squares import MIN_REDUCTION
 from bladewright.fitting.matching.search import MOST_ROUNDS, ROUGH_REDUCTION, Match, Task, searched
 from bladewright.fitting.model_selection.best_structure import best_match_of_size, smallest_match
 from bladewright.fitting.model_selection.given_structure import (
@@ -27,6 +26,7 @@ from bladewright.fitting.model_selection.stopping import NOISE_CORRELATION, Matc
 from bladewright.fitting.model_selection.structure import Structure, structure_of
 from bladewright.fitting.model_selection.tolerance import match_within_tolerance
 from bladewright.fitting.models.law_jacobian import stands_on_channel
+from bladewright.numerics.least_squares import MIN_REDUCTION
 from bladewright.section.unified import UnifiedSection
 
 RESTART_NOISE = 0.03

@@ -8,7 +8,6 @@ import numpy as np
 from bladewright.blade.native.extrema import extrema_of
 from bladewright.designs import Design
 from bladewright.errors import DesignError, FitError
-from bladewright.fitting.matching.constrained_least_squares import MIN_REDUCTION
 from bladewright.fitting.matching.search import ROUGH_REDUCTION, Match, Task, searched
 from bladewright.fitting.model_selection.forecast import Forecast, Prediction, forecast_of
 from bladewright.fitting.model_selection.growth import grown_match
@@ -16,6 +15,7 @@ from bladewright.fitting.model_selection.reshaping import reshaped
 from bladewright.fitting.model_selection.steps import StructureStep, intersection_of, losses, row_factors, steps_down
 from bladewright.fitting.model_selection.stopping import MatchTarget
 from bladewright.fitting.model_selection.structure import Structure, structure_of
+from bladewright.numerics.least_squares import MIN_REDUCTION
 from bladewright.nurbs.basis import Reals
 
 TRUSTED_DEVIATION = 0.95

@@ -14,7 +14,7 @@ import numpy as np
 from scipy.linalg import solve_triangular
 from scipy.optimize import nnls
 
-from bladewright.nurbs.basis import Reals
+from bladewright.numerics.elementary import Reals
 
 FIRST_DAMPING = 1e-6
 """first damping, relative to the largest squared column of the Jacobian (Nielsen 1999 recommends 1e-6 for a start that
@@ -94,7 +94,7 @@ def constrained_minimum(
     penalty, growth, gain, done = 0.0, 2.0, 1.0, 1
     while done < steps:
         slopes, constraint_slopes = problem.derivatives(z)
-        orthogonal, matrix = np.linalg.qr(slopes)
+        orthogonal, matrix = np.linalg.qr(slopes)  # real: residuals of measured points
         rhs = -orthogonal.T @ residuals
         scale = float(np.max(np.sum(slopes**2, axis=0), initial=1e-300))
         sizes = np.sqrt(np.sum(slopes**2, axis=0) + damping * scale)
@@ -165,7 +165,9 @@ def _step(
     """The damped step within the linearised inequalities, and the largest multiplier of an inequality."""
     count = matrix.shape[1]
     rows = np.vstack([matrix, np.sqrt(damping) * np.eye(count)])
-    triangle = np.asarray(np.linalg.qr(np.column_stack([rows, np.append(rhs, np.zeros(count))]), mode="r"))
+    triangle = np.asarray(
+        np.linalg.qr(np.column_stack([rows, np.append(rhs, np.zeros(count))]), mode="r")  # real: as these rows
+    )
     upper, right = triangle[:count, :count], triangle[:count, -1]
     unconstrained = solve_triangular(upper, right)
     rows = np.vstack([constraint_slopes, np.eye(count), -np.eye(count)])
@@ -186,7 +188,7 @@ def _nearest_feasible(upper: Reals, unconstrained: Reals, rows: Reals, limit: Re
     working = np.zeros(len(rows), dtype=bool)
     rhs = np.append(np.zeros(len(unconstrained)), 1.0)
     for _ in range(ACTIVE_SET_CHANGES):
-        broken = rows @ step - limit > 1e-12 * (1.0 + np.abs(limit))
+        broken = rows @ step - limit > 1e-12 * (1.0 + np.abs(limit))  # real: as these rows
         if not np.any(broken & ~working):
             return step, multipliers
         working |= broken

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.optimize import lsq_linear, minimize
 
-from bladewright.fitting.matching.constrained_least_squares import (
+from bladewright.numerics.least_squares import (
     MIN_REDUCTION,
     ConstrainedProblem,
     constrained_minimum,
