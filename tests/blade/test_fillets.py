@@ -13,6 +13,7 @@ from bladewright.blade.design.fillet import Fillet, FilletRadii
 from bladewright.blade.design.flow_path import Channel
 from bladewright.blade.native.closed_section import Sites
 from bladewright.blade.native.end_faces import end_row
+from bladewright.blade.native.fillet_knots import levels
 from bladewright.blade.native.rolling_ball import Rolled, balls_of, closed_section
 from bladewright.derivatives.complex_step import stepped
 from bladewright.numerics.elementary import cross, dot, length
@@ -86,24 +87,47 @@ def test_its_foot_lies_on_the_wall_and_is_tangent_there(blade):
             assert np.max(length(cross(face.normal(U, at), own.normal(found.t, found.across)))) < 1e-6
 
 
-def test_blade_and_fillet_share_one_row_and_one_tangent_plane(blade):
+def strips_of(blade):
+    """By wall and side: side, strip and fillet, and v at which the strip ends towards the fillet."""
     for wall in walls_of(blade):
         for name in ("upper", "lower"):
-            side, face = blade.surfaces[name], blade.surfaces[f"{wall}_fillet_{name}"]
-            row = 0 if wall == "hub" else -1
-            assert np.array_equal(end_row(side, row).control_points, end_row(face, -1 - row).control_points)
-            at = 0.0 if wall == "hub" else 1.0
-            assert np.max(length(cross(side.normal(U, at), face.normal(U, 1.0 - at)))) < 1e-9
+            faces = [blade.surfaces[each] for each in (name, f"{wall}_strip_{name}", f"{wall}_fillet_{name}")]
+            yield wall, *faces, float(wall == "shroud")
 
 
-def test_the_blade_above_is_the_blade_without_one(blade):
+def test_strip_and_fillet_share_one_row_and_one_tangent_plane(blade):
+    for wall, _, strip, face, low in strips_of(blade):
+        row = 0 if wall == "hub" else -1
+        assert np.array_equal(end_row(strip, row).control_points, end_row(face, -1 - row).control_points)
+        assert np.max(length(cross(strip.normal(U, low), face.normal(U, 1.0 - low)))) < 1e-9
+
+
+def test_a_strip_goes_on_as_the_side(blade):
+    for _, side, strip, _, low in strips_of(blade):
+        assert np.max(length(strip(U, 1.0 - low) - side(U, low))) < 1e-13
+        assert np.max(length(cross(strip.normal(U, 1.0 - low), side.normal(U, low)))) < 1e-9
+        # one share for the whole joint, or second derivatives along other tangents would not agree
+        share = length(strip.derivative(U, 1.0 - low, 0, 1)) / length(side.derivative(U, low, 0, 1))
+        assert np.ptp(share) < 1e-9 * np.mean(share)
+        second = strip.derivative(U, 1.0 - low, 0, 2) - np.mean(share) ** 2 * side.derivative(U, low, 0, 2)
+        assert np.max(length(second)) < 1e-9 * np.mean(share) ** 2 * blade.chord
+
+
+def test_the_side_above_its_strips_is_the_plain_one_cut(blade):
+    low, high = levels(blade.knots.strips)
+    for own, plain in zip(blade.sides, blade.plain.sides, strict=True):
+        assert np.max(length(own.grid(U, U) - plain.grid(U, low + (high - low) * U))) < 1e-14
+        assert len(own.control_points[0]) <= len(plain.control_points[0])
+
+
+def test_a_strip_lies_on_the_blade_without_a_fillet(blade):
     w = np.array([0.0, 0.03, 0.1, 0.3, 0.6, 0.97, 1.0])
-    section = closed_section(blade.plain)
     for side, name in enumerate(("upper", "lower")):
-        sites = Sites(side=np.full(len(U), side), u=U)
-        rolled = Rolled.at(section, balls_of(blade.plain, section, blade.design), sites)
-        miss = blade.surfaces[name].grid(U, w).swapaxes(0, 1) - rolled.above(blade.knots.joints, w)
-        assert np.max(length(miss)) < blade.tolerance * blade.chord
+        for wall, touch in touches(blade, side).items():
+            at = w if wall == "hub" else 1.0 - w
+            miss = blade.surfaces[f"{wall}_strip_{name}"].grid(U, at).swapaxes(0, 1)
+            miss = miss - touch.above(blade.knots.strips[wall], w)
+            assert np.max(length(miss)) < blade.tolerance * blade.chord
 
 
 def test_the_foot_bounds_the_end_face(blade):
@@ -147,14 +171,14 @@ def test_an_ellipse_of_equal_axes_is_the_ball():
     radius = radius_of(ROTOR)
     ball = ROTOR.changed("hub_fillet", Fillet(radius=radius)).build()
     other = ROTOR.changed("hub_fillet", Fillet(kind="ellipse", on_blade=radius, on_wall=radius)).build(knots=ball.knots)
-    for name in ("upper", "hub_fillet_upper", "hub_fillet_lower"):
+    for name in ("upper", "hub_strip_upper", "hub_fillet_upper", "hub_fillet_lower"):
         assert np.max(np.abs(other.surfaces[name](U, 0.4) - ball.surfaces[name](U, 0.4))) < 1e-12
 
 
 def test_an_ellipse_on_a_flat_wall_has_its_axes():
     radius = radius_of(STRAIGHT)
     built = STRAIGHT.changed("hub_fillet", Fillet(kind="ellipse", on_blade=2.0 * radius, on_wall=radius)).build()
-    top, foot = built.surfaces["upper"](0.5, 0.0), built.surfaces["hub_fillet_upper"](0.5, 0.0)
+    top, foot = built.surfaces["hub_strip_upper"](0.5, 0.0), built.surfaces["hub_fillet_upper"](0.5, 0.0)
     metre = built.design.metre
     assert (top - foot)[2] == pytest.approx(2.0 * radius * metre, rel=1e-6)
     assert length((top - foot)[:2]) == pytest.approx(radius * metre, rel=1e-6)
@@ -175,9 +199,9 @@ def test_curvature_goes_on_across_both_joints():
     built = with_fillets(ROTOR, kind="curvature", radius=radius_of(ROTOR)).build()
     radius = built.design.metre * built.design.hub_fillet.radius
     for side, name in enumerate(("upper", "lower")):
-        face, blade = built.surfaces[f"hub_fillet_{name}"], built.surfaces[name]
+        face, strip = built.surfaces[f"hub_fillet_{name}"], built.surfaces[f"hub_strip_{name}"]
         along = face.derivative(U, 1.0, 0, 1)
-        assert np.max(np.abs(bend(face, 1.0, along) - bend(blade, 0.0, along))) < 1e-4 / radius
+        assert np.max(np.abs(bend(face, 1.0, along) - bend(strip, 0.0, along))) < 1e-4 / radius
         touch = touches(built, side)["hub"]
         down = face.derivative(U, 0.0, 0, 1)
         wanted = touch._bend_of_wall(down) / dot(down, down)
@@ -203,7 +227,7 @@ def test_derivatives_are_those_of_differences():
     paths = [next(path for path in values if path.startswith(name)) for name in paths]
 
     def quantity(built):
-        points = [built.surfaces[name](0.3, 0.4) for name in ("upper", "hub_fillet_lower")]
+        points = [built.surfaces[name](0.3, 0.4) for name in ("upper", "hub_strip_upper", "hub_fillet_lower")]
         return np.concatenate([*points, built.surfaces["hub"].boundary[0].control_points[5]])
 
     for path, carrying in zip(paths, stepped(design, base, paths), strict=True):

@@ -57,7 +57,7 @@ class Blade(FrozenRecord, Shown, MetalBody):
     design: RowDesign
     surfaces: Faces
     """`upper` and `lower` (u from leading to trailing edge, v from end to end), `leading_edge` and `trailing_edge`
-    where they are blunt (u from the upper to the lower side), and the two `design.ends`; metres"""
+    where they are blunt (u from the upper to the lower side), strips and fillets, and the two `design.ends`; metres"""
     knots: Knots
     """of both sides; give them to `design.build(knots=...)` to hold them"""
     chord: float
@@ -105,13 +105,14 @@ class Blade(FrozenRecord, Shown, MetalBody):
         low, high = self.design.ends
         blunt = {name: sign for name, sign in zip(EDGES, (1, -1), strict=True) if name in self.surfaces}
         around = {"upper": -1, "lower": 1, **blunt}
-        fillets = {
-            f"{wall}_fillet_{name}": sign
+        beside = {
+            f"{wall}_{part}_{name}": sign
             for wall in ("hub", "shroud")
+            for part in ("strip", "fillet")
             for name, sign in around.items()
-            if f"{wall}_fillet_{name}" in self.surfaces
+            if f"{wall}_{part}_{name}" in self.surfaces
         }
-        return FrozenMapping({**around, **fillets, low: -1, high: 1})
+        return FrozenMapping({**around, **beside, low: -1, high: 1})
 
     @property
     def tolerance(self) -> float:

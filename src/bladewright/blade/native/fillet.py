@@ -1,7 +1,8 @@
-"""Blades with fillets: a ball rolls along the sides and a wall; what it touches is the fillet, the blade begins above.
+"""Blades with fillets: a ball rolls along the sides and a wall; what it touches is the fillet, and a strip lies above it.
 
 Contacts are found at sites around the blade, cross-sections run from contact to contact, and splines around the blade
-carry both the cross-sections and the blade above them, so that the joint is one row of control points for both.
+carry both the cross-sections and the strip above them, so that the joint is one row of control points for both. Above
+the strip the sides are what they were, cut at one v.
 """
 
 from __future__ import annotations
@@ -12,19 +13,19 @@ from typing import TYPE_CHECKING, cast
 
 import numpy as np
 
-from bladewright.blade.native.above_fillet import SpanSplines
 from bladewright.blade.native.blade import Blade
 from bladewright.blade.native.closed_section import LOWER, UPPER, SectionSplines
 from bladewright.blade.native.end_faces import EDGES, EndKnots, WallSurface, end_row, end_within, stretch_about
-from bladewright.blade.native.fillet_knots import FilletKnots, chosen_knots
+from bladewright.blade.native.fillet_knots import FilletKnots, chosen_knots, levels
 from bladewright.blade.native.knots import DEGREE, Knots
 from bladewright.blade.native.lazy_faces import Face, LazyFaces
-from bladewright.blade.native.rolling_ball import WALLS, Rolled, Touch, balls_of, closed_section, orders_of
+from bladewright.blade.native.rolling_ball import WALLS, Rolled, Touch, balls_of, closed_section
 from bladewright.errors import DesignError
 from bladewright.frozen import FrozenMapping
+from bladewright.numerics.elementary import Array
 from bladewright.nurbs.basis import Reals
 from bladewright.nurbs.curve import Curve
-from bladewright.nurbs.domain import extended
+from bladewright.nurbs.domain import extended, piece, reparametrised
 from bladewright.nurbs.domain import reversed as run_back
 from bladewright.nurbs.surface import Surface
 from bladewright.nurbs.trimmed import TrimmedSurface
@@ -49,26 +50,23 @@ def filleted(blade: Blade, design: RowDesign, knots: Knots | None = None, *, fin
     own = chosen_knots(blade, section, balls, fine=fine) if held is None else held
     around = cast(SectionSplines, own.splines)
     rolled = Rolled.at(section, balls, around.sites, own.near)
-    along = SpanSplines(knots=own.v, orders=orders_of(balls))
-    rows = along.net(rolled.above(own.joints, along.sites), rolled.derivatives(own.joints))
     faces: dict[str, Surface] = {}
-    for name, net in zip(SIDES, around.split(np.swapaxes(rows, 0, 1)), strict=True):
-        faces[name] = Surface(control_points=net, knots_u=own.u, knots_v=own.v, degree_u=DEGREE, degree_v=DEGREE)
+    for name, side in zip(SIDES, blade.sides, strict=True):
+        faces[name] = reparametrised(piece(side, *levels(own.strips), "v"), 0.0, 1.0, "v")
     outlines = dict(blade.outlines)
     for wall, touch in rolled.touches.items():
-        net = touch.sections.net()
-        degree, net = len(net) - 1, np.swapaxes(net[::-1] if wall == "hub" else net, 0, 1)
-        mine, theirs = (-1, 0) if wall == "hub" else (0, -1)
-        for name, part in zip(SIDES, around.split(net), strict=True):
+        strip, net = own.strips[wall], np.swapaxes(touch.sections.net(), 0, 1)
+        above = np.swapaxes(touch.above(strip, strip.sites), 0, 1)
+        starts, insides = zip(*map(around.split, touch.start(strip)), strict=True), around.split(above)
+        parts = zip(SIDES, blade.sides, starts, insides, around.split(net), strict=True)
+        for name, side, start, inside, across in parts:
+            rows = strip.net(start, np.swapaxes(inside, 0, 1), strip.side_end(side, around.knots))
             # one row, to the bit
-            part[:, mine] = faces[name].control_points[:, theirs]
-            faces[f"{wall}_fillet_{name}"] = Surface(
-                control_points=part,
-                knots_u=own.u,
-                knots_v=np.repeat([0.0, 1.0], degree + 1),
-                degree_u=DEGREE,
-                degree_v=degree,
-            )
+            across[:, 0] = rows[0]
+            upwards = wall == "hub"
+            faces[f"{wall}_strip_{name}"] = _face(np.swapaxes(rows, 0, 1), around.knots, strip.knots, upwards=upwards)
+            clamp = np.repeat([0.0, 1.0], across.shape[1])
+            faces[f"{wall}_fillet_{name}"] = _face(across, around.knots, clamp, upwards=not upwards)
         upper, lower = (end_row(faces[f"{wall}_fillet_{name}"], -design.ends.index(wall)) for name in SIDES)
         outlines[wall] = (lower, run_back(upper))
 
@@ -103,6 +101,18 @@ def filleted(blade: Blade, design: RowDesign, knots: Knots | None = None, *, fin
         moments=None,
         outlines=FrozenMapping(outlines),
         walls=FrozenMapping({**blade.walls, **walls}),
+    )
+
+
+def _face(net: Array, knots_u: Reals, knots_v: Reals, *, upwards: bool) -> Surface:
+    """A face from its net along u and away from the joint of fillet and strip; v runs along the span."""
+    net, knots_v = (net, knots_v) if upwards else (net[:, ::-1], 1.0 - knots_v[::-1])
+    return Surface(
+        control_points=net,
+        knots_u=knots_u,
+        knots_v=knots_v,
+        degree_u=DEGREE,
+        degree_v=len(knots_v) - net.shape[1] - 1,
     )
 
 

@@ -1,21 +1,21 @@
-"""Knots with which fillets and the blade above them hold what is promised."""
+"""Knots with which fillets and the strips above them hold what is promised."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from bladewright.blade.native.above_fillet import Joint, Joints, SpanSplines, first_knots, joints_for
 from bladewright.blade.native.blade import Blade
 from bladewright.blade.native.closed_section import ClosedSection, SectionSplines, Sites
 from bladewright.blade.native.contacts import Contacts
 from bladewright.blade.native.end_faces import EndKnots
 from bladewright.blade.native.fillet_limits import check_fillets
-from bladewright.blade.native.knots import DEGREE, Knots, refined
+from bladewright.blade.native.knots import DEGREE, Knots, clamped, refined
 from bladewright.blade.native.refinement import RESERVE, wall_tolerance
-from bladewright.blade.native.rolling_ball import Ball, Rolled, Touch, orders_of
+from bladewright.blade.native.rolling_ball import Ball, Rolled, Touch
+from bladewright.blade.native.strip import Strip, strips_for
 from bladewright.errors import DesignError
 from bladewright.frozen import FrozenMapping
 from bladewright.numerics.elementary import Array, cross, dot, length, unit
@@ -25,27 +25,27 @@ ON_BALL = 1e-6
 """Largest distance of a fillet from its ball, of the ball's radius."""
 ON_WALL = 1e-6
 """Largest angle between the tangent planes of fillet and wall at the foot [rad]."""
-MOST_POLES = (300, 150)
-"""Control points of a side above its fillets along u and v at which knots are added no more: half as many again as a
-plain blade may have, for what the foot asks for along u and two joints along v."""
+MOST_POLES = (300, 60)
+"""Control points of fillets around the blade, on one side, and of strips along w at which knots are added no more: half as
+many again as a plain blade may have, for what the foot asks for."""
 LINES = 12
-"""About how many lines along the span are looked at on each side for the knots there."""
-LEVELS = (0.0, 0.02, 0.05, 0.1, 0.2, 0.4, 0.7)
-"""Shares of the part in which lines bend, at which knots around the blade are looked at."""
+"""About how many lines of a strip are looked at on each side for its knots along them."""
+PLACES = np.array([0.0, 0.2, 0.5])
+"""w of the strips at which knots around the blade are looked at: at 1 they have those of the side."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class FilletKnots(Knots):
-    """Knots of the sides above fillets, and what else derivatives hold."""
+    """Knots of the sides, which are those of the blade before but for where they are cut, and what else is held."""
 
-    joints: Mapping[str, Joint] = field(default_factory=lambda: FrozenMapping({}))
-    """how lines leave each fillet, by the wall"""
+    strips: Mapping[str, Strip] = field(default_factory=lambda: FrozenMapping({}))
+    """how lines run from each fillet to the side, by the wall"""
     ends: Mapping[str, EndKnots] = field(default_factory=lambda: FrozenMapping({}))
     """of the end faces inside the feet"""
     near: Mapping[str, Contacts] = field(default_factory=lambda: FrozenMapping({}))
     """contacts by the wall, near which others are sought"""
     splines: SectionSplines | None = None
-    """around the blade, on `u`"""
+    """around the blade, of fillets and strips"""
 
 
 def chosen_knots(blade: Blade, section: ClosedSection, balls: Mapping[str, Ball], *, fine: bool = False) -> FilletKnots:
@@ -55,33 +55,50 @@ def chosen_knots(blade: Blade, section: ClosedSection, balls: Mapping[str, Ball]
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
         rolled = Rolled.at(section, balls, first.sites)
         check_fillets(blade, balls, rolled)
-    joints = joints_for(rolled.sites, {wall: touch.lines for wall, touch in rolled.touches.items()})
     tolerance = RESERVE * blade.tolerance * blade.chord
-    v = _along_span(blade.knots.v, rolled, balls, joints, tolerance)
+    side = blade.sides[0]
+    strips = strips_for(
+        rolled.sites,
+        {wall: touch.lines for wall, touch in rolled.touches.items()},
+        {wall: ball.end for wall, ball in balls.items()},
+        {wall: ball.curved for wall, ball in balls.items()},
+        side.knots_v,
+    )
+    step = max(1, len(rolled.sites) // (2 * LINES))
+    few = Rolled.at(section, balls, rolled.sites.picked(np.arange(0, len(rolled.sites), step)), rolled.found)
+    strips = {wall: _in_spans(strip, few.touches[wall], wall, tolerance) for wall, strip in strips.items()}
     off_wall = RESERVE * wall_tolerance(blade.chord, fine=fine)
-    u = _around(blade.knots.u, rolled, balls, joints, tolerance, off_wall)
+    u = _around(side.knots_u, rolled, strips, tolerance, off_wall)
     splines = SectionSplines(knots=u, smooth=section.smooth)
     near = FrozenMapping(rolled.found)
-    return FilletKnots(u=u, v=v, before=blade.knots, joints=FrozenMapping(joints), near=near, splines=splines)
+    low, high = levels(strips)
+    inner = side.knots_v[(side.knots_v > low) & (side.knots_v < high)]
+    v = clamped((inner - low) / (high - low))
+    return FilletKnots(
+        u=side.knots_u, v=v, before=blade.knots, strips=FrozenMapping(strips), near=near, splines=splines
+    )
 
 
-def _along_span(plain: Reals, rolled: Rolled, balls: Mapping[str, Ball], joints: Joints, tolerance: float) -> Reals:
-    step = max(1, len(rolled.sites) // (2 * LINES))
-    few = Rolled.at(rolled.section, balls, rolled.sites.picked(np.arange(0, len(rolled.sites), step)), rolled.found)
+def levels(strips: Mapping[str, Strip]) -> tuple[float, float]:
+    """v at which the sides are cut, or end."""
+    return strips["hub"].level if "hub" in strips else 0.0, strips["shroud"].level if "shroud" in strips else 1.0
+
+
+def _in_spans(strip: Strip, few: Touch, wall: str, tolerance: float) -> Strip:
+    """The strip with knots along w that hold a tolerance on some of its lines."""
 
     def miss(knots: Reals, at: Reals) -> Reals:
-        splines = SpanSplines(knots=knots, orders=orders_of(balls))
-        net = splines.net(few.above(joints, splines.sites), few.derivatives(joints))
-        off = np.tensordot(basis(knots, DEGREE, at), net, axes=1) - few.above(joints, at)
+        own = replace(strip, knots=knots)
+        net = own.net(few.start(own), few.above(own, own.sites), few.end(own))
+        off = np.tensordot(basis(knots, DEGREE, at), net, axes=1) - few.above(own, at)
         return np.max(length(off), axis=1) / tolerance
 
-    return _reached(refined(first_knots(plain, joints), miss, MOST_POLES[1]), miss, "span", balls)
+    return replace(strip, knots=_reached(refined(strip.knots, miss, MOST_POLES[1]), miss, "span", [wall]))
 
 
-def _around(
-    plain: Reals, rolled: Rolled, balls: Mapping[str, Ball], joints: Joints, tolerance: float, off_wall: float
-) -> Reals:
-    section, levels = rolled.section, _levels(joints)
+def _around(plain: Reals, rolled: Rolled, strips: Mapping[str, Strip], tolerance: float, off_wall: float) -> Reals:
+    """Knots around the blade."""
+    section, balls = rolled.section, {wall: touch.ball for wall, touch in rolled.touches.items()}
     known = rolled
 
     def miss(knots: Reals, at: Reals) -> Reals:
@@ -95,29 +112,32 @@ def _around(
             rows = basis(knots, DEGREE, at, order)
             return np.concatenate([np.tensordot(rows, net, axes=1) for net in splines.split(values)])
 
-        made, exact = (np.swapaxes(each.above(joints, levels), 0, 1) for each in (known, wanted))
-        error = np.max(length(carried(made) - exact), axis=1) / tolerance
+        error = np.zeros(len(between))
         for wall, touch in wanted.touches.items():
+            made, exact = (
+                np.swapaxes(each.touches[wall].above(strips[wall], PLACES), 0, 1) for each in (known, wanted)
+            )
             mine, theirs = known.touches[wall].sections, touch.sections
             foot, normal = carried(mine.wall), theirs.normals[1]
             gap = np.abs(dot(foot - theirs.wall, normal))  # real: knots come from the real design
             plane = unit(cross(carried(mine.wall, 1), carried(mine.points(np.ones(1), 1)[0])))
             middle = carried(mine.points(np.array([0.5]))[0])
-            errors = [gap / off_wall, length(cross(plane, normal)) / (RESERVE * ON_WALL), _off_ball(touch, middle)]
-            error = np.max([error, *errors], axis=0)
+            off = np.max(length(carried(made) - exact), axis=1) / tolerance
+            angle = length(cross(plane, normal)) / (RESERVE * ON_WALL)
+            error = np.max([error, off, gap / off_wall, angle, _off_ball(touch, middle)], axis=0)
         return np.maximum(error[: len(at)], error[len(at) :])
 
-    return _reached(refined(plain, miss, MOST_POLES[0]), miss, "chord", balls)
+    return _reached(refined(plain, miss, MOST_POLES[0]), miss, "chord", list(balls))
 
 
-def _reached(knots: Reals, miss: Callable[[Reals, Reals], Reals], along: str, balls: Mapping[str, Ball]) -> Reals:
+def _reached(knots: Reals, miss: Callable[[Reals, Reals], Reals], along: str, walls: Sequence[str]) -> Reals:
     """The knots; raises DesignError where the limits are not held on them."""
     spans = np.unique(knots)
     places = (spans[1:] + spans[:-1]) / 2.0
     error = RESERVE * miss(knots, places)
     worst = int(np.argmax(error))
     if error[worst] > 1.0:
-        name, given = "u" if along == "chord" else "v", " or ".join(f"{wall}_fillet" for wall in balls)
+        name, given = "u" if along == "chord" else "v", " or ".join(f"{wall}_fillet" for wall in walls)
         raise DesignError(
             f"{given}: near {name} = {places[worst]:.3f} native surfaces miss what is promised of "
             f"them {error[worst]:.2g} times with {len(knots) - DEGREE - 1} poles along the {along}, at most "
@@ -133,8 +153,3 @@ def _off_ball(touch: Touch, middle: Array) -> Reals:
         touch.sections.points(np.array([0.5]))[0] - touch.sections.centre
     )
     return np.abs(away - 1.0) / (RESERVE * ON_BALL)  # real: knots come from the real design
-
-
-def _levels(joints: Joints) -> Reals:
-    bent = {wall: joint.bent * np.array(LEVELS) for wall, joint in joints.items()}
-    return np.unique(np.concatenate([x if wall == "hub" else 1.0 - x for wall, x in bent.items()]))

@@ -184,14 +184,17 @@ def _folding(blade: Blade, wall: str, touch: Touch) -> str | None:
 
 
 def _too_high(blade: Blade, wall: str, rolled: Rolled) -> str | None:
-    at = {name: np.real(touch.found.v) for name, touch in rolled.touches.items()}
-    left = at.get("shroud", np.ones(len(rolled.sites))) - at.get("hub", np.zeros(len(rolled.sites)))
-    worst = int(np.argmin(left))
-    if left[worst] >= LEAST_LEFT:
+    """Whether too little of the span is left between the highest contacts."""
+    away = {
+        name: np.real((1.0 - 2.0 * touch.ball.end) * (touch.found.v - touch.ball.end))
+        for name, touch in rolled.touches.items()
+    }
+    left = 1.0 - sum(float(np.max(each)) for each in away.values())
+    if left >= LEAST_LEFT:
         return None
-    other = "the other fillet" if len(at) > 1 else f"the {blade.design.ends[1 if wall == 'hub' else 0]}"
-    at_most = f"only {left[worst]:.3f} of the span is left to {other}, {LEAST_LEFT:g} are needed"
-    return f"{_place(rolled.sites, worst)} {at_most}"
+    other = "the other fillet" if len(away) > 1 else f"the {blade.design.ends[1 if wall == 'hub' else 0]}"
+    at_most = f"only {left:.3f} of the span is left to {other}, {LEAST_LEFT:g} are needed"
+    return f"{_place(rolled.sites, int(np.argmax(away[wall])))} {at_most}"
 
 
 def _meeting(blade: Blade, wall: str, touch: Touch) -> str | None:

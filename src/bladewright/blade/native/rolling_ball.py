@@ -9,12 +9,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from bladewright.blade.native.above_fillet import Ends, Joints, Leaving, bend, leaving, places, resolved
 from bladewright.blade.native.blade import Blade
 from bladewright.blade.native.closed_section import ClosedSection, Sites
 from bladewright.blade.native.contacts import Contacts, Wall, contacts
 from bladewright.blade.native.cross_section import ConicSections, CrossSections, QuinticSections
 from bladewright.blade.native.fillet_sizes import Sizes, ball_sizes
+from bladewright.blade.native.strip import Leaving, Strip, leaving, resolved
 from bladewright.frozen import FrozenRecord
 from bladewright.numerics.elementary import Array, dot
 from bladewright.nurbs.basis import Reals
@@ -103,7 +103,21 @@ class Touch(FrozenRecord):
     @cached_property
     def lines(self) -> Leaving:
         """How lines of the blade leave the fillet."""
-        return leaving(self.section, self.found, self.slope, 1 if self.ball.end == 0.0 else -1)
+        return leaving(self.section, self.found, self.slope)
+
+    def above(self, strip: Strip, w: Reals) -> Array:
+        """Points (len(w), k, 3) of the strip above the fillet, w from 0 at the fillet to 1 at the side."""
+        return strip.points(self.section, self.found.sites, self.lines, w)
+
+    def start(self, strip: Strip) -> list[Array]:
+        """The points (k, 3) where the strip starts, its first derivatives by w and, where they are kept, its second."""
+        found = [self.sections.blade, -self.slope / strip.speed]
+        return [*found, strip.bend(self.section, self.found.sites, self.lines)] if strip.curved else found
+
+    def end(self, strip: Strip) -> list[Array]:
+        """The points (k, 3) where the strip ends, and its first two derivatives by w."""
+        found = self.section.derivatives(self.found.sites, np.asarray(strip.level), (0, 0), (0, 1), (0, 2))
+        return [strip.slope**order * each for order, each in enumerate(found)]
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -135,33 +149,6 @@ class Rolled(FrozenRecord):
     def found(self) -> dict[str, Contacts]:
         """The contacts by the wall."""
         return {wall: touch.found for wall, touch in self.touches.items()}
-
-    def above(self, joints: Joints, w: Reals) -> Array:
-        """Points (len(w), k, 3) of the blade above the fillets."""
-        found = self.section.derivative(*places(self.sites, self._ends(joints), w))
-        for wall, row in (("hub", 0), ("shroud", -1)):
-            if wall in self.touches and w[row] == WALLS[wall]:
-                # the joint's own points, to the bit
-                found[row] = self.touches[wall].sections.blade
-        return found
-
-    def derivatives(self, joints: Joints) -> dict[str, list[Array]]:
-        """dB/dx, and where curvature is to be continuous d2B/dx2, (k, 3) of the blade above at each joint."""
-        ends = self._ends(joints)
-        found = {}
-        for wall, touch in self.touches.items():
-            found[wall] = [-touch.slope / joints[wall].speed]
-            if touch.ball.curved:
-                found[wall].append(bend(self.section, touch.found, ends, wall))
-        return found
-
-    def _ends(self, joints: Joints) -> Ends:
-        return {wall: (joints[wall], touch.lines) for wall, touch in self.touches.items()}
-
-
-def orders_of(balls: Mapping[str, Ball]) -> dict[str, int]:
-    """How many derivatives the blade above a fillet and the fillet share, by the wall."""
-    return {wall: 2 if ball.curved else 1 for wall, ball in balls.items()}
 
 
 def closed_section(blade: Blade) -> ClosedSection:

@@ -1,0 +1,219 @@
+"""Strips of a blade above its fillets: from the contact curve to the curve of constant v at which the side is cut.
+
+The side itself is cut and stays what it is. A line of constant u of its strip is S(u + U(w), V(w)) on the side S, with w
+from 0 at the contact to 1 at the cut, U and V of degree 5 with the control points
+
+    U: 0, e m / 5, 0, ..., 0            V: c, c + g / 5, the middle of its neighbours, b - 2 k / 5, b - k / 5, b,
+
+c the v of the contact, b that of the cut, k one slope for the whole strip, so that the strip goes on as the side with its
+first and second derivatives. U has a knot at e < 1 where lines would cross without. m and g are such that at the joint
+
+    dS/dw = m S_u + g S_v = -dF/ds / K
+
+with one K for the whole joint: control points of the first two rows then satisfy F1 - F0 = -k' (S1 - S0), so that strip
+and fillet have one tangent plane at every point of the joint, not only where they are interpolated.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from bladewright.blade.native.closed_section import ClosedSection, Sites
+from bladewright.blade.native.contacts import Contacts
+from bladewright.blade.native.knots import DEGREE
+from bladewright.frozen import FrozenRecord
+from bladewright.numerics.elementary import Array, dot
+from bladewright.nurbs.basis import JOINT_TOLERANCE, Reals, basis, greville
+from bladewright.nurbs.blossom import knot_change
+from bladewright.nurbs.surface import Surface
+
+ONE_SPAN = np.repeat([0.0, 1.0], DEGREE + 1)
+"""Knots of a strip along w to begin with."""
+SHORTEST, UNEQUAL = 0.25, 1.0 / 3.0
+"""Length of a strip at the highest contact: of the distance from wall to contact, and of how unlike high contacts are;
+the longest of its lines is then four times the shortest."""
+MOST_OF_ROOM = 0.4
+"""Largest length of a strip there, of what is left of the span to the blade's other end or the other fillet."""
+NEAR_KNOT = (0.7, 1.7)
+"""Lengths, of that one, between which a strip ends at a knot of the side, where there is one: beside it the side would
+begin with a narrow span."""
+FIRST_STEP, LAST_STEP = 0.35, 0.5
+"""Largest steps of V next to its ends, of a line's length: they come no closer than to 0.15 of it."""
+FOLDED = 0.35
+"""Share of their distance that is left to lines as they leave the joint sideways; at 0 they would cross."""
+HIGHEST = 0.41
+"""Largest value of the second of the basis functions of U where e = 1; where e is smaller it is at most 1."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Leaving(FrozenRecord):
+    """What lines at k sites leave a fillet with."""
+
+    contact: Array
+    """c (k,)"""
+    sideways: Array
+    """K m (k,)"""
+    upwards: Array
+    """K g (k,), below 0 at the shroud"""
+
+
+def leaving(section: ClosedSection, found: Contacts, slope: Array) -> Leaving:
+    """From contacts and dF/ds (k, 3) on the blade."""
+    along, across = section.derivatives(found.sites, found.v, (1, 0), (0, 1))
+    sideways, upwards = resolved(along, across, -slope)
+    return Leaving(contact=found.v, sideways=sideways, upwards=upwards)
+
+
+def resolved(along: Array, across: Array, vectors: Array) -> tuple[Array, Array]:
+    """The shares (k,) of two tangents (k, 3) in vectors (k, 3) of their plane."""
+    a, b, c = dot(along, along), dot(along, across), dot(across, across)
+    first, second = dot(along, vectors), dot(across, vectors)
+    size = a * c - b * b
+    return (c * first - b * second) / size, (a * second - b * first) / size
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Strip(FrozenRecord):
+    """How lines run from a fillet to the side, chosen from the real blade and held in derivatives."""
+
+    level: float
+    """b"""
+    slope: float
+    """k, below 0 at the shroud"""
+    speed: float
+    """K"""
+    shifted: float
+    """e"""
+    curved: bool
+    """whether the fillet has the side's curvature, so that second derivatives are kept at the joint too"""
+    knots: Reals
+    """along w"""
+
+    def places(self, sites: Sites, lines: Leaving, w: Reals) -> tuple[Sites, Array]:
+        """Sites and v (len(w), k) on the sides of the lines at sites (k,), at w."""
+        v = np.tensordot(basis(ONE_SPAN, DEGREE, w), np.stack(self._rise(lines)), axes=1)
+        bump = basis(with_knot(self.shifted), DEGREE, w)[:, 1:2]
+        return sites.moved(sites.u + bump * self.shifted / DEGREE * lines.sideways / self.speed), v
+
+    def _rise(self, lines: Leaving) -> list[Array]:
+        """Control points (6 of (k,)) of V."""
+        second, end = lines.contact + lines.upwards / (DEGREE * self.speed), np.zeros_like(lines.contact)
+        last = [end + self.level - share * self.slope / DEGREE for share in (2.0, 1.0, 0.0)]
+        return [lines.contact, second, 0.5 * (second + last[0]), *last]
+
+    def points(self, section: ClosedSection, sites: Sites, lines: Leaving, w: Reals) -> Array:
+        """Points (len(w), k, 3) of the lines at w."""
+        return section.derivative(*self.places(sites, lines, w))
+
+    def bend(self, section: ClosedSection, sites: Sites, lines: Leaving) -> Array:
+        """Second derivatives (k, 3) of the lines by w at the joint."""
+        rise, sideways, upwards = self._rise(lines), lines.sideways / self.speed, lines.upwards / self.speed
+        lift = DEGREE * (DEGREE - 1) * (rise[0] - 2.0 * rise[1] + rise[2])
+        # of U, by its first two spans
+        turn = -(DEGREE - 1) * sideways * (1.0 + 1.0 / self.shifted)
+        u, v, uu, uv, vv = section.derivatives(sites, lines.contact, (1, 0), (0, 1), (2, 0), (1, 1), (0, 2))
+        shares = turn, lift, sideways**2, 2.0 * sideways * upwards, upwards**2
+        return np.asarray(sum(share[:, None] * each for share, each in zip(shares, (u, v, uu, uv, vv), strict=True)))
+
+    @property
+    def sites(self) -> Reals:
+        """w inside at which lines are interpolated: derivatives take the places beside the ends."""
+        return greville(self.knots, DEGREE)[2 + self.curved : -3]
+
+    def net(self, start: Sequence[Array], inside: Array, end: Sequence[Array]) -> Array:
+        """Control points (n, ...) of lines along w.
+
+        From where they start with their first and, where it is kept, second derivatives, from the points (m, ...) at the
+        inner sites, and from where they end with two derivatives.
+        """
+        first = end_points(start, self.knots)
+        last = end_points([end[0], -end[1], end[2]], 1.0 - self.knots[::-1])[::-1]
+        middle = slice(len(first), -len(last))
+        matrix = basis(self.knots, DEGREE, self.sites)
+        known = np.concatenate([matrix[:, : len(first)], matrix[:, -len(last) :]], axis=1)
+        right = inside - np.tensordot(known, np.stack([*first, *last]), axes=1)
+        return np.stack([*first, *np.tensordot(np.linalg.inv(matrix[:, middle]), right, axes=1), *last])
+
+    def side_end(self, side: Surface, knots_u: Reals) -> list[Array]:
+        """Control points (n, 3), on knots that have those of the side, of where lines end and of their two derivatives."""
+        change = knot_change(side.knots_u, DEGREE, knots_u)
+        rows = [basis(side.knots_v, DEGREE, [self.level], order)[0] * self.slope**order for order in range(3)]
+        return [change @ np.tensordot(row, side.control_points, axes=(0, 1)) for row in rows]
+
+
+def with_knot(place: float) -> Reals:
+    """Knots of one span with a knot inside, where it is inside."""
+    return np.insert(ONE_SPAN, DEGREE + 1, place) if place < 1.0 else ONE_SPAN
+
+
+def end_points(derivatives: Sequence[Array], knots: Reals) -> list[Array]:
+    """The first control points of a spline on knots from 0 that starts with a point and these derivatives.
+
+    Those are the first, or the first two (Piegl and Tiller 1997, eqs. 3.7 and 3.9).
+    """
+    near, far = knots[DEGREE + 1], knots[DEGREE + 2]
+    found = [derivatives[0], derivatives[0] + derivatives[1] * near / DEGREE]
+    if len(derivatives) > 2:
+        found.append(found[1] + far * (derivatives[2] * near / (DEGREE * (DEGREE - 1)) + derivatives[1] / DEGREE))
+    return found
+
+
+def strips_for(
+    sites: Sites, lines: Mapping[str, Leaving], ends: Mapping[str, float], curved: Mapping[str, bool], knots: Reals
+) -> dict[str, Strip]:
+    """Strips of lines that leave fillets so at real sites, by the wall, in as few spans as they can be.
+
+    `ends` are the v of the walls, `curved` tells which fillets have the side's curvature, `knots` are the side's along v.
+    """
+    away = {wall: _inwards(end) * (lines[wall].contact - end) for wall, end in ends.items()}
+    room = 1.0 - sum(float(np.max(each)) for each in away.values())
+    found = {}
+    for wall, end in ends.items():
+        level, toward = _level(away[wall], room, knots, end), _inwards(end)
+        run = toward * (level - end) - away[wall]
+        steep = toward * lines[wall].upwards / run
+        speed = max(float(np.mean(steep)), float(np.max(steep)) / (DEGREE * FIRST_STEP))
+        slope = min(float(np.mean(run)), float(np.min(run)) * DEGREE * LAST_STEP / 2.0)
+        closing = max(float(np.max(-_closing(sites, lines[wall].sideways / speed), initial=0.0)), 1e-9) / DEGREE
+        shifted = 1.0 if HIGHEST * closing < 1.0 - FOLDED else min((1.0 - FOLDED) / closing, 0.5)
+        found[wall] = Strip(
+            level=level,
+            slope=toward * slope,
+            speed=speed,
+            shifted=shifted,
+            curved=curved[wall],
+            knots=with_knot(shifted),
+        )
+    return found
+
+
+def _inwards(end: float) -> float:
+    """The way from an end of the blade into the span."""
+    return 1.0 - 2.0 * end
+
+
+def _level(away: Reals, room: float, knots: Reals, end: float) -> float:
+    """v at which strips over contacts (k,) so far from an end are to end: at one of the knots where one is near."""
+    lowest, highest = float(np.min(away)), float(np.max(away))
+    most = MOST_OF_ROOM * room
+    asked = min(max(SHORTEST * highest, UNEQUAL * (highest - lowest)), most)
+    lengths = _inwards(end) * (knots - end) - highest
+    near = (lengths >= NEAR_KNOT[0] * asked) & (lengths <= min(NEAR_KNOT[1] * asked, most))
+    if near.any():
+        return float(knots[near][np.argmin(np.square(lengths[near] - asked))])
+    return end + _inwards(end) * (highest + asked)
+
+
+def _closing(sites: Sites, sideways: Reals) -> Reals:
+    """Slopes of the sideways speed by u between neighbouring sites of each side."""
+    slopes = []
+    for side in np.unique(sites.side):
+        own = sites.side == side
+        order = np.argsort(sites.u[own])
+        u, speed = sites.u[own][order], sideways[own][order]
+        far = np.diff(u) > JOINT_TOLERANCE
+        slopes.append(np.diff(speed)[far] / np.diff(u)[far])
+    return np.concatenate(slopes)
