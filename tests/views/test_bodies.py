@@ -128,7 +128,7 @@ def test_a_wheel_is_drawn_from_one_blade_and_one_piece_of_its_wall(wheel_drawn):
     repeated, once = body_scene(wheel_drawn).groups
     assert len(repeated.turns) == wheel_drawn.blade.design.blade_count
     names = [name for name in wheel_drawn.surfaces if "_01" in name]
-    assert len(repeated.surfaces) == len(names) == 6  # both sides, both fillets, the shroud's end, the hub
+    assert len(repeated.surfaces) == len(names) == 8  # both sides, both strips, both fillets, the shroud's end, the hub
     assert len(once.surfaces) == len(wheel_drawn.surfaces) - len(names) * len(repeated.turns)
     assert {surface.colour for surface in repeated.surfaces} == {BLADE, mixed(BLADE, FILLET), HUB}
 

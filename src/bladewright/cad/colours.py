@@ -65,7 +65,11 @@ def check_colour(colour: str) -> None:
 
 
 def part_of(face: str, suction: str | None) -> str:
-    """The part that a face belongs to, a key of `COLOURS`; `suction` is the suction side, where it is known."""
+    """The part that a face belongs to, a key of `COLOURS`; `suction` is the suction side, where it is known.
+
+    A strip is a part of its side.
+    """
+    face = re.sub(r"(hub|shroud)_strip_", "", face)
     found = (part for pattern, part in _PARTS.items() if re.search(pattern, face))
     part = next(found, None)
     if part is not None:

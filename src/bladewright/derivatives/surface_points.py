@@ -20,6 +20,8 @@ from bladewright.nurbs.curve import Curve
 
 SAME = 1e-9
 """Distance, in units of the points' extent, below which points of two faces are one: they differ by rounding."""
+BESIDE = tuple(f"_{part}_{side}" for part in ("strip", "fillet") for side in ("upper", "lower"))
+"""Endings of the names of faces between the sides of a blade and its walls."""
 NEAR = 1e-4
 """Default of `near`, in units of the points' extent: how far a given point may lie off the surfaces. Meshes from files
 with few digits must be accepted, and those of another design, or in millimetres, refused."""
@@ -69,11 +71,12 @@ class SurfacePoints:
 
 
 def surface_points(
-    built: Any, *, along: int = 81, across: int = 21, names: Sequence[str] = ("upper", "lower")
+    built: Any, *, along: int = 81, across: int = 21, names: Sequence[str] | None = None
 ) -> SurfacePoints:
     """Points on surfaces of a blade or passage, or on the curves of a section, numbered from 0.
 
-    `along` is their number in u, where they are closer at both ends, and `across` that in v, where they are equally
+    `names` are those of the surfaces, without which the sides with their strips and fillets are taken. `along` is the
+    number of points in u, where they are closer at both ends, and `across` that in v, where they are equally
     spaced; a point that two surfaces share is listed once, on the first of them. Raises DerivativeError for
     an unknown name, or fewer than 2 points either way.
     """
@@ -82,7 +85,7 @@ def surface_points(
     u = (1.0 - np.cos(np.pi * np.linspace(0.0, 1.0, along))) / 2.0
     rows: list[Reals] = []
     places: list[tuple[str, Reals, Reals]] = []
-    for name in names:
+    for name in _sides(built) if names is None else names:
         shape = untrimmed(_face(faces_of(built), name))
         v = np.zeros(1) if isinstance(shape, Curve) else np.linspace(0.0, 1.0, across)
         at_u, at_v = (part.ravel() for part in np.meshgrid(u, v, indexing="ij"))
@@ -101,13 +104,14 @@ def surface_points(
 
 
 def placed_points(
-    built: Any, ids: ArrayLike, points: ArrayLike, *, names: Sequence[str] = ("upper", "lower"), near: float = NEAR
+    built: Any, ids: ArrayLike, points: ArrayLike, *, names: Sequence[str] | None = None, near: float = NEAR
 ) -> SurfacePoints:
     """The points on the surfaces closest to given ones (n, 3), or (n, 2) of a 2D design, with numbers `ids` (n,).
 
     So a mesh made elsewhere can follow a design. Raises DerivativeError where a number occurs twice, or a point lies
     further than `near` times the extent of all off the surfaces.
     """
+    names = _sides(built) if names is None else names
     numbers, given = np.asarray(ids, dtype=np.int64), np.asarray(points, dtype=np.float64)
     repeated = np.flatnonzero(np.bincount(np.unique(numbers, return_inverse=True)[1]) > 1)
     if len(repeated):
@@ -141,6 +145,11 @@ def _nearest(shape: Shape, points: Reals) -> tuple[Reals, Reals, Reals]:
         return on_curve.u, np.zeros(len(points)), on_curve.points
     found = closest_on_surface(shape, points)
     return found.u, found.v, found.points
+
+
+def _sides(built: Any) -> list[str]:
+    """The sides of a blade or section, with what lies between them and the walls."""
+    return ["upper", "lower", *(name for name in faces_of(built) if name.endswith(BESIDE))]
 
 
 def _face(faces: Mapping[str, Any], name: str) -> Any:

@@ -26,8 +26,9 @@ GROUPS = (
     "shroud_gap",
     "tip",
     *(
-        f"blade_{wall}_fillet_{face}"
+        f"blade_{wall}_{part}_{face}"
         for wall in ("hub", "shroud")
+        for part in ("strip", "fillet")
         for face in ("upper", "lower", "leading_edge", "trailing_edge")
     ),
     "hub",

@@ -25,7 +25,7 @@ from bladewright.views.solid import (
     FAINT,
     FILLET,
     HUB,
-    SIDES,
+    edge_rows,
     mixed,
     places_on,
     show_rendering,
@@ -160,7 +160,8 @@ def body_scene(body: BladedBody, size: tuple[int, int] = COARSE) -> Scene:
             continue
         surfaces, lines = repeated if found else once
         own = (found[3] or found[1]) if found else name.removeprefix("blade_")
-        surface, around = _drawn(own, face, size, whole=copies > 1, of_blade=name.startswith("blade_"))
+        of_blade = body.blade if name.startswith("blade_") else None
+        surface, around = _drawn(own, face, size, whole=copies > 1, of_blade=of_blade)
         if own in WALLS:
             # a fillet's foot is tangent to the wall, which must not be seen through it
             sunk = SUNK * per_metre() * body.blade.chord * body.orientations[name]
@@ -173,14 +174,13 @@ def body_scene(body: BladedBody, size: tuple[int, int] = COARSE) -> Scene:
 
 
 def _drawn(
-    name: str, face: Face, size: tuple[int, int], *, whole: bool, of_blade: bool
+    name: str, face: Face, size: tuple[int, int], *, whole: bool, of_blade: "Blade | None"
 ) -> tuple[ShadedGrid, list[Polyline]]:
     """A face with the lines around it that are edges of the body."""
-    if of_blade:
-        fillet = "fillet" in name
+    if of_blade is not None:
+        fillet, edges = "fillet" in name, edge_rows(of_blade, name)
         points, normals = sampled(face, *places_on(name, size))
-        smooth = fillet or name in SIDES
-        lines = [points[:, 0], points[:, -1]] if smooth else borders(face)
+        lines = borders(face) if edges is None else [points[:, row] for row in edges]
         colour = mixed(BLADE, FILLET) if fillet else BLADE
         ink = FAINT if fillet else EDGE
     else:

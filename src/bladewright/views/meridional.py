@@ -102,7 +102,7 @@ def _near_the_blade(axes: Axes, covered: Reals) -> None:
 def draw_covered(axes: Axes, blade: "Blade") -> None:
     """Fill what the faces of a cut or filleted blade cover, its fillets in their own colour."""
     kinds: list[tuple[str, Any, list[str]]] = [
-        ("blade", PALE, [name for name in blade.surfaces if name in SIDES]),
+        ("blade", PALE, [name for name in blade.surfaces if name in SIDES or "strip" in name]),
         ("fillet", FILLET, [name for name in blade.surfaces if "fillet" in name]),
     ]
     for label, colour, names in kinds:
@@ -160,8 +160,10 @@ def built_edges(blade: "Blade") -> list[Reals]:
     """Leading and trailing edge (n, 2) of the native sides in (x, r) [m]; of a blunt edge those of both sides."""
     v, edges = np.linspace(0.0, 1.0, 101), []
     for end, name in ((0.0, "leading_edge"), (1.0, "trailing_edge")):
-        for side in blade.sides if name in blade.surfaces else blade.sides[:1]:
-            x, y, z = np.moveaxis(np.real(side.grid(np.array([end]), v))[0], -1, 0)
+        for side in SIDES if name in blade.surfaces else SIDES[:1]:
+            along = [part for part in (f"hub_strip_{side}", side, f"shroud_strip_{side}") if part in blade.surfaces]
+            lines = [np.real(cast(Surface, blade.surfaces[part]).grid(np.array([end]), v))[0] for part in along]
+            x, y, z = np.concatenate(lines).T
             edges.append(np.stack([x, np.sqrt(y * y + z * z) if blade.exact.mapping.revolved else z], axis=-1))
     return edges
 

@@ -33,7 +33,7 @@ SIDES, EDGES = ("upper", "lower"), ("leading_edge", "trailing_edge")
 SLOPE_STEP = 0.01
 """Step of u from which the slope of a wall at a nose is taken."""
 FEW = 9
-"""Points across a fillet and an end."""
+"""Points across a fillet, a strip and an end."""
 BORE_RADIUS = 0.8
 """Radius of the bore drawn in the hub of a whole row, in smallest radii of the hub. It only shows that the hub is a
 wheel; no design says it."""
@@ -136,11 +136,16 @@ def blade_surfaces(
         points, normals = sampled(face, *places_on(name, size))
         own = mixed(colour, FILLET) if "fillet" in name and colour == BLADE else colour
         surfaces.append(ShadedGrid(points=points, normals=normals, colour=own))
-        if name in SIDES and not any("shroud_fillet" in each for each in blade.surfaces):
-            lines.append(points[:, -1])
-        if "fillet" in name or (name in SIDES and "hub" not in hidden):
-            lines += [points[:, 0], points[:, -1]]
+        rows = edge_rows(blade, name) or []
+        lines += [points[:, row] for row in rows if row or "hub" not in hidden or "fillet" in name]
     return surfaces, lines
+
+
+def edge_rows(blade: "Blade", name: str) -> list[int] | None:
+    """The rows of points across a face of a blade that are its edges, where it goes on smoothly at the others."""
+    if name in SIDES:
+        return [row for wall, row in (("hub", 0), ("shroud", -1)) if f"{wall}_strip_{name}" not in blade.surfaces]
+    return [0, -1] if "fillet" in name else [] if "strip" in name else None
 
 
 def places_on(name: str, size: tuple[int, int]) -> tuple[Reals, Reals]:
@@ -150,7 +155,7 @@ def places_on(name: str, size: tuple[int, int]) -> tuple[Reals, Reals]:
         return along, across
     if name in EDGES:
         return np.linspace(0.0, 1.0, 5), across
-    return (along if name.endswith(SIDES) or "fillet" not in name else cosine_spacing(FEW)), cosine_spacing(FEW)
+    return (cosine_spacing(FEW) if name.endswith(EDGES) else along), cosine_spacing(FEW)
 
 
 def mixed(one: tuple[float, float, float], other: tuple[float, float, float]) -> tuple[float, float, float]:

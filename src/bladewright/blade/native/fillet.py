@@ -1,4 +1,4 @@
-"""Blades with fillets: a ball rolls along the sides and a wall; what it touches is the fillet, and a strip lies above it.
+"""Blades with fillets: a ball rolls along the sides and a wall; between its contacts is the fillet, above it a strip.
 
 Contacts are found at sites around the blade, cross-sections run from contact to contact, and splines around the blade
 carry both the cross-sections and the strip above them, so that the joint is one row of control points for both. Above

@@ -26,8 +26,8 @@ ON_BALL = 1e-6
 ON_WALL = 1e-6
 """Largest angle between the tangent planes of fillet and wall at the foot [rad]."""
 MOST_POLES = (300, 60)
-"""Control points of fillets around the blade, on one side, and of strips along w at which knots are added no more: half as
-many again as a plain blade may have, for what the foot asks for."""
+"""Control points of fillets around the blade, on one side, and of strips along w at which knots are added no more: half
+as many again as a plain blade may have, for what the foot asks for, and twice what a strip of any example has."""
 LINES = 12
 """About how many lines of a strip are looked at on each side for its knots along them."""
 PLACES = np.array([0.0, 0.2, 0.5])

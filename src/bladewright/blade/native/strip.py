@@ -1,12 +1,12 @@
 """Strips of a blade above its fillets: from the contact curve to the curve of constant v at which the side is cut.
 
-The side itself is cut and stays what it is. A line of constant u of its strip is S(u + U(w), V(w)) on the side S, with w
+The side itself is cut and stays what it is. A line of constant u of its strip is S(u + U(w), V(w)) on the side S, w
 from 0 at the contact to 1 at the cut, U and V of degree 5 with the control points
 
     U: 0, e m / 5, 0, ..., 0            V: c, c + g / 5, the middle of its neighbours, b - 2 k / 5, b - k / 5, b,
 
-c the v of the contact, b that of the cut, k one slope for the whole strip, so that the strip goes on as the side with its
-first and second derivatives. U has a knot at e < 1 where lines would cross without. m and g are such that at the joint
+c the v of the contact, b that of the cut, k one slope for the whole strip, so that it goes on as the side does, with
+two derivatives. U has a knot at e < 1 where lines would cross without. m and g are such that at the joint
 
     dS/dw = m S_u + g S_v = -dF/ds / K
 
@@ -126,8 +126,8 @@ class Strip(FrozenRecord):
     def net(self, start: Sequence[Array], inside: Array, end: Sequence[Array]) -> Array:
         """Control points (n, ...) of lines along w.
 
-        From where they start with their first and, where it is kept, second derivatives, from the points (m, ...) at the
-        inner sites, and from where they end with two derivatives.
+        From where they start with their first and, where it is kept, second derivatives, from the points (m, ...) at
+        the inner sites, and from where they end with two derivatives.
         """
         first = end_points(start, self.knots)
         last = end_points([end[0], -end[1], end[2]], 1.0 - self.knots[::-1])[::-1]
@@ -138,7 +138,7 @@ class Strip(FrozenRecord):
         return np.stack([*first, *np.tensordot(np.linalg.inv(matrix[:, middle]), right, axes=1), *last])
 
     def side_end(self, side: Surface, knots_u: Reals) -> list[Array]:
-        """Control points (n, 3), on knots that have those of the side, of where lines end and of their two derivatives."""
+        """Where lines end, and their two derivatives, as control points (n, 3) on knots that have those of the side."""
         change = knot_change(side.knots_u, DEGREE, knots_u)
         rows = [basis(side.knots_v, DEGREE, [self.level], order)[0] * self.slope**order for order in range(3)]
         return [change @ np.tensordot(row, side.control_points, axes=(0, 1)) for row in rows]
@@ -166,7 +166,8 @@ def strips_for(
 ) -> dict[str, Strip]:
     """Strips of lines that leave fillets so at real sites, by the wall, in as few spans as they can be.
 
-    `ends` are the v of the walls, `curved` tells which fillets have the side's curvature, `knots` are the side's along v.
+    `ends` are the v of the walls, `curved` tells which fillets have the side's curvature, `knots` are those of the side
+    along v.
     """
     away = {wall: _inwards(end) * (lines[wall].contact - end) for wall, end in ends.items()}
     room = 1.0 - sum(float(np.max(each)) for each in away.values())
