@@ -132,6 +132,22 @@ def test_points_of_a_shape_are_found_where_they_are(real_curve, real_surface):
     assert np.allclose(closest_on_surface(real_surface, real_surface(s, v)).distances, 0.0, atol=1e-9)
 
 
+def test_a_search_ends_where_a_whole_line_is_nearest_but_for_the_error_of_interpolation():
+    angle = np.linspace(0.0, 1.5, 50) ** 3 / 1.5**2
+    rings = [
+        interpolated(np.stack([np.cos(angle), np.sin(angle), np.full(50, z)], axis=-1), angle / 1.5, degree=5)
+        for z in (0.0, 2.0)
+    ]
+    points = np.stack([np.zeros(44), np.zeros(44), np.linspace(0.1, 1.9, 44)], axis=-1)
+    assert np.allclose(closest_on_surface(ruled(*rings), points).distances, 1.0, rtol=0.0, atol=1e-8)
+
+
+def test_a_search_ends_where_distances_are_rounding_of_a_rational_surface():
+    cone, (u, v) = revolved(segment((0.0, 1.0, 0.0), (1.0, 2.0, 0.0))), np.random.default_rng(1).random((2, 44))
+    points = cone(u, v) + 2e-8 * cone.normal(u, v)
+    assert np.allclose(closest_on_surface(cone, points).distances, 2e-8, rtol=0.0, atol=1e-13)
+
+
 def test_distances_to_a_circle_are_those_of_the_closed_form():
     points = around(circle((1.0, 2.0), 3.0), 1000)
     found = closest_on_curve(circle((1.0, 2.0), 3.0), points)

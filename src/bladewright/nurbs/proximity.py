@@ -2,10 +2,10 @@
 
 `polished` is the local search: damped Newton steps on the squared distance, from patch to patch. `nearest` is the
 global one. With N / D the squared distance on a patch (D = 1 without weights) and f the smallest squared distance found
-so far, a box of parameters is dropped when all Bernstein coefficients of N - f D are positive, or when N - f D is
-convex there and its tangent plane at the closest point found is not negative on the box; otherwise it is halved. Where
-a value at the corner of a box is below f, a descent from there finds a new closest point. A point that is missed is
-closer by at most a tolerance.
+so far, a box of parameters is dropped when all Bernstein coefficients of N - f D are positive, or when Taylor's formula
+about its lowest place, with bounds of the second derivatives, says so; otherwise it is halved. Where a value at the
+corner of a box is below f, a descent from there finds a new closest point. A point that is missed is closer by at most
+a tolerance.
 """
 
 from dataclasses import dataclass
@@ -141,6 +141,13 @@ def _step(gradient: Reals, hessian: Reals, metric: Reals, damping: Reals, local:
 BLOCK = 2_000_000
 """Bernstein coefficients held at a time, which bounds the memory: 16 MB an array. A tenth of it, or ten times as much,
 takes about the same time (design/nurbs_constants.md)."""
+VALLEY_STEPS = 2
+"""Newton steps towards the lowest place of a box, about which its bound is taken."""
+ROUNDING = 1e-15
+"""Difference of squared distances, of the squared radius of a patch, that is rounding: a few times that of a double."""
+MANY_BOXES = 20_000
+"""Boxes for each query after which the tolerance grows with the square of their number, so that any search ends: five
+times what a point on the axis of a cone takes."""
 MAX_HALVINGS = 48
 """Halvings of a box, after which its width is near the spacing of doubles; 12 suffice in design/nurbs_constants.md."""
 
@@ -245,12 +252,15 @@ class _Search:
         coefficients = self.forms.shape[2] * self.forms.shape[3]
         limit = max(1, BLOCK // coefficients)
         waiting: list[_Boxes] = []
+        done = 0
         for i in range(0, len(query), limit):
             waiting.append(self._boxes(queries, query[i : i + limit], patch[i : i + limit]))
             while waiting:
                 boxes = waiting.pop()
                 self._improve(best, queries, boxes)
-                boxes = boxes.of(self._open(best, boxes, tolerance))
+                done += len(boxes.query)
+                coarser = max(1.0, done / (MANY_BOXES * len(queries))) ** 2
+                boxes = boxes.of(self._open(best, boxes, coarser * tolerance))
                 if len(boxes.query) and boxes.depth < MAX_HALVINGS:
                     halves = boxes.halved(both=self.forms.shape[3] > 1)
                     rows = np.arange(len(halves.query))
@@ -299,14 +309,14 @@ class _Search:
         square = best.square[boxes.query]
         root = np.sqrt(square)
         slack = np.where(root > tolerance, tolerance * (2.0 * root - tolerance), square)
+        slack = np.maximum(slack, ROUNDING * (self.radii[boxes.patch] ** 2 + square))
         margin = boxes.numerator - (square - slack)[:, None, None] * boxes.denominator
         rows = np.flatnonzero((root > tolerance) & (margin.min(axis=(1, 2)) < 0.0))
-        at = self._local(best, boxes.query[rows], boxes.patch[rows])
-        inside = (at >= boxes.low[rows] - 1e-12) & (at <= boxes.low[rows] + boxes.width + 1e-12)
-        holds = inside.all(axis=1)
-        kept = np.ones(len(rows), dtype=bool)
-        kept[holds] = ~_certified(margin[rows[holds]], (at[holds] - boxes.low[rows[holds]]) / boxes.width)
-        return rows[kept]
+        margin = margin[rows]
+        at = (self._local(best, boxes.query[rows], boxes.patch[rows]) - boxes.low[rows]) / boxes.width
+        outside = ((at < -1e-12) | (at > 1.0 + 1e-12)).any(axis=1)
+        at[outside] = _lowest(margin[outside])
+        return rows[_lower_bound(margin, np.clip(at, 0.0, 1.0)) < 0.0]
 
     def _local(self, best: PatchPoints, query: NDArray[np.intp], patch: NDArray[np.intp]) -> Reals:
         """The closest points in the local parameters of other patches: outside [0, 1] where they are not on them."""
@@ -317,23 +327,44 @@ class _Search:
         return np.where(width > 0.0, (place - low[patch]) / np.where(width > 0.0, width, 1.0), 0.0)
 
 
-def _certified(margin: Reals, at: Reals) -> NDArray[np.bool_]:
-    """Where the margin (k, m, n) is convex on its box and its tangent plane at `at` (k, 2) not negative there."""
-    m, n = margin.shape[1] - 1, margin.shape[2] - 1
-    along, across = np.diff(margin, axis=1), np.diff(margin, axis=2)
-    bend = m * (m - 1) * np.diff(along, axis=1).min(axis=(1, 2))
-    convex = bend >= 0.0
-    if n:
-        other = n * (n - 1) * np.diff(across, axis=2).min(axis=(1, 2))
-        twist = m * n * np.square(np.diff(along, axis=2)).max(axis=(1, 2)) ** 0.5
-        convex &= (other >= 0.0) & (bend * other >= twist**2)
-    at = np.clip(at, 0.0, 1.0)
+def _lowest(values: Reals) -> Reals:
+    """About where in their box (k, 2) polynomials in Bernstein form (k, m + 1, n + 1) are least, by Newton steps."""
+    m, n = values.shape[1] - 1, values.shape[2] - 1
+    at, eye = np.full((len(values), 2), 0.5), np.eye(2)
+    at[:, 1] *= n > 0
+    for _ in range(VALLEY_STEPS):
+        of = bernsteins(m, at[:, 0]) @ values @ np.swapaxes(bernsteins(n, at[:, 1]), 1, 2)
+        gradient = np.stack([of[:, 1, 0], of[:, 0, 1]], axis=1)
+        hessian = np.stack([of[:, 2, 0], of[:, 1, 1], of[:, 1, 1], of[:, 0, 2]], axis=1).reshape(-1, 2, 2)
+        metric = np.maximum(hessian, -hessian) * eye
+        at = np.clip(at + _step(gradient, hessian, metric, np.zeros(len(at)), at), 0.0, 1.0)
+    return at
+
+
+def _lower_bound(values: Reals, at: Reals) -> Reals:
+    """Bounds (k,) below which polynomials in Bernstein form (k, m + 1, n + 1) do not fall on their box.
+
+    By Taylor's formula about places (k, 2), with the least second derivatives a and b and the largest twist c that the
+    coefficients allow: a x^2 - 2 c |x y| + b y^2 is at least (a - c^2 / b) x^2 where b > 0, and at least
+    (a - c) x^2 + (b - c) y^2.
+    """
+    m, n = values.shape[1] - 1, values.shape[2] - 1
+    along, across = np.diff(values, axis=1), np.diff(values, axis=2)
+    bends = [
+        (count - 1) * count * np.diff(first, axis=1 + k).min(axis=(1, 2)) if count > 1 else np.zeros(len(values))
+        for k, (first, count) in enumerate(((along, m), (across, n)))
+    ]
+    twist = m * n * np.square(np.diff(along, axis=2)).max(axis=(1, 2), initial=0.0) ** 0.5
+    steepest = np.maximum(*bends)
     s, t = [bernstein(m, at[:, 0], order) for order in (0, 1)], [bernstein(n, at[:, 1], order) for order in (0, 1)]
-    rows = [(s[a][:, None] @ margin)[:, 0] for a in (0, 1)]
-    value, slope_s, slope_t = (np.sum(rows[a] * t[b], axis=1) for a, b in ((0, 0), (1, 0), (0, 1)))
-    fall_s = np.minimum(-at[:, 0] * slope_s, (1.0 - at[:, 0]) * slope_s)
-    fall_t = np.minimum(-at[:, 1] * slope_t, (1.0 - at[:, 1]) * slope_t)
-    return np.asarray(convex & (value + fall_s + fall_t >= 0.0))
+    rows = [(s[a][:, None] @ values)[:, 0] for a in (0, 1)]
+    bound, *slopes = (np.sum(rows[a] * t[b], axis=1) for a, b in ((0, 0), (1, 0), (0, 1)))
+    for k, bend in enumerate(bends):
+        with_other = np.where(bends[1 - k] == steepest, bend - twist**2 / np.where(steepest > 0.0, steepest, 1.0), 0.0)
+        least = np.where(steepest > 0.0, with_other, bend - twist)
+        bound += np.minimum(-at[:, k] * slopes[k], (1.0 - at[:, k]) * slopes[k])
+        bound += 0.5 * np.minimum(least, 0.0) * np.maximum(at[:, k], 1.0 - at[:, k]) ** 2
+    return np.asarray(bound)
 
 
 def _subdivided(coefficients: Reals, quarters: list[tuple[int, int]], *, both: bool) -> Reals:
