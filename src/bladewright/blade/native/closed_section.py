@@ -1,25 +1,32 @@
-"""Both sides of a blade as one closed section, smooth across its round edges, and splines around it.
+"""Both sides of a blade and the faces of its blunt edges as one closed section, and splines around it.
 
-A site is a side and its u. Past a round edge the side goes on as the other one: u = -0.1 on the upper side is u = 0.1
-on the lower one, so that what leaves an edge obliquely may cross it.
+A site is a face and its u. Past a round edge a side goes on as the other one: u = -0.1 on the upper side is u = 0.1 on
+the lower one, so that what leaves an edge obliquely may cross it. At sharp and blunt edges the section has corners.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import BSpline
 
 from bladewright.blade.native.knots import DEGREE
-from bladewright.frozen import FrozenRecord
+from bladewright.frozen import FrozenMapping, FrozenRecord
 from bladewright.numerics.elementary import Array, cross, dot, length, unit
 from bladewright.nurbs.basis import Reals, basis, greville
 from bladewright.nurbs.surface import Surface
 
-UPPER, LOWER = 0, 1
+UPPER, LOWER, LEADING, TRAILING = range(4)
+"""The faces around the section: both sides, and those of blunt edges."""
+FACES = ("upper", "lower", "leading_edge", "trailing_edge")
+"""their names"""
+OUTWARD = np.array([-1.0, 1.0, 1.0, -1.0])
+"""+1 where dS/du x dS/dv points out of the blade; u of blunt edges runs from the upper to the lower side"""
 ACROSS_EDGES = 1
 """Derivatives that splines around the section keep across round edges: the sides keep two, their normals one."""
 
@@ -29,7 +36,7 @@ class Sites(FrozenRecord):
     """Places around the section."""
 
     side: NDArray[np.intp]
-    """(k,) UPPER or LOWER"""
+    """(k,) the face: UPPER, LOWER, LEADING or TRAILING"""
     u: Array
     """(k,) its parameter"""
 
@@ -45,6 +52,16 @@ class Sites(FrozenRecord):
         return Sites(side=self.side[which], u=self.u[which])
 
 
+class Corner(NamedTuple):
+    """A line of the span along which two faces of the section meet at an angle."""
+
+    name: str
+    """of its edge, and of the side where the edge is blunt"""
+    first: tuple[int, float]
+    """the face and its u there, nearer to the upper side"""
+    second: tuple[int, float]
+
+
 @dataclass(frozen=True, kw_only=True, eq=False)
 class ClosedSection(FrozenRecord):
     """The two sides, and at which of the edges, leading and trailing, they are one smooth surface."""
@@ -52,11 +69,34 @@ class ClosedSection(FrozenRecord):
     upper: Surface
     lower: Surface
     smooth: tuple[bool, bool]
+    blunt: Mapping[int, Surface] = field(default_factory=lambda: FrozenMapping({}))
+    """the faces of blunt edges, LEADING or TRAILING"""
+
+    @property
+    def faces(self) -> dict[int, Surface]:
+        """All faces."""
+        return {UPPER: self.upper, LOWER: self.lower, **self.blunt}
+
+    @cached_property
+    def corners(self) -> tuple[Corner, ...]:
+        """The corners, from the upper to the lower side at each edge."""
+        found: list[Corner] = []
+        for face, at, smooth in zip((LEADING, TRAILING), (0.0, 1.0), self.smooth, strict=True):
+            name = FACES[face]
+            if face in self.blunt:
+                found += [
+                    Corner(f"{name}_upper", (UPPER, at), (face, 0.0)),
+                    Corner(f"{name}_lower", (face, 1.0), (LOWER, at)),
+                ]
+            elif not smooth:
+                found.append(Corner(name, (UPPER, at), (LOWER, at)))
+        return tuple(found)
 
     def real(self) -> ClosedSection:
         """The same of real parts."""
-        upper, lower = (replace(side, control_points=np.real(side.control_points)) for side in (self.upper, self.lower))
-        return replace(self, upper=upper, lower=lower)
+        real = {at: replace(face, control_points=np.real(face.control_points)) for at, face in self.faces.items()}
+        upper, lower = real.pop(UPPER), real.pop(LOWER)
+        return replace(self, upper=upper, lower=lower, blunt=FrozenMapping(real))
 
     def derivative(self, sites: Sites, v: Array, du: int = 0, dv: int = 0) -> Array:
         """Points or derivatives (..., 3) at sites and v of one shape, by the u of each site's own side."""
@@ -65,13 +105,15 @@ class ClosedSection(FrozenRecord):
     def derivatives(self, sites: Sites, v: Array, *orders: tuple[int, int]) -> list[Array]:
         """Several of the same, each `du` times by u and `dv` times by v."""
         side, u, v = np.broadcast_arrays(sites.side, sites.u, v)
+        of_side = side <= LOWER
         before, after = (np.real(u) < 0.0) & self.smooth[0], (np.real(u) > 1.0) & self.smooth[1]
-        u = np.where(before, -u, np.where(after, 2.0 - u, u))
-        other = before | after
-        on_lower = (side == LOWER) ^ other
-        kind = np.result_type(u, v, self.upper.control_points)
+        other = (before | after) & of_side
+        u = np.where(other, np.where(before, -u, 2.0 - u), u)
+        side = np.where(other, UPPER + LOWER - side, side)
+        kind = np.result_type(u, v, *(surface.control_points for surface in self.faces.values()))
         found = [np.empty((*u.shape, 3), dtype=kind) for _ in orders]
-        for surface, mask in ((self.upper, ~on_lower), (self.lower, on_lower)):
+        for face, surface in self.faces.items():
+            mask = side == face
             if mask.any():
                 own_u, own_v = u[mask], v[mask]
                 for each, order in zip(found, orders, strict=True):
@@ -105,24 +147,42 @@ class ClosedSection(FrozenRecord):
         return normal, turn - normal * dot(normal, turn)[..., None]
 
     def _outward(self, sites: Sites, vectors: Array) -> Array:
-        return np.where((sites.side == LOWER)[..., None], vectors, -vectors)
+        return OUTWARD[sites.side][..., None] * vectors
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class SectionSplines(FrozenRecord):
-    """Splines around the section on the same inner knots of both sides, cut into one of each side.
+    """Splines around the section on the same inner knots of both sides, cut into one of each face.
 
-    Across round edges they keep `ACROSS_EDGES` derivatives; at the other edges each side ends. Interpolation at the
-    sites is linear in the values there, and its matrices are the same for every row of a net.
+    Across round edges they keep `ACROSS_EDGES` derivatives; at corners each face ends. Interpolation at the sites is
+    linear in the values there, and its matrices are the same for every row of a net.
     """
 
     knots: Reals
     """of a side, clamped over [0, 1]"""
     smooth: tuple[bool, bool]
+    blunt: Mapping[int, Reals] = field(default_factory=lambda: FrozenMapping({}))
+    """the same of the faces of blunt edges"""
+
+    @property
+    def knots_of(self) -> dict[int, Reals]:
+        """Knots of each face."""
+        return {UPPER: self.knots, LOWER: self.knots, **self.blunt}
+
+    def with_knots(self, face: int, knots: Reals) -> SectionSplines:
+        """The same with others on a face, or on both sides."""
+        if face in self.blunt:
+            return replace(self, blunt=FrozenMapping({**self.blunt, face: knots}))
+        return replace(self, knots=knots)
 
     @cached_property
     def _lines(self) -> list[tuple[Reals, tuple[tuple[int, float, float], ...], bool]]:
-        """Each line around the section: its knots, the (side, start, direction) of its stretches, and if it closes."""
+        """Each line around the section: its knots, the (face, start, direction) of its stretches, and if it closes."""
+        faces = [(knots, ((face, 0.0, 1.0),), False) for face, knots in self.blunt.items()]
+        return [*self._side_lines, *faces]
+
+    @property
+    def _side_lines(self) -> list[tuple[Reals, tuple[tuple[int, float, float], ...], bool]]:
         inner = self.knots[DEGREE + 1 : -DEGREE - 1]
         at_edge = DEGREE - ACROSS_EDGES
         leading, trailing = self.smooth
@@ -156,41 +216,39 @@ class SectionSplines(FrozenRecord):
         for (_, parts, closed), places in zip(self._lines, self._places, strict=True):
             p = np.mod(places, 2.0) if closed else places
             if len(parts) == 1:
-                on_lower, at = np.full(len(p), parts[0][0] == LOWER), p
+                own, at = np.full(len(p), parts[0][0]), p
             else:
                 _, start, _ = parts[1]
                 on_lower = p > 1.0 if start else p < 0.0
-                at = np.where(on_lower, start - p, p)
-            side.append(on_lower.astype(np.intp))
+                own, at = np.where(on_lower, LOWER, UPPER), np.where(on_lower, start - p, p)
+            side.append(own.astype(np.intp))
             u.append(at)
         return Sites(side=np.concatenate(side), u=np.concatenate(u))
 
     @cached_property
-    def nets(self) -> tuple[Reals, Reals]:
-        """Matrices (n, k) from values at the sites to the control points of the upper and the lower side."""
+    def nets(self) -> tuple[Reals, ...]:
+        """Matrices (n, k) from values at the sites to the control points of each face."""
         found: dict[int, Reals] = {}
-        at = greville(self.knots, DEGREE)
-        own = np.linalg.inv(basis(self.knots, DEGREE, at))
+        own = {face: (knots, greville(knots, DEGREE)) for face, knots in self.knots_of.items()}
         total, first = len(self.sites), 0
         for (knots, parts, closed), places in zip(self._lines, self._places, strict=True):
             to_line = np.linalg.inv(_matrix(knots, places, closed=closed))
-            for side, start, direction in parts:
+            for face, start, direction in parts:
+                mine, at = own[face]
                 net = np.zeros((len(at), total))
-                net[:, first : first + len(places)] = (
-                    own @ _matrix(knots, start + direction * at, closed=closed) @ to_line
-                )
-                found[side] = net
+                to_face = np.linalg.inv(basis(mine, DEGREE, at)) @ _matrix(knots, start + direction * at, closed=closed)
+                net[:, first : first + len(places)] = to_face @ to_line
+                found[face] = net
             first += len(places)
         for row, smooth in zip((0, -1), self.smooth, strict=True):
             if smooth:
                 # one row, to the bit
                 found[LOWER][row] = found[UPPER][row]
-        return found[UPPER], found[LOWER]
+        return tuple(found[face] for face in own)
 
-    def split(self, values: Array) -> tuple[Array, Array]:
-        """Control points (n, ...) of both sides from values (k, ...) at the sites."""
-        upper, lower = (np.tensordot(net, values, axes=1) for net in self.nets)
-        return upper, lower
+    def split(self, values: Array) -> tuple[Array, ...]:
+        """Control points (n, ...) of each face from values (k, ...) at the sites."""
+        return tuple(np.tensordot(net, values, axes=1) for net in self.nets)
 
 
 def _tiled(knots: Reals) -> Reals:

@@ -15,7 +15,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from bladewright.blade.native.closed_section import LOWER, UPPER, ClosedSection, Sites
+from bladewright.blade.native.closed_section import ClosedSection, Sites
 from bladewright.frozen import FrozenRecord
 from bladewright.numerics.elementary import Array, angle, cross, dot, length, unit
 from bladewright.nurbs.basis import Reals
@@ -127,7 +127,7 @@ class Contacts(FrozenRecord):
         """v, t and theta (m, 3) near those at other sites, linear between these."""
         known = np.real(np.stack([self.v, self.t, self.across], axis=-1))
         found = np.empty((len(sites), 3))
-        for side in (UPPER, LOWER):
+        for side in np.unique(sites.side):
             own, wanted = self.sites.side == side, sites.side == side
             order = np.argsort(self.sites.u[own])
             for k in range(3):
@@ -244,5 +244,5 @@ def _solved(jacobian: Array, right: Array) -> Array:
 
 
 def _stepped(section: ClosedSection, wall: Wall, sizes: tuple[Array, Array]) -> bool:
-    nets = section.upper.control_points, section.lower.control_points, wall.meridian.control_points
-    return any(np.iscomplexobj(each) for each in (*nets, *sizes))
+    nets = [face.control_points for face in section.faces.values()]
+    return any(np.iscomplexobj(each) for each in (*nets, wall.meridian.control_points, *sizes))

@@ -8,7 +8,7 @@ from typing import cast
 import numpy as np
 
 from bladewright.blade.design.fillet import Fillet, FilletRadii
-from bladewright.blade.native.closed_section import LOWER, Sites
+from bladewright.blade.native.closed_section import LEADING, LOWER, TRAILING, Sites
 from bladewright.errors import DesignError
 from bladewright.numerics.elementary import Array
 from bladewright.nurbs.basis import uniform_knots
@@ -25,6 +25,7 @@ def ball_sizes(fillet: Fillet, metre: float, suction_side: Callable[[], str | No
 
     A law along the section runs with u^2 (3 - 2 u), and values at edges and sides are joined by
     t^3 (10 - 15 t + 6 t^2), t the share of the way from an edge to u = 1/2, so that the radius has no slope at edges.
+    Across the face of a blunt edge it is that of the edge.
     """
     if fillet.kind == "ellipse":
         on_blade, on_wall = (metre * np.asarray(size) for size in (fillet.on_blade, fillet.on_wall))
@@ -41,7 +42,12 @@ def ball_sizes(fillet: Fillet, metre: float, suction_side: Callable[[], str | No
         law = Curve(
             control_points=metre * stacked(radius)[:, None], knots=uniform_knots(len(radius), degree), degree=degree
         )
-        return lambda sites: _twice(law(sites.u**2 * (3.0 - 2.0 * sites.u))[:, 0])
+
+        def along_law(sites: Sites) -> tuple[Array, Array]:
+            u = _along(sites)
+            return _twice(law(u**2 * (3.0 - 2.0 * u))[:, 0])
+
+        return along_law
     return lambda sites: _twice(_everywhere(metre * np.asarray(radius), sites))
 
 
@@ -60,12 +66,17 @@ def side_radii(radii: FilletRadii, suction_side: Callable[[], str | None]) -> tu
 
 
 def _joined(sites: Sites, ends: tuple[Array, Array], middles: tuple[Array, Array]) -> Array:
-    u = sites.u
+    u = _along(sites)
     trailing = np.real(u) > 0.5
     share = 2.0 * np.where(trailing, 1.0 - u, u)
     rise = share**3 * (10.0 - 15.0 * share + 6.0 * share**2)
     start = np.where(trailing, ends[1], ends[0])
     return np.asarray(start + (np.where(sites.side == LOWER, middles[1], middles[0]) - start) * rise)
+
+
+def _along(sites: Sites) -> Array:
+    """u of the sides at sites: at 0 or 1 all across the face of a blunt edge."""
+    return np.where(sites.side == LEADING, 0.0, np.where(sites.side == TRAILING, 1.0, sites.u))
 
 
 def _everywhere(size: Array, sites: Sites) -> Array:
