@@ -2,7 +2,7 @@
 
 from functools import cache
 
-import fit_made
+import matching_clouds
 import numpy as np
 import pytest
 
@@ -27,8 +27,8 @@ def shape(name):
 @cache
 def made(seed):
     """A blade drawn at random, and 5,000 points of it."""
-    built = fit_made.blade(seed).build()
-    return built, fit_made.cloud_of(built, seed, ends=True)[0]
+    design = matching_clouds.blade(seed)
+    return design.build(), matching_clouds.cloud_of(design, seed).points
 
 
 def sides_cloud(name, count, rows=0):

@@ -1,0 +1,170 @@
+"""Clouds that are put aside: 30 random designs of all families, told apart from the machine's axes and edges they have.
+
+    python design/hold_outs.py [--draw]
+
+Makes every cloud and compares it with the checksum that was written when the seeds were drawn (`secrets`, 23 November
+2026). Nothing is matched here: `design/matching.py --holdout` does that once, when the work on matching is done.
+`--draw` draws others.
+"""
+
+import argparse
+import inspect
+import secrets
+from dataclasses import replace
+
+import matching_clouds as clouds
+import numpy as np
+import random_blades
+import random_sections
+from matching_clouds import Cloud
+
+import bladewright as bw
+from bladewright.errors import DesignError
+from bladewright.files.families import family_of
+
+KINDS = ("unified", *random_sections.FAMILIES)
+"""families, of each of which four blades and a section are drawn"""
+SEEDS: dict[str, tuple[int, float]] = {
+    "hold-out-unified-1": (1575728964, 0.0229258405),
+    "hold-out-unified-2": (1215683014, 0.956923042),
+    "hold-out-unified-3": (1652355806, 0.0207175316),
+    "hold-out-unified-4": (3498313758, 1.1524732),
+    "hold-out-unified-5": (1177605476, 0.0445583043),
+    "hold-out-curvature-meanline-1": (1327957122, 0.143598313),
+    "hold-out-curvature-meanline-2": (3287521974, 0.286865513),
+    "hold-out-curvature-meanline-3": (1718490431, 0.827097984),
+    "hold-out-curvature-meanline-4": (1714067452, 1.22638245),
+    "hold-out-curvature-meanline-5": (217651246, 0.188381113),
+    "hold-out-suction-pressure-1": (127250806, 1.15130479),
+    "hold-out-suction-pressure-2": (2257301588, 1.98314574),
+    "hold-out-suction-pressure-3": (1921565082, 0.111523661),
+    "hold-out-suction-pressure-4": (338364535, 0.0540825997),
+    "hold-out-suction-pressure-5": (3163743066, 0.0310813995),
+    "hold-out-camber-angle-1": (724922215, 0.491268175),
+    "hold-out-camber-angle-2": (4242828930, 0.821551149),
+    "hold-out-camber-angle-3": (1070090750, 0.100079425),
+    "hold-out-camber-angle-4": (3749249038, 0.103550017),
+    "hold-out-camber-angle-5": (3451363444, 0.0335692314),
+    "hold-out-profile-1": (1879246981, 0.572284566),
+    "hold-out-profile-2": (1375052036, 0.134786643),
+    "hold-out-profile-3": (1371210525, 0.07196058),
+    "hold-out-profile-4": (3341720057, 1.04640442),
+    "hold-out-profile-5": (2053743812, 0.0121768565),
+    "hold-out-wedge-diffuser-1": (1362877387, 0.0243930446),
+    "hold-out-wedge-diffuser-2": (2914334510, 0.950413016),
+    "hold-out-wedge-diffuser-3": (2013347369, 0.194823713),
+    "hold-out-wedge-diffuser-4": (1266535081, 2.1469383),
+    "hold-out-wedge-diffuser-5": (4247014305, 0.0626121723),
+}
+"""seed by name, and the rms distance of its points from the origin [m]"""
+
+
+def design(name, seed):
+    """The design of a seed, without clearance; DesignError where it cannot be built."""
+    kind, number = name.removeprefix("hold-out-").rsplit("-", 1)
+    if name == "hold-out-unified-5":
+        return clouds.section(seed)
+    found = (random_blades if kind == "unified" else random_sections).random_design(seed)
+    if kind == "unified":
+        found = replace(found, tip_clearance=None, hub_clearance=None)
+    if family_of(found) != kind:
+        raise DesignError(f"seed {seed} is of the family {family_of(found)}")
+    if int(number) <= 4 and not found.build().conformance.kept:
+        raise DesignError(f"seed {seed} breaks a promise")
+    return found
+
+
+def cloud(name, seed=None):
+    """The cloud of a name: half of them exact, the others with noise of 1e-4 of the chord and 1 % outliers."""
+    seed = SEEDS[name][0] if seed is None else seed
+    draw = np.random.default_rng([seed, 7])
+    noisy = draw.random() < 0.5
+    count, ends, axis = int(draw.integers(2000, 8000)), draw.random() < 0.7, int(draw.integers(3))
+    made = design(name, seed)
+    if name.endswith("-5"):
+        made, count = Planar(made, name), count // 4
+    found = clouds.cloud_of(made, seed % 2**32, count=count, noise=1e-4 * noisy, outliers=0.01 * noisy, ends=ends)
+    family = name.removeprefix("hold-out-").rsplit("-", 1)[0]
+    options = (family, "xyz"[axis] if found.points.shape[1] == 3 else "")
+    if options[1]:
+        found = replace(found, points=np.roll(found.points, axis, axis=1))
+    return replace(found, options=options)
+
+
+class Planar:
+    """A section in its plane: of a blade, that at mid-span, whose plane becomes metric."""
+
+    def __init__(self, design, name):
+        self.design, self.name = design, name
+
+    def build(self):
+        """The section, in metres."""
+        built = self.design.build()
+        if self.name == "hold-out-unified-5":
+            return built
+        middle = built.sections_at([0.5])[0]
+        size = float(np.real(built.chord)) / float(np.real(chord_of(middle)))
+        curves = {key: replace(each, control_points=size * each.control_points) for key, each in middle.curves.items()}
+        return replace(middle, curves=curves, scale=np.ones_like, plane="x-y")
+
+
+def chord_of(section):
+    """The distance of a section's ends in its plane."""
+    upper = section.curves["upper"]
+    ends = upper(np.array([0.0, 1.0]))
+    return np.sqrt(np.sum((ends[1] - ends[0]) ** 2))
+
+
+def told(found: Cloud):
+    """The cloud and the options of the call: the family, and the machine's axis where the call takes one."""
+    family, axis = found.options
+    options = {"family": family}
+    if axis and "axis" in inspect.signature(bw.fit).parameters:
+        return found, {**options, "axis": axis}
+    back = -"xyz".index(axis or "x")
+    return replace(found, points=np.roll(found.points, back, axis=1) if axis else found.points), options
+
+
+def most(name):
+    """Largest distance that is asked for, of the chord."""
+    return 3e-4 if np.random.default_rng([SEEDS[name][0], 7]).random() < 0.5 else 1e-4
+
+
+def checksum(found):
+    """The rms distance of points from the origin [m]."""
+    return float(f"{np.sqrt(np.mean(np.sum(found.points**2, axis=-1))):.9g}")
+
+
+def drawn():
+    """Seeds by name, the first that can be built."""
+    for kind in KINDS:
+        for number in range(1, 6):
+            name = f"hold-out-{kind}-{number}"
+            while True:
+                seed = secrets.randbits(32)
+                try:
+                    found = cloud(name, seed)
+                except DesignError:
+                    continue
+                print(f'    "{name}": ({seed}, {checksum(found)}),', flush=True)
+                break
+
+
+def main():
+    """Compare all clouds with their checksums."""
+    wrong = 0
+    for name, (_, known) in SEEDS.items():
+        found = cloud(name)
+        off = abs(checksum(found) / known - 1.0)
+        wrong += off > 1e-7
+        print(f"{name:36} {found.points.shape} {found.options[1] or '-'} {'is as drawn' if off < 1e-7 else off}")
+    print(f"{wrong} of {len(SEEDS)} clouds differ from those that were drawn")
+
+
+if __name__ == "__main__":
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--draw", action="store_true")
+    if parser.parse_args().draw:
+        drawn()
+    else:
+        main()
