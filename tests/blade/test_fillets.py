@@ -272,12 +272,24 @@ def test_a_blade_that_leans_into_its_wall_has_no_fillet():
 
 @pytest.mark.parametrize(
     ("example", "corner"),
-    [("vaned-diffuser", "its leading edge is sharp"), ("wedge-diffuser", "it ends in a back face")],
+    [("vaned-diffuser", "its leading edge is sharp"), ("backswept-impeller", "its trailing edge is blunt")],
 )
 def test_a_blade_with_corners_is_refused(example, corner):
     design = bw.read_design(files("bladewright") / "examples" / f"{example}.toml")
     with pytest.raises(bw.DesignError, match=corner):
         design.changed("hub_fillet", Fillet(radius=0.3)).build()
+
+
+def test_a_ball_rolls_around_the_round_corners_of_a_back_face():
+    design = bw.read_design(files("bladewright") / "examples" / "wedge-diffuser.toml")
+    built = design.changed("hub_fillet", Fillet(radius=1.0)).build()
+    assert built.back is not None
+    at = np.linspace(0.8, 1.0, 41)
+    for name in ("upper", "lower"):
+        foot, joint = (built.surfaces[f"hub_fillet_{name}"](at, v) for v in (0.0, 1.0))
+        # its walls are flat and its blade stands upright
+        assert length(foot[:, 1:] - joint[:, 1:]) == pytest.approx(1e-3, rel=1e-6)
+        assert np.abs(foot[:, 0] - joint[:, 0]) == pytest.approx(1e-3, rel=1e-6)
 
 
 def test_a_suction_side_that_is_not_known_is_refused():

@@ -152,8 +152,6 @@ def _check_round(blade: Blade, design: RowDesign) -> None:
         for edge, kind in zip(EDGES, sections.edge_kinds, strict=True)
     ]
     corner = next((f"its {edge.replace('_', ' ')} is {kind}" for kind, edge in edges if kind != "round"), None)
-    if sections.back is not None:
-        corner = "it ends in a back face"
     if corner is not None:
         raise DesignError(
             f"{name} is given, but the blade has corners, for {corner}: the ball rolls around round edges only; round "
