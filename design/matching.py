@@ -199,6 +199,19 @@ def summary(rows, records):
     return "\n".join(lines)
 
 
+def write_table(path, rows, records):
+    """Write the summary and a table for each group after the head of a Markdown file."""
+    states = ", ".join(sorted({record["state"] for record in records.values()}))
+    parts = [f"Sources {states}, {time.strftime('%Y-%m-%d')}.", summary(rows, records)]
+    for group in dict.fromkeys(row.group for row in rows):
+        lines = [line(row, records[row.name], records) for row in rows if row.group == group and row.name in records]
+        parts += [f"## {group}", "\n".join([HEAD, *lines])] if lines else []
+    head = path.read_text().split(MARK)[0].rstrip() if path.exists() else "# What a match reaches"
+    path.write_text("\n\n".join([head, MARK, *parts]) + "\n")
+
+
+MARK = "<!-- what follows is written by matching.py -->"
+"""after the head of the table's file"""
 COUNTS = ("planted", "kept", "good", "dropped")
 """what is counted of outliers"""
 
@@ -246,12 +259,7 @@ def main():
                 file.write(json.dumps(record) + "\n")
         print(line(row, records[row.name], records, others.get(row.name)), flush=True)
     if given.record:
-        shown = [row for row in ROWS.values() if row.name in records]
-        parts = [f"State {name}, {time.strftime('%Y-%m-%d')}.", summary([*ROWS.values()], records)]
-        parts += ["\n".join([HEAD, *(line(row, records[row.name], records) for row in shown)])]
-        old = given.record.read_text() if given.record.exists() else "# Matching\n"
-        head = old.split("<!-- table -->")[0].rstrip()
-        given.record.write_text("\n\n".join([head, "<!-- table -->", *parts]) + "\n")
+        write_table(given.record, [*ROWS.values()], records)
     return None
 
 

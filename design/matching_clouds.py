@@ -320,12 +320,12 @@ VARIATIONS: dict[str, tuple[tuple[str, ...], Callable[[Truth], Case], str]] = {
         lambda of: Case(
             points=np.concatenate([turned(rows(of.sides, 11, 40), 0, t) for t in np.radians(np.arange(36) * 10)])
         ),
-        "several blades",
+        "blades",
     ),
     "two": (
         ("aachen", "fan", "impeller"),
         lambda of: Case(points=np.concatenate([turned(rows(of.sides), 0, t) for t in (0.0, 0.35)])),
-        "several blades",
+        "blades",
     ),
     "half": (
         ("aachen", "fan", "ls89"),
@@ -363,4 +363,6 @@ def brought(machine, name, directory):
     case = VARIATIONS[name][1](Truth(machine=machine, sides=sides, draw=draw, directory=directory))
     others = scattered(sides, 8000, np.random.default_rng(7), case.shown)
     others = elsewhere(others) if "--align" in case.options else others
+    # the command reads millimetres, whatever they are
+    others = others * 1e-3 / case.unit
     return Cloud(points=draw.permutation(case.points), others=others, options=case.options, unit=case.unit)
