@@ -125,9 +125,13 @@ def test_a_strip_lies_on_the_blade_without_a_fillet(blade):
     for side, name in enumerate(("upper", "lower")):
         for wall, touch in touches(blade, side).items():
             at = w if wall == "hub" else 1.0 - w
-            miss = blade.surfaces[f"{wall}_strip_{name}"].grid(U, at).swapaxes(0, 1)
-            miss = miss - touch.above(blade.knots.strips[wall], w)
+            strip, lines = blade.surfaces[f"{wall}_strip_{name}"], blade.knots.strips[wall]
+            miss = strip.grid(U, at).swapaxes(0, 1) - touch.above(lines, w)
             assert np.max(length(miss)) < blade.tolerance * blade.chord
+            # nowhere folded over
+            out = touch.section.normal(*lines.places(touch.found.sites, touch.lines, w)).swapaxes(0, 1)
+            sense = blade.orientations[name] * dot(np.cross(strip.grid(U, at, 1, 0), strip.grid(U, at, 0, 1)), out)
+            assert np.min(sense) > 0.0
 
 
 def test_the_foot_bounds_the_end_face(blade):

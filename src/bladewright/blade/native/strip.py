@@ -42,10 +42,12 @@ NEAR_KNOT = (0.7, 1.7)
 begin with a narrow span."""
 FIRST_STEP, LAST_STEP = 0.35, 0.5
 """Largest steps of V next to its ends, of a line's length: they come no closer than to 0.15 of it."""
-FOLDED = 0.35
-"""Share of their distance that is left to lines as they leave the joint sideways; at 0 they would cross."""
-HIGHEST = 0.41
-"""Largest value of the second of the basis functions of U where e = 1; where e is smaller it is at most 1."""
+SHIFTS = (1.0, 0.5, 0.25, 0.125)
+"""e, of which the first is taken that keeps lines apart, or the one that does it best."""
+FOLDED = 0.25
+"""Area between neighbouring lines, of that between straight ones, that keeps them apart; at 0 they would cross."""
+LEVELS = np.linspace(0.0, 1.0, 17)
+"""w between which those areas are looked at."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -178,16 +180,12 @@ def strips_for(
         steep = toward * lines[wall].upwards / run
         speed = max(float(np.mean(steep)), float(np.max(steep)) / (DEGREE * FIRST_STEP))
         slope = min(float(np.mean(run)), float(np.min(run)) * DEGREE * LAST_STEP / 2.0)
-        closing = max(float(np.max(-_closing(sites, lines[wall].sideways / speed), initial=0.0)), 1e-9) / DEGREE
-        shifted = 1.0 if HIGHEST * closing < 1.0 - FOLDED else min((1.0 - FOLDED) / closing, 0.5)
-        found[wall] = Strip(
-            level=level,
-            slope=toward * slope,
-            speed=speed,
-            shifted=shifted,
-            curved=curved[wall],
-            knots=with_knot(shifted),
-        )
+        tried = [
+            Strip(level=level, slope=toward * slope, speed=speed, shifted=e, curved=curved[wall], knots=with_knot(e))
+            for e in SHIFTS
+        ]
+        areas = [_least_area(each, sites, lines[wall]) for each in tried]
+        found[wall] = tried[int(np.argmax(np.minimum(areas, FOLDED)))]
     return found
 
 
@@ -208,13 +206,18 @@ def _level(away: Reals, room: float, knots: Reals, end: float) -> float:
     return end + _inwards(end) * (highest + asked)
 
 
-def _closing(sites: Sites, sideways: Reals) -> Reals:
-    """Slopes of the sideways speed by u between neighbouring sites of each side."""
-    slopes = []
+def _least_area(strip: Strip, sites: Sites, lines: Leaving) -> float:
+    """Least area between neighbouring lines in (u, v), of that between straight ones: below 0 they cross."""
+    moved, v = strip.places(sites, lines, LEVELS)
+    least = []
     for side in np.unique(sites.side):
-        own = sites.side == side
-        order = np.argsort(sites.u[own])
-        u, speed = sites.u[own][order], sideways[own][order]
-        far = np.diff(u) > JOINT_TOLERANCE
-        slopes.append(np.diff(speed)[far] / np.diff(u)[far])
-    return np.concatenate(slopes)
+        own = np.flatnonzero(sites.side == side)
+        own = own[np.argsort(sites.u[own])]
+        own = own[np.diff(sites.u[own], prepend=-1.0) > JOINT_TOLERANCE]
+        line = np.stack([moved.u[:, own], v[:, own]])
+        between = np.diff(line, axis=2)[:, :-1]
+        up = np.diff(line, axis=1)
+        area = between[0] * up[1, :, :-1] - between[1] * up[0, :, :-1]
+        straight = np.diff(sites.u[own]) * np.diff(LEVELS)[:, None] * (strip.level - lines.contact[own][:-1])
+        least.append(float(np.min(area / straight)))
+    return min(least)
