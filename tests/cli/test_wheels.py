@@ -75,6 +75,25 @@ def test_a_wheel_without_a_disc_is_refused_and_told_what_to_add(run, propeller, 
     assert not (tmp_path / "out").exists()
 
 
+@pytest.mark.parametrize(
+    ("points", "why"),
+    [
+        ([[-60, 150], [-60, 60], [80, 60], [80, 190]], "points[0] is (-60, 150), which lies 40 off the hub"),
+        ([[-60, 190], [10, 220], [20, 60], [80, 190]], "its outline cuts the hub near"),
+    ],
+)
+def test_a_disc_that_does_not_fit_is_found_before_a_file_is_written(run, propeller, tmp_path, points, why):
+    out = tmp_path / "out"
+    words = ("build", propeller, "-o", out, "--as", "stl", "--chordal-deviation", "5mm", "--set", f"tolerance={COARSE}")
+    assert run(*words).status == 0
+    before = {each.name: each.read_bytes() for each in out.iterdir()}
+    disc = ("--set", f"disc.outline.points={points}", "--set", "stagger[0]=-33")
+    refused = run(*words, "--body", "blade,wheel", *disc)
+    assert refused.status == 2
+    assert why in refused.err
+    assert {each.name: each.read_bytes() for each in out.iterdir()} == before
+
+
 def test_a_cascade_has_no_wheel(run, vane_file, tmp_path):
     refused = run("build", vane_file, "-o", tmp_path / "out", "--body", "wheel")
     assert refused.status == 2

@@ -88,11 +88,8 @@ def build_files(path: Path, options: BuildOptions, bar: Bar) -> Outcome:
     sense, table, masses = dict[str, Any](), None, dict[str, Any]()
     with removing_partial_files(directory, [*files, *reports]):
         bar.set_description_str(" and ".join(options.bodies))
-        bodies = bodies_from(
-            options.bodies, design, path, options.extend, options.extents, fine=options.fine, blades=options.blades
-        )
-        for body, built in zip(options.bodies, bodies, strict=True):
-            bar.update(1)
+        made = _made(design, path, options, bar)
+        for body, built in made.items():
             masses[body] = mass_data(built)
             blade = getattr(built, "blade", built)
             sense = sense or sense_data(blade)
@@ -139,3 +136,15 @@ def build_files(path: Path, options: BuildOptions, bar: Bar) -> Outcome:
         text="\n".join([*(trip.text(design.length_unit) for trip in trips), *remarks]),
         failures=tuple(f"{file}: {text}" for file, trip in zip(files, trips, strict=True) for text in trip.failures),
     )
+
+
+def _made(design: Any, path: Path, options: BuildOptions, bar: Bar) -> dict[str, Any]:
+    """All bodies by their words, before the first file: an error leaves no new file among those of a former build."""
+    found = dict[str, Any]()
+    bodies = bodies_from(
+        options.bodies, design, path, options.extend, options.extents, fine=options.fine, blades=options.blades
+    )
+    for body, built in zip(options.bodies, bodies, strict=True):
+        found[body] = built
+        bar.update(1)
+    return found

@@ -79,6 +79,7 @@ def bodies_from(
     for body in bodies:
         with naming_file(path):
             made = _body_around(body, blade, design, extend, extents, blades)
+            _ = made.surfaces  # they are made when asked for, and may be refused then
         yield made
 
 
