@@ -1,5 +1,6 @@
 """Sectors and wheels: closed, of the volume that closed forms give, refused where they cannot be."""
 
+import re
 from dataclasses import replace
 
 import numpy as np
@@ -11,6 +12,7 @@ from bladewright.blade.design.fillet import Fillet
 from bladewright.domain.build import passage
 from bladewright.domain.disc import lines_and_arcs
 from bladewright.domain.duct import annulus_volume
+from bladewright.domain.passage_spec import PassageSpec
 from bladewright.domain.sector import sector
 from bladewright.domain.wheel import wheel
 from bladewright.errors import DesignError
@@ -86,6 +88,53 @@ def test_a_rim_ends_as_far_past_a_trimmed_edge_as_is_stated():
     assert first[0] == pytest.approx(3e-3, rel=1e-7)
     assert last[1] == pytest.approx(66e-3, rel=1e-7)
     np.testing.assert_allclose(np.hypot(*(line.at(ends) - [first, last]).T), [1.5e-3, 1e-3], rtol=1e-3)
+
+
+def test_the_walls_line_straightens_before_it_winds_a_turn(shrouded):
+    blade = replace(shrouded, design=replace(shrouded.design, disc=Disc(thickness=3.0, upstream=150.0)))
+    made = sector(blade)
+    net = made.pitches[0].line.control_points
+    assert np.ptp(np.unwrap(np.arctan2(net[:, 1], net[:, 2]))) < 2 * np.pi
+    whole = sum(pitch.carrier.volume for pitch in made.pitches) + 9 * blade.properties.volume
+    assert 9 * made.properties.volume == pytest.approx(whole, rel=1e-7)
+    assert made.properties.openness < 1e-8
+    # at the edges the line keeps slope and second derivative: it was the blade's own before
+    knots = made.pitches[0].skin.knots
+    assert knots.straightening is not None
+    spec = PassageSpec(
+        blade=blade, exact=blade.exact, half_pitch=np.asarray(0.5 * blade.design.spacing), turned=(None, None)
+    )
+    bent, plain = (
+        spec.camber(each, np.array([0.0])).points("inlet", 1.0 - 1e-3 * np.arange(3.0))
+        for each in (knots, replace(knots, straightening=None))
+    )
+    np.testing.assert_allclose(bent, plain, rtol=0, atol=1e-6)
+
+
+@pytest.mark.parametrize(
+    "part", [Disc(thickness=0.2, upstream=2000), outlined((-2000, 79), (-2000, 9), (97, 9), (97, 118.5))]
+)
+def test_a_disc_that_reaches_further_than_its_wall_is_named_with_how_far_that_goes(part, rotor):
+    name = "upstream" if part.outline is None else r"outline.points\[0\]"
+    blade = replace(rotor, design=replace(rotor.design, disc=part))
+    with pytest.raises(
+        DesignError, match=rf"^disc.{name} is .*upstream of the blade the hub can be continued to \(-5"
+    ) as e:
+        wheel(blade)
+    if part.outline is None:
+        # straight on, the hub meets the axis some 548 upstream
+        assert 500.0 < float(re.search(r"take ([\d.]+) at most", str(e.value))[1]) < 548.0
+
+
+def test_a_thin_rim_that_ends_before_a_fillet_is_told_how_far_to_reach(rotor):
+    design = replace(rotor.design, disc=Disc(thickness=3.0, upstream=0.1), hub_fillet=Fillet(radius=1.5))
+    blade = design.build()
+    with pytest.raises(DesignError, match=r"let disc.upstream be more than ([\d.]+)$") as e:
+        wheel(blade)
+    least = float(re.search(r"more than ([\d.]+)$", str(e.value))[1])
+    assert (
+        len(wheel(replace(blade, design=replace(design, disc=Disc(thickness=3.0, upstream=1.02 * least)))).pitches) == 1
+    )
 
 
 def test_faces_have_the_names_that_users_rely_on(bodies):

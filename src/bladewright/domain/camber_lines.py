@@ -2,7 +2,8 @@
 
 A continuation keeps the slope d theta / dm' of the camber line at its end, or turns to a stated one as the square of
 the way: theta = theta_0 + extent (slope t + (turned - slope) t^3 / 3), with t from 0 at the edge to 1 at inlet or
-outlet.
+outlet. Where a line must not wind far, it straightens: theta = theta_0 + extent slope s atan(t / s), which keeps slope
+and second derivative at the edge and never winds by more than pi / 2 s of the way.
 """
 
 from dataclasses import dataclass
@@ -47,6 +48,8 @@ class CamberLines:
     """where, along the span, laws of evolution and the channel's edges lose derivatives"""
     shift: MiddleShift | None = None
     """what is added to theta, or y, so that the lines are those of a middle surface"""
+    straightening: float | None = None
+    """s, a share of the way, where the lines straighten"""
 
     def points(self, piece: str, t: Reals, sign: int = 0) -> Array:
         """Points (..., m, k, 2) at t (k,) in [0, 1] along `inlet`, `blade` or `outlet`.
@@ -77,7 +80,8 @@ class CamberLines:
         extent = self.lines.abscissa(end) - start[..., 0]
         share = t if edge else 1.0 - t
         slope, turn = self.slopes[edge][..., None], self.turned[edge]
-        rise = slope * share
+        s = self.straightening
+        rise = slope * (share if s is None else s * np.arctan(share / s))
         if turn is not None:
             rise = rise + (turn - slope) * share**3 / 3.0
         return np.stack([start[..., 0] + extent * share, start[..., 1] + extent * rise], axis=-1)

@@ -10,7 +10,7 @@ from bladewright.blade.native.blade import Blade
 from bladewright.blade.native.knots import DEGREE
 from bladewright.domain.disc import KINDS, Carrier, Kind, carrier, shortfalls
 from bladewright.domain.extents import MAX_EXTENT
-from bladewright.domain.knot_selection import skin_knots
+from bladewright.domain.knot_selection import skin_extents, skin_knots
 from bladewright.domain.knots import BLADE_AT, PassageKnots
 from bladewright.domain.passage_spec import PassageSpec
 from bladewright.domain.skin import Skin, trimmed_wall
@@ -25,10 +25,15 @@ from bladewright.nurbs.revolution import LEFT_HANDED
 from bladewright.nurbs.transform import rotated
 from bladewright.nurbs.trimmed import TrimmedSurface
 
-FURTHER = 0.1
-"""By how much more than needed the skin is made longer, in mean meridional lengths of the blade."""
-LENGTHENINGS = 6
+FURTHER = 0.01
+"""By how much more than needed the skin is made longer, in mean meridional lengths of the blade: what its wall is short
+of is measured along it, and extents are means over the span."""
+LENGTHENINGS = 12
 """How often it is: each time by what its wall is short of the outline's end."""
+HALVED = 8
+"""How often the length that is too much is halved, to say how far the wall can be continued."""
+SURE = 0.95
+"""Share of that length that is said: near the axis, where most end, lines wind ever more tightly."""
 LINE_TOLERANCE = 1e-10
 """Largest error of the wall's line, of its length: 1e-8 mm on 100 mm."""
 HALVINGS = 8
@@ -109,26 +114,69 @@ def _skin(spec: PassageSpec, knots: PassageKnots) -> Skin:
 
 def _long_enough(spec: PassageSpec, wanted: list[Kind]) -> Skin:
     """A skin that reaches past the outlines' ends."""
-    design = spec.blade.design
-    extents: tuple[float | None, float | None] = None, None
+    skin = _skin(spec, skin_knots(spec, None, None, filled=False))
     for _ in range(LENGTHENINGS):
-        try:
-            knots = skin_knots(spec, *extents, filled=False)
-            skin = _skin(spec, knots)
-            lines = [(getattr(design, kind.field), _wall_line(skin, kind)) for kind in wanted]
-        except DesignError as error:
-            fields = " or ".join(kind.field for kind in wanted)
-            raise DesignError(
-                f"{fields}: the wall cannot be continued to the ends of its outline; let it end nearer to the blade. "
-                f"What stops it: {error}"
-            ) from error
-        short = np.max([shortfalls(part, line, design.metre) for part, line in lines], axis=0)
+        short = np.max([_short(skin, kind) for kind in wanted], axis=0)
         if not short.any():
-            break
-        more = np.where(short > 0.0, short / knots.length + FURTHER, 0.0)
-        upstream, downstream = np.minimum(np.array([knots.upstream, knots.downstream]) + more, MAX_EXTENT)
-        extents = float(upstream), float(downstream)
+            return skin
+        own = np.array([skin.knots.upstream, skin.knots.downstream])
+        longer = np.minimum(own + np.where(short > 0.0, short / skin.knots.length + FURTHER, 0.0), MAX_EXTENT)
+        if np.all(longer == own):
+            _refuse(skin, wanted, f"that is {MAX_EXTENT:g} meridional lengths of the blade")
+        try:
+            skin = _reaching(spec, longer)
+        except DesignError as error:
+            _refuse(_longest(spec, skin, longer), wanted, str(error))
     return skin
+
+
+def _reaching(spec: PassageSpec, extents: Reals) -> Skin:
+    upstream, downstream = (float(each) for each in extents)
+    skin = _skin(spec, skin_knots(spec, upstream, downstream, filled=False))
+    _ = skin.walls  # they are made when asked for, and may be refused then
+    return skin
+
+
+def _short(skin: Skin, kind: Kind) -> tuple[float, float]:
+    design = skin.blade.design
+    return shortfalls(getattr(design, kind.field), _wall_line(skin, kind), design.metre)
+
+
+def _longest(spec: PassageSpec, skin: Skin, extents: Reals) -> Skin:
+    """About the longest skin between one that is possible and extents that are not, by halving."""
+    low, high = np.array([skin.knots.upstream, skin.knots.downstream]), extents
+    for _ in range(HALVED):
+        middle = 0.5 * (low + high)
+        try:
+            skin_extents(spec, *(float(each) for each in middle), filled=False)
+            low = middle
+        except DesignError:
+            high = middle
+    return _reaching(spec, np.maximum(SURE * low, [skin.knots.upstream, skin.knots.downstream]))
+
+
+def _refuse(skin: Skin, wanted: list[Kind], why: str) -> None:
+    """Refuse the first outline end that the longest skin does not reach, and say how far that reaches."""
+    design = skin.blade.design
+    for kind in wanted:
+        given, line = getattr(design, kind.field), _wall_line(skin, kind)
+        for edge, short in enumerate(_short(skin, kind)):
+            if short == 0.0:
+                continue
+            way = ("upstream", "downstream")[edge]
+            x, r = np.real(line.at(np.asarray(line.curve.domain[edge]))) / design.metre
+            if given.outline is None:
+                name, value = f"{kind.field}.{way}", f"{np.real(getattr(given, way)):.6g}"
+                first, last, whole = np.real(line.reached(np.array([*line.blade, line.curve.domain[1]])))
+                most = f"{(first, whole - last)[edge] / design.metre:.4g}"
+            else:
+                point = given.outline.points[-edge]
+                name = f"{kind.field}.outline.points[{edge and len(given.outline.points) - 1}]"
+                value, most = f"({np.real(point.x):.6g}, {np.real(point.r):.6g})", "that"
+            raise DesignError(
+                f"{name} is {value}, and {way} of the blade the {kind.wall} can be continued to ({x:.6g}, {r:.6g}) "
+                f"only: take {most} at most. What stops it: {why}"
+            )
 
 
 def _wall_line(skin: Skin, kind: Kind) -> WallLine:
@@ -195,7 +243,12 @@ def _check_carried(skin: Skin, own: Carrier) -> None:
         if ahead[nearest] <= 0.0:
             (x, r), (at_x, at_r) = places[nearest] / design.metre, end / design.metre
             edge, where = ("leading", "upstream") if which == 0 else ("trailing", "downstream")
+            cure = f"let the outline end further {where}"
+            if getattr(design, kind.field).outline is None:
+                stated, blade = np.real(line.reached(np.array([own.ends[which], line.blade[which]])))
+                least = way * (blade - stated) - ahead[nearest] / np.sqrt(slope @ slope)
+                cure = f"let {kind.field}.{where} be more than {least / design.metre:.4g}"
             raise DesignError(
                 f"{kind.field}: its outline ends at ({at_x:.6g}, {at_r:.6g}) on the {kind.wall}, and the blade or its "
-                f"fillet reaches to ({x:.6g}, {r:.6g}) at the {edge} edge: let the outline end further {where}"
+                f"fillet reaches to ({x:.6g}, {r:.6g}) at the {edge} edge: {cure}"
             )

@@ -152,7 +152,7 @@ def carrier(kind: Kind, given: Disc, line: WallLine, metre: float) -> Carrier:
         _rim(kind, given, line, metre) if given.outline is None else _outlined(kind, given.outline, line, metre)
     )
     found = Carrier(kind=kind, line=line, ends=ends, pieces=_named(kind, pieces))
-    _check_outline(found, metre)
+    _check_outline(found, metre, rim=given.outline is None)
     return found
 
 
@@ -306,7 +306,8 @@ def _offset(kind: Kind, line: WallLine, thickness: Array, start: Array, end: Arr
             break
     onwards = dot(np.real(found.derivative(between)), slopes)
     if np.min(onwards) <= 0.0 or np.min(points[:, 1]) <= 0.0:
-        x, r = np.real(wall(low + (high - low) * between[np.argmin(onwards)])) / metre
+        worst = np.argmin(onwards) if np.min(onwards) <= 0.0 else np.argmin(points[:, 1])
+        x, r = np.real(wall(low + (high - low) * between[worst])) / metre
         raise DesignError(
             f"{kind.field}.thickness is {float(np.real(thickness)) / metre:.4g}: the rim would fold over or reach the "
             f"axis under ({x:.6g}, {r:.6g}), where the {kind.wall} bends more tightly or lies lower; take less"
@@ -329,11 +330,17 @@ def _named(kind: Kind, pieces: Sequence[OutlinePiece]) -> Mapping[str, OutlinePi
     return FrozenMapping(dict(zip([*names, kind.last], pieces, strict=True)))
 
 
-def _check_outline(found: Carrier, metre: float) -> None:
+def _check_outline(found: Carrier, metre: float, *, rim: bool) -> None:
     """Refuse an outline that crosses the wall or itself, or lies on the wrong side of the wall."""
     low, high = (float(np.real(end)) for end in found.ends)
     wall = np.real(found.line.at(np.linspace(low, high, WALL_PLACES)))
     parts = [np.real(piece.curve(SPREAD)) for piece in found.pieces.values()]
+    if rim:
+        # the same places of both, or chords of a rim that is thin and long would cross
+        share = np.linspace(0.0, 1.0, WALL_PLACES)
+        start, end = (float(np.real(found.line.foot(at))) for at in found.ends)
+        wall = np.real(found.line.meridian(start + (end - start) * share))
+        parts[1] = np.real(list(found.pieces.values())[1].curve(share[:-1]))
     outline = np.concatenate(parts)[1:][::-1]
     loop = np.concatenate([wall, outline])
     kind = found.kind

@@ -42,6 +42,8 @@ SHORTENING, SHORTENINGS = 0.75, 12
 how often at most: to 3 % of what they were."""
 FULL_TURN = np.radians(355.0)
 """Winding of a trimmed wall [rad] that is allowed: a face of revolution must be less than a turn, with a margin."""
+STRAIGHTENINGS = 12
+"""How often the way over which periodic lines straighten is halved at most: to 0.05 % of it."""
 FOOT_MARGIN = 0.002
 """How far past the foot of a fillet walls are the channel's own, in mean meridional lengths, before they straighten."""
 MAX_POLES = 80
@@ -96,11 +98,31 @@ def unfolded_walls(
 def skin_knots(
     spec: PassageSpec, upstream: float | None, downstream: float | None, *, filled: bool = True
 ) -> PassageKnots:
-    """The knots of a skin whose walls are trimmed faces: cross-lines do not matter, and the duct may be as short.
+    """The knots of a skin whose walls are trimmed faces: the middle surface keeps WALL_TOLERANCE on both walls.
+
+    Extents and errors are those of `skin_extents`.
+    """
+    start = skin_extents(spec, upstream, downstream, filled=filled)
+    tolerance = TRIMMED_SHARE * WALL_TOLERANCE * spec.blade.chord
+    lines = spec.middle_lines(start)
+    known = replace(
+        start,
+        blade=knots_beside(lines, start.blade, tolerance),
+        inlet=knots_along(lines, "inlet", 1.0, tolerance),
+        outlet=knots_along(lines, "outlet", 1.0, tolerance),
+    )
+    return with_span_knots(spec, known, tolerance)
+
+
+def skin_extents(
+    spec: PassageSpec, upstream: float | None, downstream: float | None, *, filled: bool = True
+) -> PassageKnots:
+    """All that such a skin holds but knots of its own: cross-lines do not matter, and the duct may be as short.
 
     `upstream` and `downstream` are extents, where stated; others are shortened where the walls would wind more than a
-    turn. The middle surface keeps WALL_TOLERANCE on both walls. Where nothing is to fill the duct between them, they
-    may cross.
+    turn. Where nothing is to fill the duct between the walls, they may cross, and periodic lines straighten where those
+    of stated extents would wind more than a turn. Raises DesignError where they do all the same, or the channel cannot
+    be continued so far.
     """
     exact = spec.exact
     start = replace(
@@ -116,15 +138,7 @@ def skin_knots(
         if not exact.mapping.revolved or max(spec.winding(start).values()) < FULL_TURN:
             break
         start = _shortened(spec, start, (upstream is None, downstream is None))
-    tolerance = TRIMMED_SHARE * WALL_TOLERANCE * spec.blade.chord
-    lines = spec.middle_lines(start)
-    known = replace(
-        start,
-        blade=knots_beside(lines, start.blade, tolerance),
-        inlet=knots_along(lines, "inlet", 1.0, tolerance),
-        outlet=knots_along(lines, "outlet", 1.0, tolerance),
-    )
-    return with_span_knots(spec, known, tolerance)
+    return start if filled else _straightened(spec, start)
 
 
 def _past_feet(spec: PassageSpec, start: PassageKnots, which: tuple[bool, bool]) -> PassageKnots:
@@ -172,6 +186,19 @@ def _shortened(spec: PassageSpec, start: PassageKnots, which: tuple[bool, bool])
     places = (extent.place(edge, known) for edge, known in enumerate(found))
     low, high = places
     return replace(start, upstream=found[0], downstream=found[1], low=low, high=high)
+
+
+def _straightened(spec: PassageSpec, start: PassageKnots) -> PassageKnots:
+    """The same with periodic lines that straighten past the blade, if they must, as late as a turn allows."""
+    for halvings in range(STRAIGHTENINGS):
+        wall, winding = max(spec.winding(start).items(), key=lambda each: each[1])
+        if winding < FULL_TURN:
+            return start
+        start = replace(start, straightening=0.5**halvings)
+    raise DesignError(
+        f"the blade and a pitch wind {np.degrees(winding):.0f} deg around the axis at the {wall}, and a wall is one "
+        f"face of at most {np.degrees(FULL_TURN):.0f} deg for each blade: let the blade wrap less, or take more blades"
+    )
 
 
 def _middle_shift(spec: PassageSpec) -> MiddleShift | None:

@@ -81,6 +81,8 @@ class PassageKnots(FrozenRecord):
     """whether hub and shroud are untrimmed patches, or trimmed faces of their exact surfaces"""
     shift: MiddleShift | None = None
     """how the periodic boundaries lie beside those of the camber surface, where the blade needs it"""
+    straightening: float | None = None
+    """share of the ways up- and downstream over which they turn to the meridional direction; None where they do not"""
 
     def __post_init__(self) -> None:
         for name in (*PIECES, "across", "span", "tail"):

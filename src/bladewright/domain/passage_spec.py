@@ -77,7 +77,7 @@ class PassageSpec:
         """Camber lines with stations at v (m,)."""
         joints = np.unique(self.exact.breaks_along_v())
         found = camber_lines(self.exact.sections(v), self.duct(knots), self.turned, joints, knots.correspondence)
-        return found if knots.shift is None else replace(found, shift=knots.shift)
+        return replace(found, shift=knots.shift, straightening=knots.straightening)
 
     def middle_lines(self, knots: PassageKnots) -> Mapping[str, WallHalf]:
         """Halves of the walls between middle and periodic lines, past which the blade is not seen; they never fold."""
