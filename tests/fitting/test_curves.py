@@ -7,7 +7,7 @@ from scipy.optimize import minimize
 import bladewright as bw
 from bladewright.fitting.freeform.least_squares import Penalty
 from bladewright.fitting.freeform.net import Net, NetObjective, NetTarget, matched_net
-from bladewright.fitting.freeform.projection import sampled_parameters
+from bladewright.fitting.freeform.projection import projected
 from bladewright.nurbs.basis import uniform_knots
 from bladewright.nurbs.closest import closest_on_curve
 
@@ -162,7 +162,7 @@ def test_the_gradient_is_that_of_central_differences(weighted, closed, power):
         target=NetTarget(points=points, weights=np.ones(40)),
         penalty=Penalty(power=power, scale=0.05),
         stiffness=1e-3,
-        near=sampled_parameters(net.shape, points),
+        near=projected(net.shape, points).parameters,
     )
     at = net.unknowns
     exact = search.objective(at)

@@ -6,7 +6,7 @@ import pytest
 import bladewright as bw
 from bladewright.fitting.freeform.least_squares import Penalty
 from bladewright.fitting.freeform.net import Net, NetObjective, NetTarget
-from bladewright.fitting.freeform.projection import sampled_parameters
+from bladewright.fitting.freeform.projection import projected
 from bladewright.nurbs.basis import uniform_knots
 from bladewright.nurbs.closest import closest_on_surface
 
@@ -92,7 +92,7 @@ def test_the_gradient_is_that_of_central_differences(weighted):
     points = net.surface(U[:60], V[:60]) + 0.02 * rng.normal(size=(60, 3))
     search = NetObjective(
         net=net, target=NetTarget(points=points, weights=np.ones(60)), penalty=Penalty(), stiffness=1e-3,
-        near=sampled_parameters(net.shape, points),
+        near=projected(net.shape, points).parameters,
     )  # fmt: skip
     at, step = net.unknowns, 1e-6
     exact = search.objective(at)

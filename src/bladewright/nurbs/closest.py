@@ -1,16 +1,18 @@
-"""Globally closest points on curves and surfaces, with their derivatives."""
+"""Closest points on curves and surfaces: globally, with their derivatives, or by descents from samples or a start."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+from scipy.spatial import cKDTree
 
 from bladewright.errors import GeometryError
 from bladewright.numerics.elementary import Array, dot, length
 from bladewright.nurbs.basis import Reals
-from bladewright.nurbs.bezier import patches
+from bladewright.nurbs.bezier import Patches, Samples, patches, sampled
 from bladewright.nurbs.curve import Curve
-from bladewright.nurbs.proximity import nearest
+from bladewright.nurbs.proximity import nearest, polished
 from bladewright.nurbs.surface import Surface
 
 TOLERANCE = 1e-9
@@ -128,3 +130,103 @@ def _stationary(slope: Array, tangent: Array, miss: Array) -> NDArray[np.bool_]:
     return np.asarray(
         moves & (slope.real**2 <= (STATIONARY * size) ** 2 + 1e-24 * dot(tangent.real, tangent.real) ** 2)
     )
+
+
+CONVERGED = 1e-8
+"""Last step of a descent, in the parameters of a patch: distances of points off the shape are exact to its square."""
+SAMPLES = {1: (24, 1), 2: (6, 5)}
+"""Samples along and across a patch of a curve and of a surface from which descents start. More cost time for every
+search, fewer start at the wrong hump."""
+OTHER_SHAPE_RATIO = 2.0
+"""Another shape is tried too where its nearest sample is at most this many times further away than the nearest of all:
+the samples are only about so exact."""
+JOINT_BAND = 0.02
+"""Distance from the ends of u, of its domain, within which a place on one shape may be nearer on another one that it
+joins there. Wider bands cost descents that change nothing."""
+AT_ONCE = 20_000
+"""Descents at a time; it bounds the memory, not the result."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Places:
+    """Places on one or several shapes, one for each of n points."""
+
+    shape: NDArray[np.intp]
+    """(n,) index of the shape"""
+    u: Reals
+    v: Reals
+    """(n,) parameters; v is 0 on curves"""
+    square: Reals = field(default_factory=lambda: np.empty(0))
+    """(n,) squared distances of the points, where they are known"""
+
+
+@dataclass(frozen=True, eq=False)
+class Descents:
+    """Searches for the nearest places on curves or surfaces, of real parts, that end at local minima of the distance.
+
+    Several shapes join where u begins and ends, as the sides of a blade do at its edges.
+    """
+
+    shapes: tuple[Curve | Surface, ...]
+
+    @cached_property
+    def patches(self) -> tuple[Patches, ...]:
+        """The Bezier patches of each shape."""
+        return tuple(patches(shape) for shape in self.shapes)
+
+    @cached_property
+    def samples(self) -> tuple[tuple[Samples, cKDTree], ...]:
+        """Samples of each shape, and their search tree."""
+        counts = [SAMPLES[1 + (on.degrees[1] > 0)] for on in self.patches]
+        found = [sampled(on, *count) for on, count in zip(self.patches, counts, strict=True)]
+        return tuple((each, cKDTree(each.points)) for each in found)
+
+    def nearest(self, points: Reals, start: Places | None = None, *, converged: float = CONVERGED) -> Places:
+        """The nearest places of points (n, d): from the nearest samples, or from a `start` (n,).
+
+        `converged` is the last step in the parameters of a patch: distances of points off a shape are exact to its
+        square, those of points on it to itself.
+        """
+        count = len(points)
+        best = Places(
+            shape=np.zeros(count, dtype=np.intp), u=np.zeros(count), v=np.zeros(count), square=np.full(count, np.inf)
+        )
+        if start is None:
+            queries = [tree.query(points) for _, tree in self.samples]
+            least = np.min([distance for distance, _ in queries], axis=0)
+            for k, ((distance, index), (samples, _)) in enumerate(zip(queries, self.samples, strict=True)):
+                rows = np.flatnonzero(distance <= OTHER_SHAPE_RATIO * least)
+                self._descend(best, points, k, rows, samples.patch[index[rows]], samples.local[index[rows]], converged)
+        else:
+            for k, on in enumerate(self.patches):
+                rows = np.flatnonzero(start.shape == k)
+                self._descend(best, points, k, rows, *on.at(start.u[rows], start.v[rows]), converged)
+        for k, on in enumerate(self.patches if len(self.shapes) > 1 else ()):
+            band = JOINT_BAND * (on.high[-1, 0] - on.low[0, 0])
+            joint = (best.u <= on.low[0, 0] + band) | (best.u >= on.high[-1, 0] - band)
+            rows = np.flatnonzero(joint & (best.shape != k))
+            self._descend(best, points, k, rows, *on.at(best.u[rows], best.v[rows]), converged)
+        return best
+
+    def _descend(
+        self,
+        best: Places,
+        points: Reals,
+        k: int,
+        rows: NDArray[np.intp],
+        patch: NDArray[np.intp],
+        local: Reals,
+        converged: float,
+    ) -> None:
+        """Descends on a shape from places of some points, and keeps what is nearer than the best."""
+        on = self.patches[k]
+        for first in range(0, len(rows), AT_ONCE):
+            part = slice(first, first + AT_ONCE)
+            where = rows[part]
+            found = polished(on, points[where], patch[part], local[part], converged=converged)
+            nearer = found.square < best.square[where]
+            low, high = on.low[found.patch], on.high[found.patch]
+            place = np.where(found.local >= 1.0, high, low + found.local * (high - low))[nearer]
+            where = where[nearer]
+            best.shape[where], best.square[where] = k, found.square[nearer]
+            best.u[where], best.v[where] = place[:, 0], place[:, 1]

@@ -8,7 +8,9 @@ corner of a box is below f, a descent from there finds a new closest point. A po
 a tolerance.
 """
 
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -28,6 +30,11 @@ size; with 5 the distances of design/nurbs_constants.md are the same to rounding
 CONVERGED = 1e-12
 """Step in a patch's parameters, each over [0, 1], after which the next Newton step is below rounding. With 1e-8
 distances are 7e-15 chords off (design/nurbs_constants.md)."""
+CURVE_STEPS = 60
+"""Newton steps on a curve at most; steps that raised the distance and were shortened count too."""
+LONGEST_STEP = 2.0
+"""Longest Newton step on a curve, in widths of the polynomial piece it starts from. Longer ones leave the piece whose
+derivatives predicted them."""
 NOISE = 1e-13
 """Relative rise of a squared distance that counts as rounding, and so does not reject a step. With 0 or 1e-10 distances
 are the same to rounding (design/nurbs_constants.md)."""
@@ -56,6 +63,8 @@ def polished(
 
     `converged` is the last step in local parameters; the distance is accurate to its square.
     """
+    if not (on.degrees[1] or on.rational):
+        return _polished_on_curve(on, queries, patch, local, converged)
     patch, local = patch.copy(), local.copy()
     nets = on.nets if on.rational else on.nets[..., :-1]
     square = np.full(len(patch), np.inf)
@@ -114,6 +123,87 @@ def _distance_model(nets: Reals, queries: Reals, local: Reals) -> tuple[Reals, R
     metric = np.einsum("mad,mbd->mab", tangents, tangents)
     hessian = metric + np.einsum("mabd,md->mab", second, miss)
     return np.sum(miss * miss, axis=1), np.einsum("mad,md->ma", tangents, miss), hessian, metric
+
+
+def descended(
+    derivatives: Callable[[Reals], Sequence[Reals]],
+    queries: Reals,
+    start: Reals,
+    ends: tuple[float, float],
+    *,
+    widths: Callable[[Reals], Reals] = np.ones_like,
+    converged: float = CONVERGED,
+) -> tuple[Reals, Reals]:
+    """Parameters (m,) where descents on a curve from a start (m,) end, and squared distances (m,) there.
+
+    `derivatives` gives the curve's points and first and second derivatives (m, d), `widths` the lengths (m,) that a
+    step and its end are measured in. A step that raises the distance is shortened.
+    """
+
+    def model(at: Reals, targets: Reals) -> tuple[Reals, Reals]:
+        value, first, second = derivatives(at)
+        miss = value - targets
+        speed = np.einsum("md,md->m", first, first)
+        bend = speed + np.einsum("md,md->m", miss, second)
+        # where the distance is not convex, the Gauss-Newton second derivative still descends
+        bend = np.where(bend > 0.0, bend, np.where(speed > 0.0, speed, 1.0))
+        longest = LONGEST_STEP * widths(at)
+        step = np.clip(-np.einsum("md,md->m", miss, first) / bend, -longest, longest)
+        return np.einsum("md,md->m", miss, miss), step
+
+    u = np.clip(start, *ends)
+    square, step = model(u, queries)
+    active = np.arange(len(u))
+    for _ in range(CURVE_STEPS):
+        trial = np.clip(u[active] + step[active], *ends)
+        far = (trial - u[active]) ** 2 > (converged * widths(u[active])) ** 2
+        active, trial = active[far], trial[far]
+        if len(active) == 0:
+            break
+        new_square, new_step = model(trial, queries[active])
+        better = new_square <= square[active] * (1.0 + NOISE)
+        step[active[~better]] *= 0.25
+        taken = active[better]
+        u[taken], square[taken], step[taken] = trial[better], new_square[better], new_step[better]
+    return u, square
+
+
+def _polished_on_curve(
+    on: Patches, queries: Reals, patch: NDArray[np.intp], local: Reals, converged: float
+) -> PatchPoints:
+    """As `polished` on the polynomials of a curve, in their one parameter; steps pass from piece to piece."""
+    degree = on.degrees[0]
+    coefficients = np.einsum("ij,kjd->ikd", _powers(degree), on.nets[:, :, 0, :-1])
+    low = on.low[:, 0]
+    width = on.high[:, 0] - low
+
+    def piece(at: Reals) -> NDArray[np.intp]:
+        return np.clip(np.searchsorted(low, at, side="right") - 1, 0, len(low) - 1)
+
+    def derivatives(at: Reals) -> tuple[Reals, Reals, Reals]:
+        where = piece(at)
+        size = width[where][:, None]
+        t = (at - low[where])[:, None] / size
+        of = coefficients[:, where]
+        value, first, second = of[degree], np.zeros_like(of[0]), np.zeros_like(of[0])
+        for row in of[degree - 1 :: -1] if degree else ():
+            second = second * t + first
+            first = first * t + value
+            value = value * t + row
+        return value, first / size, 2.0 * second / size**2
+
+    start, ends = low[patch] + local[:, 0] * width[patch], (low[0], on.high[-1, 0])
+    u, square = descended(derivatives, queries, start, ends, widths=lambda at: width[piece(at)], converged=converged)
+    patch, local = on.at(u, np.zeros(len(u)))
+    return PatchPoints(patch=patch, local=local, square=square)
+
+
+@cache
+def _powers(degree: int) -> Reals:
+    """The matrix (degree + 1, degree + 1) from Bernstein coefficients to those of powers."""
+    orders = [bernstein(degree, np.zeros(1), order)[0] for order in range(degree + 1)]
+    factorials = np.cumprod([1.0, *range(1, degree + 1)])
+    return np.asarray(np.stack(orders) / factorials[:, None])
 
 
 def _step(gradient: Reals, hessian: Reals, metric: Reals, damping: Reals, local: Reals) -> Reals:

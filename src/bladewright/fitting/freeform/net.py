@@ -11,7 +11,7 @@ from scipy.linalg import null_space
 from scipy.sparse import csr_array, hstack
 
 from bladewright.fitting.freeform.least_squares import Minimum, Penalty, Quadratic, minimised, quadratic_of_distances
-from bladewright.fitting.freeform.projection import Projections, certified_parameters, projected, sampled_parameters
+from bladewright.fitting.freeform.projection import Projections, certified_parameters, projected
 from bladewright.numerics.quadrature import panels
 from bladewright.nurbs.basis import Reals, basis, breaks
 from bladewright.nurbs.blossom import knot_change
@@ -265,7 +265,7 @@ def matched_net(
     curve with `certain` by bounds as well (on a surface that takes milliseconds a point), and the whole is repeated
     where a nearer one is found.
     """
-    places = sampled_parameters(net.shape, target.points) if near is None else near
+    places = projected(net.shape, target.points, closed=net.closed).parameters if near is None else near
     total, converged = 0, False
     for _ in range(GLOBAL_SEARCHES):
         search = NetObjective(net=net, target=target, penalty=penalty, stiffness=stiffness, near=places)
@@ -278,8 +278,8 @@ def matched_net(
         everywhere = projected(net.shape, target.points, None, closed=net.closed, held=target.held)
         nearer = everywhere.distances < footpoints.distances - 1e-8
         places = np.where(nearer[:, None], everywhere.parameters, footpoints.parameters)
-        if certain and not nearer.any() and isinstance(net.shape, Curve):
-            places = certified_parameters(net.shape, target.points, footpoints)
+        if certain and not nearer.any() and len(net.knots) == 1:
+            places = certified_parameters(net.curve, target.points, footpoints)
         if np.array_equal(places, footpoints.parameters):
             break
     footpoints = search.footpoints(net, footpoints.parameters)

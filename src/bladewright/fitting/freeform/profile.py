@@ -8,7 +8,7 @@ from typing import Literal, final
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy.spatial import ConvexHull, QhullError, cKDTree
+from scipy.spatial import ConvexHull, QhullError
 
 from bladewright.errors import FitError
 from bladewright.fitting.freeform.camber_thickness import CamberThickness, abscissae_of
@@ -21,11 +21,12 @@ from bladewright.fitting.freeform.least_squares import (
 )
 from bladewright.fitting.freeform.net import Net
 from bladewright.fitting.freeform.options import FreeformFit, checked_options, checked_points
-from bladewright.fitting.freeform.profile_objective import DEGREE, SIDE_SAMPLES, ProfileObjective
-from bladewright.fitting.freeform.projection import Projections, newton_descent
+from bladewright.fitting.freeform.profile_objective import DEGREE, ProfileObjective
+from bladewright.fitting.freeform.projection import Projections
 from bladewright.fitting.freeform.stages import FitOptions
 from bladewright.numerics.elementary import length, turned_left
 from bladewright.nurbs.basis import Reals, uniform_knots
+from bladewright.nurbs.closest import Descents
 from bladewright.nurbs.curve import Curve
 
 STIFFNESSES = (1e-3, 1e-5, 1e-7, 1e-9)
@@ -201,15 +202,8 @@ def _start(points: Reals, camber: int, thickness: int, *, round_end: bool) -> tu
 
 def _upper(profile: CamberThickness, points: Reals) -> NDArray[np.bool_]:
     """Which points lie above the camber, which is continued straight past its ends."""
-    curve = profile.camber
-
-    def derivatives(s: Reals) -> list[Reals]:
-        return list(curve.derivatives(s, 2))
-
-    grid = np.linspace(0.0, 1.0, SIDE_SAMPLES)
-    first = grid[cKDTree(curve(grid)).query(points)[1]]
-    s = newton_descent(derivatives, points, first, (0.0, 1.0))
-    place, tangent = curve.derivatives(s, 1)
+    s = Descents((profile.camber,)).nearest(points).u
+    place, tangent = profile.camber.derivatives(s, 1)
     return np.asarray(np.sum((points - place) * turned_left(tangent), axis=-1) > 0.0)
 
 

@@ -15,9 +15,10 @@ from bladewright.fitting.freeform.least_squares import (
     quadratic_of_distances,
 )
 from bladewright.fitting.freeform.net import WEIGHT_REGULARISATION, Net
-from bladewright.fitting.freeform.projection import Projections, newton_descent, with_frames
+from bladewright.fitting.freeform.projection import Projections, with_frames
 from bladewright.numerics.elementary import length, turned_left
 from bladewright.nurbs.basis import Reals, basis
+from bladewright.nurbs.proximity import descended
 
 DEGREE = 3
 """degree of camber and thickness"""
@@ -89,7 +90,7 @@ class ProfileObjective:
             if len(rows):
                 samples = profile.derivatives(grid, upper=side)[0]
                 first = grid[cKDTree(samples).query(self.points[rows])[1]]
-                t[rows] = newton_descent(partial(profile.derivatives, upper=side), self.points[rows], first, (0.0, 1.0))
+                t[rows], _ = descended(partial(profile.derivatives, upper=side), self.points[rows], first, (0.0, 1.0))
         place, tangent, _ = profile.derivatives(t, upper=self.upper)
         # a side goes on as the other one past the leading edge
         free = (t > 0.0) & (t < 1.0)

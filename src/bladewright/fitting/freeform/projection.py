@@ -1,29 +1,20 @@
 """Nearest places of points on curves and surfaces, and the directions in which misses count."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.spatial import cKDTree
 
-from bladewright.nurbs.basis import Reals, breaks
-from bladewright.nurbs.bezier import Patches, patches, sampled
-from bladewright.nurbs.closest import TOLERANCE
+from bladewright.nurbs.basis import Reals
+from bladewright.nurbs.closest import TOLERANCE, Descents, Places, closest_on_curve
 from bladewright.nurbs.curve import Curve
-from bladewright.nurbs.proximity import PatchPoints, nearest, polished
 from bladewright.nurbs.surface import Surface
 
-NEWTON_STEPS = 60
-"""Newton steps of a point at most, halvings included"""
-LAST_NEWTON_STEP = 1e-9
-"""step, of the domain, after which the next Newton step is rounding."""
-SAMPLES = ((6, 6), (24, 1))
-"""samples along and across a patch of a surface and of a curve at which a search starts"""
+LAST_STEP = 1e-10
+"""last step of a descent, in the parameters of a patch: distances of exact points are exact to it."""
 CERTIFIED_SHARE = 0.01
 """share of the largest distance within which a certified search does not look for nearer places."""
-AT_ONCE = 20_000
-"""points that are projected onto a surface at a time; it bounds the memory."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -59,14 +50,17 @@ def projected(
 
     A closed curve has no ends to be held at. The places of points `held[0]` (j,) stay at parameters `held[1]` (j, k).
     """
-    if near is None:
-        near = sampled_parameters(shape, points)
-    if isinstance(shape, Curve):
-        parameters = _descended_on_curve(shape, points, near[:, 0], closed=closed)[:, None]
-    else:
-        parameters = _descended_on_surface(shape, points, near)
+    search, count = Descents((shape,)), len(points)
+    start = None if near is None else Places(shape=np.zeros(count, dtype=np.intp), u=near[:, 0], v=near[:, -1])
+    found = search.nearest(points, start, converged=LAST_STEP)
+    parameters = np.stack([found.u, found.v], axis=-1)[:, : 1 if isinstance(shape, Curve) else 2]
     domains = [shape.domain] if isinstance(shape, Curve) else [shape.domain_u, shape.domain_v]
     low, high = np.transpose(domains)
+    if closed:
+        seam = np.flatnonzero((found.u <= low) | (found.u >= high))
+        other = Places(shape=found.shape[seam], u=low + high - found.u[seam], v=found.v[seam])
+        past = search.nearest(points[seam], other, converged=LAST_STEP)
+        parameters[seam, 0] = np.where(past.square < found.square[seam], past.u, found.u[seam])
     free = np.ones_like(parameters, dtype=bool) if closed else (parameters > low) & (parameters < high)
     if held is not None:
         parameters[held[0]], free[held[0]] = held[1], False
@@ -90,26 +84,16 @@ def nearer_projections(footpoints: Projections, others: Projections, rows: NDArr
     return replace(footpoints, across=footpoints.across[:0], across_of=footpoints.across_of[:0], **changed)
 
 
-def sampled_parameters(shape: Curve | Surface, points: Reals) -> Reals:
-    """Parameters (n, k) of those of many places on a shape that are nearest to points (n, d)."""
-    pieces = patches(shape)
-    samples = sampled(pieces, *SAMPLES[isinstance(shape, Curve)])
-    index = cKDTree(samples.points).query(points)[1]
-    low, high = pieces.low[samples.patch[index]], pieces.high[samples.patch[index]]
-    return (low + samples.local[index] * (high - low))[:, : 1 if isinstance(shape, Curve) else 2]
-
-
-def certified_parameters(shape: Curve | Surface, points: Reals, footpoints: Projections) -> Reals:
-    """Parameters (n, k) of places that are nearest up to `CERTIFIED_SHARE` of the largest distance.
+def certified_parameters(shape: Curve, points: Reals, footpoints: Projections) -> Reals:
+    """Parameters (n, 1) on a curve that are nearest up to `CERTIFIED_SHARE` of the largest distance.
 
     Those of the given projections stay where the search has nothing nearer.
     """
-    pieces = patches(shape)
-    extent = float(np.ptp(shape.control_points.reshape(-1, points.shape[1]), axis=0).max())
-    found = nearest(pieces, points, max(TOLERANCE * extent, CERTIFIED_SHARE * float(footpoints.distances.max())))
-    nearer = np.sqrt(found.square) < footpoints.distances * (1.0 - CERTIFIED_SHARE) - TOLERANCE * extent
-    parameters = _parameters(pieces, found)[:, : footpoints.parameters.shape[1]]
-    return np.where(nearer[:, None], parameters, footpoints.parameters)
+    extent = float(np.ptp(shape.control_points, axis=0).max())
+    share = max(TOLERANCE, CERTIFIED_SHARE * float(footpoints.distances.max()) / extent)
+    found = closest_on_curve(shape, points, tolerance=share)
+    nearer = found.distances < footpoints.distances * (1.0 - CERTIFIED_SHARE) - TOLERANCE * extent
+    return np.where(nearer[:, None], found.u[:, None], footpoints.parameters)
 
 
 def with_frames(
@@ -145,79 +129,6 @@ def with_frames(
         across=np.concatenate(across) if across else np.zeros((0, dimension)),
         across_of=np.concatenate(rest_of) if rest_of else np.zeros(0, dtype=np.intp),
     )
-
-
-def newton_descent(
-    derivatives: Callable[[Reals], Sequence[Reals]], points: Reals, start: Reals, domain: tuple[float, float]
-) -> Reals:
-    """Parameters (n,) of a curve where Newton's descent of the distance from `start` (n,) ends, within the domain.
-
-    `derivatives` gives the curve's point and its first and second derivative (m, d). A step that would raise the
-    distance is halved.
-    """
-    u = np.clip(start, *domain)
-    active, factor = np.arange(len(u)), np.ones(len(u))
-    step, square = _step(derivatives(u), points)
-    for _ in range(NEWTON_STEPS):
-        trial = np.clip(u[active] + factor[active] * step[active], *domain)
-        moving = trial != u[active]
-        active, trial = active[moving], trial[moving]
-        if len(active) == 0:
-            break
-        new_step, new_square = _step(derivatives(trial), points[active])
-        # so close to the end, whether the distance falls is rounding, and Newton's step is exact
-        done = (trial - u[active]) ** 2 <= (LAST_NEWTON_STEP * (domain[1] - domain[0])) ** 2
-        lower = done | (new_square <= square[active])
-        taken = active[lower]
-        u[taken], step[taken], square[taken], factor[taken] = trial[lower], new_step[lower], new_square[lower], 1.0
-        factor[active[~lower]] *= 0.5
-        active = active[~done]
-    return u
-
-
-def _step(of: Sequence[Reals], points: Reals) -> tuple[Reals, Reals]:
-    miss = of[0] - points
-    slope = np.einsum("nd,nd->n", miss, of[1])
-    speed = np.einsum("nd,nd->n", of[1], of[1])
-    bend = speed + np.einsum("nd,nd->n", miss, of[2])
-    # where the distance is not convex, or nearly so, the speed alone gives a step that descends
-    rate = np.where(bend > 1e-3 * speed, bend, speed)
-    return -slope / np.where(rate > 0.0, rate, 1.0), np.einsum("nd,nd->n", miss, miss)
-
-
-def _descended_on_curve(curve: Curve, points: Reals, start: Reals, *, closed: bool) -> Reals:
-    def derivatives(u: Reals) -> Sequence[Reals]:
-        return curve.derivatives(u, 2)
-
-    u = newton_descent(derivatives, points, start, curve.domain)
-    low, high = curve.domain
-    if closed:
-        seam = np.flatnonzero((u <= low) | (u >= high))
-        other = newton_descent(derivatives, points[seam], np.where(u[seam] <= low, high, low), curve.domain)
-        better = np.sum((curve(other) - points[seam]) ** 2, axis=-1) < np.sum(
-            (curve(u[seam]) - points[seam]) ** 2, axis=-1
-        )
-        u[seam] = np.where(better, other, u[seam])
-    return u
-
-
-def _descended_on_surface(surface: Surface, points: Reals, near: Reals) -> Reals:
-    pieces = patches(surface)
-    place = [
-        np.clip(np.searchsorted(breaks(knots), near[:, k], side="right") - 1, 0, pieces.shape[k] - 1)
-        for k, knots in enumerate((surface.knots_u, surface.knots_v))
-    ]
-    patch = place[0] * pieces.shape[1] + place[1]
-    local = np.clip((near - pieces.low[patch]) / (pieces.high - pieces.low)[patch], 0.0, 1.0)
-    parts = np.array_split(np.arange(len(points)), max(1, -(-len(points) // AT_ONCE)))
-    return np.concatenate(
-        [_parameters(pieces, polished(pieces, points[part], patch[part], local[part])) for part in parts]
-    )
-
-
-def _parameters(pieces: Patches, found: PatchPoints) -> Reals:
-    low, high = pieces.low[found.patch], pieces.high[found.patch]
-    return np.where(found.local >= 1.0, high, low + found.local * (high - low))
 
 
 def _normals(tangents: list[Reals], rows: NDArray[np.intp], dimension: int) -> Reals:

@@ -90,7 +90,7 @@ def registered(points: Reals, target: RegistrationTarget) -> Registration:
 
 def _checked(points: Reals, target: RegistrationTarget) -> Reals:
     cloud = np.asarray(points, dtype=np.float64)
-    dimension = target.samples[0].points.shape[1]
+    dimension = target.sides[0].control_points.shape[-1]
     if cloud.ndim != 2 or cloud.shape[1] != dimension:
         raise FitError(
             f"a cloud of shape {cloud.shape} was given for a design in {dimension} dimensions; give (n, {dimension})"
