@@ -12,7 +12,8 @@ from bladewright.numerics.elementary import Array, dot, length
 from bladewright.nurbs.basis import Reals
 from bladewright.nurbs.bezier import Patches, Samples, patches, sampled
 from bladewright.nurbs.curve import Curve
-from bladewright.nurbs.proximity import nearest, polished
+from bladewright.nurbs.descent import polished
+from bladewright.nurbs.proximity import nearest
 from bladewright.nurbs.surface import Surface
 
 TOLERANCE = 1e-9

@@ -1,16 +1,12 @@
-"""Globally closest points on Bezier patches: branch and bound on Bernstein coefficients, and Newton's method.
+"""Globally closest points on Bezier patches: branch and bound on Bernstein coefficients.
 
-`polished` is the local search: damped Newton steps on the squared distance, from patch to patch. `nearest` is the
-global one. With N / D the squared distance on a patch (D = 1 without weights) and f the smallest squared distance found
-so far, a box of parameters is dropped when all Bernstein coefficients of N - f D are positive, or when Taylor's formula
-about its lowest place, with bounds of the second derivatives, says so; otherwise it is halved. Where a value at the
-corner of a box is below f, a descent from there finds a new closest point. A point that is missed is closer by at most
-a tolerance.
+With N / D the squared distance on a patch (D = 1 without weights) and f the smallest squared distance found so far, a
+box of parameters is dropped when all Bernstein coefficients of N - f D are positive, or when Taylor's formula about its
+lowest place, with bounds of the second derivatives, says so; otherwise it is halved. Where a value at the corner of a
+box is below f, a descent from there finds a new closest point. A point that is missed is closer by at most a tolerance.
 """
 
-from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from functools import cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,214 +15,7 @@ from scipy.spatial import cKDTree
 from bladewright.numerics.elementary import length
 from bladewright.nurbs.basis import Reals
 from bladewright.nurbs.bezier import Patches, bernstein, bernsteins, halving, products, sampled
-from bladewright.nurbs.rational import surface_quotients
-
-MAX_CROSSINGS = 80
-"""Patches that a descent may cross: a side with thin patches near its edges has some dozens in a row. 8 suffice in
-design/nurbs_constants.md, 56 points of a fitted cloud needed more."""
-MAX_STEPS = 40
-"""Newton steps on each patch: convergence is quadratic, so that more are needed only where damping has to find its
-size; with 5 the distances of design/nurbs_constants.md are the same to rounding."""
-CONVERGED = 1e-12
-"""Step in a patch's parameters, each over [0, 1], after which the next Newton step is below rounding. With 1e-8
-distances are 7e-15 chords off (design/nurbs_constants.md)."""
-CURVE_STEPS = 60
-"""Newton steps on a curve at most; steps that raised the distance and were shortened count too."""
-LONGEST_STEP = 2.0
-"""Longest Newton step on a curve, in widths of the polynomial piece it starts from. Longer ones leave the piece whose
-derivatives predicted them."""
-NOISE = 1e-13
-"""Relative rise of a squared distance that counts as rounding, and so does not reject a step. With 0 or 1e-10 distances
-are the same to rounding (design/nurbs_constants.md)."""
-SINGULAR = 1e-12
-"""Determinant of the Hessian, in units of the product of its diagonal, below which the step is that of Gauss and
-Newton: less is rounding. With 0 a search takes more than half as long again, with 1e-6 distances are 3e-13 chords off
-(design/nurbs_constants.md)."""
-
-
-@dataclass(frozen=True, kw_only=True)
-class PatchPoints:
-    """Points on patches, one for each of m queries."""
-
-    patch: NDArray[np.intp]
-    """(m,) index"""
-    local: Reals
-    """(m, 2) parameters in [0, 1] of the patch"""
-    square: Reals
-    """(m,) squared distance to the query"""
-
-
-def polished(
-    on: Patches, queries: Reals, patch: NDArray[np.intp], local: Reals, *, converged: float = CONVERGED
-) -> PatchPoints:
-    """The local minima of the distance to queries (m, d) at which descents from starts on patches (m,), (m, 2) end.
-
-    `converged` is the last step in local parameters; the distance is accurate to its square.
-    """
-    if not (on.degrees[1] or on.rational):
-        return _polished_on_curve(on, queries, patch, local, converged)
-    patch, local = patch.copy(), local.copy()
-    nets = on.nets if on.rational else on.nets[..., :-1]
-    square = np.full(len(patch), np.inf)
-    moving = np.arange(len(patch))
-    for _ in range(MAX_CROSSINGS):
-        local[moving], square[moving], out = _descended(nets[patch[moving]], queries[moving], local[moving], converged)
-        onward, exists = on.neighbours(patch[moving], out)
-        cross = exists & (out != 0)
-        moved = cross.any(axis=1)
-        moving, onward, cross, out = moving[moved], onward[moved], cross[moved], out[moved]
-        if len(moving) == 0:
-            break
-        patch[moving] = onward
-        local[moving] = np.where(cross, np.where(out > 0, 0.0, 1.0), local[moving])
-    return PatchPoints(patch=patch, local=local, square=square)
-
-
-def _descended(nets: Reals, queries: Reals, local: Reals, converged: float) -> tuple[Reals, Reals, NDArray[np.intp]]:
-    """Local parameters (m, 2) and squared distances after descent on a patch each, and the borders it ended at."""
-    local = local.copy()
-    square, gradient, hessian, metric = _distance_model(nets, queries, local)
-    damping = np.zeros(len(local))
-    active = np.arange(len(local))
-    for _ in range(MAX_STEPS):
-        step = _step(gradient[active], hessian[active], metric[active], damping[active], local[active])
-        trial = np.clip(local[active] + step, 0.0, 1.0)
-        far = np.max((trial - local[active]) ** 2, axis=1) > converged**2
-        active, trial = active[far], trial[far]
-        if len(active) == 0:
-            break
-        new = _distance_model(nets[active], queries[active], trial)
-        better = new[0] <= square[active] * (1.0 + NOISE)
-        damping[active] = np.where(
-            better, np.where(damping[active] < 1e-3, 0.0, 0.1 * damping[active]), 0.0
-        ) + np.where(better, 0.0, np.maximum(10.0 * damping[active], 1e-2))
-        taken = active[better]
-        local[taken], square[taken] = trial[better], new[0][better]
-        gradient[taken], hessian[taken], metric[taken] = new[1][better], new[2][better], new[3][better]
-    outward = np.where((local >= 1.0) & (gradient < 0.0), 1, np.where((local <= 0.0) & (gradient > 0.0), -1, 0))
-    return local, square, outward
-
-
-def _distance_model(nets: Reals, queries: Reals, local: Reals) -> tuple[Reals, Reals, Reals, Reals]:
-    """Squared distance (m,), half its gradient (m, 2) and half its Hessian (m, 2, 2), and the metric (m, 2, 2)."""
-    along, across = (bernsteins(count - 1, local[:, i]) for i, count in enumerate(nets.shape[1:3]))
-    # stacked matrix products: einsum over such small arrays takes ten times as long
-    rows = np.matmul(along, nets.reshape(*nets.shape[:2], -1)).reshape(len(nets), 3, *nets.shape[2:])
-    orders = [(0, 0), (1, 0), (0, 1), (2, 0), (1, 1), (0, 2)]
-    both = np.matmul(across[:, None], rows)
-    of = {(k, l): both[:, k, l] for k, l in orders}  # noqa: E741
-    if nets.shape[3] > queries.shape[1]:
-        of = surface_quotients(of)
-    miss = of[0, 0] - queries
-    tangents = np.stack([of[1, 0], of[0, 1]], axis=1)
-    second = np.stack([of[2, 0], of[1, 1], of[1, 1], of[0, 2]], axis=1).reshape(len(miss), 2, 2, -1)
-    metric = np.einsum("mad,mbd->mab", tangents, tangents)
-    hessian = metric + np.einsum("mabd,md->mab", second, miss)
-    return np.sum(miss * miss, axis=1), np.einsum("mad,md->ma", tangents, miss), hessian, metric
-
-
-def descended(
-    derivatives: Callable[[Reals], Sequence[Reals]],
-    queries: Reals,
-    start: Reals,
-    ends: tuple[float, float],
-    *,
-    widths: Callable[[Reals], Reals] = np.ones_like,
-    converged: float = CONVERGED,
-) -> tuple[Reals, Reals]:
-    """Parameters (m,) where descents on a curve from a start (m,) end, and squared distances (m,) there.
-
-    `derivatives` gives the curve's points and first and second derivatives (m, d), `widths` the lengths (m,) that a
-    step and its end are measured in. A step that raises the distance is shortened.
-    """
-
-    def model(at: Reals, targets: Reals) -> tuple[Reals, Reals]:
-        value, first, second = derivatives(at)
-        miss = value - targets
-        speed = np.einsum("md,md->m", first, first)
-        bend = speed + np.einsum("md,md->m", miss, second)
-        # where the distance is not convex, the Gauss-Newton second derivative still descends
-        bend = np.where(bend > 0.0, bend, np.where(speed > 0.0, speed, 1.0))
-        longest = LONGEST_STEP * widths(at)
-        step = np.clip(-np.einsum("md,md->m", miss, first) / bend, -longest, longest)
-        return np.einsum("md,md->m", miss, miss), step
-
-    u = np.clip(start, *ends)
-    square, step = model(u, queries)
-    active = np.arange(len(u))
-    for _ in range(CURVE_STEPS):
-        trial = np.clip(u[active] + step[active], *ends)
-        far = (trial - u[active]) ** 2 > (converged * widths(u[active])) ** 2
-        active, trial = active[far], trial[far]
-        if len(active) == 0:
-            break
-        new_square, new_step = model(trial, queries[active])
-        better = new_square <= square[active] * (1.0 + NOISE)
-        step[active[~better]] *= 0.25
-        taken = active[better]
-        u[taken], square[taken], step[taken] = trial[better], new_square[better], new_step[better]
-    return u, square
-
-
-def _polished_on_curve(
-    on: Patches, queries: Reals, patch: NDArray[np.intp], local: Reals, converged: float
-) -> PatchPoints:
-    """As `polished` on the polynomials of a curve, in their one parameter; steps pass from piece to piece."""
-    degree = on.degrees[0]
-    coefficients = np.einsum("ij,kjd->ikd", _powers(degree), on.nets[:, :, 0, :-1])
-    low = on.low[:, 0]
-    width = on.high[:, 0] - low
-
-    def piece(at: Reals) -> NDArray[np.intp]:
-        return np.clip(np.searchsorted(low, at, side="right") - 1, 0, len(low) - 1)
-
-    def derivatives(at: Reals) -> tuple[Reals, Reals, Reals]:
-        where = piece(at)
-        size = width[where][:, None]
-        t = (at - low[where])[:, None] / size
-        of = coefficients[:, where]
-        value, first, second = of[degree], np.zeros_like(of[0]), np.zeros_like(of[0])
-        for row in of[degree - 1 :: -1] if degree else ():
-            second = second * t + first
-            first = first * t + value
-            value = value * t + row
-        return value, first / size, 2.0 * second / size**2
-
-    start, ends = low[patch] + local[:, 0] * width[patch], (low[0], on.high[-1, 0])
-    u, square = descended(derivatives, queries, start, ends, widths=lambda at: width[piece(at)], converged=converged)
-    patch, local = on.at(u, np.zeros(len(u)))
-    return PatchPoints(patch=patch, local=local, square=square)
-
-
-@cache
-def _powers(degree: int) -> Reals:
-    """The matrix (degree + 1, degree + 1) from Bernstein coefficients to those of powers."""
-    orders = [bernstein(degree, np.zeros(1), order)[0] for order in range(degree + 1)]
-    factorials = np.cumprod([1.0, *range(1, degree + 1)])
-    return np.asarray(np.stack(orders) / factorials[:, None])
-
-
-def _step(gradient: Reals, hessian: Reals, metric: Reals, damping: Reals, local: Reals) -> Reals:
-    """The Newton step, or the Gauss-Newton step where the Hessian is not convex, in the parameters free to move."""
-    fixed = ((local <= 0.0) & (gradient >= 0.0)) | ((local >= 1.0) & (gradient <= 0.0))
-    fixed |= np.einsum("maa->ma", metric) <= 1e-300
-    free = ~fixed
-    both = free[:, :, None] & free[:, None, :]
-    floor = 1e-14 * np.einsum("maa->m", metric)[:, None]
-    eye = np.eye(2, dtype=bool)
-    tensor = np.where(both, metric, 0.0) + np.where(eye, np.where(free, floor, 1.0)[:, :, None], 0.0)
-    exact = np.where(both, hessian, 0.0) + np.where(eye, np.where(free, 0.0, 1.0)[:, :, None], 0.0)
-    convex = (exact[:, 0, 0] > 0.0) & (exact[:, 1, 1] > 0.0)
-    determinant = exact[:, 0, 0] * exact[:, 1, 1] - exact[:, 0, 1] ** 2
-    convex &= determinant > SINGULAR * exact[:, 0, 0] * exact[:, 1, 1]
-    matrix = np.where(convex[:, None, None], exact, tensor)
-    matrix = matrix + np.where(eye, damping[:, None, None] * tensor, 0.0)
-    a, b, c = matrix[:, 0, 0], matrix[:, 0, 1], matrix[:, 1, 1]
-    right = np.where(free, -gradient, 0.0)
-    size = a * c - b * b
-    size = np.where(size > 0.0, size, 1.0)
-    return np.stack([c * right[:, 0] - b * right[:, 1], a * right[:, 1] - b * right[:, 0]], axis=1) / size[:, None]
-
+from bladewright.nurbs.descent import PatchPoints, newton_step, polished
 
 BLOCK = 2_000_000
 """Bernstein coefficients held at a time, which bounds the memory: 16 MB an array. A tenth of it, or ten times as much,
@@ -427,7 +216,7 @@ def _lowest(values: Reals) -> Reals:
         gradient = np.stack([of[:, 1, 0], of[:, 0, 1]], axis=1)
         hessian = np.stack([of[:, 2, 0], of[:, 1, 1], of[:, 1, 1], of[:, 0, 2]], axis=1).reshape(-1, 2, 2)
         metric = np.maximum(hessian, -hessian) * eye
-        at = np.clip(at + _step(gradient, hessian, metric, np.zeros(len(at)), at), 0.0, 1.0)
+        at = np.clip(at + newton_step(gradient, hessian, metric, np.zeros(len(at)), at), 0.0, 1.0)
     return at
 
 

@@ -18,7 +18,7 @@ from bladewright.fitting.freeform.net import WEIGHT_REGULARISATION, Net
 from bladewright.fitting.freeform.projection import Projections, with_frames
 from bladewright.numerics.elementary import length, turned_left
 from bladewright.nurbs.basis import Reals, basis
-from bladewright.nurbs.proximity import descended
+from bladewright.nurbs.descent import descended
 
 DEGREE = 3
 """degree of camber and thickness"""
