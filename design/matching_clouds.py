@@ -125,7 +125,8 @@ def cloud_of(design, seed=4, *, count=5_000, noise=0.0, outliers=0.0, ends=True)
 
 def with_outliers(points, draw, share, least, most):
     """Points of which a share is moved off by a length between two, in any direction, and which these are."""
-    off = draw.random(len(points)) < share
+    off = np.zeros(len(points), dtype=bool)
+    off[draw.choice(len(points), round(share * len(points)), replace=False)] = True
     direction = draw.normal(size=points.shape)
     direction /= np.sqrt(np.sum(direction**2, axis=-1, keepdims=True))
     return points + direction * (off * draw.uniform(least, most, len(points)))[:, None], off
