@@ -11,9 +11,9 @@ from bladewright.blade.exact.exact_blade import ExactBlade
 from bladewright.blade.exact.unified import ExactUnifiedBlade
 from bladewright.derivatives.complex_step import STEP
 from bladewright.fitting.matching.footpoints import Footpoints, footpoints_at
-from bladewright.fitting.matching.outliers import DEVIATION_OVER_MEDIAN
 from bladewright.fitting.models.law_jacobian import channel_shifts, stands_on_channel
 from bladewright.fitting.models.model import ModelShape
+from bladewright.numerics.robust import median_deviation
 from bladewright.nurbs.basis import Reals, basis
 from bladewright.section.checks import UNITS
 
@@ -130,7 +130,7 @@ def blade_ends_of(points: Reals, footpoints: Footpoints, shape: ModelShape, rows
         return BladeEnds(walls={}, on_end_face=on_end_face, near=np.empty(0, dtype=np.intp))
     radius = np.sqrt(points[:, 1] ** 2 + points[:, 2] ** 2) if exact.mapping.revolved else points[:, 2]
     places = np.stack([points[:, 0], radius], axis=-1)
-    usual = DEVIATION_OVER_MEDIAN * float(np.median(footpoints.distances[rows]))
+    usual = median_deviation(footpoints.distances[rows])
     walls = {}
     for name, end in END_PARAMETERS.items():
         inside = np.flatnonzero((np.abs(footpoints.v - end) < FACE_BAND) & (footpoints.heights < -FACE_DEPTH * usual))
@@ -151,7 +151,7 @@ def blade_ends_of(points: Reals, footpoints: Footpoints, shape: ModelShape, rows
             continue
         wall = WallPoints(name=name, places=places[chosen], spread=0.0)
         aside = _off_row(*wall.located(exact), inward=1.0 if end == 0.0 else -1.0)
-        spread = DEVIATION_OVER_MEDIAN * float(np.median(aside))
+        spread = median_deviation(aside)
         # points of the sides beside the row would pull the end inwards
         chosen = chosen[aside <= ROW_WIDTH * max(spread, ROW_LEAST_WIDTH * float(np.ptp(places)))]
         walls[name] = WallPoints(name=name, places=places[chosen], spread=spread)
@@ -178,7 +178,7 @@ def _off_row(t: Reals, distances: Reals, *, inward: float) -> Reals:
         )
         roots /= np.max(roots)
     for _ in range(ROW_SETTLING_TURNS):
-        row = np.abs(left) <= ROW_WIDTH * DEVIATION_OVER_MEDIAN * float(np.median(np.abs(left)))
+        row = np.abs(left) <= ROW_WIDTH * median_deviation(left)
         left = distances - terms @ np.linalg.lstsq(terms[row], distances[row], rcond=None)[0]
     return np.abs(left)
 

@@ -9,7 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bladewright.fitting.matching.footpoints import Footpoints
-from bladewright.fitting.matching.outliers import DEVIATION_OVER_MEDIAN, neighbourhood_of, outliers_of
+from bladewright.fitting.matching.outliers import neighbourhood_of, outliers_of
+from bladewright.numerics.robust import median_deviation
 from bladewright.nurbs.basis import Reals
 
 
@@ -61,9 +62,7 @@ def noise_of(
     )
     variance, own = float(np.mean(own_weight * height**2)), float(np.mean(difference**2))
     correlation = float(np.clip(1.0 - own / variance, 0.0, 1.0)) if variance > 0.0 else 0.0
-    return NoiseEstimate(
-        noise=DEVIATION_OVER_MEDIAN * float(np.median(np.abs(difference))), inliers=inliers, correlation=correlation
-    )
+    return NoiseEstimate(noise=median_deviation(difference), inliers=inliers, correlation=correlation)
 
 
 def _noise_of_weighted(points: Reals, footpoints: Footpoints, weights: Reals, *, allow_outliers: bool) -> NoiseEstimate:

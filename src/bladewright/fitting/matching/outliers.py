@@ -15,6 +15,7 @@ from scipy.spatial import cKDTree
 
 from bladewright.fitting.clouds.thinning import even_subset
 from bladewright.fitting.matching.footpoints import Footpoints
+from bladewright.numerics.robust import median_deviation
 from bladewright.nurbs.basis import Reals
 
 NEIGHBOURS = {2: 4, 3: 8}
@@ -65,8 +66,6 @@ CORE_NEIGHBOURS = 3
 """points of the large groups beside a small one to which a step within the noise may lead."""
 ALWAYS_INLIER = 1e-6
 """distance up to which no point is an outlier, of the cloud's extent; it is for clouds that are exact."""
-DEVIATION_OVER_MEDIAN = 1.4826
-"""standard deviation of normal noise over its median magnitude."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -109,8 +108,8 @@ def outliers_of(
     # a median of k neighbours has about 1 / k of the variance
     spread_out = np.sqrt(1.0 / weights + np.mean(1.0 / weights[index], axis=1) / index.shape[1])
     deviations = np.abs(heights - np.median(heights[index], axis=1)) / spread_out * np.sqrt(1.0 + 1.0 / index.shape[1])
-    noise = DEVIATION_OVER_MEDIAN * float(np.median(deviations))
-    usual = DEVIATION_OVER_MEDIAN * float(np.median(roots * distances))
+    noise = median_deviation(deviations)
+    usual = median_deviation(roots * distances)
     chance = 1.0 + CHANCE_EXCESS / np.sqrt(len(heights))
     misfit = float(np.sqrt(max(usual**2 - (chance * noise) ** 2, 0.0)))
     level = np.maximum(noise, _local_noise(deviations, around)) / roots

@@ -1,42 +1,53 @@
-"""The machine's axes of a cloud without a design: from its prism in a cascade, from its two ends in an annulus."""
+"""The axes of a prismatic blade of a cascade that its cloud alone shows.
+
+Along the span every point projects onto one closed curve. The axis of an annular blade is not sought: its ends lie on
+surfaces of revolution about axes degrees apart within less than any noise (design/fit_clouds.md).
+"""
 
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.spatial import ConvexHull, cKDTree
 
 from bladewright.errors import FitError
 from bladewright.fitting.assessment.result import Motion
 from bladewright.fitting.clouds.isolated import has_neighbours
 from bladewright.fitting.clouds.thinning import random_subset
 from bladewright.fitting.design_header import Arrangement
-from bladewright.fitting.registration.axis_of_revolution import EndPoints, RevolutionAxis, axis_of
-from bladewright.fitting.registration.end_planes import EndPlane, end_planes, first_axes
-from bladewright.fitting.registration.isomap import UnrolledSheet, unrolled_sheet
-from bladewright.fitting.registration.prism import Prism, flat_ends, prism_of
-from bladewright.fitting.registration.rigid_motion import composed
+from bladewright.numerics.robust import TUKEY_WIDTH, median_deviation, tukey_weights
 from bladewright.nurbs.basis import Reals
 
 AXES_POINTS = 50_000
 """points that are looked at; it bounds the time, and more say little new about where a blade lies."""
 PRISM_THICKNESS = 1e-3
 """thickness of a projection, of the cloud's extent, below which the cloud is a prism."""
-COMPARED_DEGREES = (1, 2, 4)
-"""degrees of the meridional lines while axes are compared"""
-LAST_STEPS = 200
-"""steps of the least squares that decides"""
-COMPARED_END_POINTS, DECIDING_END_POINTS = 150, 400
-"""points of an end by which axes are compared, and those that decide (`DECIDING_END_POINTS`)"""
-DIRECTION_LIMIT = 0.2 * np.pi / 180.0
-"""largest standard deviation of the axis' direction [rad]; a less certain axis is refused."""
-OFFSET_LIMIT = 0.01
-"""largest standard deviation of the axis' distance, of the blade's extent; a less certain axis is refused."""
-REVOLUTION_LIMIT = 2e-6
-"""largest distance of the ends from surfaces of revolution, of the blade's extent. The ends of a fan lie 6e-7 off its
-true axis and 5e-6 off axes eight degrees away, so that no noise may pass (design/fit_clouds.md)."""
-AMBIGUITY_RATIO = 5.0
-"""ratio by which the ends must lie further off any other axis; otherwise the axis is ambiguous."""
-OTHER_AXIS_COSINE = np.cos(2.0 * np.pi / 180.0)
-"""cosine of the angle from which axes count as different."""
+PRISM_POINTS = 1_200
+"""points by which directions are compared; it bounds the time."""
+TRIAL_DIRECTIONS = 500
+"""directions that are tried, spread evenly over half a sphere"""
+GRID_CELLS = 40
+"""cells of a grid in the cloud's extent by which directions are compared"""
+FOLLOWED_DIRECTIONS = 6
+"""directions that are followed to their minimum"""
+CURVE_NEIGHBOURS = 60
+"""points of the projection that a piece of the curve is laid through"""
+SECTION_CELLS = 40
+"""cells of the section's extent, in each of which the last point is taken"""
+CURVED_END_RATIO, CURVED_END_SHARE = 3.0, 2e-4
+"""an end bends where a plane misses it by this many times what a parabola leaves, and by more than
+`CURVED_END_SHARE` of the extent."""
+PRISM_STEPS = 12
+"""steps of the least squares at most"""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Prism:
+    """A direction, and how thin the cloud's projection along it is."""
+
+    direction: Reals
+    """(3,) unit vector"""
+    rms: float
+    """distance of the projected points from the curve through their neighbours, but for outliers [m]"""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -53,10 +64,8 @@ class MachineAxes:
 def found_axes(points: Reals, *, arrangement: Arrangement | None = None) -> MachineAxes:
     """The machine's axes of a cloud (n, 3) [m] of one blade that lies anywhere, without a design.
 
-    A prism is a blade of a linear cascade: its direction is the span z, and the chord line is laid along x. Otherwise
-    both ends must lie on surfaces of revolution about the machine axis, and be shown by rows of points without noise;
-    then x = 0 is at the foremost point and theta = 0 in the middle. Raises FitError where the points do not determine
-    the axes.
+    A prism is a blade of a linear cascade: its direction is the span z, and the chord line is laid along x. Raises
+    FitError where the blade is none, or is called annular.
     """
     cloud = np.asarray(points, dtype=np.float64)
     if cloud.ndim != 2 or cloud.shape[1] != 3:
@@ -67,9 +76,9 @@ def found_axes(points: Reals, *, arrangement: Arrangement | None = None) -> Mach
     if len(cloud) < 100:
         raise FitError(f"axes were asked of {len(cloud)} points: at least 100 are needed; give --start, or the axes")
     if arrangement != "annular":
-        prism = prism_of(cloud)
+        prism = _prism_of(cloud)
         extent = float(np.max(np.ptp(cloud, axis=0)))
-        if prism.rms < PRISM_THICKNESS * extent and (arrangement == "linear" or flat_ends(cloud, prism.direction)):
+        if prism.rms < PRISM_THICKNESS * extent and (arrangement == "linear" or _flat_ends(cloud, prism.direction)):
             return _cascade(cloud, prism)
         if arrangement == "linear":
             raise FitError(
@@ -78,7 +87,11 @@ def found_axes(points: Reals, *, arrangement: Arrangement | None = None) -> Mach
                 "of a cascade's tapered or twisted blade the axes are not found. Give "
                 "--start, or move the points into the machine's axes (x downstream, z along the span)"
             )
-    return _annular(cloud)
+    raise FitError(
+        "the machine axis of an annular blade cannot be told from its points alone: give --start with a design of "
+        "about this blade, or move the points into the machine's axes (x downstream along the machine axis) and leave "
+        "out --align; a prismatic blade of a cascade needs --arrangement linear"
+    )
 
 
 def _cascade(cloud: Reals, prism: Prism) -> MachineAxes:
@@ -113,8 +126,6 @@ def _cascade(cloud: Reals, prism: Prism) -> MachineAxes:
 
 def _chord(flat: Reals) -> Reals:
     """Leading and trailing edge (2, 2) of a section: its points that are furthest apart, the thicker end first."""
-    from scipy.spatial import ConvexHull
-
     hull = flat[ConvexHull(flat).vertices]
     square = np.sum((hull[:, None] - hull[None]) ** 2, axis=-1)
     i, j = np.unravel_index(np.argmax(square), square.shape)
@@ -126,114 +137,85 @@ def _chord(flat: Reals) -> Reals:
     return np.array([one, other] if ends[0] >= ends[1] else [other, one])
 
 
-def _annular(cloud: Reals) -> MachineAxes:
-    """The axes of a blade between surfaces of revolution."""
-    sheet = unrolled_sheet(cloud)
-    pieces = [end_planes(sheet, side) for side in range(4)]
-    tried: list[tuple[RevolutionAxis, int]] = []
-    for pair in (0, 1):
-        ends = _ends(sheet, pieces[pair], pieces[pair + 2], COMPARED_END_POINTS)
-        if ends is None:
-            continue
-        for _, start in first_axes([*pieces[pair], *pieces[pair + 2]]):
-            axis = axis_of(ends, start, COMPARED_DEGREES)
-            if axis is not None:
-                tried.append((axis, pair))
-    tried.sort(key=lambda each: each[0].rms)
+def _prism_of(points: Reals) -> Prism:
+    """The direction in which the projection of points (n, 3) is thinnest."""
+    cloud = points[random_subset(len(points), PRISM_POINTS)]
+    cloud = cloud - np.median(cloud, axis=0)
+    directions = _hemisphere(TRIAL_DIRECTIONS)
+    cell = float(np.max(np.ptp(cloud, axis=0))) / GRID_CELLS
+    # a curve passes through few cells of a grid, whatever rows the points stand in
+    scores = [len(np.unique(np.floor(cloud @ _across(d).T / cell).astype(int) @ [1, 10_000])) for d in directions]
+    tried = [_followed(cloud, directions[k]) for k in np.argsort(scores)[:FOLLOWED_DIRECTIONS]]
+    return min(tried, key=lambda prism: prism.rms)
+
+
+def _followed(cloud: Reals, direction: Reals) -> Prism:
+    """The prism near a direction."""
+    rms = np.inf
+    for _ in range(PRISM_STEPS):
+        frame = _across(direction)
+        flat, height = cloud @ frame.T, cloud @ direction
+        near = cKDTree(flat).query(flat, k=CURVE_NEIGHBOURS)[1]
+        local = flat[near] - flat[near].mean(axis=1, keepdims=True)
+        axes = np.linalg.eigh(np.einsum("nki,nkj->nij", local, local))[1]
+        normal, along = axes[:, :, 0], np.einsum("nki,ni->nk", local, axes[:, :, 1])
+        residuals = np.einsum("nki,ni->nk", local, normal)
+        # what smoothing by a parabola leaves of a point's distance and height
+        scale = np.maximum(np.max(np.abs(along), axis=1, keepdims=True), 1e-300)
+        vander = np.stack([np.ones_like(along), along / scale, (along / scale) ** 2], axis=-1)
+        normal_matrix = np.einsum("nki,nkj->nij", vander, vander) + 1e-12 * np.eye(3)
+        first = np.einsum("nki,ni->nk", vander, np.linalg.solve(normal_matrix, vander[:, 0, :, None])[..., 0])
+        left = residuals[:, 0] - np.einsum("nj,nj->n", first, residuals)
+        lift = height - np.einsum("nj,nj->n", first, height[near])
+        width = max(TUKEY_WIDTH * median_deviation(left), 1e-15)
+        root = np.sqrt(tukey_weights(left, width))
+        rows = -normal * lift[:, None] * root[:, None]
+        step = np.linalg.lstsq(rows, -left * root, rcond=1e-9)[0]
+        inner = np.abs(left) < width
+        rms = float(np.sqrt(np.mean(left[inner] ** 2)))
+        direction = direction + step @ frame
+        direction = direction / np.sqrt(np.sum(direction**2))
+        if np.max(np.abs(step)) < 1e-12:
+            break
+    return Prism(direction=direction, rms=rms)
+
+
+def _flat_ends(cloud: Reals, direction: Reals) -> bool:
+    """Whether the highest and the lowest points along a direction lie on planes, not on surfaces that bend."""
+    flat, height = cloud @ _across(direction).T, cloud @ direction
+    flat = flat - flat.mean(axis=0)
     extent = float(np.max(np.ptp(cloud, axis=0)))
-    if not tried:
-        raise _undetermined("no end of the blade is shown by a row of points")
-    best, pair = tried[0]
-    ends = _ends(sheet, pieces[pair], pieces[pair + 2], DECIDING_END_POINTS)
-    axis = axis_of(ends, best.motion, steps=LAST_STEPS) if ends is not None else None
-    if axis is None or axis.rms > best.rms:
-        axis = best
-    _check(axis, [other for other, _ in tried[1:]], extent)
-    motion, notes = _placed(cloud, sheet, axis, pair)
-    return MachineAxes(
-        motion=motion,
-        arrangement="annular",
-        notes=notes,
-    )
+    cells = np.unique(np.floor(flat / np.max(np.ptp(flat, axis=0)) * SECTION_CELLS), axis=0, return_inverse=True)[
+        1
+    ].ravel()
+    order = np.lexsort((height, cells))
+    last = np.flatnonzero(np.diff(cells[order], append=-1))
+    first = np.concatenate([[0], last[:-1] + 1])
+    for rows in (order[first], order[last]):
+        x, y = flat[rows].T / extent
+        level = height[rows] / extent
+        left = []
+        for terms in ([np.ones_like(x), x, y], [np.ones_like(x), x, y, x * x, x * y, y * y]):
+            design = np.stack(terms, axis=-1)
+            weight = np.ones(len(x))
+            for _ in range(8):
+                root = np.sqrt(weight)
+                plane = np.linalg.lstsq(design * root[:, None], level * root, rcond=1e-9)[0]
+                residuals = np.abs(level - design @ plane)
+                weight = tukey_weights(residuals, max(TUKEY_WIDTH * median_deviation(residuals), 1e-12))
+            left.append(float(np.median(residuals)))
+        if left[0] > CURVED_END_RATIO * left[1] and left[0] > CURVED_END_SHARE:
+            return False
+    return True
 
 
-def _ends(
-    sheet: UnrolledSheet, low: list[EndPlane], high: list[EndPlane], count: int
-) -> tuple[EndPoints, EndPoints] | None:
-    """Points of the two ends, at most `count` of each; None where an end has no planes."""
-    found = []
-    for pieces in (low, high):
-        if not pieces:
-            return None
-        rows, first = np.unique(np.concatenate([piece.rows for piece in pieces]), return_index=True)
-        along = np.concatenate([piece.along for piece in pieces])[first]
-        some = random_subset(len(rows), count)
-        found.append(EndPoints(points=sheet.points[rows[some]], along=along[some]))
-    return found[0], found[1]
+def _across(direction: Reals) -> Reals:
+    """Two unit vectors (2, 3) perpendicular to a direction and to each other."""
+    return np.linalg.svd(direction[None])[2][1:]
 
 
-def _check(axis: RevolutionAxis, others: list[RevolutionAxis], extent: float) -> None:
-    """Refuses an axis that the points do not determine."""
-    if axis.rms > REVOLUTION_LIMIT * extent:
-        raise _undetermined(
-            f"of all axes tried, the ends still lie {axis.rms:.3g} m off surfaces of revolution about the best, more "
-            f"than {REVOLUTION_LIMIT * extent:.3g} m"
-        )
-    if axis.direction > DIRECTION_LIMIT or axis.offset > OFFSET_LIMIT * extent:
-        raise _undetermined(
-            f"the axis' direction is uncertain by {np.degrees(axis.direction):.2g} deg and its distance by "
-            f"{axis.offset:.2g} m, more than {np.degrees(DIRECTION_LIMIT):g} deg and {OFFSET_LIMIT * extent:.2g} m"
-        )
-    for other in others:
-        other_direction = abs(other.motion.rotation[0] @ axis.motion.rotation[0]) < OTHER_AXIS_COSINE
-        if other_direction and other.rms < AMBIGUITY_RATIO * max(axis.rms, 1e-9 * extent):
-            raise _undetermined(
-                f"another axis fits nearly as well: the ends lie {other.rms:.3g} m off it, and {axis.rms:.3g} m "
-                "off the best"
-            )
-
-
-def _undetermined(why: str) -> FitError:
-    return FitError(
-        f"the machine axis cannot be told from the points alone: {why}. Give --start with a design of about this "
-        "blade, or move the points into the machine's axes (x downstream along the machine axis) and leave out --align"
-    )
-
-
-def _placed(cloud: Reals, sheet: UnrolledSheet, axis: RevolutionAxis, pair: int) -> tuple[Motion, tuple[str, ...]]:
-    """The motion with x from leading to trailing edge and from the foremost point, theta from the middle."""
-    motion = axis.motion
-    edges = []
-    for side in (1 - pair, 3 - pair):
-        inside = sheet.along(side)[1]
-        edges.append(sheet.points[np.abs(inside) < 2.0 * sheet.spacing])
-    places = [float(np.mean(motion(edge)[:, 0])) for edge in edges]
-    thick = [_thickness(edge) for edge in edges]
-    leading = 0 if thick[0] >= thick[1] else 1
-    placed = (
-        "the machine axis is found from the blade's ends; x = 0 is at the foremost point and theta = 0 in the middle"
-    )
-    notes = [placed]
-    sign = 1.0 if places[1 - leading] >= places[leading] else -1.0
-    if max(thick) < 1.3 * min(thick):
-        notes.append("the edges are about equally thick: which one is leading, and with it the sense of x, is a guess")
-    else:
-        notes.append("the thicker edge is taken as the leading one, a guess, and x points from it to the other")
-    turn = Motion(rotation=np.diag([sign, sign, 1.0]), translation=np.zeros(3))
-    moved = composed(turn, motion)(cloud)
-    middle = np.arctan2(*np.mean(moved[:, 1:] / np.sqrt(np.sum(moved[:, 1:] ** 2, axis=1, keepdims=True)), axis=0))
-    c, s = np.cos(middle), np.sin(middle)
-    upright = Motion(
-        rotation=np.array([[1.0, 0.0, 0.0], [0.0, c, -s], [0.0, s, c]]),
-        translation=np.array([-float(np.min(moved[:, 0])), 0.0, 0.0]),
-    )
-    return composed(upright, composed(turn, motion)), tuple(notes)
-
-
-def _thickness(edge: Reals) -> float:
-    """Median extent of points across the plane that they nearly lie in, piece by piece [m]."""
-    from scipy.spatial import cKDTree
-
-    near = edge[cKDTree(edge).query(edge, k=min(24, len(edge)))[1]]
-    local = near - near.mean(axis=1, keepdims=True)
-    return float(np.median(np.sqrt(np.maximum(np.linalg.eigvalsh(np.einsum("nki,nkj->nij", local, local))[:, 0], 0.0))))
+def _hemisphere(count: int) -> Reals:
+    """Directions (count, 3) spread evenly over half a sphere (Gonzalez 2010)."""
+    k = np.arange(count) + 0.5
+    z, turn = k / count, np.pi * (1.0 + 5.0**0.5) * k
+    return np.stack([np.sqrt(1.0 - z**2) * np.cos(turn), np.sqrt(1.0 - z**2) * np.sin(turn), z], axis=-1)

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 from bladewright.fitting.assessment.result import Motion
 from bladewright.fitting.registration.rigid_motion import GENERATORS, composed, rotation_by
 from bladewright.fitting.registration.target import Contact, RegistrationTarget
+from bladewright.numerics.robust import TUKEY_WIDTH, median_deviation, tukey_weights
 from bladewright.nurbs.basis import Reals
 
 FIRST_WIDTH = 0.04
@@ -22,8 +23,6 @@ WIDTH_FACTOR = 8.0
 """factor by which the width shrinks, and its cube below `FAST_WIDTH`."""
 FAST_WIDTH = 1e-3
 """width, of the extent, below which it shrinks three times as fast."""
-TUKEY = 4.685
-"""width in standard deviations at which Tukey's weights have 95 % efficiency"""
 NEWTON_STEP = 1e-3
 """step, of the extent, below which nearest places are followed by Newton steps instead of searched anew."""
 LEAST_WIDTH = 1e-13
@@ -72,9 +71,7 @@ def robust_motion(
         moved = motion(points)
         contact = target.contact(moved, contact if small < NEWTON_STEP * extent else None)
         distances = contact.distances
-        noise_width = (
-            TUKEY * 1.4826 * float(np.median(distances[distances < wide])) if np.any(distances < wide) else wide
-        )
+        noise_width = TUKEY_WIDTH * median_deviation(distances[distances < wide]) if np.any(distances < wide) else wide
         weights = tukey_weights(distances, max(wide, least))
         pivot = np.mean(moved, axis=0)
         rows, right = equations(moved, contact, weights, pivot)
@@ -113,11 +110,6 @@ def equations(moved: Reals, contact: Contact, weights: Reals, pivot: Reals) -> t
     root = np.sqrt(weights[which])
     miss = np.sum(directions * contact.miss[which], axis=1)
     return np.concatenate([turns, directions], axis=1) * root[:, None], -miss * root
-
-
-def tukey_weights(distances: Reals, width: float) -> Reals:
-    """Tukey's weights (n,): they fall smoothly to 0 at `width`."""
-    return np.asarray(np.maximum(0.0, 1.0 - (distances / width) ** 2) ** 2)
 
 
 def _step(rows: Reals, right: Reals, pivot: Reals, moved: Reals, extent: float) -> Reals:
