@@ -260,7 +260,7 @@ def twisted(edge="sharp", back=0.0, *, tip=False):
     return Shape(chord=0.0675, pieces=pieces, place=place, tip=tip)
 
 
-def radial_stator(angle=60.0):
+def radial_stator(angle=72.0):
     """A vane of a radial-inflow turbine: prismatic along x, its chord of 24 mm from outside inwards."""
     pieces = naca(chord=0.024, thickness=0.16, camber=0.05, place=0.4, edge="round", back=0.0004)
 
