@@ -224,7 +224,7 @@ def counted(seeds):
         outlier[draw.choice(len(points), round(0.03 * len(points)), replace=False)] = True
         todo = np.flatnonzero(outlier)
         while len(todo):
-            moved = clouds.with_outliers(exact[todo], draw, 1.1, 10.0 * noise, 100.0 * noise)[0]
+            moved = clouds.with_outliers(exact[todo], draw, 1.0, 10.0 * noise, 100.0 * noise)[0]
             points[todo] = moved
             todo = todo[measures.distances(moved, clouds.sides_of(built)) < 10.0 * noise]
         found, values = bw.fit(points, like=BASE), truth.parameters()
