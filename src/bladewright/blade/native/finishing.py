@@ -4,11 +4,15 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Protocol
 
+import numpy as np
+
 from bladewright.blade.native.blade import Blade
 from bladewright.blade.native.edge_cut import cut_edges
 from bladewright.blade.native.end_cut import cut_ends
 from bladewright.blade.native.fillet import filleted
 from bladewright.blade.native.knots import Knots
+from bladewright.blade.native.side_corners import side_corner
+from bladewright.errors import DesignError
 
 if TYPE_CHECKING:
     from bladewright.blade.design.row_design import RowDesign
@@ -33,8 +37,24 @@ def finishes(design: RowDesign) -> list[Finish]:
     if cut is not None and (cut.hub is not None or cut.tip is not None):
         wanted.append(cut_ends)
     if design.hub_fillet is not None or design.shroud_fillet is not None:
-        wanted.append(filleted)
+        wanted.append(_filleted)
     return wanted
+
+
+def _filleted(blade: Blade, design: RowDesign, knots: Knots | None, *, fine: bool) -> Blade:
+    """The same as `filleted`; where a side has a corner, an error says so, as that may be what stops the ball."""
+    try:
+        return filleted(blade, design, knots, fine=fine)
+    except DesignError as error:
+        corner = side_corner(blade)
+        if corner is None:
+            raise
+        side, u, angle = corner
+        raise DesignError(
+            f"{error}. The {side} side has a corner of {np.degrees(angle):.2g} deg at u = {u:.3f}, over which no ball "
+            "rolls: the curvature of the sections' mean line jumps there. Take one without a jump (camber_position = "
+            "0.5 with naca-4, or another profile)"
+        ) from error
 
 
 def finished(plain: Blade, design: RowDesign, knots: Knots | None = None, *, fine: bool = False) -> Blade:

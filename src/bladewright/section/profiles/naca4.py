@@ -35,7 +35,8 @@ class Naca4(PublishedProfile):
 
     Half thickness 5 t (0.2969 sqrt(x) - 0.1260 x - 0.3516 x^2 + 0.2843 x^3 - a x^4), a = 0.1015 at the published
     trailing edge and 0.1036 at a sharp one; the profile is 1.0003 t or 1.0001 t thick. At the place of the largest
-    camber the mean line has a jump of curvature, and both sides a slight corner, as published.
+    camber the mean line has a jump of curvature, and both sides a slight corner, as published; with the largest camber
+    at 0.5 it has none.
     """
 
     kind: Literal["naca-4"] = "naca-4"
