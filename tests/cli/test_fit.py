@@ -133,6 +133,12 @@ def test_every_option_reaches_the_fit(run, stub, cloud_file, design, tmp_path):
     assert sorted(path.name for path in (tmp_path / "out").iterdir()) == ["new.fit.json", "new.toml"]
 
 
+@pytest.mark.parametrize(("word", "axis"), [("-z", "-z"), ("0,1,-0.5", (0.0, 1.0, -0.5))])
+def test_an_axis_is_a_name_or_three_numbers(word, axis, run, stub, cloud_file):
+    assert run("fit", cloud_file, "--axis", word, "--no-picture").status == 0
+    assert stub.given["axis"] == axis
+
+
 def test_patterns_without_values_are_held_at_the_start(run, stub, cloud_file, design, tmp_path):
     start = tmp_path / "start.toml"
     bw.write_design(design, start)
@@ -247,6 +253,7 @@ def test_the_faces_of_a_cad_file_are_sampled(words, count, run, stub, points, tm
         (["--bound", "stagger=3"], "is not PATH=LOW,HIGH"),
         (["--bound", "stagger=3,1"], "is not PATH=LOW,HIGH"),
         (["--fix", "stagger=steep"], "is not PATH or PATH=VALUE"),
+        (["--axis", "0,1,up"], "is no axis"),
         (["--fix", "stagger"], "give the value, or a design with --start"),
         (["--samples", "1000"], "points of the faces of a CAD file"),
         (["--picture", "a.txt"], "a picture is drawn as"),

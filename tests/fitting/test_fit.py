@@ -200,6 +200,14 @@ def test_progress_is_told():
     assert told[-1] == "measuring"
 
 
+def test_points_about_another_axis_are_turned_before_they_are_matched():
+    points = cloud(0, 400)
+    found = fit(points @ np.array([[0.0, 1.0], [-1.0, 0.0]]), truth(0), axis="y", free="stagger")
+    assert found.passed
+    assert found.cloud == pytest.approx(points)
+    assert found.motion.rotation == pytest.approx(np.array([[0.0, 1.0], [-1.0, 0.0]]))
+
+
 def test_a_blade_in_a_flow_path_is_found_again_from_a_start_and_its_flow_path_stands_unless_it_is_freed():
     random, blade = np.random.default_rng(0), built(INFLOW_IN_PATH.changed("tolerance", COARSE))
     points = np.concatenate([side(*random.random((2, 150))) for side in blade.sides])
@@ -228,6 +236,8 @@ def test_a_blade_in_a_flow_path_is_found_again_from_a_start_and_its_flow_path_st
         (cloud(0, 400), {"parameters": True}, "parameters is True"),
         (cloud(0, 400), {"family": "spline"}, "'spline'"),
         (cloud(0, 400), {"start": STATOR}, "UnifiedSection"),
+        (cloud(0, 400), {"axis": "z"}, "axis is 'z'"),
+        (cloud(0, 400), {"axis": "y", "align": True, "start": BASE}, "axis and align are both given"),
         (cloud(0, 400), {"like": STATOR}, "UnifiedSection"),
         (solid_cloud(), {"family": "unified-section"}, "x and y alone"),
         (solid_cloud(), {"like": INFLOW_IN_PATH}, "like is a unified blade in a flow path.*give it as start"),

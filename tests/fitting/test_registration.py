@@ -1,6 +1,4 @@
-"""Clouds that lie anywhere are brought onto a design, or into machine axes that they show themselves."""
-
-from functools import cache
+"""Clouds that lie anywhere are brought onto a design, or into machine axes that are named or shown."""
 
 import numpy as np
 import pytest
@@ -8,17 +6,9 @@ from scipy.spatial.transform import Rotation
 
 from bladewright.errors import FitError
 from bladewright.fitting.assessment.result import Motion
-from bladewright.fitting.registration.axes import found_axes
-from bladewright.fitting.registration.registration import registered, registration
-from bladewright.fitting.registration.rigid_motion import FREEDOMS
-from bladewright.fitting.registration.robust_motion import robust_motion
-from bladewright.fitting.registration.target import target_of
+from bladewright.fitting.registration.axes import axis_motion, found_axes
+from bladewright.fitting.registration.registration import registration
 from machines import built, example
-
-
-@cache
-def target(name):
-    return target_of(built(example(name)))
 
 
 def cloud(name, count, *, span=(0.0, 1.0)):
@@ -43,7 +33,7 @@ def thrown(seed):
 @pytest.mark.parametrize("name", ["radial-turbine", "vki-ls89"])
 def test_points_of_the_design_itself_are_moved_back_within_a_billionth_of_the_chord(name):
     points = cloud(name, 1200)
-    found = registered(thrown(1)(points), target(name))
+    found = registration(thrown(1)(points), example(name))
     # what was asked of noise-free points
     assert np.abs(found.motion(thrown(1)(points)) - points).max() < 1e-9 * built(example(name)).chord
     assert found.same
@@ -54,7 +44,7 @@ def test_half_a_span_with_noise_and_outliers_is_put_where_it_belongs():
     points, random = cloud("fan-rotor", 1500, span=(0.3, 0.8)), np.random.default_rng(3)
     noisy = points + 2e-5 * random.normal(size=points.shape)
     box = noisy.min(axis=0) + np.ptp(noisy, axis=0) * (1.6 * random.random((75, 3)) - 0.3)
-    found = registered(thrown(2)(np.concatenate([noisy, box])), target("fan-rotor"))
+    found = registration(thrown(2)(np.concatenate([noisy, box])), example("fan-rotor"))
     # first-order displacement of the middle of the blade, with the covariance that is reported; five deviations
     rates = np.concatenate([np.cross(np.eye(3), points.mean(axis=0)), np.eye(3)])
     deviation = np.sqrt(np.diag(rates.T @ found.covariance @ rates))
@@ -68,7 +58,7 @@ def test_half_a_span_with_noise_and_outliers_is_put_where_it_belongs():
 @pytest.mark.slow
 def test_a_mirrored_blade_is_told_from_the_design():
     points = cloud("radial-turbine", 800) * np.array([1.0, -1.0, 1.0])
-    found = registered(thrown(4)(points), target("radial-turbine"))
+    found = registration(thrown(4)(points), example("radial-turbine"))
     assert not found.same
     assert "another blade" in " ".join(found.notes)
 
@@ -77,16 +67,14 @@ def test_a_mirrored_blade_is_told_from_the_design():
 def test_a_blade_of_another_stagger_is_told_from_the_design():
     other = built(example("vki-ls89")).design.changed("stagger", -50.0).build()
     points = np.concatenate([side.grid(np.linspace(0.0, 1.0, 20), np.linspace(0.0, 1.0, 6)) for side in other.sides])
-    found = registered(points.reshape(-1, 3), target("vki-ls89"))
+    found = registration(points.reshape(-1, 3), example("vki-ls89"))
     assert not found.same
     assert "another blade" in " ".join(found.notes)
 
 
 def test_a_prism_without_its_ends_leaves_the_shift_along_the_span_undetermined():
     points = cloud("vki-ls89", 800, span=(0.3, 0.7))
-    start = Motion(rotation=np.eye(3), translation=np.array([2e-4, 1e-4, 0.0]))
-    (direction,) = robust_motion(target("vki-ls89"), points, start).undetermined
-    assert FREEDOMS[int(np.argmax(np.abs(direction)))] == "shift_z"
+    assert registration(thrown(5)(points), example("vki-ls89")).undetermined == ("shift_z",)
 
 
 def test_a_section_is_found_in_its_plane():
@@ -102,12 +90,15 @@ def test_a_section_is_found_in_its_plane():
 @pytest.mark.parametrize("points", ["strewn", pytest.param("rows", marks=pytest.mark.slow)])
 def test_a_prism_shows_the_span_of_its_cascade(points):
     given = cloud("vki-ls89", 4000) if points == "strewn" else rows("vki-ls89", 60, 30)
-    found = found_axes(thrown(6)(given))
-    span = (found.motion.rotation @ thrown(6).rotation)[:, 2]
-    assert found.arrangement == "linear"
+    motion, notes = found_axes(thrown(6)(given))
+    span = (motion.rotation @ thrown(6).rotation)[:, 2]
     # neighbours at other heights make a parabola through a bent piece differ by 1e-4 of the chord or so over the span
     assert np.hypot(*span[:2]) < 1e-3
-    assert any("chord" in note for note in found.notes)
+    moved = motion(thrown(6)(given))
+    assert moved[:, 2].min() == pytest.approx(0.0, abs=1e-6)
+    assert np.ptp(moved[:, 0]) == pytest.approx(np.ptp(moved[:, :2], axis=0).max())
+    assert moved[:, 1].mean() > 0.0
+    assert any("chord" in note for note in notes)
 
 
 @pytest.mark.parametrize("arrangement", [None, "annular"])
@@ -118,4 +109,29 @@ def test_an_annular_blade_without_a_start_is_refused_with_the_cure(arrangement):
 
 def test_a_cloud_of_another_dimension_is_refused():
     with pytest.raises(FitError, match="3 dimensions"):
-        registered(np.zeros((30, 2)), target("vki-ls89"))
+        registration(np.zeros((30, 2)), example("vki-ls89"))
+
+
+@pytest.mark.parametrize(
+    "axis", ["x", "y", "z", "-x", "-Y", "+z", (0.0, 2.0, 0.0), (1.0, -2.0, 0.5), (-1.0, 1e-3, 0.0)]
+)
+def test_a_named_axis_becomes_x_by_the_smallest_turn(axis):
+    names = {"x": (1, 0, 0), "y": (0, 1, 0), "z": (0, 0, 1), "-x": (-1, 0, 0), "-Y": (0, -1, 0), "+z": (0, 0, 1)}
+    direction = np.array(names[axis] if isinstance(axis, str) else axis, dtype=float)
+    direction /= np.sqrt(direction @ direction)
+    turn = axis_motion(axis, 3).rotation
+    assert turn @ direction == pytest.approx([1.0, 0.0, 0.0], abs=1e-12)
+    assert turn @ turn.T == pytest.approx(np.eye(3), abs=1e-12)
+    # the angle of the turn is the one between the axes, and its determinant that of no mirror
+    assert np.trace(turn) == pytest.approx(1.0 + 2.0 * direction[0], abs=1e-12)
+    assert np.linalg.det(turn) == pytest.approx(1.0)
+    if direction[2] == 0.0:
+        assert turn[2] == pytest.approx([0.0, 0.0, 1.0])
+
+
+@pytest.mark.parametrize("axis", ["w", "", "xy", (0.0, 0.0, 0.0), (1.0, 2.0), (np.inf, 0.0, 0.0)])
+def test_what_is_no_axis_is_refused(axis):
+    with pytest.raises(FitError, match="direction of the machine's axis"):
+        axis_motion(axis, 3)
+    with pytest.raises(FitError, match="x, y"):
+        axis_motion("z", 2)

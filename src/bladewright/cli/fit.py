@@ -69,6 +69,18 @@ def _parse_fixed(_: click.Context, __: click.Parameter, words: Sequence[str]) ->
     return values
 
 
+def _parse_axis(_: click.Context, __: click.Parameter, text: str | None) -> str | tuple[float, ...] | None:
+    """Read a name, or numbers with commas between."""
+    if text is None or "," not in text:
+        return text
+    try:
+        return tuple(float(word) for word in text.split(","))
+    except ValueError as error:
+        raise click.BadParameter(
+            f"'{text}' is no axis: write a name like y or -z, or three numbers like 0,1,0"
+        ) from error
+
+
 @click.command(short_help="A cloud of points to a design.")
 @click.argument("cloud", type=click.Path(path_type=Path))
 @click.option(
@@ -128,7 +140,17 @@ def _parse_fixed(_: click.Context, __: click.Parameter, words: Sequence[str]) ->
     metavar="PATH=LOW,HIGH",
     help="Keep a parameter between two values, either of which may be left out. Repeatable.",
 )
-@click.option("--align", is_flag=True, help="Find the rigid motion to the machine's axes, too.")
+@click.option(
+    "--axis",
+    callback=_parse_axis,
+    metavar="AXIS",
+    help="Axis of rotation in the cloud's coordinates: y, -z, or three numbers such as 0,1,0.  [x]",
+)
+@click.option(
+    "--align",
+    is_flag=True,
+    help="The cloud lies anywhere: move it onto --start, or lay a cascade's prismatic blade along its chord.",
+)
 @click.option("--arrangement", type=click.Choice(["annular", "linear"]), help="Around the axis, or in a cascade.")
 @click.option("--blade-count", type=click.IntRange(1, 10_000), metavar="N", help="Number of blades of an annular row.")
 @click.option(
@@ -163,9 +185,9 @@ def fit(
 
     CLOUD is a table of numbers with or without names above them, an airfoil, a PLY, STL, VTK or NumPy file, or a STEP,
     IGES or BREP file, whose faces are sampled. Two coordinates give a section, three a blade; x is the machine axis, or
-    give --align. NAME.fit.json and NAME.fit.png are written beside the design. A design file that is there is only
-    overwritten where it is that of --start, or with --force; it keeps its comments. The exit status is 1 where the fit
-    does not pass; interrupted, it writes the best design so far.
+    give --axis or --align. NAME.fit.json and NAME.fit.png are written beside the design. A design file that is there is
+    only overwritten where it is that of --start, or with --force; it keeps its comments. The exit status is 1 where the
+    fit does not pass; interrupted, it writes the best design so far.
     """
     if no_picture and picture is not None:
         raise click.UsageError("--picture names a picture, and --no-picture wants none: leave one out")

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from typing import Any, Literal
 
@@ -27,21 +27,20 @@ from bladewright.fitting.families.unified import matched_unified
 from bladewright.fitting.free_parameters import free_parameters_of
 from bladewright.fitting.matching.search import Match, Task
 from bladewright.fitting.model_selection.stopping import MatchTarget
+from bladewright.fitting.registration.axes import axis_motion, found_axes
+from bladewright.fitting.registration.registration import registration
 from bladewright.nurbs.basis import Reals
 from bladewright.section.checks import choice
 from bladewright.section.unified import UnifiedSection
 
 
-def _aligned(points: Reals, start: Design | None, arrangement: Any) -> tuple[Motion, Reals, Any, tuple[str, ...]]:
-    """The motion, the moved points (n, d), the arrangement where one was found, and notes."""
-    from bladewright.fitting.registration.axes import found_axes
-    from bladewright.fitting.registration.registration import registration
-
+def _aligned(points: Reals, start: Design | None, header: DesignHeader) -> tuple[Motion, DesignHeader, tuple[str, ...]]:
+    """The motion into the machine's axes, the header with the arrangement that it shows, and notes."""
     if start is not None:
-        registered = registration(points, start)  # type: ignore[arg-type]
-        return registered.motion, registered.motion(points), arrangement, registered.notes
-    found = found_axes(points, arrangement=arrangement)
-    return found.motion, found.motion(points), found.arrangement, found.notes
+        registered = registration(points, start)
+        return registered.motion, header, registered.notes
+    motion, notes = found_axes(points, arrangement=header.arrangement)
+    return motion, replace(header, arrangement="linear"), notes
 
 
 UNIFIED_NAMES = ("unified", "unified-section")
@@ -70,6 +69,7 @@ def fit(
     bounds: Mapping[str, tuple[float, float]] | None = None,
     weights: ArrayLike | None = None,
     align: bool = False,
+    axis: str | Sequence[float] | None = None,
     arrangement: Literal["annular", "linear"] | None = None,
     blade_count: int | None = None,
     pitch: float | None = None,
@@ -80,10 +80,12 @@ def fit(
     """The design of a family that matches a cloud of points (n, 2) or (n, 3) [m], and how well it does.
 
     Points are in the machine's axes, in any order: (n, 2) of a section give a `UnifiedSection`, (n, 3) a
-    `UnifiedBlade`, or the section or blade of the `family` that is named, or that `start` or `like` is of; with `align`
-    they may lie anywhere in space. No guess is needed; `start` is one, whose structure is kept unless `tolerance` [m]
-    or `parameters` ask for another. `like` is a design whose structure is taken, not its values; the flow path of a
-    blade from sections is part of it. Without any of these, control points are added as long as the cloud shows that
+    `UnifiedBlade`, or the section or blade of the `family` that is named, or that `start` or `like` is of. `axis` names
+    another axis of rotation, through the origin: "y", "-z", or three numbers; the smallest turn brings it to x. With
+    `align` they may lie anywhere: they are registered onto `start`, or taken for a prismatic blade of a linear cascade.
+    No guess is needed; `start` is one, whose structure is kept unless `tolerance` [m] or `parameters` ask for
+    another. `like` is a design whose structure is taken, not its values; the flow path of a blade from sections is part
+    of it. Without any of these, control points are added as long as the cloud shows that
     more are needed; with `tolerance`, until no inlier lies further away; with `parameters`, up to that number of free
     ones.
 
@@ -99,11 +101,21 @@ def fit(
     points, notes = checked_cloud(cloud)
     kind = named_family(family, points.shape[1], start if start is not None else like)
     _check_call(points, kind, start, like, tolerance, parameters)
+    header = DesignHeader(
+        name=name, length_unit=length_unit, pitch=pitch, arrangement=arrangement, blade_count=blade_count
+    )
     motion = None
-    if align:
+    if axis is not None:
+        if align:
+            raise FitError(
+                "axis and align are both given: axis says where the machine's axis is, align finds it; leave one out"
+            )
+        motion = axis_motion(axis, points.shape[1])
+    elif align:
         tell("axes")
-        motion, points, arrangement, more = _aligned(points, start, arrangement)
+        motion, header, more = _aligned(points, start, header)
         notes = (*notes, *more)
+    points = points if motion is None else motion(points)
     free_parameters = free_parameters_of(free, fixed, started=start is not None)
     task = Task(
         points=points,
@@ -115,9 +127,6 @@ def fit(
     )
     structured = parameters is None and (start is not None or like is not None)
     target = MatchTarget(tolerance=tolerance, parameters=parameters, structured=structured, registered=align)
-    header = DesignHeader(
-        name=name, length_unit=length_unit, pitch=pitch, arrangement=arrangement, blade_count=blade_count
-    )
     try:
         if kind is None:
             found, built, reason = matched_unified(task, start, like, header, target)
@@ -133,7 +142,12 @@ def fit(
         found, built, reason = replace(nearest[0], interrupted=True), nearest[1], ""
     except DesignError as error:
         raise FitError(f"no design of the family was found near the points ({error}): {WHOLE_BLADE_HINT}") from error
-    if start is None and like is None and arrangement is None and getattr(found.design, "arrangement", "") == "linear":
+    if (
+        start is None
+        and like is None
+        and header.arrangement is None
+        and getattr(found.design, "arrangement", "") == "linear"
+    ):
         notes = (*notes, CASCADE_NOTE)
     return _reported(found, built, points, task, target, (*notes, *([reason] if reason else [])), motion)
 

@@ -50,7 +50,7 @@ LAW_LIMITS = {
 """limits of a first blade's laws, inside the family's own"""
 
 
-AXES_HINT = "x must be the machine axis: say which column is which (--columns), or let the axis be found (--align)"
+AXES_HINT = "x must be the machine axis: say which column is which (--columns), or name the axis (--axis)"
 """what may be wrong with a cloud near which no blade is found"""
 
 

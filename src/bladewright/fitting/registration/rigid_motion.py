@@ -6,10 +6,11 @@ from scipy.spatial.transform import Rotation
 from bladewright.fitting.assessment.result import Motion
 from bladewright.nurbs.basis import Reals
 
-FREEDOMS = ("turn_x", "turn_y", "turn_z", "shift_x", "shift_y", "shift_z")
-"""degrees of freedom in space: right-handed turns about the machine's axes, then shifts along them"""
-PLANE_FREEDOMS = ("turn", "shift_x", "shift_y")
-"""degrees of freedom in the plane"""
+FREEDOMS = {
+    2: ("turn", "shift_x", "shift_y"),
+    3: ("turn_x", "turn_y", "turn_z", "shift_x", "shift_y", "shift_z"),
+}
+"""degrees of freedom by dimension: right-handed turns about the machine's axes, then shifts along them"""
 GENERATORS = {
     2: np.array([[[0.0, -1.0], [1.0, 0.0]]]),
     3: np.array(
@@ -24,11 +25,11 @@ GENERATORS = {
 
 
 def rotation_by(turns: Reals) -> Reals:
-    """Rotations (..., d, d) by angles (..., 1) in the plane, or rotation vectors (..., 3) in space [rad]."""
-    if turns.shape[-1] == 3:
-        return Rotation.from_rotvec(turns.reshape(-1, 3)).as_matrix().reshape(*turns.shape[:-1], 3, 3)
-    c, s = np.cos(turns[..., 0]), np.sin(turns[..., 0])
-    return np.stack([np.stack([c, -s], axis=-1), np.stack([s, c], axis=-1)], axis=-2)
+    """The rotation (d, d) by an angle (1,) in the plane, or a rotation vector (3,) in space [rad]."""
+    if len(turns) == 3:
+        return np.asarray(Rotation.from_rotvec(turns).as_matrix())
+    c, s = np.cos(turns[0]), np.sin(turns[0])
+    return np.array([[c, -s], [s, c]])
 
 
 def composed(second: Motion, first: Motion) -> Motion:
