@@ -49,20 +49,14 @@ class Quadratic:
 
 @dataclass(frozen=True, kw_only=True)
 class Penalty:
-    """Cost of a distance: `d^power`, or with `soft_from` `2 s^2 (sqrt(1 + d^2 / s^2) - 1)`, s being that distance."""
+    """Cost of a distance: `d^power`."""
 
     power: float = 2.0
     scale: float = 1.0
     """distance that costs 1 (powers above 2 would vanish in rounding without it)"""
-    soft_from: float | None = None
-    """distance beyond which the cost grows linearly"""
 
     def __call__(self, distances: Reals) -> tuple[Reals, Reals, Reals]:
         """Cost rho (m,), its slope drho/dz (m,) by z = d^2, and its curvature along and across the distance over it."""
-        if self.soft_from is not None:
-            root = np.sqrt(1.0 + (distances / self.soft_from) ** 2)
-            # the second derivative is left out: it is negative, and the slope alone bounds the cost from above
-            return 2.0 * self.soft_from**2 * (root - 1.0), 1.0 / root, np.ones_like(root)
         share = (distances / self.scale) ** (self.power - 2.0) if self.power != 2.0 else np.ones_like(distances)
         slope = 0.5 * self.power * share
         return distances**2 * share, slope, np.full_like(distances, self.power - 1.0)

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from bladewright.fitting.freeform.least_squares import Penalty, rank_of, singular_values
 from bladewright.fitting.freeform.net import Net, NetMatch, NetTarget, matched_net
 from bladewright.fitting.freeform.projection import projected
+from bladewright.numerics.robust import TUKEY_WIDTH, median_deviation, tukey_weights
 from bladewright.nurbs.basis import Reals
 
 STIFFNESSES = (1e-4, 1e-6, 1e-8, 1e-10, 1e-13)
@@ -25,8 +26,9 @@ KNOT_ROUNDS = 25
 """times that knots are added at most; it bounds the time."""
 OUTLYING_NOISE = 4.5
 """standard deviations of the noise from which a point is an outlier."""
-MEDIAN_OVER_DEVIATION = 0.6745
-"""median magnitude of a normal distribution, over its standard deviation"""
+FIRST_WIDTH, WIDTH_FACTOR = 0.3, 2.0
+"""first width of Tukey's weights, of the extent, and factor by which it shrinks to what the noise needs
+(`WIDTH_FACTOR`): so slowly that the ends of a shape are reached before their points could be taken for outliers."""
 NEVER_OUTLIER = 1e-10
 """distance, of the extent, up to which no point is an outlier."""
 
@@ -180,25 +182,26 @@ def _rms(match: NetMatch) -> float:
 def _without_outliers(
     net: Net, target: NetTarget, options: FitOptions, *, warm: bool
 ) -> tuple[Net, NDArray[np.bool_], int]:
-    """The net matched softly, and which points are no further from it than noise explains."""
-    footpoints = projected(net.shape, target.points, closed=net.closed)
-    near, total = footpoints.parameters, 0
-    deviation = float(np.median(footpoints.distances)) / MEDIAN_OVER_DEVIATION
-    soft_from = max(deviation, NEVER_OUTLIER) if warm else 0.05
-    for stiffness in (1e-8, 1e-8) if warm else (1e-4, 1e-6, 1e-8, 1e-8):
-        options.report(f"without outliers, stiffness {stiffness:g}")
+    """The net matched with Tukey's weights, and which points are no further from it than noise explains."""
+    footpoints, total, width = projected(net.shape, target.points, closed=net.closed), 0, FIRST_WIDTH
+    stiffnesses = [STIFFNESSES[2]] if warm else list(STIFFNESSES[:3])
+    while True:
+        least = max(TUKEY_WIDTH * median_deviation(footpoints.distances), NEVER_OUTLIER)
+        width = max(width, least)
+        options.report(f"without outliers, width {width:.2g}")
         match = matched_net(
             net,
-            target,
-            penalty=Penalty(soft_from=soft_from),
-            stiffness=stiffness,
-            near=near,
+            replace(target, weights=target.weights * tukey_weights(footpoints.distances, width)),
+            penalty=Penalty(),
+            stiffness=stiffnesses[0],
+            near=footpoints.parameters,
             evaluations=40,
             tolerance=ROUGH_FALL,
         )
-        net, near = match.net, match.footpoints.parameters
+        net, footpoints = match.net, match.footpoints
         total += match.evaluations
-        deviation = float(np.median(match.footpoints.distances)) / MEDIAN_OVER_DEVIATION
-        soft_from = min(soft_from, max(deviation, NEVER_OUTLIER))
-    inliers = match.footpoints.distances <= max(OUTLYING_NOISE * deviation, NEVER_OUTLIER)
-    return net, inliers, total
+        if width <= least and len(stiffnesses) == 1:
+            break
+        width, stiffnesses = width / WIDTH_FACTOR, stiffnesses[1:] or stiffnesses
+    distances = footpoints.distances
+    return net, distances <= max(OUTLYING_NOISE * median_deviation(distances), NEVER_OUTLIER), total
