@@ -98,6 +98,11 @@ class ClosedSection(FrozenRecord):
         upper, lower = real.pop(UPPER), real.pop(LOWER)
         return replace(self, upper=upper, lower=lower, blunt=FrozenMapping(real))
 
+    @property
+    def stepped(self) -> bool:
+        """Whether it carries a complex step."""
+        return any(np.iscomplexobj(face.control_points) for face in self.faces.values())
+
     def derivative(self, sites: Sites, v: Array, du: int = 0, dv: int = 0) -> Array:
         """Points or derivatives (..., 3) at sites and v of one shape, by the u of each site's own side."""
         return self.derivatives(sites, v, (du, dv))[0]
@@ -111,7 +116,7 @@ class ClosedSection(FrozenRecord):
         u = np.where(other, np.where(before, -u, 2.0 - u), u)
         side = np.where(other, UPPER + LOWER - side, side)
         kind = np.result_type(u, v, *(surface.control_points for surface in self.faces.values()))
-        found = [np.empty((*u.shape, 3), dtype=kind) for _ in orders]
+        found = [np.empty((*u.shape, self.upper.control_points.shape[-1]), dtype=kind) for _ in orders]
         for face, surface in self.faces.items():
             mask = side == face
             if mask.any():

@@ -55,7 +55,7 @@ class Wall(FrozenRecord):
 
     def point(self, t: Array, across: Array) -> Array:
         """Points (..., 3) at t of the meridian and theta, or y."""
-        line, (radial, tangential) = self.meridian(t), self._frame(across)
+        line, (radial, tangential) = self.line(t), self._frame(across)
         found = line[..., 1:] * radial
         if not self.revolved:
             found = found + across[..., None] * tangential
@@ -64,21 +64,21 @@ class Wall(FrozenRecord):
 
     def slopes(self, t: Array, across: Array) -> tuple[Array, Array]:
         """Derivatives (..., 3) of points by t and by theta, or y."""
-        line, slope, (radial, tangential) = self.meridian(t), self.meridian.derivative(t), self._frame(across)
+        line, slope, (radial, tangential) = self.line(t), self.line(t, 1), self._frame(across)
         along = slope[..., 1:] * radial
         along[..., 0] = along[..., 0] + slope[..., 0]
         return along, (line[..., 1:] if self.revolved else 1.0) * tangential
 
     def normal(self, t: Array, across: Array) -> Array:
         """Unit normals (..., 3) into the fluid."""
-        side = self._meridian_normal(self.meridian.derivative(t))
+        side = self._meridian_normal(self.line(t, 1))
         found = side[..., 1:] * self._frame(across)[0]
         found[..., 0] = found[..., 0] + side[..., 0]
         return found
 
     def normal_slopes(self, t: Array, across: Array) -> tuple[Array, Array]:
         """Derivatives (..., 3) of the unit normals by t and by theta, or y."""
-        slope, bend = self.meridian.derivative(t), self.meridian.derivative(t, 2)
+        slope, bend = self.line(t, 1), self.line(t, 2)
         side, size = self._meridian_normal(slope), length(slope)[..., None]
         turn = np.stack([-bend[..., 1], bend[..., 0]], axis=-1) * self.inward / size
         turn = turn - side * dot(side, turn)[..., None]
@@ -89,6 +89,15 @@ class Wall(FrozenRecord):
 
     def _meridian_normal(self, slope: Array) -> Array:
         return self.inward * unit(np.stack([-slope[..., 1], slope[..., 0]], axis=-1))
+
+    def line(self, t: Array, order: int = 0) -> Array:
+        """Points (..., 2) of the meridian at t, or derivatives."""
+        return self.meridian.derivative(t, order)
+
+    @property
+    def stepped(self) -> bool:
+        """Whether it carries a complex step."""
+        return np.iscomplexobj(self.meridian.control_points)
 
     def real(self) -> Wall:
         """The same of real parts."""
@@ -154,7 +163,7 @@ def contacts(
         start = _grown(*real, sites, own, end) if near is None else near.between(sites)
         x, residual = _settled(*real, sites, own, start)
     found: Array = x
-    if _stepped(section, wall, sizes):
+    if section.stepped or wall.stepped or any(map(np.iscomplexobj, sizes)):
         slopes = _differences(*real, sites, own, x)[1]
         found = x - 1j * _solved(slopes, np.imag(_differences(section, wall, sites, sizes, x)[0]))
     return Contacts(
@@ -241,8 +250,3 @@ def _solved(jacobian: Array, right: Array) -> Array:
             dot(first, cross(second, right)),
         ]
         return np.stack(parts, axis=-1) / size[..., None]
-
-
-def _stepped(section: ClosedSection, wall: Wall, sizes: tuple[Array, Array]) -> bool:
-    nets = [face.control_points for face in section.faces.values()]
-    return any(np.iscomplexobj(each) for each in (*nets, wall.meridian.control_points, *sizes))

@@ -95,6 +95,10 @@ class Touch(FrozenRecord):
         by_t, by_theta = self.ball.wall.normal_slopes(t, across)
         return -dot(slope, first[:, None] * by_t + second[:, None] * by_theta)
 
+    def net(self) -> Array:
+        """Control points (n, k, 3) of the fillet's cross-sections."""
+        return self.sections.net()
+
     @cached_property
     def slope(self) -> Array:
         """dF/ds (k, 3) on the blade."""

@@ -1,0 +1,174 @@
+"""Fillets of many blades that carry a complex step each, at once: what differs from blade to blade is side by side.
+
+All of them have one real part. Where a ball touches one of them depends on the sides, the wall and the sizes of the ball
+near one site of one blade only: so sites are those of one blade, as often as there are blades, and what is evaluated is the
+real blade at the sites of one, with the steps of all blades as one surface of so many dimensions more.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from bladewright.blade.native.closed_section import ClosedSection, Sites
+from bladewright.blade.native.contacts import Contacts, Wall, contacts
+from bladewright.blade.native.rolling_ball import Ball, Touch
+from bladewright.blade.native.strip import Strip
+from bladewright.frozen import FrozenMapping, FrozenRecord
+from bladewright.numerics.elementary import Array
+from bladewright.nurbs.curve import Curve
+from bladewright.nurbs.surface import Surface
+
+
+def _one(values: Array, count: int) -> Array:
+    """The real part (..., k) at the sites of one blade, of values (..., count k)."""
+    return np.real(values[..., : values.shape[-1] // count])
+
+
+def _all(values: Array, count: int) -> Array:
+    """Values (..., count k, d) at the sites of all blades, from those (..., k, d) of one."""
+    return np.concatenate([values] * count, axis=-2)
+
+
+def _apart(values: Array, count: int) -> Array:
+    """Values (..., count k, d) of blades, from those (..., k, count d) side by side."""
+    return np.concatenate(np.split(values, count, axis=-1), axis=-2)
+
+
+def _beside(values: Array, count: int) -> Array:
+    """Values (..., k, count d) side by side, from those (..., count k, d) of blades."""
+    return np.concatenate(np.split(values, count, axis=-2), axis=-1)
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class SteppedSection(ClosedSection):
+    """The section of the real blade with the steps of `count` blades."""
+
+    steps: ClosedSection | None
+    """their imaginary parts, with surfaces of 3 `count` dimensions; None where they are left out"""
+    count: int
+
+    @property
+    def stepped(self) -> bool:
+        return self.steps is not None
+
+    def real(self) -> SteppedSection:
+        return replace(self, steps=None)
+
+    def derivatives(self, sites: Sites, v: Array, *orders: tuple[int, int]) -> list[Array]:
+        side, u, v = np.broadcast_arrays(sites.side, sites.u, v)
+        at, height = Sites(side=_one(side, self.count), u=_one(u, self.count)), _one(v, self.count)
+        moving = {(1, 0): u, (0, 1): v} if self.steps is not None else {}
+        moving = {way: np.imag(place)[..., None] for way, place in moving.items() if np.iscomplexobj(place)}
+        wanted = list(orders)
+        wanted += [(du + way[0], dv + way[1]) for du, dv in orders for way in moving]
+        wanted = list(dict.fromkeys(wanted))
+        known = dict(zip(wanted, super().derivatives(at, height, *wanted), strict=True))
+        if self.steps is None:
+            return [_all(known[order], self.count) for order in orders]
+        found = []
+        for (du, dv), steps in zip(orders, self.steps.derivatives(at, height, *orders), strict=True):
+            step = _apart(steps, self.count)
+            for way, size in moving.items():
+                step = step + size * _all(known[du + way[0], dv + way[1]], self.count)
+            found.append(_all(known[du, dv], self.count) + 1j * step)
+        return found
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class SteppedWall(Wall):
+    """The same of a wall."""
+
+    steps: Curve | None
+    """of 2 `count` dimensions"""
+    count: int
+
+    @property
+    def stepped(self) -> bool:
+        return self.steps is not None
+
+    def real(self) -> SteppedWall:
+        return replace(self, steps=None)
+
+    def line(self, t: Array, order: int = 0) -> Array:
+        at = _one(t, self.count)
+        found = _all(super().line(at, order), self.count)
+        if self.steps is None:
+            return found
+        step = _apart(self.steps.derivative(at, order), self.count)
+        if np.iscomplexobj(t):
+            step = step + np.imag(t)[..., None] * _all(super().line(at, order + 1), self.count)
+        return found + 1j * step
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class SteppedTouch(FrozenRecord):
+    """The steps of what a touch gives, with those of all blades side by side in so many dimensions more."""
+
+    touch: Touch
+    """at the sites of all blades"""
+    section: ClosedSection
+    """the steps of the sides"""
+    count: int
+
+    def net(self) -> Array:
+        """Those of the cross-sections' control points (n, k, 3 count)."""
+        return self._steps(self.touch.net())
+
+    def above(self, strip: Strip, w: Array) -> Array:
+        """Those of points of the strip (len(w), k, 3 count)."""
+        return self._steps(self.touch.above(strip, w))
+
+    def start(self, strip: Strip) -> list[Array]:
+        """Those of where the strip starts, and of its derivatives (k, 3 count)."""
+        return [self._steps(each) for each in self.touch.start(strip)]
+
+    def _steps(self, values: Array) -> Array:
+        return _beside(np.imag(values), self.count)
+
+
+def stepped_touches(
+    section: ClosedSection,
+    sections: Sequence[ClosedSection],
+    balls: Sequence[Mapping[str, Ball]],
+    near: Mapping[str, Contacts],
+) -> dict[str, SteppedTouch]:
+    """By the wall, of blades whose real section is given and touched near known contacts."""
+    count = len(sections)
+    steps = _together(sections, section)
+    own = SteppedSection(
+        upper=section.upper, lower=section.lower, smooth=section.smooth, blunt=section.blunt, steps=steps, count=count
+    )
+    found = {}
+    for wall, known in near.items():
+        each = [ball[wall] for ball in balls]
+        first = each[0].wall.real()
+        lines = [np.imag(ball.wall.meridian.control_points) for ball in each]
+        stepped = SteppedWall(
+            meridian=first.meridian,
+            revolved=first.revolved,
+            inward=first.inward,
+            steps=replace(first.meridian, control_points=np.concatenate(lines, axis=-1)),
+            count=count,
+        )
+        one = known.sites
+        sites = Sites(side=np.tile(one.side, count), u=np.tile(one.u, count))
+        sizes = [np.concatenate(parts) for parts in zip(*(ball.sizes(one) for ball in each), strict=True)]
+        touched = contacts(own, stepped, sites, (sizes[0], sizes[1]), each[0].end, known)
+        ball = replace(each[0], wall=stepped)
+        found[wall] = SteppedTouch(touch=Touch(ball=ball, section=own, found=touched), section=steps, count=count)
+    return found
+
+
+def _together(sections: Sequence[ClosedSection], like: ClosedSection) -> ClosedSection:
+    """The steps of sections side by side."""
+
+    def side_by_side(face: int) -> Surface:
+        nets = [np.imag(each.faces[face].control_points) for each in sections]
+        return replace(like.faces[face], control_points=np.concatenate(nets, axis=-1))
+
+    faces = {face: side_by_side(face) for face in like.faces}
+    upper, lower = faces.pop(0), faces.pop(1)
+    return replace(like, upper=upper, lower=lower, blunt=FrozenMapping(faces))
