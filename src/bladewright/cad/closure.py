@@ -18,7 +18,7 @@ from OCP.TopAbs import (
 )
 from OCP.TopExp import TopExp, TopExp_Explorer
 from OCP.TopoDS import TopoDS, TopoDS_Edge, TopoDS_Face, TopoDS_Shape
-from OCP.TopTools import TopTools_IndexedDataMapOfShapeListOfShape
+from OCP.TopTools import TopTools_IndexedDataMapOfShapeListOfShape, TopTools_IndexedMapOfShape
 
 from bladewright.cad.reading import subshapes
 from bladewright.numerics.elementary import Array
@@ -69,7 +69,9 @@ def closure(shape: TopoDS_Shape) -> Closure:
     faces = subshapes(shape, TopAbs_FACE)
     owners = TopTools_IndexedDataMapOfShapeListOfShape()
     TopExp.MapShapesAndAncestors_s(shape, TopAbs_EDGE, TopAbs_FACE, owners)
-    coedges = _coedge_counts(shape)
+    coedges, numbers = _coedge_counts(shape), TopTools_IndexedMapOfShape()
+    for face in faces:
+        numbers.Add(face)
     edges, free, non_manifold = [], 0, 0
     for index in range(1, owners.Extent() + 1):
         edge = TopoDS.Edge_s(owners.FindKey(index))
@@ -84,7 +86,7 @@ def closure(shape: TopoDS_Shape) -> Closure:
         distances = _distances(edge, neighbours)
         edges.append(
             MeasuredEdge(
-                faces=tuple(k for k, face in enumerate(faces) if any(face.IsSame(own) for own in neighbours)),
+                faces=tuple(sorted({numbers.FindIndex(own) - 1 for own in neighbours})),
                 length=properties.Mass(),
                 gap=float(distances.max()),
                 mean_gap=float(distances.mean()),

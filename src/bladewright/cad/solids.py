@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 from OCP.BRep import BRep_Builder
+from OCP.BRepBuilderAPI import BRepBuilderAPI_Copy
 from OCP.BRepCheck import BRepCheck_Analyzer
 from OCP.Geom import Geom_Surface
 from OCP.Geom2d import Geom2d_BSplineCurve, Geom2d_Curve, Geom2d_Line
@@ -29,7 +30,7 @@ from bladewright.cad.default_quadrature import volume_error
 from bladewright.cad.face_pieces import BodyInPieces, in_fine_pieces, in_pieces, whole_name
 from bladewright.cad.native_body import MM, ClosedBody, NativeBody
 from bladewright.cad.topology import BodyEdge, Coedge, DegenerateEdge, Topology, topology
-from bladewright.cad.trimmed_faces import trimmed_face
+from bladewright.cad.trimmed_faces import Known, trimmed_face
 from bladewright.errors import CadError
 from bladewright.nurbs.curve import Curve
 from bladewright.nurbs.surface import Surface
@@ -65,7 +66,8 @@ def solid(built: NativeBody, *, split: bool = False) -> "cadquery.Solid":
     """
     import cadquery  # as slow to import as OpenCASCADE itself, and not needed for files
 
-    return cadquery.Solid((split_occ_solid(built) if split else occ_solid(built)).solid)
+    # a shape of its own, which may be changed without changing what is written of this body later
+    return cadquery.Solid(BRepBuilderAPI_Copy(cached_occ_solid(built, split=split).solid, False).Shape())
 
 
 class _ByIdentity:
@@ -163,6 +165,7 @@ class _SolidBuilder:
             self.builder.MakeVertex(vertex, gp_Pnt(*(point * MM).tolist()), CONFUSION)
         self.edges = [self._edge(edge) for edge in topology.edges]
         self.gaps = [CONFUSION for _ in topology.edges]
+        self.pcurves: Known = {}
 
     def _edge(self, edge: BodyEdge) -> TopoDS_Edge:
         made = TopoDS_Edge()
@@ -200,7 +203,7 @@ class _SolidBuilder:
             for side in range(len(face.curves))
             for index, coedge in self._along(name, side)
         ]
-        shape = trimmed_face(face, [(edge, coedge) for _, edge, coedge in chain])
+        shape = trimmed_face(face, [(edge, coedge) for _, edge, coedge in chain], self.pcurves)
         made = TopoDS_Face()
         self.builder.MakeFace(made, shape.geometry, CONFUSION)
         of_side = [wire for loop in face.loops for wire in [self._wire()] * len(loop)]

@@ -39,10 +39,17 @@ class TrimmedFace:
     """whether the normal of `geometry` is opposite to the native one"""
 
 
-def trimmed_face(face: TrimmedSurface, edges: list[tuple[BodyEdge, Coedge]]) -> TrimmedFace:
-    """The surface of a trimmed face, and the pcurves of its edges, which are given in the order of its curves."""
+Known = dict[object, tuple[Curve, ...]]
+"""Pcurves of faces of revolution, which their turned copies have too."""
+
+
+def trimmed_face(face: TrimmedSurface, edges: list[tuple[BodyEdge, Coedge]], known: Known) -> TrimmedFace:
+    """The surface of a trimmed face, and the pcurves of its edges, which are given in the order of its curves.
+
+    Those of a face of revolution are added to the `known` ones, or taken from there.
+    """
     if face.revolution is not None:
-        return _revolved(face, face.revolution, edges)
+        return _revolved(face, face.revolution, edges, known)
     net = face.surface.control_points
     corner, along, across = net[0, 0], net[-1, 0] - net[0, 0], net[0, -1] - net[0, 0]
     normal = unit(np.cross(along, across))
@@ -66,7 +73,9 @@ def _plane(corner: Array, along: Array, normal: Array, edges: list[tuple[BodyEdg
     return TrimmedFace(geometry=Geom_Plane(frame), pcurves=pcurves, reversed_normal=False)
 
 
-def _revolved(face: TrimmedSurface, revolution: Revolution, edges: list[tuple[BodyEdge, Coedge]]) -> TrimmedFace:
+def _revolved(
+    face: TrimmedSurface, revolution: Revolution, edges: list[tuple[BodyEdge, Coedge]], known: Known
+) -> TrimmedFace:
     """A surface of revolution about -x, about which theta is right-handed.
 
     OpenCASCADE's angle starts half a turn before the middle of the face, so that no pcurve comes near the seam.
@@ -110,9 +119,13 @@ def _revolved(face: TrimmedSurface, revolution: Revolution, edges: list[tuple[Bo
 
         return _interpolated(place, scales, edge.curve, _joints(place, 1, line.knots, line.degree, edge.curve))
 
+    uses = [(coedge.side, coedge.along, coedge.span, edge.curve.knots.tobytes()) for edge, coedge in edges]
+    same = line, face.curves, tuple(uses)
+    if same not in known:
+        known[same] = tuple(pcurve(edge, coedge) for edge, coedge in edges)
     return TrimmedFace(
         geometry=Geom_SurfaceOfRevolution(space_curve(meridian), axis),
-        pcurves=tuple(pcurve(edge, coedge) for edge, coedge in edges),
+        pcurves=known[same],
         reversed_normal=True,
     )
 
