@@ -19,7 +19,7 @@ import numpy as np
 from bladewright.blade.design.row_design import RowDesign
 from bladewright.blade.native.blade import Blade
 from bladewright.blade.native.end_faces import trimmed_ends
-from bladewright.blade.native.finishing import finished
+from bladewright.blade.native.finishing import finished, stepped_finishes
 from bladewright.blade.native.interpolation import InterpolationData, interpolation_data, native_sides, sides_through
 from bladewright.blade.native.knots import Knots
 from bladewright.blade.native.lazy_faces import Face, LazyFaces
@@ -141,10 +141,13 @@ def stepped(design: Design, base: Any, paths: Sequence[str]) -> Iterator[Any]:
         plain, own_moments = base.plain, _SteppedMoments(base)
         own = plain.design.parameters()
         carrying = stepped(plain.design, plain, [path for path in paths if path in own])
-        for path in paths:
-            blade = next(carrying) if path in own else plain
-            made = finished(blade, base.design.changed(path, values[path] + STEP * 1j), base.knots)
-            yield replace(made, moments=partial(own_moments, _rates_of(base, made)))
+        for first in range(0, len(paths), AT_ONCE):
+            chunk = paths[first : first + AT_ONCE]
+            blades = [next(carrying) if path in own else plain for path in chunk]
+            for made in stepped_finishes(
+                base, blades, [base.design.changed(path, values[path] + STEP * 1j) for path in chunk]
+            ):
+                yield replace(made, moments=partial(own_moments, _rates_of(base, made)))
         return
     if not two_sided(base):
         for path in paths:
@@ -260,5 +263,6 @@ def _blade(base: Blade, design: Any, upper: Array, lower: Array) -> Blade:
         like = {name: face for name, face in base.surfaces.items() if isinstance(face, TrimmedSurface)}
         return trimmed_ends(exact, sides[0], sides[1], base.chord, like)
 
-    surfaces = LazyFaces({"upper": sides[0], "lower": sides[1]}, tuple(base.surfaces), ends)
+    own: dict[str, Face] = {"upper": sides[0], "lower": sides[1]}
+    surfaces = LazyFaces(own, tuple(base.surfaces), ends)
     return replace(base, design=design, surfaces=surfaces, exact=exact)

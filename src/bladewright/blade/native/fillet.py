@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, cast
 import numpy as np
 
 from bladewright.blade.native.blade import Blade
-from bladewright.blade.native.closed_section import LOWER, UPPER, SectionSplines
+from bladewright.blade.native.closed_section import FACES, LOWER, UPPER, ClosedSection, SectionSplines
 from bladewright.blade.native.end_faces import EDGES, EndKnots, WallSurface, end_row, end_within, stretch_about
 from bladewright.blade.native.fillet_knots import FilletKnots, chosen_knots, levels
 from bladewright.blade.native.knots import DEGREE, Knots
@@ -32,6 +32,7 @@ from bladewright.nurbs.trimmed import TrimmedSurface
 
 if TYPE_CHECKING:
     from bladewright.blade.design.row_design import RowDesign
+    from bladewright.blade.native.stepped_fillet import SteppedTouch
 
 SIDES = ("upper", "lower")
 REACH = 0.05
@@ -48,25 +49,11 @@ def filleted(blade: Blade, design: RowDesign, knots: Knots | None = None, *, fin
     balls = balls_of(blade, section, design)
     held = knots if isinstance(knots, FilletKnots) else None
     own = chosen_knots(blade, section, balls, fine=fine) if held is None else held
-    around = cast(SectionSplines, own.splines)
-    rolled = Rolled.at(section, balls, around.sites, own.near)
-    faces: dict[str, Surface] = {}
-    for name, side in zip(SIDES, blade.sides, strict=True):
-        faces[name] = reparametrised(piece(side, *levels(own.strips), "v"), 0.0, 1.0, "v")
+    rolled = Rolled.at(section, balls, cast(SectionSplines, own.splines).sites, own.near)
+    faces = cut_sides(section, own)
     outlines = dict(blade.outlines)
     for wall, touch in rolled.touches.items():
-        strip, net = own.strips[wall], np.swapaxes(touch.sections.net(), 0, 1)
-        above = np.swapaxes(touch.above(strip, strip.sites), 0, 1)
-        starts, insides = zip(*map(around.split, touch.start(strip)), strict=True), around.split(above)
-        parts = zip(SIDES, blade.sides, starts, insides, around.split(net), strict=True)
-        for name, side, start, inside, across in parts:
-            rows = strip.net(start, np.swapaxes(inside, 0, 1), strip.side_end(side, around.knots))
-            # one row, to the bit
-            across[:, 0] = rows[0]
-            upwards = wall == "hub"
-            faces[f"{wall}_strip_{name}"] = _face(np.swapaxes(rows, 0, 1), around.knots, strip.knots, upwards=upwards)
-            clamp = np.repeat([0.0, 1.0], across.shape[1])
-            faces[f"{wall}_fillet_{name}"] = _face(across, around.knots, clamp, upwards=not upwards)
+        faces |= around_wall(wall, touch, own)
         upper, lower = (end_row(faces[f"{wall}_fillet_{name}"], -design.ends.index(wall)) for name in SIDES)
         outlines[wall] = (lower, run_back(upper))
 
@@ -102,6 +89,32 @@ def filleted(blade: Blade, design: RowDesign, knots: Knots | None = None, *, fin
         outlines=FrozenMapping(outlines),
         walls=FrozenMapping({**blade.walls, **walls}),
     )
+
+
+def cut_sides(section: ClosedSection, knots: FilletKnots) -> dict[str, Surface]:
+    """What is left of the sides above the strips."""
+    return {
+        FACES[face]: reparametrised(piece(surface, *levels(knots.strips), "v"), 0.0, 1.0, "v")
+        for face, surface in section.faces.items()
+    }
+
+
+def around_wall(wall: str, touch: Touch | SteppedTouch, knots: FilletKnots) -> dict[str, Surface]:
+    """The strips and fillets at a wall."""
+    around, strip, upwards = cast(SectionSplines, knots.splines), knots.strips[wall], wall == "hub"
+    above = np.swapaxes(touch.above(strip, strip.sites), 0, 1)
+    starts, insides = zip(*map(around.split, touch.start(strip)), strict=True), around.split(above)
+    nets = around.split(np.swapaxes(touch.net(), 0, 1))
+    found = {}
+    for (face, side), start, inside, across in zip(touch.section.faces.items(), starts, insides, nets, strict=True):
+        own = around.knots_of[face]
+        rows = strip.net(start, np.swapaxes(inside, 0, 1), strip.side_end(side, own))
+        # one row, to the bit
+        across[:, 0] = rows[0]
+        clamp = np.repeat([0.0, 1.0], across.shape[1])
+        found[f"{wall}_strip_{FACES[face]}"] = _face(np.swapaxes(rows, 0, 1), own, strip.knots, upwards=upwards)
+        found[f"{wall}_fillet_{FACES[face]}"] = _face(across, own, clamp, upwards=not upwards)
+    return found
 
 
 def _face(net: Array, knots_u: Reals, knots_v: Reals, *, upwards: bool) -> Surface:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
@@ -12,6 +13,7 @@ from bladewright.blade.native.end_cut import cut_ends
 from bladewright.blade.native.fillet import filleted
 from bladewright.blade.native.knots import Knots
 from bladewright.blade.native.side_corners import side_corner
+from bladewright.blade.native.stepped_fillet import stepped_blades
 from bladewright.errors import DesignError
 
 if TYPE_CHECKING:
@@ -67,3 +69,15 @@ def finished(plain: Blade, design: RowDesign, knots: Knots | None = None, *, fin
     for finish, own in zip(wanted, held, strict=True):
         blade = finish(blade, design, own, fine=fine)
     return blade
+
+
+def stepped_finishes(base: Blade, plains: Sequence[Blade], designs: Sequence[RowDesign]) -> Iterator[Blade]:
+    """The finished blades of designs, at the knots of `base`, from plain ones that carry a complex step each.
+
+    Where there are but fillets, and no corners, all at once.
+    """
+    if finishes(base.design) == [_filleted] and set(base.plain.edge_kinds) == {"round"}:
+        yield from stepped_blades(base, plains, designs)
+        return
+    for plain, design in zip(plains, designs, strict=True):
+        yield finished(plain, design, base.knots)

@@ -1,25 +1,34 @@
 """Fillets of many blades that carry a complex step each, at once: what differs from blade to blade is side by side.
 
-All of them have one real part. Where a ball touches one of them depends on the sides, the wall and the sizes of the ball
-near one site of one blade only: so sites are those of one blade, as often as there are blades, and what is evaluated is the
-real blade at the sites of one, with the steps of all blades as one surface of so many dimensions more.
+All of them have one real part. Where a ball touches one depends on its sides, its wall and its sizes near one site
+only: so sites are those of one blade, as often as there are blades, and what is evaluated is the real blade at the
+sites of one, and the steps of all as one surface of so many dimensions more.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cache, partial
+from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
-from bladewright.blade.native.closed_section import ClosedSection, Sites
+from bladewright.blade.native.blade import Blade
+from bladewright.blade.native.closed_section import ClosedSection, SectionSplines, Sites
 from bladewright.blade.native.contacts import Contacts, Wall, contacts
-from bladewright.blade.native.rolling_ball import Ball, Touch
+from bladewright.blade.native.fillet import around_wall, cut_sides, filleted
+from bladewright.blade.native.fillet_knots import FilletKnots
+from bladewright.blade.native.lazy_faces import LazyFaces
+from bladewright.blade.native.rolling_ball import Ball, Rolled, Touch, balls_of, closed_section
 from bladewright.blade.native.strip import Strip
 from bladewright.frozen import FrozenMapping, FrozenRecord
 from bladewright.numerics.elementary import Array
 from bladewright.nurbs.curve import Curve
 from bladewright.nurbs.surface import Surface
+
+if TYPE_CHECKING:
+    from bladewright.blade.design.row_design import RowDesign
 
 
 def _one(values: Array, count: int) -> Array:
@@ -172,3 +181,49 @@ def _together(sections: Sequence[ClosedSection], like: ClosedSection) -> ClosedS
     faces = {face: side_by_side(face) for face in like.faces}
     upper, lower = faces.pop(0), faces.pop(1)
     return replace(like, upper=upper, lower=lower, blunt=FrozenMapping(faces))
+
+
+def stepped_blades(base: Blade, blades: Sequence[Blade], designs: Sequence[RowDesign]) -> list[Blade]:
+    """The blades of designs with fillets, each from the blade before it that carries a step.
+
+    `base` is that of the real design, without corners, whose knots are held. Ends are made when one is first used.
+    """
+    count, knots = len(blades), cast(FilletKnots, base.knots)
+    section = closed_section(cast(Blade, base.before))
+    sections = [closed_section(blade) for blade in blades]
+    balls = [balls_of(*each) for each in zip(blades, sections, designs, strict=True)]
+    rolled = Rolled.at(
+        section,
+        balls_of(cast(Blade, base.before), section, base.design),
+        cast(SectionSplines, knots.splines).sites,
+        knots.near,
+    )
+    touches = stepped_touches(section.real(), sections, balls, rolled.found)
+    steps = cut_sides(_together(sections, section), knots)
+    for wall, touch in touches.items():
+        steps |= around_wall(wall, touch, knots)
+    nets = {name: np.split(face.control_points, count, axis=-1) for name, face in steps.items()}
+    found = []
+    for number, (blade, design) in enumerate(zip(blades, designs, strict=True)):
+        faces = {}
+        for name, each in nets.items():
+            face = cast(Surface, base.surfaces[name])
+            faces[name] = replace(face, control_points=face.control_points + 1j * each[number])
+        whole = cache(partial(filleted, blade, design, knots))
+        found.append(
+            replace(
+                base,
+                design=design,
+                surfaces=LazyFaces(faces, tuple(base.surfaces), partial(_of, whole, "surfaces")),
+                exact=blade.exact,
+                before=blade,
+                moments=None,
+                outlines=LazyFaces({}, tuple(base.outlines), partial(_of, whole, "outlines")),
+                walls=LazyFaces({}, tuple(base.walls), partial(_of, whole, "walls")),
+            )
+        )
+    return found
+
+
+def _of(whole: Callable[[], Blade], name: str) -> Mapping[str, Any]:
+    return cast(Mapping[str, Any], getattr(whole(), name))
