@@ -244,8 +244,6 @@ def _reported(
     task.progress("measuring")
     measurement = measured(points, built, task.precision)
     statistics = parameter_estimates(match)
-    inliers = measurement.noise_estimate.inliers
-    distances, faced = np.abs(measurement.deviations), int(np.count_nonzero(measurement.faced))
     return Fit(
         design=match.design,
         built=built,
@@ -255,7 +253,7 @@ def _reported(
         v=measurement.footpoints.v,
         deviations=measurement.deviations,
         regions=measurement.regions,
-        inliers=inliers,
+        inliers=measurement.inliers,
         estimates=statistics.estimates,
         covariance=statistics.covariance,
         rank=statistics.rank,
@@ -263,8 +261,8 @@ def _reported(
         noise=measurement.noise_estimate.noise,
         extrema=extrema_of(built),
         tolerance=target.tolerance,
-        failures=failures_of(distances, inliers, measurement.regions, match, target, faced=faced),
-        notes=notes_of(notes, statistics, distances, inliers, match, target, faced=faced),
+        failures=failures_of(measurement, statistics, match, target),
+        notes=notes_of(notes, measurement, statistics, match, target),
         evaluations=match.evaluations,
         motion=motion,
         interrupted=match.interrupted,

@@ -38,6 +38,21 @@ class Measurement:
     faced: NDArray[np.bool_]
     """(n,) whether an outlier lies on an end face, as the points of a solid's faces do"""
 
+    @property
+    def distances(self) -> Reals:
+        """(n,) true distances [m]."""
+        return np.sqrt(self.deviations**2)
+
+    @property
+    def inliers(self) -> NDArray[np.bool_]:
+        """(n,) whether a point takes part; the others are outliers."""
+        return self.noise_estimate.inliers
+
+    @property
+    def dimension(self) -> int:
+        """2 for points of a section, 3 for those of a blade."""
+        return int(self.footpoints.points.shape[1])
+
 
 def measured(points: Reals, built: Blade | Section, precision: Reals | None = None) -> Measurement:
     """Every point's nearest place and signed distance on a blade or section.
