@@ -48,8 +48,9 @@ def line(design, plain, plain_time: float, wall: str, share: float, folder: Path
     if share in PROVEN:
         what = "proven" if cad.write(blade, folder / "blade.step").passed else "NOT PROVEN"
     added = (blade.properties.volume - plain.properties.volume) * 1e9
-    poles = " x ".join(map(str, blade.knots.poles))
-    return f"{head}| {what} | {poles} poles | {seconds - plain_time:.2f} | {added:.5g} |"
+    nets = [blade.surfaces[name].control_points for name in ("upper", f"{wall}_strip_upper", f"{wall}_fillet_upper")]
+    poles = ", ".join(f"{len(net)} x {len(net[0])}" for net in nets)
+    return f"{head}| {what} | {poles} | {seconds - plain_time:.2f} | {added:.5g} |"
 
 
 def main(names: list[str]) -> None:
@@ -83,7 +84,7 @@ def main(names: list[str]) -> None:
             "beside ours in kernel_fillets.md."
         ),
         "",
-        "| example | wall | % of the chord | radius | | | seconds added | volume added [mm^3] |",
+        "| example | wall | % of the chord | radius | | poles of side, strip and fillet | s added | mm^3 added |",
         "|---|---|---|---|---|---|---|---|",
         *rows,
     ]
