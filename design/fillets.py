@@ -60,6 +60,7 @@ def main(names: list[str]) -> None:
             design = bw.read_design(path) if path.name.endswith(".toml") else None
             if design is None or design.dimension != 3 or (names and design.name not in names):
                 continue
+            design = design.changed({"hub_fillet": None, "shroud_fillet": None})
             start = time.process_time()
             plain = design.build()
             plain_time = time.process_time() - start

@@ -14,6 +14,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import BSpline
+from scipy.sparse import csc_array, csr_array
+from scipy.sparse.linalg import splu
 
 from bladewright.blade.native.knots import DEGREE
 from bladewright.frozen import FrozenMapping, FrozenRecord
@@ -237,12 +239,12 @@ class SectionSplines(FrozenRecord):
         own = {face: (knots, greville(knots, DEGREE)) for face, knots in self.knots_of.items()}
         total, first = len(self.sites), 0
         for (knots, parts, closed), places in zip(self._lines, self._places, strict=True):
-            to_line = np.linalg.inv(_matrix(knots, places, closed=closed))
+            to_line = _solved(_matrix(knots, places, closed=closed), np.eye(len(places)))
             for face, start, direction in parts:
                 mine, at = own[face]
                 net = np.zeros((len(at), total))
-                to_face = np.linalg.inv(basis(mine, DEGREE, at)) @ _matrix(knots, start + direction * at, closed=closed)
-                net[:, first : first + len(places)] = to_face @ to_line
+                values = csr_array(_matrix(knots, start + direction * at, closed=closed)) @ to_line
+                net[:, first : first + len(places)] = _solved(basis(mine, DEGREE, at), values)
                 found[face] = net
             first += len(places)
         for row, smooth in zip((0, -1), self.smooth, strict=True):
@@ -254,6 +256,11 @@ class SectionSplines(FrozenRecord):
     def split(self, values: Array) -> tuple[Array, ...]:
         """Control points (n, ...) of each face from values (k, ...) at the sites."""
         return tuple(np.tensordot(net, values, axes=1) for net in self.nets)
+
+
+def _solved(matrix: Reals, right: Reals) -> Reals:
+    """x (n, k) with A x = right, for a matrix of basis functions, of which few are not zero at a place."""
+    return np.asarray(splu(csc_array(matrix)).solve(right))
 
 
 def _tiled(knots: Reals) -> Reals:
