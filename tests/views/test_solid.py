@@ -1,13 +1,21 @@
 """The view in space: the blade where it stands, its neighbours and the hub."""
 
+from dataclasses import replace
+from itertools import combinations
 from types import SimpleNamespace
 from typing import NamedTuple
 
 import numpy as np
 import pytest
+from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
+from matplotlib.text import Text
 
+from bladewright.files.changing import changed_design
+from bladewright.files.examples import example_text
+from bladewright.files.reading import parsed
 from bladewright.views.solid import draw_solid, positions, viewpoint
+from machines import COARSE
 
 
 @pytest.fixture
@@ -97,3 +105,16 @@ def test_the_viewer_looks_at_the_smaller_end_of_the_hub(hub, upstream):
 def test_the_viewer_looks_at_a_disc_from_the_side_of_its_blades(side):
     walls = Walls([(0, 50), (0, 90)], [(side, 50), (side, 90)])
     assert np.sign(viewpoint(SimpleNamespace(exact=walls))[2][0]) == np.sign(side)
+
+
+@pytest.mark.parametrize("name", ["marine-propeller", "propeller"])
+def test_the_names_of_rotation_flow_and_suction_side_lie_apart(name):
+    changes = {"tolerance": COARSE, **({"hub_fillet": None} if name == "marine-propeller" else {})}
+    design = replace(changed_design(parsed(example_text(name), name), name, {}), **changes)
+    figure = Figure(figsize=(4.5, 5.0))
+    draw_solid(figure.add_subplot(), design.build(), neighbours=1, width=100)
+    FigureCanvasAgg(figure).draw()
+    words = [each for each in figure.axes[0].texts if each.get_text() in {"rotation", "flow", "suction\nside"}]
+    assert len(words) == 3
+    boxes = [Text.get_window_extent(each) for each in words]
+    assert not any(one.overlaps(other) for one, other in combinations(boxes, 2))

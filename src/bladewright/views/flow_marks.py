@@ -25,6 +25,18 @@ TURN = 0.35
 """Angle of the arrow of the rotation [rad], or its part of the chord in a cascade: seen as a bow, not as a circle."""
 MARKED_AT = ((0.4, 0.5), (0.6, 0.6), (0.25, 0.4), (0.7, 0.35), (0.15, 0.75))
 """Places (u, v) of a side that are tried for its mark, from its middle on."""
+POINT = 1.0 / 300.0
+"""About how much of a picture's longer side a typographic point is: one in space is some 300 points wide."""
+NAMED_AT, MARK_AT = 9.0, 38.0
+"""Distances of an arrow's name from its start, and of the name of a side from its place, in points."""
+DIRECTIONS = np.linspace(0.0, 2.0 * np.pi, 16, endpoint=False)
+"""Directions in which the name of a side is tried [rad]."""
+SHARES = np.linspace(0.0, 1.0, 5)
+"""Places between a mark and its name that are to be clear of other names."""
+FACING = 0.2
+"""Cosine of the angle between a side and the view from which on its place is seen well enough for a mark."""
+WIDER = 2.0
+"""How much wider than high names are: so much further apart they must be beside each other than above."""
 HALO = [withStroke(linewidth=3.0, foreground="white", alpha=0.8)]
 
 
@@ -34,7 +46,7 @@ def draw_marks(axes: Axes, blade: "Blade", camera: Camera) -> None:
     ends = np.real(stations.lines.position(np.array([0.0, 1.0])))
     tip, _ = _edge(blade, 1.0, ends[1])
     start, upstream = _edge(blade, 0.5, ends[0])
-    size = min(REACH * blade.chord, MOST_OF_PICTURE * float(np.max(camera.extent)) / per_metre())
+    size = min(REACH * blade.chord, MOST_OF_PICTURE * _extent(camera) / per_metre())
     arrows = [("flow", BLUE, np.stack([start + 1.4 * size * upstream, start + 0.4 * size * upstream]))]
     turns = blade.design.turns
     if turns:
@@ -45,12 +57,18 @@ def draw_marks(axes: Axes, blade: "Blade", camera: Camera) -> None:
         _arrow(axes, points, colour, name)
     side = blade.suction_side
     if side is not None:
-        _mark_side(axes, blade, camera, side, clear_of=np.mean([points[0] for points in flat], axis=0))
+        names = [points[0] + POINT * NAMED_AT * _extent(camera) * unit(points[0] - points[-1]) for points in flat]
+        _mark_side(axes, blade, camera, side, taken=np.concatenate([*flat, names]))
+
+
+def _extent(camera: Camera) -> float:
+    """The picture's longer side."""
+    return float(np.max(camera.extent))
 
 
 def _make_room(axes: Axes, camera: Camera, points: Reals) -> None:
     """Widen the picture until it holds points (n, 2) and a name beside them."""
-    margin = NAME_ROOM * float(np.max(camera.extent))
+    margin = NAME_ROOM * _extent(camera)
     (left, right), (low, high) = axes.get_xlim(), axes.get_ylim()
     first, last = points.min(axis=0) - margin, points.max(axis=0) + margin
     axes.set_xlim(min(left, float(first[0])), max(right, float(last[0])))
@@ -81,27 +99,42 @@ def _arrow(axes: Axes, flat: Reals, colour: str, name: str) -> None:
     axes.plot(*flat.T, color=colour, linewidth=1.8, path_effects=HALO, clip_on=False)
     head: dict[str, Any] = {"arrowstyle": "-|>", "color": colour, "linewidth": 1.8, "mutation_scale": 14.0}
     axes.annotate("", tuple(flat[-1]), xytext=tuple(flat[-2]), arrowprops={**head, "shrinkA": 0.0, "shrinkB": 0.0})
-    away = 9.0 * unit(flat[0] - flat[-1])
+    away = NAMED_AT * unit(flat[0] - flat[-1])
     place: dict[str, Any] = {"textcoords": "offset points", "ha": "center", "va": "center", "path_effects": HALO}
     axes.annotate(name, tuple(flat[0]), xytext=tuple(away), color=colour, **place)
 
 
-def _mark_side(axes: Axes, blade: "Blade", camera: Camera, side: str, *, clear_of: Reals) -> None:
-    """Name a side from a place on it, away from another name."""
-    face = cast(Surface, blade.surfaces[side])
+def _mark_side(axes: Axes, blade: "Blade", camera: Camera, side: str, *, taken: Reals) -> None:
+    """Name a side from a place on it, as far as can be from places (n, 2) of the picture that are taken."""
+    face, tried = cast(Surface, blade.surfaces[side]), []
     for u, v in MARKED_AT:
         at = np.array([u]), np.array([v])
         outwards = blade.orientations[side] * np.real(face.normal(*at))[0]
-        if float(outwards @ camera.axes[2]) > 0.2:
+        if float(outwards @ camera.axes[2]) > FACING:
             flat = camera.seen(np.real(face(*at))[0] * per_metre())[:2]
-            away = 38.0 * unit(flat - clear_of)
-            style: dict[str, Any] = {
-                "textcoords": "offset points",
-                "ha": "center",
-                "va": "center",
-                "path_effects": HALO,
-            }
-            line = {"arrowstyle": "-", "color": INK, "linewidth": 0.9, "shrinkA": 0.0, "shrinkB": 0.0}
-            axes.annotate("suction\nside", (flat[0], flat[1]), xytext=(away[0], away[1]), arrowprops=line, **style)
-            axes.plot(*flat, marker="o", markersize=3.0, color=INK)
-            return
+            tried.append((*_clearest(axes, flat, POINT * MARK_AT * _extent(camera), taken), flat))
+    if not tried:
+        return
+    # the first has the best place on the side: others may lie behind a neighbour
+    enough = NAME_ROOM * _extent(camera)
+    _, way, flat = next((each for each in tried if each[0] > enough), max(tried, key=lambda each: each[0]))
+    style: dict[str, Any] = {"textcoords": "offset points", "ha": "center", "va": "center", "path_effects": HALO}
+    line = {"arrowstyle": "-", "color": INK, "linewidth": 0.9, "shrinkA": 0.0, "shrinkB": 0.0}
+    away = MARK_AT * way
+    axes.annotate("suction\nside", (flat[0], flat[1]), xytext=(away[0], away[1]), arrowprops=line, **style)
+    axes.plot(*flat, marker="o", markersize=3.0, color=INK)
+
+
+def _clearest(axes: Axes, start: Reals, reach: float, taken: Reals) -> tuple[float, Reals]:
+    """How far a name at a distance from a place keeps from what is taken at best, and in which direction (2,).
+
+    Names past the edge of the picture come last.
+    """
+    ways = np.stack([np.cos(DIRECTIONS), np.sin(DIRECTIONS)], axis=-1)
+    lines = start + reach * ways[:, None] * SHARES[:, None]
+    gaps = np.min(length((lines[:, :, None] - taken) / np.array([WIDER, 1.0])), axis=(1, 2))
+    (left, right), (low, high) = axes.get_xlim(), axes.get_ylim()
+    inside = (lines[:, -1] > [left, low]) & (lines[:, -1] < [right, high])
+    gaps = np.where(inside.all(axis=1), gaps, gaps - (right - left + high - low))
+    best = int(np.argmax(gaps))
+    return float(gaps[best]), ways[best]
