@@ -142,8 +142,8 @@ OTHER_SHAPE_RATIO = 2.0
 """Another shape is tried too where its nearest sample is at most this many times further away than the nearest of all:
 the samples are only about so exact."""
 JOINT_BAND = 0.02
-"""Distance from the ends of u, of its domain, within which a place on one shape may be nearer on another one that it
-joins there. Wider bands cost descents that change nothing."""
+"""Distance from the last u, of the domain, within which a place on one of two shapes may be nearer on the other. Wider
+bands cost descents that change nothing."""
 AT_ONCE = 20_000
 """Descents at a time; it bounds the memory, not the result."""
 
@@ -163,24 +163,41 @@ class Places:
 
 @dataclass(frozen=True, eq=False)
 class Descents:
-    """Searches for the nearest places on curves or surfaces, of real parts, that end at local minima of the distance.
+    """Searches for the nearest places on a curve or surface, or on two, that end at local minima of the distance.
 
-    Several shapes join where u begins and ends, as the sides of a blade do at its edges.
+    Two shapes join at u = 0 and may join at u = 1, as the sides of a blade do at its edges: descents cross from one to
+    the other. Complex shapes count by their real parts.
     """
 
     shapes: tuple[Curve | Surface, ...]
 
     @cached_property
-    def patches(self) -> tuple[Patches, ...]:
-        """The Bezier patches of each shape."""
-        return tuple(patches(shape) for shape in self.shapes)
+    def patches(self) -> Patches:
+        """The Bezier patches of one shape, or of two in a row.
+
+        Of two, u runs from -1 along the second shape, backwards, to 0 and on to 1 along the first.
+        """
+        first, *more = (patches(shape) for shape in self.shapes)
+        for second in more:
+            rows, columns = second.shape
+            order, mirror = np.arange(rows * columns).reshape(rows, columns)[::-1].ravel(), np.array([-1.0, 1.0])
+            ends = np.where(mirror < 0.0, second.high, second.low), np.where(mirror < 0.0, second.low, second.high)
+            return Patches(
+                nets=np.concatenate([second.nets[order, ::-1], first.nets]),
+                low=np.concatenate([(mirror * ends[0])[order], first.low]),
+                high=np.concatenate([(mirror * ends[1])[order], first.high]),
+                shape=(rows + first.shape[0], columns),
+                rational=second.rational or first.rational,
+            )
+        return first
 
     @cached_property
-    def samples(self) -> tuple[tuple[Samples, cKDTree], ...]:
-        """Samples of each shape, and their search tree."""
-        counts = [SAMPLES[1 + (on.degrees[1] > 0)] for on in self.patches]
-        found = [sampled(on, *count) for on, count in zip(self.patches, counts, strict=True)]
-        return tuple((each, cKDTree(each.points)) for each in found)
+    def samples(self) -> tuple[Samples, tuple[tuple[NDArray[np.intp], cKDTree], ...]]:
+        """Samples of all patches, and for each shape the indices of its own, with their search tree."""
+        found = sampled(self.patches, *SAMPLES[1 + (self.patches.degrees[1] > 0)])
+        second = (len(self.shapes) > 1) & (self.patches.low[found.patch, 0] < 0.0)
+        own = [np.flatnonzero(second == k) for k in range(len(self.shapes))]
+        return found, tuple((rows, cKDTree(found.points[rows])) for rows in own)
 
     def nearest(self, points: Reals, start: Places | None = None, *, converged: float = CONVERGED) -> Places:
         """The nearest places of points (n, d): from the nearest samples, or from a `start` (n,).
@@ -188,46 +205,43 @@ class Descents:
         `converged` is the last step in the parameters of a patch: distances of points off a shape are exact to its
         square, those of points on it to itself.
         """
-        count = len(points)
-        best = Places(
-            shape=np.zeros(count, dtype=np.intp), u=np.zeros(count), v=np.zeros(count), square=np.full(count, np.inf)
-        )
+        two = len(self.shapes) > 1
         if start is None:
-            queries = [tree.query(points) for _, tree in self.samples]
+            samples, trees = self.samples
+            queries = [tree.query(points) for _, tree in trees]
             least = np.min([distance for distance, _ in queries], axis=0)
-            for k, ((distance, index), (samples, _)) in enumerate(zip(queries, self.samples, strict=True)):
-                rows = np.flatnonzero(distance <= OTHER_SHAPE_RATIO * least)
-                self._descend(best, points, k, rows, samples.patch[index[rows]], samples.local[index[rows]], converged)
+            rows = [np.flatnonzero(distance <= OTHER_SHAPE_RATIO * least) for distance, _ in queries]
+            chosen = np.concatenate(
+                [own[index[some]] for (own, _), (_, index), some in zip(trees, queries, rows, strict=True)]
+            )
+            every = np.concatenate(rows)
+            square, u, v = self._descended(points, every, samples.patch[chosen], samples.local[chosen], converged)
+            around = np.where(u < 0.0, -u, u)
         else:
-            for k, on in enumerate(self.patches):
-                rows = np.flatnonzero(start.shape == k)
-                self._descend(best, points, k, rows, *on.at(start.u[rows], start.v[rows]), converged)
-        for k, on in enumerate(self.patches if len(self.shapes) > 1 else ()):
-            band = JOINT_BAND * (on.high[-1, 0] - on.low[0, 0])
-            joint = (best.u <= on.low[0, 0] + band) | (best.u >= on.high[-1, 0] - band)
-            rows = np.flatnonzero(joint & (best.shape != k))
-            self._descend(best, points, k, rows, *on.at(best.u[rows], best.v[rows]), converged)
-        return best
+            every, around = np.arange(len(points)), start.u
+            u, v, square = np.where(start.shape > 0, -start.u, start.u), start.v, np.empty(0)
+        edge = np.flatnonzero((around > 1.0 - JOINT_BAND) & two)
+        if start is None:
+            more = self._descended(points, every[edge], *self.patches.at(-u[edge], v[edge]), converged)
+            square, u, v = (np.concatenate(pair) for pair in zip((square, u, v), more, strict=True))
+            every = np.append(every, every[edge])
+        else:
+            every, at = np.append(every, edge), (np.append(u, -u[edge]), np.append(v, v[edge]))
+            square, u, v = self._descended(points, every, *self.patches.at(*at), converged)
+        order = np.lexsort((square, every))
+        best = order[np.searchsorted(every[order], np.arange(len(points)))]
+        u, shape = u[best], ((u[best] < 0.0) & two).astype(np.intp)
+        return Places(shape=shape, u=np.where(shape > 0, -u, u), v=v[best], square=square[best])
 
-    def _descend(
-        self,
-        best: Places,
-        points: Reals,
-        k: int,
-        rows: NDArray[np.intp],
-        patch: NDArray[np.intp],
-        local: Reals,
-        converged: float,
-    ) -> None:
-        """Descends on a shape from places of some points, and keeps what is nearer than the best."""
-        on = self.patches[k]
+    def _descended(
+        self, points: Reals, rows: NDArray[np.intp], patch: NDArray[np.intp], local: Reals, converged: float
+    ) -> tuple[Reals, Reals, Reals]:
+        """Squared distances (m,) of the points in `rows` (m,), and both parameters, where descents end."""
+        square, place = np.empty(len(rows)), np.empty((len(rows), 2))
         for first in range(0, len(rows), AT_ONCE):
             part = slice(first, first + AT_ONCE)
-            where = rows[part]
-            found = polished(on, points[where], patch[part], local[part], converged=converged)
-            nearer = found.square < best.square[where]
-            low, high = on.low[found.patch], on.high[found.patch]
-            place = np.where(found.local >= 1.0, high, low + found.local * (high - low))[nearer]
-            where = where[nearer]
-            best.shape[where], best.square[where] = k, found.square[nearer]
-            best.u[where], best.v[where] = place[:, 0], place[:, 1]
+            found = polished(self.patches, points[rows[part]], patch[part], local[part], converged=converged)
+            low, high = self.patches.low[found.patch], self.patches.high[found.patch]
+            place[part] = np.where(found.local >= 1.0, high, low + found.local * (high - low))
+            square[part] = found.square
+        return square, place[:, 0], place[:, 1]

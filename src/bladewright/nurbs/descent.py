@@ -121,40 +121,39 @@ def descended(
     start: Reals,
     ends: tuple[float, float],
     *,
-    widths: Callable[[Reals], Reals] = np.ones_like,
     converged: float = CONVERGED,
 ) -> tuple[Reals, Reals]:
     """Parameters (m,) where descents on a curve from a start (m,) end, and squared distances (m,) there.
 
-    `derivatives` gives the curve's points and first and second derivatives (m, d), `widths` the lengths (m,) that a
-    step and its end are measured in. A step that raises the distance is shortened.
+    `derivatives` gives the curve's points and first and second derivatives (m, d), by parameters over units (m,) that
+    it may give too; steps are measured in these. A step that raises the distance is shortened.
     """
 
-    def model(at: Reals, targets: Reals) -> tuple[Reals, Reals]:
-        value, first, second = derivatives(at)
+    def model(at: Reals, targets: Reals) -> tuple[Reals, Reals, Reals]:
+        value, first, second, *widths = derivatives(at)
+        width = widths[0] if widths else np.ones(len(at))
         miss = value - targets
         speed = np.einsum("md,md->m", first, first)
         bend = speed + np.einsum("md,md->m", miss, second)
         # where the distance is not convex, the Gauss-Newton second derivative still descends
         bend = np.where(bend > 0.0, bend, np.where(speed > 0.0, speed, 1.0))
-        longest = LONGEST_STEP * widths(at)
-        step = np.clip(-np.einsum("md,md->m", miss, first) / bend, -longest, longest)
-        return np.einsum("md,md->m", miss, miss), step
+        step = np.clip(-np.einsum("md,md->m", miss, first) / bend, -LONGEST_STEP, LONGEST_STEP)
+        return np.einsum("md,md->m", miss, miss), step * width, width
 
     u = np.clip(start, *ends)
-    square, step = model(u, queries)
+    square, step, width = model(u, queries)
     active = np.arange(len(u))
     for _ in range(CURVE_STEPS):
         trial = np.clip(u[active] + step[active], *ends)
-        far = (trial - u[active]) ** 2 > (converged * widths(u[active])) ** 2
+        far = (trial - u[active]) ** 2 > (converged * width[active]) ** 2
         active, trial = active[far], trial[far]
         if len(active) == 0:
             break
-        new_square, new_step = model(trial, queries[active])
-        better = new_square <= square[active] * (1.0 + NOISE)
+        new = model(trial, queries[active])
+        better = new[0] <= square[active] * (1.0 + NOISE)
         step[active[~better]] *= 0.25
         taken = active[better]
-        u[taken], square[taken], step[taken] = trial[better], new_square[better], new_step[better]
+        u[taken], square[taken], step[taken], width[taken] = (each[better] for each in (trial, *new))
     return u, square
 
 
@@ -167,23 +166,19 @@ def _polished_on_curve(
     low = on.low[:, 0]
     width = on.high[:, 0] - low
 
-    def piece(at: Reals) -> NDArray[np.intp]:
-        return np.clip(np.searchsorted(low, at, side="right") - 1, 0, len(low) - 1)
-
-    def derivatives(at: Reals) -> tuple[Reals, Reals, Reals]:
-        where = piece(at)
-        size = width[where][:, None]
-        t = (at - low[where])[:, None] / size
-        of = coefficients[:, where]
+    def derivatives(at: Reals) -> tuple[Reals, Reals, Reals, Reals]:
+        piece = np.clip(np.searchsorted(low, at, side="right") - 1, 0, len(low) - 1)
+        t = ((at - low[piece]) / width[piece])[:, None]
+        of = coefficients[:, piece]
         value, first, second = of[degree], np.zeros_like(of[0]), np.zeros_like(of[0])
         for row in of[degree - 1 :: -1] if degree else ():
             second = second * t + first
             first = first * t + value
             value = value * t + row
-        return value, first / size, 2.0 * second / size**2
+        return value, first, 2.0 * second, width[piece]
 
-    start, ends = low[patch] + local[:, 0] * width[patch], (low[0], on.high[-1, 0])
-    u, square = descended(derivatives, queries, start, ends, widths=lambda at: width[piece(at)], converged=converged)
+    start = low[patch] + local[:, 0] * width[patch]
+    u, square = descended(derivatives, queries, start, (low[0], on.high[-1, 0]), converged=converged)
     patch, local = on.at(u, np.zeros(len(u)))
     return PatchPoints(patch=patch, local=local, square=square)
 
