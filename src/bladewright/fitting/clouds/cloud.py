@@ -5,6 +5,7 @@ from numpy.typing import ArrayLike
 
 from bladewright.errors import FitError
 from bladewright.fitting.clouds.repetition import repetition
+from bladewright.fitting.clouds.thinning import random_subset
 from bladewright.nurbs.basis import Reals
 
 ROUNDED_DIGITS = 1e-8
@@ -22,6 +23,8 @@ def is_rounded(points: Reals) -> bool:
     return bool(np.all(np.abs(np.round(some, finest) - some) < 1e-4 * ROUNDED_DIGITS * extent))
 
 
+CHECKED_POINTS = 20_000
+"""points that are looked at, at random; it bounds the time."""
 FEWEST_POINTS = {2: 24, 3: 100}
 """points that a fit of a section and of a blade needs, by dimension; fewer leave most parameters undetermined."""
 FLATTEST = 1e-5
@@ -42,7 +45,7 @@ def checked_cloud(cloud: ArrayLike) -> tuple[Reals, tuple[str, ...]]:
     space), points on one line or one plane, two blades, and one side of a blade only.
     """
     points = _numbers(cloud)
-    different = np.unique(points, axis=0)
+    different = np.unique(points[random_subset(len(points), CHECKED_POINTS)], axis=0)
     dimension = points.shape[1]
     if len(different) < FEWEST_POINTS[dimension]:
         raise FitError(
