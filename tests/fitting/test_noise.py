@@ -91,3 +91,15 @@ def test_few_points_on_a_side_do_not_stop_it():
         on = np.where(np.arange(12) < count, 1, 0)
         assert np.isfinite(scattered(on, u, v, points, normals, heights).noise)
     assert side.sum() == 6
+
+
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_of_more_points_than_are_compared_the_others_are_judged_by_those_beside_them(dimension):
+    parts = made(3, count=60_000, misfit=20.0 * NOISE, dimension=dimension)
+    inner = np.flatnonzero(np.abs(parts[1] - 0.5) < 0.4)
+    wrong = inner[::40]
+    parts[-1][wrong] += 200.0 * NOISE
+    found = scattered(*parts)
+    assert not found.inliers[wrong].any()
+    assert np.count_nonzero(~found.inliers) <= len(wrong) + 6
+    assert found.noise == pytest.approx(NOISE, rel=0.1)

@@ -25,7 +25,7 @@ from bladewright.fitting.families.kinds import FAMILIES, FitFamily, family_of
 from bladewright.fitting.families.sections import matched_section
 from bladewright.fitting.families.unified import matched_unified
 from bladewright.fitting.free_parameters import free_parameters_of
-from bladewright.fitting.matching.search import Match, Task
+from bladewright.fitting.matching.search import COARSEST_TOLERANCE, Match, Task
 from bladewright.fitting.model_selection.stopping import MatchTarget
 from bladewright.fitting.registration.axes import axis_motion, found_axes
 from bladewright.fitting.registration.registration import registration
@@ -50,6 +50,11 @@ CASCADE_NOTE = (
     "stands around x needs the arrangement annular"
 )
 """note where a cloud without a start was taken for a blade of a linear cascade"""
+INTERRUPTED_NOTE = (
+    f"the search was interrupted, so the design's tolerance is at least {COARSEST_TOLERANCE:g} of the chord, which "
+    "builds in a moment: lower it for finer surfaces"
+)
+"""note on a blade that a search had found when it was interrupted"""
 WHOLE_BLADE_HINT = "is it one whole blade, with both sides and both edges? If so, give a start design or bounds"
 """what to check where no design was found"""
 Progress = Callable[[str], None]
@@ -139,7 +144,7 @@ def fit(
         nearest = task.best_so_far.built()
         if nearest is None:
             raise
-        found, built, reason = replace(nearest[0], interrupted=True), nearest[1], ""
+        found, built, reason = *nearest, INTERRUPTED_NOTE if points.shape[1] == 3 else ""
     except DesignError as error:
         raise FitError(f"no design of the family was found near the points ({error}): {WHOLE_BLADE_HINT}") from error
     if (

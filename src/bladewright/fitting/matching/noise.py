@@ -15,7 +15,6 @@ from bladewright.fitting.matching.outliers import ALWAYS_INLIER, OUTLYING_NOISE,
 from bladewright.numerics.robust import median_deviation
 from bladewright.nurbs.basis import Reals
 
-
 COMPARED_POINTS = 20_000
 """points that are compared with their neighbours; it bounds the time, and their noise is known to half a percent."""
 

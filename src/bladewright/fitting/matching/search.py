@@ -43,10 +43,17 @@ class BestSoFar:
             del self.found[KEPT_DESIGNS:]
 
     def built(self) -> tuple[Any, Any] | None:
-        """The nearest design that can be built, and what it builds; None where there is none."""
+        """The match of the nearest design that can be built, and what it builds; None where there is none.
+
+        Blades are built no finer than searches build them: nobody who interrupts waits for more.
+        """
         for _, found in self.found:
+            tolerance = getattr(found.design, "tolerance", None)
+            coarse = found.design.changed(
+                {} if tolerance is None else {"tolerance": max(tolerance, COARSEST_TOLERANCE)}
+            )
             try:
-                return found, found.design.build()
+                return replace(found, design=coarse, interrupted=True), coarse.build()
             except DesignError:
                 continue
         return None
@@ -180,13 +187,14 @@ def searched(
 
     `noise` is the first round's, of the chord; None takes the misfit of the start. `min_reduction` is the relative
     reduction of the cost that a step must predict, `enough` the misfit, of the chord, below which the search ends.
-    Raises FitError where the start has no shape.
+    Raises FitError where the start has no shape, and KeyboardInterrupt after it has noted the best design of a round
+    that was interrupted.
     """
     found, rounds_without_gain = _prepared_round(task, start, start, noise), 0
     task.best_so_far.note(found)
     for number in range(rounds):
         before = found.misfit
-        if (number and before < enough) or found.interrupted:
+        if number and before < enough:
             break
         try:
             found = _descended_round(
@@ -196,6 +204,8 @@ def searched(
             # at finer knots the design has no shape: the round before stands
             break
         task.best_so_far.note(found)
+        if found.interrupted:
+            raise KeyboardInterrupt
         rms = f"{1e3 * found.rms * found.model.chord:.3g} mm rms, {1e3 * found.maximum:.3g} mm at most"
         task.progress(f"{len(found.problem.paths)} parameters, {rms}")
         ratio = found.misfit / before
