@@ -26,6 +26,9 @@ PCURVE_TOLERANCE = 1e-10
 """Largest interpolation error of a trimming curve, as a fraction of the edge's extent. It adds to the distance of the
 edge from its wall, of which 1e-7 of the chord is allowed, and is far below it."""
 
+SPAN_DIGITS = 6
+"""Digits to which ends of an edge on the boundary of a face and of its turned copy agree: each is found by search."""
+
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class TrimmedFace:
@@ -39,7 +42,7 @@ class TrimmedFace:
     """whether the normal of `geometry` is opposite to the native one"""
 
 
-Known = dict[object, tuple[Curve, ...]]
+Known = dict[object, Curve]
 """Pcurves of faces of revolution, which their turned copies have too."""
 
 
@@ -119,13 +122,17 @@ def _revolved(
 
         return _interpolated(place, scales, edge.curve, _joints(place, 1, line.knots, line.degree, edge.curve))
 
-    uses = [(coedge.side, coedge.along, coedge.span, edge.curve.knots.tobytes()) for edge, coedge in edges]
-    same = line, face.curves, tuple(uses)
-    if same not in known:
-        known[same] = tuple(pcurve(edge, coedge) for edge, coedge in edges)
+    def known_pcurve(edge: BodyEdge, coedge: Coedge) -> Curve:
+        # the span tells which turn the angles belong to, and is found anew for every copy
+        span, knots = np.round(coedge.span, SPAN_DIGITS).tobytes(), edge.curve.knots.tobytes()
+        same = line, face.curves, coedge.side, coedge.along, span, knots
+        if same not in known:
+            known[same] = pcurve(edge, coedge)
+        return known[same]
+
     return TrimmedFace(
         geometry=Geom_SurfaceOfRevolution(space_curve(meridian), axis),
-        pcurves=known[same],
+        pcurves=tuple(known_pcurve(edge, coedge) for edge, coedge in edges),
         reversed_normal=True,
     )
 
