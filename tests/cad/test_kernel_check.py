@@ -41,6 +41,13 @@ def test_another_blade_may_be_further_off_and_the_round_trip_says_so(tmp_path):
     assert "InvalidCurveOnSurface (4): build --fine" in str(trip)
 
 
+def test_a_brep_file_holds_the_true_tolerance_of_its_edges_and_passes_as_it_is(tmp_path):
+    blade = built(dataclasses.replace(unified.INFLOW, tolerance=COARSE))
+    trip = cad.write(blade, tmp_path / "blade.brep", samples=400)
+    assert 1e-7 < trip.edges.max_gap < trip.edges.max_tolerance
+    assert trip.kernel_faults == ()
+
+
 def test_fine_is_a_choice_of_knots_alone(fine):
     design = dataclasses.replace(unified.INFLOW, tolerance=COARSE)
     assert fine.knots.poles[0] > built(design).knots.poles[0]
