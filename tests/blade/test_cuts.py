@@ -6,6 +6,7 @@ import pytest
 import bladewright as bw
 from bladewright import cad
 from bladewright.blade.design.cut import AtRadius, AtX, Cut
+from bladewright.blade.design.fillet import Fillet
 from bladewright.blade.design.meridional_curve import ThroughPoints
 from bladewright.blade.native.cut_faces import face_inside
 from bladewright.errors import DesignError, FitError
@@ -128,6 +129,16 @@ def test_ruled_sides_stay_ruled():
     for side in blade.sides:
         straight = side(u, 0.0) * (1.0 - v[:, None]) + side(u, 1.0) * v[:, None]
         assert np.max(np.abs(side(u, v) - straight)) < 1e-12
+
+
+def test_a_cut_tip_without_a_clearance_is_the_shroud_and_takes_a_fillet_and_with_one_it_does_not():
+    line = through_blade(coarse.ROTOR, "tip")
+    fillet = Fillet(radius=1.0)
+    blade = cut(coarse.ROTOR, tip=line).changed("shroud_fillet", fillet).build()
+    assert blade.design.ends == ("hub", "shroud")
+    assert "shroud_fillet_upper" in blade.surfaces
+    with pytest.raises(DesignError, match="clearance"):
+        cut(coarse.CLEARED, tip=line).changed("shroud_fillet", fillet)
 
 
 def test_a_clearance_at_a_cut_end_counts_from_the_cut():

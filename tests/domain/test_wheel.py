@@ -90,6 +90,13 @@ def test_a_rim_ends_as_far_past_a_trimmed_edge_as_is_stated():
     np.testing.assert_allclose(np.hypot(*(line.at(ends) - [first, last]).T), [1.5e-3, 1e-3], rtol=1e-3)
 
 
+def test_an_outline_stays_where_it_is_stated_when_the_blade_is_trimmed(shrouded):
+    blade = replace(shrouded.design, cut=Cut(trailing_edge=AtRadius(radius=66.0))).build()
+    disc, ring = wheel(blade).pitches
+    assert disc.carrier.line.at(np.array(disc.carrier.ends[1]))[1] == pytest.approx(74e-3, rel=1e-9)
+    assert 66e-3 < ring.carrier.line.at(np.array(ring.carrier.ends[1]))[1] < 73e-3
+
+
 def test_the_walls_line_straightens_before_it_winds_a_turn(shrouded):
     blade = replace(shrouded, design=replace(shrouded.design, disc=Disc(thickness=3.0, upstream=150.0)))
     made = sector(blade)
