@@ -1,5 +1,6 @@
 """Writing STL and 3MF files, and measuring them against the native surfaces when they are read again."""
 
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -51,18 +52,29 @@ def write_mesh(
             # STL files hold single precision
             kept = mesh_of_triangles(mesh.corners.astype(np.float32).astype(np.float64))
             measured = min(samples, MOST_SAMPLES // len(native))
-            if _AssignedPoints(kept, native, allowed * MM, measured).largest <= allowed * MM:
+            assigned = _AssignedPoints(kept, native, allowed * MM, measured)
+            if assigned.largest <= allowed * MM:
                 break
     with atomic_write(path) as unfinished:
         if format_of(path) == "STL":
             write_stl(mesh, unfinished, name=built.name, unit=unit)
         else:
             write_3mf(mesh, unfinished, built=built, unit=unit)
-    return verify_mesh(path, built, samples=samples, chordal_deviation=allowed)
+    return verify_mesh(path, built, samples=samples, chordal_deviation=allowed, known=assigned)
 
 
-def verify_mesh(path: Path, built: NativeBody, *, samples: int, chordal_deviation: float | None = None) -> RoundTrip:
-    """The round trip of an STL or 3MF file against a blade or passage, with the chordal deviation [m] as its limit."""
+def verify_mesh(
+    path: Path,
+    built: NativeBody,
+    *,
+    samples: int,
+    chordal_deviation: float | None = None,
+    known: "_AssignedPoints | None" = None,
+) -> RoundTrip:
+    """The round trip of an STL or 3MF file against a body, with the chordal deviation [m] as its limit.
+
+    What is `known` of a mesh is taken where the file holds that mesh to the bit.
+    """
     kind = format_of(path)
     mesh, unit = read_stl(path) if kind == "STL" else read_3mf(path)
     if not len(mesh.triangles):
@@ -73,11 +85,15 @@ def verify_mesh(path: Path, built: NativeBody, *, samples: int, chordal_deviatio
     share = limit * float(properties.area) * MM**2 / (float(properties.volume) * MM**3)
     samples = min(samples, MOST_SAMPLES // len(built.surfaces))
     limits = {"side_mm": limit, "end_mm": limit, "edge_mm": limit, "face_area": 2.0 * share, "volume": share}
-    native = {name: native_face(face) for name, face in built.surfaces.items()}
-    assigned = _AssignedPoints(mesh, native, limit, samples)
+    if known is not None and known.of(mesh):
+        assigned, native = known, known.native
+    else:
+        native = {name: native_face(face) for name, face in built.surfaces.items()}
+        assigned = _AssignedPoints(mesh, native, limit, samples)
+    areas = dict(zip(built.orientations, getattr(properties, "areas", ()), strict=False))
     nearest = ClosestTriangle(mesh)
     failures: list[str] = []
-    faces = tuple(_face(name, assigned, nearest, samples, limits, failures) for name in native)
+    faces = tuple(_face(name, assigned, nearest, samples, limits, areas, failures) for name in native)
     open_edges, shells = mesh.open_edges, mesh.shells
     if open_edges:
         failures.append(f"{open_edges} edges of triangles are not run once each way: the mesh is not watertight")
@@ -121,6 +137,7 @@ def _face(
     nearest: ClosestTriangle,
     samples: int,
     limits: dict[str, float],
+    areas: Mapping[str, float],
     failures: list[str],
 ) -> FaceReport:
     native, limit = assigned.native[name], limits["side_mm"]
@@ -134,7 +151,8 @@ def _face(
         worst = int(np.argmax(back))
         largest, place = float(back[worst]), assigned.footpoints[mine][worst]
     vectors = assigned.mesh.vectors[assigned.face_of_triangle == name]
-    compared = Comparison(cad=float(np.sum(np.linalg.norm(vectors, axis=-1))), native=native.area * MM**2)
+    own = float(areas[name]) if name in areas else native.area
+    compared = Comparison(cad=float(np.sum(np.linalg.norm(vectors, axis=-1))), native=own * MM**2)
     if not len(back):
         failures.append(f"no triangle of the file lies on {name}")
     if not largest <= limit:
@@ -197,6 +215,11 @@ class _AssignedPoints:
         better = away < self.distance[mine]
         self.distance[mine[better]], self.footpoints[mine[better]] = away[better], footpoints[better]
         label[mine[better]] = k
+
+    def of(self, mesh: TriangleMesh) -> bool:
+        """Whether these points are those of a mesh, to the bit."""
+        mine = self.mesh
+        return np.array_equal(mine.vertices, mesh.vertices) and np.array_equal(mine.triangles, mesh.triangles)
 
     @property
     def largest(self) -> float:
