@@ -7,6 +7,8 @@ import pytest
 from bladewright import cad
 from bladewright.blade.design.disc import Disc, Outline
 from bladewright.blade.design.fillet import Fillet
+from bladewright.cad.mesh import triangulated
+from bladewright.cad.solids import occ_solid
 from bladewright.domain.sector import sector
 from bladewright.domain.wheel import wheel
 from machines import coarse
@@ -36,3 +38,19 @@ def test_the_file_is_one_closed_solid_with_every_face(built, tmp_path):
     assert (found["solids"], found["shells"], found["free_edges"]) == (1, 1, 0)
     assert {face["name"] for face in found["faces"]} == set(body.surfaces)
     assert found["edges"]["max_tolerance_mm"] < 1e-5
+
+
+def test_triangles_of_one_blade_are_turned_to_all_others_and_not_where_that_leaves_gaps():
+    body = wheel(replace(ROTOR, blade_count=3).build())
+    made = occ_solid(body)
+    whole, copied = triangulated(made, 0.5), triangulated(made, 0.5, body.turned_faces)
+    assert sorted(body.turned_faces) == sorted(
+        f"blade_0{k}_{name}" for k in (2, 3) for name in ("upper", "lower", "shroud")
+    )
+    assert copied.open_edges == 0
+    assert copied.shells == 1
+    assert copied.volume == pytest.approx(whole.volume, rel=1e-4)
+    lost = {name: (first, -turn) for name, (first, turn) in body.turned_faces.items()}
+    found = triangulated(made, 0.5, lost)
+    assert found.open_edges == 0
+    assert found.volume == pytest.approx(whole.volume, rel=1e-12)

@@ -1,15 +1,17 @@
 """Triangle meshes of solids: their volume and area, whether they are closed, and distances from them."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
-from OCP.BRep import BRep_Tool
+from OCP.BRep import BRep_Builder, BRep_Tool
 from OCP.BRepMesh import BRepMesh_IncrementalMesh
 from OCP.BRepTools import BRepTools
 from OCP.TopAbs import TopAbs_REVERSED
 from OCP.TopLoc import TopLoc_Location
+from OCP.TopoDS import TopoDS_Compound, TopoDS_Face
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
@@ -27,6 +29,8 @@ are searched again more widely, so that the number only trades time."""
 MERGED = 1e-6
 """[mm] Grid to which nodes are rounded before equal ones are merged: on a shared edge both faces have the same nodes,
 up to rounding errors of the curve."""
+Turned = tuple[str, Array]
+"""The face of which another is a copy, and the rotation (3, 3) from it to that."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -38,12 +42,12 @@ class TriangleMesh:
     triangles: NDArray[np.int64]
     """(m, 3) indices of vertices, counter-clockwise seen from outside"""
 
-    @property
+    @cached_property
     def corners(self) -> Array:
         """(m, 3, 3) [mm] corners of the triangles."""
         return self.vertices[self.triangles]
 
-    @property
+    @cached_property
     def vectors(self) -> Array:
         """(m, 3) [mm^2] area vectors of the triangles."""
         a, b, c = np.moveaxis(self.corners, 1, 0)
@@ -95,23 +99,42 @@ def mesh_of_triangles(corners: Array, tolerance: float = 0.0) -> TriangleMesh:
     return TriangleMesh(vertices=vertices, triangles=triangles[(a != b) & (b != c) & (c != a)])
 
 
-def triangulated(body: OccSolid, deflection: float) -> TriangleMesh:
-    """OpenCASCADE's triangulation of a solid, with a chordal deviation [mm] that it only aims at."""
+def triangulated(body: OccSolid, deflection: float, turned: Mapping[str, Turned] | None = None) -> TriangleMesh:
+    """OpenCASCADE's triangulation of a solid, with a chordal deviation [mm] that it only aims at.
+
+    Faces that are another one `turned` take its triangles. On edges between these and other faces nodes fall together,
+    as edges that are copies are parted alike; should they not, all faces are triangulated.
+    """
+    if turned:
+        mesh = _triangles(body, deflection, turned)
+        if mesh.open_edges == 0:
+            return mesh
+    return _triangles(body, deflection, {})
+
+
+def _triangles(body: OccSolid, deflection: float, turned: Mapping[str, Turned]) -> TriangleMesh:
     BRepTools.Clean_s(body.solid)
-    BRepMesh_IncrementalMesh(body.solid, deflection, False, ANGULAR_DEFLECTION, False)
-    found = []
+    own, builder = TopoDS_Compound(), BRep_Builder()
+    builder.MakeCompound(own)
     for name, face in body.faces.items():
-        triangulation = BRep_Tool.Triangulation_s(face, TopLoc_Location())
-        if triangulation is None:
-            raise CadError(f"OpenCASCADE could not triangulate face {name!r} within {deflection:.3g} mm")
-        nodes = (triangulation.Node(i) for i in range(1, triangulation.NbNodes() + 1))
-        points = np.array([(p.X(), p.Y(), p.Z()) for p in nodes])
-        triangles = np.array([triangulation.Triangle(i).Get() for i in range(1, triangulation.NbTriangles() + 1)]) - 1
-        if face.Orientation() == TopAbs_REVERSED:
-            triangles = triangles[:, ::-1]
-        found.append(points[triangles])
+        if name not in turned:
+            builder.Add(own, face)
+    BRepMesh_IncrementalMesh(own, deflection, False, ANGULAR_DEFLECTION, False)
+    found = {name: _corners(face, name, deflection) for name, face in body.faces.items() if name not in turned}
+    found |= {name: found[first] @ turn.T for name, (first, turn) in turned.items()}
     BRepTools.Clean_s(body.solid)
-    return mesh_of_triangles(np.concatenate(found), tolerance=MERGED)
+    return mesh_of_triangles(np.concatenate([found[name] for name in body.faces]), tolerance=MERGED)
+
+
+def _corners(face: TopoDS_Face, name: str, deflection: float) -> Array:
+    """(m, 3, 3) [mm] corners of the triangles of a face."""
+    triangulation = BRep_Tool.Triangulation_s(face, TopLoc_Location())
+    if triangulation is None:
+        raise CadError(f"OpenCASCADE could not triangulate face {name!r} within {deflection:.3g} mm")
+    nodes = (triangulation.Node(i) for i in range(1, triangulation.NbNodes() + 1))
+    points = np.array([(p.X(), p.Y(), p.Z()) for p in nodes])
+    triangles = np.array([triangulation.Triangle(i).Get() for i in range(1, triangulation.NbTriangles() + 1)]) - 1
+    return np.asarray(points[triangles[:, ::-1] if face.Orientation() == TopAbs_REVERSED else triangles])
 
 
 class ClosestTriangle:

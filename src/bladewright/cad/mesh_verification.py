@@ -48,7 +48,7 @@ def write_mesh(
         made = cached_occ_solid(built)
         native = {name: native_face(face) for name, face in built.surfaces.items()}
         for share in DEFLECTIONS:
-            mesh = triangulated(made, share * allowed * MM)
+            mesh = triangulated(made, share * allowed * MM, getattr(built, "turned_faces", None))
             # STL files hold single precision
             kept = mesh_of_triangles(mesh.corners.astype(np.float32).astype(np.float64))
             measured = min(samples, MOST_SAMPLES // len(native))

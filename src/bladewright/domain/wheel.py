@@ -16,6 +16,7 @@ from bladewright.domain.wheel_body import WheelBody, WheelKnots, pitches_of
 from bladewright.errors import DesignError
 from bladewright.frozen import FrozenMapping
 from bladewright.numerics.elementary import Array, angle
+from bladewright.nurbs.basis import Reals
 from bladewright.nurbs.curve import Curve
 from bladewright.nurbs.mass_properties import Face, MassProperties, repeated_properties
 from bladewright.nurbs.revolution import FULL_TURN, Revolution
@@ -89,6 +90,21 @@ class Wheel(WheelBody):
         copies = [sign for _, sign in self._repeated.values()] * len(self.turns)
         return FrozenMapping(
             dict(zip(self._names(), [*copies, *(sign for _, sign in self._whole.values())], strict=True))
+        )
+
+    @property
+    def turned_faces(self) -> Mapping[str, tuple[str, Reals]]:
+        """Of the faces of all blades but the first: the first one's, and the rotation (3, 3) from it."""
+        names, count = self._names(), len(self._repeated)
+        inside = {f"{pitch.kind.wall}_" for pitch in self.pitches}
+        of_blades = [i for i, name in enumerate(self._repeated) if name not in inside]
+        return FrozenMapping(
+            {
+                names[k * count + i]: (names[i], np.real(turn))
+                for k, turn in enumerate(self.turns)
+                for i in of_blades
+                if k
+            }
         )
 
     @cached_property
