@@ -1,7 +1,6 @@
 """Isolated points: strewn outliers that have no neighbours at the usual distance."""
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
 from bladewright.nurbs.basis import Reals
@@ -18,16 +17,3 @@ def without_isolated_points(points: Reals, neighbours: int = 5) -> Reals:
     if np.mean(lonely) > 0.12:
         lonely &= own >= np.percentile(own, 90.0)
     return np.asarray(points[~lonely])
-
-
-NEIGHBOURS, ISOLATED = 5, 6.0
-"""a point is isolated whose fifth neighbour (`NEIGHBOURS`) is so many times further away than usual (`ISOLATED`). Lower
-ratios drop points of sparse rows."""
-
-
-def has_neighbours(points: Reals) -> NDArray[np.bool_]:
-    """Whether points (n, d) have neighbours: strewn outliers have none."""
-    if len(points) <= 2 * NEIGHBOURS:
-        return np.ones(len(points), dtype=bool)
-    distance = cKDTree(points).query(points, k=NEIGHBOURS + 1)[0][:, -1]
-    return np.asarray(distance <= ISOLATED * np.median(distance))

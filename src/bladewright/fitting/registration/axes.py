@@ -7,7 +7,7 @@ from scipy.spatial import ConvexHull, cKDTree
 
 from bladewright.errors import FitError
 from bladewright.fitting.assessment.result import Motion
-from bladewright.fitting.clouds.isolated import has_neighbours
+from bladewright.fitting.clouds.isolated import without_isolated_points
 from bladewright.fitting.clouds.thinning import random_subset
 from bladewright.fitting.design_header import Arrangement
 from bladewright.numerics.robust import TUKEY_WIDTH, median_deviation, tukey_weights
@@ -70,8 +70,7 @@ def found_axes(points: Reals, *, arrangement: Arrangement | None = None) -> tupl
         raise FitError(f"axes are found of points in space, and these have {points.shape[1]} coordinates: {CURES}")
     if arrangement == "annular":
         raise FitError(f"the machine axis of an annular blade cannot be told from its points alone: {CURES}")
-    cloud = points[random_subset(len(points), AXES_POINTS)]
-    cloud = cloud[has_neighbours(cloud)]
+    cloud = without_isolated_points(points[random_subset(len(points), AXES_POINTS)])
     span, thickness = prism_of(cloud)
     limit = PRISM_THICKNESS * float(np.max(np.ptp(cloud, axis=0)))
     if not thickness <= limit:

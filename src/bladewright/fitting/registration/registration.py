@@ -19,7 +19,7 @@ from scipy.spatial import cKDTree
 from bladewright.designs import Design
 from bladewright.errors import FitError
 from bladewright.fitting.assessment.result import Motion
-from bladewright.fitting.clouds.isolated import has_neighbours
+from bladewright.fitting.clouds.isolated import without_isolated_points
 from bladewright.fitting.clouds.thinning import even_subset, random_subset
 from bladewright.fitting.matching.footpoints import Side, footpoints_at, nearest_footpoints
 from bladewright.fitting.models.blunt_edges import sides_of
@@ -32,9 +32,9 @@ GRID = {2: (2000, 1), 3: (241, 61)}
 """places along and across a side from which samples are chosen, by dimension"""
 SAMPLES = 8000
 """evenly spread samples, about a hundredth of the blade from each other: as near as true footpoints need to start"""
-SEARCH_POINTS, DECIDING_POINTS = 300, 3000
-"""points of the cloud that choose among the starts, and that decide. They bound the time: the motion has six unknowns,
-and of 3000 points its noise is a fiftieth of theirs."""
+LOOKED_AT, SEARCH_POINTS, DECIDING_POINTS = 20_000, 300, 3000
+"""points of the cloud among which isolated ones are told, those that choose among the starts, and those that decide.
+They bound the time: the motion has six unknowns, and of 3000 points its noise is a fiftieth of theirs."""
 FOLLOWED_STARTS, TRIAL_STEPS = 2, 5
 """starts that are followed with true footpoints, and steps that choose among them"""
 POINT_STEPS, PLANE_STEPS, MOST_STEPS = 6, 24, 60
@@ -99,7 +99,7 @@ def registration(points: Reals, design: Design) -> Registration:
     cloud = _checked(points, dimension)
     samples, normals = _samples(sides)
     extent = float(np.max(np.ptp(samples, axis=0)))
-    few = cloud[has_neighbours(cloud)]
+    few = without_isolated_points(cloud[random_subset(len(cloud), LOOKED_AT)])
     few = few[even_subset(few, SEARCH_POINTS)]
 
     def touching(moved: Reals) -> Contact:
