@@ -103,16 +103,15 @@ class Blade(FrozenRecord, Shown, MetalBody):
     def orientations(self) -> Mapping[str, int]:
         """+1 for the faces whose dS/du x dS/dv points out of the blade, -1 for the others."""
         low, high = self.design.ends
-        blunt = {name: sign for name, sign in zip(EDGES, (1, -1), strict=True) if name in self.surfaces}
-        around = {"upper": -1, "lower": 1, **blunt}
-        beside = {
-            f"{wall}_{part}_{name}": sign
-            for wall in ("hub", "shroud")
-            for part in ("strip", "fillet")
-            for name, sign in around.items()
-            if f"{wall}_{part}_{name}" in self.surfaces
-        }
-        return FrozenMapping({**around, **beside, low: -1, high: 1})
+        around = {"upper": -1, "lower": 1}
+        for name, sign in zip(EDGES, (1, -1), strict=True):
+            corners = (name, f"{name}_upper", f"{name}_lower")
+            around |= {f"{corner}{part}": sign for corner in corners for part in ("", "_run")}
+        kinds = ["", *(f"{wall}_{part}_" for wall in ("hub", "shroud") for part in ("strip", "fillet"))]
+        sides = {f"{kind}{name}": sign for kind in kinds for name, sign in around.items()}
+        return FrozenMapping(
+            {**{name: sign for name, sign in sides.items() if name in self.surfaces}, low: -1, high: 1}
+        )
 
     @property
     def tolerance(self) -> float:

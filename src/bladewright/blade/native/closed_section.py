@@ -53,6 +53,10 @@ class Sites(FrozenRecord):
         """Some of them."""
         return Sites(side=self.side[which], u=self.u[which])
 
+    def and_those(self, others: Sites) -> Sites:
+        """These and others."""
+        return Sites(side=np.concatenate([self.side, others.side]), u=np.concatenate([self.u, others.u]))
+
 
 class Corner(NamedTuple):
     """A line of the span along which two faces of the section meet at an angle."""
@@ -93,6 +97,22 @@ class ClosedSection(FrozenRecord):
             elif not smooth:
                 found.append(Corner(name, (UPPER, at), (LOWER, at)))
         return tuple(found)
+
+    @property
+    def corner_sides(self) -> list[tuple[int, float]]:
+        """Sides that end at corners, and u there."""
+        pairs = zip(self.corner_sites.side.tolist(), self.corner_sites.u.tolist(), strict=True)
+        return [(face, u) for face, u in pairs if face <= LOWER]
+
+    def has_corners(self, face: int) -> bool:
+        """Whether a face ends at a corner."""
+        return bool(np.any(self.corner_sites.side == face))
+
+    @cached_property
+    def corner_sites(self) -> Sites:
+        """Both faces of each corner in turn."""
+        pairs = [pair for corner in self.corners for pair in (corner.first, corner.second)]
+        return Sites(side=np.array([face for face, _ in pairs], dtype=np.intp), u=np.array([u for _, u in pairs]))
 
     def real(self) -> ClosedSection:
         """The same of real parts."""

@@ -14,6 +14,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from bladewright.blade.native.closed_section import ClosedSection, Sites
 from bladewright.frozen import FrozenRecord
@@ -113,6 +114,14 @@ class Wall(FrozenRecord):
         across = np.unwrap(angle(points[:, 1], points[:, 2])) if self.revolved else points[:, 1]
         return found, across
 
+    def places_below(self, points: Reals) -> tuple[Reals, Reals]:
+        """t and theta, or y, (k,) of the real wall's points nearest to given ones (k, 3)."""
+        t, across = self.places_near(points)
+        for _ in range(STEPS):
+            along = self.slopes(t, across)[0]
+            t = t + dot(points - self.point(t, across), along) / dot(along, along)
+        return t, across
+
 
 @dataclass(frozen=True, kw_only=True, eq=False)
 class Contacts(FrozenRecord):
@@ -131,6 +140,12 @@ class Contacts(FrozenRecord):
     """(k,) theta or y on the wall"""
     residual: Reals
     """(k,) distance of the two centres, over the radius"""
+
+    def picked(self, which: NDArray[np.intp]) -> Contacts:
+        """Some of them."""
+        sizes = {"on_blade": self.on_blade[which], "on_wall": self.on_wall[which]}
+        places = {"v": self.v[which], "t": self.t[which], "across": self.across[which]}
+        return Contacts(sites=self.sites.picked(which), **sizes, **places, residual=self.residual[which])
 
     def between(self, sites: Sites) -> Reals:
         """v, t and theta (m, 3) near those at other sites, linear between these."""
@@ -193,6 +208,16 @@ def _grown(section: ClosedSection, wall: Wall, sites: Sites, own: tuple[Reals, R
     return x
 
 
+def changes(section: ClosedSection, wall: Wall, found: Contacts, growth: tuple[Array, Array]) -> Array:
+    """Derivatives (k, 3) of v, t and theta of contacts by u, where a and b change by `growth` (k,)."""
+    sites = found.sites
+    along, normal, turn = section.running(sites, found.v)
+    of_centre = along + found.on_blade[:, None] * turn + growth[0][:, None] * normal
+    push = of_centre - growth[1][:, None] * wall.normal(found.t, found.across)
+    x = np.stack([found.v, found.t, found.across], axis=-1)
+    return -_solved(_differences(section, wall, sites, (found.on_blade, found.on_wall), x)[1], push)
+
+
 def rates(
     section: ClosedSection, wall: Wall, found: Contacts, growth: tuple[Array, Array]
 ) -> tuple[Array, Array, Array]:
@@ -200,16 +225,14 @@ def rates(
 
     a and b change by `growth` (k,).
     """
-    sites, x = found.sites, np.stack([found.v, found.t, found.across], axis=-1)
+    sites, change = found.sites, changes(section, wall, found, growth)
     along, normal, turn = section.running(sites, found.v)
-    of_centre = along + found.on_blade[:, None] * turn + growth[0][:, None] * normal
-    push = of_centre - growth[1][:, None] * wall.normal(found.t, found.across)
-    jacobian = _differences(section, wall, sites, (found.on_blade, found.on_wall), x)[1]
-    change = -_solved(jacobian, push)
+    _, rise, _, bend = section.rising(sites, found.v)
     slopes = wall.slopes(found.t, found.across)
-    on_blade = along + change[:, :1] * section.derivative(sites, found.v, 0, 1)
+    on_blade = along + change[:, :1] * rise
     on_wall = change[:, 1:2] * slopes[0] + change[:, 2:] * slopes[1]
-    return on_blade, on_wall, of_centre + change[:, :1] * jacobian[..., 0]
+    own, grown = found.on_blade[:, None], growth[0][:, None]
+    return on_blade, on_wall, along + own * turn + grown * normal + change[:, :1] * (rise + own * bend)
 
 
 def _differences(

@@ -7,23 +7,26 @@ the strip the sides are what they were, cut at one v.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, cast
 
 import numpy as np
 
 from bladewright.blade.native.blade import Blade
-from bladewright.blade.native.closed_section import FACES, LOWER, UPPER, ClosedSection, SectionSplines
-from bladewright.blade.native.end_faces import EDGES, EndKnots, WallSurface, end_row, end_within, stretch_about
+from bladewright.blade.native.closed_section import FACES, ClosedSection, SectionSplines
+from bladewright.blade.native.contacts import Wall
+from bladewright.blade.native.end_faces import EndKnots, Near, WallSurface, end_row, end_within, stretch_about
 from bladewright.blade.native.fillet_knots import FilletKnots, chosen_knots, levels
 from bladewright.blade.native.knots import DEGREE, Knots
 from bladewright.blade.native.lazy_faces import Face, LazyFaces
-from bladewright.blade.native.rolling_ball import WALLS, Rolled, Touch, balls_of, closed_section
-from bladewright.errors import DesignError
+from bladewright.blade.native.native_edges import with_native_edges
+from bladewright.blade.native.pivot import Pivot
+from bladewright.blade.native.pivot import feet as foot_of
+from bladewright.blade.native.rolling_ball import Rolled, Touch, balls_of, closed_section
 from bladewright.frozen import FrozenMapping
 from bladewright.numerics.elementary import Array
-from bladewright.nurbs.basis import Reals
+from bladewright.nurbs.basis import Reals, basis, greville
 from bladewright.nurbs.curve import Curve
 from bladewright.nurbs.domain import extended, piece, reparametrised
 from bladewright.nurbs.domain import reversed as run_back
@@ -34,7 +37,6 @@ if TYPE_CHECKING:
     from bladewright.blade.design.row_design import RowDesign
     from bladewright.blade.native.stepped_fillet import SteppedTouch
 
-SIDES = ("upper", "lower")
 REACH = 0.05
 """How far the meridian of a wall is continued past the foot of a fillet, as a share of the foot's length."""
 
@@ -44,29 +46,34 @@ def filleted(blade: Blade, design: RowDesign, knots: Knots | None = None, *, fin
 
     Raises DesignError where a fillet does not hold.
     """
-    _check_round(blade, design)
-    section = closed_section(blade)
-    balls = balls_of(blade, section, design)
+    whole = with_native_edges(blade)
+    section = closed_section(whole)
+    balls = balls_of(whole, section, design)
     held = knots if isinstance(knots, FilletKnots) else None
-    own = chosen_knots(blade, section, balls, fine=fine) if held is None else held
+    own = chosen_knots(whole, section, balls, fine=fine) if held is None else held
     rolled = Rolled.at(section, balls, cast(SectionSplines, own.splines).sites, own.near)
-    faces = cut_sides(section, own)
-    outlines = dict(blade.outlines)
+    faces, outlines, feet = cut_sides(section, own), dict(whole.outlines), {}
     for wall, touch in rolled.touches.items():
+        pivots = [(replace(pivot, touch=touch), knots) for pivot, knots in own.pivots[wall]]
         faces |= around_wall(wall, touch, own)
-        upper, lower = (end_row(faces[f"{wall}_fillet_{name}"], -design.ends.index(wall)) for name in SIDES)
-        outlines[wall] = (lower, run_back(upper))
+        faces |= _about_corners(wall, pivots, faces)
+        chain = foot_of(touch, [(pivot, greville(knots, DEGREE)) for pivot, knots in pivots])
+        feet[wall] = [
+            (end_row(faces[f"{wall}_fillet_{foot.name}"], -design.ends.index(wall)), foot.near, foot.against)
+            for foot in chain
+        ]
+        outlines[wall] = tuple(run_back(curve) if against else curve for curve, _, against in feet[wall])
 
     def ends() -> tuple[dict[str, Face], dict[str, EndKnots]]:
         found: dict[str, Face] = {}
         knots_of = {}
         for name in design.ends:
             if name in rolled.touches:
-                feet = outlines[name][0], run_back(outlines[name][1])
-                inner, known = blade.end_wall(name)[1], None if held is None else held.ends[name]
-                found[name], knots_of[name] = _end(rolled.touches[name], name, feet, inner, blade.chord, known)
+                inner, known = whole.end_wall(name)[1], None if held is None else held.ends[name]
+                wall = rolled.touches[name].ball.wall
+                found[name], knots_of[name] = _end(wall, name, feet[name], inner, whole.chord, known)
             else:
-                found[name] = blade.surfaces[name]
+                found[name] = whole.surfaces[name]
         return found, knots_of
 
     if held is None:
@@ -76,18 +83,18 @@ def filleted(blade: Blade, design: RowDesign, knots: Knots | None = None, *, fin
     else:
         surfaces = LazyFaces(faces, (*faces, *design.ends), lambda: ends()[0])
     walls = {
-        name: (extended(touch.ball.wall.meridian, *own.ends[name].domain), blade.end_wall(name)[1])
+        name: (extended(touch.ball.wall.meridian, *own.ends[name].domain), whole.end_wall(name)[1])
         for name, touch in rolled.touches.items()
     }
     return replace(
-        blade,
+        whole,
         design=design,
         surfaces=surfaces,
         knots=own,
         before=blade,
         moments=None,
         outlines=FrozenMapping(outlines),
-        walls=FrozenMapping({**blade.walls, **walls}),
+        walls=FrozenMapping({**whole.walls, **walls}),
     )
 
 
@@ -100,7 +107,7 @@ def cut_sides(section: ClosedSection, knots: FilletKnots) -> dict[str, Surface]:
 
 
 def around_wall(wall: str, touch: Touch | SteppedTouch, knots: FilletKnots) -> dict[str, Surface]:
-    """The strips and fillets at a wall."""
+    """The strips and fillets at a wall, but for those about corners."""
     around, strip, upwards = cast(SectionSplines, knots.splines), knots.strips[wall], wall == "hub"
     above = np.swapaxes(touch.above(strip, strip.sites), 0, 1)
     starts, insides = zip(*map(around.split, touch.start(strip)), strict=True), around.split(above)
@@ -108,12 +115,42 @@ def around_wall(wall: str, touch: Touch | SteppedTouch, knots: FilletKnots) -> d
     found = {}
     for (face, side), start, inside, across in zip(touch.section.faces.items(), starts, insides, nets, strict=True):
         own = around.knots_of[face]
-        rows = strip.net(start, np.swapaxes(inside, 0, 1), strip.side_end(side, own))
+        end = strip.side_end(side, own)
+        if isinstance(touch, Touch) and touch.section.has_corners(face):
+            end[1:] = [around.split(each)[list(touch.section.faces).index(face)] for each in touch.end(strip)[1:]]
+        rows = strip.net(start, np.swapaxes(inside, 0, 1), end)
         # one row, to the bit
         across[:, 0] = rows[0]
         clamp = np.repeat([0.0, 1.0], across.shape[1])
         found[f"{wall}_strip_{FACES[face]}"] = _face(np.swapaxes(rows, 0, 1), own, strip.knots, upwards=upwards)
         found[f"{wall}_fillet_{FACES[face]}"] = _face(across, own, clamp, upwards=not upwards)
+    return found
+
+
+def _about_corners(
+    wall: str, pivots: Sequence[tuple[Pivot, Reals]], faces: Mapping[str, Surface]
+) -> dict[str, Surface]:
+    """The fillets about corners, between those of `faces`."""
+    nets: list[Array] = []
+    found, upwards = {}, wall == "shroud"
+
+    def beside(pair: tuple[int, float]) -> Array:
+        column = faces[f"{wall}_fillet_{FACES[pair[0]]}"].control_points[-1 if pair[1] else 0]
+        return column if upwards else column[::-1]
+
+    for pivot, knots in pivots:
+        sites = greville(knots, DEGREE)
+        values = np.swapaxes(pivot.at(sites).sections.net(), 0, 1)
+        net = np.tensordot(np.linalg.inv(basis(knots, DEGREE, sites)), values, axes=1)
+        # the columns of the fillets beside it, to the bit
+        net[0] = beside(pivot.corner.first) if pivot.first else nets[-1][-1]
+        if pivot.last:
+            net[-1] = beside(pivot.corner.second)
+        if pivot.pole:
+            net[:, 0] = net[0, 0] if pivot.first else net[-1, 0]
+        nets.append(net)
+        clamp = np.repeat([0.0, 1.0], net.shape[1])
+        found[f"{wall}_fillet_{pivot.name}"] = _face(net, knots, clamp, upwards=upwards)
     return found
 
 
@@ -130,22 +167,15 @@ def _face(net: Array, knots_u: Reals, knots_v: Reals, *, upwards: bool) -> Surfa
 
 
 def _end(
-    touch: Touch, name: str, feet: tuple[Curve, Curve], inner: Reals, chord: float, held: EndKnots | None
+    own: Wall, name: str, feet: Sequence[tuple[Curve, Near, bool]], inner: Reals, chord: float, held: EndKnots | None
 ) -> tuple[TrimmedSurface, EndKnots]:
-    """The end face inside the feet (lower, upper) of the fillet."""
-    found, own = touch.found, touch.ball.wall
-    t, across = np.real(found.t), np.real(found.across)
+    """The end face inside the feet of the fillet."""
+    t, across = (np.concatenate([near[i] for _, near, _ in feet]) for i in (1, 2))
     domain = _reach(own.meridian, t) if held is None else held.domain
     low, high = stretch_about(across, name, revolved=own.revolved) if held is None else (held.low, held.high)
     meridian = extended(own.meridian, *domain)
     wall = WallSurface(meridian=meridian, inner=inner, revolved=own.revolved, low=low, high=high)
-    chain = []
-    for index, foot in zip((LOWER, UPPER), feet, strict=True):
-        which = np.flatnonzero(found.sites.side == index)
-        which = which[np.argsort(found.sites.u[which])]
-        near = found.sites.u[which], t[which], across[which]
-        chain.append((foot, near, index == UPPER))
-    return end_within(wall, chain, float(np.real(chord)), held)
+    return end_within(wall, feet, float(np.real(chord)), held)
 
 
 def _reach(meridian: Curve, t: Reals) -> tuple[float, float]:
@@ -154,19 +184,3 @@ def _reach(meridian: Curve, t: Reals) -> tuple[float, float]:
     margin = REACH * float(np.ptp(t))
     first, last = float(np.min(t)), float(np.max(t))
     return low if first > low else first - margin, high if last < high else last + margin
-
-
-def _check_round(blade: Blade, design: RowDesign) -> None:
-    """Refuse corners along the blade, about which the ball would have to pivot."""
-    name = next(f"{wall}_fillet" for wall in WALLS if getattr(design, f"{wall}_fillet") is not None)
-    sections = blade.exact.survey
-    edges = [
-        ("cut" if edge in blade.surfaces and kind == "round" else kind, edge)
-        for edge, kind in zip(EDGES, sections.edge_kinds, strict=True)
-    ]
-    corner = next((f"its {edge.replace('_', ' ')} is {kind}" for kind, edge in edges if kind != "round"), None)
-    if corner is not None:
-        raise DesignError(
-            f"{name} is given, but the blade has corners, for {corner}: the ball rolls around round edges only; round "
-            "the edges off, or leave the fillet out"
-        )

@@ -8,26 +8,32 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from bladewright.blade.native.blade import Blade
-from bladewright.blade.native.closed_section import ClosedSection, SectionSplines, Sites
+from bladewright.blade.native.closed_section import LOWER, UPPER, ClosedSection, SectionSplines, Sites
 from bladewright.blade.native.contacts import Contacts
+from bladewright.blade.native.cross_section import CrossSections
 from bladewright.blade.native.end_faces import EndKnots
 from bladewright.blade.native.fillet_limits import check_fillets
 from bladewright.blade.native.knots import DEGREE, Knots, clamped, refined
+from bladewright.blade.native.pivot import Pivot, pivots_of
 from bladewright.blade.native.refinement import RESERVE, wall_tolerance
 from bladewright.blade.native.rolling_ball import Ball, Rolled, Touch
 from bladewright.blade.native.strip import Strip, strips_for
 from bladewright.errors import DesignError
 from bladewright.frozen import FrozenMapping
 from bladewright.numerics.elementary import Array, cross, dot, length, unit
-from bladewright.nurbs.basis import Reals, basis
+from bladewright.nurbs.basis import Reals, basis, greville, knots_with_joints
 
 ON_BALL = 1e-6
 """Largest distance of a fillet from its ball, of the ball's radius."""
 ON_WALL = 1e-6
 """Largest angle between the tangent planes of fillet and wall at the foot [rad]."""
+AT_JOINTS = 1e-9
+"""Largest angle between the tangent planes of strips beside corners and those of fillet and side [rad]."""
 MOST_POLES = (300, 60)
 """Control points of fillets around the blade, on one side, and of strips along w at which knots are added no more: half
 as many again as a plain blade may have, for what the foot asks for, and twice what a strip of any example has."""
+QUARTERS = np.array([0.25, 0.5, 0.75])
+"""Knots of a fillet about a corner to begin with: in one span, errors at its ends are larger than those looked at."""
 LINES = 12
 """About how many lines of a strip are looked at on each side for its knots along them."""
 PLACES = np.array([0.0, 0.2, 0.5])
@@ -46,11 +52,14 @@ class FilletKnots(Knots):
     """contacts by the wall, near which others are sought"""
     splines: SectionSplines | None = None
     """around the blade, of fillets and strips"""
+    pivots: Mapping[str, Sequence[tuple[Pivot, Reals]]] = field(default_factory=lambda: FrozenMapping({}))
+    """about corners, by the wall, and the knots of each"""
 
 
 def chosen_knots(blade: Blade, section: ClosedSection, balls: Mapping[str, Ball], *, fine: bool = False) -> FilletKnots:
     """The knots; raises DesignError where a ball does not touch blade and wall."""
-    first = SectionSplines(knots=blade.knots.u, smooth=section.smooth)
+    plain = {face: surface.knots_u for face, surface in section.blunt.items()}
+    first = SectionSplines(knots=blade.sides[0].knots_u, smooth=section.smooth, blunt=FrozenMapping(plain))
     # balls that are far too large find no numbers, and are refused for it
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
         rolled = Rolled.at(section, balls, first.sites)
@@ -58,24 +67,39 @@ def chosen_knots(blade: Blade, section: ClosedSection, balls: Mapping[str, Ball]
     tolerance = RESERVE * blade.tolerance * blade.chord
     side = blade.sides[0]
     strips = strips_for(
-        rolled.sites,
         {wall: touch.lines for wall, touch in rolled.touches.items()},
         {wall: ball.end for wall, ball in balls.items()},
         {wall: ball.curved for wall, ball in balls.items()},
         side.knots_v,
     )
+    for wall, touch in rolled.touches.items():
+        own = strips[wall].beside(replace(touch, found=touch.corners).lines, touch.corners.sites)
+        own = own.unfolded(rolled.sites, touch.course(own))
+        strips[wall] = own.with_side_knots(side.knots_v, np.real(touch.corners.v))
     step = max(1, len(rolled.sites) // (2 * LINES))
     few = Rolled.at(section, balls, rolled.sites.picked(np.arange(0, len(rolled.sites), step)), rolled.found)
     strips = {wall: _in_spans(strip, few.touches[wall], wall, tolerance) for wall, strip in strips.items()}
     off_wall = RESERVE * wall_tolerance(blade.chord, fine=fine)
-    u = _around(side.knots_u, rolled, strips, tolerance, off_wall)
-    splines = SectionSplines(knots=u, smooth=section.smooth)
+    edges = [(strip.width, 1.0 - strip.width)[int(u)] for strip in strips.values() for _, u in section.corner_sides]
+    splines = first.with_knots(UPPER, knots_with_joints(first.knots, DEGREE, [(at, DEGREE - 1) for at in edges]))
+    for face in (UPPER, *section.blunt):
+        splines = _around(splines, face, rolled, strips, (tolerance, off_wall))
+    pivots = {
+        wall: tuple((pivot, _about(pivot, wall, side.knots_v, off_wall)) for pivot in pivots_of(touch))
+        for wall, touch in rolled.touches.items()
+    }
     near = FrozenMapping(rolled.found)
     low, high = levels(strips)
     inner = side.knots_v[(side.knots_v > low) & (side.knots_v < high)]
     v = clamped((inner - low) / (high - low))
     return FilletKnots(
-        u=side.knots_u, v=v, before=blade.knots, strips=FrozenMapping(strips), near=near, splines=splines
+        u=side.knots_u,
+        v=v,
+        before=blade.knots,
+        strips=FrozenMapping(strips),
+        near=near,
+        splines=splines,
+        pivots=FrozenMapping(pivots),
     )
 
 
@@ -96,38 +120,82 @@ def _in_spans(strip: Strip, few: Touch, wall: str, tolerance: float) -> Strip:
     return replace(strip, knots=_reached(refined(strip.knots, miss, MOST_POLES[1]), miss, "span", [wall]))
 
 
-def _around(plain: Reals, rolled: Rolled, strips: Mapping[str, Strip], tolerance: float, off_wall: float) -> Reals:
-    """Knots around the blade."""
+def _around(
+    first: SectionSplines, face: int, rolled: Rolled, strips: Mapping[str, Strip], tolerances: tuple[float, float]
+) -> SectionSplines:
+    """The splines with the knots that both sides need, or the face of a blunt edge."""
     section, balls = rolled.section, {wall: touch.ball for wall, touch in rolled.touches.items()}
-    known = rolled
+    known, faces = rolled, [UPPER, LOWER] if face == UPPER else [face]
+    tolerance, off_wall = tolerances
 
     def miss(knots: Reals, at: Reals) -> Reals:
         nonlocal known
-        splines = SectionSplines(knots=knots, smooth=section.smooth)
+        splines = first.with_knots(face, knots)
         known = Rolled.at(section, balls, splines.sites, known.found)
-        between = Sites(side=np.repeat([0, 1], len(at)), u=np.tile(at, 2))
+        between = Sites(side=np.repeat(faces, len(at)), u=np.tile(at, len(faces)))
         wanted = Rolled.at(section, balls, between, known.found)
+        nets = [splines.nets[list(splines.knots_of).index(each)] for each in faces]
 
         def carried(values: Array, order: int = 0) -> Array:
             rows = basis(knots, DEGREE, at, order)
-            return np.concatenate([np.tensordot(rows, net, axes=1) for net in splines.split(values)])
+            return np.concatenate([np.tensordot(rows @ net, values, axes=1) for net in nets])
 
         error = np.zeros(len(between))
         for wall, touch in wanted.touches.items():
-            made, exact = (
-                np.swapaxes(each.touches[wall].above(strips[wall], PLACES), 0, 1) for each in (known, wanted)
-            )
-            mine, theirs = known.touches[wall].sections, touch.sections
-            foot, normal = carried(mine.wall), theirs.normals[1]
-            gap = np.abs(dot(foot - theirs.wall, normal))  # real: knots come from the real design
-            plane = unit(cross(carried(mine.wall, 1), carried(mine.points(np.ones(1), 1)[0])))
-            middle = carried(mine.points(np.array([0.5]))[0])
+            strip, mine = strips[wall], known.touches[wall]
+            made, exact = (np.swapaxes(each.above(strip, PLACES), 0, 1) for each in (mine, touch))
             off = np.max(length(carried(made) - exact), axis=1) / tolerance
-            angle = length(cross(plane, normal)) / (RESERVE * ON_WALL)
-            error = np.max([error, off, gap / off_wall, angle, _off_ball(touch, middle)], axis=0)
-        return np.maximum(error[: len(at)], error[len(at) :])
+            error = np.max([error, off, _missed(mine.sections, touch.sections, carried, off_wall)], axis=0)
+            if section.corners:
+                error = np.max([error, *_unlike(mine, touch, strip, carried)], axis=0)
+        return np.max(error.reshape(len(faces), -1), axis=0)
 
-    return _reached(refined(plain, miss, MOST_POLES[0]), miss, "chord", list(balls))
+    return first.with_knots(
+        face, _reached(refined(first.knots_of[face], miss, MOST_POLES[0]), miss, "chord", list(balls))
+    )
+
+
+def _about(pivot: Pivot, wall: str, plain: Reals, off_wall: float) -> Reals:
+    """Knots of a pivot's fillet along the turn; the side's own `plain` ones along v where its line has them."""
+    start, end = (float(np.real(v)) for v in pivot.line)
+    levels, counts = np.unique(plain, return_counts=True)
+    joints = [
+        ((float(level) - start) / (end - start), DEGREE - int(count))
+        for level, count in zip(levels, counts, strict=True)
+        if not pivot.pole and min(start, end) < level < max(start, end)
+    ]
+
+    def miss(knots: Reals, at: Reals) -> Reals:
+        sites = greville(knots, DEGREE)
+        net = np.linalg.inv(basis(knots, DEGREE, sites))
+
+        def carried(values: Array, order: int = 0) -> Array:
+            return np.tensordot(basis(knots, DEGREE, at, order) @ net, values, axes=1)
+
+        return _missed(pivot.at(sites).sections, pivot.at(at).sections, carried, off_wall)
+
+    first = knots_with_joints(clamped(QUARTERS), DEGREE, joints)
+    return _reached(refined(first, miss, MOST_POLES[0]), miss, "chord", [wall])
+
+
+def _missed(mine: CrossSections, theirs: CrossSections, carried: Callable[..., Array], off_wall: float) -> Reals:
+    """How far carried cross-sections are from exact ones: from the wall, its tangent plane and the ball."""
+    foot, normal = carried(mine.wall), theirs.normals[1]
+    gap = np.abs(dot(foot - theirs.wall, normal))  # real: knots come from the real design
+    plane = unit(cross(carried(mine.wall, 1), carried(mine.points(np.ones(1), 1)[0])))
+    angle = length(cross(plane, normal)) / (RESERVE * ON_WALL)
+    return np.max([gap / off_wall, angle, _off_ball(theirs, carried(mine.points(np.array([0.5]))[0]))], axis=0)
+
+
+def _unlike(mine: Touch, theirs: Touch, strip: Strip, carried: Callable[..., Array]) -> list[Reals]:
+    """Angles between tangent planes of a strip beside corners and of fillet and side, over what is allowed."""
+    joint, leaving = carried(mine.sections.blade, 1), carried(mine.start(strip)[1])
+    planes = [unit(cross(joint, each)) for each in (leaving, carried(mine.slope))]
+    level = np.asarray(strip.level)
+    normal = theirs.section.normal(theirs.found.sites, level)
+    last = unit(carried(mine.end(strip)[1]))
+    off_side = np.abs(dot(last, normal))  # real: knots come from the real design
+    return [length(cross(*planes)) / (RESERVE * AT_JOINTS), off_side / (RESERVE * AT_JOINTS)]
 
 
 def _reached(knots: Reals, miss: Callable[[Reals, Reals], Reals], along: str, walls: Sequence[str]) -> Reals:
@@ -147,9 +215,7 @@ def _reached(knots: Reals, miss: Callable[[Reals, Reals], Reals], along: str, wa
     return knots
 
 
-def _off_ball(touch: Touch, middle: Array) -> Reals:
+def _off_ball(sections: CrossSections, middle: Array) -> Reals:
     """Distance of points in the middle of cross-sections from the ball, over what is allowed."""
-    away = length(middle - touch.sections.centre) / length(
-        touch.sections.points(np.array([0.5]))[0] - touch.sections.centre
-    )
+    away = length(middle - sections.centre) / length(sections.points(np.array([0.5]))[0] - sections.centre)
     return np.abs(away - 1.0) / (RESERVE * ON_BALL)  # real: knots come from the real design

@@ -9,9 +9,10 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from bladewright.blade.native.blade import Blade
-from bladewright.blade.native.closed_section import UPPER, Sites
+from bladewright.blade.native.closed_section import FACES, OUTWARD, Sites
 from bladewright.blade.native.contacts import rates
-from bladewright.blade.native.rolling_ball import Ball, Rolled, Touch
+from bladewright.blade.native.pivot import Pivot, feet, pivots_of
+from bladewright.blade.native.rolling_ball import STEP, Ball, Rolled, Touch
 from bladewright.errors import DesignError
 from bladewright.numerics.elementary import Array, cross, dot, length, unit
 from bladewright.nurbs.basis import Reals
@@ -30,6 +31,11 @@ LEAST_PROGRESS = 0.02
 """How far a cross-section must move along the blade, of what the blade's own points do: at 0 the fillet folds."""
 FARTHEST = 0.5
 """How far a foot may lie past the wall's own stretch, of that, where the wall has no end: its polynomials curl up."""
+LEAST_BACK = 0.005
+"""How far cross-sections about a corner may move backwards, of how far they move at most: at the end of a turn about a
+point, where the line leans by 5 deg over the ball, they do so by that."""
+TURNS = np.linspace(0.0, 1.0, 19)[1:-1]
+"""Places on a ball's way about a corner that are looked at, besides its ends."""
 SEARCHED = 14
 """Bisections of the largest radius: to 1e-4 of the one asked for, or of the chord."""
 LEAST_SIZE = 1e-4
@@ -109,7 +115,7 @@ def obstacle(blade: Blade, rolled: Rolled, *, at: str | None = None) -> Obstacle
     """The first reason why fillets do not hold, or the one `at` a wall."""
     touches = {wall: touch for wall, touch in rolled.touches.items() if at in (None, wall)}
     for wall, touch in touches.items():
-        for check in (_no_contact, _off_path, _at_angle, _folding):
+        for check in (_no_contact, _at_angle, _folding, _about_corners, _off_path):
             reason = check(blade, wall, touch)
             if reason is not None:
                 return Obstacle(wall, reason)
@@ -120,9 +126,18 @@ def obstacle(blade: Blade, rolled: Rolled, *, at: str | None = None) -> Obstacle
     return None
 
 
+def _turning(touch: Touch) -> list[tuple[Pivot, Reals]]:
+    """The pivots about corners, and places on them that are looked at."""
+    return [(pivot, TURNS) for pivot in pivots_of(touch)]
+
+
 def _place(sites: Sites, at: int) -> str:
-    side = "upper" if sites.side[at] == UPPER else "lower"
-    return f"at u = {float(np.real(sites.u[at])):.3f} of the {side} side"
+    return _named(FACES[sites.side[at]], float(np.real(sites.u[at])))
+
+
+def _named(name: str, u: float) -> str:
+    """A place on a side, or at an edge."""
+    return f"at u = {u:.3f} of the {name} side" if name in ("upper", "lower") else f"at the {name.replace('_', ' ')}"
 
 
 def _no_contact(blade: Blade, wall: str, touch: Touch) -> str | None:
@@ -140,12 +155,13 @@ def _no_contact(blade: Blade, wall: str, touch: Touch) -> str | None:
 def _off_path(blade: Blade, wall: str, touch: Touch) -> str | None:
     low, high = touch.ball.wall.meridian.domain
     extent = blade.plain.exact.meridional_extent
-    t = np.real(touch.found.t)
-    for past, ahead, name in ((0, low - t, "start"), (1, t - high, "end")):
-        allowed = FARTHEST * (high - low) if extent.path_end(past) is None else 0.0
-        worst = int(np.argmax(ahead))
-        if ahead[worst] > allowed:
-            return f"{_place(touch.found.sites, worst)} its foot lies past the {name} of the {wall}"
+    for foot in feet(touch, _turning(touch)):
+        t = foot.near[1]
+        for past, ahead, name in ((0, low - t, "start"), (1, t - high, "end")):
+            allowed = FARTHEST * (high - low) if extent.path_end(past) is None else 0.0
+            worst = int(np.argmax(ahead))
+            if ahead[worst] > allowed:
+                return f"{_named(foot.name, foot.near[0][worst])} its foot lies past the {name} of the {wall}"
     return None
 
 
@@ -174,12 +190,42 @@ def _folding(blade: Blade, wall: str, touch: Touch) -> str | None:
     middle = 0.5 / np.cos(0.5 * sections.angle)[:, None]
     half = middle * on_blade + middle * on_wall + (1.0 - 2.0 * middle) * centre
     # all cross-sections run one way around the blade
-    senses = np.where(dot(along, on_blade) < 0.0, -1.0, 1.0) * np.where(found.sites.side == UPPER, 1.0, -1.0)
+    senses = np.where(dot(along, on_blade) < 0.0, -1.0, 1.0) * OUTWARD[found.sites.side]
     progress = np.min([dot(forward, each) / size for each in (on_wall, half)], axis=0)
     progress = np.where(senses == np.median(senses), progress, -1.0)
     worst = int(np.argmin(progress))
     if progress[worst] < LEAST_PROGRESS:
         return f"{_place(found.sites, worst)} it folds: the ball is larger than the hollow between blade and {wall}"
+    return None
+
+
+def _about_corners(blade: Blade, wall: str, touch: Touch) -> str | None:
+    """Whether a ball that pivots about a corner finds no place, or its cross-sections cross."""
+    del blade
+    section = touch.section
+    for corner in section.corners:
+        sites = Sites(
+            side=np.array([corner.first[0], corner.second[0]]), u=np.array([corner.first[1], corner.second[1]])
+        )
+        which = [np.argmax((touch.corners.sites.side == f) & (touch.corners.sites.u == u)) for f, u in corner[1:]]
+        found = touch.corners.picked(np.array(which))
+        towards = section.derivative(sites, found.v, 1, 0)[0] * (1.0 if corner.first[1] else -1.0)
+        if dot(towards, section.normal(sites, found.v)[1]) <= 0.0:
+            return f"at the {corner.name.replace('_', ' ')} the blade is hollow, and no ball turns about it"
+    for pivot, p in _turning(touch):
+        ball = pivot.at(p + 1j * STEP)
+        if not np.all(ball.residual < TOUCHING):
+            return f"{_named(pivot.name, 0.0)} no ball of that radius touches the corner and {wall}"
+        normals, angle = [np.real(normal) for normal in ball.sections.normals], np.real(ball.sections.angle)
+        along = unit(cross(*normals))
+        middle = 0.5 / np.cos(0.5 * angle)[:, None]
+        top, centre, foot = (np.imag(each) for each in (ball.sections.blade, ball.sections.centre, ball.sections.wall))
+        half = middle * top + middle * foot + (1.0 - 2.0 * middle) * centre
+        forward = np.array([dot(along, each) for each in (foot, half)])
+        sense = 1.0 if np.sum(forward[0]) > 0.0 else -1.0
+        forward = forward * sense / np.max(np.square(forward)) ** 0.5
+        if not np.min(forward) > -LEAST_BACK:
+            return f"{_named(pivot.name, 0.0)} it folds: the corner leans over the ball"
     return None
 
 
@@ -200,10 +246,12 @@ def _too_high(blade: Blade, wall: str, rolled: Rolled) -> str | None:
 def _meeting(blade: Blade, wall: str, touch: Touch) -> str | None:
     """Whether its foot crosses itself, or the one of the neighbouring blade."""
     found, design = touch.found, blade.design
-    sides = [np.flatnonzero(found.sites.side == side) for side in (0, 1)]
-    upper, lower = (side[np.argsort(found.sites.u[side])] for side in sides)
-    order = np.concatenate([upper, lower[::-1]])
-    foot = np.stack([np.real(found.t), np.real(found.across)], axis=-1)[order]
+    chain = [
+        (foot.name, np.stack(foot.near, axis=-1)[:: -1 if foot.against else 1]) for foot in feet(touch, _turning(touch))
+    ]
+    names = [name for name, near in chain for _ in near]
+    places = np.concatenate([near for _, near in chain])
+    foot = places[:, 1:]
     if self_crossings(foot[None]) is not None:
         return f"its foot on the {wall} crosses itself"
     spacing = float(np.real(np.ravel(design.spacing))[0])
@@ -212,6 +260,8 @@ def _meeting(blade: Blade, wall: str, touch: Touch) -> str | None:
             [float(np.mean(length(np.real(each)))) for each in touch.ball.wall.slopes(found.t, found.across)]
         )
         apart = length((foot[:, None] - foot - np.array([0.0, spacing])) * scale)
-        nearest = int(order[np.argmin(np.min(apart, axis=1))])
-        return f"{_place(found.sites, nearest)} it meets the fillet of the neighbouring blade on the {wall}"
+        nearest = int(np.argmin(np.min(apart, axis=1)))
+        return (
+            f"{_named(names[nearest], places[nearest, 0])} it meets the fillet of the neighbouring blade on the {wall}"
+        )
     return None

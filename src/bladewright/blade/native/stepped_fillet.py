@@ -167,7 +167,11 @@ def stepped_touches(
         sizes = [np.concatenate(parts) for parts in zip(*(ball.sizes(one) for ball in each), strict=True)]
         touched = contacts(own, stepped, sites, (sizes[0], sizes[1]), each[0].end, known)
         ball = replace(each[0], wall=stepped)
-        found[wall] = SteppedTouch(touch=Touch(ball=ball, section=own, found=touched), section=steps, count=count)
+        found[wall] = SteppedTouch(
+            touch=Touch(ball=ball, section=own, found=touched, corners=touched.picked(np.arange(0))),
+            section=steps,
+            count=count,
+        )
     return found
 
 

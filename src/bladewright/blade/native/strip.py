@@ -12,21 +12,28 @@ two derivatives. U has a knot at e < 1 where lines would cross without. m and g 
 
 with one K for the whole joint: control points of the first two rows then satisfy F1 - F0 = -k' (S1 - S0), so that strip
 and fillet have one tangent plane at every point of the joint, not only where they are interpolated.
+
+At a corner of the section the line is the corner's own: V = c + (b - c) w, U = 0. Beside corners the lines leave along
+
+    dS/dw = -q dF/ds / K + r (S_u + c' S_v),
+
+the second the joint's own tangent; q, r and k fade from what the corner asks for to 1, 0 and k: on a side within x^5, x
+from 1 at the corner to 0 at the strip's `width` from it, on the face of a blunt edge evenly to the other corner.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from bladewright.blade.native.closed_section import ClosedSection, Sites
+from bladewright.blade.native.closed_section import LOWER, ClosedSection, Sites
 from bladewright.blade.native.contacts import Contacts
 from bladewright.blade.native.knots import DEGREE
 from bladewright.frozen import FrozenRecord
 from bladewright.numerics.elementary import Array, dot
-from bladewright.nurbs.basis import JOINT_TOLERANCE, Reals, basis, greville
+from bladewright.nurbs.basis import JOINT_TOLERANCE, Reals, basis, greville, knots_with_joints
 from bladewright.nurbs.blossom import knot_change
 from bladewright.nurbs.surface import Surface
 
@@ -48,6 +55,11 @@ FOLDED = 0.25
 """Area between neighbouring lines, of that between straight ones, that keeps them apart; at 0 they would cross."""
 LEVELS = np.linspace(0.0, 1.0, 17)
 """w between which those areas are looked at."""
+LEAST_WIDTH, WIDTH, MOST_WIDTH = 0.1, 1.5, 0.5
+"""Width in u of the parts of sides beside corners: of how far lines leave the fillet sideways there, so that they do
+not come closer than to about 0.4 of their distance; in narrower ones than the least knots would crowd."""
+SAME_PLACE = 1e-8
+"""Distance in w of knots of the side on two lines below which one knot serves both: it is then as far off."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -60,13 +72,33 @@ class Leaving(FrozenRecord):
     """K m (k,)"""
     upwards: Array
     """K g (k,), below 0 at the shroud"""
+    rise: Array
+    """c' (k,), known where the section has corners"""
 
 
-def leaving(section: ClosedSection, found: Contacts, slope: Array) -> Leaving:
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Course(FrozenRecord):
+    """How lines of a strip run at k sites."""
+
+    contact: Array
+    """c (k,)"""
+    sideways: Array
+    """m (k,)"""
+    upwards: Array
+    """g (k,)"""
+    slope: Array
+    """k (k,)"""
+    share: Array
+    """q (k,)"""
+    along: Array
+    """r (k,)"""
+
+
+def leaving(section: ClosedSection, found: Contacts, slope: Array, rise: Array) -> Leaving:
     """From contacts and dF/ds (k, 3) on the blade."""
     along, across = section.derivatives(found.sites, found.v, (1, 0), (0, 1))
     sideways, upwards = resolved(along, across, -slope)
-    return Leaving(contact=found.v, sideways=sideways, upwards=upwards)
+    return Leaving(contact=found.v, sideways=sideways, upwards=upwards, rise=rise)
 
 
 def resolved(along: Array, across: Array, vectors: Array) -> tuple[Array, Array]:
@@ -93,32 +125,85 @@ class Strip(FrozenRecord):
     """whether the fillet has the side's curvature, so that second derivatives are kept at the joint too"""
     knots: Reals
     """along w"""
+    width: float = 1.0
+    """of the parts of both sides beside corners in which lines bend to them"""
 
-    def places(self, sites: Sites, lines: Leaving, w: Reals) -> tuple[Sites, Array]:
+    def course(
+        self, sites: Sites, lines: Leaving, at_corners: Leaving | None = None, corner_sites: Sites | None = None
+    ) -> Course:
+        """How lines at sites run, from how they leave the fillet there and at the corners of the section."""
+        sideways, upwards = lines.sideways / self.speed, lines.upwards / self.speed
+        share, along = np.ones_like(lines.contact), np.zeros_like(lines.contact)
+        slope = np.full_like(lines.contact, self.slope)
+        if at_corners is None or corner_sites is None:
+            return Course(
+                contact=lines.contact, sideways=sideways, upwards=upwards, slope=slope, share=share, along=along
+            )
+        run = self.level - at_corners.contact
+        asked = run * self.speed / (at_corners.upwards - at_corners.sideways * at_corners.rise)
+        for number, (face, end) in enumerate(zip(corner_sites.side, corner_sites.u, strict=True)):
+            x = 1.0 - sites.u if end == 0.0 else sites.u
+            if face <= LOWER:
+                x = np.maximum(0.0, 1.0 - (1.0 - np.real(x)) / self.width) ** DEGREE
+            fade = np.where(sites.side == face, x, 0.0)
+            share = share + fade * (asked[number] - 1.0)
+            along = along - fade * asked[number] * at_corners.sideways[number] / self.speed
+            slope = slope + fade * (run[number] - self.slope)
+        return Course(
+            contact=lines.contact,
+            sideways=share * sideways + along,
+            upwards=share * upwards + along * lines.rise,
+            slope=slope,
+            share=share,
+            along=along,
+        )
+
+    def places(self, sites: Sites, course: Course, w: Reals) -> tuple[Sites, Array]:
         """Sites and v (len(w), k) on the sides of the lines at sites (k,), at w."""
-        v = np.tensordot(basis(ONE_SPAN, DEGREE, w), np.stack(self._rise(lines)), axes=1)
+        v = np.tensordot(basis(ONE_SPAN, DEGREE, w), np.stack(self._rise(course)), axes=1)
         bump = basis(with_knot(self.shifted), DEGREE, w)[:, 1:2]
-        return sites.moved(sites.u + bump * self.shifted / DEGREE * lines.sideways / self.speed), v
+        return sites.moved(sites.u + bump * self.shifted / DEGREE * course.sideways), v
 
-    def _rise(self, lines: Leaving) -> list[Array]:
+    def _rise(self, course: Course) -> list[Array]:
         """Control points (6 of (k,)) of V."""
-        second, end = lines.contact + lines.upwards / (DEGREE * self.speed), np.zeros_like(lines.contact)
-        last = [end + self.level - share * self.slope / DEGREE for share in (2.0, 1.0, 0.0)]
-        return [lines.contact, second, 0.5 * (second + last[0]), *last]
+        second = course.contact + course.upwards / DEGREE
+        last = [self.level - share * course.slope / DEGREE for share in (2.0, 1.0, 0.0)]
+        return [course.contact, second, 0.5 * (second + last[0]), *last]
 
-    def points(self, section: ClosedSection, sites: Sites, lines: Leaving, w: Reals) -> Array:
+    def points(self, section: ClosedSection, sites: Sites, course: Course, w: Reals) -> Array:
         """Points (len(w), k, 3) of the lines at w."""
-        return section.derivative(*self.places(sites, lines, w))
+        return section.derivative(*self.places(sites, course, w))
 
-    def bend(self, section: ClosedSection, sites: Sites, lines: Leaving) -> Array:
+    def bend(self, section: ClosedSection, sites: Sites, course: Course) -> Array:
         """Second derivatives (k, 3) of the lines by w at the joint."""
-        rise, sideways, upwards = self._rise(lines), lines.sideways / self.speed, lines.upwards / self.speed
+        rise, sideways, upwards = self._rise(course), course.sideways, course.upwards
         lift = DEGREE * (DEGREE - 1) * (rise[0] - 2.0 * rise[1] + rise[2])
         # of U, by its first two spans
         turn = -(DEGREE - 1) * sideways * (1.0 + 1.0 / self.shifted)
-        u, v, uu, uv, vv = section.derivatives(sites, lines.contact, (1, 0), (0, 1), (2, 0), (1, 1), (0, 2))
+        u, v, uu, uv, vv = section.derivatives(sites, course.contact, (1, 0), (0, 1), (2, 0), (1, 1), (0, 2))
         shares = turn, lift, sideways**2, 2.0 * sideways * upwards, upwards**2
         return np.asarray(sum(share[:, None] * each for share, each in zip(shares, (u, v, uu, uv, vv), strict=True)))
+
+    def beside(self, at_corners: Leaving, corner_sites: Sites) -> Strip:
+        """The strip with parts beside corners as wide as real lines that leave them so need in order not to cross."""
+        of_side = at_corners.sideways[corner_sites.side <= LOWER] / self.speed
+        most = float(np.max(np.square(of_side), initial=0.0)) ** 0.5
+        return replace(self, width=min(max(LEAST_WIDTH, WIDTH * most), MOST_WIDTH))
+
+    def unfolded(self, sites: Sites, course: Course) -> Strip:
+        """The strip with the length of U that keeps real lines that run so at sites apart."""
+        tried = [replace(self, shifted=e, knots=with_knot(e)) for e in SHIFTS]
+        areas = [_least_area(each, sites, course) for each in tried]
+        return tried[int(np.argmax(np.minimum(areas, FOLDED)))]
+
+    def with_side_knots(self, knots: Reals, contacts: Reals) -> Strip:
+        """The strip with the side's knots along v at their places on the lines at corners, from contacts (k,) on."""
+        own = self.knots
+        for level, count in zip(*np.unique(knots, return_counts=True), strict=True):
+            for place in (level - contacts) / (self.level - contacts):
+                if np.all(np.square(own - place) > SAME_PLACE**2):
+                    own = knots_with_joints(own, DEGREE, [(float(place), DEGREE - int(count))])
+        return replace(self, knots=own)
 
     @property
     def sites(self) -> Reals:
@@ -164,9 +249,9 @@ def end_points(derivatives: Sequence[Array], knots: Reals) -> list[Array]:
 
 
 def strips_for(
-    sites: Sites, lines: Mapping[str, Leaving], ends: Mapping[str, float], curved: Mapping[str, bool], knots: Reals
+    lines: Mapping[str, Leaving], ends: Mapping[str, float], curved: Mapping[str, bool], knots: Reals
 ) -> dict[str, Strip]:
-    """Strips of lines that leave fillets so at real sites, by the wall, in as few spans as they can be.
+    """Strips of lines that leave fillets so, by the wall, of one span each.
 
     `ends` are the v of the walls, `curved` tells which fillets have the side's curvature, `knots` are those of the side
     along v.
@@ -180,12 +265,9 @@ def strips_for(
         steep = toward * lines[wall].upwards / run
         speed = max(float(np.mean(steep)), float(np.max(steep)) / (DEGREE * FIRST_STEP))
         slope = min(float(np.mean(run)), float(np.min(run)) * DEGREE * LAST_STEP / 2.0)
-        tried = [
-            Strip(level=level, slope=toward * slope, speed=speed, shifted=e, curved=curved[wall], knots=with_knot(e))
-            for e in SHIFTS
-        ]
-        areas = [_least_area(each, sites, lines[wall]) for each in tried]
-        found[wall] = tried[int(np.argmax(np.minimum(areas, FOLDED)))]
+        found[wall] = Strip(
+            level=level, slope=toward * slope, speed=speed, shifted=1.0, curved=curved[wall], knots=ONE_SPAN
+        )
     return found
 
 
@@ -206,9 +288,9 @@ def _level(away: Reals, room: float, knots: Reals, end: float) -> float:
     return end + _inwards(end) * (highest + asked)
 
 
-def _least_area(strip: Strip, sites: Sites, lines: Leaving) -> float:
+def _least_area(strip: Strip, sites: Sites, course: Course) -> float:
     """Least area between neighbouring lines in (u, v), of that between straight ones: below 0 they cross."""
-    moved, v = strip.places(sites, lines, LEVELS)
+    moved, v = strip.places(sites, course, LEVELS)
     least = []
     for side in np.unique(sites.side):
         own = np.flatnonzero(sites.side == side)
@@ -218,6 +300,6 @@ def _least_area(strip: Strip, sites: Sites, lines: Leaving) -> float:
         between = np.diff(line, axis=2)[:, :-1]
         up = np.diff(line, axis=1)
         area = between[0] * up[1, :, :-1] - between[1] * up[0, :, :-1]
-        straight = np.diff(sites.u[own]) * np.diff(LEVELS)[:, None] * (strip.level - lines.contact[own][:-1])
+        straight = np.diff(sites.u[own]) * np.diff(LEVELS)[:, None] * (strip.level - course.contact[own][:-1])
         least.append(float(np.min(area / straight)))
     return min(least)
