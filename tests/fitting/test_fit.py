@@ -9,7 +9,7 @@ import pytest
 from scipy.stats import chi2
 
 import bladewright as bw
-from bladewright.errors import FitError
+from bladewright.errors import DesignError, FitError
 from bladewright.files.clouds import read_cloud
 from bladewright.fitting.fit import fit
 from bladewright.fitting.free_parameters import FreeParameters
@@ -191,6 +191,17 @@ def test_the_best_design_is_kept_where_the_interruption_falls_between_two_search
     assert found.interrupted
     assert not found.passed
     assert found.mean < 0.01 * float(found.built.chord)
+
+
+def test_a_match_is_reported_though_its_sections_cannot_be_drawn(monkeypatch):
+    def refusing(_):
+        raise DesignError("the native curves need more poles than are allowed")
+
+    monkeypatch.setattr("bladewright.fitting.fit.extrema_of", refusing)
+    found = fit(cloud(0, 300), truth(0), free="stagger")
+    assert found.passed
+    assert found.to_dict()["curvature_extrema"] == {}
+    assert "extrema" not in str(found)
 
 
 def test_progress_is_told():

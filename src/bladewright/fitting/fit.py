@@ -264,7 +264,7 @@ def _reported(
         rank=statistics.rank,
         condition=statistics.condition,
         noise=measurement.noise_estimate.noise,
-        extrema=extrema_of(built),
+        extrema=_extrema(built),
         tolerance=target.tolerance,
         failures=failures_of(measurement, statistics, match, target),
         notes=notes_of(notes, measurement, statistics, match, target),
@@ -272,3 +272,11 @@ def _reported(
         motion=motion,
         interrupted=match.interrupted,
     )
+
+
+def _extrema(built: Any) -> Mapping[str, int]:
+    """Extrema of curvature of what is built; none where sections that end a search on the way cannot be drawn."""
+    try:
+        return extrema_of(built)
+    except DesignError:
+        return {}

@@ -86,7 +86,7 @@ class Fit(FrozenRecord, Shown):
     noise: float
     """standard deviation of the cloud's own noise, as neighbouring points show it [m]"""
     extrema: Mapping[str, int]
-    """number of extrema of the curvature of each side, the most of any section"""
+    """number of extrema of the curvature of each side, the most of any section; empty where sections cannot be made"""
     tolerance: float | None
     """largest distance of an inlier that was asked for [m]"""
     failures: tuple[str, ...]

@@ -33,7 +33,7 @@ def text(fit: Fit) -> str:
     lines.append(f"  {', '.join(limits)}, chord {with_unit(fit.design, fit.chord, 6)}")
     lines += [f"  {line}" for line in (_outliers_line(fit), _motion_line(fit)) if line]
     waves = ", ".join(f"{count} on the {name} side" for name, count in fit.extrema.items())
-    lines.append(f"  extrema of curvature: {waves}")
+    lines += [f"  extrema of curvature: {waves}"] if waves else []
     lines.append(
         f"  {_number_of(len(fit.estimates), 'free parameter')}, rank {fit.rank}, condition {fit.condition:.2g}, "
         f"{_number_of(fit.evaluations, 'evaluation')}"

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bladewright.designs import Design
-from bladewright.errors import DesignError, FitError
+from bladewright.errors import BladewrightError, DesignError, FitError
 from bladewright.fitting.clouds.thinning import random_subset
 from bladewright.fitting.matching.blade_ends import BladeEnds, blade_ends_of
 from bladewright.fitting.matching.edge_overhang import edge_overhang_of
@@ -54,7 +54,7 @@ class BestSoFar:
             )
             try:
                 return replace(found, design=coarse, interrupted=True), coarse.build()
-            except DesignError:
+            except BladewrightError:
                 continue
         return None
 
