@@ -10,6 +10,7 @@ import pytest
 import bladewright as bw
 from bladewright import cad
 from bladewright.blade.design.cut import AtX, Cut
+from bladewright.blade.design.disc import Disc
 from bladewright.blade.design.fillet import Fillet
 from bladewright.blade.native.native_edges import with_native_edges
 from bladewright.blade.native.pivot import pivots_of
@@ -124,6 +125,17 @@ def test_a_blade_with_filleted_corners_is_one_closed_valid_solid(blade):
     closed = closure(occ_solid(blade).solid)
     assert (closed.solids, closed.free_edges, closed.non_manifold_edges) == (1, 0, 0)
     assert closed.valid
+
+
+@pytest.mark.slow
+def test_passage_and_wheel_stand_around_filleted_corners():
+    design, _ = DESIGNS["a cut edge"]
+    radius = SHARE * design.build().chord / design.metre
+    built = replace(design, hub_fillet=Fillet(radius=radius), disc=Disc(thickness=2.0)).build()
+    for body in (bw.passage(built), bw.wheel(built)):
+        closed = closure(occ_solid(body).solid)
+        assert (closed.solids, closed.free_edges, closed.non_manifold_edges) == (1, 0, 0)
+        assert closed.valid
 
 
 @pytest.mark.parametrize("kind", ["ellipse", "curvature"])

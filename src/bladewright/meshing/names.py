@@ -5,6 +5,14 @@ from pathlib import Path
 
 from bladewright.errors import MeshError
 
+CORNERS = tuple(
+    f"{edge}{place}{run}"
+    for edge in ("leading_edge", "trailing_edge")
+    for place in ("_upper", "_lower", "")
+    for run in ("_run", "")
+    if place or run
+)
+"""Fillets about the corners of edges, whose names begin with those of the edges."""
 GROUPS = (
     "hub_upper",
     "hub_lower",
@@ -29,7 +37,7 @@ GROUPS = (
         f"blade_{wall}_{part}_{face}"
         for wall in ("hub", "shroud")
         for part in ("strip", "fillet")
-        for face in ("upper", "lower", "leading_edge", "trailing_edge")
+        for face in ("upper", "lower", *CORNERS, "leading_edge", "trailing_edge")
     ),
     "hub",
     "shroud",

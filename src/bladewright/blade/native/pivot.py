@@ -20,7 +20,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, lru_cache
 from typing import NamedTuple, cast
 
 import numpy as np
@@ -41,6 +41,8 @@ SETTLED = 1e-12
 UPRIGHT = 0.08
 """Largest cosine of the angle between corner and radius at which the ball only turns, c and d apart or not: the corner
 is then no deeper in the ball than 0.3 % of the radius, on lines that lean by up to some 6 deg."""
+REMEMBERED = 8
+"""Touches and corners whose ways are remembered: they are asked for again at once, by limits, knots and faces."""
 LOOKED_AT = np.linspace(0.0, 1.0, 65)
 """Shares of the turn at which it is seen how the contact moves."""
 
@@ -175,9 +177,10 @@ class Pivot(FrozenRecord):
         )
 
 
-def pivots_of(touch: Touch) -> list[Pivot]:
+@lru_cache(maxsize=REMEMBERED)
+def pivots_of(touch: Touch) -> tuple[Pivot, ...]:
     """The parts of a real ball's ways about all corners of its section, in order."""
-    found = []
+    found: list[Pivot] = []
     for corner in touch.section.corners:
         even = Pivot(touch=touch, corner=corner, runs=False, first=True, last=True)
         if even.upright():
@@ -192,7 +195,7 @@ def pivots_of(touch: Touch) -> list[Pivot]:
             else:
                 kinds = [(False, True, False), (True, False, True)]
         found += [Pivot(touch=touch, corner=corner, runs=runs, first=one, last=two) for runs, one, two in kinds]
-    return found
+    return tuple(found)
 
 
 class Foot(NamedTuple):
@@ -230,6 +233,7 @@ def feet(touch: Touch, pivots: Sequence[tuple[Pivot, Reals]]) -> list[Foot]:
     ]
 
 
+@lru_cache(maxsize=REMEMBERED)
 def way(touch: Touch, corner: Corner) -> tuple[Reals, Reals]:
     """v (m,) of the contact and centres (m, 3) of a real ball that touches a corner's line, at shares of its turn."""
     section, wall, corners = touch.section.real(), touch.ball.wall.real(), touch.corners
