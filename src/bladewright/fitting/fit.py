@@ -131,7 +131,7 @@ def fit(
         precision=None if weights is None else _weights(weights, len(points)),
     )
     structured = parameters is None and (start is not None or like is not None)
-    target = MatchTarget(tolerance=tolerance, parameters=parameters, structured=structured, registered=align)
+    target = MatchTarget(tolerance=tolerance, parameters=parameters, structured=structured)
     try:
         if kind is None:
             found, built, reason = matched_unified(task, start, like, header, target)
