@@ -5,7 +5,7 @@ import numpy as np
 from bladewright.fitting.clouds.isolated import without_isolated_points
 from bladewright.fitting.clouds.thinning import even_subset
 from bladewright.fitting.design_header import Arrangement
-from bladewright.fitting.initial_guess.hypotheses import machine_coordinates, ranked_outlines
+from bladewright.fitting.initial_guess.hypotheses import machine_coordinates, ranked_channels
 from bladewright.nurbs.basis import Reals
 
 DECIDING_POINTS = 600
@@ -47,9 +47,9 @@ def found_arrangement(points: Reals) -> Arrangement:
     some = some[even_subset(some, DECIDING_POINTS)]
     away: list[float] = []
     for name in ("annular", "linear"):
-        _, found = ranked_outlines(machine_coordinates(some, name), revolved=name == "annular")
-        away.append(found[0].match.mean)
-        if away[0] < ANNULAR_AT_ONCE * found[0].unwrapped.chord:
+        found = ranked_channels(machine_coordinates(some, name), revolved=name == "annular")
+        away.append(found[0].mean_distance)
+        if away[0] < ANNULAR_AT_ONCE:
             return "annular"
     return "linear" if away[1] < 0.5 * away[0] else "annular"
 

@@ -1,37 +1,50 @@
 """Which pieces of a cloud's meridional outline are its walls, and which its edges."""
 
+from dataclasses import dataclass, replace
+
 import numpy as np
 from scipy.spatial import cKDTree
 
-from bladewright.fitting.initial_guess.channel import needed_counts, rough_channel
+from bladewright.fitting.initial_guess.channel import FirstChannel, channel_through
 from bladewright.fitting.initial_guess.meridional_outline import alpha_boundary, corner_sets
-from bladewright.fitting.initial_guess.section_match import nearest_places
-from bladewright.fitting.initial_guess.section_shape import ROOT_IN, ROOT_OUT
-from bladewright.fitting.initial_guess.sections_in_channel import (
-    SectionsInChannel,
-    first_sections,
-    mean_distance,
-    unwrapped_in,
-)
+from bladewright.fitting.initial_guess.slices import PlanePoints, Slices, chord_direction, slices_of
+from bladewright.fitting.model_selection.structure import INITIAL_BLADES
 from bladewright.numerics.elementary import cumulative_length
 from bladewright.nurbs.basis import Reals
 
-DECIDING_POINTS = 450
-"""points by which outlines are compared; it bounds the time."""
-MOST_CURVE_POINTS = 5
-"""control points of a piece of the outline at most"""
+STATIONS: Reals = np.linspace(0.0, 1.0, 9)
+"""v of the slices"""
+MOST_TRIM = 0.2
+"""most by which an edge moves to the ends of the cambers, in u"""
+CHANNEL = INITIAL_BLADES[1].channel
+"""control points of the channel's curves"""
+LAW_COUNT = 4
+"""control points of their laws along the span"""
 BORDER_SHARE, BORDER_POINTS, CORNER_MARGIN = 0.06, 24, 0.12
 """share of the points (and at least `BORDER_POINTS`) beside a piece of the outline that show whether the sides meet
 there; they keep clear of its ends by `CORNER_MARGIN` of it."""
 WALL_OPENING_RATIO = 1.4
 """ratio of the openings from which two opposite pieces are the walls."""
-CLEAR_DISTANCE = 3e-3
-"""mean distance, of the chord, that settles the outline where the other pairing lies three times as far off."""
-NEARER_RATIO = 0.9
-"""ratio of mean distances below which an outline without the distant points is taken; otherwise these belong to the
-blade, and lie off as the channel does not follow it yet."""
 RADIAL_SHARE = 0.05
 """axial share of the way from edge to edge below which the rounder edge leads."""
+ROUNDER_RATIO = 1.2
+"""ratio of radii from which one edge is the rounder one."""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class SlicedChannel:
+    """A channel, the points on its stream surfaces, and slices of them."""
+
+    channel: FirstChannel
+    plane: PlanePoints
+    slices: Slices
+    outside: float
+    """mean distance of the points from the channel, past its walls, in chords"""
+
+    @property
+    def mean_distance(self) -> float:
+        """Mean distance of the points from the slices and from the channel, in chords."""
+        return self.slices.mean_distance + self.outside
 
 
 def machine_coordinates(points: Reals, arrangement: str) -> Reals:
@@ -48,34 +61,55 @@ def machine_coordinates(points: Reals, arrangement: str) -> Reals:
     return np.stack([x, np.sqrt(y**2 + z**2), wrapped], axis=-1)
 
 
-def ranked_outlines(machine: Reals, *, revolved: bool) -> tuple[Reals, list[SectionsInChannel]]:
-    """The points that count, and the blades for each choice of walls and edges, the nearest first."""
-    found = _likely_outlines(machine, revolved=revolved)
-    best = found[0]
-    distances = nearest_places(best.shape, unwrapped_in(machine, best.channel), best.match.laws)[2]
-    kept = distances < 5.0 * np.median(distances) + 0.03 * best.unwrapped.chord
-    if np.mean(kept) < 0.995:
-        other = _likely_outlines(machine[kept], revolved=revolved)
-        if other[0].match.mean / other[0].unwrapped.chord < NEARER_RATIO * best.match.mean / best.unwrapped.chord:
-            return machine[kept], other
-    return machine, found
-
-
-def _likely_outlines(machine: Reals, *, revolved: bool) -> list[SectionsInChannel]:
-    """The blades for each likely choice of walls and edges, the nearest first."""
-    few = machine[np.random.default_rng(1).permutation(len(machine))[:DECIDING_POINTS]]
-    tried = []
+def ranked_channels(machine: Reals, *, revolved: bool) -> list[SlicedChannel]:
+    """The channel and slices for each likely choice of walls and edges, those nearest to the points first."""
+    found = []
     for pieces in corner_sets(alpha_boundary(machine[:, :2])):
         for turn in pairings(machine, pieces, revolved=revolved):
             named = _named(pieces, turn)
-            found = _sections_of_outline(few, named, revolved=revolved)
-            if _radial(named) and _rounder_at_end(found):
-                found = _sections_of_outline(few, _reversed(named), revolved=revolved)
-            tried.append(found)
-        away = sorted(mean_distance(found, few) for found in tried)
-        if away[0] < min([CLEAR_DISTANCE * tried[0].unwrapped.chord, *(each / 3.0 for each in away[1:2])]):
-            break
-    return sorted(tried, key=lambda found: mean_distance(found, few))
+            sliced = sliced_channel(machine, named, revolved=revolved)
+            if _radial(named) and _rounder_at_end(sliced.slices):
+                sliced = sliced_channel(machine, _reversed(named), revolved=revolved)
+            found.append(sliced)
+    return sorted(found, key=lambda each: each.mean_distance)
+
+
+def sliced_channel(machine: Reals, named: dict[str, Reals], *, revolved: bool) -> SlicedChannel:
+    """The slices in the channel of one outline; their cambers begin and end at its edges.
+
+    Noses of staggered sections reach past the ends of their camber, so that the edges are moved to these once.
+    """
+    channel = channel_through(named, CHANNEL, revolved=revolved)
+    slices = _sliced(machine, channel).slices
+    channel = channel_through(_trimmed(channel, slices), CHANNEL, revolved=revolved)
+    sliced = _sliced(machine, channel)
+    line = sliced.slices.camber.copy()
+    first, last = line[:, :1, 0], line[:, 3:, 0]
+    line[..., 0] = (line[..., 0] - first) / np.maximum(last - first, 0.2)
+    return replace(sliced, slices=replace(sliced.slices, camber=line))
+
+
+def _sliced(machine: Reals, channel: FirstChannel) -> SlicedChannel:
+    """The points in the planes of a channel's stream surfaces, and their slices."""
+    u, v = channel.places(machine[:, :2])
+    v = np.clip(v, 0.0, 1.0)
+    past = machine[:, :2] - channel.position(u, v)
+    extent, length = channel.extents(v)
+    plane = PlanePoints(points=np.stack([channel.abscissa(u, v), machine[:, 2]], axis=-1) / extent[:, None], v=v)
+    slices = slices_of(plane, chord_direction(plane), STATIONS, LAW_COUNT)
+    outside = float(np.mean(np.sqrt(np.sum(past**2, axis=-1)) / length)) / float(np.mean(slices.chords))
+    return SlicedChannel(channel=channel, plane=plane, slices=slices, outside=outside)
+
+
+def _trimmed(channel: FirstChannel, slices: Slices) -> dict[str, Reals]:
+    """The four curves of a channel between the ends of the cambers."""
+    ends = channel.u_at(slices.camber[:, [0, 3], 0] * channel.extents(slices.v)[0][:, None], slices.v)
+    first, last = np.clip(ends[:, 0], -MOST_TRIM, MOST_TRIM), np.clip(ends[:, 1], 1.0 - MOST_TRIM, 1.0 + MOST_TRIM)
+    pieces = {name: channel.position(u, slices.v) for name, u in (("leading_edge", first), ("trailing_edge", last))}
+    for name, row in (("hub", 0), ("shroud", -1)):
+        u = np.linspace(first[row], last[row], 41)
+        pieces[name] = channel.position(u, slices.v[row])
+    return pieces
 
 
 def pairings(machine: Reals, pieces: list[Reals], *, revolved: bool) -> tuple[int, ...]:
@@ -122,20 +156,15 @@ def _named(pieces: list[Reals], turn: int) -> dict[str, Reals]:
     return {"hub": hub, "trailing_edge": trailing, "shroud": shroud[::-1], "leading_edge": leading[::-1]}
 
 
-def _sections_of_outline(few: Reals, named: dict[str, Reals], *, revolved: bool) -> SectionsInChannel:
-    """The sections found in the channel of one outline."""
-    channel = rough_channel(named, needed_counts(named, MOST_CURVE_POINTS, len(few)), revolved=revolved)
-    return first_sections(few, channel, (4, 4), 3, turns=10)
-
-
 def _radial(named: dict[str, Reals]) -> bool:
     """Whether the stream lines hardly lead along x, so that x does not show where they start."""
     step = np.mean(named["trailing_edge"], axis=0) - np.mean(named["leading_edge"], axis=0)
     return abs(float(step[0])) < RADIAL_SHARE * float(np.sqrt(np.sum(step**2)))
 
 
-def _rounder_at_end(found: SectionsInChannel) -> bool:
-    return float(np.mean(found.match.laws[:, ROOT_OUT])) > 1.1 * float(np.mean(found.match.laws[:, ROOT_IN]))
+def _rounder_at_end(slices: Slices) -> bool:
+    first, last = slices.radii
+    return float(np.mean(last)) > ROUNDER_RATIO * float(np.mean(first))
 
 
 def _reversed(named: dict[str, Reals]) -> dict[str, Reals]:

@@ -9,7 +9,9 @@ RING_PLACES = 120
 """places of the boundary between which corners are sought; the search takes their cube in time."""
 FINE_PER_PLACE, CORNER_REACH = 10, 14
 """places of the finer ring for each of them, and how far on it the corner is sought around a cut (`CORNER_REACH`)"""
-SHORTEST_CURVE = 0.03
+NEAR_PLACES = 3
+"""places within which two corners are the same"""
+SHORTEST_CURVE = 0.02
 """shortest of the four curves, of the boundary."""
 CORNER_WORTH = 0.01
 """what a corner of one radian is worth, in squared distances left by the curves."""
@@ -71,8 +73,12 @@ def _loop(triangles: np.ndarray, count: int) -> np.ndarray | None:
     return np.array(loop)
 
 
-def corner_sets(line: Reals, sets: int = 2) -> list[list[Reals]]:
-    """Divisions of a closed boundary (m, 2) into four smooth pieces in order, the likeliest first."""
+def corner_sets(line: Reals) -> list[list[Reals]]:
+    """Divisions of a closed boundary (m, 2) into four smooth pieces in order, the likeliest first.
+
+    The others lack one of the pieces of the first: an outline that ends in a point has three corners, and which of
+    these is a short curve does not show.
+    """
     closed = np.concatenate([line, line[:1]])
     spread = np.ptp(line, axis=0)
     away = np.sqrt(np.sum((np.diff(closed, axis=0) / spread) ** 2, axis=-1))
@@ -81,20 +87,28 @@ def corner_sets(line: Reals, sets: int = 2) -> list[list[Reals]]:
     fine = np.stack([np.interp(at, way, closed[:, i]) for i in (0, 1)], axis=-1)
     ring = fine[::FINE_PER_PLACE]
     cost = _costs(ring / spread) - CORNER_WORTH * _turns(ring / spread)[:, None]
+    first = _best_cuts(cost)
+    sets = [] if first is None else [first]
+    for start, end in zip(sets[0], [*sets[0][1:], sets[0][0] + RING_PLACES], strict=True) if sets else ():
+        other = np.array(cost)
+        places = np.arange(start - NEAR_PLACES, start + NEAR_PLACES + 1) % RING_PLACES
+        steps = slice(max(0, end - start - 2 * NEAR_PLACES), end - start + 2 * NEAR_PLACES + 1)
+        other[places, steps] = np.inf
+        cuts = _best_cuts(other)
+        if cuts is not None and not any(_same(cuts, each) for each in sets):
+            sets.append(cuts)
     found = []
-    for _ in range(sets):
-        cuts = _best_cuts(cost)
-        if cuts is None:
-            break
+    for cuts in sets:
         corners = [_outermost(fine / spread, FINE_PER_PLACE * cut) for cut in cuts]
         ends = [*corners[1:], corners[0] + len(fine)]
         found.append([fine[np.arange(i, j + 1) % len(fine)] for i, j in zip(corners, ends, strict=True)])
-        # the next set has another place for one of the corners
-        cost = np.array(cost)
-        for cut in cuts[:1]:
-            near = (np.arange(RING_PLACES) - cut + 3) % RING_PLACES <= 6
-            cost[near] += 1.0
     return found
+
+
+def _same(cuts: list[int], others: list[int]) -> bool:
+    """Whether each cut is near one of the others."""
+    apart = np.abs(np.array(cuts)[:, None] - np.array(others))
+    return bool(np.all(np.min(np.minimum(apart, RING_PLACES - apart), axis=1) <= NEAR_PLACES))
 
 
 def _outermost(fine: Reals, cut: int) -> int:

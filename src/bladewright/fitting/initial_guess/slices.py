@@ -1,0 +1,206 @@
+"""Camber and thickness of a blade's sections: linear least squares of both sides in frames along the chord.
+
+With t from edge to edge along the chord, the sides stand at c(t, v) + h(t, v) and c(t, v) - h(t, v) across it. The
+middle c is a cubic in t, so that it is a Bezier curve in the plane, and the half thickness h is made of the roots and
+powers that round, sharp and blunt edges need; each coefficient is a law along the span v. Which side a point is on, and
+how much it counts, follows from the last turn.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.polynomial import chebyshev
+from scipy.spatial import ConvexHull
+
+from bladewright.numerics.elementary import turned_left
+from bladewright.nurbs.basis import Reals
+from bladewright.section.camber import bernstein
+from bladewright.section.laws import law_basis
+
+TURNS = 12
+"""times that points are assigned to the sides; most clouds settle in five"""
+RIDGE = 1e-3
+"""weight that holds coefficients which the points leave open, of the weight of all points"""
+TUKEY = 4.685
+"""distance, in standard deviations, from which a point does not count (Holland and Welsch 1977)"""
+STEEPEST = np.radians(86.0)
+"""steepest angle of a chord or a camber [rad]; the family's own limit is 90 degrees"""
+BANDS, BAND_POINTS = 8, 12
+"""bands along the span that show where sections begin and end, and how they are turned; and the points that one needs"""
+PLACES: Reals = (1.0 - np.cos(np.pi * np.linspace(0.0, 1.0, 42)[1:-1])) / 2.0
+"""places along the chord at which the half thickness is given"""
+EDGE_PLACE = 0.02
+"""place along the chord, from an edge, at which the half thickness shows the edge's radius"""
+
+SpanLaw = Callable[[Reals], Reals]
+"""a quantity (n,) by place along the span (n,)"""
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class PlanePoints:
+    """Points of a cloud in the planes of their sections."""
+
+    points: Reals
+    """(n, 2) abscissa and ordinate, in extents of the stream lines"""
+    v: Reals
+    """(n,) place along the span; zeros of a single section"""
+
+    @property
+    def flat(self) -> bool:
+        """Whether all points belong to one section."""
+        return not np.any(self.v)
+
+    @cached_property
+    def bands(self) -> list[np.ndarray]:
+        """Indices of the points in bands along the span that overlap."""
+        if self.flat:
+            return [np.arange(len(self.v))]
+        middles = np.linspace(0.0, 1.0, BANDS + 1)
+        found = [np.flatnonzero(np.abs(self.v - middle) < 1.0 / BANDS) for middle in middles]
+        return [rows for rows in found if len(rows) >= BAND_POINTS]
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Slices:
+    """Sections at places v (m,) along the span, in extents of the stream lines."""
+
+    v: Reals
+    camber: Reals
+    """(m, 4, 2) control points of the camber lines, cubic Bezier curves"""
+    half: Reals
+    """(m, k) half thickness at PLACES, normal to the camber"""
+    mean_distance: float
+    """of the points from the sections, in chords"""
+
+    @property
+    def chords(self) -> Reals:
+        """(m,) distances from edge to edge."""
+        return np.asarray(np.sqrt(np.sum((self.camber[:, 3] - self.camber[:, 0]) ** 2, axis=-1)))
+
+    @property
+    def radii(self) -> tuple[Reals, Reals]:
+        """(m,) radii of the parabolas through leading and trailing edge: h^2 = 2 R t."""
+        chord = self.chords
+        first, last = (
+            np.array([np.interp(at, PLACES, row) for row in self.half]) for at in (EDGE_PLACE, 1.0 - EDGE_PLACE)
+        )
+        return first**2 / (2.0 * EDGE_PLACE * chord), last**2 / (2.0 * EDGE_PLACE * chord)
+
+
+def slices_of(plane: PlanePoints, turn: SpanLaw, stations: Reals, count: int) -> Slices:
+    """The sections of points whose chord lies along `turn` [rad], with laws of `count` control points."""
+    direction = turn(plane.v)
+    cosine, sine = np.cos(direction), np.sin(direction)
+    rows, at = law_basis(count, plane.v), law_basis(count, stations)
+    a, b = plane.points.T
+    stacking = np.linalg.lstsq(rows, b, rcond=None)[0]
+    b = b - rows @ stacking
+    along, across = cosine * a + sine * b, -sine * a + cosine * b
+    low, high = (_envelope(plane, rows, along, sign) for sign in (-1.0, 1.0))
+    first, size = rows @ low, np.maximum(rows @ (high - low), 1e-6)
+    t = np.clip((along - first) / size, 0.0, 1.0)
+    middle_rows, half_rows = (
+        (values[:, :, None] * rows[:, None, :]).reshape(len(t), -1)
+        for values in (chebyshev.chebvander(2.0 * t - 1.0, 3), _half_basis(t))
+    )
+    even = _even(t, plane)
+    weight = even
+    upper = across > middle_rows @ _ridge(middle_rows, across, even)
+    for _ in range(TURNS):
+        sign = np.where(upper, 1.0, -1.0)[:, None]
+        found = _ridge(np.concatenate([middle_rows, sign * half_rows], axis=1), across, weight)
+        middle, half = middle_rows @ found[: 4 * count], half_rows @ found[4 * count :]
+        off = across - middle
+        # where the sides meet, noise may cross them
+        now = off * np.sign(half) > 0.0
+        left = np.abs(np.abs(off) - np.abs(half))
+        scale = 1.4826 * float(np.median(left)) + 1e-12
+        weight = even * np.maximum(1.0 - (left / (TUKEY * scale)) ** 2, 0.05)
+        if np.array_equal(now, upper):
+            break
+        upper = now
+    return _as_slices(found, stations, at, turn, at @ low, at @ (high - low), at @ stacking, float(np.mean(left / size)))
+
+
+def _as_slices(
+    found: Reals, v: Reals, at: Reals, turn: SpanLaw, first: Reals, size: Reals, stacking: Reals, mean: float
+) -> Slices:
+    """The sections of coefficients `found`, turned back into the plane."""
+    count = at.shape[1]
+    direction = turn(v)
+    cosine, sine = np.cos(direction)[:, None], np.sin(direction)[:, None]
+    thirds = np.array([0.0, 1.0 / 3.0, 2.0 / 3.0, 1.0])
+    ordinates = chebyshev.chebvander(2.0 * thirds - 1.0, 3) @ found[: 4 * count].reshape(4, count) @ at.T
+    ordinates = np.linalg.solve(bernstein(thirds), ordinates).T
+    abscissae = first[:, None] + size[:, None] * thirds
+    line = np.stack(
+        [cosine * abscissae - sine * ordinates, sine * abscissae + cosine * ordinates + stacking[:, None]], axis=-1
+    )
+    # across the chord the sides stand further apart than along the camber's normal
+    slope = 3.0 * np.einsum("kj,mj->mk", _bernstein_slopes(PLACES), ordinates) / size[:, None]
+    half = (_half_basis(PLACES) @ found[4 * count :].reshape(-1, count) @ at.T).T
+    return Slices(v=v, camber=line, half=np.maximum(half, 1e-4 * size[:, None]) / np.sqrt(1.0 + slope**2), mean_distance=mean)
+
+
+def chord_direction(plane: PlanePoints) -> SpanLaw:
+    """The angle of the chord [rad] by place along the span: the principal axis of bands of points, less their trend."""
+    if plane.flat:
+        return lambda v: np.full_like(v, longest_chord(plane.points))
+    angles, places = [], []
+    for rows in plane.bands:
+        trend = np.stack([np.ones(len(rows)), plane.v[rows]], axis=-1)
+        band = plane.points[rows]
+        band = band - trend @ np.linalg.lstsq(trend, band, rcond=None)[0]
+        axis = np.linalg.eigh(band.T @ band)[1][:, 1]
+        angles.append(float(np.arctan(axis[1] / axis[0])) if axis[0] else np.pi / 2.0)
+        places.append(float(np.mean(plane.v[rows])))
+    count = min(3, len(places))
+    law = np.linalg.lstsq(law_basis(count, np.array(places)), np.array(angles), rcond=None)[0]
+    return lambda v: np.clip(law_basis(count, v) @ law, -STEEPEST, STEEPEST)
+
+
+def longest_chord(points: Reals) -> float:
+    """Direction [rad], towards larger abscissae, of the longest distance between two of points (n, 2)."""
+    corners = points[ConvexHull(points).vertices]
+    apart = corners[:, None] - corners
+    i, j = np.unravel_index(int(np.argmax(np.sum(apart**2, axis=-1))), apart.shape[:2])
+    along = apart[i, j] if apart[i, j, 0] > 0.0 else -apart[i, j]
+    return float(np.arctan2(along[1], along[0]))
+
+
+def _half_basis(t: Reals) -> Reals:
+    """Functions of the half thickness (n, 6): round edges, two powers between, and edges with a thickness."""
+    s = 1.0 - t
+    return np.stack([np.sqrt(t) * s, np.sqrt(s) * t, t * s, t**2 * s, s, t], axis=-1)
+
+
+def _envelope(plane: PlanePoints, rows: Reals, along: Reals, sign: float) -> Reals:
+    """Control points of the law along which the outermost points along the chord stand."""
+    if plane.flat:
+        return np.array([sign * np.max(sign * along)])
+    chosen = np.concatenate(
+        [band[np.argsort(-sign * along[band])[: max(1, len(band) // 60)]] for band in plane.bands]
+    )
+    return _ridge(rows[chosen], along[chosen], np.ones(len(chosen)))
+
+
+def _even(t: Reals, plane: PlanePoints) -> Reals:
+    """Weights (n,) by which each part of the blade counts alike, however many points it has."""
+    cells = np.minimum((10.0 * t).astype(int), 9) + 10 * np.clip((4.0 * plane.v).astype(int), 0, 3)
+    return np.asarray(1.0 / np.sqrt(np.bincount(cells)[cells]))
+
+
+def _ridge(matrix: Reals, rhs: Reals, weight: Reals) -> Reals:
+    """Weighted least squares (n,), with a weak pull of all coefficients towards zero."""
+    rows = matrix * weight[:, None]
+    normal = rows.T @ rows
+    normal[np.diag_indices_from(normal)] += RIDGE**2 * np.sum(weight**2)
+    return np.asarray(np.linalg.solve(normal, rows.T @ (rhs * weight)))
+
+
+def _bernstein_slopes(t: Reals) -> Reals:
+    """Derivatives (n, 4) of the cubic Bernstein polynomials, of a third."""
+    s = 1.0 - t
+    return np.stack([-(s**2), s**2 - 2.0 * t * s, 2.0 * t * s - t**2, t**2], axis=-1)
