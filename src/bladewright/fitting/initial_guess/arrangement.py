@@ -2,17 +2,14 @@
 
 import numpy as np
 
-from bladewright.fitting.clouds.isolated import without_isolated_points
-from bladewright.fitting.clouds.thinning import even_subset
 from bladewright.fitting.design_header import Arrangement
-from bladewright.fitting.initial_guess.hypotheses import machine_coordinates, ranked_channels
+from bladewright.fitting.initial_guess.hypotheses import SlicedChannel, machine_coordinates, ranked_channels
 from bladewright.nurbs.basis import Reals
 
-DECIDING_POINTS = 600
-"""points by which the two arrangements are compared; it bounds the time."""
 ANNULAR_AT_ONCE = 3e-3
-"""mean distance, of the chord, with which a blade around the axis is accepted without comparing the other
-arrangement."""
+"""mean distance, in chords, with which slices around the axis are accepted without comparing the other arrangement."""
+CLEARLY_LINEAR = 0.5
+"""ratio of mean distances, linear to annular, below which a blade belongs to a cascade."""
 ROW_BINS, ROW_HEIGHT = 16, 0.03
 """parts of x in each of which the lowest point is sought; points up to `ROW_HEIGHT` of the span above it belong to the
 same row."""
@@ -25,33 +22,27 @@ than `CLEAR_ROW` of the span. Rows of Aachen's stator with noise scatter by 1.7e
 1.4e-3 on planes (design/fit_clouds.md)."""
 
 
-def found_arrangement(points: Reals) -> Arrangement:
-    """The arrangement of the blade of points (n, 3) [m], by which sections are the closer ones.
+def arranged_channels(points: Reals, arrangement: Arrangement | None) -> tuple[Arrangement, list[SlicedChannel]]:
+    """The arrangement of the blade of points (n, 3) [m], unless it is given, and its likely channels with slices."""
+    known = arrangement or _arrangement_by_axis(points) or _arrangement_by_rows(points)
+    annular = [] if known == "linear" else ranked_channels(machine_coordinates(points, "annular"), revolved=True)
+    if known == "annular" or (annular and annular[0].mean_distance < ANNULAR_AT_ONCE):
+        return "annular", annular
+    linear = ranked_channels(machine_coordinates(points, "linear"), revolved=False)
+    if known == "linear" or linear[0].mean_distance < CLEARLY_LINEAR * annular[0].mean_distance:
+        return "linear", linear
+    return "annular", annular
 
-    Sections lie on surfaces of revolution or on planes. A blade that reaches the machine axis, or surrounds it, belongs
-    to a cascade.
-    """
-    points = np.asarray(points, dtype=np.float64)
+
+def _arrangement_by_axis(points: Reals) -> Arrangement | None:
+    """A blade that reaches the machine axis, or surrounds it, belongs to a cascade; one along theta does not."""
     y, z = points[:, 1], points[:, 2]
     radius = np.sqrt(y**2 + z**2)
     around = np.sort(np.arctan2(y, z))
     gaps = np.diff(np.concatenate([around, around[:1] + 2.0 * np.pi]))
     if np.min(radius) < 0.02 * np.max(radius) or np.max(gaps) < np.pi:
         return "linear"
-    if np.ptp(z) < 0.05 * np.ptp(radius):
-        return "annular"
-    rows = _arrangement_by_rows(points)
-    if rows is not None:
-        return rows
-    some = without_isolated_points(np.unique(points, axis=0))
-    some = some[even_subset(some, DECIDING_POINTS)]
-    away: list[float] = []
-    for name in ("annular", "linear"):
-        found = ranked_channels(machine_coordinates(some, name), revolved=name == "annular")
-        away.append(found[0].mean_distance)
-        if away[0] < ANNULAR_AT_ONCE:
-            return "annular"
-    return "linear" if away[1] < 0.5 * away[0] else "annular"
+    return "annular" if np.ptp(z) < 0.05 * np.ptp(radius) else None
 
 
 def _arrangement_by_rows(points: Reals) -> Arrangement | None:

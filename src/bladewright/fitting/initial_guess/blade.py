@@ -13,14 +13,14 @@ import numpy as np
 from bladewright.blade.design.flow_path import Channel
 from bladewright.blade.design.unified import UnifiedBlade
 from bladewright.designs import Point
-from bladewright.errors import BladewrightError, DesignError, FitError
+from bladewright.errors import BladewrightError, FitError
 from bladewright.fitting.clouds.isolated import without_isolated_points
 from bladewright.fitting.clouds.thinning import even_subset, random_subset
 from bladewright.fitting.design_header import Arrangement, Unit
 from bladewright.fitting.free_parameters import FreeParameters
-from bladewright.fitting.initial_guess.arrangement import found_arrangement
+from bladewright.fitting.initial_guess.arrangement import arranged_channels
 
-from bladewright.fitting.initial_guess.hypotheses import SlicedChannel, machine_coordinates, ranked_channels
+from bladewright.fitting.initial_guess.hypotheses import SlicedChannel
 from bladewright.fitting.initial_guess.laws import fitted_law, plain_law, unified_numbers
 from bladewright.fitting.initial_guess.slices import PLACES
 from bladewright.fitting.matching.search import Match, Task, searched
@@ -39,6 +39,8 @@ NOISE, ROUNDS = 0.01, 3
 """noise assumed of a first blade, of the chord, and rounds of its search"""
 NEAR = 2e-3
 """mean distance, of the chord, with which no other outline is tried"""
+INLIER_SHARE = 0.94
+"""share of the points that are surely no outliers"""
 MOST_OUTLINES = 3
 """outlines that are tried"""
 
@@ -60,7 +62,7 @@ def first_blade(
     """
     points = without_isolated_points(np.unique(np.asarray(points, dtype=np.float64), axis=0))
     points = points[even_subset(points, DRAWN_POINTS)]
-    arrangement = arrangement or found_arrangement(points)
+    arrangement, channels = arranged_channels(points, arrangement)
     some = points[random_subset(len(points), SEARCHED_POINTS)]
     task = Task(points=some, weights=np.ones(len(some)), free=FreeParameters(), bounds={})
     header: dict[str, Any] = {"name": name, "length_unit": length_unit, "arrangement": arrangement}
@@ -70,19 +72,24 @@ def first_blade(
         header["blade_count"] = blade_count
     best: Match | None = None
     refusal: BladewrightError | None = None
-    machine = machine_coordinates(points, arrangement)
-    for sliced in ranked_channels(machine, revolved=arrangement == "annular")[:MOST_OUTLINES]:
+    for sliced in channels[:MOST_OUTLINES]:
         try:
             found = searched(task, with_feasible_edges(_blade_of(sliced, header)), noise=NOISE, rounds=ROUNDS)
         except BladewrightError as error:
             refusal = error
             continue
-        best = found if best is None or found.mean_distance < best.mean_distance else best
-        if best.mean_distance < NEAR * best.model.chord:
+        best = found if best is None or typical_distance(found) < typical_distance(best) else best
+        if typical_distance(best) < NEAR:
             break
     if best is None:
         raise FitError(f"no blade that can be built was found near the points ({refusal}); {AXES_HINT}")
     return with_feasible_edges(reshaped(best.design, structure or FEW))  # type: ignore[return-value]
+
+
+def typical_distance(match: Match) -> float:
+    """Mean distance of the nearest points, in chords: outliers do not tell one first design from another."""
+    distances = np.sort(match.state.footpoints.distances)
+    return float(np.mean(distances[: int(INLIER_SHARE * len(distances))])) / match.model.chord
 
 
 def _blade_of(sliced: SlicedChannel, header: dict[str, Any]) -> UnifiedBlade:

@@ -16,6 +16,8 @@ STATIONS: Reals = np.linspace(0.0, 1.0, 9)
 """v of the slices"""
 MOST_TRIM = 0.2
 """most by which an edge moves to the ends of the cambers, in u"""
+CLEAR_DISTANCE = 2e-3
+"""mean distance of the points, in chords, with which no other outline is tried"""
 CHANNEL = INITIAL_BLADES[1].channel
 """control points of the channel's curves"""
 LAW_COUNT = 4
@@ -71,6 +73,8 @@ def ranked_channels(machine: Reals, *, revolved: bool) -> list[SlicedChannel]:
             if _radial(named) and _rounder_at_end(sliced.slices):
                 sliced = sliced_channel(machine, _reversed(named), revolved=revolved)
             found.append(sliced)
+        if min(each.mean_distance for each in found) < CLEAR_DISTANCE:
+            break
     return sorted(found, key=lambda each: each.mean_distance)
 
 
