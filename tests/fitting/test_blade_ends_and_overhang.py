@@ -6,8 +6,6 @@ import matching_clouds
 import numpy as np
 import pytest
 
-from bladewright.fitting.clouds.thinning import even_subset
-from bladewright.fitting.initial_guess.hypotheses import machine_coordinates, ranked_outlines
 from bladewright.fitting.matching.blade_ends import blade_ends_of
 from bladewright.fitting.matching.edge_overhang import edge_overhang_of
 from bladewright.fitting.matching.footpoints import footpoints_at, nearest_footpoints
@@ -200,11 +198,3 @@ def test_a_true_edge_costs_nothing_in_an_exact_cloud_whose_points_happen_to_lie_
     # beside the edge two points are much nearer to each other than to it
     assert excess[0] > 1e-4
     assert excess[1] < 0.0
-
-
-def test_points_of_a_blade_do_not_lie_off_it_where_its_first_channel_does_not_follow_them():
-    _, points = made(10)
-    points = np.unique(points, axis=0)
-    machine = machine_coordinates(points[even_subset(points, 1200)], "annular")
-    kept, _ = ranked_outlines(machine, revolved=True)
-    assert len(kept) == len(machine)

@@ -5,7 +5,7 @@ import pytest
 
 from bladewright.blade.design.unified import UnifiedBlade
 from bladewright.blade.native.blade import Blade
-from bladewright.fitting.initial_guess.arrangement import found_arrangement
+from bladewright.fitting.initial_guess.arrangement import arranged_channels
 from bladewright.fitting.initial_guess.blade import first_blade
 from bladewright.fitting.model_selection.structure import structure_of
 from bladewright.nurbs.closest import closest_on_surface
@@ -71,7 +71,7 @@ def test_a_first_blade_has_the_structure_that_was_asked_for() -> None:
 
 @pytest.mark.parametrize(("name", "arrangement"), [("vki-ls89", "linear"), ("compressor-stator", "annular")])
 def test_a_cascade_is_told_from_a_ring_of_blades(name: str, arrangement: str) -> None:
-    assert found_arrangement(_cloud(_truth(name), 600)) == arrangement
+    assert arranged_channels(_cloud(_truth(name), 1000), None)[0] == arrangement
 
 
 @pytest.mark.parametrize(("name", "arrangement"), [("vki-ls89", "linear"), ("aachen-stator", "annular")])
@@ -82,4 +82,4 @@ def test_rows_at_the_ends_tell_a_cascade_from_a_ring_whose_sections_are_met_alik
     # far from the axis, with noise
     points[:, 2] += 0.5 if arrangement == "linear" else 0.0
     points = points + 2e-5 * np.random.default_rng(0).normal(size=points.shape)
-    assert found_arrangement(points) == arrangement
+    assert arranged_channels(points, None)[0] == arrangement

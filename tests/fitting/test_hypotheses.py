@@ -5,7 +5,6 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from bladewright.fitting.initial_guess.channel import needed_counts
 from bladewright.fitting.initial_guess.hypotheses import machine_coordinates, pairings
 from bladewright.fitting.initial_guess.meridional_outline import alpha_boundary, corner_sets
 from machines import built, example
@@ -37,21 +36,7 @@ def test_corners_stand_where_the_outline_does():
     square = np.array([[0.0, 0.0], [4.0, 0.0], [4.0, 1.0], [0.0, 1.0]])
     closed = np.concatenate([square, square[:1]])
     line = np.concatenate([a + (b - a) * np.linspace(0.0, 1.0, 37)[:-1, None] for a, b in pairwise(closed)])
-    pieces = corner_sets(line, sets=1)[0]
+    pieces = corner_sets(line)[0]
     found = np.array([piece[0] for piece in pieces])
     off = np.min(np.sum((found[:, None] - square) ** 2, axis=-1), axis=1) ** 0.5
     assert np.max(off) < 10.0 / 1200.0
-
-
-def test_a_ragged_wall_is_drawn_as_plainly_as_its_points_tell():
-    t = np.linspace(0.0, 1.0, 60)
-    ragged = np.stack([t, 0.01 * np.sin(40.0 * t)], axis=-1)
-    pieces = {
-        "hub": ragged,
-        "shroud": np.stack([t, 1.0 + 0.0 * t], axis=-1),
-        "leading_edge": np.stack([0.0 * t, t], axis=-1),
-        "trailing_edge": np.stack([1.0 + 0.2 * np.sin(np.pi * t), t], axis=-1),
-    }
-    counts = needed_counts(pieces, 5, 400)
-    assert counts["hub"] == counts["shroud"] == counts["leading_edge"] == 2
-    assert counts["trailing_edge"] > 2

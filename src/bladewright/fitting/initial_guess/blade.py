@@ -5,7 +5,6 @@ stream surfaces give camber and thickness, whose laws make a blade with few cont
 blade then brings it to the points.
 """
 
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -19,7 +18,6 @@ from bladewright.fitting.clouds.thinning import even_subset, random_subset
 from bladewright.fitting.design_header import Arrangement, Unit
 from bladewright.fitting.free_parameters import FreeParameters
 from bladewright.fitting.initial_guess.arrangement import arranged_channels
-
 from bladewright.fitting.initial_guess.hypotheses import SlicedChannel
 from bladewright.fitting.initial_guess.laws import fitted_law, plain_law, unified_numbers
 from bladewright.fitting.initial_guess.slices import PLACES
@@ -35,7 +33,7 @@ DRAWN_POINTS, SEARCHED_POINTS = 1200, 500
 """points that show the outline and the slices, and points of the search (`SEARCHED_POINTS`); they bound the time."""
 FEW = INITIAL_BLADES[1]
 """numbers of control points of the blade that is searched"""
-NOISE, ROUNDS = 0.01, 3
+NOISE, ROUNDS = 0.03, 3
 """noise assumed of a first blade, of the chord, and rounds of its search"""
 NEAR = 2e-3
 """mean distance, of the chord, with which no other outline is tried"""
@@ -107,17 +105,19 @@ def _blade_of(sliced: SlicedChannel, header: dict[str, Any]) -> UnifiedBlade:
     # a meridional length at the places of the slices, in extents of the plane
     scale = lengths[:, None] / (channel.radius(np.tile(PLACES, (len(slices.v), 1)), slices.v) * extents[:, None])
     numbers = unified_numbers(slices, FEW.chordwise, FEW.span, scale)
-    return UnifiedBlade(
-        **header,
-        **{"leading_edge_theta" if channel.revolved else "leading_edge_y": law},
-        **numbers,
-        channel=_in_unit(channel.part, metre),
-    )
+    numbers["leading_edge_theta" if channel.revolved else "leading_edge_y"] = law
+    return UnifiedBlade(**header, **numbers, channel=_in_unit(channel.part, metre))
 
 
 def _in_unit(channel: Channel, metre: float) -> Channel:
     """A channel in metres in another unit of length."""
+
     def points(name: str) -> tuple[Point, ...]:
         return tuple(Point(each.x / metre, each.r / metre) for each in getattr(channel, name))
 
-    return replace(channel, **{name: points(name) for name in ("leading_edge", "trailing_edge", "hub", "shroud")})
+    return Channel(
+        leading_edge=points("leading_edge"),
+        trailing_edge=points("trailing_edge"),
+        hub=points("hub"),
+        shroud=points("shroud"),
+    )

@@ -75,9 +75,7 @@ class FirstChannel:
 
     def extents(self, v: Reals) -> tuple[Reals, Reals]:
         """Extents in the plane and meridional lengths [m] (n,) of the stream lines at v (n,)."""
-        first, second = (
-            np.interp(v, SPAN, [np.interp(1.0, ALONG, row) for row in table]) for table in self._table[1:]
-        )
+        first, second = (np.interp(v, SPAN, [np.interp(1.0, ALONG, row) for row in table]) for table in self._table[1:])
         return first, second
 
     def abscissa(self, u: Reals, v: Reals) -> Reals:

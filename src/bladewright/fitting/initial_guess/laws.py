@@ -23,7 +23,9 @@ THINNEST = 1e-3
 """smallest half thickness of a first blade, of the meridional length"""
 
 
-def unified_numbers(slices: Slices, chordwise: tuple[int, int], span: Mapping[str, int], scale: Reals | float) -> dict[str, Any]:
+def unified_numbers(
+    slices: Slices, chordwise: tuple[int, int], span: Mapping[str, int], scale: Reals | float
+) -> dict[str, Any]:
     """Angles, tangents, radii and thicknesses of sections, as laws of `span` control points.
 
     `scale` (m, k) is the meridional length, in extents of the plane, at PLACES of each section.

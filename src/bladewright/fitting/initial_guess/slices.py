@@ -14,7 +14,6 @@ import numpy as np
 from numpy.polynomial import chebyshev
 from scipy.spatial import ConvexHull
 
-from bladewright.numerics.elementary import turned_left
 from bladewright.nurbs.basis import Reals
 from bladewright.section.camber import bernstein
 from bladewright.section.laws import law_basis
@@ -28,7 +27,7 @@ TUKEY = 4.685
 STEEPEST = np.radians(86.0)
 """steepest angle of a chord or a camber [rad]; the family's own limit is 90 degrees"""
 BANDS, BAND_POINTS = 8, 12
-"""bands along the span that show where sections begin and end, and how they are turned; and the points that one needs"""
+"""bands along the span that show where sections begin and end, and how they are turned, and the points of one"""
 PLACES: Reals = (1.0 - np.cos(np.pi * np.linspace(0.0, 1.0, 42)[1:-1])) / 2.0
 """places along the chord at which the half thickness is given"""
 EDGE_PLACE = 0.02
@@ -106,7 +105,7 @@ def slices_of(plane: PlanePoints, turn: SpanLaw, stations: Reals, count: int) ->
         for values in (chebyshev.chebvander(2.0 * t - 1.0, 3), _half_basis(t))
     )
     even = _even(t, plane)
-    weight = even
+    weight: Reals = even
     upper = across > middle_rows @ _ridge(middle_rows, across, even)
     for _ in range(TURNS):
         sign = np.where(upper, 1.0, -1.0)[:, None]
@@ -117,11 +116,13 @@ def slices_of(plane: PlanePoints, turn: SpanLaw, stations: Reals, count: int) ->
         now = off * np.sign(half) > 0.0
         left = np.abs(np.abs(off) - np.abs(half))
         scale = 1.4826 * float(np.median(left)) + 1e-12
-        weight = even * np.maximum(1.0 - (left / (TUKEY * scale)) ** 2, 0.05)
+        weight = np.asarray(even * np.maximum(1.0 - (left / (TUKEY * scale)) ** 2, 0.05))
         if np.array_equal(now, upper):
             break
         upper = now
-    return _as_slices(found, stations, at, turn, at @ low, at @ (high - low), at @ stacking, float(np.mean(left / size)))
+    return _as_slices(
+        found, stations, at, turn, at @ low, at @ (high - low), at @ stacking, float(np.mean(left / size))
+    )
 
 
 def _as_slices(
@@ -132,8 +133,8 @@ def _as_slices(
     direction = turn(v)
     cosine, sine = np.cos(direction)[:, None], np.sin(direction)[:, None]
     thirds = np.array([0.0, 1.0 / 3.0, 2.0 / 3.0, 1.0])
-    ordinates = chebyshev.chebvander(2.0 * thirds - 1.0, 3) @ found[: 4 * count].reshape(4, count) @ at.T
-    ordinates = np.linalg.solve(bernstein(thirds), ordinates).T
+    heights = chebyshev.chebvander(2.0 * thirds - 1.0, 3) @ found[: 4 * count].reshape(4, count) @ at.T
+    ordinates = np.asarray(np.linalg.solve(bernstein(thirds), heights).T)
     abscissae = first[:, None] + size[:, None] * thirds
     line = np.stack(
         [cosine * abscissae - sine * ordinates, sine * abscissae + cosine * ordinates + stacking[:, None]], axis=-1
@@ -141,7 +142,9 @@ def _as_slices(
     # across the chord the sides stand further apart than along the camber's normal
     slope = 3.0 * np.einsum("kj,mj->mk", _bernstein_slopes(PLACES), ordinates) / size[:, None]
     half = (_half_basis(PLACES) @ found[4 * count :].reshape(-1, count) @ at.T).T
-    return Slices(v=v, camber=line, half=np.maximum(half, 1e-4 * size[:, None]) / np.sqrt(1.0 + slope**2), mean_distance=mean)
+    return Slices(
+        v=v, camber=line, half=np.maximum(half, 1e-4 * size[:, None]) / np.sqrt(1.0 + slope**2), mean_distance=mean
+    )
 
 
 def chord_direction(plane: PlanePoints) -> SpanLaw:
@@ -180,9 +183,7 @@ def _envelope(plane: PlanePoints, rows: Reals, along: Reals, sign: float) -> Rea
     """Control points of the law along which the outermost points along the chord stand."""
     if plane.flat:
         return np.array([sign * np.max(sign * along)])
-    chosen = np.concatenate(
-        [band[np.argsort(-sign * along[band])[: max(1, len(band) // 60)]] for band in plane.bands]
-    )
+    chosen = np.concatenate([band[np.argsort(-sign * along[band])[: max(1, len(band) // 60)]] for band in plane.bands])
     return _ridge(rows[chosen], along[chosen], np.ones(len(chosen)))
 
 
