@@ -12,6 +12,7 @@ from functools import cached_property
 
 import numpy as np
 from numpy.polynomial import chebyshev
+from numpy.typing import NDArray
 from scipy.spatial import ConvexHull
 
 from bladewright.nurbs.basis import Reals
@@ -33,6 +34,13 @@ PLACES: Reals = (1.0 - np.cos(np.pi * np.linspace(0.0, 1.0, 42)[1:-1])) / 2.0
 EDGE_PLACE = 0.02
 """place along the chord, from an edge, at which the half thickness shows the edge's radius"""
 
+NOSE, LEAST_NOSE_WEIGHT, NOSE_REACH = 0.08, 0.05, 0.2
+"""distance from an edge, of the chord, from which points count in full, and their weight at the edge: the nose of a
+cambered section does not point along the chord, and the middle across the chord there is not that of the section. The
+edge is the point furthest along the camber's tangent, among those within `NOSE_REACH`."""
+EDGE_SHARE = 60
+"""one in so many points of a band stands at an edge"""
+
 SpanLaw = Callable[[Reals], Reals]
 """a quantity (n,) by place along the span (n,)"""
 
@@ -52,7 +60,7 @@ class PlanePoints:
         return not np.any(self.v)
 
     @cached_property
-    def bands(self) -> list[np.ndarray]:
+    def bands(self) -> list[NDArray[np.intp]]:
         """Indices of the points in bands along the span that overlap."""
         if self.flat:
             return [np.arange(len(self.v))]
@@ -104,7 +112,8 @@ def slices_of(plane: PlanePoints, turn: SpanLaw, stations: Reals, count: int) ->
         (values[:, :, None] * rows[:, None, :]).reshape(len(t), -1)
         for values in (chebyshev.chebvander(2.0 * t - 1.0, 3), _half_basis(t))
     )
-    even = _even(t, plane)
+    full = _even(t, plane)
+    even = full * np.clip(np.minimum(t, 1.0 - t) / NOSE, LEAST_NOSE_WEIGHT, 1.0)
     weight: Reals = even
     upper = across > middle_rows @ _ridge(middle_rows, across, even)
     for _ in range(TURNS):
@@ -120,31 +129,58 @@ def slices_of(plane: PlanePoints, turn: SpanLaw, stations: Reals, count: int) ->
         if np.array_equal(now, upper):
             break
         upper = now
-    return _as_slices(
-        found, stations, at, turn, at @ low, at @ (high - low), at @ stacking, float(np.mean(left / size))
-    )
-
-
-def _as_slices(
-    found: Reals, v: Reals, at: Reals, turn: SpanLaw, first: Reals, size: Reals, stacking: Reals, mean: float
-) -> Slices:
-    """The sections of coefficients `found`, turned back into the plane."""
-    count = at.shape[1]
-    direction = turn(v)
+    # the noses tell the edges' radii
+    found[4 * count :] = _ridge(half_rows, np.where(upper, off, -off), full)
+    left = np.abs(np.abs(off) - np.abs(half_rows @ found[4 * count :]))
+    middle_laws, half_laws = found[: 4 * count].reshape(4, count), found[4 * count :].reshape(-1, count)
+    ends = []
+    for place, sign in ((NOSE, -1.0), (1.0 - NOSE, 1.0)):
+        slopes = chebyshev.chebval(2.0 * place - 1.0, 2.0 * chebyshev.chebder(middle_laws))
+        ahead = along + (rows @ slopes) / size * across
+        near = np.flatnonzero(np.abs(t - place) < NOSE_REACH)
+        ends.append(_outermost(plane, rows, np.stack([along, across], axis=-1), sign * ahead, near))
+    line, half = _placed(at, middle_laws, half_laws, (at @ low, at @ (high - low)), (at @ ends[0], at @ ends[1]))
+    direction = turn(stations)
     cosine, sine = np.cos(direction)[:, None], np.sin(direction)[:, None]
-    thirds = np.array([0.0, 1.0 / 3.0, 2.0 / 3.0, 1.0])
-    heights = chebyshev.chebvander(2.0 * thirds - 1.0, 3) @ found[: 4 * count].reshape(4, count) @ at.T
-    ordinates = np.asarray(np.linalg.solve(bernstein(thirds), heights).T)
-    abscissae = first[:, None] + size[:, None] * thirds
-    line = np.stack(
-        [cosine * abscissae - sine * ordinates, sine * abscissae + cosine * ordinates + stacking[:, None]], axis=-1
-    )
+    x, y = line[..., 0], line[..., 1]
+    line = np.stack([cosine * x - sine * y, sine * x + cosine * y + (at @ stacking)[:, None]], axis=-1)
+    return Slices(v=stations, camber=line, half=half, mean_distance=float(np.mean(left / size)))
+
+
+def _outermost(plane: PlanePoints, rows: Reals, places: Reals, ahead: Reals, near: NDArray[np.intp]) -> Reals:
+    """Control points (count, 2) of the law of the edge: the places of the points that stand furthest ahead."""
+    chosen = []
+    for band in plane.bands:
+        some = np.intersect1d(band, near)
+        chosen.append(some[np.argsort(-ahead[some])[: max(1, len(band) // EDGE_SHARE)]])
+    which = np.concatenate(chosen)
+    return np.stack([_ridge(rows[which], places[which, i], np.ones(len(which))) for i in (0, 1)], axis=-1)
+
+
+def _placed(
+    at: Reals, middle: Reals, half: Reals, frame: tuple[Reals, Reals], ends: tuple[Reals, Reals]
+) -> tuple[Reals, Reals]:
+    """Camber lines (m, 4, 2) from edge to edge, and half thicknesses (m, k) normal to them, in frames along the chord.
+
+    `middle` and `half` are the coefficients of c and h; `frame` (m,) has where t begins and how long it is; `ends`
+    (m, 2) are the edges, between which a cubic is laid through the middle.
+    """
+    first, size = frame
+    start, extent = ends[0][:, 0], np.maximum(ends[1][:, 0] - ends[0][:, 0], 0.2 * size)
+    inner = np.linspace(2.0 * NOSE, 1.0 - 2.0 * NOSE, 9)
+    heights = (chebyshev.chebvander(2.0 * inner - 1.0, 3) @ middle @ at.T).T
+    line = np.empty((len(size), 4, 2))
+    line[..., 0] = start[:, None] + extent[:, None] * np.linspace(0.0, 1.0, 4)
+    places = (first[:, None] + size[:, None] * inner - start[:, None]) / extent[:, None]
+    for row, s, height, low, high in zip(line, places, heights, *(end[:, 1] for end in ends), strict=True):
+        shares = bernstein(s)
+        row[[0, 3], 1] = low, high
+        row[1:3, 1] = np.linalg.lstsq(shares[:, 1:3], height - shares[:, [0, 3]] @ [low, high], rcond=None)[0]
     # across the chord the sides stand further apart than along the camber's normal
-    slope = 3.0 * np.einsum("kj,mj->mk", _bernstein_slopes(PLACES), ordinates) / size[:, None]
-    half = (_half_basis(PLACES) @ found[4 * count :].reshape(-1, count) @ at.T).T
-    return Slices(
-        v=v, camber=line, half=np.maximum(half, 1e-4 * size[:, None]) / np.sqrt(1.0 + slope**2), mean_distance=mean
-    )
+    slope = 3.0 * line[..., 1] @ _bernstein_slopes(PLACES).T / extent[:, None]
+    t = np.clip((start[:, None] + extent[:, None] * PLACES - first[:, None]) / size[:, None], 0.0, 1.0)
+    found = np.einsum("mkj,jc,mc->mk", _half_basis(t), half, at)
+    return line, np.maximum(found, 1e-4 * extent[:, None]) / np.sqrt(1.0 + slope**2)
 
 
 def chord_direction(plane: PlanePoints) -> SpanLaw:
