@@ -5,7 +5,8 @@ from typing import Any
 
 import numpy as np
 
-from bladewright.errors import BladewrightError, FitError
+from bladewright.designs import Design
+from bladewright.errors import BladewrightError, DesignError, FitError
 from bladewright.fitting.clouds.isolated import without_isolated_points
 from bladewright.fitting.clouds.thinning import even_subset
 from bladewright.fitting.design_header import Unit
@@ -25,8 +26,9 @@ TURNS: tuple[float, ...] = (0.0, 0.2, -0.2, 0.5, -0.5)
 may lie across it"""
 NEAR = 2e-3
 """mean distance, of the chord, with which no other direction is tried"""
-NOISE, ROUNDS = 0.01, 3
-"""noise assumed of a first section, of the chord, and rounds of its search"""
+NOISE, ROUNDS = 0.03, (3, 0)
+"""noise assumed of a first section, of the chord, and rounds of its search: none where that leads to one that cannot be
+built"""
 
 
 def first_section(
@@ -69,8 +71,7 @@ def first_section(
                 clustering=clustering,
                 **numbers,
             )
-            found = searched(task, with_feasible_edges(guess), noise=NOISE, rounds=ROUNDS)
-            found.design.build()
+            found = _buildable(task, with_feasible_edges(guess))
         except BladewrightError as error:
             refusal = error
             continue
@@ -80,3 +81,17 @@ def first_section(
     if best is None:
         raise FitError(f"no section that can be built was found near the points: {refusal}")
     return best.design  # type: ignore[return-value]
+
+
+def _buildable(task: Task, guess: Design) -> Match:
+    """The match that a search from a guess leads to, or the guess, whichever can be built; raises DesignError."""
+    for rounds in ROUNDS:
+        found = searched(task, guess, noise=NOISE, rounds=rounds)
+        try:
+            found.design.build()
+        except DesignError:
+            if not rounds:
+                raise
+            continue
+        break
+    return found

@@ -117,8 +117,8 @@ def slices_of(plane: PlanePoints, turn: SpanLaw, stations: Reals, count: int) ->
     weight: Reals = even
     upper = across > middle_rows @ _ridge(middle_rows, across, even)
     for _ in range(TURNS):
-        sign = np.where(upper, 1.0, -1.0)[:, None]
-        found = _ridge(np.concatenate([middle_rows, sign * half_rows], axis=1), across, weight)
+        above = np.where(upper, 1.0, -1.0)[:, None]
+        found = _ridge(np.concatenate([middle_rows, above * half_rows], axis=1), across, weight)
         middle, half = middle_rows @ found[: 4 * count], half_rows @ found[4 * count :]
         off = across - middle
         # where the sides meet, noise may cross them
@@ -135,7 +135,7 @@ def slices_of(plane: PlanePoints, turn: SpanLaw, stations: Reals, count: int) ->
     middle_laws, half_laws = found[: 4 * count].reshape(4, count), found[4 * count :].reshape(-1, count)
     ends = []
     for place, sign in ((NOSE, -1.0), (1.0 - NOSE, 1.0)):
-        slopes = chebyshev.chebval(2.0 * place - 1.0, 2.0 * chebyshev.chebder(middle_laws))
+        slopes = (2.0 * chebyshev.chebvander(2.0 * place - 1.0, 2) @ chebyshev.chebder(middle_laws))[0]
         ahead = along + (rows @ slopes) / size * across
         near = np.flatnonzero(np.abs(t - place) < NOSE_REACH)
         ends.append(_outermost(plane, rows, np.stack([along, across], axis=-1), sign * ahead, near))
