@@ -153,3 +153,13 @@ WEIGHTED = Curve(control_points=CUBIC.control_points, knots=CUBIC.knots, degree=
 def test_what_cannot_be_done_is_refused_with_the_reason(ask, says):
     with pytest.raises(GeometryError, match=says):
         ask()
+
+
+@pytest.mark.parametrize("gap", [1e-4, 1e-6, 1e-8, 1e-10])
+def test_knots_that_nearly_coincide_cost_no_digits(gap):
+    knots = np.concatenate([np.zeros(6), [0.1, 0.15, 0.15 + gap, 0.15 + 2.0 * gap, 0.5], np.ones(6)])
+    points = np.random.default_rng(1).normal(size=(len(knots) - 6, 3))
+    curve = Curve(control_points=points, knots=knots, degree=5)
+    t = np.linspace(0.0, 1.0, 101)
+    assert inserted(curve, [0.22, 0.7])(t) == pytest.approx(curve(t), abs=1e-13)
+    assert piece(curve, 0.12, 0.8)(t[12:80]) == pytest.approx(curve(t[12:80]), abs=1e-13)
