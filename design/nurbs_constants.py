@@ -15,10 +15,12 @@ from pathlib import Path
 import numpy as np
 
 import bladewright as bw
-from bladewright.nurbs.closest import closest_on_curve, closest_on_surface
+from bladewright.nurbs.closest import Descents, closest_on_curve, closest_on_surface
 from bladewright.nurbs.curve import Curve
+from bladewright.nurbs.fit import interpolated
 from bladewright.nurbs.measure import arc_length, area
-from bladewright.nurbs.revolution import arc, revolved
+from bladewright.nurbs.revolution import arc, revolved, segment
+from bladewright.nurbs.skinning import ruled
 
 POINTS = 3000
 """points whose closest ones are sought, within a tenth of the chord of the side"""
@@ -31,6 +33,9 @@ HEAD = """\
 * near-cusp: the length of a cubic that turns within 1e-6 of its length, by `adaptive`; relative error;
 * pinched area: a side of Rotor 67 whose knots along u gather at the leading edge, by `area`; relative error;
 * closest: {points} points about a side of Rotor 67 and its hub section each; largest excess of a distance, in chords;
+* on axes: distances from an interpolated cylinder of radius 1 to points on its axis, and from a cone to points 2e-8 off
+  it; largest excess;
+* descents: largest distance of 8,000 points of an impeller's sides from these, found without a start [m];
 * normal: at the pole of a sphere, largest error;
 * rebuild: Rotor 67 at held knots.
 
@@ -99,6 +104,26 @@ def closest(made):
     return np.concatenate([closest_on_surface(side, near).distances, closest_on_curve(section, near).distances])
 
 
+def on_axes(_):
+    """Distances from a ruled surface between two interpolated arcs to points on its axis, and just off a cone."""
+    angle = np.linspace(0.0, 1.5, 50) ** 3 / 1.5**2
+    arcs = [np.stack([np.cos(angle), np.sin(angle), np.full(50, z)], axis=-1) for z in (0.0, 2.0)]
+    bent = ruled(*(interpolated(each, angle / 1.5, degree=5) for each in arcs))
+    cone, (u, v) = revolved(segment((0.0, 1.0, 0.0), (1.0, 2.0, 0.0))), np.random.default_rng(1).random((2, 44))
+    middle = np.stack([np.zeros(44), np.zeros(44), np.linspace(0.1, 1.9, 44)], axis=-1)
+    beside = cone(u, v) + 2e-8 * cone.normal(u, v)
+    found = [closest_on_surface(*each, tolerance=1e-9) for each in ((bent, middle), (cone, beside))]
+    return np.concatenate([each.distances for each in found])
+
+
+def descents(_):
+    """Distances of points of both sides of an impeller with thin edges, which are 0."""
+    sides = bw.read_design(resources.files("bladewright") / "examples" / "backswept-impeller.toml").build().sides
+    u, v = np.random.default_rng(0).random((2, 4000))
+    points = np.concatenate([side(u, v) for side in sides])
+    return np.sqrt(Descents(tuple(sides)).nearest(points).square)
+
+
 def normal(_):
     """Normals of a sphere about its pole."""
     circle = arc((0.0, 0.0), 1.0, 0.0, np.pi)
@@ -135,6 +160,11 @@ CONSTANTS = (
     ("nurbs.descent", "SINGULAR", closest, (0.0, 1e-6)),
     ("nurbs.proximity", "BLOCK", closest, (200_000, 20_000_000)),
     ("nurbs.proximity", "MAX_HALVINGS", closest, (12, 96)),
+    ("nurbs.proximity", "VALLEY_STEPS", on_axes, (1, 8)),
+    ("nurbs.proximity", "ROUNDING", on_axes, (1e-14, 1e-12)),
+    ("nurbs.proximity", "MANY_BOXES", on_axes, (200, 2_000_000)),
+    ("nurbs.closest", "OTHER_SHAPE_RATIO", descents, (1.0, 2.0)),
+    ("nurbs.closest", "JOINT_BAND", descents, (0.0, 0.1)),
     ("nurbs.surface", "COLLAPSED", normal, (1e-14, 1e-5)),
     ("nurbs.basis", "MAX_CACHED", rebuild, (0, 100_000)),
 )
@@ -152,9 +182,9 @@ def timed(measure, made):
 
 def error(measure, made, value, best):
     """How far a value is off the reference: relative, in chords for distances, absolute for normals."""
-    if measure is normal:
+    if measure in (normal, descents):
         return float(np.max(np.abs(value)))
-    scale = made.chord if measure is closest else np.abs(best)
+    scale = made.chord if measure is closest else 1.0 if measure is on_axes else np.abs(best)
     return float(np.max(np.abs(value - best) / scale))
 
 
