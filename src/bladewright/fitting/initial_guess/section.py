@@ -26,7 +26,7 @@ TURNS: tuple[float, ...] = (0.0, 0.2, -0.2, 0.5, -0.5)
 may lie across it"""
 NEAR = 2e-3
 """mean distance, of the chord, with which no other direction is tried"""
-NOISE, ROUNDS = 0.03, (5, 0)
+NOISE, ROUNDS = 0.01, (5, 0)
 """noise assumed of a first section, of the chord, and rounds of its search: none where that leads to one that cannot be
 built"""
 
