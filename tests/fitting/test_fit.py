@@ -187,7 +187,7 @@ def test_the_best_design_is_kept_where_the_interruption_falls_between_two_search
     def interrupted(*_, **__):
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("bladewright.fitting.model_selection.adaptation.identified_section", interrupted)
+    monkeypatch.setattr("bladewright.fitting.model_selection.selection.eliminated", interrupted)
     found = fit(cloud(0, 400))
     assert found.interrupted
     assert not found.passed

@@ -7,13 +7,7 @@ import pytest
 
 import bladewright as bw
 from bladewright.fitting.model_selection.reshaping import reshaped
-from bladewright.fitting.model_selection.structure import (
-    INITIAL_BLADES,
-    first_blade_structure,
-    initial_structure,
-    parameter_count,
-    structure_of,
-)
+from bladewright.fitting.model_selection.structure import structure_of
 from bladewright.section.laws import law_basis
 from machines import example
 
@@ -90,21 +84,3 @@ def test_another_family_is_refused():
     for wrong in (reshaped, lambda other, _: structure_of(other)):
         with pytest.raises(bw.FitError, match="unified"):
             wrong(object(), structure_of(design("turbine-section")))
-
-
-@pytest.mark.parametrize("name", NAMES)
-def test_the_size_of_a_structure_is_the_number_of_its_parameters(name):
-    base = design(name)
-    structures = [structure_of(base)] if name == "turbine-section" else [structure_of(base), *INITIAL_BLADES]
-    for structure in structures:
-        paths = [path for path in reshaped(base, structure).parameters() if not path.startswith(UNSEEN)]
-        assert parameter_count(structure) == len(paths)
-
-
-def test_a_lean_structure_has_no_more_parameters_than_are_asked_for():
-    assert [parameter_count(initial_structure(2, count)) for count in (14, 16, 22, 60)] == [14, 16, 18, 18]
-    sizes = [parameter_count(each) for each in INITIAL_BLADES]
-    assert sizes == sorted(sizes)
-    for count in range(sizes[0], 140, 7):
-        assert parameter_count(initial_structure(3, count)) <= count
-    assert parameter_count(first_blade_structure(None)) >= parameter_count(initial_structure(3, None))

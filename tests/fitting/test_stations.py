@@ -11,7 +11,6 @@ from bladewright.fitting.families.kinds import FAMILIES
 from bladewright.fitting.families.law_extension import law_extensions
 from bladewright.fitting.families.laws import with_stations_of
 from bladewright.fitting.model_selection.reshaping import reshaped
-from bladewright.fitting.model_selection.steps import steps_down, steps_up
 from bladewright.fitting.model_selection.structure import structure_of
 from bladewright.section.laws import named_laws, stations_of
 from machines import built
@@ -34,18 +33,10 @@ def test_a_match_finds_the_values_at_the_stations_of_its_start():
     assert fit.maximum < 1e-10
 
 
-def test_a_structure_keeps_stations_and_takes_none_from_them():
+def test_a_structure_keeps_stations():
     design = at_stations(AXIAL["unified"], "monotone")
     structure = structure_of(design)
     assert reshaped(design, structure) == design
-    along_span = {name for step in (*steps_up(structure), *steps_down(structure)) for name in step.structure.span}
-    changed = [
-        name
-        for step in (*steps_up(structure), *steps_down(structure))
-        for name in along_span
-        if step.structure.span[name] != structure.span[name]
-    ]
-    assert not changed
     # with more control points of the thickness along the chord these are given at the same stations
     wider = reshaped(design, replace(structure, chordwise=(5, 4)))
     assert [(law.span, law.interpolation) for law in wider.thickness_upper] == [(SPAN, "monotone")] * 5

@@ -26,7 +26,7 @@ from bladewright.fitting.families.sections import matched_section
 from bladewright.fitting.families.unified import matched_unified
 from bladewright.fitting.free_parameters import free_parameters_of
 from bladewright.fitting.matching.search import COARSEST_TOLERANCE, Match, Task
-from bladewright.fitting.model_selection.stopping import MatchTarget
+from bladewright.fitting.model_selection.selection import MatchTarget
 from bladewright.fitting.registration.axes import axis_motion, found_axes
 from bladewright.fitting.registration.registration import registration
 from bladewright.nurbs.basis import Reals

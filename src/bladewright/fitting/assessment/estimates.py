@@ -25,6 +25,8 @@ FIRST_NEIGHBOURS, BY_CHANCE = 4, 2.0
 in 100 are lower (Bartlett 1946)"""
 NULL_DIRECTION_SHARE = 1e-8
 """share of a parameter in a direction on which nothing depends, below which it is rounding."""
+LARGEST_CONDITION = 1e7
+"""condition of the derivatives by the scaled parameters from which one of them is not determined"""
 AT_BOUND = 1e-3
 """distance from a bound, of a parameter's scale, within which it lies on the bound."""
 
@@ -53,13 +55,7 @@ def parameter_estimates(match: Match) -> ParameterEstimates:
     rows = problem.cloud_residuals.residuals(match.state)
     slopes = problem.cloud_residuals.slopes(match.state, problem.paths) * size
     excess = _excess_weights(problem.cloud_residuals, len(rows))
-    points = len(problem.cloud_residuals.points)
-    count = int(np.count_nonzero(problem.cloud_residuals.roots))
-    taking = problem.cloud_residuals.roots > 0.0
-    places = neighbourhood_of(problem.cloud_residuals.points, match.state.footpoints).places
-    independent = independent_share(places[taking], (rows / np.sqrt(excess))[:points][taking])
-    variance = float(np.sum(rows[:points] ** 2 / excess[:points])) / max(count - len(problem.paths), 1) / independent
-    left = max(independent * count - len(problem.paths), 1.0)
+    variance, left = _residual_variance(match, rows, excess)
     across, values, turns = np.linalg.svd(slopes, full_matrices=False)
     largest = float(values[0])
     known = values > 1e-13 * largest
@@ -122,6 +118,37 @@ def independent_share(places: Reals, residuals: Reals) -> float:
         total += float(np.sum(correlations[first:last]))
         first, last = last, min(2 * last, most)
     return 1.0 / (1.0 + total)
+
+
+def _residual_variance(match: Match, rows: Reals, excess: Reals) -> tuple[float, float]:
+    """Variance of the residuals of independent points, in chords, and its degrees of freedom."""
+    cloud = match.problem.cloud_residuals
+    points, parameters = len(cloud.points), len(match.problem.paths)
+    count, taking = int(np.count_nonzero(cloud.roots)), cloud.roots > 0.0
+    places = neighbourhood_of(cloud.points, match.state.footpoints).places
+    independent = independent_share(places[taking], (rows / np.sqrt(excess))[:points][taking])
+    variance = float(np.sum(rows[:points] ** 2 / excess[:points])) / max(count - parameters, 1) / independent
+    return variance, max(independent * count - parameters, 1.0)
+
+
+def undetermined_parameters(match: Match, margin: float) -> list[str]:
+    """Parameters without which the points determine all others, by a margin in standard deviations.
+
+    Each in turn is the one with the largest share in the direction that is determined least (Golub and Van Loan 2013,
+    section 5.5.7).
+    """
+    problem = match.problem
+    rows = problem.cloud_residuals.residuals(match.state)
+    slopes = problem.cloud_residuals.slopes(match.state, problem.paths) * problem.scales.size
+    excess = _excess_weights(problem.cloud_residuals, len(rows))
+    least = margin * float(np.sqrt(_residual_variance(match, rows, excess)[0]))
+    triangle, kept = np.asarray(np.linalg.qr(slopes, mode="r")), np.arange(len(problem.paths))
+    while len(kept) > 1:
+        _, values, turns = np.linalg.svd(triangle[:, kept])
+        if values[-1] > max(least, values[0] / LARGEST_CONDITION):
+            break
+        kept = np.delete(kept, int(np.argmax(np.abs(turns[-1]))))
+    return [path for place, path in enumerate(problem.paths) if place not in kept]
 
 
 def _excess_weights(cloud_residuals: CloudResiduals, count: int) -> Reals:

@@ -22,8 +22,8 @@ from bladewright.fitting.free_parameters import EDGES, FreeParameters, gauge_par
 from bladewright.fitting.initial_guess.blade import first_blade
 from bladewright.fitting.matching.scales import check_bounds
 from bladewright.fitting.matching.search import EXACT_MISFIT, ROUGH_REDUCTION, Match, Task, evaluated, searched
-from bladewright.fitting.model_selection.stopping import MatchTarget
-from bladewright.fitting.model_selection.structure import first_blade_structure
+from bladewright.fitting.model_selection.selection import MatchTarget
+from bladewright.fitting.model_selection.structure import INITIAL_BLADES
 from bladewright.fitting.models.feasibility import infeasibility
 from bladewright.numerics.least_squares import MIN_REDUCTION
 from bladewright.nurbs.basis import Reals
@@ -108,9 +108,7 @@ def _better(task: Task, before: Match, after: Match) -> Match:
 def _closed_blade(task: Task, points: Reals, header: DesignHeader, like: Any) -> Blade:
     """The closed blade of the unified family that points (n, 3) show, matched to those of a task."""
     row = header.row(like)
-    first = first_blade(
-        points, structure=first_blade_structure(None), name=header.name, length_unit=header.length_unit, **row
-    )
+    first = first_blade(points, structure=INITIAL_BLADES[-1], name=header.name, length_unit=header.length_unit, **row)
     plain_task = Task(
         points=task.points, weights=task.weights, free=FreeParameters(), bounds={}, progress=task.progress
     )

@@ -8,10 +8,90 @@ import numpy as np
 
 from bladewright.designs import Design
 from bladewright.errors import DesignError, FitError
+from bladewright.fitting.matching.footpoints import footpoints_at
+from bladewright.fitting.matching.residuals import PlacedCloud
+from bladewright.fitting.matching.scales import scales_of
 from bladewright.fitting.matching.search import Match, Task
-from bladewright.fitting.model_selection.steps import predicted_rest, residuals_of, row_factors
-from bladewright.fitting.model_selection.stopping import MatchTarget, needs_more
+from bladewright.fitting.model_selection.selection import ENOUGH_DEVIATION, NOISE_CORRELATION, NOISE_REASON, MatchTarget
 from bladewright.nurbs.basis import Reals
+
+WEIGHT_RANGE = (0.1, 10.0)
+"""least and largest weight of a point by its distance, where a tolerance is to be met: wider ranges leave all but the
+worst points out of account."""
+MOST_PARAMETERS = {2: 80, 3: 340}
+"""parameters above which nothing is added, by dimension; it bounds the time."""
+POINTS_PER_PARAMETER = {2: 2, 3: 3}
+"""points for each parameter at least, by dimension: published profiles have few points, and exact ones."""
+
+
+def tolerance_weights(match: Match, target: MatchTarget) -> Reals | None:
+    """Further weights (n,) by which distant points count more; none where no tolerance is asked for."""
+    if target.tolerance is None:
+        return None
+    return np.clip((match.state.footpoints.distances / target.tolerance) ** 2, *WEIGHT_RANGE)
+
+
+def row_factors(emphasis: Reals | None, count: int) -> Reals:
+    """Factors (count,) of the rows of a least-squares problem, those of the points first."""
+    roots = np.ones(count)
+    if emphasis is not None:
+        roots[: len(emphasis)] = np.sqrt(emphasis)
+    return roots
+
+
+def predicted_rest(slopes: Reals, rows: Reals, roots: Reals, noise: float) -> float:
+    """The sum of squares of rows (n,) weighted by roots (n,) after the linear step that minimises it.
+
+    `slopes` (n, k) are by scaled parameters, which are held by the spread `noise` of the regularisation.
+    """
+    count = slopes.shape[1]
+    triangle = np.linalg.qr(np.column_stack([slopes * roots[:, None], rows * roots]), mode="r")
+    penalty = np.zeros((count, count + 1))
+    penalty[:, :-1] = noise * np.eye(count)
+    # the last diagonal entry is what no step removes
+    left = np.asarray(np.linalg.qr(np.vstack([np.asarray(triangle), penalty]), mode="r"))[-1, -1]
+    return float(left**2)
+
+
+def residuals_of(match: Match, design: Design, paths: tuple[str, ...]) -> tuple[Reals, Reals]:
+    """Residuals (n,) of a design at a match's footpoints, and derivatives (n, p) by its scaled parameters `paths`.
+
+    Raises DesignError where the design has no shape.
+    """
+    cloud_residuals, footpoints = match.problem.cloud_residuals, match.state.footpoints
+    shape = cloud_residuals.model.shape(design)
+    if not shape.finite:
+        raise DesignError("a law with another number of control points left no shape: take another one")
+    state = PlacedCloud(
+        shape=shape,
+        footpoints=footpoints_at(cloud_residuals.points, shape.sides, footpoints.side, footpoints.u, footpoints.v),
+    )
+    rows = cloud_residuals.residuals(state)
+    if not paths:
+        # a wall with no control points but its corners
+        return rows, np.zeros((len(rows), 0))
+    return rows, cloud_residuals.slopes(state, paths) * scales_of(design, paths, match.model.chord).size
+
+
+def needs_more(match: Match, target: MatchTarget, task: Task) -> tuple[bool, str]:
+    """Whether more control points are wanted; if not and the target is not met, why."""
+    count = len(match.problem.paths)
+    dimension = task.dimension
+    if target.parameters is not None:
+        return count < target.parameters, ""
+    limit = target.tolerance if target.tolerance is not None else ENOUGH_DEVIATION[dimension] * match.model.chord
+    if match.maximum <= limit:
+        return False, ""
+    noise = match.noise_estimate.noise
+    if match.noise_estimate.correlation < NOISE_CORRELATION:
+        return (
+            False,
+            NOISE_REASON.format(1e3 * noise),
+        )
+    if count >= min(MOST_PARAMETERS[dimension], len(task.points) // POINTS_PER_PARAMETER[dimension]):
+        return False, f"the design has {count} parameters, and more are not added"
+    return True, ""
+
 
 PredictedGain = tuple[float, int, Design]
 """reduction of the sum of squares for each parameter, number of added parameters, and the design"""

@@ -10,14 +10,13 @@ import numpy as np
 from bladewright.blade.design.meridional_curve import ThroughPoints
 from bladewright.designs import Law, Point
 from bladewright.errors import DesignError, FitError
-from bladewright.fitting.families.growth import predicted_gains
+from bladewright.fitting.families.growth import predicted_gains, tolerance_weights
 from bladewright.fitting.families.kinds import FitFamily
 from bladewright.fitting.families.laws import counts_of, part_along_span, with_stations_of
 from bladewright.fitting.families.section_samples import SampledSection
 from bladewright.fitting.free_parameters import EDGES
 from bladewright.fitting.matching.search import EXACT_MISFIT, ROUGH_REDUCTION, Match, Task, searched
-from bladewright.fitting.model_selection.steps import tolerance_weights
-from bladewright.fitting.model_selection.stopping import MatchTarget
+from bladewright.fitting.model_selection.selection import MatchTarget
 from bladewright.fitting.models.planar import SINGLE_SECTION
 from bladewright.nurbs.basis import Reals
 from bladewright.section.laws import Span, law_basis, law_points, named_laws, stations_of

@@ -11,15 +11,20 @@ from bladewright.designs import Design
 from bladewright.errors import DesignError, FitError
 from bladewright.fitting.assessment.acceptance import GROSS_DEVIATION
 from bladewright.fitting.design_header import DesignHeader
-from bladewright.fitting.families.growth import can_be_built, grown_to_target, predicted_gains
+from bladewright.fitting.families.growth import (
+    can_be_built,
+    grown_to_target,
+    needs_more,
+    predicted_gains,
+    tolerance_weights,
+)
 from bladewright.fitting.families.kinds import FitFamily
 from bladewright.fitting.families.section_samples import SampledSection, sampled_section
 from bladewright.fitting.families.unified import matched_unified
 from bladewright.fitting.free_parameters import FreeParameters
 from bladewright.fitting.matching.scales import check_bounds
 from bladewright.fitting.matching.search import MOST_ROUNDS, Match, Task, searched
-from bladewright.fitting.model_selection.steps import tolerance_weights
-from bladewright.fitting.model_selection.stopping import MatchTarget, needs_more
+from bladewright.fitting.model_selection.selection import MatchTarget
 from bladewright.section.checks import UNITS
 from bladewright.section.section import Section
 

@@ -12,19 +12,17 @@ from bladewright.fitting.initial_guess.blade import AXES_HINT, first_blade
 from bladewright.fitting.initial_guess.section import first_section
 from bladewright.fitting.matching.scales import check_bounds
 from bladewright.fitting.matching.search import ROUGH_REDUCTION, Match, Task, searched
-from bladewright.fitting.model_selection.adaptation import FINAL_REDUCTION, THOROUGH_POINTS, selected_match
-from bladewright.fitting.model_selection.given_structure import THOROUGH_NOISE_SHARE, has_systematic_misfit
-from bladewright.fitting.model_selection.identification import FEWEST_THICKNESSES, IDENTIFIED_MISFIT, STRAIGHT_CAMBER
 from bladewright.fitting.model_selection.reshaping import reshaped, with_feasible_edges
-from bladewright.fitting.model_selection.stopping import MatchTarget
-from bladewright.fitting.model_selection.structure import (
-    Structure,
-    first_blade_structure,
-    initial_structure,
-    structure_of,
+from bladewright.fitting.model_selection.selection import (
+    FINAL_REDUCTION,
+    THOROUGH_POINTS,
+    MatchTarget,
+    selected_match,
 )
-from bladewright.numerics.least_squares import MIN_REDUCTION
+from bladewright.fitting.model_selection.structure import FEWEST_THICKNESSES, INITIAL_BLADES, Structure, structure_of
 
+STRAIGHT_CAMBER = {"tangent_*": (0.12, 1.0)}
+"""bounds of a camber without hooks: shorter tangents let it reach an edge by one (design/fit_made.md)."""
 FEWER_SHARES = (1.0, 0.5)
 """shares of the control points along the chord that are tried where the nearest design cannot be built"""
 REDUCED_NOISE, REDUCED_POINTS = 3e-3, 2500
@@ -42,34 +40,16 @@ def matched_unified(
 
     Raises FitError where no design is found near the points, or the nearest one cannot be built.
     """
-    solid, wanted = task.dimension == 3, None if like is None else structure_of(like)
-    keeps_structure = solid and wanted is not None and start is None and target.structured and target.tolerance is None
+    wanted = None if like is None else structure_of(like)
     task.progress("first design")
     if start is not None:
         guessed = start if wanted is None else reshaped(start, wanted)
     else:
-        free = first_blade_structure(target.parameters) if solid else wanted
-        try:
-            guessed = _first_design(task, wanted if keeps_structure else free, like, header)
-        except FitError:
-            if not keeps_structure:
-                raise
-            guessed = _first_design(task, free, like, header)
+        guessed = _first_design(task, INITIAL_BLADES[-1] if task.dimension == 3 else wanted, like, header)
     first = _with_held_values(task, guessed, started=start is not None)
     check_bounds(first, task.free(first), task.bounds)
-    base = None
-    if start is None and (solid or wanted is None):
-        base = wanted or initial_structure(task.dimension, target.parameters)
     try:
-        found, reason = selected_match(task, first, target, base=base, guessed=start is None)
-        if keeps_structure and found.rms > IDENTIFIED_MISFIT and has_systematic_misfit(found, THOROUGH_NOISE_SHARE):
-            # a first design with freer laws leads to another minimum of the same structure
-            freer = _with_held_values(
-                task, _first_design(task, first_blade_structure(None), like, header), started=False
-            )
-            other, _ = selected_match(task, freer, target, base=base, guessed=True)
-            evaluations = found.evaluations + other.evaluations
-            found = replace(min((found, other), key=lambda each: each.rms), evaluations=evaluations)
+        found, reason = selected_match(task, first, target, like=wanted, guessed=start is None)
         found, built, leaner = _buildable(
             task, found, fewer=start is None and like is None and target.parameters is None
         )
@@ -107,9 +87,8 @@ def _buildable(task: Task, match: Match, *, fewer: bool) -> tuple[Match, Any, st
     refusal = ""
     for margin_factor in (0.0, 1.0, 30.0, 1000.0):
         if margin_factor:
-            min_reduction = FINAL_REDUCTION if match.rms > IDENTIFIED_MISFIT else MIN_REDUCTION
             match = searched(
-                replace(task, margin_factor=margin_factor), match.design, rounds=2, min_reduction=min_reduction
+                replace(task, margin_factor=margin_factor), match.design, rounds=2, min_reduction=FINAL_REDUCTION
             )
         try:
             return match, match.design.build(), ""

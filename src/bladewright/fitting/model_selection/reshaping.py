@@ -1,7 +1,8 @@
 """The same shape with other numbers of control points, as nearly as they allow, and with edges of a valid shape."""
 
-from dataclasses import replace
-from typing import Any
+from abc import ABC, abstractmethod
+from dataclasses import dataclass, replace
+from typing import Any, ClassVar, final
 
 import numpy as np
 
@@ -10,10 +11,19 @@ from bladewright.blade.design.unified import UnifiedBlade
 from bladewright.designs import Design, Law, Point, Points, Stations
 from bladewright.errors import DesignError, FitError
 from bladewright.fitting.matching.search import COARSEST_TOLERANCE
-from bladewright.fitting.model_selection.structure import SPANWISE, Structure
+from bladewright.fitting.model_selection.structure import (
+    CHANNEL_CURVES,
+    FEWEST_THICKNESSES,
+    MOST_CHORDWISE,
+    MOST_CURVE,
+    MOST_SPAN,
+    SPANWISE,
+    Structure,
+    structure_of,
+)
 from bladewright.fitting.models.model import model_of
 from bladewright.nurbs.basis import Reals, basis, uniform_knots
-from bladewright.section.laws import Span, law_basis, law_points, sampled_at, stations_of, with_values
+from bladewright.section.laws import Span, law_basis, law_points, number_paths, sampled_at, stations_of, with_values
 from bladewright.section.unified import UnifiedSection
 from bladewright.section.unified_limits import ANGLES, RADII, TANGENTS, THICKNESSES
 from bladewright.section.unified_sides import sample_places
@@ -40,7 +50,7 @@ def reshaped(design: Design, structure: Structure) -> Design:
         raise FitError(
             f"a {type(design).__name__} has no structure of the unified family: give a design of that family"
         )
-    place = "leading_edge_theta" if design.arrangement == "annular" else "leading_edge_y"
+    place = _field(design, "place")
     changes: dict[str, Any] = {
         name: law_of(getattr(design, name), structure.span[name], LAW_LIMITS[name]) for name in SPANWISE
     }
@@ -60,6 +70,13 @@ def reshaped(design: Design, structure: Structure) -> Design:
         channel=_channel(design.channel, structure),
         **changes,
     )
+
+
+def _field(design: Any, name: str) -> str:
+    """The field of a law by its name in a structure."""
+    if name != "place":
+        return name
+    return "leading_edge_theta" if design.arrangement == "annular" else "leading_edge_y"
 
 
 def _values(law: Law) -> Reals:
@@ -135,6 +152,156 @@ def curve_of(points: Points, count: int, highest: int) -> Points:
     inner, *_ = np.linalg.lstsq(rows[:, 1:-1], rhs, rcond=None)
     full = np.concatenate([old[:1], inner, old[-1:]])
     return tuple(Point(float(x), float(r)) for x, r in full)
+
+
+Counts = tuple[int, ...]
+"""numbers of control points of a law along its directions, or of several curves"""
+
+
+@dataclass(frozen=True)
+class ResizableLaw(ABC):
+    """A law whose number of control points may change by itself; or curves that share points."""
+
+    name: str
+    """its name in a structure"""
+    holds_corners: ClassVar[bool] = False
+    """whether it may change though some of its parameters, the corners of a channel, are held"""
+
+    @abstractmethod
+    def counts(self, structure: Structure) -> Counts:
+        """Its numbers of control points."""
+
+    @abstractmethod
+    def resized(self, structure: Structure, counts: Counts) -> Structure:
+        """The structure with other numbers of them."""
+
+    @abstractmethod
+    def limits(self) -> tuple[Counts, Counts]:
+        """Fewest and most of them."""
+
+    @abstractmethod
+    def paths(self, design: Any) -> list[str]:
+        """The parameters (k,) that are its control points' numbers."""
+
+    @abstractmethod
+    def embedding(self, structure: Structure, counts: Counts) -> Reals:
+        """Its numbers (k, j) in a structure that are nearest to those of a law with other counts."""
+
+
+@final
+class SpanLaw(ResizableLaw):
+    """A law along the span."""
+
+    def counts(self, structure: Structure) -> Counts:
+        return (structure.span[self.name],)
+
+    def resized(self, structure: Structure, counts: Counts) -> Structure:
+        return replace(structure, span={**structure.span, self.name: counts[0]})
+
+    def limits(self) -> tuple[Counts, Counts]:
+        return (1,), (MOST_SPAN,)
+
+    def paths(self, design: Any) -> list[str]:
+        name = _field(design, self.name)
+        return number_paths(getattr(design, name), name)
+
+    def embedding(self, structure: Structure, counts: Counts) -> Reals:
+        return _law_embedding(structure.span[self.name], counts[0], COMPARED_PLACES)
+
+
+@final
+class ThicknessLaw(ResizableLaw):
+    """A thickness, along the chord and along the span."""
+
+    def counts(self, structure: Structure) -> Counts:
+        return structure.chordwise[THICKNESSES.index(self.name)], structure.span.get(self.name, 1)
+
+    def resized(self, structure: Structure, counts: Counts) -> Structure:
+        chordwise = [*structure.chordwise]
+        chordwise[THICKNESSES.index(self.name)] = counts[0]
+        span = {**structure.span, self.name: counts[1]} if self.name in structure.span else structure.span
+        return replace(structure, chordwise=(chordwise[0], chordwise[1]), span=span)
+
+    def limits(self) -> tuple[Counts, Counts]:
+        return (FEWEST_THICKNESSES, 1), (MOST_CHORDWISE, MOST_SPAN)
+
+    def paths(self, design: Any) -> list[str]:
+        rows = enumerate(getattr(design, self.name))
+        return [path for i, law in rows for path in number_paths(law, f"{self.name}[{i}]")]
+
+    def embedding(self, structure: Structure, counts: Counts) -> Reals:
+        along, across = self.counts(structure)
+        chordwise = _law_embedding(along, counts[0], samples_of(structure))
+        return np.asarray(np.kron(chordwise, _law_embedding(across, counts[1], COMPARED_PLACES)))
+
+
+@final
+@dataclass(frozen=True)
+class ChannelCurves(ResizableLaw):
+    """The four curves of a channel, which share its corners."""
+
+    degree: int
+    """highest degree of the curves"""
+    holds_corners: ClassVar[bool] = True
+
+    def counts(self, structure: Structure) -> Counts:
+        return tuple(structure.channel[name] for name in CHANNEL_CURVES)
+
+    def resized(self, structure: Structure, counts: Counts) -> Structure:
+        return replace(structure, channel=dict(zip(CHANNEL_CURVES, counts, strict=True)))
+
+    def limits(self) -> tuple[Counts, Counts]:
+        return (2,) * 4, (MOST_CURVE,) * 4
+
+    def paths(self, design: Any) -> list[str]:
+        curves = [(name, len(getattr(design.channel, name))) for name in CHANNEL_CURVES]
+        return [f"channel.{name}[{i}].{axis}" for name, count in curves for i in range(count) for axis in "xr"]
+
+    def embedding(self, structure: Structure, counts: Counts) -> Reals:
+        own = self.counts(structure)
+        rows, columns = (np.cumsum([0, each[0], each[1], each[2] - 2, each[3] - 2]) for each in (own, counts))
+        found = np.zeros((rows[-1], columns[-1]))
+        for curve in range(4):
+            part = curve_embedding(own[curve], counts[curve], self.degree)
+            inner = slice(rows[curve], rows[curve + 1]), slice(columns[curve], columns[curve + 1])
+            if curve < 2:
+                found[inner] = part
+                continue
+            # a wall's ends are the edges' ends
+            corners = [columns[0], columns[1]] if curve == 2 else [columns[1] - 1, columns[2] - 1]
+            found[inner] = part[1:-1, 1:-1]
+            found[inner[0], corners] = part[1:-1, [0, -1]]
+        return np.asarray(np.kron(found, np.eye(2)))
+
+
+def resizable_laws(design: Any) -> list[ResizableLaw]:
+    """The laws of a design whose numbers of control points may change: stations stay."""
+    structure = structure_of(design)
+    laws: list[ResizableLaw] = [ThicknessLaw(name) for name in THICKNESSES if name not in structure.stations]
+    laws += [SpanLaw(name) for name in structure.span if name not in THICKNESSES and name not in structure.stations]
+    return [*laws, ChannelCurves("channel", design.channel.degree)] if structure.channel else laws
+
+
+def _law_embedding(count: int, other: int, places: Reals) -> Reals:
+    if count == other:
+        return np.eye(count)
+    return np.asarray(np.linalg.lstsq(law_basis(count, places), law_basis(other, places), rcond=None)[0])
+
+
+def curve_embedding(count: int, other: int, highest: int) -> Reals:
+    """Control points (count, other) of the curves nearest to those of other numbers, between the same ends."""
+    if count == other:
+        return np.eye(count)
+    own, rhs = (_curve_basis(each, highest) for each in (count, other))
+    found = np.zeros((count, other))
+    found[0, 0] = found[-1, -1] = 1.0
+    found[1:-1] = np.linalg.lstsq(own[:, 1:-1], rhs - own @ found, rcond=None)[0]
+    return found
+
+
+def _curve_basis(count: int, highest: int) -> Reals:
+    degree = min(count - 1, highest)
+    return np.asarray(basis(uniform_knots(count, degree), degree, COMPARED_PLACES))
 
 
 THINNER_EDGES, MOST_THINNINGS = 0.7, 12

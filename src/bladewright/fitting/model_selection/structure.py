@@ -12,6 +12,14 @@ from bladewright.section.unified_limits import ANGLES, RADII, TANGENTS, THICKNES
 
 CHANNEL_CURVES = ("leading_edge", "trailing_edge", "hub", "shroud")
 """the four curves of a channel"""
+FEWEST_THICKNESSES = 3
+"""control points of a thickness along the chord at least"""
+SPARE_SAMPLES = 4
+"""samples along the chord beyond a thickness's control points: fewer leave its law undetermined."""
+MOST_SAMPLES = 60
+"""samples along the chord at most"""
+MOST_CHORDWISE, MOST_SPAN, MOST_CURVE = MOST_SAMPLES - SPARE_SAMPLES, 12, 12
+"""control points along the chord, along the span and of a curve of the channel at most; they bound the time."""
 SPANWISE = (*ANGLES, *TANGENTS, *RADII)
 """laws along the span, besides the position of the leading edge and the thicknesses"""
 
@@ -72,31 +80,9 @@ def _count(law: Law) -> int:
     return len(law_points(law))
 
 
-def initial_structure(dimension: int, parameters: int | None) -> Structure:
-    """A structure with few parameters to grow from, or with nearly as many as are asked for, and no more."""
-    if dimension == 2:
-        count = 4 if parameters is None else min(4, max(2, (parameters - 10) // 2))
-        return Structure(chordwise=(count, count))
-    if parameters is None:
-        return INITIAL_BLADES[1]
-    return next((each for each in reversed(INITIAL_BLADES) if parameter_count(each) <= parameters), INITIAL_BLADES[0])
-
-
-def first_blade_structure(parameters: int | None) -> Structure:
-    """The structure of a first blade, which finds its edges best with laws that are free enough."""
-    return initial_structure(3, max(parameters or 0, parameter_count(INITIAL_BLADES[-2])))
-
-
-def parameter_count(structure: Structure) -> int:
-    """Number of parameters of a structure."""
-    thickness = sum(
-        count * structure.span.get(name, 1)
-        for name, count in zip(("thickness_upper", "thickness_lower"), structure.chordwise, strict=True)
-    )
-    if not structure.channel:
-        return 10 + thickness
-    laws = sum(count for name, count in structure.span.items() if not name.startswith("thickness"))
-    return thickness + laws + 2 * (sum(structure.channel.values()) - 4)
+def with_samples(structure: Structure, least: int) -> Structure:
+    """The structure with as many samples along the chord as its thicknesses need, and at least so many."""
+    return replace(structure, samples=min(MOST_SAMPLES, max(least, max(structure.chordwise) + SPARE_SAMPLES)))
 
 
 def _blade(
@@ -114,8 +100,6 @@ def _blade(
 INITIAL_BLADES = (
     _blade(4, 1, 1, 1, 1, (2, 2, 2, 2)),
     _blade(5, 2, 3, 2, 1, (3, 3, 4, 4)),
-    _blade(5, 3, 4, 3, 2, (3, 4, 4, 4)),
     _blade(6, 3, 4, 3, 2, (4, 5, 4, 4)),
-    _blade(6, 4, 5, 4, 2, (4, 5, 4, 4)),
 )
-"""from a prismatic blade to a twisted and swept one"""
+"""from a prismatic blade to a twisted and swept one; the last one's laws are free enough to find its edges"""

@@ -1,0 +1,258 @@
+"""What matches of other structures would leave, predicted linearly about one match, without a search.
+
+About a match of a rich structure the residuals are a linear function of its control points. Every narrower structure
+is a linear subspace of these, so that the least squares of its match follow from the same derivatives by products.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.linalg import LinAlgError, cho_factor, cho_solve, eigvalsh
+
+from bladewright.fitting.matching.scales import scales_of
+from bladewright.fitting.matching.search import Match
+from bladewright.fitting.model_selection.reshaping import Counts, ResizableLaw, reshaped, resizable_laws
+from bladewright.fitting.model_selection.structure import Structure, structure_of, with_samples
+from bladewright.nurbs.basis import Reals
+
+LARGEST_STEP = 3
+"""control points that a law loses or gains at a time at most."""
+ROUNDING = 1e-14
+"""share of the largest diagonal entry of the normal equations by which their diagonal is raised: their rounding."""
+
+
+FOLDS = 10
+"""folds of the points (Kohavi 1995)"""
+NEIGHBOURHOODS = {2: (40, 1), 3: (10, 4)}
+"""neighbourhoods of a side along the chord and along the span, by dimension."""
+
+
+def folds_of(match: Match) -> NDArray[np.intp]:
+    """The folds (m,) of a match's residuals: contiguous neighbourhoods of points in turn; -1 of rows in none."""
+    footpoints = match.state.footpoints
+    along, across = NEIGHBOURHOODS[footpoints.points.shape[1]]
+    column = np.minimum((footpoints.u * along).astype(int), along - 1)
+    row = np.minimum((footpoints.v * across).astype(int), across - 1)
+    # neighbours across the span, and on the other side, are in other folds
+    fold = (column + 3 * row + 5 * footpoints.side) % FOLDS
+    both = np.concatenate([fold, fold[match.ends.near]])
+    found = np.full(len(match.problem.cloud_residuals.residuals(match.state)), -1)
+    found[: len(both)] = both
+    return found
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
+class Prediction:
+    """The least squares that a structure is predicted to leave."""
+
+    counts: tuple[Counts, ...]
+    """of the resizable laws"""
+    parameters: int
+    cost: float
+    """sum of squares of weighted residuals and regularisation, in chords"""
+    rows: Reals
+    """(n,) unweighted residuals of the points, in chords; 0 of those that do not take part"""
+    weights: Reals
+    """(n,) of the points"""
+    change: Reals
+    """(k,) of the rich structure's scaled parameters"""
+    inverse: Reals
+    """(j, j) of the normal equations"""
+
+    @property
+    def rms(self) -> float:
+        """Root mean square of the residuals, of the chord."""
+        return float(np.sqrt(np.mean(self.rows**2)))
+
+    @property
+    def largest(self) -> float:
+        """The largest residual, of the chord."""
+        return float(np.max(np.abs(self.rows)))
+
+
+class LinearModel:
+    """The residuals of a match as a linear function of its laws' control points."""
+
+    def __init__(self, match: Match, samples: int) -> None:
+        problem = match.problem
+        self.match, self.design, self.samples = match, match.design, samples
+        self.structure = structure_of(match.design)
+        self.points = len(match.state.footpoints.u)
+        self.chord = match.model.chord
+        self.slopes = problem.cloud_residuals.slopes(match.state, problem.paths) * problem.scales.size
+        self.residuals = problem.cloud_residuals.residuals(match.state)
+        """(m,) those of the points first, in chords"""
+        roots = problem.cloud_residuals.roots
+        self.slopes[: self.points] /= np.where(roots > 0.0, roots, np.inf)[:, None]
+        self.residuals[: self.points] /= np.where(roots > 0.0, roots, np.inf)
+        self._penalty = problem.regularisation.matrix
+        self._penalised = problem.regularisation.residuals(problem.vector(match.design))
+        self._set_laws(match)
+        self.weighted(roots**2)
+
+    def _set_laws(self, match: Match) -> None:
+        paths, size, values = match.problem.paths, match.problem.scales.size, match.design.parameters()
+        place = {path: i for i, path in enumerate(paths)}
+        self.laws: list[ResizableLaw] = []
+        self._columns: list[NDArray[np.intp]] = []
+        self._free: list[NDArray[np.bool_]] = []
+        self._values: list[Reals] = []
+        for law in resizable_laws(match.design):
+            own = law.paths(match.design)
+            free = np.array([path in place for path in own])
+            # a law that is held in part keeps its control points, but for the channel's corners
+            if not (np.all(free) or (law.holds_corners and np.any(free))):
+                continue
+            columns = np.array([place[path] for path in own if path in place])
+            self.laws.append(law)
+            self._columns.append(columns)
+            self._free.append(free)
+            self._values.append(np.array([float(values[path]) for path in own]) / size[columns[0]])
+        taken = np.concatenate(self._columns) if self._columns else np.empty(0, dtype=np.intp)
+        self._others = np.setdiff1d(np.arange(len(paths)), taken)
+        self._known: dict[tuple[int, Counts], tuple[Reals, Reals, NDArray[np.bool_], Reals]] = {}
+
+    @property
+    def counts(self) -> tuple[Counts, ...]:
+        """The numbers of control points of its own laws."""
+        return tuple(law.counts(self.structure) for law in self.laws)
+
+    def weighted(self, weights: Reals) -> None:
+        """Weigh the points by weights (n,)."""
+        self.weights = weights
+        roots = np.ones(len(self.residuals))
+        roots[: self.points] = np.sqrt(weights)
+        self.roots = roots
+        columns, rows = self.slopes * roots[:, None], self.residuals * roots
+        self._gram = columns.T @ columns + self._penalty.T @ self._penalty
+        self._right = columns.T @ rows + self._penalty.T @ self._penalised
+        self._cost = float(rows @ rows + self._penalised @ self._penalised)
+
+    def prediction(self, counts: Sequence[Counts]) -> Prediction | None:
+        """What the match with these numbers of control points leaves; None where it is not determined."""
+        subspace, shift = self.subspace(counts)
+        gram, right = self._normal_equations(subspace, shift)
+        try:
+            inverse = np.asarray(cho_solve(cho_factor(gram), np.eye(len(gram))))
+        except LinAlgError:
+            return None
+        step = -inverse @ right
+        start = self._cost + 2.0 * float(self._right @ shift) + float(shift @ self._gram @ shift)
+        change = subspace @ step + shift
+        return Prediction(
+            counts=tuple(counts),
+            parameters=subspace.shape[1],
+            cost=start + float(right @ step),
+            rows=self.residuals[: self.points] + self.slopes[: self.points] @ change,
+            weights=self.weights,
+            change=change,
+            inverse=inverse,
+        )
+
+    def losses(self, prediction: Prediction) -> list[tuple[float, int, int, Counts]]:
+        """What narrower laws cost: loss for each parameter, their number, the law's number, and its counts.
+
+        The loss is that of the linear constraints under which a law is one of fewer control points (Wald's statistic:
+        Seber and Wild 1989, section 5.2).
+        """
+        found, first = [], len(self._others)
+        for i, (law, counts) in enumerate(zip(self.laws, prediction.counts, strict=True)):
+            part, nearest, free = self._law_subspace(i, counts)
+            own = slice(first, first + part.shape[1])
+            first = own.stop
+            structure = law.resized(self.structure, counts)
+            values = nearest.copy()
+            values[free] += np.linalg.lstsq(
+                part, prediction.change[self._columns[i]] - self._shift(i, counts), rcond=None
+            )[0]
+            for place, count in enumerate(counts):
+                for fewer in range(max(law.limits()[0][place], count - LARGEST_STEP), count):
+                    smaller = (*counts[:place], fewer, *counts[place + 1 :])
+                    embedding = law.embedding(structure, smaller)
+                    lost = np.linalg.qr(embedding, mode="complete")[0][:, embedding.shape[1] :].T
+                    bent, spread = lost @ values, lost[:, free] @ prediction.inverse[own, own] @ lost[:, free].T
+                    loss = float(bent @ np.linalg.lstsq(spread, bent, rcond=None)[0])
+                    found.append((loss / len(lost), len(lost), i, smaller))
+        return sorted(found)
+
+    def _normal_equations(self, subspace: Reals, shift: Reals) -> tuple[Reals, Reals]:
+        gram = subspace.T @ self._gram @ subspace
+        gram[np.diag_indices_from(gram)] += ROUNDING * float(np.max(np.diag(gram)))
+        return gram, subspace.T @ (self._right + self._gram @ shift)
+
+    def subspace(self, counts: Sequence[Counts]) -> tuple[Reals, Reals]:
+        """The rich structure's parameters (k, j) by those of a narrower one, and their change (k,) to the nearest."""
+        parts = [self._law_subspace(i, each)[0] for i, each in enumerate(counts)]
+        width = len(self._others) + sum(part.shape[1] for part in parts)
+        found, shift = np.zeros((self.slopes.shape[1], width)), np.zeros(self.slopes.shape[1])
+        found[self._others, np.arange(len(self._others))] = 1.0
+        first = len(self._others)
+        for i, (columns, part) in enumerate(zip(self._columns, parts, strict=True)):
+            last = first + part.shape[1]
+            found[columns, first:last] = part
+            shift[columns] = self._shift(i, counts[i])
+            first = last
+        return found, shift
+
+    def _law_subspace(self, law: int, counts: Counts) -> tuple[Reals, Reals, NDArray[np.bool_]]:
+        """A law's free parameters by those with other counts, the nearest of these, and which of them are free."""
+        key = law, counts
+        if key not in self._known:
+            embedding, free = self.laws[law].embedding(self.structure, counts), self._free[law]
+            nearest = np.asarray(np.linalg.lstsq(embedding, self._values[law], rcond=None)[0], dtype=np.float64)
+            kept = np.ones(embedding.shape[1], dtype=bool)
+            kept[[int(np.argmax(row)) for row in embedding[~free]]] = False
+            shift = (embedding @ nearest - self._values[law])[free]
+            self._known[key] = embedding[np.ix_(free, kept)], nearest, kept, shift
+        return self._known[key][:3]
+
+    def _shift(self, law: int, counts: Counts) -> Reals:
+        """The change of a law's free parameters to the nearest ones of other counts."""
+        self._law_subspace(law, counts)
+        return self._known[law, counts][3]
+
+    def eigenvalues(self, counts: Sequence[Counts]) -> Reals:
+        """The eigenvalues (j,) of a structure's normal equations without the regularisation, smallest first."""
+        columns = self.slopes @ self.subspace(counts)[0]
+        return np.asarray(eigvalsh(columns.T @ columns))
+
+    def left_out(self, counts: Sequence[Counts], folds: NDArray[np.intp]) -> Reals:
+        """Sums of squares (f,) of the points' residuals in each fold, predicted from all points but those.
+
+        `folds` (m,) are the folds of the residuals, -1 of those in none.
+        """
+        subspace, shift = self.subspace(counts)
+        gram, right = self._normal_equations(subspace, shift)
+        columns = (self.slopes @ subspace) * self.roots[:, None]
+        rows = (self.residuals + self.slopes @ shift) * self.roots
+        found = []
+        for fold in range(int(np.max(folds)) + 1):
+            own = np.flatnonzero(folds == fold)
+            part, rest = columns[own], rows[own]
+            try:
+                step = -cho_solve(cho_factor(gram - part.T @ part), right - part.T @ rest)
+            except LinAlgError:
+                found.append(np.inf)
+                continue
+            points = own < self.points
+            found.append(float(np.sum((rest + part @ step)[points] ** 2)))
+        return np.array(found)
+
+    def structured(self, counts: Sequence[Counts]) -> Structure:
+        """The structure with these numbers of control points."""
+        structure = self.structure
+        for law, each in zip(self.laws, counts, strict=True):
+            structure = law.resized(structure, each)
+        return structure
+
+    def designed(self, prediction: Prediction) -> Any:
+        """The predicted design, its laws within the family's bounds."""
+        paths, structure = self.match.problem.paths, self.structured(prediction.counts)
+        values = self.match.problem.values_of(self.design) + self.match.problem.scales.size * prediction.change
+        scales = scales_of(self.design, paths, self.chord)
+        values = np.clip(values, scales.low, scales.high)
+        rich = self.design.changed({path: float(value) for path, value in zip(paths, values, strict=True)})
+        return reshaped(rich, with_samples(structure, self.samples))

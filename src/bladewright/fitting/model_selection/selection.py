@@ -1,0 +1,397 @@
+"""How many control points a design needs: a rich one is matched first, and laws lose what the aim does not need.
+
+The rich match is held by the regularisation of its laws (P-splines: Eilers and Marx 1996). About it the least squares
+of narrower structures are predicted; backward elimination ranks them (Draper and Smith 1998, section 15.3), and what
+is predicted to keep the aim with the fewest parameters is searched. The aim is a number of parameters, a largest
+distance, or else the smallest error of prediction where whole neighbourhoods of points are left out (Roberts et al.
+2017), within one standard error (Hastie, Tibshirani and Friedman 2009, section 7.10).
+"""
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from functools import partial
+
+import numpy as np
+
+from bladewright.designs import Design
+from bladewright.errors import DesignError, FitError
+from bladewright.fitting.assessment.estimates import undetermined_parameters
+from bladewright.fitting.free_parameters import corner_radii
+from bladewright.fitting.matching.search import ROUGH_REDUCTION, Match, Task, searched
+from bladewright.fitting.model_selection.elimination import (
+    PREDICTED,
+    best_of_size,
+    eliminated,
+    reweighted,
+)
+from bladewright.fitting.model_selection.prediction import FOLDS, LinearModel, Prediction, folds_of
+from bladewright.fitting.model_selection.reshaping import reshaped, with_feasible_edges
+from bladewright.fitting.model_selection.rich_structures import rich_structure, wider_structure
+from bladewright.fitting.model_selection.structure import Structure, structure_of
+
+GUESS_NOISE = 3e-3
+"""noise of the first round where the start is a guess, of the chord."""
+QUICK_ROUNDS = 2
+"""rounds of a search on the way"""
+FINAL_REDUCTION = 1e-3
+"""predicted relative reduction of the cost that a step of the last search needs."""
+QUICK_POINTS, SEVERAL_POINTS, THOROUGH_POINTS = 1000, 4000, 12_000
+"""points of the first search in space, of those that choose control points, which need every row of points, and of the
+last one: time is proportional to them."""
+ENOUGH_DEVIATION = {2: 5e-7, 3: 5e-5}
+"""largest deviation at which nothing is added where no target is stated, of the chord, by dimension."""
+NOISE_CORRELATION = 0.15
+"""share of the misfit that neighbours have in common below which the misfit is noise."""
+WEAK_REGULARISATION = 0.1
+"""factor of the regularisation where a match is only improved."""
+REFUSED_MARGIN = 6.0
+"""factor of the margin of edge radii where a rich match that searches allow is refused when built."""
+ROW_SPREAD = 1e-3
+"""spread of the points at an end below which they stand in a row on the wall, of the chord."""
+CORNERS_HELD_NOTE = (
+    "the radii of the channel's corners are read off the points at hub and shroud, held, and not counted"
+)
+"""note where the channel's corners are read off the points (design/matches.md)"""
+HELD_NOTE = "the points do not determine {}, which are held where a smooth design has them"
+"""note where parameters are held"""
+DETERMINED_MARGIN, MOST_HOLDINGS = 1.5, 3
+"""standard deviations that a determined direction of the parameters has in its own scale at least, more than one as the
+search that follows changes the residuals; and how often parameters are held at most (`MOST_HOLDINGS`)."""
+NOISE_REASON = "what is left is the cloud's own noise, {:.2g} mm: more control points would follow it"
+"""why a tolerance is not met"""
+
+
+@dataclass(frozen=True, kw_only=True)
+class MatchTarget:
+    """What is asked of a match."""
+
+    tolerance: float | None = None
+    """largest distance of an inlier [m]"""
+    parameters: int | None = None
+    structured: bool = False
+    """whether the structure is given"""
+    registered: bool = False
+    """whether the axes were found first, from a start that need not be this blade"""
+
+    @property
+    def open(self) -> bool:
+        """Whether nothing is asked for."""
+        return self.tolerance is None and self.parameters is None and not self.structured
+
+
+def selected_match(
+    task: Task, first: Design, target: MatchTarget, *, like: Structure | None, guessed: bool
+) -> tuple[Match, str]:
+    """The match, and why it ends where no target is met.
+
+    `first` is a first design, a guess or a start; `like` is the structure of a given design.
+    """
+    several, many = task.thinned(SEVERAL_POINTS), task.thinned(THOROUGH_POINTS)
+    found = searched(
+        task.thinned(QUICK_POINTS) if task.dimension == 3 else several,
+        first,
+        noise=GUESS_NOISE if guessed else None,
+        min_reduction=ROUGH_REDUCTION,
+    )
+    if found.interrupted:
+        return found, ""
+    if target.structured and target.tolerance is None:
+        return _of_structure(several, many, found, like or structure_of(first), guessed=guessed), ""
+    held = target.parameters is not None and _ends_in_rows(found)
+    reason = CORNERS_HELD_NOTE if held else ""
+    if held:
+        several, many = _with_corners_held(several), _with_corners_held(many)
+    selection = _Selection(task=several, samples=(like or structure_of(first)).samples)
+    rich = selection.rich(found)
+    if task.dimension == 3 and _refused(rich):
+        several, many = (replace(each, margin_factor=REFUSED_MARGIN * each.margin_factor) for each in (several, many))
+        selection = replace(selection, task=several)
+    if target.parameters is not None:
+        found = selection.of_size(rich, target.parameters)
+    elif target.tolerance is not None:
+        found, reason = selection.within(rich, target.tolerance)
+    else:
+        found = selection.near_everywhere(rich)
+    if found.interrupted or (target.tolerance is not None and len(many.points) == len(several.points)):
+        return found, reason
+    if target.tolerance is not None:
+        return _confirmed(many, found, target.tolerance), reason
+    found = searched(many, found.design, noise=found.rms, min_reduction=FINAL_REDUCTION)
+    return _determined(many, found) if target.open else (found, reason)
+
+
+def _determined(task: Task, match: Match) -> tuple[Match, str]:
+    """A match without the parameters that the points do not determine, which are held, and a note of them."""
+    held: list[str] = []
+    for _ in range(MOST_HOLDINGS):
+        more = undetermined_parameters(match, DETERMINED_MARGIN)
+        if not more or match.interrupted:
+            break
+        held += more
+        free = replace(task, free=partial(_free_but, task, frozenset(held)))
+        match = searched(free, match.design, noise=match.rms, rounds=QUICK_ROUNDS, min_reduction=FINAL_REDUCTION)
+    return match, HELD_NOTE.format(", ".join(held)) if held else ""
+
+
+def _free_but(task: Task, held: frozenset[str], design: Design) -> tuple[str, ...]:
+    return tuple(path for path in task.free(design) if path not in held)
+
+
+def _of_structure(several: Task, many: Task, found: Match, structure: Structure, *, guessed: bool) -> Match:
+    """The match of a given structure: from a richer one where it is not found else."""
+    if guessed:
+        selection = _Selection(task=several, samples=structure.samples)
+        tried = [found] if structure_of(found.design) == structure else []
+        starts = [found] if not tried else []
+        if not tried or has_systematic_misfit(found):
+            starts.append(selection.rich(found))
+        for start in starts:
+            try:
+                tried.append(searched(several, reshaped(start.design, structure), noise=GUESS_NOISE))
+            except FitError:
+                continue
+        if not tried:
+            return found
+        found = min(tried, key=lambda each: each.rms)
+    found = searched(many, found.design)
+    if found.interrupted or found.noise_estimate.correlation > NOISE_CORRELATION:
+        return found
+    # what the points determine is not to be shifted
+    weak = replace(many, regularisation_factor=WEAK_REGULARISATION * many.regularisation_factor)
+    return searched(weak, found.design, rounds=QUICK_ROUNDS)
+
+
+def has_systematic_misfit(match: Match) -> bool:
+    """Whether a search ended at a misfit that is not noise."""
+    return match.noise_estimate.correlation > NOISE_CORRELATION and not match.interrupted
+
+
+TRIED = {2: 4, 3: 1}
+"""structures of one size that are searched, by dimension: predictions are linear."""
+STAGES = 3
+"""times that structures are predicted anew about the match that they have led to."""
+LARGEST_CONDITION = 1e7
+"""condition of the derivatives by the scaled parameters that a structure may have where it is not given."""
+NEAR, NEAR_RICH = 5e-5, 1.25
+"""largest distance that a match whose misfit is no noise keeps where nothing is asked for: of the chord, or of that of
+a rich structure."""
+NOISE_QUANTILE = 1.645
+"""standard errors by which a misfit may pass the noise, which one of pure noise does once in twenty times."""
+LARGEST_OPEN = 8e-4
+"""largest distance, of the chord, from which control points are added where nothing is asked for."""
+MOST_FAILURES = 3
+"""structures in a row that are searched and miss a tolerance, each half as far away as the last"""
+FAR_FROM_PREDICTED = 3.0
+"""ratio of a misfit to the predicted one from which a search begins anew, at the rich match."""
+REWEIGHTINGS = 6
+"""searches of one structure with other weights at most"""
+HOPELESS = 0.9
+"""share of the excess over the tolerance from which other weights are given up"""
+
+
+@dataclass(frozen=True, kw_only=True)
+class _Selection:
+    """The search for structures."""
+
+    task: Task
+    samples: int
+    """along the chord at least"""
+
+    def rich(self, match: Match) -> Match:
+        """The match of a rich structure, or the one before where that leaves it no shape."""
+        design = with_feasible_edges(reshaped(match.design, rich_structure(match.design, len(self.task.points))))
+        try:
+            return searched(self.task, design, noise=match.rms, rounds=QUICK_ROUNDS + 1, min_reduction=ROUGH_REDUCTION)
+        except FitError:
+            return match
+
+    def of_size(self, rich: Match, most: int) -> Match:
+        """The match of at most so many parameters that predictions lead to."""
+        best, about = None, rich
+        for _ in range(STAGES):
+            model = self._model(about)
+            tried = [self._searched(model, each) for each in best_of_size(model, most)[: TRIED[self.task.dimension]]]
+            nearest = min(filter(None, tried), key=lambda each: each.misfit, default=None)
+            if nearest is None or (best is not None and nearest.misfit >= best.misfit):
+                break
+            best, about = nearest, self._widened(nearest)
+            if best.interrupted:
+                break
+        return best or rich
+
+    def well_predicted(self, rich: Match) -> Match:
+        """The match of fewest parameters that predicts points left out as well as any, and is well conditioned."""
+        model, folds = self._model(rich), folds_of(rich)
+        candidates = eliminated(model, 0)
+        if not candidates:
+            return rich
+        errors = np.array([model.left_out(each.counts, folds) for each in candidates])
+        best = int(np.argmin(np.sum(errors, axis=1)))
+        limit = np.sum(errors[best]) + np.sqrt(FOLDS) * np.std(errors[best])
+        near = NEAR_RICH * max(NEAR, candidates[0].largest)
+        # noise that is known takes the place of errors of prediction (Morozov 1966)
+        noise = rich.noise_estimate.noise / model.chord * (1.0 + NOISE_QUANTILE / np.sqrt(2.0 * model.points))
+        chosen = [
+            each
+            for each, error in zip(candidates, np.sum(errors, axis=1), strict=True)
+            if (error <= limit and each.largest <= near if has_systematic_misfit(rich) else each.rms <= noise)
+        ] or candidates[:1]
+        variance = float(np.sum(errors[best])) / model.points
+        unknown = [_undetermined(model, each, variance) for each in chosen]
+        for each, count in reversed(list(zip(chosen, unknown, strict=True))):
+            found = self._searched(model, each) if count == min(unknown) else None
+            if found is not None:
+                return found
+        return rich
+
+    def near_everywhere(self, rich: Match) -> Match:
+        """The match that predicts well, or one with more parameters where it is far from some points."""
+        found = self.well_predicted(rich)
+        limit = LARGEST_OPEN * found.model.chord
+        if found.interrupted or not has_systematic_misfit(found) or _largest(found, rich) <= limit:
+            return found
+        nearer, _ = self.within(rich, limit)
+        return nearer if _largest(nearer, rich) < _largest(found, rich) else found
+
+    def within(self, rich: Match, tolerance: float) -> tuple[Match, str]:
+        """The match of fewest parameters found that keeps a tolerance [m]; the nearest, and why, where none does."""
+        if _largest(rich, rich) > tolerance and not has_systematic_misfit(rich):
+            return self.well_predicted(rich), NOISE_REASON.format(1e3 * rich.noise_estimate.noise)
+        best, nearest, about, wide = None, rich, rich, False
+        share, failed, missed = 1.0, 0, 0
+        while failed < MOST_FAILURES and not about.interrupted:
+            model = self._model(about)
+            relative = tolerance / model.chord
+            fewer = eliminated(model, 0, relative)
+            kept = [each for each in fewer if each.largest <= PREDICTED * relative and each.parameters > missed]
+            if best is not None:
+                kept = [each for each in kept if each.parameters < len(best.problem.paths)]
+            elif not kept and not wide:
+                about, wide = self._widened(about), True
+                continue
+            elif not kept and fewer:
+                kept = [min(fewer, key=lambda each: each.largest)]
+            if not kept:
+                break
+            tried = kept[int(np.ceil(share * len(kept))) - 1]
+            found = self._searched_within(model, tried, rich, tolerance)
+            if found is not None and _largest(found, rich) <= tolerance:
+                best = about = found
+                share, failed, missed = min(1.0, 1.5 * share), 0, 0
+                continue
+            share, failed, missed = 0.5 * share, failed + 1, tried.parameters
+            if best is None and found is not None and _largest(found, rich) < _largest(about, rich):
+                if found.noise_estimate.correlation < NOISE_CORRELATION:
+                    return self.well_predicted(rich), NOISE_REASON.format(1e3 * found.noise_estimate.noise)
+                nearest, about, wide, missed = found, self._widened(found), True, 0
+        return (best, "") if best is not None else (nearest, "no structure was found that keeps the tolerance")
+
+    def _model(self, match: Match) -> LinearModel:
+        self.task.progress("structure")
+        return LinearModel(match, self.samples)
+
+    def _widened(self, match: Match) -> Match:
+        """A match with more control points in every law, not searched, or the same where that leaves it no shape."""
+        design = reshaped(match.design, wider_structure(match.design))
+        try:
+            return searched(self.task, design, noise=match.rms, rounds=0)
+        except FitError:
+            return match
+
+    def _searched(self, model: LinearModel, prediction: Prediction) -> Match | None:
+        """The match of a predicted structure; None where it has no shape."""
+        found = None
+        for design in self._starts(model, prediction):
+            try:
+                fresh = searched(
+                    self.task, design, rounds=QUICK_ROUNDS, noise=prediction.rms, min_reduction=ROUGH_REDUCTION
+                )
+            except (FitError, DesignError):
+                continue
+            found = fresh if found is None or fresh.misfit < found.misfit else found
+            if found.rms < FAR_FROM_PREDICTED * prediction.rms or found.interrupted:
+                break
+        return found
+
+    @staticmethod
+    def _starts(model: LinearModel, prediction: Prediction) -> Iterator[Design]:
+        """The predicted design, and the nearest to the rich one: far from a match predictions go too far."""
+        for change in (prediction.change, np.zeros_like(prediction.change)):
+            try:
+                yield model.designed(replace(prediction, change=change))
+            except DesignError:
+                continue
+
+    def _searched_within(
+        self, model: LinearModel, prediction: Prediction, rich: Match, tolerance: float
+    ) -> Match | None:
+        """The match of a structure, whose largest deviations are weighed more until it keeps a tolerance."""
+        best: Match | None = None
+        for start in self._starts(model, prediction):
+            found = self._reweighted_search(start, prediction, rich, tolerance)
+            if found is not None and (best is None or _largest(found, rich) < _largest(best, rich)):
+                best = found
+            if best is not None and best.rms < FAR_FROM_PREDICTED * prediction.rms:
+                break
+        return best
+
+    def _reweighted_search(self, design: Design, prediction: Prediction, rich: Match, tolerance: float) -> Match | None:
+        best, noise = None, prediction.rms
+        weights = np.where(prediction.weights > 0.0, prediction.weights, self.task.weights)
+        for _ in range(REWEIGHTINGS):
+            weighted = replace(self.task, weights=weights * (np.sum(self.task.weights) / np.sum(weights)))
+            try:
+                found = searched(weighted, design, noise=noise, rounds=1, min_reduction=ROUGH_REDUCTION)
+            except (FitError, DesignError):
+                break
+            before, now = np.inf if best is None else _largest(best, rich), _largest(found, rich)
+            best = found if now < before else best
+            if now <= tolerance or found.interrupted or now - tolerance > HOPELESS * (before - tolerance):
+                break
+            design, noise = found.design, found.rms
+            weights = reweighted(weights, found.state.footpoints.distances, tolerance)
+        return best
+
+
+def _largest(match: Match, rich: Match) -> float:
+    """The largest distance [m] of the points that took part in a rich match: ends that drew back leave none out."""
+    return float(np.max(match.state.footpoints.distances[rich.rows]))
+
+
+def _undetermined(model: LinearModel, prediction: Prediction, variance: float) -> int:
+    """How many directions of a structure's parameters points with errors of a variance do not determine."""
+    values = model.eigenvalues(prediction.counts)
+    return int(np.count_nonzero(values < max(variance, float(values[-1]) / LARGEST_CONDITION**2)))
+
+
+def _confirmed(task: Task, match: Match, tolerance: float) -> Match:
+    """A match of some of the points that keeps a tolerance at more of them, by their weights."""
+    found = match
+    for _ in range(REWEIGHTINGS):
+        found = searched(task, found.design, noise=match.rms, rounds=0)
+        if found.maximum <= tolerance:
+            break
+        weights = reweighted(task.weights, found.state.footpoints.distances, tolerance)
+        task = replace(task, weights=weights * (np.sum(task.weights) / np.sum(weights)))
+        found = searched(task, found.design, noise=match.rms, rounds=1, min_reduction=ROUGH_REDUCTION)
+    return found
+
+
+def _refused(match: Match) -> bool:
+    """Whether a design that searches allow is refused when it is built: its edge radii need a larger margin."""
+    try:
+        match.design.build()
+    except DesignError:
+        return True
+    return False
+
+
+def _ends_in_rows(match: Match) -> bool:
+    """Whether rows of points show where hub and shroud are."""
+    walls = match.ends.walls
+    return len(walls) == 2 and all(wall.spread < ROW_SPREAD * match.model.chord for wall in walls.values())
+
+
+def _with_corners_held(task: Task) -> Task:
+    """A task that holds the radii of the channel's corners."""
+    return replace(task, free=lambda design: tuple(p for p in task.free(design) if p not in corner_radii(design)))

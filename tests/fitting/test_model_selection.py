@@ -1,0 +1,165 @@
+"""How many control points: narrower laws as linear subspaces, predictions of their matches, and what is chosen."""
+
+from dataclasses import replace
+from functools import cache
+
+import numpy as np
+import pytest
+
+from bladewright.fitting.free_parameters import corner_radii, free_parameters_of
+from bladewright.fitting.matching.search import Task, searched
+from bladewright.fitting.model_selection.elimination import best_of_size, eliminated, reweighted
+from bladewright.fitting.model_selection.prediction import FOLDS, LinearModel, folds_of
+from bladewright.fitting.model_selection.reshaping import reshaped, resizable_laws
+from bladewright.fitting.model_selection.rich_structures import rich_structure, wider_structure
+from bladewright.fitting.model_selection.selection import MatchTarget, selected_match
+from bladewright.fitting.model_selection.structure import structure_of
+from machines import example
+from machines.stations import AXIAL
+
+BASE = example("turbine-section")
+MADE = replace(
+    BASE, thickness_upper=(0.05, 0.13, 0.21, 0.16, 0.12, 0.05, 0.03), thickness_lower=(0.04, 0.07, 0.11, 0.05, 0.02)
+)
+STATOR = example("compressor-stator")
+FREE = free_parameters_of(None, None, started=True)
+
+
+@cache
+def task(noise=0.0):
+    """Points of the made section."""
+    curves, random = MADE.build().curves, np.random.default_rng(4)
+    points = np.concatenate([curves[side](random.random(90)) for side in ("upper", "lower")])
+    points += noise * random.normal(size=points.shape)
+    return Task(points=points, weights=np.ones(180), free=FREE, bounds={})
+
+
+@cache
+def model(noise=1e-4):
+    start = reshaped(MADE, replace(structure_of(MADE), chordwise=(9, 8)))
+    return LinearModel(searched(task(noise), start, rounds=2), 16)
+
+
+@pytest.mark.parametrize("design", [MADE, STATOR], ids=lambda design: design.name)
+def test_control_points_of_a_wider_law_are_the_embedding_of_those_of_a_narrower_one(design):
+    wide = reshaped(design, wider_structure(design))
+    for law in resizable_laws(wide):
+        narrow = law.resized(structure_of(wide), law.counts(structure_of(design)))
+        few, many = reshaped(wide, narrow), reshaped(reshaped(wide, narrow), structure_of(wide))
+        few_values, many_values = ([each.parameters()[path] for path in law.paths(each)] for each in (few, many))
+        embedded = law.embedding(structure_of(wide), law.counts(narrow)) @ np.array(few_values)
+        assert embedded == pytest.approx(np.array(many_values), rel=1e-9, abs=1e-9), law.name
+
+
+def test_a_law_at_stations_keeps_them():
+    design = AXIAL["unified"]
+    names = {law.name for law in resizable_laws(design)}
+    assert structure_of(design).stations
+    assert not names & set(structure_of(design).stations)
+    structure = rich_structure(design, 1000)
+    assert structure.stations == structure_of(design).stations
+    rich = reshaped(design, structure)
+    assert rich.metal_angle_out.span == design.metal_angle_out.span
+
+
+def test_a_prediction_is_the_least_squares_of_the_linear_problem():
+    linear = model()
+    counts = [(5, 1), (6, 1)]
+    found = linear.prediction(counts)
+    subspace, shift = linear.subspace(counts)
+    problem = linear.match.problem
+    columns = np.concatenate([linear.slopes, problem.regularisation.matrix])
+    rows = [linear.residuals, problem.regularisation.residuals(problem.vector(linear.design))]
+    step, rest, *_ = np.linalg.lstsq(columns @ subspace, -(np.concatenate(rows) + columns @ shift), rcond=None)
+    assert found.cost == pytest.approx(float(rest[0]), rel=1e-6)
+    assert found.parameters == len(step) == linear.slopes.shape[1] - 6
+    designed = linear.designed(found)
+    assert structure_of(designed).chordwise == (5, 6)
+    # a narrower structure leaves no less
+    assert linear.prediction(linear.counts).cost <= found.cost
+
+
+def test_the_loss_of_a_nested_law_is_the_rise_of_the_least_squares():
+    # laws of four control points hold those of three
+    linear = model()
+    now = linear.prediction([(4, 1), (6, 1)])
+    fewer = linear.prediction([(3, 1), (6, 1)])
+    losses = {(law, counts): loss * number for loss, number, law, counts in linear.losses(now)}
+    assert losses[0, (3, 1)] == pytest.approx(fewer.cost - now.cost, rel=1e-3)
+
+
+def test_errors_of_left_out_neighbourhoods_are_those_of_fits_without_them():
+    linear = model()
+    folds, counts = folds_of(linear.match), [(6, 1), (5, 1)]
+    errors = linear.left_out(counts, folds)
+    subspace, shift = linear.subspace(counts)
+    penalty = linear.match.problem.regularisation
+    rows = linear.residuals + linear.slopes @ shift
+    held = penalty.residuals(linear.match.problem.vector(linear.design)) + penalty.matrix @ shift
+    kept, out = folds != 3, np.flatnonzero(folds[: linear.points] == 3)
+    columns = np.concatenate([linear.slopes[kept], penalty.matrix]) @ subspace
+    step = np.linalg.lstsq(columns, -np.concatenate([rows[kept], held]), rcond=None)[0]
+    assert errors[3] == pytest.approx(float(np.sum((rows[out] + linear.slopes[out] @ subspace @ step) ** 2)), rel=1e-5)
+
+
+def test_neighbourhoods_are_contiguous_and_all_points_are_left_out_once():
+    linear = model()
+    footpoints = linear.match.state.footpoints
+    folds = folds_of(linear.match)[: linear.points]
+    assert set(folds) == set(range(FOLDS))
+    upper = np.flatnonzero(footpoints.side == 0)
+    along = folds[upper[np.argsort(footpoints.u[upper])]]
+    # a neighbourhood is a fortieth of a side
+    assert np.count_nonzero(np.diff(along)) < 40
+
+
+def test_structures_lose_parameters_step_by_step_and_the_best_of_a_size_comes_first():
+    linear = model()
+    found = eliminated(linear, 16)
+    sizes = [each.parameters for each in found]
+    assert sizes == sorted(set(sizes), reverse=True)
+    assert sizes[0] == linear.slopes.shape[1]
+    assert sizes[-1] <= 16
+    best = best_of_size(linear, 20)
+    assert all(each.parameters <= 20 for each in best)
+    assert best[0].cost <= min(each.cost for each in eliminated(linear, 20) if each.parameters <= 20)
+
+
+def test_weights_rise_with_distances_and_keep_their_sum():
+    weights = reweighted(np.array([1.0, 1.0, 1.0, 0.0]), np.array([0.1, 1.0, 2.0, 9.0]), 1.0)
+    assert weights[0] < weights[1] < weights[2]
+    assert weights[3] == 0.0
+    assert np.sum(weights) == pytest.approx(3.0)
+
+
+def test_the_fewest_control_points_that_keep_a_tolerance_are_fewer_where_it_is_wide():
+    counts = []
+    for tolerance in (4e-3, 1e-3):
+        chord = float(MADE.build().chord)
+        found, reason = selected_match(task(), BASE, MatchTarget(tolerance=tolerance * chord), like=None, guessed=False)
+        assert not reason
+        assert found.maximum <= tolerance * chord
+        counts.append(len(found.problem.paths))
+    assert counts[0] < counts[1]
+
+
+def test_noise_is_not_followed_where_nothing_is_asked():
+    noise = 1e-3 * float(MADE.build().chord)
+    found, _ = selected_match(task(noise), BASE, MatchTarget(), like=None, guessed=False)
+    # a rich structure has 58
+    assert len(found.problem.paths) < 40
+    assert found.rms * found.model.chord < 1.2 * noise
+
+
+def test_few_points_have_a_structure_of_few_control_points():
+    sizes = [len(reshaped(BASE, rich_structure(BASE, points)).parameters()) for points in (30, 60, 1000)]
+    assert sizes[0] == len(BASE.parameters())
+    assert sizes[0] < sizes[1] <= 30 < sizes[2]
+
+
+def test_the_radii_of_the_corners_are_those_of_both_edges_at_both_walls():
+    last = len(STATOR.channel.leading_edge) - 1
+    assert len(corner_radii(STATOR)) == 4
+    assert {"channel.leading_edge[0].r", f"channel.leading_edge[{last}].r"} < set(corner_radii(STATOR))
+    assert set(corner_radii(STATOR)) < set(STATOR.parameters())
+    assert corner_radii(BASE) == ()
