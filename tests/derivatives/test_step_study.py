@@ -22,8 +22,8 @@ UNIFIED = [name for name in examples() if 'family = "unified' in example_text(na
 BLADES = [name for name in UNIFIED if name != "turbine-section"]
 IDLE = {"pitch", "span"}
 """which place the next blade, and make a solid of a section"""
-BESIDE = ("density", "disc.", "shroud_ring.")
-"""what weighs and carries a blade"""
+BESIDE = ("density", "disc.", "shroud_ring.", "hub_fillet.", "shroud_fillet.")
+"""what weighs and carries a blade, or lies below what a fillet leaves of its sides"""
 
 
 def machine(name):
@@ -72,6 +72,19 @@ def test_every_parameter_of_every_blade_has_the_derivative_that_differences_give
             design, base, named_quantity(base, "surface"), space, steps=np.array([1e-4]), imaginary=IMAGINARY[:1]
         )
         assert [each.failure for each in found] == [""] * len(at_limit)
+
+
+def test_a_fillets_radius_moves_strips_and_fillets_alone():
+    design, base = coarse("marine-propeller")
+    value, step, path = design.hub_fillet.radius, 1e-3 * design.hub_fillet.radius, "hub_fillet.radius"
+    exact = bw.net_jacobian(design, free=[path], knots=base.knots).nets
+    ahead, behind = (design.changed(path, value + by * step).build(knots=base.knots).surfaces for by in (1, -1))
+    for name in ("upper", "lower"):
+        assert not np.any(exact[name])
+        for part in ("strip", "fillet"):
+            nets = [each[f"hub_{part}_{name}"].control_points for each in (ahead, behind)]
+            slope = (nets[0] - nets[1]) / (2.0 * step)
+            assert np.max(np.abs(exact[f"hub_{part}_{name}"][0] - slope)) < 1e-4 * np.max(np.abs(slope))
 
 
 def test_every_parameter_of_a_section_has_the_derivative_that_differences_give():
