@@ -286,6 +286,22 @@ def test_a_ball_rolls_around_the_round_corners_of_a_back_face():
         assert np.abs(foot[:, 0] - joint[:, 0]) == pytest.approx(1e-3, rel=1e-6)
 
 
+def test_a_fillet_turns_at_once_where_the_curvature_of_a_side_jumps():
+    plain = bw.read_design(files("bladewright") / "examples" / "exhaust-strut.toml")
+    design = plain.changed("hub_fillet", Fillet(radius=0.04 * plain.build().chord / plain.metre))
+    built = design.build()
+    knots, counts = np.unique(built.knots.splines.knots, return_counts=True)
+    kinks = knots[1:-1][counts[1:-1] == 5]
+    assert kinks == pytest.approx([0.1, 0.85, 0.95])
+    # it took 303 poles to round them
+    assert len(built.knots.splines.knots) < 200
+    v = np.linspace(0.0, 1.0, 11)
+    for name in ("hub_fillet_upper", "hub_fillet_lower"):
+        for u in kinks:
+            before, after = (built.surfaces[name].normal(u + step, v) for step in (-1e-12, 1e-12))
+            assert np.max(length(cross(before, after))) < 1e-5
+
+
 def test_a_suction_side_that_is_not_known_is_refused():
     radii = FilletRadii(leading_edge=0.1, trailing_edge=0.1, suction_side=0.1, pressure_side=0.1)
     from bladewright.blade.native.fillet_sizes import side_radii

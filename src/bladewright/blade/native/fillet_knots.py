@@ -9,7 +9,7 @@ import numpy as np
 
 from bladewright.blade.native.blade import Blade
 from bladewright.blade.native.closed_section import LOWER, UPPER, ClosedSection, SectionSplines, Sites
-from bladewright.blade.native.contacts import Contacts
+from bladewright.blade.native.contacts import Contacts, rates
 from bladewright.blade.native.cross_section import CrossSections
 from bladewright.blade.native.end_faces import EndKnots
 from bladewright.blade.native.fillet_limits import check_fillets
@@ -32,6 +32,11 @@ AT_JOINTS = 1e-9
 MOST_POLES = (300, 60)
 """Control points of fillets around the blade, on one side, and of strips along w at which knots are added no more: half
 as many again as a plain blade may have, for what the foot asks for, and twice what a strip of any example has."""
+KINK = 1e-3
+"""Turn of a contact's way in one point that asks for a knot without derivatives [rad]: a few knots round smaller ones
+within any tolerance, larger ones ask for a hundred."""
+BESIDE = 1e-9
+"""Distance in u from a joint of a side at which that turn is looked at."""
 QUARTERS = np.array([0.25, 0.5, 0.75])
 """Knots of a fillet about a corner to begin with: in one span, errors at its ends are larger than those looked at."""
 LINES = 12
@@ -81,7 +86,8 @@ def chosen_knots(blade: Blade, section: ClosedSection, balls: Mapping[str, Ball]
     strips = {wall: _in_spans(strip, few.touches[wall], wall, tolerance) for wall, strip in strips.items()}
     off_wall = RESERVE * wall_tolerance(blade.chord, fine=fine)
     edges = [(strip.width, 1.0 - strip.width)[int(u)] for strip in strips.values() for _, u in section.corner_sides]
-    splines = first.with_knots(UPPER, knots_with_joints(first.knots, DEGREE, [(at, DEGREE - 1) for at in edges]))
+    joints = [(at, DEGREE - 1) for at in edges] + [(at, 0) for at in _kinks(rolled)]
+    splines = first.with_knots(UPPER, knots_with_joints(first.knots, DEGREE, joints))
     for face in (UPPER, *section.blunt):
         splines = _around(splines, face, rolled, strips, (tolerance, off_wall))
     pivots = {
@@ -101,6 +107,23 @@ def chosen_knots(blade: Blade, section: ClosedSection, balls: Mapping[str, Ball]
         splines=splines,
         pivots=FrozenMapping(pivots),
     )
+
+
+def _kinks(rolled: Rolled) -> list[float]:
+    """u at which contacts turn by more than KINK, where the curvature of a side jumps."""
+    places, counts = np.unique(rolled.section.upper.knots_u, return_counts=True)
+    joints = places[1:-1][counts[1:-1] >= DEGREE - 1]
+    if not len(joints):
+        return []
+    faces, u = np.repeat([UPPER, LOWER], 2 * len(joints)), np.concatenate([joints - BESIDE, joints + BESIDE])
+    beside = Rolled.at(rolled.section, rolled.balls, Sites(side=faces, u=np.tile(u, 2)), rolled.found)
+    turns = []
+    for touch in beside.touches.values():
+        ways = rates(touch.section, touch.ball.wall, touch.found, touch.ball.growth(touch.found.sites))[:2]
+        for way in ways:
+            before, after = np.moveaxis(unit(way).reshape(2, 2, len(joints), 3), 1, 0)
+            turns.append(np.max(length(after - before), axis=0))
+    return list(joints[np.max(turns, axis=0) > KINK])
 
 
 def levels(strips: Mapping[str, Strip]) -> tuple[float, float]:

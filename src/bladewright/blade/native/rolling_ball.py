@@ -182,6 +182,11 @@ class Rolled(FrozenRecord):
         return cls(section=section, sites=sites, touches=touches)
 
     @property
+    def balls(self) -> dict[str, Ball]:
+        """The balls by the wall."""
+        return {wall: touch.ball for wall, touch in self.touches.items()}
+
+    @property
     def found(self) -> dict[str, Contacts]:
         """The contacts by the wall."""
         return {wall: touch.found for wall, touch in self.touches.items()}
