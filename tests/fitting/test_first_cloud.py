@@ -5,7 +5,8 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from bladewright.errors import FitError
-from bladewright.fitting.clouds.cloud import checked_cloud
+from bladewright.fitting.clouds.cloud import checked_cloud, refuse_several_blades
+from bladewright.fitting.clouds.repetition import pitch_found
 
 ANGLES = np.linspace(0.0, 2.0 * np.pi, 400, endpoint=False)
 SECTION = 0.05 * np.stack([np.cos(ANGLES), 0.2 * np.sin(ANGLES) + 0.3 * np.cos(ANGLES) ** 2], axis=-1)
@@ -36,9 +37,6 @@ def test_a_whole_blade_is_taken_as_it_is(cloud: np.ndarray) -> None:
         (LINE * [1.0, 2.0], "one line"),
         (LINE * [1.0, 2.0, 3.0], "one line"),
         (SECTION @ [[1.0, 0.0, 0.5], [0.0, 1.0, 0.2]], "one plane"),
-        (np.concatenate([SECTION, NEXT_SECTION]), "two blades"),
-        (np.concatenate([BLADE, NEXT_BLADE]), "two blades"),
-        (np.concatenate([BLADE @ turn.T for turn in TURNS]), "two blades or more"),
         (np.stack([LINE[:, 0], LINE[:, 0] * (1.0 - LINE[:, 0])], axis=-1), "one side"),
     ],
 )
@@ -48,10 +46,38 @@ def test_what_is_no_blade_is_refused_in_one_paragraph(cloud: object, said: str) 
     assert "\n" not in str(refusal.value)
 
 
-def test_sections_of_one_blade_in_other_columns_are_not_only_called_blades() -> None:
+@pytest.mark.parametrize(
+    ("cloud", "pitch"),
+    [
+        (np.concatenate([SECTION, NEXT_SECTION]), "0.06 m"),
+        (np.concatenate([BLADE, NEXT_BLADE]), "0.06 m"),
+        (np.concatenate([BLADE @ turn.T for turn in TURNS]), "18 deg"),
+    ],
+)
+def test_several_blades_are_refused_with_their_pitch(cloud: np.ndarray, pitch: str) -> None:
+    with pytest.raises(FitError, match=f"two blades or more: {pitch} along the pitch") as refusal:
+        refuse_several_blades(cloud)
+    assert "\n" not in str(refusal.value)
+
+
+def test_sections_along_y_are_no_copies_along_the_pitch() -> None:
     sections = [np.column_stack([SECTION[:, 0], np.full(len(SECTION), span), SECTION[:, 1]]) for span in (0.0, 0.02)]
-    with pytest.raises(FitError, match="where it is one, say which column is which"):
-        checked_cloud(np.concatenate(sections))
+    assert pitch_found(np.concatenate(sections)) is None
+
+
+def vane(count: int, rows: int) -> np.ndarray:
+    """Points of a thin vane of a radial machine, 72 degrees from the radius, in rows along x."""
+    t, x = np.meshgrid(np.linspace(0.0, 2.0 * np.pi, count, endpoint=False), np.linspace(0.0, 0.02, rows))
+    r = 0.07 + 0.02 * np.cos(t)
+    theta = np.tan(np.radians(72.0)) * np.log(r / 0.07) + 0.04 * np.sin(t)
+    return np.stack([x, r * np.sin(theta), r * np.cos(theta)], axis=-1).reshape(-1, 3)
+
+
+def test_a_highly_staggered_vane_is_one_blade_and_its_wheel_has_a_pitch() -> None:
+    assert pitch_found(vane(200, 12)) is None
+    turns = Rotation.from_rotvec(np.arange(24)[:, None] * [2.0 * np.pi / 24, 0.0, 0.0]).as_matrix()
+    # rows further from each other than the blades
+    assert pitch_found(np.concatenate([vane(40, 4) @ turn.T for turn in turns])) == "15 deg"
 
 
 @pytest.mark.parametrize("factor", [1000.0, 1e-3])

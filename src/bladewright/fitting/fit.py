@@ -18,7 +18,7 @@ from bladewright.fitting.assessment.acceptance import failures_of, notes_of
 from bladewright.fitting.assessment.estimates import parameter_estimates
 from bladewright.fitting.assessment.measurement import measured
 from bladewright.fitting.assessment.result import Fit, Motion
-from bladewright.fitting.clouds.cloud import checked_cloud
+from bladewright.fitting.clouds.cloud import checked_cloud, refuse_several_blades
 from bladewright.fitting.design_header import DesignHeader, Unit
 from bladewright.fitting.families.blades import matched_blade
 from bladewright.fitting.families.kinds import FAMILIES, FitFamily, family_of
@@ -121,6 +121,7 @@ def fit(
         motion, header, more = _aligned(points, start, header)
         notes = (*notes, *more)
     points = points if motion is None else motion(points)
+    refuse_several_blades(points)
     free_parameters = free_parameters_of(free, fixed, started=start is not None)
     task = Task(
         points=points,
