@@ -49,7 +49,13 @@ WHEEL = 12
 FINE = frozenset({"built", "no wheel", "blade only", "refused"})
 """what may become of a design"""
 REASONS = {
-    "the ball rolls around round edges only": "a fillet at a blade that has corners",
+    "which it cannot fill": "blade and wall meet at less than 8 or more than 172 deg",
+    "it folds: the corner": "a corner leans over its ball",
+    "no ball turns about it": "a corner lies in a hollow",
+    "touches the corner and": "no ball touches a corner and its wall",
+    "of the span is left": "too little of the span is left above a fillet",
+    "CAD programs lose narrower faces": "a fillet is smaller than 1e-4 of the chord",
+    "crosses itself": "the foot of a fillet crosses itself",
     "miss what is promised": "a fillet is not reached within 300 poles along the chord",
     "touches the blade past": "a fillet is higher than its blade",
     "foot lies past the end": "a fillet reaches past the end of its wall",
@@ -226,8 +232,11 @@ def _work(pipe):
             pipe.send((kind, message, time.process_time() - start))
 
 
-def outcomes(seeds, jobs=1, limit=LIMIT, samples=SAMPLES, of="unified"):
-    """Yield the outcome of each seed, in any order, from `jobs` processes that are replaced where they die."""
+def outcomes(seeds, jobs=1, limit=LIMIT, samples=SAMPLES, of="unified", until=np.inf):
+    """Yield the outcome of each seed, in any order, from `jobs` processes that are replaced where they die.
+
+    None is begun after `until` on time.monotonic.
+    """
     context = multiprocessing.get_context("spawn")
     todo = list(reversed(seeds))
     workers = [_Worker(context, todo.pop(), limit, samples, of) for _ in range(min(jobs, len(todo)))]
@@ -240,7 +249,7 @@ def outcomes(seeds, jobs=1, limit=LIMIT, samples=SAMPLES, of="unified"):
             if outcome is None:
                 continue
             yield outcome
-            if todo:
+            if todo and time.monotonic() < until:
                 worker.ask(todo.pop())
             else:
                 worker.end()
@@ -344,6 +353,7 @@ def main():
     parser.add_argument("--count", type=int, default=50)
     parser.add_argument("--seed", type=int, default=0, help="the first seed")
     parser.add_argument("--jobs", type=int, default=1)
+    parser.add_argument("--minutes", type=float, default=np.inf, help="begin no design later than this")
     parser.add_argument("--samples", type=int, default=SAMPLES)
     parser.add_argument("--record", type=Path, help="Markdown file for the result")
     parser.add_argument("--of", choices=list(DRAWN), default="unified", help="what is drawn")
@@ -353,7 +363,8 @@ def main():
         _show(range(given.seed, given.seed + given.count), given.of)
     found = []
     seeds = range(given.seed, given.seed + given.count)
-    for outcome in outcomes(seeds, jobs=given.jobs, samples=given.samples, of=given.of):
+    until = time.monotonic() + 60.0 * given.minutes
+    for outcome in outcomes(seeds, given.jobs, samples=given.samples, of=given.of, until=until):
         found.append(outcome)
         if outcome.kind != "refused" or given.show:
             print(f"seed {outcome.seed}: {outcome.kind} in {outcome.seconds:.1f} s: {outcome.message}", flush=True)
