@@ -5,7 +5,7 @@ import pytest
 
 from bladewright.blade.design.unified import UnifiedBlade
 from bladewright.blade.native.blade import Blade
-from bladewright.fitting.initial_guess.arrangement import arranged_channels
+from bladewright.fitting.initial_guess.arrangement import arranged_channels, spans_along_y
 from bladewright.fitting.initial_guess.blade import first_blade
 from bladewright.fitting.model_selection.structure import structure_of
 from bladewright.nurbs.closest import closest_on_surface
@@ -83,3 +83,9 @@ def test_rows_at_the_ends_tell_a_cascade_from_a_ring_whose_sections_are_met_alik
     points[:, 2] += 0.5 if arrangement == "linear" else 0.0
     points = points + 2e-5 * np.random.default_rng(0).normal(size=points.shape)
     assert arranged_channels(points, None)[0] == arrangement
+
+
+def test_a_cascade_whose_span_lies_along_y_is_told_from_one_along_z() -> None:
+    points = _cloud(_truth("vki-ls89"), 700)
+    assert spans_along_y(points[:, [0, 2, 1]])
+    assert not spans_along_y(points)

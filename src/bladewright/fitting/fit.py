@@ -25,10 +25,12 @@ from bladewright.fitting.families.kinds import FAMILIES, FitFamily, family_of
 from bladewright.fitting.families.sections import matched_section
 from bladewright.fitting.families.unified import matched_unified
 from bladewright.fitting.free_parameters import free_parameters_of
+from bladewright.fitting.initial_guess.arrangement import spans_along_y
 from bladewright.fitting.matching.search import COARSEST_TOLERANCE, Match, Task
 from bladewright.fitting.model_selection.selection import MatchTarget
 from bladewright.fitting.registration.axes import axis_motion, found_axes
 from bladewright.fitting.registration.registration import registration
+from bladewright.fitting.registration.rigid_motion import composed
 from bladewright.nurbs.basis import Reals
 from bladewright.section.checks import choice
 from bladewright.section.unified import UnifiedSection
@@ -47,9 +49,16 @@ UNIFIED_NAMES = ("unified", "unified-section")
 """names of the unified family"""
 CASCADE_NOTE = (
     "nothing said how the blade stands, and it is taken for one of a linear cascade, with its span along z: one that "
-    "stands around x needs the arrangement annular"
+    "stands around x needs the arrangement annular, one with its span along y the arrangement linear"
 )
 """note where a cloud without a start was taken for a blade of a linear cascade"""
+UPRIGHT = Motion(rotation=np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]]), translation=np.zeros(3))
+"""the turn about x that brings y to z"""
+UPRIGHT_NOTE = (
+    "the blade of the linear cascade has its span along y, and is turned about x so that it lies along z: "
+    "where x is not the axial direction, name it (--axis)"
+)
+"""note where a blade was turned so"""
 INTERRUPTED_NOTE = (
     f"the search was interrupted, so the design's tolerance is at least {COARSEST_TOLERANCE:g} of the chord, which "
     "builds in a moment: lower it for finer surfaces"
@@ -121,6 +130,10 @@ def fit(
         motion, header, more = _aligned(points, start, header)
         notes = (*notes, *more)
     points = points if motion is None else motion(points)
+    cascade = arrangement == "linear" and points.shape[1] == 3 and not align and start is None and like is None
+    if cascade and spans_along_y(points):
+        motion = UPRIGHT if motion is None else composed(UPRIGHT, motion)
+        points, notes = UPRIGHT(points), (*notes, UPRIGHT_NOTE)
     refuse_several_blades(points)
     free_parameters = free_parameters_of(free, fixed, started=start is not None)
     task = Task(

@@ -2,6 +2,8 @@
 
 import numpy as np
 
+from bladewright.fitting.clouds.isolated import without_isolated_points
+from bladewright.fitting.clouds.thinning import even_subset
 from bladewright.fitting.design_header import Arrangement
 from bladewright.fitting.initial_guess.hypotheses import SlicedChannel, machine_coordinates, ranked_channels
 from bladewright.nurbs.basis import Reals
@@ -21,6 +23,9 @@ CLEARER_ROW, CLEAR_ROW = 0.5, 1e-3
 than `CLEAR_ROW` of the span. Rows of Aachen's stator with noise scatter by 1.7e-4 of the span about the axis, and by
 1.4e-3 on planes (design/fit_clouds.md)."""
 
+SPAN_POINTS = 600
+"""points by which the span's axis is told; it bounds the time."""
+
 
 def arranged_channels(points: Reals, arrangement: Arrangement | None) -> tuple[Arrangement, list[SlicedChannel]]:
     """The arrangement of the blade of points (n, 3) [m], unless it is given, and its likely channels with slices."""
@@ -32,6 +37,20 @@ def arranged_channels(points: Reals, arrangement: Arrangement | None) -> tuple[A
     if known == "linear" or linear[0].mean_distance < CLEARLY_LINEAR * annular[0].mean_distance:
         return "linear", linear
     return "annular", annular
+
+
+def spans_along_y(points: Reals) -> bool:
+    """Whether the span of a linear cascade's blade of points (n, 3) [m] is y, not z: slices across it meet them better.
+
+    A span along x needs no such question: the channel may lead along z.
+    """
+    some = without_isolated_points(np.unique(points, axis=0))
+    some = some[even_subset(some, SPAN_POINTS)]
+    off, off_turned = (
+        ranked_channels(machine_coordinates(each, "linear"), revolved=False)[0].mean_distance
+        for each in (some, some[:, [0, 2, 1]])
+    )
+    return off_turned < CLEARLY_LINEAR * off
 
 
 def _arrangement_by_axis(points: Reals) -> Arrangement | None:
