@@ -20,8 +20,8 @@ from bladewright.nurbs.curve import Curve
 
 SAME = 1e-9
 """Distance, in units of the points' extent, below which points of two faces are one: they differ by rounding."""
-BESIDE = tuple(f"_{part}_{side}" for part in ("strip", "fillet") for side in ("upper", "lower"))
-"""Endings of the names of faces between the sides of a blade and its walls."""
+BESIDE = "_strip_", "_fillet_"
+"""Parts of the names of faces between those of a blade and its walls, also at and about blunt and sharp edges."""
 NEAR = 1e-4
 """Default of `near`, in units of the points' extent: how far a given point may lie off the surfaces. Meshes from files
 with few digits must be accepted, and those of another design, or in millimetres, refused."""
@@ -149,7 +149,7 @@ def _nearest(shape: Shape, points: Reals) -> tuple[Reals, Reals, Reals]:
 
 def _sides(built: Any) -> list[str]:
     """The sides of a blade or section, with what lies between them and the walls."""
-    return ["upper", "lower", *(name for name in faces_of(built) if name.endswith(BESIDE))]
+    return ["upper", "lower", *(name for name in faces_of(built) if any(part in name for part in BESIDE))]
 
 
 def _face(faces: Mapping[str, Any], name: str) -> Any:
