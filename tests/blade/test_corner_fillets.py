@@ -96,7 +96,7 @@ def test_it_shares_columns_and_tangent_planes_with_the_fillets_beside_it(blade):
             assert np.array_equal(face.control_points[own][inner], column[inner])
             v = np.linspace(0.1, 0.8, 15) if wall == "hub" else np.linspace(0.2, 0.9, 15)
             planes = face.normal(-float(own), v), other.normal(u, v)
-            assert np.max(length(cross(*planes))) < 1e-3
+            assert np.max(length(cross(*planes))) < 5e-6
 
 
 def test_strips_reach_the_corners_line_and_keep_the_tangent_plane_of_the_fillet(blade):
@@ -174,6 +174,18 @@ def test_derivatives_are_those_of_differences():
         slope = (moved[0] - 8.0 * moved[1] + 8.0 * moved[2] - moved[3]) / (12.0 * step)
         found = np.imag(quantity(carrying)) / 1e-30
         assert np.max(np.abs(found - slope)) < 1e-6 * np.max(np.abs(slope)), path
+
+
+def test_arcs_that_overlap_by_more_than_the_tolerance_are_refused():
+    design = bw.read_design(files("bladewright") / "examples" / "inlet-guide-vane.toml")
+    asked = design.changed("hub_fillet", Fillet(radius=0.015 * design.build().chord / design.metre))
+    with pytest.raises(bw.DesignError, match=r"at the trailing edge it folds by more .* holds is 0\.0"):
+        asked.build()
+
+
+def test_points_for_solvers_lie_on_fillets_about_corners_too(blade):
+    names = set(bw.surface_points(blade, along=3, across=3).names)
+    assert {name for name in blade.surfaces if "_fillet_" in name or "_strip_" in name} <= names
 
 
 def test_a_refusal_names_the_largest_radius_that_holds():

@@ -302,6 +302,20 @@ def test_a_fillet_turns_at_once_where_the_curvature_of_a_side_jumps():
             assert np.max(length(cross(before, after))) < 1e-5
 
 
+@pytest.mark.slow
+def test_a_fillet_that_needs_too_many_poles_names_the_largest_radius_that_does_not(monkeypatch):
+    monkeypatch.setattr("bladewright.blade.native.fillet_knots.KINK", 9.0)
+    monkeypatch.setattr("bladewright.blade.native.fillet_knots.MOST_POLES", (260, 60))
+    plain = bw.read_design(files("bladewright") / "examples" / "exhaust-strut.toml")
+    asked = plain.changed("hub_fillet", Fillet(radius=0.04 * plain.build().chord / plain.metre))
+    with pytest.raises(bw.DesignError, match="of hub_fillet the largest that holds is") as refused:
+        asked.build()
+    largest = float(re.search(r"holds is ([\d.e+-]+)", str(refused.value))[1])
+    asked.changed("hub_fillet.radius", 0.95 * largest).build()
+    with pytest.raises(bw.DesignError, match="of hub_fillet the largest that holds is"):
+        asked.changed("hub_fillet.radius", 1.05 * largest).build()
+
+
 def test_a_suction_side_that_is_not_known_is_refused():
     radii = FilletRadii(leading_edge=0.1, trailing_edge=0.1, suction_side=0.1, pressure_side=0.1)
     from bladewright.blade.native.fillet_sizes import side_radii

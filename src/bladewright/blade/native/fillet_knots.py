@@ -12,9 +12,9 @@ from bladewright.blade.native.closed_section import LOWER, UPPER, ClosedSection,
 from bladewright.blade.native.contacts import Contacts, rates
 from bladewright.blade.native.cross_section import CrossSections
 from bladewright.blade.native.end_faces import EndKnots
-from bladewright.blade.native.fillet_limits import check_fillets
+from bladewright.blade.native.fillet_limits import check_fillets, named, scaled
 from bladewright.blade.native.knots import DEGREE, Knots, clamped, refined
-from bladewright.blade.native.pivot import Pivot, pivots_of
+from bladewright.blade.native.pivot import ACROSS, Pivot, pivots_of
 from bladewright.blade.native.refinement import RESERVE, wall_tolerance
 from bladewright.blade.native.rolling_ball import Ball, Rolled, Touch
 from bladewright.blade.native.strip import Strip, strips_for
@@ -26,7 +26,7 @@ from bladewright.nurbs.basis import Reals, basis, greville, knots_with_joints
 ON_BALL = 1e-6
 """Largest distance of a fillet from its ball, of the ball's radius."""
 ON_WALL = 1e-6
-"""Largest angle between the tangent planes of fillet and wall at the foot [rad]."""
+"""Largest angle between the tangent planes of fillet and wall at the foot, and of fillets beside a corner [rad]."""
 AT_JOINTS = 1e-9
 """Largest angle between the tangent planes of strips beside corners and those of fillet and side [rad]."""
 MOST_POLES = (300, 60)
@@ -43,6 +43,15 @@ LINES = 12
 """About how many lines of a strip are looked at on each side for its knots along them."""
 PLACES = np.array([0.0, 0.2, 0.5])
 """w of the strips at which knots around the blade are looked at: at 1 they have those of the side."""
+
+
+NEAREST, LEAST_TRIED = 1.04, 0.1
+"""Ratio of a radius that needs too many poles to one that does not, at which the search for the largest ends, and the
+share of the one asked for below which none is tried: each takes a second."""
+
+
+class _TooManyPolesError(DesignError):
+    """More poles are needed than are used."""
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
@@ -62,7 +71,30 @@ class FilletKnots(Knots):
 
 
 def chosen_knots(blade: Blade, section: ClosedSection, balls: Mapping[str, Ball], *, fine: bool = False) -> FilletKnots:
-    """The knots; raises DesignError where a ball does not touch blade and wall."""
+    """The knots; raises DesignError where a ball does not touch blade and wall, or too many poles are needed."""
+    try:
+        return _held(blade, section, balls, fine=fine)
+    except _TooManyPolesError as found:
+        # one that needs few enough, by halves, and then as near below as poles tell
+        low, high = 0.0, 1.0
+        while high > max(NEAREST * low, LEAST_TRIED):
+            share = 0.5 * (low + high)
+            try:
+                _held(blade, section, {wall: scaled(ball, share) for wall, ball in balls.items()}, fine=fine)
+                low = share
+            except DesignError:
+                high = share
+        if low == 0.0:
+            raise
+        sites = section.corner_sites.and_those(Sites(side=np.array([UPPER, LOWER]), u=np.array([0.5, 0.5])))
+        sizes = {
+            wall: [np.real(size) / blade.design.metre for size in ball.sizes(sites)] for wall, ball in balls.items()
+        }
+        holds = " and ".join(f"of {wall}_fillet {named(blade.design, own, low)}" for wall, own in sizes.items())
+        raise DesignError(f"{found}; {holds}") from None
+
+
+def _held(blade: Blade, section: ClosedSection, balls: Mapping[str, Ball], *, fine: bool) -> FilletKnots:
     plain = {face: surface.knots_u for face, surface in section.blunt.items()}
     first = SectionSplines(knots=blade.sides[0].knots_u, smooth=section.smooth, blunt=FrozenMapping(plain))
     # balls that are far too large find no numbers, and are refused for it
@@ -150,6 +182,7 @@ def _around(
     section, balls = rolled.section, {wall: touch.ball for wall, touch in rolled.touches.items()}
     known, faces = rolled, [UPPER, LOWER] if face == UPPER else [face]
     tolerance, off_wall = tolerances
+    ends = {wall: _ends_at_corners(touch, faces) for wall, touch in rolled.touches.items()}
 
     def miss(knots: Reals, at: Reals) -> Reals:
         nonlocal known
@@ -169,6 +202,11 @@ def _around(
             made, exact = (np.swapaxes(each.above(strip, PLACES), 0, 1) for each in (mine, touch))
             off = np.max(length(carried(made) - exact), axis=1) / tolerance
             error = np.max([error, off, _missed(mine.sections, touch.sections, carried, off_wall)], axis=0)
+            for number, end, normals in ends[wall]:
+                points = np.swapaxes(mine.sections.points(ACROSS), 0, 1)
+                along = np.tensordot(basis(knots, DEGREE, [end], 1)[0] @ nets[number], points, axes=1)
+                place = number * len(at) + (len(at) - 1 if end else 0)
+                error[place] = max(error[place], _tilt(along, normals))
             if section.corners:
                 error = np.max([error, *_unlike(mine, touch, strip, carried)], axis=0)
         return np.max(error.reshape(len(faces), -1), axis=0)
@@ -176,6 +214,16 @@ def _around(
     return first.with_knots(
         face, _reached(refined(first.knots_of[face], miss, MOST_POLES[0]), miss, "chord", list(balls))
     )
+
+
+def _ends_at_corners(touch: Touch, faces: list[int]) -> list[tuple[int, float, Reals]]:
+    """The number of each face that ends at a pivot, u there, and the normals of the pivot's fillet."""
+    found = []
+    for pivot in pivots_of(touch):
+        for (face, end), there, p in ((pivot.corner.first, pivot.first, 0.0), (pivot.corner.second, pivot.last, 1.0)):
+            if there and face in faces and pivot.circular:
+                found.append((faces.index(face), end, pivot.planes(p)))
+    return found
 
 
 def _about(pivot: Pivot, wall: str, plain: Reals, off_wall: float) -> Reals:
@@ -195,10 +243,23 @@ def _about(pivot: Pivot, wall: str, plain: Reals, off_wall: float) -> Reals:
         def carried(values: Array, order: int = 0) -> Array:
             return np.tensordot(basis(knots, DEGREE, at, order) @ net, values, axes=1)
 
-        return _missed(pivot.at(sites).sections, pivot.at(at).sections, carried, off_wall)
+        mine = pivot.at(sites).sections
+        error = _missed(mine, pivot.at(at).sections, carried, off_wall)
+        for p, normals in planes.items():
+            along = np.tensordot(basis(knots, DEGREE, [p], 1)[0] @ net, np.swapaxes(mine.points(ACROSS), 0, 1), axes=1)
+            error[-int(p)] = max(error[-int(p)], _tilt(along, normals))
+        return error
 
+    planes = {p: pivot.planes(p) for p in (0.0, 1.0) if pivot.circular}
     first = knots_with_joints(clamped(QUARTERS), DEGREE, joints)
     return _reached(refined(first, miss, MOST_POLES[0]), miss, "chord", [wall])
+
+
+def _tilt(along: Reals, planes: Reals) -> float:
+    """The largest angle of vectors with planes of these normals, over what is allowed."""
+    return float(np.max(np.abs(dot(unit(along), planes)))) / (
+        RESERVE * ON_WALL
+    )  # real: knots come from the real design
 
 
 def _missed(mine: CrossSections, theirs: CrossSections, carried: Callable[..., Array], off_wall: float) -> Reals:
@@ -229,7 +290,7 @@ def _reached(knots: Reals, miss: Callable[[Reals, Reals], Reals], along: str, wa
     worst = int(np.argmax(error))
     if error[worst] > 1.0:
         name, given = "u" if along == "chord" else "v", " or ".join(f"{wall}_fillet" for wall in walls)
-        raise DesignError(
+        raise _TooManyPolesError(
             f"{given}: near {name} = {places[worst]:.3f} native surfaces miss what is promised of "
             f"them {error[worst]:.2g} times with {len(knots) - DEGREE - 1} poles along the {along}, at most "
             f"{MOST_POLES[along == 'span']} are used: take a smaller fillet, raise the tolerance, or raise a very "

@@ -77,14 +77,15 @@ def check_fillets(blade: Blade, balls: Mapping[str, Ball], rolled: Rolled) -> No
         smaller = {name: scaled(ball, share) if name == wall else ball for name, ball in balls.items()}
         met = obstacle(blade, Rolled.at(rolled.section, smaller, rolled.sites), at=wall)
         low, high, at_high = (share, high, at_high) if met is None else (low, share, met)
-    asked, largest = _asked(design, wall, sizes[wall]), NAMED * low * most / design.metre
-    if low == 0.0:
-        cure = "no smaller one holds either: leave it out"
-    elif _constant(sizes[wall]):
-        cure = f"the largest that holds is {largest:.4g} {design.length_unit}"
-    else:
-        cure = f"the largest that holds is {NAMED * low:.4g} of that"
-    raise DesignError(f"{asked}: {at_high.reason}; {cure}")
+    cure = named(design, sizes[wall], low) if low else "no smaller one holds either: leave it out"
+    raise DesignError(f"{_asked(design, wall, sizes[wall])}: {at_high.reason}; {cure}")
+
+
+def named(design: RowDesign, sizes: list[Reals], share: float) -> str:
+    """The largest radius that holds, as a share of that which is asked for."""
+    if _constant(sizes):
+        return f"the largest that holds is {NAMED * share * max(map(np.max, sizes)):.4g} {design.length_unit}"
+    return f"the largest that holds is {NAMED * share:.4g} of that"
 
 
 def _asked(design: RowDesign, wall: str, sizes: list[Reals]) -> str:
@@ -201,7 +202,6 @@ def _folding(blade: Blade, wall: str, touch: Touch) -> str | None:
 
 def _about_corners(blade: Blade, wall: str, touch: Touch) -> str | None:
     """Whether a ball that pivots about a corner finds no place, or its cross-sections cross."""
-    del blade
     section = touch.section
     for corner in section.corners:
         sites = Sites(
@@ -226,6 +226,12 @@ def _about_corners(blade: Blade, wall: str, touch: Touch) -> str | None:
         forward = forward * sense / np.max(np.square(forward)) ** 0.5
         if not np.min(forward) > -LEAST_BACK:
             return f"{_named(pivot.name, 0.0)} it folds: the corner leans over the ball"
+        radius = float(np.mean(np.real(ball.sections.sizes[0])))
+        if pivot.circular and not pivot.overlap() * radius < blade.tolerance * float(np.real(blade.chord)):
+            return (
+                f"{_named(pivot.name, 0.0)} it folds by more than the tolerance, {blade.tolerance:g} of the chord: the "
+                "corner leans over the ball"
+            )
     return None
 
 

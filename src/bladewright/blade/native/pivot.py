@@ -29,7 +29,7 @@ from numpy.typing import NDArray
 from bladewright.blade.native.closed_section import FACES, LEADING, Corner, Sites
 from bladewright.blade.native.contacts import Wall
 from bladewright.blade.native.cross_section import ConicSections, CrossSections, QuinticSections
-from bladewright.blade.native.rolling_ball import Touch, bend_of_wall
+from bladewright.blade.native.rolling_ball import STEP, Touch, bend_of_wall
 from bladewright.frozen import FrozenRecord
 from bladewright.numerics.elementary import Array, cross, dot, length, unit
 from bladewright.nurbs.basis import Reals
@@ -43,6 +43,11 @@ UPRIGHT = 0.08
 is then no deeper in the ball than 0.3 % of the radius, on lines that lean by up to some 6 deg."""
 REMEMBERED = 8
 """Touches and corners whose ways are remembered: they are asked for again at once, by limits, knots and faces."""
+ACROSS = np.array([0.02, 0.05, 0.1, 0.2, 0.35, 0.5, 0.75, 1.0])
+"""Places on cross-sections, from the corner to the wall, at which it is seen how they move: arcs overlap in the first
+tenth."""
+OVERLAPS = 1e-6
+"""Overlap of arcs, of the radius, up to which a ball that only turns is preferred to one that runs, too."""
 LOOKED_AT = np.linspace(0.0, 1.0, 65)
 """Shares of the turn at which it is seen how the contact moves."""
 
@@ -82,6 +87,12 @@ class Pivot(FrozenRecord):
     def pole(self) -> bool:
         """Whether the ball turns about a point."""
         return not self.runs and bool(self.line[0] == self.line[1])
+
+    @property
+    def circular(self) -> bool:
+        """Whether cross-sections are arcs of the ball: others promise no distance from it, nor planes inside."""
+        corners = self.touch.corners
+        return not self.touch.ball.curved and bool(np.array_equal(corners.on_blade, corners.on_wall))
 
     @cached_property
     def contacts(self) -> tuple[Array, Array]:
@@ -146,6 +157,20 @@ class Pivot(FrozenRecord):
         line = unit(np.real(self.touch.section.derivative(_along(self.corner.first, len(ball.v)), ball.v, 0, 1)))
         return bool(np.max(np.square(dot(np.real(ball.sections.normals[0]), line))) < UPRIGHT**2)
 
+    def overlap(self) -> float:
+        """How far real cross-sections go back over those before them, at most, over the radius."""
+        sections = self.at(LOOKED_AT + 1j * STEP).sections
+        along = unit(np.real(cross(*sections.normals)))
+        moves = dot(along, np.imag(sections.points(np.append(0.0, ACROSS))) / STEP)
+        back = np.maximum(0.0, -moves if np.sum(moves) > 0.0 else moves)
+        return float(np.max(np.mean(back, axis=1) / np.mean(np.real(sections.sizes[0]))))
+
+    def planes(self, p: float) -> Reals:
+        """Unit normals (len(ACROSS), 3) of the real fillet along its cross-section at p."""
+        sections = self.at(np.array([p]) + 1j * STEP).sections
+        points, slopes = (sections.points(ACROSS, order)[:, 0] for order in (0, 1))
+        return unit(cross(np.imag(points) / STEP, np.real(slopes)))
+
     def _even(self, v: Array, p: Array) -> Array:
         """m (k, 3) between the normals of both faces along the corner."""
         section = self.touch.section
@@ -183,19 +208,26 @@ def pivots_of(touch: Touch) -> tuple[Pivot, ...]:
     found: list[Pivot] = []
     for corner in touch.section.corners:
         even = Pivot(touch=touch, corner=corner, runs=False, first=True, last=True)
-        if even.upright():
-            kinds = [(False, True, True)]
-        else:
-            v, _ = way(touch, corner)
-            rises = np.diff(v) * (v[-1] - v[0]) > 0.0
-            if rises.all():
-                kinds = [(True, True, True)]
-            elif rises[0]:
-                kinds = [(True, True, False), (False, False, True)]
-            else:
-                kinds = [(False, True, False), (True, False, True)]
-        found += [Pivot(touch=touch, corner=corner, runs=runs, first=one, last=two) for runs, one, two in kinds]
+        best: tuple[Pivot, ...] = (even,)
+        if not even.upright():
+            best = _running(touch, corner)
+        elif even.overlap() > OVERLAPS:
+            best = min(best, _running(touch, corner), key=lambda parts: max(part.overlap() for part in parts))
+        found += best
     return tuple(found)
+
+
+def _running(touch: Touch, corner: Corner) -> tuple[Pivot, ...]:
+    """The parts of the way of a ball that runs, and turns where its contact goes back."""
+    v, _ = way(touch, corner)
+    rises = np.diff(v) * (v[-1] - v[0]) > 0.0
+    if rises.all():
+        kinds = [(True, True, True)]
+    elif rises[0]:
+        kinds = [(True, True, False), (False, False, True)]
+    else:
+        kinds = [(False, True, False), (True, False, True)]
+    return tuple(Pivot(touch=touch, corner=corner, runs=runs, first=one, last=two) for runs, one, two in kinds)
 
 
 class Foot(NamedTuple):
