@@ -257,9 +257,8 @@ def _about(pivot: Pivot, wall: str, plain: Reals, off_wall: float) -> Reals:
 
 def _tilt(along: Reals, planes: Reals) -> float:
     """The largest angle of vectors with planes of these normals, over what is allowed."""
-    return float(np.max(np.abs(dot(unit(along), planes)))) / (
-        RESERVE * ON_WALL
-    )  # real: knots come from the real design
+    angles = np.abs(dot(unit(along), planes))  # real: knots come from the real design
+    return float(np.max(angles)) / (RESERVE * ON_WALL)
 
 
 def _missed(mine: CrossSections, theirs: CrossSections, carried: Callable[..., Array], off_wall: float) -> Reals:
