@@ -202,6 +202,7 @@ def _folding(blade: Blade, wall: str, touch: Touch) -> str | None:
 
 def _about_corners(blade: Blade, wall: str, touch: Touch) -> str | None:
     """Whether a ball that pivots about a corner finds no place, or its cross-sections cross."""
+    del blade
     section = touch.section
     for corner in section.corners:
         sites = Sites(
@@ -226,12 +227,6 @@ def _about_corners(blade: Blade, wall: str, touch: Touch) -> str | None:
         forward = forward * sense / np.max(np.square(forward)) ** 0.5
         if not np.min(forward) > -LEAST_BACK:
             return f"{_named(pivot.name, 0.0)} it folds: the corner leans over the ball"
-        radius = float(np.mean(np.real(ball.sections.sizes[0])))
-        if pivot.circular and not pivot.overlap() * radius < blade.tolerance * float(np.real(blade.chord)):
-            return (
-                f"{_named(pivot.name, 0.0)} it folds by more than the tolerance, {blade.tolerance:g} of the chord: the "
-                "corner leans over the ball"
-            )
     return None
 
 

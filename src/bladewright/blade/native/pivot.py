@@ -44,10 +44,7 @@ is then no deeper in the ball than 0.3 % of the radius, on lines that lean by up
 REMEMBERED = 8
 """Touches and corners whose ways are remembered: they are asked for again at once, by limits, knots and faces."""
 ACROSS = np.array([0.02, 0.05, 0.1, 0.2, 0.35, 0.5, 0.75, 1.0])
-"""Places on cross-sections, from the corner to the wall, at which it is seen how they move: arcs overlap in the first
-tenth."""
-OVERLAPS = 1e-6
-"""Overlap of arcs, of the radius, up to which a ball that only turns is preferred to one that runs, too."""
+"""Places on cross-sections, from the corner to the wall, at which planes are compared."""
 LOOKED_AT = np.linspace(0.0, 1.0, 65)
 """Shares of the turn at which it is seen how the contact moves."""
 
@@ -157,14 +154,6 @@ class Pivot(FrozenRecord):
         line = unit(np.real(self.touch.section.derivative(_along(self.corner.first, len(ball.v)), ball.v, 0, 1)))
         return bool(np.max(np.square(dot(np.real(ball.sections.normals[0]), line))) < UPRIGHT**2)
 
-    def overlap(self) -> float:
-        """How far real cross-sections go back over those before them, at most, over the radius."""
-        sections = self.at(LOOKED_AT + 1j * STEP).sections
-        along = unit(np.real(cross(*sections.normals)))
-        moves = dot(along, np.imag(sections.points(np.append(0.0, ACROSS))) / STEP)
-        back = np.maximum(0.0, -moves if np.sum(moves) > 0.0 else moves)
-        return float(np.max(np.mean(back, axis=1) / np.mean(np.real(sections.sizes[0]))))
-
     def planes(self, p: float) -> Reals:
         """Unit normals (len(ACROSS), 3) of the real fillet along its cross-section at p."""
         sections = self.at(np.array([p]) + 1j * STEP).sections
@@ -208,12 +197,7 @@ def pivots_of(touch: Touch) -> tuple[Pivot, ...]:
     found: list[Pivot] = []
     for corner in touch.section.corners:
         even = Pivot(touch=touch, corner=corner, runs=False, first=True, last=True)
-        best: tuple[Pivot, ...] = (even,)
-        if not even.upright():
-            best = _running(touch, corner)
-        elif even.overlap() > OVERLAPS:
-            best = min(best, _running(touch, corner), key=lambda parts: max(part.overlap() for part in parts))
-        found += best
+        found += (even,) if even.upright() else _running(touch, corner)
     return tuple(found)
 
 
