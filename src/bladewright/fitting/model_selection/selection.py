@@ -18,12 +18,7 @@ from bladewright.errors import DesignError, FitError
 from bladewright.fitting.assessment.estimates import undetermined_parameters
 from bladewright.fitting.free_parameters import corner_radii
 from bladewright.fitting.matching.search import ROUGH_REDUCTION, Match, Task, searched
-from bladewright.fitting.model_selection.elimination import (
-    PREDICTED,
-    best_of_size,
-    eliminated,
-    reweighted,
-)
+from bladewright.fitting.model_selection.elimination import PREDICTED, best_of_size, eliminated, reweighted
 from bladewright.fitting.model_selection.prediction import FOLDS, LinearModel, Prediction, folds_of
 from bladewright.fitting.model_selection.reshaping import reshaped, with_feasible_edges
 from bladewright.fitting.model_selection.rich_structures import rich_structure, wider_structure
@@ -102,6 +97,9 @@ def selected_match(
     if held:
         several, many = _with_corners_held(several), _with_corners_held(many)
     selection = _Selection(task=several, samples=(like or structure_of(first)).samples)
+    if task.dimension == 3 and guessed:
+        # laws that need no control points along the span begin as constants
+        found = replace(selection, task=task.thinned(QUICK_POINTS)).well_predicted(found)
     rich = selection.rich(found)
     if task.dimension == 3 and _refused(rich):
         several, many = (replace(each, margin_factor=REFUSED_MARGIN * each.margin_factor) for each in (several, many))
@@ -128,12 +126,12 @@ def _determined(task: Task, match: Match) -> tuple[Match, str]:
         if not more or match.interrupted:
             break
         held += more
-        free = replace(task, free=partial(_free_but, task, frozenset(held)))
+        free = replace(task, free=partial(_free_but, task, held))
         match = searched(free, match.design, noise=match.rms, rounds=QUICK_ROUNDS, min_reduction=FINAL_REDUCTION)
     return match, HELD_NOTE.format(", ".join(held)) if held else ""
 
 
-def _free_but(task: Task, held: frozenset[str], design: Design) -> tuple[str, ...]:
+def _free_but(task: Task, held: list[str], design: Design) -> tuple[str, ...]:
     return tuple(path for path in task.free(design) if path not in held)
 
 
@@ -166,8 +164,9 @@ def has_systematic_misfit(match: Match) -> bool:
     return match.noise_estimate.correlation > NOISE_CORRELATION and not match.interrupted
 
 
-TRIED = {2: 4, 3: 1}
-"""structures of one size that are searched, by dimension: predictions are linear."""
+TRIED_PARAMETERS, MOST_TRIED = 100, 4
+"""parameters of the structures of one size that are searched, in all, as predictions are linear; and structures at most
+(`MOST_TRIED`)."""
 STAGES = 3
 """times that structures are predicted anew about the match that they have led to."""
 LARGEST_CONDITION = 1e7
@@ -208,9 +207,10 @@ class _Selection:
     def of_size(self, rich: Match, most: int) -> Match:
         """The match of at most so many parameters that predictions lead to."""
         best, about = None, rich
+        count = min(MOST_TRIED, max(1, TRIED_PARAMETERS // most))
         for _ in range(STAGES):
             model = self._model(about)
-            tried = [self._searched(model, each) for each in best_of_size(model, most)[: TRIED[self.task.dimension]]]
+            tried = [self._searched(model, each) for each in best_of_size(model, most)[:count]]
             nearest = min(filter(None, tried), key=lambda each: each.misfit, default=None)
             if nearest is None or (best is not None and nearest.misfit >= best.misfit):
                 break
