@@ -10,7 +10,7 @@ from bladewright.fitting.assessment.estimates import parameter_estimates
 from bladewright.fitting.assessment.measurement import measured
 from bladewright.fitting.free_parameters import free_parameters_of
 from bladewright.fitting.matching.search import Task, searched
-from bladewright.fitting.model_selection.selection import MatchTarget
+from bladewright.fitting.model_selection.match_target import MatchTarget
 from machines import example
 
 STATOR = example("aachen-stator")

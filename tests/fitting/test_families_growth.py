@@ -17,7 +17,7 @@ from bladewright.fitting.families.sections import _design_maker, _through_points
 from bladewright.fitting.families.suction_pressure import templates
 from bladewright.fitting.free_parameters import FreeParameters
 from bladewright.fitting.matching.search import Task, searched
-from bladewright.fitting.model_selection.selection import MatchTarget
+from bladewright.fitting.model_selection.match_target import MatchTarget
 from bladewright.fitting.models.feasibility import infeasibility
 from bladewright.section.laws import Span
 from bladewright.section.profiles.flat_plate import FlatPlate

@@ -27,7 +27,7 @@ from bladewright.fitting.families.unified import matched_unified
 from bladewright.fitting.free_parameters import free_parameters_of
 from bladewright.fitting.initial_guess.arrangement import spans_along_y
 from bladewright.fitting.matching.search import COARSEST_TOLERANCE, Match, Task
-from bladewright.fitting.model_selection.selection import MatchTarget
+from bladewright.fitting.model_selection.match_target import MatchTarget
 from bladewright.fitting.registration.axes import axis_motion, found_axes
 from bladewright.fitting.registration.registration import registration
 from bladewright.fitting.registration.rigid_motion import composed

@@ -10,7 +10,7 @@ from bladewright.fitting.assessment.lengths import with_unit
 from bladewright.fitting.assessment.measurement import Measurement
 from bladewright.fitting.initial_guess.blade import AXES_HINT
 from bladewright.fitting.matching.search import Match
-from bladewright.fitting.model_selection.selection import MatchTarget
+from bladewright.fitting.model_selection.match_target import MatchTarget
 from bladewright.nurbs.basis import Reals
 
 NEAR_EVERYWHERE = 5e-4

@@ -22,7 +22,7 @@ from bladewright.fitting.free_parameters import EDGES, FreeParameters, gauge_par
 from bladewright.fitting.initial_guess.blade import first_blade
 from bladewright.fitting.matching.scales import check_bounds
 from bladewright.fitting.matching.search import EXACT_MISFIT, ROUGH_REDUCTION, Match, Task, evaluated, searched
-from bladewright.fitting.model_selection.selection import MatchTarget
+from bladewright.fitting.model_selection.match_target import MatchTarget
 from bladewright.fitting.model_selection.structure import INITIAL_BLADES
 from bladewright.fitting.models.feasibility import infeasibility
 from bladewright.numerics.least_squares import MIN_REDUCTION

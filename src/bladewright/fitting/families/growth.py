@@ -12,12 +12,15 @@ from bladewright.fitting.matching.footpoints import footpoints_at
 from bladewright.fitting.matching.residuals import PlacedCloud
 from bladewright.fitting.matching.scales import scales_of
 from bladewright.fitting.matching.search import Match, Task
-from bladewright.fitting.model_selection.selection import ENOUGH_DEVIATION, NOISE_CORRELATION, NOISE_REASON, MatchTarget
+from bladewright.fitting.model_selection.match_target import MatchTarget
+from bladewright.fitting.model_selection.selection import NOISE_CORRELATION, NOISE_REASON
 from bladewright.nurbs.basis import Reals
 
 WEIGHT_RANGE = (0.1, 10.0)
 """least and largest weight of a point by its distance, where a tolerance is to be met: wider ranges leave all but the
 worst points out of account."""
+ENOUGH_DEVIATION = {2: 5e-7, 3: 5e-5}
+"""largest deviation at which nothing is added where no target is stated, of the chord, by dimension."""
 MOST_PARAMETERS = {2: 80, 3: 340}
 """parameters above which nothing is added, by dimension; it bounds the time."""
 POINTS_PER_PARAMETER = {2: 2, 3: 3}

@@ -16,7 +16,7 @@ from bladewright.fitting.families.laws import counts_of, part_along_span, with_s
 from bladewright.fitting.families.section_samples import SampledSection
 from bladewright.fitting.free_parameters import EDGES
 from bladewright.fitting.matching.search import EXACT_MISFIT, ROUGH_REDUCTION, Match, Task, searched
-from bladewright.fitting.model_selection.selection import MatchTarget
+from bladewright.fitting.model_selection.match_target import MatchTarget
 from bladewright.fitting.models.planar import SINGLE_SECTION
 from bladewright.nurbs.basis import Reals
 from bladewright.section.laws import Span, law_basis, law_points, named_laws, stations_of

@@ -24,7 +24,7 @@ from bladewright.fitting.families.unified import matched_unified
 from bladewright.fitting.free_parameters import FreeParameters
 from bladewright.fitting.matching.scales import check_bounds
 from bladewright.fitting.matching.search import MOST_ROUNDS, Match, Task, searched
-from bladewright.fitting.model_selection.selection import MatchTarget
+from bladewright.fitting.model_selection.match_target import MatchTarget
 from bladewright.section.checks import UNITS
 from bladewright.section.section import Section
 

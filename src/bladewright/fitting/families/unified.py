@@ -1,5 +1,6 @@
 """From points to a design of the unified family."""
 
+from contextlib import suppress
 from dataclasses import replace
 from typing import Any
 
@@ -12,13 +13,9 @@ from bladewright.fitting.initial_guess.blade import AXES_HINT, first_blade
 from bladewright.fitting.initial_guess.section import first_section
 from bladewright.fitting.matching.scales import check_bounds
 from bladewright.fitting.matching.search import ROUGH_REDUCTION, Match, Task, searched
+from bladewright.fitting.model_selection.match_target import MatchTarget
 from bladewright.fitting.model_selection.reshaping import reshaped, with_feasible_edges
-from bladewright.fitting.model_selection.selection import (
-    FINAL_REDUCTION,
-    THOROUGH_POINTS,
-    MatchTarget,
-    selected_match,
-)
+from bladewright.fitting.model_selection.selection import FINAL_REDUCTION, THOROUGH_POINTS, selected_match
 from bladewright.fitting.model_selection.structure import FEWEST_THICKNESSES, INITIAL_BLADES, Structure, structure_of
 
 STRAIGHT_CAMBER = {"tangent_*": (0.12, 1.0)}
@@ -87,9 +84,9 @@ def _buildable(task: Task, match: Match, *, fewer: bool) -> tuple[Match, Any, st
     refusal = ""
     for margin_factor in (0.0, 1.0, 30.0, 1000.0):
         if margin_factor:
-            match = searched(
-                replace(task, margin_factor=margin_factor), match.design, rounds=2, min_reduction=FINAL_REDUCTION
-            )
+            fresh = replace(task, margin_factor=margin_factor)
+            with suppress(FitError):
+                match = searched(fresh, match.design, rounds=2, min_reduction=FINAL_REDUCTION)
         try:
             return match, match.design.build(), ""
         except DesignError as error:

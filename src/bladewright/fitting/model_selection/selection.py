@@ -19,6 +19,7 @@ from bladewright.fitting.assessment.estimates import undetermined_parameters
 from bladewright.fitting.free_parameters import corner_radii
 from bladewright.fitting.matching.search import ROUGH_REDUCTION, Match, Task, searched
 from bladewright.fitting.model_selection.elimination import PREDICTED, best_of_size, eliminated, reweighted
+from bladewright.fitting.model_selection.match_target import MatchTarget
 from bladewright.fitting.model_selection.prediction import FOLDS, LinearModel, Prediction, folds_of
 from bladewright.fitting.model_selection.reshaping import reshaped, with_feasible_edges
 from bladewright.fitting.model_selection.rich_structures import rich_structure, wider_structure
@@ -33,8 +34,6 @@ FINAL_REDUCTION = 1e-3
 QUICK_POINTS, SEVERAL_POINTS, THOROUGH_POINTS = 1000, 4000, 12_000
 """points of the first search in space, of those that choose control points, which need every row of points, and of the
 last one: time is proportional to them."""
-ENOUGH_DEVIATION = {2: 5e-7, 3: 5e-5}
-"""largest deviation at which nothing is added where no target is stated, of the chord, by dimension."""
 NOISE_CORRELATION = 0.15
 """share of the misfit that neighbours have in common below which the misfit is noise."""
 WEAK_REGULARISATION = 0.1
@@ -54,24 +53,6 @@ DETERMINED_MARGIN, MOST_HOLDINGS = 1.5, 3
 search that follows changes the residuals; and how often parameters are held at most (`MOST_HOLDINGS`)."""
 NOISE_REASON = "what is left is the cloud's own noise, {:.2g} mm: more control points would follow it"
 """why a tolerance is not met"""
-
-
-@dataclass(frozen=True, kw_only=True)
-class MatchTarget:
-    """What is asked of a match."""
-
-    tolerance: float | None = None
-    """largest distance of an inlier [m]"""
-    parameters: int | None = None
-    structured: bool = False
-    """whether the structure is given"""
-    registered: bool = False
-    """whether the axes were found first, from a start that need not be this blade"""
-
-    @property
-    def open(self) -> bool:
-        """Whether nothing is asked for."""
-        return self.tolerance is None and self.parameters is None and not self.structured
 
 
 def selected_match(
@@ -102,8 +83,8 @@ def selected_match(
         found = replace(selection, task=task.thinned(QUICK_POINTS)).well_predicted(found)
     rich = selection.rich(found)
     if task.dimension == 3 and _refused(rich):
-        several, many = (replace(each, margin_factor=REFUSED_MARGIN * each.margin_factor) for each in (several, many))
-        selection = replace(selection, task=several)
+        selection = selection.with_margin()
+        many = replace(many, margin_factor=selection.task.margin_factor)
     if target.parameters is not None:
         found = selection.of_size(rich, target.parameters)
     elif target.tolerance is not None:
@@ -114,8 +95,18 @@ def selected_match(
         return found, reason
     if target.tolerance is not None:
         return _confirmed(many, found, target.tolerance), reason
-    found = searched(many, found.design, noise=found.rms, min_reduction=FINAL_REDUCTION)
+    found = _searched_further(many, found)
     return _determined(many, found) if target.open else (found, reason)
+
+
+def _searched_further(task: Task, match: Match, **options: int) -> Match:
+    """A match searched on, or as it is where that cannot be built any more, or finer knots leave it no shape."""
+    try:
+        found = searched(task, match.design, noise=match.rms, min_reduction=FINAL_REDUCTION, **options)
+    except FitError:
+        return match
+    lost = task.dimension == 3 and not found.interrupted and _refused(found) and not _refused(match)
+    return match if lost else found
 
 
 def _determined(task: Task, match: Match) -> tuple[Match, str]:
@@ -127,7 +118,7 @@ def _determined(task: Task, match: Match) -> tuple[Match, str]:
             break
         held += more
         free = replace(task, free=partial(_free_but, task, held))
-        match = searched(free, match.design, noise=match.rms, rounds=QUICK_ROUNDS, min_reduction=FINAL_REDUCTION)
+        match = _searched_further(free, match, rounds=QUICK_ROUNDS)
     return match, HELD_NOTE.format(", ".join(held)) if held else ""
 
 
@@ -196,6 +187,10 @@ class _Selection:
     samples: int
     """along the chord at least"""
 
+    def with_margin(self) -> "_Selection":
+        """The same with edge radii kept further from what is refused."""
+        return replace(self, task=replace(self.task, margin_factor=REFUSED_MARGIN * self.task.margin_factor))
+
     def rich(self, match: Match) -> Match:
         """The match of a rich structure, or the one before where that leaves it no shape."""
         design = with_feasible_edges(reshaped(match.design, rich_structure(match.design, len(self.task.points))))
@@ -251,14 +246,15 @@ class _Selection:
         if found.interrupted or not has_systematic_misfit(found) or _largest(found, rich) <= limit:
             return found
         nearer, _ = self.within(rich, limit)
-        return nearer if _largest(nearer, rich) < _largest(found, rich) else found
+        better = _largest(nearer, rich) < _largest(found, rich) and not _refused(nearer)
+        return nearer if better else found
 
     def within(self, rich: Match, tolerance: float) -> tuple[Match, str]:
         """The match of fewest parameters found that keeps a tolerance [m]; the nearest, and why, where none does."""
         if _largest(rich, rich) > tolerance and not has_systematic_misfit(rich):
             return self.well_predicted(rich), NOISE_REASON.format(1e3 * rich.noise_estimate.noise)
         best, nearest, about, wide = None, rich, rich, False
-        share, failed, missed = 1.0, 0, 0
+        share, failed, missed, selection = 1.0, 0, 0, self
         while failed < MOST_FAILURES and not about.interrupted:
             model = self._model(about)
             relative = tolerance / model.chord
@@ -274,16 +270,20 @@ class _Selection:
             if not kept:
                 break
             tried = kept[int(np.ceil(share * len(kept))) - 1]
-            found = self._searched_within(model, tried, rich, tolerance)
+            found = selection._searched_within(model, tried, rich, tolerance)
             if found is not None and _largest(found, rich) <= tolerance:
-                best = about = found
+                about = found
+                if self.task.dimension == 3 and _refused(found):
+                    selection, failed = selection.with_margin(), failed + 1
+                    continue
+                best = found
                 share, failed, missed = min(1.0, 1.5 * share), 0, 0
                 continue
             share, failed, missed = 0.5 * share, failed + 1, tried.parameters
-            if best is None and found is not None and _largest(found, rich) < _largest(about, rich):
+            if best is None and found is not None and _largest(found, rich) < HOPELESS * _largest(about, rich):
                 if found.noise_estimate.correlation < NOISE_CORRELATION:
                     return self.well_predicted(rich), NOISE_REASON.format(1e3 * found.noise_estimate.noise)
-                nearest, about, wide, missed = found, self._widened(found), True, 0
+                nearest, about, wide, failed, missed = found, self._widened(found), True, 0, 0
         return (best, "") if best is not None else (nearest, "no structure was found that keeps the tolerance")
 
     def _model(self, match: Match) -> LinearModel:
