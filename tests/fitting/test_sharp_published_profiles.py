@@ -3,7 +3,6 @@
 import numpy as np
 
 from bladewright.files.clouds import read_cloud
-from bladewright.fitting.clouds.cloud import is_rounded
 from bladewright.fitting.fit import fit
 from bladewright.section.profiles.c4 import C4
 from bladewright.section.profiles.kinds import ProfileSection
@@ -43,10 +42,3 @@ def test_a_published_profile_of_thirty_points_a_side_is_matched_and_passes(tmp_p
     assert found.passed
     # a fiftieth of a millimetre on a chord of 40 mm
     assert found.deviation.maximum < 5e-4 * CHORD
-
-
-def test_coordinates_with_five_digits_are_told_from_exact_ones(tmp_path):
-    points = read_cloud(table(tmp_path / "c4.dat", 31)).points
-    assert is_rounded(points)
-    assert is_rounded(1e-3 * points), "the unit does not matter"
-    assert not is_rounded(points + np.random.default_rng(0).normal(size=points.shape) * 1e-6)

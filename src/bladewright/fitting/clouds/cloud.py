@@ -9,21 +9,6 @@ from bladewright.fitting.clouds.sheet import is_one_sided
 from bladewright.fitting.clouds.thinning import random_subset
 from bladewright.nurbs.basis import Reals
 
-ROUNDED_DIGITS = 1e-8
-"""digit, of the cloud's extent, from which on others than zero show that coordinates were not rounded for writing."""
-ROUNDED_SAMPLE = 200
-"""points whose digits are looked at"""
-
-
-def is_rounded(points: Reals) -> bool:
-    """Whether all coordinates of points (n, d) are multiples of a power of ten that is coarse for their extent."""
-    extent = float(np.max(np.ptp(points, axis=0)))
-    finest = int(np.floor(-np.log10(ROUNDED_DIGITS * extent)))
-    some = points[:: max(1, len(points) // ROUNDED_SAMPLE)]
-    # a unit that scales by a power of ten leaves the last digits as they are, but for rounding
-    return bool(np.all(np.abs(np.round(some, finest) - some) < 1e-4 * ROUNDED_DIGITS * extent))
-
-
 CHECKED_POINTS = 20_000
 """points that are looked at, at random; it bounds the time."""
 FEWEST_POINTS = {2: 24, 3: 100}

@@ -87,7 +87,7 @@ def matched_blade(
     for some in (few, many)[: 1 + (len(few.points) < len(many.points))]:
         if some is not few:
             found = _better(some, found, searched(some, found.design, noise=found.rms, enough=enough))
-        if target.structured or found.interrupted:
+        if target.structured:
             continue
         found, reason = grown_to_target(some, found, target, grown, coarse=COARSE_TOLERANCE)
     return found, "; ".join(filter(None, (reason, "" if own else WALLS_HELD_NOTE)))

@@ -156,9 +156,8 @@ def grown_to_target(
     best, trials_without_gain, back = match, 0, 0
     for _ in range(MOST_GROWTHS):
         short, reason = needs_more(match, target, task)
-        if not short or match.interrupted:
-            met = not short and not reason
-            return match if met or match.rms <= best.rms or target.parameters is not None else best, reason
+        if not short:
+            return match if not reason or match.rms <= best.rms or target.parameters is not None else best, reason
         tried = [
             each for each in wider(task, match, target, back) if _allowed(each, target) and can_be_built(each, coarse)
         ]
@@ -166,7 +165,7 @@ def grown_to_target(
             return best, "no control point can be added to the design that leaves it one that can be built"
         fresh = min(tried, key=lambda each: each.rms, default=None)
         if fresh is None or (fresh.rms > match.rms and fresh.maximum > match.maximum):
-            if back < PATIENCE and not (fresh is not None and fresh.interrupted):
+            if back < PATIENCE:
                 back += 1
                 continue
             if fresh is None or target.parameters is None:

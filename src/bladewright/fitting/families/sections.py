@@ -76,13 +76,13 @@ def matched_section(
         starts = [start for part in parts for start in starts_of(kind, section, part)]
         found = best_trial(rough, few, _design_maker(kind, section, header, task), starts)
     reason = ""
-    if not (target.structured or found.interrupted):
+    if not target.structured:
         found, reason = grown_to_target(few, found, target, partial(_wider, kind=kind), coarse=TOLERANCES[-1])
         if kind.through_points is not None and section is not None:
             found, reason = _through_points(
                 few, found, target, partial(kind.through_points, section), _design_maker(kind, section, header, task)
             )
-    return _buildable_tolerance(found if found.interrupted else _searched_thoroughly(many, found)), reason
+    return _buildable_tolerance(_searched_thoroughly(many, found)), reason
 
 
 def _through_points(
@@ -93,7 +93,7 @@ def _through_points(
     for count in (stated_count,) if stated_count >= FEWEST_OUTLINE_POINTS else OUTLINE_COUNTS:
         short, reason = needs_more(match, target, task)
         near = target.open and match.maximum < GROSS_DEVIATION[1] * match.model.chord
-        if not short or near or match.interrupted:
+        if not short or near:
             return match, reason
         try:
             fresh = searched(task, made(through_points(count)), rounds=QUICK_ROUNDS)
@@ -165,15 +165,11 @@ def best_trial(
         except (DesignError, FitError) as error:
             refusal = FitError(str(error))
             continue
-        if tried[-1].interrupted:
-            break
     if not tried:
         raise FitError(f"no section of the family was found near the points ({refusal}); give a start design")
     least = min(each.rms for each in tried)
     found: Match | None = None
     for number, each in enumerate(sorted(tried, key=lambda one: one.rms)):
-        if each.interrupted:
-            return each
         if (
             found is not None
             and _is_buildable(found)
@@ -187,7 +183,7 @@ def best_trial(
             or not can_be_built(found, TOLERANCES[-1])
         ):
             found = fresh
-        if found.rms < IDENTIFIED_MISFIT or found.interrupted:
+        if found.rms < IDENTIFIED_MISFIT:
             break
     assert found is not None  # noqa: S101 - one was tried at least
     return found

@@ -94,7 +94,7 @@ def _buildable(task: Task, match: Match, *, fewer: bool) -> tuple[Match, Any, st
     structure = structure_of(match.design)
     few = task.thinned(REDUCED_POINTS)
     straight = replace(few, bounds={**STRAIGHT_CAMBER, **task.bounds})
-    for share in FEWER_SHARES if fewer and not match.interrupted else ():
+    for share in FEWER_SHARES if fewer else ():
         upper, lower = (max(FEWEST_THICKNESSES, round(share * count)) for count in structure.chordwise)
         design = with_feasible_edges(reshaped(match.design, replace(structure, chordwise=(upper, lower))))
         try:

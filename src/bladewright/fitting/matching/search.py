@@ -197,15 +197,12 @@ def searched(
         if number and before < enough:
             break
         try:
-            found = _descended_round(
-                found if number == 0 else _prepared_round(task, start, found.design, noise, found), min_reduction
-            )
+            prepared = found if number == 0 else _prepared_round(task, start, found.design, noise, found)
+            found = _descended_round(task, prepared, min_reduction)
         except FitError:
             # at finer knots the design has no shape: the round before stands
             break
         task.best_so_far.note(found)
-        if found.interrupted:
-            raise KeyboardInterrupt
         rms = f"{1e3 * found.rms * found.model.chord:.3g} mm rms, {1e3 * found.maximum:.3g} mm at most"
         task.progress(f"{len(found.problem.paths)} parameters, {rms}")
         ratio = found.misfit / before
@@ -279,25 +276,31 @@ def _prepared_round(
     )
 
 
-def _descended_round(match: Match, min_reduction: float) -> Match:
-    """What a descent from a prepared design finds."""
-    problem, interrupted, converged = match.problem, False, False
-    first = problem.vector(match.design)
-    z, damping = first, match.damping
+def _descended_round(task: Task, match: Match, min_reduction: float) -> Match:
+    """What a descent from a prepared design finds; where it is interrupted, its best design is noted first."""
+    problem = match.problem
     try:
         descent = constrained_minimum(
-            problem, first, steps=EVALUATIONS_PER_ROUND, damping=damping, min_reduction=min_reduction
+            problem,
+            problem.vector(match.design),
+            steps=EVALUATIONS_PER_ROUND,
+            damping=match.damping,
+            min_reduction=min_reduction,
         )
-        z, damping, converged = descent.z, descent.damping, descent.converged
     except KeyboardInterrupt:
-        z, interrupted = problem.best, True
+        task.best_so_far.note(_moved(match, problem.best))
+        raise
+    return replace(_moved(match, descent.z), damping=descent.damping, converged=descent.converged)
+
+
+def _moved(match: Match, z: Reals) -> Match:
+    """The match at other variables of its problem, or as it is where they describe no shape."""
+    problem = match.problem
     state = problem.state(z) or match.state
     return replace(
         match,
         design=state.shape.design,
         state=state,
-        damping=damping,
         evaluations=match.evaluations + problem.evaluations,
-        converged=converged,
-        interrupted=interrupted,
+        converged=False,
     )

@@ -12,8 +12,6 @@ class MatchTarget:
     parameters: int | None = None
     structured: bool = False
     """whether the structure is given"""
-    registered: bool = False
-    """whether the axes were found first, from a start that need not be this blade"""
 
     @property
     def open(self) -> bool:

@@ -69,8 +69,6 @@ def selected_match(
         noise=GUESS_NOISE if guessed else None,
         min_reduction=ROUGH_REDUCTION,
     )
-    if found.interrupted:
-        return found, ""
     if target.structured and target.tolerance is None:
         return _of_structure(several, many, found, like or structure_of(first), guessed=guessed), ""
     held = target.parameters is not None and _ends_in_rows(found)
@@ -91,10 +89,9 @@ def selected_match(
         found, reason = selection.within(rich, target.tolerance)
     else:
         found = selection.near_everywhere(rich)
-    if found.interrupted or (target.tolerance is not None and len(many.points) == len(several.points)):
-        return found, reason
     if target.tolerance is not None:
-        return _confirmed(many, found, target.tolerance), reason
+        confirmed = len(many.points) == len(several.points)
+        return (found if confirmed else _confirmed(many, found, target.tolerance)), reason
     found = _searched_further(many, found)
     return _determined(many, found) if target.open else (found, reason)
 
@@ -105,7 +102,7 @@ def _searched_further(task: Task, match: Match, **options: int) -> Match:
         found = searched(task, match.design, noise=match.rms, min_reduction=FINAL_REDUCTION, **options)
     except FitError:
         return match
-    lost = task.dimension == 3 and not found.interrupted and _refused(found) and not _refused(match)
+    lost = task.dimension == 3 and _refused(found) and not _refused(match)
     return match if lost else found
 
 
@@ -114,7 +111,7 @@ def _determined(task: Task, match: Match) -> tuple[Match, str]:
     held: list[str] = []
     for _ in range(MOST_HOLDINGS):
         more = undetermined_parameters(match, DETERMINED_MARGIN)
-        if not more or match.interrupted:
+        if not more:
             break
         held += more
         free = replace(task, free=partial(_free_but, task, held))
@@ -143,7 +140,7 @@ def _of_structure(several: Task, many: Task, found: Match, structure: Structure,
             return found
         found = min(tried, key=lambda each: each.rms)
     found = searched(many, found.design)
-    if found.interrupted or found.noise_estimate.correlation > NOISE_CORRELATION:
+    if has_systematic_misfit(found):
         return found
     # what the points determine is not to be shifted
     weak = replace(many, regularisation_factor=WEAK_REGULARISATION * many.regularisation_factor)
@@ -152,7 +149,7 @@ def _of_structure(several: Task, many: Task, found: Match, structure: Structure,
 
 def has_systematic_misfit(match: Match) -> bool:
     """Whether a search ended at a misfit that is not noise."""
-    return match.noise_estimate.correlation > NOISE_CORRELATION and not match.interrupted
+    return match.noise_estimate.correlation > NOISE_CORRELATION
 
 
 TRIED_PARAMETERS, MOST_TRIED = 100, 4
@@ -210,8 +207,6 @@ class _Selection:
             if nearest is None or (best is not None and nearest.misfit >= best.misfit):
                 break
             best, about = nearest, self._widened(nearest)
-            if best.interrupted:
-                break
         return best or rich
 
     def well_predicted(self, rich: Match) -> Match:
@@ -243,7 +238,7 @@ class _Selection:
         """The match that predicts well, or one with more parameters where it is far from some points."""
         found = self.well_predicted(rich)
         limit = LARGEST_OPEN * found.model.chord
-        if found.interrupted or not has_systematic_misfit(found) or _largest(found, rich) <= limit:
+        if not has_systematic_misfit(found) or _largest(found, rich) <= limit:
             return found
         nearer, _ = self.within(rich, limit)
         better = _largest(nearer, rich) < _largest(found, rich) and not _refused(nearer)
@@ -255,7 +250,7 @@ class _Selection:
             return self.well_predicted(rich), NOISE_REASON.format(1e3 * rich.noise_estimate.noise)
         best, nearest, about, wide = None, rich, rich, False
         share, failed, missed, selection = 1.0, 0, 0, self
-        while failed < MOST_FAILURES and not about.interrupted:
+        while failed < MOST_FAILURES:
             model = self._model(about)
             relative = tolerance / model.chord
             fewer = eliminated(model, 0, relative)
@@ -309,7 +304,7 @@ class _Selection:
             except (FitError, DesignError):
                 continue
             found = fresh if found is None or fresh.misfit < found.misfit else found
-            if found.rms < FAR_FROM_PREDICTED * prediction.rms or found.interrupted:
+            if found.rms < FAR_FROM_PREDICTED * prediction.rms:
                 break
         return found
 
@@ -346,7 +341,7 @@ class _Selection:
                 break
             before, now = np.inf if best is None else _largest(best, rich), _largest(found, rich)
             best = found if now < before else best
-            if now <= tolerance or found.interrupted or now - tolerance > HOPELESS * (before - tolerance):
+            if now <= tolerance or now - tolerance > HOPELESS * (before - tolerance):
                 break
             design, noise = found.design, found.rms
             weights = reweighted(weights, found.state.footpoints.distances, tolerance)
