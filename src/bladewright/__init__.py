@@ -31,7 +31,7 @@ Imports          import_parablade, import_tblade3 (Imported), read_parablade
 CAD files        cad.write, cad.verify, cad.made_from, cad.solid, cad.sample, cad.cut_passage; design_origin (Origin)
 Meshes           meshing.mesh
 Errors           BladewrightError and its kinds: DesignError, GeometryError, FileError, CadError, FitError, MeshError,
-                 DerivativeError
+                 DerivativeError, StudyError
 
 Names load on first use, so importing bladewright takes milliseconds. Only bladewright.cad loads OpenCASCADE.
 """

@@ -53,6 +53,7 @@ from .errors import FileError as FileError
 from .errors import FitError as FitError
 from .errors import GeometryError as GeometryError
 from .errors import MeshError as MeshError
+from .errors import StudyError as StudyError
 from .files.clouds import read_cloud as read_cloud
 from .files.from_table import TableDesign as TableDesign
 from .files.from_table import design_from_table as design_from_table

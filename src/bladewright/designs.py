@@ -181,6 +181,15 @@ def unit_at(design: Part, path: str) -> str | None:
     return unit
 
 
+def value_at(design: Part, path: str) -> Any:
+    """What a design has at a path: a number, a text, a tuple, a part or None; DesignError where it does not exist."""
+    node: Any = design
+    for step in _steps(path):
+        _check_step(node, step, path)
+        node = getattr(node, step) if isinstance(step, str) else node[step]
+    return node
+
+
 def _leaves_of(node: Any, path: str) -> Iterator[tuple[str, Any]]:
     if isinstance(node, Part):
         for each in fields(node):

@@ -41,3 +41,7 @@ class DerivativeError(BladewrightError):
 
 class FitError(BladewrightError):
     """A cloud of points that cannot be fitted, or a fit that was asked for wrongly."""
+
+
+class StudyError(BladewrightError):
+    """A study that was asked for wrongly: its file, its variables, its quantities, or a manifest of another one."""
