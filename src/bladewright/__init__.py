@@ -12,15 +12,16 @@ Help on one name: help(bladewright.fit). The pages in docs/ go task by task.
 
 Design files     read_design, write_design; design_from_table (TableDesign)
 Blades           UnifiedBlade in a Channel; CurvatureMeanlineBlade, SuctionPressureBlade, CamberAngleBlade,
-                 ProfileBlade, WedgeDiffuserBlade in a FlowPath with Stacking; prismatic
+                 ProfileBlade, SegmentedBlade, WedgeDiffuserBlade in a FlowPath with Stacking; prismatic
 Meridional       ThroughPoints, ControlPolygon, StraightsAndArcs
 As a part        Fillet with FilletRadii; Cut of AtRadius, AtX or a meridional curve; Disc with an Outline
 2D sections      UnifiedSection, CurvatureMeanlineSection, SuctionPressureSection, CamberAngleSection, ProfileSection,
-                 WedgeDiffuserSection
+                 SegmentedSection, WedgeDiffuserSection
 Parts of them    CurvatureMeanline, SuctionPressure, CamberAngle, WedgeDiffuser
 Laws by values   Stations
 Thickness laws   ModifiedNaca, QuarticSpline, Wennerstrom
-Profiles         Naca4, Naca5, Naca6, Naca65, C4, DoubleCircularArc, MultipleCircularArc, FlatPlate, PointsProfile
+Profiles         Naca4, Naca5, Naca6, Naca65, C4, DoubleCircularArc, MultipleCircularArc, FlatPlate, PointsProfile,
+                 Segmented of AirfoilSide, Segment, SegmentJoint, Nose and Morph
 What is built    Blade of Surface and TrimmedSurface, Curve; passage gives a Passage, section_passage a SectionPassage,
                  row a Row, sector a Sector, wheel a Wheel, throat a Throat; blade.report() the station table
 Derivatives      sensitivity, net_jacobian (NetJacobian), pullback, variables (Variables)

@@ -10,6 +10,7 @@ from .blade.design.disc import Outline as Outline
 from .blade.design.families import CamberAngleBlade as CamberAngleBlade
 from .blade.design.families import CurvatureMeanlineBlade as CurvatureMeanlineBlade
 from .blade.design.families import ProfileBlade as ProfileBlade
+from .blade.design.families import SegmentedBlade as SegmentedBlade
 from .blade.design.families import SuctionPressureBlade as SuctionPressureBlade
 from .blade.design.families import WedgeDiffuserBlade as WedgeDiffuserBlade
 from .blade.design.families import prismatic as prismatic
@@ -93,6 +94,13 @@ from .section.profiles.naca5 import Naca5 as Naca5
 from .section.profiles.naca6 import Naca6 as Naca6
 from .section.profiles.naca65 import Naca65 as Naca65
 from .section.profiles.points import PointsProfile as PointsProfile
+from .section.segmented.part import Segmented as Segmented
+from .section.segmented.part import SegmentedSection as SegmentedSection
+from .section.segmented.parts import AirfoilSide as AirfoilSide
+from .section.segmented.parts import Morph as Morph
+from .section.segmented.parts import Nose as Nose
+from .section.segmented.parts import Segment as Segment
+from .section.segmented.parts import SegmentJoint as SegmentJoint
 from .section.suction_pressure.part import SuctionPressure as SuctionPressure
 from .section.suction_pressure.part import SuctionPressureSection as SuctionPressureSection
 from .section.thickness.modified_naca import ModifiedNaca as ModifiedNaca

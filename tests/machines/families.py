@@ -24,9 +24,11 @@ FAMILIES = {
     "wedge-diffuser-section": EXAMPLES["wedge diffuser with a back face"].design,
     "camber-angle-section": EXAMPLES["camber-angle"].design,
     "profile-section": EXAMPLES["naca-2412"].design,
+    "segmented-section": EXAMPLES["segmented"].design,
     "curvature-meanline": replace(sectioned.COMPRESSOR, **CONES),
     "suction-pressure": replace(sectioned.STATOR, **CONES),
     "wedge-diffuser": sectioned.DIFFUSER,
     "camber-angle": replace(sectioned.IMPELLER, **CONES),
     "profile": replace(sectioned.VANE, section=Naca4(thickness=(0.1, 0.08), stagger_angle=(30.0, 35.0))),
+    "segmented": sectioned.MORPHING,
 }

@@ -10,6 +10,8 @@ from bladewright.section.profiles.naca6 import Naca6
 from bladewright.section.profiles.naca65 import Naca65
 from bladewright.section.profiles.points import PointsProfile
 
+from .segmented import AIRFOILS
+
 OVAL = [(1.0, 0.0), (0.97, 0.025), (0.8, 0.07), (0.5, 0.11), (0.1, 0.065), (0.0, 0.0), (0.1, -0.035), (0.5, -0.01)]
 OVAL += [(0.8, 0.0), (0.97, -0.01)]
 CUT = [(0.0, 0.0), (-0.02, 0.04), (0.05, 0.1), (0.3, 0.14), (0.6, 0.12), (1.0, 0.03), (1.01, -0.01), (0.8, 0.01)]
@@ -50,6 +52,7 @@ PROFILES = {
     "flat-plate-elliptic": FlatPlate(
         thickness=0.05, leading_edge="elliptic", leading_edge_ratio=4.0, trailing_edge="blunt"
     ),
+    "segmented-profile": AIRFOILS["segmented-morphed"],
 }
 """By a name that says what is particular."""
 

@@ -6,19 +6,24 @@ from bladewright.blade.design.families import (
     CamberAngleBlade,
     CurvatureMeanlineBlade,
     ProfileBlade,
+    SegmentedBlade,
     SuctionPressureBlade,
     WedgeDiffuserBlade,
 )
 from bladewright.blade.design.flow_path import FlowPath
 from bladewright.blade.design.meridional_curve import ControlPolygon, ThroughPoints
+from bladewright.blade.design.stacking import Stacking
 from bladewright.section.camber_angle import CamberAngle
 from bladewright.section.curvature_meanline import CurvatureMeanline
 from bladewright.section.profiles.flat_plate import FlatPlate
 from bladewright.section.profiles.naca65 import Naca65
+from bladewright.section.segmented.parts import Morph
 from bladewright.section.suction_pressure.part import SuctionPressure
 from bladewright.section.thickness.modified_naca import ModifiedNaca
 from bladewright.section.thickness.wennerstrom import Wennerstrom
 from bladewright.section.wedge_diffuser import WedgeDiffuser
+
+from .segmented import REDUCED
 
 
 def through(*points):
@@ -143,4 +148,18 @@ PLATE = ProfileBlade(
     section=FlatPlate(thickness=0.08, leading_edge="blunt", trailing_edge="blunt", stagger_angle=(20.0, 25.0)),
 )
 """with faces at both edges"""
-DESIGNS = {each.name: each for each in (COMPRESSOR, IMPELLER, DIFFUSER, STATOR, VANE)}
+MORPHING = SegmentedBlade(
+    name="morphing-vane",
+    length_unit="mm",
+    blade_count=18,
+    flow_path=COMPRESSOR.flow_path,
+    stacking=Stacking(chord=(42.0, 40.0), hub_x=18.0),
+    section=replace(
+        REDUCED,
+        stagger_angle=(10.0, 16.0),
+        trailing_edge_thickness=0.01,
+        morph=Morph(leading_edge=(0.0, 3.0), trailing_edge=(-2.0, -8.0, -4.0)),
+    ),
+)
+"""whose edges bend off the ends of its chord lines, by another angle at every span"""
+DESIGNS = {each.name: each for each in (COMPRESSOR, IMPELLER, DIFFUSER, STATOR, VANE, MORPHING)}

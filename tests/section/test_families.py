@@ -48,7 +48,8 @@ def test_the_chord_line_runs_from_zero_to_one_and_the_sides_meet_at_its_ends(exa
     ends = np.array([0.0, 1.0])
     upper, lower = (points[0] for points in outline.points(ends))
     camber = outline.camber(ends)[0]
-    assert camber == pytest.approx(np.array([[0.0, 0.0], [1.0, 0.0]]), abs=1e-14)
+    if outline.on_chord_line:
+        assert camber == pytest.approx(np.array([[0.0, 0.0], [1.0, 0.0]]), abs=1e-14)
     for i, edge in enumerate((outline.leading_edge, outline.trailing_edge)):
         assert edge.upper.point[0] == pytest.approx(upper[i], abs=1e-14)
         assert edge.lower.point[0] == pytest.approx(lower[i], abs=1e-14)
@@ -126,7 +127,9 @@ def test_native_curves_follow_the_outline(example):
 
 def test_the_section_has_the_chord_stagger_and_angles_asked_for(example):
     section = built(example.design)
-    assert section.chord == pytest.approx(example.design.chord * 1e-3, rel=1e-14)
+    assert section.reference_chord == pytest.approx(example.design.chord * 1e-3, rel=1e-14)
+    if section.outline.on_chord_line:
+        assert section.chord == pytest.approx(example.design.chord * 1e-3, rel=1e-14)
     if example.metal_angles is not None:
         # slopes of curves within 1e-10 of the exact ones, on spans of a hundredth
         found = np.degrees([section.metal_angle_in, section.metal_angle_out])

@@ -4,6 +4,7 @@ from bladewright.blade.design.families import (
     CamberAngleBlade,
     CurvatureMeanlineBlade,
     ProfileBlade,
+    SegmentedBlade,
     SuctionPressureBlade,
     WedgeDiffuserBlade,
 )
@@ -13,6 +14,7 @@ from bladewright.errors import FileError
 from bladewright.section.camber_angle import CamberAngleSection
 from bladewright.section.curvature_meanline import CurvatureMeanlineSection
 from bladewright.section.profiles.kinds import ProfileSection
+from bladewright.section.segmented.part import SegmentedSection
 from bladewright.section.suction_pressure.part import SuctionPressureSection
 from bladewright.section.unified import UnifiedSection
 from bladewright.section.wedge_diffuser import WedgeDiffuserSection
@@ -25,11 +27,13 @@ FAMILIES: dict[str, type[Design]] = {
     "wedge-diffuser-section": WedgeDiffuserSection,
     "camber-angle-section": CamberAngleSection,
     "profile-section": ProfileSection,
+    "segmented-section": SegmentedSection,
     "curvature-meanline": CurvatureMeanlineBlade,
     "suction-pressure": SuctionPressureBlade,
     "wedge-diffuser": WedgeDiffuserBlade,
     "camber-angle": CamberAngleBlade,
     "profile": ProfileBlade,
+    "segmented": SegmentedBlade,
 }
 """Design class by the `family` of its files."""
 

@@ -161,7 +161,7 @@ def parameters(part: Part, path: str = "") -> None:
 def _keep(part: Part, each: Field[Any], kept: Callable[[str, Any], Any], path: str) -> None:
     """Bring a field to its kind, and refuse a value outside its limits."""
     value, where = getattr(part, each.name), f"{path}{each.name}"
-    if value is None or (isinstance(value, tuple) and value == each.default == ()):
+    if value is None or (isinstance(value, tuple) and value == () == each.default):
         return
     value = kept(where, value)
     object.__setattr__(part, each.name, value)

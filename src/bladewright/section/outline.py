@@ -92,6 +92,11 @@ class Outline(ABC):
         """The s from which on both sides run along a straight back face across the chord line; None without one."""
         return None
 
+    @property
+    def on_chord_line(self) -> bool:
+        """Whether the camber line ends where the chord line does; a morph may move edges off (0, 0) and (1, 0)."""
+        return True
+
     @abstractmethod
     def points(self, s: Reals) -> tuple[Array, Array]:
         """Points (..., len(s), 2) of the upper and the lower side at s (k,) in [0, 1]."""

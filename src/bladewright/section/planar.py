@@ -83,6 +83,7 @@ class PlanarSection(Design):
             meanline=self.section.meanline(span),
             name=self.name,
             length_unit=self.length_unit,
+            reference_chord=np.asarray(self.chord * metre),
             pitch=None if self.pitch is None else np.asarray(self.pitch * metre),
         )
 

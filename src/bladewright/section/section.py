@@ -65,6 +65,9 @@ class Section(FrozenRecord, Shown):
     """the design's name"""
     length_unit: str = "m"
     """the design's unit of length, in which reports print"""
+    reference_chord: Array | None = None
+    """() [m] to which a 2D section's coefficients refer: the design's chord, also where a morph moved the edges off its
+    ends; None: `chord`"""
     pitch: Array | None = None
     """() tangential distance of neighbours, where a 2D design has one [m]"""
 

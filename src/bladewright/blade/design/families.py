@@ -19,6 +19,7 @@ from bladewright.section.curvature_meanline import CurvatureMeanline, CurvatureM
 from bladewright.section.laws import Span
 from bladewright.section.planar import PlanarSection
 from bladewright.section.profiles.kinds import AnyProfile, ProfileSection
+from bladewright.section.segmented.part import Segmented, SegmentedSection
 from bladewright.section.suction_pressure.part import SuctionPressure, SuctionPressureSection
 from bladewright.section.unified import UnifiedSection
 from bladewright.section.wedge_diffuser import WedgeDiffuser, WedgeDiffuserSection
@@ -67,12 +68,21 @@ class ProfileBlade(SectionedBlade):
     """the profile: its kind and that kind's parameters, each a law along the span"""
 
 
+@dataclass(frozen=True, kw_only=True)
+class SegmentedBlade(SectionedBlade):
+    """A blade of segmented airfoils."""
+
+    section: Segmented
+    """joints, segments and morph, each number a law along the span"""
+
+
 BLADE_OF: dict[type[PlanarSection], type[SectionedBlade]] = {
     CurvatureMeanlineSection: CurvatureMeanlineBlade,
     SuctionPressureSection: SuctionPressureBlade,
     WedgeDiffuserSection: WedgeDiffuserBlade,
     CamberAngleSection: CamberAngleBlade,
     ProfileSection: ProfileBlade,
+    SegmentedSection: SegmentedBlade,
 }
 """The blade of the same family, by the 2D design."""
 

@@ -138,6 +138,6 @@ class FamilySections(FlowPathSections):
         point = self.placed(start.point[..., None, :])
         first, second = (self.turned(each[..., None, :])[..., 0, :] for each in (start.first, start.second))
         u: Array = np.array([float(end)])
-        if self.edge_kinds[end] == "blunt":
+        if self.edge_kinds[end] == "blunt" or not self.outline.on_chord_line:
             u = self.lines.u_at(point[..., 0])
         return self.row(u, point[..., 0, :], first, second)

@@ -14,10 +14,20 @@ from bladewright.section.profiles.naca5 import Naca5
 from bladewright.section.profiles.naca6 import Naca6
 from bladewright.section.profiles.naca65 import Naca65
 from bladewright.section.profiles.points import PointsProfile
+from bladewright.section.segmented.part import Segmented
 from bladewright.section.tagged_unions import ByField
 
 AnyProfile = Annotated[
-    Naca4 | Naca5 | Naca6 | Naca65 | C4 | DoubleCircularArc | MultipleCircularArc | FlatPlate | PointsProfile,
+    Naca4
+    | Naca5
+    | Naca6
+    | Naca65
+    | C4
+    | DoubleCircularArc
+    | MultipleCircularArc
+    | FlatPlate
+    | PointsProfile
+    | Segmented,
     ByField("kind"),
 ]
 """One of the kinds of profiles, chosen by `kind`."""
