@@ -24,6 +24,7 @@ Profiles         Naca4, Naca5, Naca6, Naca65, C4, DoubleCircularArc, MultipleCir
                  Segmented of AirfoilSide, Segment, SegmentJoint, Nose and Morph
 What is built    Blade of Surface and TrimmedSurface, Curve; passage gives a Passage, section_passage a SectionPassage,
                  row a Row, sector a Sector, wheel a Wheel, throat a Throat; blade.report() the station table
+Polars           polar (Polar) of a section or an Airfoil, airfoil_of
 Derivatives      sensitivity, net_jacobian (NetJacobian), pullback, variables (Variables)
 With SU2         surface_points, placed_points (SurfacePoints), read_surface_points, write_surface_points,
                  read_surface_sensitivity
@@ -32,7 +33,7 @@ Imports          import_parablade, import_tblade3 (Imported), read_parablade
 CAD files        cad.write, cad.verify, cad.made_from, cad.solid, cad.sample, cad.cut_passage; design_origin (Origin)
 Meshes           meshing.mesh
 Errors           BladewrightError and its kinds: DesignError, GeometryError, FileError, CadError, FitError, MeshError,
-                 DerivativeError, StudyError
+                 DerivativeError, PolarError, StudyError
 
 Names load on first use, so importing bladewright takes milliseconds. Only bladewright.cad loads OpenCASCADE.
 """

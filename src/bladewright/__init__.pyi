@@ -2,6 +2,10 @@
 
 from . import cad as cad
 from . import meshing as meshing
+from .aerodynamics.airfoil import Airfoil as Airfoil
+from .aerodynamics.airfoil import airfoil_of as airfoil_of
+from .aerodynamics.polar import Polar as Polar
+from .aerodynamics.polar import polar as polar
 from .blade.design.cut import AtRadius as AtRadius
 from .blade.design.cut import AtX as AtX
 from .blade.design.cut import Cut as Cut
@@ -54,6 +58,7 @@ from .errors import FileError as FileError
 from .errors import FitError as FitError
 from .errors import GeometryError as GeometryError
 from .errors import MeshError as MeshError
+from .errors import PolarError as PolarError
 from .errors import StudyError as StudyError
 from .files.clouds import read_cloud as read_cloud
 from .files.from_table import TableDesign as TableDesign

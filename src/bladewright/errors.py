@@ -43,5 +43,9 @@ class FitError(BladewrightError):
     """A cloud of points that cannot be fitted, or a fit that was asked for wrongly."""
 
 
+class PolarError(BladewrightError):
+    """A polar that was asked for wrongly, or whose solver is missing, hangs or does not converge anywhere."""
+
+
 class StudyError(BladewrightError):
     """A study that was asked for wrongly: its file, its variables, its quantities, or a manifest of another one."""

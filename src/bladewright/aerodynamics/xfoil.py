@@ -1,0 +1,155 @@
+"""XFOIL (Drela 1989, version 6.99) in a process and a scratch folder of its own: angles in, operating points out."""
+
+import os
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+from collections.abc import Sequence
+from contextlib import suppress
+from pathlib import Path
+from time import monotonic
+
+from bladewright.aerodynamics import untrapped
+from bladewright.aerodynamics.airfoil import Airfoil
+from bladewright.aerodynamics.conditions import Conditions
+from bladewright.aerodynamics.xfoil_output import OperatingPoint, read_polar_dump
+from bladewright.errors import PolarError
+
+VARIABLE = "BLADEWRIGHT_XFOIL"
+"""The environment variable that names the program, where it is not the `xfoil` of the search path."""
+APPROACH = (-1.5, -1.0, -0.5)
+"""deg; an angle that does not converge from a fresh boundary layer is approached in these steps from smaller angles: of
+the angles of NACA 23012 between -5 and 15 deg at Re 1e5 to 3.5e6 that failed, it finds three of four"""
+SAME = 1e-6
+"""deg within which an angle of the output is the one that was asked for"""
+TRAPPED = (-signal.SIGFPE, 128 + signal.SIGFPE)
+"""Statuses of a program that stopped at a floating-point trap, and of a shell that started one."""
+WORDS = 30
+"""Last words of XFOIL's output that an error quotes: enough for Fortran's own error, and still one paragraph."""
+MISSING = (
+    f"XFOIL is not installed, which makes the polar: install it (apt-get install xfoil), name the program by "
+    f"{VARIABLE}, or ask for the neural network with solver='neuralfoil' (--with neuralfoil)"
+)
+"""The message where there is no XFOIL."""
+
+
+def xfoil_points(
+    airfoil: Airfoil, angles: Sequence[float], conditions: Conditions
+) -> tuple[str, list[OperatingPoint | None], list[str]]:
+    """The solver's name, for each angle [deg] the operating point or None, and a sentence for each None.
+
+    Every angle starts from a fresh boundary layer, so that its result does not depend on the others; one that fails is
+    approached once more in steps from smaller angles. Raises PolarError where there is no XFOIL, or where not one angle
+    comes out before the time limit.
+    """
+    program = _program()
+    end = monotonic() + conditions.time_limit
+    version, found, ending = _run(program, airfoil, [[angle] for angle in angles], conditions, end)
+    failed = [angle for angle in angles if _at(angle, found) is None]
+    if failed and not ending:
+        approaches = [[angle + (step if angle > 0.0 else -step) for step in (*APPROACH, 0.0)] for angle in failed]
+        _, more, _ = _run(program, airfoil, approaches, conditions, end)
+        found = [*found, *more]
+    points = [_at(angle, found) for angle in angles]
+    why = ending or f"XFOIL did not converge in {conditions.iterations} iterations, nor in steps from smaller angles"
+    if ending and not any(points):
+        raise PolarError(f"{airfoil.name}: {ending}, before an angle was done")
+    failures = [f"alpha {angle:g}: {why}" for angle, point in zip(angles, points, strict=True) if point is None]
+    return f"XFOIL {version}".strip(), points, failures
+
+
+def _at(angle: float, points: Sequence[OperatingPoint]) -> OperatingPoint | None:
+    return next((point for point in points if abs(point.alpha - angle) < SAME), None)  # real: angles of a real solver
+
+
+def _program() -> str:
+    """The program to start."""
+    named = os.environ.get(VARIABLE)
+    found = shutil.which(named or "xfoil")
+    if found is None:
+        raise PolarError(f"{VARIABLE} is '{named}', which is no program that can be run" if named else MISSING)
+    return str(Path(found).absolute())
+
+
+def _run(
+    program: str, airfoil: Airfoil, marches: Sequence[Sequence[float]], conditions: Conditions, end: float
+) -> tuple[str, list[OperatingPoint], str]:
+    """XFOIL's version, the points that converged on marches of angles, and why it ended early; empty where it did not.
+
+    Where the program stops at a floating-point trap, the library against it is built, and it is started again.
+    """
+    with tempfile.TemporaryDirectory(prefix="bladewright-", ignore_cleanup_errors=True) as name:
+        folder = Path(name)
+        coordinates = (f"{x:.12f} {y:.12f}" for x, y in airfoil.points)
+        (folder / "airfoil.dat").write_text("\n".join(["airfoil", *coordinates, ""]))
+        (folder / "script.txt").write_text(_script(marches, conditions))
+        status = _ended(program, folder, end)
+        if status in TRAPPED and not (untrapped.built() or os.environ.get(VARIABLE)):
+            untrapped.build_library()
+            status = _ended(program, folder, end)
+        version, points = read_polar_dump(folder / "dump.bin")
+        if status is None:
+            return version, points, f"XFOIL was stopped at the time limit of {conditions.time_limit:g} s"
+        if status in TRAPPED:
+            return version, points, f"XFOIL stopped at a floating-point trap; {untrapped.WRAPPER}"
+        if status != 0:
+            words = " ".join((folder / "output.txt").read_text(errors="replace").split()[-WORDS:])
+            return version, points, f"XFOIL ended with status {status}; its last words: {words or 'none'}"
+        return version, points, ""
+
+
+def _script(marches: Sequence[Sequence[float]], conditions: Conditions) -> str:
+    """What is typed into XFOIL."""
+    forced = " ".join(f"{each:.6f}" for each in conditions.transition)
+    lines = [
+        *("PLOP", "G F", ""),
+        "LOAD airfoil.dat",
+        f"XYCM {conditions.moment_point:.9f} 0",
+        *("PPAR", f"N {conditions.panels}", "", ""),
+        "OPER",
+        *("VPAR", f"N {conditions.n_crit:.6f}", f"XTR {forced}", ""),
+        f"VISC {conditions.reynolds:.8e}",
+        f"MACH {conditions.mach:.8f}",
+        f"ITER {conditions.iterations}",
+        *("PACC", "", "dump.bin"),
+    ]
+    for number, march in enumerate(marches):
+        # INIT toggles: before the first point there is no boundary layer to forget
+        lines += [*(["INIT"] if number else []), *(f"ALFA {angle:.9f}" for angle in march)]
+    return "\n".join([*lines, "", "QUIT", ""])
+
+
+def _ended(program: str, folder: Path, end: float) -> int | None:
+    """Run XFOIL on the script in a folder and return its status; None where it had to be stopped at the time `end`."""
+    with (
+        (folder / "script.txt").open("rb") as script,
+        (folder / "output.txt").open("wb") as output,
+        subprocess.Popen(  # noqa: S603  XFOIL, or what the user named in its place
+            [program],
+            stdin=script,
+            stdout=output,
+            stderr=subprocess.STDOUT,
+            cwd=folder,
+            env=untrapped.environment(),
+            start_new_session=True,
+        ) as process,
+    ):
+        try:
+            return process.wait(max(0.0, end - monotonic()))
+        except subprocess.TimeoutExpired:
+            return None
+        finally:
+            _stop(process)
+
+
+def _stop(process: subprocess.Popen[bytes]) -> None:
+    """End a process, and what a wrapper started in its session."""
+    if process.poll() is not None:
+        return
+    with suppress(OSError):
+        if sys.platform == "win32":
+            process.kill()
+        else:
+            os.killpg(process.pid, signal.SIGKILL)
