@@ -17,6 +17,9 @@ from bladewright.nurbs.surface import Surface
 from bladewright.section.native import interpolated_along_u
 from bladewright.section.outline import EdgeDerivatives
 
+ACROSS_EDGE = np.arange(1, DEGREE) / DEGREE
+"""Places across the face of an edge at which it is interpolated, besides its ends."""
+
 
 class SideStack(Protocol):
     """What sides interpolate along curves of constant v: sections, or curves on other native sides."""
@@ -109,23 +112,26 @@ def edge_faces(sections: SideStack, upper: Surface, lower: Surface, knots: Knots
     They have the control points of both sides' edges. A face is one polynomial of degree 5 along u: it is as short as
     the edge is thick, so its arc about the axis is below rounding from that.
     """
-    matrix = basis(knots.v, DEGREE, knots.sites_v)
-    clamped = np.repeat([0.0, 1.0], DEGREE + 1)
-    w = np.arange(1, DEGREE) / DEGREE
-    along = basis(clamped, DEGREE, w)
-    found = {}
-    for name, points in sections.faces(w).items():
-        at = 0 if name == "leading_edge" else -1
+    matrix, found = basis(knots.v, DEGREE, knots.sites_v), {}
+    for name, points in sections.faces(ACROSS_EDGE).items():
         rows = solved(matrix, points.reshape(*points.shape[:-2], -1)).reshape(points.shape)
-        ends = np.stack([side.control_points[at] for side in (upper, lower)])
-        outer = np.tensordot(along[:, [0, -1]], ends, axes=1)
-        right = np.swapaxes(rows, -3, -2) - outer
-        inner = solved(along[:, 1:-1], right.reshape(len(w), -1)).reshape(right.shape)
-        found[name] = Surface(
-            control_points=concatenated([ends[:1], inner, ends[1:]], axis=0),
-            knots_u=clamped,
-            knots_v=knots.v,
-            degree_u=DEGREE,
-            degree_v=DEGREE,
-        )
+        found[name] = edge_face(name, (upper, lower), np.swapaxes(rows, -3, -2))
     return found
+
+
+def edge_face(name: str, sides: tuple[Surface, Surface], rows: Array) -> Surface:
+    """One of them, through curves along v at ACROSS_EDGE, by their control points (4, m, 3) on the sides' knots."""
+    at = 0 if name == "leading_edge" else -1
+    clamped = np.repeat([0.0, 1.0], DEGREE + 1)
+    along = basis(clamped, DEGREE, ACROSS_EDGE)
+    ends = np.stack([side.control_points[at] for side in sides])
+    outer = np.tensordot(along[:, [0, -1]], ends, axes=1)
+    right = rows - outer
+    inner = solved(along[:, 1:-1], right.reshape(len(ACROSS_EDGE), -1)).reshape(right.shape)
+    return Surface(
+        control_points=concatenated([ends[:1], inner, ends[1:]], axis=0),
+        knots_u=clamped,
+        knots_v=sides[0].knots_v,
+        degree_u=DEGREE,
+        degree_v=DEGREE,
+    )

@@ -14,12 +14,13 @@ from typing import TYPE_CHECKING, cast
 
 import numpy as np
 
+from bladewright.blade.native.contacts import Wall
 from bladewright.blade.native.cut_faces import around, face_inside, near_on_wall
 from bladewright.blade.native.end_faces import EDGES, WallSurface, nearest_on_wall
+from bladewright.blade.native.interpolation import ACROSS_EDGE, edge_face
 from bladewright.blade.native.knots import DEGREE
 from bladewright.blade.native.lazy_faces import Face, LazyFaces
 from bladewright.frozen import FrozenMapping
-from bladewright.numerics.elementary import Array, concatenated
 from bladewright.numerics.solving import solved
 from bladewright.nurbs.basis import basis, greville
 from bladewright.nurbs.curve import Curve
@@ -27,9 +28,6 @@ from bladewright.nurbs.surface import Surface
 
 if TYPE_CHECKING:
     from bladewright.blade.native.blade import Blade
-
-ACROSS = np.arange(1, DEGREE) / DEGREE
-"""Places across a face at which it is interpolated, besides its ends."""
 
 
 def with_native_edges(blade: Blade) -> Blade:
@@ -56,36 +54,16 @@ def with_native_edges(blade: Blade) -> Blade:
 
 def _native(blade: Blade, edge: str, *, revolved: bool) -> Surface:
     meridian, inner = blade.walls[edge]
-    wall = WallSurface(meridian=meridian, inner=inner, revolved=revolved, low=0.0, high=1.0)
-    at, (upper, lower) = -1 if edge == "trailing_edge" else 0, blade.sides
-    places = greville(upper.knots_v, DEGREE)
+    surface = WallSurface(meridian=meridian, inner=inner, revolved=revolved, low=0.0, high=1.0)
+    at, sides = -1 if edge == "trailing_edge" else 0, blade.sides
+    places = greville(sides[0].knots_v, DEGREE)
     found = []
-    for side in (upper, lower):
+    for side in sides:
         line = Curve(control_points=side.control_points[at], knots=side.knots_v, degree=DEGREE)
-        found.append(nearest_on_wall(wall, line, near_on_wall(meridian, line, revolved=revolved), places))
+        found.append(nearest_on_wall(surface, line, near_on_wall(meridian, line, revolved=revolved), places))
     (start, first), (end, last) = found
     if revolved:
         last = last - 2.0 * np.pi * np.round(np.real(last - first)[0] / (2.0 * np.pi))
-    share = ACROSS[:, None]
-    points = _on_wall(wall, start + share * (end - start), first + share * (last - first))
-    rows = solved(basis(upper.knots_v, DEGREE, places), points.reshape(*points.shape[:-2], -1, 3))
-    clamped = np.repeat([0.0, 1.0], DEGREE + 1)
-    along = basis(clamped, DEGREE, ACROSS)
-    ends = np.stack([upper.control_points[at], lower.control_points[at]])
-    right = rows - np.tensordot(along[:, [0, -1]], ends, axes=1)
-    inside = solved(along[:, 1:-1], right.reshape(len(ACROSS), -1)).reshape(right.shape)
-    return Surface(
-        control_points=concatenated([ends[:1], inside, ends[1:]], axis=0),
-        knots_u=clamped,
-        knots_v=upper.knots_v,
-        degree_u=DEGREE,
-        degree_v=DEGREE,
-    )
-
-
-def _on_wall(wall: WallSurface, u: Array, across: Array) -> Array:
-    """Points (..., 3) at u of the meridian and theta, or y."""
-    x, r = np.moveaxis(wall.meridian(u), -1, 0)
-    if not wall.revolved:
-        return np.stack([x, across, r], axis=-1)
-    return np.stack([x, r * np.sin(across), r * np.cos(across)], axis=-1)
+    share, wall = ACROSS_EDGE[:, None], Wall(meridian=meridian, revolved=revolved, inward=1.0)
+    points = wall.point(start + share * (end - start), first + share * (last - first))
+    return edge_face(edge, sides, solved(basis(sides[0].knots_v, DEGREE, places), points))
