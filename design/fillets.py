@@ -27,7 +27,9 @@ from bladewright.blade.design.fillet import Fillet
 SHARES = (0.003, 0.006, 0.012, 0.025, 0.04, 0.06)
 """radii over the chord"""
 NAMED = re.compile(r"largest that holds is ([\d.e+-]+) ")
-PLACE = re.compile(r" (at|near) (u = [\d.]+( of the \w+ side)?|the (leading|trailing) edge( upper| lower)?( run)?)")
+PLACE = re.compile(
+    r" (at|near) (u = [\d.]+( of the \w+ side)?|the ((upper|lower) corner of the )?(leading|trailing) edge)"
+)
 """where a fillet does not hold"""
 WORDS = ("proven", "NOT PROVEN", "refused", "BROKEN PROMISE")
 

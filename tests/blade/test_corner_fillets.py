@@ -12,6 +12,7 @@ from bladewright import cad
 from bladewright.blade.design.cut import AtX, Cut
 from bladewright.blade.design.disc import Disc
 from bladewright.blade.design.fillet import Fillet
+from bladewright.blade.native.fillet_limits import place_named
 from bladewright.blade.native.native_edges import with_native_edges
 from bladewright.blade.native.pivot import pivots_of
 from bladewright.blade.native.rolling_ball import Rolled, balls_of, closed_section
@@ -189,3 +190,16 @@ def test_a_refusal_names_the_largest_radius_that_holds():
     asked.changed("hub_fillet.radius", 0.95 * largest).build()
     with pytest.raises(bw.DesignError, match="the largest that holds is"):
         asked.changed("hub_fillet.radius", 1.05 * largest).build()
+
+
+@pytest.mark.parametrize(
+    ("pivot", "says"),
+    [
+        ("leading_edge_run", "at the leading edge"),
+        ("trailing_edge_lower_run", "at the lower corner of the trailing edge"),
+        ("trailing_edge_upper", "at the upper corner of the trailing edge"),
+        ("lower", "at u = 0.250 of the lower side"),
+    ],
+)
+def test_a_refusal_names_a_place_as_an_engineer_does(pivot, says):
+    assert place_named(pivot, 0.25) == says

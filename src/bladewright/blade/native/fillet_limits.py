@@ -133,12 +133,15 @@ def _turning(touch: Touch) -> list[tuple[Pivot, Reals]]:
 
 
 def _place(sites: Sites, at: int) -> str:
-    return _named(FACES[sites.side[at]], float(np.real(sites.u[at])))
+    return place_named(FACES[sites.side[at]], float(np.real(sites.u[at])))
 
 
-def _named(name: str, u: float) -> str:
-    """A place on a side, or at an edge."""
-    return f"at u = {u:.3f} of the {name} side" if name in ("upper", "lower") else f"at the {name.replace('_', ' ')}"
+def place_named(name: str, u: float) -> str:
+    """A place on a side, or at an edge or one of its corners, from the name of the side or of a pivot."""
+    if name in ("upper", "lower"):
+        return f"at u = {u:.3f} of the {name} side"
+    edge, _, corner = name.removesuffix("_run").partition("_edge")
+    return f"at the {corner.removeprefix('_')} corner of the {edge} edge" if corner else f"at the {edge} edge"
 
 
 def _no_contact(blade: Blade, wall: str, touch: Touch) -> str | None:
@@ -162,7 +165,7 @@ def _off_path(blade: Blade, wall: str, touch: Touch) -> str | None:
             allowed = FARTHEST * (high - low) if extent.path_end(past) is None else 0.0
             worst = int(np.argmax(ahead))
             if ahead[worst] > allowed:
-                return f"{_named(foot.name, foot.near[0][worst])} its foot lies past the {name} of the {wall}"
+                return f"{place_named(foot.name, foot.near[0][worst])} its foot lies past the {name} of the {wall}"
     return None
 
 
@@ -212,11 +215,11 @@ def _about_corners(blade: Blade, wall: str, touch: Touch) -> str | None:
         found = touch.corners.picked(np.array(which))
         towards = section.derivative(sites, found.v, 1, 0)[0] * (1.0 if corner.first[1] else -1.0)
         if dot(towards, section.normal(sites, found.v)[1]) <= 0.0:
-            return f"at the {corner.name.replace('_', ' ')} the blade is hollow, and no ball turns about it"
+            return f"{place_named(corner.name, 0.0)} the blade is hollow, and no ball turns about it"
     for pivot, p in _turning(touch):
         ball = pivot.at(p + 1j * STEP)
         if not np.all(ball.residual < TOUCHING):
-            return f"{_named(pivot.name, 0.0)} no ball of that radius touches the corner and {wall}"
+            return f"{place_named(pivot.name, 0.0)} no ball of that radius touches the corner and {wall}"
         normals, angle = [np.real(normal) for normal in ball.sections.normals], np.real(ball.sections.angle)
         along = unit(cross(*normals))
         middle = 0.5 / np.cos(0.5 * angle)[:, None]
@@ -226,7 +229,7 @@ def _about_corners(blade: Blade, wall: str, touch: Touch) -> str | None:
         sense = 1.0 if np.sum(forward[0]) > 0.0 else -1.0
         forward = forward * sense / np.max(np.square(forward)) ** 0.5
         if not np.min(forward) > -LEAST_BACK:
-            return f"{_named(pivot.name, 0.0)} it folds: the corner leans over the ball"
+            return f"{place_named(pivot.name, 0.0)} it folds: the corner leans over the ball"
     return None
 
 
@@ -262,7 +265,6 @@ def _meeting(blade: Blade, wall: str, touch: Touch) -> str | None:
         )
         apart = length((foot[:, None] - foot - np.array([0.0, spacing])) * scale)
         nearest = int(np.argmin(np.min(apart, axis=1)))
-        return (
-            f"{_named(names[nearest], places[nearest, 0])} it meets the fillet of the neighbouring blade on the {wall}"
-        )
+        place = place_named(names[nearest], places[nearest, 0])
+        return f"{place} it meets the fillet of the neighbouring blade on the {wall}"
     return None
