@@ -177,6 +177,17 @@ def test_derivatives_are_those_of_differences():
         assert np.max(np.abs(found - slope)) < 1e-6 * np.max(np.abs(slope)), path
 
 
+def test_many_steps_at_once_are_those_of_single_builds():
+    design = filleted("a cut edge in a cascade")
+    base, values = design.build(), design.parameters()
+    paths = ["hub_fillet.radius", "cut.trailing_edge.x", next(path for path in values if "stagger" in path)]
+    for path, many in zip(paths, stepped(design, base, paths), strict=True):
+        single = design.changed(path, values[path] + 1e-30j).build(knots=base.knots)
+        for name in (name for name in base.surfaces if name not in design.ends):
+            found, wanted = (np.imag(blade.surfaces[name].control_points) for blade in (many, single))
+            assert np.max(np.abs(found - wanted)) <= 1e-9 * np.max(np.abs(wanted)), (path, name)
+
+
 def test_points_for_solvers_lie_on_fillets_about_corners_too(blade):
     names = set(bw.surface_points(blade, along=3, across=3).names)
     assert {name for name in blade.surfaces if "_fillet_" in name or "_strip_" in name} <= names

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import final
 
@@ -17,6 +18,8 @@ ARC_DEGREE = 8
 _CLAMPED = np.repeat([0.0, 1.0], ARC_DEGREE + 1)
 QUINTIC = 5
 """Degree of a cross-section with point, tangent and curvature at both ends."""
+Bend = Callable[[Array], Array]
+"""Second derivatives (k,) of cross-sections along a normal, from their first (k, 3)."""
 _INNER = 0.5 - 0.5 * np.cos(np.pi * np.arange(1, ARC_DEGREE - 2) / (ARC_DEGREE - 2))
 """s at which an arc is interpolated, besides its ends and their tangents"""
 
@@ -70,6 +73,22 @@ class ConicSections(CrossSections):
         first = (on_wall * cosine - on_blade) / (1.0 - cosine**2)
         second = (on_blade * cosine - on_wall) / (1.0 - cosine**2)
         return self.centre + first[:, None] * self.normals[0] + second[:, None] * self.normals[1]
+
+    def curved(self, of_blade: Bend, of_wall: Bend) -> QuinticSections:
+        """Those with the same ends and end tangents, and the curvatures of blade and wall there.
+
+        Both give d2F/ds2 along their normals (k,) from dF/ds (k, 3).
+        """
+        start, end = self.points(np.array([0.0, 1.0]), 1)
+        return QuinticSections(
+            blade=self.blade,
+            wall=self.wall,
+            normals=self.normals,
+            centre=self.centre,
+            sizes=self.sizes,
+            slopes=(start, end),
+            bends=(of_blade(start), of_wall(end)),
+        )
 
     def points(self, s: Reals, order: int = 0) -> Array:
         w, cosine = self.angle, dot(*self.normals)[:, None]

@@ -21,12 +21,12 @@ from bladewright.blade.native.fillet_knots import FilletKnots, chosen_knots, lev
 from bladewright.blade.native.knots import DEGREE, Knots
 from bladewright.blade.native.lazy_faces import Face, LazyFaces
 from bladewright.blade.native.native_edges import with_native_edges
-from bladewright.blade.native.pivot import Pivot
+from bladewright.blade.native.pivot import Turning
 from bladewright.blade.native.pivot import feet as foot_of
 from bladewright.blade.native.rolling_ball import Rolled, Touch, balls_of, closed_section
 from bladewright.frozen import FrozenMapping
 from bladewright.numerics.elementary import Array
-from bladewright.nurbs.basis import Reals, basis, greville
+from bladewright.nurbs.basis import Reals, basis
 from bladewright.nurbs.curve import Curve
 from bladewright.nurbs.domain import extended, piece, reparametrised
 from bladewright.nurbs.domain import reversed as run_back
@@ -54,10 +54,10 @@ def filleted(blade: Blade, design: RowDesign, knots: Knots | None = None, *, fin
     rolled = Rolled.at(section, balls, cast(SectionSplines, own.splines).sites, own.near)
     faces, outlines, feet = cut_sides(section, own), dict(whole.outlines), {}
     for wall, touch in rolled.touches.items():
-        pivots = [(replace(pivot, touch=touch), knots) for pivot, knots in own.pivots[wall]]
+        pivots = own.turning(wall, touch)
         faces |= around_wall(wall, touch, own)
-        faces |= _about_corners(wall, pivots, faces)
-        chain = foot_of(touch, [(pivot, greville(knots, DEGREE)) for pivot, knots in pivots])
+        faces |= about_corners(wall, own, pivots, faces)
+        chain = foot_of(touch, pivots)
         feet[wall] = [
             (end_row(faces[f"{wall}_fillet_{foot.name}"], -design.ends.index(wall)), foot.near, foot.against)
             for foot in chain
@@ -116,7 +116,7 @@ def around_wall(wall: str, touch: Touch | SteppedTouch, knots: FilletKnots) -> d
     for (face, side), start, inside, across in zip(touch.section.faces.items(), starts, insides, nets, strict=True):
         own = around.knots_of[face]
         end = strip.side_end(side, own)
-        if isinstance(touch, Touch) and touch.section.has_corners(face):
+        if touch.section.has_corners(face):
             end[1:] = [around.split(each)[list(touch.section.faces).index(face)] for each in touch.end(strip)[1:]]
         rows = strip.net(start, np.swapaxes(inside, 0, 1), end)
         # one row, to the bit
@@ -127,8 +127,8 @@ def around_wall(wall: str, touch: Touch | SteppedTouch, knots: FilletKnots) -> d
     return found
 
 
-def _about_corners(
-    wall: str, pivots: Sequence[tuple[Pivot, Reals]], faces: Mapping[str, Surface]
+def about_corners(
+    wall: str, own: FilletKnots, pivots: Sequence[Turning], faces: Mapping[str, Surface]
 ) -> dict[str, Surface]:
     """The fillets about corners, between those of `faces`."""
     nets: list[Array] = []
@@ -138,9 +138,8 @@ def _about_corners(
         column = faces[f"{wall}_fillet_{FACES[pair[0]]}"].control_points[-1 if pair[1] else 0]
         return column if upwards else column[::-1]
 
-    for pivot, knots in pivots:
-        sites = greville(knots, DEGREE)
-        values = np.swapaxes(pivot.at(sites).sections.net(), 0, 1)
+    for (pivot, sites, ball), (_, knots) in zip(pivots, own.pivots[wall], strict=True):
+        values = np.swapaxes(ball.sections.net(), 0, 1)
         net = np.tensordot(np.linalg.inv(basis(knots, DEGREE, sites)), values, axes=1)
         # the columns of the fillets beside it, to the bit
         net[0] = beside(pivot.corner.first) if pivot.first else nets[-1][-1]

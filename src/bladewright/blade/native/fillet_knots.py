@@ -14,7 +14,7 @@ from bladewright.blade.native.cross_section import CrossSections
 from bladewright.blade.native.end_faces import EndKnots
 from bladewright.blade.native.fillet_limits import check_fillets, named, scaled
 from bladewright.blade.native.knots import DEGREE, Knots, clamped, refined
-from bladewright.blade.native.pivot import ACROSS, Pivot, pivots_of
+from bladewright.blade.native.pivot import ACROSS, Pivot, Turning, pivots_of
 from bladewright.blade.native.refinement import RESERVE, wall_tolerance
 from bladewright.blade.native.rolling_ball import Ball, Rolled, Touch
 from bladewright.blade.native.strip import Strip, strips_for
@@ -68,6 +68,14 @@ class FilletKnots(Knots):
     """around the blade, of fillets and strips"""
     pivots: Mapping[str, Sequence[tuple[Pivot, Reals]]] = field(default_factory=lambda: FrozenMapping({}))
     """about corners, by the wall, and the knots of each"""
+
+    def turning(self, wall: str, touch: Touch, real: Sequence[Turning] | None = None) -> list[Turning]:
+        """A touch's balls about corners at Greville's abscissae of those; `real` are the real ones, where known."""
+        found = []
+        for number, (pivot, knots) in enumerate(self.pivots[wall]):
+            own, p = replace(pivot, touch=touch), greville(knots, DEGREE)
+            found.append(Turning(own, p, own.at(p, None if real is None else real[number].ball)))
+        return found
 
 
 def chosen_knots(blade: Blade, section: ClosedSection, balls: Mapping[str, Ball], *, fine: bool = False) -> FilletKnots:

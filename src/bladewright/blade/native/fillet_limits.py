@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
+from functools import lru_cache
 from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
@@ -11,7 +12,7 @@ import numpy as np
 from bladewright.blade.native.blade import Blade
 from bladewright.blade.native.closed_section import FACES, OUTWARD, Sites
 from bladewright.blade.native.contacts import rates
-from bladewright.blade.native.pivot import Pivot, feet, pivots_of
+from bladewright.blade.native.pivot import REMEMBERED, Turning, feet, pivots_of
 from bladewright.blade.native.rolling_ball import STEP, Ball, Rolled, Touch
 from bladewright.errors import DesignError
 from bladewright.numerics.elementary import Array, cross, dot, length, unit
@@ -127,9 +128,10 @@ def obstacle(blade: Blade, rolled: Rolled, *, at: str | None = None) -> Obstacle
     return None
 
 
-def _turning(touch: Touch) -> list[tuple[Pivot, Reals]]:
-    """The pivots about corners, and places on them that are looked at."""
-    return [(pivot, TURNS) for pivot in pivots_of(touch)]
+@lru_cache(maxsize=REMEMBERED)
+def _turning(touch: Touch) -> tuple[Turning, ...]:
+    """A ball about corners at the places that are looked at."""
+    return tuple(Turning(pivot, TURNS, pivot.at(TURNS)) for pivot in pivots_of(touch))
 
 
 def _place(sites: Sites, at: int) -> str:
@@ -216,8 +218,8 @@ def _about_corners(blade: Blade, wall: str, touch: Touch) -> str | None:
         towards = section.derivative(sites, found.v, 1, 0)[0] * (1.0 if corner.first[1] else -1.0)
         if dot(towards, section.normal(sites, found.v)[1]) <= 0.0:
             return f"{place_named(corner.name, 0.0)} the blade is hollow, and no ball turns about it"
-    for pivot, p in _turning(touch):
-        ball = pivot.at(p + 1j * STEP)
+    for pivot, p, real in _turning(touch):
+        ball = pivot.at(p + 1j * STEP, real)
         if not np.all(ball.residual < TOUCHING):
             return f"{place_named(pivot.name, 0.0)} no ball of that radius touches the corner and {wall}"
         normals, angle = [np.real(normal) for normal in ball.sections.normals], np.real(ball.sections.angle)

@@ -64,9 +64,15 @@ def finished(plain: Blade, design: RowDesign, knots: Knots | None = None, *, fin
 
     Raises DesignError where it cannot be cut or filleted as the design asks.
     """
-    blade, wanted = plain, finishes(design)
+    wanted = finishes(design)
     held = [None] * len(wanted) if knots is None else knots.chain[1:]
-    for finish, own in zip(wanted, held, strict=True):
+    return _after(plain, design, list(zip(wanted, held, strict=True)), fine=fine)
+
+
+def _after(
+    blade: Blade, design: RowDesign, finishes: Sequence[tuple[Finish, Knots | None]], *, fine: bool = False
+) -> Blade:
+    for finish, own in finishes:
         blade = finish(blade, design, own, fine=fine)
     return blade
 
@@ -74,10 +80,11 @@ def finished(plain: Blade, design: RowDesign, knots: Knots | None = None, *, fin
 def stepped_finishes(base: Blade, plains: Sequence[Blade], designs: Sequence[RowDesign]) -> Iterator[Blade]:
     """The finished blades of designs, at the knots of `base`, from plain ones that carry a complex step each.
 
-    Where there are but fillets, and no corners, all at once.
+    They are cut one by one, and get their fillets all at once.
     """
-    if finishes(base.design) == [_filleted] and set(base.plain.edge_kinds) == {"round"}:
-        yield from stepped_blades(base, plains, designs)
+    wanted = list(zip(finishes(base.design), base.knots.chain[1:], strict=True))
+    if wanted[-1][0] is not _filleted:
+        yield from (_after(*each, wanted) for each in zip(plains, designs, strict=True))
         return
-    for plain, design in zip(plains, designs, strict=True):
-        yield finished(plain, design, base.knots)
+    cut = [_after(*each, wanted[:-1]) for each in zip(plains, designs, strict=True)]
+    yield from stepped_blades(base, cut, designs)

@@ -119,8 +119,11 @@ class Pivot(FrozenRecord):
         met = run.at(np.array([1.0 if self.last else 0.0])).sections.normals[0]
         return (met, end) if self.last else (start, met)
 
-    def at(self, p: Array) -> Turned:
-        """The ball at p (k,) from 0 at the beginning of this part to 1 at its end."""
+    def at(self, p: Array, real: Turned | None = None) -> Turned:
+        """The ball at p (k,) from 0 at the beginning of this part to 1 at its end; `real` is the real one, where known.
+
+        Without it, one is sought.
+        """
         section, wall = self.touch.section, self.touch.ball.wall
         first = _ends(self.touch, self.corner)
         v = _between(*self.line, p)
@@ -128,12 +131,16 @@ class Pivot(FrozenRecord):
         corners = self.touch.corners
         on_blade, on_wall = (_between(size[first], size[first + 1], p) for size in (corners.on_blade, corners.on_wall))
         if self.runs:
-            aside, near = unit(line), self._near(np.real(v))
+            aside = unit(line)
         else:
             towards = turned(*self._normals, p) if self.pole else self._even(v, p)
             aside = unit(cross(line, towards))
-            near = np.real(point + on_blade[:, None] * towards)
-        found, residual = settled(wall, (point, aside, on_blade, on_wall), near)
+        if real is not None:
+            start = real.t, real.across
+        else:
+            near = self._near(np.real(v)) if self.runs else np.real(point + on_blade[:, None] * towards)
+            start = wall.real().places_below(near)
+        found, residual = settled(wall, (point, aside, on_blade, on_wall), start)
         t, across = found[:, 0], found[:, 1]
         about = np.real(corners.across[first] - across[0])
         across = across + 2.0 * np.pi * np.round(about / (2.0 * np.pi)) if wall.revolved else across
@@ -175,20 +182,11 @@ class Pivot(FrozenRecord):
 
     def _curved(self, conics: ConicSections, t: Array, across: Array, p: Array) -> CrossSections:
         """With the curvatures of the wall at one end, and at the other what both faces have at the corner between."""
-        start, end = conics.points(np.array([0.0, 1.0]), 1)
-        ends = cast(QuinticSections, replace(self.touch, found=self.touch.corners).sections)
-        first = _ends(self.touch, self.corner)
+        at_corners = cast(QuinticSections, replace(self.touch, found=self.touch.corners).sections)
+        faces, first = at_corners.bends[0], _ends(self.touch, self.corner)
         low, high = 0.0 if self.first else 0.5, 1.0 if self.last else 0.5
-        bends = _between(ends.bends[0][first], ends.bends[0][first + 1], low + (high - low) * p)
-        return QuinticSections(
-            blade=conics.blade,
-            wall=conics.wall,
-            normals=conics.normals,
-            centre=conics.centre,
-            sizes=conics.sizes,
-            slopes=(start, end),
-            bends=(bends, bend_of_wall(self.touch.ball.wall, t, across, end)),
-        )
+        between = _between(faces[first], faces[first + 1], low + (high - low) * p)
+        return conics.curved(lambda _: between, lambda slope: bend_of_wall(self.touch.ball.wall, t, across, slope))
 
 
 @lru_cache(maxsize=REMEMBERED)
@@ -214,6 +212,14 @@ def _running(touch: Touch, corner: Corner) -> tuple[Pivot, ...]:
     return tuple(Pivot(touch=touch, corner=corner, runs=runs, first=one, last=two) for runs, one, two in kinds)
 
 
+class Turning(NamedTuple):
+    """A ball at places p (k,) of a pivot."""
+
+    pivot: Pivot
+    p: Reals
+    ball: Turned
+
+
 class Foot(NamedTuple):
     """A part of the foot of a fillet on its wall."""
 
@@ -225,11 +231,8 @@ class Foot(NamedTuple):
     """whether the chain of all parts runs against it"""
 
 
-def feet(touch: Touch, pivots: Sequence[tuple[Pivot, Reals]]) -> list[Foot]:
-    """The closed chain of a real foot, lower side first, in the order of an end face's boundary.
-
-    Pivots come with places p (k,).
-    """
+def feet(touch: Touch, pivots: Sequence[Turning]) -> list[Foot]:
+    """The closed chain of a real foot, lower side first, in the order of an end face's boundary."""
     found, near = touch.found, {}
     for face in touch.section.faces:
         which = np.flatnonzero(found.sites.side == face)
@@ -238,7 +241,7 @@ def feet(touch: Touch, pivots: Sequence[tuple[Pivot, Reals]]) -> list[Foot]:
     for name in FACES[LEADING:]:
         near.setdefault(name, [])
     for edge, part in ((edge, part) for edge in FACES[LEADING:] for part in ("_upper", "", "_lower")):
-        own = [(pivot, p, pivot.at(p)) for pivot, p in pivots if pivot.corner.name == edge + part]
+        own = [each for each in pivots if each.pivot.corner.name == edge + part]
         turned = [(pivot.name, p, ball.t, ball.across) for pivot, p, ball in own]
         near[edge] = turned + near[edge] if part == "_upper" else near[edge] + turned
     chain = [(each, False) for each in near["lower"]] + [(each, True) for each in near["trailing_edge"][::-1]]
@@ -319,11 +322,11 @@ Given = tuple[Array, Array, Array, Array]
 """Points of the line (k, 3), unit vectors (k, 3) that the ball's centre lies across from them, a and b (k,)."""
 
 
-def settled(wall: Wall, given: Given, near: Reals) -> tuple[Array, Reals]:
-    """t and theta (k, 2) of balls with centres near given ones (k, 3), and what they miss, over the radius."""
+def settled(wall: Wall, given: Given, start: tuple[Array, Array]) -> tuple[Array, Reals]:
+    """t and theta (k, 2) of balls near given ones (k,), and what they miss, over the radius."""
     real_wall, (point, aside, on_blade, on_wall) = wall.real(), given
     real = np.real(point), np.real(aside), np.real(on_blade), np.real(on_wall)
-    x = np.stack(real_wall.places_below(near), axis=-1)
+    x = np.real(np.stack(start, axis=-1))
     with np.errstate(all="ignore"):
         for _ in range(STEPS):
             miss, slopes = _misses(real_wall, real, x)

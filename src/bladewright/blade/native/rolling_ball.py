@@ -12,7 +12,7 @@ import numpy as np
 from bladewright.blade.native.blade import Blade
 from bladewright.blade.native.closed_section import FACES, LEADING, TRAILING, ClosedSection, Sites
 from bladewright.blade.native.contacts import Contacts, Wall, changes, contacts
-from bladewright.blade.native.cross_section import ConicSections, CrossSections, QuinticSections
+from bladewright.blade.native.cross_section import ConicSections, CrossSections
 from bladewright.blade.native.fillet_sizes import Sizes, ball_sizes
 from bladewright.blade.native.strip import Course, Leaving, Strip, leaving, resolved
 from bladewright.frozen import FrozenMapping, FrozenRecord
@@ -81,18 +81,7 @@ class Touch(FrozenRecord):
             centre=point + found.on_blade[:, None] * normal,
             sizes=(found.on_blade, found.on_wall),
         )
-        if not self.ball.curved:
-            return conics
-        start, end = conics.points(np.array([0.0, 1.0]), 1)
-        return QuinticSections(
-            blade=conics.blade,
-            wall=conics.wall,
-            normals=conics.normals,
-            centre=conics.centre,
-            sizes=conics.sizes,
-            slopes=(start, end),
-            bends=(self._bend_of_blade(start), self._bend_of_wall(end)),
-        )
+        return conics.curved(self._bend_of_blade, self._bend_of_wall) if self.ball.curved else conics
 
     def _bend_of_blade(self, slope: Array) -> Array:
         """Normal curvature (k,) of the blade along tangents (k, 3), times their squared length, towards the fluid."""
@@ -192,18 +181,20 @@ class Rolled(FrozenRecord):
         return {wall: touch.found for wall, touch in self.touches.items()}
 
 
-def with_poles(section: ClosedSection, found: Contacts) -> Contacts:
-    """The contacts, equal on both faces of a corner where they are but for POLE."""
-    sites, v = found.sites, np.array(found.v)
+def with_poles(section: ClosedSection, found: Contacts, count: int = 1) -> Contacts:
+    """The contacts, equal on both faces of a corner where they are but for POLE.
+
+    Those of `count` blades with one real part come one after another.
+    """
+    one = len(found.sites) // count
+    sites, v = found.sites.picked(np.arange(one)), np.reshape(found.v, (count, one)).copy()
     for corner in section.corners:
         both = [(sites.side == face) & (sites.u == u) for face, u in (corner.first, corner.second)]
-        one, other = (found.v[np.argmax(each)] for each in both)
+        c, d = (v[:, np.argmax(each)] for each in both)
         first = Sites(side=np.array([corner.first[0]]), u=np.array([corner.first[1]]))
-        if length(np.real(section.derivative(first, np.array([one]), 0, 1)[0] * (one - other))) < POLE * extent(
-            section
-        ):
-            v[both[0] | both[1]] = 0.5 * (one + other)
-    return replace(found, v=v)
+        if length(np.real(section.derivative(first, c[:1], 0, 1)[0] * (c[0] - d[0]))) < POLE * extent(section):
+            v[:, both[0] | both[1]] = 0.5 * (c + d)[:, None]
+    return replace(found, v=v.ravel())
 
 
 def extent(section: ClosedSection) -> float:
@@ -231,8 +222,17 @@ def closed_section(blade: Blade) -> ClosedSection:
     return ClosedSection(upper=upper, lower=lower, smooth=smooth, blunt=FrozenMapping(blunt))
 
 
-def balls_of(blade: Blade, section: ClosedSection, design: RowDesign) -> dict[str, Ball]:
-    """The balls of the fillets that a design asks for, by the wall."""
+def section_like(real: ClosedSection, blade: Blade) -> ClosedSection:
+    """That of a blade that carries a step, whose real one is known."""
+    upper, lower = blade.sides
+    blunt = {face: cast(Surface, blade.surfaces[FACES[face]]) for face in real.blunt}
+    return replace(real, upper=upper, lower=lower, blunt=FrozenMapping(blunt))
+
+
+def balls_of(
+    blade: Blade, section: ClosedSection, design: RowDesign, real: Mapping[str, Ball] | None = None
+) -> dict[str, Ball]:
+    """The balls of the fillets that a design asks for, by the wall; `real` are those of the real blade, where known."""
     asked = {"hub": design.hub_fillet, "shroud": design.shroud_fillet}
     balls = {}
     for name, fillet in asked.items():
@@ -240,7 +240,11 @@ def balls_of(blade: Blade, section: ClosedSection, design: RowDesign) -> dict[st
             continue
         sizes = ball_sizes(fillet, design.metre, lambda: blade.suction_side)
         curved = fillet.kind == "curvature"
-        balls[name] = Ball(wall=_wall(blade, section, name), sizes=sizes, end=WALLS[name], curved=curved)
+        if real is None:
+            wall = _wall(blade, section, name)
+        else:
+            wall = replace(real[name].wall, meridian=blade.end_wall(name)[0])
+        balls[name] = Ball(wall=wall, sizes=sizes, end=WALLS[name], curved=curved)
     return balls
 
 

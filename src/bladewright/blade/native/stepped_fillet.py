@@ -8,7 +8,7 @@ sites of one, and the steps of all as one surface of so many dimensions more.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from functools import cache, partial
 from typing import TYPE_CHECKING, Any, cast
 
@@ -16,12 +16,21 @@ import numpy as np
 
 from bladewright.blade.native.blade import Blade
 from bladewright.blade.native.closed_section import ClosedSection, SectionSplines, Sites
-from bladewright.blade.native.contacts import Contacts, Wall, contacts
-from bladewright.blade.native.fillet import around_wall, cut_sides, filleted
+from bladewright.blade.native.contacts import Wall, contacts
+from bladewright.blade.native.fillet import about_corners, around_wall, cut_sides, filleted
 from bladewright.blade.native.fillet_knots import FilletKnots
 from bladewright.blade.native.lazy_faces import LazyFaces
-from bladewright.blade.native.rolling_ball import Ball, Rolled, Touch, balls_of, closed_section
-from bladewright.blade.native.strip import Strip
+from bladewright.blade.native.native_edges import with_native_edges
+from bladewright.blade.native.rolling_ball import (
+    Ball,
+    Rolled,
+    Touch,
+    balls_of,
+    closed_section,
+    section_like,
+    with_poles,
+)
+from bladewright.blade.native.strip import Course, Leaving, Strip
 from bladewright.frozen import FrozenMapping, FrozenRecord
 from bladewright.numerics.elementary import Array
 from bladewright.nurbs.curve import Curve
@@ -113,14 +122,31 @@ class SteppedWall(Wall):
 
 
 @dataclass(frozen=True, kw_only=True, eq=False)
+class StepsTouch(Touch):
+    """Balls of `count` blades, at sites and corners of all of them, one blade after another."""
+
+    count: int
+
+    def course(self, strip: Strip) -> Course:
+        if not self.section.corners:
+            return super().course(strip)
+        lines, at_corners = self._by_blade(self.lines), self._by_blade(replace(self, found=self.corners).lines)
+        sites, corner_sites = (_of_one(found.sites, self.count) for found in (self.found, self.corners))
+        course = strip.course(sites, lines, at_corners, corner_sites)
+        return Course(**{each.name: np.ravel(getattr(course, each.name)) for each in fields(course)})
+
+    def _by_blade(self, lines: Leaving) -> Leaving:
+        """With a leading axis of blades."""
+        return Leaving(**{each.name: np.reshape(getattr(lines, each.name), (self.count, -1)) for each in fields(lines)})
+
+
+@dataclass(frozen=True, kw_only=True, eq=False)
 class SteppedTouch(FrozenRecord):
     """The steps of what a touch gives, with those of all blades side by side in so many dimensions more."""
 
-    touch: Touch
-    """at the sites of all blades"""
+    touch: StepsTouch
     section: ClosedSection
     """the steps of the sides"""
-    count: int
 
     def net(self) -> Array:
         """Those of the cross-sections' control points (n, k, 3 count)."""
@@ -134,26 +160,29 @@ class SteppedTouch(FrozenRecord):
         """Those of where the strip starts, and of its derivatives (k, 3 count)."""
         return [self._steps(each) for each in self.touch.start(strip)]
 
+    def end(self, strip: Strip) -> list[Array]:
+        """Those of where the strip ends, and of its first two derivatives (k, 3 count)."""
+        return [self._steps(each) for each in self.touch.end(strip)]
+
     def _steps(self, values: Array) -> Array:
-        return _beside(np.imag(values), self.count)
+        return _beside(np.imag(values), self.touch.count)
 
 
 def stepped_touches(
-    section: ClosedSection,
-    sections: Sequence[ClosedSection],
-    balls: Sequence[Mapping[str, Ball]],
-    near: Mapping[str, Contacts],
+    real: Rolled, sections: Sequence[ClosedSection], balls: Sequence[Mapping[str, Ball]]
 ) -> dict[str, SteppedTouch]:
-    """By the wall, of blades whose real section is given and touched near known contacts."""
-    count = len(sections)
+    """By the wall, of blades whose real balls are known."""
+    section, count = real.section, len(sections)
     steps = _together(sections, section)
     own = SteppedSection(
         upper=section.upper, lower=section.lower, smooth=section.smooth, blunt=section.blunt, steps=steps, count=count
     )
+    one = real.sites.and_those(section.corner_sites)
+    sites = Sites(side=np.tile(one.side, count), u=np.tile(one.u, count))
+    here, corners = np.split(np.arange(len(sites)).reshape(count, -1), [len(real.sites)], axis=1)
     found = {}
-    for wall, known in near.items():
-        each = [ball[wall] for ball in balls]
-        first = each[0].wall.real()
+    for wall, known in real.touches.items():
+        each, first = [ball[wall] for ball in balls], known.ball.wall
         lines = [np.imag(ball.wall.meridian.control_points) for ball in each]
         stepped = SteppedWall(
             meridian=first.meridian,
@@ -162,17 +191,30 @@ def stepped_touches(
             steps=replace(first.meridian, control_points=np.concatenate(lines, axis=-1)),
             count=count,
         )
-        one = known.sites
-        sites = Sites(side=np.tile(one.side, count), u=np.tile(one.u, count))
-        sizes = [np.concatenate(parts) for parts in zip(*(ball.sizes(one) for ball in each), strict=True)]
-        touched = contacts(own, stepped, sites, (sizes[0], sizes[1]), each[0].end, known)
-        ball = replace(each[0], wall=stepped)
-        found[wall] = SteppedTouch(
-            touch=Touch(ball=ball, section=own, found=touched, corners=touched.picked(np.arange(0))),
-            section=steps,
+        ball = replace(known.ball, wall=stepped, sizes=partial(_sizes, each))
+        touched = contacts(own, stepped, sites, ball.sizes(sites), ball.end, known.found)
+        touched = with_poles(section, touched, count)
+        touch = StepsTouch(
+            ball=ball,
+            section=own,
+            found=touched.picked(here.ravel()),
+            corners=touched.picked(corners.ravel()),
             count=count,
         )
+        found[wall] = SteppedTouch(touch=touch, section=steps)
     return found
+
+
+def _sizes(balls: Sequence[Ball], sites: Sites) -> tuple[Array, Array]:
+    """Those of all balls at the sites of all blades."""
+    one = _of_one(sites, len(balls))
+    on_blade, on_wall = zip(*(ball.sizes(one) for ball in balls), strict=True)
+    return np.concatenate(on_blade), np.concatenate(on_wall)
+
+
+def _of_one(sites: Sites, count: int) -> Sites:
+    """The sites of one blade."""
+    return sites.picked(np.arange(len(sites) // count))
 
 
 def _together(sections: Sequence[ClosedSection], like: ClosedSection) -> ClosedSection:
@@ -190,43 +232,49 @@ def _together(sections: Sequence[ClosedSection], like: ClosedSection) -> ClosedS
 def stepped_blades(base: Blade, blades: Sequence[Blade], designs: Sequence[RowDesign]) -> list[Blade]:
     """The blades of designs with fillets, each from the blade before it that carries a step.
 
-    `base` is that of the real design, without corners, whose knots are held. Ends are made when one is first used.
+    `base` is that of the real design, whose knots are held. Ends are made when one is first used.
     """
     count, knots = len(blades), cast(FilletKnots, base.knots)
-    section = closed_section(cast(Blade, base.before))
-    sections = [closed_section(blade) for blade in blades]
-    balls = [balls_of(*each) for each in zip(blades, sections, designs, strict=True)]
-    rolled = Rolled.at(
-        section,
-        balls_of(cast(Blade, base.before), section, base.design),
-        cast(SectionSplines, knots.splines).sites,
-        knots.near,
-    )
-    touches = stepped_touches(section.real(), sections, balls, rolled.found)
+    whole = with_native_edges(cast(Blade, base.before))
+    section = closed_section(whole)
+    balls = balls_of(whole, section, base.design)
+    real = Rolled.at(section, balls, cast(SectionSplines, knots.splines).sites, knots.near)
+    wholes = [with_native_edges(blade) for blade in blades]
+    sections = [section_like(section, blade) for blade in wholes]
+    own = [balls_of(*each, balls) for each in zip(wholes, sections, designs, strict=True)]
+    touches = stepped_touches(real, sections, own)
     steps = cut_sides(_together(sections, section), knots)
     for wall, touch in touches.items():
         steps |= around_wall(wall, touch, knots)
+    turning = {wall: knots.turning(wall, touch) for wall, touch in real.touches.items()}
     nets = {name: np.split(face.control_points, count, axis=-1) for name, face in steps.items()}
     found = []
     for number, (blade, design) in enumerate(zip(blades, designs, strict=True)):
-        faces = {}
-        for name, each in nets.items():
-            face = cast(Surface, base.surfaces[name])
-            faces[name] = replace(face, control_points=face.control_points + 1j * each[number])
-        whole = cache(partial(filleted, blade, design, knots))
+        faces = {name: _with_steps(base, name, each[number]) for name, each in nets.items()}
+        for wall, touch in touches.items():
+            at_corners = touch.touch.corners.picked(np.split(np.arange(len(touch.touch.corners.sites)), count)[number])
+            mine = Touch(ball=own[number][wall], section=sections[number], found=at_corners, corners=at_corners)
+            about = about_corners(wall, knots, knots.turning(wall, mine, turning[wall]), faces)
+            faces |= {name: _with_steps(base, name, np.imag(face.control_points)) for name, face in about.items()}
+        finished = cache(partial(filleted, blade, design, knots))
         found.append(
             replace(
                 base,
                 design=design,
-                surfaces=LazyFaces(faces, tuple(base.surfaces), partial(_of, whole, "surfaces")),
+                surfaces=LazyFaces(faces, tuple(base.surfaces), partial(_of, finished, "surfaces")),
                 exact=blade.exact,
                 before=blade,
                 moments=None,
-                outlines=LazyFaces({}, tuple(base.outlines), partial(_of, whole, "outlines")),
-                walls=LazyFaces({}, tuple(base.walls), partial(_of, whole, "walls")),
+                outlines=LazyFaces({}, tuple(base.outlines), partial(_of, finished, "outlines")),
+                walls=LazyFaces({}, tuple(base.walls), partial(_of, finished, "walls")),
             )
         )
     return found
+
+
+def _with_steps(base: Blade, name: str, steps: Array) -> Surface:
+    face = cast(Surface, base.surfaces[name])
+    return replace(face, control_points=face.control_points + 1j * steps)
 
 
 def _of(whole: Callable[[], Blade], name: str) -> Mapping[str, Any]:

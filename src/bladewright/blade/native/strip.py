@@ -131,7 +131,10 @@ class Strip(FrozenRecord):
     def course(
         self, sites: Sites, lines: Leaving, at_corners: Leaving | None = None, corner_sites: Sites | None = None
     ) -> Course:
-        """How lines at sites run, from how they leave the fillet there and at the corners of the section."""
+        """How lines at sites run, from how they leave the fillet there and at the corners of the section.
+
+        Lines of several blades (..., k) have the same sites.
+        """
         sideways, upwards = lines.sideways / self.speed, lines.upwards / self.speed
         share, along = np.ones_like(lines.contact), np.zeros_like(lines.contact)
         slope = np.full_like(lines.contact, self.slope)
@@ -146,9 +149,10 @@ class Strip(FrozenRecord):
             if face <= LOWER:
                 x = np.maximum(0.0, 1.0 - (1.0 - np.real(x)) / self.width) ** DEGREE
             fade = np.where(sites.side == face, x, 0.0)
-            share = share + fade * (asked[number] - 1.0)
-            along = along - fade * asked[number] * at_corners.sideways[number] / self.speed
-            slope = slope + fade * (run[number] - self.slope)
+            own = (..., slice(number, number + 1))
+            share = share + fade * (asked[own] - 1.0)
+            along = along - fade * asked[own] * at_corners.sideways[own] / self.speed
+            slope = slope + fade * (run[own] - self.slope)
         return Course(
             contact=lines.contact,
             sideways=share * sideways + along,
