@@ -114,5 +114,7 @@ from .section.thickness.wennerstrom import Wennerstrom as Wennerstrom
 from .section.unified import UnifiedSection as UnifiedSection
 from .section.wedge_diffuser import WedgeDiffuser as WedgeDiffuser
 from .section.wedge_diffuser import WedgeDiffuserSection as WedgeDiffuserSection
+from .studies.runs import Runs as Runs
+from .studies.sweep import sweep as sweep
 
 __version__: str

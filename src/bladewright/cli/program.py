@@ -16,6 +16,7 @@ from bladewright.cli.outcome import INTERRUPTED, Outcome, one_paragraph, print_o
 from bladewright.cli.schema import schema
 from bladewright.cli.sensitivity import sensitivity
 from bladewright.cli.show import show
+from bladewright.cli.sweep import sweep
 from bladewright.cli.verify import verify
 from bladewright.errors import BladewrightError, FileError
 
@@ -50,7 +51,7 @@ def program(context: click.Context) -> None:
         click.echo(context.get_help())
 
 
-for each in (build, verify, fit, import_design, mesh, show, sensitivity, new, schema):
+for each in (build, verify, fit, import_design, mesh, show, sensitivity, sweep, new, schema):
     program.add_command(each)
 
 

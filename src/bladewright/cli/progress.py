@@ -9,7 +9,12 @@ from bladewright.cli.options import Call
 
 
 class Bar(Protocol):
-    """The methods of tqdm's progress bar that are used."""
+    """What is used of tqdm's progress bar."""
+
+    initial: int
+    """steps that were done before the bar began"""
+    n: int
+    """steps that are done"""
 
     def set_description_str(self, text: str) -> object:
         """Show what is being done."""
@@ -21,6 +26,8 @@ class Bar(Protocol):
 class Silent:
     """A progress bar that shows nothing."""
 
+    initial = n = 0
+
     def set_description_str(self, text: str) -> None:
         pass
 
@@ -29,8 +36,8 @@ class Silent:
 
 
 @contextmanager
-def progress(steps: int, call: Call) -> Iterator[Bar]:
-    """A progress bar of so many steps; it disappears when the work is done."""
+def progress(steps: int, call: Call, *, time_left: bool = False) -> Iterator[Bar]:
+    """A progress bar of so many steps, with the time left where that is asked for; it disappears with the work."""
     if call.quiet or not sys.stderr.isatty():
         yield Silent()
         return
@@ -39,7 +46,8 @@ def progress(steps: int, call: Call) -> Iterator[Bar]:
     from tqdm import tqdm
 
     # a terminal may say that it has no columns, and tqdm would draw none
-    layout: dict[str, Any] = {"ncols": get_terminal_size().columns, "bar_format": "{desc}: {bar} {n_fmt}/{total_fmt}"}
+    form = "{desc}: {bar} {n_fmt}/{total_fmt}" + (", {remaining} left" if time_left else "")
+    layout: dict[str, Any] = {"ncols": get_terminal_size().columns, "bar_format": form}
     with tqdm(total=steps, file=sys.stderr, leave=False, **layout) as bar:
         yield bar
 

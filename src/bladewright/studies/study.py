@@ -15,8 +15,9 @@ from pydantic import Field, TypeAdapter, ValidationError
 from bladewright.designs import Design
 from bladewright.errors import FileError, StudyError
 from bladewright.files.examples import examples
-from bladewright.files.reading import parsed, read_design
+from bladewright.files.reading import design_from, parsed, read_design
 from bladewright.files.text import read_text
+from bladewright.studies.manifest import read_manifest
 from bladewright.studies.quantities import Quantity, quantities_of
 from bladewright.studies.variables import STRICT, Range, Variable, resolved
 
@@ -25,7 +26,7 @@ Format = Literal["step", "iges", "brep", "stl", "3mf"]
 
 
 @dataclass(frozen=True, kw_only=True)
-class Sweep:
+class SweepOptions:
     """How a sweep samples: the table `[sweep]`."""
 
     __pydantic_config__: ClassVar[Mapping[str, Any]] = STRICT
@@ -54,7 +55,7 @@ class _File:
     design: str | None = None
     designs: dict[str, str] | None = None
     variables: dict[str, Range] = field(default_factory=dict)
-    sweep: Sweep = field(default_factory=Sweep)
+    sweep: SweepOptions = field(default_factory=SweepOptions)
     optimise: dict[str, Any] | None = None
 
 
@@ -70,7 +71,7 @@ class Study:
     """by name; that of the design itself where there is one"""
     ranges: Mapping[str, Range]
     """what is varied, by path or pattern"""
-    sweep: Sweep
+    sweep: SweepOptions
     """how a sweep samples"""
     optimise: Mapping[str, Any] | None
     """how a search searches"""
@@ -86,17 +87,15 @@ class Study:
 
 
 def read_study(path: str | PathLike[str]) -> Study:
-    """The study in a TOML file.
+    """The study in a TOML file, or that of the manifest of a sweep, a `.jsonl` file.
 
     Raises FileError where it or one of its designs cannot be read, DesignError where such a design is impossible, and
     StudyError, naming the file, the key, the value and what is needed, where it is no study.
     """
     path = Path(path)
-    document = parsed(read_text(path), str(path))
-    try:
-        given = TypeAdapter(_File).validate_json(json.dumps(document, default=str), strict=True)
-    except ValidationError as error:
-        raise StudyError(f"{path}: {'; '.join(_messages(error))}") from error
+    if path.suffix == ".jsonl":
+        return _of_manifest(path)
+    given = _checked(parsed(read_text(path), str(path)), path)
     files = given.designs or ({} if given.design is None else {"": given.design})
     if not files or (given.design and given.designs):
         what = "both design and [designs] are given: leave one out" if files else "design is missing: name its file"
@@ -110,6 +109,30 @@ def read_study(path: str | PathLike[str]) -> Study:
         sweep=given.sweep,
         optimise=given.optimise,
     )
+
+
+def _of_manifest(path: Path) -> Study:
+    """The study that the first line of a manifest states."""
+    header, _ = read_manifest(path)
+    if header.get("kind") != "sweep":
+        raise StudyError(f"'{path}' is the manifest of a {header.get('kind', 'study')}, not of a sweep")
+    texts = header["designs"]
+    given = _checked({"designs": texts, "variables": header["variables"], "sweep": header["sweep"]}, path)
+    return Study(
+        name=path.stem,
+        folder=Path(header["folder"]),
+        designs={name: design_from(parsed(text, str(path)), str(path)) for name, text in texts.items()},
+        ranges=given.variables,
+        sweep=given.sweep,
+        optimise=None,
+    )
+
+
+def _checked(document: Mapping[str, Any], path: Path) -> _File:
+    try:
+        return TypeAdapter(_File).validate_json(json.dumps(document, default=str), strict=True)
+    except ValidationError as error:
+        raise StudyError(f"{path}: {'; '.join(_messages(error))}") from error
 
 
 def _design(file: Path, study: Path) -> Design:
@@ -139,7 +162,7 @@ def _messages(error: ValidationError) -> list[str]:
 
 def _unknown_key(loc: tuple[int | str, ...]) -> str:
     *table, key = loc
-    kinds: dict[str, Any] = {"sweep": Sweep, "variables": Range}
+    kinds: dict[str, Any] = {"sweep": SweepOptions, "variables": Range}
     known = list(kinds.get(str(table[0]), _File).__dataclass_fields__ if table else _File.__dataclass_fields__)
     near = get_close_matches(str(key), known, n=1, cutoff=0.5)
     hint = f"did you mean '{near[0]}'?" if near else f"known are {', '.join(known)}"

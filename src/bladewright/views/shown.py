@@ -17,6 +17,7 @@ from bladewright.views.masses import mass_rows
 from bladewright.views.passage import draw_section_passage, figures, section_figures
 from bladewright.views.picture import sheet
 from bladewright.views.round_trip import round_trip_figure, round_trip_tables
+from bladewright.views.runs import parallel_coordinates, run_rows
 from bladewright.views.sections import draw_neighbour
 from bladewright.views.station_table import station_figure, station_html
 from bladewright.views.style import axis, drawing_style, in_unit, lengths_in, per_metre, unit_name
@@ -192,6 +193,12 @@ KINDS: Mapping[str, Kind] = {
         picture=lambda trip: image(round_trip_figure(trip.to_dict()), "deviations"),
         tables=lambda trip: round_trip_tables(trip.to_dict()),
         title=lambda trip: (trip.file, f"round trip, {_verdict(trip)}"),
+    ),
+    "runs": Kind(
+        figure=parallel_coordinates,
+        picture=lambda runs: image(parallel_coordinates(runs), "parallel coordinates"),
+        tables=lambda runs: table(run_rows(runs), ("", "lowest", "mean", "highest")),
+        title=lambda runs: (runs.name, f"{len(runs)} runs"),
     ),
 }
 """By the names that results say (`Shown.shown_as`)."""
