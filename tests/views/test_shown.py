@@ -16,6 +16,7 @@ from bladewright.domain.row import Row
 from bladewright.domain.section import section_passage
 from bladewright.domain.sector import Sector
 from bladewright.domain.wheel import Wheel
+from bladewright.studies.sweep import sweep
 from bladewright.views.html import frame, table
 from bladewright.views.picture import sheet
 from bladewright.views.shown import KINDS
@@ -42,6 +43,7 @@ SHOWN = {
     "section passage": lambda: section_passage(built(VANE), 0.05),
     "fit": lambda: made("linear"),
     "fit of a section": lambda: made("section"),
+    "runs": lambda: sweep(VANE, {"stagger": (-52.0, -48.0)}, ["area", "chord"], samples=6, jobs=1),
 }
 
 

@@ -121,7 +121,7 @@ def _drawn(runs: "Runs", pictures: dict[str, Path | None]) -> list[Path]:
     wanted = {name: path for name, path in pictures.items() if path is not None}
     if not wanted:
         return []
-    if not runs.good.any() or not runs.figures:
+    if not runs.figures:
         raise StudyError("there is nothing to draw: no run has figures; the manifest says why")
     from bladewright.views.runs import DRAWINGS, draw_runs
 

@@ -10,7 +10,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-from typing import Any, ClassVar, Self
+from typing import TYPE_CHECKING, Any, ClassVar, Literal, Self
 
 import numpy as np
 
@@ -21,6 +21,9 @@ from bladewright.errors import StudyError
 from bladewright.nurbs.basis import Reals
 from bladewright.studies.run import Experiment, Record, Verdict
 from bladewright.studies.variables import Variable, changed_designs
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 SHOWN_REASONS = 3
 """Reasons of refusals and failures that the text gives, the most frequent ones."""
@@ -111,6 +114,17 @@ class Runs(Shown):
         """The name of a variable or figure, with its unit."""
         unit = self.units.get(name, "-")
         return name if unit == "-" else f"{name} [{unit}]"
+
+    def plot(self, drawing: Literal["parallel", "scatter", "effects"] = "parallel") -> Figure:
+        """A matplotlib figure: parallel coordinates, a scatter matrix, or the main effects of the variables.
+
+        Raises StudyError where no run has figures.
+        """
+        if not self.figures:
+            raise StudyError("there is nothing to draw: no run has figures, as `reasons` says")
+        from bladewright.views.runs import DRAWINGS
+
+        return DRAWINGS[drawing](self)
 
     def to_csv(self, path: str | Path | None = None) -> str:
         """One line a run under a line of names with units, as text; written to `path` where one is given.
