@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+import bladewright as bw
 from bladewright.derivatives.complex_step import STEP
 from bladewright.errors import FileError, StudyError
 from bladewright.files.examples import example_text
@@ -112,7 +113,9 @@ def test_a_manifest_gives_back_what_was_written_and_goes_on_after_a_kill(tmp_pat
         manifest.note({"generation": 4})
         manifest.append(RECORDS[1])
     whole = path.read_bytes()
-    for cut in range(len(whole) + 1):
+    ends = [place + 1 for place, byte in enumerate(whole) if byte == ord("\n")]
+    near = {place + step for place in ends for step in (-2, -1, 0, 1)}
+    for cut in sorted({*range(0, len(whole), 29), *near}):
         path.write_bytes(whole[:cut])
         with Manifest(path, {"seed": 1}) as manifest:
             for record in RECORDS[:2]:
@@ -150,3 +153,31 @@ def test_a_manifest_of_another_study_or_of_another_process_is_refused_and_stays(
         Manifest(path, {"seed": 2})
     with pytest.raises(FileError, match="no manifest"):
         read_manifest(tmp_path / "nothing.jsonl")
+
+
+def test_polars_are_quantities_at_operating_points(study_file: Path) -> None:
+    pytest.importorskip("neuralfoil", reason="the extra 'polar' is not installed")
+    with study_file.open("a") as file:
+        file.write('[polars.cruise]\nreynolds = 1e6\nalpha = 2\nsolver = "neuralfoil"\n')
+        file.write('[polars.climb]\nreynolds = 1e6\nalpha = [2, 5]\nsolver = "neuralfoil"\n')
+    study = read_study(study_file)
+    asked = [each for name in ("cruise.cl", "climb.lift_to_drag") for each in study.quantities(name)]
+    record = record_of(Experiment(designs=study.designs, variables=(), quantities=tuple(asked)), 1, {})
+    polar = bw.polar(study.designs["turbine-section"].build(), 1e6, [2.0, 5.0], solver="neuralfoil")
+    expected = [polar.cl[0], *polar.lift_to_drag]
+    assert list(record.figures) == ["cruise.cl", "climb.lift_to_drag@2", "climb.lift_to_drag@5"]
+    assert list(record.figures.values()) == pytest.approx(expected)
+    with pytest.raises(StudyError, match="did you mean 'cd'"):
+        study.quantities("cruise.cpd")
+
+
+def test_a_solver_that_is_missing_is_said_in_the_record(study_file: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("BLADEWRIGHT_XFOIL", "/no/xfoil")
+    with study_file.open("a") as file:
+        file.write("[polars.cruise]\nreynolds = 1e6\nalpha = 2\n")
+    study = read_study(study_file)
+    asked = [*study.quantities("area"), *study.quantities("cruise.cl")]
+    record = record_of(Experiment(designs=study.designs, variables=(), quantities=tuple(asked)), 1, {})
+    assert (record.verdict, record.figures["cruise.cl"]) == ("failed", None)
+    assert record.figures["area"] is not None
+    assert "/no/xfoil" in record.reason

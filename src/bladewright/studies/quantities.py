@@ -6,7 +6,7 @@ import importlib.util
 import math
 import sys
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Hashable, Mapping
 from dataclasses import dataclass
 from functools import cache, cached_property
 from pathlib import Path
@@ -39,13 +39,18 @@ class BuiltDesign:
 
     def __init__(self, design: Any, built: Any) -> None:
         self.design, self.built = design, built
-        self._tables: dict[float, Any] = {}
+        self._found: dict[Any, Any] = {}
+
+    def once(self, key: Hashable, make: Callable[[], Any]) -> Any:
+        """What `make` gives, which is called but once for each key."""
+        if key not in self._found:
+            self._found[key] = make()
+        return self._found[key]
 
     def stations(self, span: float) -> Any:
         """The station table at a place along the span; that of a section, which has no span."""
-        if span not in self._tables:
-            self._tables[span] = self.built.report([span]) if self.design.dimension == 3 else self.built.report()
-        return self._tables[span]
+        in_space = self.design.dimension == 3
+        return self.once(span, lambda: self.built.report([span]) if in_space else self.built.report())
 
     @cached_property
     def passage(self) -> Any:
@@ -185,13 +190,21 @@ def figures(value: Any, name: str) -> dict[str, Any]:
     return {f"{name}.{word}": entry for word, entry in zip(words, entries.ravel(), strict=True)}
 
 
-@cache
 def imported(function: str, folder: str) -> Callable[..., Any]:
-    """The function of MODULE:FUNCTION, of which MODULE may be a file in `folder`; StudyError where there is none."""
-    module_name, _, name = function.partition(":")
+    """The function of MODULE:FUNCTION, of which MODULE may be a file in `folder`; StudyError where there is none.
+
+    A file that was edited is imported again.
+    """
+    module_name = function.partition(":")[0]
     file = Path(folder) / (module_name if module_name.endswith(".py") else f"{module_name}.py")
+    return _imported(function, file, file.stat().st_mtime_ns if file.is_file() else None)
+
+
+@cache
+def _imported(function: str, file: Path, edited: int | None) -> Callable[..., Any]:
+    module_name, _, name = function.partition(":")
     try:
-        module = _module(file) if file.is_file() else importlib.import_module(module_name)
+        module = _module(file) if edited is not None else importlib.import_module(module_name)
     except StudyError:
         raise
     except ModuleNotFoundError as error:

@@ -18,6 +18,7 @@ from bladewright.files.examples import examples
 from bladewright.files.reading import design_from, parsed, read_design
 from bladewright.files.text import read_text
 from bladewright.studies.manifest import read_manifest
+from bladewright.studies.operating_points import OperatingPoint, polar_figures
 from bladewright.studies.quantities import Quantity, quantities_of
 from bladewright.studies.variables import STRICT, Range, Variable, resolved
 
@@ -57,6 +58,7 @@ class _File:
     variables: dict[str, Range] = field(default_factory=dict)
     sweep: SweepOptions = field(default_factory=SweepOptions)
     optimise: dict[str, Any] | None = None
+    polars: dict[str, OperatingPoint] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -75,6 +77,8 @@ class Study:
     """how a sweep samples"""
     optimise: Mapping[str, Any] | None
     """how a search searches"""
+    polars: Mapping[str, OperatingPoint] = field(default_factory=dict)
+    """flows around sections, by name"""
 
     @property
     def variables(self) -> tuple[Variable, ...]:
@@ -82,8 +86,9 @@ class Study:
         return resolved(self.ranges, self.designs)
 
     def quantities(self, asked: object) -> list[Quantity]:
-        """The quantities of a name or MODULE:FUNCTION; StudyError where there is none."""
-        return quantities_of(asked, self.designs, self.folder)
+        """The quantities of a name, POINT.COEFFICIENT or MODULE:FUNCTION; StudyError where there is none."""
+        found = polar_figures(asked, self.polars, self.designs) if isinstance(asked, str) else None
+        return found or quantities_of(asked, self.designs, self.folder)
 
 
 def read_study(path: str | PathLike[str]) -> Study:
@@ -108,6 +113,7 @@ def read_study(path: str | PathLike[str]) -> Study:
         ranges=given.variables,
         sweep=given.sweep,
         optimise=given.optimise,
+        polars=given.polars,
     )
 
 
@@ -117,7 +123,8 @@ def _of_manifest(path: Path) -> Study:
     if header.get("kind") != "sweep":
         raise StudyError(f"'{path}' is the manifest of a {header.get('kind', 'study')}, not of a sweep")
     texts = header["designs"]
-    given = _checked({"designs": texts, "variables": header["variables"], "sweep": header["sweep"]}, path)
+    tables = {key: header.get(key, {}) for key in ("variables", "sweep", "polars")}
+    given = _checked({"designs": texts, **tables}, path)
     return Study(
         name=path.stem,
         folder=Path(header["folder"]),
@@ -125,6 +132,7 @@ def _of_manifest(path: Path) -> Study:
         ranges=given.variables,
         sweep=given.sweep,
         optimise=None,
+        polars=given.polars,
     )
 
 
@@ -162,7 +170,7 @@ def _messages(error: ValidationError) -> list[str]:
 
 def _unknown_key(loc: tuple[int | str, ...]) -> str:
     *table, key = loc
-    kinds: dict[str, Any] = {"sweep": SweepOptions, "variables": Range}
+    kinds: dict[str, Any] = {"sweep": SweepOptions, "variables": Range, "polars": OperatingPoint}
     known = list(kinds.get(str(table[0]), _File).__dataclass_fields__ if table else _File.__dataclass_fields__)
     near = get_close_matches(str(key), known, n=1, cutoff=0.5)
     hint = f"did you mean '{near[0]}'?" if near else f"known are {', '.join(known)}"

@@ -13,6 +13,7 @@ from bladewright.designs import Design
 from bladewright.errors import StudyError
 from bladewright.files.writing import text_of
 from bladewright.studies.manifest import Manifest, read_manifest
+from bladewright.studies.operating_points import OperatingPoint
 from bladewright.studies.run import Experiment, Record
 from bladewright.studies.runs import Runs
 from bladewright.studies.sampling import SAMPLINGS, count, read_table
@@ -31,6 +32,7 @@ def sweep(
     variables: Mapping[str, Given] | str | os.PathLike[str],
     quantities: Sequence[str | Callable[..., Any]] = (),
     *,
+    polars: Mapping[str, OperatingPoint] | None = None,
     sampling: Sampling = "latin-hypercube",
     samples: int = 64,
     seed: int = 1,
@@ -48,8 +50,9 @@ def sweep(
     `variables` has a range for each path or pattern: `{"stagger[1]": (20, 28), "blade_count": [20, 22]}`, where a pair
     in round brackets are bounds and a list are choices; or the keys of a study file, as
     `{"thickness*": {"lower": 0.9, "upper": 1.1, "relative": True}}`; or it is the path of a CSV table of runs.
-    `quantities` are names (docs/sweeps.md), or functions of the blade or section. `sampling` is "grid", "list",
-    "latin-hypercube" or "sobol", of which the latter two have so many `samples` of this `seed`.
+    `quantities` are names (docs/sweeps.md), or functions of the blade or section; `polars` are operating points by
+    name, whose quantities are `POINT.cl`, `POINT.cd` and so on. `sampling` is "grid", "list", "latin-hypercube" or
+    "sobol", of which the latter two have so many `samples` of this `seed`.
 
     With a `manifest`, every run is a line of that file as soon as it has ended, and a sweep that was stopped goes on
     there; `retry` repeats the runs that have failed. CAD `files` such as "step" go to `directory`. `jobs` is the number
@@ -72,6 +75,7 @@ def sweep(
         ranges=ranges,
         sweep=options,
         optimise=None,
+        polars=polars or {},
     )
     plan = planned(study, quantities=quantities, directory=directory)
     return plan.carried_out(manifest, jobs=jobs, scheduler=scheduler, retry=retry, progress=progress)
@@ -174,6 +178,7 @@ def _header(study: Study, asked: Sequence[str | Callable[..., Any]]) -> dict[str
         "folder": str(study.folder.absolute()),
         "designs": {name: text_of(design) for name, design in study.designs.items()},
         "variables": {name: _given(each) for name, each in study.ranges.items()},
+        "polars": {name: _given(each) for name, each in study.polars.items()},
         "sweep": {
             "sampling": study.sweep.sampling,
             **({"samples": study.sweep.samples, "seed": study.sweep.seed} if random else {}),
@@ -184,8 +189,8 @@ def _header(study: Study, asked: Sequence[str | Callable[..., Any]]) -> dict[str
     }
 
 
-def _given(given: Range) -> dict[str, Any]:
-    """The keys of a range that are not left out."""
+def _given(given: Range | OperatingPoint) -> dict[str, Any]:
+    """The keys of a table that are not left out."""
     return {each.name: asdict(given)[each.name] for each in fields(given) if getattr(given, each.name) != each.default}
 
 
